@@ -1,0 +1,82 @@
+# make            build the tools into build/bin
+# make deps       install what is missing (Debian, Ubuntu)
+# make check      run all tests                         make SAN=1 check   ... under sanitizers
+# make STUDY      run a study of pipelines/ (table1, brain2d): tables and pictures into build/out/STUDY
+# make install PREFIX=/usr/local                        make clean
+
+SHELL := /bin/bash
+.SHELLFLAGS := -eu -o pipefail -c
+.DELETE_ON_ERROR:
+.DEFAULT_GOAL := all
+
+PREFIX ?= /usr/local
+CC = gcc
+BUILD := build$(if $(SAN),-san)$(if $(filter clang%,$(CC)),-clang)
+OUT := build/out
+
+WARNINGS := -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Wstrict-prototypes -Wvla
+HARDENING := -fstack-protector-strong -fPIE -Wformat -Wformat-security
+OPTIMISE := $(if $(SAN),-O1 -fno-omit-frame-pointer,-O3 -fno-math-errno -fno-trapping-math -D_FORTIFY_SOURCE=2)
+SANITIZE := $(if $(SAN),-fsanitize=address,undefined -fno-sanitize-recover=undefined)
+CFLAGS := -std=c11 -D_GNU_SOURCE -g -Ilib -Itools $(WARNINGS) $(HARDENING) $(OPTIMISE) $(SANITIZE) -fopenmp
+LDFLAGS := -pie -Wl,-z,relro,-z,now -fopenmp $(SANITIZE)
+LDLIBS := -lgsl -lgslcblas -linih -lz -lm
+
+LIBRARY := $(BUILD)/libmtled.a
+LIBRARY_OBJECTS := $(patsubst %.c,$(BUILD)/%.o,$(wildcard lib/*/*.c))
+TOOLS := $(patsubst tools/%.c,%,$(filter-out tools/tool.c,$(wildcard tools/*.c)))
+PROGRAMS := $(TOOLS:%=$(BUILD)/bin/%)
+UNIT_TESTS := $(patsubst tests/unit/%.c,$(BUILD)/tests/%,$(wildcard tests/unit/*.c))
+MAN_PAGES := $(TOOLS:%=$(BUILD)/man/man1/%.1) $(patsubst tools/%,$(BUILD)/man/man5/%,$(wildcard tools/*.5))
+
+.PHONY: all lib man deps check install clean
+all: $(PROGRAMS) $(MAN_PAGES)
+man: $(MAN_PAGES)
+lib: $(LIBRARY)
+
+$(BUILD)/%.o: %.c Makefile
+	@mkdir -p $(@D)
+	$(CC) $(CFLAGS) -MMD -MP -c -o $@ $<
+
+$(LIBRARY): $(LIBRARY_OBJECTS)
+	@rm -f $@
+	ar rcs $@ $^
+
+# Only the reader of meshes needs gmsh, a large library that is slow to load.
+GMSH_PROGRAMS := nodes
+$(GMSH_PROGRAMS:%=$(BUILD)/bin/%): LDLIBS += -lgmsh
+
+$(BUILD)/bin/%: $(BUILD)/tools/%.o $(BUILD)/tools/tool.o $(LIBRARY)
+	@mkdir -p $(@D)
+	$(CC) $(LDFLAGS) -o $@ $^ $(LDLIBS)
+
+# libgmsh keeps memory of its own for the life of the process: only its leaks are not ours to judge.
+$(BUILD)/tests/%: $(BUILD)/tests/unit/%.o $(LIBRARY)
+	@mkdir -p $(@D)
+	$(CC) $(LDFLAGS) -o $@ $^ $(LDLIBS) -lcmocka $(if $(shell grep -l gmsh $(<:$(BUILD)/%.o=%.c) 2>/dev/null),-lgmsh)
+
+$(BUILD)/man/man1/%.1: $(BUILD)/bin/% tools/man.awk
+	@mkdir -p $(@D)
+	$< -h | awk -f tools/man.awk > $@
+
+$(BUILD)/man/man5/%: tools/%
+	@mkdir -p $(@D)
+	cp $< $@
+
+deps:
+	@bash pipelines/deps.sh
+
+check: all $(UNIT_TESTS)
+	@BUILD="$(CURDIR)/$(BUILD)" bash tests/run.sh
+
+install: all
+	install -d $(DESTDIR)$(PREFIX)/bin $(DESTDIR)$(PREFIX)/share/man/man1 $(DESTDIR)$(PREFIX)/share/man/man5
+	install -m 755 $(PROGRAMS) $(DESTDIR)$(PREFIX)/bin
+	install -m 644 $(filter %.1,$(MAN_PAGES)) $(DESTDIR)$(PREFIX)/share/man/man1
+	install -m 644 $(filter %.5,$(MAN_PAGES)) $(DESTDIR)$(PREFIX)/share/man/man5
+
+clean:
+	rm -rf build build-*
+
+include $(wildcard pipelines/*.mk)
+-include $(shell find $(BUILD) -name '*.d' 2>/dev/null)

@@ -1,0 +1,32 @@
+/* Checked allocation: sizes are overflow-checked, failures become a status. */
+#ifndef BASE_MEMORY_H
+#define BASE_MEMORY_H
+
+#include "base/status.h"
+
+#include <stdint.h>
+
+/* Zeroed array of `count` elements of `size` bytes, aligned to 64 bytes, or NULL (out of memory, or
+ * count < 0, or count * size overflows). A count of 0 gives a valid pointer. Release with free(). */
+void *array_new(int64_t count, size_t size);
+
+/* Resize an array from malloc, array_grow or NULL to `count` elements; new bytes are not zeroed. On failure
+ * returns NULL and the old array stays valid. The result is not 64-byte aligned. */
+void *array_grow(void *array, int64_t count, size_t size);
+
+/* *pointer = array_new(count, sizeof **pointer); evaluates to a status, with an error naming the array. */
+#define NEW_ARRAY(pointer, count, error)                                                                     \
+    ((*(pointer) = array_new((count), sizeof **(pointer))) != NULL ? STATUS_OK                               \
+                                                                   : fail_memory((error), #pointer))
+
+/* Evaluate a status expression; on failure, leave through the label `done` with `status` set.
+ * The functions of lib/ have one exit path, which frees. */
+#define TRY(expression)                                                                                      \
+    do {                                                                                                     \
+        status = (expression);                                                                               \
+        if (status != STATUS_OK) {                                                                           \
+            goto done;                                                                                       \
+        }                                                                                                    \
+    } while (0)
+
+#endif

@@ -1,0 +1,210 @@
+#include "base/options.h"
+
+#include <errno.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static struct option *find_letter(struct option options[], int count, char letter)
+{
+    for (int i = 0; i < count; i++) {
+        if (options[i].letter != 0 && options[i].letter == letter) {
+            return &options[i];
+        }
+    }
+    return NULL;
+}
+
+static struct option *find_name(struct option options[], int count, const char *name, size_t length)
+{
+    for (int i = 0; i < count; i++) {
+        const char *candidate = options[i].name;
+        if (candidate != NULL && strlen(candidate) == length && strncmp(candidate, name, length) == 0) {
+            return &options[i];
+        }
+    }
+    return NULL;
+}
+
+static enum status mark_given(struct option *option, const char *shown, struct error *error)
+{
+    if (option->given) {
+        return fail(error, STATUS_INPUT, "option %s given twice", shown);
+    }
+    option->given = true;
+    return STATUS_OK;
+}
+
+/* --name, --name=VALUE or --name VALUE at argv[*at]. */
+static enum status parse_long(struct option options[], int count, int argc, char *argv[], int *at,
+                              struct error *error)
+{
+    const char *shown = argv[*at];
+    const char *name = shown + 2;
+    const char *equals = strchr(name, '=');
+    size_t length = equals != NULL ? (size_t)(equals - name) : strlen(name);
+    struct option *option = find_name(options, count, name, length);
+    if (option == NULL) {
+        return fail(error, STATUS_INPUT, "unknown option %s (see -h)", shown);
+    }
+    enum status status = mark_given(option, shown, error);
+    if (status != STATUS_OK) {
+        return status;
+    }
+    if (!option->takes_value) {
+        return equals == NULL ? STATUS_OK : fail(error, STATUS_INPUT, "option %s takes no value", shown);
+    }
+    if (equals != NULL) {
+        option->value = equals + 1;
+        return STATUS_OK;
+    }
+    if (*at + 1 >= argc) {
+        return fail(error, STATUS_INPUT, "option %s lacks its value", shown);
+    }
+    option->value = argv[++*at];
+    return STATUS_OK;
+}
+
+/* -abc (flags joined), -kVALUE or -k VALUE at argv[*at]. */
+static enum status parse_short(struct option options[], int count, int argc, char *argv[], int *at,
+                               struct error *error)
+{
+    for (const char *letter = argv[*at] + 1; *letter != '\0'; letter++) {
+        char shown[3] = {'-', *letter, '\0'};
+        struct option *option = find_letter(options, count, *letter);
+        if (option == NULL) {
+            return fail(error, STATUS_INPUT, "unknown option %s in %s (see -h)", shown, argv[*at]);
+        }
+        enum status status = mark_given(option, shown, error);
+        if (status != STATUS_OK) {
+            return status;
+        }
+        if (!option->takes_value) {
+            continue;
+        }
+        if (letter[1] != '\0') {
+            option->value = letter + 1;
+        } else if (*at + 1 < argc) {
+            option->value = argv[++*at];
+        } else {
+            return fail(error, STATUS_INPUT, "option %s lacks its value", shown);
+        }
+        return STATUS_OK;
+    }
+    return STATUS_OK;
+}
+
+enum status options_parse(struct option options[], int option_count, int argc, char *argv[],
+                          int *operand_count, struct error *error)
+{
+    bool options_ended = false;
+    *operand_count = 0;
+    for (int at = 1; at < argc; at++) {
+        enum status status = STATUS_OK;
+        if (options_ended || argv[at][0] != '-' || argv[at][1] == '\0') {
+            argv[++*operand_count] = argv[at];
+        } else if (strcmp(argv[at], "--") == 0) {
+            options_ended = true;
+        } else if (argv[at][1] == '-') {
+            status = parse_long(options, option_count, argc, argv, &at, error);
+        } else {
+            status = parse_short(options, option_count, argc, argv, &at, error);
+        }
+        if (status != STATUS_OK) {
+            return status;
+        }
+    }
+    return STATUS_OK;
+}
+
+/* Only what strtod is to see: decimal digits, sign, point, exponent. */
+static bool looks_decimal(const char *text)
+{
+    return text[0] != '\0' && strspn(text, "+-.0123456789eE") == strlen(text);
+}
+
+enum status parse_double(const char *text, const char *what, double least, double most, double *value,
+                         struct error *error)
+{
+    char *end = NULL;
+    *value = looks_decimal(text) ? strtod(text, &end) : NAN;
+    if (end == NULL || end == text || *end != '\0' || !isfinite(*value)) {
+        return fail(error, STATUS_INPUT, "%s: '%s' is not a number", what, text);
+    }
+    if (!(*value >= least && *value <= most)) {
+        return fail(error, STATUS_INPUT, "%s: %s is not within [%g, %g]", what, text, least, most);
+    }
+    return STATUS_OK;
+}
+
+enum status parse_integer(const char *text, const char *what, int64_t least, int64_t most, int64_t *value,
+                          struct error *error)
+{
+    char *end = NULL;
+    errno = 0;
+    long long number = 0;
+    if (text[0] != '\0' && strspn(text, "+-0123456789") == strlen(text)) {
+        number = strtoll(text, &end, 10);
+    }
+    if (end == NULL || end == text || *end != '\0') {
+        return fail(error, STATUS_INPUT, "%s: '%s' is not a whole number", what, text);
+    }
+    if (errno == ERANGE || number < least || number > most) {
+        return fail(error, STATUS_INPUT, "%s: %s is not within [%lld, %lld]", what, text, (long long)least,
+                    (long long)most);
+    }
+    *value = number;
+    return STATUS_OK;
+}
+
+enum status parse_double_list(const char *text, const char *what, double least, double largest, int most,
+                              double values[], int *count, struct error *error)
+{
+    *count = 0;
+    for (const char *at = text;; at++) {
+        char item[64];
+        size_t length = strcspn(at, ",");
+        if (*count == most || length >= sizeof item) {
+            return fail(error, STATUS_INPUT, "%s: '%s' is not a list of at most %d numbers", what, text, most);
+        }
+        memcpy(item, at, length);
+        item[length] = '\0';
+        enum status status = parse_double(item, what, least, largest, &values[*count], error);
+        if (status != STATUS_OK) {
+            return status;
+        }
+        ++*count;
+        at += length;
+        if (*at == '\0') {
+            return STATUS_OK;
+        }
+    }
+}
+
+enum status parse_length_unit(const char *text, const char *what, double *metres, struct error *error)
+{
+    static const char *const units[] = {"m", "cm", "mm", "um"};
+    static const double sizes[] = {1.0, 1e-2, 1e-3, 1e-6};
+    int index;
+    enum status status = parse_choice(text, what, units, 4, &index, error);
+    if (status == STATUS_OK) {
+        *metres = sizes[index];
+    }
+    return status;
+}
+
+enum status parse_choice(const char *text, const char *what, const char *const choices[], int count, int *index,
+                         struct error *error)
+{
+    char list[256] = "";
+    for (int i = 0; i < count; i++) {
+        if (strcmp(text, choices[i]) == 0) {
+            *index = i;
+            return STATUS_OK;
+        }
+        size_t length = strlen(list);
+        snprintf(list + length, sizeof list - length, "%s%s", i > 0 ? ", " : "", choices[i]);
+    }
+    return fail(error, STATUS_INPUT, "%s: '%s' is none of %s", what, text, list);
+}

@@ -1,0 +1,45 @@
+#include "base/status.h"
+
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+
+/* A message is one line whatever the names in it contain. */
+static void make_one_line(char *text)
+{
+    for (; *text != '\0'; text++) {
+        unsigned char c = (unsigned char)*text;
+        if (c < 0x20 || c == 0x7f) {
+            *text = '?';
+        }
+    }
+}
+
+enum status fail(struct error *error, enum status status, const char *format, ...)
+{
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(error->text, sizeof error->text, format, arguments);
+    va_end(arguments);
+    make_one_line(error->text);
+    return status;
+}
+
+enum status fail_in(struct error *error, enum status status, const char *context, ...)
+{
+    char joined[sizeof error->text];
+    va_list arguments;
+    va_start(arguments, context);
+    vsnprintf(joined, sizeof joined, context, arguments);
+    va_end(arguments);
+    size_t length = strlen(joined);
+    snprintf(joined + length, sizeof joined - length, ": %s", error->text);
+    memcpy(error->text, joined, sizeof joined);
+    make_one_line(error->text);
+    return status;
+}
+
+enum status fail_memory(struct error *error, const char *what)
+{
+    return fail(error, STATUS_SYSTEM, "%s: out of memory", what);
+}

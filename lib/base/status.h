@@ -1,0 +1,35 @@
+/* Status codes and error messages: every function of lib/ that can fail returns a status and
+ * describes the failure in a struct error; only the tools print it. */
+#ifndef BASE_STATUS_H
+#define BASE_STATUS_H
+
+#include <stddef.h>
+
+/* The values are the exit statuses of the tools. */
+enum status {
+    STATUS_OK = 0,      /* good */
+    STATUS_VERDICT = 1, /* the computation says no: differs, diverged, singular, invalid */
+    STATUS_INPUT = 2,   /* wrong usage or malformed input */
+    STATUS_SYSTEM = 3   /* input/output or memory failure */
+};
+
+#define MUST_CHECK __attribute__((warn_unused_result))
+
+/* One line, `section: row: what is wrong: remedy`, without program name and newline. */
+struct error {
+    char text[512];
+};
+
+/* Store a printf-style message in `error` and return `status`, so that callers can write
+ * `return fail(error, STATUS_INPUT, "...")`. Control characters in the message are replaced by '?'. */
+enum status fail(struct error *error, enum status status, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
+
+/* Put "context: " in front of the message of `error`; return `status`. */
+enum status fail_in(struct error *error, enum status status, const char *context, ...)
+    __attribute__((format(printf, 3, 4)));
+
+/* fail() with the out-of-memory message for `what`. */
+enum status fail_memory(struct error *error, const char *what);
+
+#endif

@@ -1,0 +1,85 @@
+/* The stream "mts 1" (see mts(5)): named, typed tables that travel through a pipe, as text or binary. */
+#ifndef IO_STREAM_H
+#define IO_STREAM_H
+
+#include "base/status.h"
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#define MTS_VERSION "0.1.0"
+
+enum element_type { TYPE_I4, TYPE_I8, TYPE_F4, TYPE_F8 };
+
+/* One table: rows x cols elements, row-major, at least 8-byte aligned (64 when owned or mapped binary). */
+struct section {
+    char *name;             /* e.g. "nodes.x": letters, digits, '.', '_', '-'; unique in the stream */
+    enum element_type type;
+    int64_t rows, cols;
+    char *attributes;       /* "unit=m cols=x,y", without enc=; "" when none. Values hold no blanks. */
+    void *data;             /* rows * cols elements of `type` */
+    bool owned;             /* data is freed with the section; otherwise it lies in the stream's mapping or
+                               belongs to the caller, who keeps it alive */
+};
+
+struct stream {
+    struct section *sections; /* in stream order */
+    int64_t section_count;
+    char **provenance;        /* "# @" lines without "# @ " and newline, oldest first */
+    int64_t provenance_count;
+    void *mapping;            /* the mapped input file, or NULL */
+    size_t mapping_size;
+};
+
+/* An empty stream. */
+void stream_init(struct stream *stream);
+
+/* Release everything the stream owns; it becomes empty. */
+void stream_free(struct stream *stream);
+
+/* Read a whole stream from an open descriptor, which stays open. A regular file is mapped, and its binary
+ * payloads are used in place. `name` is used in messages ("standard input", the file's name).
+ * Errors: STATUS_INPUT for anything malformed, truncated, with a wrong CRC or without its end line;
+ * STATUS_SYSTEM for read failures and memory. Nothing is allocated beyond a small multiple of the input read
+ * so far. On failure the stream is empty. */
+MUST_CHECK enum status stream_read(struct stream *stream, int descriptor, const char *name, struct error *error);
+
+/* Write the stream, as text or binary, with the end line. Does not close the descriptor. Same stream, same
+ * bytes, whether written to a pipe or a file. STATUS_SYSTEM with errno's text on a write error. */
+MUST_CHECK enum status stream_write(const struct stream *stream, int descriptor, bool text, struct error *error);
+
+/* The section of that name, or NULL. */
+const struct section *stream_find(const struct stream *stream, const char *name);
+
+/* The section `name`, which must exist and have this type and this number of columns (cols <= 0: any).
+ * `producer` names the tool that makes it ("shapefn"), for the remedy in the message. */
+MUST_CHECK enum status stream_need(const struct stream *stream, const char *name, enum element_type type,
+                                   int64_t cols, const char *producer, const struct section **section,
+                                   struct error *error);
+
+/* Add a section, or replace the one of that name in its place. With owned = true the stream frees `data` (from
+ * array_new or malloc), also when this call fails. */
+MUST_CHECK enum status stream_put(struct stream *stream, const char *name, enum element_type type, int64_t rows,
+                                  int64_t cols, const char *attributes, void *data, bool owned,
+                                  struct error *error);
+
+/* Remove a section, if it exists. */
+void stream_remove(struct stream *stream, const char *name);
+
+/* Remove all sections whose names begin with `prefix`. */
+void stream_remove_prefix(struct stream *stream, const char *prefix);
+
+/* Append the provenance line "TOOL VERSION ARGV..." (arguments quoted for a shell where they need it). */
+MUST_CHECK enum status stream_add_provenance(struct stream *stream, int argc, char *const argv[],
+                                             struct error *error);
+
+/* Copy the value of attribute `key` of a section into value[size]; false when absent or too long. */
+bool section_attribute(const struct section *section, const char *key, char *value, size_t size);
+
+/* Bytes of one element. */
+size_t element_size(enum element_type type);
+
+/* "f8" etc. */
+const char *element_type_name(enum element_type type);
+
+#endif
