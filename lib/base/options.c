@@ -166,7 +166,8 @@ enum status parse_double_list(const char *text, const char *what, double least, 
         char item[64];
         size_t length = strcspn(at, ",");
         if (*count == most || length >= sizeof item) {
-            return fail(error, STATUS_INPUT, "%s: '%s' is not a list of at most %d numbers", what, text, most);
+            return fail(error, STATUS_INPUT, "%s: '%s' is not a list of at most %d numbers", what, text,
+                        most);
         }
         memcpy(item, at, length);
         item[length] = '\0';
@@ -194,8 +195,8 @@ enum status parse_length_unit(const char *text, const char *what, double *metres
     return status;
 }
 
-enum status parse_choice(const char *text, const char *what, const char *const choices[], int count, int *index,
-                         struct error *error)
+enum status parse_choice(const char *text, const char *what, const char *const choices[], int count,
+                         int *index, struct error *error)
 {
     char list[256] = "";
     for (int i = 0; i < count; i++) {

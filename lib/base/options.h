@@ -37,7 +37,7 @@ MUST_CHECK enum status parse_length_unit(const char *text, const char *what, dou
                                          struct error *error);
 
 /* Index of `text` among `count` choices; the error lists them. */
-MUST_CHECK enum status parse_choice(const char *text, const char *what, const char *const choices[], int count,
-                                    int *index, struct error *error);
+MUST_CHECK enum status parse_choice(const char *text, const char *what, const char *const choices[],
+                                    int count, int *index, struct error *error);
 
 #endif

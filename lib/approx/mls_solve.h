@@ -1,0 +1,53 @@
+/* The small symmetric systems behind one MLS evaluation; private to lib/approx. */
+#ifndef APPROX_MLS_SOLVE_H
+#define APPROX_MLS_SOLVE_H
+
+#include "approx/mls.h"
+
+/* Rows of scratch per neighbour: monomials, QR copy of them, weight, slope, projection, row. */
+#define MLS_ROWS (2 * MLS_MAX_BASIS + 4)
+
+/* One point's data in local scaled coordinates; arrays of `count` entries, `stride` apart. */
+struct mls_local {
+    int64_t count, stride;
+    double scale;       /* s, in units of x */
+    double *monomials;  /* [m][stride]: p_k(xi_j) */
+    double *orthogonal; /* [m][stride]: scratch of the orthogonal factorization, count + m used */
+    double *weight;     /* w_j */
+    double *slope;      /* grad w_j = -slope_j xi_j / s */
+    double *projection; /* p_j . c */
+    double *row;        /* scratch */
+    double matrix[MLS_MAX_BASIS * MLS_MAX_BASIS]; /* moment matrix with H, m x m */
+    double regularisation[MLS_MAX_BASIS];         /* diagonal of H */
+};
+
+/* M = D L E L^T D with D = sqrt(diag M), E diagonal; or, when orthogonal, sqrt(W) P D^-1 over sqrt(H) D^-1 =
+ * Q R with R in `lower` (transposed) and Q in local->orthogonal. */
+struct mls_factor {
+    bool orthogonal;
+    double scaling[MLS_MAX_BASIS]; /* 1 / D */
+    double lower[MLS_MAX_BASIS * MLS_MAX_BASIS];
+    double pivot[MLS_MAX_BASIS]; /* E */
+};
+
+/* Point the arrays of `local` into scratch[MLS_ROWS * stride]. */
+void mls_local_layout(struct mls_local *local, double *scratch, int64_t count, int64_t stride);
+
+/* Factorise local->matrix and judge its condition: the linear block always, the whole matrix unless
+ * `modified` (there H bounds it, and the reproduction is checked afterwards). May choose the orthogonal way
+ * at once. */
+enum mls_verdict mls_factorise(int m, int dim, bool modified, struct mls_local *local,
+                               struct mls_factor *factor);
+
+/* Replace the factor by the orthogonal one. */
+void mls_orthogonalise(int m, struct mls_local *local, struct mls_factor *factor);
+
+/* solution = M^-1 right, with one step of iterative refinement. */
+void mls_solve(int m, const struct mls_factor *factor, const struct mls_local *local, const double *right,
+               double *solution);
+
+/* c = M^-1 e_1 and phi_j = w_j p_j . c without forming p_j . c from a large c. Sets local->projection. */
+void mls_orthogonal_values(int m, const struct mls_factor *factor, struct mls_local *local, double *c,
+                           double *phi);
+
+#endif
