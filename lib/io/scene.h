@@ -1,0 +1,172 @@
+/* The scene: what to compute on a body, as a plain struct read from an INI file (grammar below).
+ *
+ * The file holds sections `[kind NAME]` with lines `key = value`. Comments begin with '#' or ';' at the start
+ * of a line or after a blank. Nothing is guessed: an unknown, repeated or missing key is an error with its
+ * line. Names of groups are comma lists. Files are named relative to the scene file. A scene can only be
+ * computed: it names no program and no file to write.
+ *
+ * - [scene]: dim = 2|3; analysis = quasi-static|dynamic; title = TEXT; gravity = GX,GY[,GZ] (m/s2)
+ * - [material NAME]: region = GROUPS; model = neo-hookean (default)|neo-hookean-log|mooney-rivlin|ogden|
+ *   st-venant-kirchhoff; E (Pa); nu; rho (kg/m3); ratio (mooney-rivlin: C01/C10); alpha (ogden); or, instead
+ *   of E and nu, table = FILE with unit
+ * - [displacement NAME]: facets = GROUPS or nodes = SETS; one of table = FILE with unit, components =
+ * UX,UY[,UZ] (m, or `free`), normal = VALUE (m, along the outward normal; facets only); curve
+ * - [contact NAME]: facets = GROUPS; rigid = FILE; unit; side = left|right (2D), front|back (3D); stiffness
+ *   (Pa/m)
+ * - [pressure NAME]: facets = GROUPS; value (Pa, positive pushes inward); curve
+ * - [traction NAME]: facets = GROUPS; components (Pa); curve
+ * - [force NAME]: nodes = SETS; components (N on each node; in 2D N per metre of thickness); curve
+ * - [output]: frames = COUNT or interval (s, dynamic); stress, strain, energy, reactions, gaps = yes|no
+ * - [solver]: constraints = ebciem|direct; constraint_points = hat|node; volume = nodal|pointwise;
+ *   pointwise_share (0..1); tolerance; max_steps; ramp_steps; end_time (s), damping (1/s) (dynamic);
+ *   time_step_margin (0..1)
+ *
+ * unit = m|cm|mm|um is the unit of the lengths in a table; curve = smooth (default)|linear|step|FILE. */
+#ifndef IO_SCENE_H
+#define IO_SCENE_H
+
+#include "base/status.h"
+
+#include <stdbool.h>
+#include <stdint.h>
+
+enum scene_analysis { SCENE_QUASI_STATIC, SCENE_DYNAMIC };
+
+enum scene_model {
+    SCENE_NEO_HOOKEAN,
+    SCENE_NEO_HOOKEAN_LOG,
+    SCENE_MOONEY_RIVLIN,
+    SCENE_OGDEN,
+    SCENE_ST_VENANT_KIRCHHOFF
+};
+
+enum scene_prescription { SCENE_TABLE, SCENE_COMPONENTS, SCENE_NORMAL };
+
+enum scene_curve_kind { SCENE_CURVE_SMOOTH, SCENE_CURVE_LINEAR, SCENE_CURVE_STEP, SCENE_CURVE_FILE };
+
+/* The body lies left or right of the rigid curve, walked in the order of its points (2D), or in front of
+ * (where the right-hand normal points) or behind the rigid triangles (3D). */
+enum scene_side { SCENE_LEFT, SCENE_RIGHT, SCENE_FRONT, SCENE_BACK };
+
+enum scene_constraints { SCENE_EBCIEM, SCENE_DIRECT };
+enum scene_constraint_points { SCENE_HAT_AVERAGES, SCENE_NODE_VALUES };
+enum scene_volume { SCENE_NODAL_VOLUME, SCENE_POINTWISE_VOLUME };
+
+/* Names of groups, each different; the key is absent when count == 0. */
+struct name_list {
+    char **names;
+    int64_t count;
+};
+
+/* Where a section stands, for messages: see scene_fail. */
+struct scene_label {
+    char *kind; /* "displacement" */
+    char *name; /* "craniotomy" */
+    int64_t line;
+};
+
+struct scene_curve {
+    enum scene_curve_kind kind;
+    char *file; /* rows (time, factor); NULL but for SCENE_CURVE_FILE */
+};
+
+struct scene_material {
+    struct scene_label label;
+    struct name_list regions; /* at least one; in no other material */
+    enum scene_model model;
+    double youngs_modulus; /* Pa, > 0; 0 with a table */
+    double poisson_ratio;  /* -1 < nu < .5; 0 with a table */
+    double density;        /* kg/m3, > 0 */
+    double mooney_ratio;   /* C01/C10 >= 0, mooney-rivlin only */
+    double ogden_alpha;    /* not 0, ogden only */
+    char *table;       /* NULL, or rows (dim coordinates, E in Pa, nu), one per integration point in order */
+    double table_unit; /* m per unit of the table's coordinates */
+};
+
+struct scene_displacement {
+    struct scene_label label;
+    struct name_list facets, nodes; /* exactly one is given; nodes never with SCENE_NORMAL */
+    enum scene_prescription kind;
+    char *table;          /* SCENE_TABLE: rows (dim coordinates, dim displacement components) */
+    double table_unit;    /* m per unit of the table */
+    double components[3]; /* SCENE_COMPONENTS: m, dim of them */
+    bool is_free[3];      /* SCENE_COMPONENTS: this component is not prescribed; never all of them */
+    double normal;        /* SCENE_NORMAL: m, along the outward reference normal */
+    struct scene_curve curve;
+};
+
+struct scene_contact {
+    struct scene_label label;
+    struct name_list facets; /* at least one */
+    char *rigid;             /* 2D: points of polylines; 3D: triangles (see table.h) */
+    double rigid_unit;       /* m per unit of the file */
+    enum scene_side side;    /* left, right in 2D; front, back in 3D */
+    double stiffness;        /* Pa/m, > 0; 0: not given, chosen by the solver */
+};
+
+/* A pressure, traction or force. */
+struct scene_load {
+    struct scene_label label;
+    struct name_list facets; /* pressure, traction: at least one */
+    struct name_list nodes;  /* force: at least one node set */
+    double pressure;         /* pressure: Pa, positive pushes inward */
+    double components[3];    /* traction: Pa; force: N on each node (2D: N/m) */
+    struct scene_curve curve;
+};
+
+struct scene_output {
+    int64_t frames;  /* evenly spaced frames besides the final state; 0: none */
+    double interval; /* s between frames (dynamic); 0: none. Not both. */
+    bool stress, strain, energy, reactions, gaps;
+};
+
+struct scene_solver {
+    enum scene_constraints constraints;
+    enum scene_constraint_points constraint_points;
+    enum scene_volume volume;
+    double pointwise_share;  /* share of the bulk modulus kept pointwise with nodal volume; < 0: not given */
+    double tolerance;        /* estimated remaining error relative to the displacement; default 1e-6 */
+    int64_t max_steps;       /* 0: not given */
+    int64_t ramp_steps;      /* steps over which a quasi-static load is applied; 0: not given */
+    double end_time;         /* s, dynamic; 0 in quasi-static scenes, whose curves run from 0 to 1 */
+    double time_step_margin; /* share of the estimated critical step; default .9 */
+    double damping;          /* 1/s, dynamic; default 0 */
+};
+
+struct scene {
+    char *path;        /* the scene file */
+    uint32_t checksum; /* CRC-32 of its bytes */
+    char *title;       /* "" when absent */
+    int dim;           /* 2 or 3 */
+    enum scene_analysis analysis;
+    double gravity[3]; /* m/s2 */
+    struct scene_material *materials;
+    int64_t material_count; /* >= 1 */
+    struct scene_displacement *displacements;
+    int64_t displacement_count;
+    struct scene_contact *contacts;
+    int64_t contact_count;
+    struct scene_load *pressures;
+    int64_t pressure_count;
+    struct scene_load *tractions;
+    int64_t traction_count;
+    struct scene_load *forces;
+    int64_t force_count;
+    struct scene_output output;
+    struct scene_solver solver;
+};
+
+/* Read a scene file. It reads no other file: the tables are named by path, for the caller to read. Errors, as
+ * `FILE:LINE: [kind NAME]: key: what: remedy`: STATUS_INPUT for anything malformed, STATUS_SYSTEM for read
+ * failures and memory. On failure the scene is empty. */
+MUST_CHECK enum status scene_read(const char *path, struct scene *scene, struct error *error);
+
+/* Release everything the scene owns; it becomes empty. */
+void scene_free(struct scene *scene);
+
+/* fail() with "FILE:LINE: [kind NAME]: " in front of the message. */
+enum status scene_fail(struct error *error, enum status status, const struct scene *scene,
+                       const struct scene_label *label, const char *format, ...)
+    __attribute__((format(printf, 5, 6)));
+
+#endif

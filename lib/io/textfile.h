@@ -1,0 +1,26 @@
+/* Small text files written by people and untrusted: scenes and tables. */
+#ifndef IO_TEXTFILE_H
+#define IO_TEXTFILE_H
+
+#include "base/status.h"
+
+#include <stddef.h>
+
+/* The bytes of a text file: lines that end with '\n', none of them with '\r' or NUL inside. */
+struct textfile {
+    char *text; /* size bytes and a closing NUL */
+    size_t size;
+};
+
+/* Read the file `path` of at most `most` bytes. Only regular files and pipes are opened, so that a path in an
+ * untrusted scene cannot touch a device. Errors, as `PATH:LINE: ...`: STATUS_SYSTEM for a file that cannot be
+ * opened or read; STATUS_INPUT for a folder or device, more than `most` bytes, an empty file, a byte order
+ * mark, CRLF line ends, NUL and other control characters, and a last line without newline (the mark of a
+ * truncated file). */
+MUST_CHECK enum status textfile_read(const char *path, size_t most, struct textfile *file,
+                                     struct error *error);
+
+/* Release the text; the struct becomes empty. */
+void textfile_free(struct textfile *file);
+
+#endif
