@@ -17,9 +17,10 @@ OUT := build/out
 WARNINGS := -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Wstrict-prototypes -Wvla
 HARDENING := -fstack-protector-strong -fPIE -Wformat -Wformat-security
 OPTIMISE := $(if $(SAN),-O1 -fno-omit-frame-pointer,-O3 -fno-math-errno -fno-trapping-math -D_FORTIFY_SOURCE=2)
-SANITIZE := $(if $(SAN),-fsanitize=address,undefined -fno-sanitize-recover=undefined)
+comma := ,
+SANITIZE := $(if $(SAN),-fsanitize=address$(comma)undefined -fno-sanitize-recover=undefined)
 CFLAGS := -std=c11 -D_GNU_SOURCE -g -Ilib -Itools $(WARNINGS) $(HARDENING) $(OPTIMISE) $(SANITIZE) -fopenmp
-LDFLAGS := -pie -Wl,-z,relro,-z,now -fopenmp $(SANITIZE)
+LDFLAGS := -pie -Wl,-z,relro -Wl,-z,now -fopenmp $(SANITIZE)
 LDLIBS := -lgsl -lgslcblas -linih -lz -lm
 
 LIBRARY := $(BUILD)/libmtled.a
