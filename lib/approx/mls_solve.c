@@ -74,7 +74,7 @@ static double reciprocal_condition(int m, int size, const struct mls_local *loca
                                    const struct mls_factor *whole)
 {
     struct mls_factor factor;
-    double block[MLS_MAX_BASIS * MLS_MAX_BASIS], least_leading, least;
+    double block[MLS_MAX_BASIS * MLS_MAX_BASIS] = {0.0}, least_leading, least;
     double norm = 0.0, inverse_norm = 0.0;
     for (int k = 0; k < size; k++) {
         double sum = 0.0;
@@ -171,7 +171,7 @@ void mls_orthogonalise(int m, struct mls_local *local, struct mls_factor *factor
 void mls_solve(int m, const struct mls_factor *factor, const struct mls_local *local, const double *right,
                double *solution)
 {
-    double residual[MLS_MAX_BASIS], correction[MLS_MAX_BASIS];
+    double residual[MLS_MAX_BASIS] = {0.0}, correction[MLS_MAX_BASIS];
     substitute(m, factor, right, solution);
     for (int k = 0; k < m; k++) {
         double sum = right[k];

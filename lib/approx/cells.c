@@ -1,0 +1,243 @@
+#include "approx/cells.h"
+
+#include "base/memory.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+/* Faces opposite each vertex's complement, outward from a positively oriented simplex. */
+static const int triangle_faces[3][2] = {{0, 1}, {1, 2}, {2, 0}};
+static const int tetrahedron_faces[4][3] = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}};
+
+static void edge_vector(int dim, const double *x, int32_t from, int32_t to, double *edge)
+{
+    for (int a = 0; a < dim; a++) {
+        edge[a] = x[(int64_t)to * dim + a] - x[(int64_t)from * dim + a];
+    }
+}
+
+static void cross(const double *u, const double *v, double *w)
+{
+    w[0] = u[1] * v[2] - u[2] * v[1];
+    w[1] = u[2] * v[0] - u[0] * v[2];
+    w[2] = u[0] * v[1] - u[1] * v[0];
+}
+
+double cell_volume(const struct cells *cells, int64_t cell)
+{
+    const int32_t *v = cells->node + cell * (cells->dim + 1);
+    double e[3][3], w[3];
+    for (int k = 0; k < cells->dim; k++) {
+        edge_vector(cells->dim, cells->x, v[0], v[1 + k], e[k]);
+    }
+    if (cells->dim == 2) {
+        return 0.5 * (e[0][0] * e[1][1] - e[0][1] * e[1][0]);
+    }
+    cross(e[0], e[1], w);
+    return (w[0] * e[2][0] + w[1] * e[2][1] + w[2] * e[2][2]) / 6.0;
+}
+
+void cell_centroid(const struct cells *cells, int64_t cell, double *centroid)
+{
+    int dim = cells->dim;
+    const int32_t *v = cells->node + cell * (dim + 1);
+    for (int a = 0; a < dim; a++) {
+        double sum = 0.0;
+        for (int k = 0; k <= dim; k++) {
+            sum += cells->x[(int64_t)v[k] * dim + a];
+        }
+        centroid[a] = sum / (dim + 1);
+    }
+}
+
+void face_area_vector(int dim, const double *x, const int32_t *face, double *vector)
+{
+    double u[3], v[3];
+    edge_vector(dim, x, face[0], face[1], u);
+    if (dim == 2) {
+        vector[0] = u[1];
+        vector[1] = -u[0];
+        return;
+    }
+    edge_vector(dim, x, face[0], face[2], v);
+    cross(u, v, vector);
+    for (int a = 0; a < 3; a++) {
+        vector[a] *= 0.5;
+    }
+}
+
+enum status cells_check(const struct cells *cells, struct error *error)
+{
+    int vertices = cells->dim + 1;
+    for (int64_t c = 0; c < cells->count; c++) {
+        for (int k = 0; k < vertices; k++) {
+            int32_t node = cells->node[c * vertices + k];
+            if (node < 0 || node >= cells->node_count) {
+                return fail(error, STATUS_INPUT, "cells: row %lld: no node %d", (long long)c, node);
+            }
+        }
+        double volume = cell_volume(cells, c);
+        if (!(volume > 0.0) || !isfinite(volume)) {
+            return fail(error, STATUS_INPUT, "cells: row %lld: inverted or of no volume (%g)", (long long)c,
+                        volume);
+        }
+    }
+    return STATUS_OK;
+}
+
+/* A face with its sorted vertices, filed under the lowest. */
+struct filed_face {
+    int32_t key[2]; /* the other vertices, ascending (2D: one, and -1) */
+    int64_t source; /* cell * (dim + 1) + local face */
+};
+
+static const int *local_face(int dim, int64_t k)
+{
+    return dim == 2 ? triangle_faces[k] : tetrahedron_faces[k];
+}
+
+/* Vertices of a face, ascending. */
+static void sorted_face(const struct cells *cells, int64_t source, int32_t *sorted)
+{
+    int dim = cells->dim;
+    const int32_t *v = cells->node + source / (dim + 1) * (dim + 1);
+    const int *local = local_face(dim, source % (dim + 1));
+    for (int i = 0; i < dim; i++) {
+        int32_t value = v[local[i]];
+        int at = i;
+        for (; at > 0 && sorted[at - 1] > value; at--) {
+            sorted[at] = sorted[at - 1];
+        }
+        sorted[at] = value;
+    }
+}
+
+static int same_face(const struct filed_face *a, const struct filed_face *b)
+{
+    return a->key[0] == b->key[0] && a->key[1] == b->key[1];
+}
+
+/* partner[source]: the source of the same face in the other cell, or -1. */
+static enum status match_faces(const struct cells *cells, int64_t *partner, struct error *error)
+{
+    enum status status;
+    int dim = cells->dim;
+    int64_t total = cells->count * (dim + 1);
+    int64_t *start = NULL;
+    struct filed_face *filed = NULL;
+    TRY(NEW_ARRAY(&start, cells->node_count + 2, error));
+    TRY(NEW_ARRAY(&filed, total, error));
+    int32_t sorted[3];
+    for (int64_t s = 0; s < total; s++) {
+        sorted_face(cells, s, sorted);
+        start[sorted[0] + 2]++;
+    }
+    for (int64_t n = 0; n < cells->node_count; n++) {
+        start[n + 2] += start[n + 1];
+    }
+    for (int64_t s = 0; s < total; s++) {
+        sorted_face(cells, s, sorted);
+        filed[start[sorted[0] + 1]++] =
+            (struct filed_face){.key = {sorted[1], dim == 3 ? sorted[2] : -1}, .source = s};
+        partner[s] = -1;
+    }
+    for (int64_t n = 0; n < cells->node_count; n++) {
+        for (int64_t i = start[n]; i < start[n + 1]; i++) {
+            for (int64_t k = i + 1; k < start[n + 1]; k++) {
+                if (!same_face(&filed[i], &filed[k])) {
+                    continue;
+                }
+                if (partner[filed[i].source] >= 0 || partner[filed[k].source] >= 0) {
+                    status =
+                        fail(error, STATUS_INPUT, "cells: row %lld: a face is shared by more than two cells",
+                             (long long)(filed[k].source / (dim + 1)));
+                    goto done;
+                }
+                partner[filed[i].source] = filed[k].source;
+                partner[filed[k].source] = filed[i].source;
+            }
+        }
+    }
+done:
+    free(start);
+    free(filed);
+    return status;
+}
+
+enum status faces_build(const struct cells *cells, bool boundary_only, struct faces *faces,
+                        struct error *error)
+{
+    enum status status;
+    int dim = cells->dim;
+    int64_t total = cells->count * (dim + 1);
+    int64_t *partner = NULL;
+    *faces = (struct faces){.dim = dim};
+    TRY(NEW_ARRAY(&partner, total, error));
+    TRY(match_faces(cells, partner, error));
+    int64_t count = 0;
+    for (int64_t s = 0; s < total; s++) {
+        count += partner[s] < 0 || (!boundary_only && partner[s] > s);
+    }
+    TRY(NEW_ARRAY(&faces->node, count * dim, error));
+    TRY(NEW_ARRAY(&faces->cell, count * 2, error));
+    for (int64_t s = 0; s < total; s++) {
+        if (!(partner[s] < 0 || (!boundary_only && partner[s] > s))) {
+            continue;
+        }
+        const int *local = local_face(dim, s % (dim + 1));
+        for (int i = 0; i < dim; i++) {
+            faces->node[faces->count * dim + i] = cells->node[s / (dim + 1) * (dim + 1) + local[i]];
+        }
+        faces->cell[faces->count * 2] = (int32_t)(s / (dim + 1));
+        faces->cell[faces->count * 2 + 1] = partner[s] < 0 ? -1 : (int32_t)(partner[s] / (dim + 1));
+        faces->count++;
+    }
+done:
+    free(partner);
+    if (status != STATUS_OK) {
+        faces_free(faces);
+    }
+    return status;
+}
+
+void faces_free(struct faces *faces)
+{
+    free(faces->node);
+    free(faces->cell);
+    *faces = (struct faces){0};
+}
+
+enum status cells_node_spacing(const struct cells *cells, double *spacing, struct error *error)
+{
+    enum status status;
+    int dim = cells->dim;
+    int64_t *visits = NULL;
+    TRY(NEW_ARRAY(&visits, cells->node_count, error));
+    for (int64_t n = 0; n < cells->node_count; n++) {
+        spacing[n] = 0.0;
+    }
+    /* An edge is seen once per cell at it: interior edges weigh more than boundary edges, evenly enough. */
+    for (int64_t c = 0; c < cells->count; c++) {
+        const int32_t *v = cells->node + c * (dim + 1);
+        for (int i = 0; i <= dim; i++) {
+            for (int k = i + 1; k <= dim; k++) {
+                double edge[3], length2 = 0.0;
+                edge_vector(dim, cells->x, v[i], v[k], edge);
+                for (int a = 0; a < dim; a++) {
+                    length2 += edge[a] * edge[a];
+                }
+                double length = sqrt(length2);
+                spacing[v[i]] += length;
+                spacing[v[k]] += length;
+                visits[v[i]]++;
+                visits[v[k]]++;
+            }
+        }
+    }
+    for (int64_t n = 0; n < cells->node_count; n++) {
+        spacing[n] = visits[n] > 0 ? spacing[n] / (double)visits[n] : 0.0;
+    }
+done:
+    free(visits);
+    return status;
+}

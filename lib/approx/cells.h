@@ -1,0 +1,48 @@
+/* Background cells: simplices (triangles, tetrahedra) on the nodes, and their faces. */
+#ifndef APPROX_CELLS_H
+#define APPROX_CELLS_H
+
+#include "base/status.h"
+
+#include <stdbool.h>
+#include <stdint.h>
+
+/* A view of the cells: cells[count * (dim + 1)] indexes x[node_count * dim]; positively oriented. */
+struct cells {
+    int dim;
+    int64_t node_count;
+    const double *x;
+    int64_t count;
+    const int32_t *node;
+};
+
+/* Faces (edges in 2D) of cells. */
+struct faces {
+    int dim;
+    int64_t count;
+    int32_t *node; /* count * dim, oriented outward from the first cell */
+    int32_t *cell; /* count * 2: the cell it is oriented by (the lower index), and the one beyond or -1 */
+};
+
+/* Check indices and that every volume is positive; the message names the first bad cell. */
+MUST_CHECK enum status cells_check(const struct cells *cells, struct error *error);
+
+/* Area or volume of a cell. */
+double cell_volume(const struct cells *cells, int64_t cell);
+
+/* Mean of a cell's vertices. */
+void cell_centroid(const struct cells *cells, int64_t cell, double *centroid);
+
+/* Outward normal times length or area of a face of node indices face[dim]. */
+void face_area_vector(int dim, const double *x, const int32_t *face, double *vector);
+
+/* All faces of the cells, each once, in the order of their first cell; or only those on the boundary.
+ * STATUS_INPUT when a face belongs to more than two cells. */
+MUST_CHECK enum status faces_build(const struct cells *cells, bool boundary_only, struct faces *faces,
+                                   struct error *error);
+void faces_free(struct faces *faces);
+
+/* spacing[node_count]: mean length of the cell edges at each node; 0 at nodes of no cell. */
+MUST_CHECK enum status cells_node_spacing(const struct cells *cells, double *spacing, struct error *error);
+
+#endif

@@ -1,0 +1,46 @@
+/* Cell lists for the question "which nodes' supports contain x?", with radii that may differ from node to
+ * node. */
+#ifndef APPROX_POINT_GRID_H
+#define APPROX_POINT_GRID_H
+
+#include "base/status.h"
+
+#include <stdint.h>
+
+#define POINT_GRID_LEVELS 40
+
+/* One octave of radii: the nodes of that level in bins no smaller than its largest radius. */
+struct point_grid_level {
+    double origin[3], bin; /* lower corner; edge of a bin */
+    int64_t bins[3];       /* bins along each axis (1 beyond dim) */
+    double largest_radius;
+    int64_t *start; /* CSR over bins: bins[0]*bins[1]*bins[2] + 1 */
+    int32_t *node;  /* nodes of each bin, ascending */
+};
+
+/* Node coordinates and radii are the caller's and must outlive the grid. */
+struct point_grid {
+    int dim;
+    int64_t node_count;
+    const double *x, *radius;
+    int level_count;
+    struct point_grid_level level[POINT_GRID_LEVELS];
+};
+
+/* Sort the nodes into bins: time and memory linear in node_count, whatever the grading. All radii must be
+ * positive and finite. */
+MUST_CHECK enum status point_grid_build(struct point_grid *grid, int dim, int64_t node_count, const double *x,
+                                        const double *radius, struct error *error);
+void point_grid_free(struct point_grid *grid);
+
+/* A growing list of node indices. */
+struct index_list {
+    int32_t *index;
+    int64_t count, capacity;
+};
+
+/* Append to `list` the nodes j with |x - x_j| < factor R_j, in ascending order. */
+MUST_CHECK enum status point_grid_query(const struct point_grid *grid, const double *x, double factor,
+                                        struct index_list *list, struct error *error);
+
+#endif

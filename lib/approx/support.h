@@ -1,0 +1,51 @@
+/* Support domains: the radius of each node, and the neighbour lists of points. */
+#ifndef APPROX_SUPPORT_H
+#define APPROX_SUPPORT_H
+
+#include "approx/mls.h"
+#include "approx/point_grid.h"
+
+struct support_options {
+    double radius;         /* constant support radius, m; 0: factor times the local spacing */
+    double factor;         /* support radius / local node spacing */
+    int64_t least, most;   /* neighbours: widen until `least`; keep the `most` nearest (0: all) */
+    bool widen;            /* widen where the moment matrix is unfit or a gradient too large */
+    double gradient_bound; /* largest |grad phi| h admitted, h the mean spacing within the support */
+    struct mls mls;        /* what the lists are for */
+};
+
+/* Factor 1.8 of the local spacing, widening on, the default MLS. */
+struct support_options support_defaults(int dim);
+
+/* Neighbour lists of `count` points (CSR). */
+struct support_lists {
+    int64_t count;
+    int64_t *ptr;    /* count + 1 */
+    int32_t *idx;    /* ptr[count] node indices, ascending within a point */
+    double *widen;   /* count: factor on the radii, >= 1 */
+    int64_t widened; /* how many points needed widening */
+    double widest;   /* the largest factor */
+};
+
+/* spacing[node_count], m: mean distance to the 2 dim nearest other nodes. For clouds without cells (with
+ * them: cells_node_spacing). */
+MUST_CHECK enum status nodes_spacing(int dim, int64_t node_count, const double *x, double *spacing,
+                                     struct error *error);
+
+/* radius[node_count], m, from the options and the local spacing. */
+MUST_CHECK enum status support_radii(const struct support_options *options, int64_t node_count,
+                                     const double *spacing, double *radius, struct error *error);
+
+/* The lists of points x[count * dim]; `what` names them in messages. Threads share the work; the result does
+ * not depend on their number. STATUS_VERDICT, naming the point, when widening up to eightfold does not help;
+ * without options->widen unfit supports are left for the shape functions to report. Not finite coordinates
+ * are STATUS_INPUT. */
+MUST_CHECK enum status support_build(const struct support_options *options, const struct point_grid *grid,
+                                     int64_t count, const double *x, const char *what,
+                                     struct support_lists *lists, struct error *error);
+void support_free(struct support_lists *lists);
+
+/* Print "(x, y[, z])" of a point into text[96], for messages. */
+void point_text(int dim, const double *x, char text[96]);
+
+#endif
