@@ -19,13 +19,15 @@ HARDENING := -fstack-protector-strong -fPIE -Wformat -Wformat-security
 OPTIMISE := $(if $(SAN),-O1 -fno-omit-frame-pointer,-O3 -fno-math-errno -fno-trapping-math -D_FORTIFY_SOURCE=2)
 comma := ,
 SANITIZE := $(if $(SAN),-fsanitize=address$(comma)undefined -fno-sanitize-recover=undefined)
-CFLAGS := -std=c11 -D_GNU_SOURCE -g -Ilib -Itools $(WARNINGS) $(HARDENING) $(OPTIMISE) $(SANITIZE) -fopenmp
+CFLAGS := -std=c11 -D_GNU_SOURCE -g -Ilib -Itools/common $(WARNINGS) $(HARDENING) $(OPTIMISE) $(SANITIZE) -fopenmp
 LDFLAGS := -pie -Wl,-z,relro -Wl,-z,now -fopenmp $(SANITIZE)
 LDLIBS := -lgsl -lgslcblas -linih -lz -lm
 
 LIBRARY := $(BUILD)/libmtled.a
 LIBRARY_OBJECTS := $(patsubst %.c,$(BUILD)/%.o,$(wildcard lib/*/*.c))
-TOOLS := $(patsubst tools/%.c,%,$(filter-out tools/tool.c,$(wildcard tools/*.c)))
+# What several tools share lies in tools/common; each other .c of tools/ is a program.
+COMMON_OBJECTS := $(patsubst %.c,$(BUILD)/%.o,$(wildcard tools/common/*.c))
+TOOLS := $(patsubst tools/%.c,%,$(wildcard tools/*.c))
 PROGRAMS := $(TOOLS:%=$(BUILD)/bin/%)
 UNIT_TESTS := $(patsubst tests/unit/%.c,$(BUILD)/tests/%,$(wildcard tests/unit/*.c))
 MAN_PAGES := $(TOOLS:%=$(BUILD)/man/man1/%.1) $(patsubst tools/%,$(BUILD)/man/man5/%,$(wildcard tools/*.5))
@@ -47,7 +49,7 @@ $(LIBRARY): $(LIBRARY_OBJECTS)
 GMSH_PROGRAMS := nodes
 $(GMSH_PROGRAMS:%=$(BUILD)/bin/%): LDLIBS += -lgmsh
 
-$(BUILD)/bin/%: $(BUILD)/tools/%.o $(BUILD)/tools/tool.o $(LIBRARY)
+$(BUILD)/bin/%: $(BUILD)/tools/%.o $(COMMON_OBJECTS) $(LIBRARY)
 	@mkdir -p $(@D)
 	$(CC) $(LDFLAGS) -o $@ $^ $(LDLIBS)
 

@@ -195,6 +195,24 @@ enum status parse_length_unit(const char *text, const char *what, double *metres
     return status;
 }
 
+enum status parse_length(const char *text, const char *what, double *value, struct error *error)
+{
+    char number[64];
+    double unit = 1.0;
+    size_t length = strspn(text, "+-.0123456789eE");
+    if (length >= sizeof number) {
+        return fail(error, STATUS_INPUT, "%s: '%s' is not a length", what, text);
+    }
+    memcpy(number, text, length);
+    number[length] = '\0';
+    enum status status = parse_double(number, what, 1e-12, 1e12, value, error);
+    if (status == STATUS_OK && text[length] != '\0') {
+        status = parse_length_unit(text + length, what, &unit, error);
+    }
+    *value *= unit;
+    return status;
+}
+
 enum status parse_choice(const char *text, const char *what, const char *const choices[], int count,
                          int *index, struct error *error)
 {
