@@ -1,0 +1,129 @@
+#include "io/scene.h"
+
+#include "base/memory.h"
+#include "io/scene_ini.h"
+#include "io/scene_kinds.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* Append a zeroed item with its label. */
+static enum status add_item(const struct place *place, const struct scene_kind *kind, struct scene *scene)
+{
+    /* The arrays differ in type: their pointers and the items are copied as bytes. */
+    int64_t *count = (int64_t *)(void *)((char *)scene + kind->count);
+    char *place_of_items = (char *)scene + kind->items;
+    void *items;
+    memcpy(&items, place_of_items, sizeof items);
+    items = array_grow(items, *count + 1, kind->item_size);
+    if (items == NULL) {
+        return fail_memory(place->error, scene->path);
+    }
+    memcpy(place_of_items, &items, sizeof items);
+    char *item = (char *)items + (size_t)*count * kind->item_size;
+    memset(item, 0, kind->item_size);
+    ++*count;
+    struct scene_label label = {.kind = strdup(place->section->kind),
+                                .name = strdup(place->section->name),
+                                .line = place->section->line};
+    memcpy(item, &label, sizeof label);
+    return label.kind != NULL && label.name != NULL ? STATUS_OK : fail_memory(place->error, scene->path);
+}
+
+static enum status read_section(const struct place *place, struct scene *scene)
+{
+    const struct ini_section *section = place->section;
+    const struct scene_kind *kind = scene_kind_find(section->kind);
+    enum status status = STATUS_OK;
+    if (kind == NULL) {
+        TRY(place_fail(
+            place, NULL,
+            "unknown section: allowed are scene, material, displacement, contact, pressure, traction, "
+            "force, output, solver"));
+    }
+    if (kind->has_items && section->name[0] == '\0') {
+        TRY(place_fail(place, NULL, "lacks its name: write [%s NAME]", section->kind));
+    }
+    if (!kind->has_items && section->name[0] != '\0') {
+        TRY(place_fail(place, NULL, "takes no name: write [%s]", section->kind));
+    }
+    if (kind->has_items) {
+        TRY(add_item(place, kind, scene));
+    }
+    TRY(kind->read(place, scene));
+done:
+    return status;
+}
+
+/* [scene] first: the others depend on its dimension and analysis. */
+static enum status read_sections(const struct ini_file *file, struct scene *scene, struct error *error)
+{
+    enum status status = STATUS_OK;
+    for (int round = 0; round < 2; round++) {
+        for (int64_t s = 0; s < file->section_count; s++) {
+            struct place place = {.file = file, .section = &file->sections[s], .error = error};
+            if ((strcmp(place.section->kind, "scene") == 0) == (round == 0)) {
+                TRY(read_section(&place, scene));
+            }
+        }
+        if (scene->dim == 0) {
+            TRY(fail(error, STATUS_INPUT, "%s: no section [scene]: begin with [scene], dim and analysis",
+                     file->path));
+        }
+    }
+done:
+    return status;
+}
+
+/* A region is made of one material. */
+static enum status check_regions(const struct scene *scene, struct error *error)
+{
+    for (int64_t m = 0; m < scene->material_count; m++) {
+        const struct scene_material *material = &scene->materials[m];
+        for (int64_t other = 0; other < m; other++) {
+            const struct name_list *regions = &scene->materials[other].regions;
+            for (int64_t r = 0; r < material->regions.count * regions->count; r++) {
+                const char *region = material->regions.names[r / regions->count];
+                if (strcmp(region, regions->names[r % regions->count]) == 0) {
+                    return scene_fail(error, STATUS_INPUT, scene, &material->label,
+                                      "region: '%s' is of material %s already", region,
+                                      scene->materials[other].label.name);
+                }
+            }
+        }
+    }
+    return STATUS_OK;
+}
+
+static enum status check_whole(const struct scene *scene, struct error *error)
+{
+    if (scene->material_count == 0) {
+        return fail(error, STATUS_INPUT, "%s: no section [material NAME]: give at least one", scene->path);
+    }
+    if (scene->analysis == SCENE_DYNAMIC && !(scene->solver.end_time > 0)) {
+        return fail(error, STATUS_INPUT, "%s: [solver]: end_time: missing: a dynamic scene needs it, in s",
+                    scene->path);
+    }
+    return check_regions(scene, error);
+}
+
+enum status scene_read(const char *path, struct scene *scene, struct error *error)
+{
+    struct ini_file file = {0};
+    enum status status = STATUS_OK;
+    *scene = (struct scene){.path = strdup(path), .title = strdup("")};
+    scene->solver = (struct scene_solver){.pointwise_share = -1, .tolerance = 1e-6, .time_step_margin = .9};
+    if (scene->path == NULL || scene->title == NULL) {
+        TRY(fail_memory(error, path));
+    }
+    TRY(ini_read(path, &file, error));
+    scene->checksum = file.checksum;
+    TRY(read_sections(&file, scene, error));
+    TRY(check_whole(scene, error));
+done:
+    ini_free(&file);
+    if (status != STATUS_OK) {
+        scene_free(scene);
+    }
+    return status;
+}

@@ -1,0 +1,282 @@
+#include "io/scene_kinds.h"
+
+#include <math.h>
+#include <stdbool.h>
+#include <stddef.h>
+#include <string.h>
+
+#define KEYS (const char *const[])
+
+static enum status read_scene(const struct place *place, struct scene *scene)
+{
+    static const char *const analyses[] = {"quasi-static", "dynamic", NULL};
+    double dim = 0;
+    int analysis = 0;
+    enum status status = STATUS_OK;
+    TRY(place_only_keys(place, KEYS{"dim", "analysis", "title", "gravity", NULL}));
+    TRY(place_require(place, "dim", "give 2 or 3"));
+    TRY(place_require(place, "analysis", "give quasi-static or dynamic"));
+    TRY(place_number(place, "dim", range_any, &dim));
+    if (dim != 2 && dim != 3) {
+        TRY(place_fail(place, "dim", "%g is neither 2 nor 3", dim));
+    }
+    scene->dim = (int)dim;
+    TRY(place_choice(place, "analysis", analyses, &analysis));
+    scene->analysis = (enum scene_analysis)analysis;
+    TRY(place_vector(place, "gravity", scene->dim, scene->gravity, NULL));
+    TRY(place_text(place, "title", &scene->title));
+done:
+    return status;
+}
+
+static enum status read_elasticity(const struct place *place, struct scene_material *material)
+{
+    enum status status = STATUS_OK;
+    TRY(place_require(place, "E", "give Young's modulus in Pa, or a table"));
+    TRY(place_require(place, "nu", "give Poisson's ratio, or a table"));
+    TRY(place_number(place, "E", range_positive, &material->youngs_modulus));
+    TRY(place_number(place, "nu", range_any, &material->poisson_ratio));
+    double nu = material->poisson_ratio;
+    if (nu >= .5) {
+        TRY(place_fail(place, "nu",
+                       "%g is not below 0.5: nearly incompressible tissue needs nu < 0.5, as 0.49", nu));
+    }
+    if (nu <= -1) {
+        TRY(place_fail(place, "nu", "%g is not above -1", nu));
+    }
+done:
+    return status;
+}
+
+static enum status read_model(const struct place *place, struct scene_material *material)
+{
+    static const char *const models[] = {"neo-hookean", "neo-hookean-log",     "mooney-rivlin",
+                                         "ogden",       "st-venant-kirchhoff", NULL};
+    int model = SCENE_NEO_HOOKEAN;
+    enum status status = STATUS_OK;
+    TRY(place_choice(place, "model", models, &model));
+    material->model = (enum scene_model)model;
+    if (model == SCENE_MOONEY_RIVLIN) {
+        TRY(place_require(place, "ratio", "model mooney-rivlin needs C01/C10"));
+        TRY(place_number(place, "ratio", range_not_negative, &material->mooney_ratio));
+    } else {
+        TRY(place_forbid(place, "ratio", "it belongs to model mooney-rivlin"));
+    }
+    if (model == SCENE_OGDEN) {
+        TRY(place_require(place, "alpha", "model ogden needs its exponent"));
+        TRY(place_number(place, "alpha", range_any, &material->ogden_alpha));
+        if (fpclassify(material->ogden_alpha) == FP_ZERO) {
+            TRY(place_fail(place, "alpha", "must not be 0"));
+        }
+    } else {
+        TRY(place_forbid(place, "alpha", "it belongs to model ogden"));
+    }
+done:
+    return status;
+}
+
+static enum status read_material(const struct place *place, struct scene *scene)
+{
+    struct scene_material *material = &scene->materials[scene->material_count - 1];
+    enum status status = STATUS_OK;
+    TRY(place_only_keys(place,
+                        KEYS{"region", "model", "E", "nu", "rho", "ratio", "alpha", "table", "unit", NULL}));
+    TRY(place_require(place, "region", "name the regions made of it"));
+    TRY(place_names(place, "region", &material->regions));
+    TRY(read_model(place, material));
+    TRY(place_require(place, "rho", "give the density in kg/m3"));
+    TRY(place_number(place, "rho", range_positive, &material->density));
+    TRY(place_table(place, "table", &material->table, &material->table_unit));
+    if (material->table != NULL) {
+        TRY(place_forbid(place, "E", "the table gives E and nu"));
+        TRY(place_forbid(place, "nu", "the table gives E and nu"));
+    } else {
+        TRY(read_elasticity(place, material));
+    }
+done:
+    return status;
+}
+
+static enum status read_displacement(const struct place *place, struct scene *scene)
+{
+    struct scene_displacement *displacement = &scene->displacements[scene->displacement_count - 1];
+    enum status status = STATUS_OK;
+    TRY(place_only_keys(place,
+                        KEYS{"facets", "nodes", "table", "unit", "components", "normal", "curve", NULL}));
+    TRY(place_require_one(place, KEYS{"facets", "nodes", NULL}));
+    TRY(place_require_one(place, KEYS{"table", "components", "normal", NULL}));
+    TRY(place_names(place, "facets", &displacement->facets));
+    TRY(place_names(place, "nodes", &displacement->nodes));
+    TRY(place_table(place, "table", &displacement->table, &displacement->table_unit));
+    TRY(place_vector(place, "components", scene->dim, displacement->components, displacement->is_free));
+    TRY(place_number(place, "normal", range_any, &displacement->normal));
+    TRY(place_curve(place, "curve", &displacement->curve));
+    if (place_has(place, "normal")) {
+        TRY(place_forbid(place, "nodes", "only facets have a normal"));
+        displacement->kind = SCENE_NORMAL;
+    } else if (place_has(place, "components")) {
+        displacement->kind = SCENE_COMPONENTS;
+    }
+    int free_count = 0;
+    for (int i = 0; i < scene->dim; i++) {
+        free_count += displacement->is_free[i];
+    }
+    if (free_count == scene->dim) {
+        TRY(place_fail(place, "components", "all are free: nothing is prescribed"));
+    }
+done:
+    return status;
+}
+
+static enum status read_contact(const struct place *place, struct scene *scene)
+{
+    static const char *const sides[2][3] = {{"left", "right", NULL}, {"front", "back", NULL}};
+    struct scene_contact *contact = &scene->contacts[scene->contact_count - 1];
+    int side = 0;
+    enum status status = STATUS_OK;
+    TRY(place_only_keys(place, KEYS{"facets", "rigid", "unit", "side", "stiffness", NULL}));
+    TRY(place_require(place, "facets", "name the facet groups that may touch"));
+    TRY(place_require(place, "rigid", "name the file of the rigid surface"));
+    TRY(place_require(place, "side",
+                      scene->dim == 2 ? "left or right of the rigid curve, where the body lies"
+                                      : "front or back of the rigid triangles, where the body lies"));
+    TRY(place_names(place, "facets", &contact->facets));
+    TRY(place_table(place, "rigid", &contact->rigid, &contact->rigid_unit));
+    TRY(place_choice(place, "side", sides[scene->dim - 2], &side));
+    TRY(place_number(place, "stiffness", range_positive, &contact->stiffness));
+    contact->side = (enum scene_side)(side + 2 * (scene->dim - 2));
+done:
+    return status;
+}
+
+static enum status read_pressure(const struct place *place, struct scene *scene)
+{
+    struct scene_load *load = &scene->pressures[scene->pressure_count - 1];
+    enum status status = STATUS_OK;
+    TRY(place_only_keys(place, KEYS{"facets", "value", "curve", NULL}));
+    TRY(place_require(place, "facets", "name the facet groups pressed"));
+    TRY(place_require(place, "value", "give the pressure in Pa"));
+    TRY(place_names(place, "facets", &load->facets));
+    TRY(place_number(place, "value", range_any, &load->pressure));
+    TRY(place_curve(place, "curve", &load->curve));
+done:
+    return status;
+}
+
+/* A traction on facets or a force on nodes. */
+static enum status read_vector_load(const struct place *place, const char *where, const char *unit, int dim,
+                                    struct name_list *groups, struct scene_load *load)
+{
+    enum status status = STATUS_OK;
+    TRY(place_only_keys(place, KEYS{where, "components", "curve", NULL}));
+    TRY(place_require(place, where, "name the groups loaded"));
+    TRY(place_require(place, "components", unit));
+    TRY(place_names(place, where, groups));
+    TRY(place_vector(place, "components", dim, load->components, NULL));
+    TRY(place_curve(place, "curve", &load->curve));
+done:
+    return status;
+}
+
+static enum status read_traction(const struct place *place, struct scene *scene)
+{
+    struct scene_load *load = &scene->tractions[scene->traction_count - 1];
+    return read_vector_load(place, "facets", "give the traction in Pa", scene->dim, &load->facets, load);
+}
+
+static enum status read_force(const struct place *place, struct scene *scene)
+{
+    struct scene_load *load = &scene->forces[scene->force_count - 1];
+    return read_vector_load(place, "nodes", "give the force on each node in N", scene->dim, &load->nodes,
+                            load);
+}
+
+static enum status read_output(const struct place *place, struct scene *scene)
+{
+    struct scene_output *output = &scene->output;
+    enum status status = STATUS_OK;
+    TRY(place_only_keys(place,
+                        KEYS{"frames", "interval", "stress", "strain", "energy", "reactions", "gaps", NULL}));
+    TRY(place_count(place, "frames", 1000000, &output->frames));
+    TRY(place_number(place, "interval", range_positive, &output->interval));
+    if (place_has(place, "frames")) {
+        TRY(place_forbid(place, "interval", "frames is given"));
+    }
+    if (scene->analysis == SCENE_QUASI_STATIC) {
+        TRY(place_forbid(place, "interval", "a quasi-static scene has no time: use frames"));
+    }
+    TRY(place_yes(place, "stress", &output->stress));
+    TRY(place_yes(place, "strain", &output->strain));
+    TRY(place_yes(place, "energy", &output->energy));
+    TRY(place_yes(place, "reactions", &output->reactions));
+    TRY(place_yes(place, "gaps", &output->gaps));
+done:
+    return status;
+}
+
+static enum status read_solver(const struct place *place, struct scene *scene)
+{
+    static const char *const constraints[] = {"ebciem", "direct", NULL};
+    static const char *const points[] = {"hat", "node", NULL};
+    static const char *const volumes[] = {"nodal", "pointwise", NULL};
+    static const int64_t most_steps = (int64_t)1 << 53;
+    struct scene_solver *solver = &scene->solver;
+    int constraint = (int)solver->constraints;
+    int point = (int)solver->constraint_points;
+    int volume = (int)solver->volume;
+    enum status status = STATUS_OK;
+    TRY(place_only_keys(place,
+                        KEYS{"constraints", "constraint_points", "volume", "pointwise_share", "tolerance",
+                             "max_steps", "ramp_steps", "end_time", "time_step_margin", "damping", NULL}));
+    TRY(place_choice(place, "constraints", constraints, &constraint));
+    TRY(place_choice(place, "constraint_points", points, &point));
+    TRY(place_choice(place, "volume", volumes, &volume));
+    solver->constraints = (enum scene_constraints)constraint;
+    solver->constraint_points = (enum scene_constraint_points)point;
+    solver->volume = (enum scene_volume)volume;
+    if (solver->volume == SCENE_POINTWISE_VOLUME) {
+        TRY(place_forbid(place, "pointwise_share", "it belongs to volume = nodal"));
+    }
+    TRY(place_number(place, "pointwise_share", range_share, &solver->pointwise_share));
+    TRY(place_number(place, "time_step_margin", range_open_share, &solver->time_step_margin));
+    TRY(place_count(place, "max_steps", most_steps, &solver->max_steps));
+    if (scene->analysis == SCENE_DYNAMIC) {
+        TRY(place_forbid(place, "ramp_steps", "a dynamic scene has end_time"));
+        TRY(place_forbid(place, "tolerance", "a dynamic scene ends at end_time"));
+        TRY(place_number(place, "end_time", range_positive, &solver->end_time));
+        TRY(place_number(place, "damping", range_not_negative, &solver->damping));
+    } else {
+        TRY(place_forbid(place, "end_time", "a quasi-static scene has no time"));
+        TRY(place_forbid(place, "damping", "a quasi-static scene chooses its own"));
+        TRY(place_number(place, "tolerance", range_open_share, &solver->tolerance));
+        TRY(place_count(place, "ramp_steps", most_steps, &solver->ramp_steps));
+    }
+done:
+    return status;
+}
+
+#define ITEMS(items, count)                                                                                  \
+    true, offsetof(struct scene, items), offsetof(struct scene, count), sizeof *((struct scene *)0)->items
+
+static const struct scene_kind kinds[] = {
+    {"scene", read_scene, false, 0, 0, 0},
+    {"material", read_material, ITEMS(materials, material_count)},
+    {"displacement", read_displacement, ITEMS(displacements, displacement_count)},
+    {"contact", read_contact, ITEMS(contacts, contact_count)},
+    {"pressure", read_pressure, ITEMS(pressures, pressure_count)},
+    {"traction", read_traction, ITEMS(tractions, traction_count)},
+    {"force", read_force, ITEMS(forces, force_count)},
+    {"output", read_output, false, 0, 0, 0},
+    {"solver", read_solver, false, 0, 0, 0},
+};
+enum { KIND_COUNT = sizeof kinds / sizeof kinds[0] };
+
+const struct scene_kind *scene_kind_find(const char *name)
+{
+    for (int k = 0; k < KIND_COUNT; k++) {
+        if (strcmp(kinds[k].name, name) == 0) {
+            return &kinds[k];
+        }
+    }
+    return NULL;
+}

@@ -1,0 +1,21 @@
+/* The kinds of section of a scene: their keys, and how they fill the struct. Inside of lib/io only. */
+#ifndef IO_SCENE_KINDS_H
+#define IO_SCENE_KINDS_H
+
+#include "base/status.h"
+#include "io/scene.h"
+#include "io/scene_value.h"
+
+/* How the sections of a kind are read, and the array of the scene that they extend, if any. */
+struct scene_kind {
+    const char *name;
+    enum status (*read)(const struct place *place, struct scene *scene);
+    bool has_items;
+    size_t items, count; /* offsets in struct scene of the array and its count */
+    size_t item_size;    /* items begin with a struct scene_label */
+};
+
+/* The kind of that name, or NULL. */
+const struct scene_kind *scene_kind_find(const char *name);
+
+#endif

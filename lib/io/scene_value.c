@@ -1,0 +1,309 @@
+#include "io/scene_value.h"
+
+#include "base/memory.h"
+#include "base/options.h"
+
+#include <float.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+const struct range range_any = {-DBL_MAX, DBL_MAX, false, false};
+const struct range range_positive = {0, DBL_MAX, true, false};
+const struct range range_not_negative = {0, DBL_MAX, false, false};
+const struct range range_share = {0, 1, false, false};
+const struct range range_open_share = {0, 1, true, true};
+
+enum status place_fail(const struct place *place, const char *key, const char *format, ...)
+{
+    char message[sizeof place->error->text];
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(message, sizeof message, format, arguments);
+    va_end(arguments);
+
+    const struct ini_section *section = place->section;
+    const struct ini_entry *entry = key != NULL ? ini_find(section, key) : NULL;
+    int64_t line = entry != NULL ? entry->line : section->line;
+    return fail(place->error, STATUS_INPUT, "%s:%lld: [%s%s%s]: %s%s%s", place->file->path, (long long)line,
+                section->kind, section->name[0] != '\0' ? " " : "", section->name, key != NULL ? key : "",
+                key != NULL ? ": " : "", message);
+}
+
+bool place_has(const struct place *place, const char *key)
+{
+    return ini_find(place->section, key) != NULL;
+}
+
+static const char *text_of(const struct place *place, const char *key)
+{
+    const struct ini_entry *entry = ini_find(place->section, key);
+    return entry != NULL ? entry->value : NULL;
+}
+
+enum status place_require(const struct place *place, const char *key, const char *what)
+{
+    return place_has(place, key) ? STATUS_OK : place_fail(place, key, "missing: %s", what);
+}
+
+enum status place_forbid(const struct place *place, const char *key, const char *why)
+{
+    return !place_has(place, key) ? STATUS_OK : place_fail(place, key, "not allowed: %s", why);
+}
+
+/* "a, b, c" of a NULL-terminated list. */
+static void join(const char *const words[], char *text, size_t size)
+{
+    size_t length = 0;
+    text[0] = '\0';
+    for (int i = 0; words[i] != NULL && length < size; i++) {
+        int added = snprintf(text + length, size - length, "%s%s", i > 0 ? ", " : "", words[i]);
+        length += added > 0 ? (size_t)added : 0;
+    }
+}
+
+enum status place_require_one(const struct place *place, const char *const keys[])
+{
+    int count = 0;
+    for (int i = 0; keys[i] != NULL; i++) {
+        count += place_has(place, keys[i]);
+    }
+    char list[256];
+    join(keys, list, sizeof list);
+    return count == 1
+               ? STATUS_OK
+               : place_fail(place, NULL, "%s of %s: give exactly one", count == 0 ? "none" : "several", list);
+}
+
+enum status place_only_keys(const struct place *place, const char *const keys[])
+{
+    for (int64_t e = 0; e < place->section->entry_count; e++) {
+        int i = 0;
+        const char *key = place->section->entries[e].key;
+        while (keys[i] != NULL && strcmp(keys[i], key) != 0) {
+            i++;
+        }
+        if (keys[i] == NULL) {
+            char list[320];
+            join(keys, list, sizeof list);
+            return place_fail(place, key, "unknown key: allowed are %s", list);
+        }
+    }
+    return STATUS_OK;
+}
+
+/* A number without leading blanks; the message explains decimal commas. */
+static enum status number(const struct place *place, const char *key, const char *text, double *value)
+{
+    struct error ignored;
+    if (parse_double(text, key, -DBL_MAX, DBL_MAX, value, &ignored) == STATUS_OK) {
+        return STATUS_OK;
+    }
+    return place_fail(place, key, "'%s' is not a finite number%s", text,
+                      strchr(text, ',') != NULL ? ": write one number, with a decimal point" : "");
+}
+
+enum status place_number(const struct place *place, const char *key, struct range range, double *value)
+{
+    const char *text = text_of(place, key);
+    double given;
+    if (text == NULL) {
+        return STATUS_OK;
+    }
+    enum status status = number(place, key, text, &given);
+    if (status != STATUS_OK) {
+        return status;
+    }
+    bool above = range.open_least ? given > range.least : given >= range.least;
+    bool below = range.open_most ? given < range.most : given <= range.most;
+    if (above && below) {
+        *value = given;
+        return STATUS_OK;
+    }
+    if (range.most < DBL_MAX) {
+        return place_fail(place, key, "%s is not within %c%g, %g%c", text, range.open_least ? '(' : '[',
+                          range.least, range.most, range.open_most ? ')' : ']');
+    }
+    return place_fail(place, key, "%s is not %s %g", text, range.open_least ? "above" : "at least",
+                      range.least);
+}
+
+enum status place_count(const struct place *place, const char *key, int64_t most, int64_t *value)
+{
+    const char *text = text_of(place, key);
+    if (text == NULL) {
+        return STATUS_OK;
+    }
+    struct error why;
+    return parse_integer(text, key, 1, most, value, &why) == STATUS_OK
+               ? STATUS_OK
+               : place_fail(place, key, "'%s' is not a whole number within [1, %lld]", text, (long long)most);
+}
+
+enum status place_choice(const struct place *place, const char *key, const char *const words[], int *index)
+{
+    const char *text = text_of(place, key);
+    if (text == NULL) {
+        return STATUS_OK;
+    }
+    for (int i = 0; words[i] != NULL; i++) {
+        if (strcmp(text, words[i]) == 0) {
+            *index = i;
+            return STATUS_OK;
+        }
+    }
+    char list[256];
+    join(words, list, sizeof list);
+    return place_fail(place, key, "'%s' is none of %s", text, list);
+}
+
+enum status place_yes(const struct place *place, const char *key, bool *value)
+{
+    static const char *const words[] = {"no", "yes", NULL};
+    int index = *value;
+    enum status status = place_choice(place, key, words, &index);
+    *value = index == 1;
+    return status;
+}
+
+static bool is_blank(char c)
+{
+    return c == ' ' || c == '\t';
+}
+
+/* Copy the next item of a comma list, without blanks at its ends; *at moves behind its comma, or to NULL
+ * after the last. NULL when out of memory. */
+static char *next_item(const char **at)
+{
+    const char *begin = *at;
+    const char *end = begin + strcspn(begin, ",");
+    *at = *end == ',' ? end + 1 : NULL;
+    while (begin < end && is_blank(*begin)) {
+        begin++;
+    }
+    while (end > begin && is_blank(end[-1])) {
+        end--;
+    }
+    return strndup(begin, (size_t)(end - begin));
+}
+
+enum status place_vector(const struct place *place, const char *key, int dim, double values[3],
+                         bool is_free[3])
+{
+    const char *at = text_of(place, key);
+    char *item = NULL;
+    int count = 0;
+    enum status status = STATUS_OK;
+    if (at == NULL) {
+        return STATUS_OK;
+    }
+    for (; at != NULL; count++) {
+        free(item);
+        item = next_item(&at);
+        if (item == NULL) {
+            TRY(fail_memory(place->error, place->file->path));
+        }
+        if (count >= dim) {
+            continue;
+        }
+        if (is_free != NULL && strcmp(item, "free") == 0) {
+            is_free[count] = true;
+        } else {
+            TRY(number(place, key, item, &values[count]));
+        }
+    }
+    if (count != dim) {
+        TRY(place_fail(place, key, "has %d components: dim = %d needs %d", count, dim, dim));
+    }
+done:
+    free(item);
+    return status;
+}
+
+enum status place_names(const struct place *place, const char *key, struct name_list *list)
+{
+    const char *at = text_of(place, key);
+    while (at != NULL) {
+        char *item = next_item(&at);
+        char **grown = array_grow(list->names, list->count + 1, sizeof *list->names);
+        if (item == NULL || grown == NULL) {
+            free(item);
+            list->names = grown != NULL ? grown : list->names;
+            return fail_memory(place->error, place->file->path);
+        }
+        list->names = grown;
+        list->names[list->count++] = item;
+        if (item[0] == '\0') {
+            return place_fail(place, key, "has an empty name: write names with single commas between");
+        }
+        for (int64_t i = 0; i < list->count - 1; i++) {
+            if (strcmp(list->names[i], item) == 0) {
+                return place_fail(place, key, "names '%s' twice", item);
+            }
+        }
+    }
+    return STATUS_OK;
+}
+
+enum status place_file(const struct place *place, const char *key, char **path)
+{
+    const char *text = text_of(place, key);
+    if (text == NULL) {
+        return STATUS_OK;
+    }
+    const char *slash = strrchr(place->file->path, '/');
+    size_t folder = text[0] != '/' && slash != NULL ? (size_t)(slash - place->file->path) + 1 : 0;
+    size_t size = folder + strlen(text) + 1;
+    *path = array_grow(NULL, (int64_t)size, 1);
+    if (*path == NULL) {
+        return fail_memory(place->error, place->file->path);
+    }
+    snprintf(*path, size, "%.*s%s", (int)folder, place->file->path, text);
+    return STATUS_OK;
+}
+
+enum status place_table(const struct place *place, const char *key, char **path, double *metres)
+{
+    const char *unit = text_of(place, "unit");
+    struct error why;
+    if (!place_has(place, key)) {
+        return place_forbid(place, "unit", "it is the unit of a file, and none is named");
+    }
+    if (unit == NULL) {
+        return place_fail(place, key, "needs unit = m, cm, mm or um of its lengths");
+    }
+    if (parse_length_unit(unit, "unit", metres, &why) != STATUS_OK) {
+        return place_fail(place, "unit", "'%s' is none of m, cm, mm, um", unit);
+    }
+    return place_file(place, key, path);
+}
+
+enum status place_text(const struct place *place, const char *key, char **value)
+{
+    const char *text = text_of(place, key);
+    char *copy = text != NULL ? strdup(text) : NULL;
+    if (text == NULL) {
+        return STATUS_OK;
+    }
+    if (copy == NULL) {
+        return fail_memory(place->error, place->file->path);
+    }
+    free(*value);
+    *value = copy;
+    return STATUS_OK;
+}
+
+enum status place_curve(const struct place *place, const char *key, struct scene_curve *curve)
+{
+    static const char *const words[] = {"smooth", "linear", "step"};
+    const char *text = text_of(place, key);
+    for (int i = 0; text != NULL && i < 3; i++) {
+        if (strcmp(text, words[i]) == 0) {
+            curve->kind = (enum scene_curve_kind)i;
+            return STATUS_OK;
+        }
+    }
+    curve->kind = text != NULL ? SCENE_CURVE_FILE : SCENE_CURVE_SMOOTH;
+    return place_file(place, key, &curve->file);
+}

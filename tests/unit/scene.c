@@ -1,0 +1,429 @@
+/* Scenes: what a good one holds, and one clear error with its line for each thing that can be wrong. */
+#include "io/scene.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+static char folder[] = "/tmp/scene-XXXXXX";
+static char path[64];
+
+static const char full[] = "# a comment\n"
+                           "[scene]\n"
+                           "dim = 2 ; trailing comment\n"
+                           "analysis = dynamic\n"
+                           "title = A whole scene\n"
+                           "gravity = 0, -9.81\n"
+                           "\n"
+                           "[material parenchyma]\n"
+                           "  region = parenchyma , white_matter\n"
+                           "  E = 3000 # Pa\n"
+                           "  nu = 0.49\n"
+                           "  rho = 1e3\n"
+                           "[material tumour]\n"
+                           "region = tumour\n"
+                           "model = ogden\n"
+                           "alpha = -4.7\n"
+                           "table = sub/tumour.tsv\n"
+                           "unit = mm\n"
+                           "rho = 1000\n"
+                           "[displacement craniotomy]\n"
+                           "facets = craniotomy\n"
+                           "table = load.tsv\n"
+                           "unit = cm\n"
+                           "curve = /abs/curve.tsv\n"
+                           "[displacement slide]\n"
+                           "nodes = a,b\n"
+                           "components = free, -1e-3\n"
+                           "curve = linear\n"
+                           "[displacement flat]\n"
+                           "facets = bottom\n"
+                           "normal = 0\n"
+                           "[contact skull]\n"
+                           "facets = surface\n"
+                           "rigid = skull.tsv\n"
+                           "unit = mm\n"
+                           "side = right\n"
+                           "stiffness = 1e7\n"
+                           "[pressure p]\n"
+                           "facets = top\n"
+                           "value = -20\n"
+                           "curve = step\n"
+                           "[traction t]\n"
+                           "facets = top\n"
+                           "components = 1,2\n"
+                           "[force f]\n"
+                           "nodes = tip\n"
+                           "components = 0,.5\n"
+                           "[output]\n"
+                           "interval = .01\n"
+                           "energy = yes\n"
+                           "[solver]\n"
+                           "constraints = direct\n"
+                           "constraint_points = node\n"
+                           "volume = pointwise\n"
+                           "end_time = 2\n"
+                           "damping = 3\n"
+                           "max_steps = 1000000\n";
+
+#define HEAD "[scene]\ndim = 2\nanalysis = quasi-static\n"
+#define BODY "[material m]\nregion = r\nE = 3000\nnu = .49\nrho = 1000\n"
+
+static void write_bytes(const char *bytes, size_t size)
+{
+    FILE *file = fopen(path, "wb");
+    assert_non_null(file);
+    assert_int_equal(fwrite(bytes, 1, size, file), size);
+    assert_int_equal(fclose(file), 0);
+}
+
+static void same(double value, double expected)
+{
+    assert_true(fabs(value - expected) <= 1e-15 * fabs(expected));
+}
+
+static void reads_everything(void **state)
+{
+    (void)state;
+    struct scene scene;
+    struct error error = {""};
+    char expected[128];
+    write_bytes(full, sizeof full - 1);
+    enum status status = scene_read(path, &scene, &error);
+    assert_string_equal(error.text, "");
+    assert_int_equal(status, STATUS_OK);
+    assert_int_equal(scene.dim, 2);
+    assert_int_equal(scene.analysis, SCENE_DYNAMIC);
+    assert_string_equal(scene.title, "A whole scene");
+    same(scene.gravity[1], -9.81);
+    assert_int_equal(scene.material_count, 2);
+    assert_int_equal(scene.materials[0].regions.count, 2);
+    assert_string_equal(scene.materials[0].regions.names[1], "white_matter");
+    same(scene.materials[0].youngs_modulus, 3000);
+    same(scene.materials[0].poisson_ratio, .49);
+    same(scene.materials[0].density, 1000);
+    assert_int_equal(scene.materials[0].label.line, 8);
+    assert_int_equal(scene.materials[1].model, SCENE_OGDEN);
+    snprintf(expected, sizeof expected, "%s/sub/tumour.tsv", folder);
+    assert_string_equal(scene.materials[1].table, expected);
+    same(scene.materials[1].table_unit, 1e-3);
+    assert_int_equal(scene.displacement_count, 3);
+    assert_int_equal(scene.displacements[0].kind, SCENE_TABLE);
+    assert_int_equal(scene.displacements[0].curve.kind, SCENE_CURVE_FILE);
+    assert_string_equal(scene.displacements[0].curve.file, "/abs/curve.tsv");
+    same(scene.displacements[0].table_unit, 1e-2);
+    assert_int_equal(scene.displacements[1].kind, SCENE_COMPONENTS);
+    assert_int_equal(scene.displacements[1].nodes.count, 2);
+    assert_true(scene.displacements[1].is_free[0]);
+    assert_false(scene.displacements[1].is_free[1]);
+    same(scene.displacements[1].components[1], -1e-3);
+    assert_int_equal(scene.displacements[1].curve.kind, SCENE_CURVE_LINEAR);
+    assert_int_equal(scene.displacements[2].kind, SCENE_NORMAL);
+    assert_int_equal(scene.displacements[2].curve.kind, SCENE_CURVE_SMOOTH);
+    assert_int_equal(scene.contacts[0].side, SCENE_RIGHT);
+    same(scene.contacts[0].stiffness, 1e7);
+    same(scene.pressures[0].pressure, -20);
+    assert_int_equal(scene.pressures[0].curve.kind, SCENE_CURVE_STEP);
+    same(scene.tractions[0].components[1], 2);
+    same(scene.forces[0].components[1], .5);
+    assert_string_equal(scene.forces[0].nodes.names[0], "tip");
+    assert_true(scene.output.energy);
+    assert_false(scene.output.stress);
+    same(scene.output.interval, .01);
+    assert_int_equal(scene.solver.constraints, SCENE_DIRECT);
+    assert_int_equal(scene.solver.constraint_points, SCENE_NODE_VALUES);
+    assert_int_equal(scene.solver.volume, SCENE_POINTWISE_VOLUME);
+    assert_int_equal(scene.solver.max_steps, 1000000);
+    same(scene.solver.end_time, 2);
+    same(scene.solver.damping, 3);
+
+    status = scene_fail(&error, STATUS_INPUT, &scene, &scene.contacts[0].label, "no group '%s'", "surf");
+    snprintf(expected, sizeof expected, "%s:32: [contact skull]: no group 'surf'", path);
+    assert_string_equal(error.text, expected);
+    scene_free(&scene);
+    assert_null(scene.materials);
+}
+
+static void defaults(void **state)
+{
+    (void)state;
+    struct scene scene;
+    struct error error;
+    write_bytes(HEAD BODY, sizeof(HEAD BODY) - 1);
+    assert_int_equal(scene_read(path, &scene, &error), STATUS_OK);
+    assert_string_equal(scene.title, "");
+    assert_int_equal(scene.materials[0].model, SCENE_NEO_HOOKEAN);
+    assert_int_equal(scene.solver.constraints, SCENE_EBCIEM);
+    assert_int_equal(scene.solver.constraint_points, SCENE_HAT_AVERAGES);
+    assert_int_equal(scene.solver.volume, SCENE_NODAL_VOLUME);
+    assert_true(scene.solver.pointwise_share < 0);
+    same(scene.solver.tolerance, 1e-6);
+    same(scene.solver.time_step_margin, .9);
+    assert_int_equal(scene.displacement_count + scene.contact_count + scene.pressure_count, 0);
+    assert_int_equal(scene.output.frames, 0);
+    scene_free(&scene);
+}
+
+/* Reading `bytes` fails with STATUS_INPUT, names the file and the line, and says `words`. */
+static void fails_bytes(const char *bytes, size_t size, int line, const char *words)
+{
+    struct scene scene;
+    struct error error = {""};
+    char where[96];
+    write_bytes(bytes, size);
+    enum status status = scene_read(path, &scene, &error);
+    if (status != STATUS_INPUT || strstr(error.text, words) == NULL) {
+        fail_msg("status %d, message \"%s\" without \"%s\"", (int)status, error.text, words);
+    }
+    snprintf(where, sizeof where, line > 0 ? "%s:%d: " : "%s: ", path, line);
+    if (strncmp(error.text, where, strlen(where)) != 0) {
+        fail_msg("message \"%s\" does not begin with \"%s\"", error.text, where);
+    }
+    assert_null(scene.materials);
+    assert_null(scene.path);
+}
+
+static void fails(const char *text, int line, const char *words)
+{
+    fails_bytes(text, strlen(text), line, words);
+}
+
+/* Fault 10: unknown, repeated, missing, decimal comma, CRLF, BOM. */
+static void strict_form(void **state)
+{
+    (void)state;
+    fails(HEAD BODY "Emod = 3\n", 9, "[material m]: Emod: unknown key: allowed are region");
+    fails(HEAD BODY "[materials m]\n", 9, "unknown section: allowed are scene, material");
+    fails(HEAD BODY "[material m]\nregion = q\n", 9, "[material m]: already in line 4");
+    fails(HEAD BODY "[output]\n[output]\n", 10, "already in line 9");
+    fails(HEAD BODY "E = 4000\n", 9, "[material m]: E: already in line 6");
+    fails(HEAD BODY "[scene x]\n", 9, "takes no name");
+    fails(HEAD BODY "[contact]\n", 9, "lacks its name");
+    fails(HEAD BODY "[contact a b]\n", 9, "section header");
+    fails(HEAD BODY "[contact a] junk\n", 9, "section header");
+    fails(HEAD BODY "[contact a\n", 9, "section header");
+    fails(HEAD BODY "[contact aaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaa]\n", 9,
+          "within 49 bytes");
+    fails(HEAD BODY "[]\n", 9, "section header");
+    fails("dim = 2\n" HEAD BODY, 1, "before the first [section]");
+    fails(HEAD BODY "junk\n", 9, "nor key = value");
+    fails(HEAD BODY "two words = 3\n", 9, "not one word");
+    fails(HEAD BODY "alpha: 3 = 4\n", 9, "not one word");
+    fails(HEAD BODY "= 3\n", 9, "not one word");
+    fails(HEAD BODY "model =\n", 9, "model: has no value");
+    fails(HEAD BODY "model = # ogden\n", 9, "model: has no value");
+    fails("# nothing\n", 0, "no section [scene]");
+    fails(BODY, 0, "no section [scene]");
+    fails(HEAD, 0, "no section [material NAME]");
+    fails("[scene]\ndim = 2\n" BODY, 1, "[scene]: analysis: missing");
+    fails("[scene]\nanalysis = quasi-static\n" BODY, 1, "[scene]: dim: missing");
+    fails("[scene]\ndim = 2.5\nanalysis = dynamic\n" BODY, 2, "dim: 2.5 is neither 2 nor 3");
+    fails("[scene]\ndim = 2\nanalysis = static\n" BODY, 3, "none of quasi-static, dynamic");
+    fails("[scene]\ndim = 2\nanalysis = dynamic\n" BODY, 0, "end_time: missing");
+    fails(HEAD "[material m]\nregion = r\nE = 3,0\nnu = .49\nrho = 1\n", 6, "with a decimal point");
+    fails(HEAD "[material m]\nregion = r\nE = 3000 Pa\nnu = .49\nrho = 1\n", 6,
+          "'3000 Pa' is not a finite number");
+    fails(HEAD "[material m]\nregion = r\nE = 0x10\nnu = .49\nrho = 1\n", 6, "'0x10' is not a finite number");
+    fails(HEAD "[material m]\r\nregion = r\n", 4, "carriage return: save with Unix line ends");
+    fails("\xef\xbb\xbf" HEAD BODY, 1, "byte order mark");
+    fails("\xff\xfe" HEAD BODY, 1, "byte order mark");
+    fails_bytes("[scene]\nd\0m = 2\n", 16, 2, "control character 0x00");
+    fails("", 0, "is empty");
+    fails(HEAD BODY "[output]", 9, "last line without newline");
+}
+
+static void line_length(void **state)
+{
+    (void)state;
+    char text[700];
+    for (int extra = 0; extra < 2; extra++) { /* 198 bytes of content are read whole, 199 are not */
+        int title = 198 - 8 + extra;
+        int size =
+            snprintf(text, sizeof text, "[scene]\n  title = %0*d    # a comment %0200d\n", title, 7, 8);
+        snprintf(text + size, sizeof text - (size_t)size, "dim = 2\nanalysis = quasi-static\n" BODY);
+        if (extra > 0) {
+            fails(text, 2, "longer than 198 bytes");
+            continue;
+        }
+        struct scene scene;
+        struct error error;
+        write_bytes(text, strlen(text));
+        assert_int_equal(scene_read(path, &scene, &error), STATUS_OK);
+        assert_int_equal(strlen(scene.title), title);
+        scene_free(&scene);
+    }
+}
+
+/* Fault 11: material constants out of range. */
+static void material_values(void **state)
+{
+    static const struct {
+        const char *key, *value, *words;
+    } cases[] = {
+        {"E", "0", "E: 0 is not above 0"},
+        {"E", "-3", "E: -3 is not above 0"},
+        {"E", "nan", "E: 'nan' is not a finite number"},
+        {"E", "inf", "E: 'inf' is not a finite number"},
+        {"E", "1e999", "E: '1e999' is not a finite number"},
+        {"rho", "0", "rho: 0 is not above 0"},
+        {"rho", "-1", "rho: -1 is not above 0"},
+        {"nu", ".5", "nu: 0.5 is not below 0.5: nearly incompressible"},
+        {"nu", "0.7", "nearly incompressible tissue needs nu < 0.5"},
+        {"nu", "-1", "nu: -1 is not above -1"},
+        {"nu", "NaN", "nu: 'NaN' is not a finite number"},
+    };
+    (void)state;
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        char text[256];
+        int length = snprintf(text, sizeof text, HEAD "[material m]\n%s = %s\nregion = r\n", cases[i].key,
+                              cases[i].value);
+        static const char *const others[] = {"E = 3000\n", "nu = .3\n", "rho = 1000\n"};
+        for (size_t o = 0; o < 3; o++) {
+            if (strncmp(others[o], cases[i].key, strlen(cases[i].key)) != 0) {
+                length += snprintf(text + length, sizeof text - (size_t)length, "%s", others[o]);
+            }
+        }
+        fails(text, 5, cases[i].words);
+    }
+}
+
+static void material_keys(void **state)
+{
+    (void)state;
+    fails(HEAD "[material m]\nregion = r\nnu = .3\nrho = 1\n", 4, "E: missing: give Young's modulus in Pa");
+    fails(HEAD "[material m]\nregion = r\nE = 3\nrho = 1\n", 4, "nu: missing");
+    fails(HEAD "[material m]\nregion = r\nE = 3\nnu = .3\n", 4, "rho: missing: give the density in kg/m3");
+    fails(HEAD "[material m]\nE = 3\nnu = .3\nrho = 1\n", 4, "region: missing");
+    fails(HEAD BODY "model = hooke\n", 9, "model: 'hooke' is none of neo-hookean, neo-hookean-log");
+    fails(HEAD BODY "model = ogden\n", 4, "alpha: missing");
+    fails(HEAD BODY "model = ogden\nalpha = 0\n", 10, "must not be 0");
+    fails(HEAD BODY "ratio = 1\n", 9, "not allowed: it belongs to model mooney-rivlin");
+    fails(HEAD BODY "model = mooney-rivlin\nratio = -1\n", 10, "-1 is not at least 0");
+    fails(HEAD BODY "table = t\n", 9, "table: needs unit");
+    fails(HEAD BODY "unit = mm\n", 9, "unit: not allowed");
+    fails(HEAD BODY "unit = mm\ntable = t\n", 6, "E: not allowed: the table gives E and nu");
+    fails(HEAD BODY "[material n]\nregion = q,r\nE = 1\nnu = 0\nrho = 1\n", 9,
+          "[material n]: region: 'r' is of material m already");
+    fails(HEAD "[material m]\nregion = r,,q\n", 5, "region: has an empty name");
+    fails(HEAD "[material m]\nregion = r, q, r\n", 5, "region: names 'r' twice");
+}
+
+static void conditions(void **state)
+{
+    (void)state;
+    fails(HEAD BODY "[displacement d]\nfacets = f\n", 9,
+          "none of table, components, normal: give exactly one");
+    fails(HEAD BODY "[displacement d]\nfacets = f\nnormal = 0\ncomponents = 0,0\n", 9, "several of table");
+    fails(HEAD BODY "[displacement d]\nnormal = 0\n", 9, "none of facets, nodes");
+    fails(HEAD BODY "[displacement d]\nnodes = f\nnormal = 0\n", 10, "only facets have a normal");
+    fails(HEAD BODY "[displacement d]\nfacets = f\ntable = t\n", 11, "table: needs unit = m, cm, mm or um");
+    fails(HEAD BODY "[displacement d]\nfacets = f\ntable = t\nunit = inch\n", 12, "'inch' is none of m, cm");
+    fails(HEAD BODY "[displacement d]\nfacets = f\ncomponents = 0\n", 11,
+          "has 1 components: dim = 2 needs 2");
+    fails(HEAD BODY "[displacement d]\nfacets = f\ncomponents = 0,1,2\n", 11,
+          "has 3 components: dim = 2 needs 2");
+    fails(HEAD BODY "[displacement d]\nfacets = f\ncomponents = free,free\n", 11, "all are free");
+    fails(HEAD BODY "[displacement d]\nfacets = f\ncomponents = 0,fre\n", 11, "'fre' is not a finite number");
+    fails(HEAD BODY "[displacement d]\nfacets = f\ncomponents = 0,\n", 11, "'' is not a finite number");
+    fails(HEAD BODY "[force d]\nnodes = f\ncomponents = 0,free\n", 11, "'free' is not a finite number");
+    fails(HEAD BODY "[force d]\nfacets = f\ncomponents = 0,1\n", 10, "facets: unknown key");
+    fails(HEAD BODY "[force d]\nnodes = f\n", 9, "components: missing: give the force on each node in N");
+    fails(HEAD BODY "[traction d]\ncomponents = 0,0\n", 9, "facets: missing");
+    fails(HEAD BODY "[pressure d]\nfacets = f\n", 9, "value: missing: give the pressure in Pa");
+    fails(HEAD BODY "[contact c]\nfacets = f\nrigid = s\nunit = m\n", 9, "side: missing: left or right");
+    fails(HEAD BODY "[contact c]\nfacets = f\nrigid = s\nunit = m\nside = front\n", 13,
+          "none of left, right");
+    fails(HEAD BODY "[contact c]\nfacets = f\nrigid = s\nside = left\n", 11, "rigid: needs unit");
+    fails("[scene]\ndim = 3\nanalysis = quasi-static\n" BODY
+          "[contact c]\nfacets = f\nrigid = s\nunit = m\nside = left\n",
+          13, "none of front, back");
+    fails("[scene]\ndim = 3\nanalysis = quasi-static\ngravity = 0,1\n" BODY, 4,
+          "has 2 components: dim = 3 needs 3");
+}
+
+static void solver_and_output(void **state)
+{
+    (void)state;
+    fails(HEAD BODY "[solver]\ntolerance = 1\n", 10, "tolerance: 1 is not within (0, 1)");
+    fails(HEAD BODY "[solver]\ntolerance = 0\n", 10, "tolerance: 0 is not within (0, 1)");
+    fails(HEAD BODY "[solver]\npointwise_share = 1.5\n", 10, "1.5 is not within [0, 1]");
+    fails(HEAD BODY "[solver]\nvolume = pointwise\npointwise_share = .5\n", 11,
+          "it belongs to volume = nodal");
+    fails(HEAD BODY "[solver]\nend_time = 1\n", 10, "a quasi-static scene has no time");
+    fails(HEAD BODY "[solver]\nmax_steps = 0\n", 10, "not a whole number within [1,");
+    fails(HEAD BODY "[solver]\nmax_steps = 1e3\n", 10, "'1e3' is not a whole number");
+    fails(HEAD BODY "[solver]\ntime_step_margin = 1\n", 10, "1 is not within (0, 1)");
+    fails(HEAD BODY "[solver]\nconstraints = penalty\n", 10, "none of ebciem, direct");
+    fails("[scene]\ndim = 2\nanalysis = dynamic\n" BODY "[solver]\nend_time = 0\n", 10, "0 is not above 0");
+    fails("[scene]\ndim = 2\nanalysis = dynamic\n" BODY "[solver]\nend_time = 1\ntolerance = .1\n", 11,
+          "not allowed");
+    fails(HEAD BODY "[output]\nstress = true\n", 10, "'true' is none of no, yes");
+    fails(HEAD BODY "[output]\ninterval = .1\n", 10, "a quasi-static scene has no time: use frames");
+    fails(HEAD BODY "[output]\nframes = -1\n", 10, "not a whole number");
+    fails(HEAD BODY "[output]\nenergy = /etc/passwd\n", 10,
+          "is none of no, yes"); /* no scene names an output */
+}
+
+static void wrong_files(void **state)
+{
+    (void)state;
+    struct scene scene;
+    struct error error;
+    assert_int_equal(scene_read("/nonexistent/x.scene", &scene, &error), STATUS_SYSTEM);
+    assert_string_equal(error.text, "/nonexistent/x.scene: No such file or directory");
+    assert_int_equal(scene_read(folder, &scene, &error), STATUS_INPUT);
+    assert_non_null(strstr(error.text, "is a folder"));
+    assert_int_equal(scene_read("/dev/zero", &scene, &error), STATUS_INPUT);
+    assert_non_null(strstr(error.text, "is a device"));
+}
+
+/* Cut anywhere, a scene is either refused or means a whole number of its lines; it never crashes. */
+static void truncation(void **state)
+{
+    (void)state;
+    for (size_t size = 0; size < sizeof full; size++) {
+        struct scene scene;
+        struct error error = {""};
+        write_bytes(full, size);
+        enum status status = scene_read(path, &scene, &error);
+        assert_true(status == STATUS_OK ? full[size - 1] == '\n' : error.text[0] != '\0');
+        scene_free(&scene);
+    }
+}
+
+static int make_folder(void **state)
+{
+    (void)state;
+    if (mkdtemp(folder) == NULL) {
+        return -1;
+    }
+    snprintf(path, sizeof path, "%s/a.scene", folder);
+    return 0;
+}
+
+static int remove_folder(void **state)
+{
+    (void)state;
+    unlink(path);
+    return rmdir(folder);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(reads_everything), cmocka_unit_test(defaults),
+        cmocka_unit_test(strict_form),      cmocka_unit_test(line_length),
+        cmocka_unit_test(material_values),  cmocka_unit_test(material_keys),
+        cmocka_unit_test(conditions),       cmocka_unit_test(solver_and_output),
+        cmocka_unit_test(wrong_files),      cmocka_unit_test(truncation),
+    };
+    return cmocka_run_group_tests(tests, make_folder, remove_folder);
+}
