@@ -1,5 +1,7 @@
 #include "io/scene_kinds.h"
 
+#include "base/memory.h"
+
 #include <math.h>
 #include <stdbool.h>
 #include <stddef.h>
