@@ -13,21 +13,21 @@ enum element_type { TYPE_I4, TYPE_I8, TYPE_F4, TYPE_F8 };
 
 /* One table: rows x cols elements, row-major, at least 8-byte aligned (64 when owned or mapped binary). */
 struct section {
-    char *name;             /* e.g. "nodes.x": letters, digits, '.', '_', '-'; unique in the stream */
+    char *name; /* e.g. "nodes.x": letters, digits, '.', '_', '-'; unique in the stream */
     enum element_type type;
     int64_t rows, cols;
-    char *attributes;       /* "unit=m cols=x,y", without enc=; "" when none. Values hold no blanks. */
-    void *data;             /* rows * cols elements of `type` */
-    bool owned;             /* data is freed with the section; otherwise it lies in the stream's mapping or
-                               belongs to the caller, who keeps it alive */
+    char *attributes; /* "unit=m cols=x,y", without enc=; "" when none. Values hold no blanks. */
+    void *data;       /* rows * cols elements of `type` */
+    bool owned;       /* data is freed with the section; otherwise it lies in the stream's mapping or
+                         belongs to the caller, who keeps it alive */
 };
 
 struct stream {
     struct section *sections; /* in stream order */
     int64_t section_count;
-    char **provenance;        /* "# @" lines without "# @ " and newline, oldest first */
+    char **provenance; /* "# @" lines without "# @ " and newline, oldest first */
     int64_t provenance_count;
-    void *mapping;            /* the mapped input file, or NULL */
+    void *mapping; /* the mapped input file, or NULL */
     size_t mapping_size;
 };
 
@@ -42,11 +42,13 @@ void stream_free(struct stream *stream);
  * Errors: STATUS_INPUT for anything malformed, truncated, with a wrong CRC or without its end line;
  * STATUS_SYSTEM for read failures and memory. Nothing is allocated beyond a small multiple of the input read
  * so far. On failure the stream is empty. */
-MUST_CHECK enum status stream_read(struct stream *stream, int descriptor, const char *name, struct error *error);
+MUST_CHECK enum status stream_read(struct stream *stream, int descriptor, const char *name,
+                                   struct error *error);
 
 /* Write the stream, as text or binary, with the end line. Does not close the descriptor. Same stream, same
  * bytes, whether written to a pipe or a file. STATUS_SYSTEM with errno's text on a write error. */
-MUST_CHECK enum status stream_write(const struct stream *stream, int descriptor, bool text, struct error *error);
+MUST_CHECK enum status stream_write(const struct stream *stream, int descriptor, bool text,
+                                    struct error *error);
 
 /* The section of that name, or NULL. */
 const struct section *stream_find(const struct stream *stream, const char *name);
@@ -57,10 +59,10 @@ MUST_CHECK enum status stream_need(const struct stream *stream, const char *name
                                    int64_t cols, const char *producer, const struct section **section,
                                    struct error *error);
 
-/* Add a section, or replace the one of that name in its place. With owned = true the stream frees `data` (from
- * array_new or malloc), also when this call fails. */
-MUST_CHECK enum status stream_put(struct stream *stream, const char *name, enum element_type type, int64_t rows,
-                                  int64_t cols, const char *attributes, void *data, bool owned,
+/* Add a section, or replace the one of that name in its place. With owned = true the stream frees `data`
+ * (from array_new or malloc), also when this call fails. */
+MUST_CHECK enum status stream_put(struct stream *stream, const char *name, enum element_type type,
+                                  int64_t rows, int64_t cols, const char *attributes, void *data, bool owned,
                                   struct error *error);
 
 /* Remove a section, if it exists. */

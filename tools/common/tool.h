@@ -10,18 +10,18 @@
 #include <stdio.h>
 
 struct tool {
-    const char *name;   /* argv[0] without folders */
-    const char *usage;  /* the text at the top of the tool's file */
-    int argc;           /* the command line as given, for provenance */
+    const char *name;  /* argv[0] without folders */
+    const char *usage; /* the text at the top of the tool's file */
+    int argc;          /* the command line as given, for provenance */
     char **argv;
-    char **operands;    /* operand_count operands */
+    char **operands; /* operand_count operands */
     int operand_count;
     const char *output; /* value of -o, NULL: standard output */
 };
 
-/* Parse the command line. `options` need not list -h, --help, --version: they are handled here (text on stdout,
- * exit 0). On a usage error prints one line and exits 2. If `options` has letter 'o', its value becomes
- * tool->output. Operand counts outside [least, most] are usage errors. */
+/* Parse the command line. `options` need not list -h, --help, --version: they are handled here (text on
+ * stdout, exit 0). On a usage error prints one line and exits 2. If `options` has letter 'o', its value
+ * becomes tool->output. Operand counts outside [least, most] are usage errors. */
 void tool_begin(struct tool *tool, const char *usage, struct option options[], int option_count, int least,
                 int most, int argc, char *argv[]);
 
@@ -38,13 +38,13 @@ void tool_note(const struct tool *tool, const char *format, ...) __attribute__((
 /* Read a stream from a file (NULL or "-": standard input); exits on failure with a message naming it. */
 void tool_read(const struct tool *tool, const char *file, struct stream *stream);
 
-/* Append the tool's provenance line and write the stream to tool->output (written under a temporary name in the
- * same folder and renamed when whole) or standard output; refuses binary to a terminal; reports delayed
+/* Append the tool's provenance line and write the stream to tool->output (written under a temporary name in
+ * the same folder and renamed when whole) or standard output; refuses binary to a terminal; reports delayed
  * write errors; exits on failure. */
 void tool_write(const struct tool *tool, struct stream *stream, bool text);
 
-/* Close standard output, reporting delayed write errors; for tools that print tables with stdio. Returns the exit
- * status STATUS_OK or exits 3. */
+/* Close standard output, reporting delayed write errors; for tools that print tables with stdio. Returns the
+ * exit status STATUS_OK or exits 3. */
 int tool_end(const struct tool *tool);
 
 #endif

@@ -1,0 +1,90 @@
+/* Meshes of gmsh (MSH 2 and 4, ASCII and binary): reading a file, and making of it the mesh that the other
+ * tools work on. Two steps: msh_read takes the file in as it is; mesh_build picks cells, facets and sets out
+ * of it.
+ *
+ * Only msh_read uses libgmsh, and hands it a file only after its own scan (msh_scan.h). */
+#ifndef IO_MSH_H
+#define IO_MSH_H
+
+#include "base/status.h"
+
+#include <stdbool.h>
+#include <stdint.h>
+
+/* A physical group. */
+struct msh_group {
+    int dim;               /* 0 points, 1 curves, 2 surfaces, 3 volumes */
+    int tag;               /* as in the file; positive */
+    char *name;            /* "group_TAG" where the file gives none; unique within its dimension */
+    int64_t element_count; /* 0 for a group that is named and has nothing in it */
+};
+
+/* A mesh file as it is: first-order elements of all dimensions, in the order of the file. */
+struct msh {
+    int64_t node_count;
+    double *x;         /* node_count x 3, in the unit of the file; finite */
+    int64_t *node_tag; /* node_count, distinct */
+    int64_t element_count;
+    int64_t *element_tag; /* element_count, distinct */
+    int8_t *element_type; /* element_count: gmsh's number of the type, one that msh_type knows */
+    int64_t *node_ptr;    /* element_count + 1 */
+    int32_t *node_idx;    /* the nodes of each element, in gmsh's order: indices into x and node_tag */
+    int64_t *member_ptr;  /* element_count + 1 */
+    int32_t *member_idx;  /* the groups that each element belongs to: indices into groups, ascending */
+    int32_t group_count;
+    struct msh_group *groups; /* ascending in (dim, tag) */
+};
+
+/* What is known of a type of element. */
+struct msh_type {
+    const char *name; /* "triangle", or NULL: not a first-order element */
+    int dim;
+    int node_count;
+};
+
+/* The type that gmsh numbers so; a type with name NULL for numbers that are no first-order element. */
+struct msh_type msh_type(int64_t number);
+
+/* Read a mesh from an open descriptor (a regular file, a pipe), which stays open. `name` begins the messages.
+ * STATUS_INPUT for whatever is not a whole, sound mesh file; STATUS_SYSTEM for read failures and memory.
+ * No more memory is asked for than a small multiple of the file's size. On failure *msh is empty. */
+MUST_CHECK enum status msh_read(struct msh *msh, int descriptor, const char *name, struct error *error);
+void msh_free(struct msh *msh);
+
+/* Names of regions, facet sets or node sets. */
+struct mesh_names {
+    int32_t count;
+    char **name; /* count, distinct, without blanks and commas */
+};
+
+/* A mesh of simplices in metres. The arrays are those of the stream (see lib/README.md). */
+struct mesh {
+    int dim; /* 2 or 3 */
+    int64_t node_count;
+    double *x; /* node_count x dim, m; every node belongs to a cell */
+    int64_t cell_count;
+    int32_t *cells;       /* cell_count x (dim + 1), positively oriented */
+    int32_t *cell_region; /* cell_count: index into regions */
+    int64_t facet_count;
+    int32_t *facets;    /* facet_count x dim, each the face of exactly one cell, oriented outward */
+    int32_t *facet_set; /* facet_count: index into facet_sets; ascending */
+    int64_t *set_ptr;   /* node_sets.count + 1 */
+    int32_t *set_idx;   /* nodes, ascending within each set */
+    struct mesh_names regions, facet_sets, node_sets;
+    struct mesh_names notes; /* what was left out, one line each (these may hold blanks) */
+};
+
+/* Make the mesh of `msh`, whose lengths are in `unit` metres.
+ * The dimension is 3 if there are tetrahedra, hexahedra, prisms or pyramids, else 2 if there are triangles or
+ * quadrangles in a plane z = const. Quadrangles and the cells of more than four nodes are split into
+ * simplices so that neighbours conform (every quadrangular face along the diagonal through its lowest node:
+ * Dompierre et al., How to subdivide pyramids, prisms and hexahedra into tetrahedra, 1999). `wanted` is a
+ * comma-separated list of regions to keep, or NULL: all. Nodes keep their order; those that belong to no kept
+ * cell are dropped. STATUS_INPUT: no cells, a surface in space, cells without volume, folded or in two
+ * groups, coincident nodes, a name that is no name of a region, names with blanks or commas. On failure *mesh
+ * is empty. */
+MUST_CHECK enum status mesh_build(struct mesh *mesh, const struct msh *msh, double unit, const char *wanted,
+                                  struct error *error);
+void mesh_free(struct mesh *mesh);
+
+#endif

@@ -1,0 +1,86 @@
+#include "base/memory.h"
+#include "io/msh_build.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+/* Nodes closer than this part of the mesh's extent are taken for one. */
+#define COINCIDENT 1e-12
+
+struct projection {
+    double at;
+    int32_t node;
+};
+
+static int compare_projections(const void *left, const void *right)
+{
+    const struct projection *a = left;
+    const struct projection *b = right;
+    return a->at != b->at ? (a->at > b->at) - (a->at < b->at) : (a->node > b->node) - (a->node < b->node);
+}
+
+/* Lowest corner and largest side of the box around the nodes. */
+static double bounding_box(const struct mesh *mesh, double corner[3])
+{
+    double extent = 0;
+    for (int k = 0; k < mesh->dim; k++) {
+        double least = INFINITY;
+        double most = -INFINITY;
+        for (int64_t n = 0; n < mesh->node_count; n++) {
+            least = fmin(least, mesh->x[n * mesh->dim + k]);
+            most = fmax(most, mesh->x[n * mesh->dim + k]);
+        }
+        corner[k] = least;
+        extent = fmax(extent, most - least);
+    }
+    return extent;
+}
+
+static enum status fail_coincident(const struct mesh_draft *draft, int32_t a, int32_t b)
+{
+    int64_t tags[2] = {0, 0};
+    for (int64_t n = 0; n < draft->msh->node_count; n++) {
+        if (draft->node_of[n] == a || draft->node_of[n] == b) {
+            tags[draft->node_of[n] == (a > b ? a : b)] = draft->msh->node_tag[n];
+        }
+    }
+    return fail(draft->error, STATUS_INPUT,
+                "nodes %lld and %lld are at the same place: merge them (Coherence Mesh)", (long long)tags[0],
+                (long long)tags[1]);
+}
+
+/* Nodes at one place fall together in any projection: sort them along a direction that no lattice is aligned
+ * with, and compare those that are near in it. */
+enum status mesh_check_coincident(struct mesh_draft *draft)
+{
+    static const double direction[3] = {0.7548776662466927, 0.5698402909980532, 0.3247179572447460};
+    enum status status = STATUS_OK;
+    const struct mesh *mesh = draft->mesh;
+    double corner[3];
+    double tolerance = COINCIDENT * bounding_box(mesh, corner);
+    struct projection *order = NULL;
+    TRY(NEW_ARRAY(&order, mesh->node_count, draft->error));
+    for (int64_t n = 0; n < mesh->node_count; n++) {
+        order[n].node = (int32_t)n;
+        for (int k = 0; k < mesh->dim; k++) {
+            order[n].at += direction[k] * (mesh->x[n * mesh->dim + k] - corner[k]);
+        }
+    }
+    qsort(order, (size_t)mesh->node_count, sizeof *order, compare_projections);
+    for (int64_t i = 0; i < mesh->node_count; i++) {
+        for (int64_t j = i + 1; j < mesh->node_count && order[j].at - order[i].at <= 2 * tolerance; j++) {
+            double farthest = 0;
+            for (int k = 0; k < mesh->dim; k++) {
+                farthest = fmax(farthest, fabs(mesh->x[order[i].node * mesh->dim + k] -
+                                               mesh->x[order[j].node * mesh->dim + k]));
+            }
+            if (farthest <= tolerance) {
+                status = fail_coincident(draft, order[i].node, order[j].node);
+                goto done;
+            }
+        }
+    }
+done:
+    free(order);
+    return status;
+}

@@ -1,0 +1,269 @@
+#include "base/memory.h"
+#include "io/msh_build.h"
+#include "io/msh_faces.h"
+#include "io/msh_split.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* What is at hand while facets and sets are gathered. */
+struct gathering {
+    struct mesh_draft *draft;
+    struct msh_faces faces;
+    int64_t *group_ptr; /* group_count + 1: elements by group */
+    int64_t *group_idx;
+    int32_t *face_stamp;  /* per face: 1 + the last group that took it */
+    int32_t *node_stamp;  /* per node: the same */
+    int64_t set_capacity; /* of mesh->set_idx */
+};
+
+/* A mesh of two cells on the same side of a face is folded, or has a cell twice. */
+static enum status fail_overlap(const struct mesh_draft *draft, const struct msh_overlap *overlap)
+{
+    const struct msh *msh = draft->msh;
+    const struct mesh *mesh = draft->mesh;
+    int64_t a = draft->origin[overlap->cell[0]];
+    int64_t b = draft->origin[overlap->cell[1]];
+    if (mesh->cell_region[overlap->cell[0]] != mesh->cell_region[overlap->cell[1]]) {
+        return fail(draft->error, STATUS_INPUT,
+                    "elements %lld ('%s') and %lld ('%s') overlap: each cell once, in one group",
+                    (long long)msh->element_tag[a], mesh->regions.name[mesh->cell_region[overlap->cell[0]]],
+                    (long long)msh->element_tag[b], mesh->regions.name[mesh->cell_region[overlap->cell[1]]]);
+    }
+    return fail(draft->error, STATUS_INPUT, "elements %lld and %lld overlap: one is inverted, or there twice",
+                (long long)msh->element_tag[a], (long long)msh->element_tag[b]);
+}
+
+/* The elements of each group, in the order of the file. */
+static enum status sort_by_group(struct gathering *g)
+{
+    enum status status = STATUS_OK;
+    const struct msh *msh = g->draft->msh;
+    int64_t *at = NULL;
+    TRY(NEW_ARRAY(&g->group_ptr, msh->group_count + 1, g->draft->error));
+    TRY(NEW_ARRAY(&g->group_idx, msh->member_ptr[msh->element_count], g->draft->error));
+    TRY(NEW_ARRAY(&at, msh->group_count, g->draft->error));
+    for (int32_t i = 0; i < msh->group_count; i++) {
+        g->group_ptr[i + 1] = g->group_ptr[i] + msh->groups[i].element_count;
+        at[i] = g->group_ptr[i];
+    }
+    for (int64_t e = 0; e < msh->element_count; e++) {
+        for (int64_t k = msh->member_ptr[e]; k < msh->member_ptr[e + 1]; k++) {
+            g->group_idx[at[msh->member_idx[k]]++] = e;
+        }
+    }
+done:
+    free(at);
+    return status;
+}
+
+/* Add a node to the set that is being gathered, once; the node may be one that was left out: -1. */
+static enum status add_set_node(struct gathering *g, int32_t group, int32_t node)
+{
+    struct mesh *mesh = g->draft->mesh;
+    int64_t *count = &mesh->set_ptr[mesh->node_sets.count + 1];
+    if (node < 0 || g->node_stamp[node] == group + 1) {
+        return STATUS_OK;
+    }
+    if (*count == g->set_capacity) {
+        int64_t capacity = 2 * g->set_capacity + 256;
+        int32_t *grown = array_grow(mesh->set_idx, capacity, sizeof *grown);
+        if (grown == NULL) {
+            return fail_memory(g->draft->error, "node sets");
+        }
+        mesh->set_idx = grown;
+        g->set_capacity = capacity;
+    }
+    g->node_stamp[node] = group + 1;
+    mesh->set_idx[(*count)++] = node;
+    return STATUS_OK;
+}
+
+static int compare_nodes(const void *left, const void *right)
+{
+    int32_t a = *(const int32_t *)left;
+    int32_t b = *(const int32_t *)right;
+    return (a > b) - (a < b);
+}
+
+/* The set is whole: if it has nodes, it gets its name. */
+static enum status close_set(struct gathering *g, int32_t group)
+{
+    struct mesh *mesh = g->draft->mesh;
+    int32_t set = mesh->node_sets.count;
+    int64_t first = mesh->set_ptr[set];
+    int64_t count = mesh->set_ptr[set + 1] - first;
+    if (count == 0) {
+        return STATUS_OK;
+    }
+    qsort(&mesh->set_idx[first], (size_t)count, sizeof *mesh->set_idx, compare_nodes);
+    enum status status = mesh_add_group(&mesh->node_sets, &g->draft->msh->groups[group], g->draft->error);
+    if (status == STATUS_OK) {
+        mesh->set_ptr[mesh->node_sets.count + 1] = mesh->set_ptr[mesh->node_sets.count];
+    }
+    return status;
+}
+
+/* How the faces of a group lie. */
+struct tally {
+    int64_t boundary, interior, elsewhere;
+};
+
+/* One face of a group: a facet if it is on the boundary, nodes of a set if it is between two cells. */
+static enum status add_face(struct gathering *g, int32_t group, const int32_t node[], struct tally *tally)
+{
+    struct mesh *mesh = g->draft->mesh;
+    int dim = mesh->dim;
+    int sharing = 0;
+    int64_t face = -1;
+    bool known = node[0] >= 0 && node[1] >= 0 && (dim == 2 || node[2] >= 0);
+    if (known) {
+        face = msh_faces_find(&g->faces, node, &sharing);
+    }
+    if (sharing == 0) {
+        tally->elsewhere++;
+        return STATUS_OK;
+    }
+    if (sharing > 1) {
+        tally->interior++;
+        enum status status = STATUS_OK;
+        for (int k = 0; k < dim && status == STATUS_OK; k++) {
+            status = add_set_node(g, group, node[k]);
+        }
+        return status;
+    }
+    if (g->face_stamp[face] != group + 1) { /* the file may have it twice */
+        g->face_stamp[face] = group + 1;
+        tally->boundary++;
+        msh_face_nodes(&g->faces, face, &mesh->facets[mesh->facet_count * dim]);
+        mesh->facet_set[mesh->facet_count++] = mesh->facet_sets.count;
+    }
+    return STATUS_OK;
+}
+
+static enum status note_tally(struct gathering *g, const struct msh_group *group, const struct tally *tally)
+{
+    enum status status = STATUS_OK;
+    if (tally->elsewhere > 0) {
+        TRY(mesh_add_note(g->draft, "group '%s': %lld of its facets are no faces of a cell: left out",
+                          group->name, (long long)tally->elsewhere));
+    }
+    if (tally->interior > 0) {
+        TRY(mesh_add_note(g->draft,
+                          "group '%s': %lld of its facets lie between two cells: made a set of nodes",
+                          group->name, (long long)tally->interior));
+    }
+done:
+    return status;
+}
+
+/* A group of dimension dim - 1. */
+static enum status gather_facets(struct gathering *g, int32_t group)
+{
+    enum status status = STATUS_OK;
+    const struct msh *msh = g->draft->msh;
+    struct mesh *mesh = g->draft->mesh;
+    struct tally tally = {0, 0, 0};
+    for (int64_t i = g->group_ptr[group]; i < g->group_ptr[group + 1]; i++) {
+        int64_t e = g->group_idx[i];
+        int32_t node[4] = {-1, -1, -1, -1};
+        int32_t pieces[MSH_MOST_SIMPLICES][4];
+        int64_t first = msh->node_ptr[e];
+        for (int64_t k = first; k < msh->node_ptr[e + 1]; k++) {
+            node[k - first] = g->draft->node_of[msh->node_idx[k]];
+        }
+        int count = msh_split(msh->element_type[e], node, false, pieces);
+        for (int p = 0; p < count; p++) {
+            TRY(add_face(g, group, pieces[p], &tally));
+        }
+    }
+    if (tally.boundary > 0) {
+        TRY(mesh_add_group(&mesh->facet_sets, &msh->groups[group], g->draft->error));
+    }
+    TRY(close_set(g, group));
+    TRY(note_tally(g, &msh->groups[group], &tally));
+done:
+    return status;
+}
+
+/* A group of lower dimension. */
+static enum status gather_nodes(struct gathering *g, int32_t group)
+{
+    enum status status = STATUS_OK;
+    const struct msh *msh = g->draft->msh;
+    int64_t lost = 0;
+    for (int64_t i = g->group_ptr[group]; i < g->group_ptr[group + 1]; i++) {
+        int64_t e = g->group_idx[i];
+        for (int64_t k = msh->node_ptr[e]; k < msh->node_ptr[e + 1]; k++) {
+            int32_t node = g->draft->node_of[msh->node_idx[k]];
+            lost += node < 0;
+            TRY(add_set_node(g, group, node));
+        }
+    }
+    TRY(close_set(g, group));
+    if (lost > 0) {
+        TRY(mesh_add_note(g->draft, "group '%s': some of its nodes belong to no cell: left out",
+                          msh->groups[group].name));
+    }
+done:
+    return status;
+}
+
+static enum status gather_groups(struct gathering *g)
+{
+    enum status status = STATUS_OK;
+    const struct msh *msh = g->draft->msh;
+    int dim = g->draft->mesh->dim;
+    for (int32_t group = 0; group < msh->group_count; group++) {
+        if (msh->groups[group].element_count == 0) {
+            TRY(mesh_add_note(g->draft, "group '%s' of dimension %d is empty: left out",
+                              msh->groups[group].name, msh->groups[group].dim));
+        } else if (msh->groups[group].dim == dim - 1) {
+            TRY(gather_facets(g, group));
+        } else if (msh->groups[group].dim < dim - 1) {
+            TRY(gather_nodes(g, group));
+        }
+    }
+done:
+    return status;
+}
+
+/* Room for all facets that there can be: each element of dimension dim - 1 gives at most two to each of its
+ * groups. */
+static int64_t most_facets(const struct mesh_draft *draft)
+{
+    int64_t most = 0;
+    for (int32_t i = 0; i < draft->msh->group_count; i++) {
+        most +=
+            draft->msh->groups[i].dim == draft->mesh->dim - 1 ? 2 * draft->msh->groups[i].element_count : 0;
+    }
+    return most;
+}
+
+enum status mesh_build_facets(struct mesh_draft *draft)
+{
+    enum status status = STATUS_OK;
+    struct mesh *mesh = draft->mesh;
+    struct gathering g = {.draft = draft};
+    struct msh_overlap overlap;
+    TRY(msh_faces_make(&g.faces, mesh->dim, mesh->node_count, mesh->cell_count, mesh->cells, &overlap,
+                       draft->error));
+    if (overlap.cell[0] >= 0) {
+        status = fail_overlap(draft, &overlap);
+        goto done;
+    }
+    TRY(sort_by_group(&g));
+    TRY(NEW_ARRAY(&g.face_stamp, mesh->cell_count * (mesh->dim + 1), draft->error));
+    TRY(NEW_ARRAY(&g.node_stamp, mesh->node_count, draft->error));
+    TRY(NEW_ARRAY(&mesh->facets, most_facets(draft) * mesh->dim, draft->error));
+    TRY(NEW_ARRAY(&mesh->facet_set, most_facets(draft), draft->error));
+    TRY(NEW_ARRAY(&mesh->set_ptr, draft->msh->group_count + 2, draft->error));
+    TRY(gather_groups(&g));
+done:
+    msh_faces_free(&g.faces);
+    free(g.group_ptr);
+    free(g.group_idx);
+    free(g.face_stamp);
+    free(g.node_stamp);
+    return status;
+}

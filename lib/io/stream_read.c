@@ -1,0 +1,564 @@
+/* Reading a stream: one pass, every line and payload checked, nothing allocated on the word of a header. */
+#include "io/stream_private.h"
+
+#include "base/memory.h"
+
+#include <locale.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <zlib.h>
+
+struct reader {
+    struct input input;
+    struct stream *stream;
+    uLong crc;   /* of the bytes outside the payloads, so far */
+    bool binary; /* some section is binary: the end line must carry the crc */
+};
+
+/* A line of the frame (everything but payloads): it counts for the crc of the end line. */
+static enum status frame_line(struct reader *reader, const char **line, size_t *length, struct error *error)
+{
+    enum status status = input_line(&reader->input, line, length, error);
+    if (status == STATUS_OK && memchr(*line, '\0', *length) != NULL) {
+        return fail(error, STATUS_INPUT, "%s: zero byte in a header line: damaged", reader->input.name);
+    }
+    return status;
+}
+
+static void frame_count(struct reader *reader, const char *line, size_t length)
+{
+    reader->crc = crc32_z(reader->crc, (const Bytef *)line, length);
+}
+
+static bool starts_with(const char *line, size_t length, const char *prefix)
+{
+    size_t size = strlen(prefix);
+    return length >= size && memcmp(line, prefix, size) == 0;
+}
+
+/* Why the first line is not "# mts 1"; the remedy where it is known. */
+static enum status fail_first_line(const char *name, const char *line, size_t length, struct error *error)
+{
+    int shown = (int)(length < 40 ? length : 40);
+    if (starts_with(line, length, "# mts 1") && line[length - 1] == '\r') {
+        return fail(error, STATUS_INPUT, "%s: lines end in CR LF: remove them with tr -d '\\r'", name);
+    }
+    if (starts_with(line, length, "\xef\xbb\xbf") || starts_with(line, length, "\xff\xfe") ||
+        starts_with(line, length, "\xfe\xff")) {
+        return fail(error, STATUS_INPUT, "%s: begins with a byte order mark: save it as plain ASCII or UTF-8",
+                    name);
+    }
+    if (starts_with(line, length, "# mts ")) {
+        return fail(error, STATUS_INPUT, "%s: stream version '%.*s', this program reads version 1", name,
+                    shown - 6, line + 6);
+    }
+    if (starts_with(line, length, "$MeshFormat")) {
+        return fail(error, STATUS_INPUT, "%s: a gmsh mesh, not an mts stream: run nodes", name);
+    }
+    return fail(error, STATUS_INPUT, "%s: not an mts stream: begins with '%.*s', not '# mts 1'", name, shown,
+                line);
+}
+
+static enum status read_first_line(struct reader *reader, struct error *error)
+{
+    struct input *input = &reader->input;
+    static const char expected[] = "# mts 1\n";
+    enum status status = input_fill(input, LINE_LIMIT < BLOCK_SIZE ? LINE_LIMIT : 64, error);
+    if (status != STATUS_OK) {
+        return status;
+    }
+    size_t held = (size_t)(input->end - input->at);
+    if (held == 0) {
+        return fail(error, STATUS_INPUT, "%s: empty: no stream arrived (did an earlier stage fail?)",
+                    input->name);
+    }
+    if (!starts_with(input->at, held, expected)) {
+        if (input->ended && held < strlen(expected) && memcmp(input->at, expected, held) == 0) {
+            return fail(error, STATUS_INPUT, "%s: cut short in its first line (did an earlier stage fail?)",
+                        input->name);
+        }
+        size_t shown = held < 64 ? held : 64;
+        const char *newline = memchr(input->at, '\n', shown);
+        return fail_first_line(input->name, input->at,
+                               newline != NULL ? (size_t)(newline - input->at) : shown, error);
+    }
+    frame_count(reader, input->at, strlen(expected));
+    input->at += strlen(expected);
+    return STATUS_OK;
+}
+
+/* A header line taken apart; the words lie in `copy`. */
+struct header {
+    char *copy;
+    const char *name;
+    enum element_type type;
+    int64_t rows, cols;
+    char *attributes; /* without enc= */
+    bool binary;
+};
+
+static char *next_word(char **at)
+{
+    char *word = *at + strspn(*at, " \t");
+    char *end = word + strcspn(word, " \t");
+    *at = *end != '\0' ? end + 1 : end;
+    *end = '\0';
+    return word;
+}
+
+static enum status header_type(const char *word, struct header *header, struct error *error)
+{
+    for (enum element_type type = TYPE_I4; type <= TYPE_F8; type++) {
+        if (strcmp(word, element_type_name(type)) == 0) {
+            header->type = type;
+            return STATUS_OK;
+        }
+    }
+    return fail(error, STATUS_INPUT, "%.40s: type '%.40s' is none of i4, i8, f4, f8", header->name, word);
+}
+
+static enum status header_count(const char *word, const char *what, const struct header *header,
+                                int64_t *count, struct error *error)
+{
+    const char *end = word + strlen(word);
+    if (word[0] == '+' || number_parse_integer(word, end, 0, INT64_MAX, count) != end) {
+        return fail(error, STATUS_INPUT, "%.40s: '%.40s' is not a number of %s", header->name, word, what);
+    }
+    return STATUS_OK;
+}
+
+/* Gather key=value words but enc= into header->attributes, which has room for the whole line. */
+static enum status header_attributes(char *at, struct header *header, struct error *error)
+{
+    bool encoded = false;
+    char *to = header->attributes;
+    for (char *word = next_word(&at); *word != '\0'; word = next_word(&at)) {
+        if (strncmp(word, "enc=", 4) != 0) {
+            size_t length = strlen(word);
+            if (to > header->attributes) {
+                *to++ = ' ';
+            }
+            memcpy(to, word, length);
+            to += length;
+            continue;
+        }
+        if (encoded || (strcmp(word, "enc=text") != 0 && strcmp(word, "enc=bin") != 0)) {
+            return fail(error, STATUS_INPUT,
+                        "%.40s: '%.40s': a section has one encoding, enc=text or enc=bin", header->name,
+                        word);
+        }
+        encoded = true;
+        header->binary = strcmp(word, "enc=bin") == 0;
+    }
+    *to = '\0';
+    return STATUS_OK;
+}
+
+static void header_free(struct header *header)
+{
+    free(header->copy);
+    free(header->attributes);
+}
+
+/* Take apart "# NAME TYPE ROWS COLS [key=value ...]". */
+static enum status header_parse(const char *line, size_t length, struct header *header, struct error *error)
+{
+    enum status status = STATUS_OK;
+    *header = (struct header){.copy = strndup(line, length), .attributes = malloc(length + 1)};
+    if (header->copy == NULL || header->attributes == NULL) {
+        return fail_memory(error, "header");
+    }
+    if (length > 0 && line[length - 1] == '\r') {
+        return fail(error, STATUS_INPUT, "lines end in CR LF: remove them with tr -d '\\r'");
+    }
+    if (!starts_with(line, length, "# ")) {
+        return fail(error, STATUS_INPUT,
+                    "'%.40s' stands where a section header '# NAME TYPE ROWS COLS' should", header->copy);
+    }
+    char *at = header->copy + 2;
+    header->name = next_word(&at);
+    TRY(header_type(next_word(&at), header, error));
+    TRY(header_count(next_word(&at), "rows", header, &header->rows, error));
+    TRY(header_count(next_word(&at), "columns", header, &header->cols, error));
+    TRY(header_attributes(at, header, error));
+    TRY(section_validate(header->name, header->type, header->rows, header->cols, header->attributes, error));
+done:
+    return status;
+}
+
+/* A payload whose array grows with what arrives, so that a header alone allocates little. */
+struct payload {
+    char *data;     /* from array_new */
+    int64_t room;   /* elements allocated */
+    int64_t filled; /* elements present */
+    int64_t total;  /* elements announced */
+    size_t size;    /* bytes of one */
+};
+
+static enum status payload_grow(struct payload *payload, struct error *error)
+{
+    int64_t first = (int64_t)(4 * BLOCK_SIZE / payload->size);
+    int64_t room = payload->room == 0 ? first : 2 * payload->room;
+    room = room < payload->total ? room : payload->total;
+    char *grown = array_new(room, payload->size);
+    if (grown == NULL) {
+        return fail_memory(error, "payload");
+    }
+    if (payload->filled > 0) {
+        memcpy(grown, payload->data, (size_t)payload->filled * payload->size);
+    }
+    free(payload->data);
+    payload->data = grown;
+    payload->room = room;
+    return STATUS_OK;
+}
+
+static enum status fail_short(const struct section *section, int64_t row, const char *name,
+                              struct error *error)
+{
+    return fail(error, STATUS_INPUT, "%s: row %lld of %lld: %s is cut short (did an earlier stage fail?)",
+                section->name, (long long)row, (long long)section->rows, name);
+}
+
+/* Parse the number at `at` into element `index` of the payload; the byte behind it, or NULL. */
+static const char *parse_element(enum element_type type, const char *at, const char *end, void *data,
+                                 int64_t index)
+{
+    int64_t integer = 0;
+    switch (type) {
+    case TYPE_I4:
+        at = number_parse_integer(at, end, INT32_MIN, INT32_MAX, &integer);
+        ((int32_t *)data)[index] = (int32_t)integer;
+        return at;
+    case TYPE_I8:
+        return number_parse_integer(at, end, INT64_MIN, INT64_MAX, (int64_t *)data + index);
+    case TYPE_F4:
+        return number_parse_float(at, end, (float *)data + index);
+    case TYPE_F8:
+        return number_parse_double(at, end, (double *)data + index);
+    }
+    return NULL;
+}
+
+/* What is wrong with the word at input->at, where a number of `section` should stand. */
+static enum status fail_word(const struct input *input, const struct section *section, int64_t row,
+                             int64_t column, struct error *error)
+{
+    int length = 0;
+    const char *word = input->at;
+    while (length < 40 && word + length < input->end && strchr(" \t\n", word[length]) == NULL) {
+        length++;
+    }
+    const char *text = element_type_name(section->type);
+    if (length == 0) {
+        if (word == input->end) {
+            return fail_short(section, row, input->name, error);
+        }
+        return fail(error, STATUS_INPUT, "%s: row %lld: %lld numbers instead of %lld", section->name,
+                    (long long)row, (long long)column, (long long)section->cols);
+    }
+    if (word[0] == '#') {
+        return fail(error, STATUS_INPUT, "%s: row %lld: a header line: fewer rows than the %lld announced",
+                    section->name, (long long)row, (long long)section->rows);
+    }
+    if (memchr(word, ',', (size_t)length) != NULL) {
+        return fail(error, STATUS_INPUT, "%s: row %lld: '%.*s': write a decimal point, not a comma",
+                    section->name, (long long)row, length, word);
+    }
+    if (memchr(word, '\r', (size_t)length) != NULL) {
+        return fail(error, STATUS_INPUT, "%s: row %lld: lines end in CR LF: remove them with tr -d '\\r'",
+                    section->name, (long long)row);
+    }
+    return fail(error, STATUS_INPUT, "%s: row %lld: '%.*s' is not a number of type %s", section->name,
+                (long long)row, length, word, text);
+}
+
+static void skip_blanks(struct input *input)
+{
+    while (input->at < input->end && (*input->at == ' ' || *input->at == '\t')) {
+        input->at++;
+    }
+}
+
+/* Keep a whole number and the blanks around it at hand. */
+static enum status refill(struct input *input, struct error *error)
+{
+    if (input->end - input->at >= 2 * NUMBER_LIMIT || input->ended) {
+        return STATUS_OK;
+    }
+    return input_fill(input, 2 * NUMBER_LIMIT, error);
+}
+
+/* The end of a line of text: blanks, then the newline. */
+static enum status row_end(struct input *input, const struct section *section, int64_t row,
+                           struct error *error)
+{
+    skip_blanks(input);
+    if (input->at == input->end) {
+        return fail_short(section, row, input->name, error);
+    }
+    if (*input->at == '\n') {
+        input->at++;
+        return STATUS_OK;
+    }
+    if (*input->at == '\r') {
+        return fail(error, STATUS_INPUT, "%s: row %lld: lines end in CR LF: remove them with tr -d '\\r'",
+                    section->name, (long long)row);
+    }
+    return fail(error, STATUS_INPUT, "%s: row %lld: more than %lld numbers", section->name, (long long)row,
+                (long long)section->cols);
+}
+
+static enum status text_row(struct input *input, const struct section *section, int64_t row,
+                            struct payload *payload, struct error *error)
+{
+    enum status status = STATUS_OK;
+    for (int64_t column = 0; column < section->cols; column++) {
+        if (payload->filled == payload->room) {
+            TRY(payload_grow(payload, error));
+        }
+        TRY(refill(input, error));
+        skip_blanks(input);
+        const char *behind =
+            parse_element(section->type, input->at, input->end, payload->data, payload->filled);
+        if (behind == NULL) {
+            return fail_word(input, section, row, column, error);
+        }
+        input->at = behind;
+        payload->filled++;
+    }
+    TRY(refill(input, error));
+    TRY(row_end(input, section, row, error));
+done:
+    return status;
+}
+
+/* Rows of text, then two blank lines. The payload belongs to the section also on failure. */
+static enum status read_text(struct input *input, struct section *section, struct error *error)
+{
+    struct payload payload = {.total = section->rows * section->cols, .size = element_size(section->type)};
+    enum status status = STATUS_OK;
+    TRY(payload_grow(&payload, error));
+    for (int64_t row = 0; row < section->rows; row++) {
+        TRY(text_row(input, section, row, &payload, error));
+    }
+    for (int64_t blank = 0; blank < 2; blank++) {
+        TRY(refill(input, error));
+        skip_blanks(input);
+        if (input->at < input->end && *input->at != '\n' && *input->at != '\r') {
+            TRY(fail(error, STATUS_INPUT, "%s: more than %lld rows, or not two blank lines behind them",
+                     section->name, (long long)section->rows));
+        }
+        TRY(row_end(input, section, section->rows, error));
+    }
+done:
+    section->data = payload.data;
+    section->owned = true;
+    return status;
+}
+
+/* A payload read through the block buffer. */
+static enum status copy_binary(struct input *input, struct section *section, int64_t count,
+                               struct error *error)
+{
+    struct payload payload = {.total = count, .size = element_size(section->type)};
+    enum status status = STATUS_OK;
+    do {
+        TRY(payload_grow(&payload, error));
+        size_t got;
+        size_t wanted = (size_t)(payload.room - payload.filled) * payload.size;
+        TRY(input_copy(input, payload.data + (size_t)payload.filled * payload.size, wanted, &got, error));
+        payload.filled += (int64_t)(got / payload.size);
+        if (got < wanted) {
+            TRY(fail_short(section, payload.filled / section->cols, input->name, error));
+        }
+    } while (payload.filled < payload.total);
+done:
+    section->data = payload.data;
+    section->owned = true;
+    return status;
+}
+
+/* Is the text exactly eight lower-case hexadecimal digits? (Upper case would let one flipped bit pass.) */
+static bool parse_crc(const char *text, size_t length, uLong *crc)
+{
+    static const char digits[] = "0123456789abcdef";
+    *crc = 0;
+    for (size_t i = 0; i < length; i++) {
+        const char *digit = memchr(digits, text[i], 16);
+        if (digit == NULL) {
+            return false;
+        }
+        *crc = *crc << 4 | (uLong)(digit - digits);
+    }
+    return length == 8;
+}
+
+/* The newline behind a binary payload and its line "# crc32 XXXXXXXX". */
+static enum status read_crc_line(struct reader *reader, const struct section *section, uLong crc,
+                                 struct error *error)
+{
+    static const char prefix[] = "\n# crc32 ";
+    enum { PREFIX = sizeof prefix - 1, SIZE = PREFIX + 8 + 1 };
+    struct input *input = &reader->input;
+    uLong stated;
+    enum status status = input_fill(input, SIZE, error);
+    if (status != STATUS_OK) {
+        return status;
+    }
+    if (input->end - input->at < SIZE) {
+        return fail_short(section, section->rows, input->name, error);
+    }
+    const char *at = input->at;
+    if (memcmp(at, prefix, PREFIX) != 0 || !parse_crc(at + PREFIX, 8, &stated) || at[SIZE - 1] != '\n') {
+        return fail(error, STATUS_INPUT, "%s: no '# crc32' line behind the payload: damaged", section->name);
+    }
+    if (stated != crc) {
+        return fail(error, STATUS_INPUT, "%s: wrong crc32: damaged on its way or on disk", section->name);
+    }
+    frame_count(reader, at + 1, SIZE - 1);
+    input->at += SIZE;
+    return STATUS_OK;
+}
+
+static enum status read_binary(struct reader *reader, struct section *section, uLong header_crc,
+                               struct error *error)
+{
+    struct input *input = &reader->input;
+    int64_t count = section->rows * section->cols;
+    size_t bytes = (size_t)count * element_size(section->type);
+    reader->binary = true;
+    if (input_offset(input) % PAYLOAD_ALIGNMENT != 0) {
+        return fail(error, STATUS_INPUT, "%s: binary payload at offset %lld, not a multiple of %d: damaged",
+                    section->name, (long long)input_offset(input), PAYLOAD_ALIGNMENT);
+    }
+    if (input->buffer != NULL) {
+        enum status status = copy_binary(input, section, count, error);
+        if (status != STATUS_OK) {
+            return status;
+        }
+    } else {
+        size_t held = (size_t)(input->end - input->at);
+        if (held < bytes) {
+            return fail_short(section, (int64_t)(held / element_size(section->type)) / section->cols,
+                              input->name, error);
+        }
+        section->data = (char *)reader->stream->mapping + (input->at - (char *)reader->stream->mapping);
+        section->owned = false;
+        input->at += bytes;
+    }
+    uLong crc = bytes > 0 ? crc32_z(header_crc, section->data, bytes) : header_crc;
+    return read_crc_line(reader, section, crc, error);
+}
+
+static enum status read_section(struct reader *reader, const char *line, size_t length, struct error *error)
+{
+    struct header header;
+    struct section *section;
+    /* The line with its newline; it expires with the next access to the input. */
+    uLong crc = crc32_z(0, (const Bytef *)line, length + 1);
+    frame_count(reader, line, length + 1);
+    enum status status = STATUS_OK;
+    TRY(header_parse(line, length, &header, error));
+    if (stream_find(reader->stream, header.name) != NULL) {
+        TRY(fail(error, STATUS_INPUT, "%s: this section stands twice in the stream", header.name));
+    }
+    TRY(stream_append(reader->stream, header.name, header.type, header.rows, header.cols, header.attributes,
+                      &section, error));
+    TRY(header.binary ? read_binary(reader, section, crc, error) : read_text(&reader->input, section, error));
+done:
+    header_free(&header);
+    return status;
+}
+
+/* "# end COUNT" or "# end COUNT crc32=XXXXXXXX", and nothing behind it. */
+static enum status read_end(struct reader *reader, const char *line, size_t length, struct error *error)
+{
+    static const char prefix[] = "# end ";
+    static const char key[] = " crc32=";
+    const char *name = reader->input.name;
+    const char *end = line + length;
+    const char *at = line + strlen(prefix);
+    const char *behind = at;
+    int64_t count = 0;
+    uLong stated;
+    while (behind < end && *behind >= '0' && *behind <= '9') {
+        behind++;
+    }
+    bool has_crc = starts_with(behind, (size_t)(end - behind), key);
+    if (number_parse_integer(at, behind, 0, INT64_MAX, &count) != behind || !(has_crc || behind == end)) {
+        return fail(error, STATUS_INPUT, "%s: '%.*s' is not '# end COUNT%s'", name,
+                    (int)(length < 60 ? length : 60), line, reader->binary ? " crc32=XXXXXXXX" : "");
+    }
+    if (reader->binary && !has_crc) {
+        return fail(error, STATUS_INPUT, "%s: the end line lacks the crc32= of a stream with binary sections",
+                    name);
+    }
+    if (count != reader->stream->section_count) {
+        return fail(error, STATUS_INPUT, "%s: %lld sections, the end line says %lld", name,
+                    (long long)reader->stream->section_count, (long long)count);
+    }
+    if (has_crc) {
+        frame_count(reader, line, (size_t)(behind - line));
+        const char *digits = behind + strlen(key);
+        if (!parse_crc(digits, (size_t)(end - digits), &stated) || stated != reader->crc) {
+            return fail(error, STATUS_INPUT, "%s: wrong crc32 of the header lines: damaged or edited", name);
+        }
+    }
+    enum status status = input_fill(&reader->input, 1, error);
+    if (status == STATUS_OK && reader->input.at != reader->input.end) {
+        status = fail(error, STATUS_INPUT, "%s: goes on behind its end line: two streams in one?", name);
+    }
+    return status;
+}
+
+static enum status read_lines(struct reader *reader, struct error *error)
+{
+    enum status status = STATUS_OK;
+    const char *line;
+    size_t length;
+    TRY(read_first_line(reader, error));
+    for (;;) {
+        TRY(frame_line(reader, &line, &length, error));
+        if (starts_with(line, length, "# end ")) {
+            return read_end(reader, line, length, error);
+        }
+        if (!starts_with(line, length, "# @ ")) {
+            status = read_section(reader, line, length, error);
+            if (status != STATUS_OK) {
+                return fail_in(error, status, "%s", reader->input.name);
+            }
+        } else if (reader->stream->section_count > 0) {
+            return fail(error, STATUS_INPUT, "%s: a provenance line behind a section", reader->input.name);
+        } else {
+            frame_count(reader, line, length + 1);
+            TRY(stream_append_provenance(reader->stream, line + 4, length - 4, error));
+        }
+    }
+done:
+    return status;
+}
+
+enum status stream_read(struct stream *stream, int descriptor, const char *name, struct error *error)
+{
+    struct reader reader = {.stream = stream, .crc = 0};
+    enum status status = STATUS_OK;
+    stream_init(stream);
+    /* Numbers are read in the C locale, whatever the program that calls us has set. */
+    locale_t c_locale = newlocale(LC_ALL_MASK, "C", (locale_t)0);
+    if (c_locale == (locale_t)0) {
+        return fail_memory(error, name);
+    }
+    locale_t previous = uselocale(c_locale);
+    TRY(input_open(&reader.input, stream, descriptor, name, error));
+    TRY(read_lines(&reader, error));
+done:
+    input_close(&reader.input);
+    uselocale(previous);
+    freelocale(c_locale);
+    if (status != STATUS_OK) {
+        stream_free(stream);
+    }
+    return status;
+}

@@ -1,0 +1,221 @@
+/* Writing a stream, as text or binary, in large blocks. */
+#include "io/stream_private.h"
+
+#include "base/memory.h"
+
+#include <errno.h>
+#include <inttypes.h>
+#include <locale.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+#include <zlib.h>
+
+struct writer {
+    int descriptor;
+    char *block;    /* BLOCK_SIZE bytes */
+    size_t held;    /* bytes in the block, not yet written */
+    int64_t offset; /* of the next byte, from the start of the stream */
+    uLong crc;      /* of the bytes outside the payloads */
+};
+
+/* write() that goes on after signals and short writes. */
+static enum status write_all(int descriptor, const char *bytes, size_t size, struct error *error)
+{
+    while (size > 0) {
+        ssize_t count = write(descriptor, bytes, size);
+        if (count < 0 && errno == EINTR) {
+            continue;
+        }
+        if (count <= 0) {
+            return fail(error, STATUS_SYSTEM, "cannot write: %s",
+                        count < 0 ? strerror(errno) : "no progress");
+        }
+        bytes += count;
+        size -= (size_t)count;
+    }
+    return STATUS_OK;
+}
+
+static enum status flush(struct writer *writer, struct error *error)
+{
+    size_t held = writer->held;
+    writer->held = 0;
+    return write_all(writer->descriptor, writer->block, held, error);
+}
+
+static enum status put_bytes(struct writer *writer, const void *bytes, size_t size, struct error *error)
+{
+    enum status status = STATUS_OK;
+    writer->offset += (int64_t)size;
+    if (size > BLOCK_SIZE - writer->held) {
+        TRY(flush(writer, error));
+    }
+    if (size >= BLOCK_SIZE) {
+        return write_all(writer->descriptor, bytes, size, error);
+    }
+    if (size > 0) {
+        memcpy(writer->block + writer->held, bytes, size);
+        writer->held += size;
+    }
+done:
+    return status;
+}
+
+/* Bytes outside the payloads. */
+static enum status put_frame(struct writer *writer, const void *bytes, size_t size, struct error *error)
+{
+    writer->crc = crc32_z(writer->crc, bytes, size);
+    return put_bytes(writer, bytes, size, error);
+}
+
+static enum status put_text(struct writer *writer, const char *text, struct error *error)
+{
+    return put_frame(writer, text, strlen(text), error);
+}
+
+/* The header line; before a binary payload it is padded with blanks up to the alignment. */
+static enum status put_header(struct writer *writer, const struct section *section, bool text, uLong *crc,
+                              struct error *error)
+{
+    char *line = NULL;
+    enum status status = STATUS_OK;
+    size_t room = strlen(section->name) + strlen(section->attributes) + 128 + PAYLOAD_ALIGNMENT;
+    TRY(section_validate(section->name, section->type, section->rows, section->cols, section->attributes,
+                         error));
+    TRY(NEW_ARRAY(&line, (int64_t)room, error));
+    int printed =
+        snprintf(line, room, "# %s %s %" PRId64 " %" PRId64 " enc=%s%s%s", section->name,
+                 element_type_name(section->type), section->rows, section->cols, text ? "text" : "bin",
+                 section->attributes[0] != '\0' ? " " : "", section->attributes);
+    size_t length = (size_t)printed;
+    if (!text) {
+        while ((writer->offset + (int64_t)length + 1) % PAYLOAD_ALIGNMENT != 0) {
+            line[length++] = ' ';
+        }
+    }
+    line[length++] = '\n';
+    *crc = crc32_z(0, (const Bytef *)line, length);
+    TRY(put_frame(writer, line, length, error));
+done:
+    free(line);
+    return status;
+}
+
+static size_t format_element(char *text, const struct section *section, int64_t index)
+{
+    switch (section->type) {
+    case TYPE_I4:
+        return number_format_integer(text, ((const int32_t *)section->data)[index]);
+    case TYPE_I8:
+        return number_format_integer(text, ((const int64_t *)section->data)[index]);
+    case TYPE_F4:
+        return number_format_float(text, ((const float *)section->data)[index]);
+    case TYPE_F8:
+        return number_format_double(text, ((const double *)section->data)[index]);
+    }
+    return 0;
+}
+
+static enum status put_payload_text(struct writer *writer, const struct section *section, struct error *error)
+{
+    enum status status = STATUS_OK;
+    int64_t index = 0;
+    for (int64_t row = 0; row < section->rows; row++) {
+        for (int64_t column = 0; column < section->cols; column++, index++) {
+            if (BLOCK_SIZE - writer->held < NUMBER_TEXT_LIMIT + 1) {
+                TRY(flush(writer, error));
+            }
+            char *at = writer->block + writer->held;
+            size_t length = format_element(at, section, index);
+            at[length++] = column + 1 < section->cols ? ' ' : '\n';
+            writer->held += length;
+            writer->offset += (int64_t)length;
+        }
+    }
+    TRY(put_bytes(writer, "\n\n", 2, error));
+done:
+    return status;
+}
+
+static enum status put_payload_binary(struct writer *writer, const struct section *section, uLong header_crc,
+                                      struct error *error)
+{
+    enum status status = STATUS_OK;
+    char line[32];
+    size_t bytes = (size_t)(section->rows * section->cols) * element_size(section->type);
+    uLong crc = bytes > 0 ? crc32_z(header_crc, section->data, bytes) : header_crc;
+    snprintf(line, sizeof line, "# crc32 %08lx\n", crc);
+    TRY(put_bytes(writer, section->data, bytes, error));
+    TRY(put_bytes(writer, "\n", 1, error));
+    TRY(put_text(writer, line, error));
+done:
+    return status;
+}
+
+static enum status put_provenance(struct writer *writer, const char *line, struct error *error)
+{
+    enum status status = STATUS_OK;
+    TRY(put_text(writer, "# @ ", error));
+    TRY(put_text(writer, line, error));
+    TRY(put_text(writer, "\n", error));
+done:
+    return status;
+}
+
+static enum status put_end(struct writer *writer, const struct stream *stream, bool text, struct error *error)
+{
+    enum status status = STATUS_OK;
+    char line[64];
+    snprintf(line, sizeof line, "# end %" PRId64, stream->section_count);
+    TRY(put_text(writer, line, error));
+    if (!text && stream->section_count > 0) {
+        snprintf(line, sizeof line, " crc32=%08lx", writer->crc);
+        TRY(put_bytes(writer, line, strlen(line), error));
+    }
+    TRY(put_bytes(writer, "\n", 1, error));
+done:
+    return status;
+}
+
+static enum status put_stream(struct writer *writer, const struct stream *stream, bool text,
+                              struct error *error)
+{
+    enum status status = STATUS_OK;
+    TRY(put_text(writer, "# mts 1\n", error));
+    for (int64_t i = 0; i < stream->provenance_count; i++) {
+        TRY(put_provenance(writer, stream->provenance[i], error));
+    }
+    for (int64_t i = 0; i < stream->section_count; i++) {
+        const struct section *section = &stream->sections[i];
+        uLong crc;
+        TRY(put_header(writer, section, text, &crc, error));
+        TRY(text ? put_payload_text(writer, section, error)
+                 : put_payload_binary(writer, section, crc, error));
+    }
+    TRY(put_end(writer, stream, text, error));
+    TRY(flush(writer, error));
+done:
+    return status;
+}
+
+enum status stream_write(const struct stream *stream, int descriptor, bool text, struct error *error)
+{
+    struct writer writer = {.descriptor = descriptor, .block = malloc(BLOCK_SIZE)};
+    /* Numbers are written in the C locale, whatever the program that calls us has set. */
+    locale_t c_locale = newlocale(LC_ALL_MASK, "C", (locale_t)0);
+    enum status status = STATUS_SYSTEM;
+    if (writer.block == NULL || c_locale == (locale_t)0) {
+        fail_memory(error, "output");
+    } else {
+        locale_t previous = uselocale(c_locale);
+        status = put_stream(&writer, stream, text, error);
+        uselocale(previous);
+    }
+    if (c_locale != (locale_t)0) {
+        freelocale(c_locale);
+    }
+    free(writer.block);
+    return status;
+}

@@ -1,0 +1,68 @@
+#include "mls_options.h"
+
+#include <stdio.h>
+#include <string.h>
+
+static enum status apply_mu(const char *text, struct mls *mls, struct error *error)
+{
+    int count, wanted = mls_second_order_count(mls->dim);
+    enum status status = parse_double_list(text, "--mu", 0.0, 1e300, MLS_MAX_SECOND, mls->mu, &count, error);
+    if (status != STATUS_OK) {
+        return status;
+    }
+    if (count != 1 && count != wanted) {
+        return fail(error, STATUS_INPUT, "--mu: %d values; in %dD give one, or %d", count, mls->dim, wanted);
+    }
+    for (int k = count; k < MLS_MAX_SECOND; k++) {
+        mls->mu[k] = mls->mu[count - 1];
+    }
+    return STATUS_OK;
+}
+
+enum status mls_apply_options(const struct option options[MLS_OPTION_COUNT], struct mls *mls,
+                              struct error *error)
+{
+    enum status status = STATUS_OK;
+    int choice;
+    if (options[0].given) {
+        status = parse_choice(options[0].value, "-b", basis_names, BASIS_COUNT, &choice, error);
+        if (status != STATUS_OK) {
+            return status;
+        }
+        mls->basis = (enum basis)choice;
+    }
+    if (options[1].given) {
+        status = parse_choice(options[1].value, "-w", weight_names, WEIGHT_COUNT, &choice, error);
+        if (status != STATUS_OK) {
+            return status;
+        }
+        mls->weight = (enum weight_function)choice;
+    }
+    if (options[2].given) {
+        mls->mu_absolute = false;
+        status = apply_mu(options[2].value, mls, error);
+    }
+    if (status == STATUS_OK && options[3].given) {
+        double unit;
+        if (!options[2].given) {
+            return fail(error, STATUS_INPUT, "--mu-unit: needs --mu");
+        }
+        status = parse_length_unit(options[3].value, "--mu-unit", &unit, error);
+        /* mu enters as mu / s^4 with s in that unit. */
+        for (int k = 0; status == STATUS_OK && k < MLS_MAX_SECOND; k++) {
+            mls->mu[k] *= unit * unit * unit * unit;
+        }
+        mls->mu_absolute = true;
+    }
+    return status;
+}
+
+void mls_describe(const struct mls *mls, char *text, size_t size)
+{
+    snprintf(text, size, "basis=%s weight=%s mu_absolute=%d mu=", basis_names[mls->basis],
+             weight_names[mls->weight], mls->mu_absolute);
+    for (int k = 0; k < mls_second_order_count(mls->dim); k++) {
+        size_t length = strlen(text);
+        snprintf(text + length, size - length, "%s%.17g", k > 0 ? "," : "", mls->mu[k]);
+    }
+}

@@ -1,0 +1,172 @@
+#include "stages.h"
+
+#include "approx/quadrature.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+struct ipoints_options ipoints_defaults(void)
+{
+    return (struct ipoints_options){.conforming = true};
+}
+
+static const char *length_attributes(int dim)
+{
+    return dim == 2 ? "unit=m cols=x,y" : "unit=m cols=x,y,z";
+}
+
+/* Add points.x, points.weight, points.cell; the stream takes the arrays. */
+static enum status put_points(struct stream *stream, int dim, int64_t count, const char *rule, double *x,
+                              double *weight, int32_t *cell, struct error *error)
+{
+    char attributes[96];
+    snprintf(attributes, sizeof attributes, "%s rule=%s", length_attributes(dim), rule);
+    enum status status = stream_put(stream, "points.x", TYPE_F8, count, dim, attributes, x, true, error);
+    enum status next = stream_put(stream, "points.weight", TYPE_F8, count, 1,
+                                  dim == 2 ? "unit=m2" : "unit=m3", weight, true, error);
+    status = status != STATUS_OK ? status : next;
+    next = stream_put(stream, "points.cell", TYPE_I4, count, 1, "", cell, true, error);
+    return status != STATUS_OK ? status : next;
+}
+
+static enum status put_cell_points(struct stream *stream, const struct cells *cells, int per_cell,
+                                   const char *rule_name, struct error *error)
+{
+    enum status status;
+    struct quadrature_rule rule;
+    int dim = cells->dim;
+    double *x = NULL, *weight = NULL;
+    int32_t *cell = NULL;
+    TRY(quadrature_cell_rule(dim, per_cell, &rule, error));
+    TRY(NEW_ARRAY(&x, cells->count * per_cell * dim, error));
+    TRY(NEW_ARRAY(&weight, cells->count * per_cell, error));
+    TRY(NEW_ARRAY(&cell, cells->count * per_cell, error));
+    for (int64_t c = 0; c < cells->count; c++) {
+        double volume = cell_volume(cells, c);
+        quadrature_positions(&rule, dim, cells->x, cells->node + c * (dim + 1), x + c * per_cell * dim);
+        for (int q = 0; q < per_cell; q++) {
+            weight[c * per_cell + q] = rule.weight[q] * volume;
+            cell[c * per_cell + q] = (int32_t)c;
+        }
+    }
+    return put_points(stream, dim, cells->count * per_cell, rule_name, x, weight, cell, error);
+done:
+    free(x);
+    free(weight);
+    free(cell);
+    return status;
+}
+
+/* Faces with their quadrature points. */
+static enum status put_faces(struct stream *stream, const struct cells *cells, bool boundary_only,
+                             struct error *error)
+{
+    enum status status;
+    int dim = cells->dim;
+    struct faces faces = {0};
+    double *x = NULL, *weight = NULL;
+    char attributes[96];
+    struct quadrature_rule rule = quadrature_face_rule(dim);
+    TRY(faces_build(cells, boundary_only, &faces, error));
+    int64_t points = faces.count * rule.points;
+    TRY(NEW_ARRAY(&x, points * dim, error));
+    TRY(NEW_ARRAY(&weight, points, error));
+    for (int64_t f = 0; f < faces.count; f++) {
+        double area[3] = {0.0, 0.0, 0.0};
+        face_area_vector(dim, cells->x, faces.node + f * dim, area);
+        double size = sqrt(area[0] * area[0] + area[1] * area[1] + area[2] * area[2]);
+        quadrature_positions(&rule, dim, cells->x, faces.node + f * dim, x + f * rule.points * dim);
+        for (int g = 0; g < rule.points; g++) {
+            weight[f * rule.points + g] = rule.weight[g] * size;
+        }
+    }
+    int64_t face_count = faces.count;
+    int32_t *node = faces.node, *cell = faces.cell;
+    faces = (struct faces){0};
+    status = stream_put(stream, "faces", TYPE_I4, face_count, dim, "", node, true, error);
+    enum status next = stream_put(stream, "faces.cell", TYPE_I4, face_count, 2, "", cell, true, error);
+    TRY(status != STATUS_OK ? status : next);
+    snprintf(attributes, sizeof attributes, "%s per_face=%d", length_attributes(dim), rule.points);
+    status = stream_put(stream, "facepoints.x", TYPE_F8, points, dim, attributes, x, true, error);
+    next = stream_put(stream, "facepoints.weight", TYPE_F8, points, 1, dim == 2 ? "unit=m" : "unit=m2",
+                      weight, true, error);
+    x = weight = NULL;
+    TRY(status != STATUS_OK ? status : next);
+done:
+    faces_free(&faces);
+    free(x);
+    free(weight);
+    return status;
+}
+
+/* n[0] x n[1] (x n[2]) points over the box of the nodes, x fastest; weights of the trapezium rule. */
+static enum status put_lattice(struct stream *stream, const int64_t n[3], struct error *error)
+{
+    enum status status;
+    int dim;
+    int64_t node_count, count = 1;
+    const double *nodes;
+    double low[3], step[3];
+    double *x = NULL, *weight = NULL;
+    int32_t *cell = NULL;
+    TRY(stream_nodes(stream, &dim, &node_count, &nodes, error));
+    for (int a = 0; a < dim; a++) {
+        double high = -INFINITY;
+        low[a] = INFINITY;
+        for (int64_t i = 0; i < node_count; i++) {
+            low[a] = fmin(low[a], nodes[i * dim + a]);
+            high = fmax(high, nodes[i * dim + a]);
+        }
+        step[a] = (high - low[a]) / (double)(n[a] - 1);
+        if (n[a] < 2 || __builtin_mul_overflow(count, n[a], &count) || count > INT32_MAX) {
+            return fail(error, STATUS_INPUT, "--lattice: give %d numbers of points, each at least 2", dim);
+        }
+    }
+    TRY(NEW_ARRAY(&x, count * dim, error));
+    TRY(NEW_ARRAY(&weight, count, error));
+    TRY(NEW_ARRAY(&cell, count, error));
+    for (int64_t p = 0; p < count; p++) {
+        int64_t rest = p;
+        weight[p] = 1.0;
+        cell[p] = -1;
+        for (int a = 0; a < dim; a++) {
+            int64_t i = rest % n[a];
+            rest /= n[a];
+            x[p * dim + a] = low[a] + step[a] * (double)i;
+            weight[p] *= i == 0 || i == n[a] - 1 ? 0.5 * step[a] : step[a];
+        }
+    }
+    return put_points(stream, dim, count, "lattice", x, weight, cell, error);
+done:
+    free(x);
+    free(weight);
+    free(cell);
+    return status;
+}
+
+enum status stage_ipoints(struct stream *stream, const struct ipoints_options *options, struct error *error)
+{
+    struct cells cells;
+    char rule[32];
+    /* What was made from other points is void. */
+    static const char *const void_prefixes[] = {"points.", "facepoints.", "faces",          "nbr.",
+                                                "face.",   "node.",       "support.radius", "shape."};
+    for (size_t i = 0; i < sizeof void_prefixes / sizeof *void_prefixes; i++) {
+        stream_remove_prefix(stream, void_prefixes[i]);
+    }
+    if (options->lattice[0] > 0) {
+        return put_lattice(stream, options->lattice, error);
+    }
+    enum status status = stream_cells(stream, true, &cells, error);
+    if (status != STATUS_OK) {
+        return status;
+    }
+    int per_cell = options->conforming ? 1 : options->gauss_points;
+    snprintf(rule, sizeof rule, options->conforming ? "conforming" : "gauss%d", per_cell);
+    status = put_cell_points(stream, &cells, per_cell, rule, error);
+    if (status != STATUS_OK) {
+        return status;
+    }
+    return put_faces(stream, &cells, !options->conforming, error);
+}

@@ -1,0 +1,128 @@
+#include "stages.h"
+
+#include "approx/quadrature.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+enum status stage_recorded_mls(const struct stream *stream, int dim, struct mls *mls, struct error *error)
+{
+    const struct section *radius = stream_find(stream, "support.radius");
+    char value[256];
+    int choice, count;
+    enum status status = STATUS_OK;
+    *mls = mls_default(dim);
+    if (radius == NULL) {
+        return STATUS_OK;
+    }
+    if (section_attribute(radius, "basis", value, sizeof value)) {
+        TRY(parse_choice(value, "support.radius: basis", basis_names, BASIS_COUNT, &choice, error));
+        mls->basis = (enum basis)choice;
+    }
+    if (section_attribute(radius, "weight", value, sizeof value)) {
+        TRY(parse_choice(value, "support.radius: weight", weight_names, WEIGHT_COUNT, &choice, error));
+        mls->weight = (enum weight_function)choice;
+    }
+    if (section_attribute(radius, "mu_absolute", value, sizeof value)) {
+        mls->mu_absolute = strcmp(value, "0") != 0;
+    }
+    if (section_attribute(radius, "mu", value, sizeof value)) {
+        TRY(parse_double_list(value, "support.radius: mu", 0.0, 1e300, MLS_MAX_SECOND, mls->mu, &count,
+                              error));
+    }
+done:
+    return status;
+}
+
+/* Tabulate phi (and gradients) at the points of one section on the lists of one prefix. */
+static enum status tabulate(struct stream *stream, const struct mls *mls, const char *section,
+                            const char *prefix, const char *phi_name, bool gradients, struct error *error)
+{
+    enum status status;
+    struct neighbours lists;
+    int dim;
+    int64_t node_count;
+    const double *nodes;
+    const struct section *points, *radius;
+    double *phi = NULL, *dphi = NULL;
+    TRY(stream_nodes(stream, &dim, &node_count, &nodes, error));
+    TRY(stream_need(stream, section, TYPE_F8, dim, "ipoints", &points, error));
+    TRY(stream_need(stream, "support.radius", TYPE_F8, 1, "support", &radius, error));
+    TRY(stream_neighbours(stream, prefix, points->rows, node_count, &lists, error));
+    if (radius->rows != node_count || lists.widen == NULL) {
+        status = fail(error, STATUS_INPUT, "support.radius, %s.widen: do not fit: run support again", prefix);
+        goto done;
+    }
+    int64_t pairs = lists.ptr[points->rows];
+    TRY(NEW_ARRAY(&phi, pairs, error));
+    if (gradients) {
+        TRY(NEW_ARRAY(&dphi, pairs * dim, error));
+    }
+    TRY(shape_table(mls, nodes, radius->data, &lists, points->data, section, phi, dphi, error));
+    status = stream_put(stream, phi_name, TYPE_F8, pairs, 1, "", phi, true, error);
+    phi = NULL;
+    if (status == STATUS_OK && gradients) {
+        status = stream_put(stream, "shape.dphi", TYPE_F8, pairs, dim,
+                            dim == 2 ? "unit=1/m cols=x,y" : "unit=1/m cols=x,y,z", dphi, true, error);
+        dphi = NULL;
+    }
+done:
+    free(phi);
+    free(dphi);
+    return status;
+}
+
+/* Replace the points' lists and table by those of the conforming cells. */
+static enum status put_smoothed(struct stream *stream, struct error *error)
+{
+    enum status status, next;
+    struct cells cells;
+    struct smoothed_table table = {0};
+    struct neighbours lists;
+    const struct section *node, *cell, *phi;
+    TRY(stream_cells(stream, true, &cells, error));
+    int per_face = quadrature_face_rule(cells.dim).points;
+    TRY(stream_need(stream, "faces", TYPE_I4, cells.dim, "ipoints", &node, error));
+    TRY(stream_need(stream, "faces.cell", TYPE_I4, 2, "ipoints", &cell, error));
+    TRY(stream_need(stream, "face.phi", TYPE_F8, 1, "shapefn", &phi, error));
+    TRY(stream_neighbours(stream, "face", node->rows * per_face, cells.node_count, &lists, error));
+    struct faces faces = {.dim = cells.dim, .count = node->rows, .node = node->data, .cell = cell->data};
+    if (cell->rows != faces.count || stream_find(stream, "points.x")->rows != cells.count) {
+        status = fail(error, STATUS_INPUT, "faces.cell, points.x: do not fit the cells: run ipoints again");
+        goto done;
+    }
+    TRY(shape_smooth(&cells, &faces, per_face, &lists, phi->data, &table, error));
+    int64_t pairs = table.ptr[cells.count];
+    status = stream_put(stream, "nbr.ptr", TYPE_I8, cells.count + 1, 1, "", table.ptr, true, error);
+    next = stream_put(stream, "nbr.idx", TYPE_I4, pairs, 1, "", table.idx, true, error);
+    status = status != STATUS_OK ? status : next;
+    next = stream_put(stream, "shape.phi", TYPE_F8, pairs, 1, "", table.phi, true, error);
+    status = status != STATUS_OK ? status : next;
+    next = stream_put(stream, "shape.dphi", TYPE_F8, pairs, cells.dim,
+                      cells.dim == 2 ? "unit=1/m cols=x,y" : "unit=1/m cols=x,y,z", table.dphi, true, error);
+    status = status != STATUS_OK ? status : next;
+    table = (struct smoothed_table){0};
+done:
+    smoothed_table_free(&table);
+    return status;
+}
+
+enum status stage_shapefn(struct stream *stream, const struct mls *mls, struct error *error)
+{
+    enum status status;
+    char rule[32] = "";
+    const struct section *points;
+    TRY(stream_need(stream, "points.x", TYPE_F8, mls->dim, "ipoints", &points, error));
+    bool conforming = section_attribute(points, "rule", rule, sizeof rule) && strcmp(rule, "conforming") == 0;
+    if (stream_find(stream, "facepoints.x") != NULL) {
+        TRY(tabulate(stream, mls, "facepoints.x", "face", "face.phi", false, error));
+    }
+    if (conforming) {
+        TRY(put_smoothed(stream, error));
+    } else {
+        TRY(tabulate(stream, mls, "points.x", "nbr", "shape.phi", true, error));
+    }
+    TRY(tabulate(stream, mls, "nodes.x", "node", "node.phi", false, error));
+done:
+    return status;
+}

@@ -1,0 +1,113 @@
+#include "stages.h"
+
+#include "mls_options.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Local spacing from the cells where there are any, else from the nearest nodes. */
+static enum status local_spacing(const struct stream *stream, int dim, int64_t node_count, const double *x,
+                                 double *spacing, struct error *error)
+{
+    struct cells cells;
+    enum status status = stream_cells(stream, false, &cells, error);
+    if (status != STATUS_OK) {
+        return status;
+    }
+    return cells.count > 0 ? cells_node_spacing(&cells, spacing, error)
+                           : nodes_spacing(dim, node_count, x, spacing, error);
+}
+
+/* Radii of the nodes, put into the stream with the settings they were made for. */
+static enum status put_radii(struct stream *stream, const struct support_options *options, int64_t node_count,
+                             const double *x, struct error *error)
+{
+    enum status status;
+    double *spacing = NULL, *radius = NULL;
+    char attributes[512];
+    int dim = options->mls.dim;
+    TRY(NEW_ARRAY(&spacing, node_count, error));
+    TRY(NEW_ARRAY(&radius, node_count, error));
+    if (!(options->radius > 0.0)) {
+        TRY(local_spacing(stream, dim, node_count, x, spacing, error));
+    }
+    TRY(support_radii(options, node_count, spacing, radius, error));
+    mls_describe(&options->mls, attributes, sizeof attributes - 8);
+    char described[sizeof attributes + 8];
+    snprintf(described, sizeof described, "unit=m %s", attributes);
+    status = stream_put(stream, "support.radius", TYPE_F8, node_count, 1, described, radius, true, error);
+    radius = NULL;
+done:
+    free(spacing);
+    free(radius);
+    return status;
+}
+
+/* Lists PREFIX.ptr, .idx, .widen of the points of one section. */
+static enum status put_lists(struct stream *stream, const struct support_options *options,
+                             const struct point_grid *grid, const struct section *points, const char *prefix,
+                             int64_t *widened, double *widest, struct error *error)
+{
+    enum status status, next;
+    struct support_lists lists = {0};
+    char name[64], what[64];
+    snprintf(what, sizeof what, "%s", points->name);
+    int64_t count = points->rows;
+    TRY(support_build(options, grid, count, points->data, what, &lists, error));
+    *widened += lists.widened;
+    *widest = fmax(*widest, lists.widest);
+    int64_t pairs = lists.ptr[count];
+    snprintf(name, sizeof name, "%s.ptr", prefix);
+    status = stream_put(stream, name, TYPE_I8, count + 1, 1, "", lists.ptr, true, error);
+    snprintf(name, sizeof name, "%s.idx", prefix);
+    next = stream_put(stream, name, TYPE_I4, pairs, 1, "", lists.idx, true, error);
+    status = status != STATUS_OK ? status : next;
+    snprintf(name, sizeof name, "%s.widen", prefix);
+    next = stream_put(stream, name, TYPE_F8, count, 1, "", lists.widen, true, error);
+    status = status != STATUS_OK ? status : next;
+    lists = (struct support_lists){0};
+done:
+    support_free(&lists);
+    return status;
+}
+
+static bool is_conforming(const struct section *points)
+{
+    char rule[32];
+    return section_attribute(points, "rule", rule, sizeof rule) && strcmp(rule, "conforming") == 0;
+}
+
+enum status stage_support(struct stream *stream, const struct support_options *options, int64_t *widened,
+                          double *widest, struct error *error)
+{
+    enum status status;
+    struct point_grid grid = {0};
+    int dim;
+    int64_t node_count;
+    const double *x;
+    static const char *const void_prefixes[] = {"nbr.", "face.", "node.", "support.radius", "shape."};
+    *widened = 0;
+    *widest = 1.0;
+    for (size_t i = 0; i < sizeof void_prefixes / sizeof *void_prefixes; i++) {
+        stream_remove_prefix(stream, void_prefixes[i]);
+    }
+    TRY(stream_nodes(stream, &dim, &node_count, &x, error));
+    const struct section *points;
+    TRY(stream_need(stream, "points.x", TYPE_F8, dim, "ipoints", &points, error));
+    TRY(put_radii(stream, options, node_count, x, error));
+    TRY(point_grid_build(&grid, dim, node_count, x, stream_find(stream, "support.radius")->data, error));
+    if (!is_conforming(stream_find(stream, "points.x"))) {
+        TRY(put_lists(stream, options, &grid, stream_find(stream, "points.x"), "nbr", widened, widest,
+                      error));
+    }
+    const struct section *facepoints = stream_find(stream, "facepoints.x");
+    if (facepoints != NULL) {
+        TRY(stream_need(stream, "facepoints.x", TYPE_F8, dim, "ipoints", &facepoints, error));
+        TRY(put_lists(stream, options, &grid, facepoints, "face", widened, widest, error));
+    }
+    TRY(put_lists(stream, options, &grid, stream_find(stream, "nodes.x"), "node", widened, widest, error));
+done:
+    point_grid_free(&grid);
+    return status;
+}

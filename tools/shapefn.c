@@ -1,0 +1,58 @@
+static const char usage[] =
+    "shapefn - shape functions of moving least squares, values and gradients\n"
+    "\n"
+    "usage: shapefn [-b BASIS] [-w WEIGHT] [--mu MU[,MU...]] [--mu-unit UNIT] [-t] [-o FILE] [FILE]\n"
+    "\n"
+    "Reads a stream with points and neighbour lists (see support) and adds shape.phi and shape.dphi (1/m) at the\n"
+    "integration points, and the values face.phi and node.phi at the points on faces and at the nodes. For\n"
+    "conforming cells the rows of shape.dphi are gradients smoothed over the cell, on lists that replace nbr.*.\n"
+    "A support whose moment matrix is singular or ill-conditioned is an error that names the point (status 1).\n"
+    "Without earlier sections the defaults of ipoints and support are run first.\n"
+    "\n"
+    "Options:\n"
+    "  -b, --basis BASIS      mls1: linear MLS; mls2: quadratic MLS; mmls2: quadratic, with its second-order\n"
+    "                         monomials regularised, never singular where mls1 is not (default: as support)\n"
+    "  -w, --weight WEIGHT    quartic spline, cubic spline, wendland (C2), or regularised (Most and Bucher 2005,\n"
+    "                         almost interpolating) (default: as support)\n"
+    "      --mu MU[,MU...]    the regularisation, for all second-order monomials or for each: x2,xy,y2 in 2D,\n"
+    "                         x2,xy,xz,y2,yz,z2 in 3D; dimensionless, relative to the support radius s to the\n"
+    "                         fourth power (default 1e-7)\n"
+    "      --mu-unit UNIT     MU is absolute, in coordinates of that unit (m, cm, mm, um): mu / s^4 is used\n"
+    "  -t, --text             write text instead of binary\n"
+    "  -o, --output FILE      write to FILE, which appears only when whole\n"
+    "\n"
+    "Examples:\n"
+    "  nodes -u mm body.msh | shapefn | mtled scene > u.dat\n"
+    "  nodes -u mm body.msh | ipoints -g 4 | support -R 9mm | shapefn --mu 1e-7 --mu-unit mm > table.mts\n";
+
+#include "mls_options.h"
+#include "stages.h"
+
+enum { BASIS, LAST_OF_MLS = BASIS + MLS_OPTION_COUNT - 1, TEXT, OUTPUT, OPTION_COUNT };
+
+int main(int argc, char *argv[])
+{
+    struct tool tool;
+    struct stream stream;
+    struct error error;
+    struct option options[OPTION_COUNT] = {
+        [BASIS] = MLS_OPTIONS,
+        [TEXT] = {.letter = 't', .name = "text"},
+        [OUTPUT] = {.letter = 'o', .name = "output", .takes_value = true},
+    };
+    int dim;
+    int64_t node_count;
+    const double *x;
+    struct mls mls = mls_default(3);
+    tool_begin(&tool, usage, options, OPTION_COUNT, 0, 1, argc, argv);
+    tool_check(&tool, mls_apply_options(options + BASIS, &mls, &error), &error);
+    tool_read(&tool, tool.operands[0], &stream);
+    tool_check(&tool, stream_nodes(&stream, &dim, &node_count, &x, &error), &error);
+    stage_fill(&tool, &stream, "support");
+    tool_check(&tool, stage_recorded_mls(&stream, dim, &mls, &error), &error);
+    tool_check(&tool, mls_apply_options(options + BASIS, &mls, &error), &error);
+    tool_check(&tool, stage_shapefn(&stream, &mls, &error), &error);
+    tool_write(&tool, &stream, options[TEXT].given);
+    stream_free(&stream);
+    return tool_end(&tool);
+}

@@ -1,0 +1,116 @@
+static const char usage[] =
+    "support - support domains and neighbour lists\n"
+    "\n"
+    "usage: support [-k FACTOR | -R RADIUS] [-m LEAST] [-n MOST] [--no-widen] [-b BASIS] [-w WEIGHT] [--mu MU]\n"
+    "               [-v] [-t] [-o FILE] [FILE]\n"
+    "\n"
+    "Reads a stream with nodes.x (m) and points (see ipoints) and adds the support radius of every node and\n"
+    "the lists of neighbours - the nodes whose supports contain the point - of the integration points, of the\n"
+    "points on faces, and of the nodes. Where a list holds too few nodes, or badly placed ones, for the\n"
+    "basis, all radii are widened for that point until the moment matrix is well conditioned and the gradients\n"
+    "of the shape functions are bounded; if eightfold is not enough, the tool stops (status 1) and names the\n"
+    "point. Without earlier sections the defaults of ipoints are run first.\n"
+    "\n"
+    "Options:\n"
+    "  -k, --factor FACTOR    radius = FACTOR times the local node spacing (default 1.8)\n"
+    "  -R, --radius RADIUS    constant radius: a length with its unit, e.g. 8mm (without one: m)\n"
+    "  -m, --least LEAST      widen until at least so many neighbours\n"
+    "  -n, --most MOST        keep only the MOST nearest neighbours (ties: the lower index)\n"
+    "      --no-widen         leave unfit supports as they are, for shapefn to report\n"
+    "      --bound BOUND      largest |grad phi| times spacing admitted (default 6)\n"
+    "  -b, --basis BASIS      mls1, mls2 or mmls2 (default): what the lists are for; shapefn follows it\n"
+    "  -w, --weight WEIGHT    quartic (default), cubic, wendland or regularised; shapefn follows it\n"
+    "      --mu MU[,MU...]    regularisation of mmls2, see shapefn\n"
+    "      --mu-unit UNIT     MU is absolute, in coordinates of that unit\n"
+    "  -v, --verbose          report on standard error how many points were widened\n"
+    "  -t, --text             write text instead of binary\n"
+    "  -o, --output FILE      write to FILE, which appears only when whole\n"
+    "\n"
+    "Examples:\n"
+    "  nodes -u mm body.msh | ipoints | support -k 2 > lists.mts\n"
+    "  nodes -u mm body.msh | ipoints -g 4 | support -R 8mm -b mmls2 --mu 1e-7 --mu-unit mm | shapefn | mts list\n";
+
+#include "mls_options.h"
+#include "stages.h"
+
+enum {
+    FACTOR,
+    RADIUS,
+    LEAST,
+    MOST,
+    NO_WIDEN,
+    BOUND,
+    BASIS,
+    LAST_OF_MLS = BASIS + MLS_OPTION_COUNT - 1,
+    VERBOSE,
+    TEXT,
+    OUTPUT,
+    OPTION_COUNT
+};
+
+static struct support_options parse(const struct tool *tool, const struct option *options, int dim)
+{
+    struct support_options support = support_defaults(dim);
+    struct error error;
+    if (options[FACTOR].given && options[RADIUS].given) {
+        tool_fail(tool, STATUS_INPUT, "give one of -k and -R");
+    }
+    if (options[FACTOR].given) {
+        tool_check(tool, parse_double(options[FACTOR].value, "-k", 0.1, 100, &support.factor, &error), &error);
+    }
+    if (options[RADIUS].given) {
+        tool_check(tool, parse_length(options[RADIUS].value, "-R", &support.radius, &error), &error);
+    }
+    if (options[LEAST].given) {
+        tool_check(tool, parse_integer(options[LEAST].value, "-m", 1, 100000, &support.least, &error), &error);
+    }
+    if (options[MOST].given) {
+        tool_check(tool, parse_integer(options[MOST].value, "-n", 1, 100000, &support.most, &error), &error);
+    }
+    if (support.most > 0 && support.most < support.least) {
+        tool_fail(tool, STATUS_INPUT, "-n is less than -m");
+    }
+    if (options[BOUND].given) {
+        tool_check(tool, parse_double(options[BOUND].value, "--bound", 1.0, 1e6, &support.gradient_bound, &error),
+                   &error);
+    }
+    support.widen = !options[NO_WIDEN].given;
+    tool_check(tool, mls_apply_options(options + BASIS, &support.mls, &error), &error);
+    return support;
+}
+
+int main(int argc, char *argv[])
+{
+    struct tool tool;
+    struct stream stream;
+    struct error error;
+    struct option options[OPTION_COUNT] = {
+        [FACTOR] = {.letter = 'k', .name = "factor", .takes_value = true},
+        [RADIUS] = {.letter = 'R', .name = "radius", .takes_value = true},
+        [LEAST] = {.letter = 'm', .name = "least", .takes_value = true},
+        [MOST] = {.letter = 'n', .name = "most", .takes_value = true},
+        [NO_WIDEN] = {.name = "no-widen"},
+        [BOUND] = {.name = "bound", .takes_value = true},
+        [BASIS] = MLS_OPTIONS,
+        [VERBOSE] = {.letter = 'v', .name = "verbose"},
+        [TEXT] = {.letter = 't', .name = "text"},
+        [OUTPUT] = {.letter = 'o', .name = "output", .takes_value = true},
+    };
+    int dim;
+    int64_t node_count, widened;
+    const double *x;
+    double widest;
+    tool_begin(&tool, usage, options, OPTION_COUNT, 0, 1, argc, argv);
+    (void)parse(&tool, options, 3); /* usage errors before waiting for the input */
+    tool_read(&tool, tool.operands[0], &stream);
+    tool_check(&tool, stream_nodes(&stream, &dim, &node_count, &x, &error), &error);
+    struct support_options support = parse(&tool, options, dim);
+    stage_fill(&tool, &stream, "ipoints");
+    tool_check(&tool, stage_support(&stream, &support, &widened, &widest, &error), &error);
+    if (options[VERBOSE].given) {
+        tool_note(&tool, "widened at %lld points, at most %.3g times", (long long)widened, widest);
+    }
+    tool_write(&tool, &stream, options[TEXT].given);
+    stream_free(&stream);
+    return tool_end(&tool);
+}
