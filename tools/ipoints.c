@@ -4,15 +4,20 @@ static const char usage[] =
     "usage: ipoints [-c | -g POINTS | --lattice N,N[,N]] [-t] [-o FILE] [FILE]\n"
     "\n"
     "Reads a stream with nodes.x (m) and cells (see nodes) and adds integration points: points.x (m),\n"
-    "points.weight (m2 in 2D, m3 in 3D) and points.cell; and the faces of the cells with quadrature points on\n"
-    "them, facepoints.x (m) and facepoints.weight: all faces for conforming cells, else those of the boundary.\n"
+    "points.weight (m2 in 2D, m3 in 3D) and points.cell; and the faces of the cells with quadrature points "
+    "on\n"
+    "them, facepoints.x (m) and facepoints.weight: all faces for conforming cells, else those of the "
+    "boundary.\n"
     "\n"
     "Options:\n"
-    "  -c, --conforming        one point per cell, gradients smoothed over the cell by the values of the shape\n"
+    "  -c, --conforming        one point per cell, gradients smoothed over the cell by the values of the "
+    "shape\n"
     "                          functions on its faces; passes the linear patch test to round-off (default)\n"
-    "  -g, --gauss POINTS      quadrature rule of that many points per cell: 1, 3, 4, 6, 7, 12 for triangles,\n"
+    "  -g, --gauss POINTS      quadrature rule of that many points per cell: 1, 3, 4, 6, 7, 12 for "
+    "triangles,\n"
     "                          1, 4, 8, 14 for tetrahedra\n"
-    "      --lattice N,N[,N]   instead: a regular lattice of evaluation points over the box of the nodes, its\n"
+    "      --lattice N,N[,N]   instead: a regular lattice of evaluation points over the box of the nodes, "
+    "its\n"
     "                          ends included; needs no cells\n"
     "  -t, --text              write text instead of binary\n"
     "  -o, --output FILE       write to FILE, which appears only when whole\n"
@@ -41,7 +46,8 @@ static struct ipoints_options parse(const struct tool *tool, const struct option
     if (options[LATTICE].given) {
         double numbers[3];
         int count;
-        tool_check(tool, parse_double_list(options[LATTICE].value, "--lattice", 2, 1e6, 3, numbers, &count, &error),
+        tool_check(tool,
+                   parse_double_list(options[LATTICE].value, "--lattice", 2, 1e6, 3, numbers, &count, &error),
                    &error);
         for (int a = 0; a < 3; a++) {
             ipoints.lattice[a] = (int64_t)numbers[a < count ? a : count - 1];

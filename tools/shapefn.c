@@ -3,19 +3,26 @@ static const char usage[] =
     "\n"
     "usage: shapefn [-b BASIS] [-w WEIGHT] [--mu MU[,MU...]] [--mu-unit UNIT] [-t] [-o FILE] [FILE]\n"
     "\n"
-    "Reads a stream with points and neighbour lists (see support) and adds shape.phi and shape.dphi (1/m) at the\n"
+    "Reads a stream with points and neighbour lists (see support) and adds shape.phi and shape.dphi (1/m) at "
+    "the\n"
     "integration points, and the values face.phi and node.phi at the points on faces and at the nodes. For\n"
-    "conforming cells the rows of shape.dphi are gradients smoothed over the cell, on lists that replace nbr.*.\n"
-    "A support whose moment matrix is singular or ill-conditioned is an error that names the point (status 1).\n"
+    "conforming cells the rows of shape.dphi are gradients smoothed over the cell, on lists that replace "
+    "nbr.*.\n"
+    "A support whose moment matrix is singular or ill-conditioned is an error that names the point (status "
+    "1).\n"
     "Without earlier sections the defaults of ipoints and support are run first.\n"
     "\n"
     "Options:\n"
-    "  -b, --basis BASIS      mls1: linear MLS; mls2: quadratic MLS; mmls2: quadratic, with its second-order\n"
+    "  -b, --basis BASIS      mls1: linear MLS; mls2: quadratic MLS; mmls2: quadratic, with its "
+    "second-order\n"
     "                         monomials regularised, never singular where mls1 is not (default: as support)\n"
-    "  -w, --weight WEIGHT    quartic spline, cubic spline, wendland (C2), or regularised (Most and Bucher 2005,\n"
+    "  -w, --weight WEIGHT    quartic spline, cubic spline, wendland (C2), or regularised (Most and Bucher "
+    "2005,\n"
     "                         almost interpolating) (default: as support)\n"
-    "      --mu MU[,MU...]    the regularisation, for all second-order monomials or for each: x2,xy,y2 in 2D,\n"
-    "                         x2,xy,xz,y2,yz,z2 in 3D; dimensionless, relative to the support radius s to the\n"
+    "      --mu MU[,MU...]    the regularisation, for all second-order monomials or for each: x2,xy,y2 in "
+    "2D,\n"
+    "                         x2,xy,xz,y2,yz,z2 in 3D; dimensionless, relative to the support radius s to "
+    "the\n"
     "                         fourth power (default 1e-7)\n"
     "      --mu-unit UNIT     MU is absolute, in coordinates of that unit (m, cm, mm, um): mu / s^4 is used\n"
     "  -t, --text             write text instead of binary\n"
@@ -43,7 +50,7 @@ int main(int argc, char *argv[])
     int dim;
     int64_t node_count;
     const double *x;
-    struct mls mls = mls_default(3);
+    struct mls mls = mls_default(0);
     tool_begin(&tool, usage, options, OPTION_COUNT, 0, 1, argc, argv);
     tool_check(&tool, mls_apply_options(options + BASIS, &mls, &error), &error);
     tool_read(&tool, tool.operands[0], &stream);

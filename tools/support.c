@@ -1,14 +1,18 @@
 static const char usage[] =
     "support - support domains and neighbour lists\n"
     "\n"
-    "usage: support [-k FACTOR | -R RADIUS] [-m LEAST] [-n MOST] [--no-widen] [-b BASIS] [-w WEIGHT] [--mu MU]\n"
+    "usage: support [-k FACTOR | -R RADIUS] [-m LEAST] [-n MOST] [--no-widen] [-b BASIS] [-w WEIGHT] [--mu "
+    "MU]\n"
     "               [-v] [-t] [-o FILE] [FILE]\n"
     "\n"
     "Reads a stream with nodes.x (m) and points (see ipoints) and adds the support radius of every node and\n"
-    "the lists of neighbours - the nodes whose supports contain the point - of the integration points, of the\n"
+    "the lists of neighbours - the nodes whose supports contain the point - of the integration points, of "
+    "the\n"
     "points on faces, and of the nodes. Where a list holds too few nodes, or badly placed ones, for the\n"
-    "basis, all radii are widened for that point until the moment matrix is well conditioned and the gradients\n"
-    "of the shape functions are bounded; if eightfold is not enough, the tool stops (status 1) and names the\n"
+    "basis, all radii are widened for that point until the moment matrix is well conditioned and the "
+    "gradients\n"
+    "of the shape functions are bounded; if eightfold is not enough, the tool stops (status 1) and names "
+    "the\n"
     "point. Without earlier sections the defaults of ipoints are run first.\n"
     "\n"
     "Options:\n"
@@ -28,7 +32,8 @@ static const char usage[] =
     "\n"
     "Examples:\n"
     "  nodes -u mm body.msh | ipoints | support -k 2 > lists.mts\n"
-    "  nodes -u mm body.msh | ipoints -g 4 | support -R 8mm -b mmls2 --mu 1e-7 --mu-unit mm | shapefn | mts list\n";
+    "  nodes -u mm body.msh | ipoints -g 4 | support -R 8mm -b mmls2 --mu 1e-7 --mu-unit mm | shapefn | mts "
+    "list\n";
 
 #include "mls_options.h"
 #include "stages.h"
@@ -56,13 +61,15 @@ static struct support_options parse(const struct tool *tool, const struct option
         tool_fail(tool, STATUS_INPUT, "give one of -k and -R");
     }
     if (options[FACTOR].given) {
-        tool_check(tool, parse_double(options[FACTOR].value, "-k", 0.1, 100, &support.factor, &error), &error);
+        tool_check(tool, parse_double(options[FACTOR].value, "-k", 0.1, 100, &support.factor, &error),
+                   &error);
     }
     if (options[RADIUS].given) {
         tool_check(tool, parse_length(options[RADIUS].value, "-R", &support.radius, &error), &error);
     }
     if (options[LEAST].given) {
-        tool_check(tool, parse_integer(options[LEAST].value, "-m", 1, 100000, &support.least, &error), &error);
+        tool_check(tool, parse_integer(options[LEAST].value, "-m", 1, 100000, &support.least, &error),
+                   &error);
     }
     if (options[MOST].given) {
         tool_check(tool, parse_integer(options[MOST].value, "-n", 1, 100000, &support.most, &error), &error);
@@ -71,7 +78,8 @@ static struct support_options parse(const struct tool *tool, const struct option
         tool_fail(tool, STATUS_INPUT, "-n is less than -m");
     }
     if (options[BOUND].given) {
-        tool_check(tool, parse_double(options[BOUND].value, "--bound", 1.0, 1e6, &support.gradient_bound, &error),
+        tool_check(tool,
+                   parse_double(options[BOUND].value, "--bound", 1.0, 1e6, &support.gradient_bound, &error),
                    &error);
     }
     support.widen = !options[NO_WIDEN].given;
@@ -101,7 +109,7 @@ int main(int argc, char *argv[])
     const double *x;
     double widest;
     tool_begin(&tool, usage, options, OPTION_COUNT, 0, 1, argc, argv);
-    (void)parse(&tool, options, 3); /* usage errors before waiting for the input */
+    (void)parse(&tool, options, 0); /* usage errors before waiting for the input */
     tool_read(&tool, tool.operands[0], &stream);
     tool_check(&tool, stream_nodes(&stream, &dim, &node_count, &x, &error), &error);
     struct support_options support = parse(&tool, options, dim);

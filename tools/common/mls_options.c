@@ -10,7 +10,8 @@ static enum status apply_mu(const char *text, struct mls *mls, struct error *err
     if (status != STATUS_OK) {
         return status;
     }
-    if (count != 1 && count != wanted) {
+    bool fits = mls->dim == 0 ? count == 3 || count == 6 : count == wanted;
+    if (count != 1 && !fits) {
         return fail(error, STATUS_INPUT, "--mu: %d values; in %dD give one, or %d", count, mls->dim, wanted);
     }
     for (int k = count; k < MLS_MAX_SECOND; k++) {
