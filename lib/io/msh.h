@@ -7,6 +7,7 @@
 #define IO_MSH_H
 
 #include "base/status.h"
+#include "io/stream.h"
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -86,5 +87,10 @@ struct mesh {
 MUST_CHECK enum status mesh_build(struct mesh *mesh, const struct msh *msh, double unit, const char *wanted,
                                   struct error *error);
 void mesh_free(struct mesh *mesh);
+
+/* Put the mesh's sections into a stream: nodes.x, cells and cells.region if there are cells, facets and
+ * facets.set if there are facets, sets.ptr and sets.idx if there are sets. The stream borrows the arrays of
+ * *mesh. */
+MUST_CHECK enum status mesh_put(const struct mesh *mesh, struct stream *stream, struct error *error);
 
 #endif
