@@ -1,0 +1,285 @@
+#include "solid/material.h"
+
+#include <math.h>
+#include <string.h>
+
+void material_set_moduli(struct material *material, double youngs_modulus, double poisson_ratio)
+{
+    material->shear_modulus = youngs_modulus / 2.0 / (1.0 + poisson_ratio);
+    material->bulk_modulus = youngs_modulus / 3.0 / (1.0 - 2.0 * poisson_ratio);
+}
+
+static double lame_lambda(const struct material *material)
+{
+    return material->bulk_modulus - 2.0 / 3.0 * material->shear_modulus;
+}
+
+double material_wave_modulus(const struct material *material)
+{
+    return material->bulk_modulus + 4.0 / 3.0 * material->shear_modulus;
+}
+
+double determinant(const double F[9])
+{
+    return F[0] * (F[4] * F[8] - F[5] * F[7]) - F[1] * (F[3] * F[8] - F[5] * F[6]) +
+           F[2] * (F[3] * F[7] - F[4] * F[6]);
+}
+
+void cofactor(const double F[9], double C[9])
+{
+    C[0] = F[4] * F[8] - F[5] * F[7];
+    C[1] = F[5] * F[6] - F[3] * F[8];
+    C[2] = F[3] * F[7] - F[4] * F[6];
+    C[3] = F[2] * F[7] - F[1] * F[8];
+    C[4] = F[0] * F[8] - F[2] * F[6];
+    C[5] = F[1] * F[6] - F[0] * F[7];
+    C[6] = F[1] * F[5] - F[2] * F[4];
+    C[7] = F[2] * F[3] - F[0] * F[5];
+    C[8] = F[0] * F[4] - F[1] * F[3];
+}
+
+static double norm2(const double F[9])
+{
+    double sum = 0.0;
+    for (int i = 0; i < 9; i++) {
+        sum += F[i] * F[i];
+    }
+    return sum;
+}
+
+/* C = F^T F, symmetric. */
+static void right_cauchy_green(const double F[9], double C[9])
+{
+    for (int i = 0; i < 3; i++) {
+        for (int k = 0; k < 3; k++) {
+            C[3 * i + k] = F[i] * F[k] + F[3 + i] * F[3 + k] + F[6 + i] * F[6 + k];
+        }
+    }
+}
+
+/* Eigenvalues (descending order not promised) and vectors (columns of V) of a symmetric 3 x 3 matrix, by
+ * Jacobi. */
+static void eigen_symmetric(const double A[9], double values[3], double V[9])
+{
+    double S[9];
+    static const int pairs[3][2] = {{0, 1}, {0, 2}, {1, 2}};
+    memcpy(S, A, sizeof S);
+    for (int i = 0; i < 9; i++) {
+        V[i] = i % 4 == 0 ? 1.0 : 0.0;
+    }
+    for (int sweep = 0; sweep < 30; sweep++) {
+        double off = S[1] * S[1] + S[2] * S[2] + S[5] * S[5];
+        if (!(off > 1e-34 * (S[0] * S[0] + S[4] * S[4] + S[8] * S[8]))) {
+            break;
+        }
+        for (int r = 0; r < 3; r++) {
+            int p = pairs[r][0], q = pairs[r][1];
+            if (S[3 * p + q] == 0.0) {
+                continue;
+            }
+            double tau = (S[4 * q] - S[4 * p]) / (2.0 * S[3 * p + q]);
+            double t = copysign(1.0, tau) / (fabs(tau) + sqrt(1.0 + tau * tau));
+            double c = 1.0 / sqrt(1.0 + t * t), s = t * c;
+            for (int k = 0; k < 3; k++) {
+                double a = S[3 * k + p], b = S[3 * k + q];
+                S[3 * k + p] = c * a - s * b;
+                S[3 * k + q] = s * a + c * b;
+            }
+            for (int k = 0; k < 3; k++) {
+                double a = S[3 * p + k], b = S[3 * q + k];
+                S[3 * p + k] = c * a - s * b;
+                S[3 * q + k] = s * a + c * b;
+                a = V[3 * k + p];
+                b = V[3 * k + q];
+                V[3 * k + p] = c * a - s * b;
+                V[3 * k + q] = s * a + c * b;
+            }
+        }
+    }
+    values[0] = S[0];
+    values[1] = S[4];
+    values[2] = S[8];
+}
+
+/* mu J^(-2/3) (F - I1/3 F^-T) */
+static void neo_hookean_stress(double mu, const double F[9], double P[9])
+{
+    double C[9], J = determinant(F);
+    cofactor(F, C);
+    double scale = mu / cbrt(J * J), third = norm2(F) / (3.0 * J);
+    for (int i = 0; i < 9; i++) {
+        P[i] = scale * (F[i] - third * C[i]);
+    }
+}
+
+static void neo_hookean_log_stress(double mu, const double F[9], double P[9])
+{
+    double C[9], J = determinant(F);
+    cofactor(F, C);
+    for (int i = 0; i < 9; i++) {
+        P[i] = mu * (F[i] - C[i] / J);
+    }
+}
+
+static void mooney_coefficients(const struct material *material, double *c10, double *c01)
+{
+    *c10 = 0.5 * material->shear_modulus / (1.0 + material->mooney_ratio);
+    *c01 = *c10 * material->mooney_ratio;
+}
+
+/* I2' part: 2 C01 J^(-4/3) (I1 F - F C - 2/3 I2 F^-T) */
+static void mooney_rivlin_stress(const struct material *material, const double F[9], double P[9])
+{
+    double c10, c01, cof[9], C[9], J = determinant(F), I1 = norm2(F);
+    mooney_coefficients(material, &c10, &c01);
+    neo_hookean_stress(2.0 * c10, F, P);
+    cofactor(F, cof);
+    right_cauchy_green(F, C);
+    double I2 = 0.5 * (I1 * I1 - norm2(C));
+    double scale = 2.0 * c01 / (cbrt(J) * J);
+    for (int i = 0; i < 3; i++) {
+        for (int k = 0; k < 3; k++) {
+            double FC = F[3 * i] * C[k] + F[3 * i + 1] * C[3 + k] + F[3 * i + 2] * C[6 + k];
+            P[3 * i + k] += scale * (I1 * F[3 * i + k] - FC - 2.0 / 3.0 * I2 * cof[3 * i + k] / J);
+        }
+    }
+}
+
+/* Isochoric principal stretches to the power alpha, and the directions. */
+static void ogden_stretches(const struct material *material, const double F[9], double power[3],
+                            double lambda2[3], double V[9])
+{
+    double C[9], J = determinant(F);
+    right_cauchy_green(F, C);
+    eigen_symmetric(C, lambda2, V);
+    for (int a = 0; a < 3; a++) {
+        power[a] = pow(lambda2[a] / cbrt(J * J), 0.5 * material->ogden_alpha);
+    }
+}
+
+/* P = F S, S = sum_a s_a N_a N_a, s_a = 2 mu/alpha (l_a^alpha - mean) / lambda_a^2 */
+static void ogden_stress(const struct material *material, const double F[9], double P[9])
+{
+    double power[3], lambda2[3], V[9], S[9] = {0.0};
+    ogden_stretches(material, F, power, lambda2, V);
+    double mean = (power[0] + power[1] + power[2]) / 3.0;
+    for (int a = 0; a < 3; a++) {
+        double s = 2.0 * material->shear_modulus / material->ogden_alpha * (power[a] - mean) / lambda2[a];
+        for (int i = 0; i < 3; i++) {
+            for (int k = 0; k < 3; k++) {
+                S[3 * i + k] += s * V[3 * i + a] * V[3 * k + a];
+            }
+        }
+    }
+    for (int i = 0; i < 3; i++) {
+        for (int k = 0; k < 3; k++) {
+            P[3 * i + k] = F[3 * i] * S[k] + F[3 * i + 1] * S[3 + k] + F[3 * i + 2] * S[6 + k];
+        }
+    }
+}
+
+static void green_lagrange(const double F[9], double E[9])
+{
+    right_cauchy_green(F, E);
+    for (int i = 0; i < 9; i++) {
+        E[i] = 0.5 * (E[i] - (i % 4 == 0 ? 1.0 : 0.0));
+    }
+}
+
+static void st_venant_kirchhoff_stress(const struct material *material, const double F[9], double P[9])
+{
+    double E[9];
+    green_lagrange(F, E);
+    double pressure = lame_lambda(material) * (E[0] + E[4] + E[8]);
+    for (int i = 0; i < 3; i++) {
+        for (int k = 0; k < 3; k++) {
+            double FE = F[3 * i] * E[k] + F[3 * i + 1] * E[3 + k] + F[3 * i + 2] * E[6 + k];
+            P[3 * i + k] = pressure * F[3 * i + k] + 2.0 * material->shear_modulus * FE;
+        }
+    }
+}
+
+void material_shape_stress(const struct material *material, const double F[9], double P[9])
+{
+    switch (material->model) {
+    case MATERIAL_NEO_HOOKEAN_LOG:
+        neo_hookean_log_stress(material->shear_modulus, F, P);
+        return;
+    case MATERIAL_MOONEY_RIVLIN:
+        mooney_rivlin_stress(material, F, P);
+        return;
+    case MATERIAL_OGDEN:
+        ogden_stress(material, F, P);
+        return;
+    case MATERIAL_ST_VENANT_KIRCHHOFF:
+        st_venant_kirchhoff_stress(material, F, P);
+        return;
+    case MATERIAL_NEO_HOOKEAN:
+    case MATERIAL_MODEL_COUNT:
+        break;
+    }
+    neo_hookean_stress(material->shear_modulus, F, P);
+}
+
+double material_shape_energy(const struct material *material, const double F[9])
+{
+    double mu = material->shear_modulus, J = determinant(F), I1 = norm2(F);
+    double c10, c01, C[9], power[3], lambda2[3], V[9], trace;
+    if (!(J > 0.0)) {
+        return (double)NAN;
+    }
+    switch (material->model) {
+    case MATERIAL_NEO_HOOKEAN_LOG:
+        return 0.5 * mu * (I1 - 3.0) - mu * log(J);
+    case MATERIAL_MOONEY_RIVLIN:
+        mooney_coefficients(material, &c10, &c01);
+        right_cauchy_green(F, C);
+        return c10 * (I1 / cbrt(J * J) - 3.0) + c01 * (0.5 * (I1 * I1 - norm2(C)) / (cbrt(J) * J) - 3.0);
+    case MATERIAL_OGDEN:
+        ogden_stretches(material, F, power, lambda2, V);
+        return 2.0 * mu / (material->ogden_alpha * material->ogden_alpha) *
+               (power[0] + power[1] + power[2] - 3.0);
+    case MATERIAL_ST_VENANT_KIRCHHOFF:
+        green_lagrange(F, C);
+        trace = C[0] + C[4] + C[8];
+        return 0.5 * lame_lambda(material) * trace * trace + mu * norm2(C);
+    case MATERIAL_NEO_HOOKEAN:
+    case MATERIAL_MODEL_COUNT:
+        break;
+    }
+    return 0.5 * mu * (I1 / cbrt(J * J) - 3.0);
+}
+
+double material_volume_energy(const struct material *material, double J)
+{
+    double logarithm;
+    switch (material->model) {
+    case MATERIAL_NEO_HOOKEAN_LOG:
+        logarithm = log(J);
+        return 0.5 * lame_lambda(material) * logarithm * logarithm;
+    case MATERIAL_ST_VENANT_KIRCHHOFF:
+        return 0.0;
+    case MATERIAL_NEO_HOOKEAN:
+    case MATERIAL_MOONEY_RIVLIN:
+    case MATERIAL_OGDEN:
+    case MATERIAL_MODEL_COUNT:
+        break;
+    }
+    return 0.5 * material->bulk_modulus * (J - 1.0) * (J - 1.0);
+}
+
+double material_pressure(const struct material *material, double J)
+{
+    switch (material->model) {
+    case MATERIAL_NEO_HOOKEAN_LOG:
+        return lame_lambda(material) * log(J) / J;
+    case MATERIAL_ST_VENANT_KIRCHHOFF:
+        return 0.0;
+    case MATERIAL_NEO_HOOKEAN:
+    case MATERIAL_MOONEY_RIVLIN:
+    case MATERIAL_OGDEN:
+    case MATERIAL_MODEL_COUNT:
+        break;
+    }
+    return material->bulk_modulus * (J - 1.0);
+}
