@@ -98,7 +98,7 @@ struct scene_displacement {
 struct scene_contact {
     struct scene_label label;
     struct name_list facets; /* at least one */
-    char *rigid;             /* 2D: points of polylines; 3D: triangles (see table.h) */
+    char *rigid;             /* 2D: points of polylines; 3D: triangles (see surface_read) */
     double rigid_unit;       /* m per unit of the file */
     enum scene_side side;    /* left, right in 2D; front, back in 3D */
     double stiffness;        /* Pa/m, > 0; 0: not given, chosen by the solver */

@@ -57,12 +57,9 @@ static enum status read_all(const char *path, int descriptor, size_t most, struc
     }
 }
 
-static enum status check_bytes(const char *path, const struct textfile *file, struct error *error)
+enum status textfile_check(const char *path, const struct textfile *file, struct error *error)
 {
     const unsigned char *bytes = (const unsigned char *)file->text;
-    if (file->size == 0) {
-        return fail(error, STATUS_INPUT, "%s: is empty", path);
-    }
     if (memcmp(file->text, "\xef\xbb\xbf", file->size < 3 ? 1 : 3) == 0 || bytes[0] >= 0xfe) {
         return fail(error, STATUS_INPUT, "%s:1: begins with a byte order mark: save as plain text", path);
     }
@@ -85,7 +82,7 @@ static enum status check_bytes(const char *path, const struct textfile *file, st
     return STATUS_OK;
 }
 
-enum status textfile_read(const char *path, size_t most, struct textfile *file, struct error *error)
+enum status bytefile_read(const char *path, size_t most, struct textfile *file, struct error *error)
 {
     int descriptor = -1;
     enum status status = STATUS_OK;
@@ -96,10 +93,24 @@ enum status textfile_read(const char *path, size_t most, struct textfile *file, 
         TRY(fail(error, STATUS_SYSTEM, "%s: %s", path, strerror(errno)));
     }
     TRY(read_all(path, descriptor, most, file, error));
-    TRY(check_bytes(path, file, error));
+    if (file->size == 0) {
+        TRY(fail(error, STATUS_INPUT, "%s: is empty", path));
+    }
 done:
     if (descriptor >= 0) {
         close(descriptor);
+    }
+    if (status != STATUS_OK) {
+        textfile_free(file);
+    }
+    return status;
+}
+
+enum status textfile_read(const char *path, size_t most, struct textfile *file, struct error *error)
+{
+    enum status status = bytefile_read(path, most, file, error);
+    if (status == STATUS_OK) {
+        status = textfile_check(path, file, error);
     }
     if (status != STATUS_OK) {
         textfile_free(file);

@@ -1,4 +1,4 @@
-/* Small text files written by people and untrusted: scenes and tables. */
+/* Files written by people and untrusted, read whole: scenes, tables, surfaces. */
 #ifndef IO_TEXTFILE_H
 #define IO_TEXTFILE_H
 
@@ -19,6 +19,13 @@ struct textfile {
  * truncated file). */
 MUST_CHECK enum status textfile_read(const char *path, size_t most, struct textfile *file,
                                      struct error *error);
+
+/* The same for a file of any bytes: only its kind and its size are checked, and that it is not empty. */
+MUST_CHECK enum status bytefile_read(const char *path, size_t most, struct textfile *file,
+                                     struct error *error);
+
+/* The checks of textfile_read on bytes that bytefile_read has read. */
+MUST_CHECK enum status textfile_check(const char *path, const struct textfile *file, struct error *error);
 
 /* Release the text; the struct becomes empty. */
 void textfile_free(struct textfile *file);

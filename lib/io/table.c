@@ -1,0 +1,145 @@
+#include "io/table.h"
+
+#include "base/memory.h"
+#include "base/options.h"
+#include "io/textfile.h"
+
+#include <float.h>
+#include <stdbool.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const size_t size_limit = (size_t)1 << 31;
+enum { COLUMN_LIMIT = 64, WORD_LIMIT = 64 };
+
+enum status table_append(struct table *table, const double *row, int64_t line, int64_t *room,
+                         struct error *error)
+{
+    if (table->rows == *room) {
+        int64_t more = *room > 0 ? 2 * *room : 64;
+        double *values = array_grow(table->values, more, (size_t)table->cols * sizeof *values);
+        table->values = values != NULL ? values : table->values;
+        int64_t *lines = values != NULL ? array_grow(table->line, more, sizeof *lines) : NULL;
+        if (lines == NULL) {
+            return fail_memory(error, "table");
+        }
+        table->line = lines;
+        *room = more;
+    }
+    memcpy(table->values + table->rows * table->cols, row, (size_t)table->cols * sizeof *row);
+    table->line[table->rows++] = line;
+    return STATUS_OK;
+}
+
+enum status table_end_block(struct table *table, struct error *error)
+{
+    if (table->block_count > 0 && table->block_ptr[table->block_count] == table->rows) {
+        return STATUS_OK;
+    }
+    if (table->rows == 0) {
+        return STATUS_OK;
+    }
+    int64_t *grown = array_grow(table->block_ptr, table->block_count + 2, sizeof *grown);
+    if (grown == NULL) {
+        return fail_memory(error, "table");
+    }
+    grown[0] = 0;
+    grown[++table->block_count] = table->rows;
+    table->block_ptr = grown;
+    return STATUS_OK;
+}
+
+/* The next word of a line that ends at '\n' or a comment; 0 bytes at its end. */
+static size_t next_word(const char **at)
+{
+    *at += strspn(*at, " \t");
+    return **at == '#' ? 0 : strcspn(*at, " \t\n");
+}
+
+/* Split the line at `text` into numbers; *count of them, 0 for a blank or comment line. */
+static enum status read_row(const char *path, int64_t line, const char *text, double row[COLUMN_LIMIT],
+                            int *count, struct error *error)
+{
+    *count = 0;
+    for (size_t length; (length = next_word(&text)) > 0; text += length) {
+        char word[WORD_LIMIT] = "";
+        struct error why;
+        memcpy(word, text, length < sizeof word ? length : sizeof word - 1);
+        if (*count == COLUMN_LIMIT) {
+            return fail(error, STATUS_INPUT, "%s:%lld: more than %d columns", path, (long long)line,
+                        COLUMN_LIMIT);
+        }
+        if (length >= sizeof word ||
+            parse_double(word, "", -DBL_MAX, DBL_MAX, &row[*count], &why) != STATUS_OK) {
+            return fail(error, STATUS_INPUT, "%s:%lld: column %d: '%s' is not a finite number%s", path,
+                        (long long)line, *count + 1, word,
+                        strpbrk(word, ",;") != NULL ? ": write decimal points, and blanks between numbers"
+                                                    : "");
+        }
+        ++*count;
+    }
+    return STATUS_OK;
+}
+
+/* A blank line separates blocks; a comment alone does not. */
+static bool is_blank_line(const char *text)
+{
+    return text[strspn(text, " \t")] == '\n';
+}
+
+static enum status check_columns(const char *path, int64_t line, const struct table *table, int count,
+                                 int least, int most, struct error *error)
+{
+    if (table->rows > 0 && count != table->cols) {
+        return fail(error, STATUS_INPUT, "%s:%lld: has %d columns, the rows before %lld", path,
+                    (long long)line, count, (long long)table->cols);
+    }
+    if (count >= least && count <= most) {
+        return STATUS_OK;
+    }
+    return least == most ? fail(error, STATUS_INPUT, "%s:%lld: has %d columns, not %d", path, (long long)line,
+                                count, least)
+                         : fail(error, STATUS_INPUT, "%s:%lld: has %d columns, not %d to %d", path,
+                                (long long)line, count, least, most);
+}
+
+enum status table_read(const char *path, int least, int most, struct table *table, struct error *error)
+{
+    struct textfile file = {0};
+    int64_t room = 0;
+    int64_t line = 1;
+    enum status status = STATUS_OK;
+    *table = (struct table){0};
+    TRY(textfile_read(path, size_limit, &file, error));
+    for (const char *at = file.text; *at != '\0'; at = strchr(at, '\n') + 1, line++) {
+        double row[COLUMN_LIMIT];
+        int count;
+        if (is_blank_line(at)) {
+            TRY(table_end_block(table, error));
+        }
+        TRY(read_row(path, line, at, row, &count, error));
+        if (count > 0) {
+            TRY(check_columns(path, line, table, count, least, most, error));
+            table->cols = count;
+            TRY(table_append(table, row, line, &room, error));
+        }
+    }
+    if (table->rows == 0) {
+        TRY(fail(error, STATUS_INPUT, "%s: holds no row of numbers", path));
+    }
+    TRY(table_end_block(table, error));
+done:
+    textfile_free(&file);
+    if (status != STATUS_OK) {
+        table_free(table);
+    }
+    return status;
+}
+
+void table_free(struct table *table)
+{
+    free(table->values);
+    free(table->line);
+    free(table->block_ptr);
+    *table = (struct table){0};
+}

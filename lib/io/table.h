@@ -1,0 +1,37 @@
+/* Tables of numbers in text files: prescribed displacements, rigid curves, load curves, materials per point.
+ *
+ * One row per line, its numbers separated by blanks or tabs, all rows of one length; '#' at the start of a
+ * line or after a blank begins a comment; blank lines separate blocks, as in gnuplot. */
+#ifndef IO_TABLE_H
+#define IO_TABLE_H
+
+#include "base/status.h"
+
+#include <stdint.h>
+
+struct table {
+    int64_t rows, cols;  /* both >= 1 */
+    double *values;      /* rows x cols, finite */
+    int64_t *line;       /* rows: the line of each row in its file (the triangle's number for binary STL) */
+    int64_t block_count; /* >= 1 */
+    int64_t *block_ptr;  /* block_count + 1: block b holds rows block_ptr[b] .. block_ptr[b + 1] - 1, at least
+                            one */
+};
+
+/* Read a table of least..most columns. Errors, as `FILE:LINE: ...`: those of textfile_read; STATUS_INPUT for
+ * a word that is not a finite decimal number (a decimal comma among them), rows of different lengths, a
+ * number of columns outside of least..most, and a file without rows. On failure the table is empty. */
+MUST_CHECK enum status table_read(const char *path, int least, int most, struct table *table,
+                                  struct error *error);
+
+void table_free(struct table *table);
+
+/* Append a row (cols values, copied) to a table; for readers of other formats. `room` counts the rows
+ * allocated. */
+MUST_CHECK enum status table_append(struct table *table, const double *row, int64_t line, int64_t *room,
+                                    struct error *error);
+
+/* End a block after the last row, unless it ends there already. */
+MUST_CHECK enum status table_end_block(struct table *table, struct error *error);
+
+#endif

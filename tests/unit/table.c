@@ -1,0 +1,271 @@
+/* Tables and rigid surfaces: what is read is what was written, and one clear error for each fault. */
+#include "io/surface.h"
+#include "io/table.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include <float.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+static char folder[] = "/tmp/table-XXXXXX";
+static char path[64];     /* a text file */
+static char stl_path[64]; /* one with the ending .stl */
+
+static void write_to(const char *name, const void *bytes, size_t size)
+{
+    FILE *file = fopen(name, "wb");
+    assert_non_null(file);
+    assert_int_equal(fwrite(bytes, 1, size, file), size);
+    assert_int_equal(fclose(file), 0);
+}
+
+static void round_trip(void **state)
+{
+    (void)state;
+    static const double values[] = {0.1, -DBL_MAX, 5e-324, 1.0 / 3.0, 69.1628, -0.0};
+    char text[512] = "# heading, with a comma\n";
+    struct table table;
+    struct error error;
+    for (int i = 0; i < 6; i += 2) {
+        size_t length = strlen(text);
+        snprintf(text + length, sizeof text - length, "\t%.17g  %.17g\t# row\n", values[i], values[i + 1]);
+    }
+    write_to(path, text, strlen(text));
+    assert_int_equal(table_read(path, 2, 4, &table, &error), STATUS_OK);
+    assert_int_equal(table.rows, 3);
+    assert_int_equal(table.cols, 2);
+    assert_memory_equal(table.values, values, sizeof values);
+    assert_int_equal(table.line[2], 4);
+    assert_int_equal(table.block_count, 1);
+    assert_int_equal(table.block_ptr[1], 3);
+    table_free(&table);
+}
+
+static void blocks(void **state)
+{
+    (void)state;
+    static const char text[] = "\n\n1 2\n# not a separator\n3 4\n \t \n\n5 6\n7 8\n9 10\n\n";
+    static const int64_t expected[] = {0, 2, 5};
+    struct table table;
+    struct error error;
+    write_to(path, text, strlen(text));
+    assert_int_equal(table_read(path, 2, 2, &table, &error), STATUS_OK);
+    assert_int_equal(table.rows, 5);
+    assert_int_equal(table.block_count, 2);
+    assert_memory_equal(table.block_ptr, expected, sizeof expected);
+    table_free(&table);
+}
+
+static void grows(void **state)
+{
+    (void)state;
+    struct table table;
+    struct error error;
+    FILE *file = fopen(path, "w");
+    assert_non_null(file);
+    for (int i = 0; i < 1000; i++) {
+        fprintf(file, "%d\n%s", i, i % 10 == 9 ? "\n" : "");
+    }
+    assert_int_equal(fclose(file), 0);
+    assert_int_equal(table_read(path, 1, 1, &table, &error), STATUS_OK);
+    assert_int_equal(table.rows, 1000);
+    assert_int_equal(table.block_count, 100);
+    for (int i = 0; i < 1000; i++) {
+        assert_true(table.values[i] == i);
+    }
+    table_free(&table);
+}
+
+/* dim = 0: as a table of 2 to 4 columns, else as a surface. */
+static void fails_in(const char *name, int dim, const void *bytes, size_t size, int line, const char *words)
+{
+    struct table table;
+    struct error error = {""};
+    char where[96];
+    write_to(name, bytes, size);
+    enum status status =
+        dim == 0 ? table_read(name, 2, 4, &table, &error) : surface_read(name, dim, &table, &error);
+    snprintf(where, sizeof where, line > 0 ? "%s:%d: " : "%s: ", name, line);
+    if (status != STATUS_INPUT || strncmp(error.text, where, strlen(where)) != 0 ||
+        strstr(error.text, words) == NULL) {
+        fail_msg("status %d, message \"%s\" is not \"%s ... %s\"", (int)status, error.text, where, words);
+    }
+    assert_null(table.values);
+    assert_int_equal(table.rows, 0);
+}
+
+static void fails(const char *text, int line, const char *words)
+{
+    fails_in(path, 0, text, strlen(text), line, words);
+}
+
+static void faults(void **state)
+{
+    (void)state;
+    fails("1 2\n3 x\n", 2, "column 2: 'x' is not a finite number");
+    fails("1,5 2\n", 1, "'1,5' is not a finite number: write decimal points, and blanks");
+    fails("1;2\n", 1, "blanks between numbers");
+    fails("1 2\n# c\n3 nan\n", 3, "'nan' is not a finite number");
+    fails("1 -inf\n", 1, "'-inf' is not a finite number");
+    fails("1 1e400\n", 1, "'1e400' is not a finite number");
+    fails("1 0x3\n", 1, "'0x3' is not a finite number");
+    fails("1 2#3\n", 1, "'2#3' is not a finite number");
+    fails("1 2\n1 2 3\n", 2, "has 3 columns, the rows before 2");
+    fails("1 2 3\n1 2\n", 2, "has 2 columns, the rows before 3");
+    fails("1\n", 1, "has 1 columns, not 2 to 4");
+    fails("1 2 3 4 5\n", 1, "has 5 columns, not 2 to 4");
+    fails("1 2\r\n", 1, "carriage return");
+    fails("\xef\xbb\xbf"
+          "1 2\n",
+          1, "byte order mark");
+    fails("1 2\n3 4", 2, "last line without newline: truncated?");
+    fails("", 0, "is empty");
+    fails("# only a comment\n\n", 0, "holds no row of numbers");
+    fails_in(path, 0, "1 2\n3\0 4\n", 9, 2, "control character 0x00");
+    char wide[256] = "";
+    for (int i = 0; i < 70; i++) {
+        strcat(wide, "1 ");
+    }
+    strcat(wide, "\n");
+    fails(wide, 1, "more than 64 columns");
+    memset(wide, '1', 100);
+    memcpy(wide + 100, " 2\n", 4);
+    fails(wide, 1, "is not a finite number");
+
+    struct table table;
+    struct error error;
+    assert_int_equal(table_read(folder, 1, 2, &table, &error), STATUS_INPUT);
+    assert_non_null(strstr(error.text, "is a folder"));
+    assert_int_equal(table_read("/nonexistent", 1, 2, &table, &error), STATUS_SYSTEM);
+    assert_string_equal(error.text, "/nonexistent: No such file or directory");
+}
+
+/* Fault 12 as far as reading goes: cut anywhere, a table is refused or holds whole rows. */
+static void truncation(void **state)
+{
+    (void)state;
+    static const char text[] = "# E nu\n3000 .49\n3100 .45\n\n2000 .4\n";
+    for (size_t size = 0; size < sizeof text; size++) {
+        struct table table;
+        struct error error = {""};
+        write_to(path, text, size);
+        enum status status = table_read(path, 2, 2, &table, &error);
+        assert_true(status == STATUS_OK ? text[size - 1] == '\n' : error.text[0] != '\0');
+        table_free(&table);
+    }
+}
+
+static void curves(void **state)
+{
+    (void)state;
+    static const char good[] = "0 0\n1 0\n\n5 5\n6 6\n7 6\n";
+    struct table table;
+    struct error error;
+    write_to(path, good, strlen(good));
+    assert_int_equal(surface_read(path, 2, &table, &error), STATUS_OK);
+    assert_int_equal(table.block_count, 2);
+    table_free(&table);
+    fails_in(path, 2, "0 0\n1 0\n\n2 2\n", 13, 4, "curve of one point");
+    fails_in(path, 2, "0 0\n1 0\n1 0\n", 12, 3, "repeats the point before");
+    fails_in(path, 2, "0 0 0\n1 0 0\n", 12, 1, "has 3 columns, not 2");
+}
+
+#define FACET                                                                                                \
+    "facet normal 0 0 1\n outer loop\n  vertex 0 0 .5\n  vertex 1 0 .5\n  vertex 0 1e0 .5\n "                \
+    "endloop\nendfacet\n"
+
+static const double triangle[9] = {0, 0, .5, 1, 0, .5, 0, 1, .5};
+
+static void put_float(unsigned char *at, double value)
+{
+    float single = (float)value;
+    uint32_t bits;
+    memcpy(&bits, &single, sizeof bits);
+    for (int i = 0; i < 4; i++) {
+        at[i] = (unsigned char)(bits >> 8 * i);
+    }
+}
+
+/* A table of 9 columns, an ASCII and a binary STL of one triangle hold the same. */
+static void triangles(void **state)
+{
+    (void)state;
+    static const char text[] = "0 0 .5  1 0 .5  0 1 .5\n";
+    static const char ascii[] = "solid a name\n" FACET "endsolid a name\n";
+    unsigned char binary[84 + 50] = "solid is what some binary files begin with";
+    binary[80] = 1;
+    for (int i = 0; i < 9; i++) {
+        put_float(binary + 84 + 12 + 4 * i, triangle[i]);
+    }
+    write_to(path, text, strlen(text));
+    for (int form = 0; form < 3; form++) {
+        struct table table;
+        struct error error = {""};
+        if (form > 0) {
+            write_to(stl_path, form == 1 ? (const void *)ascii : binary,
+                     form == 1 ? strlen(ascii) : sizeof binary);
+        }
+        assert_int_equal(surface_read(form == 0 ? path : stl_path, 3, &table, &error), STATUS_OK);
+        assert_int_equal(table.rows, 1);
+        assert_int_equal(table.cols, 9);
+        assert_memory_equal(table.values, triangle, sizeof triangle);
+        assert_int_equal(table.block_count, 1);
+        table_free(&table);
+    }
+
+    fails_in(path, 3, "0 0 0 1 1 1 2 2 2\n", 18, 1, "triangle without area");
+    fails_in(stl_path, 3, binary, sizeof binary - 1, 1,
+             "control character"); /* truncated; begins with solid */
+    binary[0] = 'x';
+    fails_in(stl_path, 3, binary, sizeof binary - 1, 0, "neither ASCII STL");
+    put_float(binary + 84 + 12, (double)FLT_MAX * 4);
+    fails_in(stl_path, 3, binary, sizeof binary, 0, "triangle 1: coordinate that is not finite");
+    memset(binary + 80, 0, 4);
+    fails_in(stl_path, 3, binary, 84, 0, "holds no triangle");
+    for (size_t size = 0; size < strlen(ascii); size++) { /* only the solid's closing name may go missing */
+        struct table table;
+        struct error error;
+        write_to(stl_path, ascii, size);
+        assert_int_equal(surface_read(stl_path, 3, &table, &error), STATUS_INPUT);
+    }
+    static const char twice[] = "solid\n" FACET "endsolid\nsolid\n" FACET "endsolid\n";
+    fails_in(stl_path, 3, twice, strlen(twice), 10, "text behind endsolid");
+    static const char comma[] = "solid\nfacet normal 0 0 1,0\n";
+    fails_in(stl_path, 3, comma, strlen(comma), 2, "'1,0' is not a finite number");
+}
+
+static int make_folder(void **state)
+{
+    (void)state;
+    if (mkdtemp(folder) == NULL) {
+        return -1;
+    }
+    snprintf(path, sizeof path, "%s/a.tsv", folder);
+    snprintf(stl_path, sizeof stl_path, "%s/a.STL", folder);
+    return 0;
+}
+
+static int remove_folder(void **state)
+{
+    (void)state;
+    unlink(path);
+    unlink(stl_path);
+    return rmdir(folder);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(round_trip), cmocka_unit_test(blocks),     cmocka_unit_test(grows),
+        cmocka_unit_test(faults),     cmocka_unit_test(truncation), cmocka_unit_test(triangles),
+        cmocka_unit_test(curves),
+    };
+    return cmocka_run_group_tests(tests, make_folder, remove_folder);
+}
