@@ -1,0 +1,214 @@
+static const char usage[] =
+    "cloud - analytic clouds of nodes: regular, jittered, Halton, graded\n"
+    "\n"
+    "usage: cloud -d DIM -k KIND -n N[,N[,N]] --box X0,X1,Y0,Y1[,Z0,Z1] [--jitter FRACTION] [--seed SEED]\n"
+    "             [--ratio RATIO] [--field FUNCTION] [-t] [-o FILE]\n"
+    "\n"
+    "Writes nodes.x (m) in a box; for all kinds but halton also the squares or cubes of the lattice, split "
+    "into\n"
+    "triangles or tetrahedra, as cells (region 'body'), and the sides of the box as facets, named xmin, "
+    "xmax, ymin,\n"
+    "ymax, zmin, zmax and oriented outward. No mesher is needed.\n"
+    "\n"
+    "Kinds:\n"
+    "  regular                 lattice of N nodes along each axis, those on the boundary included; x "
+    "fastest\n"
+    "  jittered                the same, each inner node moved at random along each axis by at most FRACTION "
+    "of\n"
+    "                          the spacing. Triangles stay valid; where a tetrahedron would be turned over, "
+    "cells\n"
+    "                          and facets are left out, with a note\n"
+    "  halton                  the first N points of the Halton sequence (bases 2, 3, 5), none on the "
+    "boundary\n"
+    "  graded                  lattice whose spacing grows geometrically along each axis, from X0, Y0, Z0; "
+    "the\n"
+    "                          largest spacing is RATIO times the smallest\n"
+    "\n"
+    "Fields, r^2 being the sum of the squares of the coordinates (m):\n"
+    "  paper                   (1 - r^2) exp(-r^2 / 2)\n"
+    "  linear                  1 + 2 x + 3 y + 4 z\n"
+    "  quadratic               1 + 2 x + 3 y + 4 z + x^2 - 2 x y + 3 y^2 + x z - y z + 2 z^2\n"
+    "\n"
+    "Options:\n"
+    "  -d, --dim DIM           2 or 3\n"
+    "  -k, --kind KIND         regular, jittered, halton or graded\n"
+    "  -n, --count N[,N[,N]]   nodes along each axis (one number: along all); halton: nodes in all\n"
+    "      --box X0,X1,...     the box, m\n"
+    "      --jitter FRACTION   0 to 0.5 (default 0.5)\n"
+    "      --seed SEED         of the random numbers, 0 to 4294967295 (default 1)\n"
+    "      --ratio RATIO       1 to 1e6 (default 4)\n"
+    "      --field FUNCTION    add the section u: this function at the nodes\n"
+    "  -t, --text              write text instead of binary\n"
+    "  -o, --output FILE       write to FILE, which appears only when whole\n"
+    "\n"
+    "Examples:\n"
+    "  cloud -d 2 -k regular -n 18 --box -4,4,-4,4 --field paper | mts list\n"
+    "  cloud -d 3 -k jittered -n 9,9,17 --box 0,0.1,0,0.1,0,0.2 --jitter 0.15 --seed 7 -o cloud.mts\n";
+
+#include "approx/cloud.h"
+#include "io/msh.h"
+#include "tool.h"
+
+#include <gsl/gsl_errno.h>
+#include <stdlib.h>
+
+enum { DIM, KIND, COUNT, BOX, JITTER, SEED, RATIO, FIELD, TEXT, OUTPUT, OPTION_COUNT };
+
+/* An option for one kind only. */
+static double parse_for(const struct tool *tool, const struct option *option, bool applies, double least,
+                        double most, double value)
+{
+    struct error error;
+    if (option->given && !applies) {
+        tool_fail(tool, STATUS_INPUT, "--%s goes with another kind", option->name);
+    }
+    if (option->given) {
+        tool_check(tool, parse_double(option->value, option->name, least, most, &value, &error), &error);
+    }
+    return value;
+}
+
+static void parse_box(const struct tool *tool, const char *text, struct cloud_options *cloud)
+{
+    struct error error;
+    double box[6];
+    int count;
+    tool_check(tool, parse_double_list(text, "--box", -1e100, 1e100, 6, box, &count, &error), &error);
+    if (count != 2 * cloud->dim) {
+        tool_fail(tool, STATUS_INPUT, "--box: %d numbers, not %d", count, 2 * cloud->dim);
+    }
+    for (int a = 0; a < cloud->dim; a++) {
+        cloud->low[a] = box[2 * a];
+        cloud->high[a] = box[2 * a + 1];
+    }
+}
+
+static void parse_count(const struct tool *tool, const char *text, struct cloud_options *cloud)
+{
+    struct error error;
+    double numbers[3];
+    int count;
+    tool_check(tool, parse_double_list(text, "-n", 1, INT32_MAX, 3, numbers, &count, &error), &error);
+    if (count != 1 && (count != cloud->dim || cloud->kind == CLOUD_HALTON)) {
+        tool_fail(tool, STATUS_INPUT, "-n: %d numbers, not 1%s", count,
+                  cloud->kind == CLOUD_HALTON ? "" : " or one for each axis");
+    }
+    for (int a = 0; a < 3; a++) {
+        double number = numbers[a < count ? a : 0];
+        cloud->count[a] = (int64_t)number;
+        if ((double)cloud->count[a] != number) {
+            tool_fail(tool, STATUS_INPUT, "-n: %g is not a whole number", number);
+        }
+    }
+}
+
+static struct cloud_options parse(const struct tool *tool, const struct option options[])
+{
+    static const char *const kinds[] = {"regular", "jittered", "halton", "graded"};
+    struct cloud_options cloud = {0};
+    struct error error;
+    int64_t number = 1;
+    int kind;
+    for (int i = DIM; i <= BOX; i++) {
+        if (!options[i].given) {
+            tool_fail(tool, STATUS_INPUT, "--%s is missing (see -h)", options[i].name);
+        }
+    }
+    tool_check(tool, parse_integer(options[DIM].value, "-d", 2, 3, &number, &error), &error);
+    cloud.dim = (int)number;
+    tool_check(tool, parse_choice(options[KIND].value, "-k", kinds, 4, &kind, &error), &error);
+    cloud.kind = (enum cloud_kind)kind;
+    parse_count(tool, options[COUNT].value, &cloud);
+    parse_box(tool, options[BOX].value, &cloud);
+    cloud.jitter = parse_for(tool, &options[JITTER], cloud.kind == CLOUD_JITTERED, 0, 0.5, 0.5);
+    cloud.ratio = parse_for(tool, &options[RATIO], cloud.kind == CLOUD_GRADED, 1, 1e6, 4);
+    number = 1;
+    if (options[SEED].given) {
+        tool_check(tool, parse_integer(options[SEED].value, "--seed", 0, UINT32_MAX, &number, &error),
+                   &error);
+    }
+    if (options[SEED].given && cloud.kind != CLOUD_JITTERED) {
+        tool_fail(tool, STATUS_INPUT, "--seed goes with another kind");
+    }
+    cloud.seed = (uint32_t)number;
+    return cloud;
+}
+
+static enum status put_field(struct stream *stream, const struct cloud *cloud, enum cloud_function function,
+                             struct error *error)
+{
+    double *values = array_new(cloud->node_count, sizeof *values);
+    if (values == NULL) {
+        return fail_memory(error, "u");
+    }
+    for (int64_t n = 0; n < cloud->node_count; n++) {
+        values[n] = cloud_function_value(function, cloud->dim, &cloud->x[n * cloud->dim]);
+    }
+    return stream_put(stream, "u", TYPE_F8, cloud->node_count, 1, "", values, true, error);
+}
+
+/* The cloud as a mesh of one region; region[cell_count] is zero and outlives the stream. */
+static enum status put_cloud(struct stream *stream, const struct cloud *cloud, int32_t region[],
+                             struct error *error)
+{
+    static char names[][5] = {"body", "xmin", "xmax", "ymin", "ymax", "zmin", "zmax"};
+    char *regions[] = {names[0]};
+    char *sides[] = {names[1], names[2], names[3], names[4], names[5], names[6]};
+    struct mesh mesh = {.dim = cloud->dim,
+                        .node_count = cloud->node_count,
+                        .x = cloud->x,
+                        .cell_count = cloud->cell_count,
+                        .cells = cloud->cells,
+                        .cell_region = region,
+                        .facet_count = cloud->facet_count,
+                        .facets = cloud->facets,
+                        .facet_set = cloud->facet_set,
+                        .regions = {1, regions},
+                        .facet_sets = {2 * cloud->dim, sides}};
+    return mesh_put(&mesh, stream, error);
+}
+
+int main(int argc, char *argv[])
+{
+    static const char *const functions[] = {"paper", "linear", "quadratic"};
+    struct tool tool;
+    struct cloud cloud;
+    struct stream stream;
+    struct error error;
+    int function = 0;
+    struct option options[OPTION_COUNT] = {
+        [DIM] = {.letter = 'd', .name = "dim", .takes_value = true},
+        [KIND] = {.letter = 'k', .name = "kind", .takes_value = true},
+        [COUNT] = {.letter = 'n', .name = "count", .takes_value = true},
+        [BOX] = {.name = "box", .takes_value = true},
+        [JITTER] = {.name = "jitter", .takes_value = true},
+        [SEED] = {.name = "seed", .takes_value = true},
+        [RATIO] = {.name = "ratio", .takes_value = true},
+        [FIELD] = {.name = "field", .takes_value = true},
+        [TEXT] = {.letter = 't', .name = "text"},
+        [OUTPUT] = {.letter = 'o', .name = "output", .takes_value = true},
+    };
+    gsl_set_error_handler_off();
+    tool_begin(&tool, usage, options, OPTION_COUNT, 0, 0, argc, argv);
+    struct cloud_options wanted = parse(&tool, options);
+    if (options[FIELD].given) {
+        tool_check(&tool, parse_choice(options[FIELD].value, "--field", functions, 3, &function, &error),
+                   &error);
+    }
+    tool_check(&tool, cloud_make(&wanted, &cloud, &error), &error);
+    if (wanted.kind != CLOUD_HALTON && cloud.cell_count == 0) {
+        tool_note(&tool, "jitter %g turns tetrahedra over: cells and facets are left out", wanted.jitter);
+    }
+    int32_t *region = NULL;
+    tool_check(&tool, NEW_ARRAY(&region, cloud.cell_count, &error), &error);
+    stream_init(&stream);
+    tool_check(&tool, put_cloud(&stream, &cloud, region, &error), &error);
+    if (options[FIELD].given) {
+        tool_check(&tool, put_field(&stream, &cloud, (enum cloud_function)function, &error), &error);
+    }
+    tool_write(&tool, &stream, options[TEXT].given);
+    stream_free(&stream);
+    cloud_free(&cloud);
+    free(region);
+    return tool_end(&tool);
+}
