@@ -15,7 +15,7 @@ static enum status check_kind(const char *path, struct error *error)
 {
     struct stat facts;
     if (stat(path, &facts) != 0) {
-        return fail(error, STATUS_SYSTEM, "%s: %s", path, strerror(errno));
+        return fail(error, STATUS_INPUT, "%s: %s", path, strerror(errno));
     }
     if (S_ISDIR(facts.st_mode)) {
         return fail(error, STATUS_INPUT, "%s: is a folder: name a text file", path);
@@ -44,7 +44,7 @@ static enum status read_all(const char *path, int descriptor, size_t most, struc
             continue;
         }
         if (got < 0) {
-            return fail(error, STATUS_SYSTEM, "%s: %s", path, strerror(errno));
+            return fail(error, STATUS_INPUT, "%s: %s", path, strerror(errno));
         }
         if (got == 0) {
             file->text[file->size] = '\0';
