@@ -13,10 +13,10 @@ struct textfile {
 };
 
 /* Read the file `path` of at most `most` bytes. Only regular files and pipes are opened, so that a path in an
- * untrusted scene cannot touch a device. Errors, as `PATH:LINE: ...`: STATUS_SYSTEM for a file that cannot be
- * opened or read; STATUS_INPUT for a folder or device, more than `most` bytes, an empty file, a byte order
- * mark, CRLF line ends, NUL and other control characters, and a last line without newline (the mark of a
- * truncated file). */
+ * untrusted scene cannot touch a device. Errors, as `PATH:LINE: ...`: STATUS_SYSTEM for a read
+ * failure; STATUS_INPUT for a file that cannot be opened, a folder or device, more than `most` bytes, an
+ * empty file, a byte order mark, CRLF line ends, NUL and other control characters, and a last line without
+ * newline (the mark of a truncated file). */
 MUST_CHECK enum status textfile_read(const char *path, size_t most, struct textfile *file,
                                      struct error *error);
 

@@ -377,7 +377,7 @@ static void wrong_files(void **state)
     (void)state;
     struct scene scene;
     struct error error;
-    assert_int_equal(scene_read("/nonexistent/x.scene", &scene, &error), STATUS_SYSTEM);
+    assert_int_equal(scene_read("/nonexistent/x.scene", &scene, &error), STATUS_INPUT);
     assert_string_equal(error.text, "/nonexistent/x.scene: No such file or directory");
     assert_int_equal(scene_read(folder, &scene, &error), STATUS_INPUT);
     assert_non_null(strstr(error.text, "is a folder"));

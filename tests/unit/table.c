@@ -143,7 +143,7 @@ static void faults(void **state)
     struct error error;
     assert_int_equal(table_read(folder, 1, 2, &table, &error), STATUS_INPUT);
     assert_non_null(strstr(error.text, "is a folder"));
-    assert_int_equal(table_read("/nonexistent", 1, 2, &table, &error), STATUS_SYSTEM);
+    assert_int_equal(table_read("/nonexistent", 1, 2, &table, &error), STATUS_INPUT);
     assert_string_equal(error.text, "/nonexistent: No such file or directory");
 }
 
