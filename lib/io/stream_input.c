@@ -34,10 +34,9 @@ static bool map_file(struct input *input, struct stream *stream)
     return true;
 }
 
-enum status input_open(struct input *input, struct stream *stream, int descriptor, const char *name,
-                       struct error *error)
+enum status input_open(struct input *input, struct stream *stream, int descriptor, struct error *error)
 {
-    *input = (struct input){.descriptor = descriptor, .name = name};
+    *input = (struct input){.descriptor = descriptor};
     if (map_file(input, stream)) {
         return STATUS_OK;
     }
@@ -46,7 +45,7 @@ enum status input_open(struct input *input, struct stream *stream, int descripto
     input->capacity = 2 * BLOCK_SIZE;
     input->buffer = malloc(input->capacity);
     if (input->buffer == NULL) {
-        return fail_memory(error, name);
+        return fail_memory(error, "input");
     }
     input->at = input->end = input->start = input->buffer;
     return STATUS_OK;
@@ -72,7 +71,7 @@ static enum status read_some(struct input *input, void *destination, size_t size
         count = read(input->descriptor, destination, size);
     } while (count < 0 && errno == EINTR);
     if (count < 0) {
-        return fail(error, errno == EISDIR ? STATUS_INPUT : STATUS_SYSTEM, "%s: %s", input->name,
+        return fail(error, errno == EISDIR ? STATUS_INPUT : STATUS_SYSTEM, "cannot read: %s",
                     strerror(errno));
     }
     *got = (size_t)count;
@@ -116,12 +115,11 @@ enum status input_line(struct input *input, const char **line, size_t *length, s
             return STATUS_OK;
         }
         if (bound == LINE_LIMIT) {
-            return fail(error, STATUS_INPUT, "%s: a line longer than %d bytes: not an mts stream",
-                        input->name, LINE_LIMIT);
+            return fail(error, STATUS_INPUT, "a line longer than %d bytes: not an mts stream", LINE_LIMIT);
         }
         if (input->ended) {
             return fail(error, STATUS_INPUT,
-                        "%s: ends without its end line: cut short (did an earlier stage fail?)", input->name);
+                        "ends without its end line: cut short (did an earlier stage fail?)");
         }
         searched = held;
         enum status status = input_fill(input, held + 1, error);

@@ -34,7 +34,6 @@ MUST_CHECK enum status stream_append_provenance(struct stream *stream, const cha
 /* stream_input.c: bytes of the stream in order, from a mapping or through a block buffer. */
 struct input {
     int descriptor;
-    const char *name;  /* for messages */
     const char *at;    /* the next byte */
     const char *end;   /* behind the last byte at hand */
     const char *start; /* a byte at hand or already passed, whose offset in the stream is start_offset */
@@ -46,7 +45,7 @@ struct input {
 
 /* Map a regular file standing at its beginning (the mapping then belongs to `stream`) or prepare to read. */
 MUST_CHECK enum status input_open(struct input *input, struct stream *stream, int descriptor,
-                                  const char *name, struct error *error);
+                                  struct error *error);
 void input_close(struct input *input);
 
 /* Make `wanted` bytes available at input->at, or all that is left. Earlier pointers into the input expire. */

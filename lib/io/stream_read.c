@@ -21,7 +21,7 @@ static enum status frame_line(struct reader *reader, const char **line, size_t *
 {
     enum status status = input_line(&reader->input, line, length, error);
     if (status == STATUS_OK && memchr(*line, '\0', *length) != NULL) {
-        return fail(error, STATUS_INPUT, "%s: zero byte in a header line: damaged", reader->input.name);
+        return fail(error, STATUS_INPUT, "zero byte in a header line: damaged");
     }
     return status;
 }
@@ -38,50 +38,45 @@ static bool starts_with(const char *line, size_t length, const char *prefix)
 }
 
 /* Why the first line is not "# mts 1"; the remedy where it is known. */
-static enum status fail_first_line(const char *name, const char *line, size_t length, struct error *error)
+static enum status fail_first_line(const char *line, size_t length, struct error *error)
 {
     int shown = (int)(length < 40 ? length : 40);
     if (starts_with(line, length, "# mts 1") && line[length - 1] == '\r') {
-        return fail(error, STATUS_INPUT, "%s: lines end in CR LF: remove them with tr -d '\\r'", name);
+        return fail(error, STATUS_INPUT, "lines end in CR LF: remove them with tr -d '\\r'");
     }
     if (starts_with(line, length, "\xef\xbb\xbf") || starts_with(line, length, "\xff\xfe") ||
         starts_with(line, length, "\xfe\xff")) {
-        return fail(error, STATUS_INPUT, "%s: begins with a byte order mark: save it as plain ASCII or UTF-8",
-                    name);
+        return fail(error, STATUS_INPUT, "begins with a byte order mark: save it as plain ASCII or UTF-8");
     }
     if (starts_with(line, length, "# mts ")) {
-        return fail(error, STATUS_INPUT, "%s: stream version '%.*s', this program reads version 1", name,
-                    shown - 6, line + 6);
+        return fail(error, STATUS_INPUT, "stream version '%.*s', this program reads version 1", shown - 6,
+                    line + 6);
     }
     if (starts_with(line, length, "$MeshFormat")) {
-        return fail(error, STATUS_INPUT, "%s: a gmsh mesh, not an mts stream: run nodes", name);
+        return fail(error, STATUS_INPUT, "a gmsh mesh, not an mts stream: run nodes");
     }
-    return fail(error, STATUS_INPUT, "%s: not an mts stream: begins with '%.*s', not '# mts 1'", name, shown,
-                line);
+    return fail(error, STATUS_INPUT, "not an mts stream: begins with '%.*s', not '# mts 1'", shown, line);
 }
 
 static enum status read_first_line(struct reader *reader, struct error *error)
 {
     struct input *input = &reader->input;
     static const char expected[] = "# mts 1\n";
-    enum status status = input_fill(input, LINE_LIMIT < BLOCK_SIZE ? LINE_LIMIT : 64, error);
+    enum status status = input_fill(input, 64, error);
     if (status != STATUS_OK) {
         return status;
     }
     size_t held = (size_t)(input->end - input->at);
     if (held == 0) {
-        return fail(error, STATUS_INPUT, "%s: empty: no stream arrived (did an earlier stage fail?)",
-                    input->name);
+        return fail(error, STATUS_INPUT, "empty: no stream arrived (did an earlier stage fail?)");
     }
     if (!starts_with(input->at, held, expected)) {
         if (input->ended && held < strlen(expected) && memcmp(input->at, expected, held) == 0) {
-            return fail(error, STATUS_INPUT, "%s: cut short in its first line (did an earlier stage fail?)",
-                        input->name);
+            return fail(error, STATUS_INPUT, "cut short in its first line (did an earlier stage fail?)");
         }
         size_t shown = held < 64 ? held : 64;
         const char *newline = memchr(input->at, '\n', shown);
-        return fail_first_line(input->name, input->at,
-                               newline != NULL ? (size_t)(newline - input->at) : shown, error);
+        return fail_first_line(input->at, newline != NULL ? (size_t)(newline - input->at) : shown, error);
     }
     frame_count(reader, input->at, strlen(expected));
     input->at += strlen(expected);
@@ -214,11 +209,10 @@ static enum status payload_grow(struct payload *payload, struct error *error)
     return STATUS_OK;
 }
 
-static enum status fail_short(const struct section *section, int64_t row, const char *name,
-                              struct error *error)
+static enum status fail_short(const struct section *section, int64_t row, struct error *error)
 {
-    return fail(error, STATUS_INPUT, "%s: row %lld of %lld: %s is cut short (did an earlier stage fail?)",
-                section->name, (long long)row, (long long)section->rows, name);
+    return fail(error, STATUS_INPUT, "%s: row %lld of %lld: cut short (did an earlier stage fail?)",
+                section->name, (long long)row, (long long)section->rows);
 }
 
 /* Parse the number at `at` into element `index` of the payload; the byte behind it, or NULL. */
@@ -253,7 +247,7 @@ static enum status fail_word(const struct input *input, const struct section *se
     const char *text = element_type_name(section->type);
     if (length == 0) {
         if (word == input->end) {
-            return fail_short(section, row, input->name, error);
+            return fail_short(section, row, error);
         }
         return fail(error, STATUS_INPUT, "%s: row %lld: %lld numbers instead of %lld", section->name,
                     (long long)row, (long long)column, (long long)section->cols);
@@ -296,7 +290,7 @@ static enum status row_end(struct input *input, const struct section *section, i
 {
     skip_blanks(input);
     if (input->at == input->end) {
-        return fail_short(section, row, input->name, error);
+        return fail_short(section, row, error);
     }
     if (*input->at == '\n') {
         input->at++;
@@ -371,7 +365,7 @@ static enum status copy_binary(struct input *input, struct section *section, int
         TRY(input_copy(input, payload.data + (size_t)payload.filled * payload.size, wanted, &got, error));
         payload.filled += (int64_t)(got / payload.size);
         if (got < wanted) {
-            TRY(fail_short(section, payload.filled / section->cols, input->name, error));
+            TRY(fail_short(section, payload.filled / section->cols, error));
         }
     } while (payload.filled < payload.total);
 done:
@@ -408,7 +402,7 @@ static enum status read_crc_line(struct reader *reader, const struct section *se
         return status;
     }
     if (input->end - input->at < SIZE) {
-        return fail_short(section, section->rows, input->name, error);
+        return fail_short(section, section->rows, error);
     }
     const char *at = input->at;
     if (memcmp(at, prefix, PREFIX) != 0 || !parse_crc(at + PREFIX, 8, &stated) || at[SIZE - 1] != '\n') {
@@ -441,8 +435,7 @@ static enum status read_binary(struct reader *reader, struct section *section, u
     } else {
         size_t held = (size_t)(input->end - input->at);
         if (held < bytes) {
-            return fail_short(section, (int64_t)(held / element_size(section->type)) / section->cols,
-                              input->name, error);
+            return fail_short(section, (int64_t)(held / element_size(section->type)) / section->cols, error);
         }
         section->data = (char *)reader->stream->mapping + (input->at - (char *)reader->stream->mapping);
         section->owned = false;
@@ -477,7 +470,6 @@ static enum status read_end(struct reader *reader, const char *line, size_t leng
 {
     static const char prefix[] = "# end ";
     static const char key[] = " crc32=";
-    const char *name = reader->input.name;
     const char *end = line + length;
     const char *at = line + strlen(prefix);
     const char *behind = at;
@@ -488,27 +480,26 @@ static enum status read_end(struct reader *reader, const char *line, size_t leng
     }
     bool has_crc = starts_with(behind, (size_t)(end - behind), key);
     if (number_parse_integer(at, behind, 0, INT64_MAX, &count) != behind || !(has_crc || behind == end)) {
-        return fail(error, STATUS_INPUT, "%s: '%.*s' is not '# end COUNT%s'", name,
-                    (int)(length < 60 ? length : 60), line, reader->binary ? " crc32=XXXXXXXX" : "");
+        return fail(error, STATUS_INPUT, "'%.*s' is not '# end COUNT%s'", (int)(length < 60 ? length : 60),
+                    line, reader->binary ? " crc32=XXXXXXXX" : "");
     }
     if (reader->binary && !has_crc) {
-        return fail(error, STATUS_INPUT, "%s: the end line lacks the crc32= of a stream with binary sections",
-                    name);
+        return fail(error, STATUS_INPUT, "the end line lacks the crc32= of a stream with binary sections");
     }
     if (count != reader->stream->section_count) {
-        return fail(error, STATUS_INPUT, "%s: %lld sections, the end line says %lld", name,
+        return fail(error, STATUS_INPUT, "%lld sections, the end line says %lld",
                     (long long)reader->stream->section_count, (long long)count);
     }
     if (has_crc) {
         frame_count(reader, line, (size_t)(behind - line));
         const char *digits = behind + strlen(key);
         if (!parse_crc(digits, (size_t)(end - digits), &stated) || stated != reader->crc) {
-            return fail(error, STATUS_INPUT, "%s: wrong crc32 of the header lines: damaged or edited", name);
+            return fail(error, STATUS_INPUT, "wrong crc32 of the header lines: damaged or edited");
         }
     }
     enum status status = input_fill(&reader->input, 1, error);
     if (status == STATUS_OK && reader->input.at != reader->input.end) {
-        status = fail(error, STATUS_INPUT, "%s: goes on behind its end line: two streams in one?", name);
+        status = fail(error, STATUS_INPUT, "goes on behind its end line: two streams in one?");
     }
     return status;
 }
@@ -525,12 +516,9 @@ static enum status read_lines(struct reader *reader, struct error *error)
             return read_end(reader, line, length, error);
         }
         if (!starts_with(line, length, "# @ ")) {
-            status = read_section(reader, line, length, error);
-            if (status != STATUS_OK) {
-                return fail_in(error, status, "%s", reader->input.name);
-            }
+            TRY(read_section(reader, line, length, error));
         } else if (reader->stream->section_count > 0) {
-            return fail(error, STATUS_INPUT, "%s: a provenance line behind a section", reader->input.name);
+            return fail(error, STATUS_INPUT, "a provenance line behind a section");
         } else {
             frame_count(reader, line, length + 1);
             TRY(stream_append_provenance(reader->stream, line + 4, length - 4, error));
@@ -551,7 +539,7 @@ enum status stream_read(struct stream *stream, int descriptor, const char *name,
         return fail_memory(error, name);
     }
     locale_t previous = uselocale(c_locale);
-    TRY(input_open(&reader.input, stream, descriptor, name, error));
+    TRY(input_open(&reader.input, stream, descriptor, error));
     TRY(read_lines(&reader, error));
 done:
     input_close(&reader.input);
@@ -559,6 +547,7 @@ done:
     freelocale(c_locale);
     if (status != STATUS_OK) {
         stream_free(stream);
+        fail_in(error, status, "%s", name);
     }
     return status;
 }

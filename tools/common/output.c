@@ -1,0 +1,139 @@
+#include "output.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <signal.h>
+#include <stdbool.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+/* The temporary file of the output in progress, for the handlers below; NULL when there is none. */
+static char *volatile pending;
+
+static void remove_pending(void)
+{
+    if (pending != NULL) {
+        unlink(pending);
+        pending = NULL;
+    }
+}
+
+/* Remove the temporary file and let the signal do what it does by default. */
+static void on_signal(int number)
+{
+    remove_pending();
+    signal(number, SIG_DFL);
+    raise(number);
+}
+
+/* A signal that is ignored, or that the tool handles itself, stays so. */
+static void handle_signals(void)
+{
+    static const int numbers[] = {SIGINT, SIGTERM, SIGHUP, SIGXFSZ, SIGXCPU};
+    for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++) {
+        struct sigaction present;
+        if (sigaction(numbers[i], NULL, &present) == 0 && present.sa_handler == SIG_DFL) {
+            signal(numbers[i], on_signal);
+        }
+    }
+}
+
+/* Permissions of the file to be replaced, or those that a new file gets. */
+static mode_t file_mode(const struct stat *present)
+{
+    if (present != NULL) {
+        return present->st_mode & 07777;
+    }
+    mode_t mask = umask(0);
+    umask(mask);
+    return 0666 & ~mask;
+}
+
+/* FOLDER/.NAME.XXXXXX beside `target`; a long name is shortened to fit. */
+static char *temporary_name(const char *target)
+{
+    const char *slash = strrchr(target, '/');
+    int folder = slash != NULL ? (int)(slash - target + 1) : 0;
+    char *name;
+    return asprintf(&name, "%.*s.%.200s.XXXXXX", folder, target, target + folder) < 0 ? NULL : name;
+}
+
+static enum status fail_output(const struct output *output, struct error *error)
+{
+    return fail(error, STATUS_SYSTEM, "%s: %s", output->name, strerror(errno));
+}
+
+static enum status open_temporary(struct output *output, const struct stat *present, struct error *error)
+{
+    static bool prepared;
+    output->temporary = temporary_name(output->target);
+    if (output->temporary == NULL) {
+        return fail_memory(error, output->name);
+    }
+    if (!prepared) {
+        atexit(remove_pending);
+        prepared = true;
+    }
+    handle_signals();
+    output->descriptor = mkostemp(output->temporary, O_CLOEXEC);
+    if (output->descriptor < 0) {
+        return fail_output(output, error);
+    }
+    pending = output->temporary;
+    if (fchmod(output->descriptor, file_mode(present)) != 0) {
+        return fail_output(output, error);
+    }
+    return STATUS_OK;
+}
+
+enum status output_open(struct output *output, const char *name, struct error *error)
+{
+    struct stat present;
+    enum status status = STATUS_OK;
+    bool exists = stat(name, &present) == 0;
+    *output = (struct output){.descriptor = -1, .name = name};
+    if (exists && S_ISDIR(present.st_mode)) {
+        return fail(error, STATUS_INPUT, "%s: is a directory", name);
+    }
+    if (exists && !S_ISREG(present.st_mode)) {
+        output->descriptor = open(name, O_WRONLY | O_CLOEXEC);
+        return output->descriptor < 0 ? fail_output(output, error) : STATUS_OK;
+    }
+    output->target = exists ? realpath(name, NULL) : strdup(name);
+    status = output->target == NULL ? fail_output(output, error)
+                                    : open_temporary(output, exists ? &present : NULL, error);
+    if (status != STATUS_OK) {
+        output_abandon(output);
+    }
+    return status;
+}
+
+void output_abandon(struct output *output)
+{
+    if (output->descriptor >= 0) {
+        close(output->descriptor);
+    }
+    remove_pending();
+    free(output->temporary);
+    free(output->target);
+    *output = (struct output){.descriptor = -1, .name = output->name};
+}
+
+enum status output_commit(struct output *output, struct error *error)
+{
+    int descriptor = output->descriptor;
+    output->descriptor = -1;
+    enum status status = close(descriptor) != 0 ? fail_output(output, error) : STATUS_OK;
+    if (status == STATUS_OK && output->temporary != NULL) {
+        if (rename(output->temporary, output->target) == 0) {
+            pending = NULL;
+        } else {
+            status = fail_output(output, error);
+        }
+    }
+    output_abandon(output);
+    return status;
+}

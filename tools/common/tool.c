@@ -1,0 +1,226 @@
+#include "tool.h"
+
+#include "output.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <signal.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+/* Of the whole process, like the descriptors they are about. */
+static const char *main_input; /* the operand that stands in for standard input, or NULL */
+static bool stdin_read;        /* standard input has been read */
+static bool stdout_closed;     /* standard output has been closed, its errors reported */
+
+static void print_message(const struct tool *tool, const char *format, va_list arguments)
+{
+    struct error message;
+    vsnprintf(message.text, sizeof message.text, format, arguments);
+    fail(&message, STATUS_OK, "%s", message.text); /* one line, whatever the names in it contain */
+    fprintf(stderr, "%s: %s\n", tool->name, message.text);
+}
+
+_Noreturn void tool_fail(const struct tool *tool, enum status status, const char *format, ...)
+{
+    va_list arguments;
+    va_start(arguments, format);
+    print_message(tool, format, arguments);
+    va_end(arguments);
+    exit((int)status);
+}
+
+void tool_note(const struct tool *tool, const char *format, ...)
+{
+    va_list arguments;
+    va_start(arguments, format);
+    print_message(tool, format, arguments);
+    va_end(arguments);
+}
+
+void tool_check(const struct tool *tool, enum status status, const struct error *error)
+{
+    if (status != STATUS_OK) {
+        tool_fail(tool, status, "%s", error->text);
+    }
+}
+
+/* A file opened later must not become standard input, output or error: fill the gaps, such that using them
+ * fails. */
+static void fill_descriptors(void)
+{
+    for (int descriptor = 0; descriptor <= 2; descriptor++) {
+        if (fcntl(descriptor, F_GETFD) < 0 && errno == EBADF) {
+            (void)open("/dev/null", descriptor == 0 ? O_WRONLY : O_RDONLY);
+        }
+    }
+}
+
+static _Noreturn void print_and_exit(const struct tool *tool, const char *text)
+{
+    fputs(text, stdout);
+    exit(tool_end(tool));
+}
+
+/* The options of the tool, and behind them those that every tool has. */
+static void parse_options(struct tool *tool, struct option options[], int option_count, char *arguments[])
+{
+    static const struct option common[] = {{'h', "help", false, NULL, false},
+                                           {0, "version", false, NULL, false}};
+    enum { COMMON = sizeof common / sizeof *common };
+    struct error error;
+    struct option *all = array_new(option_count + COMMON, sizeof *all);
+    if (all == NULL) {
+        tool_fail(tool, STATUS_SYSTEM, "out of memory");
+    }
+    if (option_count > 0) {
+        memcpy(all, options, (size_t)option_count * sizeof *all);
+    }
+    memcpy(all + option_count, common, sizeof common);
+    tool_check(tool,
+               options_parse(all, option_count + COMMON, tool->argc, arguments, &tool->operand_count, &error),
+               &error);
+    if (all[option_count].given) {
+        print_and_exit(tool, tool->usage);
+    }
+    if (all[option_count + 1].given) {
+        printf("%s ", tool->name);
+        print_and_exit(tool, MTS_VERSION "\n");
+    }
+    for (int i = 0; i < option_count; i++) {
+        options[i] = all[i];
+        if (options[i].letter == 'o') {
+            tool->output = options[i].value;
+        }
+    }
+    free(all);
+}
+
+void tool_begin(struct tool *tool, const char *usage, struct option options[], int option_count, int least,
+                int most, int argc, char *argv[])
+{
+    const char *slash = argc > 0 ? strrchr(argv[0], '/') : NULL;
+    *tool = (struct tool){.name = slash != NULL ? slash + 1
+                                  : argc > 0    ? argv[0]
+                                                : "",
+                          .usage = usage,
+                          .argc = argc,
+                          .argv = argv};
+    fill_descriptors();
+    signal(SIGPIPE,
+           SIG_DFL); /* a reader that has seen enough (head) ends us quietly, whatever our parent set */
+    char **arguments = array_new(argc + 1, sizeof *arguments); /* lives as long as the process */
+    if (arguments == NULL) {
+        tool_fail(tool, STATUS_SYSTEM, "out of memory");
+    }
+    memcpy(arguments, argv, (size_t)argc * sizeof *arguments);
+    parse_options(tool, options, option_count, arguments);
+    tool->operands = arguments + 1;
+    if (tool->operand_count > most) {
+        tool_fail(tool, STATUS_INPUT, "unexpected operand '%s' (see -h)", tool->operands[most]);
+    }
+    if (tool->operand_count < least) {
+        tool_fail(tool, STATUS_INPUT, "%d operands where at least %d are needed (see -h)",
+                  tool->operand_count, least);
+    }
+}
+
+void tool_read(const struct tool *tool, const char *file, struct stream *stream)
+{
+    struct error error;
+    bool named = file != NULL && strcmp(file, "-") != 0;
+    int descriptor = STDIN_FILENO;
+    if (named) {
+        descriptor = open(file, O_RDONLY | O_CLOEXEC);
+        if (descriptor < 0) {
+            tool_fail(tool, STATUS_INPUT, "%s: %s", file, strerror(errno));
+        }
+        main_input = main_input == NULL && !stdin_read ? file : main_input;
+    } else {
+        if (stdin_read) {
+            tool_fail(tool, STATUS_INPUT, "standard input cannot be read twice");
+        }
+        if (isatty(STDIN_FILENO)) {
+            tool_fail(tool, STATUS_INPUT, "standard input is a terminal: name a file or use a pipe (see -h)");
+        }
+        stdin_read = true;
+    }
+    tool_check(tool, stream_read(stream, descriptor, named ? file : "standard input", &error), &error);
+    if (named) {
+        close(descriptor);
+    }
+}
+
+/* The command line without what changes nothing in the result: -o FILE, and the operand that was read in
+ * place of standard input. So the same input gives the same bytes however it comes and wherever the output
+ * goes. */
+static void add_provenance(const struct tool *tool, struct stream *stream)
+{
+    struct error error;
+    int count = 0;
+    char **kept = array_new(tool->argc + 1, sizeof *kept);
+    if (kept == NULL) {
+        tool_fail(tool, STATUS_SYSTEM, "out of memory");
+    }
+    for (int i = 0; i < tool->argc; i++) {
+        const char *argument = tool->argv[i];
+        bool is_output =
+            tool->output != NULL && argument + strlen(argument) >= tool->output && tool->output >= argument;
+        if (is_output && tool->output == argument) {
+            count--; /* the -o before it */
+        } else if (!is_output && !(i > 0 && !stdin_read && argument == main_input)) {
+            kept[count++] = tool->argv[i];
+        }
+    }
+    tool_check(tool, stream_add_provenance(stream, count, kept, &error), &error);
+    free(kept);
+}
+
+static void close_stdout(const struct tool *tool)
+{
+    if (close(STDOUT_FILENO) != 0) {
+        tool_fail(tool, STATUS_SYSTEM, "standard output: %s", strerror(errno));
+    }
+    stdout_closed = true;
+}
+
+void tool_write(const struct tool *tool, struct stream *stream, bool text)
+{
+    struct error error;
+    struct output output;
+    add_provenance(tool, stream);
+    if (tool->output == NULL) {
+        if (!text && isatty(STDOUT_FILENO)) {
+            tool_fail(tool, STATUS_INPUT, "no binary to a terminal: ask for text with -t, or redirect it");
+        }
+        enum status status = stream_write(stream, STDOUT_FILENO, text, &error);
+        if (status != STATUS_OK) {
+            tool_fail(tool, status, "standard output: %s", error.text);
+        }
+        close_stdout(tool);
+        return;
+    }
+    tool_check(tool, output_open(&output, tool->output, &error), &error);
+    enum status status = stream_write(stream, output.descriptor, text, &error);
+    if (status != STATUS_OK) {
+        output_abandon(&output);
+        tool_fail(tool, status, "%s: %s", tool->output, error.text);
+    }
+    tool_check(tool, output_commit(&output, &error), &error);
+}
+
+int tool_end(const struct tool *tool)
+{
+    if (stdout_closed) {
+        return (int)STATUS_OK;
+    }
+    bool failed = ferror(stdout) != 0;
+    errno = 0;
+    if (fflush(stdout) != 0 || failed) {
+        tool_fail(tool, STATUS_SYSTEM, "standard output: %s", errno != 0 ? strerror(errno) : "write error");
+    }
+    close_stdout(tool);
+    return (int)STATUS_OK;
+}
