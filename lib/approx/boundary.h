@@ -1,0 +1,57 @@
+/* Averages of fields over boundary facets, weighted by hat functions: what constraints and contact act on.
+ *
+ * The average at a boundary node a is Phi_a u = integral(N_a u_h ds) / integral(N_a ds) over the facets of a
+ * set. Where the boundary turns sharply at a node, its hat is split, one part for each side, so that the
+ * multipliers can carry a traction that jumps there: with the cells' own face quadrature the linear patch
+ * test then holds to round-off. */
+#ifndef APPROX_BOUNDARY_H
+#define APPROX_BOUNDARY_H
+
+#include "approx/cells.h"
+#include "approx/shape.h"
+
+/* Facets of a set: facet[count * dim] node indices, oriented outward. */
+struct facet_set {
+    int64_t count;
+    const int32_t *facet;
+};
+
+/* The faces of a body with the values of the shape functions at their quadrature points. */
+struct face_table {
+    int dim;
+    int64_t node_count;
+    const double *x; /* nodes, m */
+    const struct faces *faces;
+    int per_face;                   /* quadrature points of each face */
+    const struct neighbours *lists; /* of the points of the faces */
+    const double *phi;
+};
+
+/* One average per hat part. */
+struct boundary_averages {
+    int64_t count;
+    int32_t *node;        /* count: the boundary node a */
+    double *area;         /* count: integral of N_a, m or m2 */
+    double *normal;       /* count * dim: mean outward unit normal */
+    double *position;     /* count * dim: integral(N_a X) / integral(N_a), m */
+    int64_t *ptr;         /* count + 1 */
+    int32_t *idx;         /* neighbours, ascending */
+    double *phi;          /* their weights, sum 1 */
+    int64_t *sample_ptr;  /* count + 1: the quadrature points that each average is made of */
+    double *sample_x;     /* sample_ptr[count] * dim, m */
+    double *sample_share; /* their shares, sum 1 for each average */
+};
+
+/* Build the averages of a facet set; ordered by node, then by facet. STATUS_INPUT when a facet is no face of
+ * the table. */
+MUST_CHECK enum status boundary_averages_build(const struct face_table *table, const struct facet_set *set,
+                                               struct boundary_averages *averages, struct error *error);
+
+/* The same with node values, Phi_a u = u_h(x_a), from a table at the nodes: one entry per node of the set;
+ * areas, normals as above. Splits where the boundary turns are not made. */
+MUST_CHECK enum status boundary_nodes_build(const struct face_table *table, const struct facet_set *set,
+                                            const struct neighbours *node_lists, const double *node_phi,
+                                            struct boundary_averages *averages, struct error *error);
+void boundary_averages_free(struct boundary_averages *averages);
+
+#endif

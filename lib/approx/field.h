@@ -1,0 +1,68 @@
+/* Nodal fields: their values at points, and the differences of two of them. */
+#ifndef APPROX_FIELD_H
+#define APPROX_FIELD_H
+
+#include "approx/cells.h"
+#include "approx/shape.h"
+#include "approx/support.h"
+
+#include <stdbool.h>
+
+/* spacing[node_count], m: of the cells where they are given (cells->count > 0), of the nearest nodes for
+ * nodes of no cell. */
+MUST_CHECK enum status field_spacing(const struct cells *cells, double *spacing, struct error *error);
+
+/* *row: the first of x[count * dim], from row `from` on, that is farther from every node than twice that
+ * node's spacing (there an interpolation would be an invention); count when there is none. `grid` was built
+ * on the nodes with the spacings as radii. */
+MUST_CHECK enum status field_first_outside(const struct point_grid *grid, int64_t from, int64_t count,
+                                           const double *x, int64_t *row, struct error *error);
+
+/* Lists and values of shape functions at points. */
+struct field_table {
+    struct support_lists lists;
+    double *phi; /* lists.ptr[lists.count] */
+};
+
+/* Supports and shape functions at x[count * dim] on a cloud with its spacing. Moving least squares fit: the
+ * nodal values are taken as the parameters of the approximation, u_h = sum_j phi_j u_j, as everywhere in this
+ * library; linear fields (quadratic ones with mls2) are reproduced. `what` names the points in messages. */
+MUST_CHECK enum status field_table_build(const struct support_options *options, int64_t node_count,
+                                         const double *nodes, const double *spacing, int64_t count,
+                                         const double *x, const char *what, struct field_table *table,
+                                         struct error *error);
+void field_table_free(struct field_table *table);
+
+/* values[count * cols] = sum over the row's neighbours of phi_j field[j * cols ...]. */
+void field_evaluate(int64_t count, const int64_t *ptr, const int32_t *idx, const double *phi, int64_t cols,
+                    const double *field, double *values);
+
+/* match[a_count]: for each node of cloud A the node of cloud B at the same place, each used once; *matched is
+ * false (and match void) when the counts differ or a node of A has none. "Same" is within 1e-9 of the larger
+ * extent of the clouds. */
+MUST_CHECK enum status field_match_nodes(int dim, int64_t a_count, const double *a, int64_t b_count,
+                                         const double *b, int32_t *match, bool *matched, struct error *error);
+
+/* difference[i] = |a_i - b_i|, Euclidean over the columns; not finite wherever a value is not. */
+void field_difference(int64_t count, int64_t cols, const double *a, const double *b, double *difference);
+
+/* The largest Euclidean norm of a row; NaN where any value is NaN. */
+double field_largest(int64_t count, int64_t cols, const double *field);
+
+/* Statistics of a list of differences. */
+struct field_statistics {
+    int64_t count;
+    double average, largest, rmse;
+    int64_t largest_at; /* index of the (first) largest */
+    double *sorted;     /* count, ascending, for field_percentile */
+};
+
+/* Of difference[index[i]], i < count. Any NaN among them makes all of them NaN; of no differences, too. */
+MUST_CHECK enum status field_statistics(int64_t count, const int64_t *index, const double *difference,
+                                        struct field_statistics *statistics, struct error *error);
+void field_statistics_free(struct field_statistics *statistics);
+
+/* The value that `percent` of the differences do not exceed, linear between two. */
+double field_percentile(const struct field_statistics *statistics, double percent);
+
+#endif

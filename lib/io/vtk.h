@@ -1,0 +1,50 @@
+/* Writing node clouds with cells and fields for ParaView (VTK XML) and gmsh. */
+#ifndef IO_VTK_H
+#define IO_VTK_H
+
+#include "base/status.h"
+#include "io/stream.h"
+
+#include <stdbool.h>
+#include <stdint.h>
+#include <stdio.h>
+
+/* Nodes and cells, in view. */
+struct vtk_mesh {
+    int dim; /* 2 or 3 */
+    int64_t node_count;
+    const double *x; /* node_count x dim */
+    int64_t cell_count;
+    const int32_t *node;      /* cell_count x (dim + 1); NULL: one vertex cell for each node */
+    const int32_t *region;    /* cell_count indices into region_names, or NULL */
+    const char *region_names; /* comma list, "" when there is none */
+};
+
+/* A field on nodes or cells, in view. */
+struct vtk_field {
+    const char *name;
+    bool of_cells;
+    const struct section *section; /* one row for each node or cell; attribute cols= names the components */
+};
+
+/* Write a VTK XML unstructured grid: data inline, base64 of little-endian values, or as text. Vectors of 2D
+ * fields (two floating columns) are padded to three. Errors: STATUS_SYSTEM, also when `file` has an error
+ * pending. */
+MUST_CHECK enum status vtu_write(FILE *file, const struct vtk_mesh *mesh, const struct vtk_field *fields,
+                                 int64_t field_count, bool text, struct error *error);
+
+/* Write a ParaView collection: `count` files (relative to it) with their times. */
+MUST_CHECK enum status pvd_write(FILE *file, int64_t count, char *const names[], const double *times,
+                                 struct error *error);
+
+/* Write a mesh in MSH 2.2 with regions as physical groups, to be followed by fields. */
+MUST_CHECK enum status gmsh_write_mesh(FILE *file, const struct vtk_mesh *mesh, struct error *error);
+
+/* Append a field as a post-processing view at a time; the same name again, at step + 1, is the view's next
+ * step. Fields of 1, 3 and 9 columns are scalars, vectors and tensors, two floating columns of a 2D mesh a
+ * vector; other fields become one scalar view for each column. */
+MUST_CHECK enum status gmsh_write_field(FILE *file, const struct vtk_mesh *mesh,
+                                        const struct vtk_field *field, int64_t step, double time,
+                                        struct error *error);
+
+#endif

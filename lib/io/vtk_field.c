@@ -1,0 +1,62 @@
+#include "io/vtk_field.h"
+
+#include <errno.h>
+#include <inttypes.h>
+#include <string.h>
+
+int64_t field_columns(const struct vtk_mesh *mesh, const struct section *section)
+{
+    bool is_floating = section->type == TYPE_F4 || section->type == TYPE_F8;
+    return is_floating && mesh->dim == 2 && section->cols == 2 ? 3 : section->cols;
+}
+
+bool list_item(const char *list, int64_t index, char *text, size_t size)
+{
+    for (; index > 0; index--) {
+        list = strchr(list, ',');
+        if (list == NULL) {
+            return false;
+        }
+        list++;
+    }
+    size_t length = strcspn(list, ",");
+    if (length == 0 || length >= size) {
+        return false;
+    }
+    memcpy(text, list, length);
+    text[length] = '\0';
+    return true;
+}
+
+bool field_column_name(const struct section *section, int64_t column, char *text, size_t size)
+{
+    char names[1024];
+    return section_attribute(section, "cols", names, sizeof names) && list_item(names, column, text, size);
+}
+
+void print_element(FILE *file, const struct section *section, int64_t index)
+{
+    switch (section->type) {
+    case TYPE_I4:
+        fprintf(file, "%" PRId32, ((const int32_t *)section->data)[index]);
+        break;
+    case TYPE_I8:
+        fprintf(file, "%" PRId64, ((const int64_t *)section->data)[index]);
+        break;
+    case TYPE_F4:
+        fprintf(file, "%.9g", (double)((const float *)section->data)[index]);
+        break;
+    case TYPE_F8:
+        fprintf(file, "%.17g", ((const double *)section->data)[index]);
+        break;
+    }
+}
+
+enum status check_written(FILE *file, struct error *error)
+{
+    errno = 0;
+    if (fflush(file) == 0 && ferror(file) == 0) {
+        return STATUS_OK;
+    }
+    return fail(error, STATUS_SYSTEM, "cannot write: %s", errno != 0 ? strerror(errno) : "write error");
+}

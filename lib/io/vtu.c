@@ -1,0 +1,235 @@
+/* VTK XML files: the format is described in "VTK File Formats" (Kitware), section XML. */
+#include "io/vtk.h"
+
+#include "io/vtk_field.h"
+
+#include <inttypes.h>
+#include <string.h>
+
+_Static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "values are written as they lie in memory");
+
+enum { VTK_VERTEX = 1, VTK_TRIANGLE = 5, VTK_TETRA = 10 };
+
+/* An array under way: text, or base64 of its bytes. */
+struct writer {
+    FILE *file;
+    bool text;
+    unsigned char held[3]; /* bytes not yet encoded */
+    int held_count;
+};
+
+static void print_escaped(FILE *file, const char *text)
+{
+    for (; *text != '\0'; text++) {
+        unsigned char c = (unsigned char)*text;
+        if (strchr("<>&\"'", c) != NULL) {
+            fprintf(file, "&#%d;", c);
+        } else {
+            fputc(c < 0x20 ? '?' : c, file);
+        }
+    }
+}
+
+static void put_group(struct writer *writer)
+{
+    static const char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    const unsigned char *b = writer->held;
+    char group[4] = {digits[b[0] >> 2], digits[(b[0] & 3) << 4 | b[1] >> 4],
+                     digits[(b[1] & 15) << 2 | b[2] >> 6], digits[b[2] & 63]};
+    for (int i = writer->held_count + 1; i < 4; i++) {
+        group[i] = '=';
+    }
+    fwrite(group, 1, 4, writer->file);
+    memset(writer->held, 0, 3);
+    writer->held_count = 0;
+}
+
+static void put_bytes(struct writer *writer, const void *bytes, size_t size)
+{
+    for (size_t i = 0; i < size; i++) {
+        writer->held[writer->held_count++] = ((const unsigned char *)bytes)[i];
+        if (writer->held_count == 3) {
+            put_group(writer);
+        }
+    }
+}
+
+/* The start tag of an array of `count` values of `size` bytes, up to its attributes' end. */
+static void begin_array(struct writer *writer, const char *type, const char *name, int64_t columns)
+{
+    fprintf(writer->file, "<DataArray type=\"%s\" Name=\"", type);
+    print_escaped(writer->file, name);
+    fprintf(writer->file, "\" NumberOfComponents=\"%" PRId64 "\"", columns);
+}
+
+static void begin_data(struct writer *writer, int64_t count, size_t size)
+{
+    fprintf(writer->file, " format=\"%s\">\n", writer->text ? "ascii" : "binary");
+    if (!writer->text) {
+        uint64_t bytes = (uint64_t)count * size;
+        put_bytes(writer, &bytes, sizeof bytes);
+    }
+}
+
+static void end_array(struct writer *writer)
+{
+    if (writer->held_count > 0) {
+        put_group(writer);
+    }
+    fputs(writer->text ? "</DataArray>\n" : "\n</DataArray>\n", writer->file);
+}
+
+static void put_integer(struct writer *writer, int64_t value, size_t size)
+{
+    if (writer->text) {
+        fprintf(writer->file, "%" PRId64 "\n", value);
+    } else {
+        put_bytes(writer, &value, size);
+    }
+}
+
+/* Rows of a section, padded with zero columns. */
+static void put_rows(struct writer *writer, const struct section *section, int64_t columns)
+{
+    static const char zeros[8];
+    size_t size = element_size(section->type);
+    begin_data(writer, section->rows * columns, size);
+    for (int64_t row = 0; row < section->rows; row++) {
+        for (int64_t column = 0; column < columns; column++) {
+            int64_t index = row * section->cols + column;
+            bool padded = column >= section->cols;
+            if (!writer->text) {
+                put_bytes(writer, padded ? zeros : (const char *)section->data + (size_t)index * size, size);
+                continue;
+            }
+            fputs(column > 0 ? " " : "", writer->file);
+            if (padded) {
+                fputc('0', writer->file);
+            } else {
+                print_element(writer->file, section, index);
+            }
+        }
+        fputs(writer->text ? "\n" : "", writer->file);
+    }
+    end_array(writer);
+}
+
+static void put_field(struct writer *writer, const struct vtk_mesh *mesh, const struct vtk_field *field)
+{
+    static const char *const types[] = {"Int32", "Int64", "Float32", "Float64"};
+    int64_t columns = field_columns(mesh, field->section);
+    char name[64];
+    begin_array(writer, types[field->section->type], field->name, columns);
+    for (int64_t column = 0; columns > 1 && column < field->section->cols; column++) {
+        if (field_column_name(field->section, column, name, sizeof name)) {
+            fprintf(writer->file, " ComponentName%" PRId64 "=\"", column);
+            print_escaped(writer->file, name);
+            fputc('"', writer->file);
+        }
+    }
+    put_rows(writer, field->section, columns);
+}
+
+/* The names of the regions, as the strings that cells.region indexes: VTK writes them as character codes. */
+static void put_region_names(struct writer *writer, const char *names)
+{
+    char name[256];
+    int64_t count = 0;
+    while (list_item(names, count, name, sizeof name)) {
+        count++;
+    }
+    if (count == 0) {
+        return;
+    }
+    fprintf(writer->file,
+            "<FieldData>\n<Array type=\"String\" Name=\"region_names\" NumberOfTuples=\"%" PRId64
+            "\" format=\"ascii\">\n",
+            count);
+    for (int64_t i = 0; list_item(names, i, name, sizeof name); i++) {
+        for (const char *c = name; *c != '\0'; c++) {
+            fprintf(writer->file, "%d ", (unsigned char)*c);
+        }
+        fputs("0\n", writer->file);
+    }
+    fputs("</Array>\n</FieldData>\n", writer->file);
+}
+
+static void put_cells(struct writer *writer, const struct vtk_mesh *mesh)
+{
+    int corners = mesh->node != NULL ? mesh->dim + 1 : 1;
+    int64_t count = mesh->node != NULL ? mesh->cell_count : mesh->node_count;
+    int type = mesh->node == NULL ? VTK_VERTEX : mesh->dim == 2 ? VTK_TRIANGLE : VTK_TETRA;
+    fputs("<Cells>\n", writer->file);
+    begin_array(writer, "Int64", "connectivity", 1);
+    begin_data(writer, count * corners, 8);
+    for (int64_t i = 0; i < count * corners; i++) {
+        put_integer(writer, mesh->node != NULL ? mesh->node[i] : i, 8);
+    }
+    end_array(writer);
+    begin_array(writer, "Int64", "offsets", 1);
+    begin_data(writer, count, 8);
+    for (int64_t c = 1; c <= count; c++) {
+        put_integer(writer, c * corners, 8);
+    }
+    end_array(writer);
+    begin_array(writer, "UInt8", "types", 1);
+    begin_data(writer, count, 1);
+    for (int64_t c = 0; c < count; c++) {
+        put_integer(writer, type, 1);
+    }
+    end_array(writer);
+    fputs("</Cells>\n", writer->file);
+}
+
+static void put_fields(struct writer *writer, const struct vtk_mesh *mesh, const struct vtk_field *fields,
+                       int64_t field_count, bool of_cells)
+{
+    const char *tag = of_cells ? "CellData" : "PointData";
+    fprintf(writer->file, "<%s>\n", tag);
+    for (int64_t f = 0; f < field_count; f++) {
+        if (fields[f].of_cells == of_cells) {
+            put_field(writer, mesh, &fields[f]);
+        }
+    }
+    fprintf(writer->file, "</%s>\n", tag);
+}
+
+enum status vtu_write(FILE *file, const struct vtk_mesh *mesh, const struct vtk_field *fields,
+                      int64_t field_count, bool text, struct error *error)
+{
+    struct writer writer = {.file = file, .text = text};
+    union {
+        const double *in;
+        void *out; /* a section's data, though never written here */
+    } x = {.in = mesh->x};
+    struct section points = {.type = TYPE_F8, .rows = mesh->node_count, .cols = mesh->dim, .data = x.out};
+    int64_t cell_count = mesh->node != NULL ? mesh->cell_count : mesh->node_count;
+    fputs("<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" "
+          "byte_order=\"LittleEndian\" "
+          "header_type=\"UInt64\">\n<UnstructuredGrid>\n",
+          file);
+    put_region_names(&writer, mesh->region_names);
+    fprintf(file, "<Piece NumberOfPoints=\"%" PRId64 "\" NumberOfCells=\"%" PRId64 "\">\n<Points>\n",
+            mesh->node_count, cell_count);
+    begin_array(&writer, "Float64", "Points", 3);
+    put_rows(&writer, &points, 3);
+    fputs("</Points>\n", file);
+    put_cells(&writer, mesh);
+    put_fields(&writer, mesh, fields, field_count, false);
+    put_fields(&writer, mesh, fields, field_count, true);
+    fputs("</Piece>\n</UnstructuredGrid>\n</VTKFile>\n", file);
+    return check_written(file, error);
+}
+
+enum status pvd_write(FILE *file, int64_t count, char *const names[], const double *times,
+                      struct error *error)
+{
+    fputs("<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"1.0\">\n<Collection>\n", file);
+    for (int64_t i = 0; i < count; i++) {
+        fprintf(file, "<DataSet timestep=\"%.17g\" part=\"0\" file=\"", times[i]);
+        print_escaped(file, names[i]);
+        fputs("\"/>\n", file);
+    }
+    fputs("</Collection>\n</VTKFile>\n", file);
+    return check_written(file, error);
+}

@@ -1,0 +1,111 @@
+/* A body laid out for the force loop: integration points in blocks, each with a compact list of its nodes.
+ *
+ * The partition depends on the input alone, never on threads: each block accumulates forces on its own nodes,
+ * and each node sums its blocks' contributions in block order, so that any number of threads gives the same
+ * bits. */
+#ifndef SOLID_BODY_H
+#define SOLID_BODY_H
+
+#include "base/status.h"
+#include "solid/material.h"
+
+#include <stdbool.h>
+#include <stdint.h>
+
+/* What a body is made of, in the caller's arrays. */
+struct body_input {
+    int dim; /* 2 (plane strain) or 3 */
+    int64_t node_count, point_count;
+    const double *x;      /* points, point_count * dim, m: for locality only */
+    const double *weight; /* point_count, m2 or m3 */
+    const int64_t *ptr;   /* point_count + 1 */
+    const int32_t *idx;   /* neighbours of each point */
+    const double *dphi;   /* ptr[point_count] * dim, 1/m */
+    const struct material *materials;
+    const int32_t *material; /* point_count, index into materials */
+    int64_t material_count;
+    /* Nodal volumetric averaging; NULL: pointwise volume throughout. */
+    const int32_t *hat_node; /* point_count * (dim + 1): vertices of the background cell of each point */
+    const double *hat_value; /* point_count * (dim + 1): their hat functions at the point, sum 1 */
+    double pointwise_share;  /* share of U(J) kept pointwise, 0..1 */
+};
+
+/* The most nodes a block may hold: its displacements lie on the stack of a thread. */
+#define BODY_MAX_BLOCK_NODES 16384
+
+struct block {
+    int64_t first_point, point_count; /* in the body's order */
+    int64_t first_node, node_count;   /* in block_node and block_force */
+    bool neo_hookean;                 /* all its points; else the general law */
+};
+
+/* Volumes to average over: hat functions of the background nodes, one for each material at a node. */
+struct volume_hats {
+    int64_t count;
+    int32_t *of_point; /* point_count * (dim + 1), hat of each vertex */
+    double *value;     /* point_count * (dim + 1) */
+    int64_t *ptr;      /* count + 1 */
+    int32_t *point;    /* ptr[count] */
+    double *share;     /* ptr[count]: N_a(q) w_q / V_a */
+    double *volume;    /* count: V_a = sum N_a w, m2 or m3 */
+    int32_t *material; /* count */
+    double *theta;     /* count: scratch, averaged J */
+    double *pressure;  /* count: scratch, dU/dJ at theta, Pa */
+};
+
+struct body {
+    int dim;
+    int64_t node_count, point_count, pair_count;
+    int64_t *order; /* point_count: the caller's index of each point */
+    double *weight; /* point_count */
+    struct material *materials;
+    int64_t material_count;
+    int32_t *material;    /* point_count */
+    double *shear, *bulk; /* point_count: moduli of the neo-Hookean law, Pa */
+    int64_t *ptr;         /* point_count + 1 */
+    uint16_t *local;      /* pair_count: index into the block's nodes */
+    double *dphi;         /* pair_count * dim */
+    int64_t block_count;
+    struct block *blocks;
+    int64_t block_node_count;
+    int32_t *block_node; /* block_node_count */
+    double *block_force; /* block_node_count * dim: scratch */
+    int64_t largest_block_nodes;
+    int64_t *gather_ptr; /* node_count + 1: entries of block_force of each node, in block order */
+    int32_t *gather;     /* block_node_count */
+    double *F;           /* dim * dim rows of point_count: deformation gradients of the last evaluation */
+    double *J;           /* point_count */
+    bool averaged;       /* nodal volumetric averaging */
+    double pointwise_share;
+    struct volume_hats hats;
+};
+
+/* Lay out a body; the input arrays are copied. STATUS_INPUT for a point without neighbours or of no weight.
+ */
+MUST_CHECK enum status body_build(const struct body_input *input, struct body *body, struct error *error);
+void body_free(struct body *body);
+
+/* How far an evaluation is from inversion. */
+struct deformation {
+    double least_jacobian;
+    int64_t point; /* where, in the caller's order */
+};
+
+/* force[node_count * dim] = internal forces - grad_u of the energy - at the parameters u[node_count * dim];
+ * N, in 2D N/m. Fills body->F and body->J. With an inverted point the forces mean nothing. */
+struct deformation body_force(struct body *body, const double *u, double *force);
+
+/* Elastic energy at u, J (2D: J/m). Fills body->F and body->J. */
+double body_energy(struct body *body, const double *u);
+
+/* First Piola stress of each point at the last evaluation: stress[point_count * 9], caller's order, Pa. */
+void body_stress(const struct body *body, double *stress);
+
+/* F of each point at the last evaluation, gradient[point_count * 9], caller's order. */
+void body_gradient(const struct body *body, double *gradient);
+
+/* stiffness[node_count]: sum_q w (lambda + 2 mu) |grad phi|^2, N/m (2D: N/m2): bounds the diagonal of the
+ * stiffness at rest. */
+void body_diagonal(const struct body *body, double *stiffness);
+
+#endif

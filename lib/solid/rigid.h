@@ -1,0 +1,44 @@
+/* A rigid surface: line segments in 2D, triangles in 3D, with a side on which the body lies. Facets only, no
+ * nodes of the body. */
+#ifndef SOLID_RIGID_H
+#define SOLID_RIGID_H
+
+#include "base/status.h"
+
+#include <stdbool.h>
+#include <stdint.h>
+
+struct rigid_surface {
+    int dim;
+    int64_t vertex_count, facet_count;
+    double *vertex;        /* vertex_count * dim, m; coincident corners are one vertex */
+    int32_t *facet;        /* facet_count * dim */
+    double *normal;        /* facet_count * dim: unit normals, pointing to the body's side */
+    double *vertex_normal; /* vertex_count * dim: angle-weighted mean, for the sign at vertices */
+    double *edge_normal;   /* 3D: facet_count * 3 * 3, mean of the two facets at each edge */
+    bool *
+        is_rim; /* per vertex (2D: an end of a curve) or per facet edge (3D: facet_count * 3, no neighbour) */
+    /* Uniform bins over the facets' boxes. */
+    double origin[3], bin;
+    int64_t bins[3];
+    int64_t *start; /* CSR over bins */
+    int32_t *in_bin;
+};
+
+/* Build from corner coordinates: corners[facet_count * dim * dim], m. Each facet's normal is (dy, -dx) of its
+ * direction in 2D - to the right, walking along it - and right-handed in 3D; `flip` turns all of them. After
+ * that they must point to the body's side. STATUS_INPUT for facets of no size. */
+MUST_CHECK enum status rigid_build(int dim, int64_t facet_count, const double *corners, bool flip,
+                                   struct rigid_surface *surface, struct error *error);
+void rigid_free(struct rigid_surface *surface);
+
+/* The closest point of the surface within `reach`. */
+struct rigid_contact {
+    bool found;       /* false: nothing within reach, or beyond an open rim, where the surface ends */
+    double distance;  /* unsigned distance to the closest point, or `reach` when nothing is within */
+    double gap;       /* signed: positive on the body's side, m */
+    double normal[3]; /* unit, the direction in which the gap grows */
+};
+struct rigid_contact rigid_closest(const struct rigid_surface *surface, const double *x, double reach);
+
+#endif
