@@ -1,0 +1,27 @@
+#!/bin/bash
+# Solve a scene with CalculiX's quadratic triangles: solve.sh SCENE MESH_STREAM > u.dat
+#
+# MESH_STREAM is what `nodes -t` writes. Prints on standard error, as `mtled -v` does, the number of increments and
+# the seconds of the solution. OMP_NUM_THREADS is honoured.
+set -euo pipefail
+if [ $# -ne 2 ]; then
+    echo "usage: solve.sh SCENE MESH_STREAM > u.dat" >&2
+    exit 2
+fi
+here=$(cd "$(dirname "$0")" && pwd)
+scene=$1 mesh=$2
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+
+awk -f "$here/../stream.awk" -f "$here/deck.awk" -v scene="$scene" -v mesh="$mesh" > "$work/deck.inp"
+begin=$(date +%s.%N)
+if ! (cd "$work" && ccx deck > log 2>&1); then
+    tail -n 20 "$work/log" >&2
+    echo "solve.sh: ccx failed on $scene" >&2
+    exit 1
+fi
+end=$(date +%s.%N)
+awk -f "$here/../stream.awk" -f "$here/field.awk" -v mesh="$mesh" -v results="$work/deck.dat"
+awk -v begin="$begin" -v end="$end" '
+    $NF != "" && $1 ~ /^[0-9]+$/ { steps++ }
+    END { printf "steps\t%d\nsolve seconds\t%.1f\n", steps, end - begin }' "$work/deck.sta" >&2
