@@ -21,14 +21,14 @@ static void write_names(FILE *file, const struct vtk_mesh *mesh)
 {
     char name[256];
     int64_t count = 0;
-    while (list_item(mesh->region_names, count, name, sizeof name)) {
+    while (vtk_list_item(mesh->region_names, count, name, sizeof name)) {
         count++;
     }
     if (mesh->region == NULL || count == 0) {
         return;
     }
     fprintf(file, "$PhysicalNames\n%" PRId64 "\n", count);
-    for (int64_t i = 0; list_item(mesh->region_names, i, name, sizeof name); i++) {
+    for (int64_t i = 0; vtk_list_item(mesh->region_names, i, name, sizeof name); i++) {
         fprintf(file, "%d %" PRId64 " ", mesh->dim, i + 1);
         print_quoted(file, name);
         fputc('\n', file);
@@ -70,7 +70,7 @@ enum status gmsh_write_mesh(FILE *file, const struct vtk_mesh *mesh, struct erro
     write_names(file, mesh);
     write_nodes(file, mesh);
     write_elements(file, mesh);
-    return check_written(file, error);
+    return vtk_check_written(file, error);
 }
 
 /* Columns [first, first + columns) of a field as one view. */
@@ -88,7 +88,7 @@ static void write_view(FILE *file, const char *name, const struct vtk_field *fie
         for (int64_t column = first; column < first + columns; column++) {
             fputc(' ', file);
             if (column < section->cols) {
-                print_element(file, section, row * section->cols + column);
+                vtk_print_element(file, section, row * section->cols + column);
             } else {
                 fputc('0', file);
             }
@@ -101,19 +101,20 @@ static void write_view(FILE *file, const char *name, const struct vtk_field *fie
 enum status gmsh_write_field(FILE *file, const struct vtk_mesh *mesh, const struct vtk_field *field,
                              int64_t step, double time, struct error *error)
 {
-    int64_t columns = field_columns(mesh, field->section);
-    if (columns == 1 || columns == 3 || columns == 9) {
+    int64_t columns = vtk_columns(mesh, field->section);
+    bool is_vector = columns == 3 && (mesh->dim == 3 || field->section->cols == 2); /* not xx, yy, xy */
+    if (columns == 1 || is_vector || columns == 9) {
         write_view(file, field->name, field, 0, columns, step, time);
-        return check_written(file, error);
+        return vtk_check_written(file, error);
     }
     for (int64_t column = 0; column < columns; column++) {
         char name[256];
         char label[64];
-        if (!field_column_name(field->section, column, label, sizeof label)) {
+        if (!vtk_column_name(field->section, column, label, sizeof label)) {
             snprintf(label, sizeof label, "%" PRId64, column + 1);
         }
         snprintf(name, sizeof name, "%s %s", field->name, label);
         write_view(file, name, field, column, 1, step, time);
     }
-    return check_written(file, error);
+    return vtk_check_written(file, error);
 }

@@ -139,6 +139,10 @@ static enum status scan_format(struct msh_scan *scan, struct msh_cursor *cursor)
         goto done;
     }
     scan->binary = binary == 1;
+    if (scan->version == 40 && scan->binary) { /* libgmsh writes and reads none */
+        status = msh_cursor_fail(cursor, "version 4.0 is read as ASCII only: save as MSH 4.1");
+        goto done;
+    }
     TRY(msh_skip_line(cursor));
     if (scan->binary) {
         int64_t one = 0;

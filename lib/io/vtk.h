@@ -41,8 +41,8 @@ MUST_CHECK enum status pvd_write(FILE *file, int64_t count, char *const names[],
 MUST_CHECK enum status gmsh_write_mesh(FILE *file, const struct vtk_mesh *mesh, struct error *error);
 
 /* Append a field as a post-processing view at a time; the same name again, at step + 1, is the view's next
- * step. Fields of 1, 3 and 9 columns are scalars, vectors and tensors, two floating columns of a 2D mesh a
- * vector; other fields become one scalar view for each column. */
+ * step. Scalars, vectors of 3D and 2D meshes (padded) and fields of 9 columns (tensors) are one view; other
+ * fields become a scalar view for each column. */
 MUST_CHECK enum status gmsh_write_field(FILE *file, const struct vtk_mesh *mesh,
                                         const struct vtk_field *field, int64_t step, double time,
                                         struct error *error);

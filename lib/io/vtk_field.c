@@ -4,13 +4,13 @@
 #include <inttypes.h>
 #include <string.h>
 
-int64_t field_columns(const struct vtk_mesh *mesh, const struct section *section)
+int64_t vtk_columns(const struct vtk_mesh *mesh, const struct section *section)
 {
     bool is_floating = section->type == TYPE_F4 || section->type == TYPE_F8;
     return is_floating && mesh->dim == 2 && section->cols == 2 ? 3 : section->cols;
 }
 
-bool list_item(const char *list, int64_t index, char *text, size_t size)
+bool vtk_list_item(const char *list, int64_t index, char *text, size_t size)
 {
     for (; index > 0; index--) {
         list = strchr(list, ',');
@@ -28,13 +28,14 @@ bool list_item(const char *list, int64_t index, char *text, size_t size)
     return true;
 }
 
-bool field_column_name(const struct section *section, int64_t column, char *text, size_t size)
+bool vtk_column_name(const struct section *section, int64_t column, char *text, size_t size)
 {
     char names[1024];
-    return section_attribute(section, "cols", names, sizeof names) && list_item(names, column, text, size);
+    return section_attribute(section, "cols", names, sizeof names) &&
+           vtk_list_item(names, column, text, size);
 }
 
-void print_element(FILE *file, const struct section *section, int64_t index)
+void vtk_print_element(FILE *file, const struct section *section, int64_t index)
 {
     switch (section->type) {
     case TYPE_I4:
@@ -52,7 +53,7 @@ void print_element(FILE *file, const struct section *section, int64_t index)
     }
 }
 
-enum status check_written(FILE *file, struct error *error)
+enum status vtk_check_written(FILE *file, struct error *error)
 {
     errno = 0;
     if (fflush(file) == 0 && ferror(file) == 0) {

@@ -5,18 +5,18 @@
 #include "io/vtk.h"
 
 /* Columns written: those of the section, or 3 for a vector of a 2D mesh. */
-int64_t field_columns(const struct vtk_mesh *mesh, const struct section *section);
+int64_t vtk_columns(const struct vtk_mesh *mesh, const struct section *section);
 
 /* Copy the name of a column, from attribute cols=, into text[size]; false when it has none. */
-bool field_column_name(const struct section *section, int64_t column, char *text, size_t size);
+bool vtk_column_name(const struct section *section, int64_t column, char *text, size_t size);
 
 /* Copy item `index` of a comma list into text[size]; false when there is none. */
-bool list_item(const char *list, int64_t index, char *text, size_t size);
+bool vtk_list_item(const char *list, int64_t index, char *text, size_t size);
 
 /* Print an element of a section so that it reads back exactly. */
-void print_element(FILE *file, const struct section *section, int64_t index);
+void vtk_print_element(FILE *file, const struct section *section, int64_t index);
 
 /* Flush; the status of all that was written to the file. */
-MUST_CHECK enum status check_written(FILE *file, struct error *error);
+MUST_CHECK enum status vtk_check_written(FILE *file, struct error *error);
 
 #endif

@@ -106,7 +106,7 @@ static void put_rows(struct writer *writer, const struct section *section, int64
             if (padded) {
                 fputc('0', writer->file);
             } else {
-                print_element(writer->file, section, index);
+                vtk_print_element(writer->file, section, index);
             }
         }
         fputs(writer->text ? "\n" : "", writer->file);
@@ -117,11 +117,11 @@ static void put_rows(struct writer *writer, const struct section *section, int64
 static void put_field(struct writer *writer, const struct vtk_mesh *mesh, const struct vtk_field *field)
 {
     static const char *const types[] = {"Int32", "Int64", "Float32", "Float64"};
-    int64_t columns = field_columns(mesh, field->section);
+    int64_t columns = vtk_columns(mesh, field->section);
     char name[64];
     begin_array(writer, types[field->section->type], field->name, columns);
     for (int64_t column = 0; columns > 1 && column < field->section->cols; column++) {
-        if (field_column_name(field->section, column, name, sizeof name)) {
+        if (vtk_column_name(field->section, column, name, sizeof name)) {
             fprintf(writer->file, " ComponentName%" PRId64 "=\"", column);
             print_escaped(writer->file, name);
             fputc('"', writer->file);
@@ -135,7 +135,7 @@ static void put_region_names(struct writer *writer, const char *names)
 {
     char name[256];
     int64_t count = 0;
-    while (list_item(names, count, name, sizeof name)) {
+    while (vtk_list_item(names, count, name, sizeof name)) {
         count++;
     }
     if (count == 0) {
@@ -145,7 +145,7 @@ static void put_region_names(struct writer *writer, const char *names)
             "<FieldData>\n<Array type=\"String\" Name=\"region_names\" NumberOfTuples=\"%" PRId64
             "\" format=\"ascii\">\n",
             count);
-    for (int64_t i = 0; list_item(names, i, name, sizeof name); i++) {
+    for (int64_t i = 0; vtk_list_item(names, i, name, sizeof name); i++) {
         for (const char *c = name; *c != '\0'; c++) {
             fprintf(writer->file, "%d ", (unsigned char)*c);
         }
@@ -218,7 +218,7 @@ enum status vtu_write(FILE *file, const struct vtk_mesh *mesh, const struct vtk_
     put_fields(&writer, mesh, fields, field_count, false);
     put_fields(&writer, mesh, fields, field_count, true);
     fputs("</Piece>\n</UnstructuredGrid>\n</VTKFile>\n", file);
-    return check_written(file, error);
+    return vtk_check_written(file, error);
 }
 
 enum status pvd_write(FILE *file, int64_t count, char *const names[], const double *times,
@@ -231,5 +231,5 @@ enum status pvd_write(FILE *file, int64_t count, char *const names[], const doub
         fputs("\"/>\n", file);
     }
     fputs("</Collection>\n</VTKFile>\n", file);
-    return check_written(file, error);
+    return vtk_check_written(file, error);
 }

@@ -1,0 +1,246 @@
+#include "solid/constraint.h"
+
+#include "base/memory.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Rows closer to dependence than this are refused. */
+static const double least_pivot = 1e-10;
+
+void constraint_rows_init(struct constraint_rows *rows, int dim)
+{
+    *rows = (struct constraint_rows){.dim = dim};
+}
+
+void constraint_rows_free(struct constraint_rows *rows)
+{
+    free(rows->ptr);
+    free(rows->idx);
+    free(rows->phi);
+    free(rows->direction);
+    free(rows->target);
+    free(rows->curve);
+    free(rows->section);
+    free(rows->node);
+    *rows = (struct constraint_rows){0};
+}
+
+/* Grow *array to `count` elements of `size` bytes; on failure the old one stays. */
+static enum status grow(void *array, int64_t count, size_t size, struct error *error)
+{
+    void *old;
+    memcpy(&old, array, sizeof old);
+    void *grown = array_grow(old, count, size);
+    if (grown == NULL) {
+        return fail_memory(error, "constraints");
+    }
+    memcpy(array, &grown, sizeof grown);
+    return STATUS_OK;
+}
+
+static enum status reserve(struct constraint_rows *rows, int64_t length, struct error *error)
+{
+    enum status status = STATUS_OK;
+    int64_t pairs = rows->count > 0 ? rows->ptr[rows->count] : 0;
+    if (rows->count == rows->capacity) {
+        int64_t capacity = rows->capacity * 2 + 64;
+        TRY(grow(&rows->ptr, capacity + 1, sizeof *rows->ptr, error));
+        TRY(grow(&rows->direction, capacity * rows->dim, sizeof *rows->direction, error));
+        TRY(grow(&rows->target, capacity, sizeof *rows->target, error));
+        TRY(grow(&rows->curve, capacity, sizeof *rows->curve, error));
+        TRY(grow(&rows->section, capacity, sizeof *rows->section, error));
+        TRY(grow(&rows->node, capacity, sizeof *rows->node, error));
+        rows->capacity = capacity;
+        rows->ptr[0] = 0;
+    }
+    if (pairs + length > rows->pair_capacity) {
+        int64_t capacity = (pairs + length) * 2 + 1024;
+        TRY(grow(&rows->idx, capacity, sizeof *rows->idx, error));
+        TRY(grow(&rows->phi, capacity, sizeof *rows->phi, error));
+        rows->pair_capacity = capacity;
+    }
+done:
+    return status;
+}
+
+enum status constraint_rows_add(struct constraint_rows *rows, int64_t length, const int32_t *idx,
+                                const double *phi, const double *direction, double target, int32_t curve,
+                                int32_t section, int32_t node, struct error *error)
+{
+    enum status status = reserve(rows, length, error);
+    if (status != STATUS_OK) {
+        return status;
+    }
+    int64_t row = rows->count++, at = rows->ptr[row];
+    memcpy(rows->idx + at, idx, (size_t)length * sizeof *idx);
+    memcpy(rows->phi + at, phi, (size_t)length * sizeof *phi);
+    memcpy(rows->direction + row * rows->dim, direction, (size_t)rows->dim * sizeof *direction);
+    rows->ptr[row + 1] = at + length;
+    rows->target[row] = target;
+    rows->curve[row] = curve;
+    rows->section[row] = section;
+    rows->node[row] = node;
+    return STATUS_OK;
+}
+
+/* Rows that touch each node, CSR: entries are pair indices of the rows. */
+static enum status rows_of_nodes(const struct constraint_rows *rows, int64_t node_count, int64_t **ptr,
+                                 int64_t **row, double **phi, struct error *error)
+{
+    enum status status;
+    int64_t pairs = rows->ptr[rows->count];
+    TRY(NEW_ARRAY(ptr, node_count + 2, error));
+    TRY(NEW_ARRAY(row, pairs, error));
+    TRY(NEW_ARRAY(phi, pairs, error));
+    for (int64_t i = 0; i < pairs; i++) {
+        (*ptr)[rows->idx[i] + 2]++;
+    }
+    for (int64_t n = 0; n < node_count; n++) {
+        (*ptr)[n + 2] += (*ptr)[n + 1];
+    }
+    for (int64_t r = 0; r < rows->count; r++) {
+        for (int64_t i = rows->ptr[r]; i < rows->ptr[r + 1]; i++) {
+            int64_t at = (*ptr)[rows->idx[i] + 1]++;
+            (*row)[at] = r;
+            (*phi)[at] = rows->phi[i];
+        }
+    }
+done:
+    return status;
+}
+
+/* G M^-1 G^T in CSR. Rows of orthogonal directions do not couple, so that axis-aligned conditions decompose.
+ */
+static enum status assemble(const struct constraint_rows *rows, int64_t node_count, const double *mass,
+                            int64_t **ptr, int64_t **column, double **value, struct error *error)
+{
+    enum status status;
+    int64_t *node_ptr = NULL, *node_row = NULL, *touched = NULL, capacity = 0;
+    double *node_phi = NULL, *sum = NULL;
+    int dim = rows->dim;
+    TRY(rows_of_nodes(rows, node_count, &node_ptr, &node_row, &node_phi, error));
+    TRY(NEW_ARRAY(ptr, rows->count + 1, error));
+    TRY(NEW_ARRAY(&touched, rows->count, error));
+    TRY(NEW_ARRAY(&sum, rows->count, error));
+    for (int64_t r = 0; r < rows->count; r++) {
+        int64_t count = 0, at = (*ptr)[r];
+        for (int64_t i = rows->ptr[r]; i < rows->ptr[r + 1]; i++) {
+            int32_t node = rows->idx[i];
+            for (int64_t k = node_ptr[node]; k < node_ptr[node + 1]; k++) {
+                int64_t s = node_row[k];
+                double along = 0.0;
+                for (int a = 0; a < dim; a++) {
+                    along += rows->direction[r * dim + a] * rows->direction[s * dim + a];
+                }
+                if (fabs(along) < 1e-14) {
+                    continue;
+                }
+                double part = along * rows->phi[i] * node_phi[k] / mass[node];
+                if (sum[s] == 0.0) {
+                    touched[count++] = s;
+                    sum[s] = 1e-300; /* marks it as touched even if the first part is zero */
+                }
+                sum[s] += part;
+            }
+        }
+        if (at + count > capacity) {
+            capacity = (at + count) * 2 + 1024;
+            TRY(grow(column, capacity, sizeof **column, error));
+            TRY(grow(value, capacity, sizeof **value, error));
+        }
+        for (int64_t i = 0; i < count; i++) {
+            (*column)[at + i] = touched[i];
+            (*value)[at + i] = sum[touched[i]];
+            sum[touched[i]] = 0.0;
+        }
+        (*ptr)[r + 1] = at + count;
+    }
+done:
+    free(node_ptr);
+    free(node_row);
+    free(node_phi);
+    free(touched);
+    free(sum);
+    return status;
+}
+
+enum status constraint_build(const struct constraint_rows *rows, int64_t node_count, const double *mass,
+                             struct constraint *constraint, int64_t *dependent, struct error *error)
+{
+    enum status status = STATUS_OK;
+    int64_t *ptr = NULL, *column = NULL;
+    double *value = NULL;
+    *constraint = (struct constraint){.node_count = node_count, .rows = rows, .mass = mass};
+    *dependent = -1;
+    if (rows->count == 0) {
+        return STATUS_OK;
+    }
+    TRY(NEW_ARRAY(&constraint->multiplier, rows->count, error));
+    TRY(assemble(rows, node_count, mass, &ptr, &column, &value, error));
+    TRY(envelope_factorise(rows->count, ptr, column, value, least_pivot, &constraint->factor, dependent,
+                           error));
+done:
+    free(ptr);
+    free(column);
+    free(value);
+    if (status != STATUS_OK) {
+        constraint_free(constraint);
+    }
+    return status;
+}
+
+void constraint_free(struct constraint *constraint)
+{
+    free(constraint->multiplier);
+    envelope_free(&constraint->factor);
+    *constraint = (struct constraint){0};
+}
+
+static double defect(const struct constraint_rows *rows, int64_t r, const double *factor, const double *u)
+{
+    int dim = rows->dim;
+    double mean[3] = {0.0, 0.0, 0.0};
+    for (int64_t i = rows->ptr[r]; i < rows->ptr[r + 1]; i++) {
+        for (int a = 0; a < dim; a++) {
+            mean[a] += rows->phi[i] * u[(int64_t)rows->idx[i] * dim + a];
+        }
+    }
+    double value = factor != NULL ? rows->target[r] * factor[rows->curve[r]] : 0.0;
+    for (int a = 0; a < dim; a++) {
+        value -= rows->direction[r * dim + a] * mean[a];
+    }
+    return value;
+}
+
+void constraint_project(struct constraint *constraint, const double *factor, double *u)
+{
+    const struct constraint_rows *rows = constraint->rows;
+    int dim = rows->dim;
+    if (rows->count == 0) {
+        return;
+    }
+    for (int64_t r = 0; r < rows->count; r++) {
+        constraint->multiplier[r] = defect(rows, r, factor, u);
+    }
+    envelope_solve(&constraint->factor, constraint->multiplier);
+    for (int64_t r = 0; r < rows->count; r++) {
+        for (int64_t i = rows->ptr[r]; i < rows->ptr[r + 1]; i++) {
+            int32_t node = rows->idx[i];
+            double scale = rows->phi[i] * constraint->multiplier[r] / constraint->mass[node];
+            for (int a = 0; a < dim; a++) {
+                u[(int64_t)node * dim + a] += scale * rows->direction[r * dim + a];
+            }
+        }
+    }
+}
+
+double constraint_violation(const struct constraint *constraint, const double *factor, const double *u)
+{
+    double worst = 0.0;
+    for (int64_t r = 0; r < constraint->rows->count; r++) {
+        worst = fmax(worst, fabs(defect(constraint->rows, r, factor, u)));
+    }
+    return worst;
+}

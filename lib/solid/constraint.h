@@ -1,0 +1,59 @@
+/* Essential boundary conditions on fields whose shape functions do not interpolate (EBCIEM, Zhang, Jonas,
+ * Joldes, Wittek and Miller): after the free explicit update u, the correction M^-1 G^T (G M^-1 G^T)^-1 (t -
+ * G u) makes the constrained averages G u meet their targets t exactly. Each row of G is one average along
+ * one direction. */
+#ifndef SOLID_CONSTRAINT_H
+#define SOLID_CONSTRAINT_H
+
+#include "base/envelope.h"
+#include "base/status.h"
+
+#include <stdint.h>
+
+/* Rows as they are collected: row r prescribes direction . (sum_j phi_rj u_j) = target * factor(curve, time).
+ */
+struct constraint_rows {
+    int dim;
+    int64_t count, capacity;
+    int64_t *ptr; /* count + 1 */
+    int64_t pair_capacity;
+    int32_t *idx;
+    double *phi;
+    double *direction; /* count * dim, unit vectors */
+    double *target;    /* count, m */
+    int32_t *curve;    /* count: which load curve scales the target */
+    int32_t *section;  /* count: the caller's label, for messages and reactions */
+    int32_t *node;     /* count: the node it stands for, for messages */
+};
+
+void constraint_rows_init(struct constraint_rows *rows, int dim);
+void constraint_rows_free(struct constraint_rows *rows);
+
+/* Append a row over `length` pairs. */
+MUST_CHECK enum status constraint_rows_add(struct constraint_rows *rows, int64_t length, const int32_t *idx,
+                                           const double *phi, const double *direction, double target,
+                                           int32_t curve, int32_t section, int32_t node, struct error *error);
+
+/* The factored system. */
+struct constraint {
+    int64_t node_count;
+    const struct constraint_rows *rows; /* the caller's; must outlive the constraint */
+    const double *mass;                 /* node_count; the caller's */
+    struct envelope factor;
+    double *multiplier; /* count: of the last projection, N s2 in the step's scaling */
+};
+
+/* Factor G M^-1 G^T. STATUS_VERDICT when a row depends on others; *dependent is its index, else -1. */
+MUST_CHECK enum status constraint_build(const struct constraint_rows *rows, int64_t node_count,
+                                        const double *mass, struct constraint *constraint, int64_t *dependent,
+                                        struct error *error);
+void constraint_free(struct constraint *constraint);
+
+/* u += M^-1 G^T multiplier such that G u = target * factor[curve]. With factor == NULL the targets are zero.
+ */
+void constraint_project(struct constraint *constraint, const double *factor, double *u);
+
+/* Largest |target * factor - G u|, m. */
+double constraint_violation(const struct constraint *constraint, const double *factor, const double *u);
+
+#endif
