@@ -17,9 +17,10 @@ static bool stdout_closed;     /* standard output has been closed, its errors re
 
 static void print_message(const struct tool *tool, const char *format, va_list arguments)
 {
+    char text[2 * sizeof(struct error)];
     struct error message;
-    vsnprintf(message.text, sizeof message.text, format, arguments);
-    fail(&message, STATUS_OK, "%s", message.text); /* one line, whatever the names in it contain */
+    vsnprintf(text, sizeof text, format, arguments);
+    fail(&message, STATUS_OK, "%s", text); /* one line, whatever the names in it contain */
     fprintf(stderr, "%s: %s\n", tool->name, message.text);
 }
 
@@ -118,6 +119,7 @@ void tool_begin(struct tool *tool, const char *usage, struct option options[], i
     memcpy(arguments, argv, (size_t)argc * sizeof *arguments);
     parse_options(tool, options, option_count, arguments);
     tool->operands = arguments + 1;
+    tool->operands[tool->operand_count] = NULL;
     if (tool->operand_count > most) {
         tool_fail(tool, STATUS_INPUT, "unexpected operand '%s' (see -h)", tool->operands[most]);
     }
@@ -127,28 +129,35 @@ void tool_begin(struct tool *tool, const char *usage, struct option options[], i
     }
 }
 
-void tool_read(const struct tool *tool, const char *file, struct stream *stream)
+int tool_open(const struct tool *tool, const char *file, const char **name)
 {
-    struct error error;
     bool named = file != NULL && strcmp(file, "-") != 0;
-    int descriptor = STDIN_FILENO;
+    *name = named ? file : "standard input";
     if (named) {
-        descriptor = open(file, O_RDONLY | O_CLOEXEC);
+        int descriptor = open(file, O_RDONLY | O_CLOEXEC);
         if (descriptor < 0) {
             tool_fail(tool, STATUS_INPUT, "%s: %s", file, strerror(errno));
         }
         main_input = main_input == NULL && !stdin_read ? file : main_input;
-    } else {
-        if (stdin_read) {
-            tool_fail(tool, STATUS_INPUT, "standard input cannot be read twice");
-        }
-        if (isatty(STDIN_FILENO)) {
-            tool_fail(tool, STATUS_INPUT, "standard input is a terminal: name a file or use a pipe (see -h)");
-        }
-        stdin_read = true;
+        return descriptor;
     }
-    tool_check(tool, stream_read(stream, descriptor, named ? file : "standard input", &error), &error);
-    if (named) {
+    if (stdin_read) {
+        tool_fail(tool, STATUS_INPUT, "standard input cannot be read twice");
+    }
+    if (isatty(STDIN_FILENO)) {
+        tool_fail(tool, STATUS_INPUT, "standard input is a terminal: name a file or use a pipe (see -h)");
+    }
+    stdin_read = true;
+    return STDIN_FILENO;
+}
+
+void tool_read(const struct tool *tool, const char *file, struct stream *stream)
+{
+    struct error error;
+    const char *name;
+    int descriptor = tool_open(tool, file, &name);
+    tool_check(tool, stream_read(stream, descriptor, name, &error), &error);
+    if (descriptor != STDIN_FILENO) {
         close(descriptor);
     }
 }
