@@ -40,9 +40,6 @@ static const char usage[] =
 #include "io/msh.h"
 #include "tool.h"
 
-#include <errno.h>
-#include <fcntl.h>
-#include <string.h>
 #include <unistd.h>
 
 enum { UNIT, REGIONS, LIST, BINARY, TEXT, OUTPUT, OPTION_COUNT };
@@ -50,15 +47,11 @@ enum { UNIT, REGIONS, LIST, BINARY, TEXT, OUTPUT, OPTION_COUNT };
 static void read_mesh(const struct tool *tool, struct msh *msh)
 {
     struct error error;
-    const char *file = tool->operand_count > 0 ? tool->operands[0] : "-";
-    bool standard = strcmp(file, "-") == 0;
-    int descriptor = standard ? STDIN_FILENO : open(file, O_RDONLY | O_CLOEXEC);
-    if (descriptor < 0) {
-        tool_fail(tool, STATUS_SYSTEM, "%s: %s", file, strerror(errno));
-    }
-    tool_check(tool, msh_read(msh, descriptor, standard ? "standard input" : file, &error), &error);
-    if (!standard && close(descriptor) != 0) {
-        tool_fail(tool, STATUS_SYSTEM, "%s: %s", file, strerror(errno));
+    const char *name;
+    int descriptor = tool_open(tool, tool->operands[0], &name);
+    tool_check(tool, msh_read(msh, descriptor, name, &error), &error);
+    if (descriptor != STDIN_FILENO) {
+        close(descriptor);
     }
 }
 

@@ -70,6 +70,9 @@ static enum status take_in(struct bytes *bytes, int descriptor, struct error *er
     if (fstat(descriptor, &info) != 0) {
         return fail_read(error);
     }
+    if (S_ISDIR(info.st_mode)) {
+        return fail(error, STATUS_INPUT, "is a directory");
+    }
     if (!S_ISREG(info.st_mode) || info.st_size == 0 || lseek(descriptor, 0, SEEK_CUR) != 0) {
         return read_all(bytes, descriptor, error);
     }

@@ -14,7 +14,7 @@ struct tool {
     const char *usage; /* the text at the top of the tool's file */
     int argc;          /* the command line as given, for provenance */
     char **argv;
-    char **operands; /* operand_count operands */
+    char **operands; /* operand_count operands, and NULL */
     int operand_count;
     const char *output; /* value of -o, NULL: standard output */
 };
@@ -34,6 +34,10 @@ _Noreturn void tool_fail(const struct tool *tool, enum status status, const char
 
 /* "name: message" on standard error; notes that do not stop the run. */
 void tool_note(const struct tool *tool, const char *format, ...) __attribute__((format(printf, 2, 3)));
+
+/* Open a file for reading (NULL or "-": standard input, which can be had once) and return the descriptor;
+ * *name receives what to call it in messages. Exits on failure. */
+int tool_open(const struct tool *tool, const char *file, const char **name);
 
 /* Read a stream from a file (NULL or "-": standard input); exits on failure with a message naming it. */
 void tool_read(const struct tool *tool, const char *file, struct stream *stream);
