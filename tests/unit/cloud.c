@@ -1,0 +1,270 @@
+/* Analytic clouds: counts, places, positive cells that fill the box, outward facets. */
+#include "approx/cells.h"
+#include "approx/cloud.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+static struct cloud_options options_of(enum cloud_kind kind, int dim)
+{
+    return (struct cloud_options){.kind = kind,
+                                  .dim = dim,
+                                  .count = {5, 4, 3},
+                                  .low = {-1, 0, 2},
+                                  .high = {3, 1, 2.5},
+                                  .jitter = dim == 2 ? 0.5 : 0.16,
+                                  .seed = 7,
+                                  .ratio = 8};
+}
+
+static struct cloud make(const struct cloud_options *options)
+{
+    struct cloud cloud;
+    struct error error = {""};
+    enum status status = cloud_make(options, &cloud, &error);
+    assert_string_equal(error.text, "");
+    assert_int_equal(status, STATUS_OK);
+    return cloud;
+}
+
+static double total_volume(const struct cloud *cloud)
+{
+    struct cells cells = {cloud->dim, cloud->node_count, cloud->x, cloud->cell_count, cloud->cells};
+    double sum = 0;
+    for (int64_t c = 0; c < cells.count; c++) {
+        double volume = cell_volume(&cells, c);
+        assert_true(volume > 0);
+        sum += volume;
+    }
+    return sum;
+}
+
+static double box_volume(const struct cloud_options *options)
+{
+    double volume = 1;
+    for (int a = 0; a < options->dim; a++) {
+        volume *= options->high[a] - options->low[a];
+    }
+    return volume;
+}
+
+static void cells_fill_the_box(void **state)
+{
+    (void)state;
+    for (int dim = 2; dim <= 3; dim++) {
+        for (int kind = CLOUD_REGULAR; kind <= CLOUD_GRADED; kind++) {
+            struct cloud_options options = options_of((enum cloud_kind)kind, dim);
+            struct cloud cloud = make(&options);
+            if (kind == CLOUD_HALTON) {
+                assert_int_equal(cloud.node_count, 5);
+                assert_int_equal(cloud.cell_count, 0);
+            } else {
+                assert_int_equal(cloud.node_count, dim == 2 ? 20 : 60);
+                assert_int_equal(cloud.cell_count, dim == 2 ? 2 * 12 : 6 * 24);
+                assert_true(fabs(total_volume(&cloud) / box_volume(&options) - 1) < 1e-14);
+            }
+            cloud_free(&cloud);
+        }
+    }
+}
+
+/* Each side is covered once, all its facets looking outward: their area vectors sum to that of the side. */
+static void facets_look_outward(void **state)
+{
+    (void)state;
+    for (int dim = 2; dim <= 3; dim++) {
+        struct cloud_options options = options_of(CLOUD_JITTERED, dim);
+        struct cloud cloud = make(&options);
+        double sum[6][3] = {{0}};
+        double size[6] = {0};
+        for (int64_t f = 0; f < cloud.facet_count; f++) {
+            double vector[3] = {0};
+            int side = cloud.facet_set[f];
+            assert_true(f == 0 || cloud.facet_set[f - 1] <= side);
+            face_area_vector(dim, cloud.x, &cloud.facets[f * dim], vector);
+            for (int a = 0; a < dim; a++) {
+                sum[side][a] += vector[a];
+            }
+            size[side] += fabs(vector[side / 2]);
+        }
+        for (int side = 0; side < 2 * dim; side++) {
+            double area = box_volume(&options) / (options.high[side / 2] - options.low[side / 2]);
+            for (int a = 0; a < dim; a++) {
+                double expected = a == side / 2 ? (side % 2 == 0 ? -area : area) : 0;
+                assert_true(fabs(sum[side][a] - expected) < 1e-13);
+            }
+            assert_true(fabs(size[side] - area) < 1e-13);
+        }
+        cloud_free(&cloud);
+    }
+}
+
+static void neighbours_conform(void **state)
+{
+    (void)state;
+    for (int dim = 2; dim <= 3; dim++) {
+        struct cloud_options options = options_of(CLOUD_JITTERED, dim);
+        struct cloud cloud = make(&options);
+        struct cells cells = {dim, cloud.node_count, cloud.x, cloud.cell_count, cloud.cells};
+        struct faces boundary;
+        struct error error;
+        assert_int_equal(faces_build(&cells, true, &boundary, &error), STATUS_OK);
+        assert_int_equal(boundary.count, cloud.facet_count);
+        assert_int_equal(boundary.count, dim == 2 ? 14 : 2 * 2 * (12 + 8 + 6));
+        faces_free(&boundary);
+        cloud_free(&cloud);
+    }
+}
+
+static void regular_nodes_are_where_they_should(void **state)
+{
+    (void)state;
+    struct cloud_options options = options_of(CLOUD_REGULAR, 3);
+    struct cloud cloud = make(&options);
+    for (int64_t n = 0; n < cloud.node_count; n++) {
+        assert_true(fabs(cloud.x[3 * n] - (-1 + (double)(n % 5))) < 1e-15);
+        assert_true(fabs(cloud.x[3 * n + 1] - (double)(n / 5 % 4) / 3) < 1e-15);
+        assert_true(fabs(cloud.x[3 * n + 2] - (2 + 0.25 * (double)(n / 20))) < 1e-15);
+    }
+    cloud_free(&cloud);
+}
+
+/* Jitter moves inner nodes by no more than it may, the boundary not at all, and depends on the seed only. */
+static void jitter_is_bounded(void **state)
+{
+    (void)state;
+    struct cloud_options options = options_of(CLOUD_JITTERED, 2);
+    options.count[0] = options.count[1] = 40;
+    struct cloud cloud = make(&options);
+    struct cloud again = make(&options);
+    options.seed = 8;
+    struct cloud other = make(&options);
+    options.kind = CLOUD_REGULAR;
+    struct cloud regular = make(&options);
+    double most = 0;
+    double moved = 0;
+    for (int64_t n = 0; n < cloud.node_count; n++) {
+        bool inner = n % 40 > 0 && n % 40 < 39 && n / 40 > 0 && n / 40 < 39;
+        for (int a = 0; a < 2; a++) {
+            double spacing = (options.high[a] - options.low[a]) / 39;
+            double d = fabs(cloud.x[2 * n + a] - regular.x[2 * n + a]) / spacing;
+            assert_true(inner || d == 0);
+            most = fmax(most, d);
+            moved += d;
+        }
+    }
+    assert_true(most <= 0.5 * (1 + 1e-12) && most > 0.49);
+    assert_true(fabs(moved / (2 * 38 * 38) - 0.25) < 0.02);
+    assert_memory_equal(cloud.x, again.x, (size_t)cloud.node_count * 2 * sizeof *cloud.x);
+    assert_memory_not_equal(cloud.x, other.x, (size_t)cloud.node_count * 2 * sizeof *cloud.x);
+    assert_true(fabs(total_volume(&cloud) / box_volume(&options) - 1) <
+                1e-13); /* valid at the largest jitter */
+    cloud_free(&cloud);
+    cloud_free(&again);
+    cloud_free(&other);
+    cloud_free(&regular);
+}
+
+static void grading_has_its_ratio(void **state)
+{
+    (void)state;
+    struct cloud_options options = options_of(CLOUD_GRADED, 2);
+    struct cloud cloud = make(&options);
+    const double *x = cloud.x;
+    assert_true(x[0] == -1 && x[8] == 3);
+    assert_true(fabs((x[8] - x[6]) / (x[2] - x[0]) - 8) < 1e-12);
+    assert_true(fabs((x[4] - x[2]) / (x[2] - x[0]) - 2) < 1e-12);
+    cloud_free(&cloud);
+}
+
+static void halton_is_in_the_box_and_even(void **state)
+{
+    (void)state;
+    struct cloud_options options = options_of(CLOUD_HALTON, 3);
+    options.count[0] = 1000;
+    struct cloud cloud = make(&options);
+    int eighth[8] = {0};
+    for (int64_t n = 0; n < cloud.node_count; n++) {
+        int at = 0;
+        for (int a = 0; a < 3; a++) {
+            double x = cloud.x[3 * n + a];
+            assert_true(x > options.low[a] && x < options.high[a]);
+            at = 2 * at + (x > (options.low[a] + options.high[a]) / 2);
+        }
+        eighth[at]++;
+    }
+    for (int i = 0; i < 8; i++) {
+        assert_in_range(eighth[i], 115, 135);
+    }
+    cloud_free(&cloud);
+}
+
+static void overturned_tetrahedra_are_left_out(void **state)
+{
+    (void)state;
+    struct cloud_options options = options_of(CLOUD_JITTERED, 3);
+    options.count[0] = options.count[1] = options.count[2] = 12;
+    options.jitter = 0.5;
+    struct cloud cloud = make(&options);
+    assert_int_equal(cloud.node_count, 1728);
+    assert_int_equal(cloud.cell_count, 0);
+    assert_int_equal(cloud.facet_count, 0);
+    cloud_free(&cloud);
+}
+
+static void wrong_options_are_refused(void **state)
+{
+    (void)state;
+    struct cloud_options good = options_of(CLOUD_JITTERED, 2);
+    for (int i = 0; i < 7; i++) {
+        struct cloud_options options = good;
+        struct cloud cloud;
+        struct error error = {""};
+        options.dim = i == 0 ? 4 : 2;
+        options.count[1] = i == 1 ? 1 : i == 2 ? INT32_MAX : 4;
+        options.high[0] = i == 3 ? -1 : i == 4 ? NAN : 3;
+        options.jitter = i == 5 ? 0.6 : 0.5;
+        if (i == 6) {
+            options.kind = CLOUD_GRADED;
+            options.ratio = 0.5;
+        }
+        assert_int_equal(cloud_make(&options, &cloud, &error), STATUS_INPUT);
+        assert_ptr_equal(strstr(error.text, "cloud: "), error.text);
+        assert_null(cloud.x);
+    }
+}
+
+static void functions_have_their_values(void **state)
+{
+    (void)state;
+    const double x[3] = {0.5, -2, 3};
+    assert_true(fabs(cloud_function_value(FUNCTION_PAPER, 2, x) - (1 - 4.25) * exp(-4.25 / 2)) < 1e-16);
+    assert_true(fabs(cloud_function_value(FUNCTION_PAPER, 3, x) - (1 - 13.25) * exp(-13.25 / 2)) < 1e-16);
+    assert_true(cloud_function_value(FUNCTION_LINEAR, 2, x) == -4);
+    assert_true(cloud_function_value(FUNCTION_LINEAR, 3, x) == 8);
+    assert_true(cloud_function_value(FUNCTION_QUADRATIC, 2, x) == -4 + 0.25 + 2 + 12);
+    assert_true(cloud_function_value(FUNCTION_QUADRATIC, 3, x) == 8 + 0.25 + 2 + 12 + 1.5 + 6 + 18);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(cells_fill_the_box),
+        cmocka_unit_test(facets_look_outward),
+        cmocka_unit_test(neighbours_conform),
+        cmocka_unit_test(regular_nodes_are_where_they_should),
+        cmocka_unit_test(jitter_is_bounded),
+        cmocka_unit_test(grading_has_its_ratio),
+        cmocka_unit_test(halton_is_in_the_box_and_even),
+        cmocka_unit_test(overturned_tetrahedra_are_left_out),
+        cmocka_unit_test(wrong_options_are_refused),
+        cmocka_unit_test(functions_have_their_values),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
