@@ -294,23 +294,30 @@ static void write_series(const struct tool *tool, struct plot *plot, bool text)
     size_t stem = strlen(tool->output) - strlen(".pvd");
     const char *slash = strrchr(tool->output, '/');
     size_t folder = slash != NULL ? (size_t)(slash - tool->output) + 1 : 0;
-    char **names = array_new(count, sizeof *names); /* live as long as the process */
+    char **paths = array_new(count, sizeof *paths);
+    char **names = array_new(count, sizeof *names); /* relative to the .pvd file: the ends of the paths */
     double *times = array_new(count, sizeof *times);
-    if (names == NULL || times == NULL) {
+    if (paths == NULL || names == NULL || times == NULL) {
         tool_fail(tool, STATUS_SYSTEM, "out of memory");
     }
     for (int64_t i = 0; i < count; i++) {
         int64_t frame = frame_number(plot, i);
         tool_check(tool, time_of(plot, frame, &times[i], &error), &error);
-        if (asprintf(&names[i], "%.*s-%04lld.vtu", (int)stem, tool->output, (long long)frame) < 0) {
+        if (asprintf(&paths[i], "%.*s-%04lld.vtu", (int)stem, tool->output, (long long)frame) < 0) {
             tool_fail(tool, STATUS_SYSTEM, "out of memory");
         }
-        target_open(tool, &target, names[i]);
+        target_open(tool, &target, paths[i]);
         target_close(tool, &target, write_vtu(plot, frame, text, target.file, &error), &error);
-        names[i] += folder;
+        names[i] = paths[i] + folder;
     }
     target_open(tool, &target, tool->output);
     target_close(tool, &target, pvd_write(target.file, count, names, times, &error), &error);
+    for (int64_t i = 0; i < count; i++) {
+        free(paths[i]);
+    }
+    free(paths);
+    free(names);
+    free(times);
 }
 
 int main(int argc, char *argv[])
