@@ -213,6 +213,20 @@ static double reproduction_defect(int dim, const struct mls_local *local, const 
     return worst;
 }
 
+/* One step of refinement of sum phi p = p(0) and sum grad phi p = grad p(0), p linear. */
+static void restore_linear(int m, int dim, const struct mls_factor *factor, const struct mls_local *local,
+                           double *phi, double *dphi)
+{
+    double target[4] = {1.0, 0.0, 0.0, 0.0};
+    mls_restore_linear(m, dim, factor, local, target, phi, 1);
+    target[0] = 0.0;
+    for (int a = 0; dphi != NULL && a < dim; a++) {
+        target[1 + a] = 1.0 / local->scale;
+        mls_restore_linear(m, dim, factor, local, target, dphi + a, dim);
+        target[1 + a] = 0.0;
+    }
+}
+
 static inline __attribute__((always_inline)) enum mls_verdict
 evaluate(const struct mls *mls, const struct mls_support *support, int dim, int m, struct mls_local *local,
          double *phi, double *dphi)
@@ -236,6 +250,9 @@ evaluate(const struct mls *mls, const struct mls_support *support, int dim, int 
             gradient_right_side(m, a, local, right);
             mls_solve(m, &factor, local, right, g);
             gradient(m, dim, a, local, g, dphi);
+        }
+        if (factor.orthogonal) {
+            restore_linear(m, dim, &factor, local, phi, dphi);
         }
         if (reproduction_defect(dim, local, phi, dphi) <= (factor.orthogonal ? 1e-10 : 1e-13)) {
             break;

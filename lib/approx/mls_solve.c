@@ -47,24 +47,26 @@ static void ldlt(int m, int leading, const double *matrix, struct mls_factor *fa
     }
 }
 
-static void substitute(int m, const struct mls_factor *factor, const double *right, double *solution)
+/* Solve with the leading `size` rows and columns of the m x m factor. */
+static void substitute(int m, int size, const struct mls_factor *factor, const double *right,
+                       double *solution)
 {
     const double *lower = factor->lower;
-    for (int k = 0; k < m; k++) {
+    for (int k = 0; k < size; k++) {
         double sum = right[k] * factor->scaling[k];
         for (int i = 0; i < k; i++) {
             sum -= lower[k * m + i] * solution[i];
         }
         solution[k] = factor->orthogonal ? sum / lower[k * m + k] : sum;
     }
-    for (int k = m - 1; k >= 0; k--) {
+    for (int k = size - 1; k >= 0; k--) {
         double sum = factor->orthogonal ? solution[k] : solution[k] / factor->pivot[k];
-        for (int i = k + 1; i < m; i++) {
+        for (int i = k + 1; i < size; i++) {
             sum -= lower[i * m + k] * solution[i];
         }
         solution[k] = factor->orthogonal ? sum / lower[k * m + k] : sum;
     }
-    for (int k = 0; k < m; k++) {
+    for (int k = 0; k < size; k++) {
         solution[k] *= factor->scaling[k];
     }
 }
@@ -90,7 +92,7 @@ static double reciprocal_condition(int m, int size, const struct mls_local *loca
     for (int k = 0; k < size; k++) {
         double unit[MLS_MAX_BASIS] = {0.0}, column[MLS_MAX_BASIS], sum = 0.0;
         unit[k] = 1.0;
-        substitute(size, &factor, unit, column);
+        substitute(size, size, &factor, unit, column);
         for (int l = 0; l < size; l++) {
             sum += fabs(column[l]);
         }
@@ -172,7 +174,7 @@ void mls_solve(int m, const struct mls_factor *factor, const struct mls_local *l
                double *solution)
 {
     double residual[MLS_MAX_BASIS] = {0.0}, correction[MLS_MAX_BASIS];
-    substitute(m, factor, right, solution);
+    substitute(m, m, factor, right, solution);
     for (int k = 0; k < m; k++) {
         double sum = right[k];
         for (int l = 0; l < m; l++) {
@@ -180,7 +182,7 @@ void mls_solve(int m, const struct mls_factor *factor, const struct mls_local *l
         }
         residual[k] = sum;
     }
-    substitute(m, factor, residual, correction);
+    substitute(m, m, factor, residual, correction);
     for (int k = 0; k < m; k++) {
         solution[k] += correction[k];
     }
@@ -206,5 +208,26 @@ void mls_orthogonal_values(int m, const struct mls_factor *factor, struct mls_lo
         double root = sqrt(local->weight[j]);
         phi[j] = root * sum;
         local->projection[j] = root > 1e-150 ? sum / root : 0.0;
+    }
+}
+
+void mls_restore_linear(int m, int dim, const struct mls_factor *factor, const struct mls_local *local,
+                        const double *target, double *values, int value_stride)
+{
+    double defect[MLS_MAX_BASIS], correction[MLS_MAX_BASIS];
+    for (int k = 0; k <= dim; k++) {
+        const double *pk = local->monomials + k * local->stride;
+        defect[k] = target[k];
+        for (int64_t j = 0; j < local->count; j++) {
+            defect[k] -= values[j * value_stride] * pk[j];
+        }
+    }
+    substitute(m, dim + 1, factor, defect, correction);
+    for (int64_t j = 0; j < local->count; j++) {
+        double sum = 0.0;
+        for (int k = 0; k <= dim; k++) {
+            sum += local->monomials[k * local->stride + j] * correction[k];
+        }
+        values[j * value_stride] += local->weight[j] * sum;
     }
 }

@@ -50,4 +50,10 @@ void mls_solve(int m, const struct mls_factor *factor, const struct mls_local *l
 void mls_orthogonal_values(int m, const struct mls_factor *factor, struct mls_local *local, double *c,
                            double *phi);
 
+/* Correct values[j * value_stride] by w_j p_j . c over the linear monomials, where H is zero, so that
+ * sum_j value_j p_k(xi_j) = target[k], k <= dim, to round-off: what is lost in solving with an
+ * ill-conditioned quadratic part is not lost to the linear fields. */
+void mls_restore_linear(int m, int dim, const struct mls_factor *factor, const struct mls_local *local,
+                        const double *target, double *values, int value_stride);
+
 #endif

@@ -1,0 +1,422 @@
+/* Moving least squares at scattered points: the properties of its shape functions, whatever the basis, the
+ * weight function, the unit and the place; gradients; the limits of the modified basis; convergence. */
+#include "approx_fixture.h"
+
+static void weights(void **state)
+{
+    (void)state;
+    for (int w = 0; w < WEIGHT_COUNT; w++) {
+        double value, slope, before = 1.0;
+        weight_evaluate((enum weight_function)w, 0.0, &value, &slope);
+        at_most(fabs(value - 1.0), 1e-14, "w(0) - 1");
+        assert_true(isfinite(slope) && slope <= 0.0);
+        for (double r = 0.01; r < 1.0; r += 0.0137) {
+            double h = 1e-6, plus, minus, unused;
+            weight_evaluate((enum weight_function)w, r * r, &value, &slope);
+            weight_evaluate((enum weight_function)w, (r + h) * (r + h), &plus, &unused);
+            weight_evaluate((enum weight_function)w, (r - h) * (r - h), &minus, &unused);
+            assert_true(value > 0.0 && value <= before);
+            before = value;
+            at_most(fabs(slope * r - (plus - minus) / (2.0 * h)), 1e-6, "slope against differences");
+        }
+        weight_evaluate((enum weight_function)w, 1.0 - 1e-9, &value, &slope);
+        at_most(fabs(value), 1e-9, "w(1)");
+    }
+}
+
+/* All bases, weights, dimensions and places. */
+static void reproduction(void **state)
+{
+    (void)state;
+    for (int dim = 2; dim <= 3; dim++) {
+        for (int p = 0; p < PLACE_COUNT; p++) {
+            struct scattered cloud = scatter(dim, dim == 2 ? 12 : 6, 100, &places[p], 0.3, 7);
+            for (int b = 0; b < BASIS_COUNT; b++) {
+                for (int w = 0; w < WEIGHT_COUNT; w++) {
+                    struct support_options options = options_for(dim, (enum basis)b, (enum weight_function)w);
+                    struct table table;
+                    struct error error;
+                    good(tabulate(&options, cloud.count, cloud.x, 100, cloud.points, &table, &error), &error);
+                    struct defects worst =
+                        table_defects(&table, dim, cloud.x, cloud.points, 2.0 * cloud.spacing);
+                    if (getenv("SHOW")) {
+                        print_message("%dD %s %s %s: %.1e %.1e %.1e %.1e widened %d\n", dim, places[p].name,
+                                      basis_names[b], weight_names[w], worst.unity, worst.position,
+                                      worst.gradient_sum, worst.gradient_position, (int)table.lists.widened);
+                    }
+                    at_most(worst.unity, 1e-12, "sum phi - 1");
+                    at_most(worst.position, 1e-12, "sum phi x - x");
+                    at_most(worst.gradient_sum, 1e-12, "sum grad phi");
+                    at_most(worst.gradient_position, 1e-12, "sum grad phi x - I");
+                    table_free(&table);
+                }
+            }
+            scattered_free(&cloud);
+        }
+    }
+}
+
+/* A full quadratic in coordinates from the body's corner in units of its size, and its gradient there. */
+static double quadratic(int dim, const double *x, double offset, double size, double *gradient)
+{
+    static const double linear[] = {2.0, -3.0, 4.0};
+    static const double second[3][3] = {{1.0, -0.5, 0.25}, {-0.5, 3.0, -1.0}, {0.25, -1.0, 2.0}};
+    double value = 1.0;
+    for (int a = 0; a < dim; a++) {
+        double xa = (x[a] - offset) / size;
+        gradient[a] = linear[a];
+        value += linear[a] * xa;
+        for (int b = 0; b < dim; b++) {
+            double xb = (x[b] - offset) / size;
+            value += second[a][b] * xa * xb;
+            gradient[a] += 2.0 * second[a][b] * xb;
+        }
+        gradient[a] /= size;
+    }
+    return value;
+}
+
+static void quadratic_reproduction(void **state)
+{
+    (void)state;
+    for (int dim = 2; dim <= 3; dim++) {
+        for (int p = 0; p < PLACE_COUNT; p++) {
+            struct scattered cloud = scatter(dim, dim == 2 ? 12 : 6, 100, &places[p], 0.3, 11);
+            struct support_options options = options_for(dim, BASIS_QUADRATIC, WEIGHT_QUARTIC);
+            struct table table;
+            struct error error;
+            good(tabulate(&options, cloud.count, cloud.x, 100, cloud.points, &table, &error), &error);
+            for (int64_t q = 0; q < 100; q++) {
+                double value = 0.0, slope[3] = {0.0}, expected[3], unused[3];
+                for (int64_t i = table.lists.ptr[q]; i < table.lists.ptr[q + 1]; i++) {
+                    double nodal = quadratic(dim, cloud.x + (int64_t)table.lists.idx[i] * dim,
+                                             places[p].offset, cloud.size, unused);
+                    value += table.phi[i] * nodal;
+                    for (int a = 0; a < dim; a++) {
+                        slope[a] += table.dphi[i * dim + a] * nodal;
+                    }
+                }
+                value -= quadratic(dim, cloud.points + q * dim, places[p].offset, cloud.size, expected);
+                at_most(fabs(value), 1e-11, "value of a quadratic");
+                for (int a = 0; a < dim; a++) {
+                    at_most(fabs(slope[a] - expected[a]) * cloud.size, 1e-9, "gradient of a quadratic");
+                }
+            }
+            table_free(&table);
+            scattered_free(&cloud);
+        }
+    }
+}
+
+/* phi of one point on given neighbours, and its gradient unless NULL. */
+static void evaluate(const struct mls *mls, const struct scattered *cloud, const struct table *table,
+                     int64_t p, const double *x, double *phi, double *dphi)
+{
+    struct mls_work work = {0};
+    enum mls_verdict verdict;
+    struct error error;
+    struct mls_support support = {.x = x,
+                                  .nodes = cloud->x,
+                                  .radius = table->radius,
+                                  .widen = table->lists.widen[p],
+                                  .neighbours = table->lists.idx + table->lists.ptr[p],
+                                  .count = table->lists.ptr[p + 1] - table->lists.ptr[p]};
+    good(mls_evaluate(mls, &support, &work, phi, dphi, &verdict, &error), &error);
+    assert_int_equal(verdict, MLS_GOOD);
+    mls_work_free(&work);
+}
+
+enum { MOST = 1000 };
+
+/* Full gradients against central differences; nodes that leave or enter the support between the two points
+ * have weights of zero to third order. */
+static void gradients(void **state)
+{
+    (void)state;
+    for (int dim = 2; dim <= 3; dim++) {
+        struct scattered cloud = scatter(dim, dim == 2 ? 10 : 6, 20, &places[2], 0.3, 3);
+        for (int b = 0; b < BASIS_COUNT; b++) {
+            for (int w = 0; w < WEIGHT_COUNT; w++) {
+                struct support_options options = options_for(dim, (enum basis)b, (enum weight_function)w);
+                struct table table;
+                struct error error;
+                good(tabulate(&options, cloud.count, cloud.x, 20, cloud.points, &table, &error), &error);
+                double h = 1e-5 * cloud.spacing;
+                for (int64_t p = 0; p < 20; p++) {
+                    double plus[MOST], minus[MOST], x[3], largest = 0.0;
+                    int64_t first = table.lists.ptr[p], count = table.lists.ptr[p + 1] - first;
+                    assert_true(count <= MOST);
+                    for (int64_t i = first * dim; i < (first + count) * dim; i++) {
+                        largest = fmax(largest, fabs(table.dphi[i]));
+                    }
+                    for (int a = 0; a < dim; a++) {
+                        memcpy(x, cloud.points + p * dim, (size_t)dim * sizeof *x);
+                        double up = x[a] + h, down = x[a] - h;
+                        x[a] = up;
+                        evaluate(&options.mls, &cloud, &table, p, x, plus, NULL);
+                        x[a] = down;
+                        evaluate(&options.mls, &cloud, &table, p, x, minus, NULL);
+                        for (int64_t i = 0; i < count; i++) {
+                            double difference = (plus[i] - minus[i]) / (up - down);
+                            at_most(fabs(table.dphi[(first + i) * dim + a] - difference) / largest, 3e-5,
+                                    "gradient against differences");
+                        }
+                    }
+                }
+                table_free(&table);
+            }
+        }
+        scattered_free(&cloud);
+    }
+}
+
+/* Largest difference of phi and of grad phi times spacing between two settings on the same supports. */
+static double apart(const struct mls *one, const struct mls *two, const struct scattered *cloud,
+                    const struct table *table)
+{
+    double worst = 0.0;
+    int dim = cloud->dim;
+    for (int64_t p = 0; p < cloud->point_count; p++) {
+        double phi[2][MOST], dphi[2][3 * MOST];
+        int64_t count = table->lists.ptr[p + 1] - table->lists.ptr[p];
+        assert_true(count <= MOST);
+        evaluate(one, cloud, table, p, cloud->points + p * dim, phi[0], dphi[0]);
+        evaluate(two, cloud, table, p, cloud->points + p * dim, phi[1], dphi[1]);
+        for (int64_t i = 0; i < count; i++) {
+            worst = worse(worst, phi[0][i] - phi[1][i]);
+        }
+        for (int64_t i = 0; i < count * dim; i++) {
+            worst = worse(worst, (dphi[0][i] - dphi[1][i]) * cloud->spacing);
+        }
+    }
+    return worst;
+}
+
+static struct mls with_mu(struct mls mls, double mu)
+{
+    for (int k = 0; k < MLS_MAX_SECOND; k++) {
+        mls.mu[k] = mu;
+    }
+    return mls;
+}
+
+/* MMLS lies between linear MLS (mu huge) and quadratic MLS (mu nothing). */
+static void limits_of_modified(void **state)
+{
+    (void)state;
+    for (int dim = 2; dim <= 3; dim++) {
+        struct scattered cloud = scatter(dim, dim == 2 ? 10 : 6, 30, &places[0], 0.3, 5);
+        struct support_options options = options_for(dim, BASIS_QUADRATIC, WEIGHT_QUARTIC);
+        struct table table;
+        struct error error;
+        good(tabulate(&options, cloud.count, cloud.x, 30, cloud.points, &table, &error), &error);
+        struct mls linear = options_for(dim, BASIS_LINEAR, WEIGHT_QUARTIC).mls;
+        struct mls modified = options_for(dim, BASIS_MODIFIED, WEIGHT_QUARTIC).mls;
+        struct mls huge = with_mu(modified, 1e12), nothing = with_mu(modified, 1e-14);
+        at_most(apart(&huge, &linear, &cloud, &table), 1e-9, "mu = 1e12 from linear MLS");
+        at_most(apart(&nothing, &options.mls, &cloud, &table), 1e-8, "mu = 1e-14 from quadratic MLS");
+        struct mls middle = with_mu(modified, 1e-2);
+        assert_true(apart(&middle, &linear, &cloud, &table) > 1e-3);
+        assert_true(apart(&middle, &options.mls, &cloud, &table) > 1e-3);
+        table_free(&table);
+        scattered_free(&cloud);
+    }
+}
+
+/* An absolute mu is the dimensionless mu s^4; one mu for each monomial acts on that one. */
+static void units_of_mu(void **state)
+{
+    (void)state;
+    for (int dim = 2; dim <= 3; dim++) {
+        struct scattered cloud = scatter(dim, dim == 2 ? 10 : 6, 30, &places[1], 0.3, 6);
+        struct support_options options = options_for(dim, BASIS_MODIFIED, WEIGHT_QUARTIC);
+        options.radius = 2.1 * cloud.spacing;
+        options.widen = false;
+        struct table table;
+        struct error error;
+        good(tabulate(&options, cloud.count, cloud.x, 30, cloud.points, &table, &error), &error);
+        double s4 = pow(options.radius, 4.0);
+        struct mls relative = with_mu(options.mls, 1e-3), absolute = with_mu(options.mls, 1e-3 * s4);
+        absolute.mu_absolute = true;
+        at_most(apart(&relative, &absolute, &cloud, &table), 1e-10, "absolute mu from mu / s^4");
+        for (int k = 0; k < mls_second_order_count(dim); k++) {
+            struct mls one = relative;
+            one.mu[k] = 1.0;
+            assert_true(apart(&relative, &one, &cloud, &table) > 1e-4);
+        }
+        table_free(&table);
+        scattered_free(&cloud);
+    }
+}
+
+/* Scaling by a power of two changes no bit of phi; a translation changes round-off only. */
+static void invariance(void **state)
+{
+    (void)state;
+    for (int dim = 2; dim <= 3; dim++) {
+        for (int b = 0; b < BASIS_COUNT; b++) {
+            const double factor = 1024.0;
+            struct scattered cloud = scatter(dim, dim == 2 ? 10 : 6, 50, &places[0], 0.3, 8);
+            struct scattered scaled = scatter(dim, dim == 2 ? 10 : 6, 50, &places[0], 0.3, 8);
+            struct scattered moved = scatter(dim, dim == 2 ? 10 : 6, 50, &places[0], 0.3, 8);
+            for (int64_t i = 0; i < cloud.count * dim; i++) {
+                scaled.x[i] *= factor;
+                moved.x[i] += 1.0;
+            }
+            for (int64_t i = 0; i < 50 * dim; i++) {
+                scaled.points[i] *= factor;
+                moved.points[i] += 1.0;
+            }
+            struct support_options options = options_for(dim, (enum basis)b, WEIGHT_QUARTIC);
+            struct table one, two, three;
+            struct error error;
+            good(tabulate(&options, cloud.count, cloud.x, 50, cloud.points, &one, &error), &error);
+            good(tabulate(&options, cloud.count, scaled.x, 50, scaled.points, &two, &error), &error);
+            good(tabulate(&options, cloud.count, moved.x, 50, moved.points, &three, &error), &error);
+            int64_t pairs = one.lists.ptr[50];
+            assert_memory_equal(one.lists.ptr, two.lists.ptr, 51 * sizeof(int64_t));
+            assert_memory_equal(one.lists.idx, two.lists.idx, (size_t)pairs * sizeof(int32_t));
+            assert_memory_equal(one.lists.idx, three.lists.idx, (size_t)pairs * sizeof(int32_t));
+            assert_memory_equal(one.phi, two.phi, (size_t)pairs * sizeof(double));
+            for (int64_t i = 0; i < pairs; i++) {
+                at_most(fabs(one.phi[i] - three.phi[i]), 1e-9, "phi after a translation");
+            }
+            for (int64_t i = 0; i < pairs * dim; i++) {
+                assert_true(one.dphi[i] == two.dphi[i] * factor);
+                at_most(fabs(one.dphi[i] - three.dphi[i]) * cloud.spacing, 1e-8,
+                        "grad phi after a translation");
+            }
+            table_free(&one);
+            table_free(&two);
+            table_free(&three);
+            scattered_free(&cloud);
+            scattered_free(&scaled);
+            scattered_free(&moved);
+        }
+    }
+}
+
+static double wave(int dim, const double *x)
+{
+    double value = 1.0;
+    for (int a = 0; a < dim; a++) {
+        value *= sin(3.0 * x[a] + 0.4 + a);
+    }
+    return value;
+}
+
+/* RMS error of the fit of a smooth function on a cloud of that fineness. */
+static double fit_error(int dim, enum basis basis, int per_axis)
+{
+    static const struct place unit = {"unit", 1.0, 0.0};
+    struct scattered cloud = scatter(dim, per_axis, 400, &unit, 0.2, 21);
+    struct support_options options = options_for(dim, basis, WEIGHT_QUARTIC);
+    options.radius = (basis == BASIS_LINEAR ? 1.8 : 2.6) * cloud.spacing;
+    struct table table;
+    struct error error;
+    double sum = 0.0;
+    good(tabulate(&options, cloud.count, cloud.x, 400, cloud.points, &table, &error), &error);
+    for (int64_t p = 0; p < 400; p++) {
+        double value = -wave(dim, cloud.points + p * dim);
+        for (int64_t i = table.lists.ptr[p]; i < table.lists.ptr[p + 1]; i++) {
+            value += table.phi[i] * wave(dim, cloud.x + (int64_t)table.lists.idx[i] * dim);
+        }
+        sum += value * value;
+    }
+    table_free(&table);
+    scattered_free(&cloud);
+    return sqrt(sum / 400.0);
+}
+
+/* Order 2 for the linear basis, 3 for the quadratic and the modified. */
+static void convergence(void **state)
+{
+    (void)state;
+    for (int dim = 2; dim <= 3; dim++) {
+        for (int b = 0; b < BASIS_COUNT; b++) {
+            int coarse = dim == 2 ? 13 : 7, fine = 2 * coarse - 1;
+            double before = fit_error(dim, (enum basis)b, coarse),
+                   after = fit_error(dim, (enum basis)b, fine);
+            double order = log2(before / after);
+            print_message("# %dD %s: %d, %d nodes per axis: %.3g, %.3g, order %.2f\n", dim, basis_names[b],
+                          coarse, fine, before, after, order);
+            at_most((b == BASIS_LINEAR ? 1.8 : 2.7), order, "order of convergence");
+        }
+    }
+}
+
+/* RMSE of the paper's test function (1 - r^2) exp(-r^2 / 2) on 81 x 81 points from 18 x 18 nodes over [-4,
+ * 4]^2, quartic weight, at most the 20 nearest nodes; infinity where singular. */
+static double paper_error(enum basis basis, double mu, double radius)
+{
+    double x[324 * 2], values[324], sum = 0.0;
+    double *points = malloc(6561 * 2 * sizeof *points);
+    struct table table;
+    struct error error;
+    assert_non_null(points);
+    for (int n = 0; n < 324; n++) {
+        x[2 * n] = -4.0 + 8.0 * (n % 18) / 17.0;
+        x[2 * n + 1] = -4.0 + 8.0 * (n / 18) / 17.0;
+        double r2 = x[2 * n] * x[2 * n] + x[2 * n + 1] * x[2 * n + 1];
+        values[n] = (1.0 - r2) * exp(-0.5 * r2);
+    }
+    for (int p = 0; p < 6561; p++) {
+        points[2 * p] = -4.0 + 0.1 * (p % 81);
+        points[2 * p + 1] = -4.0 + 0.1 * (p / 81);
+    }
+    struct support_options options = {.radius = radius, .most = 20, .mls = mls_default(2)};
+    options.mls = with_mu(options.mls, mu);
+    options.mls.basis = basis;
+    options.mls.mu_absolute = true;
+    enum status status = tabulate(&options, 324, x, 6561, points, &table, &error);
+    assert_true(status == STATUS_OK || status == STATUS_VERDICT);
+    for (int p = 0; p < 6561 && status == STATUS_OK; p++) {
+        double r2 = points[2 * p] * points[2 * p] + points[2 * p + 1] * points[2 * p + 1];
+        double value = -(1.0 - r2) * exp(-0.5 * r2);
+        for (int64_t i = table.lists.ptr[p]; i < table.lists.ptr[p + 1]; i++) {
+            value += table.phi[i] * values[table.lists.idx[i]];
+        }
+        sum += value * value;
+    }
+    table_free(&table);
+    free(points);
+    return status == STATUS_OK ? sqrt(sum / 6561.0) : INFINITY;
+}
+
+/* Table 1 of the paper, regular cloud, R = 2.0, 1.5, 0.8. */
+static void paper_table(void **state)
+{
+    (void)state;
+    static const struct {
+        enum basis basis;
+        double mu, rmse[3];
+    } rows[] = {
+        {BASIS_LINEAR, 0.0, {0.0817, 0.0636, 0.0218}},    {BASIS_QUADRATIC, 0.0, {0.0146, 0.0100, INFINITY}},
+        {BASIS_MODIFIED, 1e-1, {0.0220, 0.0223, 0.0203}}, {BASIS_MODIFIED, 1e-2, {0.0153, 0.0114, 0.0139}},
+        {BASIS_MODIFIED, 1e-3, {0.0147, 0.0101, 0.0072}}, {BASIS_MODIFIED, 1e-4, {0.0146, 0.0100, 0.0059}}};
+    static const double radii[] = {2.0, 1.5, 0.8};
+    for (size_t r = 0; r < sizeof rows / sizeof *rows; r++) {
+        for (int c = 0; c < 3; c++) {
+            double rmse = paper_error(rows[r].basis, rows[r].mu, radii[c]);
+            print_message("# %s mu %g R %g: %.5f, paper %.4f\n", basis_names[rows[r].basis], rows[r].mu,
+                          radii[c], rmse, rows[r].rmse[c]);
+            if (isinf(rows[r].rmse[c])) {
+                assert_true(isinf(rmse));
+            } else {
+                at_most(fabs(rmse - rows[r].rmse[c]), 1.5e-4, "difference from the paper");
+            }
+        }
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(weights),     cmocka_unit_test(reproduction),
+        cmocka_unit_test(gradients),   cmocka_unit_test(quadratic_reproduction),
+        cmocka_unit_test(units_of_mu), cmocka_unit_test(limits_of_modified),
+        cmocka_unit_test(invariance),  cmocka_unit_test(convergence),
+        cmocka_unit_test(paper_table),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
