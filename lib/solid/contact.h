@@ -3,7 +3,10 @@
  * The gap of hat a is that of its averaged position x_a = sum_j Phi_aj (X_j + u_j). Its pressure is
  * p_a = max(0, lambda_a - k g_a): a penalty k, made exact by the multiplier lambda_a (augmented Lagrangian),
  * and the force on the parameters is Phi_aj p_a A_a n: transferred by the same averages that measure the gap,
- * so that the total force on the body is sum_a p_a A_a n. Smooth in time: no projection, no chatter. */
+ * so that the total force on the body is sum_a p_a A_a n. Smooth in time: no projection, no chatter.
+ *
+ * Contact begins where a hat goes through the surface. One that comes round an open rim to the back, deeper
+ * than half its own size, stays free until it is in front again. */
 #ifndef SOLID_CONTACT_H
 #define SOLID_CONTACT_H
 
@@ -14,32 +17,37 @@ struct contact {
     int dim;
     int64_t count;
     const struct boundary_averages *averages; /* the caller's; must outlive the contact */
-    const double *X;                          /* nodes, node_count * dim, m; the caller's */
     struct rigid_surface surface;             /* owned */
-    double stiffness;                         /* k, Pa/m */
+    double stiffness;                         /* k, Pa/m, > 0 */
+    double *rest;                             /* count * dim: x_a at u = 0, m */
     double *multiplier;                       /* count: lambda_a, Pa, >= 0 */
-    double *gap;      /* count: at the last evaluation, m; INFINITY where none is near */
-    double *pressure; /* count: p_a, Pa */
-    double *normal;   /* count * dim */
+    double *gap;                              /* count: when last looked at, m; INFINITY beyond a rim */
+    double *pressure;                         /* count: p_a, Pa */
+    double *normal;                           /* count * dim: unit, on the body; 0 beyond a rim */
+    bool *behind;                             /* count: came to the back without going through */
     /* A hat is not looked at again before it has moved as far as the surface was away. */
     double *checked_x;        /* count * dim: position when it was last looked at */
     double *checked_distance; /* count */
 };
 
-/* Takes over `surface` (also on failure). */
+/* Takes over `surface` (also on failure: it becomes empty). X: nodes, m. STATUS_INPUT when a hat lies behind
+ * the surface, deeper than its own size, at the start: the surface's side is the wrong one. */
 MUST_CHECK enum status contact_build(const struct boundary_averages *averages, const double *X, int dim,
                                      struct rigid_surface *surface, double stiffness, struct contact *contact,
                                      struct error *error);
 void contact_free(struct contact *contact);
 
-/* Evaluate gaps and pressures at parameters u and add the contact forces to force[node_count * dim], N (2D:
- * N/m). */
+/* Evaluate gaps and pressures at parameters u and add the contact forces on the body, - grad_u of
+ * contact_energy, to force[node_count * dim], N (2D: N/m). */
 void contact_force(struct contact *contact, const double *u, double *force);
+
+/* Have the next contact_force look at all hats, so that every gap is that of its u. */
+void contact_look_again(struct contact *contact);
 
 /* Augment: lambda_a = p_a of the last evaluation; returns the largest penetration seen then, m. */
 double contact_augment(struct contact *contact);
 
-/* Energy of the penalty, sum A_a (p_a^2 - lambda_a^2) / (2 k), J. */
+/* Energy of the penalty at the last evaluation, sum A_a (p_a^2 - lambda_a^2) / (2 k), J (2D: J/m). */
 double contact_energy(const struct contact *contact);
 
 /* Total force on the body at the last evaluation, total[dim], N (2D: N/m). */

@@ -11,34 +11,41 @@
 struct rigid_surface {
     int dim;
     int64_t vertex_count, facet_count;
+    double extent;         /* diagonal of the box around it, m */
     double *vertex;        /* vertex_count * dim, m; coincident corners are one vertex */
     int32_t *facet;        /* facet_count * dim */
     double *normal;        /* facet_count * dim: unit normals, pointing to the body's side */
     double *vertex_normal; /* vertex_count * dim: angle-weighted mean, for the sign at vertices */
-    double *edge_normal;   /* 3D: facet_count * 3 * 3, mean of the two facets at each edge */
-    bool *
-        is_rim; /* per vertex (2D: an end of a curve) or per facet edge (3D: facet_count * 3, no neighbour) */
+    double *edge_normal; /* 3D: facet_count * 3 * 3, mean of the facets at the edge from corner k to k + 1 */
+    bool *is_rim;        /* vertex_count: 2D an end of a curve, 3D on an edge without neighbour */
+    bool *edge_is_rim;   /* 3D: facet_count * 3, no neighbour */
     /* Uniform bins over the facets' boxes. */
-    double origin[3], bin;
-    int64_t bins[3];
-    int64_t *start; /* CSR over bins */
+    double origin[3], bin; /* lower corner; edge of a bin, m */
+    int64_t bins[3];       /* 1 beyond dim */
+    int64_t *start;        /* CSR over bins, the last axis fastest */
     int32_t *in_bin;
 };
 
 /* Build from corner coordinates: corners[facet_count * dim * dim], m. Each facet's normal is (dy, -dx) of its
  * direction in 2D - to the right, walking along it - and right-handed in 3D; `flip` turns all of them. After
- * that they must point to the body's side. STATUS_INPUT for facets of no size. */
+ * that they must point to the body's side. Corners closer than 1e-9 of the surface's extent are one vertex.
+ * STATUS_INPUT for no facets, facets of no size, coordinates that are not finite, and two facets that meet
+ * but disagree on the side. */
 MUST_CHECK enum status rigid_build(int dim, int64_t facet_count, const double *corners, bool flip,
                                    struct rigid_surface *surface, struct error *error);
 void rigid_free(struct rigid_surface *surface);
 
-/* The closest point of the surface within `reach`. */
+/* The closest point of the surface within `reach` (INFINITY: wherever it is). */
 struct rigid_contact {
-    bool found;       /* false: nothing within reach, or beyond an open rim, where the surface ends */
-    double distance;  /* unsigned distance to the closest point, or `reach` when nothing is within */
-    double gap;       /* signed: positive on the body's side, m */
+    bool found;       /* false: nothing within reach, or x lies beyond an open rim, where the surface ends */
+    double distance;  /* how far x may move before contact can begin: the unsigned distance to the closest
+                         point; beyond a rim how far beyond; `reach` when nothing is within */
+    double gap;       /* signed distance: positive on the body's side, m */
     double normal[3]; /* unit, the direction in which the gap grows */
 };
+
+/* The sign is that of the pseudo-normal of the closest facet, edge or vertex (Baerentzen and Aanaes, IEEE
+ * Trans. Vis. Comput. Graph. 11, 2005), right at convex and concave corners alike. */
 struct rigid_contact rigid_closest(const struct rigid_surface *surface, const double *x, double reach);
 
 #endif

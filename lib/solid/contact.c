@@ -1,0 +1,188 @@
+#include "solid/contact.h"
+
+#include "base/memory.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Length of a hat, m. */
+static double hat_size(const struct contact *contact, int64_t a)
+{
+    return contact->dim == 2 ? contact->averages->area[a] : sqrt(contact->averages->area[a]);
+}
+
+/* sum_j Phi_aj v_j for node values v */
+static void average(const struct contact *contact, int64_t a, const double *v, double x[3])
+{
+    const struct boundary_averages *averages = contact->averages;
+    int dim = contact->dim;
+    x[0] = x[1] = x[2] = 0.0;
+    for (int64_t i = averages->ptr[a]; i < averages->ptr[a + 1]; i++) {
+        const double *value = v + (int64_t)averages->idx[i] * dim;
+        for (int c = 0; c < dim; c++) {
+            x[c] += averages->phi[i] * value[c];
+        }
+    }
+}
+
+/* No hat may start far behind the surface. */
+static enum status check_side(const struct contact *contact, struct error *error)
+{
+    for (int64_t a = 0; a < contact->count; a++) {
+        struct rigid_contact closest =
+            rigid_closest(&contact->surface, contact->rest + a * contact->dim, INFINITY);
+        if (closest.found && -closest.gap > hat_size(contact, a)) {
+            return fail(error, STATUS_INPUT,
+                        "contact: node %d starts %.3g m behind the rigid surface: state its other side, or "
+                        "leave the node's facets out",
+                        contact->averages->node[a], -closest.gap);
+        }
+    }
+    return STATUS_OK;
+}
+
+enum status contact_build(const struct boundary_averages *averages, const double *X, int dim,
+                          struct rigid_surface *surface, double stiffness, struct contact *contact,
+                          struct error *error)
+{
+    enum status status;
+    int64_t count = averages->count;
+    *contact = (struct contact){
+        .dim = dim, .count = count, .averages = averages, .surface = *surface, .stiffness = stiffness};
+    *surface = (struct rigid_surface){0};
+    TRY(NEW_ARRAY(&contact->rest, count * dim, error));
+    TRY(NEW_ARRAY(&contact->multiplier, count, error));
+    TRY(NEW_ARRAY(&contact->gap, count, error));
+    TRY(NEW_ARRAY(&contact->pressure, count, error));
+    TRY(NEW_ARRAY(&contact->normal, count * dim, error));
+    TRY(NEW_ARRAY(&contact->behind, count, error));
+    TRY(NEW_ARRAY(&contact->checked_x, count * dim, error));
+    TRY(NEW_ARRAY(&contact->checked_distance, count, error));
+    for (int64_t a = 0; a < count; a++) {
+        double x[3];
+        average(contact, a, X, x);
+        contact->gap[a] = INFINITY;
+        for (int c = 0; c < dim; c++) {
+            contact->rest[a * dim + c] = x[c];
+            contact->checked_x[a * dim + c] =
+                INFINITY; /* never looked at: it may be in contact from the start */
+        }
+    }
+    TRY(check_side(contact, error));
+done:
+    if (status != STATUS_OK) {
+        contact_free(contact);
+    }
+    return status;
+}
+
+void contact_free(struct contact *contact)
+{
+    rigid_free(&contact->surface);
+    free(contact->rest);
+    free(contact->multiplier);
+    free(contact->gap);
+    free(contact->pressure);
+    free(contact->normal);
+    free(contact->behind);
+    free(contact->checked_x);
+    free(contact->checked_distance);
+    *contact = (struct contact){0};
+}
+
+/* Find gap and normal of hat a, now at x, `moved` from where it was last looked at. */
+static void look(struct contact *contact, int64_t a, const double *x, double moved)
+{
+    int dim = contact->dim;
+    struct rigid_contact closest = rigid_closest(&contact->surface, x, INFINITY);
+    bool was_inside = contact->gap[a] < 0.0;
+    double gap = closest.found ? closest.gap : INFINITY;
+    if (!(gap < 0.0)) {
+        contact->behind[a] = false;
+    } else if (!was_inside && -gap > fmax(moved, 0.5 * hat_size(contact, a))) {
+        contact->behind[a] = true; /* it cannot have gone through since: it came round */
+    }
+    contact->gap[a] = contact->behind[a] ? INFINITY : gap;
+    contact->checked_distance[a] = gap < 0.0 ? 0.0 : closest.distance;
+    for (int c = 0; c < dim; c++) {
+        contact->normal[a * dim + c] = closest.normal[c];
+        contact->checked_x[a * dim + c] = x[c];
+    }
+}
+
+/* p_a at x. Hats that cannot have reached the surface are not looked at. */
+static double pressure_at(struct contact *contact, int64_t a, const double *x)
+{
+    double moved2 = 0.0, multiplier = contact->multiplier[a];
+    double free_way = contact->checked_distance[a] - multiplier / contact->stiffness;
+    for (int c = 0; c < contact->dim; c++) {
+        double step = x[c] - contact->checked_x[a * contact->dim + c];
+        moved2 += step * step;
+    }
+    if (free_way > 0.0 && moved2 < free_way * free_way) {
+        return 0.0;
+    }
+    look(contact, a, x, sqrt(moved2));
+    return fmax(0.0, multiplier - contact->stiffness * contact->gap[a]);
+}
+
+void contact_force(struct contact *contact, const double *u, double *force)
+{
+    const struct boundary_averages *averages = contact->averages;
+    int dim = contact->dim;
+    for (int64_t a = 0; a < contact->count; a++) {
+        double x[3];
+        average(contact, a, u, x);
+        for (int c = 0; c < dim; c++) {
+            x[c] += contact->rest[a * dim + c];
+        }
+        contact->pressure[a] = pressure_at(contact, a, x);
+        if (!(contact->pressure[a] > 0.0)) {
+            continue;
+        }
+        double strength = contact->pressure[a] * averages->area[a];
+        for (int64_t i = averages->ptr[a]; i < averages->ptr[a + 1]; i++) {
+            double *f = force + (int64_t)averages->idx[i] * dim;
+            for (int c = 0; c < dim; c++) {
+                f[c] += averages->phi[i] * strength * contact->normal[a * dim + c];
+            }
+        }
+    }
+}
+
+void contact_look_again(struct contact *contact)
+{
+    memset(contact->checked_distance, 0, (size_t)contact->count * sizeof *contact->checked_distance);
+}
+
+double contact_augment(struct contact *contact)
+{
+    double deepest = 0.0;
+    for (int64_t a = 0; a < contact->count; a++) {
+        contact->multiplier[a] = contact->pressure[a];
+        deepest = fmax(deepest, -contact->gap[a]);
+    }
+    return deepest;
+}
+
+double contact_energy(const struct contact *contact)
+{
+    double sum = 0.0;
+    for (int64_t a = 0; a < contact->count; a++) {
+        double p = contact->pressure[a], multiplier = contact->multiplier[a];
+        sum += contact->averages->area[a] * (p * p - multiplier * multiplier);
+    }
+    return sum / (2.0 * contact->stiffness);
+}
+
+void contact_total(const struct contact *contact, double *total)
+{
+    memset(total, 0, (size_t)contact->dim * sizeof *total);
+    for (int64_t a = 0; a < contact->count; a++) {
+        for (int c = 0; c < contact->dim; c++) {
+            total[c] +=
+                contact->pressure[a] * contact->averages->area[a] * contact->normal[a * contact->dim + c];
+        }
+    }
+}

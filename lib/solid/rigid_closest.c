@@ -1,0 +1,269 @@
+/* The closest point of a rigid surface: rings of bins around the point; see rigid.h. */
+#include "solid/rigid.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+/* Where on a facet the closest point lies; edge k goes from corner k to corner k + 1. */
+enum feature { ON_FACE, ON_CORNER_0, ON_CORNER_1, ON_CORNER_2, ON_EDGE_0, ON_EDGE_1, ON_EDGE_2 };
+
+/* Distances that agree to this part are the same: then a facet is preferred to a rim. */
+static const double tie = 1e-12;
+
+/* Offsets and distances below this part of the extent are round-off. */
+static const double round_off = 1e-12;
+
+struct nearest {
+    int64_t facet;    /* -1: none yet */
+    double distance2; /* INFINITY: none yet */
+    double point[3];
+    enum feature feature;
+    bool rim;
+};
+
+static const double *corner_of(const struct rigid_surface *surface, int64_t f, int k)
+{
+    return surface->vertex + (int64_t)surface->facet[f * surface->dim + k] * surface->dim;
+}
+
+static double dot(int dim, const double *a, const double *b)
+{
+    double sum = a[0] * b[0];
+    for (int i = 1; i < dim; i++) {
+        sum += a[i] * b[i];
+    }
+    return sum;
+}
+
+static void difference(int dim, const double *a, const double *b, double *d)
+{
+    for (int i = 0; i < dim; i++) {
+        d[i] = a[i] - b[i];
+    }
+}
+
+/* point = a + s b */
+static void along(int dim, const double *a, double s, const double *b, double *point)
+{
+    for (int i = 0; i < dim; i++) {
+        point[i] = a[i] + s * b[i];
+    }
+}
+
+static void scaled(int dim, double s, const double *v, double *result)
+{
+    for (int i = 0; i < dim; i++) {
+        result[i] = s * v[i];
+    }
+}
+
+static enum feature closest_on_segment(const double *a, const double *b, const double *x, double *point)
+{
+    double ab[2], ax[2];
+    difference(2, b, a, ab);
+    difference(2, x, a, ax);
+    double s = dot(2, ab, ax) / dot(2, ab, ab);
+    if (s <= 0.0) {
+        scaled(2, 1.0, a, point);
+        return ON_CORNER_0;
+    }
+    if (s >= 1.0) {
+        scaled(2, 1.0, b, point);
+        return ON_CORNER_1;
+    }
+    along(2, a, s, ab, point);
+    return ON_FACE;
+}
+
+/* Ericson, Real-Time Collision Detection (2005), 5.1.5: by the Voronoi regions of corners, edges, face. */
+static enum feature closest_on_triangle(const double *a, const double *b, const double *c, const double *x,
+                                        double *point)
+{
+    double ab[3], ac[3], bc[3], ax[3], bx[3], cx[3];
+    difference(3, b, a, ab);
+    difference(3, c, a, ac);
+    difference(3, c, b, bc);
+    difference(3, x, a, ax);
+    difference(3, x, b, bx);
+    difference(3, x, c, cx);
+    double d1 = dot(3, ab, ax), d2 = dot(3, ac, ax), d3 = dot(3, ab, bx), d4 = dot(3, ac, bx),
+           d5 = dot(3, ab, cx), d6 = dot(3, ac, cx);
+    double va = d3 * d6 - d5 * d4, vb = d5 * d2 - d1 * d6, vc = d1 * d4 - d3 * d2;
+    if (d1 <= 0.0 && d2 <= 0.0) {
+        scaled(3, 1.0, a, point);
+        return ON_CORNER_0;
+    }
+    if (d3 >= 0.0 && d4 <= d3) {
+        scaled(3, 1.0, b, point);
+        return ON_CORNER_1;
+    }
+    if (d6 >= 0.0 && d5 <= d6) {
+        scaled(3, 1.0, c, point);
+        return ON_CORNER_2;
+    }
+    if (vc <= 0.0 && d1 >= 0.0 && d3 <= 0.0) {
+        along(3, a, d1 / (d1 - d3), ab, point);
+        return ON_EDGE_0;
+    }
+    if (vb <= 0.0 && d2 >= 0.0 && d6 <= 0.0) {
+        along(3, a, d2 / (d2 - d6), ac, point);
+        return ON_EDGE_2;
+    }
+    if (va <= 0.0 && d4 >= d3 && d5 >= d6) {
+        along(3, b, (d4 - d3) / ((d4 - d3) + (d5 - d6)), bc, point);
+        return ON_EDGE_1;
+    }
+    along(3, a, vb / (va + vb + vc), ab, point);
+    along(3, point, vc / (va + vb + vc), ac, point);
+    return ON_FACE;
+}
+
+static bool on_rim(const struct rigid_surface *surface, int64_t f, enum feature feature)
+{
+    if (feature == ON_FACE) {
+        return false;
+    }
+    if (feature < ON_EDGE_0) {
+        return surface->is_rim[surface->facet[f * surface->dim + (int)feature - ON_CORNER_0]];
+    }
+    return surface->edge_is_rim[f * 3 + (int)feature - ON_EDGE_0];
+}
+
+/* Take the closest point of facet f if it is closer than the nearest so far. */
+static void consider(const struct rigid_surface *surface, int64_t f, const double *x, struct nearest *nearest)
+{
+    struct nearest here = {.facet = f};
+    int dim = surface->dim;
+    double away[3] = {0.0, 0.0, 0.0};
+    here.feature = dim == 2
+                       ? closest_on_segment(corner_of(surface, f, 0), corner_of(surface, f, 1), x, here.point)
+                       : closest_on_triangle(corner_of(surface, f, 0), corner_of(surface, f, 1),
+                                             corner_of(surface, f, 2), x, here.point);
+    here.rim = on_rim(surface, f, here.feature);
+    difference(dim, x, here.point, away);
+    here.distance2 = dot(dim, away, away);
+    if (here.distance2 < nearest->distance2 * (1.0 - tie) ||
+        (here.distance2 <= nearest->distance2 * (1.0 + tie) && nearest->rim && !here.rim)) {
+        *nearest = here;
+    }
+}
+
+/* Consider the facets of the bins at distance `ring` from bin at[3]. */
+static void visit_ring(const struct rigid_surface *surface, const int64_t at[3], int64_t ring,
+                       const double *x, struct nearest *nearest)
+{
+    int64_t low[3], high[3];
+    for (int a = 0; a < 3; a++) {
+        low[a] = at[a] > ring ? at[a] - ring : 0;
+        high[a] = at[a] + ring < surface->bins[a] ? at[a] + ring : surface->bins[a] - 1;
+    }
+    for (int64_t i = low[0]; i <= high[0]; i++) {
+        for (int64_t j = low[1]; j <= high[1]; j++) {
+            bool whole = llabs(i - at[0]) == ring || llabs(j - at[1]) == ring;
+            for (int64_t k = low[2]; k <= high[2]; k++) {
+                if (!whole && llabs(k - at[2]) != ring) {
+                    continue;
+                }
+                int64_t bin = (i * surface->bins[1] + j) * surface->bins[2] + k;
+                for (int64_t s = surface->start[bin]; s < surface->start[bin + 1]; s++) {
+                    consider(surface, surface->in_bin[s], x, nearest);
+                }
+            }
+        }
+    }
+}
+
+/* The nearest facet point. The rings are centred on the point of the box around the bins that is closest to
+ * x: what they have not covered is at least as far from x as sqrt(outside^2 + covered^2). */
+static struct nearest find_nearest(const struct rigid_surface *surface, const double *x, double reach)
+{
+    struct nearest nearest = {.facet = -1, .distance2 = INFINITY};
+    int64_t at[3] = {0, 0, 0}, last = 0;
+    double outside2 = 0.0, margin = INFINITY;
+    for (int a = 0; a < surface->dim; a++) {
+        double place = (x[a] - surface->origin[a]) / surface->bin;
+        double inside = fmin(fmax(place, 0.0), (double)surface->bins[a]);
+        at[a] = (int64_t)inside < surface->bins[a] ? (int64_t)inside : surface->bins[a] - 1;
+        margin = fmin(margin, fmin(inside - (double)at[a], (double)(at[a] + 1) - inside));
+        outside2 += (place - inside) * (place - inside) * surface->bin * surface->bin;
+        last = at[a] > last ? at[a] : last;
+        last = surface->bins[a] - 1 - at[a] > last ? surface->bins[a] - 1 - at[a] : last;
+    }
+    for (int64_t ring = 0; ring <= last; ring++) {
+        visit_ring(surface, at, ring, x, &nearest);
+        double covered = ((double)ring + margin) * surface->bin;
+        if (fmin(nearest.distance2, reach * reach) <= outside2 + covered * covered) {
+            break;
+        }
+    }
+    return nearest;
+}
+
+/* The normal that decides on the sign at the nearest point. */
+static const double *pseudo_normal(const struct rigid_surface *surface, const struct nearest *nearest)
+{
+    int dim = surface->dim;
+    const double *normal = surface->normal + nearest->facet * dim;
+    const double *joint = normal;
+    if (nearest->feature >= ON_EDGE_0) {
+        joint = surface->edge_normal + (nearest->facet * 3 + (int)nearest->feature - ON_EDGE_0) * 3;
+    } else if (nearest->feature != ON_FACE) {
+        joint = surface->vertex_normal +
+                (int64_t)surface->facet[nearest->facet * dim + (int)nearest->feature - ON_CORNER_0] * dim;
+    }
+    /* Facets folded onto each other have no mean normal. */
+    return dot(dim, joint, joint) > 0.5 ? joint : normal;
+}
+
+/* How far x lies beyond the rim that the nearest point is on. */
+static double beyond_rim(const struct rigid_surface *surface, const struct nearest *nearest,
+                         const double *away)
+{
+    int dim = surface->dim;
+    /* At a corner of triangles, of the mean normal; at the end of a segment or edge, of the facet's. */
+    const double *normal = dim == 3 && nearest->feature < ON_EDGE_0 ? pseudo_normal(surface, nearest)
+                                                                    : surface->normal + nearest->facet * dim;
+    double height = dot(dim, away, normal);
+    double aside[3] = {0.0, 0.0, 0.0};
+    along(dim, away, -height, normal, aside);
+    return sqrt(dot(dim, aside, aside));
+}
+
+struct rigid_contact rigid_closest(const struct rigid_surface *surface, const double *x, double reach)
+{
+    int dim = surface->dim;
+    struct rigid_contact contact = {.distance = reach};
+    struct nearest nearest = find_nearest(surface, x, reach);
+    if (nearest.facet < 0 || !(nearest.distance2 < reach * reach)) {
+        contact.distance = isnan(dot(dim, x, x)) ? 0.0 : reach;
+        return contact;
+    }
+    double away[3] = {0.0, 0.0, 0.0};
+    const double *normal = pseudo_normal(surface, &nearest);
+    difference(dim, x, nearest.point, away);
+    contact.distance = sqrt(nearest.distance2);
+    if (nearest.rim) {
+        double beyond = beyond_rim(surface, &nearest, away);
+        if (beyond > round_off * surface->extent) {
+            contact.distance = beyond;
+            return contact;
+        }
+    }
+    contact.found = true;
+    if (nearest.feature == ON_FACE) {
+        /* From a corner: free of the cancellation in the distance to the point on the face. */
+        difference(dim, x, corner_of(surface, nearest.facet, 0), away);
+        contact.gap = dot(dim, away, normal);
+        contact.distance = fabs(contact.gap);
+        scaled(dim, 1.0, normal, contact.normal);
+        return contact;
+    }
+    double sign = dot(dim, away, normal) < 0.0 ? -1.0 : 1.0;
+    contact.gap = sign * contact.distance;
+    if (contact.distance > 1e3 * round_off * surface->extent) {
+        scaled(dim, sign / contact.distance, away, contact.normal);
+    } else {
+        scaled(dim, 1.0, normal, contact.normal);
+    }
+    return contact;
+}
