@@ -1,4 +1,5 @@
-/* The stream "mts 1" (see mts(5)): named, typed tables that travel through a pipe, as text or binary. */
+/* The stream "mts 1" (see mts(5)): named, typed tables that travel through a pipe, as text or binary.
+ * Rows count from 0, in messages too. */
 #ifndef IO_STREAM_H
 #define IO_STREAM_H
 
@@ -23,7 +24,8 @@ struct section {
 };
 
 struct stream {
-    struct section *sections; /* in stream order */
+    struct section *sections; /* in stream order; adding sections never moves them, removing one moves those
+                                 behind it */
     int64_t section_count;
     char **provenance; /* "# @" lines without "# @ " and newline, oldest first */
     int64_t provenance_count;
@@ -49,6 +51,9 @@ MUST_CHECK enum status stream_read(struct stream *stream, int descriptor, const 
  * bytes, whether written to a pipe or a file. STATUS_SYSTEM with errno's text on a write error. */
 MUST_CHECK enum status stream_write(const struct stream *stream, int descriptor, bool text,
                                     struct error *error);
+
+/* Write the rows of one section as bare text: a line per row, single blanks between the numbers. */
+MUST_CHECK enum status stream_write_rows(const struct section *section, int descriptor, struct error *error);
 
 /* The section of that name, or NULL. */
 const struct section *stream_find(const struct stream *stream, const char *name);

@@ -18,6 +18,7 @@ struct writer {
     size_t held;    /* bytes in the block, not yet written */
     int64_t offset; /* of the next byte, from the start of the stream */
     uLong crc;      /* of the bytes outside the payloads */
+    locale_t c_locale, previous;
 };
 
 /* write() that goes on after signals and short writes. */
@@ -118,7 +119,7 @@ static size_t format_element(char *text, const struct section *section, int64_t 
     return 0;
 }
 
-static enum status put_payload_text(struct writer *writer, const struct section *section, struct error *error)
+static enum status put_rows(struct writer *writer, const struct section *section, struct error *error)
 {
     enum status status = STATUS_OK;
     int64_t index = 0;
@@ -134,6 +135,14 @@ static enum status put_payload_text(struct writer *writer, const struct section 
             writer->offset += (int64_t)length;
         }
     }
+done:
+    return status;
+}
+
+static enum status put_payload_text(struct writer *writer, const struct section *section, struct error *error)
+{
+    enum status status = STATUS_OK;
+    TRY(put_rows(writer, section, error));
     TRY(put_bytes(writer, "\n\n", 2, error));
 done:
     return status;
@@ -200,22 +209,48 @@ done:
     return status;
 }
 
+/* A block to gather output in, and the C locale for numbers, whatever the program that calls us has set. */
+static enum status writer_open(struct writer *writer, int descriptor, struct error *error)
+{
+    *writer = (struct writer){.descriptor = descriptor, .block = malloc(BLOCK_SIZE)};
+    writer->c_locale = newlocale(LC_ALL_MASK, "C", (locale_t)0);
+    if (writer->block == NULL || writer->c_locale == (locale_t)0) {
+        return fail_memory(error, "output");
+    }
+    writer->previous = uselocale(writer->c_locale);
+    return STATUS_OK;
+}
+
+static void writer_close(struct writer *writer)
+{
+    if (writer->previous != (locale_t)0) {
+        uselocale(writer->previous);
+    }
+    if (writer->c_locale != (locale_t)0) {
+        freelocale(writer->c_locale);
+    }
+    free(writer->block);
+}
+
 enum status stream_write(const struct stream *stream, int descriptor, bool text, struct error *error)
 {
-    struct writer writer = {.descriptor = descriptor, .block = malloc(BLOCK_SIZE)};
-    /* Numbers are written in the C locale, whatever the program that calls us has set. */
-    locale_t c_locale = newlocale(LC_ALL_MASK, "C", (locale_t)0);
-    enum status status = STATUS_SYSTEM;
-    if (writer.block == NULL || c_locale == (locale_t)0) {
-        fail_memory(error, "output");
-    } else {
-        locale_t previous = uselocale(c_locale);
-        status = put_stream(&writer, stream, text, error);
-        uselocale(previous);
-    }
-    if (c_locale != (locale_t)0) {
-        freelocale(c_locale);
-    }
-    free(writer.block);
+    struct writer writer;
+    enum status status = STATUS_OK;
+    TRY(writer_open(&writer, descriptor, error));
+    TRY(put_stream(&writer, stream, text, error));
+done:
+    writer_close(&writer);
+    return status;
+}
+
+enum status stream_write_rows(const struct section *section, int descriptor, struct error *error)
+{
+    struct writer writer;
+    enum status status = STATUS_OK;
+    TRY(writer_open(&writer, descriptor, error));
+    TRY(put_rows(&writer, section, error));
+    TRY(flush(&writer, error));
+done:
+    writer_close(&writer);
     return status;
 }

@@ -110,8 +110,8 @@ void tool_begin(struct tool *tool, const char *usage, struct option options[], i
                           .argc = argc,
                           .argv = argv};
     fill_descriptors();
-    signal(SIGPIPE,
-           SIG_DFL); /* a reader that has seen enough (head) ends us quietly, whatever our parent set */
+    /* A reader that has seen enough (head) ends us quietly, whatever our parent has set. */
+    signal(SIGPIPE, SIG_DFL);
     char **arguments = array_new(argc + 1, sizeof *arguments); /* lives as long as the process */
     if (arguments == NULL) {
         tool_fail(tool, STATUS_SYSTEM, "out of memory");
@@ -124,8 +124,7 @@ void tool_begin(struct tool *tool, const char *usage, struct option options[], i
         tool_fail(tool, STATUS_INPUT, "unexpected operand '%s' (see -h)", tool->operands[most]);
     }
     if (tool->operand_count < least) {
-        tool_fail(tool, STATUS_INPUT, "%d operands where at least %d are needed (see -h)",
-                  tool->operand_count, least);
+        tool_fail(tool, STATUS_INPUT, "an operand is missing (see -h)");
     }
 }
 
@@ -197,9 +196,14 @@ static void close_stdout(const struct tool *tool)
 
 void tool_write(const struct tool *tool, struct stream *stream, bool text)
 {
+    add_provenance(tool, stream);
+    tool_copy(tool, stream, text);
+}
+
+void tool_copy(const struct tool *tool, const struct stream *stream, bool text)
+{
     struct error error;
     struct output output;
-    add_provenance(tool, stream);
     if (tool->output == NULL) {
         if (!text && isatty(STDOUT_FILENO)) {
             tool_fail(tool, STATUS_INPUT, "no binary to a terminal: ask for text with -t, or redirect it");

@@ -47,6 +47,9 @@ void tool_read(const struct tool *tool, const char *file, struct stream *stream)
  * write errors; exits on failure. */
 void tool_write(const struct tool *tool, struct stream *stream, bool text);
 
+/* The same without a provenance line: for what changes the form of a stream only. */
+void tool_copy(const struct tool *tool, const struct stream *stream, bool text);
+
 /* Close standard output, reporting delayed write errors; for tools that print tables with stdio. Returns the
  * exit status STATUS_OK or exits 3. */
 int tool_end(const struct tool *tool);

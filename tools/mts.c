@@ -1,0 +1,235 @@
+static const char usage[] =
+    "mts - list, print, convert, check and thin out streams\n"
+    "\n"
+    "usage: mts list [-v] [FILE]\n"
+    "       mts print SECTION [FILE]\n"
+    "       mts text [-o FILE] [FILE]\n"
+    "       mts binary [-o FILE] [FILE]\n"
+    "       mts check [FILE]\n"
+    "       mts keep [-t] [-o FILE] PATTERN[,PATTERN...] [FILE]\n"
+    "       mts drop [-t] [-o FILE] PATTERN[,PATTERN...] [FILE]\n"
+    "\n"
+    "Works on the streams described in mts(5), whatever their sections.\n"
+    "\n"
+    "Commands:\n"
+    "  list          a line per section: name, type, rows, columns, attributes; between tabs\n"
+    "  print         the rows of one section as a bare table, for awk or numpy\n"
+    "  text, binary  the same stream in that form; the numbers stay the same to the last bit\n"
+    "  check         whether sections of known names are what they should be: shapes that agree, indices\n"
+    "                in range, cells of positive volume, numbers finite, weights positive, neighbour lists\n"
+    "                ascending, shape functions that sum to 1 within 1e-9; a line on standard output for\n"
+    "                each violation, and status 1 if there is one\n"
+    "  keep, drop    the stream with only, or without, the sections that match a PATTERN, in which * and ?\n"
+    "                stand for any letters, as in a shell; a pattern that nothing matches is an error\n"
+    "\n"
+    "Options:\n"
+    "  -v, --verbose      list: first the command lines that made the stream\n"
+    "  -t, --text         keep, drop: write text instead of binary\n"
+    "  -o, --output FILE  write to FILE, which appears only when whole\n"
+    "\n"
+    "Examples:\n"
+    "  mts print nodes.x u.dat | awk '{ print $1 * 1000, $2 * 1000 }'\n"
+    "  nodes -u mm body.msh | shapefn | mts check\n"
+    "  mts keep 'nodes.x,u' < all.mts > u.mts\n";
+
+#include "tool.h"
+
+#include "io/invariants.h"
+
+#include <fnmatch.h>
+#include <inttypes.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+enum option_index { VERBOSE, TEXT, OUTPUT, OPTION_COUNT };
+
+/* One command: how many operands stand behind it and which options go with it. */
+struct command {
+    const char *name;
+    int least, most;
+    bool allows[OPTION_COUNT];
+    int (*run)(struct tool *tool, const struct option options[]);
+};
+
+static int list(struct tool *tool, const struct option options[])
+{
+    struct stream stream;
+    tool_read(tool, tool->operands[1], &stream);
+    for (int64_t i = 0; options[VERBOSE].given && i < stream.provenance_count; i++) {
+        printf("# @ %s\n", stream.provenance[i]);
+    }
+    for (int64_t i = 0; i < stream.section_count; i++) {
+        const struct section *section = &stream.sections[i];
+        printf("%s\t%s\t%" PRId64 "\t%" PRId64 "\t%s\n", section->name, element_type_name(section->type),
+               section->rows, section->cols, section->attributes);
+    }
+    stream_free(&stream);
+    return tool_end(tool);
+}
+
+static int print(struct tool *tool, const struct option options[])
+{
+    (void)options;
+    struct stream stream;
+    struct error error;
+    const char *name = tool->operands[1];
+    tool_read(tool, tool->operands[2], &stream);
+    const struct section *section = stream_find(&stream, name);
+    if (section == NULL) {
+        tool_fail(tool, STATUS_INPUT, "no section %s: see mts list", name);
+    }
+    enum status status = stream_write_rows(section, STDOUT_FILENO, &error);
+    if (status != STATUS_OK) {
+        tool_fail(tool, status, "standard output: %s", error.text);
+    }
+    stream_free(&stream);
+    return tool_end(tool);
+}
+
+static int convert(struct tool *tool, bool text)
+{
+    struct stream stream;
+    tool_read(tool, tool->operands[1], &stream);
+    tool_copy(tool, &stream, text);
+    stream_free(&stream);
+    return tool_end(tool);
+}
+
+static int to_text(struct tool *tool, const struct option options[])
+{
+    (void)options;
+    return convert(tool, true);
+}
+
+static int to_binary(struct tool *tool, const struct option options[])
+{
+    (void)options;
+    return convert(tool, false);
+}
+
+static void print_violation(void *context, const char *text)
+{
+    (void)context;
+    puts(text);
+}
+
+static int check(struct tool *tool, const struct option options[])
+{
+    (void)options;
+    struct stream stream;
+    tool_read(tool, tool->operands[1], &stream);
+    int64_t count = stream_check(&stream, print_violation, NULL);
+    stream_free(&stream);
+    int status = tool_end(tool);
+    return count > 0 ? (int)STATUS_VERDICT : status;
+}
+
+/* Does the name match one of the comma-separated patterns? Marks in used[] which it matches. */
+static bool matches(const char *name, char *const patterns[], int count, bool used[])
+{
+    bool any = false;
+    for (int i = 0; i < count; i++) {
+        if (fnmatch(patterns[i], name, 0) == 0) {
+            used[i] = any = true;
+        }
+    }
+    return any;
+}
+
+static int select_sections(struct tool *tool, const struct option options[], bool keep)
+{
+    enum { MOST = 64 };
+    char *patterns[MOST];
+    bool used[MOST] = {false};
+    int count = 0;
+    struct stream stream;
+    char *list_of_patterns = strdup(tool->operands[1]);
+    if (list_of_patterns == NULL) {
+        tool_fail(tool, STATUS_SYSTEM, "out of memory");
+    }
+    for (char *rest = list_of_patterns, *pattern; (pattern = strsep(&rest, ",")) != NULL;) {
+        if (count == MOST || *pattern == '\0') {
+            tool_fail(tool, STATUS_INPUT, "'%s' is not a list of at most %d patterns", tool->operands[1],
+                      MOST);
+        }
+        patterns[count++] = pattern;
+    }
+    tool_read(tool, tool->operands[2], &stream);
+    for (int64_t i = stream.section_count - 1; i >= 0; i--) {
+        if (matches(stream.sections[i].name, patterns, count, used) != keep) {
+            stream_remove(&stream, stream.sections[i].name);
+        }
+    }
+    for (int i = 0; i < count; i++) {
+        if (!used[i]) {
+            tool_fail(tool, STATUS_INPUT, "no section matches '%s': see mts list", patterns[i]);
+        }
+    }
+    tool_write(tool, &stream, options[TEXT].given);
+    stream_free(&stream);
+    free(list_of_patterns);
+    return tool_end(tool);
+}
+
+static int keep(struct tool *tool, const struct option options[])
+{
+    return select_sections(tool, options, true);
+}
+
+static int drop(struct tool *tool, const struct option options[])
+{
+    return select_sections(tool, options, false);
+}
+
+static const struct command commands[] = {
+    {"list", 0, 1, {[VERBOSE] = true}, list},
+    {"print", 1, 2, {false}, print},
+    {"text", 0, 1, {[OUTPUT] = true}, to_text},
+    {"binary", 0, 1, {[OUTPUT] = true}, to_binary},
+    {"check", 0, 1, {false}, check},
+    {"keep", 1, 2, {[TEXT] = true, [OUTPUT] = true}, keep},
+    {"drop", 1, 2, {[TEXT] = true, [OUTPUT] = true}, drop},
+};
+enum { COMMANDS = sizeof commands / sizeof *commands };
+
+/* The command named by the first operand, with its operands and options checked. */
+static const struct command *find_command(const struct tool *tool, const struct option options[])
+{
+    const char *names[COMMANDS];
+    struct error error;
+    int index;
+    for (int i = 0; i < COMMANDS; i++) {
+        names[i] = commands[i].name;
+    }
+    tool_check(tool, parse_choice(tool->operands[0], "command", names, COMMANDS, &index, &error), &error);
+    const struct command *command = &commands[index];
+    int operands = tool->operand_count - 1;
+    if (operands < command->least) {
+        tool_fail(tool, STATUS_INPUT, "%s: lacks %s (see -h)", command->name,
+                  command->run == print ? "the name of a section" : "a pattern");
+    }
+    if (operands > command->most) {
+        tool_fail(tool, STATUS_INPUT, "%s: unexpected operand '%s' (see -h)", command->name,
+                  tool->operands[command->most + 1]);
+    }
+    for (int i = 0; i < OPTION_COUNT; i++) {
+        if (options[i].given && !command->allows[i]) {
+            tool_fail(tool, STATUS_INPUT, "%s: takes no option -%c (see -h)", command->name,
+                      options[i].letter);
+        }
+    }
+    return command;
+}
+
+int main(int argc, char *argv[])
+{
+    struct tool tool;
+    struct option options[OPTION_COUNT] = {
+        [VERBOSE] = {'v', "verbose", false, NULL, false},
+        [TEXT] = {'t', "text", false, NULL, false},
+        [OUTPUT] = {'o', "output", true, NULL, false},
+    };
+    tool_begin(&tool, usage, options, OPTION_COUNT, 1, 3, argc, argv);
+    return find_command(&tool, options)->run(&tool, options);
+}
