@@ -268,6 +268,26 @@ done:
     return status;
 }
 
+/* The message for a point without a good support; a stray node shows by its radius. */
+static enum status fail_support(const struct point_grid *grid, const char *what, int64_t row, const double *x,
+                                const int32_t *index, int64_t count, struct error *error)
+{
+    char place[96], stray[96] = "";
+    int64_t widest = 0;
+    point_text(grid->dim, x, place);
+    for (int64_t i = 1; i < count; i++) {
+        widest = grid->radius[index[i]] > grid->radius[index[widest]] ? i : widest;
+    }
+    if (count > 0) {
+        snprintf(stray, sizeof stray, ", the largest radius being %.3g m, of node %d",
+                 grid->radius[index[widest]], index[widest]);
+    }
+    return fail(error, STATUS_VERDICT,
+                "%s: row %lld at %s: no good support even at %g times the radius (%lld nodes within%s): "
+                "coplanar, stray or too few nodes there",
+                what, (long long)row, place, widen_limit, (long long)count, stray);
+}
+
 /* The lists of one chunk of points. */
 struct chunk {
     int32_t *index;
@@ -280,7 +300,6 @@ static enum status build_chunk(const struct support_options *options, const stru
 {
     enum status status = STATUS_OK;
     struct worker worker = {0};
-    char place[96];
     int dim = grid->dim;
     for (int64_t p = first; p < last; p++) {
         bool serves;
@@ -295,12 +314,8 @@ static enum status build_chunk(const struct support_options *options, const stru
         int64_t before = worker.list.count;
         TRY(find_support(options, grid, point, &worker, &lists->widen[p], &serves, error));
         if (!serves) {
-            point_text(dim, point, place);
-            status =
-                fail(error, STATUS_VERDICT,
-                     "%s: row %lld at %s: no good support even at %g times the radius (%lld nodes within): "
-                     "coplanar or too few nodes there",
-                     what, (long long)p, place, widen_limit, (long long)(worker.list.count - before));
+            status = fail_support(grid, what, p, point, worker.list.index + before,
+                                  worker.list.count - before, error);
             goto done;
         }
         lists->ptr[p + 1] = worker.list.count - before;

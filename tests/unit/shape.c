@@ -1,0 +1,394 @@
+/* Quadrature, faces of cells, tables of shape functions and their smoothing over conforming cells. */
+#include "approx_fixture.h"
+
+#include "approx/cloud.h"
+#include "approx/quadrature.h"
+
+#include <omp.h>
+
+/* Integral of prod lambda_k^p_k over a simplex of volume 1: d! prod p_k! / (d + sum p_k)!. */
+static double exact_monomial(int vertices, const int *power)
+{
+    double value = tgamma(vertices), sum = vertices;
+    for (int k = 0; k < vertices; k++) {
+        value *= tgamma(power[k] + 1.0);
+        sum += power[k];
+    }
+    return value / tgamma(sum);
+}
+
+/* The largest error of a rule over all barycentric monomials of exactly that degree. */
+static double degree_error(const struct quadrature_rule *rule, int degree)
+{
+    double worst = 0.0;
+    int power[4];
+    for (int code = 0; code < 4096; code++) {
+        int sum = 0;
+        for (int k = 0, rest = code; k < 4; k++, rest /= 8) {
+            power[k] = rest % 8;
+            sum += power[k];
+        }
+        if (sum != degree || (rule->vertices < 4 && power[3] > 0) || (rule->vertices < 3 && power[2] > 0)) {
+            continue;
+        }
+        double value = -exact_monomial(rule->vertices, power);
+        for (int q = 0; q < rule->points; q++) {
+            double term = rule->weight[q];
+            for (int k = 0; k < rule->vertices; k++) {
+                term *= pow(rule->barycentric[q * rule->vertices + k], power[k]);
+            }
+            value += term;
+        }
+        worst = worse(worst, value);
+    }
+    return worst;
+}
+
+static void check_rule(const struct quadrature_rule *rule, int degree)
+{
+    for (int q = 0; q < rule->points; q++) {
+        double sum = 0.0;
+        assert_true(rule->weight[q] > 0.0);
+        for (int k = 0; k < rule->vertices; k++) {
+            assert_true(rule->barycentric[q * rule->vertices + k] > 0.0);
+            sum += rule->barycentric[q * rule->vertices + k];
+        }
+        at_most(fabs(sum - 1.0), 1e-14, "barycentric coordinates");
+    }
+    for (int d = 0; d <= degree; d++) {
+        at_most(degree_error(rule, d), 1e-14, "degree of a rule");
+    }
+    assert_true(degree_error(rule, degree + 1) > 1e-6);
+}
+
+static void quadrature_degrees(void **state)
+{
+    (void)state;
+    static const int rules[][3] = {{2, 1, 1},  {2, 3, 2}, {2, 4, 1}, {2, 6, 4}, {2, 7, 5},
+                                   {2, 12, 6}, {3, 1, 1}, {3, 4, 2}, {3, 8, 3}, {3, 14, 5}};
+    struct quadrature_rule rule;
+    struct error error;
+    for (size_t i = 0; i < sizeof rules / sizeof *rules; i++) {
+        good(quadrature_cell_rule(rules[i][0], rules[i][1], &rule, &error), &error);
+        assert_int_equal(rule.points, rules[i][1]);
+        assert_int_equal(rule.vertices, rules[i][0] + 1);
+        check_rule(&rule, rules[i][2]);
+    }
+    rule = quadrature_face_rule(2);
+    assert_int_equal(rule.points, 2);
+    check_rule(&rule, 3);
+    rule = quadrature_face_rule(3);
+    assert_int_equal(rule.points, 3);
+    check_rule(&rule, 2);
+    assert_int_equal(quadrature_cell_rule(2, 5, &rule, &error), STATUS_INPUT);
+    assert_int_equal(quadrature_cell_rule(3, 3, &rule, &error), STATUS_INPUT);
+}
+
+static struct cloud box_cloud(int dim, int64_t per_axis, double jitter, double offset)
+{
+    struct cloud_options options = {.kind = CLOUD_JITTERED, .dim = dim, .jitter = jitter, .seed = 5};
+    struct cloud cloud;
+    struct error error;
+    for (int a = 0; a < dim; a++) {
+        options.count[a] = per_axis;
+        options.low[a] = offset;
+        options.high[a] = offset + 0.1;
+    }
+    good(cloud_make(&options, &cloud, &error), &error);
+    assert_true(cloud.cell_count > 0);
+    return cloud;
+}
+
+static struct cells cells_of(const struct cloud *cloud)
+{
+    return (struct cells){.dim = cloud->dim,
+                          .node_count = cloud->node_count,
+                          .x = cloud->x,
+                          .count = cloud->cell_count,
+                          .node = cloud->cells};
+}
+
+/* Volumes fill the box; the faces of each cell close; each face stands once, outward from its first cell. */
+static void cells_and_faces(void **state)
+{
+    (void)state;
+    for (int dim = 2; dim <= 3; dim++) {
+        struct cloud cloud = box_cloud(dim, 6, dim == 2 ? 0.4 : 0.1, 1.0);
+        struct cells cells = cells_of(&cloud);
+        struct faces faces, boundary;
+        struct error error;
+        double volume = 0.0, area_unit = pow(0.1, dim - 1);
+        good(cells_check(&cells, &error), &error);
+        for (int64_t c = 0; c < cells.count; c++) {
+            volume += cell_volume(&cells, c);
+        }
+        at_most(fabs(volume / pow(0.1, dim) - 1.0), 1e-12, "volume of the box");
+        good(faces_build(&cells, false, &faces, &error), &error);
+        good(faces_build(&cells, true, &boundary, &error), &error);
+        double *closed = calloc((size_t)(cells.count * dim), sizeof *closed);
+        int *sides = calloc((size_t)cells.count, sizeof *sides);
+        int64_t outer = 0;
+        assert_non_null(closed);
+        assert_non_null(sides);
+        for (int64_t f = 0; f < faces.count; f++) {
+            double area[3], centroid[3], outward = 0.0;
+            face_area_vector(dim, cells.x, faces.node + f * dim, area);
+            cell_centroid(&cells, faces.cell[2 * f], centroid);
+            for (int a = 0; a < dim; a++) {
+                outward += area[a] * (cells.x[(int64_t)faces.node[f * dim] * dim + a] - centroid[a]);
+            }
+            assert_true(outward > 0.0);
+            for (int side = 0; side < 2; side++) {
+                int32_t cell = faces.cell[2 * f + side];
+                if (cell < 0) {
+                    assert_int_equal(side, 1);
+                    continue;
+                }
+                sides[cell]++;
+                for (int a = 0; a < dim; a++) {
+                    closed[cell * dim + a] += side == 0 ? area[a] : -area[a];
+                }
+            }
+            if (faces.cell[2 * f + 1] < 0) {
+                assert_memory_equal(boundary.node + outer * dim, faces.node + f * dim,
+                                    (size_t)dim * sizeof(int32_t));
+                assert_int_equal(boundary.cell[2 * outer + 1], -1);
+                outer++;
+            } else {
+                assert_true(faces.cell[2 * f] < faces.cell[2 * f + 1]);
+            }
+        }
+        assert_int_equal(outer, boundary.count);
+        assert_int_equal(outer, dim == 2 ? 4 * 5 : 6 * 5 * 5 * 2);
+        for (int64_t c = 0; c < cells.count; c++) {
+            assert_int_equal(sides[c], dim + 1);
+        }
+        for (int64_t i = 0; i < cells.count * dim; i++) {
+            at_most(fabs(closed[i]) / area_unit, 1e-14, "sum of the normals of a cell");
+        }
+        free(closed);
+        free(sides);
+        faces_free(&faces);
+        faces_free(&boundary);
+        cloud_free(&cloud);
+    }
+}
+
+static void wrong_cells(void **state)
+{
+    (void)state;
+    static const double square[] = {0, 0, 1, 0, 1, 1, 0, 1, 0.5, 0.5};
+    static const struct {
+        int32_t node[9];
+        int64_t count;
+        const char *says;
+    } wrong[] = {{{0, 1, 2, 0, 2, 3}, 2, NULL},
+                 {{0, 1, 2, 0, 2, 5}, 2, "cells: row 1: no node 5"},
+                 {{0, 1, 2, -1, 2, 3}, 2, "cells: row 1: no node -1"},
+                 {{0, 1, 2, 0, 3, 2}, 2, "cells: row 1: inverted"},
+                 {{0, 1, 2, 0, 2, 4}, 2, "cells: row 1: inverted or of no volume"}};
+    struct error error;
+    for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
+        struct cells cells = {2, 5, square, wrong[i].count, wrong[i].node};
+        assert_int_equal(cells_check(&cells, &error), wrong[i].says == NULL ? STATUS_OK : STATUS_INPUT);
+        if (wrong[i].says != NULL) {
+            assert_non_null(strstr(error.text, wrong[i].says));
+        }
+    }
+    /* Three triangles on one edge. */
+    static const int32_t fan[] = {0, 1, 2, 0, 1, 3, 0, 1, 4};
+    struct cells cells = {2, 5, square, 3, fan};
+    struct faces faces;
+    assert_int_equal(faces_build(&cells, false, &faces, &error), STATUS_INPUT);
+    assert_non_null(strstr(error.text, "more than two cells"));
+}
+
+/* Values at the face points and the table smoothed over the cells. */
+struct smoothed {
+    struct cloud cloud;
+    struct cells cells;
+    struct faces faces;
+    int per_face;
+    double *points;
+    struct table table;
+    struct neighbours lists;
+    struct smoothed_table smooth;
+};
+
+static void smoothed_build(struct smoothed *s, int dim, int64_t per_axis, enum basis basis, double offset)
+{
+    struct error error;
+    struct support_options options = options_for(dim, basis, WEIGHT_QUARTIC);
+    struct quadrature_rule rule = quadrature_face_rule(dim);
+    s->cloud = box_cloud(dim, per_axis, dim == 2 ? 0.3 : 0.1, offset);
+    s->cells = cells_of(&s->cloud);
+    s->per_face = rule.points;
+    good(faces_build(&s->cells, false, &s->faces, &error), &error);
+    int64_t count = s->faces.count * rule.points;
+    s->points = malloc((size_t)(count * dim) * sizeof(double));
+    assert_non_null(s->points);
+    for (int64_t f = 0; f < s->faces.count; f++) {
+        quadrature_positions(&rule, dim, s->cells.x, s->faces.node + f * dim,
+                             s->points + f * rule.points * dim);
+    }
+    good(tabulate(&options, s->cells.node_count, s->cells.x, count, s->points, &s->table, &error), &error);
+    s->lists = (struct neighbours){count, s->table.lists.ptr, s->table.lists.idx, s->table.lists.widen};
+    good(shape_smooth(&s->cells, &s->faces, s->per_face, &s->lists, s->table.phi, &s->smooth, &error),
+         &error);
+}
+
+static void smoothed_free(struct smoothed *s)
+{
+    smoothed_table_free(&s->smooth);
+    table_free(&s->table);
+    faces_free(&s->faces);
+    cloud_free(&s->cloud);
+    free(s->points);
+}
+
+/* sum phi = 1, sum phi x = centroid, sum grad phi = 0, sum grad phi x^T = I: so linear fields are exact. */
+static void smoothing_is_consistent(void **state)
+{
+    (void)state;
+    for (int dim = 2; dim <= 3; dim++) {
+        for (int b = 0; b < BASIS_COUNT; b++) {
+            for (double offset = 0.0; offset <= 1.0; offset += 1.0) {
+                struct smoothed s;
+                int64_t per_axis = dim == 2 ? 9 : 6;
+                smoothed_build(&s, dim, per_axis, (enum basis)b, offset);
+                double *centroids = malloc((size_t)(s.cells.count * dim) * sizeof *centroids);
+                assert_non_null(centroids);
+                for (int64_t c = 0; c < s.cells.count; c++) {
+                    cell_centroid(&s.cells, c, centroids + c * dim);
+                    for (int64_t i = s.smooth.ptr[c] + 1; i < s.smooth.ptr[c + 1]; i++) {
+                        assert_true(s.smooth.idx[i] > s.smooth.idx[i - 1]);
+                    }
+                }
+                struct table view = {
+                    .phi = s.smooth.phi,
+                    .dphi = s.smooth.dphi,
+                    .lists = {.count = s.smooth.count, .ptr = s.smooth.ptr, .idx = s.smooth.idx}};
+                struct defects worst =
+                    table_defects(&view, dim, s.cells.x, centroids, 0.2 / (double)(per_axis - 1));
+                print_message("# %dD %s, offset %g m: %.1e %.1e %.1e %.1e\n", dim, basis_names[b], offset,
+                              worst.unity, worst.position, worst.gradient_sum, worst.gradient_position);
+                at_most(worst.unity, 1e-12, "sum phi - 1");
+                at_most(worst.position, 1e-12, "sum phi x - centroid");
+                at_most(worst.gradient_sum, 1e-12, "sum grad phi");
+                at_most(worst.gradient_position, 1e-12, "sum grad phi x - I");
+                free(centroids);
+                smoothed_free(&s);
+            }
+        }
+    }
+}
+
+/* The sum over cells of V grad phi_j is the integral of phi_j n over the boundary of the body. */
+static void smoothing_telescopes(void **state)
+{
+    (void)state;
+    for (int dim = 2; dim <= 3; dim++) {
+        struct smoothed s;
+        smoothed_build(&s, dim, dim == 2 ? 9 : 6, BASIS_MODIFIED, 0.0);
+        struct quadrature_rule rule = quadrature_face_rule(dim);
+        double *sum = calloc((size_t)(s.cells.node_count * dim), sizeof *sum);
+        assert_non_null(sum);
+        for (int64_t c = 0; c < s.cells.count; c++) {
+            double volume = cell_volume(&s.cells, c);
+            for (int64_t i = s.smooth.ptr[c]; i < s.smooth.ptr[c + 1]; i++) {
+                for (int a = 0; a < dim; a++) {
+                    sum[(int64_t)s.smooth.idx[i] * dim + a] += volume * s.smooth.dphi[i * dim + a];
+                }
+            }
+        }
+        for (int64_t f = 0; f < s.faces.count; f++) {
+            double area[3];
+            face_area_vector(dim, s.cells.x, s.faces.node + f * dim, area);
+            for (int64_t p = f * s.per_face; s.faces.cell[2 * f + 1] < 0 && p < (f + 1) * s.per_face; p++) {
+                for (int64_t i = s.lists.ptr[p]; i < s.lists.ptr[p + 1]; i++) {
+                    for (int a = 0; a < dim; a++) {
+                        sum[(int64_t)s.lists.idx[i] * dim + a] -=
+                            rule.weight[p % s.per_face] * s.table.phi[i] * area[a];
+                    }
+                }
+            }
+        }
+        for (int64_t i = 0; i < s.cells.node_count * dim; i++) {
+            at_most(fabs(sum[i]) / pow(0.1, dim - 1), 1e-14, "cells against the boundary");
+        }
+        free(sum);
+        smoothed_free(&s);
+    }
+}
+
+/* The same bits for any number of threads. */
+static void smoothing_threads(void **state)
+{
+    (void)state;
+    static const int numbers[] = {1, 2, 5};
+    struct smoothed first;
+    int before = omp_get_max_threads();
+    smoothed_build(&first, 2, 20, BASIS_MODIFIED, 0.0);
+    for (int i = 0; i < 3; i++) {
+        struct smoothed s;
+        omp_set_num_threads(numbers[i]);
+        smoothed_build(&s, 2, 20, BASIS_MODIFIED, 0.0);
+        size_t pairs = (size_t)s.smooth.ptr[s.cells.count];
+        assert_int_equal(s.smooth.ptr[s.cells.count], first.smooth.ptr[s.cells.count]);
+        assert_memory_equal(s.smooth.idx, first.smooth.idx, pairs * sizeof(int32_t));
+        assert_memory_equal(s.smooth.phi, first.smooth.phi, pairs * sizeof(double));
+        assert_memory_equal(s.smooth.dphi, first.smooth.dphi, pairs * 2 * sizeof(double));
+        smoothed_free(&s);
+    }
+    omp_set_num_threads(before);
+    smoothed_free(&first);
+}
+
+/* Faces that do not fit the cells are refused, not read beyond. */
+static void wrong_faces(void **state)
+{
+    (void)state;
+    struct smoothed s;
+    struct error error;
+    struct smoothed_table table;
+    smoothed_build(&s, 2, 4, BASIS_LINEAR, 0.0);
+    int32_t kept = s.faces.cell[0];
+    static const int32_t wrong[] = {-1, -7, 1000000, INT32_MAX, INT32_MIN, 3};
+    for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
+        s.faces.cell[0] = wrong[i];
+        assert_int_equal(shape_smooth(&s.cells, &s.faces, s.per_face, &s.lists, s.table.phi, &table, &error),
+                         STATUS_INPUT);
+        assert_non_null(strstr(error.text, "faces.cell"));
+    }
+    s.faces.cell[0] = kept;
+    s.faces.count--;
+    assert_int_equal(shape_smooth(&s.cells, &s.faces, s.per_face, &s.lists, s.table.phi, &table, &error),
+                     STATUS_INPUT);
+    smoothed_free(&s);
+}
+
+/* Spacing of nodes from their cells: edges of a unit square cut in two. */
+static void spacing_of_cells(void **state)
+{
+    (void)state;
+    static const double x[] = {0, 0, 1, 0, 1, 1, 0, 1, 9, 9};
+    static const int32_t node[] = {0, 1, 2, 0, 2, 3};
+    struct cells cells = {2, 5, x, 2, node};
+    double spacing[5];
+    struct error error;
+    good(cells_node_spacing(&cells, spacing, &error), &error);
+    at_most(fabs(spacing[0] - (2.0 + 2.0 * sqrt(2.0)) / 4.0), 1e-15, "spacing at a node of two cells");
+    at_most(fabs(spacing[1] - 1.0), 1e-15, "spacing at a node of one cell");
+    assert_true(spacing[4] == 0.0);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(quadrature_degrees),   cmocka_unit_test(cells_and_faces),
+        cmocka_unit_test(wrong_cells),          cmocka_unit_test(smoothing_is_consistent),
+        cmocka_unit_test(smoothing_telescopes), cmocka_unit_test(smoothing_threads),
+        cmocka_unit_test(wrong_faces),          cmocka_unit_test(spacing_of_cells),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

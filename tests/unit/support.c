@@ -1,0 +1,496 @@
+/* Cell lists against brute force; supports: caps and ties, threads, widening; clouds that are traps, each of
+ * which must give a correct table or one clear error that names the point. */
+#include "approx_fixture.h"
+
+#include "approx/cloud.h"
+
+#include <omp.h>
+
+/* Radii over three decades, two nodes at one place. */
+static void grid_against_brute_force(void **state)
+{
+    (void)state;
+    static const double factors[] = {1.0, 1.1, 2.5, 8.0};
+    gsl_rng *random = gsl_rng_alloc(gsl_rng_mt19937);
+    assert_non_null(random);
+    for (int dim = 2; dim <= 3; dim++) {
+        enum { NODES = 400, POINTS = 150 };
+        double x[NODES * 3], radius[NODES], point[3];
+        for (int kind = 0; kind < 2; kind++) { /* constant radii, graded radii */
+            for (int i = 0; i < NODES * dim; i++) {
+                x[i] = 5.0 + gsl_rng_uniform(random);
+            }
+            memcpy(x + dim, x, (size_t)dim * sizeof *x);
+            for (int n = 0; n < NODES; n++) {
+                radius[n] = kind == 0 ? 0.15 : 0.001 * pow(500.0, gsl_rng_uniform(random));
+            }
+            struct point_grid grid;
+            struct index_list list = {0};
+            struct error error;
+            good(point_grid_build(&grid, dim, NODES, x, radius, &error), &error);
+            for (int p = 0; p < POINTS; p++) {
+                for (int a = 0; a < dim; a++) { /* within, at nodes, outside */
+                    point[a] = p < 20 ? x[p * dim + a] : 4.0 + 3.0 * gsl_rng_uniform(random);
+                }
+                double factor = factors[p % 4];
+                list.count = 0;
+                good(point_grid_query(&grid, point, factor, &list, &error), &error);
+                int64_t at = 0;
+                for (int n = 0; n < NODES; n++) {
+                    double sum = 0.0;
+                    for (int a = 0; a < dim; a++) {
+                        sum += (x[n * dim + a] - point[a]) * (x[n * dim + a] - point[a]);
+                    }
+                    if (sum < radius[n] * factor * radius[n] * factor) {
+                        assert_true(at < list.count);
+                        assert_int_equal(list.index[at], n);
+                        at++;
+                    }
+                }
+                assert_int_equal(at, list.count);
+            }
+            free(list.index);
+            point_grid_free(&grid);
+        }
+    }
+    gsl_rng_free(random);
+}
+
+/* Queries append; nodes all at one place, or on a line, need no special care; wrong radii are refused. */
+static void grid_odd_clouds(void **state)
+{
+    (void)state;
+    double x[6] = {1.0, 2.0, 1.0, 2.0, 1.0, 2.0}, radius[3] = {0.5, 1e9, 1e-9}, at[2] = {1.1, 2.0};
+    struct point_grid grid;
+    struct index_list list = {0};
+    struct error error;
+    good(point_grid_build(&grid, 2, 3, x, radius, &error), &error);
+    good(point_grid_query(&grid, at, 1.0, &list, &error), &error);
+    good(point_grid_query(&grid, x, 1.0, &list, &error), &error);
+    static const int32_t expected[] = {0, 1, 0, 1, 2};
+    assert_int_equal(list.count, 5);
+    assert_memory_equal(list.index, expected, sizeof expected);
+    point_grid_free(&grid);
+    free(list.index);
+    static const double wrong[] = {0.0, -1.0, NAN, INFINITY};
+    for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
+        radius[1] = wrong[i];
+        assert_int_equal(point_grid_build(&grid, 2, 3, x, radius, &error), STATUS_INPUT);
+        assert_non_null(strstr(error.text, "row 1"));
+        point_grid_free(&grid);
+    }
+}
+
+static int compare_doubles(const void *a, const void *b)
+{
+    double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+static void spacing_against_brute_force(void **state)
+{
+    (void)state;
+    for (int dim = 2; dim <= 3; dim++) {
+        struct scattered cloud = scatter(dim, dim == 2 ? 15 : 6, 1, &places[2], 0.4, 2);
+        double *spacing = malloc((size_t)cloud.count * sizeof *spacing);
+        double *distance = malloc((size_t)cloud.count * sizeof *distance);
+        struct error error;
+        assert_non_null(spacing);
+        assert_non_null(distance);
+        cloud.x[0] -= 3.0 * cloud.size; /* one node far from the others */
+        good(nodes_spacing(dim, cloud.count, cloud.x, spacing, &error), &error);
+        for (int64_t n = 0; n < cloud.count; n++) {
+            double mean = 0.0;
+            for (int64_t i = 0; i < cloud.count; i++) {
+                double sum = 0.0;
+                for (int a = 0; a < dim; a++) {
+                    double d = cloud.x[n * dim + a] - cloud.x[i * dim + a];
+                    sum += d * d;
+                }
+                distance[i] = sqrt(sum);
+            }
+            qsort(distance, (size_t)cloud.count, sizeof *distance, compare_doubles);
+            for (int k = 1; k <= 2 * dim; k++) {
+                mean += distance[k] / (2 * dim);
+            }
+            at_most(fabs(spacing[n] / mean - 1.0), 1e-12, "spacing");
+        }
+        free(spacing);
+        free(distance);
+        scattered_free(&cloud);
+    }
+}
+
+/* At most so many nearest neighbours: of equally distant ones the lower indices stay. */
+static void nearest_with_ties(void **state)
+{
+    (void)state;
+    double x[25 * 2];
+    for (int n = 0; n < 25; n++) {
+        x[2 * n] = n % 5;
+        x[2 * n + 1] = n / 5;
+    }
+    static const double point[] = {2.0, 2.0};
+    static const int32_t expected[][9] = {
+        {12}, {7, 11, 12, 13}, {7, 11, 12, 13, 17}, {6, 7, 8, 11, 12, 13, 17}};
+    static const int64_t most[] = {1, 4, 5, 7};
+    for (int i = 0; i < 4; i++) {
+        struct support_options options = {.radius = 2.1, .most = most[i], .mls = mls_default(2)};
+        struct point_grid grid;
+        struct support_lists lists;
+        struct error error;
+        double radius[25];
+        good(support_radii(&options, 25, NULL, radius, &error), &error);
+        good(point_grid_build(&grid, 2, 25, x, radius, &error), &error);
+        good(support_build(&options, &grid, 1, point, "points.x", &lists, &error), &error);
+        assert_int_equal(lists.ptr[1], most[i]);
+        assert_memory_equal(lists.idx, expected[i], (size_t)most[i] * sizeof(int32_t));
+        support_free(&lists);
+        point_grid_free(&grid);
+    }
+}
+
+static void least_neighbours(void **state)
+{
+    (void)state;
+    struct scattered cloud = scatter(2, 12, 200, &places[0], 0.3, 4);
+    struct support_options options = support_defaults(2);
+    options.least = 15;
+    struct table table;
+    struct error error;
+    good(tabulate(&options, cloud.count, cloud.x, 200, cloud.points, &table, &error), &error);
+    int64_t widened = 0;
+    double widest = 1.0;
+    for (int64_t p = 0; p < 200; p++) {
+        assert_true(table.lists.ptr[p + 1] - table.lists.ptr[p] >= 15);
+        assert_true(table.lists.widen[p] >= 1.0);
+        widened += table.lists.widen[p] > 1.0;
+        widest = fmax(widest, table.lists.widen[p]);
+        for (int64_t i = table.lists.ptr[p] + 1; i < table.lists.ptr[p + 1]; i++) {
+            assert_true(table.lists.idx[i] > table.lists.idx[i - 1]);
+        }
+    }
+    assert_true(widened > 0);
+    assert_int_equal(widened, table.lists.widened);
+    assert_true(widest == table.lists.widest);
+    table_free(&table);
+    scattered_free(&cloud);
+}
+
+/* The same bytes for any number of threads; also the same error. */
+static void threads(void **state)
+{
+    (void)state;
+    static const int numbers[] = {1, 2, 5};
+    struct scattered cloud = scatter(3, 7, 3000, &places[0], 0.3, 9);
+    struct support_options options = support_defaults(3);
+    struct table tables[3];
+    struct error error, errors[3];
+    int before = omp_get_max_threads();
+    for (int i = 0; i < 3; i++) {
+        omp_set_num_threads(numbers[i]);
+        good(tabulate(&options, cloud.count, cloud.x, 3000, cloud.points, &tables[i], &error), &error);
+    }
+    for (int i = 1; i < 3; i++) {
+        size_t pairs = (size_t)tables[0].lists.ptr[3000];
+        assert_memory_equal(tables[0].lists.ptr, tables[i].lists.ptr, 3001 * sizeof(int64_t));
+        assert_memory_equal(tables[0].lists.idx, tables[i].lists.idx, pairs * sizeof(int32_t));
+        assert_memory_equal(tables[0].lists.widen, tables[i].lists.widen, 3000 * sizeof(double));
+        assert_memory_equal(tables[0].phi, tables[i].phi, pairs * sizeof(double));
+        assert_memory_equal(tables[0].dphi, tables[i].dphi, pairs * 3 * sizeof(double));
+    }
+    for (int i = 0; i < 3; i++) {
+        table_free(&tables[i]);
+    }
+    for (int64_t p = 700; p < 3000; p += 700) {
+        cloud.points[p * 3] += 100.0;
+    }
+    for (int i = 0; i < 3; i++) {
+        omp_set_num_threads(numbers[i]);
+        assert_int_equal(tabulate(&options, cloud.count, cloud.x, 3000, cloud.points, &tables[i], &errors[i]),
+                         STATUS_VERDICT);
+        assert_non_null(strstr(errors[i].text, "points.x: row 700 at ("));
+        assert_string_equal(errors[i].text, errors[0].text);
+        table_free(&tables[i]);
+    }
+    omp_set_num_threads(before);
+    scattered_free(&cloud);
+}
+
+static void not_finite(void **state)
+{
+    (void)state;
+    struct scattered cloud = scatter(2, 8, 10, &places[0], 0.3, 4);
+    struct support_options options = support_defaults(2);
+    struct table table;
+    struct error error;
+    static const double wrong[] = {NAN, INFINITY};
+    for (int i = 0; i < 2; i++) {
+        cloud.points[9] = wrong[i];
+        assert_int_equal(tabulate(&options, cloud.count, cloud.x, 10, cloud.points, &table, &error),
+                         STATUS_INPUT);
+        assert_non_null(strstr(error.text, "points.x: row 4"));
+        table_free(&table);
+    }
+    scattered_free(&cloud);
+}
+
+/* A cloud that is a trap. */
+struct trap {
+    const char *name;
+    int dim;
+    int64_t count;
+    double x[4000];
+};
+
+/* Nodes and some points between them. */
+static int64_t trap_points(const struct trap *trap, double *points)
+{
+    int64_t count = trap->count;
+    memcpy(points, trap->x, (size_t)(count * trap->dim) * sizeof *points);
+    for (int64_t n = 0; n + 1 < trap->count; n++, count++) {
+        for (int a = 0; a < trap->dim; a++) {
+            points[count * trap->dim + a] =
+                0.7 * trap->x[n * trap->dim + a] + 0.3 * trap->x[(n + 1) * trap->dim + a];
+        }
+    }
+    return count;
+}
+
+/* Either a table that reproduces linear fields, with gradients, or one clear error. Returns the status. */
+static enum status spring(const struct trap *trap, enum basis basis, bool widen)
+{
+    static double points[8000];
+    struct support_options options = options_for(trap->dim, basis, WEIGHT_QUARTIC);
+    struct table table;
+    struct error error;
+    options.factor = 1.8;
+    options.widen = widen;
+    int64_t count = trap_points(trap, points);
+    enum status status = tabulate(&options, trap->count, trap->x, count, points, &table, &error);
+    if (status == STATUS_OK) {
+        double length = 1.0;
+        struct defects worst = table_defects(&table, trap->dim, trap->x, points, length);
+        at_most(worst.unity, 1e-10, trap->name);
+        at_most(worst.position, 1e-10, trap->name);
+        at_most(worst.gradient_sum, 1e-10, trap->name);
+        at_most(worst.gradient_position, 1e-10, trap->name);
+    } else {
+        assert_true(status == STATUS_VERDICT || status == STATUS_INPUT);
+        if (strstr(error.text, "row ") == NULL || strchr(error.text, '(') == NULL) {
+            fail_msg("%s: the message names no point: %s", trap->name, error.text);
+        }
+    }
+    print_message("# %s, %s%s: %s\n", trap->name, basis_names[basis], widen ? ", widening" : "",
+                  status == STATUS_OK ? "table" : error.text);
+    table_free(&table);
+    return status;
+}
+
+static void trap_sphere(void **state)
+{
+    (void)state;
+    static struct trap trap = {.name = "50 nodes on a sphere", .dim = 3, .count = 50};
+    for (int n = 0; n < 50; n++) {
+        double z = 1.0 - 2.0 * (n + 0.5) / 50.0, angle = 2.399963229728653 * n, r = sqrt(1.0 - z * z);
+        trap.x[3 * n] = r * cos(angle);
+        trap.x[3 * n + 1] = r * sin(angle);
+        trap.x[3 * n + 2] = z;
+    }
+    assert_int_equal(spring(&trap, BASIS_MODIFIED, true), STATUS_OK);
+    assert_int_equal(spring(&trap, BASIS_LINEAR, true), STATUS_OK);
+    assert_int_equal(spring(&trap, BASIS_QUADRATIC, true), STATUS_VERDICT);
+    assert_int_equal(spring(&trap, BASIS_QUADRATIC, false), STATUS_VERDICT);
+    /* All 50 nodes in every support, also off the centre and on the surface: the quadratic basis is
+     * dependent. */
+    for (int b = 0; b < BASIS_COUNT; b++) {
+        for (double at = 0.0; at <= 1.0; at += 0.125) {
+            struct support_options options = {.radius = 3.0, .mls = mls_default(3)};
+            double point[3] = {at * 0.6, at * 0.0, at * 0.8};
+            struct table table;
+            struct error error;
+            options.mls.basis = (enum basis)b;
+            enum status status = tabulate(&options, 50, trap.x, 1, point, &table, &error);
+            assert_int_equal(status, b == BASIS_QUADRATIC ? STATUS_VERDICT : STATUS_OK);
+            if (status == STATUS_OK) {
+                struct defects worst = table_defects(&table, 3, trap.x, point, 1.0);
+                at_most(worst.position, 1e-10, "sphere");
+                at_most(worst.gradient_position, 1e-10, "sphere");
+            }
+            table_free(&table);
+        }
+    }
+}
+
+static void trap_slab(void **state)
+{
+    (void)state;
+    static struct trap trap = {.name = "slab 4 x 4 x 2", .dim = 3, .count = 32};
+    for (int n = 0; n < 32; n++) {
+        trap.x[3 * n] = n % 4;
+        trap.x[3 * n + 1] = n / 4 % 4;
+        trap.x[3 * n + 2] = n / 16;
+    }
+    assert_int_equal(spring(&trap, BASIS_LINEAR, true), STATUS_OK);
+    assert_int_equal(spring(&trap, BASIS_MODIFIED, true), STATUS_OK);
+    assert_int_equal(spring(&trap, BASIS_QUADRATIC, true), STATUS_VERDICT); /* z^2 = z on two layers */
+    assert_int_equal(spring(&trap, BASIS_QUADRATIC, false), STATUS_VERDICT);
+}
+
+static void trap_coplanar(void **state)
+{
+    (void)state;
+    static struct trap trap = {.name = "25 coplanar nodes", .dim = 3, .count = 25};
+    for (int n = 0; n < 25; n++) {
+        trap.x[3 * n] = n % 5;
+        trap.x[3 * n + 1] = n / 5;
+        trap.x[3 * n + 2] = 0.3 * (n % 5) - 0.2 * (n / 5) + 0.1; /* an oblique plane: no exact zeros */
+    }
+    for (int b = 0; b < BASIS_COUNT; b++) {
+        assert_int_equal(spring(&trap, (enum basis)b, true), STATUS_VERDICT);
+        assert_int_equal(spring(&trap, (enum basis)b, false), STATUS_VERDICT);
+    }
+}
+
+static void trap_collinear(void **state)
+{
+    (void)state;
+    static struct trap trap = {.name = "12 collinear nodes", .dim = 2, .count = 12};
+    for (int n = 0; n < 12; n++) {
+        trap.x[2 * n] = 0.1 * n;
+        trap.x[2 * n + 1] = 0.7 - 0.37 * 0.1 * n;
+    }
+    for (int b = 0; b < BASIS_COUNT; b++) {
+        assert_int_equal(spring(&trap, (enum basis)b, true), STATUS_VERDICT);
+        assert_int_equal(spring(&trap, (enum basis)b, false), STATUS_VERDICT);
+    }
+}
+
+/* A regular cloud of 2 D or 3 D for a trap, with room for one node more. */
+static void regular_trap(struct trap *trap, int dim, int per_axis)
+{
+    trap->dim = dim;
+    trap->count = dim == 2 ? per_axis * per_axis : per_axis * per_axis * per_axis;
+    for (int64_t n = 0; n < trap->count; n++) {
+        int64_t rest = n;
+        for (int a = 0; a < dim; a++) {
+            trap->x[n * dim + a] = (double)(rest % per_axis);
+            rest /= per_axis;
+        }
+    }
+}
+
+static void trap_coincident(void **state)
+{
+    (void)state;
+    for (int dim = 2; dim <= 3; dim++) {
+        static struct trap trap = {.name = "two coincident nodes"};
+        regular_trap(&trap, dim, dim == 2 ? 8 : 5);
+        memcpy(trap.x + trap.count * dim, trap.x + 31 * dim, (size_t)dim * sizeof(double));
+        trap.count++;
+        for (int b = 0; b < BASIS_COUNT; b++) {
+            assert_int_equal(spring(&trap, (enum basis)b, true), STATUS_OK);
+        }
+    }
+    /* So many at one place that they have no spacing. */
+    static struct trap heap = {.name = "ten coincident nodes"};
+    regular_trap(&heap, 2, 8);
+    for (int i = 0; i < 9; i++, heap.count++) {
+        memcpy(heap.x + heap.count * 2, heap.x + 31 * 2, 2 * sizeof(double));
+    }
+    struct support_options options = support_defaults(2);
+    struct table table;
+    struct error error;
+    assert_int_equal(tabulate(&options, heap.count, heap.x, heap.count, heap.x, &table, &error),
+                     STATUS_INPUT);
+    assert_non_null(strstr(error.text, "nodes.x: row 31"));
+    table_free(&table);
+}
+
+/* One node six spacings from the others: it and the points beside it either see enough of the others or are
+ * named. */
+static void trap_isolated(void **state)
+{
+    (void)state;
+    for (int dim = 2; dim <= 3; dim++) {
+        static struct trap trap = {.name = "one isolated node"};
+        regular_trap(&trap, dim, dim == 2 ? 8 : 5);
+        for (int a = 0; a < dim; a++) {
+            trap.x[trap.count * dim + a] = 13.0 - 4.0 * a;
+        }
+        trap.count++;
+        for (int b = 0; b < BASIS_COUNT; b++) {
+            spring(&trap, (enum basis)b, true);
+            spring(&trap, (enum basis)b, false);
+        }
+        trap.x[(trap.count - 1) * dim] = 1e4;
+        assert_int_not_equal(spring(&trap, BASIS_LINEAR, false), STATUS_OK);
+        spring(&trap, BASIS_MODIFIED, true); /* names the stray node by its radius */
+    }
+}
+
+static void trap_graded(void **state)
+{
+    (void)state;
+    for (int dim = 2; dim <= 3; dim++) {
+        static struct trap trap = {.name = "cloud graded 20:1"};
+        struct cloud_options graded = {
+            .kind = CLOUD_GRADED, .dim = dim, .high = {1, 1, 1}, .ratio = 20.0, .count = {10, 10, 10}};
+        struct cloud cloud;
+        struct error error;
+        good(cloud_make(&graded, &cloud, &error), &error);
+        trap.dim = dim;
+        trap.count = cloud.node_count;
+        assert_true((size_t)(trap.count * dim) <= sizeof trap.x / sizeof *trap.x);
+        memcpy(trap.x, cloud.x, (size_t)(trap.count * dim) * sizeof(double));
+        cloud_free(&cloud);
+        for (int b = 0; b < BASIS_COUNT; b++) {
+            assert_int_equal(spring(&trap, (enum basis)b, true), STATUS_OK);
+        }
+    }
+}
+
+/* Fewer nodes than any basis needs, down to one. */
+static void trap_few(void **state)
+{
+    (void)state;
+    for (int dim = 2; dim <= 3; dim++) {
+        for (int64_t count = 1; count <= dim + 1; count++) {
+            double x[4 * 3] = {0.0};
+            struct support_options options = support_defaults(dim);
+            struct table table;
+            struct error error;
+            for (int64_t n = 1; n < count; n++) {
+                x[n * dim + n - 1] = 1.0;
+            }
+            enum status status = tabulate(&options, count, x, 1, x, &table, &error);
+            assert_int_equal(status, count == 1 ? STATUS_INPUT : count <= dim ? STATUS_VERDICT : STATUS_OK);
+            if (status == STATUS_OK) {
+                at_most(table_defects(&table, dim, x, x, 1.0).gradient_position, 1e-10, "simplex");
+            }
+            table_free(&table);
+        }
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(grid_against_brute_force),
+        cmocka_unit_test(grid_odd_clouds),
+        cmocka_unit_test(spacing_against_brute_force),
+        cmocka_unit_test(nearest_with_ties),
+        cmocka_unit_test(least_neighbours),
+        cmocka_unit_test(threads),
+        cmocka_unit_test(not_finite),
+        cmocka_unit_test(trap_sphere),
+        cmocka_unit_test(trap_slab),
+        cmocka_unit_test(trap_coplanar),
+        cmocka_unit_test(trap_collinear),
+        cmocka_unit_test(trap_coincident),
+        cmocka_unit_test(trap_isolated),
+        cmocka_unit_test(trap_graded),
+        cmocka_unit_test(trap_few),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
