@@ -1,0 +1,28 @@
+/* Moving least squares on measured points, however they lie: along a curve, on a surface, only a few of them.
+ *
+ * At each x the nearest points, weighted by the quartic spline, are fitted by the quadratic basis in local
+ * scaled coordinates; combinations of monomials that the points do not determine (singular values below a
+ * cut) are left out, so that the field does not vary where nothing was measured. */
+#ifndef APPROX_SCATTER_H
+#define APPROX_SCATTER_H
+
+#include "base/status.h"
+
+#include <stdint.h>
+
+/* Measured values in the caller's arrays: each row holds a point, then the values. */
+struct scatter {
+    int dim;
+    int value_count;
+    int64_t count;     /* >= 1 */
+    int64_t row_size;  /* doubles per row, >= dim + value_count */
+    const double *row; /* count * row_size; coordinates in units of `unit` */
+    double unit;       /* m; scales coordinates and values */
+};
+
+/* values[value_count] at x[dim] (m). *distance receives the distance to the nearest point and *spacing the
+ * mean spacing of the points used (m; 0 for a single one), so that a caller can refuse to extrapolate far. */
+MUST_CHECK enum status scatter_evaluate(const struct scatter *scatter, const double *x, double *values,
+                                        double *distance, double *spacing, struct error *error);
+
+#endif

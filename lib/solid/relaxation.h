@@ -1,0 +1,62 @@
+/* Quasi-static solution by dynamic relaxation: central differences with a fictitious mass and a damping that
+ * follows the lowest mode still active (a running Rayleigh quotient), stopped by an estimate of the remaining
+ * error.
+ *
+ * Error estimate: with the projected residual's acceleration a and the lowest frequency w, |e| <= |a| / w^2
+ * in the norm of the mass, exactly so for a linear system; w is taken as the least Rayleigh quotient of
+ * recent increments. */
+#ifndef SOLID_RELAXATION_H
+#define SOLID_RELAXATION_H
+
+#include "solid/system.h"
+
+#include <stdbool.h>
+
+/* What a run looks like while it lasts. */
+struct progress {
+    int64_t step;
+    double time;      /* s; 0..1 of the load in relaxation */
+    double error;     /* estimated remaining error relative to the displacement (relaxation), or 0 */
+    double remaining; /* estimated share of the steps still to go, 0..1, negative: unknown */
+    const double *u;  /* parameters */
+};
+
+/* Called every so many steps; returns false to stop the run. */
+typedef bool progress_function(void *context, const struct progress *progress);
+
+struct relaxation_options {
+    double tolerance;        /* on the estimated remaining error relative to the displacement, e.g. 1e-6 */
+    double time_step_margin; /* share of the critical step, e.g. .9 */
+    int64_t ramp_steps;      /* steps over which the load is applied; 0: chosen by the largest displacement */
+    int64_t most_steps;      /* 0: 1e6 */
+    progress_function *progress;
+    void *context;
+};
+
+enum relaxation_outcome {
+    RELAXATION_CONVERGED,
+    RELAXATION_TOO_MANY_STEPS,
+    RELAXATION_INVERTED, /* J <= 0 or not a number at a point */
+    RELAXATION_STOPPED   /* by the progress function */
+};
+
+struct relaxation_report {
+    enum relaxation_outcome outcome;
+    int64_t steps, ramp_steps;
+    int64_t force_evaluations;
+    double error;             /* estimated remaining error, relative */
+    double largest_frequency; /* in the fictitious mass's units */
+    double lowest_frequency;
+    int64_t inverted_point; /* the caller's index, RELAXATION_INVERTED */
+    double least_jacobian;
+};
+
+/* Relax from u (usually zeros) to equilibrium at the full load. reaction[node_count * dim], unless NULL,
+ * receives the forces of the constraints on the parameters, N (2D: N/m). STATUS_VERDICT for constraints that
+ * depend on each other (the message names the node); an outcome other than converged is no error status: see
+ * the report. */
+MUST_CHECK enum status relaxation_run(struct solid_system *system, const struct relaxation_options *options,
+                                      double *u, double *reaction, struct relaxation_report *report,
+                                      struct error *error);
+
+#endif

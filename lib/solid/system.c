@@ -1,0 +1,188 @@
+#include "solid/system.h"
+
+#include "approx/cells.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+void system_free(struct solid_system *system)
+{
+    for (int64_t i = 0; i < system->load_count; i++) {
+        free(system->loads[i].force);
+    }
+    for (int64_t i = 0; i < system->pressure_count; i++) {
+        free(system->pressures[i].facet);
+        free(system->pressures[i].corner);
+        boundary_averages_free(&system->pressures[i].averages);
+    }
+    for (int64_t i = 0; i < system->contact_count; i++) {
+        contact_free(&system->contacts[i]);
+        boundary_averages_free(&system->contact_averages[i]);
+    }
+    for (int64_t i = 0; i < system->curve_count; i++) {
+        curve_free(&system->curves[i]);
+    }
+    free(system->loads);
+    free(system->pressures);
+    free(system->contacts);
+    free(system->contact_averages);
+    free(system->curves);
+    free(system->lumped_mass);
+    free(system->factor);
+    constraint_rows_free(&system->rows);
+    body_free(&system->body);
+    *system = (struct solid_system){0};
+}
+
+void system_load_factors(struct solid_system *system, double s)
+{
+    for (int64_t i = 0; i < system->curve_count; i++) {
+        system->factor[i] = curve_value(&system->curves[i], s);
+    }
+}
+
+/* Deformed position of a corner: X + the average's displacement. */
+static void corner_position(const struct solid_system *system, const struct boundary_averages *averages,
+                            int64_t a, const double *u, double *x)
+{
+    int dim = system->dim;
+    for (int i = 0; i < dim; i++) {
+        x[i] = system->X[(int64_t)averages->node[a] * dim + i];
+    }
+    for (int64_t k = averages->ptr[a]; k < averages->ptr[a + 1]; k++) {
+        for (int i = 0; i < dim; i++) {
+            x[i] += averages->phi[k] * u[(int64_t)averages->idx[k] * dim + i];
+        }
+    }
+}
+
+/* Forces of a following pressure, equally shared among the corners of each deformed facet. */
+static void add_pressure(const struct solid_system *system, const struct pressure_load *load, double pressure,
+                         const double *u, double *residual)
+{
+    int dim = system->dim;
+    static const int32_t in_order[3] = {0, 1, 2};
+    for (int64_t f = 0; f < load->facet_count; f++) {
+        const int32_t *corner = load->corner + f * dim;
+        double x[9], area[3];
+        for (int k = 0; k < dim; k++) {
+            corner_position(system, &load->averages, corner[k], u, x + k * dim);
+        }
+        face_area_vector(dim, x, in_order, area);
+        for (int k = 0; k < dim; k++) {
+            for (int64_t i = load->averages.ptr[corner[k]]; i < load->averages.ptr[corner[k] + 1]; i++) {
+                for (int a = 0; a < dim; a++) {
+                    residual[(int64_t)load->averages.idx[i] * dim + a] -=
+                        pressure * area[a] / dim * load->averages.phi[i];
+                }
+            }
+        }
+    }
+}
+
+struct deformation system_residual(struct solid_system *system, const double *u, double *residual)
+{
+    int64_t size = system->node_count * system->dim;
+    struct deformation deformation = body_force(&system->body, u, residual);
+    for (int64_t i = 0; i < size; i++) {
+        residual[i] = -residual[i];
+    }
+    for (int64_t l = 0; l < system->load_count; l++) {
+        double factor = system->factor[system->loads[l].curve];
+        const double *force = system->loads[l].force;
+        for (int64_t i = 0; i < size; i++) {
+            residual[i] += factor * force[i];
+        }
+    }
+    for (int64_t l = 0; l < system->pressure_count; l++) {
+        const struct pressure_load *load = &system->pressures[l];
+        add_pressure(system, load, load->pressure * system->factor[load->curve], u, residual);
+    }
+    for (int64_t c = 0; c < system->contact_count; c++) {
+        contact_force(&system->contacts[c], u, residual);
+    }
+    return deformation;
+}
+
+void system_relaxation_mass(const struct solid_system *system, double *mass)
+{
+    double sum = 0.0;
+    body_diagonal(&system->body, mass);
+    for (int64_t c = 0; c < system->contact_count; c++) {
+        const struct contact *contact = &system->contacts[c];
+        const struct boundary_averages *averages = contact->averages;
+        for (int64_t a = 0; a < averages->count; a++) {
+            for (int64_t i = averages->ptr[a]; i < averages->ptr[a + 1]; i++) {
+                mass[averages->idx[i]] +=
+                    contact->stiffness * averages->area[a] * averages->phi[i] * averages->phi[i];
+            }
+        }
+    }
+    for (int64_t n = 0; n < system->node_count; n++) {
+        sum += mass[n];
+    }
+    /* A node that no point feels must still have some mass; it never moves. */
+    double least = 1e-6 * sum / (double)system->node_count;
+    for (int64_t n = 0; n < system->node_count; n++) {
+        mass[n] = fmax(mass[n], least);
+    }
+}
+
+/* A fixed sequence of pseudo-random numbers in [-1, 1): the same run gives the same bytes. */
+static void start_mode(double *mode, int64_t size)
+{
+    uint64_t state = 0x9e3779b97f4a7c15u;
+    for (int64_t i = 0; i < size; i++) {
+        state = state * 6364136223846793005u + 1442695040888963407u;
+        mode[i] = (double)(int64_t)state / 9223372036854775808.0;
+    }
+}
+
+static double largest_entry(const double *vector, int64_t size)
+{
+    double largest = 0.0;
+    for (int64_t i = 0; i < size; i++) {
+        largest = fmax(largest, fabs(vector[i]));
+    }
+    return largest;
+}
+
+double system_largest_frequency(struct solid_system *system, const double *mass, const double *u,
+                                const double *residual, int iterations, double *mode, double *scratch)
+{
+    int dim = system->dim;
+    int64_t size = system->node_count * dim;
+    double *displaced = scratch, *response = scratch + size;
+    double eigenvalue = 0.0;
+    if (largest_entry(mode, size) == 0.0) {
+        start_mode(mode, size);
+    }
+    /* A perturbation that strains the body by about 1e-6. */
+    double spacing = 0.0;
+    for (int64_t q = 0; q < system->body.point_count; q++) {
+        spacing += system->body.weight[q];
+    }
+    spacing = pow(spacing / (double)system->body.point_count, 1.0 / dim);
+    for (int it = 0; it < iterations; it++) {
+        double epsilon = 1e-6 * spacing / largest_entry(mode, size);
+        for (int64_t i = 0; i < size; i++) {
+            displaced[i] = u[i] + epsilon * mode[i];
+        }
+        (void)system_residual(system, displaced, response);
+        double top = 0.0, bottom = 0.0;
+        for (int64_t i = 0; i < size; i++) {
+            double stiffness = (residual[i] - response[i]) / epsilon;
+            double m = mass[i / dim];
+            top += mode[i] * stiffness;
+            bottom += m * mode[i] * mode[i];
+            response[i] = stiffness / m;
+        }
+        eigenvalue = top / bottom;
+        double scale = 1.0 / largest_entry(response, size);
+        for (int64_t i = 0; i < size; i++) {
+            mode[i] = response[i] * scale;
+        }
+    }
+    return eigenvalue > 0.0 ? sqrt(eigenvalue) : 0.0;
+}

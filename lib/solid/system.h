@@ -1,0 +1,67 @@
+/* A scene ready to be stepped: a body, its loads, constraints and contacts, on the parameters of its nodes.
+ */
+#ifndef SOLID_SYSTEM_H
+#define SOLID_SYSTEM_H
+
+#include "solid/body.h"
+#include "solid/constraint.h"
+#include "solid/contact.h"
+#include "solid/curve.h"
+
+/* A dead load: forces on the parameters, scaled by a load curve. */
+struct dead_load {
+    double *force; /* node_count * dim, N (2D: N/m) */
+    int32_t curve;
+    int32_t section; /* the caller's label */
+};
+
+/* A pressure on facets that follows the deformation: it acts on the deformed facets, whose corners move with
+ * the field at the nodes, and is shared by the hat averages of its set. */
+struct pressure_load {
+    int64_t facet_count;
+    int32_t *facet; /* facet_count * dim, oriented outward */
+    struct boundary_averages
+        averages;    /* of node values on the set: where corners are, and what carries them */
+    int32_t *corner; /* facet_count * dim: the average of each corner */
+    double pressure; /* Pa, positive pushes inward */
+    int32_t curve;
+};
+
+struct solid_system {
+    int dim;
+    int64_t node_count;
+    const double *X; /* reference coordinates, node_count * dim, m; the caller's */
+    struct body body;
+    struct dead_load *loads;
+    int64_t load_count;
+    struct pressure_load *pressures;
+    int64_t pressure_count;
+    struct contact *contacts;
+    struct boundary_averages *contact_averages; /* contact_count: what the contacts act on */
+    int64_t contact_count;
+    struct constraint_rows rows;
+    struct load_curve *curves;
+    int64_t curve_count;
+    double *lumped_mass; /* node_count, kg (2D: kg/m), positive: each cell shares its mass among its nodes */
+    double *factor;      /* curve_count: scratch, values of the curves */
+};
+
+void system_free(struct solid_system *system);
+
+/* Values of all curves at s within [0, 1], into system->factor. */
+void system_load_factors(struct solid_system *system, double s);
+
+/* residual[node_count * dim] = loads at system->factor + contact - internal forces, at parameters u. */
+struct deformation system_residual(struct solid_system *system, const double *u, double *residual);
+
+/* Mass for relaxation: a bound of each node's stiffness, N/m, so that all parts of the body have about the
+ * same critical step (1) however the cloud is graded; contact penalties included. mass[node_count] > 0. */
+void system_relaxation_mass(const struct solid_system *system, double *mass);
+
+/* Largest eigenvalue of M^-1 K at u by `iterations` steps of power iteration that continue from
+ * mode[node_count * dim] (a start of zeros is replaced by a fixed pseudo-random one). residual must hold the
+ * residual at u. The estimate is from below; repeated calls sharpen it. scratch: 2 * node_count * dim. */
+double system_largest_frequency(struct solid_system *system, const double *mass, const double *u,
+                                const double *residual, int iterations, double *mode, double *scratch);
+
+#endif

@@ -1,0 +1,339 @@
+#include "model.h"
+
+#include "io/table.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Index of `name` in the comma list `names`, or -1. */
+static int64_t index_in_list(const char *names, const char *name)
+{
+    size_t length = strlen(name);
+    int64_t index = 0;
+    for (const char *at = names;; index++) {
+        size_t item = strcspn(at, ",");
+        if (item == length && strncmp(at, name, length) == 0) {
+            return index;
+        }
+        if (at[item] == '\0') {
+            return -1;
+        }
+        at += item + 1;
+    }
+}
+
+/* The names= of a section, allocated; "" when it has none. */
+static enum status names_of(const struct section *section, char **names, struct error *error)
+{
+    size_t size = strlen(section->attributes) + 1;
+    enum status status = NEW_ARRAY(names, (int64_t)size, error);
+    if (status == STATUS_OK && !section_attribute(section, "names", *names, size)) {
+        (*names)[0] = '\0';
+    }
+    return status;
+}
+
+/* Material of each region: -1 where the scene names none. */
+static enum status materials_of_regions(const struct scene *scene, const char *names, int64_t region_count,
+                                        int32_t *material, struct error *error)
+{
+    for (int64_t r = 0; r < region_count; r++) {
+        material[r] = -1;
+    }
+    for (int64_t m = 0; m < scene->material_count; m++) {
+        const struct scene_material *section = &scene->materials[m];
+        for (int64_t i = 0; i < section->regions.count; i++) {
+            int64_t region = index_in_list(names, section->regions.names[i]);
+            if (region < 0 || region >= region_count) {
+                return scene_fail(error, STATUS_INPUT, scene, &section->label,
+                                  "the mesh has no region '%s'; present: %s", section->regions.names[i],
+                                  names[0] != '\0' ? names : "none");
+            }
+            material[region] = (int32_t)m;
+        }
+    }
+    return STATUS_OK;
+}
+
+/* cell_material[cell]: from cells.region and the scene. */
+static enum status materials_of_cells(struct model_input *input, struct error *error)
+{
+    enum status status;
+    const struct section *region;
+    char *names = NULL;
+    int32_t *material = NULL;
+    int64_t region_count = 1;
+    TRY(stream_need(input->stream, "cells.region", TYPE_I4, 1, "nodes", &region, error));
+    TRY(names_of(region, &names, error));
+    const int32_t *of_cell = region->data;
+    for (const char *at = names; *at != '\0'; at++) {
+        region_count += *at == ',';
+    }
+    TRY(NEW_ARRAY(&material, region_count, error));
+    TRY(NEW_ARRAY(&input->cell_material, input->cells.count, error));
+    TRY(materials_of_regions(input->scene, names, region_count, material, error));
+    if (region->rows != input->cells.count) {
+        status = fail(error, STATUS_INPUT, "cells.region: does not fit the cells");
+        goto done;
+    }
+    for (int64_t c = 0; c < input->cells.count; c++) {
+        if (of_cell[c] < 0 || of_cell[c] >= region_count || material[of_cell[c]] < 0) {
+            status = fail(
+                error, STATUS_INPUT,
+                "%s: region %d of the mesh (of %s) has no material: name it, or leave it out with nodes -r",
+                input->scene->path, of_cell[c], names);
+            goto done;
+        }
+        input->cell_material[c] = material[of_cell[c]];
+    }
+done:
+    free(names);
+    free(material);
+    return status;
+}
+
+/* The table over the integration points. */
+static enum status read_points(struct model_input *input, struct error *error)
+{
+    enum status status;
+    const struct stream *stream = input->stream;
+    int dim = input->cells.dim;
+    TRY(stream_need(stream, "points.x", TYPE_F8, dim, "ipoints", &input->points, error));
+    TRY(stream_need(stream, "points.weight", TYPE_F8, 1, "ipoints", &input->weight, error));
+    TRY(stream_need(stream, "points.cell", TYPE_I4, 1, "ipoints", &input->point_cell, error));
+    TRY(stream_need(stream, "shape.dphi", TYPE_F8, dim, "shapefn", &input->dphi, error));
+    TRY(stream_need(stream, "shape.phi", TYPE_F8, 1, "shapefn", &input->phi, error));
+    int64_t count = input->points->rows;
+    TRY(stream_neighbours(stream, "nbr", count, input->cells.node_count, &input->point_lists, error));
+    if (input->weight->rows != count || input->point_cell->rows != count ||
+        input->dphi->rows != input->point_lists.ptr[count] || input->phi->rows != input->dphi->rows) {
+        status = fail(error, STATUS_INPUT,
+                      "points.weight, points.cell, shape.dphi: do not fit points.x and nbr.ptr: "
+                      "run the stages again");
+        goto done;
+    }
+    for (int64_t q = 0; q < count; q++) {
+        int32_t cell = ((const int32_t *)input->point_cell->data)[q];
+        if (cell < 0 || cell >= input->cells.count) {
+            status =
+                fail(error, STATUS_INPUT,
+                     "points.cell: row %lld: no cell %d: an evaluation lattice cannot be integrated over",
+                     (long long)q, cell);
+            goto done;
+        }
+    }
+done:
+    return status;
+}
+
+/* The tables over the faces and the nodes. */
+static enum status read_faces_and_nodes(struct model_input *input, struct error *error)
+{
+    enum status status;
+    const struct stream *stream = input->stream;
+    const struct section *faces, *face_cell, *facepoints, *face_phi, *node_phi;
+    int dim = input->cells.dim, per_face = dim == 2 ? 2 : 3;
+    TRY(stream_need(stream, "faces", TYPE_I4, dim, "ipoints", &faces, error));
+    TRY(stream_need(stream, "faces.cell", TYPE_I4, 2, "ipoints", &face_cell, error));
+    TRY(stream_need(stream, "facepoints.x", TYPE_F8, dim, "ipoints", &facepoints, error));
+    TRY(stream_need(stream, "face.phi", TYPE_F8, 1, "shapefn", &face_phi, error));
+    TRY(stream_need(stream, "node.phi", TYPE_F8, 1, "shapefn", &node_phi, error));
+    TRY(stream_neighbours(stream, "face", facepoints->rows, input->cells.node_count, &input->face_lists,
+                          error));
+    TRY(stream_neighbours(stream, "node", input->cells.node_count, input->cells.node_count,
+                          &input->node_lists, error));
+    input->faces =
+        (struct faces){.dim = dim, .count = faces->rows, .node = faces->data, .cell = face_cell->data};
+    if (face_cell->rows != faces->rows || facepoints->rows != faces->rows * per_face ||
+        face_phi->rows != input->face_lists.ptr[facepoints->rows] ||
+        node_phi->rows != input->node_lists.ptr[input->cells.node_count]) {
+        status = fail(error, STATUS_INPUT,
+                      "faces, face.phi, node.phi: do not fit each other: run the stages again");
+        goto done;
+    }
+    for (int64_t i = 0; i < faces->rows * dim; i++) {
+        if (input->faces.node[i] < 0 || input->faces.node[i] >= input->cells.node_count) {
+            status = fail(error, STATUS_INPUT, "faces: row %lld: no node %d", (long long)(i / dim),
+                          input->faces.node[i]);
+            goto done;
+        }
+    }
+    input->face_phi = face_phi->data;
+    input->node_phi = node_phi->data;
+    input->face_table = (struct face_table){.dim = dim,
+                                            .node_count = input->cells.node_count,
+                                            .x = input->cells.x,
+                                            .faces = &input->faces,
+                                            .per_face = per_face,
+                                            .lists = &input->face_lists,
+                                            .phi = face_phi->data};
+done:
+    return status;
+}
+
+enum status model_input_read(const struct stream *stream, const struct scene *scene,
+                             struct model_input *input, struct error *error)
+{
+    enum status status;
+    *input = (struct model_input){.stream = stream, .scene = scene};
+    TRY(stream_cells(stream, true, &input->cells, error));
+    if (scene->dim != input->cells.dim) {
+        status = fail(error, STATUS_INPUT, "%s: dim = %d, but the nodes have %d coordinates", scene->path,
+                      scene->dim, input->cells.dim);
+        goto done;
+    }
+    TRY(materials_of_cells(input, error));
+    TRY(read_points(input, error));
+    TRY(read_faces_and_nodes(input, error));
+done:
+    if (status != STATUS_OK) {
+        model_input_free(input);
+    }
+    return status;
+}
+
+void model_input_free(struct model_input *input)
+{
+    free(input->cell_material);
+    input->cell_material = NULL;
+}
+
+enum status model_facets(const struct model_input *input, const struct scene_label *label,
+                         const struct name_list *names, struct facet_set *set, int32_t **owned,
+                         struct error *error)
+{
+    enum status status;
+    const struct section *facets, *of_facet;
+    char *present = NULL;
+    bool *wanted = NULL;
+    int dim = input->cells.dim;
+    *set = (struct facet_set){0};
+    TRY(stream_need(input->stream, "facets", TYPE_I4, dim, "nodes", &facets, error));
+    TRY(stream_need(input->stream, "facets.set", TYPE_I4, 1, "nodes", &of_facet, error));
+    TRY(names_of(of_facet, &present, error));
+    TRY(NEW_ARRAY(&wanted, (int64_t)strlen(present) + 1, error)); /* at least one entry for each name */
+    for (int64_t i = 0; i < names->count; i++) {
+        int64_t group = index_in_list(present, names->names[i]);
+        if (group < 0) {
+            status = scene_fail(error, STATUS_INPUT, input->scene, label,
+                                "the mesh has no facet group '%s'; present: %s", names->names[i],
+                                present[0] != '\0' ? present : "none");
+            goto done;
+        }
+        wanted[group] = true;
+    }
+    TRY(NEW_ARRAY(owned, facets->rows * dim, error));
+    for (int64_t f = 0; f < facets->rows && f < of_facet->rows; f++) {
+        int32_t group = ((const int32_t *)of_facet->data)[f];
+        if (group >= 0 && (size_t)group <= strlen(present) && wanted[group]) {
+            memcpy(*owned + set->count * dim, (const int32_t *)facets->data + f * dim,
+                   (size_t)dim * sizeof **owned);
+            set->count++;
+        }
+    }
+    set->facet = *owned;
+    if (set->count == 0) {
+        status = scene_fail(error, STATUS_INPUT, input->scene, label, "its facet groups are empty");
+    }
+done:
+    free(present);
+    free(wanted);
+    return status;
+}
+
+enum status model_nodes(const struct model_input *input, const struct scene_label *label,
+                        const struct name_list *names, int32_t **nodes, int64_t *count, struct error *error)
+{
+    enum status status;
+    const struct section *ptr, *idx;
+    struct neighbours sets;
+    char *present = NULL;
+    bool *member = NULL;
+    *count = 0;
+    TRY(stream_need(input->stream, "sets.ptr", TYPE_I8, 1, "nodes", &ptr, error));
+    TRY(stream_need(input->stream, "sets.idx", TYPE_I4, 1, "nodes", &idx, error));
+    TRY(stream_neighbours(input->stream, "sets", ptr->rows - 1, input->cells.node_count, &sets, error));
+    TRY(names_of(ptr, &present, error));
+    if (present[0] == '\0') {
+        free(present);
+        present = NULL;
+        TRY(names_of(idx, &present, error));
+    }
+    TRY(NEW_ARRAY(&member, input->cells.node_count, error));
+    for (int64_t i = 0; i < names->count; i++) {
+        int64_t set = index_in_list(present, names->names[i]);
+        if (set < 0 || set >= sets.count) {
+            status = scene_fail(error, STATUS_INPUT, input->scene, label,
+                                "the mesh has no node set '%s'; present: %s", names->names[i],
+                                present[0] != '\0' ? present : "none");
+            goto done;
+        }
+        for (int64_t k = sets.ptr[set]; k < sets.ptr[set + 1]; k++) {
+            member[sets.idx[k]] = true;
+        }
+    }
+    TRY(NEW_ARRAY(nodes, input->cells.node_count, error));
+    for (int64_t n = 0; n < input->cells.node_count; n++) {
+        if (member[n]) {
+            (*nodes)[(*count)++] = (int32_t)n;
+        }
+    }
+done:
+    free(present);
+    free(member);
+    return status;
+}
+
+enum status model_add_curve(const struct model_input *input, const struct scene_label *label,
+                            const struct scene_curve *curve, struct solid_system *system, int32_t *index,
+                            struct error *error)
+{
+    static const enum curve_kind kinds[] = {[SCENE_CURVE_SMOOTH] = CURVE_SMOOTH,
+                                            [SCENE_CURVE_LINEAR] = CURVE_LINEAR,
+                                            [SCENE_CURVE_STEP] = CURVE_STEP,
+                                            [SCENE_CURVE_FILE] = CURVE_TABLE};
+    enum status status = STATUS_OK;
+    struct table table = {0};
+    struct load_curve *grown = array_grow(system->curves, system->curve_count + 1, sizeof *system->curves);
+    if (grown == NULL) {
+        return fail_memory(error, "load curves");
+    }
+    system->curves = grown;
+    double *factor = array_grow(system->factor, system->curve_count + 1, sizeof *factor);
+    if (factor == NULL) {
+        return fail_memory(error, "load curves");
+    }
+    system->factor = factor;
+    if (curve->kind != SCENE_CURVE_FILE) {
+        system->curves[system->curve_count] = curve_of_kind(kinds[curve->kind]);
+    } else {
+        double end = input->scene->analysis == SCENE_DYNAMIC ? input->scene->solver.end_time : 1.0;
+        TRY(table_read(curve->file, 2, 2, &table, error));
+        status = curve_tabulate(&system->curves[system->curve_count], table.rows, table.values, end, error);
+        if (status != STATUS_OK) {
+            struct error inner = *error;
+            status = scene_fail(error, status, input->scene, label, "curve %s: %s", curve->file, inner.text);
+            goto done;
+        }
+    }
+    *index = (int32_t)system->curve_count++;
+done:
+    table_free(&table);
+    return status;
+}
+
+void model_nodal_field(const struct model_input *input, const double *u, double *field)
+{
+    int dim = input->cells.dim;
+    const struct neighbours *lists = &input->node_lists;
+    for (int64_t n = 0; n < lists->count; n++) {
+        for (int a = 0; a < dim; a++) {
+            double sum = 0.0;
+            for (int64_t i = lists->ptr[n]; i < lists->ptr[n + 1]; i++) {
+                sum += input->node_phi[i] * u[(int64_t)lists->idx[i] * dim + a];
+            }
+            field[n * dim + a] = sum;
+        }
+    }
+}

@@ -1,0 +1,68 @@
+/* Joins a stream (cloud, table of shape functions) and a scene into a system ready to be stepped. */
+#ifndef TOOLS_MODEL_H
+#define TOOLS_MODEL_H
+
+#include "stages.h"
+
+#include "approx/boundary.h"
+#include "io/scene.h"
+#include "solid/system.h"
+
+/* Views into the stream that the parts of a model are built from. */
+struct model_input {
+    const struct stream *stream;
+    const struct scene *scene;
+    struct cells cells;
+    struct neighbours point_lists, face_lists, node_lists;
+    const struct section *points, *weight, *point_cell, *dphi, *phi;
+    const double *face_phi, *node_phi;
+    struct faces faces;
+    struct face_table face_table;
+    int32_t *cell_material; /* material of each cell; owned */
+};
+
+struct model {
+    struct model_input input;
+    struct solid_system system;
+    /* Which rows of the constraints belong to each displacement section: system.rows.section. */
+};
+
+/* Check that the stream has all of it, and that it fits. Regions without a material are an error that names
+ * them. */
+MUST_CHECK enum status model_input_read(const struct stream *stream, const struct scene *scene,
+                                        struct model_input *input, struct error *error);
+void model_input_free(struct model_input *input);
+
+/* Build the whole system; the stream and the scene must outlive the model. */
+MUST_CHECK enum status model_build(const struct stream *stream, const struct scene *scene,
+                                   struct model *model, struct error *error);
+void model_free(struct model *model);
+
+/* The parts of model_build, in their own files. */
+MUST_CHECK enum status model_add_constraints(const struct model_input *input, struct solid_system *system,
+                                             struct error *error);
+MUST_CHECK enum status model_add_loads(const struct model_input *input, struct solid_system *system,
+                                       struct error *error);
+MUST_CHECK enum status model_add_contacts(const struct model_input *input, struct solid_system *system,
+                                          struct error *error);
+
+/* The facets of the named groups; the error lists the groups that exist. set->facet is owned by the caller
+ * (free the array through *owned). */
+MUST_CHECK enum status model_facets(const struct model_input *input, const struct scene_label *label,
+                                    const struct name_list *names, struct facet_set *set, int32_t **owned,
+                                    struct error *error);
+
+/* The nodes of the named sets, ascending; *nodes is owned by the caller. */
+MUST_CHECK enum status model_nodes(const struct model_input *input, const struct scene_label *label,
+                                   const struct name_list *names, int32_t **nodes, int64_t *count,
+                                   struct error *error);
+
+/* Append the curve of a section; *index receives its number. */
+MUST_CHECK enum status model_add_curve(const struct model_input *input, const struct scene_label *label,
+                                       const struct scene_curve *curve, struct solid_system *system,
+                                       int32_t *index, struct error *error);
+
+/* field[node_count * dim] = u_h at the nodes. */
+void model_nodal_field(const struct model_input *input, const double *u, double *field);
+
+#endif

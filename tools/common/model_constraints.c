@@ -1,0 +1,269 @@
+#include "model.h"
+
+#include "approx/scatter.h"
+#include "io/table.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+/* What one displacement section prescribes, and where it goes. */
+struct prescription {
+    const struct model_input *input;
+    const struct scene_displacement *section;
+    struct solid_system *system;
+    int32_t number, curve; /* of the section; of its load curve */
+    struct table table;    /* SCENE_TABLE */
+};
+
+/* The prescribed displacement at one place. */
+static enum status table_value(const struct prescription *p, const double *x, double *value,
+                               struct error *error)
+{
+    int dim = p->input->cells.dim;
+    double distance, spacing;
+    struct scatter scatter = {.dim = dim,
+                              .value_count = dim,
+                              .count = p->table.rows,
+                              .row_size = p->table.cols,
+                              .row = p->table.values,
+                              .unit = p->section->table_unit};
+    enum status status = scatter_evaluate(&scatter, x, value, &distance, &spacing, error);
+    if (status == STATUS_OK && p->table.rows > 1 && !(distance <= 8.0 * spacing)) {
+        char place[96];
+        point_text(dim, x, place);
+        return scene_fail(
+            error, STATUS_INPUT, p->input->scene, &p->section->label,
+            "table %s: its nearest point is %.3g m from the boundary at %s, its points are %.3g m "
+            "apart: wrong unit or wrong place",
+            p->section->table, distance, place, spacing);
+    }
+    return status;
+}
+
+/* Mean of the table over the samples of one average. */
+static enum status average_of_table(const struct prescription *p, const struct boundary_averages *averages,
+                                    int64_t a, double *mean, struct error *error)
+{
+    int dim = p->input->cells.dim;
+    for (int i = 0; i < dim; i++) {
+        mean[i] = 0.0;
+    }
+    for (int64_t s = averages->sample_ptr[a]; s < averages->sample_ptr[a + 1]; s++) {
+        double value[3];
+        enum status status = table_value(p, averages->sample_x + s * dim, value, error);
+        if (status != STATUS_OK) {
+            return status;
+        }
+        for (int i = 0; i < dim; i++) {
+            mean[i] += averages->sample_share[s] * value[i];
+        }
+    }
+    return STATUS_OK;
+}
+
+static enum status add_row(const struct prescription *p, const struct boundary_averages *averages, int64_t a,
+                           const double *direction, double target, struct error *error)
+{
+    int64_t at = averages->ptr[a];
+    static const double one = 1.0;
+    struct constraint_rows *rows = &p->system->rows;
+    if (p->input->scene->solver.constraints == SCENE_DIRECT) {
+        /* With a weight function that almost interpolates, the parameter is the value. */
+        return constraint_rows_add(rows, 1, &averages->node[a], &one, direction, target, p->curve, p->number,
+                                   averages->node[a], error);
+    }
+    return constraint_rows_add(rows, averages->ptr[a + 1] - at, averages->idx + at, averages->phi + at,
+                               direction, target, p->curve, p->number, averages->node[a], error);
+}
+
+/* All rows of one average. */
+static enum status add_average(const struct prescription *p, const struct boundary_averages *averages,
+                               int64_t a, struct error *error)
+{
+    enum status status = STATUS_OK;
+    int dim = p->input->cells.dim;
+    double value[3] = {0.0, 0.0, 0.0};
+    if (p->section->kind == SCENE_NORMAL) {
+        return add_row(p, averages, a, averages->normal + a * dim, p->section->normal, error);
+    }
+    if (p->section->kind == SCENE_TABLE) {
+        status = average_of_table(p, averages, a, value, error);
+    }
+    for (int i = 0; status == STATUS_OK && i < dim; i++) {
+        double axis[3] = {0.0, 0.0, 0.0};
+        axis[i] = 1.0;
+        if (p->section->kind == SCENE_COMPONENTS) {
+            value[i] = p->section->components[i];
+            if (p->section->is_free[i]) {
+                continue;
+            }
+        }
+        status = add_row(p, averages, a, axis, value[i], error);
+    }
+    return status;
+}
+
+/* Averages over facets: by hats, or by node values where the scene says so. */
+static enum status averages_on_facets(const struct model_input *input, const struct facet_set *set,
+                                      struct boundary_averages *averages, struct error *error)
+{
+    const struct scene_solver *solver = &input->scene->solver;
+    if (solver->constraint_points == SCENE_NODE_VALUES || solver->constraints == SCENE_DIRECT) {
+        return boundary_nodes_build(&input->face_table, set, &input->node_lists, input->node_phi, averages,
+                                    error);
+    }
+    return boundary_averages_build(&input->face_table, set, averages, error);
+}
+
+/* Node values at a list of nodes, as averages of one sample each. The arrays are views and small copies. */
+static enum status averages_at_nodes(const struct model_input *input, const int32_t *nodes, int64_t count,
+                                     struct boundary_averages *averages, struct error *error)
+{
+    enum status status;
+    int dim = input->cells.dim;
+    const struct neighbours *lists = &input->node_lists;
+    int64_t pairs = 0;
+    *averages = (struct boundary_averages){.count = count};
+    for (int64_t i = 0; i < count; i++) {
+        pairs += lists->ptr[nodes[i] + 1] - lists->ptr[nodes[i]];
+    }
+    TRY(NEW_ARRAY(&averages->node, count, error));
+    TRY(NEW_ARRAY(&averages->ptr, count + 1, error));
+    TRY(NEW_ARRAY(&averages->idx, pairs, error));
+    TRY(NEW_ARRAY(&averages->phi, pairs, error));
+    TRY(NEW_ARRAY(&averages->sample_ptr, count + 1, error));
+    TRY(NEW_ARRAY(&averages->sample_x, count * dim, error));
+    TRY(NEW_ARRAY(&averages->sample_share, count, error));
+    for (int64_t i = 0; i < count; i++) {
+        int64_t at = averages->ptr[i];
+        averages->node[i] = nodes[i];
+        for (int64_t k = lists->ptr[nodes[i]]; k < lists->ptr[nodes[i] + 1]; k++) {
+            averages->idx[at] = lists->idx[k];
+            averages->phi[at++] = input->node_phi[k];
+        }
+        averages->ptr[i + 1] = at;
+        averages->sample_ptr[i + 1] = i + 1;
+        averages->sample_share[i] = 1.0;
+        for (int a = 0; a < dim; a++) {
+            averages->sample_x[i * dim + a] = input->cells.x[(int64_t)nodes[i] * dim + a];
+        }
+    }
+done:
+    if (status != STATUS_OK) {
+        boundary_averages_free(averages);
+    }
+    return status;
+}
+
+static enum status add_section(struct prescription *p, struct error *error)
+{
+    enum status status;
+    int dim = p->input->cells.dim;
+    const struct scene_displacement *section = p->section;
+    struct boundary_averages averages = {0};
+    struct facet_set set = {0};
+    int32_t *owned = NULL;
+    int64_t count;
+    TRY(model_add_curve(p->input, &section->label, &section->curve, p->system, &p->curve, error));
+    if (section->kind == SCENE_TABLE) {
+        TRY(table_read(section->table, 2 * dim, 2 * dim, &p->table, error));
+    }
+    if (section->facets.count > 0) {
+        TRY(model_facets(p->input, &section->label, &section->facets, &set, &owned, error));
+        TRY(averages_on_facets(p->input, &set, &averages, error));
+    } else {
+        TRY(model_nodes(p->input, &section->label, &section->nodes, &owned, &count, error));
+        TRY(averages_at_nodes(p->input, owned, count, &averages, error));
+    }
+    for (int64_t a = 0; a < averages.count; a++) {
+        TRY(add_average(p, &averages, a, error));
+    }
+done:
+    free(owned);
+    boundary_averages_free(&averages);
+    table_free(&p->table);
+    return status;
+}
+
+/* Same place, same direction and same pairs as an earlier row? */
+static bool same_row(const struct constraint_rows *rows, int64_t r, int64_t s)
+{
+    int64_t length = rows->ptr[r + 1] - rows->ptr[r];
+    double along = 0.0, across = 0.0;
+    if (rows->node[r] != rows->node[s] || rows->ptr[s + 1] - rows->ptr[s] != length) {
+        return false;
+    }
+    for (int a = 0; a < rows->dim; a++) {
+        along += rows->direction[r * rows->dim + a] * rows->direction[s * rows->dim + a];
+    }
+    for (int64_t i = 0; i < length; i++) {
+        if (rows->idx[rows->ptr[r] + i] != rows->idx[rows->ptr[s] + i]) {
+            return false;
+        }
+        across += fabs(rows->phi[rows->ptr[r] + i] - rows->phi[rows->ptr[s] + i]);
+    }
+    return fabs(along) > 1.0 - 1e-9 && across < 1e-9;
+}
+
+/* Drop a row that repeats an earlier one; with another value it is an error. */
+static enum status settle_repeats(const struct model_input *input, struct constraint_rows *rows,
+                                  int64_t first, struct error *error)
+{
+    struct constraint_rows kept;
+    enum status status = STATUS_OK;
+    constraint_rows_init(&kept, rows->dim);
+    for (int64_t r = 0; r < rows->count; r++) {
+        bool repeated = false;
+        for (int64_t s = 0; r >= first && s < r && !repeated; s++) {
+            if (!same_row(rows, r, s)) {
+                continue;
+            }
+            double along = 0.0;
+            for (int a = 0; a < rows->dim; a++) {
+                along += rows->direction[r * rows->dim + a] * rows->direction[s * rows->dim + a];
+            }
+            repeated = true;
+            if (!(fabs(rows->target[r] - copysign(1.0, along) * rows->target[s]) <=
+                  1e-9 * (fabs(rows->target[r]) + 1e-9))) {
+                char place[96];
+                point_text(rows->dim, input->cells.x + (int64_t)rows->node[r] * rows->dim, place);
+                status = scene_fail(error, STATUS_INPUT, input->scene,
+                                    &input->scene->displacements[rows->section[r]].label,
+                                    "node %d at %s is prescribed twice: %g m here, %g m in [displacement %s]",
+                                    rows->node[r], place, rows->target[r], rows->target[s],
+                                    input->scene->displacements[rows->section[s]].label.name);
+                goto done;
+            }
+        }
+        if (!repeated) {
+            TRY(constraint_rows_add(&kept, rows->ptr[r + 1] - rows->ptr[r], rows->idx + rows->ptr[r],
+                                    rows->phi + rows->ptr[r], rows->direction + r * rows->dim,
+                                    rows->target[r], rows->curve[r], rows->section[r], rows->node[r], error));
+        }
+    }
+    constraint_rows_free(rows);
+    *rows = kept;
+    constraint_rows_init(&kept, rows->dim);
+done:
+    constraint_rows_free(&kept);
+    return status;
+}
+
+enum status model_add_constraints(const struct model_input *input, struct solid_system *system,
+                                  struct error *error)
+{
+    enum status status = STATUS_OK;
+    for (int64_t i = 0; i < input->scene->displacement_count; i++) {
+        int64_t first = system->rows.count;
+        struct prescription p = {.input = input,
+                                 .section = &input->scene->displacements[i],
+                                 .system = system,
+                                 .number = (int32_t)i};
+        TRY(add_section(&p, error));
+        if (i > 0) {
+            TRY(settle_repeats(input, &system->rows, first, error));
+        }
+    }
+done:
+    return status;
+}

@@ -1,0 +1,246 @@
+#include "model.h"
+
+#include "io/surface.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Append an empty dead load. */
+static enum status new_load(struct solid_system *system, int32_t curve, int32_t section, double **force,
+                            struct error *error)
+{
+    struct dead_load *grown = array_grow(system->loads, system->load_count + 1, sizeof *grown);
+    if (grown == NULL) {
+        return fail_memory(error, "loads");
+    }
+    system->loads = grown;
+    grown += system->load_count;
+    *grown = (struct dead_load){.curve = curve, .section = section};
+    enum status status = NEW_ARRAY(&grown->force, system->node_count * system->dim, error);
+    if (status == STATUS_OK) {
+        system->load_count++;
+        *force = grown->force;
+    }
+    return status;
+}
+
+static enum status add_gravity(const struct model_input *input, struct solid_system *system,
+                               struct error *error)
+{
+    enum status status;
+    const struct scene_curve smooth = {.kind = SCENE_CURVE_SMOOTH};
+    const struct scene_label label = {0};
+    const int32_t *cell = input->point_cell->data;
+    const double *weight = input->weight->data, *phi = input->phi->data;
+    int dim = system->dim;
+    int32_t curve;
+    double *force;
+    TRY(model_add_curve(input, &label, &smooth, system, &curve, error));
+    TRY(new_load(system, curve, -1, &force, error));
+    for (int64_t q = 0; q < input->points->rows; q++) {
+        double mass = weight[q] * input->scene->materials[input->cell_material[cell[q]]].density;
+        for (int64_t i = input->point_lists.ptr[q]; i < input->point_lists.ptr[q + 1]; i++) {
+            for (int a = 0; a < dim; a++) {
+                force[(int64_t)input->point_lists.idx[i] * dim + a] +=
+                    mass * phi[i] * input->scene->gravity[a];
+            }
+        }
+    }
+done:
+    return status;
+}
+
+static enum status add_traction(const struct model_input *input, const struct scene_load *load,
+                                int32_t number, struct solid_system *system, struct error *error)
+{
+    enum status status;
+    struct boundary_averages averages = {0};
+    struct facet_set set;
+    int32_t *owned = NULL, curve;
+    double *force;
+    int dim = system->dim;
+    TRY(model_facets(input, &load->label, &load->facets, &set, &owned, error));
+    TRY(boundary_averages_build(&input->face_table, &set, &averages, error));
+    TRY(model_add_curve(input, &load->label, &load->curve, system, &curve, error));
+    TRY(new_load(system, curve, number, &force, error));
+    for (int64_t a = 0; a < averages.count; a++) {
+        for (int64_t i = averages.ptr[a]; i < averages.ptr[a + 1]; i++) {
+            for (int k = 0; k < dim; k++) {
+                force[(int64_t)averages.idx[i] * dim + k] +=
+                    averages.area[a] * averages.phi[i] * load->components[k];
+            }
+        }
+    }
+done:
+    free(owned);
+    boundary_averages_free(&averages);
+    return status;
+}
+
+static enum status add_force(const struct model_input *input, const struct scene_load *load, int32_t number,
+                             struct solid_system *system, struct error *error)
+{
+    enum status status;
+    int32_t *nodes = NULL, curve;
+    int64_t count;
+    double *force;
+    int dim = system->dim;
+    TRY(model_nodes(input, &load->label, &load->nodes, &nodes, &count, error));
+    TRY(model_add_curve(input, &load->label, &load->curve, system, &curve, error));
+    TRY(new_load(system, curve, number, &force, error));
+    for (int64_t n = 0; n < count; n++) {
+        for (int64_t i = input->node_lists.ptr[nodes[n]]; i < input->node_lists.ptr[nodes[n] + 1]; i++) {
+            for (int k = 0; k < dim; k++) {
+                force[(int64_t)input->node_lists.idx[i] * dim + k] +=
+                    input->node_phi[i] * load->components[k];
+            }
+        }
+    }
+done:
+    free(nodes);
+    return status;
+}
+
+static enum status add_pressure(const struct model_input *input, const struct scene_load *load,
+                                struct solid_system *system, struct error *error)
+{
+    enum status status;
+    struct facet_set set;
+    int dim = system->dim;
+    struct pressure_load *grown = array_grow(system->pressures, system->pressure_count + 1, sizeof *grown);
+    if (grown == NULL) {
+        return fail_memory(error, "loads");
+    }
+    system->pressures = grown;
+    struct pressure_load *pressure = &grown[system->pressure_count++];
+    *pressure = (struct pressure_load){.pressure = load->pressure};
+    TRY(model_facets(input, &load->label, &load->facets, &set, &pressure->facet, error));
+    pressure->facet_count = set.count;
+    TRY(boundary_nodes_build(&input->face_table, &set, &input->node_lists, input->node_phi,
+                             &pressure->averages, error));
+    TRY(model_add_curve(input, &load->label, &load->curve, system, &pressure->curve, error));
+    TRY(NEW_ARRAY(&pressure->corner, set.count * dim, error));
+    for (int64_t i = 0; i < set.count * dim; i++) {
+        /* Averages of node values are in the order of their nodes. */
+        int64_t low = 0, high = pressure->averages.count - 1;
+        while (low < high) {
+            int64_t middle = (low + high) / 2;
+            if (pressure->averages.node[middle] < set.facet[i]) {
+                low = middle + 1;
+            } else {
+                high = middle;
+            }
+        }
+        pressure->corner[i] = (int32_t)low;
+    }
+done:
+    return status;
+}
+
+enum status model_add_loads(const struct model_input *input, struct solid_system *system, struct error *error)
+{
+    enum status status = STATUS_OK;
+    const struct scene *scene = input->scene;
+    if (scene->gravity[0] != 0.0 || scene->gravity[1] != 0.0 || scene->gravity[2] != 0.0) {
+        TRY(add_gravity(input, system, error));
+    }
+    for (int64_t i = 0; i < scene->traction_count; i++) {
+        TRY(add_traction(input, &scene->tractions[i], (int32_t)i, system, error));
+    }
+    for (int64_t i = 0; i < scene->force_count; i++) {
+        TRY(add_force(input, &scene->forces[i], (int32_t)i, system, error));
+    }
+    for (int64_t i = 0; i < scene->pressure_count; i++) {
+        TRY(add_pressure(input, &scene->pressures[i], system, error));
+    }
+done:
+    return status;
+}
+
+/* Corner coordinates, m, of a rigid surface's facets: consecutive points of each polyline, or triangles. */
+static enum status rigid_corners(const struct scene_contact *section, const struct table *table, int dim,
+                                 double **corners, int64_t *count, struct error *error)
+{
+    enum status status;
+    *count = 0;
+    TRY(NEW_ARRAY(corners, table->rows * (dim == 2 ? 4 : 9), error));
+    if (dim == 3) {
+        for (int64_t i = 0; i < table->rows * 9; i++) {
+            (*corners)[i] = table->values[i] * section->rigid_unit;
+        }
+        *count = table->rows;
+        return STATUS_OK;
+    }
+    for (int64_t b = 0; b < table->block_count; b++) {
+        for (int64_t r = table->block_ptr[b]; r + 1 < table->block_ptr[b + 1]; r++) {
+            for (int i = 0; i < 4; i++) {
+                (*corners)[*count * 4 + i] = table->values[r * 2 + i] * section->rigid_unit;
+            }
+            ++*count;
+        }
+    }
+done:
+    return status;
+}
+
+/* Penalty of about the stiffness of a layer of cells: as stiff as the critical step allows without loss. */
+static double default_stiffness(const struct model_input *input, const struct solid_system *system,
+                                const struct boundary_averages *averages)
+{
+    double modulus = 0.0, area = 0.0;
+    for (int64_t m = 0; m < system->body.material_count; m++) {
+        modulus = fmax(modulus, material_wave_modulus(&system->body.materials[m]));
+    }
+    for (int64_t a = 0; a < averages->count; a++) {
+        area += averages->area[a];
+    }
+    area /= (double)averages->count;
+    return modulus / (input->cells.dim == 2 ? area : sqrt(area));
+}
+
+static enum status add_contact(const struct model_input *input, const struct scene_contact *section,
+                               struct solid_system *system, struct error *error)
+{
+    enum status status;
+    struct facet_set set;
+    struct rigid_surface surface = {0};
+    struct table table = {0};
+    double *corners = NULL;
+    int32_t *owned = NULL;
+    int64_t count;
+    struct boundary_averages *averages = &system->contact_averages[system->contact_count];
+    TRY(model_facets(input, &section->label, &section->facets, &set, &owned, error));
+    TRY(boundary_averages_build(&input->face_table, &set, averages, error));
+    TRY(surface_read(section->rigid, system->dim, &table, error));
+    TRY(rigid_corners(section, &table, system->dim, &corners, &count, error));
+    bool flip = section->side == SCENE_LEFT || section->side == SCENE_BACK;
+    TRY(rigid_build(system->dim, count, corners, flip, &surface, error));
+    double stiffness =
+        section->stiffness > 0.0 ? section->stiffness : default_stiffness(input, system, averages);
+    TRY(contact_build(averages, system->X, system->dim, &surface, stiffness,
+                      &system->contacts[system->contact_count], error));
+    system->contact_count++;
+    averages = NULL;
+done:
+    if (averages != NULL) {
+        boundary_averages_free(averages);
+    }
+    free(owned);
+    free(corners);
+    table_free(&table);
+    return status;
+}
+
+enum status model_add_contacts(const struct model_input *input, struct solid_system *system,
+                               struct error *error)
+{
+    enum status status;
+    TRY(NEW_ARRAY(&system->contacts, input->scene->contact_count, error));
+    TRY(NEW_ARRAY(&system->contact_averages, input->scene->contact_count, error));
+    for (int64_t i = 0; i < input->scene->contact_count; i++) {
+        TRY(add_contact(input, &input->scene->contacts[i], system, error));
+    }
+done:
+    return status;
+}
