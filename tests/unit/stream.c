@@ -1,0 +1,304 @@
+/* The stream: what is read is what was written, to the last bit; and whatever is damaged is an error. */
+#include "stream_fixture.h"
+
+#include "base/memory.h"
+
+#include <fcntl.h>
+
+static void round_trip(void **state)
+{
+    (void)state;
+    struct stream sample = sample_stream();
+    for (int variant = 0; variant < 4; variant++) {
+        bool text = variant % 2 == 0, from_pipe = variant / 2 == 1;
+        struct stream copy;
+        struct error error;
+        size_t size, again_size;
+        char *bytes = written_bytes(&sample, text, &size);
+        assert_int_equal(read_bytes(bytes, size, from_pipe, &copy, &error), STATUS_OK);
+        assert_same_stream(&sample, &copy);
+        char *again = written_bytes(&copy, text, &again_size);
+        assert_int_equal(size, again_size);
+        assert_memory_equal(bytes, again, size);
+        stream_free(&copy);
+        free(bytes);
+        free(again);
+    }
+    stream_free(&sample);
+}
+
+/* Large enough to need many blocks of the buffers and to grow, and to be mapped in place. */
+static void large_payload(void **state)
+{
+    (void)state;
+    enum { ROWS = 300000, COLS = 3 };
+    struct stream stream, copy;
+    struct error error;
+    double *values = array_new(ROWS * COLS, sizeof *values);
+    assert_non_null(values);
+    for (int64_t i = 0; i < ROWS * COLS; i++) {
+        values[i] = sin((double)i) * pow(10, (double)(i % 40 - 20));
+    }
+    stream_init(&stream);
+    assert_int_equal(stream_put(&stream, "x", TYPE_F8, ROWS, COLS, "", values, true, &error), STATUS_OK);
+    for (int variant = 0; variant < 4; variant++) {
+        bool text = variant % 2 == 0, offset = variant / 2 == 1;
+        int file = memfd_create("stream", 0);
+        /* A file that does not stand at its beginning is read block by block. */
+        assert_int_equal(write(file, "junk", 4), 4);
+        lseek(file, offset ? 4 : 0, SEEK_SET);
+        assert_int_equal(stream_write(&stream, file, text, &error), STATUS_OK);
+        lseek(file, offset ? 4 : 0, SEEK_SET);
+        assert_int_equal(stream_read(&copy, file, "input", &error), STATUS_OK);
+        assert_same_stream(&stream, &copy);
+        assert_true((copy.mapping != NULL) == !offset);
+        assert_true(copy.sections[0].owned == (text || offset));
+        assert_int_equal((uintptr_t)copy.sections[0].data % 64, 0);
+        stream_free(&copy);
+        close(file);
+    }
+    stream_free(&stream);
+}
+
+static void assert_refused(const char *bytes, size_t size, bool from_pipe)
+{
+    struct stream stream;
+    struct error error = {""};
+    enum status status = read_bytes(bytes, size, from_pipe, &stream, &error);
+    if (status == STATUS_OK) {
+        fail_msg("accepted:\n%.*s", (int)size, bytes);
+    }
+    assert_int_equal(status, STATUS_INPUT);
+    assert_int_equal(strncmp(error.text, "input: ", 7), 0);
+    assert_null(stream.sections);
+    assert_null(stream.mapping);
+}
+
+static void truncation_at_every_byte(void **state)
+{
+    (void)state;
+    struct stream sample = sample_stream();
+    for (int text = 0; text < 2; text++) {
+        size_t size;
+        char *bytes = written_bytes(&sample, text == 1, &size);
+        for (size_t length = 0; length < size; length++) {
+            assert_refused(bytes, length, false);
+            assert_refused(bytes, length, true);
+        }
+        free(bytes);
+    }
+    stream_free(&sample);
+}
+
+static void every_flipped_bit_of_a_binary_stream(void **state)
+{
+    (void)state;
+    struct stream sample = sample_stream();
+    size_t size;
+    char *bytes = written_bytes(&sample, false, &size);
+    for (size_t bit = 0; bit < 8 * size; bit++) {
+        bytes[bit / 8] = (char)(bytes[bit / 8] ^ 1 << bit % 8);
+        assert_refused(bytes, size, bit % 2 == 0);
+        bytes[bit / 8] = (char)(bytes[bit / 8] ^ 1 << bit % 8);
+    }
+    free(bytes);
+    stream_free(&sample);
+}
+
+#define HEAD "# mts 1\n# x f8 2 2 enc=text unit=m\n"
+#define TAIL "\n\n# end 1\n"
+
+static void malformed_text(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *bytes, *message; /* the message contains this */
+    } cases[] = {
+        {"", "empty: no stream arrived"},
+        {"# mts 2\n# end 0\n", "stream version '2'"},
+        {"# mts 1\r\n# end 0\r\n", "CR LF"},
+        {"\xef\xbb\xbf# mts 1\n# end 0\n", "byte order mark"},
+        {"$MeshFormat\n4.1 0 8\n", "run nodes"},
+        {"x\ty\n0\t1\n", "not an mts stream"},
+        {"# mts 1\n# end 1\n", "0 sections, the end line says 1"},
+        {"# mts 1\n# end -0\n", "is not '# end COUNT'"},
+        {"# mts 1\n# end 0 \n", "is not '# end COUNT'"},
+        {"# mts 1\n# end 0\n\n", "goes on behind its end line"},
+        {"# mts 1\n# end 0\n# mts 1\n# end 0\n", "two streams"},
+        {HEAD "1 2\n3 4\n" TAIL "# end 1\n", "goes on"},
+        {HEAD "1 2\n3\n" TAIL, "x: row 1: 1 numbers instead of 2"},
+        {HEAD "1 2\n\n" TAIL, "x: row 1: 0 numbers instead of 2"},
+        {HEAD "1 2\n3 4 5\n" TAIL, "x: row 1: more than 2 numbers"},
+        {HEAD "1 2\n3 4\n5 6\n" TAIL, "x: more than 2 rows"},
+        {HEAD "1 2\n3 4\n\n# end 1\n", "not two blank lines"},
+        {HEAD "1 2\n3 4\n\n\n" TAIL, "stands where a section header"},
+        {HEAD "1 2\n" TAIL, "x: row 1: 0 numbers instead of 2"},
+        {HEAD "1 2\n# end 1\n", "fewer rows than the 2 announced"},
+        {HEAD "1 2\n3 1,5\n" TAIL, "x: row 1: '1,5': write a decimal point"},
+        {HEAD "1 2\r\n3 4\r\n" TAIL, "CR LF"},
+        {HEAD "1 2\n3 four\n" TAIL, "x: row 1: 'four' is not a number of type f8"},
+        {HEAD "1 2\n3 0x10\n" TAIL, "'0x10' is not a number"},
+        {HEAD "1 2\n3 1e999\n" TAIL, "'1e999' is not a number"},
+        {HEAD "1 2\n3 1e\n" TAIL, "'1e' is not a number"},
+        {HEAD "1 2\n3 .\n" TAIL, "'.' is not a number"},
+        {HEAD "1 2\n3 4"
+              "\0"
+              "\n" TAIL,
+         "'4' is not a number"},
+        {HEAD "1 2\n3 4\n\n\n# @ late\n# end 1\n", "a provenance line behind a section"},
+        {HEAD "1 2\n3 4\n\n\n"
+              "# x f8 0 1\n\n\n# end 2\n",
+         "x: this section stands twice"},
+        {"# mts 1\n# x f8 0 1 enc=text enc=text\n" TAIL, "one encoding"},
+        {"# mts 1\n# x f8 0 1 enc=hex\n" TAIL, "one encoding"},
+        {"# mts 1\n# x f8 0 1 unit\n" TAIL, "'unit' in the header is not key=value"},
+        {"# mts 1\n# x f8 0 1 a=1 a=2\n" TAIL, "attribute a given twice"},
+        {"# mts 1\n# x f9 0 1\n" TAIL, "type 'f9'"},
+        {"# mts 1\n# x f8 -1 1\n" TAIL, "'-1' is not a number of rows"},
+        {"# mts 1\n# x f8 1.5 1\n" TAIL, "'1.5' is not a number of rows"},
+        {"# mts 1\n# x f8 1 0\n" TAIL, "out of bounds"},
+        {"# mts 1\n# x f8 1\n" TAIL, "'' is not a number of columns"},
+        {"# mts 1\n# x/y f8 0 1\n" TAIL, "'x/y' is no section name"},
+        {"# mts 1\n# mts f8 0 1\n" TAIL, "'mts' is reserved"},
+        {"# mts 1\n# 1x f8 0 1\n" TAIL, "is no section name"},
+        {"# mts 1\nnodes\n" TAIL, "'nodes' stands where a section header"},
+        {"# mts 1\n# x i4 1 1\n2147483648\n" TAIL, "'2147483648' is not a number of type i4"},
+        {"# mts 1\n# x i8 1 1\n9223372036854775808\n" TAIL, "is not a number of type i8"},
+        {"# mts 1\n# x i8 1 1\n1.0\n" TAIL, "'1.0' is not a number of type i8"},
+        {"# mts 1\n# x f4 1 1\n1e39\n" TAIL, "'1e39' is not a number of type f4"},
+        {"# mts 1\n# x f8 9000000000000000000 1000000\n" TAIL, "out of bounds"},
+        {"# mts 1\n# x f8 100000000000 1\n1\n" TAIL, "x: row 1: 0 numbers"},
+        {"# mts 1\n# x f8 100000000000 1 enc=bin                          \n" TAIL,
+         "x: row 1 of 100000000000: cut short"},
+        {"# mts 1\n# x f8 1 1 enc=bin\n" TAIL, "not a multiple of 64"},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        for (int from_pipe = 0; from_pipe < 2; from_pipe++) {
+            struct stream stream;
+            struct error error = {""};
+            size_t size = strlen(cases[i].bytes);
+            if (strcmp(cases[i].message, "'4' is not a number") == 0) {
+                size = sizeof HEAD "1 2\n3 4"
+                                   "\0"
+                                   "\n" TAIL -
+                       1;
+            }
+            enum status status = read_bytes(cases[i].bytes, size, from_pipe == 1, &stream, &error);
+            if (status != STATUS_INPUT || strstr(error.text, cases[i].message) == NULL) {
+                fail_msg("case %zu: status %d, message '%s', expected '%s'", i, status, error.text,
+                         cases[i].message);
+            }
+        }
+    }
+}
+
+/* Written by hand or by awk: blanks and tabs, any spelling of a number, no enc=, a checksum that is right. */
+static void tolerated_text(void **state)
+{
+    (void)state;
+    static const char bytes[] = "# mts 1\n# @ awk\n#  x  f8\t2 3 \tunit=m \n"
+                                " 1\t2.50  +.5e1 \n-inf NaN -nan\n \n\t\n# end 1\n";
+    struct stream stream;
+    struct error error;
+    assert_int_equal(read_bytes(bytes, strlen(bytes), true, &stream, &error), STATUS_OK);
+    assert_int_equal(stream.section_count, 1);
+    const double *x = stream.sections[0].data;
+    assert_true(x[0] == 1 && x[1] == 2.5 && x[2] == 5 && isinf(x[3]) && x[3] < 0 && isnan(x[4]) &&
+                isnan(x[5]));
+    assert_string_equal(stream.sections[0].attributes, "unit=m");
+    assert_string_equal(stream.provenance[0], "awk");
+    stream_free(&stream);
+}
+
+static void sections_by_name(void **state)
+{
+    (void)state;
+    struct stream stream = sample_stream();
+    struct error error;
+    const struct section *section;
+    const struct section *first = stream_find(&stream, "a.i4");
+    char value[8];
+    assert_true(section_attribute(first, "unit", value, sizeof value));
+    assert_string_equal(value, "m");
+    assert_true(section_attribute(first, "cols", value, sizeof value));
+    assert_string_equal(value, "x,y");
+    assert_false(section_attribute(first, "col", value, sizeof value));
+    assert_false(section_attribute(first, "cols", value, 3));
+
+    assert_int_equal(stream_need(&stream, "D.f8", TYPE_F8, 2, "nodes", &section, &error), STATUS_OK);
+    assert_ptr_equal(section->data, sample_f8);
+    assert_int_equal(stream_need(&stream, "shape.phi", TYPE_F8, 1, "shapefn", &section, &error),
+                     STATUS_INPUT);
+    assert_string_equal(error.text, "no section shape.phi: run shapefn");
+    assert_int_equal(stream_need(&stream, "D.f8", TYPE_I4, 2, "nodes", &section, &error), STATUS_INPUT);
+    assert_int_equal(stream_need(&stream, "D.f8", TYPE_F8, 3, "nodes", &section, &error), STATUS_INPUT);
+
+    /* Adding moves nothing; replacing keeps the place; data may be the section's own. */
+    for (int i = 0; i < 300; i++) {
+        char name[16];
+        snprintf(name, sizeof name, "more.%d", i);
+        int32_t *data = array_new(1, sizeof *data);
+        assert_int_equal(stream_put(&stream, name, TYPE_I4, 1, 1, NULL, data, true, &error), STATUS_OK);
+    }
+    assert_ptr_equal(first, stream_find(&stream, "a.i4"));
+    section = stream_find(&stream, "more.7");
+    assert_int_equal(stream_put(&stream, "more.7", TYPE_I4, 1, 1, "key=1", section->data, true, &error),
+                     STATUS_OK);
+    assert_string_equal(section->attributes, "key=1");
+    assert_int_equal(stream_put(&stream, section->name, TYPE_I4, 1, 1, section->attributes,
+                                array_new(1, sizeof(int32_t)), true, &error),
+                     STATUS_OK);
+    assert_int_equal(stream_put(&stream, "no/name", TYPE_I4, 1, 1, "", array_new(1, 4), true, &error),
+                     STATUS_INPUT);
+    assert_int_equal(stream_put(&stream, "x", TYPE_I4, 1, 1, "enc=text", array_new(1, 4), true, &error),
+                     STATUS_INPUT);
+    assert_int_equal(stream_put(&stream, "x", TYPE_I4, 1, 1, "a=b\n# end 0", array_new(1, 4), true, &error),
+                     STATUS_INPUT);
+    assert_int_equal(stream_put(&stream, "end", TYPE_I4, 1, 1, "", array_new(1, 4), true, &error),
+                     STATUS_INPUT);
+    stream_remove_prefix(&stream, "more.");
+    stream_remove(&stream, "b-i8");
+    stream_remove(&stream, "absent");
+    assert_int_equal(stream.section_count, 4);
+    assert_string_equal(stream.sections[2].name, "c_f4");
+    stream_free(&stream);
+}
+
+static void provenance_is_quoted_for_a_shell(void **state)
+{
+    (void)state;
+    struct stream stream = sample_stream();
+    assert_string_equal(stream.provenance[0],
+                        "nodes " MTS_VERSION " nodes -u mm 'it'\\''s a file' '' $'line\\x0aend'");
+    stream_free(&stream);
+}
+
+static void write_errors(void **state)
+{
+    (void)state;
+    struct stream stream = sample_stream();
+    struct error error;
+    int full = open("/dev/full", O_WRONLY);
+    assert_true(full >= 0);
+    assert_int_equal(stream_write(&stream, full, true, &error), STATUS_SYSTEM);
+    assert_non_null(strstr(error.text, "No space left"));
+    assert_int_equal(stream_write(&stream, -1, false, &error), STATUS_SYSTEM);
+    close(full);
+    stream_free(&stream);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(round_trip),
+        cmocka_unit_test(large_payload),
+        cmocka_unit_test(truncation_at_every_byte),
+        cmocka_unit_test(every_flipped_bit_of_a_binary_stream),
+        cmocka_unit_test(malformed_text),
+        cmocka_unit_test(tolerated_text),
+        cmocka_unit_test(sections_by_name),
+        cmocka_unit_test(provenance_is_quoted_for_a_shell),
+        cmocka_unit_test(write_errors),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
