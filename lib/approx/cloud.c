@@ -12,26 +12,26 @@
 static enum status check(const struct cloud_options *options, struct error *error)
 {
     if (options->dim != 2 && options->dim != 3) {
-        return fail(error, STATUS_INPUT, "cloud: dimension %d is not 2 or 3", options->dim);
+        return fail(error, STATUS_INPUT, "dimension %d is not 2 or 3", options->dim);
     }
     for (int a = 0; a < options->dim; a++) {
         if (!(options->low[a] < options->high[a]) || !isfinite(options->high[a] - options->low[a])) {
-            return fail(error, STATUS_INPUT, "cloud: box: %g,%g along axis %d is no range", options->low[a],
+            return fail(error, STATUS_INPUT, "box: %g,%g along axis %d is no range", options->low[a],
                         options->high[a], a + 1);
         }
         if (options->count[a] < 2 && options->kind != CLOUD_HALTON) {
-            return fail(error, STATUS_INPUT, "cloud: %lld nodes along axis %d are fewer than 2",
+            return fail(error, STATUS_INPUT, "count: %lld nodes along axis %d are fewer than 2",
                         (long long)options->count[a], a + 1);
         }
     }
     if (options->kind == CLOUD_HALTON && options->count[0] < 1) {
-        return fail(error, STATUS_INPUT, "cloud: no nodes");
+        return fail(error, STATUS_INPUT, "count: no nodes");
     }
     if (options->kind == CLOUD_JITTERED && !(options->jitter >= 0 && options->jitter <= 0.5)) {
-        return fail(error, STATUS_INPUT, "cloud: jitter %g is not within [0, 0.5]", options->jitter);
+        return fail(error, STATUS_INPUT, "jitter: %g is not within [0, 0.5]", options->jitter);
     }
     if (options->kind == CLOUD_GRADED && !(options->ratio >= 1 && isfinite(options->ratio))) {
-        return fail(error, STATUS_INPUT, "cloud: ratio %g is less than 1", options->ratio);
+        return fail(error, STATUS_INPUT, "ratio: %g is less than 1", options->ratio);
     }
     return STATUS_OK;
 }
@@ -62,7 +62,7 @@ static enum status count_nodes(const struct cloud_options *options, int64_t *cou
     *count = 1;
     for (int a = 0; a < (options->kind == CLOUD_HALTON ? 1 : options->dim); a++) {
         if (__builtin_mul_overflow(*count, options->count[a], count) || *count > INT32_MAX) {
-            return fail(error, STATUS_INPUT, "cloud: more than %d nodes", INT32_MAX);
+            return fail(error, STATUS_INPUT, "count: more than %d nodes", INT32_MAX);
         }
     }
     return STATUS_OK;
@@ -191,7 +191,7 @@ static enum status make_cells(const struct cloud_options *options, struct cloud 
         count *= options->count[a] - 1; /* at most 6 (2^31 - 1) */
     }
     if (count > INT32_MAX) {
-        status = fail(error, STATUS_INPUT, "cloud: more than %d cells", INT32_MAX);
+        status = fail(error, STATUS_INPUT, "count: more than %d cells", INT32_MAX);
         goto done;
     }
     TRY(NEW_ARRAY(&cloud->cells, count * (dim + 1), error));

@@ -1,0 +1,92 @@
+# cloud: clouds without a mesher.
+
+bats_require_minimum_version 1.5.0
+
+setup() {
+    cd "$BATS_TEST_TMPDIR"
+}
+
+# Rows of section $1 of a text stream.
+rows() {
+    awk -v name="$1" '/^# / { on = $2 == name; next } on && NF' "${2:--}"
+}
+
+# refused TEXT COMMAND...: status 2, nothing on standard output, one line on standard error with TEXT in it.
+refused() {
+    local text=$1
+    shift
+    run -2 --separate-stderr "$@"
+    [ -z "$output" ]
+    [ "${#stderr_lines[@]}" -eq 1 ]
+    [[ "$stderr" == "cloud: "*"$text"* ]] || { echo "message: $stderr"; return 1; }
+}
+
+@test "the cloud of the approximation study" {
+    cloud -d 2 -k regular -n 18 --box -4,4,-4,4 --field paper -t > cloud.mts
+    [ "$(rows nodes.x cloud.mts | wc -l)" -eq 324 ]
+    [ "$(rows nodes.x cloud.mts | head -n 1)" = "-4 -4" ]
+    [ "$(rows nodes.x cloud.mts | tail -n 1)" = "4 4" ]
+    [ "$(rows cells cloud.mts | wc -l)" -eq 578 ]
+    [ "$(rows facets cloud.mts | wc -l)" -eq 68 ]
+    grep -q '^# cells.region .* names=body$' cloud.mts
+    grep -q '^# facets.set .* names=xmin,xmax,ymin,ymax$' cloud.mts
+    paste <(rows nodes.x cloud.mts) <(rows u cloud.mts) | awk '
+        { r = $1 * $1 + $2 * $2; d = (1 - r) * exp(-r / 2) - $3; if (d < 0) d = -d; if (!(d < 1e-14)) bad = 1 }
+        END { exit bad }'
+}
+
+@test "every kind, in both dimensions" {
+    for kind in regular jittered halton graded; do
+        local count=4,5,6 more=()
+        [ $kind != halton ] || count=40
+        [ $kind != jittered ] || more=(--jitter 0.15)
+        cloud -d 2 -k $kind -n 12 --box 0,1,0,2 -t > flat.mts
+        cloud -d 3 -k $kind -n $count --box 0,1,0,2,0,3 "${more[@]}" -t > solid.mts
+        grep -q '^# nodes.x f8 [0-9]* 2 enc=text unit=m cols=x,y$' flat.mts
+        grep -q '^# nodes.x f8 [0-9]* 3 enc=text unit=m cols=x,y,z$' solid.mts
+        for stream in flat.mts solid.mts; do
+            if [ $kind = halton ]; then
+                [ -z "$(rows cells $stream)" ]
+            else
+                [ -n "$(rows cells $stream)" ]
+            fi
+        done
+    done
+    [ "$(cloud -d 3 -k regular -n 4,5,6 --box 0,1,0,2,0,3 -t | rows nodes.x | wc -l)" -eq 120 ]
+    [ "$(cloud -d 3 -k regular -n 4,5,6 --box 0,1,0,2,0,3 -t | rows cells | wc -l)" -eq 360 ]
+}
+
+@test "the same command, the same bytes; another seed, another cloud" {
+    cloud -d 2 -k jittered -n 9 --box 0,1,0,1 --seed 3 > one.mts
+    cloud -d 2 -k jittered -n 9 --box 0,1,0,1 --seed 3 -o two.mts
+    cmp one.mts two.mts
+    [ "$(cloud -d 2 -k jittered -n 9 --box 0,1,0,1 --seed 3 -t | rows nodes.x | cksum)" != \
+      "$(cloud -d 2 -k jittered -n 9 --box 0,1,0,1 --seed 4 -t | rows nodes.x | cksum)" ]
+    GSL_RNG_SEED=9 GSL_RNG_TYPE=taus cloud -d 2 -k jittered -n 9 --box 0,1,0,1 --seed 3 | cmp - one.mts
+}
+
+@test "jitter that turns tetrahedra over leaves the cells out, with a note" {
+    run -0 --separate-stderr cloud -d 3 -k jittered -n 12 --box 0,1,0,1,0,1 -t
+    [[ "$stderr" == "cloud: jitter 0.5 turns tetrahedra over: cells and facets are left out" ]]
+    [[ "$output" != *"# cells"* ]]
+}
+
+@test "usage errors" {
+    refused "--kind is missing" cloud -d 2 -n 4 --box 0,1,0,1
+    refused "--box is missing" cloud -d 2 -k regular -n 4
+    refused "'square' is none of regular, jittered, halton, graded" cloud -d 2 -k square -n 4 --box 0,1,0,1
+    refused "-d: 4 is not within [2, 3]" cloud -d 4 -k regular -n 4 --box 0,1,0,1
+    refused "--box: 4 numbers, not 6" cloud -d 3 -k regular -n 4 --box 0,1,0,1
+    refused "box: 1,1 along axis 2 is no range" cloud -d 2 -k regular -n 4 --box 0,1,1,1
+    refused "-n: 3 numbers" cloud -d 2 -k regular -n 4,4,4 --box 0,1,0,1
+    refused "-n: 2 numbers, not 1" cloud -d 2 -k halton -n 4,4 --box 0,1,0,1
+    refused "-n: 4.5 is not a whole number" cloud -d 2 -k regular -n 4.5 --box 0,1,0,1
+    refused "1 nodes along axis 1" cloud -d 2 -k regular -n 1,4 --box 0,1,0,1
+    refused "more than 2147483647 nodes" cloud -d 3 -k regular -n 2000 --box 0,1,0,1,0,1
+    refused "--jitter goes with another kind" cloud -d 2 -k regular -n 4 --box 0,1,0,1 --jitter 0.1
+    refused "--seed goes with another kind" cloud -d 2 -k graded -n 4 --box 0,1,0,1 --seed 1
+    refused "--ratio goes with another kind" cloud -d 2 -k halton -n 4 --box 0,1,0,1 --ratio 2
+    refused "jitter: 0.6 is not within" cloud -d 2 -k jittered -n 4 --box 0,1,0,1 --jitter 0.6
+    refused "--field: 'sine' is none of paper, linear, quadratic" cloud -d 2 -k regular -n 4 --box 0,1,0,1 --field sine
+    refused "unexpected operand" cloud -d 2 -k regular -n 4 --box 0,1,0,1 file
+}

@@ -1,0 +1,313 @@
+# nodes: a gmsh mesh becomes a cloud, cells, facets and sets; and no mesh file, however broken, does harm.
+
+bats_require_minimum_version 1.5.0
+
+setup() {
+    cd "$BATS_TEST_TMPDIR"
+}
+
+# The unit square in MSH 2.2, in two triangles, with a named side, corner and a diagonal.
+square() {
+    cat <<'END'
+$MeshFormat
+2.2 0 8
+$EndMeshFormat
+$PhysicalNames
+4
+0 1 "corner"
+1 2 "bottom"
+1 3 "diagonal"
+2 4 "body"
+$EndPhysicalNames
+$Nodes
+5
+10 0 0 0
+20 1 0 0
+30 1 1 0
+7 0 1 0
+99 5 5 0
+$EndNodes
+$Elements
+5
+1 15 2 1 1 30
+2 1 2 2 1 20 10
+3 1 2 3 2 10 30
+4 2 2 4 1 10 30 20
+5 2 2 4 1 10 30 7
+$EndElements
+END
+}
+
+# A unit cube by gmsh: $1 "hex" or "tet", $2 more options.
+cube() {
+    cat > cube.geo <<'END'
+Point(1) = {0, 0, 0};
+line() = Extrude {1, 0, 0} { Point{1}; Layers{3}; Recombine; };
+face() = Extrude {0, 1, 0} { Line{line(1)}; Layers{3}; Recombine; };
+body() = Extrude {0, 0, 1} { Surface{face(1)}; Layers{3}; Recombine; };
+Physical Volume("body", 1) = {body(1)};
+Physical Surface("top", 2) = {body(0)};
+Physical Surface("bottom", 3) = {face(1)};
+Physical Curve("edge", 4) = {line(1)};
+END
+    if [ "$1" = tet ]; then
+        sed -i 's/Recombine; //' cube.geo
+    fi
+    gmsh -v 1 -3 cube.geo "${@:2}" -o cube.msh
+}
+
+# Rows of section $1 of a text stream.
+rows() {
+    awk -v name="$1" '/^# / { on = $2 == name; next } on && NF' "${2:--}"
+}
+
+# Sum of the volumes of the cells, and the least one.
+volumes() {
+    awk '
+    /^# / { section = $2; next }
+    NF == 0 { next }
+    section == "nodes.x" { for (k = 1; k <= NF; k++) x[n + 0, k] = $k; n++; dim = NF }
+    section == "cells" {
+        for (i = 1; i <= dim; i++) for (k = 1; k <= dim; k++) e[i, k] = x[$(i + 1), k] - x[$1, k]
+        if (dim == 2) v = (e[1,1] * e[2,2] - e[1,2] * e[2,1]) / 2
+        else v = (e[1,1] * (e[2,2] * e[3,3] - e[2,3] * e[3,2]) - e[1,2] * (e[2,1] * e[3,3] - e[2,3] * e[3,1]) \
+                + e[1,3] * (e[2,1] * e[3,2] - e[2,2] * e[3,1])) / 6
+        sum += v; least = (count++ == 0 || v < least) ? v : least
+    }
+    END { printf "%.9g %d\n", sum, (least > 0) }' "$1"
+}
+
+# refused STATUS TEXT COMMAND...: that status, nothing on standard output, one line on standard error with TEXT in it.
+refused() {
+    local expected=$1 text=$2
+    shift 2
+    run --separate-stderr "$@"
+    [ "$status" -eq "$expected" ] || { echo "status $status: $stderr"; return 1; }
+    [ -z "$output" ] || { echo "output: $output"; return 1; }
+    [ "${#stderr_lines[@]}" -eq 1 ] || { echo "not one line: $stderr"; return 1; }
+    [[ "$stderr" == "nodes: "*"$text"* ]] || { echo "message: $stderr"; return 1; }
+}
+
+@test "a square: cells, facets and sets" {
+    square > square.msh
+    nodes -u cm -t square.msh > square.mts 2> notes
+    [ "$(rows nodes.x square.mts | tr '\n' ' ')" = "0 0 0.01 0 0.01 0.01 0 0.01 " ]
+    [ "$(rows cells square.mts | wc -l)" -eq 2 ]
+    [ "$(volumes square.mts)" = "0.0001 1" ]
+    [ "$(rows facets square.mts)" = "0 1" ]
+    grep -q '^# facets.set .* names=bottom$' square.mts
+    grep -q '^# sets.ptr .* names=corner,diagonal$' square.mts
+    [ "$(rows sets.idx square.mts | tr '\n' ' ')" = "2 0 2 " ]
+    grep -q '^# cells.region .* names=body$' square.mts
+    grep -q "nodes: 1 nodes belong to no cell: left out" notes
+    grep -q "nodes: group 'diagonal': 1 of its facets lie between two cells" notes
+    [ "$(wc -l < notes)" -eq 2 ]
+}
+
+@test "file, redirection, pipe and -o give the same bytes; so do -b and the default" {
+    square > square.msh
+    nodes -u mm square.msh > file.mts
+    nodes -u mm < square.msh > redirected.mts
+    cat square.msh | nodes -u mm > piped.mts
+    nodes -u mm -o named.mts square.msh
+    cmp file.mts redirected.mts
+    cmp file.mts piped.mts
+    cmp file.mts named.mts
+    nodes -u mm -b square.msh | grep -aq '^# cells i4 2 3 enc=bin'
+    nodes -u mm -t square.msh | grep -aq '^# cells i4 2 3 enc=text'
+}
+
+@test "the brain section has 702 nodes and 1247 triangles, in every format" {
+    local geo=$BATS_TEST_DIRNAME/../examples/brain2d/brain2d.geo
+    for format in "msh41 0" "msh41 1" "msh40 0" "msh2 0" "msh2 1"; do
+        set -- $format
+        sed 's/Mesh.MshFileVersion *= *4.1;//' "$geo" > brain2d.geo
+        gmsh -v 1 -2 brain2d.geo -format "$1" -setnumber Mesh.Binary "$2" -o "$1-$2.msh"
+        nodes -u mm -t "$1-$2.msh" > "$1-$2.mts"
+        [ "$(rows nodes.x "$1-$2.mts" | wc -l)" -eq 702 ]
+        [ "$(rows cells "$1-$2.mts" | wc -l)" -eq 1247 ]
+        [ "$(rows facets "$1-$2.mts" | wc -l)" -eq 157 ]
+        grep -q '^# cells.region .* names=parenchyma,tumour$' "$1-$2.mts"
+        grep -q '^# facets.set .* names=brain_surface,craniotomy,ventricles$' "$1-$2.mts"
+    done
+    cmp msh41-0.mts msh40-0.mts
+    cmp msh41-0.mts msh2-0.mts
+    cmp msh41-1.mts msh2-1.mts
+}
+
+@test "body and skull in one file: the skull is left out" {
+    gmsh -v 1 -2 "$BATS_TEST_DIRNAME/../examples/brain2d/brain2d.geo" -setnumber part 2 -o both.msh
+    nodes -u mm -t both.msh > both.mts 2> notes
+    [ "$(rows nodes.x both.mts | wc -l)" -eq 702 ]
+    grep -q "group 'skull': .* no faces of a cell: left out" notes
+}
+
+@test "cubes of tetrahedra and of hexahedra: volume, conforming facets" {
+    for kind in tet hex; do
+        cube $kind
+        nodes -u m -t cube.msh > cube.mts
+        [ "$(volumes cube.mts)" = "1 1" ]
+        [ "$(rows nodes.x cube.mts | wc -l)" -eq 64 ]
+        [ "$(rows facets cube.mts | wc -l)" -eq 36 ]
+        grep -q '^# facets.set .* names=top,bottom$' cube.mts
+        grep -q '^# sets.ptr .* names=edge$' cube.mts
+        [ "$(rows sets.idx cube.mts | wc -l)" -eq 4 ]
+    done
+    [ "$(rows cells cube.mts | wc -l)" -eq 162 ]
+}
+
+@test "-l lists the groups" {
+    square > square.msh
+    run -0 --separate-stderr nodes -l square.msh
+    [ "$output" = "$(printf 'name\tdim\ttag\telements\ncorner\t0\t1\t1\nbottom\t1\t2\t1\ndiagonal\t1\t3\t1\nbody\t2\t4\t2')" ]
+    [ -z "$stderr" ]
+    refused 2 "-l goes with no other option" nodes -l -u mm square.msh
+}
+
+@test "usage errors" {
+    square > square.msh
+    refused 2 "unit of the mesh is missing: give -u m, cm, mm or um" nodes square.msh
+    refused 2 "-u: 'inch' is none of m, cm, mm, um" nodes -u inch square.msh
+    refused 2 "give one of -b and -t" nodes -u mm -b -t square.msh
+    refused 2 "unexpected operand" nodes -u mm square.msh square.msh
+    refused 2 "unknown option" nodes -u mm -x square.msh
+}
+
+@test "fault 1: missing, empty, a directory, something else" {
+    : > empty.msh
+    refused 2 "missing.msh: No such file" nodes -u mm missing.msh
+    refused 2 "empty.msh: empty" nodes -u mm empty.msh
+    refused 2 "standard input: empty" nodes -u mm < /dev/null
+    refused 2 "is a directory" nodes -u mm .
+    head -c 4096 /dev/zero > zeros.msh
+    refused 2 "zeros.msh: not a gmsh mesh" nodes -u mm zeros.msh
+    (ulimit -v 4000000; refused 2 "standard input: not a gmsh mesh" nodes -u mm < /dev/zero)
+    gmsh -v 1 -1 "$BATS_TEST_DIRNAME/../examples/brain2d/brain2d.geo" -o curves.msh
+    refused 2 "no cells" nodes -u mm curves.msh
+}
+
+@test "fault 2: truncated anywhere, the output file stays intact" {
+    square > ascii.msh
+    cube tet -bin
+    mv cube.msh binary.msh
+    echo intact > out.mts
+    for file in ascii.msh binary.msh; do
+        local size step
+        size=$(stat -c %s $file)
+        step=$((size / 12))
+        for ((at = 0; at < size - 1; at += step)); do
+            head -c "$at" $file > cut.msh
+            refused 2 "cut.msh: " nodes -u mm -o out.mts cut.msh
+        done
+        head -c $((size - 2)) $file > cut.msh
+        refused 2 "cut.msh: " nodes -u mm -o out.mts cut.msh
+    done
+    [ "$(cat out.mts)" = intact ]
+}
+
+@test "fault 3: nothing in or beside a file is run" {
+    local command="SystemCall \"touch $PWD/harm\";"
+    { echo "$command"; square; } > script.msh
+    refused 2 "the first line is not" nodes -u mm script.msh
+    refused 2 "the first line is not" nodes -l script.msh
+    refused 2 "the first line is not" nodes -u mm < script.msh
+    { printf '\n'; square; echo "$command"; } > blank.msh
+    refused 2 "the first line is not" nodes -u mm blank.msh
+    { square; echo "$command"; } > behind.msh
+    refused 2 "something that is not a section" nodes -u mm behind.msh
+    { square; printf '$Options\n%s\n$EndOptions\n$View\n%s\n$EndView\n' "$command" "$command"; } > inside.msh
+    nodes -u mm inside.msh > /dev/null
+    square | sed "s|\"body\"|\"body\"$command|" > name.msh
+    refused 2 "PhysicalNames: " nodes -u mm name.msh
+    square > beside.msh
+    echo "$command" > beside.msh.opt
+    nodes -u mm beside.msh > /dev/null
+    echo "$command" > .gmshrc
+    echo "$command" > .gmsh-options
+    HOME=$PWD nodes -u mm beside.msh > /dev/null
+    [ ! -e harm ]
+    [ ! -e .gmshrc.tmp ]
+    # the test can fail: gmsh itself does run it
+    gmsh -v 0 -parse_and_exit script.msh > /dev/null 2>&1 || true
+    [ -e harm ]
+}
+
+@test "fault 4: coordinates that are not finite" {
+    for bad in nan NaN inf -inf 1e999; do
+        square | sed "s/^20 1 0 0/20 $bad 0 0/" > bad.msh
+        refused 2 "\$Nodes: node 2: coordinate 1 is not finite" nodes -u mm bad.msh
+    done
+}
+
+@test "fault 5: counts of 1e11, under a memory limit" {
+    ulimit -v 4000000
+    square | sed 's/^5$/100000000000/' > many.msh
+    refused 2 "\$Nodes: number of nodes: 100000000000 cannot be in" nodes -u mm many.msh
+    refused 2 "standard input: \$Nodes: number of nodes" nodes -u mm < many.msh
+    square | awk '/\$Elements/ { at = NR } NR == at + 1 && at { $0 = "100000000000" } 1' > many.msh
+    refused 2 "\$Elements: number of elements: 100000000000 cannot be in" nodes -u mm many.msh
+    square | sed 's/^99 5 5 0/2147483647 5 5 0/' > sparse.msh # a large tag is fine
+    nodes -u mm sparse.msh > /dev/null
+}
+
+@test "fault 6: an element that names an unknown node" {
+    square | sed 's/^4 2 2 4 1 10 30 20/4 2 2 4 1 10 30 21/' > bad.msh
+    refused 2 "\$Elements: element 4: element 4 names the node 21, which is not in \$Nodes" nodes -u mm bad.msh
+}
+
+@test "fault 7: a region that is absent or misspelt, an empty group, names that are none" {
+    square > square.msh
+    refused 2 "no cells in a region 'bdoy': there are body" nodes -u mm -r bdoy square.msh
+    refused 2 "no cells in a region '': there are body" nodes -u mm -r body, square.msh
+    nodes -u mm -r body square.msh > /dev/null
+    square | sed 's/^4$/5/; s/^2 4 "body"/2 4 "body"\n2 5 "void"/' > void.msh
+    refused 2 "no cells in a region 'void': there are body" nodes -u mm -r void void.msh
+    run -0 --separate-stderr nodes -u mm -t void.msh
+    [[ "$stderr" == *"group 'void' of dimension 2 is empty: left out"* ]]
+    square | sed 's/"body"/"the body"/' > blank.msh
+    refused 2 "physical group 4 of dimension 2: 'the body': no blanks" nodes -u mm blank.msh
+    square | sed 's/"diagonal"/"bottom"/' > twice.msh
+    refused 2 "groups 2 and 3 of dimension 1 are both named 'bottom'" nodes -u mm twice.msh
+    square | sed '/^\$PhysicalNames/,/^\$EndPhysicalNames/d' > unnamed.msh
+    nodes -u mm -t unnamed.msh | grep -q '^# cells.region .* names=group_4$'
+}
+
+@test "fault 8: nodes at the same place; orphans and gaps in the tags are no fault" {
+    square | sed 's/^99 5 5 0/99 1 1 0/' > orphan.msh
+    nodes -u mm orphan.msh > /dev/null
+    sed 's/^5 2 2 4 1 10 30 7/5 2 2 4 1 10 99 7/' orphan.msh > twin.msh
+    refused 2 "nodes 30 and 99 are at the same place" nodes -u mm twin.msh
+    square | sed 's/^99 5/30 5/' > twice.msh
+    refused 2 "node tag 30 stands twice" nodes -u mm twice.msh
+}
+
+@test "fault 9: cells without area, folded, twice, in two groups; a surface in space; second order" {
+    square | sed 's/^7 0 1 0/7 0.5 0.5 0/' > flat.msh
+    refused 2 "element 5 has no area" nodes -u mm flat.msh
+    square | sed 's/^7 0 1 0/7 0.9 0.2 0/' > folded.msh
+    refused 2 "elements 4 and 5 overlap: one is inverted" nodes -u mm folded.msh
+    square | sed 's/^5 2 2 4 1 10 30 7/5 2 2 4 1 10 30 20/' > double.msh
+    refused 2 "elements 4 and 5 overlap" nodes -u mm double.msh
+    square | sed 's/^5 2 2 4 1 10 30 7/5 2 2 8 1 10 30 20/' > groups.msh
+    refused 2 "elements 4 ('body') and 5 ('group_8') overlap" nodes -u mm groups.msh
+    square | sed 's/^7 0 1 0/7 0 1 0.5/' > surface.msh
+    refused 2 "a surface in space" nodes -u mm surface.msh
+    cube tet -order 2
+    refused 2 "mesh with order 1" nodes -u mm cube.msh
+}
+
+@test "fault 19: a full disk is reported; nothing is left behind" {
+    mkdir alone && cd alone # bats has files of its own here
+    square > square.msh
+    run -3 --separate-stderr bash -c 'nodes -u mm square.msh > /dev/full'
+    [[ "$stderr" == *"standard output: "* ]]
+    run ! nodes -u mm -o missing/out.mts square.msh
+    [ "$(ls)" = square.msh ]
+}
+
+@test "fault 20: a reader that has seen enough ends it quietly" {
+    cube tet
+    run -0 --separate-stderr bash -c 'set +o pipefail; nodes -u mm -t cube.msh | head -n 1'
+    [ "$output" = "# mts 1" ]
+    [ -z "$stderr" ]
+}
