@@ -1,8 +1,8 @@
 #!/bin/bash
 # Solve a scene with CalculiX's quadratic triangles: solve.sh SCENE MESH_STREAM > u.dat
 #
-# MESH_STREAM is what `nodes -t` writes. Prints on standard error, as `mtled -v` does, the number of increments and
-# the seconds of the solution. OMP_NUM_THREADS is honoured.
+# MESH_STREAM is what `nodes -t` writes. Prints on standard error, in the form of `mtled -v`: nodes and integration points of
+# the elements, increments, seconds of the solution. OMP_NUM_THREADS is honoured.
 set -euo pipefail
 if [ $# -ne 2 ]; then
     echo "usage: solve.sh SCENE MESH_STREAM > u.dat" >&2
@@ -22,6 +22,10 @@ if ! (cd "$work" && ccx deck > log 2>&1); then
 fi
 end=$(date +%s.%N)
 awk -f "$here/../stream.awk" -f "$here/field.awk" -v mesh="$mesh" -v results="$work/deck.dat"
-awk -v begin="$begin" -v end="$end" '
-    $NF != "" && $1 ~ /^[0-9]+$/ { steps++ }
-    END { printf "steps\t%d\nsolve seconds\t%.1f\n", steps, end - begin }' "$work/deck.sta" >&2
+awk -v seconds="$(awk -v begin="$begin" -v end="$end" 'BEGIN { print end - begin }')" '
+    /^\*/ { part = $0; next }
+    part == "*NODE,NSET=BODY" { nodes++ }
+    part ~ /CPE6/ { points += 3 }
+    FILENAME ~ /sta$/ && $1 ~ /^[0-9]+$/ { steps++ }
+    END { printf "nodes\t%d\npoints\t%d\nsteps\t%d\nsolve seconds\t%.3f\n", nodes, points, steps, seconds }
+' "$work/deck.inp" "$work/deck.sta" >&2
