@@ -1,4 +1,4 @@
-/* Nodal fields: their values at points, and the differences of two of them. */
+/* Nodal fields and their values at points. */
 #ifndef APPROX_FIELD_H
 #define APPROX_FIELD_H
 
@@ -36,33 +36,5 @@ void field_table_free(struct field_table *table);
 /* values[count * cols] = sum over the row's neighbours of phi_j field[j * cols ...]. */
 void field_evaluate(int64_t count, const int64_t *ptr, const int32_t *idx, const double *phi, int64_t cols,
                     const double *field, double *values);
-
-/* match[a_count]: for each node of cloud A the node of cloud B at the same place, each used once; *matched is
- * false (and match void) when the counts differ or a node of A has none. "Same" is within 1e-9 of the larger
- * extent of the clouds. */
-MUST_CHECK enum status field_match_nodes(int dim, int64_t a_count, const double *a, int64_t b_count,
-                                         const double *b, int32_t *match, bool *matched, struct error *error);
-
-/* difference[i] = |a_i - b_i|, Euclidean over the columns; not finite wherever a value is not. */
-void field_difference(int64_t count, int64_t cols, const double *a, const double *b, double *difference);
-
-/* The largest Euclidean norm of a row; NaN where any value is NaN. */
-double field_largest(int64_t count, int64_t cols, const double *field);
-
-/* Statistics of a list of differences. */
-struct field_statistics {
-    int64_t count;
-    double average, largest, rmse;
-    int64_t largest_at; /* index of the (first) largest */
-    double *sorted;     /* count, ascending, for field_percentile */
-};
-
-/* Of difference[index[i]], i < count. Any NaN among them makes all of them NaN; of no differences, too. */
-MUST_CHECK enum status field_statistics(int64_t count, const int64_t *index, const double *difference,
-                                        struct field_statistics *statistics, struct error *error);
-void field_statistics_free(struct field_statistics *statistics);
-
-/* The value that `percent` of the differences do not exceed, linear between two. */
-double field_percentile(const struct field_statistics *statistics, double percent);
 
 #endif

@@ -1,0 +1,61 @@
+/* Comparing two nodal fields, on one cloud of nodes or on two. */
+#ifndef APPROX_FIELD_COMPARE_H
+#define APPROX_FIELD_COMPARE_H
+
+#include "approx/field.h"
+
+/* match[a_count]: for each node of cloud A the node of cloud B at the same place, each used once; *matched is
+ * false (and match void) when the counts differ or a node of A has none. "Same" is within 1e-9 of the larger
+ * extent of the clouds. */
+MUST_CHECK enum status field_match_nodes(int dim, int64_t a_count, const double *a, int64_t b_count,
+                                         const double *b, int32_t *match, bool *matched, struct error *error);
+
+/* difference[i] = |a_i - b_i|, Euclidean over the columns; not finite wherever a value is not. */
+void field_difference(int64_t count, int64_t cols, const double *a, const double *b, double *difference);
+
+/* The largest Euclidean norm of a row; NaN where any value is NaN. */
+double field_largest(int64_t count, int64_t cols, const double *field);
+
+/* Statistics of a list of differences. */
+struct field_statistics {
+    int64_t count;
+    double average, largest, rmse;
+    int64_t largest_at; /* index of the (first) largest, or of the first NaN */
+    double *sorted;     /* count, ascending, for field_percentile */
+};
+
+/* Of difference[index[i]], i < count. Any NaN among them makes all of them NaN; of no differences, too. */
+MUST_CHECK enum status field_statistics(int64_t count, const int64_t *index, const double *difference,
+                                        struct field_statistics *statistics, struct error *error);
+void field_statistics_free(struct field_statistics *statistics);
+
+/* The value that `percent` of the differences do not exceed, linear between two. */
+double field_percentile(const struct field_statistics *statistics, double percent);
+
+/* A field in view: its nodes, with their cells where there are any, and values[cells.node_count * cols]. */
+struct nodal_field {
+    struct cells cells;
+    int64_t cols;
+    const double *values;
+};
+
+/* The difference of field A from field B at the nodes of A. */
+struct field_comparison {
+    bool coincide;      /* the two clouds do; else B was interpolated */
+    int64_t count;      /* nodes compared */
+    int64_t *node;      /* those nodes, ascending */
+    int64_t outside;    /* nodes left out because they lie outside of B's cloud */
+    double *difference; /* for each node of A; NaN where not compared */
+};
+
+/* Compare at the nodes of A with chosen[n] (NULL: all). B's values are taken as they are where the clouds
+ * coincide, else interpolated on B's cloud by MMLS with the default supports. Nodes of A outside of B's cloud
+ * are left out if skip_outside, else STATUS_INPUT naming the first (and comparison->outside is their number).
+ * Clouds that cannot be interpolated are STATUS_INPUT. Both fields have the same dimension and columns. The
+ * comparison is to be freed also on failure. */
+MUST_CHECK enum status field_compare(const struct nodal_field *a, const struct nodal_field *b,
+                                     const bool *chosen, bool skip_outside,
+                                     struct field_comparison *comparison, struct error *error);
+void field_comparison_free(struct field_comparison *comparison);
+
+#endif

@@ -1,0 +1,248 @@
+/* Fields at points and their comparison: exact for linear fields on any cloud, node matching, statistics, and
+ * NaN, which never passes. */
+#include "approx_fixture.h"
+
+#include "approx/field_compare.h"
+
+static double linear(int dim, const double *x)
+{
+    return 1.0 + 2.0 * x[0] - 3.0 * x[1] + (dim == 3 ? 0.5 * x[2] : 0.0);
+}
+
+/* values[count * 2]: a linear field and a constant. */
+static double *linear_field(int dim, int64_t count, const double *x)
+{
+    double *values = malloc((size_t)(count * 2) * sizeof *values);
+    assert_non_null(values);
+    for (int64_t n = 0; n < count; n++) {
+        values[2 * n] = linear(dim, x + n * dim);
+        values[2 * n + 1] = -7.0;
+    }
+    return values;
+}
+
+static struct nodal_field view(const struct scattered *cloud, const double *values)
+{
+    return (struct nodal_field){
+        .cells = {.dim = cloud->dim, .node_count = cloud->count, .x = cloud->x}, .cols = 2, .values = values};
+}
+
+static void linear_fields_are_exact(void **state)
+{
+    (void)state;
+    for (int dim = 2; dim <= 3; dim++) {
+        for (int p = 0; p < PLACE_COUNT; p++) {
+            struct scattered cloud = scatter(dim, dim == 2 ? 10 : 6, 80, &places[p], 0.3, 3);
+            struct support_options options = support_defaults(dim);
+            struct cells cells = {.dim = dim, .node_count = cloud.count, .x = cloud.x};
+            struct field_table table;
+            struct error error;
+            double *spacing = malloc((size_t)cloud.count * sizeof *spacing);
+            double *values = linear_field(dim, cloud.count, cloud.x);
+            double *expected = linear_field(dim, 80, cloud.points), got[160];
+            assert_non_null(spacing);
+            good(field_spacing(&cells, spacing, &error), &error);
+            good(field_table_build(&options, cloud.count, cloud.x, spacing, 80, cloud.points, "points.x",
+                                   &table, &error),
+                 &error);
+            field_evaluate(80, table.lists.ptr, table.lists.idx, table.phi, 2, values, got);
+            for (int i = 0; i < 160; i++) {
+                at_most(fabs(got[i] - expected[i]), 1e-11 * (places[p].size + 10.0), "a linear field");
+            }
+            field_table_free(&table);
+            free(spacing);
+            free(values);
+            free(expected);
+            scattered_free(&cloud);
+        }
+    }
+}
+
+/* Nodes of cells have the cells' spacing, others that of the nearest nodes. */
+static void spacing_with_and_without_cells(void **state)
+{
+    (void)state;
+    static const double x[] = {0, 0, 1, 0, 1, 1, 0, 1, 3, 0};
+    static const int32_t node[] = {0, 1, 2, 0, 2, 3};
+    struct cells cells = {2, 5, x, 2, node}, bare = {2, 5, x, 0, NULL};
+    double spacing[5], nearest[5], alone[5];
+    struct error error;
+    good(field_spacing(&cells, spacing, &error), &error);
+    good(nodes_spacing(2, 5, x, nearest, &error), &error);
+    good(field_spacing(&bare, alone, &error), &error);
+    assert_memory_equal(alone, nearest, sizeof nearest);
+    at_most(fabs(spacing[1] - 1.0), 1e-15, "spacing of cells");
+    assert_true(spacing[4] == nearest[4]);
+}
+
+static void outside(void **state)
+{
+    (void)state;
+    static const double x[] = {0, 0, 1, 0, 0, 1}, spacing[] = {1, 1, 1};
+    static const double points[] = {0.5, 0.5, 2.9, 0, 0, -1.9, 3.1, 0, 0, -2.1, 0, 0};
+    struct point_grid grid;
+    struct error error;
+    int64_t row;
+    good(point_grid_build(&grid, 2, 3, x, spacing, &error), &error);
+    good(field_first_outside(&grid, 0, 6, points, &row, &error), &error);
+    assert_int_equal(row, 3);
+    good(field_first_outside(&grid, 4, 6, points, &row, &error), &error);
+    assert_int_equal(row, 4);
+    good(field_first_outside(&grid, 5, 6, points, &row, &error), &error);
+    assert_int_equal(row, 6);
+    point_grid_free(&grid);
+}
+
+/* In order, in another order, with two nodes at one place, and moved by more than round-off. */
+static void matching(void **state)
+{
+    (void)state;
+    struct scattered cloud = scatter(2, 9, 1, &places[2], 0.3, 12);
+    double *other = malloc((size_t)(cloud.count * 2) * sizeof *other);
+    int32_t *match = malloc((size_t)cloud.count * sizeof *match);
+    char seen[81] = {0};
+    bool matched;
+    struct error error;
+    assert_non_null(other);
+    assert_non_null(match);
+    memcpy(cloud.x + 2 * 40, cloud.x + 2 * 41, 2 * sizeof(double));
+    for (int64_t n = 0; n < 81; n++) { /* 31 and 81 have no common factor */
+        other[2 * (n * 31 % 81)] = cloud.x[2 * n] + 0.9e-10 * (n % 2 == 0 ? 1 : -1);
+        other[2 * (n * 31 % 81) + 1] = cloud.x[2 * n + 1];
+    }
+    good(field_match_nodes(2, 81, cloud.x, 81, cloud.x, match, &matched, &error), &error);
+    assert_true(matched);
+    for (int32_t n = 0; n < 81; n++) {
+        assert_int_equal(match[n], n);
+    }
+    good(field_match_nodes(2, 81, cloud.x, 81, other, match, &matched, &error), &error);
+    assert_true(matched);
+    for (int64_t n = 0; n < 81; n++) {
+        assert_false(seen[match[n]]);
+        seen[match[n]] = 1;
+        at_most(fabs(other[2 * match[n]] - cloud.x[2 * n]), 1e-10, "a matched node");
+        at_most(fabs(other[2 * match[n] + 1] - cloud.x[2 * n + 1]), 1e-10, "a matched node");
+    }
+    other[5] += 1e-8;
+    good(field_match_nodes(2, 81, cloud.x, 81, other, match, &matched, &error), &error);
+    assert_false(matched);
+    good(field_match_nodes(2, 81, cloud.x, 80, cloud.x, match, &matched, &error), &error);
+    assert_false(matched);
+    memcpy(other, cloud.x, 81 * 2 * sizeof *other); /* the same places, but not equally often */
+    memcpy(other, cloud.x + 2 * 40, 2 * sizeof *other);
+    good(field_match_nodes(2, 81, cloud.x, 81, other, match, &matched, &error), &error);
+    assert_false(matched);
+    free(other);
+    free(match);
+    scattered_free(&cloud);
+}
+
+static void statistics_of_differences(void **state)
+{
+    (void)state;
+    double difference[] = {3.0, 0.0, 4.0, 100.0, 4.0, 1.0};
+    static const int64_t index[] = {0, 1, 2, 4, 5};
+    struct field_statistics statistics;
+    struct error error;
+    good(field_statistics(5, index, difference, &statistics, &error), &error);
+    at_most(fabs(statistics.average - 2.4), 1e-15, "average");
+    at_most(fabs(statistics.rmse - sqrt(42.0 / 5.0)), 1e-15, "rmse");
+    assert_true(statistics.largest == 4.0 && statistics.largest_at == 2);
+    assert_true(field_percentile(&statistics, 50) == 3.0);
+    assert_true(field_percentile(&statistics, 100) == 4.0);
+    assert_true(field_percentile(&statistics, 0) == 0.0);
+    at_most(fabs(field_percentile(&statistics, 12.5) - 0.5), 1e-15, "percentile between two");
+    field_statistics_free(&statistics);
+    difference[4] = NAN;
+    good(field_statistics(5, index, difference, &statistics, &error), &error);
+    assert_true(isnan(statistics.average) && isnan(statistics.largest) && isnan(statistics.rmse));
+    assert_true(isnan(field_percentile(&statistics, 50)));
+    assert_int_equal(statistics.largest_at, 4);
+    field_statistics_free(&statistics);
+    good(field_statistics(0, index, difference, &statistics, &error), &error);
+    assert_true(isnan(statistics.average) && isnan(statistics.largest) && isnan(statistics.rmse));
+    field_statistics_free(&statistics);
+    static const double field[] = {3.0, 4.0, NAN, 0.0};
+    assert_true(field_largest(1, 2, field) == 5.0);
+    assert_true(isnan(field_largest(2, 2, field)));
+}
+
+/* A field against itself, against itself on another cloud, and against one that differs at one node. */
+static void comparisons(void **state)
+{
+    (void)state;
+    for (int dim = 2; dim <= 3; dim++) {
+        struct scattered coarse = scatter(dim, 5, 1, &places[0], 0.0, 3);
+        struct scattered fine = scatter(dim, dim == 2 ? 12 : 8, 1, &places[0], 0.2, 4);
+        double *a = linear_field(dim, coarse.count, coarse.x), *b = linear_field(dim, fine.count, fine.x);
+        struct nodal_field first = view(&coarse, a), second = view(&fine, b);
+        struct field_comparison comparison;
+        struct error error;
+        bool *chosen = calloc((size_t)coarse.count, sizeof *chosen);
+        assert_non_null(chosen);
+        good(field_compare(&first, &first, NULL, false, &comparison, &error), &error);
+        assert_true(comparison.coincide && comparison.count == coarse.count && comparison.outside == 0);
+        for (int64_t n = 0; n < coarse.count; n++) {
+            assert_true(comparison.difference[n] == 0.0);
+        }
+        field_comparison_free(&comparison);
+
+        a[2 * 7] += 3.0;
+        a[2 * 7 + 1] += 4.0;
+        good(field_compare(&first, &second, NULL, false, &comparison, &error), &error);
+        assert_false(comparison.coincide);
+        for (int64_t n = 0; n < coarse.count; n++) {
+            at_most(fabs(comparison.difference[n] - (n == 7 ? 5.0 : 0.0)), 1e-11, "difference");
+        }
+        field_comparison_free(&comparison);
+
+        coarse.x[9 * dim] += 10.0; /* outside, unless left out */
+        assert_int_equal(field_compare(&first, &second, NULL, false, &comparison, &error), STATUS_INPUT);
+        assert_int_equal(comparison.outside, 1);
+        assert_non_null(strstr(error.text, "row 9"));
+        field_comparison_free(&comparison);
+        good(field_compare(&first, &second, NULL, true, &comparison, &error), &error);
+        assert_int_equal(comparison.count, coarse.count - 1);
+        assert_true(isnan(comparison.difference[9]));
+        field_comparison_free(&comparison);
+        chosen[7] = chosen[8] = true;
+        good(field_compare(&first, &second, chosen, false, &comparison, &error), &error);
+        assert_int_equal(comparison.count, 2);
+        assert_true(comparison.node[0] == 7 && comparison.node[1] == 8);
+        assert_true(isnan(comparison.difference[0]));
+        field_comparison_free(&comparison);
+
+        free(chosen);
+        free(a);
+        free(b);
+        scattered_free(&coarse);
+        scattered_free(&fine);
+    }
+}
+
+/* A cloud that cannot be interpolated is not comparable: an error, not a verdict. */
+static void not_comparable(void **state)
+{
+    (void)state;
+    static const double line[] = {0, 0, 1, 1, 2, 2, 3, 3, 4, 4}, point[] = {1.5, 1.5}, values[10] = {0.0};
+    struct nodal_field a = {.cells = {.dim = 2, .node_count = 1, .x = point}, .cols = 2, .values = values};
+    struct nodal_field b = {.cells = {.dim = 2, .node_count = 5, .x = line}, .cols = 2, .values = values};
+    struct field_comparison comparison;
+    struct error error;
+    assert_int_equal(field_compare(&a, &b, NULL, false, &comparison, &error), STATUS_INPUT);
+    field_comparison_free(&comparison);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(linear_fields_are_exact),
+        cmocka_unit_test(spacing_with_and_without_cells),
+        cmocka_unit_test(outside),
+        cmocka_unit_test(matching),
+        cmocka_unit_test(statistics_of_differences),
+        cmocka_unit_test(comparisons),
+        cmocka_unit_test(not_comparable),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

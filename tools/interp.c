@@ -1,0 +1,336 @@
+static const char usage[] =
+    "interp - evaluate nodal fields at points\n"
+    "\n"
+    "usage: interp [-f FIELD[,FIELD...]] [-p POINTS [-u UNIT] [-k FACTOR | -R RADIUS] [-b BASIS] [-w "
+    "WEIGHT]\n"
+    "              [--mu MU]] [--deformed] [-t] [-o FILE] [FILE]\n"
+    "\n"
+    "Reads a stream with nodes.x (m) and fields at the nodes, and writes one with nodes.x = the points (m) "
+    "and "
+    "the\n"
+    "fields there. By default the points are the stream's own points.x, through its table of shape "
+    "functions;\n"
+    "without earlier sections the defaults of ipoints, support and shapefn are run first. With -p they are "
+    "those of\n"
+    "another file, and supports and shape functions are made for them.\n"
+    "\n"
+    "The values of a field are taken as the parameters of the approximation, u_h = sum phi_j u_j: a fit by "
+    "moving\n"
+    "least squares that reproduces linear fields (quadratic ones with mls2, and nearly so with mmls2) and "
+    "smooths\n"
+    "others. A point farther than two node spacings from every node is an error.\n"
+    "\n"
+    "Options:\n"
+    "  -f, --field FIELD,...  the fields (default: every section of type f8 with one row per node)\n"
+    "  -p, --points POINTS    the nodes.x of this stream or, with -u, the rows of this table of coordinates\n"
+    "                         (blanks or tabs between them, # begins a comment)\n"
+    "  -u, --unit UNIT        POINTS is a table in m, cm, mm or um\n"
+    "  -k, --factor FACTOR    support radius = FACTOR times the local node spacing (default 1.8)\n"
+    "  -R, --radius RADIUS    constant radius: a length with its unit, e.g. 8mm (without one: m)\n"
+    "  -b, --basis BASIS      mls1, mls2 or mmls2 (default), see shapefn\n"
+    "  -w, --weight WEIGHT    quartic (default), cubic, wendland or regularised\n"
+    "      --mu MU[,MU...]    regularisation of mmls2, see shapefn\n"
+    "      --mu-unit UNIT     MU is absolute, in coordinates of that unit\n"
+    "      --deformed         add x.deformed: the points, m, moved by the displacement field u\n"
+    "  -t, --text             write text instead of binary\n"
+    "  -o, --output FILE      write to FILE, which appears only when whole\n"
+    "\n"
+    "Examples:\n"
+    "  interp -f u -p landmarks.tsv -u mm --deformed -t u.dat\n"
+    "  interp -p fine.mts coarse.dat | fieldcmp - fine.dat\n";
+
+#include "mls_options.h"
+#include "stages.h"
+
+#include "approx/field.h"
+#include "io/table.h"
+
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+enum {
+    FIELD,
+    POINTS,
+    UNIT,
+    FACTOR,
+    RADIUS,
+    BASIS,
+    LAST_OF_MLS = BASIS + MLS_OPTION_COUNT - 1,
+    DEFORMED,
+    TEXT,
+    OUTPUT,
+    OPTION_COUNT
+};
+
+/* Points with the neighbours and the values of the shape functions at each. */
+struct points {
+    int64_t count;
+    double *x; /* count * dim, m; owned */
+    const int64_t *ptr;
+    const int32_t *idx;
+    const double *phi;
+    struct field_table own; /* what ptr, idx, phi view when made here */
+};
+
+static struct support_options parse(const struct tool *tool, const struct option *options, int dim)
+{
+    struct support_options support = support_defaults(dim);
+    struct error error;
+    if (options[FACTOR].given && options[RADIUS].given) {
+        tool_fail(tool, STATUS_INPUT, "give one of -k and -R");
+    }
+    for (int i = UNIT; i <= LAST_OF_MLS; i++) {
+        if (options[i].given && !options[POINTS].given) {
+            tool_fail(tool, STATUS_INPUT, "--%s needs -p (else the stream's own table is used)",
+                      options[i].name);
+        }
+    }
+    if (options[FACTOR].given) {
+        tool_check(tool, parse_double(options[FACTOR].value, "-k", 0.1, 100, &support.factor, &error),
+                   &error);
+    }
+    if (options[RADIUS].given) {
+        tool_check(tool, parse_length(options[RADIUS].value, "-R", &support.radius, &error), &error);
+    }
+    if (options[UNIT].given) {
+        double unit;
+        tool_check(tool, parse_length_unit(options[UNIT].value, "-u", &unit, &error), &error);
+    }
+    tool_check(tool, mls_apply_options(options + BASIS, &support.mls, &error), &error);
+    return support;
+}
+
+/* The rows of a table of coordinates. */
+static void read_table(const struct tool *tool, const char *file, const char *unit_name, int dim,
+                       struct points *points)
+{
+    struct table table;
+    struct error error;
+    double unit;
+    tool_check(tool, parse_length_unit(unit_name, "-u", &unit, &error), &error);
+    tool_check(tool, table_read(file, dim, dim, &table, &error), &error);
+    points->count = table.rows;
+    points->x = table.values;
+    table.values = NULL;
+    table_free(&table);
+    for (int64_t i = 0; i < points->count * dim; i++) {
+        points->x[i] *= unit;
+    }
+}
+
+/* The nodes of another stream. */
+static void read_nodes(const struct tool *tool, const char *file, int dim, struct points *points)
+{
+    struct stream other;
+    struct error error;
+    int other_dim;
+    const double *x;
+    const char *name;
+    int descriptor = tool_open(tool, file, &name);
+    enum status status = stream_read(&other, descriptor, name, &error);
+    if (status != STATUS_OK) {
+        tool_fail(tool, status, "%s (a table of coordinates needs -u)", error.text);
+    }
+    if (descriptor != STDIN_FILENO) {
+        close(descriptor);
+    }
+    status = stream_nodes(&other, &other_dim, &points->count, &x, &error);
+    if (status == STATUS_OK && other_dim != dim) {
+        status = fail(&error, STATUS_INPUT, "nodes.x: points in %dD, the field is in %dD", other_dim, dim);
+    }
+    if (status != STATUS_OK) {
+        tool_fail(tool, status, "%s: %s", file, error.text);
+    }
+    tool_check(tool, NEW_ARRAY(&points->x, points->count * dim, &error), &error);
+    memcpy(points->x, x, (size_t)(points->count * dim) * sizeof *x);
+    stream_free(&other);
+}
+
+/* Supports and shape functions at points of the user's. */
+static enum status make_table(const struct support_options *support, const struct stream *stream,
+                              const char *file, struct points *points, struct error *error)
+{
+    enum status status;
+    struct cells cells;
+    struct point_grid grid = {0};
+    double *spacing = NULL;
+    int64_t outside;
+    TRY(stream_cells(stream, false, &cells, error));
+    TRY(NEW_ARRAY(&spacing, cells.node_count, error));
+    TRY(field_spacing(&cells, spacing, error));
+    TRY(point_grid_build(&grid, cells.dim, cells.node_count, cells.x, spacing, error));
+    TRY(field_first_outside(&grid, 0, points->count, points->x, &outside, error));
+    if (outside < points->count) {
+        char place[96];
+        point_text(cells.dim, points->x + outside * cells.dim, place);
+        status =
+            fail(error, STATUS_INPUT,
+                 "%s: row %lld at %s: farther than two node spacings from every node: is the unit right?",
+                 file, (long long)outside, place);
+        goto done;
+    }
+    TRY(field_table_build(support, cells.node_count, cells.x, spacing, points->count, points->x, file,
+                          &points->own, error));
+    points->ptr = points->own.lists.ptr;
+    points->idx = points->own.lists.idx;
+    points->phi = points->own.phi;
+done:
+    point_grid_free(&grid);
+    free(spacing);
+    return status;
+}
+
+/* The stream's own points and table. */
+static enum status view_table(const struct stream *stream, int dim, int64_t node_count, struct points *points,
+                              struct error *error)
+{
+    enum status status;
+    const struct section *x, *phi;
+    struct neighbours lists;
+    TRY(stream_need(stream, "points.x", TYPE_F8, dim, "ipoints", &x, error));
+    TRY(stream_need(stream, "shape.phi", TYPE_F8, 1, "shapefn", &phi, error));
+    TRY(stream_neighbours(stream, "nbr", x->rows, node_count, &lists, error));
+    if (phi->rows != lists.ptr[x->rows]) {
+        status = fail(error, STATUS_INPUT, "shape.phi: does not fit nbr.idx: run shapefn again");
+        goto done;
+    }
+    points->count = x->rows;
+    points->ptr = lists.ptr;
+    points->idx = lists.idx;
+    points->phi = phi->data;
+    TRY(NEW_ARRAY(&points->x, x->rows * dim, error));
+    memcpy(points->x, x->data, (size_t)(x->rows * dim) * sizeof(double));
+done:
+    return status;
+}
+
+/* Whether a section is a field at the nodes: not one of those that describe the discretisation. */
+static bool is_field(const struct section *section, int64_t node_count)
+{
+    static const char *const others[] = {"nodes.", "points.", "facepoints.", "support.", "nbr.",
+                                         "face.",  "node.",   "shape.",      "cells",    "facets"};
+    for (size_t i = 0; i < sizeof others / sizeof *others; i++) {
+        if (strncmp(section->name, others[i], strlen(others[i])) == 0) {
+            return false;
+        }
+    }
+    return section->type == TYPE_F8 && section->rows == node_count;
+}
+
+static void put_values(const struct tool *tool, const struct section *field, const struct points *points,
+                       struct stream *output)
+{
+    struct error error;
+    double *values;
+    tool_check(tool, NEW_ARRAY(&values, points->count * field->cols, &error), &error);
+    field_evaluate(points->count, points->ptr, points->idx, points->phi, field->cols, field->data, values);
+    tool_check(tool,
+               stream_put(output, field->name, TYPE_F8, points->count, field->cols, field->attributes, values,
+                          true, &error),
+               &error);
+}
+
+/* The fields of a list of names, or all. */
+static void put_fields(const struct tool *tool, const struct stream *stream, int64_t node_count,
+                       const char *names, const struct points *points, struct stream *output)
+{
+    for (int64_t s = 0; names == NULL && s < stream->section_count; s++) {
+        if (is_field(&stream->sections[s], node_count)) {
+            put_values(tool, &stream->sections[s], points, output);
+        }
+    }
+    for (const char *at = names; at != NULL; at = strchr(at, ',') != NULL ? strchr(at, ',') + 1 : NULL) {
+        char name[128];
+        snprintf(name, sizeof name, "%.*s", (int)strcspn(at, ","), at);
+        const struct section *field = stream_find(stream, name);
+        if (field == NULL || !is_field(field, node_count)) {
+            tool_fail(tool, STATUS_INPUT, "-f: no field '%s' of type f8 with one row per node (see mts list)",
+                      name);
+        }
+        put_values(tool, field, points, output);
+    }
+    if (output->section_count == 1) {
+        tool_fail(tool, STATUS_INPUT, "no fields: no section of type f8 has one row per node");
+    }
+}
+
+/* x.deformed = points + displacement there. */
+static void put_deformed(const struct tool *tool, const struct stream *stream, int dim, int64_t node_count,
+                         const struct points *points, const char *attributes, struct stream *output)
+{
+    struct error error;
+    const struct section *u;
+    double *x;
+    tool_check(tool, stream_need(stream, "u", TYPE_F8, dim, "mtled", &u, &error), &error);
+    if (u->rows != node_count) {
+        tool_fail(tool, STATUS_INPUT, "u: %lld rows for %lld nodes", (long long)u->rows,
+                  (long long)node_count);
+    }
+    tool_check(tool, NEW_ARRAY(&x, points->count * dim, &error), &error);
+    field_evaluate(points->count, points->ptr, points->idx, points->phi, dim, u->data, x);
+    for (int64_t i = 0; i < points->count * dim; i++) {
+        x[i] += points->x[i];
+    }
+    tool_check(tool,
+               stream_put(output, "x.deformed", TYPE_F8, points->count, dim, attributes, x, true, &error),
+               &error);
+}
+
+int main(int argc, char *argv[])
+{
+    struct tool tool;
+    struct stream stream, output;
+    struct error error;
+    struct points points = {0};
+    struct option options[OPTION_COUNT] = {
+        [FIELD] = {.letter = 'f', .name = "field", .takes_value = true},
+        [POINTS] = {.letter = 'p', .name = "points", .takes_value = true},
+        [UNIT] = {.letter = 'u', .name = "unit", .takes_value = true},
+        [FACTOR] = {.letter = 'k', .name = "factor", .takes_value = true},
+        [RADIUS] = {.letter = 'R', .name = "radius", .takes_value = true},
+        [BASIS] = MLS_OPTIONS,
+        [DEFORMED] = {.name = "deformed"},
+        [TEXT] = {.letter = 't', .name = "text"},
+        [OUTPUT] = {.letter = 'o', .name = "output", .takes_value = true},
+    };
+    int dim;
+    int64_t node_count;
+    const double *nodes;
+    tool_begin(&tool, usage, options, OPTION_COUNT, 0, 1, argc, argv);
+    (void)parse(&tool, options, 0); /* usage errors before waiting for the input */
+    tool_read(&tool, tool.operands[0], &stream);
+    tool_check(&tool, stream_nodes(&stream, &dim, &node_count, &nodes, &error), &error);
+    struct support_options support = parse(&tool, options, dim);
+    const char *file = options[POINTS].value;
+    if (file == NULL) {
+        stage_fill(&tool, &stream, "shapefn");
+        tool_check(&tool, view_table(&stream, dim, node_count, &points, &error), &error);
+    } else {
+        if (options[UNIT].given) {
+            read_table(&tool, file, options[UNIT].value, dim, &points);
+        } else {
+            read_nodes(&tool, file, dim, &points);
+        }
+        tool_check(&tool, make_table(&support, &stream, file, &points, &error), &error);
+    }
+
+    const char *attributes = dim == 2 ? "unit=m cols=x,y" : "unit=m cols=x,y,z";
+    stream_init(&output);
+    output.provenance = stream.provenance; /* moved */
+    output.provenance_count = stream.provenance_count;
+    stream.provenance = NULL;
+    stream.provenance_count = 0;
+    tool_check(&tool,
+               stream_put(&output, "nodes.x", TYPE_F8, points.count, dim, attributes, points.x, true, &error),
+               &error);
+    put_fields(&tool, &stream, node_count, options[FIELD].value, &points, &output);
+    if (options[DEFORMED].given) {
+        put_deformed(&tool, &stream, dim, node_count, &points, attributes, &output);
+    }
+    tool_write(&tool, &output, options[TEXT].given);
+    field_table_free(&points.own);
+    stream_free(&output);
+    stream_free(&stream);
+    return tool_end(&tool);
+}
