@@ -6,10 +6,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const int64_t check_interval = 20; /* steps between estimates */
-static const int first_iterations = 40;   /* of the power iteration, at rest */
-static const int later_iterations = 1;    /* at every check: the mode is kept, so that it sharpens */
-enum { WINDOWS = 8 };                     /* recent Rayleigh quotients that the error estimate looks at */
+static const int64_t check_interval = 20;     /* steps between estimates */
+static const int first_iterations = 40;       /* of the power iteration, at rest */
+static const int most_augmentations = 20;     /* of the contacts' multipliers */
+static const double penetration_share = 1e-4; /* of the body's size: what a contact may penetrate */
+static const int later_iterations = 1;        /* at every check: the mode is kept, so that it sharpens */
+enum { WINDOWS = 8 };                         /* recent Rayleigh quotients that the error estimate looks at */
 
 struct relaxation {
     struct solid_system *system;
@@ -25,6 +27,8 @@ struct relaxation {
     double low2;                          /* current estimate of the lowest frequency, squared */
     double window[WINDOWS];
     int64_t checks;
+    double penetration_allowed; /* m */
+    int augmentations;
 };
 
 static enum status allocate(struct relaxation *r, struct error *error)
@@ -70,6 +74,21 @@ static double mass_product(const struct relaxation *r, const double *x, const do
         sum += r->mass[n] * part;
     }
     return sum;
+}
+
+/* Length of the diagonal of the nodes' box. */
+static double body_size(const struct solid_system *system)
+{
+    double sum = 0.0;
+    for (int a = 0; a < system->dim; a++) {
+        double low = INFINITY, high = -INFINITY;
+        for (int64_t n = 0; n < system->node_count; n++) {
+            low = fmin(low, system->X[n * system->dim + a]);
+            high = fmax(high, system->X[n * system->dim + a]);
+        }
+        sum += (high - low) * (high - low);
+    }
+    return sqrt(sum);
 }
 
 /* Steps to apply the load in: slow enough that a cell is strained by no more than half a percent a step. */
@@ -184,6 +203,27 @@ static bool tell(const struct relaxation *r, int64_t at, const double *u)
     return r->options->progress(r->options->context, &progress);
 }
 
+/* Deepest penetration of all contacts at the last evaluation, m. */
+static double largest_penetration(const struct relaxation *r)
+{
+    double deepest = 0.0;
+    for (int64_t c = 0; c < r->system->contact_count; c++) {
+        for (int64_t a = 0; a < r->system->contacts[c].count; a++) {
+            deepest = fmax(deepest, -r->system->contacts[c].gap[a]);
+        }
+    }
+    return deepest;
+}
+
+/* Move what the penalties carry into the multipliers, so that the next equilibrium penetrates less. */
+static void augment(struct relaxation *r)
+{
+    for (int64_t c = 0; c < r->system->contact_count; c++) {
+        (void)contact_augment(&r->system->contacts[c]);
+    }
+    r->augmentations++;
+}
+
 static enum relaxation_outcome iterate(struct relaxation *r, double *u)
 {
     int64_t ramp = r->report->ramp_steps;
@@ -210,40 +250,31 @@ static enum relaxation_outcome iterate(struct relaxation *r, double *u)
                       ? settled + 1
                       : 0;
         if (settled >= 2) {
-            for (int64_t c = 0; c < r->system->contact_count; c++) {
-                (void)contact_augment(&r->system->contacts[c]);
+            if (r->augmentations == most_augmentations ||
+                !(largest_penetration(r) > r->penetration_allowed)) {
+                return RELAXATION_CONVERGED;
             }
-            return RELAXATION_CONVERGED;
+            augment(r);
+            settled = 0;
         }
     }
     return RELAXATION_TOO_MANY_STEPS;
 }
 
 /* Forces of the constraints: what balances the residual along them. */
-static void measure_reaction(struct relaxation *r, const double *u, double *reaction)
+static void measure_row_forces(struct relaxation *r, const double *u, double *row_force)
 {
-    const struct constraint_rows *rows = r->constraint.rows;
     int dim = r->system->dim;
     (void)system_residual(r->system, u, r->residual);
-    for (int64_t n = 0; n < r->system->node_count; n++) {
-        for (int a = 0; a < dim; a++) {
-            r->scratch[n * dim + a] = r->residual[n * dim + a] / r->mass[n];
-        }
+    for (int64_t i = 0; i < r->size; i++) {
+        r->scratch[i] = r->residual[i] / r->mass[i / dim];
     }
-    memset(reaction, 0, (size_t)r->size * sizeof *reaction);
     constraint_project(&r->constraint, NULL, r->scratch);
-    for (int64_t c = 0; c < rows->count; c++) {
-        for (int64_t i = rows->ptr[c]; i < rows->ptr[c + 1]; i++) {
-            for (int a = 0; a < dim; a++) {
-                reaction[(int64_t)rows->idx[i] * dim + a] +=
-                    rows->phi[i] * r->constraint.multiplier[c] * rows->direction[c * dim + a];
-            }
-        }
-    }
+    memcpy(row_force, r->constraint.multiplier, (size_t)r->system->rows.count * sizeof *row_force);
 }
 
 enum status relaxation_run(struct solid_system *system, const struct relaxation_options *options, double *u,
-                           double *reaction, struct relaxation_report *report, struct error *error)
+                           double *row_force, struct relaxation_report *report, struct error *error)
 {
     enum status status;
     struct relaxation r = {
@@ -259,6 +290,7 @@ enum status relaxation_run(struct solid_system *system, const struct relaxation_
                  system->rows.node[dependent]);
     }
     TRY(status);
+    r.penetration_allowed = penetration_share * body_size(system);
     report->ramp_steps = options->ramp_steps > 0 ? options->ramp_steps : choose_ramp(&r);
     system_load_factors(system, 0.0);
     (void)system_residual(system, u, r.residual);
@@ -270,8 +302,8 @@ enum status relaxation_run(struct solid_system *system, const struct relaxation_
     }
     report->outcome = iterate(&r, u);
     report->largest_frequency = r.frequency;
-    if (reaction != NULL) {
-        measure_reaction(&r, u, reaction);
+    if (row_force != NULL && system->rows.count > 0) {
+        measure_row_forces(&r, u, row_force);
     }
 done:
     release(&r);

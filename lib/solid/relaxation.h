@@ -56,7 +56,7 @@ struct relaxation_report {
  * depend on each other (the message names the node); an outcome other than converged is no error status: see
  * the report. */
 MUST_CHECK enum status relaxation_run(struct solid_system *system, const struct relaxation_options *options,
-                                      double *u, double *reaction, struct relaxation_report *report,
+                                      double *u, double *row_force, struct relaxation_report *report,
                                       struct error *error);
 
 #endif

@@ -24,7 +24,8 @@ struct model_input {
 struct model {
     struct model_input input;
     struct solid_system system;
-    /* Which rows of the constraints belong to each displacement section: system.rows.section. */
+    double *row_force; /* system.rows.count: force of each constraint along its direction, N (2D: N/m), once
+                          solved */
 };
 
 /* Check that the stream has all of it, and that it fits. Regions without a material are an error that names

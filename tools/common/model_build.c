@@ -218,6 +218,7 @@ enum status model_build(const struct stream *stream, const struct scene *scene, 
     TRY(build_body(&model->input, system, error));
     TRY(lump_mass(&model->input, system, error));
     TRY(model_add_constraints(&model->input, system, error));
+    TRY(NEW_ARRAY(&model->row_force, system->rows.count, error));
     TRY(model_add_loads(&model->input, system, error));
     TRY(model_add_contacts(&model->input, system, error));
 done:
@@ -231,4 +232,6 @@ void model_free(struct model *model)
 {
     model_input_free(&model->input);
     system_free(&model->system);
+    free(model->row_force);
+    model->row_force = NULL;
 }

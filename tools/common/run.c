@@ -1,0 +1,248 @@
+#include "run.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+double run_clock(void)
+{
+    struct timespec now;
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+bool run_show_progress(void *context, const struct progress *progress)
+{
+    struct display *display = context;
+    double now = run_clock();
+    if (!display->shown || now - display->last < 0.25) {
+        return true;
+    }
+    display->last = now;
+    fprintf(stderr, "\rstep %lld  time %.3f  error %.1e", (long long)progress->step, progress->time,
+            progress->error);
+    if (progress->remaining >= 0.0 && progress->remaining < 1.0) {
+        fprintf(stderr, "  %.0f s left  ",
+                (now - display->started) * progress->remaining / (1.0 - progress->remaining));
+    }
+    return true;
+}
+
+void run_clear_progress(const struct display *display)
+{
+    if (display->shown && display->last > 0.0) {
+        fprintf(stderr, "\r%78s\r", "");
+    }
+}
+
+/* A verdict other than converged ends the run: nothing half-done passes for a result. */
+static void judge(const struct run *run, const struct relaxation_report *report)
+{
+    const struct scene *scene = run->scene;
+    char place[96] = "";
+    if (report->outcome == RELAXATION_CONVERGED) {
+        return;
+    }
+    if (report->outcome == RELAXATION_INVERTED) {
+        const double *x =
+            (const double *)run->model->input.points->data + report->inverted_point * scene->dim;
+        point_text(scene->dim, x, place);
+        tool_fail(run->tool, STATUS_VERDICT,
+                  "%s: step %lld: integration point %lld at %s is inverted (J = %.3g): apply the load in "
+                  "more steps "
+                  "(ramp_steps > %lld), or a smaller one, or refine there",
+                  scene->path, (long long)report->steps + 1, (long long)report->inverted_point, place,
+                  report->least_jacobian, (long long)report->ramp_steps);
+    }
+    tool_fail(
+        run->tool, STATUS_VERDICT,
+        "%s: not converged after %lld steps: estimated remaining error %.2g of the displacement: allow more "
+        "(max_steps), or hold the body against rigid motion",
+        scene->path, (long long)report->steps, report->error);
+}
+
+void run_quasi_static(struct run *run)
+{
+    const struct scene_solver *solver = &run->scene->solver;
+    const struct body *body = &run->model->system.body;
+    struct relaxation_options options = {.tolerance = solver->tolerance,
+                                         .time_step_margin = solver->time_step_margin,
+                                         .ramp_steps = solver->ramp_steps,
+                                         .most_steps = solver->max_steps,
+                                         .progress = run_show_progress,
+                                         .context = &run->display};
+    struct relaxation_report report;
+    struct error error;
+    double started = run_clock();
+    enum status status =
+        relaxation_run(&run->model->system, &options, run->u, run->model->row_force, &report, &error);
+    run->solve_seconds = run_clock() - started;
+    run_clear_progress(&run->display);
+    tool_check(run->tool, status, &error);
+    judge(run, &report);
+    if (run->verbose) {
+        fprintf(stderr, "points\t%lld\npairs\t%lld\nsteps\t%lld\nramp steps\t%lld\nforce evaluations\t%lld\n",
+                (long long)body->point_count, (long long)body->pair_count, (long long)report.steps,
+                (long long)report.ramp_steps, (long long)report.force_evaluations);
+        fprintf(stderr, "estimated error\t%.3g\nfrequency ratio\t%.5g\nleast J\t%.4g\n", report.error,
+                report.largest_frequency / report.lowest_frequency, report.least_jacobian);
+    }
+}
+
+void run_put(const struct run *run, const char *name, int64_t rows, int64_t cols, const char *attributes,
+             double *values)
+{
+    struct error error;
+    tool_check(run->tool,
+               stream_put(run->stream, name, TYPE_F8, rows, cols, attributes, values, true, &error), &error);
+}
+
+static double *new_values(const struct run *run, int64_t count)
+{
+    struct error error;
+    double *values;
+    tool_check(run->tool, NEW_ARRAY(&values, count, &error), &error);
+    return values;
+}
+
+static const char *vector_attributes(int dim, const char *unit, char text[64])
+{
+    snprintf(text, 64, "unit=%s cols=%s", unit, dim == 2 ? "x,y" : "x,y,z");
+    return text;
+}
+
+/* Components of a symmetric tensor in output order. */
+static const int tensor_2d[4] = {0, 4, 8, 1}, tensor_3d[6] = {0, 4, 8, 1, 2, 5};
+
+/* Cauchy stress P F^T / J, or Green-Lagrange strain, per integration point, with the points' places. */
+static void put_tensors(struct run *run)
+{
+    const struct body *body = &run->model->system.body;
+    const struct scene *scene = run->scene;
+    int count = scene->dim == 2 ? 4 : 6;
+    const int *order = scene->dim == 2 ? tensor_2d : tensor_3d;
+    const char *names = scene->dim == 2 ? "cols=xx,yy,zz,xy" : "cols=xx,yy,zz,xy,xz,yz";
+    char attributes[64];
+    int64_t points = body->point_count;
+    double *F = new_values(run, points * 9), *P = new_values(run, points * 9);
+    double *stress = new_values(run, points * count), *strain = new_values(run, points * count);
+    body_gradient(body, F);
+    body_stress(body, P);
+    for (int64_t q = 0; q < points; q++) {
+        const double *f = F + 9 * q, *p = P + 9 * q;
+        double J = determinant(f);
+        for (int k = 0; k < count; k++) {
+            int i = order[k] / 3, j = order[k] % 3;
+            double s = 0.0, e = i == j ? -1.0 : 0.0;
+            for (int a = 0; a < 3; a++) {
+                s += p[3 * i + a] * f[3 * j + a] / J;
+                e += f[3 * a + i] * f[3 * a + j];
+            }
+            stress[q * count + k] = s;
+            strain[q * count + k] = 0.5 * e;
+        }
+    }
+    free(F);
+    free(P);
+    if (scene->output.stress) {
+        snprintf(attributes, sizeof attributes, "unit=Pa measure=cauchy %s", names);
+        run_put(run, "stress", points, count, attributes, stress);
+    } else {
+        free(stress);
+    }
+    if (scene->output.strain) {
+        snprintf(attributes, sizeof attributes, "unit=1 measure=green-lagrange %s", names);
+        run_put(run, "strain", points, count, attributes, strain);
+    } else {
+        free(strain);
+    }
+}
+
+/* Total force of each displacement section and contact: a row each. */
+static void put_reactions(struct run *run)
+{
+    struct solid_system *system = &run->model->system;
+    const struct scene *scene = run->scene;
+    int dim = scene->dim;
+    int64_t rows = scene->displacement_count + scene->contact_count;
+    double *total = new_values(run, rows * dim);
+    size_t size = 16;
+    for (int64_t i = 0; i < scene->displacement_count; i++) {
+        size += strlen(scene->displacements[i].label.name) + 1;
+    }
+    for (int64_t i = 0; i < scene->contact_count; i++) {
+        size += strlen(scene->contacts[i].label.name) + 1;
+    }
+    char *attributes = (char *)new_values(run, (int64_t)(size + 64));
+    snprintf(attributes, size + 64, "unit=%s rows=", dim == 2 ? "N/m" : "N");
+    for (int64_t i = 0; i < rows; i++) {
+        const char *name = i < scene->displacement_count
+                               ? scene->displacements[i].label.name
+                               : scene->contacts[i - scene->displacement_count].label.name;
+        strcat(strcat(attributes, i > 0 ? "," : ""), name);
+    }
+    const struct constraint_rows *constraint = &system->rows;
+    for (int64_t r = 0; r < constraint->count; r++) {
+        double share = 0.0;
+        for (int64_t i = constraint->ptr[r]; i < constraint->ptr[r + 1]; i++) {
+            share += constraint->phi[i]; /* 1 but for round-off */
+        }
+        for (int a = 0; a < dim; a++) {
+            total[constraint->section[r] * dim + a] +=
+                share * run->model->row_force[r] * constraint->direction[r * dim + a];
+        }
+    }
+    for (int64_t c = 0; c < scene->contact_count; c++) {
+        contact_total(&system->contacts[c], total + (scene->displacement_count + c) * dim);
+    }
+    run_put(run, "reactions", rows, dim, attributes, total);
+    free(attributes);
+}
+
+/* Gap, pressure and place of every hat of every contact. */
+static void put_gaps(struct run *run)
+{
+    const struct solid_system *system = &run->model->system;
+    int dim = run->scene->dim, cols = dim + 2;
+    int64_t rows = 0, at = 0;
+    for (int64_t c = 0; c < system->contact_count; c++) {
+        rows += system->contacts[c].count;
+    }
+    double *values = new_values(run, rows * cols);
+    for (int64_t c = 0; c < system->contact_count; c++) {
+        const struct contact *contact = &system->contacts[c];
+        for (int64_t a = 0; a < contact->count; a++, at++) {
+            memcpy(values + at * cols, contact->averages->position + a * dim, (size_t)dim * sizeof *values);
+            values[at * cols + dim] = contact->gap[a];
+            values[at * cols + dim + 1] = contact->pressure[a];
+        }
+    }
+    run_put(run, "gaps", rows, cols,
+            dim == 2 ? "unit=m,m,m,Pa cols=x,y,gap,pressure" : "unit=m,m,m,m,Pa cols=x,y,z,gap,pressure",
+            values);
+}
+
+void run_put_results(struct run *run)
+{
+    const struct scene_output *output = &run->scene->output;
+    struct model *model = run->model;
+    char attributes[64];
+    int dim = run->scene->dim;
+    int64_t nodes = model->system.node_count;
+    double *field = new_values(run, nodes * dim), *scratch = new_values(run, nodes * dim);
+    /* Bring F, stresses and gaps to the final state. */
+    (void)system_residual(&model->system, run->u, scratch);
+    free(scratch);
+    if (output->stress || output->strain) {
+        put_tensors(run);
+    }
+    if (output->reactions) {
+        put_reactions(run);
+    }
+    if (output->gaps && model->system.contact_count > 0) {
+        put_gaps(run);
+    }
+    model_nodal_field(&model->input, run->u, field);
+    run_put(run, "u", nodes, dim, vector_attributes(dim, "m", attributes), field);
+}

@@ -1,0 +1,42 @@
+/* Running a model: what mtled does between reading and writing. */
+#ifndef TOOLS_RUN_H
+#define TOOLS_RUN_H
+
+#include "model.h"
+#include "solid/relaxation.h"
+
+/* Progress on a terminal: one line, a few times a second. */
+struct display {
+    bool shown;
+    double started, last; /* s */
+};
+
+struct run {
+    const struct tool *tool;
+    const struct scene *scene;
+    struct model *model;
+    struct stream *stream; /* receives what the scene's [output] asks for */
+    struct display display;
+    bool verbose;
+    double *u; /* parameters, node_count * dim, m */
+    double prepare_seconds, solve_seconds;
+};
+
+/* Seconds of a clock that only goes forward. */
+double run_clock(void);
+
+/* A progress_function for struct display. */
+bool run_show_progress(void *context, const struct progress *progress);
+void run_clear_progress(const struct display *display);
+
+/* Quasi-static: relax to the full load. Exits with a verdict when it does not converge. */
+void run_quasi_static(struct run *run);
+
+/* Add section `name`: rows x cols values, which the stream takes. Exits on failure. */
+void run_put(const struct run *run, const char *name, int64_t rows, int64_t cols, const char *attributes,
+             double *values);
+
+/* Add u at the nodes and the optional outputs of the final state: stress, strain, reactions, gaps. */
+void run_put_results(struct run *run);
+
+#endif
