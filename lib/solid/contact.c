@@ -6,10 +6,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Length of a hat, m. */
-static double hat_size(const struct contact *contact, int64_t a)
+/* How deep a hat may be when it is first seen behind the surface without having gone through: half its
+ * length, m. */
+static double most_depth(const struct contact *contact, int64_t a)
 {
-    return contact->dim == 2 ? contact->averages->area[a] : sqrt(contact->averages->area[a]);
+    double area = contact->averages->area[a];
+    return 0.5 * (contact->dim == 2 ? area : sqrt(area));
 }
 
 /* sum_j Phi_aj v_j for node values v */
@@ -32,7 +34,7 @@ static enum status check_side(const struct contact *contact, struct error *error
     for (int64_t a = 0; a < contact->count; a++) {
         struct rigid_contact closest =
             rigid_closest(&contact->surface, contact->rest + a * contact->dim, INFINITY);
-        if (closest.found && -closest.gap > hat_size(contact, a)) {
+        if (closest.found && -closest.gap > most_depth(contact, a)) {
             return fail(error, STATUS_INPUT,
                         "contact: node %d starts %.3g m behind the rigid surface: state its other side, or "
                         "leave the node's facets out",
@@ -91,8 +93,20 @@ void contact_free(struct contact *contact)
     *contact = (struct contact){0};
 }
 
-/* Find gap and normal of hat a, now at x, `moved` from where it was last looked at. */
-static void look(struct contact *contact, int64_t a, const double *x, double moved)
+/* Whether hat a, when it was last looked at, was in front of the plane that touches the surface closest to x,
+ * where it now is. */
+static bool was_in_front(const struct contact *contact, int64_t a, const double *x,
+                         const struct rigid_contact *closest)
+{
+    double height = closest->gap;
+    for (int c = 0; c < contact->dim; c++) {
+        height += (contact->checked_x[a * contact->dim + c] - x[c]) * closest->normal[c];
+    }
+    return height >= 0.0;
+}
+
+/* Find gap and normal of hat a, now at x. */
+static void look(struct contact *contact, int64_t a, const double *x)
 {
     int dim = contact->dim;
     struct rigid_contact closest = rigid_closest(&contact->surface, x, INFINITY);
@@ -100,13 +114,13 @@ static void look(struct contact *contact, int64_t a, const double *x, double mov
     double gap = closest.found ? closest.gap : INFINITY;
     if (!(gap < 0.0)) {
         contact->behind[a] = false;
-    } else if (!was_inside && -gap > fmax(moved, 0.5 * hat_size(contact, a))) {
-        contact->behind[a] = true; /* it cannot have gone through since: it came round */
+    } else if (!was_inside && -gap > most_depth(contact, a) && !was_in_front(contact, a, x, &closest)) {
+        contact->behind[a] = true;
     }
     contact->gap[a] = contact->behind[a] ? INFINITY : gap;
     contact->checked_distance[a] = gap < 0.0 ? 0.0 : closest.distance;
     for (int c = 0; c < dim; c++) {
-        contact->normal[a * dim + c] = closest.normal[c];
+        contact->normal[a * dim + c] = closest.smooth[c];
         contact->checked_x[a * dim + c] = x[c];
     }
 }
@@ -123,7 +137,7 @@ static double pressure_at(struct contact *contact, int64_t a, const double *x)
     if (free_way > 0.0 && moved2 < free_way * free_way) {
         return 0.0;
     }
-    look(contact, a, x, sqrt(moved2));
+    look(contact, a, x);
     return fmax(0.0, multiplier - contact->stiffness * contact->gap[a]);
 }
 

@@ -30,15 +30,17 @@ struct contact {
     double *checked_distance; /* count */
 };
 
-/* Takes over `surface` (also on failure: it becomes empty). X: nodes, m. STATUS_INPUT when a hat lies behind
- * the surface, deeper than its own size, at the start: the surface's side is the wrong one. */
+/* Takes over `surface` (also on failure: it becomes empty). X: nodes, m. STATUS_INPUT when a hat starts
+ * behind the surface, deeper than half its size: the surface's side is the wrong one. */
 MUST_CHECK enum status contact_build(const struct boundary_averages *averages, const double *X, int dim,
                                      struct rigid_surface *surface, double stiffness, struct contact *contact,
                                      struct error *error);
 void contact_free(struct contact *contact);
 
-/* Evaluate gaps and pressures at parameters u and add the contact forces on the body, - grad_u of
- * contact_energy, to force[node_count * dim], N (2D: N/m). */
+/* Evaluate gaps and pressures at parameters u and add the contact forces on the body to
+ * force[node_count * dim], N (2D: N/m). They act along the surface's smooth normals: - grad_u of
+ * contact_energy on flat surfaces; on curved ones, but for the facets' turning from it by parts of their
+ * angle, which cancels along each facet. */
 void contact_force(struct contact *contact, const double *u, double *force);
 
 /* Have the next contact_force look at all hats, so that every gap is that of its u. */

@@ -13,6 +13,9 @@ static const double merge_tolerance = 1e-9;
 /* Triangles whose area is less than this part of their longest edge squared have no normal. */
 static const double least_slenderness = 1e-12;
 
+/* At a smooth vertex every facet's normal makes at least this product with the mean: cos 22.5 degrees. */
+static const double smooth_cosine = 0.92387953251128674;
+
 static enum status measure(struct rigid_surface *surface, const double *corners, double *low, double *high,
                            struct error *error)
 {
@@ -308,6 +311,7 @@ static enum status join_facets(struct rigid_surface *surface, struct error *erro
     enum status status;
     TRY(NEW_ARRAY(&surface->vertex_normal, surface->vertex_count * surface->dim, error));
     TRY(NEW_ARRAY(&surface->is_rim, surface->vertex_count, error));
+    TRY(NEW_ARRAY(&surface->is_smooth, surface->vertex_count, error));
     if (surface->dim == 2) {
         TRY(join_segments(surface, error));
     } else {
@@ -319,6 +323,17 @@ static enum status join_facets(struct rigid_surface *surface, struct error *erro
     }
     for (int64_t v = 0; v < surface->vertex_count; v++) {
         normalise(surface->dim, surface->vertex_normal + v * surface->dim);
+        surface->is_smooth[v] = true;
+    }
+    for (int64_t c = 0; c < surface->facet_count * surface->dim; c++) {
+        int64_t vertex = surface->facet[c];
+        const double *mean = surface->vertex_normal + vertex * surface->dim;
+        const double *normal = surface->normal + c / surface->dim * surface->dim;
+        double cosine = 0.0;
+        for (int a = 0; a < surface->dim; a++) {
+            cosine += mean[a] * normal[a];
+        }
+        surface->is_smooth[vertex] = surface->is_smooth[vertex] && cosine >= smooth_cosine;
     }
 done:
     return status;
@@ -449,6 +464,7 @@ void rigid_free(struct rigid_surface *surface)
     free(surface->vertex_normal);
     free(surface->edge_normal);
     free(surface->is_rim);
+    free(surface->is_smooth);
     free(surface->edge_is_rim);
     free(surface->start);
     free(surface->in_bin);

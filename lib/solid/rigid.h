@@ -17,6 +17,7 @@ struct rigid_surface {
     double *normal;        /* facet_count * dim: unit normals, pointing to the body's side */
     double *vertex_normal; /* vertex_count * dim: angle-weighted mean, for the sign at vertices */
     double *edge_normal; /* 3D: facet_count * 3 * 3, mean of the facets at the edge from corner k to k + 1 */
+    bool *is_smooth;     /* vertex_count: no facet there turns more than 22.5 degrees from the mean normal */
     bool *is_rim;        /* vertex_count: 2D an end of a curve, 3D on an edge without neighbour */
     bool *edge_is_rim;   /* 3D: facet_count * 3, no neighbour */
     /* Uniform bins over the facets' boxes. */
@@ -39,13 +40,19 @@ void rigid_free(struct rigid_surface *surface);
 struct rigid_contact {
     bool found;       /* false: nothing within reach, or x lies beyond an open rim, where the surface ends */
     double distance;  /* how far x may move before contact can begin: the unsigned distance to the closest
-                         point; beyond a rim how far beyond; `reach` when nothing is within */
+                         point; beyond a rim, that to being over the surface or level with it, whichever is
+                         less, and at a corner of a rim in 3D 0; `reach` when nothing is within */
     double gap;       /* signed distance: positive on the body's side, m */
     double normal[3]; /* unit, the direction in which the gap grows */
+    double smooth[3]; /* unit, the same, but turning evenly along facets between smooth vertices */
 };
 
 /* The sign is that of the pseudo-normal of the closest facet, edge or vertex (Baerentzen and Aanaes, IEEE
- * Trans. Vis. Comput. Graph. 11, 2005), right at convex and concave corners alike. */
+ * Trans. Vis. Comput. Graph. 11, 2005), right at convex and concave corners alike.
+ *
+ * `normal` jumps where two facets meet on their concave side, and a body held there by a pressure along it
+ * would chatter; `smooth` interpolates the mean normals at the vertices, so that the facets of a curved
+ * surface act as one. It is `normal` on flat parts and at sharp corners. */
 struct rigid_contact rigid_closest(const struct rigid_surface *surface, const double *x, double reach);
 
 #endif

@@ -17,6 +17,7 @@ struct nearest {
     int64_t facet;    /* -1: none yet */
     double distance2; /* INFINITY: none yet */
     double point[3];
+    double weight[3]; /* of the facet's corners in it, sum 1 */
     enum feature feature;
     bool rim;
 };
@@ -57,32 +58,45 @@ static void scaled(int dim, double s, const double *v, double *result)
     }
 }
 
-static enum feature closest_on_segment(const double *a, const double *b, const double *x, double *point)
+static enum feature corner_feature(int k, double weight[3])
+{
+    weight[k] = 1.0;
+    return (enum feature)(ON_CORNER_0 + k);
+}
+
+/* On the edge from corner k to the next, at part s of the way. */
+static enum feature edge_feature(int k, double s, double weight[3])
+{
+    weight[k] = 1.0 - s;
+    weight[(k + 1) % 3] = s;
+    return (enum feature)(ON_EDGE_0 + k);
+}
+
+/* The closest point by the weights of its corners, which must come as zeros. */
+static enum feature closest_on_segment(const double *a, const double *b, const double *x, double weight[3])
 {
     double ab[2], ax[2];
     difference(2, b, a, ab);
     difference(2, x, a, ax);
     double s = dot(2, ab, ax) / dot(2, ab, ab);
     if (s <= 0.0) {
-        scaled(2, 1.0, a, point);
-        return ON_CORNER_0;
+        return corner_feature(0, weight);
     }
     if (s >= 1.0) {
-        scaled(2, 1.0, b, point);
-        return ON_CORNER_1;
+        return corner_feature(1, weight);
     }
-    along(2, a, s, ab, point);
+    weight[0] = 1.0 - s;
+    weight[1] = s;
     return ON_FACE;
 }
 
 /* Ericson, Real-Time Collision Detection (2005), 5.1.5: by the Voronoi regions of corners, edges, face. */
 static enum feature closest_on_triangle(const double *a, const double *b, const double *c, const double *x,
-                                        double *point)
+                                        double weight[3])
 {
-    double ab[3], ac[3], bc[3], ax[3], bx[3], cx[3];
+    double ab[3], ac[3], ax[3], bx[3], cx[3];
     difference(3, b, a, ab);
     difference(3, c, a, ac);
-    difference(3, c, b, bc);
     difference(3, x, a, ax);
     difference(3, x, b, bx);
     difference(3, x, c, cx);
@@ -90,31 +104,26 @@ static enum feature closest_on_triangle(const double *a, const double *b, const 
            d5 = dot(3, ab, cx), d6 = dot(3, ac, cx);
     double va = d3 * d6 - d5 * d4, vb = d5 * d2 - d1 * d6, vc = d1 * d4 - d3 * d2;
     if (d1 <= 0.0 && d2 <= 0.0) {
-        scaled(3, 1.0, a, point);
-        return ON_CORNER_0;
+        return corner_feature(0, weight);
     }
     if (d3 >= 0.0 && d4 <= d3) {
-        scaled(3, 1.0, b, point);
-        return ON_CORNER_1;
+        return corner_feature(1, weight);
     }
     if (d6 >= 0.0 && d5 <= d6) {
-        scaled(3, 1.0, c, point);
-        return ON_CORNER_2;
+        return corner_feature(2, weight);
     }
     if (vc <= 0.0 && d1 >= 0.0 && d3 <= 0.0) {
-        along(3, a, d1 / (d1 - d3), ab, point);
-        return ON_EDGE_0;
+        return edge_feature(0, d1 / (d1 - d3), weight);
     }
     if (vb <= 0.0 && d2 >= 0.0 && d6 <= 0.0) {
-        along(3, a, d2 / (d2 - d6), ac, point);
-        return ON_EDGE_2;
+        return edge_feature(2, d6 / (d6 - d2), weight);
     }
     if (va <= 0.0 && d4 >= d3 && d5 >= d6) {
-        along(3, b, (d4 - d3) / ((d4 - d3) + (d5 - d6)), bc, point);
-        return ON_EDGE_1;
+        return edge_feature(1, (d4 - d3) / ((d4 - d3) + (d5 - d6)), weight);
     }
-    along(3, a, vb / (va + vb + vc), ab, point);
-    along(3, point, vc / (va + vb + vc), ac, point);
+    weight[1] = vb / (va + vb + vc);
+    weight[2] = vc / (va + vb + vc);
+    weight[0] = 1.0 - weight[1] - weight[2];
     return ON_FACE;
 }
 
@@ -135,10 +144,16 @@ static void consider(const struct rigid_surface *surface, int64_t f, const doubl
     struct nearest here = {.facet = f};
     int dim = surface->dim;
     double away[3] = {0.0, 0.0, 0.0};
-    here.feature = dim == 2
-                       ? closest_on_segment(corner_of(surface, f, 0), corner_of(surface, f, 1), x, here.point)
-                       : closest_on_triangle(corner_of(surface, f, 0), corner_of(surface, f, 1),
-                                             corner_of(surface, f, 2), x, here.point);
+    const double *a = corner_of(surface, f, 0), *b = corner_of(surface, f, 1);
+    here.feature = dim == 2 ? closest_on_segment(a, b, x, here.weight)
+                            : closest_on_triangle(a, b, corner_of(surface, f, 2), x, here.weight);
+    /* From the first corner, so that an offset of the origin costs nothing. */
+    scaled(dim, 1.0, a, here.point);
+    for (int k = 1; k < dim; k++) {
+        double side[3] = {0.0, 0.0, 0.0};
+        difference(dim, corner_of(surface, f, k), a, side);
+        along(dim, here.point, here.weight[k], side, here.point);
+    }
     here.rim = on_rim(surface, f, here.feature);
     difference(dim, x, here.point, away);
     here.distance2 = dot(dim, away, away);
@@ -215,18 +230,45 @@ static const double *pseudo_normal(const struct rigid_surface *surface, const st
     return dot(dim, joint, joint) > 0.5 ? joint : normal;
 }
 
-/* How far x lies beyond the rim that the nearest point is on. */
+/* Where x lies beside the rim that the nearest point is on: how far beyond it, and the least way to where the
+ * surface begins or to its level. */
 static double beyond_rim(const struct rigid_surface *surface, const struct nearest *nearest,
-                         const double *away)
+                         const double *away, double *least_way)
 {
     int dim = surface->dim;
-    /* At a corner of triangles, of the mean normal; at the end of a segment or edge, of the facet's. */
-    const double *normal = dim == 3 && nearest->feature < ON_EDGE_0 ? pseudo_normal(surface, nearest)
-                                                                    : surface->normal + nearest->facet * dim;
-    double height = dot(dim, away, normal);
-    double aside[3] = {0.0, 0.0, 0.0};
+    /* At a corner of triangles the plane of the mean normal, where edges in other directions may be near; at
+     * the end of a segment and on an edge that of the facet. */
+    bool corner = dim == 3 && nearest->feature < ON_EDGE_0;
+    const double *normal = corner ? pseudo_normal(surface, nearest) : surface->normal + nearest->facet * dim;
+    double aside[3] = {0.0, 0.0, 0.0}, height = dot(dim, away, normal);
     along(dim, away, -height, normal, aside);
-    return sqrt(dot(dim, aside, aside));
+    double beyond = sqrt(dot(dim, aside, aside));
+    *least_way = corner ? 0.0 : fmin(beyond, fabs(height));
+    return beyond;
+}
+
+/* The mean normals of the facet's smooth vertices, interpolated; a sharp one stands in with the facet's
+ * normal, or that of the edge on which the point is. Without smooth vertices, the plain normal. */
+static void smooth_normal(const struct rigid_surface *surface, const struct nearest *nearest,
+                          struct rigid_contact *contact)
+{
+    int dim = surface->dim;
+    bool any = false;
+    double sum[3] = {0.0, 0.0, 0.0};
+    const double *own = nearest->feature >= ON_EDGE_0 ? pseudo_normal(surface, nearest)
+                                                      : surface->normal + nearest->facet * dim;
+    for (int k = 0; k < dim; k++) {
+        int64_t vertex = surface->facet[nearest->facet * dim + k];
+        bool smooth = surface->is_smooth[vertex];
+        any = any || (smooth && nearest->weight[k] > 0.0);
+        along(dim, sum, nearest->weight[k], smooth ? surface->vertex_normal + vertex * dim : own, sum);
+    }
+    double length2 = dot(dim, sum, sum);
+    if (any && length2 > 0.0) {
+        scaled(dim, 1.0 / sqrt(length2), sum, contact->smooth);
+    } else {
+        scaled(dim, 1.0, contact->normal, contact->smooth);
+    }
 }
 
 struct rigid_contact rigid_closest(const struct rigid_surface *surface, const double *x, double reach)
@@ -243,9 +285,9 @@ struct rigid_contact rigid_closest(const struct rigid_surface *surface, const do
     difference(dim, x, nearest.point, away);
     contact.distance = sqrt(nearest.distance2);
     if (nearest.rim) {
-        double beyond = beyond_rim(surface, &nearest, away);
+        double least_way, beyond = beyond_rim(surface, &nearest, away, &least_way);
         if (beyond > round_off * surface->extent) {
-            contact.distance = beyond;
+            contact.distance = least_way;
             return contact;
         }
     }
@@ -256,14 +298,15 @@ struct rigid_contact rigid_closest(const struct rigid_surface *surface, const do
         contact.gap = dot(dim, away, normal);
         contact.distance = fabs(contact.gap);
         scaled(dim, 1.0, normal, contact.normal);
-        return contact;
-    }
-    double sign = dot(dim, away, normal) < 0.0 ? -1.0 : 1.0;
-    contact.gap = sign * contact.distance;
-    if (contact.distance > 1e3 * round_off * surface->extent) {
-        scaled(dim, sign / contact.distance, away, contact.normal);
     } else {
-        scaled(dim, 1.0, normal, contact.normal);
+        double sign = dot(dim, away, normal) < 0.0 ? -1.0 : 1.0;
+        contact.gap = sign * contact.distance;
+        if (contact.distance > 1e3 * round_off * surface->extent) {
+            scaled(dim, sign / contact.distance, away, contact.normal);
+        } else {
+            scaled(dim, 1.0, normal, contact.normal);
+        }
     }
+    smooth_normal(surface, &nearest, &contact);
     return contact;
 }

@@ -1,0 +1,415 @@
+/* Contact of hats with rigid surfaces: forces are the gradient of the energy and balance, hats are skipped
+ * only where that changes nothing, multipliers remove the penetration, and nothing is pulled in from behind.
+ */
+#include "solid_fixture.h"
+
+#include "solid/contact.h"
+
+enum { HATS = 12, NODES = 20, EACH = 4 };
+
+/* Hats made up of a few nodes each, with random weights of sum 1; some negative, as quadratic bases give. */
+struct hats {
+    int dim;
+    double X[NODES * 3], area[HATS], phi[HATS * EACH];
+    int32_t node[HATS], idx[HATS * EACH];
+    int64_t ptr[HATS + 1];
+    struct boundary_averages averages;
+};
+
+static void make_hats(struct hats *hats, int dim, double area, struct random *random)
+{
+    *hats = (struct hats){.dim = dim};
+    for (int i = 0; i < NODES * dim; i++) {
+        hats->X[i] = uniform(random, -0.6, 0.6);
+    }
+    for (int a = 0; a < HATS; a++) {
+        double sum = 0.0;
+        hats->area[a] = area * uniform(random, 0.5, 1.0);
+        hats->node[a] = a;
+        hats->ptr[a + 1] = (a + 1) * EACH;
+        for (int i = a * EACH; i < (a + 1) * EACH; i++) { /* the first one outweighs the others */
+            hats->idx[i] = (a + (i - a * EACH) * 2) % NODES;
+            hats->phi[i] = i == a * EACH ? 1.0 : uniform(random, -0.1, 0.5);
+            sum += hats->phi[i];
+        }
+        for (int i = a * EACH; i < (a + 1) * EACH; i++) {
+            hats->phi[i] /= sum;
+        }
+    }
+    hats->averages = (struct boundary_averages){.count = HATS,
+                                                .node = hats->node,
+                                                .area = hats->area,
+                                                .ptr = hats->ptr,
+                                                .idx = hats->idx,
+                                                .phi = hats->phi};
+}
+
+/* Hats that are each one node, where X says. */
+static void make_particles(struct hats *hats, int dim, double area)
+{
+    *hats = (struct hats){.dim = dim};
+    for (int a = 0; a < HATS; a++) {
+        hats->area[a] = area;
+        hats->node[a] = hats->idx[a] = a;
+        hats->ptr[a + 1] = a + 1;
+        hats->phi[a] = 1.0;
+    }
+    hats->averages = (struct boundary_averages){.count = HATS,
+                                                .node = hats->node,
+                                                .area = hats->area,
+                                                .ptr = hats->ptr,
+                                                .idx = hats->idx,
+                                                .phi = hats->phi};
+}
+
+/* A polygon of that many sides about the origin, or a cube with its faces in two triangles; the body is
+ * inside. `open`: one side is left out. */
+static struct rigid_surface make_shell(int dim, int sides, double radius, bool open)
+{
+    struct rigid_surface surface;
+    struct error error;
+    double corners[24 * 9];
+    int64_t count = 0;
+    if (dim == 2) {
+        for (int i = 0; i < sides - open; i++, count++) {
+            for (int k = 0; k < 2; k++) {
+                corners[4 * i + 2 * k] = radius * cos(2.0 * M_PI * (i + k) / sides);
+                corners[4 * i + 2 * k + 1] = radius * sin(2.0 * M_PI * (i + k) / sides);
+            }
+        }
+    } else {
+        static const int order[2][6] = {{0, 2, 1, 0, 3, 2}, {0, 1, 2, 0, 2, 3}};
+        for (int face = 0; face < 6 - open; face++) {
+            for (int i = 0; i < 6; i++) {
+                int k = order[face % 2][i], axis = face / 2;
+                double *corner = corners + (count * 3 + i) * 3;
+                corner[axis] = face % 2 ? radius : -radius;
+                corner[(axis + 1) % 3] = k == 1 || k == 2 ? radius : -radius;
+                corner[(axis + 2) % 3] = k >= 2 ? radius : -radius;
+            }
+            count += 2;
+        }
+    }
+    GOOD(rigid_build(dim, count, corners, true, &surface, &error));
+    return surface;
+}
+
+static struct contact built(const struct hats *hats, struct rigid_surface surface, double stiffness)
+{
+    struct contact contact;
+    struct error error;
+    GOOD(contact_build(&hats->averages, hats->X, hats->dim, &surface, stiffness, &contact, &error));
+    assert_null(surface.vertex);
+    return contact;
+}
+
+static double position(const struct hats *hats, const double *u, int a, int axis)
+{
+    double x = 0.0;
+    for (int64_t i = hats->ptr[a]; i < hats->ptr[a + 1]; i++) {
+        int at = hats->idx[i] * hats->dim + axis;
+        x += hats->phi[i] * (hats->X[at] + u[at]);
+    }
+    return x;
+}
+
+/* Displacements that bring about half of the hats into contact. */
+static void push_out(double *u, struct random *random)
+{
+    for (int i = 0; i < NODES * 3; i++) {
+        u[i] = uniform(random, -1.0, 1.0);
+    }
+}
+
+static int touching(const struct contact *contact)
+{
+    int count = 0;
+    for (int64_t a = 0; a < contact->count; a++) {
+        count += contact->pressure[a] > 0.0;
+    }
+    return count;
+}
+
+/* force = - d energy / du, with and without multipliers. */
+static void force_is_gradient(void **state)
+{
+    (void)state;
+    struct random random = {1};
+    struct hats hats;
+    int contacts = 0;
+    for (int round = 0; round < 40; round++) {
+        int dim = 2 + round % 2;
+        make_hats(&hats, dim, 10.0, &random);
+        struct contact contact = built(&hats, make_shell(dim, 4, 0.8, false), 7e3);
+        double u[NODES * 3], force[NODES * 3] = {0.0}, aside[NODES * 3], h = 1e-7;
+        push_out(u, &random);
+        for (int a = 0; a < HATS && round >= 20; a++) {
+            contact.multiplier[a] = uniform(&random, 0.0, 2e3);
+        }
+        contact_force(&contact, u, force);
+        contacts += touching(&contact);
+        for (int i = 0; i < NODES * dim; i++) {
+            double at = u[i], energy[2];
+            for (int side = 0; side < 2; side++) {
+                u[i] = at + (side ? h : -h);
+                contact_force(&contact, u, aside);
+                energy[side] = contact_energy(&contact);
+            }
+            u[i] = at;
+            NEAR_TO(force[i], -(energy[1] - energy[0]) / (2.0 * h), 1e-2);
+        }
+        contact_free(&contact);
+    }
+    assert_true(contacts > 100);
+}
+
+/* On a surface of facets the force deviates from the gradient by less than half an angle between facets, and
+ * is continuous along a way over them, on either side; on a sharp corner it is not turned. */
+static void smooth_forces(void **state)
+{
+    (void)state;
+    const double half = M_PI / 24.0;
+    for (int sides = 24; sides >= 4; sides -= 20) {
+        struct rigid_surface surface = make_shell(2, sides, 1.0, false);
+        double last[2] = {0.0}, jump = 0.0;
+        for (double side = -1e-9; side <= 1e-9; side += 2e-9) {
+            for (int step = 0; step <= 10000; step++) {
+                double angle = 1.0 + 0.0001 * step, x[2];
+                double r = cos(M_PI / sides) / cos(fmod(angle, 2.0 * M_PI / sides) - M_PI / sides) + side;
+                x[0] = r * cos(angle);
+                x[1] = r * sin(angle);
+                struct rigid_contact at = rigid_closest(&surface, x, INFINITY);
+                double cosine = at.smooth[0] * at.normal[0] + at.smooth[1] * at.normal[1];
+                NEAR_TO(hypot(at.smooth[0], at.smooth[1]), 1.0, 1e-14);
+                AT_MOST(cos(half) - 1e-12, cosine);
+                if (step > 0) {
+                    jump = fmax(jump, hypot(at.smooth[0] - last[0], at.smooth[1] - last[1]));
+                }
+                last[0] = at.smooth[0];
+                last[1] = at.smooth[1];
+            }
+        }
+        if (sides == 24) {
+            AT_MOST(jump, 1.1e-4);
+        } else {
+            AT_MOST(1.0, jump);
+        }
+        rigid_free(&surface);
+    }
+}
+
+/* The sum of the forces on the parameters is sum p A n, and their moment that of the hats' forces where the
+ * hats are. */
+static void balance(void **state)
+{
+    (void)state;
+    struct random random = {2};
+    struct hats hats;
+    for (int round = 0; round < 40; round++) {
+        int dim = 2 + round % 2;
+        make_hats(&hats, dim, 10.0, &random);
+        struct contact contact = built(&hats, make_shell(dim, 24, 0.7, false), 1e4);
+        double u[NODES * 3], force[NODES * 3] = {0.0}, total[3], sum[3] = {0.0}, moment = 0.0, expected = 0.0;
+        push_out(u, &random);
+        contact_force(&contact, u, force);
+        contact_total(&contact, total);
+        for (int n = 0; n < NODES; n++) {
+            const double *f = force + n * dim, *X = hats.X + n * dim;
+            for (int a = 0; a < dim; a++) {
+                sum[a] += f[a];
+            }
+            moment += (X[0] + u[n * dim]) * f[1] - (X[1] + u[n * dim + 1]) * f[0];
+        }
+        for (int a = 0; a < HATS; a++) {
+            const double *normal = contact.normal + a * dim;
+            double strength = contact.pressure[a] * hats.area[a];
+            expected +=
+                strength * (position(&hats, u, a, 0) * normal[1] - position(&hats, u, a, 1) * normal[0]);
+        }
+        for (int a = 0; a < dim; a++) {
+            NEAR_TO(sum[a], total[a], 1e-9);
+        }
+        NEAR_TO(moment, expected, 1e-9);
+        contact_free(&contact);
+    }
+}
+
+/* Along walks in and out of closed and open shells the forces are the same bits as when every hat is always
+ * looked at. */
+static void skipping(void **state)
+{
+    (void)state;
+    struct random random = {3};
+    struct hats hats;
+    int contacts = 0, steps = 0, skipped = 0;
+    for (int round = 0; round < 16; round++) {
+        int dim = 2 + round % 2;
+        make_hats(&hats, dim, 10.0, &random);
+        struct contact contact = built(&hats, make_shell(dim, 24, 0.8, round % 4 >= 2), 1e4);
+        struct contact always = built(&hats, make_shell(dim, 24, 0.8, round % 4 >= 2), 1e4);
+        double u[NODES * 3] = {0.0}, velocity[NODES * 3] = {0.0};
+        for (int step = 0; step < 2000; step++) {
+            double force[NODES * 3] = {0.0}, expected[NODES * 3] = {0.0};
+            for (int i = 0; i < NODES * dim; i++) {
+                velocity[i] = 0.98 * velocity[i] - 1e-4 * u[i] + uniform(&random, -2e-3, 2e-3);
+                u[i] += velocity[i];
+            }
+            if (step % 500 == 499) {
+                contact_augment(&contact);
+                contact_augment(&always);
+            }
+            for (int a = 0; a < HATS; a++) {
+                contact.normal[a * dim] = 2.0; /* to see who is skipped */
+            }
+            contact_force(&contact, u, force);
+            contact_look_again(&always);
+            contact_force(&always, u, expected);
+            assert_memory_equal(force, expected, sizeof force);
+            contacts += touching(&contact);
+            for (int a = 0; a < HATS; a++) {
+                skipped += contact.normal[a * dim] > 1.0;
+            }
+            steps++;
+        }
+        contact_free(&contact);
+        contact_free(&always);
+    }
+    assert_true(contacts > steps && contacts < steps * HATS * 3 / 4);
+    assert_true(skipped > steps * HATS / 3);
+}
+
+/* Particles on springs, pulled through a wall: the penalty leaves them in it, multipliers bring them back. */
+static void augmentation(void **state)
+{
+    (void)state;
+    for (int dim = 2; dim <= 3; dim++) {
+        struct hats hats;
+        make_particles(&hats, dim, 0.5);
+        for (int a = 0; a < HATS; a++) {
+            hats.X[a * dim] = 0.1 * a / HATS;
+        }
+        struct contact contact = built(&hats, make_shell(dim, 24, 0.5, false), 100.0);
+        double u[NODES * 3] = {0.0}, spring = 20.0, pull = 13.0, deepest = INFINITY;
+        for (int round = 0; round < 40; round++) {
+            double before = deepest;
+            for (int step = 0; step < 2000; step++) { /* gradient descent to equilibrium */
+                double force[NODES * 3] = {0.0};
+                contact_force(&contact, u, force);
+                for (int i = 0; i < HATS * dim; i++) {
+                    double toward = i % dim == 1 ? pull : 0.0;
+                    u[i] += 0.01 * (force[i] + toward - spring * u[i]);
+                }
+            }
+            deepest = contact_augment(&contact);
+            assert_true(round == 0 ? deepest > 0.01 : deepest < 0.9 * before || deepest < 1e-9);
+        }
+        AT_MOST(deepest, 1e-9);
+        for (int a = 0; a < HATS; a++) {
+            /* At the wall, held by what the spring does not take. */
+            NEAR_TO(contact.gap[a], 0.0, 1e-9);
+            if (dim == 3) {
+                NEAR_TO(u[a * dim + 1], 0.5, 1e-9);
+                NEAR_TO(contact.pressure[a] * hats.area[a], pull - spring * 0.5, 1e-6);
+            }
+        }
+        contact_free(&contact);
+    }
+}
+
+/* No force from a wall slides anything along it. */
+static void frictionless(void **state)
+{
+    (void)state;
+    struct hats hats;
+    make_particles(&hats, 3, 0.5);
+    struct contact contact = built(&hats, make_shell(3, 6, 0.5, false), 100.0);
+    double u[NODES * 3] = {0.0}, force[NODES * 3] = {0.0};
+    for (int a = 0; a < HATS; a++) {
+        u[3 * a] = 0.03 * a;
+        u[3 * a + 1] = 0.6;
+        u[3 * a + 2] = -0.01 * a;
+    }
+    contact_force(&contact, u, force);
+    for (int a = 0; a < HATS; a++) {
+        NEAR_TO(force[3 * a], 0.0, 0.0);
+        NEAR_TO(force[3 * a + 1], -100.0 * 0.1 * 0.5, 1e-12);
+        NEAR_TO(force[3 * a + 2], 0.0, 0.0);
+    }
+    contact_free(&contact);
+}
+
+/* A line y = 0 from x = 0 to 1, the body above. One particle goes through it and is held; one goes round its
+ * end to the back and is not, until it has been in front again. */
+static void round_the_rim(void **state)
+{
+    (void)state;
+    static const double corners[] = {1, 0, 0, 0};
+    static const double path[][2] = {{1.2, 0.3}, {1.2, 0.05}, {1.2, -0.2}, {0.9, -0.2}, {0.5, -0.2},
+                                     {0.5, 0.2}, {0.5, -0.2}, {1.2, -0.2}, {1.2, 0.2},  {0.5, 0.1}};
+    static const bool held[] = {false, false, false, false, false, false, true, false, false, false};
+    for (int detail = 1; detail <= 1000; detail *= 10) { /* in long and in short steps */
+        struct rigid_surface surface;
+        struct error error;
+        struct hats hats;
+        GOOD(rigid_build(2, 1, corners, false, &surface, &error));
+        make_particles(&hats, 2, 0.1);
+        for (int a = 0; a < HATS; a++) {
+            hats.X[2 * a] = path[0][0];
+            hats.X[2 * a + 1] = path[0][1];
+        }
+        struct contact contact = built(&hats, surface, 100.0);
+        double u[NODES * 3] = {0.0}, force[NODES * 3];
+        for (int leg = 1; leg < 10; leg++) {
+            for (int step = 1; step <= detail; step++) {
+                double part = (double)step / detail;
+                u[0] = (1.0 - part) * path[leg - 1][0] + part * path[leg][0] - path[0][0];
+                u[1] = (1.0 - part) * path[leg - 1][1] + part * path[leg][1] - path[0][1];
+                contact_force(&contact, u, force);
+            }
+            assert_int_equal(contact.pressure[0] > 0.0, held[leg]);
+        }
+        contact_free(&contact);
+    }
+}
+
+/* The wrong side of the surface is noticed. */
+static void wrong_side(void **state)
+{
+    (void)state;
+    struct rigid_surface surface;
+    struct contact contact;
+    struct error error;
+    struct hats hats;
+    static const double corners[] = {1, 0, 0, 0};
+    make_particles(&hats, 2, 0.1);
+    for (int a = 0; a < HATS; a++) {
+        hats.X[2 * a] = 0.5;
+        hats.X[2 * a + 1] = a < 3 ? -0.04 : -0.25;
+    }
+    GOOD(rigid_build(2, 1, corners, false, &surface, &error));
+    assert_int_equal(contact_build(&hats.averages, hats.X, 2, &surface, 1.0, &contact, &error), STATUS_INPUT);
+    assert_string_equal(error.text, "contact: node 3 starts 0.25 m behind the rigid surface: state its other "
+                                    "side, or leave the node's facets out");
+    assert_null(surface.vertex);
+    assert_null(contact.rest);
+    /* Slightly behind is in contact from the start. */
+    for (int a = 3; a < HATS; a++) {
+        hats.X[2 * a + 1] = 1.0;
+    }
+    GOOD(rigid_build(2, 1, corners, false, &surface, &error));
+    GOOD(contact_build(&hats.averages, hats.X, 2, &surface, 1.0, &contact, &error));
+    double u[NODES * 3] = {0.0}, force[NODES * 3] = {0.0};
+    contact_force(&contact, u, force);
+    NEAR_TO(force[1], 0.04 * 0.1, 1e-15);
+    contact_free(&contact);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(force_is_gradient), cmocka_unit_test(smooth_forces), cmocka_unit_test(balance),
+        cmocka_unit_test(skipping),          cmocka_unit_test(augmentation),  cmocka_unit_test(frictionless),
+        cmocka_unit_test(round_the_rim),     cmocka_unit_test(wrong_side),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
