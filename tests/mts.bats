@@ -1,0 +1,214 @@
+# mts: list, print, keep, drop and check.
+
+bats_require_minimum_version 1.5.0
+
+setup() {
+    cd "$BATS_TEST_TMPDIR"
+}
+
+# A square of two triangles, with everything that mts check looks at.
+square() {
+    cat <<'END'
+# mts 1
+# @ test 1 test
+# nodes.x f8 4 2 enc=text unit=m cols=x,y
+0 0
+1 0
+1 1
+0 1
+
+
+# cells i4 2 3 enc=text
+0 1 2
+0 2 3
+
+
+# cells.region i4 2 1 enc=text names=grey,white
+0
+1
+
+
+# facets i4 1 2 enc=text
+0 1
+
+
+# facets.set i4 1 1 enc=text names=bottom
+0
+
+
+# sets.ptr i8 2 1 enc=text names=corner
+0
+2
+
+
+# sets.idx i4 2 1 enc=text
+1
+3
+
+
+# points.x f8 2 2 enc=text unit=m
+0.6 0.3
+0.3 0.6
+
+
+# points.weight f8 2 1 enc=text unit=m2
+0.5
+0.25
+
+
+# points.cell i4 2 1 enc=text
+0
+-1
+
+
+# support.radius f8 4 1 enc=text unit=m
+2
+2
+2
+2
+
+
+# nbr.ptr i8 3 1 enc=text
+0
+2
+5
+
+
+# nbr.idx i4 5 1 enc=text
+0
+1
+0
+2
+3
+
+
+# nbr.widen f8 2 1 enc=text
+1
+1.5
+
+
+# shape.phi f8 5 1 enc=text
+0.75
+0.25
+-0.5
+1
+0.5
+
+
+# shape.dphi f8 5 2 enc=text unit=1/m
+1 1
+-1 -1
+1 0
+-1 0
+0 0
+
+
+# u f8 4 2 enc=text unit=m
+0 0
+0 0
+0 0
+0 1
+
+
+# end 17
+END
+}
+
+@test "list prints a line per section, with -v the provenance first" {
+    run -0 bash -c "$(declare -f square); square | mts list -v"
+    [ "${lines[0]}" = "# @ test 1 test" ]
+    [ "${lines[1]}" = $'nodes.x\tf8\t4\t2\tunit=m cols=x,y' ]
+    [ "${#lines[@]}" -eq 18 ]
+    square | mts binary > binary
+    mts list binary | cmp - <(square | mts list)
+}
+
+@test "print writes a bare table, for awk and for itself" {
+    square > text
+    run -0 mts print cells text
+    [ "$output" = $'0 1 2\n0 2 3' ]
+    mts print nbr.widen < text | awk '{ sum += $1 } END { exit sum != 2.5 }'
+    run -2 --separate-stderr mts print cell text
+    [ "$stderr" = "mts: no section cell: see mts list" ]
+}
+
+@test "keep and drop select by patterns; one that matches nothing is an error" {
+    square > text
+    [ "$(mts keep 'nodes.x,u' text | mts list | cut -f1 | paste -sd,)" = nodes.x,u ]
+    [ "$(mts drop '*.*' text | mts list | cut -f1 | paste -sd,)" = cells,facets,u ]
+    mts keep '*' -t text | grep -v '^# @ mts' | cmp - <(mts text text)
+    run -2 --separate-stderr mts keep 'u,node.x' text
+    [ "$stderr" = "mts: no section matches 'node.x': see mts list" ]
+    [ "$output" = "" ]
+    run -2 mts drop 'u,' text
+    run -2 mts drop '' text
+}
+
+@test "check passes what the stages make" {
+    run -0 bash -c "$(declare -f square); square | mts check"
+    [ "$output" = "" ]
+    cloud -d 2 -k regular -n 5 --box 0,1,0,1 | shapefn 2> /dev/null > table2
+    cloud -d 3 -k regular -n 4 --box 0,1,0,1,0,1 | shapefn 2> /dev/null > table3
+    run -0 mts check table2
+    run -0 mts check table3
+}
+
+# violates EXPECTED SECTION SED-COMMAND: with the command applied to the lines of the section, check says EXPECTED.
+violates() {
+    square | sed -E "/^# $2 /,/^\$/ { $3
+    }" > damaged
+    run -1 mts check damaged
+    [[ "${lines[0]}" == "$1"* ]] || { echo "expected $1"; echo "got $output"; return 1; }
+}
+
+@test "check finds each violation and names section and row" {
+    violates 'nodes.x: row 3: nan is not finite' nodes.x 's/^0 1$/nan 1/'
+    violates 'cells: row 1: index 4 is not within the 4 of nodes.x' cells 's/^0 2 3/0 2 4/'
+    violates 'cells: row 0: index -1' cells 's/^0 1 2/-1 1 2/'
+    violates 'cells: row 1: no positive volume' cells 's/^0 2 3/0 3 2/'
+    violates 'cells: type i8 instead of i4' cells 's/ i4 / i8 /'
+    violates 'cells.region: row 1: index 1 is not within the 1 of names' cells.region 's/,white//'
+    violates 'cells.region: no attribute names=' cells.region 's/ names=.*//'
+    violates 'facets: row 0: index 9' facets 's/^0 1/0 9/'
+    violates 'sets.ptr: row 1: ends with 1, the list has 2' sets.ptr 's/^2$/1/'
+    violates 'sets.idx: list 0: 1 does not ascend to 1' sets.idx 's/^3$/1/'
+    violates 'points.weight: row 1: 0 is not finite and positive' points.weight 's/^0.25/0/'
+    violates 'points.cell: row 1: index -2' points.cell 's/^-1/-2/'
+    violates 'support.radius: row 0: inf' support.radius '2s/.*/inf/;s/^2$/inf/'
+    violates 'nbr.ptr: row 2: falls from 2 to 1' nbr.ptr 's/^5/1/'
+    violates 'nbr.ptr: row 0: does not begin with 0' nbr.ptr 's/^0/1/'
+    violates 'nbr.idx: list 1: 2 does not ascend to 2' nbr.idx 's/^3/2/'
+    violates 'nbr.widen: row 0: 0.5 is not finite and at least 1' nbr.widen 's/^1$/0.5/'
+    violates 'shape.phi: list 1: sums to 1 +1e-06' shape.phi 's/^1$/1.000001/'
+    violates 'shape.dphi: row 2: nan' shape.dphi 's/^1 0/nan 0/'
+    violates 'u: row 3: inf' u 's/^0 1/0 inf/'
+}
+
+@test "check compares the shapes of sections" {
+    square | mts drop nbr.idx | mts binary > damaged
+    run -1 mts check damaged
+    [ "$output" = "nbr.ptr: stands without nbr.idx" ]
+    square | sed '/^# u /,$d' > damaged
+    printf '# u f8 3 2 enc=text\n0 0\n0 0\n0 0\n\n\n# end 17\n' >> damaged
+    run -1 mts check damaged
+    [ "$output" = "u: 3 rows, but nodes.x has 4" ]
+    square | mts drop points.weight -t | sed '$d' > damaged
+    printf '# points.weight f8 1 2\n0.5 0.25\n\n\n# end 17\n' >> damaged
+    run -1 mts check damaged
+    [ "$output" = "points.weight: 2 columns instead of 1" ]
+}
+
+@test "command lines are strict" {
+    square > text
+    for command in 'mts' 'mts lists text' 'mts list -x text' 'mts list -v -v text' 'mts list text text' 'mts print' \
+        'mts print u text text' 'mts text -t text' 'mts binary -v text' 'mts list -o out text' 'mts keep -o u text' \
+        'mts check -t text' 'mts list nothere' 'mts list .' 'mts list --verbose=1 text'; do
+        run -2 --separate-stderr bash -c "$command < /dev/null"
+        [ "$output" = "" ]
+        [ "${#stderr_lines[@]}" -eq 1 ]
+        [[ "$stderr" == "mts: "* ]]
+    done
+    run -0 --separate-stderr mts -h
+    [ "${lines[0]}" = "mts - list, print, convert, check and thin out streams" ]
+    [ "$stderr" = "" ]
+}

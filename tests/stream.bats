@@ -1,0 +1,222 @@
+# The stream through pipes and files, on the command line; the programs of mts(5).
+
+bats_require_minimum_version 1.5.0
+
+setup() {
+    mkdir "$BATS_TEST_TMPDIR/work"
+    cd "$BATS_TEST_TMPDIR/work"
+    page=$BATS_TEST_DIRNAME/../tools/mts.5
+}
+
+# The text between the marks of NAME in the man page, with what roff needs taken off.
+from_page() {
+    sed -n "/^\.\\\\\" begin $1\$/,/^\.\\\\\" end $1\$/p" "$page" | sed -e 1d -e '$d' \
+        -e 's/\\-/-/g' -e "s/\\\\(aq/'/g" -e 's/\\(ha/^/g' -e 's/\\(ti/~/g' -e 's/\\(ga/`/g' -e 's/^\\&//' -e 's/\\e/\\/g'
+}
+
+small() {
+    cat <<'END'
+# mts 1
+# @ test 1 test 'a b'
+# nodes.x f8 3 2 enc=text unit=m cols=x,y
+0.10000000000000001 -0
+4.9406564584124654e-324 1.7976931348623157e+308
+nan inf
+
+
+# stranger i8 2 1 enc=text key=value
+9223372036854775807
+-9223372036854775808
+
+
+# u f8 3 2 enc=text unit=m cols=x,y
+0.5 1
+0.25 -2
+3 4
+
+
+# none i4 0 3 enc=text
+
+
+# end 4
+END
+}
+
+# About 5 MB, more than any buffer.
+large() {
+    awk 'BEGIN { srand(1); print "# mts 1\n# x f8 100000 3 enc=text"
+        for (i = 0; i < 100000; i++) print rand(), i, -rand() * 1e-9; print "\n\n# end 1" }' | mts text
+}
+
+@test "text to binary and back gives the same bytes, from a file and from a pipe" {
+    for make in small large; do
+        $make > text
+        mts binary text > binary
+        mts binary < text | cmp - binary
+        cat text | mts binary | cmp - binary
+        mts text binary | cmp - text
+        mts text < binary | cmp - text
+        cat binary | mts text | cmp - text
+        cat binary | mts binary | cmp - binary
+        mts binary text -o output
+        cmp output binary
+    done
+}
+
+@test "a stream in slow small pieces is the same stream" {
+    small | mts binary > binary
+    { while IFS= read -r -n 100 -d '' piece || [ -n "$piece" ]; do printf %s "$piece"; done < <(small); } | mts text | cmp - <(small)
+    { head -c 70 binary; sleep 0.05; tail -c +71 binary | head -c 200; sleep 0.05; tail -c +271 binary; } | mts binary | cmp - binary
+}
+
+@test "what other tools add leaves unknown sections as they are" {
+    cloud -d 2 -k regular -n 3 --box 0,1,0,1 -t | sed '$d' > text
+    printf '# stranger f4 2 1 enc=text key=value\n0.5\nnan\n\n\n# end 6\n' >> text
+    ipoints text > result
+    mts print stranger result | cmp - <(printf '0.5\nnan\n')
+    mts list result | grep -q '^stranger.f4.2.1.key=value$'
+}
+
+@test "provenance names neither the input file nor the output file" {
+    small > 'in put'
+    mts keep -o out 'u' 'in put'
+    mts keep u < 'in put' | cmp - out
+    mts keep 'u*,node?.x' < 'in put' | mts list -v > list
+    grep -qxF "# @ mts 0.1.0 mts keep 'u*,node?.x'" list
+    grep -qxF "# @ test 1 test 'a b'" list
+}
+
+@test "a killed stage upstream is noticed" {
+    large > text
+    run -2 --separate-stderr bash -c 'head -c 1000000 text | mts binary'
+    [ "$stderr" != "" ]
+    [ "$output" = "" ]
+    [[ "$stderr" == "mts: standard input: x: row "*"cut short"* || "$stderr" == *"not a number"* ]]
+    run -2 --separate-stderr bash -c 'false | mts binary'
+    [[ "$stderr" == "mts: standard input: empty:"* ]]
+}
+
+@test "a header that announces too much fails without taking the memory" {
+    [[ $BUILD == *san* ]] || ulimit -v 400000
+    for type in 'f8 100000000000 1' 'f8 1000000000000 1000000' 'i4 9223372036854775807 1' 'f4 4611686018427387904 2'; do
+        for encoding in text bin; do
+            # Padded so that a binary payload is where it should be.
+            printf '# mts 1\n%-55s\n1 2 3\n' "# x $type enc=$encoding" > hostile
+            for source in 'cat hostile | mts list' 'mts list hostile' 'mts list < hostile'; do
+                run -2 --separate-stderr bash -c "$source"
+                [[ "$stderr" == *": x: "* ]]
+                [ "${#stderr_lines[@]}" -eq 1 ]
+            done
+        done
+    done
+}
+
+@test "a full disk is status 3 with one line, and what had the name stays" {
+    large > text
+    mts binary text > binary
+    for command in 'mts text text' 'mts binary text' 'mts list text' 'mts print x text' 'mts keep x text'; do
+        run -3 --separate-stderr bash -c "$command > /dev/full"
+        [[ "$stderr" == "mts: standard output: "*"No space left on device" ]]
+        [ "${#stderr_lines[@]}" -eq 1 ]
+    done
+    run -3 --separate-stderr mts binary text -o /dev/full
+    [ -c /dev/full ]
+    echo precious > kept
+    run -3 --separate-stderr mts binary text -o missing/kept
+    [[ "$stderr" == "mts: missing/kept: No such file or directory" ]]
+    # The limit on file sizes kills with SIGXFSZ in the middle of writing.
+    run -153 bash -c 'ulimit -f 100; exec mts binary text -o kept'
+    [ "$(cat kept)" = precious ]
+    run -2 bash -c 'head -c 1000 binary | mts text -o kept'
+    [ "$(cat kept)" = precious ]
+    [ "$(ls -A | sort | tr '\n' ' ')" = "binary kept text " ]
+}
+
+@test "-o replaces the file behind a link and keeps its mode; input and output may be one file" {
+    small > data
+    ln -s data link
+    chmod 640 data
+    mts binary data -o link
+    [ -L link ]
+    [ "$(stat -c %a data)" = 640 ]
+    small | mts binary | cmp - data
+    (umask 027 && mts text data -o new)
+    [ "$(stat -c %a new)" = 640 ]
+    run -2 --separate-stderr mts text data -o .
+    [[ "$stderr" == "mts: .: is a directory" ]]
+    mts text data -o /dev/null
+    [ -c /dev/null ]
+}
+
+@test "a reader that stops early ends the writer quietly" {
+    large > text
+    for setup in ':' "trap '' PIPE"; do
+        run --separate-stderr bash -c "$setup; mts text text | head -n 1; exit \${PIPESTATUS[0]}"
+        [ "$status" -eq 141 ]
+        [ "$output" = "# mts 1" ]
+        [ "$stderr" = "" ]
+    done
+}
+
+@test "closed standard streams are errors, and no file takes their place" {
+    small > text
+    run -3 --separate-stderr bash -c 'mts list text >&-'
+    [[ "$stderr" == "mts: standard output: "* ]]
+    run -3 bash -c 'mts binary text >&-'
+    run bash -c 'mts list <&-'
+    [ "$status" -ne 0 ]
+    run -2 bash -c 'mts list /nonexistent 2>&-'
+    small | cmp - text
+}
+
+@test "no binary to a terminal, no stream from one" {
+    small > text
+    run -2 script -qefc 'mts binary text' /dev/null
+    [[ "$output" == *"no binary to a terminal"* ]]
+    run -0 script -qefc 'mts text text' /dev/null
+    [[ "$output" == *"# end 4"* ]]
+    run -2 script -qefc 'mts list' /dev/null
+    [[ "$output" == *"standard input is a terminal"* ]]
+}
+
+@test "gnuplot finds a section by its name" {
+    small > text
+    run -0 gnuplot -e "set table '/dev/stdout'; plot 'text' index 'u ' using 1:2"
+    [[ "$output" == *"0.25"*"-2"* ]]
+    [[ "$output" != *"922337"* ]]
+}
+
+@test "the sample stream of mts(5) is one" {
+    from_page sample.mts > sample
+    mts text sample | cmp - sample
+    run -0 mts check sample
+    [ "$output" = "" ]
+}
+
+@test "the awk filter of mts(5) runs" {
+    from_page scale.awk > scale.awk
+    small | awk -v factor=1000 -f scale.awk | mts print u | cmp - <(printf '500 1000\n250 -2000\n3000 4000\n')
+    small | awk -v factor=1 -f scale.awk | grep -v '^# @ scale' | cmp - <(small)
+    small | mts binary > binary
+    run -2 --separate-stderr awk -v factor=1000 -f scale.awk binary
+    [ "$stderr" = "scale.awk: binary: run mts text" ]
+}
+
+@test "the C filter of mts(5) compiles without warnings and runs" {
+    from_page scale.c > scale.c
+    ${CC:-cc} -std=gnu11 -Wall -Wextra -Werror -O1 -o scale scale.c -lz
+    small | mts binary > binary
+    ./scale 1000 < binary > scaled
+    mts print u scaled | cmp - <(printf '500 1000\n250 -2000\n3000 4000\n')
+    ./scale 1 < binary | mts text | grep -v '^# @ scale' | cmp - <(small)
+    large | mts binary | ./scale 2 | mts print x | cmp - <(large | mts print x)
+    # It notices what the reader of the library notices: cut short, damaged.
+    size=$(stat -c %s binary)
+    for length in 5 100 $((size - 60)) $((size - 1)); do
+        head -c $length binary > short
+        run -2 bash -c './scale 2 < short > result'
+        run -2 mts list result
+    done
+    sed 's/stranger/stranges/' binary > damaged
+    run -2 bash -c './scale 2 < damaged'
+}
