@@ -1,0 +1,92 @@
+/* The allocator of a test program, which can be told to fail. Sanitizers bring their own: with them
+ * FAILING_ALLOCATOR is not defined, and there is nothing to test. */
+#ifndef FAILING_ALLOCATOR_H
+#define FAILING_ALLOCATOR_H
+
+#if !defined(__SANITIZE_ADDRESS__) && defined(__GLIBC__)
+#define FAILING_ALLOCATOR
+
+#include "base/status.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+extern void *__libc_malloc(size_t size);
+extern void *__libc_calloc(size_t count, size_t size);
+extern void *__libc_realloc(void *memory, size_t size);
+extern void *__libc_memalign(size_t alignment, size_t size);
+extern void __libc_free(void *memory);
+
+static bool watched;
+static long before_failure; /* allocations that still succeed */
+static long alive;          /* allocated and not yet freed while watched */
+
+static bool is_denied(void)
+{
+    return watched && before_failure-- == 0;
+}
+
+static void *counted(void *memory)
+{
+    alive += watched && memory != NULL;
+    return memory;
+}
+
+void *malloc(size_t size)
+{
+    return is_denied() ? NULL : counted(__libc_malloc(size));
+}
+
+void *calloc(size_t count, size_t size)
+{
+    return is_denied() ? NULL : counted(__libc_calloc(count, size));
+}
+
+void *realloc(void *memory, size_t size)
+{
+    if (is_denied()) {
+        return NULL;
+    }
+    return memory == NULL ? counted(__libc_realloc(NULL, size)) : __libc_realloc(memory, size);
+}
+
+void *aligned_alloc(size_t alignment, size_t size)
+{
+    return is_denied() ? NULL : counted(__libc_memalign(alignment, size));
+}
+
+void free(void *memory)
+{
+    alive -= watched && memory != NULL;
+    __libc_free(memory);
+}
+
+/* Let the first, the second, ... allocation fail, until none is left to fail. */
+static void fail_each(enum status (*try)(struct error *error), long least)
+{
+    struct error error = {""};
+    enum status status = STATUS_SYSTEM;
+    long count = 0;
+    for (; status == STATUS_SYSTEM; count++) {
+        before_failure = count;
+        alive = 0;
+        watched = true;
+        status = try(&error);
+        watched = false;
+        assert_int_equal(alive, 0);
+        if (status == STATUS_SYSTEM) {
+            assert_non_null(strstr(error.text, "out of memory"));
+        }
+    }
+    assert_int_equal(status, STATUS_OK);
+    assert_true(count > least);
+}
+
+#endif
+#endif
