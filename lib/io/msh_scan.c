@@ -650,10 +650,11 @@ static enum status scan_section(struct msh_scan *scan, const char *start, struct
 {
     enum status status = STATUS_OK;
     char name[64];
+    int part = MSH_PART_COUNT;
     size_t from = (size_t)(cursor->at - start);
     TRY(scan_heading(cursor, name, sizeof name));
     cursor->section = name;
-    int part = 0;
+    part = 0;
     while (part < MSH_PART_COUNT && strcmp(name, part_names[part]) != 0) {
         part++;
     }
