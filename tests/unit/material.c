@@ -1,0 +1,415 @@
+/* Material laws: stresses are gradients of energies, do not see rotations, are Hooke's at small strain, and
+ * take the values of closed forms in homogeneous states. */
+#include "solid_fixture.h"
+
+#include "solid/material.h"
+
+static struct material make(enum material_model model, double poisson_ratio)
+{
+    struct material material = {.model = model, .density = 1000.0, .mooney_ratio = 0.4, .ogden_alpha = -4.7};
+    material_set_moduli(&material, 3000.0, poisson_ratio);
+    return material;
+}
+
+/* One of each model, and further parameters where a model has them. */
+enum { MATERIALS = 8 };
+static void make_all(struct material all[MATERIALS])
+{
+    for (int i = 0; i < MATERIALS; i++) {
+        all[i] = make(i < (int)MATERIAL_MODEL_COUNT ? (enum material_model)i : MATERIAL_OGDEN, 0.49);
+    }
+    all[5].ogden_alpha = 3.3;
+    all[6].ogden_alpha = 18.0;
+    all[7].model = MATERIAL_MOONEY_RIVLIN;
+    all[7].mooney_ratio = 2.5;
+}
+
+static double energy(const struct material *material, const double F[9])
+{
+    return material_shape_energy(material, F) + material_volume_energy(material, determinant(F));
+}
+
+static void stress(const struct material *material, const double F[9], double P[9])
+{
+    double C[9];
+    material_shape_stress(material, F, P);
+    cofactor(F, C);
+    for (int i = 0; i < 9; i++) {
+        P[i] += material_pressure(material, determinant(F)) * C[i];
+    }
+}
+
+/* A = B C */
+static void multiply(const double B[9], const double C[9], double A[9])
+{
+    for (int i = 0; i < 9; i++) {
+        A[i] = B[i / 3 * 3] * C[i % 3] + B[i / 3 * 3 + 1] * C[3 + i % 3] + B[i / 3 * 3 + 2] * C[6 + i % 3];
+    }
+}
+
+static void random_rotation(struct random *random, double Q[9])
+{
+    double q[4], norm2 = 0.0;
+    for (int i = 0; i < 4; i++) {
+        q[i] = uniform(random, -1.0, 1.0);
+        norm2 += q[i] * q[i];
+    }
+    double s = 2.0 / norm2, w = q[3];
+    for (int i = 0; i < 3; i++) {
+        int j = (i + 1) % 3, k = (i + 2) % 3;
+        Q[4 * i] = 1.0 - s * (q[j] * q[j] + q[k] * q[k]);
+        Q[3 * i + j] = s * (q[i] * q[j] - q[k] * w);
+        Q[3 * j + i] = s * (q[i] * q[j] + q[k] * w);
+    }
+}
+
+/* F with 0.3 < det F < 3 and large strains. */
+static void random_gradient(struct random *random, double F[9])
+{
+    do {
+        for (int i = 0; i < 9; i++) {
+            F[i] = (i % 4 == 0) + uniform(random, -0.6, 0.6);
+        }
+    } while (determinant(F) < 0.3 || determinant(F) > 3.0);
+}
+
+static void cofactor_is_derivative(void **state)
+{
+    (void)state;
+    struct random random = {1};
+    for (int round = 0; round < 50; round++) {
+        double F[9], C[9], h = 1e-4;
+        random_gradient(&random, F);
+        cofactor(F, C);
+        for (int i = 0; i < 9; i++) { /* the determinant is linear in each entry */
+            double at = F[i], plus;
+            F[i] = at + h;
+            plus = determinant(F);
+            F[i] = at - h;
+            NEAR_TO(C[i], (plus - determinant(F)) / (2.0 * h), 1e-11);
+            F[i] = at;
+        }
+    }
+}
+
+static void stress_is_gradient(void **state)
+{
+    (void)state;
+    struct random random = {2};
+    struct material all[MATERIALS];
+    make_all(all);
+    for (int m = 0; m < MATERIALS; m++) {
+        for (int round = 0; round < 50; round++) {
+            double F[9], P[9], h = 1e-5, scale = 1.0;
+            random_gradient(&random, F);
+            stress(&all[m], F, P);
+            for (int i = 0; i < 9; i++) {
+                scale = fmax(scale, fabs(P[i]));
+            }
+            for (int i = 0; i < 9; i++) {
+                double at = F[i], value[4];
+                for (int k = 0; k < 4; k++) {
+                    F[i] = at + h * (k < 2 ? k - 2 : k - 1);
+                    value[k] = energy(&all[m], F);
+                }
+                F[i] = at;
+                NEAR_TO(P[i], (value[0] - 8.0 * value[1] + 8.0 * value[2] - value[3]) / (12.0 * h),
+                        1e-7 * scale);
+            }
+        }
+    }
+}
+
+static void pressure_is_derivative(void **state)
+{
+    (void)state;
+    struct material all[MATERIALS];
+    make_all(all);
+    for (int m = 0; m < MATERIALS; m++) {
+        for (double J = 0.2; J < 3.0; J += 0.1) {
+            double h = 1e-6, difference = material_volume_energy(&all[m], J + h) -
+                                          material_volume_energy(&all[m], J - h);
+            NEAR_TO(material_pressure(&all[m], J), difference / (2.0 * h), 1e-4);
+        }
+        NEAR_TO(material_volume_energy(&all[m], 1.0), 0.0, 0.0);
+    }
+}
+
+/* Rotating the body afterwards turns the stress with it; the material has no direction. */
+static void rotations(void **state)
+{
+    (void)state;
+    struct random random = {3};
+    struct material all[MATERIALS];
+    make_all(all);
+    for (int m = 0; m < MATERIALS; m++) {
+        for (int round = 0; round < 50; round++) {
+            double F[9], Q[9], QF[9], FQ[9], P[9], turned[9], expected[9];
+            random_gradient(&random, F);
+            random_rotation(&random, Q);
+            multiply(Q, F, QF);
+            multiply(F, Q, FQ);
+            double W = energy(&all[m], F);
+            NEAR_TO(energy(&all[m], QF), W, 1e-11 * fabs(W) + 1e-9);
+            NEAR_TO(energy(&all[m], FQ), W, 1e-11 * fabs(W) + 1e-9);
+            stress(&all[m], F, P);
+            multiply(Q, P, expected);
+            stress(&all[m], QF, turned);
+            for (int i = 0; i < 9; i++) {
+                NEAR_TO(turned[i], expected[i], 1e-11 * fabs(W) + 1e-9);
+            }
+            multiply(P, Q, expected);
+            stress(&all[m], FQ, turned);
+            for (int i = 0; i < 9; i++) {
+                NEAR_TO(turned[i], expected[i], 1e-11 * fabs(W) + 1e-9);
+            }
+            /* Rotation alone makes neither stress nor energy. */
+            stress(&all[m], Q, P);
+            NEAR_TO(energy(&all[m], Q), 0.0, 1e-10);
+            for (int i = 0; i < 9; i++) {
+                NEAR_TO(P[i], 0.0, 1e-9);
+            }
+        }
+    }
+}
+
+static void rest(void **state)
+{
+    (void)state;
+    static const double identity[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+    struct material all[MATERIALS];
+    make_all(all);
+    for (int m = 0; m < MATERIALS; m++) {
+        double P[9];
+        stress(&all[m], identity, P);
+        NEAR_TO(energy(&all[m], identity), 0.0, 0.0);
+        for (int i = 0; i < 9; i++) {
+            NEAR_TO(P[i], 0.0, 0.0);
+        }
+    }
+}
+
+/* P = lambda tr(e) I + 2 mu e for small e, whatever the model. */
+static void small_strain(void **state)
+{
+    (void)state;
+    struct random random = {4};
+    struct material all[MATERIALS];
+    static const double ratios[] = {-0.2, 0.0, 0.3, 0.49, 0.499};
+    make_all(all);
+    for (int r = 0; r < 5; r++) {
+        double mu = 3000.0 / 2.0 / (1.0 + ratios[r]);
+        double lambda = 3000.0 * ratios[r] / (1.0 + ratios[r]) / (1.0 - 2.0 * ratios[r]);
+        for (int m = 0; m < MATERIALS; m++) {
+            double F[9], P[9], strain = 1e-7;
+            material_set_moduli(&all[m], 3000.0, ratios[r]);
+            NEAR_TO(material_wave_modulus(&all[m]), lambda + 2.0 * mu, 1e-8 * (lambda + 2.0 * mu));
+            for (int i = 0; i < 9; i++) {
+                F[i] = (i % 4 == 0) + strain * uniform(&random, -1.0, 1.0);
+            }
+            stress(&all[m], F, P);
+            double trace = F[0] + F[4] + F[8] - 3.0;
+            for (int i = 0; i < 9; i++) {
+                double e = 0.5 * (F[i] + F[i % 3 * 3 + i / 3]) - (i % 4 == 0);
+                double expected = 2.0 * mu * e + (i % 4 == 0 ? lambda * trace : 0.0);
+                NEAR_TO(P[i], expected, 2e-5 * strain * (lambda + 2.0 * mu));
+            }
+        }
+    }
+}
+
+/* Models that contain each other. */
+static void special_cases(void **state)
+{
+    (void)state;
+    struct random random = {5};
+    struct material hooke = make(MATERIAL_NEO_HOOKEAN, 0.49), ogden = make(MATERIAL_OGDEN, 0.49);
+    struct material mooney = make(MATERIAL_MOONEY_RIVLIN, 0.49), second = ogden;
+    ogden.ogden_alpha = 2.0;
+    mooney.mooney_ratio = 0.0;
+    for (int round = 0; round < 50; round++) {
+        double F[9], P[9], Q[9];
+        random_gradient(&random, F);
+        stress(&hooke, F, P);
+        stress(&ogden, F, Q);
+        NEAR_TO(energy(&ogden, F), energy(&hooke, F), 1e-8);
+        for (int i = 0; i < 9; i++) {
+            NEAR_TO(Q[i], P[i], 1e-8);
+        }
+        stress(&mooney, F, Q);
+        NEAR_TO(energy(&mooney, F), energy(&hooke, F), 1e-9);
+        for (int i = 0; i < 9; i++) {
+            NEAR_TO(Q[i], P[i], 1e-9);
+        }
+        /* C01 alone is Ogden's law of exponent -2: I2' is the sum of the inverse squares. */
+        mooney.mooney_ratio = 1e14;
+        second.ogden_alpha = -2.0;
+        NEAR_TO(energy(&second, F), energy(&mooney, F), 1e-7);
+        mooney.mooney_ratio = 0.0;
+    }
+}
+
+/* First Piola stress along axis 0 at that stretch with free sides; *lateral is the stretch of the sides. */
+static double unconfined(const struct material *material, double stretch, double *lateral)
+{
+    double low = 0.3, high = 3.0, P[9], F[9] = {stretch, 0, 0, 0, 1, 0, 0, 0, 1};
+    for (int i = 0; i < 200; i++) { /* the stress on the sides grows with their stretch */
+        F[4] = F[8] = 0.5 * (low + high);
+        stress(material, F, P);
+        *(P[4] > 0.0 ? &high : &low) = F[4];
+    }
+    *lateral = F[4];
+    return P[0];
+}
+
+/* Figures for E = 3000 Pa, nu = .49; those of compression are also what CalculiX
+ * gives for *HYPERELASTIC, NEO HOOKE. */
+static void unconfined_compression(void **state)
+{
+    (void)state;
+    static const double expected[][3] = {{0.8, -763.26922, 5e-6},
+                                         {0.5, -3503.55836, 5e-6},
+                                         {0.3, -10796.20005, 5e-5},
+                                         {1.2, 504.78406, 5e-6},
+                                         {1.5, 1050.71532, 5e-6}};
+    struct material material = make(MATERIAL_NEO_HOOKEAN, 0.49);
+    NEAR_TO(material.shear_modulus, 1006.7114, 5e-5);
+    NEAR_TO(material.bulk_modulus, 50000.0, 1e-9);
+    NEAR_TO(material_wave_modulus(&material), 51342.28, 5e-3);
+    for (int i = 0; i < 5; i++) {
+        double lateral, P = unconfined(&material, expected[i][0], &lateral);
+        NEAR_TO(P, expected[i][1], expected[i][2]);
+        if (i == 0) {
+            double F[9] = {0.8, 0, 0, 0, lateral, 0, 0, 0, lateral};
+            NEAR_TO(lateral, 1.11574668, 5e-9);
+            NEAR_TO(energy(&material, F), 70.051447, 5e-7);
+        }
+    }
+}
+
+static void confined_compression(void **state)
+{
+    (void)state;
+    struct material material = make(MATERIAL_NEO_HOOKEAN, 0.49);
+    double P[9];
+    stress(&material, (double[]){0.8, 0, 0, 0, 1, 0, 0, 0, 1}, P);
+    NEAR_TO(P[0], -10350.4555, 5e-5);
+}
+
+/* Cauchy stresses; with the isochoric law the normal stresses sum to zero. */
+static void simple_shear(void **state)
+{
+    (void)state;
+    struct material material = make(MATERIAL_NEO_HOOKEAN, 0.49);
+    const double F[9] = {1, 0.5, 0, 0, 1, 0, 0, 0, 1};
+    double P[9], sigma[9], transposed[9];
+    stress(&material, F, P);
+    for (int i = 0; i < 9; i++) {
+        transposed[i] = F[i % 3 * 3 + i / 3];
+    }
+    multiply(P, transposed, sigma);
+    NEAR_TO(sigma[1], 503.35570, 5e-6);
+    NEAR_TO(sigma[3], sigma[1], 1e-10);
+    NEAR_TO(sigma[0], 167.78523, 5e-6);
+    NEAR_TO(sigma[4], -83.89262, 5e-6);
+    NEAR_TO(sigma[8], -83.89262, 5e-6);
+}
+
+/* Ogden's law with equal, nearly equal and widely different stretches, whatever their directions. */
+static void principal_stretches(void **state)
+{
+    (void)state;
+    struct random random = {6};
+    static const double stretches[][3] = {{1, 1, 1},       {1.3, 1, 1},
+                                          {1.3, 1.3, 0.7}, {1.2, 1.2 + 1e-9, 0.8},
+                                          {4, 0.2, 1.1},   {0.3, 0.3, 0.3 + 1e-13}};
+    struct material material = make(MATERIAL_OGDEN, 0.49);
+    double mu = material.shear_modulus, alpha = material.ogden_alpha;
+    for (int round = 0; round < 60; round++) {
+        const double *l = stretches[round % 6];
+        double F[9] = {l[0], 0, 0, 0, l[1], 0, 0, 0, l[2]}, Q[9], R[9], QF[9], P[9], D[9] = {0}, QD[9];
+        double expected[9], root = cbrt(l[0] * l[1] * l[2]), mean = 0.0, largest = 0.0;
+        random_rotation(&random, Q);
+        random_rotation(&random, R);
+        multiply(Q, F, QF);
+        multiply(QF, R, F);
+        for (int a = 0; a < 3; a++) {
+            mean += pow(l[a] / root, alpha) / 3.0;
+        }
+        for (int a = 0; a < 3; a++) {
+            D[4 * a] = 2.0 * mu / alpha * (pow(l[a] / root, alpha) - mean) / l[a];
+            largest = fmax(largest, fabs(D[4 * a]));
+        }
+        multiply(Q, D, QD);
+        multiply(QD, R, expected);
+        material_shape_stress(&material, F, P);
+        for (int i = 0; i < 9; i++) {
+            NEAR_TO(P[i], expected[i], 1e-9 * (largest + mu));
+        }
+    }
+}
+
+/* Plane strain: F33 = 1. Nothing acts out of the plane but P33, and the plane's stresses have their closed
+ * form. */
+static void plane_strain(void **state)
+{
+    (void)state;
+    struct random random = {7};
+    struct material all[MATERIALS];
+    make_all(all);
+    for (int m = 0; m < MATERIALS; m++) {
+        double F[9], P[9];
+        random_gradient(&random, F);
+        F[2] = F[5] = F[6] = F[7] = 0.0;
+        F[8] = 1.0;
+        F[0] += F[0] * F[4] - F[1] * F[3] < 0.3 ? 1.0 : 0.0;
+        stress(&all[m], F, P);
+        static const int out_of_plane[4] = {2, 5, 6, 7};
+        for (int i = 0; i < 4; i++) {
+            NEAR_TO(P[out_of_plane[i]], 0.0, 1e-9);
+        }
+        if (all[m].model == MATERIAL_NEO_HOOKEAN) {
+            double J = F[0] * F[4] - F[1] * F[3], mu = all[m].shear_modulus, kappa = all[m].bulk_modulus;
+            double I1 = F[0] * F[0] + F[1] * F[1] + F[3] * F[3] + F[4] * F[4] + 1.0;
+            double C[4] = {F[4], -F[3], -F[1], F[0]};
+            for (int i = 0; i < 4; i++) {
+                double f = F[i / 2 * 3 + i % 2];
+                double expected =
+                    mu * pow(J, -2.0 / 3.0) * (f - I1 / 3.0 * C[i] / J) + kappa * (J - 1.0) * C[i];
+                NEAR_TO(P[i / 2 * 3 + i % 2], expected, 1e-9);
+            }
+        }
+    }
+}
+
+/* A point turned inside out has no energy. */
+static void inverted(void **state)
+{
+    (void)state;
+    struct material all[MATERIALS];
+    make_all(all);
+    for (int m = 0; m < MATERIALS; m++) {
+        assert_true(isnan(material_shape_energy(&all[m], (double[]){-0.1, 0, 0, 0, 1, 0, 0, 0, 1})));
+        assert_true(isnan(material_shape_energy(&all[m], (double[]){0, 0, 0, 0, 1, 0, 0, 0, 1})));
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(cofactor_is_derivative),
+        cmocka_unit_test(stress_is_gradient),
+        cmocka_unit_test(pressure_is_derivative),
+        cmocka_unit_test(rotations),
+        cmocka_unit_test(rest),
+        cmocka_unit_test(small_strain),
+        cmocka_unit_test(special_cases),
+        cmocka_unit_test(unconfined_compression),
+        cmocka_unit_test(confined_compression),
+        cmocka_unit_test(simple_shear),
+        cmocka_unit_test(principal_stretches),
+        cmocka_unit_test(plane_strain),
+        cmocka_unit_test(inverted),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
