@@ -1,6 +1,7 @@
 #include "solid/body.h"
 
 #include "base/memory.h"
+#include "solid/kernel.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -104,7 +105,7 @@ static enum status copy_points(const struct body_input *input, struct body *body
         body->bulk[q] = material->bulk_modulus;
     }
     body->pair_count = body->ptr[points];
-    TRY(NEW_ARRAY(&body->dphi, body->pair_count * dim, error));
+    TRY(NEW_ARRAY(&body->dphi, body->pair_count * dim + 1, error));
     for (int64_t q = 0; q < points; q++) {
         memcpy(body->dphi + body->ptr[q] * dim, input->dphi + input->ptr[body->order[q]] * dim,
                (size_t)((body->ptr[q + 1] - body->ptr[q]) * dim) * sizeof *body->dphi);
@@ -277,6 +278,7 @@ enum status body_build(const struct body_input *input, struct body *body, struct
                           .node_count = input->node_count,
                           .point_count = input->point_count,
                           .material_count = input->material_count,
+                          .kernels = force_kernels_select(input->dim),
                           .averaged = input->hat_node != NULL && input->pointwise_share < 1.0,
                           .pointwise_share = input->hat_node != NULL ? input->pointwise_share : 1.0};
     if (body->point_count < 1 || body->point_count > INT32_MAX / (body->dim + 1)) {

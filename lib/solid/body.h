@@ -53,6 +53,8 @@ struct volume_hats {
     double *pressure;  /* count: scratch, dU/dJ at theta, Pa */
 };
 
+struct force_kernels;
+
 struct body {
     int dim;
     int64_t node_count, point_count, pair_count;
@@ -64,7 +66,7 @@ struct body {
     double *shear, *bulk; /* point_count: moduli of the neo-Hookean law, Pa */
     int64_t *ptr;         /* point_count + 1 */
     uint16_t *local;      /* pair_count: index into the block's nodes */
-    double *dphi;         /* pair_count * dim */
+    double *dphi;         /* pair_count * dim, and one entry more, which is read and not used */
     int64_t block_count;
     struct block *blocks;
     int64_t block_node_count;
@@ -78,6 +80,7 @@ struct body {
     bool averaged;       /* nodal volumetric averaging */
     double pointwise_share;
     struct volume_hats hats;
+    const struct force_kernels *kernels; /* for this processor */
 };
 
 /* Lay out a body; the input arrays are copied. STATUS_INPUT for a point without neighbours or of no weight.
