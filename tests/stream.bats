@@ -83,6 +83,14 @@ large() {
     mts keep u < 'in put' | cmp - out
     mts keep 'u*,node?.x' < 'in put' | mts list -v > list
     grep -qxF "# @ mts 0.1.0 mts keep 'u*,node?.x'" list
+    mts keep -to out u 'in put'
+    mts keep -tonot u 'in put'
+    mts keep -t u --output=nut < 'in put'
+    mts keep u --output nit -t 'in put'
+    cmp out not
+    cmp out nut
+    [ "$(sed -n 3p out)" = '# @ mts 0.1.0 mts keep -t u' ]
+    [ "$(sed -n 3p nit)" = '# @ mts 0.1.0 mts keep u -t' ]
     grep -qxF "# @ test 1 test 'a b'" list
 }
 
@@ -167,6 +175,21 @@ large() {
     [ "$status" -ne 0 ]
     run -2 bash -c 'mts list /nonexistent 2>&-'
     small | cmp - text
+}
+
+@test "a mapped file cut short while it is in use is an error with a message" {
+    large > text
+    mkfifo gate
+    # Reading the mapped file is over when the writing begins, which the gate holds up; then the pages are gone.
+    mts binary text > binary
+    (mts text binary -o gate 2> message || echo $? > status) &
+    exec 5< gate
+    head -c 1000 <&5 > /dev/null
+    truncate -s 64 binary
+    cat <&5 > /dev/null
+    wait
+    [ "$(cat status)" = 3 ]
+    [[ "$(cat message)" == "mts: an input file was cut short"* ]]
 }
 
 @test "no binary to a terminal, no stream from one" {

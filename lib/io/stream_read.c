@@ -504,6 +504,19 @@ static enum status read_end(struct reader *reader, const char *line, size_t leng
     return status;
 }
 
+/* Provenance is shown on terminals: no control characters but tabs. */
+static enum status provenance_check(const char *line, size_t length, struct error *error)
+{
+    for (size_t i = 0; i < length; i++) {
+        if (((unsigned char)line[i] < 0x20 && line[i] != '\t') || line[i] == 0x7f) {
+            return line[i] == '\r' && i == length - 1
+                       ? fail(error, STATUS_INPUT, "lines end in CR LF: remove them with tr -d '\\r'")
+                       : fail(error, STATUS_INPUT, "control character in a provenance line: damaged");
+        }
+    }
+    return STATUS_OK;
+}
+
 static enum status read_lines(struct reader *reader, struct error *error)
 {
     enum status status = STATUS_OK;
@@ -521,6 +534,7 @@ static enum status read_lines(struct reader *reader, struct error *error)
             return fail(error, STATUS_INPUT, "a provenance line behind a section");
         } else {
             frame_count(reader, line, length + 1);
+            TRY(provenance_check(line, length, error));
             TRY(stream_append_provenance(reader->stream, line + 4, length - 4, error));
         }
     }

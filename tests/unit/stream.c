@@ -149,6 +149,8 @@ static void malformed_text(void **state)
         {HEAD "1 2\n3 4\n\n\n"
               "# x f8 0 1\n\n\n# end 2\n",
          "x: this section stands twice"},
+        {"# mts 1\n# @ a\r\n# end 0\n", "CR LF"},
+        {"# mts 1\n# @ \033[2J\n# end 0\n", "control character"},
         {"# mts 1\n# x f8 0 1 enc=text enc=text\n" TAIL, "one encoding"},
         {"# mts 1\n# x f8 0 1 enc=hex\n" TAIL, "one encoding"},
         {"# mts 1\n# x f8 0 1 unit\n" TAIL, "'unit' in the header is not key=value"},
@@ -235,7 +237,7 @@ static void sections_by_name(void **state)
 
     /* Adding moves nothing; replacing keeps the place; data may be the section's own. */
     for (int i = 0; i < 300; i++) {
-        char name[16];
+        char name[32];
         snprintf(name, sizeof name, "more.%d", i);
         int32_t *data = array_new(1, sizeof *data);
         assert_int_equal(stream_put(&stream, name, TYPE_I4, 1, 1, NULL, data, true, &error), STATUS_OK);

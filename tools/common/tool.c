@@ -11,34 +11,36 @@
 #include <unistd.h>
 
 /* Of the whole process, like the descriptors they are about. */
-static const char *main_input; /* the operand that stands in for standard input, or NULL */
-static bool stdin_read;        /* standard input has been read */
-static bool stdout_closed;     /* standard output has been closed, its errors reported */
+static char **arguments;         /* the command line, operands first; lives as long as the process */
+static const char *process_name; /* tool->name, for the handler of SIGBUS */
+static const char *main_input;   /* the operand that stands in for standard input, or NULL */
+static bool stdin_read;          /* standard input has been read */
+static bool stdout_closed;       /* standard output has been closed, its errors reported */
 
-static void print_message(const struct tool *tool, const char *format, va_list arguments)
+static void print_message(const struct tool *tool, const char *format, va_list values)
 {
     char text[2 * sizeof(struct error)];
     struct error message;
-    vsnprintf(text, sizeof text, format, arguments);
+    vsnprintf(text, sizeof text, format, values);
     fail(&message, STATUS_OK, "%s", text); /* one line, whatever the names in it contain */
     fprintf(stderr, "%s: %s\n", tool->name, message.text);
 }
 
 _Noreturn void tool_fail(const struct tool *tool, enum status status, const char *format, ...)
 {
-    va_list arguments;
-    va_start(arguments, format);
-    print_message(tool, format, arguments);
-    va_end(arguments);
+    va_list values;
+    va_start(values, format);
+    print_message(tool, format, values);
+    va_end(values);
     exit((int)status);
 }
 
 void tool_note(const struct tool *tool, const char *format, ...)
 {
-    va_list arguments;
-    va_start(arguments, format);
-    print_message(tool, format, arguments);
-    va_end(arguments);
+    va_list values;
+    va_start(values, format);
+    print_message(tool, format, values);
+    va_end(values);
 }
 
 void tool_check(const struct tool *tool, enum status status, const struct error *error)
@@ -66,7 +68,7 @@ static _Noreturn void print_and_exit(const struct tool *tool, const char *text)
 }
 
 /* The options of the tool, and behind them those that every tool has. */
-static void parse_options(struct tool *tool, struct option options[], int option_count, char *arguments[])
+static void parse_options(struct tool *tool, struct option options[], int option_count)
 {
     static const struct option common[] = {{'h', "help", false, NULL, false},
                                            {0, "version", false, NULL, false}};
@@ -99,6 +101,18 @@ static void parse_options(struct tool *tool, struct option options[], int option
     free(all);
 }
 
+/* Mapped input that another program cuts short while we read it has no end line either. */
+static void on_lost_mapping(int number)
+{
+    static const char message[] = ": an input file was cut short or could not be read while in use\n";
+    (void)number;
+    if (write(STDERR_FILENO, process_name, strlen(process_name)) < 0 ||
+        write(STDERR_FILENO, message, sizeof message - 1) < 0) {
+        _exit((int)STATUS_SYSTEM);
+    }
+    _exit((int)STATUS_SYSTEM);
+}
+
 void tool_begin(struct tool *tool, const char *usage, struct option options[], int option_count, int least,
                 int most, int argc, char *argv[])
 {
@@ -112,12 +126,14 @@ void tool_begin(struct tool *tool, const char *usage, struct option options[], i
     fill_descriptors();
     /* A reader that has seen enough (head) ends us quietly, whatever our parent has set. */
     signal(SIGPIPE, SIG_DFL);
-    char **arguments = array_new(argc + 1, sizeof *arguments); /* lives as long as the process */
+    process_name = tool->name;
+    signal(SIGBUS, on_lost_mapping);
+    arguments = array_new(argc + 1, sizeof *arguments);
     if (arguments == NULL) {
         tool_fail(tool, STATUS_SYSTEM, "out of memory");
     }
     memcpy(arguments, argv, (size_t)argc * sizeof *arguments);
-    parse_options(tool, options, option_count, arguments);
+    parse_options(tool, options, option_count);
     tool->operands = arguments + 1;
     tool->operands[tool->operand_count] = NULL;
     if (tool->operand_count > most) {
@@ -161,6 +177,20 @@ void tool_read(const struct tool *tool, const char *file, struct stream *stream)
     }
 }
 
+/* What remains of the option -o in the argument that holds it: "-t" of "-to" or "-toFILE"; NULL if nothing
+ * does. The text up to `length` ends with the letter o. */
+static char *without_output(const struct tool *tool, const char *argument, size_t length)
+{
+    if (length <= 2 || argument[1] == '-') {
+        return NULL;
+    }
+    char *rest = strndup(argument, length - 1);
+    if (rest == NULL) {
+        tool_fail(tool, STATUS_SYSTEM, "out of memory");
+    }
+    return rest;
+}
+
 /* The command line without what changes nothing in the result: -o FILE, and the operand that was read in
  * place of standard input. So the same input gives the same bytes however it comes and wherever the output
  * goes. */
@@ -168,21 +198,26 @@ static void add_provenance(const struct tool *tool, struct stream *stream)
 {
     struct error error;
     int count = 0;
+    char *rest = NULL;
     char **kept = array_new(tool->argc + 1, sizeof *kept);
     if (kept == NULL) {
         tool_fail(tool, STATUS_SYSTEM, "out of memory");
     }
     for (int i = 0; i < tool->argc; i++) {
-        const char *argument = tool->argv[i];
-        bool is_output =
-            tool->output != NULL && argument + strlen(argument) >= tool->output && tool->output >= argument;
-        if (is_output && tool->output == argument) {
-            count--; /* the -o before it */
-        } else if (!is_output && !(i > 0 && !stdin_read && argument == main_input)) {
-            kept[count++] = tool->argv[i];
+        char *argument = tool->argv[i];
+        if (tool->output != NULL && tool->output >= argument && tool->output <= argument + strlen(argument)) {
+            rest = tool->output > argument ? without_output(tool, argument, (size_t)(tool->output - argument))
+                                           : without_output(tool, kept[count - 1], strlen(kept[count - 1]));
+            count -= tool->output == argument;
+            if (rest != NULL) {
+                kept[count++] = rest;
+            }
+        } else if (i == 0 || stdin_read || argument != main_input) {
+            kept[count++] = argument;
         }
     }
     tool_check(tool, stream_add_provenance(stream, count, kept, &error), &error);
+    free(rest);
     free(kept);
 }
 

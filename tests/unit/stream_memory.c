@@ -1,0 +1,99 @@
+/* Fault 25: whichever allocation fails, reading, writing and changing a stream reports it and leaves nothing
+ * behind. */
+#include <stdint.h> /* says whether this is glibc, which the next one asks */
+
+#include "failing_allocator.h"
+
+#ifdef FAILING_ALLOCATOR
+#include "stream_fixture.h"
+
+#include "base/memory.h"
+
+static struct stream sample;
+static int descriptor; /* of the sample, written */
+static off_t begin;    /* where it begins: what does not begin its file is read, not mapped */
+
+static enum status try_read(struct error *error)
+{
+    struct stream stream;
+    enum status status = stream_read(&stream, descriptor, "input", error);
+    stream_free(&stream);
+    lseek(descriptor, begin, SEEK_SET);
+    return status;
+}
+
+static enum status try_write(struct error *error)
+{
+    int sink = memfd_create("sink", 0);
+    enum status status = stream_write(&sample, sink, true, error);
+    if (status == STATUS_OK) {
+        status = stream_write(&sample, sink, false, error);
+    }
+    close(sink);
+    return status;
+}
+
+static enum status try_change(struct error *error)
+{
+    static char *command[] = {"tool", "a b"};
+    struct stream stream;
+    enum status status = STATUS_OK;
+    stream_init(&stream);
+    TRY(stream_add_provenance(&stream, 2, command, error));
+    TRY(stream_add_provenance(&stream, 1, command, error));
+    TRY(stream_put(&stream, "x", TYPE_F8, 1, 1, "a=b", sample_f8, false, error));
+    for (int i = 0; i < 2; i++) { /* put, then replaced */
+        double *data = array_new(3, sizeof *data);
+        TRY(data == NULL ? fail_memory(error, "test") : STATUS_OK);
+        TRY(stream_put(&stream, "y", TYPE_F8, 3, 1, "", data, true, error));
+    }
+done:
+    stream_free(&stream);
+    return status;
+}
+
+static void read_text_and_binary(void **state)
+{
+    (void)state;
+    struct error error;
+    for (int form = 0; form < 4; form++) {
+        descriptor = memfd_create("stream", 0);
+        begin = form / 2;
+        lseek(descriptor, begin, SEEK_SET);
+        assert_int_equal(stream_write(&sample, descriptor, form % 2 == 0, &error), STATUS_OK);
+        lseek(descriptor, begin, SEEK_SET);
+        fail_each(try_read, 12);
+        close(descriptor);
+    }
+}
+
+static void written(void **state)
+{
+    (void)state;
+    fail_each(try_write, 10);
+}
+
+static void changed(void **state)
+{
+    (void)state;
+    fail_each(try_change, 12);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(read_text_and_binary),
+        cmocka_unit_test(written),
+        cmocka_unit_test(changed),
+    };
+    sample = sample_stream();
+    int failed = cmocka_run_group_tests(tests, NULL, NULL);
+    stream_free(&sample);
+    return failed;
+}
+#else
+int main(void)
+{
+    return 0;
+}
+#endif
