@@ -21,9 +21,30 @@ MUST_CHECK enum status mesh_add_name(struct mesh_names *names, const char *name,
 MUST_CHECK enum status mesh_add_note(struct mesh_draft *draft, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
 
+/* Index of a name, or -1. */
+int32_t mesh_find_name(const struct mesh_names *names, const char *name);
+
 /* The name of a group as one of `names`: an error for blanks, commas, and a name that is there already. */
 MUST_CHECK enum status mesh_add_group(struct mesh_names *names, const struct msh_group *group,
                                       struct error *error);
+
+/* Dimension of an element's type. */
+int mesh_element_dim(const struct msh *msh, int64_t element);
+
+/* The dimension of the mesh is that of its highest elements, at least 2; in 2 these lie in a plane z = const.
+ */
+MUST_CHECK enum status mesh_find_dim(struct mesh_draft *draft);
+MUST_CHECK enum status mesh_check_plane(const struct mesh_draft *draft);
+
+/* Name the regions; region_of[element] receives the region of each cell that is kept, -1 for all else.
+ * `wanted` is as for mesh_build. */
+MUST_CHECK enum status mesh_pick_regions(struct mesh_draft *draft, const char *wanted, int32_t region_of[]);
+
+/* Number the nodes of the cells that are kept, in the order of the file, and take their coordinates. */
+MUST_CHECK enum status mesh_build_nodes(struct mesh_draft *draft, const int32_t region_of[], double unit);
+
+/* Split the cells that are kept into simplices, turn these to be positive. */
+MUST_CHECK enum status mesh_build_cells(struct mesh_draft *draft, const int32_t region_of[]);
 
 /* Two nodes of the mesh within 1e-12 of its extent are an error. */
 MUST_CHECK enum status mesh_check_coincident(struct mesh_draft *draft);

@@ -145,12 +145,11 @@ static enum status note_tally(struct gathering *g, const struct msh_group *group
 {
     enum status status = STATUS_OK;
     if (tally->elsewhere > 0) {
-        TRY(mesh_add_note(g->draft, "group '%s': %lld of its facets are no faces of a cell: left out",
-                          group->name, (long long)tally->elsewhere));
+        TRY(mesh_add_note(g->draft, "group '%s': facets of no cell, left out: %lld", group->name,
+                          (long long)tally->elsewhere));
     }
     if (tally->interior > 0) {
-        TRY(mesh_add_note(g->draft,
-                          "group '%s': %lld of its facets lie between two cells: made a set of nodes",
+        TRY(mesh_add_note(g->draft, "group '%s': facets between two cells, made a set of nodes: %lld",
                           group->name, (long long)tally->interior));
     }
 done:

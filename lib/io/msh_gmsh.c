@@ -7,8 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* libgmsh's own last word on a failure of `what`. */
-static enum status gmsh_fail(struct error *error, const char *what)
+enum status msh_gmsh_fail(struct error *error, const char *what)
 {
     char *said = NULL;
     int ierr = 0;
@@ -39,11 +38,10 @@ static enum status gmsh_open(const char *path, struct error *error)
     }
     gmshLoggerStart(&ierr);
     gmshMerge(path, &ierr);
-    return ierr == 0 ? STATUS_OK : gmsh_fail(error, "the mesh");
+    return ierr == 0 ? STATUS_OK : msh_gmsh_fail(error, "the mesh");
 }
 
-/* libgmsh and the scan do not agree on the file. */
-static enum status disagree(struct error *error, const char *what)
+enum status msh_disagree(struct error *error, const char *what)
 {
     return fail(error, STATUS_INPUT, "libgmsh does not read all %s of the file: is it from another program?",
                 what);
@@ -63,7 +61,7 @@ static enum status load_nodes(struct msh *msh, const struct msh_scan *scan, stru
     gmshModelMeshGetNodes(&tags, &tag_count, &coordinates, &coordinate_count, &parameters, &parameter_count,
                           -1, -1, 0, 0, &ierr);
     if (ierr != 0) {
-        status = gmsh_fail(error, "the nodes");
+        status = msh_gmsh_fail(error, "the nodes");
         goto done;
     }
     TRY(NEW_ARRAY(&msh->x, 3 * scan->node_count, error));
@@ -82,7 +80,7 @@ static enum status load_nodes(struct msh *msh, const struct msh_scan *scan, stru
     for (int64_t i = 0; i < scan->element_count; i++) {
         for (int64_t k = msh->node_ptr[i]; k < msh->node_ptr[i + 1]; k++) {
             if (!seen[msh->node_idx[k]]) {
-                status = disagree(error, "nodes");
+                status = msh_disagree(error, "nodes");
                 goto done;
             }
         }
@@ -112,19 +110,19 @@ static enum status place_block(struct msh *msh, const struct msh_scan *scan, con
 {
     size_t nodes = (size_t)msh_type(block->type).node_count;
     if (nodes == 0 || block->node_count != nodes * block->tag_count) {
-        return disagree(error, "elements");
+        return msh_disagree(error, "elements");
     }
     for (size_t i = 0; i < block->tag_count; i++) {
         int64_t place = msh_index_find(&scan->elements, (int64_t)block->tags[i]);
         if (place < 0 || scan->element_type[place] != block->type || entity_of[place] >= 0) {
-            return disagree(error, "elements");
+            return msh_disagree(error, "elements");
         }
         entity_of[place] = entity;
         ++*found;
         for (size_t k = 0; k < nodes; k++) {
             int64_t node = msh_index_find(&scan->nodes, (int64_t)block->nodes[nodes * i + k]);
             if (node < 0) {
-                return disagree(error, "nodes");
+                return msh_disagree(error, "nodes");
             }
             msh->node_idx[msh->node_ptr[place] + (int64_t)k] = (int32_t)node;
         }
@@ -148,7 +146,7 @@ static enum status load_entity(struct msh *msh, const struct msh_scan *scan, con
     gmshModelMeshGetElements(&types, &type_count, &tags, &tag_counts, &tags_count, &nodes, &node_counts,
                              &nodes_count, dim_tag[0], dim_tag[1], &ierr);
     if (ierr != 0) {
-        status = gmsh_fail(error, "the elements");
+        status = msh_gmsh_fail(error, "the elements");
         goto done;
     }
     for (size_t t = 0; t < type_count && t < tags_count && t < nodes_count; t++) {
@@ -191,171 +189,11 @@ static enum status load_elements(struct msh *msh, const struct msh_scan *scan, c
         TRY(load_entity(msh, scan, &entities[2 * e], (int32_t)e, entity_of, &found, error));
     }
     if (found != count) {
-        status = disagree(error, "elements");
+        status = msh_disagree(error, "elements");
         goto done;
     }
     msh->element_count = count;
 done:
-    return status;
-}
-
-/* ---- groups ---- */
-
-static int compare_groups(const void *left, const void *right)
-{
-    const struct msh_group *a = left;
-    const struct msh_group *b = right;
-    int dims = (a->dim > b->dim) - (a->dim < b->dim);
-    return dims != 0 ? dims : (a->tag > b->tag) - (a->tag < b->tag);
-}
-
-/* Index of a group that exists, or -1. */
-static int32_t find_group(const struct msh *msh, int dim, int64_t tag)
-{
-    struct msh_group key = {.dim = dim, .tag = (int)tag};
-    const struct msh_group *group =
-        msh->group_count == 0
-            ? NULL
-            : bsearch(&key, msh->groups, (size_t)msh->group_count, sizeof *msh->groups, compare_groups);
-    return group == NULL ? -1 : (int32_t)(group - msh->groups);
-}
-
-/* Names as in the file, "group_TAG" for groups without; two of one name and dimension are an error. */
-static enum status name_groups(struct msh *msh, const struct msh_scan *scan, struct error *error)
-{
-    for (int64_t i = 0; i < scan->name_count; i++) {
-        struct msh_group *group = &msh->groups[find_group(msh, scan->names[i].dim, scan->names[i].tag)];
-        if (group->name != NULL) {
-            return fail(error, STATUS_INPUT, "$PhysicalNames: group %d of dimension %d is named twice",
-                        group->tag, group->dim);
-        }
-        group->name = strdup(scan->names[i].name);
-        if (group->name == NULL) {
-            return fail_memory(error, "the name of a group");
-        }
-    }
-    for (int32_t i = 0; i < msh->group_count; i++) {
-        struct msh_group *group = &msh->groups[i];
-        if (group->name == NULL && asprintf(&group->name, "group_%d", group->tag) < 0) {
-            group->name = NULL;
-            return fail_memory(error, "the name of a group");
-        }
-        for (int32_t j = i; j-- > 0 && msh->groups[j].dim == group->dim;) {
-            if (strcmp(msh->groups[j].name, group->name) == 0) {
-                return fail(error, STATUS_INPUT,
-                            "physical groups %d and %d of dimension %d are both named '%s'",
-                            msh->groups[j].tag, group->tag, group->dim, group->name);
-            }
-        }
-    }
-    return STATUS_OK;
-}
-
-/* All groups: those that the file names, and those that libgmsh found elements for. */
-static enum status load_groups(struct msh *msh, const struct msh_scan *scan, struct error *error)
-{
-    enum status status = STATUS_OK;
-    int *found = NULL;
-    size_t numbers = 0;
-    int ierr = 0;
-    int32_t count = 0;
-    gmshModelGetPhysicalGroups(&found, &numbers, -1, &ierr);
-    if (ierr != 0) {
-        status = gmsh_fail(error, "the physical groups");
-        goto done;
-    }
-    TRY(NEW_ARRAY(&msh->groups, scan->name_count + (int64_t)(numbers / 2), error));
-    for (size_t i = 0; i + 1 < numbers; i += 2) {
-        msh->groups[count++] = (struct msh_group){.dim = found[i], .tag = found[i + 1]};
-    }
-    for (int64_t i = 0; i < scan->name_count; i++) {
-        msh->groups[count++] = (struct msh_group){.dim = scan->names[i].dim, .tag = scan->names[i].tag};
-    }
-    qsort(msh->groups, (size_t)count, sizeof *msh->groups, compare_groups);
-    for (int32_t i = 0; i < count; i++) {
-        if (i == 0 || compare_groups(&msh->groups[i], &msh->groups[i - 1]) != 0) {
-            msh->groups[msh->group_count++] = msh->groups[i];
-        }
-    }
-    TRY(name_groups(msh, scan, error));
-done:
-    gmshFree(found);
-    return status;
-}
-
-/* Groups of each entity (CSR), as libgmsh has them: the memberships of MSH 4. */
-static enum status load_entity_groups(const struct msh *msh, const int *entities, size_t entity_count,
-                                      int64_t ptr[], int32_t **idx, struct error *error)
-{
-    enum status status = STATUS_OK;
-    int *tags = NULL;
-    size_t tag_count = 0;
-    for (size_t e = 0; e < entity_count; e++) {
-        int ierr = 0;
-        gmshModelGetPhysicalGroupsForEntity(entities[2 * e], entities[2 * e + 1], &tags, &tag_count, &ierr);
-        if (ierr != 0) {
-            status = gmsh_fail(error, "the physical groups");
-            goto done;
-        }
-        int32_t *grown = array_grow(*idx, ptr[e] + (int64_t)tag_count, sizeof **idx);
-        if (grown == NULL) {
-            status = fail_memory(error, "the physical groups");
-            goto done;
-        }
-        *idx = grown;
-        ptr[e + 1] = ptr[e];
-        for (int32_t g = 0; g < msh->group_count; g++) { /* ascending, each once */
-            bool member = false;
-            for (size_t k = 0; k < tag_count; k++) {
-                member =
-                    member || (msh->groups[g].dim == entities[2 * e] && msh->groups[g].tag == abs(tags[k]));
-            }
-            if (member && ptr[e + 1] < ptr[e] + (int64_t)tag_count) {
-                grown[ptr[e + 1]++] = g;
-            }
-        }
-        gmshFree(tags);
-        tags = NULL;
-    }
-done:
-    gmshFree(tags);
-    return status;
-}
-
-/* The groups of each element. In MSH 2 the group stands beside each element (an element of two groups is
- * there twice, and libgmsh would have each entity's elements in all groups of that entity); in MSH 4 it is
- * the entity that has groups. */
-static enum status load_members(struct msh *msh, const struct msh_scan *scan, const int *entities,
-                                size_t entity_count, const int32_t entity_of[], struct error *error)
-{
-    enum status status = STATUS_OK;
-    int64_t *ptr = NULL;
-    int32_t *idx = NULL;
-    TRY(NEW_ARRAY(&ptr, (int64_t)entity_count + 1, error));
-    TRY(load_entity_groups(msh, entities, entity_count, ptr, &idx, error));
-    TRY(NEW_ARRAY(&msh->member_ptr, msh->element_count + 1, error));
-    for (int64_t i = 0; i < msh->element_count; i++) {
-        bool one = scan->element_group != NULL;
-        msh->member_ptr[i + 1] = msh->member_ptr[i] + (one ? scan->element_group[i] != 0
-                                                           : ptr[entity_of[i] + 1] - ptr[entity_of[i]]);
-    }
-    TRY(NEW_ARRAY(&msh->member_idx, msh->member_ptr[msh->element_count], error));
-    for (int64_t i = 0; i < msh->element_count; i++) {
-        for (int64_t k = msh->member_ptr[i]; k < msh->member_ptr[i + 1]; k++) {
-            int32_t group = scan->element_group != NULL
-                                ? find_group(msh, msh_type(msh->element_type[i]).dim, scan->element_group[i])
-                                : idx[ptr[entity_of[i]] + k - msh->member_ptr[i]];
-            if (group < 0) {
-                status = disagree(error, "physical groups");
-                goto done;
-            }
-            msh->member_idx[k] = group;
-            msh->groups[group].element_count++;
-        }
-    }
-done:
-    free(ptr);
-    free(idx);
     return status;
 }
 
@@ -369,14 +207,14 @@ enum status msh_load(struct msh *msh, const struct msh_scan *scan, const char *p
     TRY(gmsh_open(path, error));
     gmshModelGetEntities(&entities, &numbers, -1, &ierr);
     if (ierr != 0) {
-        status = gmsh_fail(error, "the mesh");
+        status = msh_gmsh_fail(error, "the mesh");
         goto done;
     }
     TRY(NEW_ARRAY(&entity_of, scan->element_count, error));
     TRY(load_elements(msh, scan, entities, numbers / 2, entity_of, error));
     TRY(load_nodes(msh, scan, error));
-    TRY(load_groups(msh, scan, error));
-    TRY(load_members(msh, scan, entities, numbers / 2, entity_of, error));
+    TRY(msh_load_groups(msh, scan, error));
+    TRY(msh_load_members(msh, scan, entities, numbers / 2, entity_of, error));
 done:
     free(entity_of);
     gmshFree(entities);

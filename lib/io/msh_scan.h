@@ -6,20 +6,11 @@
 #define IO_MSH_SCAN_H
 
 #include "base/status.h"
+#include "io/msh_index.h"
 
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
-
-/* The place of each tag in the order of the file. */
-struct msh_index {
-    int64_t count;
-    int64_t *tag;   /* count, ascending */
-    int64_t *place; /* count: place of tag[i]; NULL when the file is ascending: place i */
-};
-
-/* Place of `tag`, or -1. */
-int64_t msh_index_find(const struct msh_index *index, int64_t tag);
 
 /* The sections that libgmsh is given. */
 enum msh_part { MSH_FORMAT, MSH_NAMES, MSH_ENTITIES, MSH_NODES, MSH_ELEMENTS, MSH_PART_COUNT };

@@ -367,9 +367,10 @@ static void what_is_left_out_is_noted(void **state)
     assert_string_equal(mesh.node_sets.name[1], "middle");
     assert_memory_equal(mesh.set_ptr, ((int64_t[]){0, 2, 4}), 3 * sizeof(int64_t));
     assert_memory_equal(mesh.set_idx, ((int32_t[]){0, 3, 0, 2}), 4 * sizeof(int32_t));
-    static const char *const notes[] = {"1 cells are in no physical group", "2 nodes belong to no cell",
-                                        "group 'skull': 1 of its facets are no faces of a cell",
-                                        "group 'middle': 1 of its facets lie between two cells",
+    static const char *const notes[] = {"cells in no physical group, region 'unnamed': 1",
+                                        "nodes of no cell, left out: 2",
+                                        "group 'skull': facets of no cell, left out: 1",
+                                        "group 'middle': facets between two cells, made a set of nodes: 1",
                                         "group 'nothing' of dimension 1 is empty"};
     assert_int_equal(mesh.notes.count, 5);
     for (int i = 0; i < 5; i++) {

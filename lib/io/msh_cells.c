@@ -1,0 +1,148 @@
+#include "base/memory.h"
+#include "io/msh_build.h"
+#include "io/msh_split.h"
+
+#include <math.h>
+#include <string.h>
+
+/* A cell's volume over the cube (or its area over the square) of its longest edge must be above this. */
+#define LEAST_VOLUME 1e-12
+
+enum status mesh_build_nodes(struct mesh_draft *draft, const int32_t region_of[], double unit)
+{
+    enum status status = STATUS_OK;
+    enum { LOST = -1, IN_CELL = -2, KEPT = -3 };
+    const struct msh *msh = draft->msh;
+    struct mesh *mesh = draft->mesh;
+    int64_t lost = 0;
+    TRY(NEW_ARRAY(&draft->node_of, msh->node_count, draft->error));
+    for (int64_t n = 0; n < msh->node_count; n++) {
+        draft->node_of[n] = LOST;
+    }
+    for (int64_t e = 0; e < msh->element_count; e++) {
+        for (int64_t k = msh->node_ptr[e]; mesh_element_dim(msh, e) == mesh->dim && k < msh->node_ptr[e + 1];
+             k++) {
+            int32_t *node = &draft->node_of[msh->node_idx[k]];
+            *node = region_of[e] >= 0 || *node == KEPT ? KEPT : IN_CELL;
+        }
+    }
+    for (int64_t n = 0; n < msh->node_count; n++) {
+        lost += draft->node_of[n] == LOST;
+        draft->node_of[n] = draft->node_of[n] == KEPT ? (int32_t)mesh->node_count++ : -1;
+    }
+    if (lost > 0) {
+        TRY(mesh_add_note(draft, "nodes of no cell, left out: %lld", (long long)lost));
+    }
+    TRY(NEW_ARRAY(&mesh->x, mesh->node_count * mesh->dim, draft->error));
+    for (int64_t n = 0; n < msh->node_count; n++) {
+        for (int i = 0; i < mesh->dim && draft->node_of[n] >= 0; i++) {
+            mesh->x[draft->node_of[n] * mesh->dim + i] = unit * msh->x[3 * n + i];
+        }
+    }
+done:
+    return status;
+}
+
+/* Twice the area or six times the volume of a simplex, signed, over the square or cube of its longest edge.
+ */
+static double relative_volume(const struct mesh *mesh, const int32_t cell[])
+{
+    int dim = mesh->dim;
+    double edge[3][3] = {{0}};
+    double longest = 0;
+    for (int i = 0; i <= dim; i++) {
+        for (int j = i + 1; j <= dim; j++) {
+            double square = 0;
+            for (int k = 0; k < dim; k++) {
+                double d = mesh->x[cell[j] * dim + k] - mesh->x[cell[i] * dim + k];
+                square += d * d;
+                if (i == 0) {
+                    edge[j - 1][k] = d;
+                }
+            }
+            longest = fmax(longest, sqrt(square));
+        }
+    }
+    if (!(longest > 0)) {
+        return 0;
+    }
+    for (int i = 0; i < dim; i++) {
+        for (int k = 0; k < dim; k++) {
+            edge[i][k] /= longest;
+        }
+    }
+    if (dim == 2) {
+        return edge[0][0] * edge[1][1] - edge[0][1] * edge[1][0];
+    }
+    return edge[0][0] * (edge[1][1] * edge[2][2] - edge[1][2] * edge[2][1]) -
+           edge[0][1] * (edge[1][0] * edge[2][2] - edge[1][2] * edge[2][0]) +
+           edge[0][2] * (edge[1][0] * edge[2][1] - edge[1][1] * edge[2][0]);
+}
+
+/* The simplices of an element of the mesh's own dimension. */
+static int split_element(const struct mesh_draft *draft, int64_t element,
+                         int32_t simplices[MSH_MOST_SIMPLICES][4])
+{
+    const struct msh *msh = draft->msh;
+    int32_t node[8] = {0};
+    for (int64_t k = msh->node_ptr[element]; k < msh->node_ptr[element + 1]; k++) {
+        node[k - msh->node_ptr[element]] = draft->node_of[msh->node_idx[k]];
+    }
+    int count = msh_split(msh->element_type[element], node, false, simplices);
+    if (draft->mesh->dim == 2 && count == 2 &&
+        relative_volume(draft->mesh, simplices[0]) * relative_volume(draft->mesh, simplices[1]) <= 0) {
+        count =
+            msh_split(msh->element_type[element], node, true, simplices); /* not convex: the other diagonal */
+    }
+    return count;
+}
+
+static enum status add_cell(struct mesh_draft *draft, int64_t element, int32_t region,
+                            const int32_t simplex[])
+{
+    struct mesh *mesh = draft->mesh;
+    int64_t at = mesh->cell_count;
+    int32_t *cell = &mesh->cells[at * (mesh->dim + 1)];
+    memcpy(cell, simplex, (size_t)(mesh->dim + 1) * sizeof *cell);
+    double volume = relative_volume(mesh, cell);
+    if (!(fabs(volume) > LEAST_VOLUME)) {
+        return fail(draft->error, STATUS_INPUT, "element %lld has no %s (its relative size is %.3g)",
+                    (long long)draft->msh->element_tag[element], mesh->dim == 2 ? "area" : "volume",
+                    fabs(volume));
+    }
+    if (volume < 0) {
+        cell[0] = simplex[1];
+        cell[1] = simplex[0];
+    }
+    mesh->cell_region[at] = region;
+    draft->origin[at] = element;
+    mesh->cell_count++;
+    return STATUS_OK;
+}
+
+enum status mesh_build_cells(struct mesh_draft *draft, const int32_t region_of[])
+{
+    enum status status = STATUS_OK;
+    const struct msh *msh = draft->msh;
+    struct mesh *mesh = draft->mesh;
+    int32_t simplices[MSH_MOST_SIMPLICES][4];
+    int64_t count = 0;
+    for (int64_t e = 0; e < msh->element_count; e++) {
+        count += region_of[e] >= 0 ? split_element(draft, e, simplices) : 0;
+    }
+    if (count > INT32_MAX) {
+        status = fail(draft->error, STATUS_INPUT, "%lld cells are more than %d", (long long)count, INT32_MAX);
+        goto done;
+    }
+    TRY(NEW_ARRAY(&mesh->cells, count * (mesh->dim + 1), draft->error));
+    TRY(NEW_ARRAY(&mesh->cell_region, count, draft->error));
+    TRY(NEW_ARRAY(&draft->origin, count, draft->error));
+    for (int64_t e = 0; e < msh->element_count; e++) {
+        int pieces = region_of[e] >= 0 ? split_element(draft, e, simplices) : 0;
+        for (int i = 0; i < pieces; i++) {
+            TRY(add_cell(draft, e, region_of[e], simplices[i]));
+        }
+    }
+done:
+    return status;
+}
