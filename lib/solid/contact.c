@@ -44,6 +44,22 @@ static enum status check_side(const struct contact *contact, struct error *error
     return STATUS_OK;
 }
 
+/* Facets are chords of a curved boundary, and their mean lies h^2/6r beneath its nodes, which are on it: the gap
+ * is that of the boundary, so the mean is raised to the node along the hat's normal. Zero on flats. */
+static void raise_to_node(const struct contact *contact, int64_t a, const double *X, double x[3])
+{
+    int dim = contact->dim;
+    const double *node = X + (int64_t)contact->averages->node[a] * dim;
+    const double *normal = contact->averages->normal + a * dim;
+    double height = 0.0;
+    for (int c = 0; c < dim; c++) {
+        height += (node[c] - x[c]) * normal[c];
+    }
+    for (int c = 0; c < dim; c++) {
+        x[c] += height * normal[c];
+    }
+}
+
 enum status contact_build(const struct boundary_averages *averages, const double *X, int dim,
                           struct rigid_surface *surface, double stiffness, struct contact *contact,
                           struct error *error)
@@ -65,6 +81,7 @@ enum status contact_build(const struct boundary_averages *averages, const double
         double x[3];
         average(contact, a, X, x);
         contact->gap[a] = INFINITY;
+        raise_to_node(contact, a, X, x);
         for (int c = 0; c < dim; c++) {
             contact->rest[a * dim + c] = x[c];
             contact->checked_x[a * dim + c] =
