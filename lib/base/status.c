@@ -27,14 +27,15 @@ enum status fail(struct error *error, enum status status, const char *format, ..
 
 enum status fail_in(struct error *error, enum status status, const char *context, ...)
 {
-    char joined[sizeof error->text];
+    char joined[2 * sizeof error->text];
     va_list arguments;
     va_start(arguments, context);
-    vsnprintf(joined, sizeof joined, context, arguments);
+    vsnprintf(joined, sizeof error->text, context, arguments);
     va_end(arguments);
     size_t length = strlen(joined);
     snprintf(joined + length, sizeof joined - length, ": %s", error->text);
-    memcpy(error->text, joined, sizeof joined);
+    memcpy(error->text, joined, sizeof error->text);
+    error->text[sizeof error->text - 1] = '\0';
     make_one_line(error->text);
     return status;
 }
