@@ -248,6 +248,9 @@ static void put_fields(const struct tool *tool, const struct stream *stream, int
             tool_fail(tool, STATUS_INPUT, "-f: no field '%s' of type f8 with one row per node (see mts list)",
                       name);
         }
+        if (stream_find(output, name) != NULL) {
+            tool_fail(tool, STATUS_INPUT, "-f: field '%s' given twice", name);
+        }
         put_values(tool, field, points, output);
     }
     if (output->section_count == 1) {

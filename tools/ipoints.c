@@ -50,7 +50,11 @@ static struct ipoints_options parse(const struct tool *tool, const struct option
                    parse_double_list(options[LATTICE].value, "--lattice", 2, 1e6, 3, numbers, &count, &error),
                    &error);
         for (int a = 0; a < 3; a++) {
-            ipoints.lattice[a] = (int64_t)numbers[a < count ? a : count - 1];
+            double number = numbers[a < count ? a : count - 1];
+            ipoints.lattice[a] = (int64_t)number;
+            if ((double)ipoints.lattice[a] != number) {
+                tool_fail(tool, STATUS_INPUT, "--lattice: %g is not a whole number", number);
+            }
         }
     }
     return ipoints;

@@ -194,15 +194,19 @@ static int64_t keep_nearest(const struct point_grid *grid, const double *x, int6
     return count;
 }
 
-/* Mean spacing of the nodes in a support: the edge of the cube (square) that each of them has to itself. */
-static double spacing_within(const struct point_grid *grid, const int32_t *index, int64_t count, double widen)
+/* Mean spacing of the nodes in a support: the edge of the cube (square) that each of them has to itself. A
+ * list cut to the nearest reaches only as far as its farthest node. */
+static double spacing_within(const struct support_options *options, const struct point_grid *grid,
+                             const double *x, const int32_t *index, int64_t count, double widen)
 {
-    double largest = 0.0;
+    double largest = 0.0, farthest2 = 0.0;
     for (int64_t i = 0; i < count; i++) {
         largest = fmax(largest, grid->radius[index[i]]);
+        farthest2 = fmax(farthest2, distance2_of(grid->dim, x, grid->x + (int64_t)index[i] * grid->dim));
     }
+    double reach = count == options->most ? sqrt(farthest2) : largest * widen;
     double unit_ball = grid->dim == 2 ? 3.141592653589793 : 4.1887902047863905;
-    return largest * widen * pow(unit_ball / (double)count, 1.0 / grid->dim);
+    return reach * pow(unit_ball / (double)count, 1.0 / grid->dim);
 }
 
 /* Whether a support serves: enough nodes, a good moment matrix, bounded gradients. */
@@ -237,7 +241,8 @@ static enum status judge(const struct support_options *options, const struct poi
         }
         largest2 = fmax(largest2, sum);
     }
-    *serves = sqrt(largest2) * spacing_within(grid, index, count, widen) <= options->gradient_bound;
+    *serves =
+        sqrt(largest2) * spacing_within(options, grid, x, index, count, widen) <= options->gradient_bound;
     return STATUS_OK;
 }
 

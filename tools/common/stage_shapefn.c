@@ -2,6 +2,7 @@
 
 #include "approx/quadrature.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -29,9 +30,27 @@ enum status stage_recorded_mls(const struct stream *stream, int dim, struct mls 
     if (section_attribute(radius, "mu", value, sizeof value)) {
         TRY(parse_double_list(value, "support.radius: mu", 0.0, 1e300, MLS_MAX_SECOND, mls->mu, &count,
                               error));
+        if (count != mls_second_order_count(dim)) {
+            status = fail(error, STATUS_INPUT, "support.radius: mu: %d values, not %d", count,
+                          mls_second_order_count(dim));
+        }
     }
 done:
     return status;
+}
+
+/* Sections may come from anywhere: finite coordinates, radii and factors that are finite and positive. */
+static enum status check_numbers(const struct section *section, bool positive, struct error *error)
+{
+    const double *values = section->data;
+    for (int64_t i = 0; i < section->rows * section->cols; i++) {
+        if (!isfinite(values[i]) || (positive && !(values[i] > 0.0))) {
+            return fail(error, STATUS_INPUT, "%s: row %lld: %g is not a %s", section->name,
+                        (long long)(i / section->cols), values[i],
+                        positive ? "positive length" : "finite coordinate");
+        }
+    }
+    return STATUS_OK;
 }
 
 /* Tabulate phi (and gradients) at the points of one section on the lists of one prefix. */
@@ -53,6 +72,15 @@ static enum status tabulate(struct stream *stream, const struct mls *mls, const 
         status = fail(error, STATUS_INPUT, "support.radius, %s.widen: do not fit: run support again", prefix);
         goto done;
     }
+    TRY(check_numbers(points, false, error));
+    TRY(check_numbers(radius, true, error));
+    for (int64_t p = 0; p < points->rows; p++) {
+        if (!(lists.widen[p] >= 1.0) || !isfinite(lists.widen[p])) {
+            status = fail(error, STATUS_INPUT, "%s.widen: row %lld: %g is no factor", prefix, (long long)p,
+                          lists.widen[p]);
+            goto done;
+        }
+    }
     int64_t pairs = lists.ptr[points->rows];
     TRY(NEW_ARRAY(&phi, pairs, error));
     if (gradients) {
@@ -72,6 +100,28 @@ done:
     return status;
 }
 
+/* Faces of a stream, in view, their nodes checked; shape_smooth checks their cells. */
+static enum status view_faces(const struct stream *stream, const struct cells *cells, struct faces *faces,
+                              struct error *error)
+{
+    enum status status;
+    const struct section *node, *cell;
+    TRY(stream_need(stream, "faces", TYPE_I4, cells->dim, "ipoints", &node, error));
+    TRY(stream_need(stream, "faces.cell", TYPE_I4, 2, "ipoints", &cell, error));
+    *faces = (struct faces){.dim = cells->dim, .count = node->rows, .node = node->data, .cell = cell->data};
+    if (cell->rows != faces->count) {
+        return fail(error, STATUS_INPUT, "faces.cell: does not fit faces: run ipoints again");
+    }
+    for (int64_t i = 0; i < faces->count * faces->dim; i++) {
+        if (faces->node[i] < 0 || faces->node[i] >= cells->node_count) {
+            return fail(error, STATUS_INPUT, "faces: row %lld: no node %d", (long long)(i / faces->dim),
+                        faces->node[i]);
+        }
+    }
+done:
+    return status;
+}
+
 /* Replace the points' lists and table by those of the conforming cells. */
 static enum status put_smoothed(struct stream *stream, struct error *error)
 {
@@ -79,16 +129,16 @@ static enum status put_smoothed(struct stream *stream, struct error *error)
     struct cells cells;
     struct smoothed_table table = {0};
     struct neighbours lists;
-    const struct section *node, *cell, *phi;
+    struct faces faces;
+    const struct section *phi, *points;
     TRY(stream_cells(stream, true, &cells, error));
     int per_face = quadrature_face_rule(cells.dim).points;
-    TRY(stream_need(stream, "faces", TYPE_I4, cells.dim, "ipoints", &node, error));
-    TRY(stream_need(stream, "faces.cell", TYPE_I4, 2, "ipoints", &cell, error));
+    TRY(view_faces(stream, &cells, &faces, error));
     TRY(stream_need(stream, "face.phi", TYPE_F8, 1, "shapefn", &phi, error));
-    TRY(stream_neighbours(stream, "face", node->rows * per_face, cells.node_count, &lists, error));
-    struct faces faces = {.dim = cells.dim, .count = node->rows, .node = node->data, .cell = cell->data};
-    if (cell->rows != faces.count || stream_find(stream, "points.x")->rows != cells.count) {
-        status = fail(error, STATUS_INPUT, "faces.cell, points.x: do not fit the cells: run ipoints again");
+    TRY(stream_need(stream, "points.x", TYPE_F8, cells.dim, "ipoints", &points, error));
+    TRY(stream_neighbours(stream, "face", faces.count * per_face, cells.node_count, &lists, error));
+    if (points->rows != cells.count || phi->rows != lists.ptr[lists.count]) {
+        status = fail(error, STATUS_INPUT, "points.x, face.phi: do not fit the cells: run ipoints again");
         goto done;
     }
     TRY(shape_smooth(&cells, &faces, per_face, &lists, phi->data, &table, error));
@@ -114,7 +164,7 @@ enum status stage_shapefn(struct stream *stream, const struct mls *mls, struct e
     const struct section *points;
     TRY(stream_need(stream, "points.x", TYPE_F8, mls->dim, "ipoints", &points, error));
     bool conforming = section_attribute(points, "rule", rule, sizeof rule) && strcmp(rule, "conforming") == 0;
-    if (stream_find(stream, "facepoints.x") != NULL) {
+    if (conforming || stream_find(stream, "facepoints.x") != NULL) {
         TRY(tabulate(stream, mls, "facepoints.x", "face", "face.phi", false, error));
     }
     if (conforming) {

@@ -162,6 +162,7 @@ int tool_open(const struct tool *tool, const char *file, const char **name)
     if (isatty(STDIN_FILENO)) {
         tool_fail(tool, STATUS_INPUT, "standard input is a terminal: name a file or use a pipe (see -h)");
     }
+    main_input = main_input == NULL ? file : main_input;
     stdin_read = true;
     return STDIN_FILENO;
 }
@@ -212,7 +213,7 @@ static void add_provenance(const struct tool *tool, struct stream *stream)
             if (rest != NULL) {
                 kept[count++] = rest;
             }
-        } else if (i == 0 || stdin_read || argument != main_input) {
+        } else if (i == 0 || argument != main_input || (stdin_read && strcmp(argument, "-") != 0)) {
             kept[count++] = argument;
         }
     }

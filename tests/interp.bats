@@ -1,0 +1,168 @@
+# interp: fields at the stream's own points, at those of another stream and of a table.
+
+bats_require_minimum_version 1.5.0
+
+setup() {
+    cd "$BATS_TEST_TMPDIR"
+    set -o pipefail
+    cloud -d 2 -k jittered -n 12 --box 0,1,0,1 --jitter 0.3 --field linear > linear.mts
+    cloud -d 2 -k halton -n 60 --box 0,1,0,1 --field linear > points.mts
+}
+
+# near TOLERANCE A B: two lists of numbers agree.
+near() {
+    paste "$2" "$3" | awk -v tolerance="$1" '
+        NF % 2 || NF == 0 { bad = 1 }
+        { for (i = 1; i <= NF / 2; i++) { d = $i - $(i + NF / 2); if (!(d <= tolerance && -d <= tolerance)) bad = 1 } n++ }
+        END { exit bad || n == 0 }'
+}
+
+# with_section FILE NAME TYPE COLS COMMAND...: a text stream with one more section, its rows from a command.
+with_section() {
+    local file=$1 name=$2 type=$3 cols=$4
+    shift 4
+    "$@" > rows
+    mts text "$file" | awk -v name="$name" -v type="$type" -v cols="$cols" -v rows="$(wc -l < rows)" '
+        /^# end/ { printf "# %s %s %d %d enc=text\n", name, type, rows, cols
+                   while ((getline line < "rows") > 0) print line
+                   printf "\n\n# end %d\n", $3 + 1; next }
+        { print }'
+}
+
+@test "usage, version, and wrong command lines" {
+    run -0 --separate-stderr interp -h
+    [[ "$output" == "interp - "* ]]
+    [ -z "$stderr" ]
+    run -0 --separate-stderr interp --version
+    [[ "$output" =~ ^interp\ [0-9.]+$ ]]
+    for arguments in "--nonsense" "-t -t" "-f" "-f u -f u" "-p" "a b" "-u mm linear.mts" "-k 2 linear.mts" "-b mls1 linear.mts" \
+        "-p x -k 2 -R 3 linear.mts" "-p x -k 0 linear.mts" "-p x -u foot linear.mts" "-p x -R 1foot linear.mts" \
+        "-p missing.mts linear.mts" "-p missing.tsv -u mm linear.mts" "-p . linear.mts" "-p . -u m linear.mts" "missing.mts"; do
+        run -2 --separate-stderr interp $arguments
+        [[ "$stderr" == "interp: "* ]]
+        [ -z "$output" ]
+    done
+}
+
+@test "a linear field is exact at the stream's own points, for every rule" {
+    for rule in -c "-g 4" "--lattice 7,9"; do
+        ipoints $rule linear.mts | support | shapefn > table.mts
+        interp table.mts > at.mts
+        mts print nodes.x at.mts > x
+        mts print points.x table.mts | cmp - x
+        awk '{ printf "%.17g\n", 1 + 2 * $1 + 3 * $2 }' x > expected
+        mts print u at.mts > u
+        near 1e-12 u expected
+    done
+}
+
+@test "a linear field is exact at other points, in 2 and 3 dimensions, in every basis" {
+    cloud -d 3 -k jittered -n 6 --box 1,2,0,1,0,1 --jitter 0.3 --field linear > linear3.mts 2> /dev/null
+    cloud -d 3 -k halton -n 60 --box 1,2,0,1,0,1 --field linear > points3.mts
+    for basis in mls1 mmls2 "mls2 -k 2.6"; do
+        interp -b $basis -p points.mts linear.mts | mts print u > u
+        mts print u points.mts > expected
+        near 1e-11 u expected
+        interp -b $basis -p points3.mts linear3.mts | mts print u > u
+        mts print u points3.mts > expected
+        near 1e-11 u expected
+    done
+}
+
+@test "a quadratic field: exact with mls2, nearly so with mmls2, smoothed with mls1" {
+    cloud -d 2 -k jittered -n 12 --box 0,1,0,1 --jitter 0.3 --field quadratic > field.mts
+    cloud -d 2 -k halton -n 60 --box 0,1,0,1 --field quadratic > points.mts
+    mts print u points.mts > expected
+    interp -b mls2 -k 2.6 -p points.mts field.mts | mts print u > u
+    near 1e-11 u expected
+    interp -p points.mts field.mts | mts print u > u
+    near 1e-4 u expected
+    interp -b mls1 -p points.mts field.mts | mts print u > u
+    near 5e-2 u expected
+    run ! near 1e-4 u expected
+}
+
+@test "own points and the same points from elsewhere give the same values" {
+    ipoints -g 3 linear.mts | support | shapefn > table.mts
+    interp table.mts > own.mts
+    interp -p own.mts linear.mts | mts print u > u
+    mts print u own.mts > own
+    near 1e-14 u own
+}
+
+@test "a table of points in a unit, with comments; displaced points" {
+    with_section linear.mts displacement f8 2 awk 'BEGIN { for (i = 0; i < 144; i++) print "0.25 -0.5" }' |
+        sed 's/^# u /# scalar /; s/^# displacement /# u /' > moved.txt
+    printf '# landmarks, mm\n500 500\n\n250\t125 # the second\n' > landmarks.tsv
+    interp -p landmarks.tsv -u mm --deformed -t moved.txt > at.txt
+    mts print nodes.x at.txt | xargs | { read -r line; [ "$line" = "0.5 0.5 0.25 0.125" ]; }
+    mts print x.deformed at.txt > x
+    printf '0.75 0\n0.5 -0.375\n' > expected
+    near 1e-14 x expected
+    mts print scalar at.txt > scalar
+    printf '3.5\n1.875\n' > expected
+    near 1e-13 scalar expected
+    mts list at.txt | grep 'x.deformed.*unit=m'
+}
+
+@test "fields: all by default, chosen by name, nothing else passes" {
+    with_section linear.mts heat f8 1 seq 144 | with_section - notes i4 1 seq 144 > two.txt
+    interp -p points.mts -t two.txt > at.txt
+    [ "$(grep -c '^# [a-z]* f8' at.txt)" -eq 2 ]
+    [ "$(awk '/^# [a-z.]+ [fi][48]/ { print $2 }' at.txt | xargs)" = "nodes.x u heat" ]
+    interp -f heat -p points.mts -t two.txt > at.txt
+    [ "$(awk '/^# [a-z.]+ [fi][48]/ { print $2 }' at.txt | xargs)" = "nodes.x heat" ]
+    interp -f heat,u -p points.mts -t two.txt > at.txt
+    [ "$(awk '/^# [a-z.]+ [fi][48]/ { print $2 }' at.txt | xargs)" = "nodes.x heat u" ]
+    for names in notes nodes.x none u, ,u u,,heat u,u; do
+        run -2 --separate-stderr interp -f "$names" -p points.mts two.txt
+        [ -z "$output" ]
+    done
+    mts drop u linear.mts > bare.mts
+    run -2 --separate-stderr interp -p points.mts bare.mts
+    [[ "$stderr" == *"no fields"* ]]
+}
+
+@test "points outside of the cloud are an error that names the first" {
+    printf '0.5 0.5\n1.05 0.5\n' > near.tsv
+    interp -p near.tsv -u m linear.mts | mts print u > u
+    printf '3.5\n4.6\n' > expected
+    near 1e-11 u expected
+    printf '0.5 0.5\n1.5 0.5\n2 2\n' > far.tsv
+    run -2 --separate-stderr interp -p far.tsv -u m linear.mts
+    [[ "$stderr" == *"far.tsv: row 1 at (1.5, 0.5)"* ]]
+    [ -z "$output" ]
+    run -2 --separate-stderr interp -p far.tsv linear.mts
+    [[ "$stderr" == *"needs -u"* ]]
+    run -2 --separate-stderr interp -p <(cloud -d 3 -k regular -n 3 --box 0,1,0,1,0,1) linear.mts
+    [[ "$stderr" == *"points in 3D, the field is in 2D"* ]]
+    for row in "0.5" "0.5 0.5 0.5" "0.5 nan" "0,5 0,5" "x y"; do
+        echo "$row" > bad.tsv
+        run -2 --separate-stderr interp -p bad.tsv -u m linear.mts
+        [[ "$stderr" == "interp: bad.tsv:1: "* ]]
+    done
+}
+
+@test "file and standard input, text and binary, and any number of threads give the same" {
+    interp -p points.mts linear.mts > one.mts
+    interp -p points.mts < linear.mts | cmp - one.mts
+    mts text linear.mts | interp -p points.mts -t | grep -v '^# @' | cmp - <(mts text one.mts | grep -v '^# @')
+    for threads in 1 3; do
+        OMP_NUM_THREADS=$threads interp -p points.mts linear.mts | cmp - one.mts
+    done
+    run -0 --separate-stderr interp -o own.mts linear.mts
+    [[ "$stderr" == "interp: no sections of ipoints, support, shapefn in the input: ran with defaults" ]]
+    ipoints linear.mts | support | shapefn | interp | mts print u | cmp - <(mts print u own.mts)
+}
+
+@test "nan in a field stays nan; a broken table is refused" {
+    shapefn linear.mts 2> /dev/null | mts text > table.txt
+    awk '/^# u / { at = 1; print; next } at && at++ == 70 { print "nan"; next } { print }' table.txt > nan.txt
+    interp nan.txt | mts print u | grep -c nan
+    awk '/^# nbr.idx/ { at = 1; print; next } at && at++ == 70 { print "144"; next } { print }' table.txt > bad.txt
+    run -2 --separate-stderr interp bad.txt
+    [[ "$stderr" == *"nbr.idx: row 69: no node 144"* ]]
+    awk '/^# shape.phi/ { at = 1; $4--; print; next } at && at++ == 1 { next } { print }' table.txt > bad.txt
+    run -2 --separate-stderr interp bad.txt
+    [[ "$stderr" == *"shape.phi"* ]]
+}

@@ -1,0 +1,275 @@
+# ipoints, support and shapefn: command lines, stage order, equal bytes whichever way, and hostile streams.
+
+bats_require_minimum_version 1.5.0
+
+tools="ipoints support shapefn"
+
+setup() {
+    cd "$BATS_TEST_TMPDIR"
+    set -o pipefail
+    cloud -d 2 -k jittered -n 7 --box 0,0.1,0,0.1 --jitter 0.3 > square.mts
+}
+
+@test "each stage prints its usage and version" {
+    for tool in $tools; do
+        run -0 --separate-stderr "$tool" -h
+        [[ "$output" == "$tool - "* ]]
+        [[ "$output" == *"usage: $tool"* ]]
+        [ -z "$stderr" ]
+        run -0 --separate-stderr "$tool" --help
+        [[ "$output" == "$tool - "* ]]
+        run -0 --separate-stderr "$tool" --version
+        [[ "$output" =~ ^$tool\ [0-9.]+$ ]]
+    done
+}
+
+@test "each stage refuses a wrong command line with status 2" {
+    for tool in $tools; do
+        for arguments in "--nonsense" "-q" "-t -t" "-t --text" "-o" "--output" "-o x -o y" "square.mts square.mts" \
+            "--text=yes" "missing.mts" "."; do
+            run -2 --separate-stderr "$tool" $arguments
+            [[ "$stderr" == "$tool: "* ]]
+            [ -z "$output" ]
+        done
+    done
+}
+
+@test "values out of range are refused with status 2, before the input is read" {
+    for command in "ipoints -g 5x" "ipoints -c -g 3" "ipoints --lattice 1" "ipoints --lattice 3,x" "ipoints --lattice 2.5" \
+        "ipoints -g 3 --lattice 4,4" "support -k 0" "support -k nan" "support -R 8parsec" "support -R -3mm" \
+        "support -k 2 -R 8mm" "support -m 9 -n 5" "support -n 0" "support -b mls3" "support -w gauss" "support --mu -1" \
+        "support --mu 1,2" "support --mu-unit mm" "support --bound 0.1" "shapefn --mu 1,2,3,4" "shapefn -b spline" \
+        "shapefn --mu 1e-7 --mu-unit foot"; do
+        run -2 --separate-stderr $command < /dev/null
+        [[ "$stderr" == "${command%% *}: "* ]]
+        [[ "$stderr" != *"standard input"* ]]
+    done
+    run -2 --separate-stderr ipoints -g 5 square.mts
+    [[ "$stderr" == *"no rule of 5 points; there are 1, 3, 4"* ]]
+    run -2 --separate-stderr shapefn --mu 1,2,3,4,5,6 square.mts # six in 2D
+    [[ "$stderr" == *"--mu: 6 values; in 2D"* ]]
+}
+
+@test "file, standard input and '-' give the same bytes" {
+    ipoints -g 3 square.mts > points.mts
+    support points.mts > lists.mts
+    shapefn lists.mts > table.mts
+    ipoints -g 3 < square.mts | cmp - points.mts
+    cat points.mts | support | cmp - lists.mts
+    shapefn - < lists.mts | cmp - table.mts
+    shapefn -o table2.mts lists.mts
+    cmp table.mts table2.mts
+}
+
+@test "text and binary streams hold the same" {
+    ipoints square.mts > points.mts
+    ipoints -t square.mts > points.txt
+    support points.txt > a.mts
+    support points.mts > b.mts
+    shapefn -t a.mts > a.txt
+    shapefn b.mts | mts text > b.txt
+    diff <(grep -v '^# @' a.txt) <(grep -v '^# @' b.txt)
+}
+
+@test "the number of threads changes no byte" {
+    cloud -d 3 -k jittered -n 8 --box 0,0.1,0,0.1,0,0.1 --jitter 0.1 > cube.mts
+    for cloud in square cube; do
+        for rule in -c "-g 4"; do
+            for threads in 1 2 3; do
+                export OMP_NUM_THREADS=$threads
+                ipoints $rule $cloud.mts | support | shapefn > $threads.mts
+                cmp 1.mts $threads.mts
+            done
+        done
+    done
+}
+
+@test "missing stages run by themselves: the same bytes as spelled out, and a note" {
+    ipoints square.mts | support | shapefn | mts text | grep -v '^# @' > spelled.txt
+    run -0 --separate-stderr shapefn -o table.mts square.mts
+    [ "$stderr" = "shapefn: no sections of ipoints, support in the input: ran with defaults" ]
+    mts text table.mts | grep -v '^# @' | cmp - spelled.txt
+    ipoints square.mts | support -o lists.mts
+    run -0 --separate-stderr shapefn -o table.mts lists.mts
+    [ -z "$stderr" ]
+    mts text table.mts | grep -v '^# @' | cmp - spelled.txt
+    support -o lists2.mts square.mts 2> /dev/null
+    mts text lists2.mts | grep -v '^# @' | cmp - <(mts text lists.mts | grep -v '^# @')
+}
+
+@test "provenance names every stage, also those run by themselves" {
+    shapefn -t square.mts 2> /dev/null | grep '^# @' > lines
+    [ "$(awk '{ print $3 }' lines | xargs)" = "cloud ipoints support shapefn" ]
+}
+
+@test "unknown sections pass through unchanged" {
+    mts text square.mts | sed '/^# end/d' > with.txt
+    sections=$(mts text square.mts | awk '/^# end/ { print $3 }')
+    printf '# my.notes i4 2 3 enc=text unit=none\n1 2 3\n4 5 6\n\n\n# end %d\n' $((sections + 1)) >> with.txt
+    for tool in $tools; do
+        "$tool" with.txt 2> /dev/null | mts print my.notes > notes
+        [ "$(xargs < notes)" = "1 2 3 4 5 6" ]
+        "$tool" with.txt 2> /dev/null | mts list | grep 'my.notes.*unit=none'
+    done
+}
+
+@test "a later stage follows the settings of support" {
+    ipoints -g 3 square.mts | support -b mls1 -w cubic -k 1.5 > lists.mts
+    shapefn lists.mts | mts print shape.phi > followed
+    shapefn -b mls1 -w cubic lists.mts | mts print shape.phi | cmp - followed
+    run ! bash -c 'shapefn -b mmls2 lists.mts | mts print shape.phi | cmp -s - followed'
+}
+
+@test "running a stage again replaces what depends on it" {
+    shapefn square.mts 2> /dev/null > table.mts
+    ipoints -g 3 table.mts > again.mts
+    run -0 mts list again.mts
+    [[ "$output" != *nbr.* ]]
+    [[ "$output" != *shape.* ]]
+    [[ "$output" != *support.radius* ]]
+    ipoints -g 3 square.mts | support | shapefn | mts text | grep -v '^# @' > direct.txt
+    support again.mts | shapefn | mts text | grep -v '^# @' | cmp - direct.txt
+}
+
+@test "wrong stage order is named with its remedy" {
+    mts print nodes.x square.mts > rows
+    { printf '# mts 1\n# other f8 %d 2 enc=text\n' "$(wc -l < rows)"; cat rows; printf '\n\n# end 1\n'; } > other.txt
+    for tool in $tools; do
+        run -2 --separate-stderr "$tool" other.txt
+        [[ "$stderr" == *"nodes.x: "*"nodes"* || "$stderr" == *"no section nodes.x"*"nodes"* ]]
+    done
+    sed 's/^# other/# nodes.x/' other.txt > bare.txt
+    run -2 --separate-stderr ipoints bare.txt
+    [[ "$stderr" == *"no section cells"*"run nodes"* ]]
+    shapefn square.mts 2> /dev/null | mts text > table.txt
+    mts drop facepoints.x table.txt -o dropped.mts
+    run -2 --separate-stderr shapefn dropped.mts
+    [[ "$stderr" == *"ipoints"* ]]
+}
+
+# hostile STATUS TOOL STREAM WORDS: refused with that status and words, without output.
+hostile() {
+    run --separate-stderr "$2" "$3"
+    echo "$2: status $status: $stderr"
+    [ "$status" -eq "$1" ]
+    [ -z "$output" ]
+    [[ "$stderr" == *"$4"* ]]
+}
+
+# edit SECTION ROW TEXT FILE: replace one row (from 0) of a section of a text stream.
+edit() {
+    awk -v section="$1" -v row="$2" -v text="$3" '
+        /^# / { at = $2 == section ? 0 : -1; print; next }
+        at >= 0 && NF > 0 { if (at++ == row) { print text; next } }
+        { print }' "$4"
+}
+
+@test "indices and numbers out of range are refused" {
+    mts text square.mts > square.txt
+    ipoints -t square.mts > points.txt
+    support -t points.txt > lists.txt
+    edit nodes.x 3 "nan 0" square.txt > bad.txt
+    for tool in $tools; do hostile 2 $tool bad.txt "nodes.x: row 3"; done
+    for node in 49 -1 2147483647 -2147483648; do
+        edit cells 5 "0 1 $node" square.txt > bad.txt
+        for tool in $tools; do hostile 2 $tool bad.txt "cells: row 5: no node $node"; done
+    done
+    edit cells 5 "0 0 1" square.txt > bad.txt
+    hostile 2 ipoints bad.txt "cells: row 5"
+    edit points.x 2 "inf 0" points.txt > bad.txt
+    ipoints -g 3 -t square.mts > gauss.txt
+    edit points.x 2 "inf 0" gauss.txt > bad.txt
+    hostile 2 support bad.txt "points.x: row 2"
+    edit facepoints.x 2 "nan 0" points.txt > bad.txt
+    hostile 2 support bad.txt "facepoints.x: row 2"
+    for node in 49 -1; do
+        edit face.idx 7 "$node" lists.txt > bad.txt
+        hostile 2 shapefn bad.txt "face.idx: row 7: no node $node"
+        edit node.idx 7 "$node" lists.txt > bad.txt
+        hostile 2 shapefn bad.txt "node.idx: row 7: no node $node"
+        edit faces 1 "$node 3" lists.txt > bad.txt
+        hostile 2 shapefn bad.txt "faces: row 1: no node $node"
+    done
+    for cell in 72 -2 2147483647; do
+        edit faces.cell 1 "$cell 3" lists.txt > bad.txt
+        hostile 2 shapefn bad.txt "faces.cell: row 1"
+    done
+    edit face.ptr 0 1 lists.txt > bad.txt
+    hostile 2 shapefn bad.txt "face.ptr"
+    edit face.ptr 4 0 lists.txt > bad.txt
+    hostile 2 shapefn bad.txt "face.ptr: row 4: decreases"
+    edit face.ptr 4 9223372036854775807 lists.txt > bad.txt
+    hostile 2 shapefn bad.txt "face.ptr: row 5: decreases"
+    edit support.radius 4 -1 lists.txt > bad.txt
+    hostile 2 shapefn bad.txt "support.radius: row 4"
+    edit support.radius 4 nan lists.txt > bad.txt
+    hostile 2 shapefn bad.txt "support.radius: row 4"
+    edit face.widen 4 nan lists.txt > bad.txt
+    hostile 2 shapefn bad.txt "face.widen: row 4"
+    sed 's/ mu=[^ ]*/ mu=1/' lists.txt > bad.txt
+    hostile 2 shapefn bad.txt "support.radius: mu"
+    sed 's/basis=[^ ]*/basis=cubic/' lists.txt > bad.txt
+    hostile 2 shapefn bad.txt "support.radius: basis"
+    support -t gauss.txt > lists.txt
+    edit nbr.idx 7 1000 lists.txt > bad.txt
+    hostile 2 shapefn bad.txt "nbr.idx: row 7: no node 1000"
+    edit points.x 2 "nan 0" lists.txt > bad.txt
+    hostile 2 shapefn bad.txt "points.x: row 2"
+}
+
+@test "an unfit support is a verdict that names the point" {
+    ipoints -g 3 square.mts > points.mts
+    support -k 1.2 --no-widen -b mls2 points.mts > lists.mts
+    run -1 --separate-stderr shapefn lists.mts
+    [[ "$stderr" == *"row "*" at ("*"mls2"*"widen the support"* ]]
+    [ -z "$output" ]
+    cat > line.txt <<'END'
+# mts 1
+# nodes.x f8 5 2 enc=text unit=m
+0 0
+1 1
+2 2
+3 3
+4 4
+
+
+# end 1
+END
+    ipoints --lattice 3 line.txt > line.mts
+    run -1 --separate-stderr support line.mts
+    [[ "$stderr" == *"points.x: row 0 at (0, 0): no good support"* ]]
+    [ -z "$output" ]
+}
+
+@test "supports: constant radius in any unit, caps, widening reported" {
+    ipoints square.mts > points.mts
+    support -R 30mm points.mts | mts print support.radius | sort -u > mm
+    support -R 0.03 points.mts | mts print support.radius | sort -u | cmp - mm
+    support -R 3cm points.mts | mts print support.radius | sort -u | cmp - mm
+    [ "$(cat mm)" = 0.029999999999999999 ]
+    support -R 50mm -n 8 -m 8 points.mts | mts print face.ptr > ptr
+    awk 'NR > 1 && $1 - last != 8 { exit 1 } { last = $1 }' ptr
+    run -0 --separate-stderr support -v -k 1.2 -o lists.mts points.mts
+    [[ "$stderr" =~ ^support:\ widened\ at\ [1-9][0-9]*\ points,\ at\ most\ 1\.[0-9]*\ times$ ]]
+}
+
+@test "integration points fill the body" {
+    for rule in "-c" "-g 1" "-g 3" "-g 4" "-g 6" "-g 7" "-g 12"; do
+        ipoints $rule square.mts | mts print points.weight | awk '{ s += $1 } END { exit !(s > 0.00999999999 && s < 0.01000000001) }'
+    done
+    cloud -d 3 -k regular -n 4 --box 0,0.1,0,0.1,0,0.2 > brick.mts
+    for rule in "-c" "-g 1" "-g 4" "-g 8" "-g 14"; do
+        ipoints $rule brick.mts | mts print points.weight | awk '{ s += $1 } END { exit !(s > 0.00199999999 && s < 0.00200000001) }'
+    done
+    ipoints --lattice 5,3 square.mts | mts print points.x | awk 'END { exit !(NR == 15 && $1 == 0.1 && $2 == 0.1) }'
+}
+
+@test "the truncated stream of an upstream that died is refused" {
+    ipoints square.mts > points.mts
+    for part in 0 10 200 3000; do
+        head -c $part points.mts > part.mts
+        run -2 --separate-stderr support part.mts
+        [ -z "$output" ]
+    done
+    head -c -7 points.mts | { run -2 --separate-stderr support; [[ "$stderr" == *"support: "* ]]; }
+}
