@@ -4,6 +4,8 @@
 
 #include "io/stream.h"
 
+#include <string.h>
+
 _Static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__,
                "binary payloads are little-endian and used in place");
 
@@ -61,6 +63,36 @@ MUST_CHECK enum status input_copy(struct input *input, void *destination, size_t
 
 /* Offset of input->at from the start of the stream. */
 int64_t input_offset(const struct input *input);
+
+/* Does the line of `length` bytes, which need not end with a zero, start so? */
+static inline bool starts_with(const char *line, size_t length, const char *prefix)
+{
+    size_t size = strlen(prefix);
+    return length >= size && memcmp(line, prefix, size) == 0;
+}
+
+/* stream_header.c: a header line taken apart; the words lie in `copy`. */
+struct header {
+    char *copy;
+    const char *name;
+    enum element_type type;
+    int64_t rows, cols;
+    char *attributes; /* without enc= */
+    bool binary;
+};
+
+/* Take apart a line without its newline and check it; header_free() it, also on failure. */
+MUST_CHECK enum status header_parse(const char *line, size_t length, struct header *header,
+                                    struct error *error);
+void header_free(struct header *header);
+
+/* stream_payload.c: read rows of text and the two blank lines behind, or binary values that are not mapped.
+ * The section owns what was read, also on failure. */
+MUST_CHECK enum status payload_read_text(struct input *input, struct section *section, struct error *error);
+MUST_CHECK enum status payload_read_binary(struct input *input, struct section *section, struct error *error);
+
+/* stream_payload.c: the error of an input that ends in that row. */
+enum status fail_short(const struct section *section, int64_t row, struct error *error);
 
 /* stream_power.c: the 128 leading bits of 10^power, POWER_LEAST <= power <= POWER_MOST, as a number of two
  * words: 10^power = (number + d) * 2^power_exponent(power) with 0 <= d < POWER_ERROR, the number >= 2^127. */
