@@ -1,0 +1,104 @@
+# The scripts of pipelines/ and examples/: reading streams in awk, decks for CalculiX, tables of the studies.
+
+bats_require_minimum_version 1.5.0
+
+setup() {
+    cd "$BATS_TEST_TMPDIR" || return
+    pipelines="$BATS_TEST_DIRNAME/../pipelines"
+}
+
+# A square of 4 x 4 nodes whose sides follow u = (.05 x + .02 y, -.03 x - .04 y).
+make_patch() {
+    cloud -d 2 -k jittered -n 4 --box 0,0.1,0,0.1 --jitter 0.3 -t -o square.dat
+    printf '[scene]\ndim = 2\nanalysis = quasi-static\n' > patch.scene
+    printf '[material all]\nregion = body\nE = 3000\nnu = 0.49\nrho = 1000\n' >> patch.scene
+    for side in xmin xmax ymin ymax; do
+        printf '[displacement %s]\nfacets = %s\ntable = %s.tsv\nunit = cm\n' $side $side $side >> patch.scene
+    done
+    side() { awk -v OFS='\t' '{ print $1, $2, .05 * $1 + .02 * $2, -.03 * $1 - .04 * $2 }'; }
+    printf '0 0\n0 10\n' | side > xmin.tsv
+    printf '10 0\n10 10\n' | side > xmax.tsv
+    printf '0 0\n10 0\n' | side > ymin.tsv
+    printf '0 10\n10 10\n' | side > ymax.tsv
+}
+
+@test "scripts are clean under shellcheck" {
+    find "$BATS_TEST_DIRNAME/../pipelines" "$BATS_TEST_DIRNAME/../examples" -name '*.sh' -print0 | xargs -0 shellcheck
+}
+
+@test "CalculiX passes the linear patch test through our deck and back" {
+    make_patch
+    bash "$pipelines/calculix/solve.sh" patch.scene square.dat > u.dat 2> log
+    mts check u.dat
+    [ "$(grep -c . log)" -eq 4 ]
+    paste <(mts print nodes.x u.dat) <(mts print u u.dat) | awk '
+        { a = $3 - .05 * $1 - .02 * $2; b = $4 + .03 * $1 + .04 * $2; error = a * a + b * b; n++ }
+        !(error < 1e-8 ^ 2) { print "node", n - 1, "is off by", sqrt(error); failed = 1 }
+        END { exit failed || n != 16 }'
+}
+
+@test "deck: the strip of a rigid curve lies behind it, its elements counter-clockwise, on either side" {
+    make_patch
+    printf '0 0\n1 0\n2 0.5\n' > left.tsv
+    printf '2 0.5\n1 0\n0 0\n' > right.tsv
+    for side in left right; do
+        (cat patch.scene; printf '[contact floor]\nfacets = ymin\nrigid = %s.tsv\nunit = cm\nside = %s\n' $side $side) > contact.scene
+        awk -f "$pipelines/stream.awk" -f "$pipelines/calculix/deck.awk" -v scene=contact.scene -v mesh=square.dat > deck.inp
+        awk -F, '
+            /^\*/ { part = $0; next }
+            part ~ /^\*NODE/ { x[$1] = $2; y[$1] = $3 }
+            part ~ /CPE4/ {
+                n++
+                area = (x[$4] - x[$2]) * (y[$5] - y[$3]) - (x[$5] - x[$3]) * (y[$4] - y[$2])
+                if (!(area > 0)) { print "element", $1, "is turned"; exit 1 }
+                if (!(y[$3] < y[$2] && y[$4] < y[$5])) { print "element", $1, "lies before the curve"; exit 1 }
+            }
+            END { if (n != 2) exit 1 }' deck.inp
+    done
+}
+
+@test "deck: what it does not understand, and a stream cut short, are errors" {
+    make_patch
+    deck() { awk -f "$pipelines/stream.awk" -f "$pipelines/calculix/deck.awk" -v scene="$1" -v mesh="$2"; }
+    (cat patch.scene; printf '[pressure top]\nfacets = ymax\nvalue = 1\n') > pressure.scene
+    run ! deck pressure.scene square.dat
+    sed 's/facets = ymax/facets = roof/' patch.scene > roof.scene
+    run ! deck roof.scene square.dat
+    head -n 30 square.dat > short.dat
+    run ! deck patch.scene short.dat
+    deck patch.scene square.dat > deck.inp
+}
+
+@test "table1: a regular entry off by more than .0001, or singular where the paper's is not, fails" {
+    paper=$pipelines/table1-paper.tsv
+    awk -f "$pipelines/table1.awk" "$paper" "$paper"
+    sed 's/0.0817/0.0818/' "$paper" > near.tsv
+    awk -f "$pipelines/table1.awk" "$paper" near.tsv
+    sed 's/0.0817/0.0819/' "$paper" > far.tsv
+    run -1 awk -f "$pipelines/table1.awk" "$paper" far.tsv
+    sed 's/0.0059/singular/' "$paper" > singular.tsv
+    run -1 awk -f "$pipelines/table1.awk" "$paper" singular.tsv
+    head -n 1 "$paper" > empty.tsv
+    run -1 awk -f "$pipelines/table1.awk" "$paper" empty.tsv
+}
+
+@test "brain2d: a row of the comparison from errors and log; none from half a log" {
+    printf 'avg\t0.00005\nmax\t0.0002\nn\t707\n' > errors
+    printf 'support: widened at 34 points, at most 1.2 times\npoints\t5052\nsteps\t3720\nsolve seconds\t2.446\n' > log
+    run -0 awk -f "$pipelines/brain2d-row.awk" -v scheme=MMLS errors log
+    [ "$output" = "$(printf 'MMLS, 34 points widened\t707\t5052\t0.0500\t0.2000\t3720\t2.45')" ]
+    head -n 1 log > half
+    run -1 awk -f "$pipelines/brain2d-row.awk" -v scheme=MMLS errors half
+}
+
+@test "the tables of the brain section are those that its geometry gives" {
+    mkdir brain2d
+    cp "$BATS_TEST_DIRNAME"/../examples/brain2d/{brain2d.geo,make-tables.sh} brain2d
+    bash brain2d/make-tables.sh
+    for table in load skull; do
+        paste "brain2d/$table.tsv" "$BATS_TEST_DIRNAME/../examples/brain2d/$table.tsv" | awk '
+            /^#/ { next }
+            { for (i = 1; i <= NF / 2; i++) if (!(($i - $(i + NF / 2)) ^ 2 < 1e-10)) exit 1; n++ }
+            END { if (n < 65) exit 1 }'
+    done
+}
