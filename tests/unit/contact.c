@@ -11,6 +11,7 @@ enum { HATS = 12, NODES = 20, EACH = 4 };
 struct hats {
     int dim;
     double X[NODES * 3], area[HATS], phi[HATS * EACH];
+    double normal[HATS * 3]; /* zero: hats are where their mean is */
     int32_t node[HATS], idx[HATS * EACH];
     int64_t ptr[HATS + 1];
     struct boundary_averages averages;
@@ -39,6 +40,7 @@ static void make_hats(struct hats *hats, int dim, double area, struct random *ra
     hats->averages = (struct boundary_averages){.count = HATS,
                                                 .node = hats->node,
                                                 .area = hats->area,
+                                                .normal = hats->normal,
                                                 .ptr = hats->ptr,
                                                 .idx = hats->idx,
                                                 .phi = hats->phi};
@@ -57,6 +59,7 @@ static void make_particles(struct hats *hats, int dim, double area)
     hats->averages = (struct boundary_averages){.count = HATS,
                                                 .node = hats->node,
                                                 .area = hats->area,
+                                                .normal = hats->normal,
                                                 .ptr = hats->ptr,
                                                 .idx = hats->idx,
                                                 .phi = hats->phi};
@@ -372,6 +375,35 @@ static void round_the_rim(void **state)
     }
 }
 
+/* The nodes of a body with a curved boundary touch a wall of the same curvature: so do its hats, though the
+ * mean of the chords lies beneath. */
+static void curved_boundary(void **state)
+{
+    (void)state;
+    struct hats hats;
+    struct random random = {4};
+    make_hats(&hats, 2, 0.1, &random);
+    double u[NODES * 3] = {0.0}, force[NODES * 3] = {0.0}, step = 2.0 * M_PI / HATS;
+    for (int a = 0; a < HATS; a++) {
+        double weight[3] = {1.0 / 6.0, 2.0 / 3.0, 1.0 / 6.0}; /* linear fields on two equal chords */
+        hats.X[2 * a] = cos(step * a);
+        hats.X[2 * a + 1] = sin(step * a);
+        hats.normal[2 * a] = hats.X[2 * a];
+        hats.normal[2 * a + 1] = hats.X[2 * a + 1];
+        hats.ptr[a + 1] = 3 * (a + 1);
+        for (int k = 0; k < 3; k++) {
+            hats.idx[3 * a + k] = (a + HATS - 1 + k) % HATS;
+            hats.phi[3 * a + k] = weight[k];
+        }
+    }
+    struct contact contact = built(&hats, make_shell(2, HATS, 1.0, false), 1.0);
+    contact_force(&contact, u, force);
+    for (int a = 0; a < HATS; a++) {
+        NEAR_TO(contact.gap[a], 0.0, 1e-14);
+    }
+    contact_free(&contact);
+}
+
 /* The wrong side of the surface is noticed. */
 static void wrong_side(void **state)
 {
@@ -407,9 +439,11 @@ static void wrong_side(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(force_is_gradient), cmocka_unit_test(smooth_forces), cmocka_unit_test(balance),
-        cmocka_unit_test(skipping),          cmocka_unit_test(augmentation),  cmocka_unit_test(frictionless),
-        cmocka_unit_test(round_the_rim),     cmocka_unit_test(wrong_side),
+        cmocka_unit_test(force_is_gradient), cmocka_unit_test(smooth_forces),
+        cmocka_unit_test(balance),           cmocka_unit_test(skipping),
+        cmocka_unit_test(augmentation),      cmocka_unit_test(frictionless),
+        cmocka_unit_test(round_the_rim),     cmocka_unit_test(curved_boundary),
+        cmocka_unit_test(wrong_side),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
