@@ -311,6 +311,7 @@ static void check_facepoints(struct check *check)
     }
 }
 
+/* A field at the nodes, of any number of components. */
 static void check_field(struct check *check, const struct section *section)
 {
     const struct rule rule = {"u", TYPE_F8, (int)section->cols, "nodes.x", FINITE, NULL};
@@ -359,9 +360,11 @@ int64_t stream_check(const struct stream *stream, violation_function *tell, void
         check_lists(&check, &list_rules[i]);
     }
     check_facepoints(&check);
-    const struct section *field = stream_find(stream, "u");
-    if (field != NULL) {
-        check_field(&check, field);
+    for (int64_t i = 0; i < stream->section_count; i++) {
+        const struct section *section = &stream->sections[i];
+        if (strcmp(section->name, "u") == 0 || strncmp(section->name, "u.frame.", 8) == 0) {
+            check_field(&check, section);
+        }
     }
     return check.count;
 }
