@@ -7,8 +7,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Facets whose normals differ by more than this at a node belong to different sides: cos 45 degrees. */
-static const double side_cosine = 0.70710678118654752;
+/* Facets that turn by 45 degrees or more at a node belong to different sides; a little less than that, so
+ * that round-off does not decide on chamfers. */
+static const double side_cosine = 0.7072;
 
 /* A face by its sorted nodes, for look-up. */
 struct keyed_face {

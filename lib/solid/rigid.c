@@ -13,8 +13,9 @@ static const double merge_tolerance = 1e-9;
 /* Triangles whose area is less than this part of their longest edge squared have no normal. */
 static const double least_slenderness = 1e-12;
 
-/* At a smooth vertex every facet's normal makes at least this product with the mean: cos 22.5 degrees. */
-static const double smooth_cosine = 0.92387953251128674;
+/* At a smooth vertex every facet's normal makes at least this product with the mean: its facets turn by less
+ * than 45 degrees there (a little less, so that round-off does not decide on chamfers). */
+static const double smooth_cosine = 0.9239;
 
 static enum status measure(struct rigid_surface *surface, const double *corners, double *low, double *high,
                            struct error *error)

@@ -17,7 +17,7 @@ struct rigid_surface {
     double *normal;        /* facet_count * dim: unit normals, pointing to the body's side */
     double *vertex_normal; /* vertex_count * dim: angle-weighted mean, for the sign at vertices */
     double *edge_normal; /* 3D: facet_count * 3 * 3, mean of the facets at the edge from corner k to k + 1 */
-    bool *is_smooth;     /* vertex_count: no facet there turns more than 22.5 degrees from the mean normal */
+    bool *is_smooth;     /* vertex_count: no facet there turns 22.5 degrees or more from the mean normal */
     bool *is_rim;        /* vertex_count: 2D an end of a curve, 3D on an edge without neighbour */
     bool *edge_is_rim;   /* 3D: facet_count * 3, no neighbour */
     /* Uniform bins over the facets' boxes. */

@@ -1,0 +1,396 @@
+/* Boundary averages: sums, linear fields, hats split where the boundary turns, areas, the divergence theorem
+ * against the cells' table, and facets that are none. */
+#include "body_fixture.h"
+
+static struct face_table face_table(const struct sample *sample)
+{
+    return (struct face_table){.dim = sample->dim,
+                               .node_count = sample->cloud.node_count,
+                               .x = sample->cloud.x,
+                               .faces = &sample->faces,
+                               .per_face = sample->face_rule.points,
+                               .lists = &sample->face_neighbours,
+                               .phi = sample->face_phi};
+}
+
+static struct facet_set all_facets(const struct sample *sample)
+{
+    return (struct facet_set){sample->cloud.facet_count, sample->cloud.facets};
+}
+
+/* Facets of one side of the box: they stand in the order of their sides. */
+static struct facet_set facets_of_side(const struct sample *sample, int side)
+{
+    struct facet_set set = {0};
+    for (int64_t f = 0; f < sample->cloud.facet_count; f++) {
+        if (sample->cloud.facet_set[f] == side) {
+            set.facet = set.count++ == 0 ? sample->cloud.facets + f * sample->dim : set.facet;
+        }
+    }
+    assert_true(set.count > 0);
+    return set;
+}
+
+static struct boundary_averages averages_of(const struct sample *sample, struct facet_set set)
+{
+    struct boundary_averages averages;
+    struct error error;
+    struct face_table table = face_table(sample);
+    GOOD(boundary_averages_build(&table, &set, &averages, &error));
+    return averages;
+}
+
+/* How many sides of the box a node lies on. */
+static int sides_at(const struct sample *sample, int32_t node)
+{
+    int count = 0;
+    for (int a = 0; a < sample->dim; a++) {
+        double x = sample->cloud.x[(int64_t)node * sample->dim + a];
+        count += fabs(x) < 1e-12 || fabs(x - sample_size) < 1e-12;
+    }
+    return count;
+}
+
+/* Weights sum to 1, samples too, both at `position`; areas and outward normals sum to those of the sides. */
+static void check_averages(const struct sample *sample, const struct boundary_averages *averages)
+{
+    int dim = sample->dim;
+    for (int64_t a = 0; a < averages->count; a++) {
+        double sum = 0.0, mean[3] = {0.0}, share = 0.0, sampled[3] = {0.0}, length2 = 0.0;
+        for (int64_t i = averages->ptr[a]; i < averages->ptr[a + 1]; i++) {
+            sum += averages->phi[i];
+            assert_true(i == averages->ptr[a] || averages->idx[i - 1] < averages->idx[i]);
+            for (int c = 0; c < dim; c++) {
+                mean[c] += averages->phi[i] * sample->cloud.x[(int64_t)averages->idx[i] * dim + c];
+            }
+        }
+        for (int64_t s = averages->sample_ptr[a]; s < averages->sample_ptr[a + 1]; s++) {
+            share += averages->sample_share[s];
+            assert_true(averages->sample_share[s] > 0.0);
+            for (int c = 0; c < dim; c++) {
+                sampled[c] += averages->sample_share[s] * averages->sample_x[s * dim + c];
+            }
+        }
+        NEAR_TO(sum, 1.0, 1e-12);
+        NEAR_TO(share, 1.0, 1e-14);
+        for (int c = 0; c < dim; c++) {
+            NEAR_TO(mean[c], averages->position[a * dim + c], 1e-12 * sample_size);
+            NEAR_TO(sampled[c], averages->position[a * dim + c], 1e-14 * sample_size);
+            length2 += averages->normal[a * dim + c] * averages->normal[a * dim + c];
+        }
+        NEAR_TO(length2, 1.0, 1e-14);
+        assert_true(averages->area[a] > 0.0);
+        assert_true(a == 0 || averages->node[a - 1] <= averages->node[a]);
+    }
+}
+
+/* The whole boundary in one set: a hat for each side that meets at a node. */
+static void hats_split_at_corners(void **state)
+{
+    (void)state;
+    for (int dim = 2; dim <= 3; dim++) {
+        for (int conforming = 0; conforming < 2; conforming++) {
+            struct sample sample = make_sample(dim, conforming == 1, dim == 2 ? 6 : 4);
+            struct boundary_averages averages = averages_of(&sample, all_facets(&sample));
+            int64_t expected = 0;
+            double area = 0.0, outward[3] = {0.0};
+            check_averages(&sample, &averages);
+            for (int32_t n = 0; n < sample.cloud.node_count; n++) {
+                int64_t parts = 0;
+                for (int64_t a = 0; a < averages.count; a++) {
+                    parts += averages.node[a] == n;
+                }
+                assert_int_equal(parts, sides_at(&sample, n));
+                expected += sides_at(&sample, n);
+            }
+            assert_int_equal(averages.count, expected);
+            for (int64_t a = 0; a < averages.count; a++) {
+                int aligned = 0;
+                area += averages.area[a];
+                for (int c = 0; c < dim; c++) {
+                    double n = averages.normal[a * dim + c], x = averages.position[a * dim + c];
+                    outward[c] += averages.area[a] * n;
+                    aligned += fabs(fabs(n) - 1.0) < 1e-14;
+                    if (fabs(n) > 0.5) {
+                        NEAR_TO(x, n > 0.0 ? sample_size : 0.0, 1e-14);
+                    }
+                }
+                assert_int_equal(aligned, 1); /* no part mixes two sides */
+            }
+            NEAR_TO(area, 2.0 * dim * pow(sample_size, dim - 1), 1e-14);
+            for (int c = 0; c < dim; c++) {
+                NEAR_TO(outward[c], 0.0, 1e-14);
+            }
+            boundary_averages_free(&averages);
+            sample_free(&sample);
+        }
+    }
+}
+
+/* A side alone has one hat for each of its nodes, and that is the part of it in the whole boundary. */
+static void sides(void **state)
+{
+    (void)state;
+    for (int dim = 2; dim <= 3; dim++) {
+        struct sample sample = make_sample(dim, true, 4);
+        struct boundary_averages whole = averages_of(&sample, all_facets(&sample));
+        int64_t matched = 0;
+        for (int side = 0; side < 2 * dim; side++) {
+            struct boundary_averages averages = averages_of(&sample, facets_of_side(&sample, side));
+            double area = 0.0;
+            check_averages(&sample, &averages);
+            assert_int_equal(averages.count, dim == 2 ? 4 : 16);
+            for (int64_t a = 0; a < averages.count; a++) {
+                NEAR_TO(averages.normal[a * dim + side / 2], side % 2 ? 1.0 : -1.0, 1e-15);
+                area += averages.area[a];
+                for (int64_t b = 0; b < whole.count; b++) {
+                    if (whole.node[b] != averages.node[a] ||
+                        fabs(whole.normal[b * dim + side / 2] - averages.normal[a * dim + side / 2]) > 0.5) {
+                        continue;
+                    }
+                    int64_t length = averages.ptr[a + 1] - averages.ptr[a];
+                    matched++;
+                    assert_int_equal(whole.ptr[b + 1] - whole.ptr[b], length);
+                    for (int64_t i = 0; i < length; i++) {
+                        assert_int_equal(whole.idx[whole.ptr[b] + i], averages.idx[averages.ptr[a] + i]);
+                        NEAR_TO(whole.phi[whole.ptr[b] + i], averages.phi[averages.ptr[a] + i], 1e-15);
+                    }
+                }
+            }
+            NEAR_TO(area, pow(sample_size, dim - 1), 1e-15);
+            boundary_averages_free(&averages);
+        }
+        assert_int_equal(matched, whole.count);
+        boundary_averages_free(&whole);
+        sample_free(&sample);
+    }
+}
+
+/* The mean gradient of any field over the body is its boundary's: for every node j,
+ * sum_cells V dphi_j = sum_hats A Phi_j n, to round-off, since cells and hats share their quadrature. */
+static void divergence_theorem(void **state)
+{
+    (void)state;
+    for (int dim = 2; dim <= 3; dim++) {
+        struct sample sample = make_sample(dim, true, dim == 2 ? 7 : 4);
+        struct boundary_averages averages = averages_of(&sample, all_facets(&sample));
+        int64_t count = sample.cloud.node_count * dim;
+        double *inside = sample_array(count, sizeof *inside), *outside = sample_array(count, sizeof *outside);
+        double largest = 0.0;
+        for (int64_t q = 0; q < sample.point_count; q++) {
+            for (int64_t i = sample.ptr[q]; i < sample.ptr[q + 1]; i++) {
+                for (int c = 0; c < dim; c++) {
+                    inside[(int64_t)sample.idx[i] * dim + c] += sample.weight[q] * sample.dphi[i * dim + c];
+                }
+            }
+        }
+        for (int64_t a = 0; a < averages.count; a++) {
+            for (int64_t i = averages.ptr[a]; i < averages.ptr[a + 1]; i++) {
+                for (int c = 0; c < dim; c++) {
+                    outside[(int64_t)averages.idx[i] * dim + c] +=
+                        averages.area[a] * averages.phi[i] * averages.normal[a * dim + c];
+                }
+            }
+        }
+        for (int64_t i = 0; i < count; i++) {
+            largest = fmax(largest, fabs(outside[i]));
+            NEAR_TO(inside[i], outside[i], 1e-13 * pow(sample_size, dim - 1));
+        }
+        assert_true(largest > 0.01 * pow(sample_size, dim - 1));
+        free(inside);
+        free(outside);
+        boundary_averages_free(&averages);
+        sample_free(&sample);
+    }
+}
+
+/* A facet is the same face whatever node it begins with; which way it is turned gives the normal. */
+static void other_vertex_orders(void **state)
+{
+    (void)state;
+    for (int dim = 2; dim <= 3; dim++) {
+        struct sample sample = make_sample(dim, true, 4);
+        struct facet_set set = all_facets(&sample);
+        struct boundary_averages expected = averages_of(&sample, set);
+        int32_t *turned = sample_array(set.count * dim, sizeof *turned);
+        for (int shift = 1; shift < dim + 1; shift++) {
+            /* Begin with the next node; at last, swap two: inside out. */
+            for (int64_t f = 0; f < set.count; f++) {
+                for (int k = 0; k < dim; k++) {
+                    int from = dim == 2 || shift == dim ? dim - 1 - k : (k + shift) % dim;
+                    turned[f * dim + k] = set.facet[f * dim + from];
+                }
+            }
+            double sign = dim == 2 || shift == dim ? -1.0 : 1.0;
+            struct boundary_averages averages = averages_of(&sample, (struct facet_set){set.count, turned});
+            assert_int_equal(averages.count, expected.count);
+            for (int64_t a = 0; a < averages.count; a++) {
+                assert_int_equal(averages.node[a], expected.node[a]);
+                NEAR_TO(averages.area[a], expected.area[a], 1e-15);
+                for (int c = 0; c < dim; c++) {
+                    NEAR_TO(averages.position[a * dim + c], expected.position[a * dim + c], 1e-15);
+                    NEAR_TO(averages.normal[a * dim + c], sign * expected.normal[a * dim + c], 1e-14);
+                }
+                for (int64_t i = averages.ptr[a]; i < averages.ptr[a + 1]; i++) {
+                    assert_int_equal(averages.idx[i], expected.idx[i]);
+                    NEAR_TO(averages.phi[i], expected.phi[i], 1e-14);
+                }
+            }
+            boundary_averages_free(&averages);
+        }
+        free(turned);
+        boundary_averages_free(&expected);
+        sample_free(&sample);
+    }
+}
+
+/* Hats stay whole on a curve that turns gently, and on two facets that touch at one node only they do not
+ * mix.
+ */
+static void gentle_and_sharp_turns(void **state)
+{
+    (void)state;
+    /* A fan of triangles about node 0; the outer nodes lie on a polygon. */
+    enum { MOST = 24 };
+    for (int corners = 4; corners <= MOST; corners += 4) {
+        double x[2 * (MOST + 1)] = {0.0}, phi[4 * MOST], widen[2 * MOST];
+        int32_t cells[3 * MOST], facets[2 * MOST], idx[4 * MOST];
+        int64_t ptr[2 * MOST + 1] = {0};
+        struct faces faces;
+        struct error error;
+        struct boundary_averages averages;
+        for (int i = 0; i < corners; i++) {
+            x[2 * (i + 1)] = cos(2.0 * M_PI * i / corners);
+            x[2 * (i + 1) + 1] = sin(2.0 * M_PI * i / corners);
+            facets[2 * i] = cells[3 * i + 1] = i + 1;
+            facets[2 * i + 1] = cells[3 * i + 2] = (i + 1) % corners + 1;
+            cells[3 * i] = 0;
+        }
+        struct cells view = {2, corners + 1, x, corners, cells};
+        GOOD(faces_build(&view, true, &faces, &error));
+        assert_int_equal(faces.count, corners);
+        struct quadrature_rule rule = quadrature_face_rule(2);
+        for (int64_t p = 0; p < faces.count * 2; p++) { /* linear fields along each edge */
+            ptr[p + 1] = 2 * (p + 1);
+            widen[p] = 1.0;
+            for (int k = 0; k < 2; k++) {
+                idx[2 * p + k] = faces.node[p / 2 * 2 + k];
+                phi[2 * p + k] = rule.barycentric[p % 2 * 2 + k];
+            }
+        }
+        struct neighbours lists = {faces.count * 2, ptr, idx, widen};
+        struct face_table table = {2, corners + 1, x, &faces, 2, &lists, phi};
+        struct facet_set set = {corners, facets};
+        GOOD(boundary_averages_build(&table, &set, &averages, &error));
+        assert_int_equal(averages.count,
+                         corners < 12 ? 2 * corners : corners); /* turns of 90, 45, 30 degrees */
+        for (int64_t a = 0; a < averages.count && corners >= 12; a++) {
+            int32_t node = averages.node[a];
+            double weight[3] = {0.0}, chord = 2.0 * sin(M_PI / corners);
+            for (int64_t i = averages.ptr[a]; i < averages.ptr[a + 1]; i++) {
+                weight[averages.idx[i] == node ? 1 : 2 * (averages.idx[i] == node % corners + 1)] =
+                    averages.phi[i];
+            }
+            NEAR_TO(weight[0], 1.0 / 6.0, 1e-14); /* integrals of products of hats */
+            NEAR_TO(weight[1], 2.0 / 3.0, 1e-14);
+            NEAR_TO(weight[2], 1.0 / 6.0, 1e-14);
+            NEAR_TO(averages.area[a], chord, 1e-14);
+            NEAR_TO(averages.normal[2 * a], x[2 * node], 1e-14);
+            NEAR_TO(averages.normal[2 * a + 1], x[2 * node + 1], 1e-14);
+        }
+        boundary_averages_free(&averages);
+        faces_free(&faces);
+    }
+}
+
+/* Node values: one entry for each node, never split, with the table's row of the node. */
+static void node_values(void **state)
+{
+    (void)state;
+    for (int dim = 2; dim <= 3; dim++) {
+        struct error error;
+        struct sample sample = make_sample(dim, true, 5);
+        struct support_lists lists;
+        struct boundary_averages averages;
+        int64_t count = sample.cloud.node_count, expected = 0;
+        GOOD(support_build(&sample.options, &sample.grid, count, sample.cloud.x, "nodes", &lists, &error));
+        struct neighbours neighbours = {count, lists.ptr, lists.idx, lists.widen};
+        double *phi = sample_array(lists.ptr[count], sizeof *phi), area = 0.0;
+        GOOD(shape_table(&sample.options.mls, sample.cloud.x, sample.radius, &neighbours, sample.cloud.x,
+                         "nodes", phi, NULL, &error));
+        struct face_table table = face_table(&sample);
+        struct facet_set set = all_facets(&sample);
+        GOOD(boundary_nodes_build(&table, &set, &neighbours, phi, &averages, &error));
+        check_averages(&sample, &averages);
+        for (int32_t n = 0; n < count; n++) {
+            expected += sides_at(&sample, n) > 0;
+        }
+        assert_int_equal(averages.count, expected);
+        for (int64_t a = 0; a < averages.count; a++) {
+            int32_t node = averages.node[a];
+            area += averages.area[a];
+            assert_int_equal(averages.ptr[a + 1] - averages.ptr[a], lists.ptr[node + 1] - lists.ptr[node]);
+            for (int64_t i = 0; i < lists.ptr[node + 1] - lists.ptr[node]; i++) {
+                assert_int_equal(averages.idx[averages.ptr[a] + i], lists.idx[lists.ptr[node] + i]);
+                NEAR_TO(averages.phi[averages.ptr[a] + i], phi[lists.ptr[node] + i], 0.0);
+            }
+            for (int c = 0; c < dim; c++) {
+                NEAR_TO(averages.position[a * dim + c], sample.cloud.x[(int64_t)node * dim + c], 0.0);
+            }
+        }
+        NEAR_TO(area, 2.0 * dim * pow(sample_size, dim - 1), 1e-14);
+        free(phi);
+        support_free(&lists);
+        boundary_averages_free(&averages);
+        sample_free(&sample);
+    }
+}
+
+static void faults(void **state)
+{
+    (void)state;
+    for (int dim = 2; dim <= 3; dim++) {
+        struct sample sample = make_sample(dim, true, 4);
+        struct face_table table = face_table(&sample);
+        struct boundary_averages averages;
+        struct error error;
+        int32_t facets[6];
+        struct facet_set set = {2, facets};
+        memcpy(facets, sample.cloud.facets, (size_t)dim * sizeof *facets);
+        /* A face between two cells. */
+        int64_t inner = 0;
+        while (sample.faces.cell[2 * inner + 1] < 0) {
+            inner++;
+        }
+        memcpy(facets + dim, sample.faces.node + inner * dim, (size_t)dim * sizeof *facets);
+        assert_int_equal(boundary_averages_build(&table, &set, &averages, &error), STATUS_INPUT);
+        assert_string_equal(error.text, "facets: row 1 of the set is no boundary face of the cells");
+        assert_null(averages.node);
+        /* Nodes that are no face at all, and none that exist. */
+        facets[dim] = facets[dim + 1] = facets[0];
+        assert_int_equal(boundary_averages_build(&table, &set, &averages, &error), STATUS_INPUT);
+        assert_string_equal(error.text, "facets: row 1 of the set is no boundary face of the cells");
+        facets[dim] = (int32_t)sample.cloud.node_count;
+        assert_int_equal(boundary_averages_build(&table, &set, &averages, &error), STATUS_INPUT);
+        assert_string_equal(error.text, dim == 2 ? "facets: no node 16" : "facets: no node 64");
+        facets[dim] = -1;
+        assert_int_equal(boundary_averages_build(&table, &set, &averages, &error), STATUS_INPUT);
+        assert_string_equal(error.text, "facets: no node -1");
+        assert_null(averages.phi);
+        sample_free(&sample);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(hats_split_at_corners),
+        cmocka_unit_test(sides),
+        cmocka_unit_test(divergence_theorem),
+        cmocka_unit_test(other_vertex_orders),
+        cmocka_unit_test(gentle_and_sharp_turns),
+        cmocka_unit_test(node_values),
+        cmocka_unit_test(faults),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
