@@ -1,0 +1,125 @@
+/* Fault 25: whichever allocation fails, lib/approx reports it with STATUS_SYSTEM and leaves nothing
+ * allocated. See failing_allocator.h. */
+#include "approx/cloud.h"
+#include "approx/field_compare.h"
+#include "approx/quadrature.h"
+#include "base/memory.h"
+
+#include <errno.h>
+#include <gsl/gsl_errno.h>
+#include <malloc.h>
+#include <omp.h>
+#include <stdlib.h>
+
+#include "failing_allocator.h"
+
+#ifdef FAILING_ALLOCATOR
+
+/* What OpenMP allocates its teams by: counted, never denied. */
+void *memalign(size_t alignment, size_t size)
+{
+    return counted(__libc_memalign(alignment, size));
+}
+
+int posix_memalign(void **memory, size_t alignment, size_t size)
+{
+    *memory = counted(__libc_memalign(alignment, size));
+    return *memory == NULL ? ENOMEM : 0;
+}
+
+/* From a cloud to its smoothed table. */
+static enum status try_table(struct error *error)
+{
+    enum status status;
+    struct cloud_options wanted = {
+        .kind = CLOUD_JITTERED, .dim = 2, .count = {5, 5}, .high = {1.0, 1.0}, .jitter = 0.2};
+    struct support_options options = support_defaults(2);
+    struct quadrature_rule rule = quadrature_face_rule(2);
+    struct cloud cloud = {0};
+    struct faces faces = {0};
+    struct point_grid grid = {0};
+    struct support_lists lists = {0};
+    struct smoothed_table table = {0};
+    double spacing[25], radius[25], points[400], *phi = NULL;
+    TRY(cloud_make(&wanted, &cloud, error));
+    struct cells cells = {2, cloud.node_count, cloud.x, cloud.cell_count, cloud.cells};
+    TRY(cells_node_spacing(&cells, spacing, error));
+    TRY(support_radii(&options, cells.node_count, spacing, radius, error));
+    TRY(faces_build(&cells, false, &faces, error));
+    for (int64_t f = 0; f < faces.count; f++) {
+        quadrature_positions(&rule, 2, cloud.x, faces.node + 2 * f, points + 4 * f);
+    }
+    TRY(point_grid_build(&grid, 2, cells.node_count, cloud.x, radius, error));
+    TRY(support_build(&options, &grid, 2 * faces.count, points, "points", &lists, error));
+    TRY(NEW_ARRAY(&phi, lists.ptr[lists.count], error));
+    struct neighbours view = {lists.count, lists.ptr, lists.idx, lists.widen};
+    TRY(shape_table(&options.mls, cloud.x, radius, &view, points, "points", phi, NULL, error));
+    TRY(shape_smooth(&cells, &faces, 2, &view, phi, &table, error));
+done:
+    smoothed_table_free(&table);
+    support_free(&lists);
+    point_grid_free(&grid);
+    faces_free(&faces);
+    cloud_free(&cloud);
+    free(phi);
+    return status;
+}
+
+/* Two fields on clouds that differ: spacings, matching, interpolation, statistics. */
+static enum status try_compare(struct error *error)
+{
+    enum status status;
+    static const double values[49];
+    struct cloud_options wanted = {.kind = CLOUD_REGULAR, .dim = 2, .count = {7, 7}, .high = {1.0, 1.0}};
+    struct cloud first = {0}, second = {0};
+    struct field_comparison comparison = {0};
+    struct field_statistics statistics = {0};
+    TRY(cloud_make(&wanted, &first, error));
+    wanted.kind = CLOUD_JITTERED;
+    wanted.jitter = 0.2;
+    TRY(cloud_make(&wanted, &second, error));
+    struct nodal_field a = {{2, 49, first.x, 0, NULL}, 1, values};
+    struct nodal_field b = {{2, 49, second.x, 0, NULL}, 1, values};
+    TRY(field_compare(&a, &b, NULL, false, &comparison, error));
+    TRY(field_statistics(comparison.count, comparison.node, comparison.difference, &statistics, error));
+done:
+    field_statistics_free(&statistics);
+    field_comparison_free(&comparison);
+    cloud_free(&first);
+    cloud_free(&second);
+    return status;
+}
+
+/* One thread, and a first run unwatched: what OpenMP allocates for itself is not ours to test. */
+static void tables(void **state)
+{
+    (void)state;
+    struct error error;
+    assert_int_equal(try_table(&error), STATUS_OK);
+    fail_each(try_table, 30);
+}
+
+static void comparisons(void **state)
+{
+    (void)state;
+    struct error error;
+    assert_int_equal(try_compare(&error), STATUS_OK);
+    fail_each(try_compare, 30);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(tables),
+        cmocka_unit_test(comparisons),
+    };
+    gsl_set_error_handler_off(); /* as the tools do */
+    omp_set_num_threads(1);
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
+#else
+int main(void)
+{
+    return 0;
+}
+#endif
