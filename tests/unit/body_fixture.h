@@ -109,7 +109,8 @@ static inline void sample_points(struct sample *sample, int per_cell)
     }
 }
 
-static inline struct sample make_sample(int dim, bool conforming, int64_t per_axis)
+/* factor: support radius over local spacing. */
+static inline struct sample make_wide_sample(int dim, bool conforming, int64_t per_axis, double factor)
 {
     struct error error;
     struct sample sample = {.dim = dim, .conforming = conforming};
@@ -125,6 +126,7 @@ static inline struct sample make_sample(int dim, bool conforming, int64_t per_ax
                                   sample.cloud.cells};
     double *spacing = sample_array(sample.cloud.node_count, sizeof *spacing);
     sample.options = support_defaults(dim);
+    sample.options.factor = factor;
     sample.radius = sample_array(sample.cloud.node_count, sizeof(double));
     GOOD(cells_node_spacing(&sample.cells, spacing, &error));
     GOOD(support_radii(&sample.options, sample.cloud.node_count, spacing, sample.radius, &error));
@@ -133,6 +135,11 @@ static inline struct sample make_sample(int dim, bool conforming, int64_t per_ax
     sample_faces(&sample);
     sample_points(&sample, conforming ? 1 : dim == 2 ? 3 : 4);
     return sample;
+}
+
+static inline struct sample make_sample(int dim, bool conforming, int64_t per_axis)
+{
+    return make_wide_sample(dim, conforming, per_axis, 1.8);
 }
 
 static inline void sample_free(struct sample *sample)

@@ -90,7 +90,7 @@ static void hats_split_at_corners(void **state)
     (void)state;
     for (int dim = 2; dim <= 3; dim++) {
         for (int conforming = 0; conforming < 2; conforming++) {
-            struct sample sample = make_sample(dim, conforming == 1, dim == 2 ? 6 : 4);
+            struct sample sample = make_wide_sample(dim, conforming == 1, dim == 2 ? 6 : 5, 2.6);
             struct boundary_averages averages = averages_of(&sample, all_facets(&sample));
             int64_t expected = 0;
             double area = 0.0, outward[3] = {0.0};
@@ -104,6 +104,13 @@ static void hats_split_at_corners(void **state)
                 expected += sides_at(&sample, n);
             }
             assert_int_equal(averages.count, expected);
+            int64_t longest = 0;
+            for (int64_t a = 0; a < averages.count; a++) {
+                longest = averages.ptr[a + 1] - averages.ptr[a] > longest
+                              ? averages.ptr[a + 1] - averages.ptr[a]
+                              : longest;
+            }
+            assert_true(dim == 2 || longest > 64); /* so that its row has grown */
             for (int64_t a = 0; a < averages.count; a++) {
                 int aligned = 0;
                 area += averages.area[a];
@@ -244,9 +251,31 @@ static void other_vertex_orders(void **state)
     }
 }
 
-/* Hats stay whole on a curve that turns gently, and on two facets that touch at one node only they do not
- * mix.
- */
+/* In 3D two facets that touch at one node only do not share its hat. */
+static void touching_facets(void **state)
+{
+    (void)state;
+    struct sample sample = make_sample(3, true, 4);
+    struct facet_set side = facets_of_side(&sample, 0);
+    int pairs[4] = {0};
+    for (int64_t f = 1; f < side.count; f++) {
+        int32_t facets[6];
+        int shared = 0;
+        memcpy(facets, side.facet, 3 * sizeof *facets);
+        memcpy(facets + 3, side.facet + 3 * f, 3 * sizeof *facets);
+        for (int i = 0; i < 9; i++) {
+            shared += facets[i / 3] == facets[3 + i % 3];
+        }
+        struct boundary_averages averages = averages_of(&sample, (struct facet_set){2, facets});
+        assert_int_equal(averages.count, shared == 2 ? 4 : 6);
+        pairs[shared]++;
+        boundary_averages_free(&averages);
+    }
+    assert_true(pairs[0] > 0 && pairs[1] > 0 && pairs[2] > 0);
+    sample_free(&sample);
+}
+
+/* Hats stay whole on a curve that turns gently. */
 static void gentle_and_sharp_turns(void **state)
 {
     (void)state;
@@ -384,13 +413,10 @@ static void faults(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(hats_split_at_corners),
-        cmocka_unit_test(sides),
-        cmocka_unit_test(divergence_theorem),
-        cmocka_unit_test(other_vertex_orders),
-        cmocka_unit_test(gentle_and_sharp_turns),
-        cmocka_unit_test(node_values),
-        cmocka_unit_test(faults),
+        cmocka_unit_test(hats_split_at_corners), cmocka_unit_test(sides),
+        cmocka_unit_test(divergence_theorem),    cmocka_unit_test(other_vertex_orders),
+        cmocka_unit_test(touching_facets),       cmocka_unit_test(gentle_and_sharp_turns),
+        cmocka_unit_test(node_values),           cmocka_unit_test(faults),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

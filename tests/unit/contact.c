@@ -338,6 +338,11 @@ static void frictionless(void **state)
         NEAR_TO(force[3 * a + 1], -100.0 * 0.1 * 0.5, 1e-12);
         NEAR_TO(force[3 * a + 2], 0.0, 0.0);
     }
+    /* p = 10; with a multiplier of 10, p = 20. */
+    NEAR_TO(contact_energy(&contact), HATS * 0.5 * 100.0 / 200.0, 1e-12);
+    NEAR_TO(contact_augment(&contact), 0.1, 1e-15);
+    contact_force(&contact, u, force);
+    NEAR_TO(contact_energy(&contact), HATS * 0.5 * 300.0 / 200.0, 1e-12);
     contact_free(&contact);
 }
 

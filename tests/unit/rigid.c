@@ -444,6 +444,45 @@ static void seams(void **state)
     rigid_free(&surface);
 }
 
+/* Straight over the end of a facet, however it lies: found; straight over a place where the rim of one facet
+ * stands on another: that one is. */
+static void over_the_rim(void **state)
+{
+    (void)state;
+    struct random random = {7};
+    static struct shape shape;
+    for (int round = 0; round < 1000; round++) {
+        int dim = 2 + round % 2;
+        double corner[9], x[3], height = uniform(&random, -0.5, 0.5), part = uniform(&random, 0.0, 1.0);
+        shape = (struct shape){.dim = dim};
+        for (int i = 0; i < dim * dim; i++) {
+            corner[i] = uniform(&random, -1.0, 1.0);
+        }
+        add_facet(&shape, corner, corner + dim, corner + 2 * dim);
+        struct rigid_surface surface = built(&shape, false);
+        part = round % 4 < 2 ? 0.0 : part; /* over a corner, over an edge */
+        for (int a = 0; a < dim; a++) {
+            x[a] = corner[a] + (dim == 3 ? part * (corner[3 + a] - corner[a]) : 0.0) +
+                   height * surface.normal[a];
+        }
+        struct rigid_contact contact = rigid_closest(&surface, x, INFINITY);
+        assert_true(contact.found);
+        NEAR_TO(contact.gap, height, 1e-14);
+        rigid_free(&surface);
+    }
+    static const double floor[][2] = {{1, 0}, {-1, 0}}, wall[][2] = {{0, 1}, {0, 0}};
+    for (int order = 0; order < 2; order++) {
+        shape = (struct shape){.dim = 2};
+        add_facet(&shape, order ? floor[0] : wall[0], order ? floor[1] : wall[1], NULL);
+        add_facet(&shape, order ? wall[0] : floor[0], order ? wall[1] : floor[1], NULL);
+        struct rigid_surface surface = built(&shape, false);
+        struct rigid_contact contact = rigid_closest(&surface, (double[]){0.0, -0.3}, INFINITY);
+        assert_true(contact.found);
+        NEAR_TO(contact.gap, -0.3, 1e-15);
+        rigid_free(&surface);
+    }
+}
+
 static void fails(int dim, int64_t count, const double *corners, const char *expected)
 {
     struct rigid_surface surface;
@@ -491,6 +530,7 @@ int main(void)
         cmocka_unit_test(loose_facets),
         cmocka_unit_test(rims),
         cmocka_unit_test(seams),
+        cmocka_unit_test(over_the_rim),
         cmocka_unit_test(faults),
         cmocka_unit_test(not_a_number),
     };
