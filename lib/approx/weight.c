@@ -4,11 +4,13 @@
 
 const char *const weight_names[WEIGHT_COUNT] = {"quartic", "cubic", "wendland", "regularised"};
 
+/* In factors, so that rounding near r = 1 leaves nothing negative: (1 - r)^3 (1 + 3 r). */
 static void quartic(double r2, double *value, double *slope_over_r)
 {
     double r = sqrt(r2);
-    *value = 1.0 - r2 * (6.0 - r * (8.0 - 3.0 * r));
-    *slope_over_r = -12.0 * (1.0 - r) * (1.0 - r);
+    double s = 1.0 - r;
+    *value = s * s * s * (1.0 + 3.0 * r);
+    *slope_over_r = -12.0 * s * s;
 }
 
 static void cubic(double r2, double *value, double *slope_over_r)
@@ -38,7 +40,7 @@ static void regularised(double r2, double *value, double *slope_over_r)
     const double at_end = 1.0 / ((1.0 + e) * (1.0 + e));
     const double scale = 1.0 / (1.0 / (e * e) - at_end);
     double q = 1.0 / (r2 + e);
-    *value = (q * q - at_end) * scale;
+    *value = fmax(0.0, (q * q - at_end) * scale);
     *slope_over_r = -4.0 * q * q * q * scale;
 }
 

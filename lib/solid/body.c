@@ -4,6 +4,7 @@
 #include "solid/kernel.h"
 
 #include <math.h>
+#include <omp.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -257,6 +258,7 @@ static enum status build_hats(const struct body_input *input, struct body *body,
     TRY(NEW_ARRAY(&hats->material, hats->count, error));
     TRY(NEW_ARRAY(&hats->theta, hats->count, error));
     TRY(NEW_ARRAY(&hats->pressure, hats->count, error));
+    TRY(NEW_ARRAY(&hats->slope, hats->count, error));
     for (int64_t a = 0; a < hats->count; a++) {
         hats->material[a] = keys[hats->ptr[a]].material;
         for (int64_t i = hats->ptr[a]; i < hats->ptr[a + 1]; i++) {
@@ -271,6 +273,14 @@ done:
     return status;
 }
 
+/* Waiting for each other costs threads some microseconds a step: each must have more to do than that. */
+static int worthwhile_threads(const struct body *body)
+{
+    int64_t by_work = 1 + body->pair_count / 30000;
+    int64_t available = omp_get_max_threads();
+    return (int)(by_work < available ? by_work : available);
+}
+
 enum status body_build(const struct body_input *input, struct body *body, struct error *error)
 {
     enum status status;
@@ -279,8 +289,9 @@ enum status body_build(const struct body_input *input, struct body *body, struct
                           .point_count = input->point_count,
                           .material_count = input->material_count,
                           .kernels = force_kernels_select(input->dim),
-                          .averaged = input->hat_node != NULL && input->pointwise_share < 1.0,
-                          .pointwise_share = input->hat_node != NULL ? input->pointwise_share : 1.0};
+                          .averaged = input->hat_node != NULL,
+                          .pointwise_share = input->pointwise_share,
+                          .share_growth = input->share_growth};
     if (body->point_count < 1 || body->point_count > INT32_MAX / (body->dim + 1)) {
         return fail(error, STATUS_INPUT, "points.x: %lld points: none, or too many",
                     (long long)body->point_count);
@@ -290,6 +301,7 @@ enum status body_build(const struct body_input *input, struct body *body, struct
     TRY(cut_blocks(body, error));
     TRY(number_nodes(input, body, error));
     TRY(number_gather(body, error));
+    body->threads = worthwhile_threads(body);
     if (body->averaged) {
         TRY(build_hats(input, body, error));
     }
@@ -302,34 +314,34 @@ done:
 
 void body_free(struct body *body)
 {
-    void *arrays[] = {
-        body->order,      body->weight,      body->materials,     body->material,      body->shear,
-        body->bulk,       body->ptr,         body->local,         body->dphi,          body->blocks,
-        body->block_node, body->block_force, body->gather_ptr,    body->gather,        body->F,
-        body->J,          body->hats.ptr,    body->hats.point,    body->hats.share,    body->hats.volume,
-        body->hats.theta, body->hats.value,  body->hats.pressure, body->hats.material, body->hats.of_point};
+    void *arrays[] = {body->order,
+                      body->weight,
+                      body->materials,
+                      body->material,
+                      body->shear,
+                      body->bulk,
+                      body->ptr,
+                      body->local,
+                      body->dphi,
+                      body->blocks,
+                      body->block_node,
+                      body->block_force,
+                      body->gather_ptr,
+                      body->gather,
+                      body->F,
+                      body->J,
+                      body->hats.ptr,
+                      body->hats.point,
+                      body->hats.share,
+                      body->hats.volume,
+                      body->hats.theta,
+                      body->hats.value,
+                      body->hats.pressure,
+                      body->hats.slope,
+                      body->hats.material,
+                      body->hats.of_point};
     for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) {
         free(arrays[i]);
     }
     *body = (struct body){0};
-}
-
-void body_diagonal(const struct body *body, double *stiffness)
-{
-    int dim = body->dim;
-    memset(stiffness, 0, (size_t)body->node_count * sizeof *stiffness);
-    for (int64_t b = 0; b < body->block_count; b++) {
-        const struct block *block = &body->blocks[b];
-        const int32_t *node = body->block_node + block->first_node;
-        for (int64_t q = block->first_point; q < block->first_point + block->point_count; q++) {
-            double modulus = body->weight[q] * material_wave_modulus(&body->materials[body->material[q]]);
-            for (int64_t i = body->ptr[q]; i < body->ptr[q + 1]; i++) {
-                double sum = 0.0;
-                for (int a = 0; a < dim; a++) {
-                    sum += body->dphi[i * dim + a] * body->dphi[i * dim + a];
-                }
-                stiffness[node[body->local[i]]] += modulus * sum;
-            }
-        }
-    }
 }

@@ -27,7 +27,8 @@ struct body_input {
     /* Nodal volumetric averaging; NULL: pointwise volume throughout. */
     const int32_t *hat_node; /* point_count * (dim + 1): vertices of the background cell of each point */
     const double *hat_value; /* point_count * (dim + 1): their hat functions at the point, sum 1 */
-    double pointwise_share;  /* share of U(J) kept pointwise, 0..1 */
+    double pointwise_share;  /* s and c of the volumetric energy, see struct volume_hats; both >= 0 */
+    double share_growth;
 };
 
 /* The most nodes a block may hold: its displacements lie on the stack of a thread. */
@@ -39,7 +40,12 @@ struct block {
     bool neo_hookean;                 /* all its points; else the general law */
 };
 
-/* Volumes to average over: hat functions of the background nodes, one for each material at a node. */
+/* Volumes to average over: hat functions of the background nodes, one for each material at a node.
+ *
+ * The volumetric energy of hat a is V_a (U(theta_a) + kappa/2 (s v_a + c v_a^2)), where theta_a is the mean
+ * of J over the hat and v_a its variance. With s = 1, c = 0 it is the pointwise energy of U = kappa/2 (J -
+ * 1)^2, with s = c = 0 pure nodal averaging, which does not lock but lets single cells fold: so the share s +
+ * 2 c v_a of the pointwise law grows where J varies within a hat, and vanishes where it does not. */
 struct volume_hats {
     int64_t count;
     int32_t *of_point; /* point_count * (dim + 1), hat of each vertex */
@@ -50,7 +56,8 @@ struct volume_hats {
     double *volume;    /* count: V_a = sum N_a w, m2 or m3 */
     int32_t *material; /* count */
     double *theta;     /* count: scratch, averaged J */
-    double *pressure;  /* count: scratch, dU/dJ at theta, Pa */
+    double *pressure;  /* count: scratch; the pressure at a point of the hat is pressure + slope * J, Pa */
+    double *slope;
 };
 
 struct force_kernels;
@@ -78,9 +85,10 @@ struct body {
     double *F;           /* dim * dim rows of point_count: deformation gradients of the last evaluation */
     double *J;           /* point_count */
     bool averaged;       /* nodal volumetric averaging */
-    double pointwise_share;
+    double pointwise_share, share_growth;
     struct volume_hats hats;
     const struct force_kernels *kernels; /* for this processor */
+    int threads;                         /* worth using for so many pairs */
 };
 
 /* Lay out a body; the input arrays are copied. STATUS_INPUT for a point without neighbours or of no weight.
@@ -107,8 +115,10 @@ void body_stress(const struct body *body, double *stress);
 /* F of each point at the last evaluation, gradient[point_count * 9], caller's order. */
 void body_gradient(const struct body *body, double *gradient);
 
-/* stiffness[node_count]: sum_q w (lambda + 2 mu) |grad phi|^2, N/m (2D: N/m2): bounds the diagonal of the
- * stiffness at rest. */
+/* stiffness[node_count], N/m (2D: N/m2): bounds the diagonal of the stiffness at the last evaluation's F, as
+ * sum_q w W''(y (x) grad phi), the second derivative of the energy along the rank-one change of F that is
+ * stiffest, y = F^-T grad phi; at rest sum_q w (lambda + 2 mu) |grad phi|^2. The neo-Hookean formula serves
+ * all materials. */
 void body_diagonal(const struct body *body, double *stiffness);
 
 #endif

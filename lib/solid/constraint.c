@@ -6,8 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Rows closer to dependence than this are refused. */
-static const double least_pivot = 1e-10;
+/* Rows closer to dependence than this are dropped. */
+static const double least_pivot = 1e-8;
 
 void constraint_rows_init(struct constraint_rows *rows, int dim)
 {
@@ -167,20 +167,18 @@ done:
 }
 
 enum status constraint_build(const struct constraint_rows *rows, int64_t node_count, const double *mass,
-                             struct constraint *constraint, int64_t *dependent, struct error *error)
+                             struct constraint *constraint, struct error *error)
 {
     enum status status = STATUS_OK;
     int64_t *ptr = NULL, *column = NULL;
     double *value = NULL;
     *constraint = (struct constraint){.node_count = node_count, .rows = rows, .mass = mass};
-    *dependent = -1;
     if (rows->count == 0) {
         return STATUS_OK;
     }
     TRY(NEW_ARRAY(&constraint->multiplier, rows->count, error));
     TRY(assemble(rows, node_count, mass, &ptr, &column, &value, error));
-    TRY(envelope_factorise(rows->count, ptr, column, value, least_pivot, &constraint->factor, dependent,
-                           error));
+    TRY(envelope_factorise(rows->count, ptr, column, value, least_pivot, &constraint->factor, error));
 done:
     free(ptr);
     free(column);
@@ -236,11 +234,18 @@ void constraint_project(struct constraint *constraint, const double *factor, dou
     }
 }
 
-double constraint_violation(const struct constraint *constraint, const double *factor, const double *u)
+double constraint_violation(const struct constraint *constraint, const double *factor, const double *u,
+                            int64_t *row)
 {
     double worst = 0.0;
     for (int64_t r = 0; r < constraint->rows->count; r++) {
-        worst = fmax(worst, fabs(defect(constraint->rows, r, factor, u)));
+        double violation = fabs(defect(constraint->rows, r, factor, u));
+        if (!(violation <= worst)) {
+            worst = violation;
+            if (row != NULL) {
+                *row = r;
+            }
+        }
     }
     return worst;
 }

@@ -43,9 +43,10 @@ struct constraint {
     double *multiplier; /* count: of the last projection, N s2 in the step's scaling */
 };
 
-/* Factor G M^-1 G^T. STATUS_VERDICT when a row depends on others; *dependent is its index, else -1. */
+/* Factor G M^-1 G^T. Rows that depend on others are dropped (factor.dropped): they are met when their targets
+ * agree with the others', see constraint_violation, and bear no force. */
 MUST_CHECK enum status constraint_build(const struct constraint_rows *rows, int64_t node_count,
-                                        const double *mass, struct constraint *constraint, int64_t *dependent,
+                                        const double *mass, struct constraint *constraint,
                                         struct error *error);
 void constraint_free(struct constraint *constraint);
 
@@ -53,7 +54,8 @@ void constraint_free(struct constraint *constraint);
  */
 void constraint_project(struct constraint *constraint, const double *factor, double *u);
 
-/* Largest |target * factor - G u|, m. */
-double constraint_violation(const struct constraint *constraint, const double *factor, const double *u);
+/* Largest |target * factor - G u|, m; *row, unless NULL, receives where. */
+double constraint_violation(const struct constraint *constraint, const double *factor, const double *u,
+                            int64_t *row);
 
 #endif

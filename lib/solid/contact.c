@@ -44,8 +44,8 @@ static enum status check_side(const struct contact *contact, struct error *error
     return STATUS_OK;
 }
 
-/* Facets are chords of a curved boundary, and their mean lies h^2/6r beneath its nodes, which are on it: the gap
- * is that of the boundary, so the mean is raised to the node along the hat's normal. Zero on flats. */
+/* Facets are chords of a curved boundary, and their mean lies h^2/6r beneath its nodes, which are on it: the
+ * gap is that of the boundary, so the mean is raised to the node along the hat's normal. Zero on flats. */
 static void raise_to_node(const struct contact *contact, int64_t a, const double *X, double x[3])
 {
     int dim = contact->dim;

@@ -4,13 +4,17 @@
 /* Room for the displacements of a block's nodes. */
 #define MAX_LOCAL (BODY_MAX_BLOCK_NODES * 4)
 
-/* Averaged dU/dJ at a point of a body with nodal volumes. */
-static double averaged_pressure(const struct body *body, int64_t q)
+/* Volumetric pressure at a point: that of the hats around it, or its own. */
+static double pressure_at(const struct body *body, int64_t q)
 {
     int corners = body->dim + 1;
     double sum = 0.0;
+    if (!body->averaged) {
+        return material_pressure(&body->materials[body->material[q]], body->J[q]);
+    }
     for (int64_t k = q * corners; k < (q + 1) * corners; k++) {
-        sum += body->hats.value[k] * body->hats.pressure[body->hats.of_point[k]];
+        int32_t hat = body->hats.of_point[k];
+        sum += body->hats.value[k] * (body->hats.pressure[hat] + body->hats.slope[hat] * body->J[q]);
     }
     return sum;
 }
@@ -36,10 +40,7 @@ static void full_stress(const struct body *body, int64_t q, double P[9])
     full_gradient(body, q, F);
     material_shape_stress(material, F, P);
     cofactor(F, C);
-    double pressure = body->pointwise_share * material_pressure(material, body->J[q]);
-    if (body->averaged) {
-        pressure += (1.0 - body->pointwise_share) * averaged_pressure(body, q);
-    }
+    double pressure = pressure_at(body, q);
     for (int k = 0; k < 9; k++) {
         P[k] += pressure * C[k];
     }
@@ -70,16 +71,32 @@ static void stress_block(struct body *body, const struct block *block, double *l
     body->kernels->scatter(body, block, (const double(*)[MAX_BLOCK_POINTS])P, local);
 }
 
-/* theta_a and dU/dJ(theta_a) of hats first..last-1. */
-static void average_volume(struct body *body, int64_t a)
+/* Mean and variance of J over a hat. */
+static void average_volume(struct body *body, int64_t a, double *mean, double *variance)
 {
-    struct volume_hats *hats = &body->hats;
-    double sum = 0.0;
+    const struct volume_hats *hats = &body->hats;
+    double sum = 0.0, squares = 0.0;
     for (int64_t i = hats->ptr[a]; i < hats->ptr[a + 1]; i++) {
         sum += hats->share[i] * body->J[hats->point[i]];
     }
-    hats->theta[a] = sum;
-    hats->pressure[a] = material_pressure(&body->materials[hats->material[a]], sum);
+    for (int64_t i = hats->ptr[a]; i < hats->ptr[a + 1]; i++) {
+        double difference = body->J[hats->point[i]] - sum;
+        squares += hats->share[i] * difference * difference;
+    }
+    *mean = sum;
+    *variance = squares;
+}
+
+/* Pressure of a hat, from the derivative of its energy: U'(theta) + kappa (s + 2 c v) (J - theta). */
+static void set_pressure(struct body *body, int64_t a)
+{
+    struct volume_hats *hats = &body->hats;
+    const struct material *material = &body->materials[hats->material[a]];
+    double mean, variance;
+    average_volume(body, a, &mean, &variance);
+    hats->theta[a] = mean;
+    hats->slope[a] = material_bulk(material) * (body->pointwise_share + 2.0 * body->share_growth * variance);
+    hats->pressure[a] = material_pressure(material, mean) - hats->slope[a] * mean;
 }
 
 /* The force on a node: its blocks' contributions in block order. */
@@ -101,7 +118,7 @@ static void sum_node(const struct body *body, int64_t node, double *force)
 /* The loops over blocks, hats and nodes. With force == NULL only F, J and the averages. */
 static void evaluate(struct body *body, const double *u, double *force)
 {
-#pragma omp parallel
+#pragma omp parallel num_threads(body->threads)
     {
         double local[MAX_LOCAL] __attribute__((aligned(64)));
 #pragma omp for schedule(static)
@@ -114,7 +131,7 @@ static void evaluate(struct body *body, const double *u, double *force)
         if (body->averaged) {
 #pragma omp for schedule(static)
             for (int64_t a = 0; a < body->hats.count; a++) {
-                average_volume(body, a);
+                set_pressure(body, a);
             }
             if (force != NULL) {
 #pragma omp for schedule(static)
@@ -158,12 +175,18 @@ double body_energy(struct body *body, const double *u)
     for (int64_t q = 0; q < body->point_count; q++) {
         const struct material *material = &body->materials[body->material[q]];
         full_gradient(body, q, F);
-        energy += body->weight[q] * (material_shape_energy(material, F) +
-                                     body->pointwise_share * material_volume_energy(material, body->J[q]));
+        energy += body->weight[q] * material_shape_energy(material, F);
+        if (!body->averaged) {
+            energy += body->weight[q] * material_volume_energy(material, body->J[q]);
+        }
     }
     for (int64_t a = 0; body->averaged && a < body->hats.count; a++) {
-        energy += (1.0 - body->pointwise_share) * body->hats.volume[a] *
-                  material_volume_energy(&body->materials[body->hats.material[a]], body->hats.theta[a]);
+        const struct material *material = &body->materials[body->hats.material[a]];
+        double mean, variance;
+        average_volume(body, a, &mean, &variance);
+        energy += body->hats.volume[a] * (material_volume_energy(material, mean) +
+                                          0.5 * material_bulk(material) * variance *
+                                              (body->pointwise_share + body->share_growth * variance));
     }
     return energy;
 }
@@ -179,5 +202,38 @@ void body_gradient(const struct body *body, double *gradient)
 {
     for (int64_t q = 0; q < body->point_count; q++) {
         full_gradient(body, q, gradient + body->order[q] * 9);
+    }
+}
+
+void body_diagonal(const struct body *body, double *stiffness)
+{
+    int dim = body->dim;
+    memset(stiffness, 0, (size_t)body->node_count * sizeof *stiffness);
+    for (int64_t b = 0; b < body->block_count; b++) {
+        const struct block *block = &body->blocks[b];
+        const int32_t *node = body->block_node + block->first_node;
+        for (int64_t q = block->first_point; q < block->first_point + block->point_count; q++) {
+            double F[9], C[9], J = body->J[q], I1 = 0.0;
+            full_gradient(body, q, F);
+            cofactor(F, C);
+            for (int k = 0; k < 9; k++) {
+                I1 += F[k] * F[k];
+            }
+            double shear = body->weight[q] * body->shear[q] / cbrt(J * J);
+            double along = body->weight[q] * body->bulk[q] + 5.0 / 9.0 * I1 * shear / (J * J);
+            for (int64_t i = body->ptr[q]; i < body->ptr[q + 1]; i++) {
+                const double *g = body->dphi + i * dim;
+                double g2 = 0.0, y2 = 0.0; /* |grad phi|^2, |J F^-T grad phi|^2 */
+                for (int a = 0; a < dim; a++) {
+                    double y = 0.0;
+                    for (int k = 0; k < dim; k++) {
+                        y += C[3 * a + k] * g[k];
+                    }
+                    g2 += g[a] * g[a];
+                    y2 += y * y;
+                }
+                stiffness[node[body->local[i]]] += fmax(0.0, along * y2 - shear * g2 / 3.0);
+            }
+        }
     }
 }

@@ -168,29 +168,28 @@ KERNEL_INLINE double inverse_cube_root(double x)
     return y;
 }
 
-/* dU/dJ of each point of a neo-Hookean block, weighted: its own share and that of the nodal averages. */
+/* Volumetric pressure of each point of a neo-Hookean block, weighted: its own, or that of the hats around it.
+ */
 KERNEL_INLINE void kernel_pressures(const struct body *body, const struct block *block, int dim,
                                     double *pressure)
 {
     const double *J = body->J + block->first_point, *bulk = body->bulk + block->first_point;
     const double *weight = body->weight + block->first_point;
-    double share = body->pointwise_share;
-    for (int64_t i = 0; i < block->point_count; i++) {
-        pressure[i] = share * bulk[i] * (J[i] - 1.0);
-    }
-    if (body->averaged) {
-        const int32_t *hat = body->hats.of_point + block->first_point * (dim + 1);
-        const double *value = body->hats.value + block->first_point * (dim + 1);
+    if (!body->averaged) {
         for (int64_t i = 0; i < block->point_count; i++) {
-            double sum = 0.0;
-            for (int k = 0; k <= dim; k++) {
-                sum += value[i * (dim + 1) + k] * body->hats.pressure[hat[i * (dim + 1) + k]];
-            }
-            pressure[i] += (1.0 - share) * sum;
+            pressure[i] = weight[i] * bulk[i] * (J[i] - 1.0);
         }
+        return;
     }
+    const int32_t *hat = body->hats.of_point + block->first_point * (dim + 1);
+    const double *value = body->hats.value + block->first_point * (dim + 1);
     for (int64_t i = 0; i < block->point_count; i++) {
-        pressure[i] *= weight[i];
+        double level = 0.0, slope = 0.0;
+        for (int64_t k = i * (dim + 1); k < (i + 1) * (dim + 1); k++) {
+            level += value[k] * body->hats.pressure[hat[k]];
+            slope += value[k] * body->hats.slope[hat[k]];
+        }
+        pressure[i] = weight[i] * (level + slope * J[i]);
     }
 }
 

@@ -283,3 +283,19 @@ double material_pressure(const struct material *material, double J)
     }
     return material->bulk_modulus * (J - 1.0);
 }
+
+double material_bulk(const struct material *material)
+{
+    switch (material->model) {
+    case MATERIAL_NEO_HOOKEAN_LOG:
+        return lame_lambda(material);
+    case MATERIAL_ST_VENANT_KIRCHHOFF:
+        return 0.0;
+    case MATERIAL_NEO_HOOKEAN:
+    case MATERIAL_MOONEY_RIVLIN:
+    case MATERIAL_OGDEN:
+    case MATERIAL_MODEL_COUNT:
+        break;
+    }
+    return material->bulk_modulus;
+}

@@ -37,6 +37,9 @@ void material_set_moduli(struct material *material, double youngs_modulus, doubl
 /* lambda + 2 mu, Pa: the modulus of pressure waves at rest. */
 double material_wave_modulus(const struct material *material);
 
+/* U''(1), Pa: 0 for laws without U. */
+double material_bulk(const struct material *material);
+
 /* W_shape(F). NaN when det F <= 0. */
 double material_shape_energy(const struct material *material, const double F[9]);
 

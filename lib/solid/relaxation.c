@@ -6,12 +6,21 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const int64_t check_interval = 20;     /* steps between estimates */
-static const int first_iterations = 40;       /* of the power iteration, at rest */
-static const int most_augmentations = 20;     /* of the contacts' multipliers */
+static const int64_t check_interval = 20;                        /* steps between estimates */
+static const int64_t keep_interval = 200;                        /* steps between states to go back to */
+static const int most_retreats = 8;                              /* from inverted points */
+static const int first_iterations = 40;                          /* of the power iteration, at rest */
+static const double most_stiffening = 1.1, most_softening = 0.5; /* of a node since its mass was set */
+static const int most_augmentations = 20;                        /* of the contacts' multipliers */
 static const double penetration_share = 1e-4; /* of the body's size: what a contact may penetrate */
-static const int later_iterations = 1;        /* at every check: the mode is kept, so that it sharpens */
+static const int later_iterations = 3;        /* at every check: the mode is kept, so that it sharpens */
 enum { WINDOWS = 8 };                         /* recent Rayleigh quotients that the error estimate looks at */
+
+/* A state to go back to. */
+struct kept_state {
+    double *u;
+    double load;
+};
 
 struct relaxation {
     struct solid_system *system;
@@ -29,6 +38,13 @@ struct relaxation {
     int64_t checks;
     double penetration_allowed; /* m */
     int augmentations;
+    bool mass_changed; /* since the last check: increments of the acceleration mean nothing */
+    enum status failure;
+    double load, load_rate; /* steps of the ramp applied so far, and per step */
+    double caution;         /* on the time step: 1 until an inversion */
+    int retreats;
+    struct kept_state newer, older;
+    int64_t frames; /* given so far */
 };
 
 static enum status allocate(struct relaxation *r, struct error *error)
@@ -43,6 +59,8 @@ static enum status allocate(struct relaxation *r, struct error *error)
     TRY(NEW_ARRAY(&r->last_u, r->size, error));
     TRY(NEW_ARRAY(&r->last_acceleration, r->size, error));
     TRY(NEW_ARRAY(&r->acceleration, r->size, error));
+    TRY(NEW_ARRAY(&r->newer.u, r->size, error));
+    TRY(NEW_ARRAY(&r->older.u, r->size, error));
 done:
     return status;
 }
@@ -58,6 +76,8 @@ static void release(struct relaxation *r)
     free(r->last_u);
     free(r->last_acceleration);
     free(r->acceleration);
+    free(r->newer.u);
+    free(r->older.u);
     constraint_free(&r->constraint);
 }
 
@@ -116,7 +136,7 @@ static void update_time_step(struct relaxation *r, const double *u, int iteratio
     r->report->force_evaluations += iterations;
     /* The estimate is from below and wanders: follow rises at once, falls slowly. */
     r->frequency = frequency > r->frequency ? frequency : 0.98 * r->frequency + 0.02 * frequency;
-    r->time_step = r->options->time_step_margin * 2.0 / r->frequency;
+    r->time_step = r->caution * r->options->time_step_margin * 2.0 / r->frequency;
 }
 
 /* One step; with `measure` the acceleration of the projected residual at the old u is kept. */
@@ -169,13 +189,14 @@ static void estimate(struct relaxation *r)
     double quotient = bottom > 0.0 ? mass_product(r, du, da) / bottom : 0.0;
     memcpy(r->last_u, r->before, (size_t)r->size * sizeof *r->before);
     memcpy(r->last_acceleration, r->acceleration, (size_t)r->size * sizeof *r->acceleration);
-    if (quotient > 0.0 && r->checks > 0) {
+    if (quotient > 0.0 && r->checks > 0 && !r->mass_changed) {
         quotient = fmin(quotient, r->frequency * r->frequency);
         r->low2 = quotient < r->low2 ? quotient : fmin(quotient, 1.2 * r->low2);
         r->damping = 2.0 * sqrt(r->low2);
         r->window[r->checks % WINDOWS] = r->low2;
     }
     r->checks++;
+    r->mass_changed = false;
     double least2 = INFINITY;
     for (int i = 0; i < WINDOWS; i++) {
         least2 = fmin(least2, r->window[i]);
@@ -193,14 +214,24 @@ static bool tell(const struct relaxation *r, int64_t at, const double *u)
     }
     struct progress progress = {.step = at, .u = u, .error = r->report->error, .remaining = -1.0};
     double ramp = (double)r->report->ramp_steps;
-    progress.time = fmin(1.0, (double)at / ramp);
-    if (at > r->report->ramp_steps && r->report->error > 0.0 && isfinite(r->report->error)) {
+    progress.time = r->load / ramp;
+    if (r->load >= ramp && r->report->error > 0.0 && isfinite(r->report->error)) {
         /* The error falls by about exp(-w dt) a step. */
         double to_go = log(fmax(1.0, r->report->error / r->options->tolerance)) /
                        (r->report->lowest_frequency * r->time_step);
         progress.remaining = to_go / (to_go + (double)at);
     }
     return r->options->progress(r->options->context, &progress);
+}
+
+/* Frames that are due at step n of the ramp; the last one is not given before the end. */
+static void give_frames(struct relaxation *r, int64_t n, const double *u)
+{
+    const struct relaxation_options *options = r->options;
+    double each = (double)r->report->ramp_steps / (double)options->frames;
+    while (r->frames + 1 < options->frames && (double)n >= each * (double)(r->frames + 1)) {
+        options->frame(options->context, ++r->frames, (double)n / (double)r->report->ramp_steps, u);
+    }
 }
 
 /* Deepest penetration of all contacts at the last evaluation, m. */
@@ -224,37 +255,114 @@ static void augment(struct relaxation *r)
     r->augmentations++;
 }
 
-static enum relaxation_outcome iterate(struct relaxation *r, double *u)
+/* Let the mass follow the stiffness where the body has stiffened or softened since it was last set, so that
+ * the critical step holds through large strains. False on failure. */
+static bool update_mass(struct relaxation *r, struct error *error)
 {
-    int64_t ramp = r->report->ramp_steps;
+    double *mass = r->scratch, highest = 0.0, lowest = INFINITY;
+    int64_t dependent;
+    system_relaxation_mass(r->system, mass);
+    for (int64_t n = 0; n < r->system->node_count; n++) {
+        highest = fmax(highest, mass[n] / r->mass[n]);
+        lowest = fmin(lowest, mass[n] / r->mass[n]);
+    }
+    if (!(highest > most_stiffening || lowest < most_softening)) {
+        return true;
+    }
+    memcpy(r->mass, mass, (size_t)r->system->node_count * sizeof *mass);
+    constraint_free(&r->constraint);
+    r->failure =
+        constraint_build(&r->system->rows, r->system->node_count, r->mass, &r->constraint, &dependent, error);
+    r->mass_changed = true;
+    return r->failure == STATUS_OK;
+}
+
+/* Keep the state every so often; the older of two is safely before any instability that shows. */
+static void keep_state(struct relaxation *r, const double *u)
+{
+    double *spare = r->older.u;
+    r->older = r->newer;
+    r->newer.u = spare;
+    r->newer.load = r->load;
+    memcpy(r->newer.u, u, (size_t)r->size * sizeof *u);
+}
+
+/* An inverted point: go back to a state before it, at rest, and go on with smaller steps and a slower load.
+ * False when that has been tried often enough: the deformation itself inverts. */
+static bool step_back(struct relaxation *r, double *u)
+{
+    if (r->retreats == most_retreats) {
+        return false;
+    }
+    r->retreats++;
+    r->caution *= 0.8;
+    r->load_rate *= 0.5;
+    r->load = r->older.load;
+    memcpy(u, r->older.u, (size_t)r->size * sizeof *u);
+    memcpy(r->newer.u, r->older.u, (size_t)r->size * sizeof *u);
+    r->newer.load = r->older.load;
+    memset(r->velocity, 0, (size_t)r->size * sizeof *r->velocity);
+    memset(r->mode, 0, (size_t)r->size * sizeof *r->mode);
+    r->mass_changed = true;
+    system_load_factors(r->system, fmin(1.0, r->load / (double)r->report->ramp_steps));
+    (void)system_residual(r->system, u, r->residual);
+    update_time_step(r, u, first_iterations);
+    return true;
+}
+
+/* Whether a converged state may stand; contacts that penetrate too deep are augmented and relaxed again. */
+static bool contacts_hold(struct relaxation *r)
+{
+    if (r->augmentations == most_augmentations || !(largest_penetration(r) > r->penetration_allowed)) {
+        return true;
+    }
+    augment(r);
+    return false;
+}
+
+static enum relaxation_outcome iterate(struct relaxation *r, double *u, struct error *error)
+{
+    double ramp = (double)r->report->ramp_steps;
     int64_t most = r->options->most_steps > 0 ? r->options->most_steps : 1000000;
-    int64_t settled = 0;
+    int64_t settled = 0, at_full_load = 0;
+    bool gives_frames = r->options->frame != NULL && r->options->frames > 0;
     for (int64_t n = 1; n <= most; n++) {
         bool measure = n % check_interval == 0;
-        system_load_factors(r->system, n < ramp ? (double)n / (double)ramp : 1.0);
-        if (!step(r, u, measure)) {
-            return RELAXATION_INVERTED;
-        }
+        r->load = fmin(ramp, r->load + r->load_rate);
+        at_full_load = r->load < ramp ? 0 : at_full_load + 1;
+        system_load_factors(r->system, r->load / ramp);
         r->report->steps = n;
+        if (!step(r, u, measure)) {
+            if (!step_back(r, u)) {
+                return RELAXATION_INVERTED;
+            }
+            continue;
+        }
+        if (gives_frames && r->load < ramp) {
+            give_frames(r, (int64_t)r->load, u);
+        }
         if (!measure) {
             continue;
         }
         estimate(r);
+        if (n % keep_interval == 0) {
+            keep_state(r, u);
+        }
         (void)system_residual(r->system, u, r->residual);
         r->report->force_evaluations++;
+        if (!update_mass(r, error)) {
+            return RELAXATION_STOPPED;
+        }
         update_time_step(r, u, later_iterations);
         if (!tell(r, n, u)) {
             return RELAXATION_STOPPED;
         }
-        settled = n > ramp + WINDOWS * check_interval && r->report->error <= r->options->tolerance
-                      ? settled + 1
-                      : 0;
+        bool small = at_full_load > WINDOWS * check_interval && r->report->error <= r->options->tolerance;
+        settled = small ? settled + 1 : 0;
         if (settled >= 2) {
-            if (r->augmentations == most_augmentations ||
-                !(largest_penetration(r) > r->penetration_allowed)) {
+            if (contacts_hold(r)) {
                 return RELAXATION_CONVERGED;
             }
-            augment(r);
             settled = 0;
         }
     }
@@ -277,31 +385,34 @@ enum status relaxation_run(struct solid_system *system, const struct relaxation_
                            double *row_force, struct relaxation_report *report, struct error *error)
 {
     enum status status;
-    struct relaxation r = {
-        .system = system, .options = options, .report = report, .size = system->node_count * system->dim};
-    int64_t dependent;
+    struct relaxation r = {.system = system,
+                           .options = options,
+                           .report = report,
+                           .size = system->node_count * system->dim,
+                           .load_rate = 1.0,
+                           .caution = 1.0};
     *report = (struct relaxation_report){.least_jacobian = 1.0};
     TRY(allocate(&r, error));
-    system_relaxation_mass(system, r.mass);
-    status = constraint_build(&system->rows, system->node_count, r.mass, &r.constraint, &dependent, error);
-    if (status == STATUS_VERDICT && dependent >= 0) {
-        status =
-            fail(error, STATUS_VERDICT, "the condition at node %d follows from others: prescribe it once",
-                 system->rows.node[dependent]);
-    }
-    TRY(status);
-    r.penetration_allowed = penetration_share * body_size(system);
-    report->ramp_steps = options->ramp_steps > 0 ? options->ramp_steps : choose_ramp(&r);
     system_load_factors(system, 0.0);
     (void)system_residual(system, u, r.residual);
+    system_relaxation_mass(system, r.mass);
+    TRY(system_constrain(system, r.mass, &r.constraint, error));
+    memcpy(r.newer.u, u, (size_t)r.size * sizeof *u);
+    memcpy(r.older.u, u, (size_t)r.size * sizeof *u);
+    r.penetration_allowed = penetration_share * body_size(system);
+    report->ramp_steps = options->ramp_steps > 0 ? options->ramp_steps : choose_ramp(&r);
     update_time_step(&r, u, first_iterations);
     r.low2 = r.frequency * r.frequency * 1e-4;
     r.damping = 2.0 * sqrt(r.low2);
     for (int i = 0; i < WINDOWS; i++) {
         r.window[i] = r.low2;
     }
-    report->outcome = iterate(&r, u);
+    report->outcome = iterate(&r, u, error);
+    TRY(r.failure);
     report->largest_frequency = r.frequency;
+    if (report->outcome == RELAXATION_CONVERGED && options->frame != NULL && options->frames > 0) {
+        options->frame(options->context, options->frames, 1.0, u);
+    }
     if (row_force != NULL && system->rows.count > 0) {
         measure_row_forces(&r, u, row_force);
     }

@@ -8,29 +8,18 @@
 #ifndef SOLID_RELAXATION_H
 #define SOLID_RELAXATION_H
 
+#include "solid/progress.h"
 #include "solid/system.h"
-
-#include <stdbool.h>
-
-/* What a run looks like while it lasts. */
-struct progress {
-    int64_t step;
-    double time;      /* s; 0..1 of the load in relaxation */
-    double error;     /* estimated remaining error relative to the displacement (relaxation), or 0 */
-    double remaining; /* estimated share of the steps still to go, 0..1, negative: unknown */
-    const double *u;  /* parameters */
-};
-
-/* Called every so many steps; returns false to stop the run. */
-typedef bool progress_function(void *context, const struct progress *progress);
 
 struct relaxation_options {
     double tolerance;        /* on the estimated remaining error relative to the displacement, e.g. 1e-6 */
     double time_step_margin; /* share of the critical step, e.g. .9 */
     int64_t ramp_steps;      /* steps over which the load is applied; 0: chosen by the largest displacement */
     int64_t most_steps;      /* 0: 1e6 */
+    int64_t frames;          /* states to give, evenly over the ramp; the last one is the result */
+    frame_function *frame;   /* NULL: none */
     progress_function *progress;
-    void *context;
+    void *context; /* of frame and progress */
 };
 
 enum relaxation_outcome {

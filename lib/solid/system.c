@@ -35,6 +35,19 @@ void system_free(struct solid_system *system)
     *system = (struct solid_system){0};
 }
 
+enum status system_constrain(const struct solid_system *system, const double *mass,
+                             struct constraint *constraint, struct error *error)
+{
+    int64_t dependent;
+    enum status status =
+        constraint_build(&system->rows, system->node_count, mass, constraint, &dependent, error);
+    if (status == STATUS_VERDICT && dependent >= 0) {
+        return fail(error, STATUS_VERDICT, "the condition at node %d follows from others: prescribe it once",
+                    system->rows.node[dependent]);
+    }
+    return status;
+}
+
 void system_load_factors(struct solid_system *system, double s)
 {
     for (int64_t i = 0; i < system->curve_count; i++) {
@@ -81,6 +94,22 @@ static void add_pressure(const struct solid_system *system, const struct pressur
     }
 }
 
+void system_add_loads(const struct solid_system *system, const double *u, double *force)
+{
+    int64_t size = system->node_count * system->dim;
+    for (int64_t l = 0; l < system->load_count; l++) {
+        double factor = system->factor[system->loads[l].curve];
+        const double *load = system->loads[l].force;
+        for (int64_t i = 0; i < size; i++) {
+            force[i] += factor * load[i];
+        }
+    }
+    for (int64_t l = 0; l < system->pressure_count; l++) {
+        const struct pressure_load *load = &system->pressures[l];
+        add_pressure(system, load, load->pressure * system->factor[load->curve], u, force);
+    }
+}
+
 struct deformation system_residual(struct solid_system *system, const double *u, double *residual)
 {
     int64_t size = system->node_count * system->dim;
@@ -88,17 +117,7 @@ struct deformation system_residual(struct solid_system *system, const double *u,
     for (int64_t i = 0; i < size; i++) {
         residual[i] = -residual[i];
     }
-    for (int64_t l = 0; l < system->load_count; l++) {
-        double factor = system->factor[system->loads[l].curve];
-        const double *force = system->loads[l].force;
-        for (int64_t i = 0; i < size; i++) {
-            residual[i] += factor * force[i];
-        }
-    }
-    for (int64_t l = 0; l < system->pressure_count; l++) {
-        const struct pressure_load *load = &system->pressures[l];
-        add_pressure(system, load, load->pressure * system->factor[load->curve], u, residual);
-    }
+    system_add_loads(system, u, residual);
     for (int64_t c = 0; c < system->contact_count; c++) {
         contact_force(&system->contacts[c], u, residual);
     }

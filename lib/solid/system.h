@@ -51,6 +51,14 @@ void system_free(struct solid_system *system);
 /* Values of all curves at s within [0, 1], into system->factor. */
 void system_load_factors(struct solid_system *system, double s);
 
+/* Factor the conditions with a mass, which the constraint keeps in view. STATUS_VERDICT, naming the node,
+ * when one follows from others. */
+MUST_CHECK enum status system_constrain(const struct solid_system *system, const double *mass,
+                                        struct constraint *constraint, struct error *error);
+
+/* force[node_count * dim] += dead loads and pressures at system->factor, at parameters u. */
+void system_add_loads(const struct solid_system *system, const double *u, double *force);
+
 /* residual[node_count * dim] = loads at system->factor + contact - internal forces, at parameters u. */
 struct deformation system_residual(struct solid_system *system, const double *u, double *residual);
 
@@ -58,9 +66,10 @@ struct deformation system_residual(struct solid_system *system, const double *u,
  * same critical step (1) however the cloud is graded; contact penalties included. mass[node_count] > 0. */
 void system_relaxation_mass(const struct solid_system *system, double *mass);
 
-/* Largest eigenvalue of M^-1 K at u by `iterations` steps of power iteration that continue from
- * mode[node_count * dim] (a start of zeros is replaced by a fixed pseudo-random one). residual must hold the
- * residual at u. The estimate is from below; repeated calls sharpen it. scratch: 2 * node_count * dim. */
+/* Largest frequency, the root of the largest eigenvalue of M^-1 K at u, by `iterations` steps of power
+ * iteration that continue from mode[node_count * dim] (a start of zeros is replaced by a fixed pseudo-random
+ * one). residual must hold the residual at u. The estimate is from below; repeated calls sharpen it. scratch:
+ * 2 * node_count * dim. */
 double system_largest_frequency(struct solid_system *system, const double *mass, const double *u,
                                 const double *residual, int iterations, double *mode, double *scratch);
 

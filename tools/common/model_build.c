@@ -5,8 +5,11 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* Default share of U(J) kept pointwise beside the nodal averages. */
+/* Share of the pointwise volumetric law kept beside the nodal averages, and its growth with the variance of J
+ * within a hat (see body.h): nothing where J is smooth, 10 % at a standard deviation of 5 %, where cells
+ * would begin to fold. */
 static const double default_pointwise_share = 0.0;
+static const double share_growth = 20.0;
 
 static void set_material(const struct scene_material *section, struct material *material)
 {
@@ -169,7 +172,8 @@ static enum status build_body(const struct model_input *input, struct solid_syst
                               .hat_node = hat_node,
                               .hat_value = hat_value,
                               .pointwise_share = solver->pointwise_share >= 0.0 ? solver->pointwise_share
-                                                                                : default_pointwise_share};
+                                                                                : default_pointwise_share,
+                              .share_growth = share_growth};
     TRY(body_build(&body, &system->body, error));
 done:
     free(materials.items);

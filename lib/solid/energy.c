@@ -1,0 +1,81 @@
+#include "solid/energy.h"
+
+#include "base/memory.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+/* Energies below this share of shear modulus times volume are not to be told from round-off. */
+static const double round_off = 1e-12;
+
+enum status energy_log_add(struct energy_log *log, const struct energy *row, struct error *error)
+{
+    if (log->count == log->capacity) {
+        int64_t capacity = 2 * log->capacity + 64;
+        struct energy *grown = array_grow(log->rows, capacity, sizeof *grown);
+        if (grown == NULL) {
+            return fail_memory(error, "energies");
+        }
+        log->rows = grown;
+        log->capacity = capacity;
+    }
+    log->rows[log->count++] = *row;
+    return STATUS_OK;
+}
+
+void energy_log_free(struct energy_log *log)
+{
+    free(log->rows);
+    *log = (struct energy_log){0};
+}
+
+struct energy_balance energy_balance_begin(const struct solid_system *system)
+{
+    const struct body *body = &system->body;
+    struct energy_balance balance = {0};
+    for (int64_t q = 0; q < body->point_count; q++) {
+        balance.largest += round_off * body->weight[q] * body->materials[body->material[q]].shear_modulus;
+    }
+    return balance;
+}
+
+void energy_balance_complete(struct energy_balance *balance, bool first, struct energy *row)
+{
+    double stored = row->kinetic + row->internal + row->contact;
+    if (first) {
+        balance->start = stored - balance->work;
+    }
+    row->work = balance->work;
+    row->dissipated = balance->dissipated;
+    const double parts[] = {row->kinetic, row->internal, row->contact, row->work, row->dissipated};
+    for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) {
+        balance->largest = fmax(balance->largest, fabs(parts[i]));
+    }
+    row->error = (stored + row->dissipated - row->work - balance->start) / balance->largest;
+    if (!(fabs(row->error) <= balance->worst)) { /* NaN stays */
+        balance->worst = fabs(row->error);
+    }
+}
+
+double energy_kinetic(const struct solid_system *system, const double *v, const double *w)
+{
+    int dim = system->dim;
+    double sum = 0.0;
+    for (int64_t n = 0; n < system->node_count; n++) {
+        double part = 0.0;
+        for (int64_t i = n * dim; i < (n + 1) * dim; i++) {
+            part += v[i] * w[i];
+        }
+        sum += system->lumped_mass[n] * part;
+    }
+    return 0.5 * sum;
+}
+
+double energy_contact(const struct solid_system *system)
+{
+    double sum = 0.0;
+    for (int64_t c = 0; c < system->contact_count; c++) {
+        sum += contact_energy(&system->contacts[c]);
+    }
+    return sum;
+}

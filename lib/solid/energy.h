@@ -1,0 +1,49 @@
+/* Energies of a run and their balance: kinetic + internal + contact + dissipated = external work + what there
+ * was at the begin. */
+#ifndef SOLID_ENERGY_H
+#define SOLID_ENERGY_H
+
+#include "solid/system.h"
+
+/* Energies at one time: J, in 2D J/m. A row of ENERGY_COLUMNS numbers. */
+struct energy {
+    double time;       /* s */
+    double kinetic;    /* 1/2 v- M v+, of the velocities half a step before and after */
+    double internal;   /* elastic, of the body */
+    double contact;    /* of the contacts' penalties */
+    double work;       /* of loads and of prescribed motion, since the begin */
+    double dissipated; /* by damping, since the begin */
+    double error;      /* of the balance, relative to the largest energy so far */
+};
+enum { ENERGY_COLUMNS = 7 };
+
+struct energy_log {
+    int64_t count, capacity;
+    struct energy *rows; /* count, in order of time */
+};
+
+MUST_CHECK enum status energy_log_add(struct energy_log *log, const struct energy *row, struct error *error);
+void energy_log_free(struct energy_log *log);
+
+/* The balance of a run by central differences. Works are summed by the trapezium rule over each step's
+ * displacement; with the kinetic energy 1/2 v- M v+ the balance of a linear system then holds to round-off,
+ * and its error otherwise is that of the step. */
+struct energy_balance {
+    double start;            /* energy at the begin */
+    double work, dissipated; /* since then */
+    double largest;          /* energy so far; at first a floor below which energies are round-off */
+    double worst;            /* largest |error| so far */
+};
+
+struct energy_balance energy_balance_begin(const struct solid_system *system);
+
+/* Complete a row whose time, kinetic, internal and contact are known; the first one is the begin. */
+void energy_balance_complete(struct energy_balance *balance, bool first, struct energy *row);
+
+/* 1/2 v M w */
+double energy_kinetic(const struct solid_system *system, const double *v, const double *w);
+
+/* Sum over all contacts at their last evaluation. */
+double energy_contact(const struct solid_system *system);
+
+#endif

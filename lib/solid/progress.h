@@ -1,0 +1,23 @@
+/* What a run tells while it lasts: how far it is, and the states asked for on the way. */
+#ifndef SOLID_PROGRESS_H
+#define SOLID_PROGRESS_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+struct progress {
+    int64_t step;
+    double time;  /* s; 0..1 of the load in relaxation */
+    double error; /* relaxation: estimated remaining error relative to the displacement; dynamics: error of
+                     the energy balance relative to the largest energy */
+    double remaining; /* estimated share of the steps still to go, 0..1, negative: unknown */
+    const double *u;  /* parameters */
+};
+
+/* Called every so many steps; returns false to stop the run. */
+typedef bool progress_function(void *context, const struct progress *progress);
+
+/* Receives frame `number` (from 1), the parameters u at `time` (as in struct progress). */
+typedef void frame_function(void *context, int64_t number, double time, const double *u);
+
+#endif
