@@ -1,0 +1,135 @@
+/* Fault 25: whichever allocation fails, bodies, boundary averages, rigid surfaces and contacts report it with
+ * STATUS_SYSTEM and leave nothing allocated. */
+#include "body_fixture.h"
+
+#include "failing_allocator.h"
+
+#ifdef FAILING_ALLOCATOR
+
+#include "solid/body.h"
+#include "solid/contact.h"
+
+static struct sample sample; /* made before any allocation fails */
+
+static enum status try_body(struct error *error)
+{
+    static const struct material materials[2] = {{.shear_modulus = 1.0, .bulk_modulus = 1.0},
+                                                 {.shear_modulus = 2.0, .bulk_modulus = 9.0}};
+    static int32_t material[64];
+    struct body body;
+    assert_true(sample.point_count <= 64);
+    material[1] = 1;
+    struct body_input input = {.dim = 2,
+                               .node_count = sample.cloud.node_count,
+                               .point_count = sample.point_count,
+                               .x = sample.x,
+                               .weight = sample.weight,
+                               .ptr = sample.ptr,
+                               .idx = sample.idx,
+                               .dphi = sample.dphi,
+                               .materials = materials,
+                               .material = material,
+                               .material_count = 2,
+                               .hat_node = sample.hat_node,
+                               .hat_value = sample.hat_value,
+                               .pointwise_share = 0.1};
+    enum status status = body_build(&input, &body, error);
+    body_free(&body);
+    return status;
+}
+
+static enum status build_averages(struct boundary_averages *averages, struct error *error)
+{
+    struct face_table table = {.dim = 2,
+                               .node_count = sample.cloud.node_count,
+                               .x = sample.cloud.x,
+                               .faces = &sample.faces,
+                               .per_face = sample.face_rule.points,
+                               .lists = &sample.face_neighbours,
+                               .phi = sample.face_phi};
+    struct facet_set set = {sample.cloud.facet_count, sample.cloud.facets};
+    return boundary_averages_build(&table, &set, averages, error);
+}
+
+static enum status try_boundary(struct error *error)
+{
+    struct boundary_averages averages;
+    enum status status = build_averages(&averages, error);
+    boundary_averages_free(&averages);
+    return status;
+}
+
+static enum status try_rigid(struct error *error)
+{
+    static const double corners[] = {0, 0, 0, 0, 1, 0, 1, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1,
+                                     0, 0, 0, 0, 0, 1, 0, 1, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1};
+    struct rigid_surface surface;
+    enum status status = rigid_build(3, 4, corners, false, &surface, error);
+    rigid_free(&surface);
+    return status;
+}
+
+static enum status try_contact(struct error *error)
+{
+    static const double corners[] = {1, -1, -1, -1};
+    struct boundary_averages averages;
+    struct rigid_surface surface;
+    struct contact contact = {0};
+    enum status status = build_averages(&averages, error);
+    if (status == STATUS_OK) {
+        status = rigid_build(2, 1, corners, false, &surface, error);
+    }
+    if (status == STATUS_OK) {
+        status = contact_build(&averages, sample.cloud.x, 2, &surface, 1.0, &contact, error);
+    }
+    contact_free(&contact);
+    boundary_averages_free(&averages);
+    return status;
+}
+
+static void bodies(void **state)
+{
+    (void)state;
+    fail_each(try_body, 20);
+}
+
+static void boundaries(void **state)
+{
+    (void)state;
+    fail_each(try_boundary, 12);
+}
+
+static void rigid_surfaces(void **state)
+{
+    (void)state;
+    fail_each(try_rigid, 12);
+}
+
+static void contacts(void **state)
+{
+    (void)state;
+    fail_each(try_contact, 30);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(bodies),
+        cmocka_unit_test(boundaries),
+        cmocka_unit_test(rigid_surfaces),
+        cmocka_unit_test(contacts),
+    };
+    sample = make_sample(2, true, 3); /* so small that sorting allocates nothing */
+    int failed = cmocka_run_group_tests(tests, NULL, NULL);
+    sample_free(&sample);
+    return failed;
+}
+
+#else
+
+int main(void)
+{
+    return 0;
+}
+
+#endif
