@@ -80,11 +80,10 @@ done:
 }
 
 enum status envelope_factorise(int64_t n, const int64_t *ptr, const int64_t *column, const double *value,
-                               double least, struct envelope *factor, int64_t *dependent, struct error *error)
+                               double least, struct envelope *factor, struct error *error)
 {
     enum status status;
     *factor = (struct envelope){.n = n};
-    *dependent = -1;
     TRY(NEW_ARRAY(&factor->order, n, error));
     TRY(NEW_ARRAY(&factor->first, n, error));
     TRY(NEW_ARRAY(&factor->start, n + 1, error));
@@ -104,9 +103,11 @@ enum status envelope_factorise(int64_t n, const int64_t *ptr, const int64_t *col
             if (k < i) {
                 row[k] = sum / other[k];
             } else if (!(sum > least * diagonal)) {
-                *dependent = factor->order[i];
-                status = fail(error, STATUS_VERDICT, "row %lld depends on others", (long long)*dependent);
-                goto done;
+                for (int64_t l = factor->first[i]; l < i; l++) {
+                    row[l] = 0.0;
+                }
+                row[i] = INFINITY;
+                factor->dropped++;
             } else {
                 row[i] = sqrt(sum);
             }

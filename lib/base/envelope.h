@@ -14,13 +14,15 @@ struct envelope {
     int64_t *start;  /* n + 1: row i is value[start[i] .. start[i+1]), columns first[i] .. i */
     double *value;   /* the factor L */
     double *scratch; /* n */
+    int64_t dropped; /* rows that depend on others: their diagonal entry of L is infinite */
 };
 
-/* Factorise the matrix given in CSR, both triangles: column[ptr[n]], value[ptr[n]]. A pivot below `least`
- * times the diagonal entry means a dependent row: STATUS_VERDICT, with *dependent its index (else -1). */
+/* Factorise the matrix given in CSR, both triangles: column[ptr[n]], value[ptr[n]]. A row whose pivot is
+ * below `least` times its diagonal entry depends on others and is dropped: its unknown is 0 in every
+ * solution. */
 MUST_CHECK enum status envelope_factorise(int64_t n, const int64_t *ptr, const int64_t *column,
                                           const double *value, double least, struct envelope *factor,
-                                          int64_t *dependent, struct error *error);
+                                          struct error *error);
 void envelope_free(struct envelope *factor);
 
 /* Solve in place: x[n] holds the right-hand side, then the solution. */

@@ -260,7 +260,6 @@ static void augment(struct relaxation *r)
 static bool update_mass(struct relaxation *r, struct error *error)
 {
     double *mass = r->scratch, highest = 0.0, lowest = INFINITY;
-    int64_t dependent;
     system_relaxation_mass(r->system, mass);
     for (int64_t n = 0; n < r->system->node_count; n++) {
         highest = fmax(highest, mass[n] / r->mass[n]);
@@ -271,8 +270,7 @@ static bool update_mass(struct relaxation *r, struct error *error)
     }
     memcpy(r->mass, mass, (size_t)r->system->node_count * sizeof *mass);
     constraint_free(&r->constraint);
-    r->failure =
-        constraint_build(&r->system->rows, r->system->node_count, r->mass, &r->constraint, &dependent, error);
+    r->failure = system_constrain(r->system, r->mass, &r->constraint, error);
     r->mass_changed = true;
     return r->failure == STATUS_OK;
 }

@@ -1,6 +1,7 @@
 #include "solid/system.h"
 
 #include "approx/cells.h"
+#include "base/memory.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -35,15 +36,52 @@ void system_free(struct solid_system *system)
     *system = (struct solid_system){0};
 }
 
+/* What conditions that were dropped may be missed by, of the largest prescribed displacement. */
+static const double most_missed = 1e-4;
+
+/* Do the conditions that were dropped agree with the others throughout? */
+static enum status check_dropped(const struct solid_system *system, struct constraint *constraint,
+                                 struct error *error)
+{
+    enum status status;
+    const struct constraint_rows *rows = &system->rows;
+    double *u = NULL, *factor = NULL;
+    int64_t size = system->node_count * system->dim, row = 0;
+    enum { TIMES = 5 };
+    TRY(NEW_ARRAY(&u, size, error));
+    TRY(NEW_ARRAY(&factor, system->curve_count, error));
+    for (int k = 0; k < TIMES; k++) {
+        double largest = 0.0;
+        for (int64_t i = 0; i < system->curve_count; i++) {
+            factor[i] = curve_value(&system->curves[i], (double)k / (TIMES - 1));
+        }
+        for (int64_t r = 0; r < rows->count; r++) {
+            largest = fmax(largest, fabs(rows->target[r] * factor[rows->curve[r]]));
+        }
+        memset(u, 0, (size_t)size * sizeof *u);
+        constraint_project(constraint, factor, u);
+        double missed = constraint_violation(constraint, factor, u, &row);
+        if (!(missed <= most_missed * largest)) {
+            status =
+                fail(error, STATUS_VERDICT,
+                     "the conditions at node %d disagree with others by %.2g m: prescribe its displacement "
+                     "once, or refine the cloud there",
+                     rows->node[row], missed);
+            goto done;
+        }
+    }
+done:
+    free(u);
+    free(factor);
+    return status;
+}
+
 enum status system_constrain(const struct solid_system *system, const double *mass,
                              struct constraint *constraint, struct error *error)
 {
-    int64_t dependent;
-    enum status status =
-        constraint_build(&system->rows, system->node_count, mass, constraint, &dependent, error);
-    if (status == STATUS_VERDICT && dependent >= 0) {
-        return fail(error, STATUS_VERDICT, "the condition at node %d follows from others: prescribe it once",
-                    system->rows.node[dependent]);
+    enum status status = constraint_build(&system->rows, system->node_count, mass, constraint, error);
+    if (status == STATUS_OK && constraint->factor.dropped > 0) {
+        status = check_dropped(system, constraint, error);
     }
     return status;
 }

@@ -51,8 +51,8 @@ void system_free(struct solid_system *system);
 /* Values of all curves at s within [0, 1], into system->factor. */
 void system_load_factors(struct solid_system *system, double s);
 
-/* Factor the conditions with a mass, which the constraint keeps in view. STATUS_VERDICT, naming the node,
- * when one follows from others. */
+/* Factor the conditions with a mass, which the constraint keeps in view. Conditions that follow from others
+ * are left to them; STATUS_VERDICT, naming the node, when they disagree. */
 MUST_CHECK enum status system_constrain(const struct solid_system *system, const double *mass,
                                         struct constraint *constraint, struct error *error);
 

@@ -1,0 +1,584 @@
+/* Explicit dynamics: the discrete frequency of central differences, free vibrations with known frequencies,
+ * energy and momenta conserved, and an outcome for every way to fail. */
+#include "lattice_fixture.h"
+
+#include "solid/dynamics.h"
+
+#include <gsl/gsl_eigen.h>
+#include <omp.h>
+
+static const double x_axis[3] = {1, 0, 0}, y_axis[3] = {0, 1, 0};
+
+static struct dynamics_options over(double end_time)
+{
+    return (struct dynamics_options){.end_time = end_time, .time_step_margin = 0.9};
+}
+
+static struct dynamics_report run(struct lattice *l, const struct dynamics_options *options, double *u,
+                                  double *v, struct energy_log *log)
+{
+    struct dynamics_report report;
+    struct error error;
+    GOOD(dynamics_run(&l->system, options, u, v, NULL, log, &report, &error));
+    return report;
+}
+
+static double product_of_mass(const struct lattice *l, const double *a, const double *b)
+{
+    return 2.0 * energy_kinetic(&l->system, a, b);
+}
+
+/* The fastest mode of the free body at rest and its frequency, from all eigenvalues. */
+static double fastest_mode(struct lattice *l, double *mode)
+{
+    int dim = l->options.dim;
+    size_t size = (size_t)(l->system.node_count * dim);
+    double epsilon = 1e-7, *residual = lattice_vector(l);
+    gsl_matrix *K = gsl_matrix_alloc(size, size), *vectors = gsl_matrix_alloc(size, size);
+    gsl_vector *values = gsl_vector_alloc(size);
+    gsl_eigen_symmv_workspace *work = gsl_eigen_symmv_alloc(size);
+    assert_true(K != NULL && vectors != NULL && values != NULL && work != NULL);
+    const double *mass = l->system.lumped_mass;
+    for (size_t j = 0; j < size; j++) {
+        double column[2][64];
+        assert_true(size <= 64);
+        for (int sign = 0; sign < 2; sign++) {
+            memset(mode, 0, size * sizeof *mode);
+            mode[j] = sign ? epsilon : -epsilon;
+            (void)system_residual(&l->system, mode, residual);
+            memcpy(column[sign], residual, size * sizeof *residual);
+        }
+        for (size_t i = 0; i < size; i++) {
+            gsl_matrix_set(K, i, j,
+                           (column[0][i] - column[1][i]) / (2 * epsilon) /
+                               sqrt(mass[i / (size_t)dim] * mass[j / (size_t)dim]));
+        }
+    }
+    gsl_eigen_symmv(K, values, vectors, work);
+    size_t fastest = gsl_vector_max_index(values);
+    double square = gsl_vector_get(values, fastest);
+    for (size_t i = 0; i < size; i++) {
+        mode[i] = gsl_matrix_get(vectors, i, fastest) / sqrt(mass[i / (size_t)dim]);
+    }
+    gsl_matrix_free(K);
+    gsl_matrix_free(vectors);
+    gsl_vector_free(values);
+    gsl_eigen_symmv_free(work);
+    free(residual);
+    return sqrt(square);
+}
+
+/* A body released in one of its modes is one oscillator; central differences let it swing faster, by
+ * asin(r) / r at the share r of the critical step. */
+static void one_oscillator(void **state)
+{
+    (void)state;
+    static const double shares[] = {0.1, 0.5, 0.9}, quicker[] = {1.001674, 1.047198, 1.244188};
+    enum { STEPS = 8 };
+    struct lattice_options options = lattice_defaults(2, 4);
+    struct lattice l;
+    options.poisson_ratio = 0.3;
+    lattice_build(&l, &options);
+    double *mode = lattice_vector(&l), *u = lattice_vector(&l), *v = lattice_vector(&l);
+    double frequency = fastest_mode(&l, mode);
+    for (int k = 0; k < 3; k++) {
+        /* The estimate of the critical step is from above: a little less time makes it STEPS exactly. */
+        struct dynamics_options dynamics = over((1 - 1e-6) * STEPS * shares[k] * 2 / frequency);
+        dynamics.time_step_margin = shares[k];
+        for (int64_t i = 0; i < l.system.node_count * 2; i++) {
+            u[i] = 1e-7 * mode[i];
+            v[i] = 0;
+        }
+        struct dynamics_report report = run(&l, &dynamics, u, v, NULL);
+        assert_int_equal(report.outcome, DYNAMICS_DONE);
+        assert_int_equal(report.steps, STEPS);
+        double phase = frequency * quicker[k] * dynamics.end_time;
+        NEAR_TO(product_of_mass(&l, u, mode) / 1e-7, cos(phase), 1e-4);
+        /* The velocity at the end, (v- + v+)/2, is of the amplitude w cos(w_h dt / 2). */
+        double swing = sqrt(1 - shares[k] * shares[k]);
+        NEAR_TO(product_of_mass(&l, v, mode) / 1e-7 / frequency, -swing * sin(phase), 1e-4);
+        NEAR_TO(report.critical_step * frequency / 2, 1.0, 0.02);
+    }
+    free(mode);
+    free(u);
+    free(v);
+    lattice_free(&l);
+}
+
+/* Swing of a mode sampled at the frames. */
+struct swing {
+    const struct lattice *lattice;
+    const double *mode;
+    double time[4096], amplitude[4096];
+    int64_t count;
+};
+
+static void watch(void *context, int64_t number, double time, const double *u)
+{
+    struct swing *swing = context;
+    assert_int_equal(number, swing->count + 1);
+    assert_true(swing->count < 4096);
+    swing->time[swing->count] = time;
+    swing->amplitude[swing->count++] = product_of_mass(swing->lattice, u, swing->mode);
+}
+
+/* Frequency from the first and the last crossing of zero. */
+static double frequency_of(const struct swing *swing)
+{
+    double first = 0, last = 0;
+    int64_t crossings = 0;
+    for (int64_t i = 1; i < swing->count; i++) {
+        double a = swing->amplitude[i - 1], b = swing->amplitude[i];
+        if ((a > 0) != (b > 0)) {
+            last = swing->time[i - 1] + a / (a - b) * (swing->time[i] - swing->time[i - 1]);
+            first = crossings++ == 0 ? last : first;
+        }
+    }
+    assert_true(crossings >= 3);
+    return 0.5 * (double)(crossings - 1) / (last - first);
+}
+
+/* A column of height H fixed at its bottom, where only u_axis(y) is left free: f = c / (4 H). */
+static void vibrate(int axis, double expected)
+{
+    struct lattice_options options = lattice_defaults(2, 4);
+    struct lattice l;
+    options.count[1] = 25;
+    options.size[0] = 0.1 * 3 / 24;
+    lattice_build(&l, &options);
+    int32_t curve = lattice_curve(&l, curve_of_kind(CURVE_STEP));
+    lattice_prescribe(&l, 1u << 2, axis == 0 ? x_axis : y_axis, NULL, NULL, curve);
+    lattice_prescribe(&l, 3, axis == 0 ? y_axis : x_axis, NULL, NULL, curve);
+    double *u = lattice_vector(&l), *mode = lattice_vector(&l);
+    for (int64_t n = 0; n < l.system.node_count; n++) {
+        mode[2 * n + axis] = sin(M_PI / 2 * l.system.X[2 * n + 1] / 0.1);
+        u[2 * n + axis] = 1e-6 * mode[2 * n + axis];
+    }
+    struct swing swing = {.lattice = &l, .mode = mode};
+    struct dynamics_options dynamics = over(2.3 / expected);
+    dynamics.frame_interval = dynamics.end_time / 400;
+    dynamics.frame = watch;
+    dynamics.context = &swing;
+    struct dynamics_report report = run(&l, &dynamics, u, NULL, NULL);
+    assert_int_equal(report.outcome, DYNAMICS_DONE);
+    assert_int_equal(swing.count, 400);
+    NEAR_TO(swing.time[399], dynamics.end_time, 1e-12);
+    NEAR_TO(frequency_of(&swing) / expected, 1.0, 5e-3);
+    AT_MOST(report.largest_drift, 1e-3);
+    free(u);
+    free(mode);
+    lattice_free(&l);
+}
+
+static void pressure_wave(void **state)
+{
+    (void)state;
+    vibrate(1, 17.91338);
+}
+
+static void shear_wave(void **state)
+{
+    (void)state;
+    vibrate(0, 2.50838);
+}
+
+/* A block compressed to .8 of its height between sliding supports swings freely: its energy is that of the
+ * closed form and stays. */
+static void release(void **state)
+{
+    (void)state;
+    struct lattice_options options = lattice_defaults(3, 5);
+    struct lattice l;
+    struct energy_log log = {0};
+    lattice_build(&l, &options);
+    int32_t curve = lattice_curve(&l, curve_of_kind(CURVE_STEP));
+    lattice_slide(&l, 1u << 0 | 1u << 2 | 1u << 4, curve);
+    double *u = lattice_vector(&l);
+    for (int64_t n = 0; n < l.system.node_count; n++) {
+        for (int a = 0; a < 3; a++) {
+            u[3 * n + a] = (a == 2 ? 0.8 - 1 : 1.11574668 - 1) * l.system.X[3 * n + a];
+        }
+    }
+    struct dynamics_options dynamics = over(0.4);
+    struct dynamics_report report = run(&l, &dynamics, u, NULL, &log);
+    assert_int_equal(report.outcome, DYNAMICS_DONE);
+    NEAR_TO(log.rows[0].internal, 70.051447e-3, 1e-8);
+    assert_true(log.count >= 100);
+    double fastest = 0;
+    for (int64_t i = 0; i < log.count; i++) {
+        const struct energy *row = &log.rows[i];
+        fastest = fmax(fastest, row->kinetic);
+        AT_MOST(fabs(row->error), 1e-3);
+        NEAR_TO(row->kinetic + row->internal, log.rows[0].kinetic + log.rows[0].internal,
+                1e-3 * log.rows[0].internal);
+        NEAR_TO(row->work, 0, 1e-12);
+        NEAR_TO(row->dissipated, 0, 0);
+    }
+    NEAR_TO(log.rows[0].time, 0, 0);
+    NEAR_TO(log.rows[log.count - 1].time, 0.4, 0);
+    assert_true(fastest > 0.5 * log.rows[0].internal);
+    energy_log_free(&log);
+    free(u);
+    lattice_free(&l);
+}
+
+/* Linear momentum, and the angular one about the origin (2D: its third component). */
+static void momenta(const struct lattice *l, const double *u, const double *v, double p[3], double L[3])
+{
+    int dim = l->options.dim;
+    for (int a = 0; a < 3; a++) {
+        p[a] = L[a] = 0;
+    }
+    for (int64_t n = 0; n < l->system.node_count; n++) {
+        double x[3] = {0}, w[3] = {0}, mass = l->system.lumped_mass[n];
+        for (int a = 0; a < dim; a++) {
+            x[a] = l->system.X[n * dim + a] + u[n * dim + a];
+            w[a] = v[n * dim + a];
+            p[a] += mass * w[a];
+        }
+        for (int a = 0; a < 3; a++) {
+            L[a] += mass * (x[(a + 1) % 3] * w[(a + 2) % 3] - x[(a + 2) % 3] * w[(a + 1) % 3]);
+        }
+    }
+}
+
+/* A free body, thrown and spinning, keeps its momenta to round-off however it swings. */
+static void free_spin(void **state)
+{
+    (void)state;
+    for (int dim = 2; dim <= 3; dim++) {
+        struct lattice_options options = lattice_defaults(dim, dim == 2 ? 7 : 4);
+        struct lattice l;
+        options.jitter = 0.1;
+        lattice_build(&l, &options);
+        double *u = lattice_vector(&l), *v = lattice_vector(&l), p[2][3], L[2][3];
+        static const double spin[3] = {0, 0, 12}, tumble[3] = {5, 3, 12};
+        const double *w = dim == 2 ? spin : tumble;
+        for (int64_t n = 0; n < l.system.node_count; n++) {
+            double X[3] = {0};
+            memcpy(X, l.system.X + n * dim, (size_t)dim * sizeof *X);
+            for (int a = 0; a < dim; a++) {
+                v[n * dim + a] = w[(a + 1) % 3] * X[(a + 2) % 3] - w[(a + 2) % 3] * X[(a + 1) % 3] + 0.1 * a;
+            }
+        }
+        momenta(&l, u, v, p[0], L[0]);
+        struct dynamics_options dynamics = over(0.5); /* about one turn */
+        struct dynamics_report report = run(&l, &dynamics, u, v, NULL);
+        assert_int_equal(report.outcome, DYNAMICS_DONE);
+        momenta(&l, u, v, p[1], L[1]);
+        double scale = fabs(L[0][2]);
+        for (int a = 0; a < 3; a++) {
+            NEAR_TO(p[1][a], p[0][a], 1e-10 * scale / 0.1);
+            /* L at a time between two half steps differs from the conserved one by dt^2/4 sum m v x a = 0 */
+            NEAR_TO(L[1][a], L[0][a], 1e-10 * scale);
+        }
+        AT_MOST(report.largest_drift, 1e-3);
+        free(u);
+        free(v);
+        lattice_free(&l);
+    }
+}
+
+/* A side pushed in and held: the work of the condition is what the energies hold, with and without damping,
+ * and a damped body comes to the rest of the closed form for confined compression. */
+static void pushed(void **state)
+{
+    (void)state;
+    static const double dampings[] = {0, 100};
+    for (int k = 0; k < 2; k++) {
+        struct lattice_options options = lattice_defaults(2, 7);
+        struct lattice l;
+        struct energy_log log = {0};
+        struct error error;
+        struct dynamics_report report;
+        lattice_build(&l, &options);
+        static const double points[] = {0, 0, 0.05, 1, 0.3, 1};
+        struct load_curve curve;
+        GOOD(curve_tabulate(&curve, 3, points, 0.3, &error));
+        int32_t index = lattice_curve(&l, curve);
+        lattice_slide(&l, 1u << 0 | 1u << 1 | 1u << 2, index);
+        lattice_push(&l, 3, -0.005, index);
+        double *u = lattice_vector(&l), *row_force;
+        ARRAY(row_force, l.system.rows.count);
+        struct dynamics_options dynamics = over(0.3);
+        dynamics.damping = dampings[k];
+        GOOD(dynamics_run(&l.system, &dynamics, u, NULL, row_force, &log, &report, &error));
+        assert_int_equal(report.outcome, DYNAMICS_DONE);
+        AT_MOST(report.largest_drift, 2e-3);
+        const struct energy *end = &log.rows[log.count - 1];
+        assert_true(end->work > 0);
+        if (k == 0) {
+            NEAR_TO(end->dissipated, 0, 0);
+        } else {
+            assert_true(end->dissipated > 0 && end->kinetic < 1e-6 * end->internal);
+            double P = lattice_reaction(&l, row_force, 1u << 3) / 0.1;
+            double mu = 1006.711409, kappa = 50000, J = 0.95, I1 = 2 + J * J;
+            double expected = mu * pow(J, -2.0 / 3) * (J - I1 / (3 * J)) + kappa * (J - 1);
+            NEAR_TO(P / expected, 1.0, 1e-4);
+            NEAR_TO(end->work, end->internal + end->dissipated, 2e-3 * end->work);
+        }
+        energy_log_free(&log);
+        free(u);
+        free(row_force);
+        lattice_free(&l);
+    }
+}
+
+/* The end at the speed of a linear curve, without a jerk: balance and reaction stay right to the last row.
+ * The begin at that speed is a blow, whose work counts. */
+static void moved_at_constant_speed(void **state)
+{
+    (void)state;
+    struct lattice_options options = lattice_defaults(2, 5);
+    struct lattice l;
+    struct energy_log log = {0};
+    lattice_build(&l, &options);
+    int32_t curve = lattice_curve(&l, curve_of_kind(CURVE_LINEAR));
+    double there = 0.01;
+    lattice_prescribe(&l, 15, x_axis, lattice_constant, &there, curve);
+    double *u = lattice_vector(&l), *v = lattice_vector(&l);
+    struct dynamics_options dynamics = over(0.25);
+    struct dynamics_report report = run(&l, &dynamics, u, v, &log);
+    assert_int_equal(report.outcome, DYNAMICS_DONE);
+    const struct energy *end = &log.rows[log.count - 1];
+    AT_MOST(report.largest_drift, 1e-3);
+    AT_MOST(fabs(end->error), 1e-3);
+    assert_true(log.rows[0].work > 0 && end->work > log.rows[0].work);
+    for (int64_t n = 0; n < l.system.node_count; n++) {
+        const double *X = l.system.X + 2 * n;
+        if (X[0] == 0.0) {
+            NEAR_TO(lattice_field(&l, u, n, 0), 0.01, 0.0005);
+        }
+    }
+    energy_log_free(&log);
+    free(u);
+    free(v);
+    lattice_free(&l);
+}
+
+/* Weight put on a confined column at once: it sinks to twice the depth of rest, and returns. */
+static void sudden_weight(void **state)
+{
+    (void)state;
+    struct lattice_options options = lattice_defaults(2, 3);
+    struct lattice l;
+    struct energy_log log = {0};
+    options.count[1] = 11;
+    options.size[0] = 0.02;
+    lattice_build(&l, &options);
+    int32_t curve = lattice_curve(&l, curve_of_kind(CURVE_STEP));
+    lattice_slide(&l, 1u << 0 | 1u << 1 | 1u << 2, curve);
+    struct dead_load *load = calloc(1, sizeof *load);
+    assert_non_null(load);
+    *load = (struct dead_load){.force = lattice_vector(&l), .curve = curve};
+    for (int64_t c = 0; c < l.cells.count; c++) {
+        for (int64_t i = l.smoothed.ptr[c]; i < l.smoothed.ptr[c + 1]; i++) {
+            load->force[2 * l.smoothed.idx[i] + 1] -= 1e-2 * 1000 * l.weight[c] * l.smoothed.phi[i];
+        }
+    }
+    l.system.loads = load;
+    l.system.load_count = 1;
+    double *u = lattice_vector(&l);
+    struct dynamics_options dynamics = over(0.5 / 17.91338);
+    struct dynamics_report report = run(&l, &dynamics, u, NULL, &log);
+    assert_int_equal(report.outcome, DYNAMICS_DONE);
+    AT_MOST(report.largest_drift, 1e-3);
+    double rest = 1000 * 1e-2 * 0.1 * 0.1 / (2 * 51342.28);
+    double top = 0;
+    for (int i = 0; i < 3; i++) { /* its mean */
+        top += (i == 1 ? 0.5 : 0.25) * lattice_field(&l, u, l.system.node_count - 1 - i, 1);
+    }
+    NEAR_TO(top / (-2 * rest), 1.0, 0.01);
+    assert_true(log.rows[log.count - 1].work > 0);
+    energy_log_free(&log);
+    free(u);
+    lattice_free(&l);
+}
+
+/* A block thrown at a rigid floor bounces: the penalty's energy comes back. */
+static void bounce(void **state)
+{
+    (void)state;
+    struct lattice_options options = lattice_defaults(2, 6);
+    struct lattice l;
+    struct energy_log log = {0};
+    struct error error;
+    struct rigid_surface floor;
+    static const double corners[4] = {-1, -0.01, 1, -0.01};
+    options.nodal_volume = false;
+    options.poisson_ratio = 0.3;
+    lattice_build(&l, &options);
+    struct boundary_averages *averages = malloc(sizeof *averages);
+    l.system.contacts = malloc(sizeof *l.system.contacts);
+    assert_true(averages != NULL && l.system.contacts != NULL);
+    *averages = lattice_averages(&l, 1u << 2);
+    GOOD(rigid_build(2, 1, corners, true, &floor, &error));
+    GOOD(contact_build(averages, l.system.X, 2, &floor, 4000 / 0.02, l.system.contacts, &error));
+    l.system.contact_averages = averages;
+    l.system.contact_count = 1;
+    double *u = lattice_vector(&l), *v = lattice_vector(&l), p[3], L[3];
+    for (int64_t n = 0; n < l.system.node_count; n++) {
+        v[2 * n + 1] = -0.2;
+    }
+    struct dynamics_options dynamics = over(0.3);
+    struct dynamics_report report = run(&l, &dynamics, u, v, &log);
+    assert_int_equal(report.outcome, DYNAMICS_DONE);
+    AT_MOST(report.largest_drift, 1e-2);
+    assert_int_equal(report.step_changes, 0);
+    momenta(&l, u, v, p, L);
+    assert_true(p[1] > 0.5 * 0.2 * 10.0); /* most of it; some goes into swinging */
+    double contact = 0;
+    for (int64_t i = 0; i < log.count; i++) {
+        contact = fmax(contact, log.rows[i].contact);
+        NEAR_TO(log.rows[i].work, 0, 1e-12);
+    }
+    assert_true(contact > 1e-3 * log.rows[0].kinetic);
+    NEAR_TO(log.rows[log.count - 1].contact, 0, 0);
+    energy_log_free(&log);
+    free(u);
+    free(v);
+    lattice_free(&l);
+}
+
+/* What goes wrong has a name. */
+static void outcomes(void **state)
+{
+    (void)state;
+    struct lattice_options options = lattice_defaults(2, 5);
+    struct lattice l;
+    lattice_build(&l, &options);
+    int32_t curve = lattice_curve(&l, curve_of_kind(CURVE_STEP));
+    lattice_slide(&l, 1u << 2, curve);
+    double *u = lattice_vector(&l);
+    struct dynamics_options dynamics = over(0.1);
+    dynamics.most_steps = 7;
+    struct dynamics_report report = run(&l, &dynamics, u, NULL, NULL);
+    assert_int_equal(report.outcome, DYNAMICS_TOO_MANY_STEPS);
+    assert_int_equal(report.steps, 7);
+    dynamics.most_steps = 0;
+    u[2 * 12] = 0.2; /* far beyond its neighbours */
+    report = run(&l, &dynamics, u, NULL, NULL);
+    assert_int_equal(report.outcome, DYNAMICS_INVERTED);
+    assert_int_equal(report.steps, 0);
+    assert_true(report.least_jacobian <= 0);
+    assert_true(report.point >= 0 && report.point < l.system.body.point_count);
+    memset(u, 0, (size_t)l.system.node_count * 2 * sizeof *u);
+    u[5] = NAN;
+    report = run(&l, &dynamics, u, NULL, NULL);
+    assert_int_equal(report.outcome, DYNAMICS_INVERTED);
+    assert_true(isnan(report.least_jacobian));
+    memset(u, 0, (size_t)l.system.node_count * 2 * sizeof *u);
+    for (int64_t n = 0; n < l.system.node_count; n++) { /* a step beyond the critical one */
+        u[2 * n] = 1e-4 * l.system.X[2 * n];
+    }
+    dynamics.time_step_margin = 1.3;
+    dynamics.end_time = 1.0;
+    report = run(&l, &dynamics, u, NULL, NULL);
+    assert_true(report.outcome == DYNAMICS_DRIFTED || report.outcome == DYNAMICS_INVERTED ||
+                report.outcome == DYNAMICS_COLLAPSED);
+    assert_true(report.time < 1.0);
+    free(u);
+    lattice_free(&l);
+}
+
+static bool stop_at_once(void *context, const struct progress *progress)
+{
+    assert_non_null(progress->u);
+    assert_true(progress->remaining >= 0 && progress->remaining <= 1);
+    ++*(int *)context;
+    return false;
+}
+
+static void stopped_by_the_caller(void **state)
+{
+    (void)state;
+    struct lattice_options options = lattice_defaults(2, 4);
+    struct lattice l;
+    int calls = 0;
+    lattice_build(&l, &options);
+    double *u = lattice_vector(&l);
+    struct dynamics_options dynamics = over(1.0);
+    dynamics.progress = stop_at_once;
+    dynamics.context = &calls;
+    struct dynamics_report report = run(&l, &dynamics, u, NULL, NULL);
+    assert_int_equal(report.outcome, DYNAMICS_STOPPED);
+    assert_int_equal(calls, 1);
+    free(u);
+    lattice_free(&l);
+}
+
+/* Conditions that say the same twice are one; ones that disagree are a verdict that names a node. */
+static void conditions_twice(void **state)
+{
+    (void)state;
+    struct lattice_options options = lattice_defaults(2, 4);
+    struct lattice l;
+    struct dynamics_report report;
+    struct error error;
+    lattice_build(&l, &options);
+    int32_t curve = lattice_curve(&l, curve_of_kind(CURVE_SMOOTH));
+    lattice_push(&l, 3, -0.001, curve);
+    lattice_push(&l, 3, -0.001, curve);
+    double *u = lattice_vector(&l);
+    struct dynamics_options dynamics = over(0.01);
+    assert_int_equal(run(&l, &dynamics, u, NULL, NULL).outcome, DYNAMICS_DONE);
+    lattice_push(&l, 3, -0.00101, curve);
+    assert_int_equal(dynamics_run(&l.system, &dynamics, u, NULL, NULL, NULL, &report, &error),
+                     STATUS_VERDICT);
+    assert_non_null(strstr(error.text, "the conditions at node"));
+    free(u);
+    lattice_free(&l);
+}
+
+/* The same bits for any number of threads. */
+static void any_number_of_threads(void **state)
+{
+    (void)state;
+    double *first = NULL;
+    int most = omp_get_max_threads();
+    size_t bytes = 0;
+    for (int threads = 1; threads <= 3; threads++) {
+        struct lattice_options options = lattice_defaults(3, 6);
+        struct lattice l;
+        options.jitter = 0.1;
+        omp_set_num_threads(threads);
+        lattice_build(&l, &options);
+        int32_t curve = lattice_curve(&l, curve_of_kind(CURVE_SMOOTH));
+        lattice_slide(&l, 1u << 4, curve);
+        lattice_push(&l, 5, -0.01, curve);
+        double *u = lattice_vector(&l);
+        struct dynamics_options dynamics = over(0.01);
+        struct dynamics_report report = run(&l, &dynamics, u, NULL, NULL);
+        assert_int_equal(report.outcome, DYNAMICS_DONE);
+        bytes = (size_t)l.system.node_count * 3 * sizeof *u;
+        if (first == NULL) {
+            first = u;
+        } else {
+            assert_memory_equal(first, u, bytes);
+            free(u);
+        }
+        lattice_free(&l);
+    }
+    omp_set_num_threads(most);
+    free(first);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(one_oscillator),
+        cmocka_unit_test(pressure_wave),
+        cmocka_unit_test(shear_wave),
+        cmocka_unit_test(release),
+        cmocka_unit_test(free_spin),
+        cmocka_unit_test(pushed),
+        cmocka_unit_test(moved_at_constant_speed),
+        cmocka_unit_test(sudden_weight),
+        cmocka_unit_test(bounce),
+        cmocka_unit_test(outcomes),
+        cmocka_unit_test(stopped_by_the_caller),
+        cmocka_unit_test(conditions_twice),
+        cmocka_unit_test(any_number_of_threads),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
