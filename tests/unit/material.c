@@ -131,7 +131,10 @@ static void pressure_is_derivative(void **state)
                                           material_volume_energy(&all[m], J - h);
             NEAR_TO(material_pressure(&all[m], J), difference / (2.0 * h), 1e-4);
         }
+        double h = 1e-5,
+               bulk = (material_pressure(&all[m], 1.0 + h) - material_pressure(&all[m], 1.0 - h)) / (2.0 * h);
         NEAR_TO(material_volume_energy(&all[m], 1.0), 0.0, 0.0);
+        NEAR_TO(material_bulk(&all[m]), bulk, 1e-4);
     }
 }
 

@@ -1,0 +1,163 @@
+/* Where the facets of a rigid surface meet: normals at vertices and edges, and rims. */
+#include "base/memory.h"
+#include "solid/rigid_private.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* At a smooth vertex every facet's normal makes at least this product with the mean: its facets turn by less
+ * than 45 degrees there (a little less, so that round-off does not decide on chamfers). */
+static const double smooth_cosine = 0.9239;
+
+/* The facets meet, but walk along the place where they do in the same direction. */
+static enum status fail_sides(int64_t one, int64_t other, struct error *error)
+{
+    return fail(error, STATUS_INPUT,
+                "rigid surface: facets %lld and %lld meet but disagree on the side: turn one around",
+                (long long)(one + 1), (long long)(other + 1));
+}
+
+/* 2D: normals and rims at the vertices. */
+static enum status join_segments(struct rigid_surface *surface, struct error *error)
+{
+    enum status status;
+    struct meeting {
+        int64_t count, last;
+        int turn; /* segments that end here less those that begin here */
+    } *meetings = NULL;
+    TRY(NEW_ARRAY(&meetings, surface->vertex_count, error));
+    for (int64_t f = 0; f < surface->facet_count; f++) {
+        for (int k = 0; k < 2; k++) {
+            int32_t v = surface->facet[2 * f + k];
+            add_scaled(2, 1.0, surface->normal + 2 * f, surface->vertex_normal + 2 * (int64_t)v);
+            meetings[v].count++;
+            meetings[v].turn += k == 0 ? -1 : 1;
+            if (meetings[v].count == 2 && meetings[v].turn != 0) {
+                status = fail_sides(meetings[v].last, f, error);
+                goto done;
+            }
+            meetings[v].last = f;
+        }
+    }
+    for (int64_t v = 0; v < surface->vertex_count; v++) {
+        surface->is_rim[v] = meetings[v].count == 1;
+    }
+done:
+    free(meetings);
+    return status;
+}
+
+/* An edge of a triangle; it goes from corner k to k + 1. */
+struct half_edge {
+    int32_t low, high; /* its vertices */
+    bool upward;       /* from low to high */
+    int64_t slot;      /* facet * 3 + k */
+};
+
+static int compare_edges(const void *left, const void *right)
+{
+    const struct half_edge *a = left, *b = right;
+    if (a->low != b->low) {
+        return a->low < b->low ? -1 : 1;
+    }
+    if (a->high != b->high) {
+        return a->high < b->high ? -1 : 1;
+    }
+    return (a->slot > b->slot) - (a->slot < b->slot);
+}
+
+/* 3D: normals and rims of the `count` half-edges that lie on one edge. */
+static enum status join_edge(struct rigid_surface *surface, const struct half_edge *edges, int64_t count,
+                             struct error *error)
+{
+    double normal[3] = {0.0, 0.0, 0.0};
+    if (count == 2 && edges[0].upward == edges[1].upward) {
+        return fail_sides(edges[0].slot / 3, edges[1].slot / 3, error);
+    }
+    for (int64_t i = 0; i < count; i++) {
+        add_scaled(3, 1.0, surface->normal + edges[i].slot / 3 * 3, normal);
+    }
+    normalise(3, normal);
+    for (int64_t i = 0; i < count; i++) {
+        memcpy(surface->edge_normal + edges[i].slot * 3, normal, sizeof normal);
+        surface->edge_is_rim[edges[i].slot] = count == 1;
+    }
+    if (count == 1) {
+        surface->is_rim[edges[0].low] = true;
+        surface->is_rim[edges[0].high] = true;
+    }
+    return STATUS_OK;
+}
+
+static enum status join_edges(struct rigid_surface *surface, struct error *error)
+{
+    enum status status;
+    int64_t count = surface->facet_count * 3;
+    struct half_edge *edges = NULL;
+    TRY(NEW_ARRAY(&edges, count, error));
+    TRY(NEW_ARRAY(&surface->edge_normal, count * 3, error));
+    TRY(NEW_ARRAY(&surface->edge_is_rim, count, error));
+    for (int64_t slot = 0; slot < count; slot++) {
+        int32_t from = surface->facet[slot], to = surface->facet[slot / 3 * 3 + (slot + 1) % 3];
+        bool upward = from < to;
+        edges[slot] = (struct half_edge){upward ? from : to, upward ? to : from, upward, slot};
+    }
+    qsort(edges, (size_t)count, sizeof *edges, compare_edges);
+    for (int64_t first = 0, last; first < count; first = last) {
+        for (last = first + 1;
+             last < count && edges[last].low == edges[first].low && edges[last].high == edges[first].high;) {
+            last++;
+        }
+        TRY(join_edge(surface, edges + first, last - first, error));
+    }
+done:
+    free(edges);
+    return status;
+}
+
+/* 3D: the angle of facet f at its corner k. */
+static double corner_angle(const struct rigid_surface *surface, int64_t f, int k)
+{
+    const int32_t *corner = surface->facet + f * 3;
+    const double *x = surface->vertex + (int64_t)corner[k] * 3;
+    const double *next = surface->vertex + (int64_t)corner[(k + 1) % 3] * 3;
+    const double *previous = surface->vertex + (int64_t)corner[(k + 2) % 3] * 3;
+    double dot = 0.0, one = distance2(3, x, next), other = distance2(3, x, previous);
+    for (int a = 0; a < 3; a++) {
+        dot += (next[a] - x[a]) * (previous[a] - x[a]);
+    }
+    return acos(fmin(fmax(dot / sqrt(one * other), -1.0), 1.0));
+}
+
+enum status rigid_join_facets(struct rigid_surface *surface, struct error *error)
+{
+    enum status status;
+    TRY(NEW_ARRAY(&surface->vertex_normal, surface->vertex_count * surface->dim, error));
+    TRY(NEW_ARRAY(&surface->is_rim, surface->vertex_count, error));
+    TRY(NEW_ARRAY(&surface->is_smooth, surface->vertex_count, error));
+    if (surface->dim == 2) {
+        TRY(join_segments(surface, error));
+    } else {
+        TRY(join_edges(surface, error));
+        for (int64_t slot = 0; slot < surface->facet_count * 3; slot++) {
+            add_scaled(3, corner_angle(surface, slot / 3, (int)(slot % 3)), surface->normal + slot / 3 * 3,
+                       surface->vertex_normal + (int64_t)surface->facet[slot] * 3);
+        }
+    }
+    for (int64_t v = 0; v < surface->vertex_count; v++) {
+        normalise(surface->dim, surface->vertex_normal + v * surface->dim);
+        surface->is_smooth[v] = true;
+    }
+    for (int64_t c = 0; c < surface->facet_count * surface->dim; c++) {
+        int64_t vertex = surface->facet[c];
+        const double *mean = surface->vertex_normal + vertex * surface->dim;
+        const double *normal = surface->normal + c / surface->dim * surface->dim;
+        double cosine = 0.0;
+        for (int a = 0; a < surface->dim; a++) {
+            cosine += mean[a] * normal[a];
+        }
+        surface->is_smooth[vertex] = surface->is_smooth[vertex] && cosine >= smooth_cosine;
+    }
+done:
+    return status;
+}
