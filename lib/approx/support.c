@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const double widen_step = 1.1;
+static const double widen_step = 1.05;
 static const double widen_limit = 8.0;
 /* Points of one unit of work: fixed, so that the result cannot depend on the number of threads. */
 static const int64_t chunk_points = 512;
