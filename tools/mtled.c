@@ -3,17 +3,29 @@ static const char usage[] =
     "\n"
     "usage: mtled [-v] [-q] [-b] [-o FILE] SCENE [FILE]\n"
     "\n"
-    "Reads a stream with a table of shape functions (see shapefn) and computes the scene, an INI file that\n"
-    "names materials, prescribed displacements, contacts and loads on the groups of the mesh. Writes the "
-    "nodes,\n"
-    "the cells and u (m), the displacement field at the nodes, one row per node in the order of the mesh, "
-    "as\n"
-    "text; and what else the scene's [output] asks for. Without earlier sections the defaults of ipoints,\n"
-    "support and shapefn are run first, with the same result.\n"
+    "Reads a stream with a table of shape functions (see shapefn) and computes the scene, an\n"
+    "INI file that names materials, prescribed displacements, contacts and loads on the groups\n"
+    "of the mesh (see mtled-scene(5)). Writes the nodes, the cells and u (m), the displacement\n"
+    "field at the nodes, one row per node in the order of the mesh, as text; and what else the\n"
+    "scene's [output] asks for. Without earlier sections the defaults of ipoints, support and\n"
+    "shapefn are run first, with the same result.\n"
     "\n"
-    "Quasi-static scenes are relaxed until the estimated remaining error, relative to the displacement, is "
-    "below\n"
-    "the scene's tolerance. On a terminal, progress is shown with step, time, error and time left.\n"
+    "Quasi-static scenes are relaxed until the estimated remaining error, relative to the\n"
+    "displacement, is below the scene's tolerance. Dynamic scenes are stepped to their end\n"
+    "time by central differences with the true mass, at a share (time_step_margin) of the\n"
+    "critical step, which is watched all along. They stop with a verdict when a point is\n"
+    "inverted, when the critical step collapses (below 0.001 of the first one), and when the\n"
+    "energy balance is off by more than 0.05 of the largest energy. On a terminal, progress is\n"
+    "shown with step, time, error and time left.\n"
+    "\n"
+    "Sections on request: u.frame.K, the field u at time= (frames K = 1, 2, ..., evenly up to\n"
+    "the final state; in a quasi-static scene over the load, from 0 to 1), for tovtk; stress\n"
+    "(Cauchy) and strain (Green-Lagrange) of each integration point; reactions, the force of\n"
+    "each displacement and contact; gaps and pressures of contacts; energy, J (2D: J/m): in a\n"
+    "dynamic scene about 200 rows of time (s), kinetic, internal and contact energy, work of\n"
+    "loads and prescribed motion, energy dissipated by damping, and error of the balance\n"
+    "relative to the largest energy; in a quasi-static scene one row, internal and contact,\n"
+    "of the final state (relaxation is no motion that a work could be told of).\n"
     "\n"
     "Options:\n"
     "  -v, --verbose        end with a report on standard error: steps, error, cost of each part\n"
@@ -22,8 +34,8 @@ static const char usage[] =
     "  -o, --output FILE    write to FILE, which appears only when whole\n"
     "\n"
     "Exit status:\n"
-    "  0 converged; 1 diverged, inverted, or out of steps (nothing is written); 2 usage or malformed input;\n"
-    "  3 input/output or memory\n"
+    "  0 done; 1 diverged, inverted, out of balance or of steps (nothing is written); 2 usage or\n"
+    "  malformed input; 3 input/output or memory\n"
     "\n"
     "Examples:\n"
     "  nodes -u mm body.msh | shapefn | mtled brain2d.scene > u.dat\n"
@@ -35,6 +47,16 @@ static const char usage[] =
 #include <unistd.h>
 
 enum { VERBOSE, QUIET, BINARY, OUTPUT, OPTION_COUNT };
+
+/* The results of an earlier run on the same stream. */
+static void drop_results(struct stream *stream)
+{
+    static const char *const names[] = {"u", "stress", "strain", "reactions", "gaps", "energy"};
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
+        stream_remove(stream, names[i]);
+    }
+    stream_remove_prefix(stream, "u.frame.");
+}
 
 /* The sections that only the computation needs leave the stream; the rest passes through. */
 static void drop_tables(struct stream *stream)
@@ -62,6 +84,7 @@ int main(int argc, char *argv[])
     tool_begin(&tool, usage, options, OPTION_COUNT, 1, 2, argc, argv);
     tool_check(&tool, scene_read(tool.operands[0], &scene, &error), &error);
     tool_read(&tool, tool.operand_count > 1 ? tool.operands[1] : NULL, &stream);
+    drop_results(&stream);
     stage_fill(&tool, &stream, "shapefn");
 
     struct run run = {
@@ -74,7 +97,11 @@ int main(int argc, char *argv[])
     tool_check(&tool, model_build(&stream, &scene, &model, &error), &error);
     tool_check(&tool, NEW_ARRAY(&run.u, model.system.node_count * scene.dim, &error), &error);
     run.prepare_seconds = run_clock() - run.display.started;
-    run_quasi_static(&run);
+    if (scene.analysis == SCENE_DYNAMIC) {
+        run_dynamic(&run);
+    } else {
+        run_quasi_static(&run);
+    }
     run_put_results(&run);
     if (run.verbose) {
         fprintf(stderr, "prepare seconds\t%.3f\nsolve seconds\t%.3f\n", run.prepare_seconds,

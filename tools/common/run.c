@@ -1,5 +1,7 @@
 #include "run.h"
 
+#include "solid/energy.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -14,7 +16,7 @@ double run_clock(void)
 
 bool run_show_progress(void *context, const struct progress *progress)
 {
-    struct display *display = context;
+    struct display *display = &((struct run *)context)->display;
     double now = run_clock();
     if (!display->shown || now - display->last < 0.25) {
         return true;
@@ -70,8 +72,10 @@ void run_quasi_static(struct run *run)
                                          .time_step_margin = solver->time_step_margin,
                                          .ramp_steps = solver->ramp_steps,
                                          .most_steps = solver->max_steps,
+                                         .frames = run->scene->output.frames,
+                                         .frame = run_put_frame,
                                          .progress = run_show_progress,
-                                         .context = &run->display};
+                                         .context = run};
     struct relaxation_report report;
     struct error error;
     double started = run_clock();
@@ -98,7 +102,7 @@ void run_put(const struct run *run, const char *name, int64_t rows, int64_t cols
                stream_put(run->stream, name, TYPE_F8, rows, cols, attributes, values, true, &error), &error);
 }
 
-static double *new_values(const struct run *run, int64_t count)
+double *run_new_values(const struct run *run, int64_t count)
 {
     struct error error;
     double *values;
@@ -110,6 +114,19 @@ static const char *vector_attributes(int dim, const char *unit, char text[64])
 {
     snprintf(text, 64, "unit=%s cols=%s", unit, dim == 2 ? "x,y" : "x,y,z");
     return text;
+}
+
+void run_put_frame(void *context, int64_t number, double time, const double *u)
+{
+    const struct run *run = context;
+    int dim = run->scene->dim;
+    int64_t nodes = run->model->system.node_count;
+    char name[40], vector[64], attributes[128];
+    double *field = run_new_values(run, nodes * dim);
+    model_nodal_field(&run->model->input, u, field);
+    snprintf(name, sizeof name, "u.frame.%lld", (long long)number);
+    snprintf(attributes, sizeof attributes, "%s time=%.12g", vector_attributes(dim, "m", vector), time);
+    run_put(run, name, nodes, dim, attributes, field);
 }
 
 /* Components of a symmetric tensor in output order. */
@@ -125,8 +142,8 @@ static void put_tensors(struct run *run)
     const char *names = scene->dim == 2 ? "cols=xx,yy,zz,xy" : "cols=xx,yy,zz,xy,xz,yz";
     char attributes[64];
     int64_t points = body->point_count;
-    double *F = new_values(run, points * 9), *P = new_values(run, points * 9);
-    double *stress = new_values(run, points * count), *strain = new_values(run, points * count);
+    double *F = run_new_values(run, points * 9), *P = run_new_values(run, points * 9);
+    double *stress = run_new_values(run, points * count), *strain = run_new_values(run, points * count);
     body_gradient(body, F);
     body_stress(body, P);
     for (int64_t q = 0; q < points; q++) {
@@ -166,7 +183,7 @@ static void put_reactions(struct run *run)
     const struct scene *scene = run->scene;
     int dim = scene->dim;
     int64_t rows = scene->displacement_count + scene->contact_count;
-    double *total = new_values(run, rows * dim);
+    double *total = run_new_values(run, rows * dim);
     size_t size = 16;
     for (int64_t i = 0; i < scene->displacement_count; i++) {
         size += strlen(scene->displacements[i].label.name) + 1;
@@ -174,7 +191,7 @@ static void put_reactions(struct run *run)
     for (int64_t i = 0; i < scene->contact_count; i++) {
         size += strlen(scene->contacts[i].label.name) + 1;
     }
-    char *attributes = (char *)new_values(run, (int64_t)(size + 64));
+    char *attributes = (char *)run_new_values(run, (int64_t)(size + 64));
     snprintf(attributes, size + 64, "unit=%s rows=", dim == 2 ? "N/m" : "N");
     for (int64_t i = 0; i < rows; i++) {
         const char *name = i < scene->displacement_count
@@ -209,7 +226,7 @@ static void put_gaps(struct run *run)
     for (int64_t c = 0; c < system->contact_count; c++) {
         rows += system->contacts[c].count;
     }
-    double *values = new_values(run, rows * cols);
+    double *values = run_new_values(run, rows * cols);
     for (int64_t c = 0; c < system->contact_count; c++) {
         const struct contact *contact = &system->contacts[c];
         for (int64_t a = 0; a < contact->count; a++, at++) {
@@ -223,6 +240,18 @@ static void put_gaps(struct run *run)
             values);
 }
 
+/* Of the state of rest. What the loads did on the way there means nothing: relaxation is no motion. */
+static void put_energy(struct run *run)
+{
+    struct solid_system *system = &run->model->system;
+    double *values = run_new_values(run, 2);
+    values[0] = body_energy(&system->body, run->u);
+    values[1] = energy_contact(system);
+    run_put(run, "energy", 1, 2,
+            run->scene->dim == 2 ? "unit=J/m,J/m cols=internal,contact" : "unit=J,J cols=internal,contact",
+            values);
+}
+
 void run_put_results(struct run *run)
 {
     const struct scene_output *output = &run->scene->output;
@@ -230,7 +259,7 @@ void run_put_results(struct run *run)
     char attributes[64];
     int dim = run->scene->dim;
     int64_t nodes = model->system.node_count;
-    double *field = new_values(run, nodes * dim), *scratch = new_values(run, nodes * dim);
+    double *field = run_new_values(run, nodes * dim), *scratch = run_new_values(run, nodes * dim);
     /* Bring F, stresses and gaps to the final state. */
     (void)system_residual(&model->system, run->u, scratch);
     free(scratch);
@@ -239,6 +268,9 @@ void run_put_results(struct run *run)
     }
     if (output->reactions) {
         put_reactions(run);
+    }
+    if (output->energy && run->scene->analysis == SCENE_QUASI_STATIC) {
+        put_energy(run);
     }
     if (output->gaps && model->system.contact_count > 0) {
         put_gaps(run);

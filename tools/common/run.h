@@ -25,18 +25,28 @@ struct run {
 /* Seconds of a clock that only goes forward. */
 double run_clock(void);
 
-/* A progress_function for struct display. */
+/* A progress_function; the context is the struct run. */
 bool run_show_progress(void *context, const struct progress *progress);
 void run_clear_progress(const struct display *display);
 
 /* Quasi-static: relax to the full load. Exits with a verdict when it does not converge. */
 void run_quasi_static(struct run *run);
 
+/* Dynamic: step to the end time. Exits with a verdict when it cannot; adds the section energy on request. */
+void run_dynamic(struct run *run);
+
+/* A frame_function; the context is the struct run: adds the section u.frame.NUMBER. */
+void run_put_frame(void *context, int64_t number, double time, const double *u);
+
+/* Zeros; exits when there is no memory. */
+double *run_new_values(const struct run *run, int64_t count);
+
 /* Add section `name`: rows x cols values, which the stream takes. Exits on failure. */
 void run_put(const struct run *run, const char *name, int64_t rows, int64_t cols, const char *attributes,
              double *values);
 
-/* Add u at the nodes and the optional outputs of the final state: stress, strain, reactions, gaps. */
+/* Add u at the nodes and the optional outputs of the final state: stress, strain, reactions, gaps, and
+ * in a quasi-static run its energy. */
 void run_put_results(struct run *run);
 
 #endif
