@@ -82,13 +82,13 @@ static enum status copy_points(const struct body_input *input, struct body *body
     enum status status;
     int dim = input->dim;
     int64_t points = input->point_count;
-    TRY(NEW_ARRAY(&body->weight, points, error));
+    TRY(NEW_ARRAY(&body->weight, points + BODY_POINT_PADDING, error));
     TRY(NEW_ARRAY(&body->material, points, error));
-    TRY(NEW_ARRAY(&body->shear, points, error));
+    TRY(NEW_ARRAY(&body->shear, points + BODY_POINT_PADDING, error));
     TRY(NEW_ARRAY(&body->bulk, points, error));
     TRY(NEW_ARRAY(&body->ptr, points + 1, error));
-    TRY(NEW_ARRAY(&body->F, points * dim * dim, error));
-    TRY(NEW_ARRAY(&body->J, points, error));
+    TRY(NEW_ARRAY(&body->F, points * dim * dim + BODY_POINT_PADDING, error));
+    TRY(NEW_ARRAY(&body->J, points + BODY_POINT_PADDING, error));
     TRY(NEW_ARRAY(&body->materials, input->material_count, error));
     memcpy(body->materials, input->materials, (size_t)input->material_count * sizeof *body->materials);
     for (int64_t q = 0; q < points; q++) {

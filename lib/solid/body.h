@@ -34,6 +34,10 @@ struct body_input {
 /* The most nodes a block may hold: its displacements lie on the stack of a thread. */
 #define BODY_MAX_BLOCK_NODES 16384
 
+/* Points are worked on so many at a time; weight, shear, J and F have as many entries more, which are read
+ * and not used. */
+#define BODY_POINT_PADDING 8
+
 struct block {
     int64_t first_point, point_count; /* in the body's order */
     int64_t first_node, node_count;   /* in block_node and block_force */

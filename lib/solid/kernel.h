@@ -105,38 +105,56 @@ KERNEL_INLINE void gradients_3d(struct body *body, const struct block *block, co
     }
 }
 
-/* Cofactors of point i of a block whose F stands at F[k * stride]. */
-KERNEL_INLINE void kernel_cofactors(const double *F, int64_t stride, int64_t i, int dim, double C[9])
+/* Points are taken LANES at a time; arrays over points are padded by LANES, so that whole vectors may be
+ * read. */
+#define LANES BODY_POINT_PADDING
+typedef double lanes __attribute__((vector_size(8 * LANES)));
+typedef float lanes_float __attribute__((vector_size(4 * LANES)));
+typedef int32_t lanes_int __attribute__((vector_size(4 * LANES)));
+
+/* Deformation gradients of the points from q on, dim x dim, and their cofactors J F^-T. */
+struct lanes_gradient {
+    lanes F[9], C[9];
+};
+
+KERNEL_INLINE void lanes_load(const struct body *body, int64_t q, int dim, struct lanes_gradient *g)
 {
+    for (int k = 0; k < dim * dim; k++) {
+        LOAD(g->F[k], body->F + k * body->point_count + q);
+    }
+    const lanes *F = g->F;
+    lanes *C = g->C;
     if (dim == 2) {
-        C[0] = F[3 * stride + i];
-        C[1] = -F[2 * stride + i];
-        C[2] = -F[stride + i];
-        C[3] = F[i];
+        C[0] = F[3];
+        C[1] = -F[2];
+        C[2] = -F[1];
+        C[3] = F[0];
     } else {
-        double m[9];
-        for (int k = 0; k < 9; k++) {
-            m[k] = F[k * stride + i];
-        }
-        cofactor(m, C);
+        C[0] = F[4] * F[8] - F[5] * F[7];
+        C[1] = F[5] * F[6] - F[3] * F[8];
+        C[2] = F[3] * F[7] - F[4] * F[6];
+        C[3] = F[2] * F[7] - F[1] * F[8];
+        C[4] = F[0] * F[8] - F[2] * F[6];
+        C[5] = F[1] * F[6] - F[0] * F[7];
+        C[6] = F[1] * F[5] - F[2] * F[4];
+        C[7] = F[2] * F[3] - F[0] * F[5];
+        C[8] = F[0] * F[4] - F[1] * F[3];
     }
 }
 
 KERNEL_INLINE void kernel_determinants(struct body *body, const struct block *block, int dim)
 {
-    int64_t stride = body->point_count;
-    const double *F = body->F + block->first_point;
-    double *J = body->J + block->first_point;
-#pragma omp simd
-    for (int64_t i = 0; i < block->point_count; i++) {
-        double C[9];
-        kernel_cofactors(F, stride, i, dim, C);
-        double sum = 0.0;
-        for (int b = 0; b < dim; b++) {
-            sum += F[b * stride + i] * C[b];
+    double J[MAX_BLOCK_POINTS];
+    for (int64_t i = 0; i < block->point_count; i += LANES) {
+        struct lanes_gradient g;
+        lanes_load(body, block->first_point + i, dim, &g);
+        lanes sum = g.F[0] * g.C[0] + g.F[1] * g.C[1];
+        if (dim == 3) {
+            sum += g.F[2] * g.C[2];
         }
-        J[i] = sum;
+        STORE(J + i, sum);
     }
+    memcpy(body->J + block->first_point, J, (size_t)block->point_count * sizeof *J);
 }
 
 /* F and J of a block from the displacements u of all nodes; local: scratch. */
@@ -152,20 +170,20 @@ KERNEL_INLINE void kernel_gather(struct body *body, const struct block *block, i
     kernel_determinants(body, block, dim);
 }
 
-/* x^(-1/3) for x > 0 by Newton's iteration from a guess by the exponent: exact to a few ulp, and it
- * vectorises. */
-KERNEL_INLINE double inverse_cube_root(double x)
+/* x^(-1/3) for x > 0 by Newton's iteration from a guess by the exponent: exact to a few ulp. */
+KERNEL_INLINE void inverse_cube_root(const lanes *x, lanes *root)
 {
-    float seed = (float)x;
-    uint32_t bits;
+    lanes_float seed = __builtin_convertvector(*x, lanes_float);
+    lanes_int bits;
     memcpy(&bits, &seed, sizeof bits);
-    bits = 0x54a21d2au - bits / 3u;
+    bits = 0x54a21d2a -
+           __builtin_convertvector(__builtin_convertvector(bits, lanes_float) * (1.0f / 3.0f), lanes_int);
     memcpy(&seed, &bits, sizeof seed);
-    double y = (double)seed;
+    lanes y = __builtin_convertvector(seed, lanes);
     for (int it = 0; it < 4; it++) {
-        y = y * (4.0 - x * y * y * y) * (1.0 / 3.0);
+        y = y * (4.0 - *x * y * y * y) * (1.0 / 3.0);
     }
-    return y;
+    *root = y;
 }
 
 /* Volumetric pressure of each point of a neo-Hookean block, weighted: its own, or that of the hats around it.
@@ -197,23 +215,27 @@ KERNEL_INLINE void kernel_pressures(const struct body *body, const struct block 
 KERNEL_INLINE void kernel_neo_hookean(const struct body *body, const struct block *block, int dim,
                                       block_stress P)
 {
-    int64_t stride = body->point_count;
-    const double *F = body->F + block->first_point, *J = body->J + block->first_point;
-    const double *weight = body->weight + block->first_point, *shear = body->shear + block->first_point;
-    double pressure[MAX_BLOCK_POINTS];
-    kernel_pressures(body, block, dim, pressure);
-#pragma omp simd
-    for (int64_t i = 0; i < block->point_count; i++) {
-        double C[9], I1 = dim == 2 ? 1.0 : 0.0;
-        for (int k = 0; k < dim * dim; k++) {
-            I1 += F[k * stride + i] * F[k * stride + i];
+    double weighted_pressure[MAX_BLOCK_POINTS];
+    kernel_pressures(body, block, dim, weighted_pressure);
+    for (int64_t i = 0; i < block->point_count; i += LANES) {
+        struct lanes_gradient g;
+        lanes J, weight, shear, pressure, root;
+        int64_t q = block->first_point + i;
+        lanes_load(body, q, dim, &g);
+        LOAD(J, body->J + q);
+        LOAD(weight, body->weight + q);
+        LOAD(shear, body->shear + q);
+        LOAD(pressure, weighted_pressure + i);
+        lanes I1 = g.F[0] * g.F[0] + (dim == 2 ? 1.0 : 0.0);
+        for (int k = 1; k < dim * dim; k++) {
+            I1 += g.F[k] * g.F[k];
         }
-        kernel_cofactors(F, stride, i, dim, C);
-        double root = inverse_cube_root(J[i]);
-        double scale = weight[i] * shear[i] * root * root;
-        double along = pressure[i] - scale * I1 * (1.0 / 3.0) * (root * root * root);
+        inverse_cube_root(&J, &root);
+        lanes scale = weight * shear * root * root;
+        lanes along = pressure - scale * I1 * (1.0 / 3.0) * (root * root * root);
         for (int k = 0; k < dim * dim; k++) {
-            P[k][i] = scale * F[k * stride + i] + along * C[k];
+            lanes stress = scale * g.F[k] + along * g.C[k];
+            STORE(P[k] + i, stress);
         }
     }
 }
