@@ -1,0 +1,51 @@
+/* What the benchmarks share: repeats and their percentiles, a plain read of as many bytes in the same run,
+ * and the rows of bench.tsv. Programs of pipelines/bench/ print rows; pipelines/bench.mk puts the header
+ * above. */
+#ifndef BENCH_H
+#define BENCH_H
+
+#include "base/status.h"
+
+#include <stdint.h>
+
+#define BENCH_MOST_REPEATS 1000
+
+/* Seconds that each repeat took. */
+struct bench_times {
+    int count;
+    double seconds[BENCH_MOST_REPEATS];
+};
+
+/* One line of the table. */
+struct bench_row {
+    const char *kernel, *size;
+    int threads;
+    const char *precision;  /* "double", "float", "-" */
+    double pairs;           /* of one repeat; 0: the kernel has none, and the figures are per byte */
+    double bytes;           /* read and written by one repeat */
+    double rate;            /* of one repeat: points, or bytes / 1e6 */
+    const char *unit;       /* of rate per second: "points/s", "MB/s" */
+    double memory_per_node; /* bytes held; 0: not measured */
+};
+
+/* Wall time, s. */
+double bench_now(void);
+
+/* Run until `least` seconds and at least 5 repeats are spent; the first run, which warms caches, is not
+ * counted. The program ends with the status and message of a repeat that fails. */
+void bench_repeat(double least, enum status (*run)(void *context, struct error *error), void *context,
+                  struct bench_times *times);
+
+/* Percentile (0 .. 100) of the repeats. */
+double bench_percentile(const struct bench_times *times, double percent);
+
+/* Seconds of a plain read (a sum) of that many bytes by that many threads: the quickest of several. */
+double bench_plain_read(double bytes, int threads);
+
+/* Print a row: times are per pair, least and percentiles in ns. */
+void bench_print(const struct bench_row *row, const struct bench_times *times);
+
+/* Print the message and end the program unless the status is STATUS_OK. */
+void bench_check(enum status status, const struct error *error);
+
+#endif
