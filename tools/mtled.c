@@ -42,6 +42,7 @@ static const char usage[] =
     "  nodes -u mm body.msh | ipoints -g 4 | support -k 2 | shapefn | mtled -v brain2d.scene > u.dat\n";
 
 #include "run.h"
+#include "threads.h"
 
 #include <stdlib.h>
 #include <unistd.h>
@@ -81,6 +82,7 @@ int main(int argc, char *argv[])
         [BINARY] = {.letter = 'b', .name = "binary"},
         [OUTPUT] = {.letter = 'o', .name = "output", .takes_value = true},
     };
+    threads_settle_waiting(argv);
     tool_begin(&tool, usage, options, OPTION_COUNT, 1, 2, argc, argv);
     tool_check(&tool, scene_read(tool.operands[0], &scene, &error), &error);
     tool_read(&tool, tool.operand_count > 1 ? tool.operands[1] : NULL, &stream);
