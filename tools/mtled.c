@@ -84,9 +84,11 @@ int main(int argc, char *argv[])
     };
     threads_settle_waiting(argv);
     tool_begin(&tool, usage, options, OPTION_COUNT, 1, 2, argc, argv);
+    double started = clock_seconds();
     tool_check(&tool, scene_read(tool.operands[0], &scene, &error), &error);
     tool_read(&tool, tool.operand_count > 1 ? tool.operands[1] : NULL, &stream);
     drop_results(&stream);
+    double read = clock_seconds() - started;
     stage_fill(&tool, &stream, "shapefn");
 
     struct run run = {
@@ -95,23 +97,25 @@ int main(int argc, char *argv[])
         .model = &model,
         .stream = &stream,
         .verbose = options[VERBOSE].given,
-        .display = {.shown = !options[QUIET].given && isatty(STDERR_FILENO), .started = run_clock()}};
+        .read_seconds = read,
+        .display = {.shown = !options[QUIET].given && isatty(STDERR_FILENO), .started = clock_seconds()}};
     tool_check(&tool, model_build(&stream, &scene, &model, &error), &error);
     tool_check(&tool, NEW_ARRAY(&run.u, model.system.node_count * scene.dim, &error), &error);
-    run.prepare_seconds = run_clock() - run.display.started;
+    run.prepare_seconds = clock_seconds() - run.display.started;
     if (scene.analysis == SCENE_DYNAMIC) {
         run_dynamic(&run);
     } else {
         run_quasi_static(&run);
     }
     run_put_results(&run);
+    drop_tables(&stream);
+    started = clock_seconds();
+    tool_write(&tool, &stream, !options[BINARY].given);
+    run.write_seconds = clock_seconds() - started;
     if (run.verbose) {
-        fprintf(stderr, "prepare seconds\t%.3f\nsolve seconds\t%.3f\n", run.prepare_seconds,
-                run.solve_seconds);
+        run_report_cost(&run);
     }
     model_free(&model);
-    drop_tables(&stream);
-    tool_write(&tool, &stream, !options[BINARY].given);
     free(run.u);
     scene_free(&scene);
     stream_free(&stream);

@@ -1,5 +1,6 @@
 #include "solid/dynamics.h"
 
+#include "base/clock.h"
 #include "base/memory.h"
 
 #include <math.h>
@@ -180,7 +181,9 @@ static void advance(struct dynamics *d, bool is_first)
         }
     }
     if (system->rows.count > 0) {
+        double started = clock_seconds();
         constraint_project(&d->constraint, d->factor_after, d->next);
+        d->system->cost.constraints += clock_seconds() - started;
         for (int64_t i = 0; i < d->size; i++) {
             d->after[i] = (d->next[i] - d->u[i]) / dt;
         }

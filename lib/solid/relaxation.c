@@ -1,5 +1,6 @@
 #include "solid/relaxation.h"
 
+#include "base/clock.h"
 #include "base/memory.h"
 
 #include <math.h>
@@ -162,7 +163,9 @@ static bool step(struct relaxation *r, double *u, bool measure)
             u[i] += dt * (keep * r->velocity[i] + push * r->residual[i]);
         }
     }
+    double started = clock_seconds();
     constraint_project(&r->constraint, system->factor, u);
+    system->cost.constraints += clock_seconds() - started;
     for (int64_t i = 0; i < r->size; i++) {
         r->velocity[i] = (u[i] - r->before[i]) / dt;
     }

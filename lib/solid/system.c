@@ -1,6 +1,7 @@
 #include "solid/system.h"
 
 #include "approx/cells.h"
+#include "base/clock.h"
 #include "base/memory.h"
 
 #include <math.h>
@@ -151,14 +152,20 @@ void system_add_loads(const struct solid_system *system, const double *u, double
 struct deformation system_residual(struct solid_system *system, const double *u, double *residual)
 {
     int64_t size = system->node_count * system->dim;
+    double started = clock_seconds();
     struct deformation deformation = body_force(&system->body, u, residual);
+    double forced = clock_seconds();
     for (int64_t i = 0; i < size; i++) {
         residual[i] = -residual[i];
     }
     system_add_loads(system, u, residual);
+    double loaded = clock_seconds();
     for (int64_t c = 0; c < system->contact_count; c++) {
         contact_force(&system->contacts[c], u, residual);
     }
+    system->cost.force += forced - started;
+    system->cost.loads += loaded - forced;
+    system->cost.contact += clock_seconds() - loaded;
     return deformation;
 }
 

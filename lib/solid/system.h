@@ -27,6 +27,11 @@ struct pressure_load {
     int32_t curve;
 };
 
+/* What the parts of a scene have cost so far, s of wall time. */
+struct cost {
+    double force, loads, contact, constraints;
+};
+
 struct solid_system {
     int dim;
     int64_t node_count;
@@ -44,6 +49,7 @@ struct solid_system {
     int64_t curve_count;
     double *lumped_mass; /* node_count, kg (2D: kg/m), positive: each cell shares its mass among its nodes */
     double *factor;      /* curve_count: scratch, values of the curves */
+    struct cost cost;
 };
 
 void system_free(struct solid_system *system);

@@ -5,19 +5,11 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
-
-double run_clock(void)
-{
-    struct timespec now;
-    clock_gettime(CLOCK_MONOTONIC, &now);
-    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
-}
 
 bool run_show_progress(void *context, const struct progress *progress)
 {
     struct display *display = &((struct run *)context)->display;
-    double now = run_clock();
+    double now = clock_seconds();
     if (!display->shown || now - display->last < 0.25) {
         return true;
     }
@@ -78,10 +70,10 @@ void run_quasi_static(struct run *run)
                                          .context = run};
     struct relaxation_report report;
     struct error error;
-    double started = run_clock();
+    double started = clock_seconds();
     enum status status =
         relaxation_run(&run->model->system, &options, run->u, run->model->row_force, &report, &error);
-    run->solve_seconds = run_clock() - started;
+    run->solve_seconds = clock_seconds() - started;
     run_clear_progress(&run->display);
     tool_check(run->tool, status, &error);
     judge(run, &report);
@@ -91,6 +83,25 @@ void run_quasi_static(struct run *run)
                 (long long)report.ramp_steps, (long long)report.force_evaluations);
         fprintf(stderr, "estimated error\t%.3g\nfrequency ratio\t%.5g\nleast J\t%.4g\n", report.error,
                 report.largest_frequency / report.lowest_frequency, report.least_jacobian);
+    }
+}
+
+void run_report_cost(const struct run *run)
+{
+    const struct cost *cost = &run->model->system.cost;
+    double stepping = run->solve_seconds - cost->force - cost->loads - cost->contact - cost->constraints;
+    double whole = run->read_seconds + run->prepare_seconds + run->solve_seconds + run->write_seconds;
+    const struct {
+        const char *part;
+        double seconds;
+    } rows[] = {{"read", run->read_seconds}, {"prepare", run->prepare_seconds},
+                {"force", cost->force},      {"loads", cost->loads},
+                {"contact", cost->contact},  {"constraints", cost->constraints},
+                {"stepping", stepping},      {"write", run->write_seconds}};
+    fprintf(stderr, "prepare seconds\t%.3f\nsolve seconds\t%.3f\n", run->prepare_seconds, run->solve_seconds);
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        fprintf(stderr, "cost %s\t%.4f s\t%.1f %%\n", rows[i].part, rows[i].seconds,
+                100.0 * rows[i].seconds / whole);
     }
 }
 

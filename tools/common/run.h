@@ -3,6 +3,7 @@
 #define TOOLS_RUN_H
 
 #include "model.h"
+#include "base/clock.h"
 #include "solid/relaxation.h"
 
 /* Progress on a terminal: one line, a few times a second. */
@@ -19,11 +20,8 @@ struct run {
     struct display display;
     bool verbose;
     double *u; /* parameters, node_count * dim, m */
-    double prepare_seconds, solve_seconds;
+    double read_seconds, prepare_seconds, solve_seconds, write_seconds;
 };
-
-/* Seconds of a clock that only goes forward. */
-double run_clock(void);
 
 /* A progress_function; the context is the struct run. */
 bool run_show_progress(void *context, const struct progress *progress);
@@ -40,6 +38,9 @@ void run_put_frame(void *context, int64_t number, double time, const double *u);
 
 /* Zeros; exits when there is no memory. */
 double *run_new_values(const struct run *run, int64_t count);
+
+/* End of a verbose report: what each part of the scene cost, s and share of the whole. */
+void run_report_cost(const struct run *run);
 
 /* Add section `name`: rows x cols values, which the stream takes. Exits on failure. */
 void run_put(const struct run *run, const char *name, int64_t rows, int64_t cols, const char *attributes,

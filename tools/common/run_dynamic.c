@@ -90,10 +90,10 @@ void run_dynamic(struct run *run)
     struct dynamics_report report;
     struct energy_log log = {0};
     struct error error;
-    double started = run_clock();
+    double started = clock_seconds();
     enum status status = dynamics_run(&run->model->system, &options, run->u, NULL, run->model->row_force,
                                       output->energy ? &log : NULL, &report, &error);
-    run->solve_seconds = run_clock() - started;
+    run->solve_seconds = clock_seconds() - started;
     run_clear_progress(&run->display);
     tool_check(run->tool, status, &error);
     judge(run, &report);
