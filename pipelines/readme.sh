@@ -1,0 +1,97 @@
+#!/bin/bash
+# README.md afresh: bash pipelines/readme.sh < README.md > new. Needs the tools on PATH; see readme.mk and tests/readme.bats.
+#
+# - Blocks ```console: each "$ command" (continued in lines "> ...") is run, in one shell and in a folder of its own that
+#   sees examples/ and pipelines/; what it prints takes the place of what stands below it. A command that fails
+#   is an error.
+# - Between "<!-- tools -->" and "<!-- end -->": the tools and their one-line summaries, from their usage texts.
+# - Between "<!-- studies -->" and "<!-- end -->": the studies, from the first lines of pipelines/*.mk.
+# - Between "<!-- study FILE -->" and "<!-- end -->": the table of a study, STUDIES/FILE (build/out/FILE); left alone where that is not made.
+# - A picture that the commands make, build/NAME.png, replaces examples/*/pictures/NAME.png where KEEP=1 is set.
+set -uo pipefail
+
+source_root=$(cd "$(dirname "$0")/.." && pwd)
+studies=${STUDIES:-build/out}
+[[ $studies = /* ]] || studies=$source_root/$studies
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+ln -s "$source_root/examples" "$source_root/pipelines" "$work"
+mkdir "$work/build"
+cd "$work" || exit 3
+failures=0
+
+# Run one command; its output, in order, without blanks at the ends of lines.
+run() {
+    eval "$1" > "$work/.output" 2>&1 < /dev/null
+    local status=$?
+    if [ "$status" -ne 0 ]; then
+        printf 'readme: status %d: %s\n' "$status" "$1" >&2
+        failures=$((failures + 1))
+    fi
+    sed 's/[[:blank:]]*$//' "$work/.output"
+}
+
+tools_table() {
+    local file
+    printf '| tool | does |\n|---|---|\n'
+    for file in "$source_root"/tools/*.c; do
+        # shellcheck disable=SC2016
+        "$(basename "$file" .c)" -h | sed -n '1s/^\([^ ]*\) - \(.*\)/| `\1` | \2 |/p'
+    done
+}
+
+studies_table() {
+    printf '| command | what it computes |\n|---|---|\n'
+    # shellcheck disable=SC2016
+    sed -n '1s/^# \(make [^:]*\): \(.*[^.]\)\.*$/| `\1` | \2 |/p' -s "$source_root"/pipelines/*.mk
+}
+
+# study_table TSV: as a table of Markdown.
+study_table() {
+    awk -F '\t' '{ row = "|"; for (i = 1; i <= NF; i++) row = row " " $i " |"; print row }
+        NR == 1 { rule = "|"; for (i = 1; i <= NF; i++) rule = rule (i == 1 ? "---|" : "--:|"); print rule }' "$1"
+}
+
+# Print the lines up to the mark that ends the generated part, or drop them.
+pass_lines() { while IFS= read -r line && [ "$line" != "<!-- end -->" ]; do printf '%s\n' "$line"; done; }
+drop_lines() { pass_lines > /dev/null; }
+
+command=
+flush() {
+    if [ -n "$command" ]; then
+        run "$command"
+        command=
+    fi
+}
+
+console=
+while IFS= read -r line; do
+    if [ -n "$console" ]; then
+        case $line in
+        '```') flush; console=; printf '%s\n' "$line" ;;
+        '$ '*) flush; command=${line#'$ '}; printf '%s\n' "$line" ;;
+        '> '*) command+=$'\n'${line#'> '}; printf '%s\n' "$line" ;;
+        esac
+        continue
+    fi
+    printf '%s\n' "$line"
+    case $line in
+    '```console') console=yes ;;
+    '<!-- tools -->') tools_table; drop_lines; printf '<!-- end -->\n' ;;
+    '<!-- studies -->') studies_table; drop_lines; printf '<!-- end -->\n' ;;
+    '<!-- study '*)
+        table=${line#'<!-- study '}
+        table=$studies/${table%' -->'}
+        if [ -f "$table" ]; then study_table "$table"; drop_lines; else pass_lines; fi
+        printf '<!-- end -->\n'
+        ;;
+    esac
+done
+
+if [ "${KEEP:-}" = 1 ] && [ "$failures" -eq 0 ]; then
+    for picture in "$source_root"/examples/*/pictures/*.png; do
+        made=$work/build/$(basename "$picture")
+        [ ! -f "$made" ] || cp "$made" "$picture"
+    done
+fi
+[ "$failures" -eq 0 ]

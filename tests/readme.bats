@@ -1,0 +1,70 @@
+# README.md: what it says the commands print is what they print, and it names what is there.
+
+bats_require_minimum_version 1.5.0
+
+setup() {
+    cd "$BATS_TEST_TMPDIR"
+    top=$BATS_TEST_DIRNAME/..
+}
+
+same() { awk -v tolerance="${3:-0.1}" -f "$BATS_TEST_DIRNAME/same.awk" "$1" "$2"; }
+
+@test "commands and table of tools in README.md are up to date (else: make readme)" {
+    bash "$top/pipelines/readme.sh" < "$top/README.md" > new
+    [ "$(grep -c '^\$ ' new)" -ge 15 ]
+    same "$top/README.md" new
+}
+
+@test "a number, a word or a line that changed is noticed; another size of blanks is not" {
+    printf 'points\t1247\nu is -1.5e-3 m\n' > text
+    same text text
+    printf 'points  1250 \nu is -1.52e-3 m\n' > near
+    same text near
+    printf 'points\t1247\nu is -1.8e-3 m\n' > far
+    run -1 same text far
+    printf 'points\t1247\nu is 1.5e-3 m\n' > sign
+    run -1 same text sign
+    printf 'points\t1247\nv is -1.5e-3 m\n' > word
+    run -1 same text word
+    printf 'points\t1247\n' > short
+    run -1 same text short
+    printf 'points\t1247\nu is nan m\n' > nan
+    run -1 same text nan
+    run -1 same missing missing
+}
+
+@test "a command in README.md that fails is noticed" {
+    printf '```console\n$ echo 1; false\n2\n```\n' > bad.md
+    run -1 --separate-stderr bash "$top/pipelines/readme.sh" < bad.md
+    [ "${lines[2]}" = 1 ]
+    [[ $stderr == *'status 1: echo 1; false'* ]]
+}
+
+@test "files that the texts point to exist" {
+    for text in README.md lib/README.md examples/brain2d/README.md; do
+        grep -oE '\]\([^)#]+\)' "$top/$text" | sed 's/^](//; s/)$//' | grep -v '^http' > links || true
+        while IFS= read -r link; do
+            [ -s "$top/$(dirname "$text")/$link" ] || { echo "$text: no $link"; false; }
+        done < links
+    done
+    grep -q section.png <(grep -o 'pictures/.*png' "$top/README.md")
+}
+
+@test "pictures are PNG files below 200 KB" {
+    find "$top/examples" -name '*.png' > pictures
+    [ "$(wc -l < pictures)" -ge 4 ]
+    while IFS= read -r picture; do
+        [ "$(head -c 4 "$picture" | tail -c 3)" = PNG ]
+        [ "$(wc -c < "$picture")" -lt 200000 ]
+    done < pictures
+}
+
+@test "every program and every study has a line in the texts" {
+    for file in "$top"/tools/*.c; do
+        grep -q "^| \`$(basename "$file" .c)\` |" "$top/README.md"
+    done
+    for file in "$top"/pipelines/*.mk; do
+        study=$(basename "$file" .mk)
+        [ "$study" = readme ] || grep -q "\`make $study\`" "$top/README.md" || { echo "README.md: no make $study"; false; }
+    done
+}
