@@ -70,7 +70,7 @@ deps:
 	@bash pipelines/deps.sh
 
 check: all $(UNIT_TESTS)
-	@BUILD="$(CURDIR)/$(BUILD)" bash tests/run.sh
+	@BUILD="$(abspath $(BUILD))" bash tests/run.sh
 
 install: all
 	install -d $(DESTDIR)$(PREFIX)/bin $(DESTDIR)$(PREFIX)/share/man/man1 $(DESTDIR)$(PREFIX)/share/man/man5
