@@ -43,7 +43,7 @@ make_patch() {
     printf '2 0.5\n1 0\n0 0\n' > right.tsv
     for side in left right; do
         (cat patch.scene; printf '[contact floor]\nfacets = ymin\nrigid = %s.tsv\nunit = cm\nside = %s\n' $side $side) > contact.scene
-        awk -f "$pipelines/stream.awk" -f "$pipelines/calculix/deck.awk" -v scene=contact.scene -v mesh=square.dat > deck.inp
+        awk -f "$pipelines/stream.awk" -f "$pipelines/calculix/deck.awk" -f "$pipelines/calculix/deck2d.awk" -v scene=contact.scene -v mesh=square.dat > deck.inp
         awk -F, '
             /^\*/ { part = $0; next }
             part ~ /^\*NODE/ { x[$1] = $2; y[$1] = $3 }
@@ -59,7 +59,7 @@ make_patch() {
 
 @test "deck: what it does not understand, and a stream cut short, are errors" {
     make_patch
-    deck() { awk -f "$pipelines/stream.awk" -f "$pipelines/calculix/deck.awk" -v scene="$1" -v mesh="$2"; }
+    deck() { awk -f "$pipelines/stream.awk" -f "$pipelines/calculix/deck.awk" -f "$pipelines/calculix/deck2d.awk" -v scene="$1" -v mesh="$2"; }
     (cat patch.scene; printf '[pressure top]\nfacets = ymax\nvalue = 1\n') > pressure.scene
     run ! deck pressure.scene square.dat
     sed 's/facets = ymax/facets = roof/' patch.scene > roof.scene

@@ -1,18 +1,23 @@
-# The input deck of a scene for CalculiX: awk -f pipelines/stream.awk -f deck.awk -v scene=FILE -v mesh=STREAM > FILE.inp
+# The input deck of a scene for CalculiX, with one of deck2d.awk and deck3d.awk for the conditions in that dimension:
 #
-# STREAM (text) holds what `nodes` writes. Its triangles become quadratic plane strain elements (CPE6) with the mid-nodes
-# on the straight edges, so that nodes 1..N are those of the stream and the geometry is the same. Understood of a scene:
-# neo-Hookean materials of one region each, displacements by table on one group of facets, contact of one group with
-# a rigid curve in one piece; anything else in it is an error. SI units, per metre of thickness.
+#     awk -f pipelines/stream.awk -f deck.awk -f deck3d.awk -v scene=FILE -v mesh=STREAM > FILE.inp
+#
+# STREAM (text) holds what `nodes` writes. Its triangles become quadratic plane strain elements (CPE6), its tetrahedra
+# quadratic ones (C3D10), with the mid-nodes on the straight edges, so that nodes 1..N are those of the stream and the
+# geometry is the same. Understood of a scene: neo-Hookean materials of one region each, displacements by table or by
+# components on one group of facets, contact of one group with a rigid surface; anything else in it is an error. SI units, in
+# 2D per metre of thickness.
 
 BEGIN {
     read_scene(scene)
     read_stream(mesh, "")
     need_section("nodes.x", "run nodes")
     need_section("facets", "run nodes")
-    if (scene_value["scene", "dim"] != 2 || cols["cells"] != 3) die(scene ": only scenes in 2D")
+    dim = cols["nodes.x"]
+    if (scene_value["scene", "dim"] != dim || dim != deck_dim() || cols["cells"] != dim + 1)
+        die(scene ": not a scene in the " dim " dimensions of " mesh)
 
-    print "** " scene ", plane strain, SI units"
+    print "** " scene (dim == 2 ? ", plane strain" : "") ", SI units"
     print_nodes()
     print_elements()
     for (k = 1; k <= section_count; k++) if (kind[k] == "material") print_material(k)
@@ -28,6 +33,10 @@ BEGIN {
     for (k = 1; k <= prescribed_count; k++) print prescribed[k]
     print "*NODE PRINT,NSET=CORNERS"
     print "U"
+    for (k = 1; k <= section_count; k++) if (kind[k] == "displacement") {
+        print "*NODE PRINT,NSET=MOVED_" toupper(label[k]) ",TOTALS=ONLY"
+        print "RF"
+    }
     print "*END STEP"
 }
 
@@ -94,44 +103,62 @@ function name_index(section, name,    names, count, i) {
 # ---- mesh ------------------------------------------------------------------------------------------------------------
 
 # The number of the mid-node of edge a-b (deck numbers, from 1).
-function middle(a, b,    low, high) {
+function middle(a, b,    low, high, d) {
     low = a < b ? a : b
     high = a < b ? b : a
     if (!((low, high) in mid)) {
         mid[low, high] = ++node_count
-        x[node_count] = (x[a] + x[b]) / 2
-        y[node_count] = (y[a] + y[b]) / 2
+        for (d = 1; d <= dim; d++) x[node_count, d] = (x[a, d] + x[b, d]) / 2
     }
     return mid[low, high]
 }
 
-function print_nodes(    i, c, e, a, b) {
-    node_count = rows["nodes.x"]
-    for (i = 1; i <= node_count; i++) {
-        x[i] = value["nodes.x", i - 1, 0] + 0
-        y[i] = value["nodes.x", i - 1, 1] + 0
-    }
-    for (c = 0; c < rows["cells"]; c++)
-        for (e = 0; e < 3; e++) {
-            a = value["cells", c, e] + 1
-            b = value["cells", c, (e + 1) % 3] + 1
-            middle(a, b)
-            side_of[a, b] = (c + 1) ",S" (e + 1)
-        }
-    print "*NODE,NSET=BODY"
-    for (i = 1; i <= node_count; i++) printf "%d,%.9g,%.9g\n", i, x[i], y[i]
+# What names an edge, or a triangle, whatever the order of its nodes.
+function face_key(a, b, c,    t) {
+    if (b < a) { t = a; a = b; b = t }
+    if (dim == 2) return a " " b
+    if (c < b) { t = b; b = c; c = t }
+    if (b < a) { t = a; a = b; b = t }
+    return a " " b " " c
 }
 
-function print_elements(    names, count, g, c, n1, n2, n3) {
+# Edges in the order in which the mid-nodes follow the corners of an element, and its faces S1, S2, ...
+function describe_element() {
+    edge_count = split(dim == 2 ? "1 2 2 3 3 1" : "1 2 2 3 3 1 1 4 2 4 3 4", edge_end) / 2
+    face_count = split(dim == 2 ? "1 2 0 2 3 0 3 1 0" : "1 2 3 1 4 2 2 4 3 3 4 1", face_corner) / 3
+}
+
+function print_nodes(    i, c, d, e, f) {
+    describe_element()
+    node_count = rows["nodes.x"]
+    for (i = 1; i <= node_count; i++)
+        for (d = 1; d <= dim; d++) x[i, d] = value["nodes.x", i - 1, d - 1] + 0
+    for (c = 0; c < rows["cells"]; c++) {
+        for (i = 1; i <= dim + 1; i++) corner[i] = value["cells", c, i - 1] + 1
+        for (e = 1; e <= edge_count; e++) middle(corner[edge_end[2 * e - 1]], corner[edge_end[2 * e]])
+        for (f = 1; f <= face_count; f++)
+            side_of[face_key(corner[face_corner[3 * f - 2]], corner[face_corner[3 * f - 1]], corner[face_corner[3 * f]])] = \
+                (c + 1) ",S" f
+    }
+    print "*NODE,NSET=BODY"
+    for (i = 1; i <= node_count; i++) print i coordinates(i)
+}
+
+function coordinates(i,    d, text) {
+    for (d = 1; d <= dim; d++) text = text sprintf(",%.9g", x[i, d])
+    return text
+}
+
+function print_elements(    names, count, g, c, i, e, text) {
     count = split(attribute["cells.region", "names"], names, ",")
     for (g = 1; g <= count; g++) {
-        print "*ELEMENT,TYPE=CPE6,ELSET=" toupper(names[g])
+        print "*ELEMENT,TYPE=" (dim == 2 ? "CPE6" : "C3D10") ",ELSET=" toupper(names[g])
         for (c = 0; c < rows["cells"]; c++) {
             if (value["cells.region", c, 0] != g - 1) continue
-            n1 = value["cells", c, 0] + 1
-            n2 = value["cells", c, 1] + 1
-            n3 = value["cells", c, 2] + 1
-            printf "%d,%d,%d,%d,%d,%d,%d\n", c + 1, n1, n2, n3, middle(n1, n2), middle(n2, n3), middle(n3, n1)
+            text = c + 1
+            for (i = 1; i <= dim + 1; i++) text = text "," (corner[i] = value["cells", c, i - 1] + 1)
+            for (e = 1; e <= edge_count; e++) text = text "," middle(corner[edge_end[2 * e - 1]], corner[edge_end[2 * e]])
+            print text
         }
     }
     element_count = rows["cells"]
@@ -152,79 +179,51 @@ function print_material(k,    E, nu) {
 # ---- displacements and contact ---------------------------------------------------------------------------------------
 
 # The prescribed displacements of the nodes of a group, mid-nodes too, go to prescribed[1..prescribed_count].
-function collect_displacement(k,    n, set, f, a, b) {
-    n = read_table(k, "table", 4)
+function collect_displacement(k,    n, set, f, i, j, list) {
+    n = (k, "table") in scene_value ? read_table(k, "table", 2 * dim) : 0
     set = name_index("facets.set", scene_value[k, "facets"])
+    print "*NSET,NSET=MOVED_" toupper(label[k])
     for (f = 0; f < rows["facets"]; f++) {
         if (value["facets.set", f, 0] != set) continue
-        a = value["facets", f, 0] + 1
-        b = value["facets", f, 1] + 1
-        prescribe(a, n)
-        prescribe(b, n)
-        prescribe(middle(a, b), n)
+        for (i = 0; i < dim; i++) {
+            prescribe(k, value["facets", f, i] + 1, n)
+            for (j = 0; j < i; j++) prescribe(k, middle(value["facets", f, i] + 1, value["facets", f, j] + 1), n)
+        }
     }
 }
 
-# Prescribe node i by the table of n points along a curve: linear between the ends of the nearest segment.
-function prescribe(i, n,    s, best, distance2, t, dx, dy, ux, uy) {
+# Prescribe node i: by the components, or by the table of n rows (see table_at, per dimension).
+function prescribe(k, i, n,    u, d) {
     if (i in is_prescribed) return
     is_prescribed[i] = 1
-    best = -1
-    for (s = 1; s < n; s++) {
-        dx = table[s + 1, 1] - table[s, 1]
-        dy = table[s + 1, 2] - table[s, 2]
-        t = ((x[i] - table[s, 1]) * dx + (y[i] - table[s, 2]) * dy) / (dx^2 + dy^2)
-        t = t < 0 ? 0 : t > 1 ? 1 : t
-        distance2 = (x[i] - table[s, 1] - t * dx)^2 + (y[i] - table[s, 2] - t * dy)^2
-        if (best >= 0 && distance2 >= best) continue
-        best = distance2
-        ux = table[s, 3] + t * (table[s + 1, 3] - table[s, 3])
-        uy = table[s, 4] + t * (table[s + 1, 4] - table[s, 4])
-    }
-    prescribed[++prescribed_count] = sprintf("%d,1,1,%.9g", i, ux)
-    prescribed[++prescribed_count] = sprintf("%d,2,2,%.9g", i, uy)
+    print i
+    if (n > 0) table_at(i, n, u)
+    else if (split(scene_value[k, "components"], u, /[ \t]*,[ \t]*/) != dim || scene_value[k, "components"] ~ /free/)
+        die(scene ": only displacements by table or by all components")
+    for (d = 1; d <= dim; d++) prescribed[++prescribed_count] = sprintf("%d,%d,%d,%.9g", i, d, d, u[d])
 }
 
-# The rigid curve as a strip of quadrilaterals 6 mm wide, all its nodes fixed, behind the face that the body touches.
-function print_contact(k,    n, i, set, f, dx, dy, length_, sign, first_node, first_element, next_node, name, thickness) {
-    n = read_table(k, "rigid", 2)
-    thickness = 6e-3
-    sign = scene_value[k, "side"] == "left" ? 1 : -1 # the strip lies on the other side of the curve
+# The pair of the surface of group FACETS of contact k and the surface MASTER_.
+function print_pair(k,    name, set, f) {
     name = toupper(label[k])
-    first_node = node_count
-    print "*NODE,NSET=RIGID_" name
-    for (i = 1; i <= n; i++) {
-        dx = table[i < n ? i + 1 : i, 1] - table[i > 1 ? i - 1 : i, 1]
-        dy = table[i < n ? i + 1 : i, 2] - table[i > 1 ? i - 1 : i, 2]
-        length_ = sqrt(dx^2 + dy^2)
-        printf "%d,%.9g,%.9g\n", ++node_count, table[i, 1], table[i, 2]
-        printf "%d,%.9g,%.9g\n", ++node_count, table[i, 1] + sign * thickness * dy / length_,
-            table[i, 2] - sign * thickness * dx / length_
-    }
-    first_element = element_count + 1
-    print "*ELEMENT,TYPE=CPE4,ELSET=STRIP_" name
-    for (i = 1; i < n; i++) {
-        f = first_node + 2 * i - 1
-        next_node = f + 2
-        if (sign > 0) printf "%d,%d,%d,%d,%d\n", ++element_count, f, f + 1, next_node + 1, next_node
-        else printf "%d,%d,%d,%d,%d\n", ++element_count, next_node, next_node + 1, f + 1, f
-    }
-    print "*MATERIAL,NAME=STIFF_" name
-    print "*ELASTIC"
-    print "1.E6,0.3"
-    print "*SOLID SECTION,ELSET=STRIP_" name ",MATERIAL=STIFF_" name
-    print "*BOUNDARY"
-    print "RIGID_" name ",1,2"
-    print "*SURFACE,NAME=MASTER_" name ",TYPE=ELEMENT"
-    for (i = first_element; i <= element_count; i++) print i ",S4"
-
     set = name_index("facets.set", scene_value[k, "facets"])
     print "*SURFACE,NAME=SLAVE_" name ",TYPE=ELEMENT"
     for (f = 0; f < rows["facets"]; f++)
-        if (value["facets.set", f, 0] == set) print side_of[value["facets", f, 0] + 1, value["facets", f, 1] + 1]
+        if (value["facets.set", f, 0] == set)
+            print side_of[face_key(value["facets", f, 0] + 1, value["facets", f, 1] + 1, value["facets", f, 2] + 1)]
     print "*SURFACE INTERACTION,NAME=CONTACT_" name
     print "*SURFACE BEHAVIOR,PRESSURE-OVERCLOSURE=LINEAR"
     print "1.E8"
     print "*CONTACT PAIR,INTERACTION=CONTACT_" name ",TYPE=SURFACE TO SURFACE"
     print "SLAVE_" name ",MASTER_" name
+}
+
+# The elements behind a rigid surface: stiff, though their nodes are all fixed.
+function print_stiff(name) {
+    print "*MATERIAL,NAME=STIFF_" name
+    print "*ELASTIC"
+    print "1.E6,0.3"
+    print "*SOLID SECTION,ELSET=STRIP_" name ",MATERIAL=STIFF_" name
+    print "*BOUNDARY"
+    print "RIGID_" name ",1," dim
 }
