@@ -68,3 +68,37 @@ same() { awk -v tolerance="${3:-0.1}" -f "$BATS_TEST_DIRNAME/same.awk" "$1" "$2"
         [ "$study" = readme ] || grep -q "\`make $study\`" "$top/README.md" || { echo "README.md: no make $study"; false; }
     done
 }
+
+@test "the rooms of lib/ include only what lib/README.md lets them" {
+    includes() { grep -rhoE '^#include "[a-z]+/' "$top/lib/$1" | sed 's/.*"//; s|/||' | sort -u; }
+    for room in base approx solid io; do
+        awk -F '|' -v room=" \`$room\` " '$2 == room { gsub(/[`, ]+/, " ", $4); print room, $4; exit }' "$top/lib/README.md" > allowed
+        [ -s allowed ]
+        includes "$room" > found
+        [ -s found ]
+        while IFS= read -r other; do
+            grep -qw "$other" allowed || { echo "lib/$room includes $other"; false; }
+        done < found
+    done
+}
+
+@test "every section that a tool writes has a line in lib/README.md" {
+    cloud -d 2 -k regular -n 4 --box 0,1,0,1 | shapefn 2> note > table.mts
+    printf '[scene]\ndim = 2\nanalysis = quasi-static\n[material all]\nregion = body\nE = 3000\nnu = 0.4\nrho = 1000\n' > all.scene
+    printf '[displacement low]\nfacets = ymin\ncomponents = 0, 0\n[displacement high]\nfacets = ymax\ncomponents = 0, -0.01\n' >> all.scene
+    printf '[contact wall]\nfacets = xmax\nrigid = wall.tsv\nunit = m\nside = left\n' >> all.scene
+    printf '[output]\nframes = 1\nstress = yes\nstrain = yes\nreactions = yes\ngaps = yes\nenergy = yes\n' >> all.scene
+    printf '2 -1\n2 2\n' > wall.tsv
+    mtled all.scene table.mts > u.dat
+    interp -f u --deformed -t <(mts drop 'u.frame.*' u.dat | shapefn 2> note) > deformed.dat
+    fieldcmp -m map.mts u.dat u.dat > /dev/null
+    for stream in table.mts u.dat deformed.dat map.mts; do
+        mts list $stream | cut -f 1 | sed 's/^u.frame.*/u.frame.K/'
+    done | sort -u > names
+    for name in u.frame.K stress strain reactions gaps energy difference x.deformed; do
+        grep -qx "$name" names
+    done
+    while IFS= read -r name; do
+        grep -q "^|[^|]*\`$name\`" "$top/lib/README.md" || { echo "lib/README.md: no $name"; false; }
+    done < names
+}
