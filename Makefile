@@ -41,6 +41,9 @@ $(BUILD)/%.o: %.c Makefile
 	@mkdir -p $(@D)
 	$(CC) $(CFLAGS) -MMD -MP -c -o $@ $<
 
+# Objects are kept, also those that make finds out about on the way to a program.
+.PRECIOUS: $(BUILD)/%.o
+
 $(LIBRARY): $(LIBRARY_OBJECTS)
 	@rm -f $@
 	ar rcs $@ $^
@@ -65,6 +68,11 @@ $(BUILD)/man/man1/%.1: $(BUILD)/bin/% tools/man.awk
 $(BUILD)/man/man5/%: tools/%
 	@mkdir -p $(@D)
 	cp $< $@
+
+# What is built needs what deps installs: with it, goals are made one after the other, whatever -j says.
+ifneq ($(filter deps,$(MAKECMDGOALS)),)
+.NOTPARALLEL:
+endif
 
 deps:
 	@bash pipelines/deps.sh

@@ -1,19 +1,24 @@
 #!/bin/bash
-# Install what the project needs and what is missing. Quick and silent when nothing is.
+# Install what the project needs and what is missing. Quick and silent when nothing is. Programs may come from any
+# package (gnuplot-qt is as good as gnuplot-nox, which would push it out); libraries are asked for by package.
 set -eu -o pipefail
-packages=(gcc g++ make gmsh libgmsh-dev libgsl-dev libinih-dev zlib1g-dev gnuplot-nox calculix-ccx libcmocka-dev bats shellcheck)
+
+# program:package
+programs=(gcc:gcc g++:g++ make:make gmsh:gmsh gnuplot:gnuplot-nox ccx:calculix-ccx bats:bats shellcheck:shellcheck)
+libraries=(libgmsh-dev libgsl-dev libinih-dev zlib1g-dev libcmocka-dev)
+
+missing=()
+for program in "${programs[@]}"; do
+    command -v "${program%:*}" > /dev/null || missing+=("${program#*:}")
+done
 
 if ! command -v apt-get > /dev/null || ! command -v dpkg-query > /dev/null; then
-    for program in gcc gmsh gnuplot ccx bats; do
-        command -v "$program" > /dev/null || missing=yes
-    done
-    [ -z "${missing:-}" ] && exit 0
-    echo "deps: this is not Debian or Ubuntu: please install what these packages hold: ${packages[*]}" >&2
+    [ ${#missing[@]} -eq 0 ] && exit 0
+    echo "deps: this is not Debian or Ubuntu: please install what these packages hold: ${missing[*]} ${libraries[*]}" >&2
     exit 1
 fi
 
-missing=()
-for package in "${packages[@]}"; do
+for package in "${libraries[@]}"; do
     case $(dpkg-query -W -f '${Status}' "$package" 2> /dev/null || true) in
     *" installed") ;;
     *) missing+=("$package") ;;
@@ -21,9 +26,15 @@ for package in "${packages[@]}"; do
 done
 [ ${#missing[@]} -eq 0 ] && exit 0
 
-echo "deps: installing ${missing[*]}" >&2
 as_root=()
-[ "$(id -u)" -eq 0 ] || as_root=(sudo)
+if [ "$(id -u)" -ne 0 ]; then
+    if ! command -v sudo > /dev/null; then
+        echo "deps: as root, please run: apt-get install ${missing[*]}" >&2
+        exit 1
+    fi
+    as_root=(sudo)
+fi
+echo "deps: installing ${missing[*]}" >&2
 export DEBIAN_FRONTEND=noninteractive
 "${as_root[@]}" apt-get update -qq
 "${as_root[@]}" apt-get install -y -qq --no-install-recommends "${missing[@]}" > /dev/null
