@@ -1,7 +1,8 @@
 # make brain2d: the brain section by several schemes and by CalculiX, each compared with the converged reference.
 #
 # Everything lies in build/out/brain2d. A scheme S has S.dat (the displacements, a text stream), S.log (what the tools
-# report), S.difference.dat (distance from the reference at the nodes) and S.row (its line of compare.tsv).
+# report), S.difference.dat (distance from the reference at the nodes) and S.row (its line of compare.tsv). The default
+# scheme's displacements are also there as u.dat, and for ParaView as u.vtu.
 
 BRAIN2D := $(OUT)/brain2d
 BRAIN2D_INPUT := examples/brain2d
@@ -24,7 +25,7 @@ default.title := default
 calculix.title := CalculiX, same triangles
 
 .PHONY: brain2d
-brain2d: $(BRAIN2D)/compare.tsv $(BRAIN2D)/section.png $(BRAIN2D)/difference.png
+brain2d: $(BRAIN2D)/compare.tsv $(BRAIN2D)/section.png $(BRAIN2D)/difference.png $(BRAIN2D)/u.dat $(BRAIN2D)/u.vtu
 	@awk -F '\t' '{ printf "%-98s %6s %6s %8s %8s %6s %8s\n", $$1, $$2, $$3, $$4, $$5, $$6, $$7 }' $<
 
 $(BRAIN2D)/%: export PATH := $(CURDIR)/$(BUILD)/bin:$(PATH)
@@ -58,6 +59,12 @@ BRAIN2D_LOG = 2> $(@:.dat=.log) || { cat $(@:.dat=.log) >&2; false; }
 
 $(BRAIN2D)/default.dat: $(BRAIN2D_INPUT)/brain2d.scene $(BRAIN2D_PIPELINE)
 	(nodes -u mm $(@D)/body.msh | ipoints | support -v | shapefn | mtled -v $<) > $@ $(BRAIN2D_LOG)
+
+$(BRAIN2D)/u.dat: $(BRAIN2D)/default.dat
+	cp $< $@
+
+$(BRAIN2D)/u.vtu: $(BRAIN2D)/u.dat $(BUILD)/bin/tovtk
+	tovtk -o $@ $<
 
 # The others: four points per triangle, conditions at the nodes, and these supports.
 paper-mls1.support := -R 8mm -b mls1 -w regularised
