@@ -2,59 +2,158 @@ static const char usage[] =
     "ipoints - background cells to integration points and weights\n"
     "\n"
     "usage: ipoints [-c | -g POINTS | --lattice N,N[,N]] [-t] [-o FILE] [FILE]\n"
+    "       ipoints -a TOLERANCE [-g POINTS] [--levels LEVELS] [-k FACTOR | -R RADIUS] [-b BASIS]\n"
+    "               [-w WEIGHT] [--mu MU] [--mu-unit UNIT] [-v] [-t] [-o FILE] [FILE]\n"
     "\n"
     "Reads a stream with nodes.x (m) and cells (see nodes) and adds integration points: points.x (m),\n"
     "points.weight (m2 in 2D, m3 in 3D) and points.cell; and the faces of the cells with quadrature\n"
     "points on them, facepoints.x (m) and facepoints.weight: all faces for conforming cells, else\n"
     "those of the boundary.\n"
     "\n"
+    "Adaptive integration (-a) halves the edges of each cell, or of parts of it, until the integral\n"
+    "of the products of the shape functions' gradients over the cell (a matrix, in the Frobenius norm)\n"
+    "changes by less than the tolerance. The shape functions are those of a stream that has been\n"
+    "through support, or those that support makes by default; -k, -R, -b, -w, --mu and --mu-unit\n"
+    "choose others. Give support the same options afterwards. Where the last level is still too\n"
+    "coarse, as it is where supports had to be widened and the gradients jump, a note says so.\n"
+    "\n"
     "Options:\n"
     "  -c, --conforming        one point per cell, gradients smoothed over the cell by the values of\n"
     "                          the shape functions on its faces; passes the linear patch test to\n"
     "                          round-off (default)\n"
     "  -g, --gauss POINTS      quadrature rule of that many points per cell: 1, 3, 4, 6, 7, 12 for\n"
-    "                          triangles, 1, 4, 8, 14 for tetrahedra\n"
+    "                          triangles, 1, 4, 8, 14 for tetrahedra; with -a the rule on each part\n"
+    "                          (default there: 3 and 4)\n"
+    "  -a, --adaptive TOLERANCE  subdivide each cell until it changes by less, relative to the cell\n"
+    "      --levels LEVELS     halve a cell's edges at most so often (default 4, in 3D 3)\n"
+    "  -k, --factor FACTOR     support radius = FACTOR times the local node spacing (default 1.8)\n"
+    "  -R, --radius RADIUS     constant support radius: a length with its unit, e.g. 8mm (without: m)\n"
+    "  -b, --basis BASIS       mls1, mls2 or mmls2 (default), see shapefn\n"
+    "  -w, --weight WEIGHT     quartic (default), cubic, wendland or regularised\n"
+    "      --mu MU[,MU...]     regularisation of mmls2, see shapefn\n"
+    "      --mu-unit UNIT      MU is absolute, in coordinates of that unit\n"
     "      --lattice N,N[,N]   instead: a regular lattice of evaluation points over the box of the\n"
     "                          nodes, its ends included; needs no cells\n"
+    "  -v, --verbose           report on standard error how many points there are\n"
     "  -t, --text              write text instead of binary\n"
     "  -o, --output FILE       write to FILE, which appears only when whole\n"
     "\n"
     "Examples:\n"
     "  nodes -u mm body.msh | ipoints -g 4 | mts list\n"
+    "  nodes -u mm body.msh | ipoints -a 0.02 -k 2 | support -k 2 | shapefn > table.mts\n"
     "  cloud -d 2 -k regular -n 18 --box -4,4,-4,4 | ipoints --lattice 81,81 > lattice.mts\n";
 
+#include "mls_options.h"
 #include "stages.h"
 
-enum { CONFORMING, GAUSS, LATTICE, TEXT, OUTPUT, OPTION_COUNT };
+enum {
+    CONFORMING,
+    GAUSS,
+    ADAPTIVE,
+    LEVELS,
+    FACTOR,
+    RADIUS,
+    BASIS,
+    LAST_OF_MLS = BASIS + MLS_OPTION_COUNT - 1,
+    LATTICE,
+    VERBOSE,
+    TEXT,
+    OUTPUT,
+    OPTION_COUNT
+};
 
-static struct ipoints_options parse(const struct tool *tool, const struct option *options)
+static void parse_lattice(const struct tool *tool, const char *text, int64_t lattice[3])
+{
+    double numbers[3];
+    int count;
+    struct error error;
+    tool_check(tool, parse_double_list(text, "--lattice", 2, 1e6, 3, numbers, &count, &error), &error);
+    for (int a = 0; a < 3; a++) {
+        double number = numbers[a < count ? a : count - 1];
+        lattice[a] = (int64_t)number;
+        if ((double)lattice[a] != number) {
+            tool_fail(tool, STATUS_INPUT, "--lattice: %g is not a whole number", number);
+        }
+    }
+}
+
+/* Adaptive integration in `dim` dimensions by shape functions that begin as `mls`. */
+static struct adaptive_options parse_adaptive(const struct tool *tool, const struct option *options,
+                                              const struct mls *mls)
+{
+    struct adaptive_options adaptive = adaptive_defaults(mls->dim);
+    struct support_options *support = &adaptive.support;
+    struct error error;
+    int64_t number;
+    support->mls = *mls;
+    if (options[FACTOR].given && options[RADIUS].given) {
+        tool_fail(tool, STATUS_INPUT, "give one of -k and -R");
+    }
+    tool_check(tool, parse_double(options[ADAPTIVE].value, "-a", 1e-12, 10, &adaptive.tolerance, &error),
+               &error);
+    if (options[GAUSS].given) {
+        tool_check(tool, parse_integer(options[GAUSS].value, "-g", 1, 1000, &number, &error), &error);
+        adaptive.rule_points = (int)number;
+    }
+    if (options[LEVELS].given) {
+        tool_check(tool,
+                   parse_integer(options[LEVELS].value, "--levels", 0, ADAPTIVE_MOST_LEVELS, &number, &error),
+                   &error);
+        adaptive.levels = (int)number;
+    }
+    if (options[FACTOR].given) {
+        tool_check(tool, parse_double(options[FACTOR].value, "-k", 0.1, 100, &support->factor, &error),
+                   &error);
+    }
+    if (options[RADIUS].given) {
+        tool_check(tool, parse_length(options[RADIUS].value, "-R", &support->radius, &error), &error);
+    }
+    tool_check(tool, mls_apply_options(options + BASIS, &support->mls, &error), &error);
+    return adaptive;
+}
+
+static struct ipoints_options parse(const struct tool *tool, const struct option *options,
+                                    const struct mls *mls)
 {
     struct ipoints_options ipoints = ipoints_defaults();
     struct error error;
-    if (options[CONFORMING].given + options[GAUSS].given + options[LATTICE].given > 1) {
-        tool_fail(tool, STATUS_INPUT, "give one of -c, -g and --lattice");
+    if (options[CONFORMING].given + (options[GAUSS].given || options[ADAPTIVE].given) +
+            options[LATTICE].given >
+        1) {
+        tool_fail(tool, STATUS_INPUT, "give one of -c, -g, -a and --lattice (-a may have its -g)");
     }
-    if (options[GAUSS].given) {
-        int64_t points;
-        tool_check(tool, parse_integer(options[GAUSS].value, "-g", 1, 1000, &points, &error), &error);
-        ipoints.conforming = false;
-        ipoints.gauss_points = (int)points;
-    }
-    if (options[LATTICE].given) {
-        double numbers[3];
-        int count;
-        tool_check(tool,
-                   parse_double_list(options[LATTICE].value, "--lattice", 2, 1e6, 3, numbers, &count, &error),
-                   &error);
-        for (int a = 0; a < 3; a++) {
-            double number = numbers[a < count ? a : count - 1];
-            ipoints.lattice[a] = (int64_t)number;
-            if ((double)ipoints.lattice[a] != number) {
-                tool_fail(tool, STATUS_INPUT, "--lattice: %g is not a whole number", number);
-            }
+    for (int i = LEVELS; i <= LAST_OF_MLS; i++) {
+        if (options[i].given && !options[ADAPTIVE].given) {
+            tool_fail(tool, STATUS_INPUT, "--%s is for adaptive integration: give -a too", options[i].name);
         }
     }
+    ipoints.conforming = !options[GAUSS].given && !options[ADAPTIVE].given;
+    ipoints.given_radius = options[FACTOR].given || options[RADIUS].given;
+    if (options[ADAPTIVE].given) {
+        ipoints.adaptive = true;
+        ipoints.refinement = parse_adaptive(tool, options, mls);
+    } else if (options[GAUSS].given) {
+        int64_t points;
+        tool_check(tool, parse_integer(options[GAUSS].value, "-g", 1, 1000, &points, &error), &error);
+        ipoints.gauss_points = (int)points;
+    } else if (options[LATTICE].given) {
+        parse_lattice(tool, options[LATTICE].value, ipoints.lattice);
+    }
     return ipoints;
+}
+
+/* The options for this stream: its dimension, the shape functions recorded in it. */
+static struct ipoints_options parse_for(const struct tool *tool, const struct option *options,
+                                        const struct stream *stream)
+{
+    int dim;
+    int64_t node_count;
+    const double *x;
+    struct error error;
+    struct mls mls;
+    tool_check(tool, stream_nodes(stream, &dim, &node_count, &x, &error), &error);
+    tool_check(tool, stage_recorded_mls(stream, dim, &mls, &error), &error);
+    return parse(tool, options, &mls);
 }
 
 int main(int argc, char *argv[])
@@ -65,14 +164,30 @@ int main(int argc, char *argv[])
     struct option options[OPTION_COUNT] = {
         [CONFORMING] = {.letter = 'c', .name = "conforming"},
         [GAUSS] = {.letter = 'g', .name = "gauss", .takes_value = true},
+        [ADAPTIVE] = {.letter = 'a', .name = "adaptive", .takes_value = true},
+        [LEVELS] = {.name = "levels", .takes_value = true},
+        [FACTOR] = {.letter = 'k', .name = "factor", .takes_value = true},
+        [RADIUS] = {.letter = 'R', .name = "radius", .takes_value = true},
+        [BASIS] = MLS_OPTIONS,
         [LATTICE] = {.name = "lattice", .takes_value = true},
+        [VERBOSE] = {.letter = 'v', .name = "verbose"},
         [TEXT] = {.letter = 't', .name = "text"},
         [OUTPUT] = {.letter = 'o', .name = "output", .takes_value = true},
     };
+    struct mls any = mls_default(0);
+    int64_t unresolved;
     tool_begin(&tool, usage, options, OPTION_COUNT, 0, 1, argc, argv);
-    struct ipoints_options ipoints = parse(&tool, options);
+    (void)parse(&tool, options, &any); /* usage errors before waiting for the input */
     tool_read(&tool, tool.operands[0], &stream);
-    tool_check(&tool, stage_ipoints(&stream, &ipoints, &error), &error);
+    struct ipoints_options ipoints = parse_for(&tool, options, &stream);
+    tool_check(&tool, stage_ipoints(&stream, &ipoints, &unresolved, &error), &error);
+    if (unresolved > 0) {
+        tool_note(&tool, "%lld cells change by more than the tolerance even at level %d",
+                  (long long)unresolved, ipoints.refinement.levels);
+    }
+    if (options[VERBOSE].given) {
+        tool_note(&tool, "%lld points", (long long)stream_find(&stream, "points.x")->rows);
+    }
     tool_write(&tool, &stream, options[TEXT].given);
     stream_free(&stream);
     return tool_end(&tool);

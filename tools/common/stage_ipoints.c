@@ -145,28 +145,77 @@ done:
     return status;
 }
 
-enum status stage_ipoints(struct stream *stream, const struct ipoints_options *options, struct error *error)
+/* What the shape functions of adaptive integration are made from: the settings and radii recorded in the
+ * stream, unless others were asked for. */
+static enum status adaptive_radii(const struct stream *stream, const struct ipoints_options *options,
+                                  const struct cells *cells, double *radius, struct error *error)
 {
+    const struct section *recorded = stream_find(stream, "support.radius");
+    if (recorded == NULL || options->given_radius) {
+        return stage_radii(stream, &options->refinement.support, cells->node_count, cells->x, radius, error);
+    }
+    enum status status = stream_need(stream, "support.radius", TYPE_F8, 1, "support", &recorded, error);
+    if (status == STATUS_OK && recorded->rows != cells->node_count) {
+        return fail(error, STATUS_INPUT, "support.radius: %lld rows for %lld nodes: run support again",
+                    (long long)recorded->rows, (long long)cells->node_count);
+    }
+    if (status == STATUS_OK) {
+        memcpy(radius, recorded->data, (size_t)recorded->rows * sizeof *radius);
+    }
+    return status;
+}
+
+static enum status put_adaptive_points(struct stream *stream, const struct cells *cells,
+                                       const struct ipoints_options *options, const double *radius,
+                                       int64_t *unresolved, struct error *error)
+{
+    struct adaptive_points points;
+    enum status status = adaptive_points_build(&options->refinement, cells, radius, &points, error);
+    if (status != STATUS_OK) {
+        return status;
+    }
+    *unresolved = points.unresolved;
+    status =
+        put_points(stream, cells->dim, points.count, "adaptive", points.x, points.weight, points.cell, error);
+    points.x = points.weight = NULL;
+    points.cell = NULL;
+    adaptive_points_free(&points);
+    return status;
+}
+
+enum status stage_ipoints(struct stream *stream, const struct ipoints_options *options, int64_t *unresolved,
+                          struct error *error)
+{
+    enum status status = STATUS_OK;
     struct cells cells;
+    double *radius = NULL;
     char rule[32];
     /* What was made from other points is void. */
     static const char *const void_prefixes[] = {"points.", "facepoints.", "faces",          "nbr.",
                                                 "face.",   "node.",       "support.radius", "shape."};
+    *unresolved = 0;
+    if (options->lattice[0] == 0) {
+        TRY(stream_cells(stream, true, &cells, error));
+    }
+    if (options->adaptive) {
+        TRY(NEW_ARRAY(&radius, cells.node_count, error));
+        TRY(adaptive_radii(stream, options, &cells, radius, error));
+    }
     for (size_t i = 0; i < sizeof void_prefixes / sizeof *void_prefixes; i++) {
         stream_remove_prefix(stream, void_prefixes[i]);
     }
     if (options->lattice[0] > 0) {
         return put_lattice(stream, options->lattice, error);
     }
-    enum status status = stream_cells(stream, true, &cells, error);
-    if (status != STATUS_OK) {
-        return status;
+    if (options->adaptive) {
+        TRY(put_adaptive_points(stream, &cells, options, radius, unresolved, error));
+    } else {
+        int per_cell = options->conforming ? 1 : options->gauss_points;
+        snprintf(rule, sizeof rule, options->conforming ? "conforming" : "gauss%d", per_cell);
+        TRY(put_cell_points(stream, &cells, per_cell, rule, error));
     }
-    int per_cell = options->conforming ? 1 : options->gauss_points;
-    snprintf(rule, sizeof rule, options->conforming ? "conforming" : "gauss%d", per_cell);
-    status = put_cell_points(stream, &cells, per_cell, rule, error);
-    if (status != STATUS_OK) {
-        return status;
-    }
-    return put_faces(stream, &cells, !options->conforming, error);
+    TRY(put_faces(stream, &cells, !options->conforming, error));
+done:
+    free(radius);
+    return status;
 }

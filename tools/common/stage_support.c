@@ -19,27 +19,36 @@ static enum status local_spacing(const struct stream *stream, int dim, int64_t n
                            : nodes_spacing(dim, node_count, x, spacing, error);
 }
 
+enum status stage_radii(const struct stream *stream, const struct support_options *options,
+                        int64_t node_count, const double *x, double *radius, struct error *error)
+{
+    enum status status;
+    double *spacing = NULL;
+    TRY(NEW_ARRAY(&spacing, node_count, error));
+    if (!(options->radius > 0.0)) {
+        TRY(local_spacing(stream, options->mls.dim, node_count, x, spacing, error));
+    }
+    TRY(support_radii(options, node_count, spacing, radius, error));
+done:
+    free(spacing);
+    return status;
+}
+
 /* Radii of the nodes, put into the stream with the settings they were made for. */
 static enum status put_radii(struct stream *stream, const struct support_options *options, int64_t node_count,
                              const double *x, struct error *error)
 {
     enum status status;
-    double *spacing = NULL, *radius = NULL;
+    double *radius = NULL;
     char attributes[512];
-    int dim = options->mls.dim;
-    TRY(NEW_ARRAY(&spacing, node_count, error));
     TRY(NEW_ARRAY(&radius, node_count, error));
-    if (!(options->radius > 0.0)) {
-        TRY(local_spacing(stream, dim, node_count, x, spacing, error));
-    }
-    TRY(support_radii(options, node_count, spacing, radius, error));
+    TRY(stage_radii(stream, options, node_count, x, radius, error));
     mls_describe(&options->mls, attributes, sizeof attributes - 8);
     char described[sizeof attributes + 8];
     snprintf(described, sizeof described, "unit=m %s", attributes);
     status = stream_put(stream, "support.radius", TYPE_F8, node_count, 1, described, radius, true, error);
     radius = NULL;
 done:
-    free(spacing);
     free(radius);
     return status;
 }

@@ -6,14 +6,19 @@
 
 #include "tool.h"
 
+#include "approx/adaptive.h"
 #include "approx/cells.h"
 #include "approx/shape.h"
 #include "approx/support.h"
 
 /* How ipoints places integration points. */
 struct ipoints_options {
-    bool conforming;    /* one point per cell, gradients smoothed over the cell */
-    int gauss_points;   /* else: points per cell */
+    bool conforming;  /* one point per cell, gradients smoothed over the cell */
+    int gauss_points; /* else: points per cell */
+    bool adaptive;    /* else: cells subdivided; `refinement` says how */
+    struct adaptive_options refinement;
+    bool given_radius; /* refinement.support's radius or factor was asked for: else the stream's radii, if any
+                        */
     int64_t lattice[3]; /* else, when lattice[0] > 0: a regular lattice of evaluation points over the nodes'
                            box */
 };
@@ -31,9 +36,15 @@ MUST_CHECK enum status stream_neighbours(const struct stream *stream, const char
 MUST_CHECK enum status stream_nodes(const struct stream *stream, int *dim, int64_t *node_count,
                                     const double **x, struct error *error);
 
-/* Add the sections of ipoints: points.*, faces, faces.cell, facepoints.* (lib/README.md). */
+/* Add the sections of ipoints: points.*, faces, faces.cell, facepoints.* (lib/README.md). *unresolved counts
+ * the cells that are too coarse even at the last level of adaptive integration. */
 MUST_CHECK enum status stage_ipoints(struct stream *stream, const struct ipoints_options *options,
-                                     struct error *error);
+                                     int64_t *unresolved, struct error *error);
+
+/* radius[node_count] as support would choose them: constant, or a factor times the local spacing, which is
+ * that of the cells where there are any. */
+MUST_CHECK enum status stage_radii(const struct stream *stream, const struct support_options *options,
+                                   int64_t node_count, const double *x, double *radius, struct error *error);
 
 /* Add the sections of support: support.radius, and the lists nbr, face and node. *widened counts the points
  * whose supports were widened, *widest the largest factor. */
