@@ -1,0 +1,22 @@
+# make hard: cases with known answers, each through the tools, with its error and verdict.
+#
+# Each script of pipelines/hard prints rows of the table, and also runs alone with build/bin on PATH. A row that misses
+# its tolerance reads FAIL and makes the study fail, after the table is printed.
+
+HARD := $(OUT)/hard
+HARD_CASES := $(sort $(notdir $(basename $(wildcard pipelines/hard/[0-9]*.sh))))
+HARD_TOOLS := $(addprefix $(BUILD)/bin/,cloud nodes ipoints support shapefn mtled interp fieldcmp mts)
+
+.PHONY: hard
+hard: $(HARD)/hard.tsv
+	@awk -F '\t' '{ printf "%-4s %-62s %14s %14s %10s %9s  %s\n", $$1, $$2, $$3, $$4, $$5, $$6, $$7 }' $<
+	@! grep -q 'FAIL$$' $<
+
+$(HARD)/%: export PATH := $(CURDIR)/$(BUILD)/bin:$(PATH)
+
+$(HARD_CASES:%=$(HARD)/%.rows): $(HARD)/%.rows: pipelines/hard/%.sh pipelines/hard/common.sh $(HARD_TOOLS) $(wildcard examples/hard/*)
+	@mkdir -p $(@D)
+	bash $< > $@
+
+$(HARD)/hard.tsv: $(HARD_CASES:%=$(HARD)/%.rows) pipelines/hard.mk
+	(printf 'case\tquantity\tvalue\treference\terror\ttolerance\tverdict\n'; cat $(filter %.rows,$^)) > $@

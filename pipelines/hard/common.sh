@@ -1,0 +1,88 @@
+# What the hard cases share; sourced by pipelines/hard/*.sh, each of which prints rows of hard.tsv on standard output.
+#
+# A row is: case, quantity, value, reference, error, tolerance, verdict (pass or FAIL), between tabs. The error is
+# relative to the reference, absolute where the reference is 0.
+set -euo pipefail
+export LC_ALL=C
+# The bodies are small: threads cost more than they give.
+export OMP_NUM_THREADS=1
+
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+
+# row CASE QUANTITY VALUE REFERENCE TOLERANCE
+row() {
+    awk -v OFS='\t' -v name="$1" -v quantity="$2" -v value="$3" -v reference="$4" -v tolerance="$5" '
+        function is_number(text) { return text ~ /^[-+]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][-+]?[0-9]+)?$/ }
+        BEGIN {
+            if (!is_number(value)) { # also nan and inf
+                print name, quantity, "none", reference, "-", tolerance, "FAIL"
+                exit
+            }
+            error = value - reference
+            if (reference != 0) error /= reference
+            if (error < 0) error = -error
+            printf "%s\t%s\t%.8g\t%.8g\t%.3g\t%g\t%s\n", name, quantity, value, reference, error, tolerance,
+                error <= tolerance ? "pass" : "FAIL"
+        }'
+}
+
+# at_least CASE QUANTITY VALUE LEAST: the error is what is missing.
+at_least() {
+    awk -v name="$1" -v quantity="$2" -v value="$3" -v least="$4" 'BEGIN {
+        good = value ~ /^[-+]?[0-9.]+([eE][-+]?[0-9]+)?$/
+        lacking = value < least ? least - value : 0
+        printf "%s\t%s\t%s\t>= %s\t%s\t0\t%s\n", name, quantity, good ? sprintf("%.4g", value) : "none", least,
+            good ? sprintf("%.3g", lacking) : "-", good && lacking == 0 ? "pass" : "FAIL"
+    }'
+}
+
+# calc EXPRESSION: its value. `nan` in it makes it nan, which no row passes.
+calc() {
+    awk "BEGIN { pi = atan2(0, -1); nan = log(0) - log(0); printf \"%.12g\\n\", $1 }" || echo nan
+}
+
+# scene FILE: write standard input as a scene, after the head and the base material that most scenes share. Variables: dim
+# (default 3), youngs (3000), nu (.49), rho (1000), region (body).
+scene() {
+    cat > "$1" - <(printf '\n[material body]\nregion = %s\nE = %s\nnu = %s\nrho = %s\n' "${region:-body}" \
+        "${youngs:-3000}" "${nu:-0.49}" "${rho:-1000}")
+    sed -i "1i [scene]\ndim = ${dim:-3}\nanalysis = quasi-static" "$1"
+}
+
+# relax SCENE TABLE OUT: run mtled; what it says on standard error goes to OUT.log. When it fails its message is shown and
+# OUT is empty: the rows made of it then read `none` and FAIL.
+relax() {
+    if ! mtled -v "$1" "$2" > "$3" 2> "$3.log"; then
+        tail -n 1 "$3.log" >&2
+        : > "$3"
+    fi
+}
+
+# reported FILE NAME: a number of mtled's report.
+reported() {
+    awk -F '\t' -v name="$2" '$1 == name { print $2 }' "$1.log"
+}
+
+# reaction FILE SECTION COMPONENT: total force of a section of the scene, component 1, 2 or 3; nan where the run failed.
+reaction() {
+    local rows
+    if [ ! -s "$1" ]; then
+        echo nan
+        return
+    fi
+    rows=$(mts list "$1" | sed -n 's/^reactions\t.*rows=\([^ \t]*\).*/\1/p')
+    mts print reactions "$1" | awk -v rows="$rows" -v section="$2" -v component="$3" '
+        BEGIN { split(rows, name, ",") }
+        name[NR] == section { print $component }'
+}
+
+# order COARSE MIDDLE FINE RATIO: observed order of convergence of three values on meshes refined by RATIO.
+order() {
+    calc "log(($1 - $2) / ($2 - $3)) / log($4)"
+}
+
+# limit COARSE MIDDLE FINE RATIO: the value that they tend to (Richardson, at the observed order).
+limit() {
+    calc "$3 + ($3 - $2) ^ 2 / (($2 - $1) - ($3 - $2))"
+}
