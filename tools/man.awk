@@ -83,9 +83,10 @@ function print_block(    i, first) {
         print ".SH " toupper(substr(block[1], 1, length(block[1]) - 1))
         if (block[1] == "Exit status:") has_status = 1
         i = 2
-    } else if (block[1] !~ /^ /) {
+    } else if (block[1] !~ /^ / && !after_heading) {
         print ".PP"
     }
+    after_heading = 0
     while (i <= lines) {
         first = i
         if (block[i] !~ /^ /) {
@@ -110,6 +111,19 @@ function print_synopsis(    i, text) {
     }
     print ".fi"
     print ".SH DESCRIPTION"
+    after_heading = 1
+}
+
+# Other pages that the text names, as PAGE(5), for SEE ALSO.
+function note_pages(text,    page) {
+    while (match(text, /[a-z][-a-z]*\([1-9]\)/)) {
+        page = substr(text, RSTART, RLENGTH - 3)
+        if (page != "mts" && !(page in noted)) {
+            noted[page] = 1
+            pages = pages ".BR " escape(page) " (" substr(text, RSTART + RLENGTH - 2, 1) "),\n"
+        }
+        text = substr(text, RSTART + RLENGTH)
+    }
 }
 
 function end_block() {
@@ -128,7 +142,10 @@ NR == 1 {
     next
 }
 /^ *$/ { end_block(); next }
-{ block[++lines] = $0 }
+{
+    block[++lines] = $0
+    note_pages($0)
+}
 
 END {
     end_block()
@@ -138,5 +155,5 @@ END {
         print "3 input, output or memory failed."
     }
     print ".SH SEE ALSO"
-    print (tool == "mts" ? "" : ".BR mts (1),\n") ".BR mts (5)"
+    print pages (tool == "mts" ? "" : ".BR mts (1),\n") ".BR mts (5)"
 }

@@ -1,0 +1,81 @@
+# What is the same for all programs: usage text, version, refusals, and the man page made from the text.
+
+bats_require_minimum_version 1.5.0
+
+setup() {
+    cd "$BATS_TEST_TMPDIR"
+    top=$BATS_TEST_DIRNAME/..
+    tools=()
+    for file in "$top"/tools/*.c; do tools+=("$(basename "$file" .c)"); done
+    [ ${#tools[@]} -ge 10 ]
+}
+
+@test "-h tells name, usage, options and examples on standard output, no line wider than 102" {
+    for tool in "${tools[@]}"; do
+        run -0 --separate-stderr "$tool" -h
+        [ -z "$stderr" ]
+        [[ ${lines[0]} == "$tool - "* ]]
+        [[ ${lines[1]} == "usage: $tool "* ]]
+        grep -qx 'Options:' <<< "$output"
+        grep -qx 'Examples:' <<< "$output"
+        awk 'length($0) > 102 || /[ \t]$/ || /\t/ { print FILENAME ": " $0; exit 1 }' <<< "$output"
+        "$tool" --help | cmp - <(printf '%s\n' "$output")
+    done
+}
+
+@test "--version is one line with the name" {
+    for tool in "${tools[@]}"; do
+        run -0 --separate-stderr "$tool" --version
+        [[ $output =~ ^$tool\ [0-9]+\.[0-9]+\.[0-9]+$ ]]
+    done
+}
+
+@test "an unknown option is refused in one line, with status 2 and nothing on standard output" {
+    for tool in "${tools[@]}"; do
+        run -2 --separate-stderr "$tool" --no-such-option
+        [ -z "$output" ]
+        [ "$(wc -l <<< "$stderr")" -eq 1 ]
+        [[ $stderr == "$tool: "*no-such-option* ]]
+    done
+}
+
+@test "every option of the usage line is explained, and every explained option is in the usage line" {
+    for tool in "${tools[@]}"; do
+        "$tool" -h > text
+        awk -v tool="$tool" '
+            /^usage:/ { usage = 1 }
+            /^$/ { usage = 0 }
+            usage { line = line " " $0; next }
+            { rest = rest " " $0 " " }
+            END {
+                while (match(line, /[[ |]--?[A-Za-z][-a-z]*/)) {
+                    option = substr(line, RSTART + 1, RLENGTH - 1)
+                    line = substr(line, RSTART + RLENGTH)
+                    if (index(rest, " " option ",") == 0 && index(rest, " " option " ") == 0) {
+                        print tool ": " option " is not explained"
+                        exit 1
+                    }
+                }
+            }' text
+    done
+}
+
+@test "man pages: the parts that make one, no blank paragraphs, and groff has no complaint where it is there" {
+    for tool in "${tools[@]}"; do
+        "$tool" -h | awk -f "$top/tools/man.awk" > "$tool.1"
+        [ "$(head -n 1 "$tool.1")" = ".TH ${tool^^} 1 \"\" mtled" ]
+        for part in NAME SYNOPSIS DESCRIPTION OPTIONS EXAMPLES 'EXIT STATUS' 'SEE ALSO'; do
+            [ "$(grep -cx ".SH $part" "$tool.1")" -eq 1 ] || { echo "$tool: $part"; false; }
+        done
+        awk '/^\.SH/ { heading = 1; next } heading && /^\.PP/ { exit 1 } { heading = 0 }' "$tool.1"
+        # Words of the text are words of the page.
+        [ "$(grep -c . "$tool.1")" -ge "$("$tool" -h | grep -c .)" ]
+    done
+    grep -q 'mtled\\-scene (5)' mtled.1
+    if command -v groff > /dev/null; then
+        for page in ./*.1 "$top"/tools/*.5; do
+            groff -man -ww -Tascii "$page" 2> warnings > /dev/null
+            [ ! -s warnings ] || { echo "$page: $(head -n 1 warnings)"; false; }
+        done
+    fi
+}
