@@ -87,7 +87,7 @@ with_section() {
     interp table.mts > own.mts
     interp -p own.mts linear.mts | mts print u > u
     mts print u own.mts > own
-    near 1e-14 u own
+    near 1e-12 u own
 }
 
 @test "a table of points in a unit, with comments; displaced points" {

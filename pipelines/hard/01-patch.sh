@@ -5,8 +5,10 @@
 
 # ---- patch test: u = A x prescribed on the whole boundary of a scattered cloud ----
 
-# Strains of some percent.
+# Strains of some percent, in terms of awk.
+# shellcheck disable=SC2016
 linear_2d='0.011 * $1 + 0.021 * $2, 0.032 * $1 - 0.019 * $2'
+# shellcheck disable=SC2016
 linear_3d='0.011 * $1 + 0.021 * $2 - 0.014 * $3, 0.032 * $1 - 0.019 * $2 + 0.007 * $3, 0.005 * $1 - 0.027 * $2 + 0.013 * $3'
 
 # patch DIM ARGUMENTS_OF_IPOINTS QUANTITY TOLERANCE VOLUME
@@ -47,7 +49,7 @@ for dim in 2 3; do
     patch $dim -c "patch test ${dim}D, conforming cells" 1e-9 nodal
     # The others are not exact, here or elsewhere: this records by how much.
     for points in $([ $dim -eq 2 ] && echo 1 3 4 6 7 12 || echo 1 4); do
-        patch $dim "-g $points" "patch test ${dim}D, $points point$([ $points -eq 1 ] || echo s) per cell" 0.1 pointwise
+        patch $dim "-g $points" "patch test ${dim}D, $points point$([ "$points" -eq 1 ] || echo s) per cell" 0.1 pointwise
     done
 done
 

@@ -1,3 +1,4 @@
+# shellcheck shell=bash
 # What the hard cases share; sourced by pipelines/hard/*.sh, each of which prints rows of hard.tsv on standard output.
 #
 # A row is: case, quantity, value, reference, error, tolerance, verdict (pass or FAIL), between tabs. The error is
