@@ -79,3 +79,22 @@ setup() {
         done
     fi
 }
+
+@test "mtled-scene(5): every key of the reader is told, and the example runs on the brain section" {
+    page=$top/tools/mtled-scene.5
+    grep -oE '"[a-zE][a-z_]*"' "$top/lib/io/scene_kinds.c" | tr -d '"' | sort -u > keys
+    [ "$(wc -l < keys)" -ge 30 ]
+    while IFS= read -r key; do
+        grep -qw "$key" "$page" || { echo "no $key"; false; }
+    done < keys
+
+    cp "$top"/examples/brain2d/{load,skull}.tsv .
+    awk '/^\.SH EXAMPLE/ { example = 1 } /^\.fi/ { on = 0 } on; example && /^\.nf/ { on = 1 }' "$page" |
+        sed 's/\\-/-/g' > sample.scene
+    gmsh -2 -v 2 "$top/examples/brain2d/brain2d.geo" -o body.msh
+    nodes -u mm body.msh | shapefn 2> note | mtled sample.scene > u.dat
+    mts check u.dat
+    [ "$(mts list u.dat | grep -c '^u\.frame\.')" -eq 10 ]
+    tovtk -o frames.pvd u.dat
+    [ "$(grep -c '<DataSet' frames.pvd)" -ge 10 ]
+}
