@@ -281,11 +281,19 @@ static void swap(double **a, double **b)
     *b = kept;
 }
 
+/* The loads of this instant; a system without load curves has no factors. */
+static void use_factors(struct dynamics *d)
+{
+    for (int64_t i = 0; i < d->system->curve_count; i++) {
+        d->system->factor[i] = d->factor_now[i];
+    }
+}
+
 /* Residual, loads and least J at u; false when a point is inverted. */
 static bool evaluate(struct dynamics *d)
 {
     struct solid_system *system = d->system;
-    memcpy(system->factor, d->factor_now, (size_t)system->curve_count * sizeof *system->factor);
+    use_factors(d);
     struct deformation deformation = system_residual(system, d->u, d->residual);
     d->report->force_evaluations++;
     d->report->least_jacobian = deformation.least_jacobian;
