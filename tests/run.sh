@@ -7,6 +7,7 @@ export BUILD PATH="$BUILD/bin:$PATH" CMOCKA_MESSAGE_OUTPUT=TAP
 export ASAN_OPTIONS=${ASAN_OPTIONS:-detect_leaks=1} OMP_NUM_THREADS=${OMP_NUM_THREADS:-2}
 log=$BUILD/check.log
 mkdir -p "$BUILD"
+rm -f "$BUILD/check.result"
 : > "$log"
 
 # A program that dies before its last result counts as one failure of its own.
@@ -31,5 +32,5 @@ done
 
 passed=$(grep -c '^ok ' "$log")
 failed=$(grep -c '^not ok ' "$log")
-echo "$passed passed, $failed failed"
+echo "$passed passed, $failed failed" | tee "$BUILD/check.result"
 [ "$failed" -eq 0 ] && [ "$passed" -gt 0 ]
