@@ -28,14 +28,25 @@ row() {
         }'
 }
 
-# at_least CASE QUANTITY VALUE LEAST: the error is what is missing.
+# at_least CASE QUANTITY VALUE LEAST, at_most CASE QUANTITY VALUE MOST: the error is how far it is beyond.
 at_least() {
-    awk -v name="$1" -v quantity="$2" -v value="$3" -v least="$4" 'BEGIN {
-        good = value ~ /^[-+]?[0-9.]+([eE][-+]?[0-9]+)?$/
-        lacking = value < least ? least - value : 0
-        printf "%s\t%s\t%s\t>= %s\t%s\t0\t%s\n", name, quantity, good ? sprintf("%.4g", value) : "none", least,
-            good ? sprintf("%.3g", lacking) : "-", good && lacking == 0 ? "pass" : "FAIL"
-    }'
+    one_sided "$1" "$2" "$3" "$4" '>='
+}
+at_most() {
+    one_sided "$1" "$2" "$3" "$4" '<='
+}
+one_sided() {
+    awk -v name="$1" -v quantity="$2" -v value="$3" -v bound="$4" -v relation="$5" '
+        BEGIN {
+            head = name "\t" quantity
+            if (value !~ /^[-+]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][-+]?[0-9]+)?$/) {
+                printf "%s\tnone\t%s %s\t-\t0\tFAIL\n", head, relation, bound
+                exit
+            }
+            beyond = relation == "<=" ? value - bound : bound - value
+            if (beyond < 0) beyond = 0
+            printf "%s\t%.4g\t%s %s\t%.3g\t0\t%s\n", head, value, relation, bound, beyond, (beyond > 0 ? "FAIL" : "pass")
+        }'
 }
 
 # calc EXPRESSION: its value. `nan` in it makes it nan, which no row passes.
@@ -44,11 +55,11 @@ calc() {
 }
 
 # scene FILE: write standard input as a scene, after the head and the base material that most scenes share. Variables: dim
-# (default 3), youngs (3000), nu (.49), rho (1000), region (body).
+# (default 3), youngs (3000), nu (.49), rho (1000), head (more lines of [scene]).
 scene() {
-    cat > "$1" - <(printf '\n[material body]\nregion = %s\nE = %s\nnu = %s\nrho = %s\n' "${region:-body}" \
+    cat > "$1" - <(printf '\n[material body]\nregion = body\nE = %s\nnu = %s\nrho = %s\n' \
         "${youngs:-3000}" "${nu:-0.49}" "${rho:-1000}")
-    sed -i "1i [scene]\ndim = ${dim:-3}\nanalysis = quasi-static" "$1"
+    sed -i "1i [scene]\ndim = ${dim:-3}\nanalysis = quasi-static\n${head:-}" "$1"
 }
 
 # relax SCENE TABLE OUT: run mtled; what it says on standard error goes to OUT.log. When it fails its message is shown and
@@ -86,4 +97,20 @@ order() {
 # limit COARSE MIDDLE FINE RATIO: the value that they tend to (Richardson, at the observed order).
 limit() {
     calc "$3 + ($3 - $2) ^ 2 / (($2 - $1) - ($3 - $2))"
+}
+
+# mean_at FILE CONDITION VALUE: mean over the nodes where an awk condition holds of an awk expression, both in $1.. the
+# coordinates and, after them, the displacements; nan where the run failed or no node is meant.
+mean_at() {
+    if [ ! -s "$1" ]; then
+        echo nan
+        return
+    fi
+    paste <(mts print nodes.x "$1") <(mts print u "$1") | awk "$2"' { n++; sum += '"$3"' }
+        END { if (n > 0) printf "%.12g\n", sum / n; else print "nan" }'
+}
+
+# order_of COARSE FINE EXACT RATIO: order of convergence to a known value on two meshes.
+order_of() {
+    calc "log(sqrt((($1 - ($3)) / ($2 - ($3))) ^ 2)) / log($4)"
 }
