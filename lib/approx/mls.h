@@ -50,10 +50,11 @@ enum mls_verdict {
 /* Why, in a few words. */
 const char *mls_verdict_text(enum mls_verdict verdict);
 
-/* Scratch space for one thread; grows on demand. */
+/* Scratch space for one thread, all zero at first; grows on demand. */
 struct mls_work {
     double *values;
-    int64_t capacity; /* neighbours that `values` serves */
+    int64_t capacity;                  /* neighbours that `values` serves */
+    const struct mls_kernels *kernels; /* the code for this processor */
 };
 void mls_work_free(struct mls_work *work);
 
@@ -69,9 +70,16 @@ struct mls_support {
 
 /* Values phi[count] and, unless dphi is NULL, full gradients dphi[count * dim] (per unit of x) at a point.
  * Every result is checked: unity and linear reproduction hold to 1e-10 (relative to s) whenever the verdict
- * is MLS_GOOD. Returns STATUS_OK with the verdict, or STATUS_SYSTEM (memory). */
+ * is MLS_GOOD. The same bits on every processor. Returns STATUS_OK with the verdict, or STATUS_SYSTEM
+ * (memory). */
 MUST_CHECK enum status mls_evaluate(const struct mls *mls, const struct mls_support *support,
                                     struct mls_work *work, double *phi, double *dphi,
                                     enum mls_verdict *verdict, struct error *error);
+
+/* *steepest: the largest |grad phi_j| (per unit of x) at a point, where the verdict is MLS_GOOD; the same
+ * verdict as mls_evaluate with gradients. */
+MUST_CHECK enum status mls_steepest(const struct mls *mls, const struct mls_support *support,
+                                    struct mls_work *work, double *steepest, enum mls_verdict *verdict,
+                                    struct error *error);
 
 #endif

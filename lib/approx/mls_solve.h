@@ -1,4 +1,4 @@
-/* The small symmetric systems behind one MLS evaluation; private to lib/approx. */
+/* The small symmetric systems behind a careful MLS evaluation; private to lib/approx. */
 #ifndef APPROX_MLS_SOLVE_H
 #define APPROX_MLS_SOLVE_H
 
@@ -6,6 +6,9 @@
 
 /* Rows of scratch per neighbour: monomials, QR copy of them, weight, slope, projection, row. */
 #define MLS_ROWS (2 * MLS_MAX_BASIS + 4)
+
+/* A row is so much longer than the number of neighbours: for the rows of H, and for whole vectors. */
+#define MLS_PADDING 16
 
 /* One point's data in local scaled coordinates; arrays of `count` entries, `stride` apart. */
 struct mls_local {
@@ -55,5 +58,10 @@ void mls_orthogonal_values(int m, const struct mls_factor *factor, struct mls_lo
  * ill-conditioned quadratic part is not lost to the linear fields. */
 void mls_restore_linear(int m, int dim, const struct mls_factor *factor, const struct mls_local *local,
                         const double *target, double *values, int value_stride);
+
+/* Values and, unless NULL, gradients with whatever it takes; scratch[MLS_ROWS * stride], stride at least
+ * count + MLS_PADDING. */
+enum mls_verdict mls_careful(const struct mls *mls, const struct mls_support *support, double *scratch,
+                             int64_t stride, double *phi, double *dphi);
 
 #endif

@@ -2,6 +2,9 @@
  * weight function, the unit and the place; gradients; the limits of the modified basis; convergence. */
 #include "approx_fixture.h"
 
+#include "approx/mls_kernel.h"
+#include "approx/mls_solve.h"
+
 static void weights(void **state)
 {
     (void)state;
@@ -296,6 +299,87 @@ static void invariance(void **state)
     }
 }
 
+/* All instruction sets give the same bits; where they leave a point to the careful way, all do. What they
+ * decide agrees with the careful way to round-off. */
+static void instruction_sets(void **state)
+{
+    (void)state;
+    enum { STRIDE = MOST + MLS_PADDING };
+    static const char *const sets[] = {"plain", "avx2", "avx512"};
+    static double phi[4][MOST], dphi[4][3 * MOST];
+    double *scratch = aligned_alloc(64, STRIDE * MLS_ROWS * sizeof *scratch);
+    int64_t decided = 0, left = 0;
+    assert_non_null(scratch);
+    for (int dim = 2; dim <= 3; dim++) {
+        struct scattered cloud = scatter(dim, dim == 2 ? 10 : 6, 100, &places[2], 0.4, 12);
+        for (int b = 0; b < BASIS_COUNT; b++) {
+            for (int w = 0; w < WEIGHT_COUNT; w++) {
+                struct support_options options = options_for(dim, (enum basis)b, (enum weight_function)w);
+                struct table table;
+                struct error error;
+                good(tabulate(&options, cloud.count, cloud.x, 100, cloud.points, &table, &error), &error);
+                for (int64_t p = 0; p < 100; p++) {
+                    struct mls_support support = {.x = cloud.points + p * dim,
+                                                  .nodes = cloud.x,
+                                                  .radius = table.radius,
+                                                  .widen = table.lists.widen[p],
+                                                  .neighbours = table.lists.idx + table.lists.ptr[p],
+                                                  .count = table.lists.ptr[p + 1] - table.lists.ptr[p]};
+                    size_t values = (size_t)support.count * sizeof(double), gradients = values * (size_t)dim;
+                    bool served[4];
+                    double steepest[4];
+                    assert_true(support.count <= MOST);
+                    for (int s = 0; s < 3; s++) {
+                        const struct mls_kernels *kernels = mls_kernels_named(sets[s]);
+                        if (kernels == NULL) {
+                            continue;
+                        }
+                        mls_kernel *kernel =
+                            (b == BASIS_LINEAR ? kernels->linear : kernels->quadratic)[dim - 2];
+                        struct mls_result both = {.phi = phi[s], .dphi = dphi[s]};
+                        struct mls_result judged = {.steepest = &steepest[s]};
+                        served[s] = kernel(&options.mls, &support, scratch, STRIDE, &both);
+                        assert_int_equal(kernel(&options.mls, &support, scratch, STRIDE, &judged), served[s]);
+                        assert_int_equal(served[s], served[0]);
+                        if (served[s]) {
+                            assert_memory_equal(phi[s], phi[0], values);
+                            assert_memory_equal(dphi[s], dphi[0], gradients);
+                            assert_true(steepest[s] == steepest[0]);
+                        }
+                    }
+                    decided += served[0];
+                    left += !served[0];
+                    assert_int_equal(mls_careful(&options.mls, &support, scratch, STRIDE, phi[3], dphi[3]),
+                                     MLS_GOOD);
+                    double most = 0.0, longest = 0.0;
+                    for (int64_t i = 0; i < support.count * dim; i++) {
+                        most = fmax(most, fabs(dphi[3][i]));
+                    }
+                    for (int64_t i = 0; served[0] && i < support.count; i++) {
+                        double sum = 0.0;
+                        at_most(fabs(phi[0][i] - phi[3][i]), 1e-11, "phi against the careful way");
+                        for (int a = 0; a < dim; a++) {
+                            double gradient = dphi[3][i * dim + a];
+                            at_most(fabs(dphi[0][i * dim + a] - gradient) / most, 1e-10,
+                                    "grad phi against the careful way");
+                            sum += gradient * gradient;
+                        }
+                        longest = fmax(longest, sqrt(sum));
+                    }
+                    if (served[0]) {
+                        at_most(fabs(steepest[0] / longest - 1.0), 1e-10, "steepest gradient");
+                    }
+                }
+                table_free(&table);
+            }
+        }
+        scattered_free(&cloud);
+    }
+    print_message("# %d points decided by the normal equations, %d left\n", (int)decided, (int)left);
+    assert_true(decided > 3 * left && left > 0);
+    free(scratch);
+}
+
 static double wave(int dim, const double *x)
 {
     double value = 1.0;
@@ -416,7 +500,7 @@ int main(void)
         cmocka_unit_test(gradients),   cmocka_unit_test(quadratic_reproduction),
         cmocka_unit_test(units_of_mu), cmocka_unit_test(limits_of_modified),
         cmocka_unit_test(invariance),  cmocka_unit_test(convergence),
-        cmocka_unit_test(paper_table),
+        cmocka_unit_test(paper_table), cmocka_unit_test(instruction_sets),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

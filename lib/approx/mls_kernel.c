@@ -1,0 +1,338 @@
+#include "approx/mls_kernel.h"
+
+#include "approx/mls_vector.h"
+#include "approx/weight_formulas.h"
+
+/* One point's neighbours in local scaled coordinates. */
+struct mls_point {
+    int64_t count, padded; /* padded to a multiple of LANES by neighbours beyond the support */
+    int64_t stride;
+    double scale; /* s */
+    double *row;  /* [MLS_KERNEL_ROWS][stride] */
+};
+
+/* Unaligned loads and stores as copies, which compilers turn into single instructions. */
+KERNEL_INLINE void load_row(const struct mls_point *point, int row, int64_t j, lanes *v)
+{
+    memcpy(v, point->row + row * point->stride + j, sizeof *v);
+}
+
+KERNEL_INLINE void store_row(const struct mls_point *point, int row, int64_t j, const lanes *v)
+{
+    memcpy(point->row + row * point->stride + j, v, sizeof *v);
+}
+
+KERNEL_INLINE void load_xi(int dim, const struct mls_point *point, int64_t j, lanes *xi)
+{
+    for (int a = 0; a < dim; a++) {
+        load_row(point, ROW_XI + a, j, &xi[a]);
+    }
+}
+
+/* Differences of coordinates and radii, side by side; the largest radius. */
+KERNEL_INLINE void gather(const struct mls_support *support, int dim, struct mls_point *point)
+{
+    double *xi = point->row, *radius = point->row + ROW_RATIO * point->stride;
+    double largest = 0.0;
+    for (int64_t j = 0; j < support->count; j++) {
+        int64_t node = support->neighbours[j];
+        for (int a = 0; a < dim; a++) {
+            xi[a * point->stride + j] = support->nodes[node * dim + a] - support->x[a];
+        }
+        double own = support->radius[node];
+        radius[j] = own;
+        largest = own > largest ? own : largest;
+    }
+    for (int64_t j = support->count; j < point->padded; j++) {
+        for (int a = 0; a < dim; a++) {
+            xi[a * point->stride + j] = 2.0 * largest * support->widen;
+        }
+        radius[j] = largest;
+    }
+    point->scale = largest * support->widen;
+}
+
+#define WEIGHT_LOOP(formula)                                                                                 \
+    for (int64_t j = 0; j < point->padded; j++) {                                                            \
+        double relative = 0.0, value, slope_over_r, square = ratio[j] * ratio[j];                            \
+        for (int a = 0; a < dim; a++) {                                                                      \
+            relative += xi[a * stride + j] * xi[a * stride + j];                                             \
+        }                                                                                                    \
+        relative *= square;                                                                                  \
+        formula(relative < 1.0 ? relative : 1.0, &value, &slope_over_r);                                     \
+        weight[j] = relative < 1.0 ? value : 0.0;                                                            \
+        slope[j] = relative < 1.0 ? slope_over_r * square : 0.0;                                             \
+    }
+
+/* Scale the coordinates; weights, and slopes: grad w = -slope xi / s. */
+KERNEL_INLINE void weigh(enum weight_function function, double widen, int dim, struct mls_point *point)
+{
+    int64_t stride = point->stride;
+    double *restrict xi = point->row, *restrict ratio = point->row + ROW_RATIO * stride;
+    double *restrict weight = point->row + ROW_WEIGHT * stride, *restrict slope =
+                                                                    point->row + ROW_SLOPE * stride;
+    double inverse = 1.0 / point->scale, relative_scale = point->scale / widen;
+    for (int a = 0; a < dim; a++) {
+        for (int64_t j = 0; j < point->padded; j++) {
+            xi[a * stride + j] *= inverse;
+        }
+    }
+    for (int64_t j = 0; j < point->padded; j++) {
+        ratio[j] = relative_scale / ratio[j];
+    }
+    switch (function) {
+    case WEIGHT_CUBIC:
+        WEIGHT_LOOP(weight_cubic)
+        break;
+    case WEIGHT_WENDLAND:
+        WEIGHT_LOOP(weight_wendland)
+        break;
+    case WEIGHT_REGULARISED:
+        WEIGHT_LOOP(weight_regularised)
+        break;
+    case WEIGHT_QUARTIC:
+    case WEIGHT_COUNT:
+        WEIGHT_LOOP(weight_quartic)
+        break;
+    }
+}
+
+/* Moment matrix. */
+KERNEL_INLINE void assemble(int dim, int m, const struct mls_point *point, struct mls_system *system)
+{
+    int degree = m > dim + 1 ? 4 : 2;
+    lanes sum[MLS_MOMENTS];
+    double moment[MLS_MOMENTS];
+    memset(sum, 0, sizeof sum);
+    for (int64_t j = 0; j < point->padded; j += LANES) {
+        lanes xi[3], weight;
+        load_xi(dim, point, j, xi);
+        load_row(point, ROW_WEIGHT, j, &weight);
+        add_moments(dim, degree, &weight, xi, sum);
+    }
+    for (int k = 0; k < moment_count(dim, degree); k++) {
+        moment[k] = lane_sum(&sum[k]);
+    }
+    for (int k = 0; k < m; k++) {
+        for (int l = 0; l < m; l++) {
+            system->matrix[k][l] = moment[moment_index(dim, k, l)];
+        }
+        for (int l = m; l < (m + 3) / 4 * 4; l++) {
+            system->matrix[k][l] = 0.0;
+        }
+    }
+}
+
+KERNEL_INLINE void regularise(const struct mls *mls, int dim, int m, double scale, struct mls_system *system)
+{
+    if (mls->basis == BASIS_MODIFIED) {
+        double unit = mls->mu_absolute ? 1.0 / (scale * scale * scale * scale) : 1.0;
+        for (int k = 1 + dim; k < m; k++) {
+            system->matrix[k][k] += mls->mu[k - 1 - dim] * unit;
+        }
+    }
+}
+
+KERNEL_INLINE double larger_defect(double worst, double defect)
+{
+    return fabs(defect) <= worst ? worst : isnan(defect) ? INFINITY : fabs(defect);
+}
+
+/* phi_j = w_j p_j.c into ROW_PHI, slope_j p_j.c into ROW_SLOPE; where gradients are wanted, the right sides
+ * of their coefficients, e_a - (d_a M) c = e_a + sum_j slope_j xi_a p_j.c p_j (moments again), one a per
+ * lane. Returns the largest defect of sum phi p = p(0), p linear. */
+KERNEL_INLINE double values(int dim, int m, const double *c, bool gradients, const struct mls_point *point,
+                            lanes *right)
+{
+    int degree = m > dim + 1 ? 3 : 2;
+    lanes moment[20], defect[4];
+    memset(moment, 0, sizeof moment);
+    memset(defect, 0, sizeof defect);
+    for (int64_t j = 0; j < point->padded; j += LANES) {
+        lanes xi[3], projection, phi, slope;
+        load_xi(dim, point, j, xi);
+        polynomial(dim, m, c, xi, &projection);
+        load_row(point, ROW_WEIGHT, j, &phi);
+        phi *= projection;
+        store_row(point, ROW_PHI, j, &phi);
+        defect[0] += phi;
+        for (int a = 0; a < dim; a++) {
+            defect[1 + a] += phi * xi[a];
+        }
+        if (gradients) {
+            load_row(point, ROW_SLOPE, j, &slope);
+            slope *= projection;
+            store_row(point, ROW_SLOPE, j, &slope);
+            add_moments(dim, degree, &slope, xi, moment);
+        }
+    }
+    if (gradients) {
+        double total[20];
+        for (int k = 0; k < moment_count(dim, degree); k++) {
+            total[k] = lane_sum(&moment[k]);
+        }
+        for (int k = 0; k < m; k++) {
+            right[k] = (lanes){0.0, 0.0, 0.0, 0.0};
+            for (int a = 0; a < dim; a++) {
+                right[k][a] = total[moment_index(dim, 1 + a, k)] + (k == 1 + a ? 1.0 : 0.0);
+            }
+        }
+    }
+    double worst = larger_defect(0.0, lane_sum(&defect[0]) - 1.0);
+    for (int a = 0; a < dim; a++) {
+        worst = larger_defect(worst, lane_sum(&defect[1 + a]));
+    }
+    return worst;
+}
+
+/* s d_a phi_j = w_j p_j.g_a - slope_j xi_a p_j.c into ROW_GRADIENT + a. Returns the largest defect of
+ * sum grad phi p = grad p(0), p linear; *steepest2: the largest squared gradient. */
+KERNEL_INLINE double gradients(int dim, int m, const lanes *coefficient, const struct mls_point *point,
+                               double *steepest2)
+{
+    double g[3][MLS_MAX_BASIS], worst = 0.0;
+    lanes defect[3][4], most = {0.0, 0.0, 0.0, 0.0};
+    memset(defect, 0, sizeof defect);
+    for (int k = 0; k < m; k++) {
+        for (int a = 0; a < dim; a++) {
+            g[a][k] = coefficient[k][a];
+        }
+    }
+    for (int64_t j = 0; j < point->padded; j += LANES) {
+        lanes xi[3], weight, slope, square = {0.0, 0.0, 0.0, 0.0};
+        load_xi(dim, point, j, xi);
+        load_row(point, ROW_WEIGHT, j, &weight);
+        load_row(point, ROW_SLOPE, j, &slope);
+        for (int a = 0; a < dim; a++) {
+            lanes gradient;
+            polynomial(dim, m, g[a], xi, &gradient);
+            gradient = weight * gradient - slope * xi[a];
+            store_row(point, ROW_GRADIENT + a, j, &gradient);
+            square += gradient * gradient;
+            defect[a][0] += gradient;
+            for (int b = 0; b < dim; b++) {
+                defect[a][1 + b] += gradient * xi[b];
+            }
+        }
+        for (int lane = 0; lane < LANES; lane++) {
+            most[lane] = most[lane] > square[lane] ? most[lane] : square[lane];
+        }
+    }
+    *steepest2 = fmax(fmax(most[0], most[1]), fmax(most[2], most[3]));
+    for (int a = 0; a < dim; a++) {
+        for (int k = 0; k <= dim; k++) {
+            worst = larger_defect(worst, lane_sum(&defect[a][k]) - (k == 1 + a ? 1.0 : 0.0));
+        }
+    }
+    return worst;
+}
+
+/* Gradients side by side, per unit of x. */
+KERNEL_INLINE void put_gradients(int dim, const struct mls_point *point, double *dphi)
+{
+    const double *row = point->row + ROW_GRADIENT * point->stride;
+    double inverse = 1.0 / point->scale;
+    for (int64_t j = 0; j < point->count; j++) {
+        for (int a = 0; a < dim; a++) {
+            dphi[j * dim + a] = row[a * point->stride + j] * inverse;
+        }
+    }
+}
+
+KERNEL_INLINE bool kernel_evaluate(const struct mls *mls, const struct mls_support *support, int dim, int m,
+                                   double *scratch, int64_t stride, const struct mls_result *result)
+{
+    /* Pivots above this need no further look: the condition cannot be bad in so small a matrix. */
+    static const double safe_pivot = 1e-5;
+    /* With H a pivot may be smaller, but not too small for the normal equations. */
+    static const double least_pivot = 1e-9;
+    static const double most_defect = 1e-13;
+    bool with_gradients = result->dphi != NULL || result->steepest != NULL;
+    struct mls_point point = {.count = support->count,
+                              .padded = (support->count + LANES - 1) / LANES * LANES,
+                              .stride = stride,
+                              .row = scratch};
+    struct mls_system system;
+    double least_linear, least, steepest2 = 0.0, c[MLS_MAX_BASIS];
+    lanes right[MLS_MAX_BASIS];
+    gather(support, dim, &point);
+    weigh(mls->weight, support->widen, dim, &point);
+    assemble(dim, m, &point, &system);
+    regularise(mls, dim, m, point.scale, &system);
+    if (!factorise(dim, m, &system, &least_linear, &least) || !(least_linear > safe_pivot) ||
+        !(least > (mls->basis == BASIS_MODIFIED ? least_pivot : safe_pivot))) {
+        return false;
+    }
+    substitute_unit(m, &system, c);
+    if (!(values(dim, m, c, with_gradients, &point, right) <= most_defect)) {
+        return false;
+    }
+    if (with_gradients) {
+        substitute(m, &system, right);
+        if (!(gradients(dim, m, right, &point, &steepest2) <= most_defect)) {
+            return false;
+        }
+    }
+    if (result->phi != NULL) {
+        memcpy(result->phi, point.row + ROW_PHI * stride, (size_t)point.count * sizeof *result->phi);
+    }
+    if (result->dphi != NULL) {
+        put_gradients(dim, &point, result->dphi);
+    }
+    if (result->steepest != NULL) {
+        *result->steepest = sqrt(steepest2) / point.scale;
+    }
+    return true;
+}
+
+/* The same for each instruction set; the best is chosen at run time. */
+
+#define KERNEL(set, shape, dim, m, attribute)                                                                \
+    attribute static bool shape##_##dim##_##set(const struct mls *mls, const struct mls_support *support,    \
+                                                double *scratch, int64_t stride,                             \
+                                                const struct mls_result *result)                             \
+    {                                                                                                        \
+        return kernel_evaluate(mls, support, dim, m, scratch, stride, result);                               \
+    }
+
+#define KERNEL_SET(set, attribute)                                                                           \
+    KERNEL(set, linear, 2, 3, attribute)                                                                     \
+    KERNEL(set, linear, 3, 4, attribute)                                                                     \
+    KERNEL(set, quadratic, 2, 6, attribute)                                                                  \
+    KERNEL(set, quadratic, 3, 10, attribute)                                                                 \
+    static const struct mls_kernels set##_kernels = {                                                        \
+        #set, {linear_2_##set, linear_3_##set}, {quadratic_2_##set, quadratic_3_##set}};
+
+#define NO_ATTRIBUTE
+KERNEL_SET(plain, NO_ATTRIBUTE)
+
+#if defined(__x86_64__)
+#define AVX2 __attribute__((target("avx2")))
+#define AVX512 __attribute__((target("avx512f,avx512dq,avx512vl,avx512bw,avx2")))
+KERNEL_SET(avx2, AVX2)
+KERNEL_SET(avx512, AVX512)
+#endif
+
+const struct mls_kernels *mls_kernels_named(const char *name)
+{
+#if defined(__x86_64__)
+    __builtin_cpu_init();
+    if (strcmp(name, "avx512") == 0) {
+        return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
+                       __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512bw")
+                   ? &avx512_kernels
+                   : NULL;
+    }
+    if (strcmp(name, "avx2") == 0) {
+        return __builtin_cpu_supports("avx2") ? &avx2_kernels : NULL;
+    }
+#endif
+    return strcmp(name, "plain") == 0 ? &plain_kernels : NULL;
+}
+
+const struct mls_kernels *mls_kernels_select(void)
+{
+    const struct mls_kernels *best = mls_kernels_named("avx512");
+    best = best != NULL ? best : mls_kernels_named("avx2");
+    return best != NULL ? best : &plain_kernels;
+}

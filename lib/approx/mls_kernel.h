@@ -1,0 +1,45 @@
+/* Moving least squares by the normal equations, vector code written once and compiled for several instruction
+ * sets; private to lib/approx.
+ *
+ * Sums over the neighbours run in the same partial sums whatever the instruction set, and no multiplication
+ * is fused with an addition (the Makefile says so for lib/approx): every processor gives the same bits. What
+ * the normal equations cannot decide or do well enough is left to mls_careful(). */
+#ifndef APPROX_MLS_KERNEL_H
+#define APPROX_MLS_KERNEL_H
+
+#include "approx/mls.h"
+
+/* Rows of scratch. Their stride is at least the number of neighbours and a whole vector. */
+enum mls_row {
+    ROW_XI,
+    ROW_RATIO = ROW_XI + 3,
+    ROW_WEIGHT,
+    ROW_SLOPE,
+    ROW_PHI,
+    ROW_GRADIENT,
+    MLS_KERNEL_ROWS = ROW_GRADIENT + 3
+};
+
+/* What is asked for, where not NULL. */
+struct mls_result {
+    double *phi;      /* count */
+    double *dphi;     /* count * dim, per unit of x */
+    double *steepest; /* the largest |grad phi|, per unit of x */
+};
+
+/* Evaluate at one point; false when that is left to mls_careful(). scratch[MLS_KERNEL_ROWS * stride]. */
+typedef bool mls_kernel(const struct mls *mls, const struct mls_support *support, double *scratch,
+                        int64_t stride, const struct mls_result *result);
+
+/* One set of compiled kernels. */
+struct mls_kernels {
+    const char *name;
+    mls_kernel *linear[2], *quadratic[2]; /* in 2D, 3D */
+};
+
+/* The best set for this processor; or, for tests, the set of that name ("plain", "avx2", "avx512"), NULL when
+ * the processor has it not. */
+const struct mls_kernels *mls_kernels_select(void);
+const struct mls_kernels *mls_kernels_named(const char *name);
+
+#endif
