@@ -389,6 +389,51 @@ enum status boundary_nodes_build(const struct face_table *table, const struct fa
     return build(table, set, node_lists, node_phi, averages, error);
 }
 
+enum status boundary_points_build(const struct face_table *table, const struct facet_set *set,
+                                  struct boundary_averages *averages, struct error *error)
+{
+    enum status status;
+    int dim = table->dim;
+    int64_t *face_of = NULL, pairs = 0, count = set->count * table->per_face;
+    struct quadrature_rule rule = quadrature_face_rule(dim);
+    *averages = (struct boundary_averages){0};
+    TRY(NEW_ARRAY(&face_of, set->count, error));
+    TRY(find_faces(table, set, face_of, error));
+    TRY(allocate(dim, count, count, averages, error));
+    for (int64_t f = 0; f < set->count; f++) {
+        int64_t first = face_of[f] * table->per_face;
+        pairs += table->lists->ptr[first + table->per_face] - table->lists->ptr[first];
+    }
+    TRY(NEW_ARRAY(&averages->idx, pairs, error));
+    TRY(NEW_ARRAY(&averages->phi, pairs, error));
+    for (int64_t p = 0; p < count; p++) {
+        int64_t facet = p / table->per_face, point = face_of[facet] * table->per_face + p % table->per_face;
+        int64_t from = table->lists->ptr[point], length = table->lists->ptr[point + 1] - from;
+        double normal[3], size, x[9];
+        unit_normal(table, set->facet + facet * dim, normal, &size);
+        quadrature_positions(&rule, dim, table->x, table->faces->node + face_of[facet] * dim, x);
+        averages->node[p] = set->facet[facet * dim];
+        averages->area[p] = rule.weight[p % table->per_face] * size;
+        averages->sample_ptr[p + 1] = p + 1;
+        averages->sample_share[p] = 1.0;
+        for (int a = 0; a < dim; a++) {
+            double place = x[p % table->per_face * dim + a];
+            averages->normal[p * dim + a] = normal[a];
+            averages->position[p * dim + a] = averages->sample_x[p * dim + a] = place;
+        }
+        averages->ptr[p + 1] = averages->ptr[p] + length;
+        memcpy(averages->idx + averages->ptr[p], table->lists->idx + from,
+               (size_t)length * sizeof *averages->idx);
+        memcpy(averages->phi + averages->ptr[p], table->phi + from, (size_t)length * sizeof *averages->phi);
+    }
+done:
+    free(face_of);
+    if (status != STATUS_OK) {
+        boundary_averages_free(averages);
+    }
+    return status;
+}
+
 void boundary_averages_free(struct boundary_averages *averages)
 {
     free(averages->node);

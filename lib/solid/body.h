@@ -65,6 +65,7 @@ struct volume_hats {
 };
 
 struct force_kernels;
+struct compatibility;
 
 struct body {
     int dim;
@@ -92,6 +93,7 @@ struct body {
     double pointwise_share, share_growth;
     struct volume_hats hats;
     const struct force_kernels *kernels; /* for this processor */
+    struct compatibility *compatibility; /* the caller's, or NULL: see compatibility.h */
     int threads;                         /* worth using for so many pairs */
 };
 
@@ -112,6 +114,9 @@ struct deformation body_force(struct body *body, const double *u, double *force)
 
 /* Elastic energy at u, J (2D: J/m). Fills body->F and body->J. */
 double body_energy(struct body *body, const double *u);
+
+/* Volumetric pressure dU/dJ at a point (body's order) at the last evaluation, Pa; negative in compression. */
+double body_pressure(const struct body *body, int64_t point);
 
 /* First Piola stress of each point at the last evaluation: stress[point_count * 9], caller's order, Pa. */
 void body_stress(const struct body *body, double *stress);

@@ -7,7 +7,7 @@
 #include <string.h>
 
 /* Rows closer to dependence than this are dropped. */
-static const double least_pivot = 1e-8;
+static const double least_pivot = 1e-10;
 
 void constraint_rows_init(struct constraint_rows *rows, int dim)
 {
@@ -196,20 +196,25 @@ void constraint_free(struct constraint *constraint)
     *constraint = (struct constraint){0};
 }
 
-static double defect(const struct constraint_rows *rows, int64_t r, const double *factor, const double *u)
+double constraint_rows_value(const struct constraint_rows *rows, int64_t r, const double *u)
 {
     int dim = rows->dim;
-    double mean[3] = {0.0, 0.0, 0.0};
+    double mean[3] = {0.0, 0.0, 0.0}, value = 0.0;
     for (int64_t i = rows->ptr[r]; i < rows->ptr[r + 1]; i++) {
         for (int a = 0; a < dim; a++) {
             mean[a] += rows->phi[i] * u[(int64_t)rows->idx[i] * dim + a];
         }
     }
-    double value = factor != NULL ? rows->target[r] * factor[rows->curve[r]] : 0.0;
     for (int a = 0; a < dim; a++) {
-        value -= rows->direction[r * dim + a] * mean[a];
+        value += rows->direction[r * dim + a] * mean[a];
     }
     return value;
+}
+
+static double defect(const struct constraint_rows *rows, int64_t r, const double *factor, const double *u)
+{
+    return (factor != NULL ? rows->target[r] * factor[rows->curve[r]] : 0.0) -
+           constraint_rows_value(rows, r, u);
 }
 
 void constraint_project(struct constraint *constraint, const double *factor, double *u)

@@ -34,6 +34,9 @@ MUST_CHECK enum status constraint_rows_add(struct constraint_rows *rows, int64_t
                                            const double *phi, const double *direction, double target,
                                            int32_t curve, int32_t section, int32_t node, struct error *error);
 
+/* direction . (sum_j phi_rj u_j) of row r. */
+double constraint_rows_value(const struct constraint_rows *rows, int64_t r, const double *u);
+
 /* The factored system. */
 struct constraint {
     int64_t node_count;

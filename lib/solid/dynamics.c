@@ -23,6 +23,7 @@ struct dynamics {
     double *residual, *mode, *scratch;
     double *loads;                                     /* NULL without loads */
     double *factor_before, *factor_now, *factor_after; /* of the load curves */
+    double *factor_change;                             /* in this step */
     /* Time runs in spans of equal steps: t = mark + done * step; `left` more of them end at T. */
     double mark, step, previous_step;
     int64_t done, left;
@@ -50,6 +51,7 @@ static enum status allocate(struct dynamics *d, struct error *error)
     TRY(NEW_ARRAY(&d->factor_before, system->curve_count, error));
     TRY(NEW_ARRAY(&d->factor_now, system->curve_count, error));
     TRY(NEW_ARRAY(&d->factor_after, system->curve_count, error));
+    TRY(NEW_ARRAY(&d->factor_change, system->curve_count, error));
 done:
     return status;
 }
@@ -67,6 +69,7 @@ static void release(struct dynamics *d)
     free(d->factor_before);
     free(d->factor_now);
     free(d->factor_after);
+    free(d->factor_change);
     constraint_free(&d->constraint);
 }
 
@@ -173,23 +176,27 @@ static void advance(struct dynamics *d, bool is_first)
         keep = 1.0 - 0.5 * c * dt;
         push = 0.5 * dt;
     }
+    double *move = d->after;
     for (int64_t n = 0; n < system->node_count; n++) {
         double share = push / system->lumped_mass[n];
         for (int64_t i = n * dim; i < (n + 1) * dim; i++) {
-            d->after[i] = keep * d->before[i] + share * d->residual[i];
-            d->next[i] = d->u[i] + dt * d->after[i];
+            move[i] = dt * (keep * d->before[i] + share * d->residual[i]);
         }
     }
     if (system->rows.count > 0) {
         double started = clock_seconds();
-        constraint_project(&d->constraint, d->factor_after, d->next);
-        d->system->cost.constraints += clock_seconds() - started;
-        for (int64_t i = 0; i < d->size; i++) {
-            d->after[i] = (d->next[i] - d->u[i]) / dt;
+        for (int64_t i = 0; i < system->curve_count; i++) {
+            d->factor_change[i] = d->factor_after[i] - d->factor_now[i];
         }
+        constraint_project(&d->constraint, d->factor_change, move);
         for (int64_t r = 0; r < system->rows.count; r++) {
             d->constraint.multiplier[r] /= dt * push;
         }
+        d->system->cost.constraints += clock_seconds() - started;
+    }
+    for (int64_t i = 0; i < d->size; i++) {
+        d->next[i] = d->u[i] + move[i];
+        d->after[i] = move[i] / dt;
     }
     if (is_first) { /* the velocity half a step before the begin, by the same acceleration */
         for (int64_t i = 0; i < d->size; i++) {
@@ -221,6 +228,13 @@ static void add_work(struct dynamics *d, const double *velocity, double step, co
         double path = rows->target[r] * (factor_to[rows->curve[r]] - factor_from[rows->curve[r]]);
         work += d->constraint.multiplier[r] * path;
     }
+    const struct constraint_rows *springs = &system->springs;
+    for (int64_t r = 0; r < springs->count; r++) {
+        double path = springs->target[r] * (factor_to[springs->curve[r]] - factor_from[springs->curve[r]]);
+        if (path != 0.0) {
+            work += system_spring_force(system, r, d->u) * path;
+        }
+    }
     d->balance.work += 0.5 * work;
     if (d->options->damping > 0.0) {
         double speed =
@@ -235,7 +249,7 @@ static bool sample(struct dynamics *d, bool is_first, double contact, struct ene
 {
     struct energy row = {.time = is_first ? 0.0 : time_now(d),
                          .kinetic = energy_kinetic(d->system, d->before, d->after),
-                         .internal = body_energy(&d->system->body, d->u),
+                         .internal = energy_internal(d->system, d->u),
                          .contact = contact};
     d->report->force_evaluations++;
     energy_balance_complete(&d->balance, is_first, &row);
@@ -376,15 +390,15 @@ static void begin(struct dynamics *d)
     if (system->rows.count == 0) {
         return;
     }
-    double energy = body_energy(&system->body, d->u) + energy_kinetic(system, d->before, d->before);
     factors_at(d, 0.0, d->factor_now);
+    use_factors(d);
+    double energy = body_energy(&system->body, d->u) + energy_kinetic(system, d->before, d->before);
     constraint_project(&d->constraint, d->factor_now, d->u);
     for (int64_t i = 0; i < system->curve_count; i++) {
         d->factor_now[i] = curve_rate(&system->curves[i], 0.0) / d->options->end_time;
     }
     constraint_project(&d->constraint, d->factor_now, d->before);
-    d->balance.work =
-        body_energy(&system->body, d->u) + energy_kinetic(system, d->before, d->before) - energy;
+    d->balance.work = energy_internal(system, d->u) + energy_kinetic(system, d->before, d->before) - energy;
 }
 
 enum status dynamics_run(struct solid_system *system, const struct dynamics_options *options, double *u,

@@ -71,6 +71,11 @@ double energy_kinetic(const struct solid_system *system, const double *v, const 
     return 0.5 * sum;
 }
 
+double energy_internal(struct solid_system *system, const double *u)
+{
+    return body_energy(&system->body, u) + system_spring_energy(system, u);
+}
+
 double energy_contact(const struct solid_system *system)
 {
     double sum = 0.0;

@@ -1,20 +1,21 @@
 /* The force loop: deformation gradients by gathering, stresses, forces by scattering; see body.h. */
+#include "solid/compatibility.h"
 #include "solid/kernel.h"
 
 /* Room for the displacements of a block's nodes. */
 #define MAX_LOCAL (BODY_MAX_BLOCK_NODES * 4)
 
 /* Volumetric pressure at a point: that of the hats around it, or its own. */
-static double pressure_at(const struct body *body, int64_t q)
+double body_pressure(const struct body *body, int64_t point)
 {
     int corners = body->dim + 1;
     double sum = 0.0;
     if (!body->averaged) {
-        return material_pressure(&body->materials[body->material[q]], body->J[q]);
+        return material_pressure(&body->materials[body->material[point]], body->J[point]);
     }
-    for (int64_t k = q * corners; k < (q + 1) * corners; k++) {
+    for (int64_t k = point * corners; k < (point + 1) * corners; k++) {
         int32_t hat = body->hats.of_point[k];
-        sum += body->hats.value[k] * (body->hats.pressure[hat] + body->hats.slope[hat] * body->J[q]);
+        sum += body->hats.value[k] * (body->hats.pressure[hat] + body->hats.slope[hat] * body->J[point]);
     }
     return sum;
 }
@@ -40,7 +41,7 @@ static void full_stress(const struct body *body, int64_t q, double P[9])
     full_gradient(body, q, F);
     material_shape_stress(material, F, P);
     cofactor(F, C);
-    double pressure = pressure_at(body, q);
+    double pressure = body_pressure(body, q);
     for (int k = 0; k < 9; k++) {
         P[k] += pressure * C[k];
     }
@@ -59,6 +60,23 @@ static void general_block(const struct body *body, const struct block *block, bl
     }
 }
 
+static bool is_tied(const struct body *body)
+{
+    return body->compatibility != NULL && body->compatibility->active;
+}
+
+/* The ties of F to the compatible gradient pull at it, too. */
+static void subtract_ties(const struct body *body, const struct block *block, block_stress P)
+{
+    int size = body->dim * body->dim;
+    for (int64_t i = 0; i < block->point_count; i++) {
+        const double *tie = body->compatibility->stress + (block->first_point + i) * size;
+        for (int k = 0; k < size; k++) {
+            P[k][i] -= tie[k];
+        }
+    }
+}
+
 /* Stresses and forces of a block. */
 static void stress_block(struct body *body, const struct block *block, double *local)
 {
@@ -67,6 +85,9 @@ static void stress_block(struct body *body, const struct block *block, double *l
         body->kernels->neo_hookean(body, block, P);
     } else {
         general_block(body, block, P);
+    }
+    if (is_tied(body)) {
+        subtract_ties(body, block, P);
     }
     body->kernels->scatter(body, block, (const double(*)[MAX_BLOCK_POINTS])P, local);
 }
@@ -118,13 +139,14 @@ static void sum_node(const struct body *body, int64_t node, double *force)
 /* The loops over blocks, hats and nodes. With force == NULL only F, J and the averages. */
 static void evaluate(struct body *body, const double *u, double *force)
 {
+    bool tied = is_tied(body), at_once = force != NULL && !body->averaged && !tied;
 #pragma omp parallel num_threads(body->threads)
     {
         double local[MAX_LOCAL] __attribute__((aligned(64)));
 #pragma omp for schedule(static)
         for (int64_t b = 0; b < body->block_count; b++) {
             body->kernels->gather(body, &body->blocks[b], u, local);
-            if (force != NULL && !body->averaged) {
+            if (at_once) {
                 stress_block(body, &body->blocks[b], local);
             }
         }
@@ -133,17 +155,34 @@ static void evaluate(struct body *body, const double *u, double *force)
             for (int64_t a = 0; a < body->hats.count; a++) {
                 set_pressure(body, a);
             }
-            if (force != NULL) {
+        }
+        if (tied) {
 #pragma omp for schedule(static)
-                for (int64_t b = 0; b < body->block_count; b++) {
-                    stress_block(body, &body->blocks[b], local);
-                }
+            for (int64_t n = 0; n < body->node_count; n++) {
+                compatibility_value(body, n, u);
+            }
+#pragma omp for schedule(static)
+            for (int64_t q = 0; q < body->point_count; q++) {
+                compatibility_stress(body, q);
+            }
+#pragma omp for schedule(static)
+            for (int64_t n = 0; n < body->node_count; n++) {
+                compatibility_pull(body, n);
+            }
+        }
+        if (force != NULL && !at_once) {
+#pragma omp for schedule(static)
+            for (int64_t b = 0; b < body->block_count; b++) {
+                stress_block(body, &body->blocks[b], local);
             }
         }
         if (force != NULL) {
 #pragma omp for schedule(static)
             for (int64_t n = 0; n < body->node_count; n++) {
                 sum_node(body, n, force);
+                if (tied) {
+                    compatibility_add_force(body, n, force + n * body->dim);
+                }
             }
         }
     }
@@ -188,7 +227,7 @@ double body_energy(struct body *body, const double *u)
                                           0.5 * material_bulk(material) * variance *
                                               (body->pointwise_share + body->share_growth * variance));
     }
-    return energy;
+    return energy + compatibility_energy(body);
 }
 
 void body_stress(const struct body *body, double *stress)
@@ -220,6 +259,7 @@ void body_diagonal(const struct body *body, double *stiffness)
                 I1 += F[k] * F[k];
             }
             double shear = body->weight[q] * body->shear[q] / cbrt(J * J);
+            double tie = is_tied(body) ? 2.0 * body->weight[q] * body->compatibility->coefficient[q] : 0.0;
             double along = body->weight[q] * body->bulk[q] + 5.0 / 9.0 * I1 * shear / (J * J);
             for (int64_t i = body->ptr[q]; i < body->ptr[q + 1]; i++) {
                 const double *g = body->dphi + i * dim;
@@ -232,7 +272,7 @@ void body_diagonal(const struct body *body, double *stiffness)
                     g2 += g[a] * g[a];
                     y2 += y * y;
                 }
-                stiffness[node[body->local[i]]] += fmax(0.0, along * y2 - shear * g2 / 3.0);
+                stiffness[node[body->local[i]]] += fmax(0.0, along * y2 - shear * g2 / 3.0) + tie * g2;
             }
         }
     }

@@ -30,6 +30,7 @@ struct relaxation {
     struct constraint constraint;
     int64_t size;
     double *mass, *velocity, *residual, *before;
+    double *factor_change; /* of the load curves in this step */
     double *mode, *scratch;
     double *last_u, *last_acceleration; /* at the last check */
     double *acceleration;
@@ -55,6 +56,7 @@ static enum status allocate(struct relaxation *r, struct error *error)
     TRY(NEW_ARRAY(&r->velocity, r->size, error));
     TRY(NEW_ARRAY(&r->residual, r->size, error));
     TRY(NEW_ARRAY(&r->before, r->size, error));
+    TRY(NEW_ARRAY(&r->factor_change, r->system->curve_count, error));
     TRY(NEW_ARRAY(&r->mode, r->size, error));
     TRY(NEW_ARRAY(&r->scratch, 2 * r->size, error));
     TRY(NEW_ARRAY(&r->last_u, r->size, error));
@@ -72,6 +74,7 @@ static void release(struct relaxation *r)
     free(r->velocity);
     free(r->residual);
     free(r->before);
+    free(r->factor_change);
     free(r->mode);
     free(r->scratch);
     free(r->last_u);
@@ -157,17 +160,20 @@ static bool step(struct relaxation *r, double *u, bool measure)
         memcpy(r->acceleration, r->velocity, (size_t)r->size * sizeof *r->velocity);
     }
     memcpy(r->before, u, (size_t)r->size * sizeof *u);
+    double *move = r->velocity;
     for (int64_t n = 0; n < system->node_count; n++) {
         double push = 2.0 * dt / (grow * r->mass[n]);
         for (int64_t i = n * dim; i < (n + 1) * dim; i++) {
-            u[i] += dt * (keep * r->velocity[i] + push * r->residual[i]);
+            move[i] = dt * (keep * r->velocity[i] + push * r->residual[i]);
         }
     }
+    /* The move is projected, not u: round-off relative to u would keep the residual from vanishing. */
     double started = clock_seconds();
-    constraint_project(&r->constraint, system->factor, u);
+    constraint_project(&r->constraint, r->factor_change, move);
     system->cost.constraints += clock_seconds() - started;
     for (int64_t i = 0; i < r->size; i++) {
-        r->velocity[i] = (u[i] - r->before[i]) / dt;
+        u[i] += move[i];
+        r->velocity[i] = move[i] / dt;
     }
     if (measure) {
         /* (2 + c dt) v_new = (2 - c dt) v_old + 2 dt a */
@@ -321,17 +327,31 @@ static bool contacts_hold(struct relaxation *r)
     return false;
 }
 
+/* Set the load factors, and by how much they change. */
+static void change_load(struct relaxation *r, double s)
+{
+    struct solid_system *system = r->system;
+    for (int64_t i = 0; i < system->curve_count; i++) {
+        r->factor_change[i] = -system->factor[i];
+    }
+    system_load_factors(system, s);
+    for (int64_t i = 0; i < system->curve_count; i++) {
+        r->factor_change[i] += system->factor[i];
+    }
+}
+
 static enum relaxation_outcome iterate(struct relaxation *r, double *u, struct error *error)
 {
     double ramp = (double)r->report->ramp_steps;
     int64_t most = r->options->most_steps > 0 ? r->options->most_steps : 1000000;
     int64_t settled = 0, at_full_load = 0;
+    bool ties_settled = false;
     bool gives_frames = r->options->frame != NULL && r->options->frames > 0;
     for (int64_t n = 1; n <= most; n++) {
         bool measure = n % check_interval == 0;
         r->load = fmin(ramp, r->load + r->load_rate);
         at_full_load = r->load < ramp ? 0 : at_full_load + 1;
-        system_load_factors(r->system, r->load / ramp);
+        change_load(r, r->load / ramp);
         r->report->steps = n;
         if (!step(r, u, measure)) {
             if (!step_back(r, u)) {
@@ -346,8 +366,17 @@ static enum relaxation_outcome iterate(struct relaxation *r, double *u, struct e
             continue;
         }
         estimate(r);
+        if (at_full_load <= check_interval) { /* take out what round-off has left */
+            constraint_project(&r->constraint, r->system->factor, u);
+        }
         if (n % keep_interval == 0) {
             keep_state(r, u);
+        }
+        /* Near the end the ties stay as they are, so that the last digits converge. */
+        ties_settled =
+            ties_settled || (at_full_load > 0 && (r->report->error < 1e-3 || (double)at_full_load > ramp));
+        if (!ties_settled) {
+            compatibility_update(&r->system->body);
         }
         (void)system_residual(r->system, u, r->residual);
         r->report->force_evaluations++;
@@ -398,6 +427,8 @@ enum status relaxation_run(struct solid_system *system, const struct relaxation_
     (void)system_residual(system, u, r.residual);
     system_relaxation_mass(system, r.mass);
     TRY(system_constrain(system, r.mass, &r.constraint, error));
+    constraint_project(&r.constraint, system->factor, u);
+    (void)system_residual(system, u, r.residual);
     memcpy(r.newer.u, u, (size_t)r.size * sizeof *u);
     memcpy(r.older.u, u, (size_t)r.size * sizeof *u);
     r.penetration_allowed = penetration_share * body_size(system);

@@ -4,6 +4,7 @@
 #define SOLID_SYSTEM_H
 
 #include "solid/body.h"
+#include "solid/compatibility.h"
 #include "solid/constraint.h"
 #include "solid/contact.h"
 #include "solid/curve.h"
@@ -37,6 +38,7 @@ struct solid_system {
     int64_t node_count;
     const double *X; /* reference coordinates, node_count * dim, m; the caller's */
     struct body body;
+    struct compatibility compatibility; /* of conforming cells; body.compatibility points to it, or is NULL */
     struct dead_load *loads;
     int64_t load_count;
     struct pressure_load *pressures;
@@ -45,6 +47,11 @@ struct solid_system {
     struct boundary_averages *contact_averages; /* contact_count: what the contacts act on */
     int64_t contact_count;
     struct constraint_rows rows;
+    /* Hat averages leave free what varies within a hat, and under a pressure of some ten shear moduli that
+     * grows: springs at the quadrature points of the constrained facets hold the field to the same targets.
+     * They vanish wherever the field meets them, so that a linear field stays exact. */
+    struct constraint_rows springs;
+    double *spring_stiffness; /* springs.count, N/m (2D: N/m2) */
     struct load_curve *curves;
     int64_t curve_count;
     double *lumped_mass; /* node_count, kg (2D: kg/m), positive: each cell shares its mass among its nodes */
@@ -67,6 +74,13 @@ void system_add_loads(const struct solid_system *system, const double *u, double
 
 /* residual[node_count * dim] = loads at system->factor + contact - internal forces, at parameters u. */
 struct deformation system_residual(struct solid_system *system, const double *u, double *residual);
+
+/* Forces of the springs, added to force; and their energy. */
+void system_add_springs(const struct solid_system *system, const double *u, double *force);
+double system_spring_energy(const struct solid_system *system, const double *u);
+
+/* Force of spring r at u along its direction, N (2D: N/m). */
+double system_spring_force(const struct solid_system *system, int64_t r, const double *u);
 
 /* Mass for relaxation: a bound of each node's stiffness, N/m, so that all parts of the body have about the
  * same critical step (1) however the cloud is graded; contact penalties included. mass[node_count] > 0. */

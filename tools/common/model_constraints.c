@@ -6,6 +6,9 @@
 #include <math.h>
 #include <stdlib.h>
 
+/* Stiffness of the springs that back hat averages, in layers of cells. */
+static const double spring_share = 1.0;
+
 /* What one displacement section prescribes, and where it goes. */
 struct prescription {
     const struct model_input *input;
@@ -13,6 +16,9 @@ struct prescription {
     struct solid_system *system;
     int32_t number, curve; /* of the section; of its load curve */
     struct table table;    /* SCENE_TABLE */
+    double extent;         /* SCENE_TABLE: diagonal of the body's box, m */
+    bool springs;          /* adding springs, not exact rows */
+    double modulus, layer; /* of the springs: Pa, and the size of the cells there, m */
 };
 
 /* The prescribed displacement at one place. */
@@ -28,7 +34,7 @@ static enum status table_value(const struct prescription *p, const double *x, do
                               .row = p->table.values,
                               .unit = p->section->table_unit};
     enum status status = scatter_evaluate(&scatter, x, value, &distance, &spacing, error);
-    if (status == STATUS_OK && p->table.rows > 1 && !(distance <= 8.0 * spacing)) {
+    if (status == STATUS_OK && p->table.rows > 1 && !(distance <= fmin(8.0 * spacing, p->extent))) {
         char place[96];
         point_text(dim, x, place);
         return scene_fail(
@@ -61,12 +67,37 @@ static enum status average_of_table(const struct prescription *p, const struct b
     return STATUS_OK;
 }
 
+/* Springs of about the stiffness of a layer of cells (times the area), at the points of constrained facets.
+ */
+static enum status add_spring(const struct prescription *p, const struct boundary_averages *points, int64_t a,
+                              const double *direction, double target, struct error *error)
+{
+    struct solid_system *system = p->system;
+    int64_t at = points->ptr[a];
+    enum status status =
+        constraint_rows_add(&system->springs, points->ptr[a + 1] - at, points->idx + at, points->phi + at,
+                            direction, target, p->curve, p->number, points->node[a], error);
+    if (status != STATUS_OK) {
+        return status;
+    }
+    double *grown = array_grow(system->spring_stiffness, system->springs.count, sizeof *grown);
+    if (grown == NULL) {
+        return fail_memory(error, "springs");
+    }
+    system->spring_stiffness = grown;
+    grown[system->springs.count - 1] = spring_share * p->modulus * points->area[a] / p->layer;
+    return STATUS_OK;
+}
+
 static enum status add_row(const struct prescription *p, const struct boundary_averages *averages, int64_t a,
                            const double *direction, double target, struct error *error)
 {
     int64_t at = averages->ptr[a];
     static const double one = 1.0;
     struct constraint_rows *rows = &p->system->rows;
+    if (p->springs) {
+        return add_spring(p, averages, a, direction, target, error);
+    }
     if (p->input->scene->solver.constraints == SCENE_DIRECT) {
         /* With a weight function that almost interpolates, the parameter is the value. */
         return constraint_rows_add(rows, 1, &averages->node[a], &one, direction, target, p->curve, p->number,
@@ -103,12 +134,18 @@ static enum status add_average(const struct prescription *p, const struct bounda
     return status;
 }
 
+/* Whether conditions act on hat averages. */
+static bool are_hats(const struct model_input *input)
+{
+    const struct scene_solver *solver = &input->scene->solver;
+    return solver->constraint_points == SCENE_HAT_AVERAGES && solver->constraints == SCENE_EBCIEM;
+}
+
 /* Averages over facets: by hats, or by node values where the scene says so. */
 static enum status averages_on_facets(const struct model_input *input, const struct facet_set *set,
                                       struct boundary_averages *averages, struct error *error)
 {
-    const struct scene_solver *solver = &input->scene->solver;
-    if (solver->constraint_points == SCENE_NODE_VALUES || solver->constraints == SCENE_DIRECT) {
+    if (!are_hats(input)) {
         return boundary_nodes_build(&input->face_table, set, &input->node_lists, input->node_phi, averages,
                                     error);
     }
@@ -155,6 +192,45 @@ done:
     return status;
 }
 
+/* Hold what the hat averages of a set leave free. */
+static enum status add_springs(struct prescription *p, const struct facet_set *set, struct error *error)
+{
+    enum status status;
+    struct boundary_averages points = {0};
+    double area = 0.0;
+    TRY(boundary_points_build(&p->input->face_table, set, &points, error));
+    for (int64_t a = 0; a < points.count; a++) {
+        area += points.area[a];
+    }
+    area /= (double)set->count;
+    p->springs = true;
+    p->layer = p->input->cells.dim == 2 ? area : sqrt(2.0 * area);
+    for (int64_t m = 0; m < p->system->body.material_count; m++) {
+        p->modulus = fmax(p->modulus, material_wave_modulus(&p->system->body.materials[m]));
+    }
+    for (int64_t a = 0; a < points.count; a++) {
+        TRY(add_average(p, &points, a, error));
+    }
+done:
+    p->springs = false;
+    boundary_averages_free(&points);
+    return status;
+}
+
+static double body_extent(const struct cells *cells)
+{
+    double square = 0.0;
+    for (int a = 0; a < cells->dim; a++) {
+        double low = INFINITY, high = -INFINITY;
+        for (int64_t n = 0; n < cells->node_count; n++) {
+            low = fmin(low, cells->x[n * cells->dim + a]);
+            high = fmax(high, cells->x[n * cells->dim + a]);
+        }
+        square += (high - low) * (high - low);
+    }
+    return sqrt(square);
+}
+
 static enum status add_section(struct prescription *p, struct error *error)
 {
     enum status status;
@@ -167,6 +243,7 @@ static enum status add_section(struct prescription *p, struct error *error)
     TRY(model_add_curve(p->input, &section->label, &section->curve, p->system, &p->curve, error));
     if (section->kind == SCENE_TABLE) {
         TRY(table_read(section->table, 2 * dim, 2 * dim, &p->table, error));
+        p->extent = body_extent(&p->input->cells);
     }
     if (section->facets.count > 0) {
         TRY(model_facets(p->input, &section->label, &section->facets, &set, &owned, error));
@@ -177,6 +254,9 @@ static enum status add_section(struct prescription *p, struct error *error)
     }
     for (int64_t a = 0; a < averages.count; a++) {
         TRY(add_average(p, &averages, a, error));
+    }
+    if (section->facets.count > 0 && are_hats(p->input)) {
+        TRY(add_springs(p, &set, error));
     }
 done:
     free(owned);

@@ -221,6 +221,12 @@ static void put_reactions(struct run *run)
                 share * run->model->row_force[r] * constraint->direction[r * dim + a];
         }
     }
+    for (int64_t r = 0; r < system->springs.count; r++) {
+        double pull = system_spring_force(system, r, run->u);
+        for (int a = 0; a < dim; a++) {
+            total[system->springs.section[r] * dim + a] += pull * system->springs.direction[r * dim + a];
+        }
+    }
     for (int64_t c = 0; c < scene->contact_count; c++) {
         contact_total(&system->contacts[c], total + (scene->displacement_count + c) * dim);
     }
