@@ -35,14 +35,12 @@ tools_table() {
     local file
     printf '| tool | does |\n|---|---|\n'
     for file in "$source_root"/tools/*.c; do
-        # shellcheck disable=SC2016
         "$(basename "$file" .c)" -h | sed -n '1s/^\([^ ]*\) - \(.*\)/| `\1` | \2 |/p'
     done
 }
 
 studies_table() {
     printf '| command | what it computes |\n|---|---|\n'
-    # shellcheck disable=SC2016
     sed -n '1s/^# \(make [^:]*\): \(.*[^.]\)\.*$/| `\1` | \2 |/p' -s "$source_root"/pipelines/*.mk
 }
 

@@ -6,9 +6,7 @@
 # ---- patch test: u = A x prescribed on the whole boundary of a scattered cloud ----
 
 # Strains of some percent, in terms of awk.
-# shellcheck disable=SC2016
 linear_2d='0.011 * $1 + 0.021 * $2, 0.032 * $1 - 0.019 * $2'
-# shellcheck disable=SC2016
 linear_3d='0.011 * $1 + 0.021 * $2 - 0.014 * $3, 0.032 * $1 - 0.019 * $2 + 0.007 * $3, 0.005 * $1 - 0.027 * $2 + 0.013 * $3'
 
 # patch DIM ARGUMENTS_OF_IPOINTS QUANTITY TOLERANCE VOLUME
