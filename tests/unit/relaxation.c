@@ -1,0 +1,486 @@
+/* Quasi-static solution: linear patch test, closed forms, work and reaction, the error estimate as a bound,
+ * and results that depend on neither threads nor the way the load is applied. */
+#include "lattice_fixture.h"
+
+#include "solid/relaxation.h"
+
+#include <omp.h>
+
+static struct relaxation_options to(double tolerance)
+{
+    return (struct relaxation_options){.tolerance = tolerance, .time_step_margin = 0.9};
+}
+
+static struct relaxation_report relax(struct lattice *l, const struct relaxation_options *options, double *u,
+                                      double *row_force)
+{
+    struct relaxation_report report;
+    struct error error;
+    GOOD(relaxation_run(&l->system, options, u, row_force, &report, &error));
+    return report;
+}
+
+/* From rest to rest, which must be reached. */
+static double *relaxed(struct lattice *l, double tolerance, double *row_force)
+{
+    double *u = lattice_vector(l);
+    struct relaxation_options options = to(tolerance);
+    assert_int_equal(relax(l, &options, u, row_force).outcome, RELAXATION_CONVERGED);
+    return u;
+}
+
+/* A row of a gradient times X. */
+static double linear(const double *X, const double *row)
+{
+    return row[0] * X[0] + row[1] * X[1] + row[2] * X[2];
+}
+
+static double linear_2d(const double *X, const double *row)
+{
+    return row[0] * X[0] + row[1] * X[1];
+}
+
+/* u = A X on all sides, all components. */
+static void prescribe_all(struct lattice *l, const double A[9], int32_t curve)
+{
+    int dim = l->options.dim;
+    for (int a = 0; a < dim; a++) {
+        double direction[3] = {0, 0, 0};
+        direction[a] = 1;
+        lattice_prescribe(l, (1u << 2 * dim) - 1, direction, dim == 2 ? linear_2d : linear, A + 3 * a, curve);
+    }
+}
+
+/* Largest error of the field at the nodes against A X, relative to the largest displacement. */
+static double patch_error(const struct lattice *l, const double A[9], const double *u)
+{
+    int dim = l->options.dim;
+    double error = 0, largest = 0;
+    for (int64_t n = 0; n < l->system.node_count; n++) {
+        for (int a = 0; a < dim; a++) {
+            double exact = 0;
+            for (int b = 0; b < dim; b++) {
+                exact += A[3 * a + b] * l->system.X[n * dim + b];
+            }
+            double difference = fabs(lattice_field(l, u, n, a) - exact);
+            error = difference <= error ? error : difference;
+            largest = fmax(largest, fabs(exact));
+        }
+    }
+    return error / largest;
+}
+
+static double patch(int dim, double jitter, int gauss_points, bool nodal_volume)
+{
+    static const double A[9] = {0.05, 0.08, -0.03, -0.06, -0.04, 0.02, 0.07, 0.01, -0.02};
+    struct lattice_options options = lattice_defaults(dim, dim == 2 ? 8 : 6);
+    struct lattice l;
+    options.jitter = jitter;
+    options.gauss_points = gauss_points;
+    options.nodal_volume = nodal_volume;
+    lattice_build(&l, &options);
+    prescribe_all(&l, A, lattice_curve(&l, curve_of_kind(CURVE_SMOOTH)));
+    double *u = relaxed(&l, gauss_points > 0 ? 1e-6 : 1e-9, NULL), error = patch_error(&l, A, u);
+    free(u);
+    lattice_free(&l);
+    return error;
+}
+
+/* Conforming cells with hat averages split at corners pass to round-off; Gauss points do not, by far. */
+static void linear_patch(void **state)
+{
+    (void)state;
+    for (int nodal = 0; nodal < 2; nodal++) {
+        AT_MOST(patch(2, 0.0, 0, nodal), 1e-9);
+        AT_MOST(patch(2, 0.3, 0, nodal), 1e-9);
+        AT_MOST(patch(3, 0.1, 0, nodal), 1e-9);
+    }
+}
+
+static void linear_patch_at_gauss_points(void **state)
+{
+    (void)state;
+    double worst2 = patch(2, 0.3, 3, true), worst3 = patch(3, 0.1, 4, true);
+    print_message("patch test at Gauss points, largest relative error: 2D %.2g, 3D %.2g\n", worst2, worst3);
+    AT_MOST(worst2, 3e-2);
+    AT_MOST(worst3, 3e-2);
+    assert_true(worst2 > 1e-9);
+}
+
+/* Simple shear by half: the stresses of the closed form in every cell. */
+static void simple_shear(void **state)
+{
+    (void)state;
+    static const double A[9] = {0, 0.5, 0, 0, 0, 0, 0, 0, 0};
+    struct lattice_options options = lattice_defaults(2, 7);
+    struct lattice l;
+    double *stress;
+    options.jitter = 0.2;
+    lattice_build(&l, &options);
+    prescribe_all(&l, A, lattice_curve(&l, curve_of_kind(CURVE_SMOOTH)));
+    double *u = relaxed(&l, 1e-10, NULL), *residual = lattice_vector(&l);
+    (void)system_residual(&l.system, u, residual);
+    ARRAY(stress, l.system.body.point_count * 9);
+    body_stress(&l.system.body, stress);
+    for (int64_t q = 0; q < l.system.body.point_count; q++) {
+        const double *P = stress + 9 * q;
+        NEAR_TO(P[0] + 0.5 * P[1], 167.78523, 1e-4); /* P F^T with F = 1 + A, J = 1 */
+        NEAR_TO(P[1], 503.35570, 1e-4);
+        NEAR_TO(P[4], -83.89262, 1e-4);
+        NEAR_TO(P[8], -83.89262, 1e-4);
+    }
+    free(stress);
+    free(residual);
+    free(u);
+    lattice_free(&l);
+}
+
+/* A block between sliding supports, pushed along its last axis to `stretch`; confined: sliding on all sides.
+ */
+static void squeeze(int dim, double stretch, bool confined, double expected, double lateral)
+{
+    struct lattice_options options = lattice_defaults(dim, dim == 2 ? 6 : 4);
+    struct lattice l;
+    double *row_force;
+    int top = 2 * dim - 1;
+    options.jitter = 0.1;
+    lattice_build(&l, &options);
+    int32_t curve = lattice_curve(&l, curve_of_kind(CURVE_SMOOTH));
+    unsigned low = dim == 2 ? 5u : 21u, all = (1u << 2 * dim) - 1;
+    lattice_slide(&l, confined ? all & ~(1u << top) : low, curve);
+    lattice_push(&l, top, (stretch - 1) * 0.1, curve);
+    ARRAY(row_force, l.system.rows.count);
+    double *u = relaxed(&l, 1e-9, row_force);
+    double area = dim == 2 ? 0.1 : 0.01;
+    NEAR_TO(lattice_reaction(&l, row_force, 1u << top) / area / expected, 1, 1e-6);
+    for (int64_t n = 0; n < l.system.node_count; n++) {
+        NEAR_TO(lattice_field(&l, u, n, 0), (lateral - 1) * l.system.X[n * dim], 1e-7 * 0.1);
+    }
+    free(row_force);
+    free(u);
+    lattice_free(&l);
+}
+
+static void unconfined_compression(void **state)
+{
+    (void)state;
+    squeeze(3, 0.8, false, -763.26922, 1.11574668);
+}
+
+static void unconfined_extension(void **state)
+{
+    (void)state;
+    struct material material = {.model = MATERIAL_NEO_HOOKEAN};
+    material_set_moduli(&material, 3000, 0.49);
+    static const double stretches[] = {0.5, 1.2, 1.5}, expected[] = {-3503.55836, 504.78406, 1050.71532};
+    for (int k = 0; k < 3; k++) {
+        /* The lateral stretch of the closed form: no lateral stress. */
+        double low = 0.5, high = 2;
+        for (int i = 0; i < 60; i++) {
+            double s = 0.5 * (low + high), F[9] = {s, 0, 0, 0, s, 0, 0, 0, stretches[k]}, P[9], C[9];
+            material_shape_stress(&material, F, P);
+            cofactor(F, C);
+            *(P[0] + material_pressure(&material, determinant(F)) * C[0] > 0 ? &high : &low) = s;
+        }
+        squeeze(3, stretches[k], false, expected[k], 0.5 * (low + high));
+    }
+}
+
+static void confined_compression(void **state)
+{
+    (void)state;
+    double mu = 1006.711409, kappa = 50000, J = 0.95, I1 = 2 + J * J;
+    double expected = mu * pow(J, -2.0 / 3) * (J - I1 / (3 * J)) + kappa * (J - 1);
+    squeeze(2, J, true, expected, 1);
+    squeeze(3, J, true, expected, 1);
+}
+
+/* A clamped block in 2D, its top moved down and, by `aside`, sideways. */
+static void clamp(struct lattice *l, int64_t n, double down, double aside, bool nodal_volume)
+{
+    struct lattice_options options = lattice_defaults(2, n);
+    options.jitter = 0.2;
+    options.nodal_volume = nodal_volume;
+    lattice_build(l, &options);
+    int32_t curve = lattice_curve(l, curve_of_kind(CURVE_SMOOTH));
+    static const double x[3] = {1, 0, 0}, y[3] = {0, 1, 0};
+    lattice_prescribe(l, 1u << 2, x, NULL, NULL, curve);
+    lattice_prescribe(l, 1u << 2, y, NULL, NULL, curve);
+    lattice_prescribe(l, 1u << 3, x, lattice_constant, &aside, curve);
+    lattice_push(l, 3, down, curve);
+    /* The last rows are those of the push: told apart by their label. */
+    for (int64_t r = 0; r < l->system.rows.count; r++) {
+        bool pushes = l->system.rows.section[r] == 1 << 3 && l->system.rows.direction[2 * r + 1] == 1;
+        l->system.rows.section[r] = pushes ? 1 : 0;
+    }
+}
+
+/* Small displacements: energy = reaction x displacement / 2. Large ones: reaction = d energy / d
+ * displacement. */
+static void reaction_does_the_work(void **state)
+{
+    (void)state;
+    for (int large = 0; large < 2; large++) {
+        double energy[3], force[3], down = large ? -0.02 : -1e-7, change = large ? 1e-4 : 0;
+        for (int k = 0; k < 3; k++) {
+            struct lattice l;
+            double *row_force;
+            clamp(&l, 7, down + (k - 1) * change, 0, true);
+            ARRAY(row_force, l.system.rows.count);
+            double *u = relaxed(&l, 1e-9, row_force);
+            force[k] = lattice_reaction(&l, row_force, 1);
+            energy[k] = body_energy(&l.system.body, u);
+            free(row_force);
+            free(u);
+            lattice_free(&l);
+        }
+        if (large) {
+            NEAR_TO((energy[2] - energy[0]) / (2 * change) / force[1], 1, 1e-4);
+        } else {
+            NEAR_TO(0.5 * force[1] * down / energy[1], 1, 1e-4);
+        }
+        assert_true(force[1] < 0);
+    }
+}
+
+/* Norm of a - b (b NULL: of a) in the mass of relaxation. */
+static double norm(const struct lattice *l, const double *mass, const double *a, const double *b)
+{
+    int dim = l->options.dim;
+    double sum = 0;
+    for (int64_t i = 0; i < l->system.node_count * dim; i++) {
+        double difference = a[i] - (b != NULL ? b[i] : 0);
+        sum += mass[i / dim] * difference * difference;
+    }
+    return sqrt(sum);
+}
+
+/* What is estimated to remain is no less than what does. */
+static void estimate_is_a_bound(void **state)
+{
+    (void)state;
+    static const double tolerances[] = {1e-3, 1e-4, 1e-6, 1e-8};
+    for (int problem = 0; problem < 4; problem++) {
+        struct lattice l;
+        double *mass, largest_overestimate = 0;
+        static const double down[] = {-0.001, -0.03, 0.01, 0}, aside[] = {0, 0.0, 0.02, 0.04};
+        clamp(&l, problem == 1 ? 9 : 6, down[problem], aside[problem], problem < 3);
+        double *exact = relaxed(&l, 1e-11, NULL), *residual = lattice_vector(&l);
+        ARRAY(mass, l.system.node_count);
+        (void)system_residual(&l.system, exact, residual);
+        system_relaxation_mass(&l.system, mass);
+        for (size_t k = 0; k < sizeof tolerances / sizeof *tolerances; k++) {
+            double *u = lattice_vector(&l);
+            struct relaxation_options options = to(tolerances[k]);
+            struct relaxation_report report = relax(&l, &options, u, NULL);
+            assert_int_equal(report.outcome, RELAXATION_CONVERGED);
+            AT_MOST(report.error, tolerances[k]);
+            double remaining = norm(&l, mass, u, exact) / norm(&l, mass, exact, NULL);
+            AT_MOST(remaining, report.error);
+            largest_overestimate = fmax(largest_overestimate, report.error / remaining);
+            free(u);
+        }
+        print_message("problem %d: the error is overestimated by at most %.3g\n", problem,
+                      largest_overestimate);
+        free(mass);
+        free(residual);
+        free(exact);
+        lattice_free(&l);
+    }
+}
+
+static double largest_difference(const double *a, const double *b, int64_t size)
+{
+    double largest = 0;
+    for (int64_t i = 0; i < size; i++) {
+        double difference = fabs(a[i] - b[i]);
+        largest = difference <= largest ? largest : difference;
+    }
+    return largest;
+}
+
+/* An elastic body at rest does not remember how it was loaded. */
+static void ramp_does_not_matter(void **state)
+{
+    (void)state;
+    static const int64_t ramps[] = {0, 150, 1000};
+    double *first = NULL;
+    for (int k = 0; k < 3; k++) {
+        struct lattice l;
+        clamp(&l, 7, -0.02, 0.01, true);
+        double *u = lattice_vector(&l);
+        struct relaxation_options options = to(1e-8);
+        options.ramp_steps = ramps[k];
+        struct relaxation_report report = relax(&l, &options, u, NULL);
+        assert_int_equal(report.outcome, RELAXATION_CONVERGED);
+        assert_int_equal(report.ramp_steps, ramps[k] > 0 ? ramps[k] : report.ramp_steps);
+        if (first == NULL) {
+            first = u;
+        } else {
+            AT_MOST(largest_difference(first, u, l.system.node_count * 2), 1e-7 * 0.02);
+            free(u);
+        }
+        lattice_free(&l);
+    }
+    free(first);
+}
+
+static void any_number_of_threads(void **state)
+{
+    (void)state;
+    double *first = NULL;
+    int most = omp_get_max_threads();
+    for (int threads = 1; threads <= 3; threads++) {
+        struct lattice_options options = lattice_defaults(3, 5);
+        struct lattice l;
+        options.jitter = 0.1;
+        omp_set_num_threads(threads);
+        lattice_build(&l, &options);
+        int32_t curve = lattice_curve(&l, curve_of_kind(CURVE_SMOOTH));
+        lattice_slide(&l, 1u << 4 | 1u << 0, curve);
+        lattice_push(&l, 5, -0.01, curve);
+        double *u = lattice_vector(&l);
+        struct relaxation_options options_of_run = to(1e-4);
+        (void)relax(&l, &options_of_run, u, NULL);
+        if (first == NULL) {
+            first = u;
+        } else {
+            assert_memory_equal(first, u, (size_t)l.system.node_count * 3 * sizeof *u);
+            free(u);
+        }
+        lattice_free(&l);
+    }
+    omp_set_num_threads(most);
+    free(first);
+}
+
+/* A condition stated twice changes nothing; one that disagrees is a verdict that names a node. */
+static void conditions_twice(void **state)
+{
+    (void)state;
+    struct lattice once, twice;
+    struct error error;
+    struct relaxation_report report;
+    clamp(&once, 5, -0.01, 0, true);
+    clamp(&twice, 5, -0.01, 0, true);
+    lattice_push(&twice, 3, -0.01, 0);
+    double *u = relaxed(&once, 1e-9, NULL), *v = relaxed(&twice, 1e-9, NULL);
+    AT_MOST(largest_difference(u, v, once.system.node_count * 2), 1e-8 * 0.01);
+    lattice_push(&twice, 3, -0.0101, 0);
+    struct relaxation_options options = to(1e-6);
+    assert_int_equal(relaxation_run(&twice.system, &options, v, NULL, &report, &error), STATUS_VERDICT);
+    assert_non_null(strstr(error.text, "the conditions at node"));
+    free(u);
+    free(v);
+    lattice_free(&once);
+    lattice_free(&twice);
+}
+
+/* A weight on a confined column of height .1: the top sinks as the closed form says. */
+static void column_under_gravity(void **state)
+{
+    (void)state;
+    struct lattice_options options = lattice_defaults(2, 4);
+    struct lattice l;
+    options.count[1] = 25;
+    options.size[0] = 0.1 * 3 / 24;
+    lattice_build(&l, &options);
+    int32_t curve = lattice_curve(&l, curve_of_kind(CURVE_SMOOTH));
+    lattice_slide(&l, 7, curve);
+    struct dead_load *load = calloc(1, sizeof *load);
+    assert_non_null(load);
+    *load = (struct dead_load){.force = lattice_vector(&l), .curve = curve};
+    for (int64_t c = 0; c < l.cells.count; c++) {
+        for (int64_t i = l.smoothed.ptr[c]; i < l.smoothed.ptr[c + 1]; i++) {
+            load->force[2 * l.smoothed.idx[i] + 1] -= 9.81 * 1000 * l.weight[c] * l.smoothed.phi[i];
+        }
+    }
+    l.system.loads = load;
+    l.system.load_count = 1;
+    double *u = relaxed(&l, 1e-8, NULL), top = 0;
+    for (int i = 0; i < 4; i++) {
+        top += (i % 3 == 0 ? 1.0 / 6 : 1.0 / 3) * lattice_field(&l, u, l.system.node_count - 1 - i, 1);
+    }
+    NEAR_TO(top / -0.954976e-3, 1, 5e-3);
+    free(u);
+    lattice_free(&l);
+}
+
+/* Frames by number and load, and the state of the last one. */
+struct album {
+    int64_t count;
+    double time[16], last;
+    const struct lattice *lattice;
+};
+
+static void collect(void *context, int64_t number, double time, const double *u)
+{
+    struct album *album = context;
+    assert_int_equal(number, album->count + 1);
+    album->time[album->count++] = time;
+    album->last = lattice_field(album->lattice, u, album->lattice->system.node_count - 1, 1);
+}
+
+static bool stop_at_once(void *context, const struct progress *progress)
+{
+    (void)context;
+    assert_non_null(progress->u);
+    return false;
+}
+
+static void frames_and_outcomes(void **state)
+{
+    (void)state;
+    struct lattice l;
+    clamp(&l, 5, -0.01, 0, true);
+    struct album album = {.lattice = &l};
+    double *u = lattice_vector(&l);
+    struct relaxation_options options = to(1e-5);
+    options.frames = 7;
+    options.frame = collect;
+    options.context = &album;
+    struct relaxation_report report = relax(&l, &options, u, NULL);
+    assert_int_equal(report.outcome, RELAXATION_CONVERGED);
+    assert_int_equal(album.count, 7);
+    for (int k = 0; k < 7; k++) {
+        NEAR_TO(album.time[k], (k + 1) / 7.0, 1.0 / (double)report.ramp_steps);
+    }
+    NEAR_TO(album.time[6], 1, 0);
+    NEAR_TO(album.last, lattice_field(&l, u, l.system.node_count - 1, 1), 0);
+    memset(u, 0, (size_t)l.system.node_count * 2 * sizeof *u);
+    options = to(1e-12);
+    options.most_steps = 230;
+    report = relax(&l, &options, u, NULL);
+    assert_int_equal(report.outcome, RELAXATION_TOO_MANY_STEPS);
+    assert_int_equal(report.steps, 230);
+    options.progress = stop_at_once;
+    report = relax(&l, &options, u, NULL);
+    assert_int_equal(report.outcome, RELAXATION_STOPPED);
+    free(u);
+    lattice_free(&l);
+    clamp(&l, 5, -0.01, 0, true);
+    u = lattice_vector(&l);
+    u[2 * 12] = NAN;
+    options = to(1e-6);
+    report = relax(&l, &options, u, NULL);
+    assert_int_equal(report.outcome, RELAXATION_INVERTED);
+    assert_true(!(report.least_jacobian > 0));
+    assert_true(report.inverted_point >= 0 && report.inverted_point < l.system.body.point_count);
+    free(u);
+    lattice_free(&l);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(linear_patch),           cmocka_unit_test(linear_patch_at_gauss_points),
+        cmocka_unit_test(simple_shear),           cmocka_unit_test(unconfined_compression),
+        cmocka_unit_test(unconfined_extension),   cmocka_unit_test(confined_compression),
+        cmocka_unit_test(reaction_does_the_work), cmocka_unit_test(estimate_is_a_bound),
+        cmocka_unit_test(ramp_does_not_matter),   cmocka_unit_test(any_number_of_threads),
+        cmocka_unit_test(conditions_twice),       cmocka_unit_test(column_under_gravity),
+        cmocka_unit_test(frames_and_outcomes),
+    };
+    omp_set_num_threads(1); /* small bodies, and a machine that may be busy */
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
