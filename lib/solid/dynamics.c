@@ -341,6 +341,9 @@ static enum dynamics_outcome march(struct dynamics *d, struct energy_log *log, e
     int64_t most = d->options->most_steps > 0 ? d->options->most_steps : INT64_MAX;
     factors_at(d, 0.0, d->factor_now);
     for (int64_t n = 0;; n++) {
+        if (n % check_interval == 0) {
+            compatibility_update(&d->system->body);
+        }
         if (!evaluate(d)) {
             return DYNAMICS_INVERTED;
         }

@@ -108,6 +108,12 @@ static void average_volume(struct body *body, int64_t a, double *mean, double *v
     *variance = squares;
 }
 
+/* Share s of the pointwise law in a hat. */
+static double share_of(const struct body *body, const struct material *material)
+{
+    return fmax(body->pointwise_share, material->least_share);
+}
+
 /* Pressure of a hat, from the derivative of its energy: U'(theta) + kappa (s + 2 c v) (J - theta). */
 static void set_pressure(struct body *body, int64_t a)
 {
@@ -116,7 +122,8 @@ static void set_pressure(struct body *body, int64_t a)
     double mean, variance;
     average_volume(body, a, &mean, &variance);
     hats->theta[a] = mean;
-    hats->slope[a] = material_bulk(material) * (body->pointwise_share + 2.0 * body->share_growth * variance);
+    hats->slope[a] =
+        material_bulk(material) * (share_of(body, material) + 2.0 * body->share_growth * variance);
     hats->pressure[a] = material_pressure(material, mean) - hats->slope[a] * mean;
 }
 
@@ -225,7 +232,7 @@ double body_energy(struct body *body, const double *u)
         average_volume(body, a, &mean, &variance);
         energy += body->hats.volume[a] * (material_volume_energy(material, mean) +
                                           0.5 * material_bulk(material) * variance *
-                                              (body->pointwise_share + body->share_growth * variance));
+                                              (share_of(body, material) + body->share_growth * variance));
     }
     return energy + compatibility_energy(body);
 }

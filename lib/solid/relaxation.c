@@ -42,8 +42,9 @@ struct relaxation {
     int augmentations;
     bool mass_changed; /* since the last check: increments of the acceleration mean nothing */
     enum status failure;
-    double load, load_rate; /* steps of the ramp applied so far, and per step */
-    double caution;         /* on the time step: 1 until an inversion */
+    double load, load_rate;      /* steps of the ramp applied so far, and per step */
+    double largest_displacement; /* so far, in the norm of the mass */
+    double caution;              /* on the time step: 1 until an inversion */
     int retreats;
     struct kept_state newer, older;
     int64_t frames; /* given so far */
@@ -211,7 +212,8 @@ static void estimate(struct relaxation *r)
         least2 = fmin(least2, r->window[i]);
     }
     double remaining = sqrt(mass_product(r, r->acceleration, r->acceleration)) / least2;
-    double displacement = sqrt(mass_product(r, r->before, r->before));
+    r->largest_displacement = fmax(r->largest_displacement, sqrt(mass_product(r, r->before, r->before)));
+    double displacement = r->largest_displacement; /* a scene may end at rest */
     r->report->error = displacement > 0.0 ? remaining / displacement : remaining > 0.0 ? INFINITY : 0.0;
     r->report->lowest_frequency = sqrt(least2);
 }

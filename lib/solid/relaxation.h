@@ -33,7 +33,7 @@ struct relaxation_report {
     enum relaxation_outcome outcome;
     int64_t steps, ramp_steps;
     int64_t force_evaluations;
-    double error;             /* estimated remaining error, relative */
+    double error;             /* estimated remaining error, relative to the largest displacement of the run */
     double largest_frequency; /* in the fictitious mass's units */
     double lowest_frequency;
     int64_t inverted_point; /* the caller's index, RELAXATION_INVERTED */

@@ -12,6 +12,15 @@
 static const double default_pointwise_share = 0.05;
 static const double share_growth = 20.0;
 
+/* A compressible body does not lock, and averaging would only make it too soft in bending: all of the law
+ * stays pointwise where the bulk modulus is no more than twice the shear modulus, little of it near
+ * incompressibility. */
+static double least_share(const struct material *material)
+{
+    double share = 2.0 * material->shear_modulus / material->bulk_modulus;
+    return share > 0.0 && share < 1.0 ? share : 1.0;
+}
+
 static void set_material(const struct scene_material *section, struct material *material)
 {
     static const enum material_model models[] = {[SCENE_NEO_HOOKEAN] = MATERIAL_NEO_HOOKEAN,
@@ -24,6 +33,7 @@ static void set_material(const struct scene_material *section, struct material *
                                   .mooney_ratio = section->mooney_ratio,
                                   .ogden_alpha = section->ogden_alpha};
     material_set_moduli(material, section->youngs_modulus, section->poisson_ratio);
+    material->least_share = least_share(material);
 }
 
 /* Materials of the scene, then one for each row of per-point tables. */
@@ -77,6 +87,7 @@ static enum status add_point_table(const struct model_input *input, int64_t m, s
         }
         list->items[list->count] = list->items[m];
         material_set_moduli(&list->items[list->count], modulus, ratio);
+        list->items[list->count].least_share = least_share(&list->items[list->count]);
         list->of_point[q] = (int32_t)list->count++;
         row++;
     }
