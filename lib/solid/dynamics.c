@@ -32,6 +32,7 @@ struct dynamics {
     int64_t sample_interval;
     int64_t frames;
     struct energy_balance balance;
+    double tie_work; /* energy put in as ties followed the pressure */
 };
 
 static enum status allocate(struct dynamics *d, struct error *error)
@@ -255,6 +256,7 @@ static bool sample(struct dynamics *d, bool is_first, double contact, struct ene
     energy_balance_complete(&d->balance, is_first, &row);
     d->report->last_drift = fabs(row.error);
     d->report->largest_drift = d->balance.worst;
+    d->report->tie_work = d->tie_work / d->balance.largest;
     *status = log != NULL ? energy_log_add(log, &row, error) : STATUS_OK;
     return d->balance.worst <= DYNAMICS_MOST_DRIFT;
 }
@@ -319,6 +321,27 @@ static bool evaluate(struct dynamics *d)
     return deformation.least_jacobian > 0.0;
 }
 
+/* Let the ties of the gradients (compatibility.h) follow the pressure; the energy that this takes counts as
+ * work. */
+static bool follow_ties(struct dynamics *d)
+{
+    struct body *body = &d->system->body;
+    if (body->compatibility == NULL) {
+        return true;
+    }
+    bool were_active = body->compatibility->active;
+    double energy = compatibility_energy(body);
+    compatibility_update(body);
+    if (!were_active && !body->compatibility->active) {
+        return true;
+    }
+    bool is_good = evaluate(d);
+    energy = compatibility_energy(body) - energy;
+    d->balance.work += energy;
+    d->tie_work += energy;
+    return is_good;
+}
+
 /* Go on to the next step. */
 static void accept(struct dynamics *d)
 {
@@ -341,10 +364,7 @@ static enum dynamics_outcome march(struct dynamics *d, struct energy_log *log, e
     int64_t most = d->options->most_steps > 0 ? d->options->most_steps : INT64_MAX;
     factors_at(d, 0.0, d->factor_now);
     for (int64_t n = 0;; n++) {
-        if (n % check_interval == 0) {
-            compatibility_update(&d->system->body);
-        }
-        if (!evaluate(d)) {
+        if (!evaluate(d) || (n % check_interval == 0 && !follow_ties(d))) {
             return DYNAMICS_INVERTED;
         }
         double contact = energy_contact(d->system);
