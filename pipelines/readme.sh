@@ -41,7 +41,18 @@ tools_table() {
 
 studies_table() {
     printf '| command | what it computes |\n|---|---|\n'
-    sed -n '1s/^# \(make [^:]*\): \(.*[^.]\)\.*$/| `\1` | \2 |/p' -s "$source_root"/pipelines/*.mk
+    local file
+    for file in "$source_root"/pipelines/*.mk; do
+        awk '
+            NR == 1 && !/^# make [^:]*: / { exit }
+            NR == 1 { command = $0; sub(/^# /, "", command); sub(/: .*/, "", command); sub(/^[^:]*: /, "") }
+            !/^#/ && NR > 1 || /^#$/ { exit }
+            { sub(/^# /, ""); text = text (text == "" ? "" : " ") $0 }
+            END {
+                sub(/\. .*|\.$/, "", text)
+                if (command != "") print "| `" command "` | " text " |"
+            }' "$file"
+    done
 }
 
 # study_table TSV: as a table of Markdown.

@@ -9,10 +9,13 @@ setup() {
 
 same() { awk -v tolerance="${3:-0.25}" -f "$BATS_TEST_DIRNAME/same.awk" "$1" "$2"; }
 
+# The tables of studies are left out: they take minutes, and tell of this machine.
+without_studies() { sed '/^<!-- stud/,/^<!-- end/d' "$1"; }
+
 @test "commands and table of tools in README.md are up to date (else: make readme)" {
-    bash "$top/pipelines/readme.sh" < "$top/README.md" > new
+    STUDIES=$PWD/none bash "$top/pipelines/readme.sh" < "$top/README.md" > new
     [ "$(grep -c '^\$ ' new)" -ge 15 ]
-    same "$top/README.md" new
+    same <(without_studies "$top/README.md") <(without_studies new)
 }
 
 @test "a number, a word or a line that changed is noticed; another size of blanks is not" {
@@ -59,13 +62,9 @@ same() { awk -v tolerance="${3:-0.25}" -f "$BATS_TEST_DIRNAME/same.awk" "$1" "$2
     done < pictures
 }
 
-@test "every program and every study has a line in the texts" {
+@test "every program has a line in README.md" {
     for file in "$top"/tools/*.c; do
         grep -q "^| \`$(basename "$file" .c)\` |" "$top/README.md"
-    done
-    for file in "$top"/pipelines/*.mk; do
-        study=$(basename "$file" .mk)
-        [ "$study" = readme ] || grep -q "\`make $study\`" "$top/README.md" || { echo "README.md: no make $study"; false; }
     done
 }
 
