@@ -208,9 +208,9 @@ done:
     return status;
 }
 
-/* One hat for each pair of background node and material: pressures of different materials do not mix. */
+/* One hat for each pair of background node and group: pressures of different groups do not mix. */
 struct hat_key {
-    int32_t node, material;
+    int32_t node, group;
     int64_t slot; /* point * (dim + 1) + vertex */
 };
 
@@ -220,10 +220,45 @@ static int compare_hats(const void *left, const void *right)
     if (a->node != b->node) {
         return a->node < b->node ? -1 : 1;
     }
-    if (a->material != b->material) {
-        return a->material < b->material ? -1 : 1;
+    if (a->group != b->group) {
+        return a->group < b->group ? -1 : 1;
     }
     return (a->slot > b->slot) - (a->slot < b->slot);
+}
+
+/* The law of each hat: that of its points, or of the mean moduli where they differ. */
+static enum status choose_hat_laws(struct body *body, struct error *error)
+{
+    struct volume_hats *hats = &body->hats;
+    int64_t count = body->material_count, capacity = count;
+    for (int64_t a = 0; a < hats->count; a++) {
+        int32_t first = body->material[hats->point[hats->ptr[a]]];
+        struct material mean = body->materials[first];
+        bool is_mixed = false;
+        mean.shear_modulus = mean.bulk_modulus = mean.least_share = 0.0;
+        for (int64_t i = hats->ptr[a]; i < hats->ptr[a + 1]; i++) {
+            const struct material *material = &body->materials[body->material[hats->point[i]]];
+            is_mixed = is_mixed || body->material[hats->point[i]] != first;
+            mean.shear_modulus += hats->share[i] * material->shear_modulus;
+            mean.bulk_modulus += hats->share[i] * material->bulk_modulus;
+            mean.least_share += hats->share[i] * material->least_share;
+        }
+        hats->material[a] = first;
+        if (!is_mixed) {
+            continue;
+        }
+        if (count == capacity) {
+            capacity = 2 * capacity + 64;
+            struct material *grown = array_grow(body->materials, capacity, sizeof *grown);
+            if (grown == NULL) {
+                return fail_memory(error, "materials");
+            }
+            body->materials = grown;
+        }
+        hats->material[a] = (int32_t)count;
+        body->materials[count++] = mean;
+    }
+    return STATUS_OK;
 }
 
 static enum status build_hats(const struct body_input *input, struct body *body, struct error *error)
@@ -241,12 +276,14 @@ static enum status build_hats(const struct body_input *input, struct body *body,
     TRY(NEW_ARRAY(&hats->share, slots, error));
     for (int64_t s = 0; s < slots; s++) {
         int64_t from = body->order[s / per_point] * per_point + s % per_point;
-        keys[s] = (struct hat_key){input->hat_node[from], body->material[s / per_point], s};
+        int32_t material = body->material[s / per_point];
+        keys[s] =
+            (struct hat_key){input->hat_node[from], input->group ? input->group[material] : material, s};
         hats->value[s] = input->hat_value[from];
     }
     qsort(keys, (size_t)slots, sizeof *keys, compare_hats);
     for (int64_t i = 0; i < slots; i++) {
-        if (i == 0 || keys[i].node != keys[i - 1].node || keys[i].material != keys[i - 1].material) {
+        if (i == 0 || keys[i].node != keys[i - 1].node || keys[i].group != keys[i - 1].group) {
             hats->ptr[hats->count++] = i;
         }
         hats->of_point[keys[i].slot] = (int32_t)(hats->count - 1);
@@ -260,7 +297,6 @@ static enum status build_hats(const struct body_input *input, struct body *body,
     TRY(NEW_ARRAY(&hats->pressure, hats->count, error));
     TRY(NEW_ARRAY(&hats->slope, hats->count, error));
     for (int64_t a = 0; a < hats->count; a++) {
-        hats->material[a] = keys[hats->ptr[a]].material;
         for (int64_t i = hats->ptr[a]; i < hats->ptr[a + 1]; i++) {
             hats->volume[a] += hats->share[i];
         }
@@ -268,6 +304,7 @@ static enum status build_hats(const struct body_input *input, struct body *body,
             hats->share[i] = hats->volume[a] > 0.0 ? hats->share[i] / hats->volume[a] : 0.0;
         }
     }
+    status = choose_hat_laws(body, error);
 done:
     free(keys);
     return status;

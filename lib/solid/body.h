@@ -24,6 +24,8 @@ struct body_input {
     const struct material *materials;
     const int32_t *material; /* point_count, index into materials */
     int64_t material_count;
+    const int32_t *group; /* material_count: volumes are averaged over the materials of a group, such as those
+                             of a region with a table; NULL: each by itself */
     /* Nodal volumetric averaging; NULL: pointwise volume throughout. */
     const int32_t *hat_node; /* point_count * (dim + 1): vertices of the background cell of each point */
     const double *hat_value; /* point_count * (dim + 1): their hat functions at the point, sum 1 */
@@ -44,7 +46,8 @@ struct block {
     bool neo_hookean;                 /* all its points; else the general law */
 };
 
-/* Volumes to average over: hat functions of the background nodes, one for each material at a node.
+/* Volumes to average over: hat functions of the background nodes, one for each group of
+ * materials at a node.
  *
  * The volumetric energy of hat a is V_a (U(theta_a) + kappa/2 (s v_a + c v_a^2)), where theta_a is the mean
  * of J over the hat and v_a its variance. With s = 1, c = 0 it is the pointwise energy of U = kappa/2 (J -
@@ -58,7 +61,7 @@ struct volume_hats {
     int32_t *point;    /* ptr[count] */
     double *share;     /* ptr[count]: N_a(q) w_q / V_a */
     double *volume;    /* count: V_a = sum N_a w, m2 or m3 */
-    int32_t *material; /* count */
+    int32_t *material; /* count: of the body's materials, behind them the means of mixed hats */
     double *theta;     /* count: scratch, averaged J */
     double *pressure;  /* count: scratch; the pressure at a point of the hat is pressure + slope * J, Pa */
     double *slope;
@@ -70,9 +73,9 @@ struct compatibility;
 struct body {
     int dim;
     int64_t node_count, point_count, pair_count;
-    int64_t *order; /* point_count: the caller's index of each point */
-    double *weight; /* point_count */
-    struct material *materials;
+    int64_t *order;             /* point_count: the caller's index of each point */
+    double *weight;             /* point_count */
+    struct material *materials; /* material_count, and those of mixed hats */
     int64_t material_count;
     int32_t *material;    /* point_count */
     double *shear, *bulk; /* point_count: moduli of the neo-Hookean law, Pa */

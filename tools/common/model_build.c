@@ -41,6 +41,7 @@ struct material_list {
     struct material *items;
     int64_t count;
     int32_t *of_point;
+    int32_t *section; /* count: of the scene */
 };
 
 /* One row per integration point of the section's regions, in the order of the points: coordinates, E, nu. */
@@ -88,6 +89,7 @@ static enum status add_point_table(const struct model_input *input, int64_t m, s
         list->items[list->count] = list->items[m];
         material_set_moduli(&list->items[list->count], modulus, ratio);
         list->items[list->count].least_share = least_share(&list->items[list->count]);
+        list->section[list->count] = (int32_t)m;
         list->of_point[q] = (int32_t)list->count++;
         row++;
     }
@@ -112,9 +114,12 @@ static enum status list_materials(const struct model_input *input, struct materi
         return fail_memory(error, "materials");
     }
     TRY(NEW_ARRAY(&list->of_point, input->points->rows, error));
+    /* At most one for each section and for each point. */
+    TRY(NEW_ARRAY(&list->section, scene->material_count + input->points->rows, error));
     list->count = scene->material_count;
     for (int64_t m = 0; m < scene->material_count; m++) {
         set_material(&scene->materials[m], &list->items[m]);
+        list->section[m] = (int32_t)m;
     }
     for (int64_t q = 0; q < input->points->rows; q++) {
         list->of_point[q] = input->cell_material[cell[q]];
@@ -189,6 +194,7 @@ static enum status build_body(const struct model_input *input, struct solid_syst
                               .materials = materials.items,
                               .material = materials.of_point,
                               .material_count = materials.count,
+                              .group = materials.section,
                               .hat_node = hat_node,
                               .hat_value = hat_value,
                               .pointwise_share = solver->pointwise_share >= 0.0 ? solver->pointwise_share
@@ -207,6 +213,7 @@ static enum status build_body(const struct model_input *input, struct solid_syst
 done:
     free(materials.items);
     free(materials.of_point);
+    free(materials.section);
     free(hat_node);
     free(hat_value);
     return status;
