@@ -1,0 +1,335 @@
+# mtled: a scene on a small cloud; the same bytes whichever way; each fault one line and no output; sections on request.
+
+bats_require_minimum_version 1.5.0
+
+setup() {
+    cd "$BATS_TEST_TMPDIR"
+    set -o pipefail
+    export OMP_NUM_THREADS=1
+    cloud -d 2 -k jittered -n 6 --box 0,0.1,0,0.1 --jitter 0.2 > square.mts
+    scene > block.scene
+}
+
+# A block held at its bottom, its top pushed down; sections may be appended.
+scene() {
+    cat << 'END'
+[scene]
+dim = 2
+analysis = quasi-static
+
+[material body]
+region = body
+E = 3000
+nu = 0.45
+rho = 1000
+
+[displacement bottom]
+facets = ymin
+components = 0, 0
+
+[displacement top]
+facets = ymax
+components = 0, -0.005
+END
+}
+
+# The same block under its weight, in time.
+dynamic_scene() {
+    cat << 'END'
+[scene]
+dim = 2
+analysis = dynamic
+gravity = 0, -9.81
+
+[material body]
+region = body
+E = 3000
+nu = 0.45
+rho = 1000
+
+[displacement bottom]
+facets = ymin
+components = 0, 0
+
+[solver]
+end_time = 0.05
+END
+}
+
+# A square meshed by gmsh, in mm.
+square_msh() {
+    cat > square.geo << 'END'
+Point(1) = {0, 0, 0, 25};
+Point(2) = {100, 0, 0, 25};
+Point(3) = {100, 100, 0, 25};
+Point(4) = {0, 100, 0, 25};
+Line(1) = {1, 2};
+Line(2) = {2, 3};
+Line(3) = {3, 4};
+Line(4) = {4, 1};
+Curve Loop(1) = {1, 2, 3, 4};
+Plane Surface(1) = {1};
+Physical Surface("body") = {1};
+Physical Curve("ymin") = {1};
+Physical Curve("ymax") = {3};
+END
+    gmsh -v 1 -2 square.geo -o body.msh
+}
+
+# Rows of section $1 of a text stream.
+rows() {
+    awk -v name="$1" '/^# / { on = $2 == name; next } on && NF' "${2:--}"
+}
+
+# A text stream without its provenance.
+bare() {
+    grep -v '^# @' "$@"
+}
+
+# refused STATUS TEXT COMMAND...: that status, nothing on standard output, one line on standard error with TEXT in it
+# (besides the note on stages that were run).
+refused() {
+    local expected=$1 text=$2
+    shift 2
+    run --separate-stderr "$@"
+    stderr=$(grep -v "ran with defaults" <<< "$stderr" || true)
+    [ "$status" -eq "$expected" ] || { echo "status $status: $stderr"; return 1; }
+    [ -z "$output" ] || { echo "output: $output"; return 1; }
+    [ "$(wc -l <<< "$stderr")" -eq 1 ] || { echo "not one line: $stderr"; return 1; }
+    [[ "$stderr" == "mtled: "*"$text"* ]] || { echo "message: $stderr"; return 1; }
+}
+
+# block.scene edited by a sed script, as edited.scene.
+with() {
+    sed "$1" block.scene > edited.scene
+}
+
+@test "usage, version, and wrong command lines" {
+    run -0 --separate-stderr mtled -h
+    [[ "$output" == "mtled - "* ]]
+    [ -z "$stderr" ]
+    run -0 --separate-stderr mtled --version
+    [[ "$output" =~ ^mtled\ [0-9.]+$ ]]
+    refused 2 "" mtled
+    refused 2 "nonsense" mtled --nonsense block.scene square.mts
+    refused 2 "" mtled -b -b block.scene square.mts
+    refused 2 "" mtled -o
+    refused 2 "" mtled block.scene square.mts square.mts
+    refused 2 "missing.scene" mtled missing.scene square.mts
+    refused 2 "missing.mts" mtled block.scene missing.mts
+    refused 2 "" mtled . square.mts
+}
+
+@test "the literal pipe is the spelled-out one, from a file and from standard input" {
+    square_msh
+    nodes -u mm body.msh | shapefn 2> note | mtled block.scene > u.dat
+    grep -q "no sections of ipoints, support in the input: ran with defaults" note
+    nodes -u mm body.msh | ipoints | support | shapefn > table.mts
+    mtled block.scene table.mts | bare > spelled.dat
+    bare u.dat | cmp - spelled.dat
+    mtled block.scene < table.mts | bare | cmp - spelled.dat
+    mtled -o out.dat block.scene table.mts
+    bare out.dat | cmp - spelled.dat
+    mtled -b block.scene table.mts | mts text | bare | cmp - spelled.dat
+    mtled -q -v block.scene table.mts 2> report | bare | cmp - spelled.dat
+    grep -q "^steps" report
+    nodes -u mm body.msh 2> note | mtled block.scene 2> note | bare | cmp - spelled.dat
+    [ "$(rows u u.dat | wc -l)" -eq "$(rows nodes.x u.dat | wc -l)" ]
+    run -1 grep -qE '^# (shape|nbr|face|points|support|facepoints)\.' u.dat
+}
+
+@test "any number of threads gives the same bytes, quasi-static and dynamic" {
+    shapefn square.mts > table.mts
+    dynamic_scene > dynamic.scene
+    for scene in block dynamic; do
+        for threads in 1 2 3; do
+            OMP_NUM_THREADS=$threads mtled $scene.scene table.mts > $scene.$threads
+        done
+        cmp $scene.1 $scene.2
+        cmp $scene.1 $scene.3
+    done
+}
+
+@test "the scene's own folder is where its files are" {
+    mkdir folder
+    printf '0 0\n1 1\n' > folder/ramp.txt
+    with 's/0, -0.005/&\ncurve = ramp.txt/'
+    mv edited.scene folder/
+    mtled folder/edited.scene square.mts 2> note | rows u > far
+    (cd folder && mtled edited.scene ../square.mts 2> note | rows u) | cmp - far
+}
+
+@test "the pushed side is where it was pushed, the held one where it was" {
+    mtled block.scene square.mts 2> note > u.dat
+    paste -d ' ' <(rows nodes.x u.dat) <(rows u u.dat) > both
+    awk '$2 == 0.1 { sum += $4; n++ } $2 == 0 && ($4 > 2e-4 || $4 < -2e-4) { bad++ }
+        END { exit !(n == 6 && !bad && sum / n < -0.0049 && sum / n > -0.0051) }' both
+}
+
+@test "sections come when they are asked for, and only then" {
+    mtled block.scene square.mts 2> note > plain.dat
+    run -1 grep -qE '^# (stress|strain|reactions|energy|gaps|u.frame)' plain.dat
+    printf '[output]\nframes = 3\nstress = yes\nstrain = yes\nenergy = yes\nreactions = yes\n' >> block.scene
+    mtled block.scene square.mts 2> note > full.dat
+    diff <(rows u plain.dat) <(rows u full.dat)
+    grep -q '^# stress f8 50 4 .*unit=Pa.* cols=xx,yy,zz,xy' full.dat
+    grep -q '^# strain f8 50 4 .*cols=xx,yy,zz,xy' full.dat
+    grep -q '^# reactions f8 2 2 .*unit=N/m.* rows=bottom,top' full.dat
+    rows reactions full.dat | awk '{ for (i = 1; i <= 2; i++) s[i] += $i; y[NR] = $2 }
+        END { exit !(y[1] > 1 && y[2] < -1 && s[1]^2 + s[2]^2 < 1e-6) }'
+    grep -q '^# energy f8 1 2 .*unit=J/m,J/m cols=internal,contact' full.dat
+    rows energy full.dat | awk '{ exit !($1 > 0 && $2 == 0) }'
+    for k in 1 2 3; do
+        grep -q "^# u.frame.$k f8 36 2 .*time=" full.dat
+    done
+    diff <(rows u.frame.3 full.dat) <(rows u full.dat)
+    grep -q '^# u.frame.3 .*time=1$' full.dat
+    # The results of an earlier run leave the stream.
+    scene > block.scene
+    mtled block.scene full.dat 2> note | bare | cmp - <(bare plain.dat)
+}
+
+@test "a dynamic scene: energies, frames by time, reactions" {
+    dynamic_scene > block.scene
+    printf '[output]\ninterval = 0.02\nenergy = yes\nreactions = yes\n' >> block.scene
+    mtled -v block.scene square.mts > u.dat 2> report
+    grep -q '^# energy f8 [0-9]* 7 .*cols=time,kinetic,internal,contact,work,dissipated,error' u.dat
+    grep -q '^# u.frame.1 .*time=0.02$' u.dat
+    grep -q '^# u.frame.2 .*time=0.04$' u.dat
+    run -1 grep -q '^# u.frame.3 ' u.dat
+    rows energy u.dat | awk '{ error = $7 < 0 ? -$7 : $7; if (error > 1e-3) bad = 1; time = $1; work = $5 }
+        END { exit !(time == 0.05 && work > 0 && !bad) }'
+    grep -q '^critical step' report
+    grep -q '^largest energy error' report
+    grep -q '^steps' report
+    sed -i 's/interval = 0.02/frames = 5/' block.scene
+    mtled block.scene square.mts 2> note > u.dat
+    diff <(rows u.frame.5 u.dat) <(rows u u.dat)
+    tovtk -o u.pvd u.dat
+    [ "$(grep -c '<DataSet' u.pvd)" -eq 5 ]
+}
+
+@test "a dynamic scene at rest stays at rest" {
+    dynamic_scene | sed '/gravity/d' > block.scene
+    mtled block.scene square.mts 2> note | rows u > u
+    awk '$1 > 1e-15 || $1 < -1e-15 || $2 > 1e-15 || $2 < -1e-15 { exit 1 } END { exit NR != 36 }' u
+}
+
+@test "material: a region without one, one that is not there" {
+    with 's/region = body/region = bdoy/'
+    refused 2 "edited.scene:5: [material body]: the mesh has no region 'bdoy'; present: body" \
+        mtled edited.scene square.mts
+    mts text square.mts | sed '/^# cells.region/s/names=body/names=body,bone/; /^# cells.region/,/^$/s/^0$/1/' > two.mts
+    refused 2 "bone" mtled block.scene two.mts
+}
+
+@test "groups: a misspelt one lists those present; dimensions must agree" {
+    with 's/ymax/ymx/'
+    refused 2 "no facet group 'ymx'; present: xmin,xmax,ymin,ymax" mtled edited.scene square.mts
+    with 's/facets = ymax/nodes = corner/'
+    refused 2 "" mtled edited.scene square.mts
+    cloud -d 3 -k regular -n 3 --box 0,1,0,1,0,1 > cube.mts
+    refused 2 "dim = 2, but the nodes have 3 coordinates" mtled block.scene cube.mts
+}
+
+@test "a node prescribed twice: once if it agrees, an error if it does not" {
+    mtled block.scene square.mts 2> note | rows u > once
+    { scene; printf '[displacement again]\nfacets = ymax\ncomponents = free, -0.005\n'; } > twice.scene
+    mtled twice.scene square.mts 2> note | rows u > twice
+    paste -d ' ' once twice | awk '{ d = ($1 - $3)^2 + ($2 - $4)^2; if (d > 1e-10) exit 1 }'
+    { scene; printf '[displacement again]\nfacets = ymax\ncomponents = free, -0.006\n'; } > twice.scene
+    refused 2 "prescribed twice: -0.006 m here, -0.005 m in [displacement top]" mtled twice.scene square.mts
+}
+
+@test "material tables: rows that do not match the points, and values out of range" {
+    ipoints square.mts | mts text | rows points.x | awk '{ print $0, 3000, 0.45 }' > points.tsv
+    with 's/^E = 3000$/table = points.tsv/; s/^nu = 0.45$/unit = m/'
+    mtled edited.scene square.mts 2> note | rows u > table.u
+    mtled block.scene square.mts 2> note | rows u > plain.u
+    paste -d ' ' table.u plain.u | awk '{ d = ($1 - $3)^2 + ($2 - $4)^2; if (d > 1e-18) exit 1 }'
+    cp points.tsv whole.tsv
+    sed '$d' whole.tsv > points.tsv
+    refused 2 "49 rows do not match the integration points" mtled edited.scene square.mts
+    { cat whole.tsv; tail -n 1 whole.tsv; } > points.tsv
+    refused 2 "51 rows for 50 integration points" mtled edited.scene square.mts
+    tac whole.tsv > points.tsv
+    refused 2 "do not match the integration points" mtled edited.scene square.mts
+    sed '7s/0.45$/0.5/' whole.tsv > points.tsv
+    refused 2 "points.tsv:7: E = 3000, nu = 0.5" mtled edited.scene square.mts
+    sed '7s/0.45$//' whole.tsv > points.tsv
+    refused 2 "points.tsv:7" mtled edited.scene square.mts
+}
+
+@test "load curves: ending early, of one point, going back, not numbers" {
+    with 's/0, -0.005/&\ncurve = curve.txt/'
+    printf '0 0\n0.5 1\n' > curve.txt
+    refused 2 "curve" mtled edited.scene square.mts
+    [[ "$stderr" == *"edited.scene:15: [displacement top]"* ]]
+    printf '0 0\n' > curve.txt
+    refused 2 "curve" mtled edited.scene square.mts
+    printf '0 0\n0.7 1\n0.6 1\n1 1\n' > curve.txt
+    refused 2 "row 3" mtled edited.scene square.mts
+    printf '0 0\n1 nan\n' > curve.txt
+    refused 2 "curve.txt:2" mtled edited.scene square.mts
+    printf '0 0\n1 1\n' > curve.txt
+    mtled edited.scene square.mts > u.dat 2> note
+    dynamic_scene | sed 's/components = 0, 0/&\ncurve = curve.txt/' > edited.scene
+    printf '0 0\n0.049 1\n' > curve.txt # end_time is 0.05
+    refused 2 "curve" mtled edited.scene square.mts
+}
+
+@test "a table of displacements far from the boundary, in the wrong unit, or missing" {
+    with 's/^components = 0, -0.005$/table = load.tsv\nunit = mm/'
+    printf '%s\n' "0 100 0 -5" "50 100 0 -5" "100 100 0 -5" > load.tsv
+    mtled edited.scene square.mts 2> note | rows u > table.u
+    mtled block.scene square.mts 2> note | rows u > plain.u
+    paste -d ' ' table.u plain.u | awk '{ d = ($1 - $3)^2 + ($2 - $4)^2; if (d > 1e-16) exit 1 }'
+    sed -i 's/unit = mm/unit = m/' edited.scene
+    refused 2 "wrong unit or wrong place" mtled edited.scene square.mts
+    sed -i 's/unit = m/unit = mm/' edited.scene
+    printf '%s\n' "0 9100 0 -5" "50 9100 0 -5" "100 9100 0 -5" > load.tsv
+    refused 2 "load.tsv" mtled edited.scene square.mts
+    rm load.tsv
+    refused 2 "load.tsv" mtled edited.scene square.mts
+}
+
+@test "what does not converge ends with status 1, and an existing output stays" {
+    printf 'old\n' > out.dat
+    printf '[solver]\nmax_steps = 30\n' >> block.scene
+    refused 1 "not converged after 30 steps" mtled -o out.dat block.scene square.mts
+    [ "$(cat out.dat)" = old ]
+    [ "$(ls out.dat*)" = out.dat ]
+    refused 1 "not converged after 30 steps" mtled block.scene square.mts
+    dynamic_scene > block.scene
+    sed -i 's/end_time = 0.05/&\nmax_steps = 3/' block.scene
+    refused 1 "after 3 steps" mtled block.scene square.mts
+}
+
+@test "a dynamic run that fails names the time, the place, and what to change" {
+    printf 'old\n' > out.dat
+    dynamic_scene | sed 's/9.81/981000/' > block.scene
+    refused 1 "block.scene: step " mtled -o out.dat block.scene square.mts
+    [[ "$stderr" == *"t = "*" s: "* ]]
+    [[ "$stderr" == *"time_step_margin"* || "$stderr" == *"refine there"* ]]
+    [ "$(cat out.dat)" = old ]
+}
+
+@test "streams that stop early, or whose tables are missing or do not fit, are refused" {
+    shapefn square.mts > table.mts 2> note
+    size=$(stat -c %s table.mts)
+    for part in 10 40 70 99; do
+        head -c $((size * part / 100)) table.mts > part.mts
+        refused 2 "part.mts" mtled block.scene part.mts
+    done
+    mts drop shape.dphi table.mts > none.mts
+    refused 2 "shape.dphi" mtled block.scene none.mts
+    refused 2 "" mtled block.scene /dev/null
+}
+
+@test "a full device and a closed pipe" {
+    shapefn square.mts > table.mts 2> note
+    run -3 --separate-stderr bash -c 'mtled block.scene table.mts > /dev/full'
+    [[ "$stderr" == "mtled: "* ]]
+    run bash -c 'mtled block.scene table.mts 2> note | head -n 1'
+    [ "$output" = "# mts 1" ]
+}
