@@ -3,7 +3,9 @@
 #include "base/memory.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <stdlib.h>
+#include <string.h>
 
 static int level_of(double radius, double least)
 {
@@ -28,12 +30,12 @@ static int64_t bin_of(const struct point_grid *grid, const struct point_grid_lev
     return bin;
 }
 
-/* Choose the bins of a level from its nodes' extent: at least the largest radius, and no more than a few bins
- * per node. */
+/* Choose the bins of a level from its nodes' extent: at least half the largest radius, and no more than a few
+ * bins per node. */
 static int64_t choose_bins(struct point_grid_level *level, int dim, const double *upper, int64_t nodes)
 {
     int64_t total;
-    level->bin = level->largest_radius;
+    level->bin = 0.5 * level->largest_radius;
     for (;;) {
         double product = 1.0;
         for (int a = 0; a < dim; a++) {
@@ -80,6 +82,7 @@ static enum status build_level(struct point_grid *grid, int number, const uint8_
     int64_t bins = choose_bins(level, dim, upper, nodes);
     TRY(NEW_ARRAY(&level->start, bins + 2, error));
     TRY(NEW_ARRAY(&level->node, nodes, error));
+    TRY(NEW_ARRAY(&level->place, nodes * (dim + 1), error));
     for (int64_t n = 0; n < grid->node_count; n++) {
         if (level_of_node[n] == number) {
             level->start[bin_of(grid, level, grid->x + n * dim) + 2]++;
@@ -92,6 +95,13 @@ static enum status build_level(struct point_grid *grid, int number, const uint8_
         if (level_of_node[n] == number) {
             level->node[level->start[bin_of(grid, level, grid->x + n * dim) + 1]++] = (int32_t)n;
         }
+    }
+    for (int64_t i = 0; i < nodes; i++) {
+        double *place = level->place + i * (dim + 1);
+        for (int a = 0; a < dim; a++) {
+            place[a] = grid->x[(int64_t)level->node[i] * dim + a];
+        }
+        place[dim] = grid->radius[level->node[i]];
     }
 done:
     return status;
@@ -134,14 +144,15 @@ void point_grid_free(struct point_grid *grid)
     for (int l = 0; l < grid->level_count; l++) {
         free(grid->level[l].start);
         free(grid->level[l].node);
+        free(grid->level[l].place);
     }
     *grid = (struct point_grid){0};
 }
 
-static enum status list_append(struct index_list *list, int32_t index, struct error *error)
+enum status index_list_reserve(struct index_list *list, int64_t count, struct error *error)
 {
-    if (list->count == list->capacity) {
-        int64_t capacity = list->capacity * 2 + 64;
+    if (list->count + count > list->capacity) {
+        int64_t capacity = 2 * (list->count + count) + 64;
         int32_t *grown = array_grow(list->index, capacity, sizeof *grown);
         if (grown == NULL) {
             return fail_memory(error, "neighbour list");
@@ -149,61 +160,67 @@ static enum status list_append(struct index_list *list, int32_t index, struct er
         list->index = grown;
         list->capacity = capacity;
     }
-    list->index[list->count++] = index;
     return STATUS_OK;
 }
 
-/* Append the nodes of one bin whose supports contain x. */
-static enum status query_bin(const struct point_grid *grid, const struct point_grid_level *level, int64_t bin,
-                             const double *x, double factor, struct index_list *list, struct error *error)
+/* Append those of the nodes [first, last) of a level whose supports reach the box. */
+static inline __attribute__((always_inline)) void query_run(const struct point_grid_level *level, int dim,
+                                                            int64_t first, int64_t last, const double *low,
+                                                            const double *high, double factor,
+                                                            struct index_list *list)
 {
-    int dim = grid->dim;
-    for (int64_t i = level->start[bin]; i < level->start[bin + 1]; i++) {
-        int32_t node = level->node[i];
-        double radius = grid->radius[node] * factor, distance2 = 0.0;
+    int32_t *index = list->index + list->count;
+    int64_t found = 0;
+    for (int64_t i = first; i < last; i++) {
+        const double *place = level->place + i * (dim + 1);
+        double radius = place[dim] * factor, distance2 = 0.0;
         for (int a = 0; a < dim; a++) {
-            double difference = grid->x[(int64_t)node * dim + a] - x[a];
+            double below = low[a] - place[a], above = place[a] - high[a];
+            double difference = below > above ? below : above;
+            difference = difference > 0.0 ? difference : 0.0;
             distance2 += difference * difference;
         }
-        if (distance2 < radius * radius) {
-            enum status status = list_append(list, node, error);
-            if (status != STATUS_OK) {
-                return status;
-            }
-        }
+        index[found] = level->node[i];
+        found += distance2 < radius * radius;
     }
-    return STATUS_OK;
+    list->count += found;
 }
 
 static enum status query_level(const struct point_grid *grid, const struct point_grid_level *level,
-                               const double *x, double factor, struct index_list *list, struct error *error)
+                               const double *low, const double *high, double factor, struct index_list *list,
+                               struct error *error)
 {
-    int64_t low[3] = {0, 0, 0}, high[3] = {0, 0, 0};
+    int64_t from[3] = {0, 0, 0}, to[3] = {0, 0, 0};
     double reach = level->largest_radius * factor * (1.0 + 1e-9); /* rounding at the edges of bins */
     for (int a = 0; a < grid->dim; a++) {
         double end = level->origin[a] + level->bin * (double)level->bins[a];
-        if (x[a] + reach < level->origin[a] || x[a] - reach > end) {
+        if (high[a] + reach < level->origin[a] || low[a] - reach > end) {
             return STATUS_OK;
         }
-        low[a] = bin_along(level, a, x[a] - reach);
-        high[a] = bin_along(level, a, x[a] + reach);
+        from[a] = bin_along(level, a, low[a] - reach);
+        to[a] = bin_along(level, a, high[a] + reach);
     }
-    for (int64_t k = low[2]; k <= high[2]; k++) {
-        for (int64_t j = low[1]; j <= high[1]; j++) {
-            for (int64_t i = low[0]; i <= high[0]; i++) {
-                int64_t bin = (k * level->bins[1] + j) * level->bins[0] + i;
-                enum status status = query_bin(grid, level, bin, x, factor, list, error);
-                if (status != STATUS_OK) {
-                    return status;
-                }
+    /* The bins of a row follow each other. */
+    for (int64_t k = from[2]; k <= to[2]; k++) {
+        for (int64_t j = from[1]; j <= to[1]; j++) {
+            int64_t row = (k * level->bins[1] + j) * level->bins[0];
+            int64_t first = level->start[row + from[0]], last = level->start[row + to[0] + 1];
+            enum status status = index_list_reserve(list, last - first, error);
+            if (status != STATUS_OK) {
+                return status;
+            }
+            if (grid->dim == 2) {
+                query_run(level, 2, first, last, low, high, factor, list);
+            } else {
+                query_run(level, 3, first, last, low, high, factor, list);
             }
         }
     }
     return STATUS_OK;
 }
 
-/* Lists come as a few ascending runs: insertion sort is quick on them. */
-static void sort_ascending(int32_t *index, int64_t count)
+/* Insertion sort of a few. */
+static void sort_few(int32_t *index, int64_t count)
 {
     for (int64_t i = 1; i < count; i++) {
         int32_t value = index[i];
@@ -215,18 +232,60 @@ static void sort_ascending(int32_t *index, int64_t count)
     }
 }
 
-enum status point_grid_query(const struct point_grid *grid, const double *x, double factor,
-                             struct index_list *list, struct error *error)
+static void merge(const int32_t *a, const int32_t *end_a, const int32_t *b, const int32_t *end_b,
+                  int32_t *merged)
 {
+    while (a < end_a && b < end_b) {
+        int32_t first = *a, second = *b;
+        bool from_a = first < second;
+        *merged++ = from_a ? first : second;
+        a += from_a;
+        b += !from_a;
+    }
+    memcpy(merged, a, (size_t)(end_a - a) * sizeof *a);
+    memcpy(merged + (end_a - a), b, (size_t)(end_b - b) * sizeof *b);
+}
+
+/* Sort index[count]: runs of 16, merged; index[count .. 2 count) is scratch. */
+static void sort_ascending(int32_t *index, int64_t count)
+{
+    int32_t *from = index, *to = index + count;
+    for (int64_t i = 0; i < count; i += 16) {
+        sort_few(index + i, count - i < 16 ? count - i : 16);
+    }
+    for (int64_t width = 16; width < count; width *= 2) {
+        for (int64_t i = 0; i < count; i += 2 * width) {
+            int64_t middle = i + width < count ? i + width : count,
+                    end = i + 2 * width < count ? i + 2 * width : count;
+            merge(from + i, from + middle, from + middle, from + end, to + i);
+        }
+        int32_t *swap = from;
+        from = to;
+        to = swap;
+    }
+    if (from != index) {
+        memcpy(index, from, (size_t)count * sizeof *index);
+    }
+}
+
+enum status point_grid_query_box(const struct point_grid *grid, const double *low, const double *high,
+                                 double factor, struct index_list *list, struct error *error)
+{
+    enum status status = STATUS_OK;
     int64_t first = list->count;
     for (int l = 0; l < grid->level_count; l++) {
         if (grid->level[l].start != NULL) {
-            enum status status = query_level(grid, &grid->level[l], x, factor, list, error);
-            if (status != STATUS_OK) {
-                return status;
-            }
+            TRY(query_level(grid, &grid->level[l], low, high, factor, list, error));
         }
     }
+    TRY(index_list_reserve(list, list->count - first, error)); /* scratch for sorting */
     sort_ascending(list->index + first, list->count - first);
-    return STATUS_OK;
+done:
+    return status;
+}
+
+enum status point_grid_query(const struct point_grid *grid, const double *x, double factor,
+                             struct index_list *list, struct error *error)
+{
+    return point_grid_query_box(grid, x, x, factor, list, error);
 }

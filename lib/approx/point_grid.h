@@ -9,13 +9,14 @@
 
 #define POINT_GRID_LEVELS 40
 
-/* One octave of radii: the nodes of that level in bins no smaller than its largest radius. */
+/* One octave of radii: the nodes of that level in bins of half its largest radius or more. */
 struct point_grid_level {
     double origin[3], bin; /* lower corner; edge of a bin */
     int64_t bins[3];       /* bins along each axis (1 beyond dim) */
     double largest_radius;
-    int64_t *start; /* CSR over bins: bins[0]*bins[1]*bins[2] + 1 */
+    int64_t *start; /* CSR over bins: bins[0]*bins[1]*bins[2] + 1, the first axis quickest */
     int32_t *node;  /* nodes of each bin, ascending */
+    double *place;  /* following node: coordinates and radius, dim + 1 each */
 };
 
 /* Node coordinates and radii are the caller's and must outlive the grid. */
@@ -42,5 +43,14 @@ struct index_list {
 /* Append to `list` the nodes j with |x - x_j| < factor R_j, in ascending order. */
 MUST_CHECK enum status point_grid_query(const struct point_grid *grid, const double *x, double factor,
                                         struct index_list *list, struct error *error);
+
+/* The same for the nearest point x of the box low .. high: all nodes that a query within the box would find,
+ * and others. */
+MUST_CHECK enum status point_grid_query_box(const struct point_grid *grid, const double *low,
+                                            const double *high, double factor, struct index_list *list,
+                                            struct error *error);
+
+/* Room for `count` more indices. */
+MUST_CHECK enum status index_list_reserve(struct index_list *list, int64_t count, struct error *error);
 
 #endif

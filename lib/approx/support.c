@@ -1,5 +1,6 @@
 #include "approx/support.h"
 
+#include "approx/candidates.h"
 #include "base/memory.h"
 
 #include <math.h>
@@ -11,6 +12,9 @@ static const double widen_step = 1.05;
 static const double widen_limit = 8.0;
 /* Points of one unit of work: fixed, so that the result cannot depend on the number of threads. */
 static const int64_t chunk_points = 512;
+/* A group of points shares its search: at most so many of them, in a box of that share of the radius. */
+static const int64_t most_of_group = 32;
+static const double extent_of_group = 0.8;
 
 struct support_options support_defaults(int dim)
 {
@@ -36,162 +40,56 @@ static double distance2_of(int dim, const double *a, const double *b)
     return sum;
 }
 
-/* Mean of the `wanted` least distances, or -1 if there are fewer. */
-static double mean_of_least(double *distance, int64_t count, int64_t wanted)
-{
-    double sum = 0.0;
-    if (count < wanted) {
-        return -1.0;
-    }
-    for (int64_t i = 0; i < wanted; i++) {
-        int64_t least = i;
-        for (int64_t k = i + 1; k < count; k++) {
-            least = distance[k] < distance[least] ? k : least;
-        }
-        double swap = distance[i];
-        distance[i] = distance[least];
-        distance[least] = swap;
-        sum += distance[i];
-    }
-    return sum / (double)wanted;
-}
-
-/* Mean distance to the nearest nodes of one node, asking for ever larger neighbourhoods. */
-static enum status spacing_of(const struct point_grid *grid, int64_t node, struct index_list *list,
-                              double *spacing, struct error *error)
-{
-    enum status status = STATUS_OK;
-    int dim = grid->dim;
-    double *distance = NULL;
-    int64_t wanted = grid->node_count - 1 < 2 * dim ? grid->node_count - 1 : 2 * dim;
-    *spacing = -1.0;
-    for (double factor = 1.0; *spacing < 0.0; factor *= 2.0) {
-        const double *x = grid->x + node * dim;
-        list->count = 0;
-        TRY(point_grid_query(grid, x, factor, list, error));
-        free(distance);
-        TRY(NEW_ARRAY(&distance, list->count, error));
-        int64_t others = 0;
-        for (int64_t i = 0; i < list->count; i++) {
-            if (list->index[i] != node) {
-                distance[others++] = sqrt(distance2_of(dim, x, grid->x + (int64_t)list->index[i] * dim));
-            }
-        }
-        *spacing = mean_of_least(distance, others, wanted);
-    }
-done:
-    free(distance);
-    return status;
-}
-
-enum status nodes_spacing(int dim, int64_t node_count, const double *x, double *spacing, struct error *error)
-{
-    enum status status;
-    struct point_grid grid = {0};
-    struct index_list list = {0};
-    double *radius = NULL;
-    double low[3], high[3], extent = 0.0;
-    for (int a = 0; a < dim; a++) {
-        low[a] = INFINITY;
-        high[a] = -INFINITY;
-        for (int64_t n = 0; n < node_count; n++) {
-            low[a] = fmin(low[a], x[n * dim + a]);
-            high[a] = fmax(high[a], x[n * dim + a]);
-        }
-        extent = fmax(extent, high[a] - low[a]);
-    }
-    if (node_count < 2 || !(extent > 0.0)) {
-        return fail(error, STATUS_INPUT, "nodes.x: %lld nodes at one place have no spacing",
-                    (long long)node_count);
-    }
-    /* A first guess of the neighbourhood's size, doubled where it holds too few. */
-    TRY(NEW_ARRAY(&radius, node_count, error));
-    for (int64_t n = 0; n < node_count; n++) {
-        radius[n] = 2.0 * extent / pow((double)node_count, 1.0 / dim);
-    }
-    TRY(point_grid_build(&grid, dim, node_count, x, radius, error));
-    for (int64_t n = 0; n < node_count; n++) {
-        TRY(spacing_of(&grid, n, &list, &spacing[n], error));
-    }
-done:
-    point_grid_free(&grid);
-    free(list.index);
-    free(radius);
-    return status;
-}
-
-enum status support_radii(const struct support_options *options, int64_t node_count, const double *spacing,
-                          double *radius, struct error *error)
-{
-    for (int64_t n = 0; n < node_count; n++) {
-        radius[n] = options->radius > 0.0 ? options->radius : options->factor * spacing[n];
-        if (!(radius[n] > 0.0) || !isfinite(radius[n])) {
-            return fail(error, STATUS_INPUT,
-                        "nodes.x: row %lld: the node has no spacing: it coincides with others", (long long)n);
-        }
-    }
-    return STATUS_OK;
-}
-
 /* One thread's growing lists and scratch. */
 struct worker {
     struct index_list list;
+    struct candidates candidates;
     struct mls_work work;
-    double *phi, *dphi, *order;
+    double *order;
     int64_t capacity;
 };
 
 static void worker_free(struct worker *worker)
 {
     free(worker->list.index);
-    free(worker->phi);
-    free(worker->dphi);
+    candidates_free(&worker->candidates);
     free(worker->order);
     mls_work_free(&worker->work);
 }
 
-static enum status worker_reserve(struct worker *worker, int dim, int64_t count, struct error *error)
+/* Keep the `most` nearest of the neighbours in index[count], ties going to the lower index. */
+static enum status keep_nearest(const struct point_grid *grid, const double *x, int64_t most, int32_t *index,
+                                int64_t *count, struct worker *worker, struct error *error)
 {
-    enum status status = STATUS_OK;
-    if (count > worker->capacity) {
-        int64_t capacity = count * 2 + 64;
-        free(worker->phi);
-        free(worker->dphi);
+    if (most <= 0 || *count <= most) {
+        return STATUS_OK;
+    }
+    if (*count > worker->capacity) {
+        int64_t capacity = 2 * *count + 64;
         free(worker->order);
-        worker->phi = worker->dphi = worker->order = NULL;
         worker->capacity = 0;
-        TRY(NEW_ARRAY(&worker->phi, capacity, error));
-        TRY(NEW_ARRAY(&worker->dphi, capacity * dim, error));
-        TRY(NEW_ARRAY(&worker->order, capacity, error));
+        enum status status = NEW_ARRAY(&worker->order, capacity, error);
+        if (status != STATUS_OK) {
+            return status;
+        }
         worker->capacity = capacity;
     }
-done:
-    return status;
-}
-
-/* Keep the `most` nearest of the neighbours in index[count], ties going to the lower index. */
-static int64_t keep_nearest(const struct point_grid *grid, const double *x, int64_t most, int32_t *index,
-                            int64_t count, double *distance2)
-{
-    if (most <= 0 || count <= most) {
-        return count;
-    }
-    for (int64_t i = 0; i < count; i++) {
+    double *distance2 = worker->order;
+    for (int64_t i = 0; i < *count; i++) {
         distance2[i] = distance2_of(grid->dim, x, grid->x + (int64_t)index[i] * grid->dim);
     }
     /* Drop the farthest (of equals the highest index) until `most` remain; the order stays ascending. */
-    while (count > most) {
+    for (; *count > most; --*count) {
         int64_t farthest = 0;
-        for (int64_t i = 1; i < count; i++) {
+        for (int64_t i = 1; i < *count; i++) {
             farthest = distance2[i] >= distance2[farthest] ? i : farthest;
         }
-        for (int64_t i = farthest; i + 1 < count; i++) {
+        for (int64_t i = farthest; i + 1 < *count; i++) {
             index[i] = index[i + 1];
             distance2[i] = distance2[i + 1];
         }
-        count--;
     }
-    return count;
+    return STATUS_OK;
 }
 
 /* Mean spacing of the nodes in a support: the edge of the cube (square) that each of them has to itself. A
@@ -199,12 +97,19 @@ static int64_t keep_nearest(const struct point_grid *grid, const double *x, int6
 static double spacing_within(const struct support_options *options, const struct point_grid *grid,
                              const double *x, const int32_t *index, int64_t count, double widen)
 {
-    double largest = 0.0, farthest2 = 0.0;
-    for (int64_t i = 0; i < count; i++) {
-        largest = fmax(largest, grid->radius[index[i]]);
-        farthest2 = fmax(farthest2, distance2_of(grid->dim, x, grid->x + (int64_t)index[i] * grid->dim));
+    double reach = 0.0;
+    if (count == options->most) {
+        for (int64_t i = 0; i < count; i++) {
+            double distance2 = distance2_of(grid->dim, x, grid->x + (int64_t)index[i] * grid->dim);
+            reach = distance2 > reach ? distance2 : reach;
+        }
+        reach = sqrt(reach);
+    } else {
+        for (int64_t i = 0; i < count; i++) {
+            reach = grid->radius[index[i]] > reach ? grid->radius[index[i]] : reach;
+        }
+        reach *= widen;
     }
-    double reach = count == options->most ? sqrt(farthest2) : largest * widen;
     double unit_ball = grid->dim == 2 ? 3.141592653589793 : 4.1887902047863905;
     return reach * pow(unit_ball / (double)count, 1.0 / grid->dim);
 }
@@ -221,45 +126,35 @@ static enum status judge(const struct support_options *options, const struct poi
                                   .widen = widen,
                                   .neighbours = index,
                                   .count = count};
+    double steepest;
     *serves = false;
     if (count < options->least) {
         return STATUS_OK;
     }
-    enum status status = worker_reserve(worker, grid->dim, count, error);
-    if (status == STATUS_OK) {
-        status =
-            mls_evaluate(&options->mls, &support, &worker->work, worker->phi, worker->dphi, &verdict, error);
+    enum status status = mls_steepest(&options->mls, &support, &worker->work, &steepest, &verdict, error);
+    if (status == STATUS_OK && verdict == MLS_GOOD) {
+        *serves = steepest * spacing_within(options, grid, x, index, count, widen) <= options->gradient_bound;
     }
-    if (status != STATUS_OK || verdict != MLS_GOOD) {
-        return status;
-    }
-    double largest2 = 0.0;
-    for (int64_t i = 0; i < count; i++) {
-        double sum = 0.0;
-        for (int a = 0; a < grid->dim; a++) {
-            sum += worker->dphi[i * grid->dim + a] * worker->dphi[i * grid->dim + a];
-        }
-        largest2 = fmax(largest2, sum);
-    }
-    *serves =
-        sqrt(largest2) * spacing_within(options, grid, x, index, count, widen) <= options->gradient_bound;
-    return STATUS_OK;
+    return status;
 }
 
-/* Append one point's neighbours to the worker's list. */
+/* Append one point's neighbours to the worker's list; a point in a group has its candidates found. */
 static enum status find_support(const struct support_options *options, const struct point_grid *grid,
-                                const double *x, struct worker *worker, double *widen, bool *serves,
-                                struct error *error)
+                                const double *x, bool grouped, struct worker *worker, double *widen,
+                                bool *serves, struct error *error)
 {
     enum status status = STATUS_OK;
     int64_t first = worker->list.count;
     for (*widen = 1.0; *widen <= widen_limit; *widen *= widen_step) {
         worker->list.count = first;
-        TRY(point_grid_query(grid, x, *widen, &worker->list, error));
+        if (*widen > 1.0 || !grouped) {
+            TRY(point_grid_query(grid, x, *widen, &worker->list, error));
+        } else {
+            TRY(candidates_within(&worker->candidates, x, &worker->list, error));
+        }
         int64_t count = worker->list.count - first;
         int32_t *index = worker->list.index + first;
-        TRY(worker_reserve(worker, grid->dim, count, error));
-        count = keep_nearest(grid, x, options->most, index, count, worker->order);
+        TRY(keep_nearest(grid, x, options->most, index, &count, worker, error));
         worker->list.count = first + count;
         *serves = true;
         if (options->widen) {
@@ -271,6 +166,55 @@ static enum status find_support(const struct support_options *options, const str
     }
 done:
     return status;
+}
+
+static bool is_finite(int dim, const double *x)
+{
+    for (int a = 0; a < dim; a++) {
+        if (!isfinite(x[a])) {
+            return false;
+        }
+    }
+    return true;
+}
+
+/* Find the candidates of the points that follow `first` within a box of edges up to `extent`; returns the end
+ * of that group. The first point is finite. */
+static enum status begin_group(const struct point_grid *grid, const double *x, int64_t first, int64_t last,
+                               double extent, struct candidates *candidates, int64_t *end,
+                               struct error *error)
+{
+    double low[3], high[3];
+    int dim = grid->dim;
+    memcpy(low, x + first * dim, (size_t)dim * sizeof *low);
+    memcpy(high, x + first * dim, (size_t)dim * sizeof *high);
+    last = first + most_of_group < last ? first + most_of_group : last;
+    for (*end = first + 1; *end < last && is_finite(dim, x + *end * dim); ++*end) {
+        const double *point = x + *end * dim;
+        double new_low[3], new_high[3], edge = 0.0;
+        for (int a = 0; a < dim; a++) {
+            new_low[a] = point[a] < low[a] ? point[a] : low[a];
+            new_high[a] = point[a] > high[a] ? point[a] : high[a];
+            edge = new_high[a] - new_low[a] > edge ? new_high[a] - new_low[a] : edge;
+        }
+        if (edge > extent) {
+            break;
+        }
+        memcpy(low, new_low, (size_t)dim * sizeof *low);
+        memcpy(high, new_high, (size_t)dim * sizeof *high);
+    }
+    return *end - first > 1 ? candidates_find(candidates, grid, low, high, 1.0, error) : STATUS_OK;
+}
+
+/* How far apart the points of a group may be where these are the neighbours of one: candidates are found once
+ * for all, and judged for each. */
+static double extent_there(const struct point_grid *grid, const int32_t *index, int64_t count)
+{
+    double least = count > 0 ? INFINITY : 0.0;
+    for (int64_t i = 0; i < count; i++) {
+        least = grid->radius[index[i]] < least ? grid->radius[index[i]] : least;
+    }
+    return extent_of_group * least;
 }
 
 /* The message for a point without a good support; a stray node shows by its radius. */
@@ -306,24 +250,32 @@ static enum status build_chunk(const struct support_options *options, const stru
     enum status status = STATUS_OK;
     struct worker worker = {0};
     int dim = grid->dim;
+    double extent = 0.0;
+    bool grouped = false;
+    int64_t end_of_group = first;
     for (int64_t p = first; p < last; p++) {
         bool serves;
         const double *point = x + p * dim;
-        for (int a = 0; a < dim; a++) {
-            if (!isfinite(point[a])) {
-                status =
-                    fail(error, STATUS_INPUT, "%s: row %lld: not a finite coordinate", what, (long long)p);
-                goto done;
-            }
-        }
-        int64_t before = worker.list.count;
-        TRY(find_support(options, grid, point, &worker, &lists->widen[p], &serves, error));
-        if (!serves) {
-            status = fail_support(grid, what, p, point, worker.list.index + before,
-                                  worker.list.count - before, error);
+        if (!is_finite(dim, point)) {
+            status = fail(error, STATUS_INPUT, "%s: row %lld: not a finite coordinate", what, (long long)p);
             goto done;
         }
-        lists->ptr[p + 1] = worker.list.count - before;
+        if (p == end_of_group) {
+            TRY(begin_group(grid, x, p, last, extent, &worker.candidates, &end_of_group, error));
+            grouped = end_of_group > p + 1;
+        }
+        int64_t before = worker.list.count;
+        TRY(find_support(options, grid, point, grouped, &worker, &lists->widen[p], &serves, error));
+        const int32_t *index = worker.list.index + before;
+        int64_t count = worker.list.count - before;
+        if (!serves) {
+            status = fail_support(grid, what, p, point, index, count, error);
+            goto done;
+        }
+        lists->ptr[p + 1] = count;
+        if (p + 1 == end_of_group) {
+            extent = extent_there(grid, index, count);
+        }
     }
     chunk->index = worker.list.index;
     chunk->count = worker.list.count;
