@@ -6,6 +6,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* Depths below this part of a hat's length are none. */
+static const double round_off = 1e-6;
+
 /* How deep a hat may be when it is first seen behind the surface without having gone through: half its
  * length, m. */
 static double most_depth(const struct contact *contact, int64_t a)
@@ -28,17 +31,30 @@ static void average(const struct contact *contact, int64_t a, const double *v, d
     }
 }
 
-/* No hat may start far behind the surface. */
+/* Cosine between the body's outward normal at hat a and the direction in which the surface's side lies: at a
+ * place where they can touch, it is about -1. */
+static double facing(const struct contact *contact, int64_t a, const struct rigid_contact *closest)
+{
+    double cosine = 0.0;
+    for (int c = 0; c < contact->dim; c++) {
+        cosine += contact->averages->normal[a * contact->dim + c] * closest->normal[c];
+    }
+    return cosine;
+}
+
+/* No hat may start far behind the surface, or behind it with its back to it: shallow, as around a body that
+ * fills a shell, but on the other side. */
 static enum status check_side(const struct contact *contact, struct error *error)
 {
     for (int64_t a = 0; a < contact->count; a++) {
         struct rigid_contact closest =
             rigid_closest(&contact->surface, contact->rest + a * contact->dim, INFINITY);
-        if (closest.found && -closest.gap > most_depth(contact, a)) {
+        double depth = closest.found ? -closest.gap : 0.0, length = most_depth(contact, a);
+        if (depth > length || (depth > round_off * length && facing(contact, a, &closest) > 0.5)) {
             return fail(error, STATUS_INPUT,
                         "contact: node %d starts %.3g m behind the rigid surface: state its other side, or "
                         "leave the node's facets out",
-                        contact->averages->node[a], -closest.gap);
+                        contact->averages->node[a], depth);
         }
     }
     return STATUS_OK;

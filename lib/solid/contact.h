@@ -31,7 +31,8 @@ struct contact {
 };
 
 /* Takes over `surface` (also on failure: it becomes empty). X: nodes, m. STATUS_INPUT when a hat starts
- * behind the surface, deeper than half its size: the surface's side is the wrong one. */
+ * behind the surface, deeper than half its size or facing away from it: the surface's side is the wrong one.
+ */
 MUST_CHECK enum status contact_build(const struct boundary_averages *averages, const double *X, int dim,
                                      struct rigid_surface *surface, double stiffness, struct contact *contact,
                                      struct error *error);

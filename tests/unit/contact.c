@@ -439,6 +439,16 @@ static void wrong_side(void **state)
     contact_force(&contact, u, force);
     NEAR_TO(force[1], 0.04 * 0.1, 1e-15);
     contact_free(&contact);
+    /* So it is where the body faces the surface; with its back to it, it is on the wrong side. */
+    for (int back = 0; back < 2; back++) {
+        hats.normal[1] = back ? 1.0 : -1.0;
+        GOOD(rigid_build(2, 1, corners, false, &surface, &error));
+        enum status status = contact_build(&hats.averages, hats.X, 2, &surface, 1.0, &contact, &error);
+        assert_int_equal(status, back ? STATUS_INPUT : STATUS_OK);
+        contact_free(&contact);
+    }
+    assert_string_equal(error.text, "contact: node 0 starts 0.04 m behind the rigid surface: state its other "
+                                    "side, or leave the node's facets out");
 }
 
 int main(void)
