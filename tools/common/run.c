@@ -262,7 +262,7 @@ static void put_energy(struct run *run)
 {
     struct solid_system *system = &run->model->system;
     double *values = run_new_values(run, 2);
-    values[0] = body_energy(&system->body, run->u);
+    values[0] = energy_internal(system, run->u);
     values[1] = energy_contact(system);
     run_put(run, "energy", 1, 2,
             run->scene->dim == 2 ? "unit=J/m,J/m cols=internal,contact" : "unit=J,J cols=internal,contact",
