@@ -1,14 +1,15 @@
 # The input deck of a scene for CalculiX, with one of deck2d.awk and deck3d.awk for the conditions in that dimension:
 #
-#     awk -f pipelines/stream.awk -f deck.awk -f deck3d.awk -v scene=FILE -v mesh=STREAM > FILE.inp
+#     awk -f pipelines/stream.awk -f deck.awk -f deck3d.awk -v scene=FILE -v mesh=STREAM [-v increment=PART] > FILE.inp
 #
 # STREAM (text) holds what `nodes` writes. Its triangles become quadratic plane strain elements (CPE6), its tetrahedra
 # quadratic ones (C3D10), with the mid-nodes on the straight edges, so that nodes 1..N are those of the stream and the
 # geometry is the same. Understood of a scene: neo-Hookean materials of one region each, displacements by table or by
 # components on one group of facets, contact of one group with a rigid surface; anything else in it is an error. SI units, in
-# 2D per metre of thickness.
+# 2D per metre of thickness. The load is applied in increments of at most PART of it (0.1).
 
 BEGIN {
+    if (increment == "") increment = 0.1
     read_scene(scene)
     read_stream(mesh, "")
     need_section("nodes.x", "run nodes")
@@ -28,7 +29,7 @@ BEGIN {
     print "1," rows["nodes.x"] ",1"
     print "*STEP,NLGEOM,INC=2000"
     print "*STATIC"
-    print "0.05,1.,1.E-7,0.1"
+    printf "%g,1.,1.E-7,%g\n", increment / 2, increment
     print "*BOUNDARY"
     for (k = 1; k <= prescribed_count; k++) print prescribed[k]
     print "*NODE PRINT,NSET=CORNERS"

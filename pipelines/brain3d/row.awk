@@ -1,0 +1,35 @@
+# A line of compare.tsv: awk -f row.awk -v scheme=NAME -v field=STREAM LOG [ERRORS BESIDE]
+#
+# LOG is what the tools report with -v, ERRORS and BESIDE what fieldcmp prints of the distances from the reference and from
+# CalculiX; without them the distances are "-".
+
+BEGIN {
+    FS = OFS = "\t"
+    while ((getline line < field) > 0) if (line ~ /^# nodes.x /) {
+        split(line, word, " ")
+        nodes = word[4]
+        break
+    }
+}
+
+FNR == 1 { file++ }
+NF == 2 { value[file, $1] = $2 }
+
+# "support: widened at N points, at most F times"
+/^support: widened at [1-9]/ {
+    split($0, word, " ")
+    scheme = scheme ", " word[4] " points widened"
+}
+
+END {
+    if (nodes == "" || !((1, "steps") in value) || (file > 1 && !((2, "avg") in value && (3, "avg") in value))) {
+        print "row.awk: no errors or no report of " scheme > "/dev/stderr"
+        exit 1
+    }
+    print scheme, nodes, value[1, "points"], millimetres(2, "avg"), millimetres(2, "max"), value[1, "steps"],
+        sprintf("%.1f", value[1, "solve seconds"]), millimetres(3, "avg"), millimetres(3, "max")
+}
+
+function millimetres(from, name) {
+    return (from, name) in value ? sprintf("%.4f", 1e3 * value[from, name]) : "-"
+}

@@ -1,0 +1,78 @@
+# The whole brain, coarsely: examples/brain3d through gmsh and all the filters.
+
+bats_require_minimum_version 1.5.0
+
+setup_file() {
+    export EXAMPLE="$BATS_TEST_DIRNAME/../examples/brain3d"
+    cd "$BATS_FILE_TMPDIR" || return
+    cp "$EXAMPLE"/*.geo "$EXAMPLE"/*.tsv "$EXAMPLE"/*.scene .
+    for surfaces in brain3d_surfaces brain3d_skull_surfaces; do
+        gzip -dc "$EXAMPLE/$surfaces.msh.gz" > $surfaces.msh
+    done
+    gmsh -3 -v 1 brain3d.geo -setnumber lc 30 -o brain.msh
+    sed -i 's/tolerance = .*/tolerance = 1e-3/' brain3d.scene
+    nodes -u mm brain.msh | ipoints | support | shapefn > table.mts
+    mtled -v brain3d.scene table.mts > u.dat 2> log
+}
+
+setup() {
+    cd "$BATS_FILE_TMPDIR" || return
+}
+
+@test "the brain settles in its skull: forces balance, no point is turned over, no hat goes through" {
+    mts check u.dat
+    [ "$(awk '$1 == "steps" { print $2 }' log)" -lt 4000 ]
+    awk -f "$BATS_TEST_DIRNAME/../pipelines/stream.awk" -f "$BATS_TEST_DIRNAME/../pipelines/brain3d/balance.awk" \
+        -v scheme=coarse -v field=u.dat -v report=log | awk -F '\t' '
+        !($3 > 0.8 && $4 < 1.2)       { print "J from", $3, "to", $4; failed = 1 }
+        !($5 > 0.03 && $5 < 0.09)     { print "pressed in by", $5, "N"; failed = 1 }
+        !($7 < 0.01 * $5)             { print $7, "N are missing"; failed = 1 }
+        !($8 < 0.1 && $9 > 2)         { print $9, "hats touch, the deepest by", $8, "mm"; failed = 1 }
+        { rows++ }
+        END { exit failed || rows != 1 }'
+}
+
+@test "the craniotomy goes where it is told" {
+    # Rows of facets, of their sets, then of nodes and u.
+    set=$(awk '/^# facets.set / { sub(/.*names=/, ""); split($1, name, ","); for (i in name) if (name[i] == "craniotomy") print i - 1 }' \
+        <(mts text u.dat))
+    paste <(mts print facets.set u.dat) <(mts print facets u.dat) | awk -v set="$set" '
+        $1 == set { for (i = 2; i <= 4; i++) print $i }' | sort -n | uniq > craniotomy
+    paste <(mts print nodes.x u.dat) <(mts print u u.dat) | awk '
+        NR == FNR { inside[$1] = 1; next }
+        !(FNR - 1 in inside) { next }
+        {
+            dx = $1 - 0.063472; dy = $2 - 0.016069; dz = $3 - 0.019997
+            along = dx * 0.9798 + dy * 0.1591 + dz * 0.1212
+            r = sqrt(dx^2 + dy^2 + dz^2 - along^2)
+            u = r < 0.033 ? -0.005 * (1 + cos(atan2(0, -1) * r / 0.033)) : 0
+            error = sqrt(($4 - 0.9798 * u)^2 + ($5 - 0.1591 * u)^2 + ($6 - 0.1212 * u)^2)
+            if (error > worst) worst = error
+            if (u < deepest) deepest = u
+            sum += error
+            n++
+        }
+        END {
+            printf "%d nodes down to %g, off by %g, at most %g m\n", n, deepest, sum / n, worst
+            exit !(n > 10 && deepest < -0.008 && sum / n < 0.0006 && worst < 0.0012)
+        }' craniotomy -
+}
+
+@test "the brain is not on the other side of its skull" {
+    sed 's/side = back/side = front/' brain3d.scene > outside.scene
+    run -2 --separate-stderr mtled outside.scene table.mts
+    [ -z "$output" ]
+    [[ "$stderr" == *"starts"*"behind the rigid surface"* ]] || { echo "$stderr"; return 1; }
+}
+
+@test "the tables of the whole brain are those that its geometry gives" {
+    mkdir -p made
+    cp "$EXAMPLE"/{*.geo,*.msh.gz,make-tables.sh} made
+    bash made/make-tables.sh
+    for table in load skull; do
+        paste "made/$table.tsv" "$EXAMPLE/$table.tsv" | awk '
+            /^#/ { next }
+            { for (i = 1; i <= NF / 2; i++) if (!(($i - $(i + NF / 2)) ^ 2 < 1e-5)) exit 1; n++ }
+            END { if (n < 600) exit 1 }'
+    done
+}
