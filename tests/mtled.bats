@@ -209,6 +209,13 @@ with() {
     [ "$(grep -c '<DataSet' u.pvd)" -eq 5 ]
 }
 
+@test "a free body falls g t^2 / 2, every node alike" {
+    dynamic_scene | sed '/^\[displacement/,/^$/d' > block.scene
+    mtled block.scene square.mts 2> note | rows u > u
+    awk '{ d = $2 + 9.81 * 0.05^2 / 2; if (d > 1e-12 || d < -1e-12 || $1 > 1e-12 || $1 < -1e-12) exit 1 }
+        END { exit NR != 36 }' u
+}
+
 @test "a dynamic scene at rest stays at rest" {
     dynamic_scene | sed '/gravity/d' > block.scene
     mtled block.scene square.mts 2> note | rows u > u

@@ -29,16 +29,22 @@ static enum status add_gravity(const struct model_input *input, struct solid_sys
                                struct error *error)
 {
     enum status status;
-    const struct scene_curve smooth = {.kind = SCENE_CURVE_SMOOTH};
+    /* In time it is there from the begin; a state of rest is approached gently. */
+    bool in_time = input->scene->analysis == SCENE_DYNAMIC;
+    const struct scene_curve curve_of_load = {.kind = in_time ? SCENE_CURVE_STEP : SCENE_CURVE_SMOOTH};
     const struct scene_label label = {0};
     const int32_t *cell = input->point_cell->data;
     const double *weight = input->weight->data, *phi = input->phi->data;
     int dim = system->dim;
     int32_t curve;
     double *force;
-    TRY(model_add_curve(input, &label, &smooth, system, &curve, error));
+    TRY(model_add_curve(input, &label, &curve_of_load, system, &curve, error));
     TRY(new_load(system, curve, -1, &force, error));
-    for (int64_t q = 0; q < input->points->rows; q++) {
+    /* In time by the lumped mass, so that a free body falls as one. */
+    for (int64_t i = 0; in_time && i < system->node_count * dim; i++) {
+        force[i] = system->lumped_mass[i / dim] * input->scene->gravity[i % dim];
+    }
+    for (int64_t q = 0; !in_time && q < input->points->rows; q++) {
         double mass = weight[q] * input->scene->materials[input->cell_material[cell[q]]].density;
         for (int64_t i = input->point_lists.ptr[q]; i < input->point_lists.ptr[q + 1]; i++) {
             for (int a = 0; a < dim; a++) {
