@@ -214,9 +214,7 @@ KERNEL_INLINE double gradients(int dim, int m, const lanes *coefficient, const s
                 defect[a][1 + b] += gradient * xi[b];
             }
         }
-        for (int lane = 0; lane < LANES; lane++) {
-            most[lane] = most[lane] > square[lane] ? most[lane] : square[lane];
-        }
+        larger(&most, &square);
     }
     *steepest2 = fmax(fmax(most[0], most[1]), fmax(most[2], most[3]));
     for (int a = 0; a < dim; a++) {
@@ -253,14 +251,13 @@ KERNEL_INLINE bool kernel_evaluate(const struct mls *mls, const struct mls_suppo
                               .stride = stride,
                               .row = scratch};
     struct mls_system system;
-    double least_linear, least, steepest2 = 0.0, c[MLS_MAX_BASIS];
+    double steepest2 = 0.0, c[MLS_MAX_BASIS];
     lanes right[MLS_MAX_BASIS];
     gather(support, dim, &point);
     weigh(mls->weight, support->widen, dim, &point);
     assemble(dim, m, &point, &system);
     regularise(mls, dim, m, point.scale, &system);
-    if (!factorise(dim, m, &system, &least_linear, &least) || !(least_linear > safe_pivot) ||
-        !(least > (mls->basis == BASIS_MODIFIED ? least_pivot : safe_pivot))) {
+    if (!factorise(dim, m, safe_pivot, mls->basis == BASIS_MODIFIED ? least_pivot : safe_pivot, &system)) {
         return false;
     }
     substitute_unit(m, &system, c);

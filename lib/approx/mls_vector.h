@@ -15,6 +15,14 @@
 
 #define LANES 4
 typedef double lanes __attribute__((vector_size(8 * LANES)));
+typedef int64_t lane_bits __attribute__((vector_size(8 * LANES)));
+
+/* *most = the larger of each lane; a NaN of `other` is passed over. */
+KERNEL_INLINE void larger(lanes *most, const lanes *other)
+{
+    lane_bits mask = *other > *most;
+    *most = (lanes)(((lane_bits)*other & mask) | ((lane_bits)*most & ~mask));
+}
 
 /* Monomials of degree at most 4, of which the moment matrix of the quadratic basis is made. */
 #define MLS_MOMENTS 35
@@ -155,38 +163,37 @@ struct mls_system {
     double inverse[MLS_MAX_BASIS];                   /* 1 / E */
 };
 
-/* Pivots of the matrix scaled to unit diagonal: the least of the linear block, and of all. */
-KERNEL_INLINE bool factorise(int dim, int m, struct mls_system *system, double *least_linear, double *least)
+/* Factorise. False unless every pivot, relative to the diagonal entry, exceeds `least_linear` in the linear
+ * block and `least` beyond it. */
+KERNEL_INLINE bool factorise(int dim, int m, double least_linear, double least, struct mls_system *system)
 {
     enum { MOST_VECTORS = (MLS_MAX_BASIS + 3) / 4 };
     const int vectors = (m + 3) / 4;
     lanes row[MLS_MAX_BASIS][MOST_VECTORS];
-    *least_linear = *least = 1.0;
+    bool good = true;
+    UNROLL
     for (int k = 0; k < m; k++) {
         memcpy(row[k], system->matrix[k], (size_t)vectors * sizeof(lanes));
     }
+    UNROLL
     for (int k = 0; k < m; k++) {
         double diagonal = system->matrix[k][k], pivot = row[k][k / 4][k % 4];
-        if (!(diagonal > 1e-280) || !(pivot > 1e-290)) {
-            return false;
-        }
-        double relative = pivot / diagonal;
-        *least = relative < *least ? relative : *least;
-        *least_linear = k <= dim ? *least : *least_linear;
         double inverse = 1.0 / pivot;
+        good = good && diagonal > 1e-280 && pivot > (k <= dim ? least_linear : least) * diagonal;
         system->inverse[k] = inverse;
         for (int c = k / 4; c < vectors; c++) {
             lanes upper = row[k][c] * inverse;
             memcpy(&system->upper[k][4 * c], &upper, sizeof upper);
         }
+        UNROLL
         for (int i = k + 1; i < m; i++) {
             double factor = system->upper[k][i];
-            for (int c = (k + 1) / 4; c < vectors; c++) {
+            for (int c = i / 4; c < vectors; c++) {
                 row[i][c] -= factor * row[k][c];
             }
         }
     }
-    return isfinite(system->inverse[m - 1]);
+    return good && isfinite(system->inverse[m - 1]);
 }
 
 /* x = M^-1 e_1. The newest unknown enters each sum last, so that the others do not wait for it. */
