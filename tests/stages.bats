@@ -250,7 +250,15 @@ END
     support -R 50mm -n 8 -m 8 points.mts | mts print face.ptr > ptr
     awk 'NR > 1 && $1 - last != 8 { exit 1 } { last = $1 }' ptr
     run -0 --separate-stderr support -v -k 1.2 -o lists.mts points.mts
-    [[ "$stderr" =~ ^support:\ widened\ at\ [1-9][0-9]*\ points,\ at\ most\ 1\.[0-9]*\ times$ ]]
+    [[ "${stderr_lines[0]}" =~ ^support:\ widened\ at\ [1-9][0-9]*\ points,\ at\ most\ 1\.[0-9]*\ times$ ]]
+    [ "${#stderr_lines[@]}" -eq 3 ]
+    for list in "face:points on faces" "node:nodes"; do
+        report=$(mts print "${list%%:*}.ptr" lists.mts | awk -v what="${list#*:}" '
+            NR > 1 { n = $1 - last; sum += n; if (n > most) most = n; if (NR == 2 || n < fewest) fewest = n } { last = $1 }
+            END { printf "support: %d %s: %d to %d neighbours, mean %.1f, widened at", NR - 1, what, fewest, most, sum / (NR - 1) }')
+        widened=$(mts print "${list%%:*}.widen" lists.mts | awk '$1 > 1 { n++ } END { print n + 0 }')
+        grep -Fx "$report $widened" <<< "$stderr"
+    done
 }
 
 @test "integration points fill the body" {

@@ -24,7 +24,8 @@ static const char usage[] =
     "  -w, --weight WEIGHT    quartic (default), cubic, wendland or regularised; shapefn follows it\n"
     "      --mu MU[,MU...]    regularisation of mmls2, see shapefn\n"
     "      --mu-unit UNIT     MU is absolute, in coordinates of that unit\n"
-    "  -v, --verbose          report on standard error how many points were widened\n"
+    "  -v, --verbose          report on standard error how many points were widened, and for each\n"
+    "                         list the fewest, most and mean neighbours of a point\n"
     "  -t, --text             write text instead of binary\n"
     "  -o, --output FILE      write to FILE, which appears only when whole\n"
     "\n"
@@ -84,6 +85,25 @@ static struct support_options parse(const struct tool *tool, const struct option
     return support;
 }
 
+/* All widening in one line, then each list. */
+static void note_report(const struct tool *tool, const struct support_report *report)
+{
+    int64_t widened = 0;
+    double widest = 1.0;
+    for (int l = 0; l < report->lists; l++) {
+        widened += report->list[l].widened;
+        widest = report->list[l].widest > widest ? report->list[l].widest : widest;
+    }
+    tool_note(tool, "widened at %lld points, at most %.3g times", (long long)widened, widest);
+    for (int l = 0; l < report->lists; l++) {
+        int64_t points = report->list[l].points;
+        tool_note(tool, "%lld %s: %lld to %lld neighbours, mean %.1f, widened at %lld", (long long)points,
+                  report->list[l].what, (long long)report->list[l].fewest, (long long)report->list[l].most,
+                  points > 0 ? (double)report->list[l].pairs / (double)points : 0.0,
+                  (long long)report->list[l].widened);
+    }
+}
+
 int main(int argc, char *argv[])
 {
     struct tool tool;
@@ -102,18 +122,18 @@ int main(int argc, char *argv[])
         [OUTPUT] = {.letter = 'o', .name = "output", .takes_value = true},
     };
     int dim;
-    int64_t node_count, widened;
+    int64_t node_count;
     const double *x;
-    double widest;
+    struct support_report report;
     tool_begin(&tool, usage, options, OPTION_COUNT, 0, 1, argc, argv);
     (void)parse(&tool, options, 0); /* usage errors before waiting for the input */
     tool_read(&tool, tool.operands[0], &stream);
     tool_check(&tool, stream_nodes(&stream, &dim, &node_count, &x, &error), &error);
     struct support_options support = parse(&tool, options, dim);
     stage_fill(&tool, &stream, "ipoints");
-    tool_check(&tool, stage_support(&stream, &support, &widened, &widest, &error), &error);
+    tool_check(&tool, stage_support(&stream, &support, &report, &error), &error);
     if (options[VERBOSE].given) {
-        tool_note(&tool, "widened at %lld points, at most %.3g times", (long long)widened, widest);
+        note_report(&tool, &report);
     }
     tool_write(&tool, &stream, options[TEXT].given);
     stream_free(&stream);

@@ -285,12 +285,15 @@ done:
     return status;
 }
 
-/* Join the chunks in order and sum the counts. */
+/* Join the chunks in order, sum the counts and take stock. */
 static enum status join(struct support_lists *lists, const struct chunk *chunks, int64_t chunk_count,
                         struct error *error)
 {
     enum status status;
     for (int64_t p = 0; p < lists->count; p++) {
+        int64_t neighbours = lists->ptr[p + 1];
+        lists->fewest = p == 0 || neighbours < lists->fewest ? neighbours : lists->fewest;
+        lists->most = neighbours > lists->most ? neighbours : lists->most;
         lists->ptr[p + 1] += lists->ptr[p];
         lists->widened += lists->widen[p] > 1.0;
         lists->widest = fmax(lists->widest, lists->widen[p]);

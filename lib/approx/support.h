@@ -20,11 +20,12 @@ struct support_options support_defaults(int dim);
 /* Neighbour lists of `count` points (CSR). */
 struct support_lists {
     int64_t count;
-    int64_t *ptr;    /* count + 1 */
-    int32_t *idx;    /* ptr[count] node indices, ascending within a point */
-    double *widen;   /* count: factor on the radii, >= 1 */
-    int64_t widened; /* how many points needed widening */
-    double widest;   /* the largest factor */
+    int64_t *ptr;         /* count + 1 */
+    int32_t *idx;         /* ptr[count] node indices, ascending within a point */
+    double *widen;        /* count: factor on the radii, >= 1 */
+    int64_t widened;      /* how many points needed widening */
+    double widest;        /* the largest factor */
+    int64_t fewest, most; /* neighbours of a point; 0 without points */
 };
 
 /* spacing[node_count], m: mean distance to the 2 dim nearest other nodes. For clouds without cells (with

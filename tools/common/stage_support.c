@@ -2,7 +2,6 @@
 
 #include "mls_options.h"
 
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -53,10 +52,10 @@ done:
     return status;
 }
 
-/* Lists PREFIX.ptr, .idx, .widen of the points of one section. */
+/* Lists PREFIX.ptr, .idx, .widen of the points of one section, which the report calls `called`. */
 static enum status put_lists(struct stream *stream, const struct support_options *options,
                              const struct point_grid *grid, const struct section *points, const char *prefix,
-                             int64_t *widened, double *widest, struct error *error)
+                             const char *called, struct support_report *report, struct error *error)
 {
     enum status status, next;
     struct support_lists lists = {0};
@@ -64,9 +63,15 @@ static enum status put_lists(struct stream *stream, const struct support_options
     snprintf(what, sizeof what, "%s", points->name);
     int64_t count = points->rows;
     TRY(support_build(options, grid, count, points->data, what, &lists, error));
-    *widened += lists.widened;
-    *widest = fmax(*widest, lists.widest);
     int64_t pairs = lists.ptr[count];
+    int entry = report->lists++;
+    report->list[entry].what = called;
+    report->list[entry].points = count;
+    report->list[entry].pairs = pairs;
+    report->list[entry].fewest = lists.fewest;
+    report->list[entry].most = lists.most;
+    report->list[entry].widened = lists.widened;
+    report->list[entry].widest = lists.widest;
     snprintf(name, sizeof name, "%s.ptr", prefix);
     status = stream_put(stream, name, TYPE_I8, count + 1, 1, "", lists.ptr, true, error);
     snprintf(name, sizeof name, "%s.idx", prefix);
@@ -87,8 +92,8 @@ static bool is_conforming(const struct section *points)
     return section_attribute(points, "rule", rule, sizeof rule) && strcmp(rule, "conforming") == 0;
 }
 
-enum status stage_support(struct stream *stream, const struct support_options *options, int64_t *widened,
-                          double *widest, struct error *error)
+enum status stage_support(struct stream *stream, const struct support_options *options,
+                          struct support_report *report, struct error *error)
 {
     enum status status;
     struct point_grid grid = {0};
@@ -96,8 +101,7 @@ enum status stage_support(struct stream *stream, const struct support_options *o
     int64_t node_count;
     const double *x;
     static const char *const void_prefixes[] = {"nbr.", "face.", "node.", "support.radius", "shape."};
-    *widened = 0;
-    *widest = 1.0;
+    *report = (struct support_report){0};
     for (size_t i = 0; i < sizeof void_prefixes / sizeof *void_prefixes; i++) {
         stream_remove_prefix(stream, void_prefixes[i]);
     }
@@ -107,15 +111,15 @@ enum status stage_support(struct stream *stream, const struct support_options *o
     TRY(put_radii(stream, options, node_count, x, error));
     TRY(point_grid_build(&grid, dim, node_count, x, stream_find(stream, "support.radius")->data, error));
     if (!is_conforming(stream_find(stream, "points.x"))) {
-        TRY(put_lists(stream, options, &grid, stream_find(stream, "points.x"), "nbr", widened, widest,
-                      error));
+        TRY(put_lists(stream, options, &grid, stream_find(stream, "points.x"), "nbr", "integration points",
+                      report, error));
     }
     const struct section *facepoints = stream_find(stream, "facepoints.x");
     if (facepoints != NULL) {
         TRY(stream_need(stream, "facepoints.x", TYPE_F8, dim, "ipoints", &facepoints, error));
-        TRY(put_lists(stream, options, &grid, facepoints, "face", widened, widest, error));
+        TRY(put_lists(stream, options, &grid, facepoints, "face", "points on faces", report, error));
     }
-    TRY(put_lists(stream, options, &grid, stream_find(stream, "nodes.x"), "node", widened, widest, error));
+    TRY(put_lists(stream, options, &grid, stream_find(stream, "nodes.x"), "node", "nodes", report, error));
 done:
     point_grid_free(&grid);
     return status;

@@ -94,16 +94,16 @@ static void fill_one(const struct tool *tool, struct stream *stream, const char 
     struct error error;
     enum status status;
     int dim;
-    int64_t node_count, widened, unresolved;
+    int64_t node_count, unresolved;
     const double *x;
-    double widest;
     tool_check(tool, stream_nodes(stream, &dim, &node_count, &x, &error), &error);
     if (strcmp(stage, "ipoints") == 0) {
         struct ipoints_options options = ipoints_defaults();
         status = stage_ipoints(stream, &options, &unresolved, &error);
     } else if (strcmp(stage, "support") == 0) {
         struct support_options options = support_defaults(dim);
-        status = stage_support(stream, &options, &widened, &widest, &error);
+        struct support_report report;
+        status = stage_support(stream, &options, &report, &error);
     } else {
         struct mls mls;
         status = stage_recorded_mls(stream, dim, &mls, &error);

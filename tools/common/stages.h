@@ -46,10 +46,19 @@ MUST_CHECK enum status stage_ipoints(struct stream *stream, const struct ipoints
 MUST_CHECK enum status stage_radii(const struct stream *stream, const struct support_options *options,
                                    int64_t node_count, const double *x, double *radius, struct error *error);
 
-/* Add the sections of support: support.radius, and the lists nbr, face and node. *widened counts the points
- * whose supports were widened, *widest the largest factor. */
+/* What support found, for each of its lists. */
+struct support_report {
+    int lists;
+    struct {
+        const char *what; /* "points on faces" */
+        int64_t points, pairs, fewest, most, widened;
+        double widest;
+    } list[3];
+};
+
+/* Add the sections of support: support.radius, and the lists nbr, face and node. */
 MUST_CHECK enum status stage_support(struct stream *stream, const struct support_options *options,
-                                     int64_t *widened, double *widest, struct error *error);
+                                     struct support_report *report, struct error *error);
 
 /* Add the sections of shapefn: shape.phi, shape.dphi, face.phi, node.phi. */
 MUST_CHECK enum status stage_shapefn(struct stream *stream, const struct mls *mls, struct error *error);
