@@ -37,6 +37,61 @@ make_patch() {
         END { exit failed || n != 16 }'
 }
 
+# A cube of 3 x 3 x 3 nodes whose sides follow u = (.05 x + .02 y, -.03 y + .01 z, .02 x - .04 z).
+make_cube() {
+    cloud -d 3 -k jittered -n 3,3,3 --box 0,0.1,0,0.1,0,0.1 --jitter 0.15 --seed 4 -t -o cube.dat
+    printf '[scene]\ndim = 3\nanalysis = quasi-static\n' > cube.scene
+    printf '[material all]\nregion = body\nE = 3000\nnu = 0.49\nrho = 1000\n' >> cube.scene
+    for side in xmin xmax ymin ymax zmin zmax; do
+        printf '[displacement %s]\nfacets = %s\ntable = %s.tsv\nunit = cm\n' $side $side $side >> cube.scene
+        awk -v side=$side 'BEGIN {
+            axis = index("xyz", substr(side, 1, 1))
+            for (i = 0; i <= 10; i += 2.5) for (j = 0; j <= 10; j += 2.5) {
+                x[axis] = side ~ /max/ ? 10 : 0
+                x[axis % 3 + 1] = i
+                x[(axis + 1) % 3 + 1] = j
+                print x[1], x[2], x[3], .05 * x[1] + .02 * x[2], -.03 * x[2] + .01 * x[3], .02 * x[1] - .04 * x[3]
+            }
+        }' > $side.tsv
+    done
+}
+
+@test "CalculiX passes the linear patch test in 3D, and its reactions balance" {
+    make_cube
+    bash "$pipelines/calculix/solve.sh" cube.scene cube.dat 1 > u.dat 2> log
+    mts check u.dat
+    grep -q "^points	$((4 * $(mts print cells cube.dat | wc -l)))$" log
+    paste <(mts print nodes.x u.dat) <(mts print u u.dat) | awk '
+        { a = $4 - .05 * $1 - .02 * $2; b = $5 + .03 * $2 - .01 * $3; c = $6 - .02 * $1 + .04 * $3; error = sqrt(a * a + b * b + c * c); n++ }
+        !(error < 1e-7) { print "node", n - 1, "is off by", error; failed = 1 }
+        END { exit failed || n != 27 }'
+    # The sides share their edges, whose nodes count for the first side only: all of them together balance.
+    mts print reactions u.dat | awk '
+        { for (d = 1; d <= 3; d++) { sum[d] += $d; size += $d < 0 ? -$d : $d } n++ }
+        END { for (d = 1; d <= 3; d++) if (!(sum[d] ^ 2 < (1e-4 * size) ^ 2)) exit 1; exit n != 6 || !(size > 0) }'
+}
+
+@test "deck: wedges lie behind rigid triangles, on either side, with the face that is touched first" {
+    make_cube
+    printf '0 0 0 1 0 0 0 1 0\n1 0 0 1 1 0.5 0 1 0\n' > back.tsv # normals up, away from a body below
+    for side in back front; do
+        (cat cube.scene; printf '[contact roof]\nfacets = zmax\nrigid = back.tsv\nunit = cm\nside = %s\n' $side) > contact.scene
+        awk -f "$pipelines/stream.awk" -f "$pipelines/calculix/deck.awk" -f "$pipelines/calculix/deck3d.awk" \
+            -v scene=contact.scene -v mesh=cube.dat > deck.inp
+        awk -F, -v up=$([ $side = back ] && echo 1 || echo -1) '
+            /^\*/ { part = $0; next }
+            part ~ /^\*NODE,/ { x[$1] = $2; y[$1] = $3; z[$1] = $4 }
+            part ~ /C3D6/ {
+                n++
+                area = (x[$3] - x[$2]) * (y[$4] - y[$2]) - (x[$4] - x[$2]) * (y[$3] - y[$2])
+                rise = z[$5] - z[$2]
+                if (!(area * rise > 0)) { print "element", $1, "is turned"; exit 1 }
+                if (!(up * rise > 0.004 && up * rise < 0.0061)) { print "element", $1, "lies before the surface"; exit 1 }
+            }
+            END { if (n != 2) exit 1 }' deck.inp
+    done
+}
+
 @test "deck: the strip of a rigid curve lies behind it, its elements counter-clockwise, on either side" {
     make_patch
     printf '0 0\n1 0\n2 0.5\n' > left.tsv
