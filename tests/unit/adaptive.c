@@ -179,7 +179,7 @@ static void convergence(void **state)
     for (int dim = 2; dim <= 3; dim++) {
         struct body body = body_of(dim, dim == 2 ? 6 : 3);
         int64_t n = body.cells.node_count, before = 0;
-        int deepest = dim == 2 ? 4 : 2;
+        int deepest = dim == 2 ? 3 : 2;
         struct adaptive_points finest = brute(&body, deepest);
         double *reference = stiffness(&body, finest.count, finest.x, finest.weight);
         double error_before = INFINITY;
@@ -204,8 +204,8 @@ static void convergence(void **state)
     }
 }
 
-/* A loose tolerance leaves the rule as it is on a fine cloud; a hole in the weights - one node's support
- * that ends within a cell - is what calls for more. */
+/* A loose tolerance leaves the rule as it is on a fine cloud; one node whose support ends within its cells
+ * calls for more there. */
 static void depth_where_needed(void **state)
 {
     (void)state;
@@ -245,7 +245,7 @@ static void threads(void **state)
     (void)state;
     int before = omp_get_max_threads();
     for (int dim = 2; dim <= 3; dim++) {
-        struct body body = body_of(dim, dim == 2 ? 14 : 4);
+        struct body body = body_of(dim, dim == 2 ? 9 : 3);
         omp_set_num_threads(1);
         struct adaptive_points one = integrate(&body, 0.1, 3);
         omp_set_num_threads(3);
