@@ -2,12 +2,13 @@
 #
 # Each program of pipelines/bench (but bench.c, which they share) prints the rows of some kernels. Times in ns per pair
 # of point and neighbour (streams: per row), least and percentiles over the repeats; bytes are those read and written.
+# One thread is timed by its CPU time, several by the clock: compare threads on an idle machine only.
 
 BENCH := $(OUT)/bench
 BENCH_SECONDS := 1
 BENCH_KERNELS := $(filter-out bench,$(notdir $(basename $(wildcard pipelines/bench/*.c))))
 BENCH_COLUMNS := kernel size threads precision ns_per_pair bytes_per_pair read_ns_per_pair ratio p10 p50 p90 rate \
-    rate_unit bytes_per_node repeats cpu flags
+    rate_unit bytes_per_node repeats clock cpu flags
 
 .PHONY: bench
 bench: $(BENCH)/bench.tsv

@@ -8,10 +8,10 @@
 #include <string.h>
 #include <time.h>
 
-double bench_now(void)
+double bench_now(enum bench_clock clock)
 {
     struct timespec now;
-    clock_gettime(CLOCK_MONOTONIC, &now);
+    clock_gettime(clock == BENCH_CPU ? CLOCK_PROCESS_CPUTIME_ID : CLOCK_MONOTONIC, &now);
     return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
 }
 
@@ -29,16 +29,18 @@ static int compare_doubles(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-void bench_repeat(double least, enum status (*run)(void *context, struct error *error), void *context,
+void bench_repeat(enum bench_clock clock, double least,
+                  enum status (*run)(void *context, struct error *error), void *context,
                   struct bench_times *times)
 {
     struct error error;
     double spent = 0.0;
+    times->clock = clock;
     bench_check(run(context, &error), &error);
     for (times->count = 0; times->count < BENCH_MOST_REPEATS && (spent < least || times->count < 5);) {
-        double start = bench_now();
+        double start = bench_now(clock);
         bench_check(run(context, &error), &error);
-        double seconds = bench_now() - start;
+        double seconds = bench_now(clock) - start;
         times->seconds[times->count++] = seconds;
         spent += seconds;
     }
@@ -68,7 +70,7 @@ static double sum_of(const double *values, int64_t count)
     return sum[0];
 }
 
-double bench_plain_read(double bytes, int threads)
+double bench_plain_read(enum bench_clock clock, double bytes, int threads)
 {
     int64_t count = (int64_t)(bytes / sizeof(double));
     double *values = array_new(count, sizeof *values);
@@ -82,7 +84,7 @@ double bench_plain_read(double bytes, int threads)
     int64_t rounds = 1 + (int64_t)(1 << 22) / (count + 1);
     memset(values, 1, (size_t)count * sizeof *values);
     for (int repeat = 0; repeat < 15; repeat++) {
-        double start = bench_now(), sum = 0.0;
+        double start = bench_now(clock), sum = 0.0;
 #pragma omp parallel num_threads(threads) reduction(+ : sum)
         {
             int64_t part = omp_get_thread_num(), parts = omp_get_num_threads();
@@ -93,7 +95,7 @@ double bench_plain_read(double bytes, int threads)
             }
         }
         total += sum;
-        double seconds = (bench_now() - start) / (double)rounds;
+        double seconds = (bench_now(clock) - start) / (double)rounds;
         best = seconds < best ? seconds : best;
     }
     free(values);
@@ -135,7 +137,7 @@ void bench_print(const struct bench_row *row, const struct bench_times *times)
 {
     char cpu[128];
     double units = row->pairs > 0.0 ? row->pairs : row->bytes, least = times->seconds[0];
-    double read = bench_plain_read(row->bytes, row->threads);
+    double read = bench_plain_read(times->clock, row->bytes, row->threads);
     cpu_model(cpu, sizeof cpu);
     printf("%s\t%s\t%d\t%s\t%.4g\t%.4g\t%.4g\t%.3f\t%.4g\t%.4g\t%.4g\t%.4g\t%s\t", row->kernel, row->size,
            row->threads, row->precision, 1e9 * least / units, row->bytes / units, 1e9 * read / units,
@@ -146,6 +148,7 @@ void bench_print(const struct bench_row *row, const struct bench_times *times)
     } else {
         printf("-");
     }
-    printf("\t%d\t%s, %s\t%s\n", times->count, cpu, instruction_sets(), BENCH_FLAGS);
+    printf("\t%d\t%s\t%s, %s\t%s\n", times->count, times->clock == BENCH_CPU ? "cpu" : "wall", cpu,
+           instruction_sets(), BENCH_FLAGS);
     fflush(stdout);
 }

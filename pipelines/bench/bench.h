@@ -10,8 +10,12 @@
 
 #define BENCH_MOST_REPEATS 1000
 
-/* Seconds that each repeat took. */
+/* CPU time where one thread works, so that what else runs on the machine does not count; else wall time. */
+enum bench_clock { BENCH_CPU, BENCH_WALL };
+
+/* Seconds that each repeat took, ascending. */
 struct bench_times {
+    enum bench_clock clock;
     int count;
     double seconds[BENCH_MOST_REPEATS];
 };
@@ -28,19 +32,20 @@ struct bench_row {
     double memory_per_node; /* bytes held; 0: not measured */
 };
 
-/* Wall time, s. */
-double bench_now(void);
+/* Time, s. */
+double bench_now(enum bench_clock clock);
 
 /* Run until `least` seconds and at least 5 repeats are spent; the first run, which warms caches, is not
  * counted. The program ends with the status and message of a repeat that fails. */
-void bench_repeat(double least, enum status (*run)(void *context, struct error *error), void *context,
+void bench_repeat(enum bench_clock clock, double least,
+                  enum status (*run)(void *context, struct error *error), void *context,
                   struct bench_times *times);
 
 /* Percentile (0 .. 100) of the repeats. */
 double bench_percentile(const struct bench_times *times, double percent);
 
 /* Seconds of a plain read (a sum) of that many bytes by that many threads: the quickest of several. */
-double bench_plain_read(double bytes, int threads);
+double bench_plain_read(enum bench_clock clock, double bytes, int threads);
 
 /* Print a row: times are per pair, least and percentiles in ns. */
 void bench_print(const struct bench_row *row, const struct bench_times *times);

@@ -106,7 +106,7 @@ static void bench(const char *kernel, bool text, bool write, bool pipe, int64_t 
     bench_check(fill(&way.stream, rows, &error), &error);
     bench_check(write_file(&way, &error), &error);
     off_t bytes = lseek(fileno(way.file), 0, SEEK_CUR);
-    bench_repeat(seconds, run, &way, &times);
+    bench_repeat(pipe ? BENCH_WALL : BENCH_CPU, seconds, run, &way, &times);
     snprintf(size, sizeof size, "%lld rows of 3 f8", (long long)rows);
     struct bench_row row = {.kernel = kernel,
                             .size = size,
