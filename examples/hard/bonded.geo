@@ -1,17 +1,36 @@
-// A quarter of a cylinder, radius 0.05 m, height 0.1 m: gmsh -3 -setnumber h 0.01 bonded.geo
-If (!Exists(h)) h = 0.01; EndIf
+// An eighth of a cylinder bonded to plates, radius 0.05 m, height 0.1 m, cut at its planes of symmetry:
+// gmsh -3 -setnumber h 0.009 bonded.geo; a fifth of h at the rim of the plate, where the stress is singular.
+If (!Exists(h)) h = 0.009; EndIf
 Point(1) = {0, 0, 0, h};
 Point(2) = {0.05, 0, 0, h};
 Point(3) = {0, 0.05, 0, h};
+Point(4) = {0, 0, 0.05, h};
+Point(5) = {0.05, 0, 0.05, h / 5};
+Point(6) = {0, 0.05, 0.05, h / 5};
 Line(1) = {1, 2};
 Circle(2) = {2, 1, 3};
 Line(3) = {3, 1};
+Line(4) = {4, 5};
+Circle(5) = {5, 4, 6};
+Line(6) = {6, 4};
+Line(7) = {1, 4};
+Line(8) = {2, 5};
+Line(9) = {3, 6};
 Curve Loop(1) = {1, 2, 3};
 Plane Surface(1) = {1};
-made[] = Extrude {0, 0, 0.1} { Surface{1}; };
+Curve Loop(2) = {4, 5, 6};
+Plane Surface(2) = {2};
+Curve Loop(3) = {1, 8, -4, -7};
+Plane Surface(3) = {3};
+Curve Loop(4) = {2, 9, -5, -8};
+Surface(4) = {4};
+Curve Loop(5) = {3, 7, -6, -9};
+Plane Surface(5) = {5};
+Surface Loop(1) = {1, 2, 3, 4, 5};
+Volume(1) = {1};
 Physical Volume("body", 1) = {1};
-Physical Surface("zmin", 11) = {1};
-Physical Surface("zmax", 12) = {made[0]};
-Physical Surface("ymin", 13) = {made[2]};
-Physical Surface("side", 14) = {made[3]};
-Physical Surface("xmin", 15) = {made[4]};
+Physical Surface("middle", 11) = {1};
+Physical Surface("plate", 12) = {2};
+Physical Surface("ymin", 13) = {3};
+Physical Surface("side", 14) = {4};
+Physical Surface("xmin", 15) = {5};

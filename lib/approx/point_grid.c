@@ -16,9 +16,9 @@ static int level_of(double radius, double least)
 /* Bin of a coordinate along one axis, clamped to the grid. */
 static int64_t bin_along(const struct point_grid_level *level, int axis, double x)
 {
-    double at = floor((x - level->origin[axis]) / level->bin);
+    double at = (x - level->origin[axis]) * level->per_length;
     double last = (double)(level->bins[axis] - 1);
-    return (int64_t)(at < 0.0 ? 0.0 : at > last ? last : at);
+    return (int64_t)(at > 0.0 ? (at > last ? last : at) : 0.0);
 }
 
 static int64_t bin_of(const struct point_grid *grid, const struct point_grid_level *level, const double *x)
@@ -46,6 +46,7 @@ static int64_t choose_bins(struct point_grid_level *level, int dim, const double
         }
         level->bin *= 1.25;
     }
+    level->per_length = 1.0 / level->bin;
     total = 1;
     for (int a = 0; a < 3; a++) {
         level->bins[a] = a < dim ? (int64_t)floor((upper[a] - level->origin[a]) / level->bin) + 1 : 1;
@@ -163,11 +164,13 @@ enum status index_list_reserve(struct index_list *list, int64_t count, struct er
     return STATUS_OK;
 }
 
-/* Append those of the nodes [first, last) of a level whose supports reach the box. */
+/* Append those of the nodes [first, last) of a level whose supports reach the box (or the point: low ==
+ * high).
+ */
 static inline __attribute__((always_inline)) void query_run(const struct point_grid_level *level, int dim,
-                                                            int64_t first, int64_t last, const double *low,
-                                                            const double *high, double factor,
-                                                            struct index_list *list)
+                                                            bool point, int64_t first, int64_t last,
+                                                            const double *low, const double *high,
+                                                            double factor, struct index_list *list)
 {
     int32_t *index = list->index + list->count;
     int64_t found = 0;
@@ -175,15 +178,33 @@ static inline __attribute__((always_inline)) void query_run(const struct point_g
         const double *place = level->place + i * (dim + 1);
         double radius = place[dim] * factor, distance2 = 0.0;
         for (int a = 0; a < dim; a++) {
-            double below = low[a] - place[a], above = place[a] - high[a];
-            double difference = below > above ? below : above;
-            difference = difference > 0.0 ? difference : 0.0;
+            double difference = place[a] - low[a];
+            if (!point) {
+                double below = -difference, above = place[a] - high[a];
+                difference = (below > 0.0 ? below : 0.0) + (above > 0.0 ? above : 0.0);
+            }
             distance2 += difference * difference;
         }
         index[found] = level->node[i];
         found += distance2 < radius * radius;
     }
     list->count += found;
+}
+
+/* The same for each kind. */
+static void query_any_run(const struct point_grid_level *level, int dim, int64_t first, int64_t last,
+                          const double *low, const double *high, double factor, struct index_list *list)
+{
+    bool point = low == high;
+    if (dim == 2 && point) {
+        query_run(level, 2, true, first, last, low, high, factor, list);
+    } else if (dim == 2) {
+        query_run(level, 2, false, first, last, low, high, factor, list);
+    } else if (point) {
+        query_run(level, 3, true, first, last, low, high, factor, list);
+    } else {
+        query_run(level, 3, false, first, last, low, high, factor, list);
+    }
 }
 
 static enum status query_level(const struct point_grid *grid, const struct point_grid_level *level,
@@ -200,7 +221,7 @@ static enum status query_level(const struct point_grid *grid, const struct point
         from[a] = bin_along(level, a, low[a] - reach);
         to[a] = bin_along(level, a, high[a] + reach);
     }
-    /* The bins of a row follow each other. */
+    /* The bins of a row follow each other. (Leaving out those beyond the ball costs more than it saves.) */
     for (int64_t k = from[2]; k <= to[2]; k++) {
         for (int64_t j = from[1]; j <= to[1]; j++) {
             int64_t row = (k * level->bins[1] + j) * level->bins[0];
@@ -209,11 +230,7 @@ static enum status query_level(const struct point_grid *grid, const struct point
             if (status != STATUS_OK) {
                 return status;
             }
-            if (grid->dim == 2) {
-                query_run(level, 2, first, last, low, high, factor, list);
-            } else {
-                query_run(level, 3, first, last, low, high, factor, list);
-            }
+            query_any_run(level, grid->dim, first, last, low, high, factor, list);
         }
     }
     return STATUS_OK;

@@ -12,6 +12,7 @@
 /* One octave of radii: the nodes of that level in bins of half its largest radius or more. */
 struct point_grid_level {
     double origin[3], bin; /* lower corner; edge of a bin */
+    double per_length;     /* 1 / bin */
     int64_t bins[3];       /* bins along each axis (1 beyond dim) */
     double largest_radius;
     int64_t *start; /* CSR over bins: bins[0]*bins[1]*bins[2] + 1, the first axis quickest */

@@ -5,6 +5,11 @@
 #include <math.h>
 #include <stdbool.h>
 #include <stdlib.h>
+#include <string.h>
+
+/* Rows with a pivot below this share of their diagonal entry are put last, where they are told apart from
+ * dependent ones: a small pivot among the first would spoil all that follow. */
+static const double weak_pivot = 1e-3;
 
 /* Reverse Cuthill-McKee: breadth first from a node of least degree in each component. order[i] is the old
  * row. */
@@ -51,6 +56,8 @@ static enum status fill(int64_t n, const int64_t *ptr, const int64_t *column, co
 {
     enum status status;
     int64_t *place = NULL;
+    free(factor->value);
+    factor->value = NULL;
     TRY(NEW_ARRAY(&place, n, error));
     for (int64_t i = 0; i < n; i++) {
         place[factor->order[i]] = i;
@@ -79,10 +86,145 @@ done:
     return status;
 }
 
+/* Row i of the factor, to be indexed by column. */
+static double *row_at(const struct envelope *factor, int64_t i)
+{
+    return factor->value + factor->start[i] - factor->first[i];
+}
+
+/* Entries of row i of L in the columns before `columns`, whose rows are done. */
+static void eliminate(struct envelope *factor, int64_t i, int64_t columns)
+{
+    double *row = row_at(factor, i);
+    for (int64_t k = factor->first[i]; k < columns; k++) {
+        const double *other = row_at(factor, k);
+        double sum = row[k];
+        int64_t from = factor->first[i] > factor->first[k] ? factor->first[i] : factor->first[k];
+        for (int64_t l = from; l < k; l++) {
+            sum -= row[l] * other[l];
+        }
+        row[k] = sum / other[k];
+    }
+}
+
+/* Entry (i, j), j <= i, of what is left of the matrix behind the first `columns` columns. */
+static double reduced(const struct envelope *factor, int64_t i, int64_t j, int64_t columns)
+{
+    const double *row = row_at(factor, i), *other = row_at(factor, j);
+    double sum = j >= factor->first[i] ? row[j] : 0.0;
+    int64_t from = factor->first[i] > factor->first[j] ? factor->first[i] : factor->first[j];
+    for (int64_t l = from; l < columns; l++) {
+        sum -= row[l] * other[l];
+    }
+    return sum;
+}
+
+static void drop_row(struct envelope *factor, int64_t i)
+{
+    double *row = row_at(factor, i);
+    for (int64_t l = factor->first[i]; l < i; l++) {
+        row[l] = 0.0;
+    }
+    row[i] = INFINITY;
+    factor->dropped++;
+}
+
+/* Row i of L; false, and dropped, when its pivot is below `least` times its diagonal entry. */
+static bool factor_row(struct envelope *factor, int64_t i, double least)
+{
+    double diagonal = row_at(factor, i)[i];
+    eliminate(factor, i, i);
+    double pivot = reduced(factor, i, i, i);
+    if (!(pivot > least * diagonal) || !(pivot > 0.0)) {
+        drop_row(factor, i);
+        return false;
+    }
+    row_at(factor, i)[i] = sqrt(pivot);
+    return true;
+}
+
+/* Order `count` rows by the largest remaining pivot, relative to the diagonal entries: matrix[count * count]
+ * is overwritten. Returns how many there are above `least`; these come first in order[count]. */
+static int64_t order_by_pivot(int64_t count, double *matrix, const double *diagonal, double least,
+                              int64_t *order)
+{
+    for (int64_t i = 0; i < count; i++) {
+        order[i] = i;
+    }
+    for (int64_t k = 0; k < count; k++) {
+        int64_t best = k;
+        for (int64_t i = k; i < count; i++) {
+            double pivot = matrix[order[i] * (count + 1)] / diagonal[order[i]];
+            best = pivot > matrix[order[best] * (count + 1)] / diagonal[order[best]] ? i : best;
+        }
+        int64_t row = order[best];
+        if (!(matrix[row * (count + 1)] > least * diagonal[row])) {
+            return k;
+        }
+        order[best] = order[k];
+        order[k] = row;
+        for (int64_t i = k + 1; i < count; i++) {
+            double scale = matrix[order[i] * count + row] / matrix[row * (count + 1)];
+            for (int64_t j = k + 1; j < count; j++) {
+                matrix[order[i] * count + order[j]] -= scale * matrix[row * count + order[j]];
+            }
+        }
+    }
+    return count;
+}
+
+/* Put the rows that pass 1 has dropped behind the others, those first that depend least; *kept receives how
+ * many of the n rows are independent. */
+static enum status order_weak(int64_t n, const int64_t *ptr, const int64_t *column, const double *value,
+                              double least, struct envelope *factor, int64_t *kept, struct error *error)
+{
+    enum status status;
+    int64_t count = factor->dropped, strong = 0, weak = 0;
+    int64_t *behind = NULL, *by_pivot = NULL;
+    double *matrix = NULL, *diagonal = NULL;
+    TRY(NEW_ARRAY(&behind, count, error));
+    TRY(NEW_ARRAY(&by_pivot, count, error));
+    TRY(NEW_ARRAY(&matrix, count * count, error));
+    TRY(NEW_ARRAY(&diagonal, count, error));
+    for (int64_t i = 0; i < n; i++) {
+        if (isinf(row_at(factor, i)[i])) {
+            behind[weak++] = factor->order[i];
+        } else {
+            factor->order[strong++] = factor->order[i];
+        }
+    }
+    memcpy(factor->order + strong, behind, (size_t)count * sizeof *behind);
+    TRY(fill(n, ptr, column, value, factor, error));
+    for (int64_t i = 0; i < n; i++) {
+        if (i >= strong) {
+            diagonal[i - strong] = row_at(factor, i)[i];
+            eliminate(factor, i, strong);
+        } else {
+            (void)factor_row(factor, i, 0.0);
+        }
+    }
+    for (int64_t i = 0; i < count; i++) {
+        for (int64_t j = 0; j <= i; j++) {
+            matrix[i * count + j] = matrix[j * count + i] = reduced(factor, strong + i, strong + j, strong);
+        }
+    }
+    *kept = strong + order_by_pivot(count, matrix, diagonal, least, by_pivot);
+    for (int64_t i = 0; i < count; i++) {
+        factor->order[strong + i] = behind[by_pivot[i]];
+    }
+done:
+    free(behind);
+    free(by_pivot);
+    free(matrix);
+    free(diagonal);
+    return status;
+}
+
 enum status envelope_factorise(int64_t n, const int64_t *ptr, const int64_t *column, const double *value,
                                double least, struct envelope *factor, struct error *error)
 {
     enum status status;
+    int64_t kept = n;
     *factor = (struct envelope){.n = n};
     TRY(NEW_ARRAY(&factor->order, n, error));
     TRY(NEW_ARRAY(&factor->first, n, error));
@@ -91,25 +233,17 @@ enum status envelope_factorise(int64_t n, const int64_t *ptr, const int64_t *col
     TRY(order_rows(n, ptr, column, factor->order, error));
     TRY(fill(n, ptr, column, value, factor, error));
     for (int64_t i = 0; i < n; i++) {
-        double *row = factor->value + factor->start[i] - factor->first[i];
-        double diagonal = row[i];
-        for (int64_t k = factor->first[i]; k <= i; k++) {
-            const double *other = factor->value + factor->start[k] - factor->first[k];
-            double sum = row[k];
-            int64_t from = factor->first[i] > factor->first[k] ? factor->first[i] : factor->first[k];
-            for (int64_t l = from; l < k; l++) {
-                sum -= row[l] * other[l];
-            }
-            if (k < i) {
-                row[k] = sum / other[k];
-            } else if (!(sum > least * diagonal)) {
-                for (int64_t l = factor->first[i]; l < i; l++) {
-                    row[l] = 0.0;
-                }
-                row[i] = INFINITY;
-                factor->dropped++;
+        (void)factor_row(factor, i, weak_pivot);
+    }
+    if (factor->dropped > 0) {
+        TRY(order_weak(n, ptr, column, value, least, factor, &kept, error));
+        TRY(fill(n, ptr, column, value, factor, error));
+        factor->dropped = 0;
+        for (int64_t i = 0; i < n; i++) {
+            if (i < kept) {
+                (void)factor_row(factor, i, 0.0);
             } else {
-                row[i] = sqrt(sum);
+                drop_row(factor, i);
             }
         }
     }

@@ -1,22 +1,20 @@
 #!/bin/bash
-# Row 12: a cylinder of radius .05 m and height .1 m between bonded plates, pressed by 1 % and 10 %; a quarter of it.
+# Row 12: a cylinder of radius .05 m and height .1 m between bonded plates, pressed by 1 % and 10 %; an eighth of it, finer at
+# the rim of the plate, where the stress is singular. CalculiX's axisymmetric CAX6 tends to .2820 and 3.092 N.
 . "$(dirname "$0")/common.sh"
 geometry=$(dirname "$0")/../../examples/hard/bonded.geo
 
-gmsh -3 -v 1 -setnumber h 0.009 -setnumber Mesh.RandomSeed 1 "$geometry" -o "$work/body.msh" > /dev/null
+gmsh -3 -v 1 -setnumber Mesh.RandomSeed 1 "$geometry" -o "$work/body.msh" > /dev/null
 nodes -u m "$work/body.msh" | shapefn -o "$work/table.mts" 2> /dev/null
-for case in '0.001 0.2821' '0.01 3.094'; do
-    read -r push reference <<< "$case"
+for case in '0.001 0.2821 0.005' '0.01 3.094 0.0016'; do
+    read -r push reference tolerance <<< "$case"
     scene "$work/a.scene" <<END
 [displacement symmetry]
-facets = xmin, ymin
+facets = xmin, ymin, middle
 normal = 0
-[displacement bottom]
-facets = zmin
-components = 0, 0, 0
-[displacement top]
-facets = zmax
-components = 0, 0, -$push
+[displacement plate]
+facets = plate
+components = 0, 0, $(calc "-$push / 2")
 [output]
 reactions = yes
 [solver]
@@ -24,5 +22,5 @@ tolerance = 1e-5
 END
     relax "$work/a.scene" "$work/table.mts" "$work/a.dat"
     row 12 "bonded cylinder, $(calc "$push * 1000") %: force, N ($(mts print nodes.x "$work/table.mts" | wc -l) nodes)" \
-        "$(calc "-4 * $(reaction "$work/a.dat" top 3)")" "$reference" "$(calc "0.005 / $reference")"
+        "$(calc "-4 * $(reaction "$work/a.dat" plate 3)")" "$reference" "$tolerance"
 done

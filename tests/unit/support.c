@@ -56,6 +56,66 @@ static void grid_against_brute_force(void **state)
     gsl_rng_free(random);
 }
 
+/* Lists of points in rows, which share their search in groups, and of points all over the place, where radii
+ * are constant or graded. */
+static void lists_against_brute_force(void **state)
+{
+    (void)state;
+    enum { POINTS = 700 };
+    gsl_rng *random = gsl_rng_alloc(gsl_rng_mt19937);
+    assert_non_null(random);
+    for (int dim = 2; dim <= 3; dim++) {
+        for (int kind = 0; kind < 4; kind++) { /* graded: kind & 1; all over the place: kind & 2 */
+            struct scattered cloud = scatter(dim, dim == 2 ? 20 : 8, POINTS, &places[2], 0.4, 17);
+            struct support_options options = support_defaults(dim);
+            struct point_grid grid;
+            struct support_lists lists;
+            struct error error;
+            double *radius = malloc((size_t)cloud.count * sizeof *radius);
+            assert_non_null(radius);
+            options.widen = false;
+            for (int64_t n = 0; n < cloud.count; n++) {
+                radius[n] = cloud.spacing * ((kind & 1) ? 0.2 * pow(20.0, gsl_rng_uniform(random)) : 2.1);
+            }
+            for (int64_t p = 0; p < POINTS && (kind & 2) == 0; p++) {
+                for (int a = 0; a < dim; a++) {
+                    int64_t step = a == 0 ? p % 70 : p / 70;
+                    cloud.points[p * dim + a] =
+                        1.0 + cloud.spacing * ((double)step / 7.0 + 0.01 * gsl_rng_uniform(random));
+                }
+            }
+            good(point_grid_build(&grid, dim, cloud.count, cloud.x, radius, &error), &error);
+            good(support_build(&options, &grid, POINTS, cloud.points, "points.x", &lists, &error), &error);
+            int64_t fewest = cloud.count, most = 0;
+            for (int64_t p = 0; p < POINTS; p++) {
+                int64_t at = lists.ptr[p];
+                for (int64_t n = 0; n < cloud.count; n++) {
+                    double sum = 0.0;
+                    for (int a = 0; a < dim; a++) {
+                        double d = cloud.x[n * dim + a] - cloud.points[p * dim + a];
+                        sum += d * d;
+                    }
+                    if (sum < radius[n] * radius[n]) {
+                        assert_true(at < lists.ptr[p + 1]);
+                        assert_int_equal(lists.idx[at], n);
+                        at++;
+                    }
+                }
+                assert_int_equal(at, lists.ptr[p + 1]);
+                fewest = at - lists.ptr[p] < fewest ? at - lists.ptr[p] : fewest;
+                most = at - lists.ptr[p] > most ? at - lists.ptr[p] : most;
+            }
+            assert_int_equal(lists.fewest, fewest);
+            assert_int_equal(lists.most, most);
+            free(radius);
+            support_free(&lists);
+            point_grid_free(&grid);
+            scattered_free(&cloud);
+        }
+    }
+    gsl_rng_free(random);
+}
+
 /* Queries append; nodes all at one place, or on a line, need no special care; wrong radii are refused. */
 static void grid_odd_clouds(void **state)
 {
@@ -478,6 +538,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(grid_against_brute_force),
         cmocka_unit_test(grid_odd_clouds),
+        cmocka_unit_test(lists_against_brute_force),
         cmocka_unit_test(spacing_against_brute_force),
         cmocka_unit_test(nearest_with_ties),
         cmocka_unit_test(least_neighbours),
