@@ -1,5 +1,6 @@
 #include "solid/body.h"
 
+#include "approx/renumber.h"
 #include "base/memory.h"
 #include "solid/kernel.h"
 
@@ -8,75 +9,41 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* The points of a block: its part of the table should leave room for others in the second cache. */
 static int64_t points_of_block(int dim)
 {
-    return dim == 2 ? 64 : 128;
+    return dim == 2 ? 64 : PAIRS_MAX_ROWS;
 }
 
-/* A point's place on a Morton curve, behind its material model: blocks are of one law and compact. */
-struct sort_key {
-    uint64_t model, place;
-    int64_t point;
-};
-
-static int compare_keys(const void *left, const void *right)
-{
-    const struct sort_key *a = left, *b = right;
-    if (a->model != b->model) {
-        return a->model < b->model ? -1 : 1;
-    }
-    if (a->place != b->place) {
-        return a->place < b->place ? -1 : 1;
-    }
-    return (a->point > b->point) - (a->point < b->point);
-}
-
-static uint64_t morton(int dim, const double *x, const double *low, double extent)
-{
-    uint64_t place = 0, cell[3];
-    const int bits = 20;
-    for (int a = 0; a < dim; a++) {
-        cell[a] = (uint64_t)((x[a] - low[a]) / extent * ((1 << bits) - 1));
-    }
-    for (int b = bits - 1; b >= 0; b--) {
-        for (int a = 0; a < dim; a++) {
-            place = place << 1 | (cell[a] >> b & 1);
-        }
-    }
-    return place;
-}
-
-static enum status order_points(const struct body_input *input, struct body *body, struct error *error)
+/* Points by law, so that blocks are of one, and along a curve, so that they are compact; nodes along the
+ * curve, too. */
+static enum status order_all(const struct body_input *input, struct body *body, struct error *error)
 {
     enum status status;
-    struct sort_key *keys = NULL;
-    double low[3], high, extent = 1e-300;
-    TRY(NEW_ARRAY(&keys, input->point_count, error));
+    int32_t *model = NULL;
+    TRY(NEW_ARRAY(&model, input->point_count, error));
     TRY(NEW_ARRAY(&body->order, input->point_count, error));
-    for (int a = 0; a < input->dim; a++) {
-        low[a] = INFINITY;
-        high = -INFINITY;
-        for (int64_t q = 0; q < input->point_count; q++) {
-            low[a] = fmin(low[a], input->x[q * input->dim + a]);
-            high = fmax(high, input->x[q * input->dim + a]);
-        }
-        extent = fmax(extent, high - low[a]);
-    }
+    TRY(NEW_ARRAY(&body->node_order, input->node_count, error));
+    TRY(NEW_ARRAY(&body->node_place, input->node_count, error));
     for (int64_t q = 0; q < input->point_count; q++) {
-        keys[q].model = input->materials[input->material[q]].model;
-        keys[q].place = morton(input->dim, input->x + q * input->dim, low, extent);
-        keys[q].point = q;
+        model[q] = (int32_t)input->materials[input->material[q]].model;
     }
-    qsort(keys, (size_t)input->point_count, sizeof *keys, compare_keys);
-    for (int64_t q = 0; q < input->point_count; q++) {
-        body->order[q] = keys[q].point;
+    TRY(renumber_morton(input->dim, input->point_count, input->x, model, body->order, error));
+    for (int64_t n = 0; n < input->node_count; n++) {
+        body->node_order[n] = n;
+    }
+    if (input->node_x != NULL) {
+        TRY(renumber_morton(input->dim, input->node_count, input->node_x, NULL, body->node_order, error));
+    }
+    for (int64_t n = 0; n < input->node_count; n++) {
+        body->node_place[body->node_order[n]] = (int32_t)n;
     }
 done:
-    free(keys);
+    free(model);
     return status;
 }
 
-/* Per-point data and the pairs' gradients, in the body's order. */
+/* Per-point data in the body's order. */
 static enum status copy_points(const struct body_input *input, struct body *body, struct error *error)
 {
     enum status status;
@@ -86,30 +53,23 @@ static enum status copy_points(const struct body_input *input, struct body *body
     TRY(NEW_ARRAY(&body->material, points, error));
     TRY(NEW_ARRAY(&body->shear, points + BODY_POINT_PADDING, error));
     TRY(NEW_ARRAY(&body->bulk, points, error));
-    TRY(NEW_ARRAY(&body->ptr, points + 1, error));
+    TRY(NEW_ARRAY(&body->u, body->node_count * PAIRS_STRIDE(dim), error));
     TRY(NEW_ARRAY(&body->F, points * dim * dim + BODY_POINT_PADDING, error));
     TRY(NEW_ARRAY(&body->J, points + BODY_POINT_PADDING, error));
     TRY(NEW_ARRAY(&body->materials, input->material_count, error));
     memcpy(body->materials, input->materials, (size_t)input->material_count * sizeof *body->materials);
     for (int64_t q = 0; q < points; q++) {
-        int64_t from = body->order[q], length = input->ptr[from + 1] - input->ptr[from];
+        int64_t from = body->order[q];
         const struct material *material = &input->materials[input->material[from]];
-        if (length < 1 || !(input->weight[from] > 0.0)) {
+        if (input->ptr[from + 1] <= input->ptr[from] || !(input->weight[from] > 0.0)) {
             status = fail(error, STATUS_INPUT, "points.weight: row %lld: no weight or no neighbours",
                           (long long)from);
             goto done;
         }
-        body->ptr[q + 1] = body->ptr[q] + length;
         body->weight[q] = input->weight[from];
         body->material[q] = input->material[from];
         body->shear[q] = material->shear_modulus;
         body->bulk[q] = material->bulk_modulus;
-    }
-    body->pair_count = body->ptr[points];
-    TRY(NEW_ARRAY(&body->dphi, body->pair_count * dim + 1, error));
-    for (int64_t q = 0; q < points; q++) {
-        memcpy(body->dphi + body->ptr[q] * dim, input->dphi + input->ptr[body->order[q]] * dim,
-               (size_t)((body->ptr[q + 1] - body->ptr[q]) * dim) * sizeof *body->dphi);
     }
 done:
     return status;
@@ -136,75 +96,71 @@ done:
     return status;
 }
 
-/* The nodes of each block and the pairs' local indices. */
-static enum status number_nodes(const struct body_input *input, struct body *body, struct error *error)
+/* The table of gradients, in the blocks of the points. */
+static enum status build_gradients(const struct body_input *input, struct body *body, struct error *error)
 {
     enum status status;
-    int32_t *local_of = NULL;
-    int64_t capacity = 0;
-    TRY(NEW_ARRAY(&body->local, body->pair_count, error));
-    TRY(NEW_ARRAY(&local_of, body->node_count, error));
-    for (int64_t n = 0; n < body->node_count; n++) {
-        local_of[n] = -1;
-    }
+    int64_t *first_row = NULL;
+    TRY(NEW_ARRAY(&first_row, body->block_count + 1, error));
     for (int64_t b = 0; b < body->block_count; b++) {
-        struct block *block = &body->blocks[b];
-        block->first_node = body->block_node_count;
-        for (int64_t q = block->first_point; q < block->first_point + block->point_count; q++) {
-            const int32_t *idx = input->idx + input->ptr[body->order[q]];
-            for (int64_t i = body->ptr[q]; i < body->ptr[q + 1]; i++) {
-                int32_t node = idx[i - body->ptr[q]];
-                if (local_of[node] < 0) {
-                    if (body->block_node_count == capacity) {
-                        capacity = capacity * 2 + 4096;
-                        int32_t *grown = array_grow(body->block_node, capacity, sizeof *grown);
-                        if (grown == NULL) {
-                            status = fail_memory(error, "nodes of blocks");
-                            goto done;
-                        }
-                        body->block_node = grown;
-                    }
-                    local_of[node] = (int32_t)block->node_count++;
-                    body->block_node[body->block_node_count++] = node;
-                }
-                if (local_of[node] >= BODY_MAX_BLOCK_NODES) {
-                    status = fail(error, STATUS_INPUT,
-                                  "nbr.idx: a block of points has more than 16384 neighbours: "
-                                  "supports are too large");
-                    goto done;
-                }
-                body->local[i] = (uint16_t)local_of[node];
-            }
-        }
-        for (int64_t i = 0; i < block->node_count; i++) {
-            local_of[body->block_node[block->first_node + i]] = -1;
-        }
-        if (block->node_count > body->largest_block_nodes) {
-            body->largest_block_nodes = block->node_count;
-        }
+        first_row[b] = body->blocks[b].first_point;
     }
-    TRY(NEW_ARRAY(&body->block_force, body->block_node_count * body->dim, error));
+    first_row[body->block_count] = body->point_count;
+    struct pairs_input pairs = {.dim = input->dim,
+                                .width = input->dim,
+                                .node_count = input->node_count,
+                                .row_count = input->point_count,
+                                .row = body->order,
+                                .ptr = input->ptr,
+                                .idx = input->idx,
+                                .value = input->dphi,
+                                .place = body->node_place,
+                                .block_count = body->block_count,
+                                .first_row = first_row,
+                                .single = input->single};
+    status = pairs_build(&pairs, &body->gradients, error);
 done:
-    free(local_of);
+    free(first_row);
     return status;
 }
 
-/* For each node the entries of block_force that are its own. */
-static enum status number_gather(struct body *body, struct error *error)
+/* Both tables of conforming cells must give the same gradients: tried on a field without pattern. */
+static enum status check_smoothing(struct body *body, struct error *error)
 {
     enum status status;
-    TRY(NEW_ARRAY(&body->gather_ptr, body->node_count + 2, error));
-    TRY(NEW_ARRAY(&body->gather, body->block_node_count, error));
-    for (int64_t i = 0; i < body->block_node_count; i++) {
-        body->gather_ptr[body->block_node[i] + 2]++;
+    int dim = body->dim;
+    int64_t size = body->node_count * dim;
+    double *u = NULL, *F = NULL;
+    uint64_t state = 1;
+    TRY(NEW_ARRAY(&u, size, error));
+    TRY(NEW_ARRAY(&F, body->point_count * 9, error));
+    for (int64_t i = 0; i < size; i++) {
+        state = state * 6364136223846793005u + 1442695040888963407u;
+        u[i] = (double)(state >> 11) * 0x1p-53;
     }
-    for (int64_t n = 0; n < body->node_count; n++) {
-        body->gather_ptr[n + 2] += body->gather_ptr[n + 1];
-    }
-    for (int64_t i = 0; i < body->block_node_count; i++) {
-        body->gather[body->gather_ptr[body->block_node[i] + 1]++] = (int32_t)i;
+    (void)body_energy(body, u);
+    body_gradient(body, F);
+    for (int64_t q = 0; q < body->point_count; q++) {
+        for (int a = 0; a < dim; a++) {
+            for (int b = 0; b < dim; b++) {
+                double sum = a == b ? 1.0 : 0.0, size_of_terms = 1.0;
+                for (int64_t i = body->ptr[q]; i < body->ptr[q + 1]; i++) {
+                    double term = body->dphi[i * dim + b] * u[(int64_t)body->idx[i] * dim + a];
+                    sum += term;
+                    size_of_terms += fabs(term);
+                }
+                if (!(fabs(sum - F[9 * q + 3 * a + b]) <= 1e-5 * size_of_terms)) {
+                    status = fail(error, STATUS_INPUT,
+                                  "shape.dphi: row %lld: not smoothed from face.phi: run shapefn again",
+                                  (long long)q);
+                    goto done;
+                }
+            }
+        }
     }
 done:
+    free(u);
+    free(F);
     return status;
 }
 
@@ -325,7 +281,12 @@ enum status body_build(const struct body_input *input, struct body *body, struct
                           .node_count = input->node_count,
                           .point_count = input->point_count,
                           .material_count = input->material_count,
-                          .kernels = force_kernels_select(input->dim),
+                          .ptr = input->ptr,
+                          .idx = input->idx,
+                          .dphi = input->dphi,
+                          .conforming = input->conforming != NULL,
+                          .single = input->single,
+                          .kernels = force_kernels_select(NULL, input->dim),
                           .averaged = input->hat_node != NULL,
                           .pointwise_share = input->pointwise_share,
                           .share_growth = input->share_growth};
@@ -333,14 +294,20 @@ enum status body_build(const struct body_input *input, struct body *body, struct
         return fail(error, STATUS_INPUT, "points.x: %lld points: none, or too many",
                     (long long)body->point_count);
     }
-    TRY(order_points(input, body, error));
+    TRY(order_all(input, body, error));
     TRY(copy_points(input, body, error));
     TRY(cut_blocks(body, error));
-    TRY(number_nodes(input, body, error));
-    TRY(number_gather(body, error));
+    body->pair_count = input->ptr[input->point_count];
     body->threads = worthwhile_threads(body);
     if (body->averaged) {
         TRY(build_hats(input, body, error));
+    }
+    if (!body->conforming) {
+        TRY(build_gradients(input, body, error));
+    } else {
+        TRY(conforming_build(input->conforming, input->dim, input->node_count, input->point_count,
+                             body->order, body->node_place, input->single, &body->cells, error));
+        TRY(check_smoothing(body, error));
     }
 done:
     if (status != STATUS_OK) {
@@ -351,20 +318,18 @@ done:
 
 void body_free(struct body *body)
 {
+    pairs_free(&body->gradients);
+    conforming_free(&body->cells);
     void *arrays[] = {body->order,
                       body->weight,
                       body->materials,
                       body->material,
                       body->shear,
                       body->bulk,
-                      body->ptr,
-                      body->local,
-                      body->dphi,
                       body->blocks,
-                      body->block_node,
-                      body->block_force,
-                      body->gather_ptr,
-                      body->gather,
+                      body->node_order,
+                      body->node_place,
+                      body->u,
                       body->F,
                       body->J,
                       body->hats.ptr,

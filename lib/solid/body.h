@@ -1,21 +1,22 @@
-/* A body laid out for the force loop: integration points in blocks, each with a compact list of its nodes.
- *
- * The partition depends on the input alone, never on threads: each block accumulates forces on its own nodes,
- * and each node sums its blocks' contributions in block order, so that any number of threads gives the same
- * bits. */
+/* A body laid out for the force loop: integration points in blocks of one law, in an order that keeps near
+ * ones near, and the table that makes their deformation gradients from displacements: gradients of the shape
+ * functions at the points, or where the points are conforming cells means over their faces (conforming.h).
+ * Any number of threads gives the same bits (pairs.h). */
 #ifndef SOLID_BODY_H
 #define SOLID_BODY_H
 
 #include "base/status.h"
+#include "solid/conforming.h"
 #include "solid/material.h"
 
 #include <stdbool.h>
 #include <stdint.h>
 
-/* What a body is made of, in the caller's arrays. */
+/* What a body is made of, in the caller's arrays. Those of the table, ptr, idx, dphi, must outlive it. */
 struct body_input {
     int dim; /* 2 (plane strain) or 3 */
     int64_t node_count, point_count;
+    const double *node_x; /* nodes, node_count * dim, m: for locality only; NULL: as they come */
     const double *x;      /* points, point_count * dim, m: for locality only */
     const double *weight; /* point_count, m2 or m3 */
     const int64_t *ptr;   /* point_count + 1 */
@@ -31,10 +32,10 @@ struct body_input {
     const double *hat_value; /* point_count * (dim + 1): their hat functions at the point, sum 1 */
     double pointwise_share;  /* s and c of the volumetric energy, see struct volume_hats; both >= 0 */
     double share_growth;
+    const struct conforming_input
+        *conforming; /* the points are cells, dphi smoothed over them; NULL: any points */
+    bool single;     /* keep the table in single precision; sums are double always */
 };
-
-/* The most nodes a block may hold: its displacements lie on the stack of a thread. */
-#define BODY_MAX_BLOCK_NODES 16384
 
 /* Points are worked on so many at a time; weight, shear, J and F have as many entries more, which are read
  * and not used. */
@@ -42,8 +43,9 @@ struct body_input {
 
 struct block {
     int64_t first_point, point_count; /* in the body's order */
-    int64_t first_node, node_count;   /* in block_node and block_force */
     bool neo_hookean;                 /* all its points; else the general law */
+    double least_jacobian;            /* at the last evaluation, and where, in the body's order */
+    int64_t worst_point;
 };
 
 /* Volumes to average over: hat functions of the background nodes, one for each group of
@@ -72,27 +74,28 @@ struct compatibility;
 
 struct body {
     int dim;
-    int64_t node_count, point_count, pair_count;
+    int64_t node_count, point_count;
+    int64_t pair_count; /* of point and neighbour, in the caller's table */
+    const int64_t *ptr; /* the caller's table */
+    const int32_t *idx;
+    const double *dphi;
     int64_t *order;             /* point_count: the caller's index of each point */
+    int64_t *node_order;        /* node_count: the caller's index of each node */
+    int32_t *node_place;        /* node_count: the body's index of each of the caller's nodes */
     double *weight;             /* point_count */
     struct material *materials; /* material_count, and those of mixed hats */
     int64_t material_count;
     int32_t *material;    /* point_count */
     double *shear, *bulk; /* point_count: moduli of the neo-Hookean law, Pa */
-    int64_t *ptr;         /* point_count + 1 */
-    uint16_t *local;      /* pair_count: index into the block's nodes */
-    double *dphi;         /* pair_count * dim, and one entry more, which is read and not used */
     int64_t block_count;
     struct block *blocks;
-    int64_t block_node_count;
-    int32_t *block_node; /* block_node_count */
-    double *block_force; /* block_node_count * dim: scratch */
-    int64_t largest_block_nodes;
-    int64_t *gather_ptr; /* node_count + 1: entries of block_force of each node, in block order */
-    int32_t *gather;     /* block_node_count */
-    double *F;           /* dim * dim rows of point_count: deformation gradients of the last evaluation */
-    double *J;           /* point_count */
-    bool averaged;       /* nodal volumetric averaging */
+    bool conforming, single;
+    struct pairs gradients;  /* of the shape functions at the points, in the same blocks; or */
+    struct conforming cells; /* instead */
+    double *u;               /* node_count * stride: displacements in the body's order */
+    double *F;               /* dim * dim rows of point_count: deformation gradients of the last evaluation */
+    double *J;               /* point_count */
+    bool averaged;           /* nodal volumetric averaging */
     double pointwise_share, share_growth;
     struct volume_hats hats;
     const struct force_kernels *kernels; /* for this processor */
@@ -100,8 +103,8 @@ struct body {
     int threads;                         /* worth using for so many pairs */
 };
 
-/* Lay out a body; the input arrays are copied. STATUS_INPUT for a point without neighbours or of no weight.
- */
+/* Lay out a body; but for the table the input arrays are copied. STATUS_INPUT for a point without neighbours
+ * or of no weight, and when the smoothed gradients are not those of the faces. */
 MUST_CHECK enum status body_build(const struct body_input *input, struct body *body, struct error *error);
 void body_free(struct body *body);
 

@@ -2,8 +2,11 @@
 #include "solid/compatibility.h"
 #include "solid/kernel.h"
 
+#include <math.h>
+#include <string.h>
+
 /* Room for the displacements of a block's nodes. */
-#define MAX_LOCAL (BODY_MAX_BLOCK_NODES * 4)
+#define MAX_LOCAL (PAIRS_MAX_NODES * 4)
 
 /* Volumetric pressure at a point: that of the hats around it, or its own. */
 double body_pressure(const struct body *body, int64_t point)
@@ -65,31 +68,20 @@ static bool is_tied(const struct body *body)
     return body->compatibility != NULL && body->compatibility->active;
 }
 
-/* The ties of F to the compatible gradient pull at it, too. */
-static void subtract_ties(const struct body *body, const struct block *block, block_stress P)
-{
-    int size = body->dim * body->dim;
-    for (int64_t i = 0; i < block->point_count; i++) {
-        const double *tie = body->compatibility->stress + (block->first_point + i) * size;
-        for (int k = 0; k < size; k++) {
-            P[k][i] -= tie[k];
-        }
-    }
-}
-
-/* Stresses and forces of a block. */
-static void stress_block(struct body *body, const struct block *block, double *local)
+/* Stresses of a block, and their forces on its nodes, or on the means of its cells. */
+static void stress_block(struct body *body, int64_t b)
 {
     block_stress P;
-    if (block->neo_hookean) {
-        body->kernels->neo_hookean(body, block, P);
+    if (body->blocks[b].neo_hookean) {
+        body->kernels->neo_hookean(body, b, P);
     } else {
-        general_block(body, block, P);
+        general_block(body, &body->blocks[b], P);
     }
-    if (is_tied(body)) {
-        subtract_ties(body, block, P);
+    if (body->conforming) {
+        body->kernels->cell_forces(body, b, (const double(*)[PAIRS_MAX_ROWS])P);
+    } else {
+        body->kernels->scatter(body, b, (const double(*)[PAIRS_MAX_ROWS])P);
     }
-    body->kernels->scatter(body, block, (const double(*)[MAX_BLOCK_POINTS])P, local);
 }
 
 /* Mean and variance of J over a hat. */
@@ -127,34 +119,61 @@ static void set_pressure(struct body *body, int64_t a)
     hats->pressure[a] = material_pressure(material, mean) - hats->slope[a] * mean;
 }
 
-/* The force on a node: its blocks' contributions in block order. */
-static void sum_node(const struct body *body, int64_t node, double *force)
+/* The force on a node, in the caller's order. */
+static void sum_node(const struct body *body, int64_t node, bool tied, double *force)
 {
-    int dim = body->dim;
     double sum[3] = {0.0, 0.0, 0.0};
-    for (int64_t i = body->gather_ptr[node]; i < body->gather_ptr[node + 1]; i++) {
-        const double *part = body->block_force + (int64_t)body->gather[i] * dim;
-        for (int a = 0; a < dim; a++) {
-            sum[a] += part[a];
-        }
+    pairs_sum(body->conforming ? &body->cells.faces.pairs : &body->gradients, node, sum);
+    if (tied) {
+        pairs_sum(&body->compatibility->nodes.pairs, node, sum);
     }
-    for (int a = 0; a < dim; a++) {
-        force[node * dim + a] = sum[a];
+    memcpy(force + body->node_order[node] * body->dim, sum, (size_t)body->dim * sizeof *sum);
+}
+
+/* The means that conforming cells look at, and what they put on them: loops that threads share. */
+static void gather_means(const struct body *body, struct means *means, double *local)
+{
+#pragma omp for schedule(static)
+    for (int64_t b = 0; b < means->pairs.block_count; b++) {
+        body->kernels->gather_means(means, b, body->u, local);
     }
 }
 
-/* The loops over blocks, hats and nodes. With force == NULL only F, J and the averages. */
+static void scatter_means(const struct body *body, struct means *means)
+{
+#pragma omp for schedule(static)
+    for (int64_t b = 0; b < means->pairs.block_count; b++) {
+        body->kernels->scatter_means(means, b);
+    }
+}
+
+/* The loops over blocks, hats and nodes. With force == NULL only the energies are of use. */
 static void evaluate(struct body *body, const double *u, double *force)
 {
-    bool tied = is_tied(body), at_once = force != NULL && !body->averaged && !tied;
+    bool tied = is_tied(body);
+    int dim = body->dim;
 #pragma omp parallel num_threads(body->threads)
     {
         double local[MAX_LOCAL] __attribute__((aligned(64)));
 #pragma omp for schedule(static)
+        for (int64_t n = 0; n < body->node_count; n++) {
+            memcpy(body->u + n * PAIRS_STRIDE(dim), u + body->node_order[n] * dim, (size_t)dim * sizeof *u);
+        }
+        if (body->conforming) {
+            gather_means(body, &body->cells.faces, local);
+        }
+        if (tied) {
+            gather_means(body, &body->compatibility->nodes, local);
+        }
+#pragma omp for schedule(static)
         for (int64_t b = 0; b < body->block_count; b++) {
-            body->kernels->gather(body, &body->blocks[b], u, local);
-            if (at_once) {
-                stress_block(body, &body->blocks[b], local);
+            if (body->conforming) {
+                body->kernels->cell_gradients(body, b);
+            } else {
+                body->kernels->gather(body, b, local);
+            }
+            if (!body->averaged) {
+                stress_block(body, b); /* while its part of the table is in cache */
             }
         }
         if (body->averaged) {
@@ -162,34 +181,21 @@ static void evaluate(struct body *body, const double *u, double *force)
             for (int64_t a = 0; a < body->hats.count; a++) {
                 set_pressure(body, a);
             }
-        }
-        if (tied) {
-#pragma omp for schedule(static)
-            for (int64_t n = 0; n < body->node_count; n++) {
-                compatibility_value(body, n, u);
-            }
-#pragma omp for schedule(static)
-            for (int64_t q = 0; q < body->point_count; q++) {
-                compatibility_stress(body, q);
-            }
-#pragma omp for schedule(static)
-            for (int64_t n = 0; n < body->node_count; n++) {
-                compatibility_pull(body, n);
-            }
-        }
-        if (force != NULL && !at_once) {
 #pragma omp for schedule(static)
             for (int64_t b = 0; b < body->block_count; b++) {
-                stress_block(body, &body->blocks[b], local);
+                stress_block(body, b);
             }
+        }
+        if (body->conforming) {
+            scatter_means(body, &body->cells.faces);
+        }
+        if (tied) {
+            scatter_means(body, &body->compatibility->nodes);
         }
         if (force != NULL) {
 #pragma omp for schedule(static)
             for (int64_t n = 0; n < body->node_count; n++) {
-                sum_node(body, n, force);
-                if (tied) {
-                    compatibility_add_force(body, n, force + n * body->dim);
-                }
+                sum_node(body, n, tied, force);
             }
         }
     }
@@ -200,14 +206,11 @@ struct deformation body_force(struct body *body, const double *u, double *force)
     struct deformation deformation = {.least_jacobian = INFINITY};
     int64_t worst = 0;
     evaluate(body, u, force);
-    for (int64_t q = 0; q < body->point_count; q++) {
-        /* Written so that NaN counts as the worst. */
-        if (!(body->J[q] >= deformation.least_jacobian)) {
-            deformation.least_jacobian = body->J[q];
-            worst = q;
-            if (isnan(body->J[q])) {
-                break;
-            }
+    for (int64_t b = 0; b < body->block_count && !isnan(deformation.least_jacobian); b++) {
+        if (!(body->blocks[b].least_jacobian >=
+              deformation.least_jacobian)) { /* so that NaN counts as the worst */
+            deformation.least_jacobian = body->blocks[b].least_jacobian;
+            worst = body->blocks[b].worst_point;
         }
     }
     deformation.point = body->order[worst];
@@ -255,32 +258,28 @@ void body_diagonal(const struct body *body, double *stiffness)
 {
     int dim = body->dim;
     memset(stiffness, 0, (size_t)body->node_count * sizeof *stiffness);
-    for (int64_t b = 0; b < body->block_count; b++) {
-        const struct block *block = &body->blocks[b];
-        const int32_t *node = body->block_node + block->first_node;
-        for (int64_t q = block->first_point; q < block->first_point + block->point_count; q++) {
-            double F[9], C[9], J = body->J[q], I1 = 0.0;
-            full_gradient(body, q, F);
-            cofactor(F, C);
-            for (int k = 0; k < 9; k++) {
-                I1 += F[k] * F[k];
-            }
-            double shear = body->weight[q] * body->shear[q] / cbrt(J * J);
-            double tie = is_tied(body) ? 2.0 * body->weight[q] * body->compatibility->coefficient[q] : 0.0;
-            double along = body->weight[q] * body->bulk[q] + 5.0 / 9.0 * I1 * shear / (J * J);
-            for (int64_t i = body->ptr[q]; i < body->ptr[q + 1]; i++) {
-                const double *g = body->dphi + i * dim;
-                double g2 = 0.0, y2 = 0.0; /* |grad phi|^2, |J F^-T grad phi|^2 */
-                for (int a = 0; a < dim; a++) {
-                    double y = 0.0;
-                    for (int k = 0; k < dim; k++) {
-                        y += C[3 * a + k] * g[k];
-                    }
-                    g2 += g[a] * g[a];
-                    y2 += y * y;
+    for (int64_t q = 0; q < body->point_count; q++) {
+        double F[9], C[9], J = body->J[q], I1 = 0.0;
+        full_gradient(body, q, F);
+        cofactor(F, C);
+        for (int k = 0; k < 9; k++) {
+            I1 += F[k] * F[k];
+        }
+        double shear = body->weight[q] * body->shear[q] / cbrt(J * J);
+        double tie = is_tied(body) ? 2.0 * body->weight[q] * body->compatibility->coefficient[q] : 0.0;
+        double along = body->weight[q] * body->bulk[q] + 5.0 / 9.0 * I1 * shear / (J * J);
+        for (int64_t i = body->ptr[body->order[q]]; i < body->ptr[body->order[q] + 1]; i++) {
+            const double *g = body->dphi + i * dim;
+            double g2 = 0.0, y2 = 0.0; /* |grad phi|^2, |J F^-T grad phi|^2 */
+            for (int a = 0; a < dim; a++) {
+                double y = 0.0;
+                for (int k = 0; k < dim; k++) {
+                    y += C[3 * a + k] * g[k];
                 }
-                stiffness[node[body->local[i]]] += fmax(0.0, along * y2 - shear * g2 / 3.0) + tie * g2;
+                g2 += g[a] * g[a];
+                y2 += y * y;
             }
+            stiffness[body->idx[i]] += fmax(0.0, along * y2 - shear * g2 / 3.0) + tie * g2;
         }
     }
 }

@@ -1,24 +1,70 @@
-/* The kernels compiled for each instruction set; the best is chosen at run time. */
+/* The kernels compiled for each instruction set; the best is chosen at run time. Results differ between them
+ * by round-off only (fused multiplications). */
 #include "solid/kernel.h"
 
+#include "solid/kernel_pairs.h"
+#include "solid/kernel_points.h"
+
 #define KERNEL_SET(set, dim, attribute)                                                                      \
-    attribute static void gather_##set##_##dim(struct body *body, const struct block *block,                 \
-                                               const double *u, double *local)                               \
+    attribute static void gather_##set##_##dim(struct body *body, int64_t b, double *local)                  \
     {                                                                                                        \
-        kernel_gather(body, block, dim, u, local);                                                           \
+        const struct pairs *pairs = &body->gradients;                                                        \
+        const struct pair_block *block = &pairs->blocks[b];                                                  \
+        double *F = body->F + block->first_row;                                                              \
+        localise(pairs, block, dim, body->u, local);                                                         \
+        if (pairs->value != NULL) {                                                                          \
+            kernel_gradients(pairs, block, dim, local, false, F, body->point_count);                         \
+        } else {                                                                                             \
+            kernel_gradients(pairs, block, dim, local, true, F, body->point_count);                          \
+        }                                                                                                    \
+        kernel_determinants(body, &body->blocks[b], dim);                                                    \
     }                                                                                                        \
-    attribute static void neo_hookean_##set##_##dim(const struct body *body, const struct block *block,      \
-                                                    block_stress P)                                          \
+    attribute static void scatter_##set##_##dim(struct body *body, int64_t b, const block_stress P)          \
     {                                                                                                        \
-        kernel_neo_hookean(body, block, dim, P);                                                             \
+        if (body->gradients.value != NULL) {                                                                 \
+            kernel_scatter(&body->gradients, b, dim, P, false);                                              \
+        } else {                                                                                             \
+            kernel_scatter(&body->gradients, b, dim, P, true);                                               \
+        }                                                                                                    \
     }                                                                                                        \
-    attribute static void scatter_##set##_##dim(struct body *body, const struct block *block,                \
-                                                const block_stress P, double *local)                         \
+    attribute static void gather_means_##set##_##dim(struct means *means, int64_t b, const double *u,        \
+                                                     double *local)                                          \
     {                                                                                                        \
-        kernel_scatter(body, block, dim, P, local);                                                          \
+        if (means->pairs.value != NULL) {                                                                    \
+            kernel_gather_means(means, b, dim, u, local, false);                                             \
+        } else {                                                                                             \
+            kernel_gather_means(means, b, dim, u, local, true);                                              \
+        }                                                                                                    \
     }                                                                                                        \
-    static const struct force_kernels kernels_##set##_##dim = {                                              \
-        #set, gather_##set##_##dim, neo_hookean_##set##_##dim, scatter_##set##_##dim};
+    attribute static void scatter_means_##set##_##dim(struct means *means, int64_t b)                        \
+    {                                                                                                        \
+        if (means->pairs.value != NULL) {                                                                    \
+            kernel_scatter_means(means, b, dim, false);                                                      \
+        } else {                                                                                             \
+            kernel_scatter_means(means, b, dim, true);                                                       \
+        }                                                                                                    \
+    }                                                                                                        \
+    attribute static void cell_gradients_##set##_##dim(struct body *body, int64_t b)                         \
+    {                                                                                                        \
+        kernel_cell_gradients(body, &body->blocks[b], dim);                                                  \
+    }                                                                                                        \
+    attribute static void cell_forces_##set##_##dim(struct body *body, int64_t b, const block_stress P)      \
+    {                                                                                                        \
+        kernel_cell_forces(body, &body->blocks[b], dim, P);                                                  \
+    }                                                                                                        \
+    attribute static void neo_hookean_##set##_##dim(const struct body *body, int64_t b, block_stress P)      \
+    {                                                                                                        \
+        kernel_neo_hookean(body, &body->blocks[b], dim, P);                                                  \
+    }                                                                                                        \
+    static const struct force_kernels kernels_##set##_##dim = {.name = #set,                                 \
+                                                               .gather = gather_##set##_##dim,               \
+                                                               .scatter = scatter_##set##_##dim,             \
+                                                               .gather_means = gather_means_##set##_##dim,   \
+                                                               .scatter_means = scatter_means_##set##_##dim, \
+                                                               .cell_gradients =                             \
+                                                                   cell_gradients_##set##_##dim,             \
+                                                               .cell_forces = cell_forces_##set##_##dim,     \
+                                                               .neo_hookean = neo_hookean_##set##_##dim};
 
 #define NO_ATTRIBUTE
 KERNEL_SET(plain, 2, NO_ATTRIBUTE)
@@ -33,17 +79,25 @@ KERNEL_SET(avx512, 2, AVX512)
 KERNEL_SET(avx512, 3, AVX512)
 #endif
 
-const struct force_kernels *force_kernels_select(int dim)
+const struct force_kernels *force_kernels_select(const char *name, int dim)
 {
+    const struct force_kernels *sets[3];
+    int count = 0;
 #if defined(__x86_64__)
     __builtin_cpu_init();
     if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
         __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512bw")) {
-        return dim == 2 ? &kernels_avx512_2 : &kernels_avx512_3;
+        sets[count++] = dim == 2 ? &kernels_avx512_2 : &kernels_avx512_3;
     }
     if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) {
-        return dim == 2 ? &kernels_avx2_2 : &kernels_avx2_3;
+        sets[count++] = dim == 2 ? &kernels_avx2_2 : &kernels_avx2_3;
     }
 #endif
-    return dim == 2 ? &kernels_plain_2 : &kernels_plain_3;
+    sets[count++] = dim == 2 ? &kernels_plain_2 : &kernels_plain_3;
+    for (int i = 0; i < count; i++) {
+        if (name == NULL || strcmp(sets[i]->name, name) == 0) {
+            return sets[i];
+        }
+    }
+    return NULL;
 }

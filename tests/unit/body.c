@@ -2,6 +2,7 @@
  * linear fields, the same bits from any number of threads, and inversion told where it is. */
 #include "body_fixture.h"
 
+#include "solid/compatibility.h"
 #include "solid/kernel.h"
 
 #include <omp.h>
@@ -12,7 +13,10 @@ enum { MATERIALS = 3 };
 struct setup {
     bool averaged;
     double share, growth; /* pointwise */
-    int model_count;      /* points take the models in turn, by their place */
+    bool faces;           /* conforming cells: by means over faces, not by the table of gradients */
+    bool tied;            /* and to the gradients of the node values */
+    bool single;
+    int model_count; /* points take the models in turn, by their place */
     struct material material[MATERIALS];
 };
 
@@ -45,10 +49,35 @@ static int32_t material_at(const struct sample *sample, const struct setup *setu
     return (int32_t)(sample->x[q * sample->dim] / sample_size * setup->model_count);
 }
 
+/* Ties of every strength, and none in some cells. */
+static struct compatibility *tie(const struct sample *sample, const struct body *body)
+{
+    struct error error;
+    struct compatibility *ties = sample_array(1, sizeof *ties);
+    struct compatibility_input input = {sample->cells.node, sample->node_lists.ptr, sample->node_lists.idx,
+                                        sample->node_phi};
+    GOOD(compatibility_build(body, &input, ties, &error));
+    for (int64_t q = 0; q < body->point_count; q++) {
+        ties->coefficient[q] = 300.0 * (double)(body->order[q] % 5);
+    }
+    ties->active = true;
+    return ties;
+}
+
+static void drop_body(struct body *body)
+{
+    if (body->compatibility != NULL) {
+        compatibility_free(body->compatibility);
+        free(body->compatibility);
+    }
+    body_free(body);
+}
+
 static struct body make_body(const struct sample *sample, const struct setup *setup)
 {
     struct body body;
     struct error error;
+    struct conforming_input conforming = sample_conforming(sample);
     int32_t *material = sample_array(sample->point_count, sizeof *material);
     for (int64_t q = 0; q < sample->point_count; q++) {
         material[q] = material_at(sample, setup, q);
@@ -56,6 +85,9 @@ static struct body make_body(const struct sample *sample, const struct setup *se
     struct body_input input = {.dim = sample->dim,
                                .node_count = sample->cloud.node_count,
                                .point_count = sample->point_count,
+                               .node_x = sample->cloud.x,
+                               .conforming = setup->faces ? &conforming : NULL,
+                               .single = setup->single,
                                .x = sample->x,
                                .weight = sample->weight,
                                .ptr = sample->ptr,
@@ -69,6 +101,9 @@ static struct body make_body(const struct sample *sample, const struct setup *se
                                .pointwise_share = setup->share,
                                .share_growth = setup->growth};
     GOOD(body_build(&input, &body, &error));
+    if (setup->tied) {
+        body.compatibility = tie(sample, &body);
+    }
     free(material);
     return body;
 }
@@ -141,6 +176,13 @@ static void for_all(void (*check)(const struct sample *, const struct setup *, s
             setup.growth = 20.0;
             check(&samples[i], &setup, &random);
         }
+        for (int kind = 0; kind < 4 && samples[i].conforming; kind++) {
+            struct setup setup = three_materials(kind % 2 == 1, 0.1);
+            setup.growth = 3.0;
+            setup.faces = true;
+            setup.tied = kind >= 2;
+            check(&samples[i], &setup, &random);
+        }
     }
 }
 
@@ -174,7 +216,7 @@ static void check_rigid_motion(const struct sample *sample, const struct setup *
         free(u);
     }
     free(force);
-    body_free(&body);
+    drop_body(&body);
 }
 
 static void rigid_motion(void **state)
@@ -222,7 +264,7 @@ static void check_gradient(const struct sample *sample, const struct setup *setu
     free(u);
     free(at);
     free(force);
-    body_free(&body);
+    drop_body(&body);
 }
 
 static void force_is_gradient(void **state)
@@ -258,7 +300,7 @@ static void check_balance(const struct sample *sample, const struct setup *setup
     }
     free(u);
     free(force);
-    body_free(&body);
+    drop_body(&body);
 }
 
 static void balance(void **state)
@@ -308,7 +350,7 @@ static void check_linear(const struct sample *sample, const struct setup *setup,
     free(F);
     free(P);
     free(force);
-    body_free(&body);
+    drop_body(&body);
 }
 
 static void linear_fields(void **state)
@@ -352,7 +394,7 @@ static void patch(void **state)
             free(u);
             free(force);
             free(outer);
-            body_free(&body);
+            drop_body(&body);
         }
         sample_free(&sample);
     }
@@ -383,7 +425,7 @@ static void check_threads(const struct sample *sample, const struct setup *setup
             NEAR_TO(body_energy(&body, u), energy, 0.0);
         }
         free(force);
-        body_free(&body);
+        drop_body(&body);
     }
     omp_set_num_threads(before);
     free(first);
@@ -396,65 +438,22 @@ static void threads(void **state)
     for_all(check_threads);
 }
 
-/* The kernels as compiled here, for each instruction set that this processor has. */
-#define TEST_KERNELS(set, dim, attribute)                                                                    \
-    attribute static void gather_##set##dim(struct body *body, const struct block *block, const double *u,   \
-                                            double *local)                                                   \
-    {                                                                                                        \
-        kernel_gather(body, block, dim, u, local);                                                           \
-    }                                                                                                        \
-    attribute static void neo_hookean_##set##dim(const struct body *body, const struct block *block,         \
-                                                 block_stress P)                                             \
-    {                                                                                                        \
-        kernel_neo_hookean(body, block, dim, P);                                                             \
-    }                                                                                                        \
-    attribute static void scatter_##set##dim(struct body *body, const struct block *block,                   \
-                                             const block_stress P, double *local)                            \
-    {                                                                                                        \
-        kernel_scatter(body, block, dim, P, local);                                                          \
-    }                                                                                                        \
-    static const struct force_kernels test_##set##dim = {#set, gather_##set##dim, neo_hookean_##set##dim,    \
-                                                         scatter_##set##dim};
-TEST_KERNELS(plain, 2, )
-TEST_KERNELS(plain, 3, )
-#if defined(__x86_64__)
-#define TARGET(names) __attribute__((target(names)))
-TEST_KERNELS(avx2, 2, TARGET("avx2,fma"))
-TEST_KERNELS(avx2, 3, TARGET("avx2,fma"))
-TEST_KERNELS(avx512, 2, TARGET("avx512f,avx512dq,avx512vl,avx512bw,avx2,fma"))
-TEST_KERNELS(avx512, 3, TARGET("avx512f,avx512dq,avx512vl,avx512bw,avx2,fma"))
-#endif
-
-/* Up to 3 sets of kernels; returns their number. */
-static int kernels_here(int dim, const struct force_kernels *kernels[3])
-{
-    int count = 0;
-    kernels[count++] = dim == 2 ? &test_plain2 : &test_plain3;
-#if defined(__x86_64__)
-    __builtin_cpu_init();
-    if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) {
-        kernels[count++] = dim == 2 ? &test_avx22 : &test_avx23;
-    }
-    if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
-        __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512bw")) {
-        kernels[count++] = dim == 2 ? &test_avx5122 : &test_avx5123;
-    }
-#endif
-    return count;
-}
-
 /* Whatever the instructions: the same forces but for round-off. */
 static void check_instructions(const struct sample *sample, const struct setup *setup, struct random *random)
 {
     int64_t count = sample->cloud.node_count * sample->dim;
-    const struct force_kernels *kernels[3];
-    int sets = kernels_here(sample->dim, kernels);
+    static const char *const sets[] = {"plain", "avx2", "avx512"};
     struct body body = make_body(sample, setup);
     double *force = sample_array(count, sizeof *force), *expected = sample_array(count, sizeof *expected);
     double *u = deformed_field(sample, &body, force, random);
     (void)body_force(&body, u, expected);
-    for (int k = 0; k < sets; k++) {
-        body.kernels = kernels[k];
+    for (int k = 0; k < 3; k++) {
+        const struct force_kernels *kernels = force_kernels_select(sets[k], sample->dim);
+        if (kernels == NULL) {
+            assert_int_not_equal(k, 0); /* one for every processor */
+            continue;
+        }
+        body.kernels = kernels;
         (void)body_force(&body, u, force);
         for (int64_t i = 0; i < count; i++) {
             NEAR_TO(force[i], expected[i], 1e-12 * largest(expected, count));
@@ -463,13 +462,85 @@ static void check_instructions(const struct sample *sample, const struct setup *
     free(u);
     free(force);
     free(expected);
-    body_free(&body);
+    drop_body(&body);
 }
 
 static void instructions(void **state)
 {
     (void)state;
     for_all(check_instructions);
+}
+
+/* Conforming cells by means over their faces: what the table of gradients gives, but for round-off. */
+static void faces(void **state)
+{
+    (void)state;
+    struct random random = {11};
+    for (int i = 0; i < 4; i += 2) {
+        for (int kind = 0; kind < 2; kind++) {
+            const struct sample *sample = &samples[i];
+            struct setup setup = three_materials(kind == 1, 0.1);
+            int64_t count = sample->cloud.node_count * sample->dim, size = sample->point_count * 9;
+            struct body by_table = make_body(sample, &setup);
+            setup.faces = true;
+            struct body by_faces = make_body(sample, &setup);
+            double *force = sample_array(count, sizeof *force),
+                   *expected = sample_array(count, sizeof *expected);
+            double *F = sample_array(size, sizeof *F), *F_expected = sample_array(size, sizeof *F_expected);
+            double *u = deformed_field(sample, &by_table, expected, &random);
+            struct deformation least = body_force(&by_table, u, expected),
+                               other = body_force(&by_faces, u, force);
+            body_gradient(&by_table, F_expected);
+            body_gradient(&by_faces, F);
+            for (int64_t k = 0; k < size; k++) {
+                NEAR_TO(F[k], F_expected[k], 1e-12);
+            }
+            for (int64_t k = 0; k < count; k++) {
+                NEAR_TO(force[k], expected[k], 1e-12 * largest(expected, count));
+            }
+            NEAR_TO(least.least_jacobian, other.least_jacobian, 1e-12);
+            assert_int_equal(least.point, other.point);
+            double energy = body_energy(&by_table, u);
+            NEAR_TO(body_energy(&by_faces, u), energy, 1e-12 * energy);
+            free(u);
+            free(F);
+            free(F_expected);
+            free(force);
+            free(expected);
+            drop_body(&by_table);
+            drop_body(&by_faces);
+        }
+    }
+}
+
+/* Tables in single precision: forces as in double to 1e-5. */
+static void check_single(const struct sample *sample, const struct setup *setup, struct random *random)
+{
+    int64_t count = sample->cloud.node_count * sample->dim;
+    struct setup narrow = *setup;
+    narrow.single = true;
+    struct body body = make_body(sample, setup), narrowed = make_body(sample, &narrow);
+    double *force = sample_array(count, sizeof *force), *expected = sample_array(count, sizeof *expected);
+    double *u = deformed_field(sample, &body, expected, random), most = 0.0;
+    (void)body_force(&body, u, expected);
+    (void)body_force(&narrowed, u, force);
+    for (int64_t k = 0; k < count; k++) {
+        NEAR_TO(force[k], expected[k], 1e-5 * largest(expected, count));
+        most = fmax(most, fabs(force[k] - expected[k]));
+    }
+    assert_true(most > 0.0); /* it is another table */
+    NEAR_TO(body_energy(&narrowed, u), body_energy(&body, u), 1e-5 * body_energy(&body, u));
+    free(u);
+    free(force);
+    free(expected);
+    drop_body(&body);
+    drop_body(&narrowed);
+}
+
+static void single_precision(void **state)
+{
+    (void)state;
+    for_all(check_single);
 }
 
 /* Keeping the whole volume pointwise is the same as not averaging, where U is a square. */
@@ -493,8 +564,8 @@ static void whole_share(void **state)
         free(u);
         free(force);
         free(expected);
-        body_free(&one);
-        body_free(&other);
+        drop_body(&one);
+        drop_body(&other);
     }
 }
 
@@ -526,7 +597,7 @@ static void hats(void **state)
         NEAR_TO(deformed, expected, 1e-15);
         assert_true(body.hats.count > sample.cloud.node_count); /* some nodes lie between materials */
         free(u);
-        body_free(&body);
+        drop_body(&body);
         sample_free(&sample);
     }
 }
@@ -571,7 +642,7 @@ static void diagonal(void **state)
         free(bound);
         free(u);
         free(force);
-        body_free(&body);
+        drop_body(&body);
     }
 }
 
@@ -617,13 +688,45 @@ static void check_inversion(const struct sample *sample, const struct setup *set
     free(u);
     free(F);
     free(force);
-    body_free(&body);
+    drop_body(&body);
 }
 
 static void inversion(void **state)
 {
     (void)state;
     for_all(check_inversion);
+}
+
+/* A table of gradients that is not that of the faces. */
+static void fault_of_smoothing(void)
+{
+    struct body body;
+    struct error error;
+    struct setup setup = one_material(MATERIAL_NEO_HOOKEAN, false, 1.0);
+    struct sample *sample = &samples[0];
+    struct conforming_input conforming = sample_conforming(sample);
+    int32_t *material = sample_array(sample->point_count, sizeof *material);
+    struct body_input input = {.dim = 2,
+                               .node_count = sample->cloud.node_count,
+                               .point_count = sample->point_count,
+                               .x = sample->x,
+                               .weight = sample->weight,
+                               .ptr = sample->ptr,
+                               .idx = sample->idx,
+                               .dphi = sample->dphi,
+                               .materials = setup.material,
+                               .material = material,
+                               .material_count = 1,
+                               .conforming = &conforming};
+    double *changed = &sample->dphi[2 * sample->ptr[7]], before = *changed;
+    *changed += 1.0;
+    assert_int_equal(body_build(&input, &body, &error), STATUS_INPUT);
+    assert_string_equal(error.text, "shape.dphi: row 7: not smoothed from face.phi: run shapefn again");
+    *changed = before;
+    conforming.face_count--;
+    assert_int_equal(body_build(&input, &body, &error), STATUS_INPUT);
+    assert_non_null(strstr(error.text, "lacks a face: run ipoints for conforming cells"));
+    free(material);
 }
 
 static void faults(void **state)
@@ -656,10 +759,11 @@ static void faults(void **state)
     assert_string_equal(error.text, "points.weight: row 0: no weight or no neighbours");
     weight[0] = 1.0;
     GOOD(body_build(&input, &body, &error));
-    body_free(&body);
+    drop_body(&body);
     input.point_count = 0;
     assert_int_equal(body_build(&input, &body, &error), STATUS_INPUT);
     assert_string_equal(error.text, "points.x: 0 points: none, or too many");
+    fault_of_smoothing();
 }
 
 int main(void)
@@ -669,6 +773,7 @@ int main(void)
         cmocka_unit_test(balance),      cmocka_unit_test(linear_fields),
         cmocka_unit_test(patch),        cmocka_unit_test(threads),
         cmocka_unit_test(instructions), cmocka_unit_test(whole_share),
+        cmocka_unit_test(faces),        cmocka_unit_test(single_precision),
         cmocka_unit_test(hats),         cmocka_unit_test(diagonal),
         cmocka_unit_test(inversion),    cmocka_unit_test(faults),
     };

@@ -9,6 +9,7 @@
 #include "approx/cloud.h"
 #include "approx/quadrature.h"
 #include "approx/support.h"
+#include "solid/conforming.h"
 
 struct sample {
     int dim;
@@ -30,6 +31,9 @@ struct sample {
     int32_t *hat_node;
     int64_t *ptr;
     int32_t *idx;
+    /* Values at the nodes. */
+    struct support_lists node_lists;
+    double *node_phi;
 };
 
 static const double sample_size = 0.1;
@@ -109,6 +113,33 @@ static inline void sample_points(struct sample *sample, int per_cell)
     }
 }
 
+static inline void sample_nodes(struct sample *sample)
+{
+    struct error error;
+    GOOD(support_build(&sample->options, &sample->grid, sample->cloud.node_count, sample->cloud.x, "nodes",
+                       &sample->node_lists, &error));
+    struct neighbours neighbours = {sample->cloud.node_count, sample->node_lists.ptr, sample->node_lists.idx,
+                                    sample->node_lists.widen};
+    sample->node_phi = sample_array(sample->node_lists.ptr[sample->cloud.node_count], sizeof(double));
+    GOOD(shape_table(&sample->options.mls, sample->cloud.x, sample->radius, &neighbours, sample->cloud.x,
+                     "nodes", sample->node_phi, NULL, &error));
+}
+
+/* What a body of conforming cells is made of. */
+static inline struct conforming_input sample_conforming(const struct sample *sample)
+{
+    return (struct conforming_input){.x = sample->cloud.x,
+                                     .cell_node = sample->cells.node,
+                                     .face_count = sample->faces.count,
+                                     .face_node = sample->faces.node,
+                                     .face_cell = sample->faces.cell,
+                                     .per_face = sample->face_rule.points,
+                                     .face_weight = sample->face_rule.weight,
+                                     .face_ptr = sample->face_lists.ptr,
+                                     .face_idx = sample->face_lists.idx,
+                                     .face_phi = sample->face_phi};
+}
+
 /* factor: support radius over local spacing. */
 static inline struct sample make_wide_sample(int dim, bool conforming, int64_t per_axis, double factor)
 {
@@ -134,6 +165,7 @@ static inline struct sample make_wide_sample(int dim, bool conforming, int64_t p
     free(spacing);
     sample_faces(&sample);
     sample_points(&sample, conforming ? 1 : dim == 2 ? 3 : 4);
+    sample_nodes(&sample);
     return sample;
 }
 
@@ -155,6 +187,8 @@ static inline void sample_free(struct sample *sample)
     free(sample->dphi);
     free(sample->ptr);
     free(sample->idx);
+    free(sample->node_phi);
+    support_free(&sample->node_lists);
     support_free(&sample->face_lists);
     point_grid_free(&sample->grid);
     faces_free(&sample->faces);

@@ -1,5 +1,6 @@
 #include "model.h"
 
+#include "approx/quadrature.h"
 #include "io/table.h"
 
 #include <math.h>
@@ -183,7 +184,19 @@ static enum status build_body(const struct model_input *input, struct solid_syst
                         hat_value + q * corners);
         }
     }
+    struct quadrature_rule rule = quadrature_face_rule(dim);
+    struct conforming_input conforming = {.x = input->cells.x,
+                                          .cell_node = input->cells.node,
+                                          .face_count = input->faces.count,
+                                          .face_node = input->faces.node,
+                                          .face_cell = input->faces.cell,
+                                          .per_face = rule.points,
+                                          .face_weight = rule.weight,
+                                          .face_ptr = input->face_lists.ptr,
+                                          .face_idx = input->face_lists.idx,
+                                          .face_phi = input->face_phi};
     struct body_input body = {.dim = dim,
+                              .node_x = input->cells.x,
                               .node_count = input->cells.node_count,
                               .point_count = count,
                               .x = input->points->data,
@@ -199,11 +212,11 @@ static enum status build_body(const struct model_input *input, struct solid_syst
                               .hat_value = hat_value,
                               .pointwise_share = solver->pointwise_share >= 0.0 ? solver->pointwise_share
                                                                                 : default_pointwise_share,
-                              .share_growth = share_growth};
+                              .share_growth = share_growth,
+                              .conforming = has_conforming_cells(input) ? &conforming : NULL};
     TRY(body_build(&body, &system->body, error));
     if (has_conforming_cells(input)) {
-        struct compatibility_input compatibility = {.x = input->cells.x,
-                                                    .cell_node = input->cells.node,
+        struct compatibility_input compatibility = {.cell_node = input->cells.node,
                                                     .node_ptr = input->node_lists.ptr,
                                                     .node_idx = input->node_lists.idx,
                                                     .node_phi = input->node_phi};

@@ -1,0 +1,15 @@
+/* Orders that keep near things near: nodes and points in the order of a Morton curve, so that what a stretch
+ * of the order works on lies close together in memory. */
+#ifndef APPROX_RENUMBER_H
+#define APPROX_RENUMBER_H
+
+#include "base/status.h"
+
+#include <stdint.h>
+
+/* order[count]: the given index of each place, along a Morton curve through x[count * dim]; equal places in
+ * the order given. With group[count] (else NULL) all of a lower group come before a higher one. */
+MUST_CHECK enum status renumber_morton(int dim, int64_t count, const double *x, const int32_t *group,
+                                       int64_t *order, struct error *error);
+
+#endif

@@ -1,0 +1,196 @@
+#include "solid/conforming.h"
+
+#include "approx/renumber.h"
+#include "base/memory.h"
+#include "solid/body.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* Gradients of the hat functions 1 .. dim of a simplex, dim x dim. */
+static void hat_gradients(int dim, const double *x, const int32_t *vertex, double *gradient)
+{
+    double F[9] = {1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0}, C[9];
+    for (int k = 0; k < dim; k++) {
+        for (int a = 0; a < dim; a++) {
+            F[3 * a + k] = x[(int64_t)vertex[k + 1] * dim + a] - x[(int64_t)vertex[0] * dim + a];
+        }
+    }
+    double J = determinant(F);
+    cofactor(F, C); /* C / J = F^-T: its columns are the gradients of hats 1 .. dim */
+    for (int k = 0; k < dim; k++) {
+        for (int a = 0; a < dim; a++) {
+            gradient[k * dim + a] = C[3 * a + k] / J;
+        }
+    }
+}
+
+static enum status set_hats(const struct conforming_input *input, int dim, int64_t cell_count,
+                            const int64_t *order, struct conforming *conforming, struct error *error)
+{
+    enum status status;
+    TRY(NEW_ARRAY(&conforming->hat, cell_count * dim * dim + BODY_POINT_PADDING, error));
+    for (int64_t q = 0; q < cell_count; q++) {
+        double gradient[9];
+        hat_gradients(dim, input->x, input->cell_node + order[q] * (dim + 1), gradient);
+        for (int k = 0; k < dim * dim; k++) {
+            conforming->hat[k * cell_count + q] = gradient[k];
+        }
+    }
+done:
+    return status;
+}
+
+/* Lists of the faces, the union of those of their quadrature points, with the means. */
+struct face_means {
+    int64_t *ptr;
+    int32_t *idx;
+    double *phi;
+};
+
+static enum status average_faces(const struct conforming_input *input, int64_t node_count,
+                                 struct face_means *means, struct error *error)
+{
+    enum status status;
+    int64_t most = input->face_ptr[input->face_count * input->per_face];
+    int64_t *at = NULL; /* where each node stands in the lists */
+    TRY(NEW_ARRAY(&at, node_count, error));
+    TRY(NEW_ARRAY(&means->ptr, input->face_count + 1, error));
+    TRY(NEW_ARRAY(&means->idx, most, error));
+    TRY(NEW_ARRAY(&means->phi, most, error));
+    for (int64_t n = 0; n < node_count; n++) {
+        at[n] = -1;
+    }
+    for (int64_t f = 0; f < input->face_count; f++) {
+        int64_t first = means->ptr[f], end = first;
+        for (int64_t p = f * input->per_face; p < (f + 1) * input->per_face; p++) {
+            for (int64_t i = input->face_ptr[p]; i < input->face_ptr[p + 1]; i++) {
+                int32_t node = input->face_idx[i];
+                if (at[node] < first) {
+                    means->idx[end] = node;
+                    at[node] = end++;
+                }
+                means->phi[at[node]] += input->face_weight[p % input->per_face] * input->face_phi[i];
+            }
+        }
+        means->ptr[f + 1] = end;
+    }
+done:
+    free(at);
+    return status;
+}
+
+/* Faces in an order that keeps near ones near. */
+static enum status order_faces(const struct conforming_input *input, int dim, int64_t *order,
+                               struct error *error)
+{
+    enum status status;
+    double *x = NULL;
+    TRY(NEW_ARRAY(&x, input->face_count * dim, error));
+    for (int64_t i = 0; i < input->face_count * dim * dim; i++) {
+        int64_t f = i / (dim * dim), k = i / dim % dim, a = i % dim;
+        x[f * dim + a] += input->x[(int64_t)input->face_node[f * dim + k] * dim + a] / dim;
+    }
+    TRY(renumber_morton(dim, input->face_count, x, NULL, order, error));
+done:
+    free(x);
+    return status;
+}
+
+/* Corner of a cell that is opposite a face: the one whose vertex the face has not. */
+static int opposite_corner(int dim, const int32_t *vertex, const int32_t *face)
+{
+    for (int k = 0; k < dim; k++) {
+        bool on_face = false;
+        for (int i = 0; i < dim; i++) {
+            on_face = on_face || face[i] == vertex[k];
+        }
+        if (!on_face) {
+            return k;
+        }
+    }
+    return dim;
+}
+
+/* Row of the face opposite each corner. */
+static enum status match_corners(const struct conforming_input *input, int dim, int64_t cell_count,
+                                 const int64_t *order, const int64_t *face_order, int32_t *of_corner,
+                                 struct error *error)
+{
+    enum status status;
+    int64_t *cell_place = NULL;
+    TRY(NEW_ARRAY(&cell_place, cell_count, error));
+    for (int64_t q = 0; q < cell_count; q++) {
+        cell_place[order[q]] = q;
+    }
+    for (int64_t i = 0; i < cell_count * (dim + 1); i++) {
+        of_corner[i] = -1;
+    }
+    for (int64_t r = 0; r < input->face_count; r++) {
+        const int32_t *cell = input->face_cell + 2 * face_order[r];
+        for (int side = 0; side < 2; side++) {
+            if (cell[side] < 0 || cell[side] >= cell_count) {
+                continue;
+            }
+            int corner = opposite_corner(dim, input->cell_node + (int64_t)cell[side] * (dim + 1),
+                                         input->face_node + face_order[r] * dim);
+            of_corner[cell_place[cell[side]] * (dim + 1) + corner] = (int32_t)r;
+        }
+    }
+    for (int64_t i = 0; i < cell_count * (dim + 1); i++) {
+        if (of_corner[i] < 0) {
+            status = fail(error, STATUS_INPUT,
+                          "faces.cell: cell %lld lacks a face: run ipoints for conforming cells",
+                          (long long)order[i / (dim + 1)]);
+            goto done;
+        }
+    }
+done:
+    free(cell_place);
+    return status;
+}
+
+enum status conforming_build(const struct conforming_input *input, int dim, int64_t node_count,
+                             int64_t cell_count, const int64_t *order, const int32_t *place, bool single,
+                             struct conforming *conforming, struct error *error)
+{
+    enum status status;
+    struct face_means means = {0};
+    int64_t *face_order = NULL;
+    int32_t *of_corner = NULL;
+    *conforming = (struct conforming){0};
+    TRY(set_hats(input, dim, cell_count, order, conforming, error));
+    TRY(NEW_ARRAY(&face_order, input->face_count, error));
+    TRY(NEW_ARRAY(&of_corner, cell_count * (dim + 1), error));
+    TRY(order_faces(input, dim, face_order, error));
+    TRY(match_corners(input, dim, cell_count, order, face_order, of_corner, error));
+    TRY(average_faces(input, node_count, &means, error));
+    struct pairs_input pairs = {.dim = dim,
+                                .width = 1,
+                                .node_count = node_count,
+                                .row_count = input->face_count,
+                                .row = face_order,
+                                .ptr = means.ptr,
+                                .idx = means.idx,
+                                .value = means.phi,
+                                .place = place,
+                                .single = single};
+    TRY(means_build(&pairs, cell_count * (dim + 1), of_corner, &conforming->faces, error));
+done:
+    free(means.ptr);
+    free(means.idx);
+    free(means.phi);
+    free(face_order);
+    free(of_corner);
+    if (status != STATUS_OK) {
+        conforming_free(conforming);
+    }
+    return status;
+}
+
+void conforming_free(struct conforming *conforming)
+{
+    means_free(&conforming->faces);
+    free(conforming->hat);
+    *conforming = (struct conforming){0};
+}

@@ -1,0 +1,145 @@
+#include "problem.h"
+
+#include "approx/quadrature.h"
+#include "base/memory.h"
+
+#include <malloc.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Bytes that the program has allocated. */
+double problem_heap_bytes(void)
+{
+    struct mallinfo2 info = mallinfo2();
+    return (double)info.uordblks + (double)info.hblkhd;
+}
+
+/* Lists as the tool support makes them: the grid belongs to it. */
+enum status problem_support(void *context, struct error *error)
+{
+    enum status status;
+    struct problem *problem = context;
+    struct point_grid grid = {0};
+    support_free(&problem->lists);
+    TRY(point_grid_build(&grid, problem->cloud.dim, problem->cloud.node_count, problem->cloud.x,
+                         problem->radius, error));
+    TRY(support_build(&problem->options, &grid, problem->point_count, problem->points, "points.x",
+                      &problem->lists, error));
+done:
+    point_grid_free(&grid);
+    return status;
+}
+
+static struct neighbours view_of(const struct problem *problem)
+{
+    return (struct neighbours){problem->point_count, problem->lists.ptr, problem->lists.idx,
+                               problem->lists.widen};
+}
+
+/* The table, allocated with the first run. */
+static enum status run_shape(struct problem *problem, bool gradients, struct error *error)
+{
+    enum status status;
+    int64_t pairs = problem->lists.ptr[problem->point_count];
+    struct neighbours lists = view_of(problem);
+    if (problem->phi == NULL) {
+        TRY(NEW_ARRAY(&problem->phi, pairs, error));
+    }
+    if (gradients && problem->dphi == NULL) {
+        TRY(NEW_ARRAY(&problem->dphi, pairs * problem->cloud.dim, error));
+    }
+    TRY(shape_table(&problem->options.mls, problem->cloud.x, problem->radius, &lists, problem->points,
+                    "points.x", problem->phi, gradients ? problem->dphi : NULL, error));
+done:
+    return status;
+}
+
+enum status problem_gradients(void *context, struct error *error)
+{
+    return run_shape(context, true, error);
+}
+
+enum status problem_values(void *context, struct error *error)
+{
+    return run_shape(context, false, error);
+}
+
+enum status problem_smooth(void *context, struct error *error)
+{
+    struct problem *problem = context;
+    struct neighbours lists = view_of(problem);
+    smoothed_table_free(&problem->smoothed);
+    return shape_smooth(&problem->cells, &problem->faces, quadrature_face_rule(problem->cells.dim).points,
+                        &lists, problem->phi, &problem->smoothed, error);
+}
+
+/* A cube (square) of that many nodes along each axis, support radius = factor times its spacing. */
+enum status problem_make(struct problem *problem, int dim, int64_t per_axis, double factor, double jitter,
+                         struct error *error)
+{
+    enum status status;
+    struct cloud_options wanted = {.kind = CLOUD_JITTERED, .dim = dim, .jitter = jitter};
+    *problem = (struct problem){.options = support_defaults(dim), .heap = problem_heap_bytes()};
+    for (int a = 0; a < dim; a++) {
+        wanted.count[a] = per_axis;
+        wanted.high[a] = 0.1;
+    }
+    TRY(cloud_make(&wanted, &problem->cloud, error));
+    problem->cells = (struct cells){dim, problem->cloud.node_count, problem->cloud.x,
+                                    problem->cloud.cell_count, problem->cloud.cells};
+    problem->options.radius = factor * 0.1 / (double)(per_axis - 1);
+    TRY(NEW_ARRAY(&problem->radius, problem->cells.node_count, error));
+    TRY(support_radii(&problem->options, problem->cells.node_count, NULL, problem->radius, error));
+done:
+    return status;
+}
+
+enum status problem_points_in_cells(struct problem *problem, struct error *error)
+{
+    int dim = problem->cells.dim;
+    problem->point_count = problem->cells.count;
+    enum status status = NEW_ARRAY(&problem->points, problem->point_count * dim, error);
+    for (int64_t c = 0; status == STATUS_OK && c < problem->point_count; c++) {
+        cell_centroid(&problem->cells, c, problem->points + c * dim);
+    }
+    return status;
+}
+
+enum status problem_points_on_faces(struct problem *problem, struct error *error)
+{
+    enum status status;
+    int dim = problem->cells.dim;
+    struct quadrature_rule rule = quadrature_face_rule(dim);
+    TRY(faces_build(&problem->cells, false, &problem->faces, error));
+    problem->point_count = problem->faces.count * rule.points;
+    TRY(NEW_ARRAY(&problem->points, problem->point_count * dim, error));
+    for (int64_t f = 0; f < problem->faces.count; f++) {
+        quadrature_positions(&rule, dim, problem->cells.x, problem->faces.node + f * dim,
+                             problem->points + f * rule.points * dim);
+    }
+done:
+    return status;
+}
+
+enum status problem_points_at_nodes(struct problem *problem, struct error *error)
+{
+    size_t size = (size_t)(problem->cells.node_count * problem->cells.dim);
+    problem->point_count = problem->cells.node_count;
+    enum status status = NEW_ARRAY(&problem->points, (int64_t)size, error);
+    if (status == STATUS_OK) {
+        memcpy(problem->points, problem->cells.x, size * sizeof *problem->points);
+    }
+    return status;
+}
+
+void problem_free(struct problem *problem)
+{
+    cloud_free(&problem->cloud);
+    faces_free(&problem->faces);
+    support_free(&problem->lists);
+    smoothed_table_free(&problem->smoothed);
+    free(problem->radius);
+    free(problem->points);
+    free(problem->phi);
+    free(problem->dphi);
+}

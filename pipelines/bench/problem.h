@@ -1,0 +1,43 @@
+/* Bodies that the kernels are timed on: a jittered square or cube, default MLS (MMLS, quadratic) supports. */
+#ifndef BENCH_PROBLEM_H
+#define BENCH_PROBLEM_H
+
+#include "approx/cells.h"
+#include "approx/cloud.h"
+#include "approx/shape.h"
+#include "approx/support.h"
+
+struct problem {
+    struct support_options options;
+    struct cloud cloud;
+    struct cells cells;
+    struct faces faces;
+    struct smoothed_table smoothed;
+    double *radius, *points, *phi, *dphi;
+    int64_t point_count;
+    struct support_lists lists;
+    double heap; /* bytes in use before any list or table */
+};
+
+/* Bytes that the program has allocated. */
+double problem_heap_bytes(void);
+
+/* A cube (square) of 0.1 m with that many nodes along each axis, support radius = factor times its spacing.
+ */
+MUST_CHECK enum status problem_make(struct problem *problem, int dim, int64_t per_axis, double factor,
+                                    double jitter, struct error *error);
+void problem_free(struct problem *problem);
+
+/* Points: one in each cell, those of the faces' quadrature, or the nodes. */
+MUST_CHECK enum status problem_points_in_cells(struct problem *problem, struct error *error);
+MUST_CHECK enum status problem_points_on_faces(struct problem *problem, struct error *error);
+MUST_CHECK enum status problem_points_at_nodes(struct problem *problem, struct error *error);
+
+/* The stages; the context is the struct problem. Lists as the tool support makes them, tables of values with
+ * gradients or without, allocated with the first run, and the table smoothed over the cells. */
+MUST_CHECK enum status problem_support(void *context, struct error *error);
+MUST_CHECK enum status problem_gradients(void *context, struct error *error);
+MUST_CHECK enum status problem_values(void *context, struct error *error);
+MUST_CHECK enum status problem_smooth(void *context, struct error *error);
+
+#endif
