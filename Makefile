@@ -11,14 +11,16 @@ SHELL := /bin/bash
 
 PREFIX ?= /usr/local
 CC = gcc
-BUILD := build$(if $(SAN),-san)$(if $(filter clang%,$(CC)),-clang)
+# SAN=1: sanitizers; FUZZ=1: for libFuzzer (make fuzz); COVERAGE=1: for gcov (make coverage).
+BUILD := build$(if $(SAN),-san)$(if $(FUZZ),-fuzz)$(if $(COVERAGE),-coverage)$(if $(filter clang%,$(CC)),-clang)
 OUT := build/out
 
 WARNINGS := -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Wstrict-prototypes -Wvla
 HARDENING := -fstack-protector-strong -fPIE -Wformat -Wformat-security
-OPTIMISE := $(if $(SAN),-O1 -fno-omit-frame-pointer,-O3 -fno-math-errno -fno-trapping-math -D_FORTIFY_SOURCE=2)
+OPTIMISE := $(if $(SAN)$(FUZZ),-O1 -fno-omit-frame-pointer,$(if $(COVERAGE),-O1,-O3 -fno-math-errno -fno-trapping-math -D_FORTIFY_SOURCE=2))
 comma := ,
-SANITIZE := $(if $(SAN),-fsanitize=address$(comma)undefined -fno-sanitize-recover=undefined)
+SANITIZE := $(if $(SAN)$(FUZZ),-fsanitize=address$(comma)undefined -fno-sanitize-recover=undefined) \
+    $(if $(FUZZ),-fsanitize=fuzzer-no-link) $(if $(COVERAGE),--coverage -fprofile-update=atomic)
 CFLAGS := -std=c11 -D_GNU_SOURCE -g -Ilib -Itools/common $(WARNINGS) $(HARDENING) $(OPTIMISE) $(SANITIZE) -fopenmp
 LDFLAGS := -pie -Wl,-z,relro -Wl,-z,now -fopenmp $(SANITIZE)
 LDLIBS := -lgsl -lgslcblas -linih -lz -lm
@@ -30,7 +32,10 @@ COMMON_OBJECTS := $(patsubst %.c,$(BUILD)/%.o,$(wildcard tools/common/*.c))
 TOOLS := $(patsubst tools/%.c,%,$(wildcard tools/*.c))
 PROGRAMS := $(TOOLS:%=$(BUILD)/bin/%)
 UNIT_TESTS := $(patsubst tests/unit/%.c,$(BUILD)/tests/%,$(wildcard tests/unit/*.c))
+FUZZ_TARGETS := $(patsubst tests/fuzz/%.c,$(BUILD)/fuzz/%,$(filter-out %/replay.c,$(wildcard tests/fuzz/*.c)))
 MAN_PAGES := $(TOOLS:%=$(BUILD)/man/man1/%.1) $(patsubst tools/%,$(BUILD)/man/man5/%,$(wildcard tools/*.5))
+# Programs that the command-line tests use.
+TEST_HELPERS := $(BUILD)/tests/helper/damage $(BUILD)/tests/helper/deny.so
 
 .PHONY: all lib man deps check install clean
 all: $(PROGRAMS) $(MAN_PAGES)
@@ -55,7 +60,7 @@ $(LIBRARY): $(LIBRARY_OBJECTS)
 
 # Only the reader of meshes needs gmsh, a large library that is slow to load.
 GMSH_PROGRAMS := nodes
-$(GMSH_PROGRAMS:%=$(BUILD)/bin/%): LDLIBS += -lgmsh
+$(GMSH_PROGRAMS:%=$(BUILD)/bin/%): LDLIBS += -lgmsh -lstdc++
 
 $(BUILD)/bin/%: $(BUILD)/tools/%.o $(COMMON_OBJECTS) $(LIBRARY)
 	@mkdir -p $(@D)
@@ -65,6 +70,18 @@ $(BUILD)/bin/%: $(BUILD)/tools/%.o $(COMMON_OBJECTS) $(LIBRARY)
 $(BUILD)/tests/%: $(BUILD)/tests/unit/%.o $(LIBRARY)
 	@mkdir -p $(@D)
 	$(CC) $(LDFLAGS) -o $@ $^ $(LDLIBS) -lcmocka $(if $(shell grep -l gmsh $(<:$(BUILD)/%.o=%.c) 2>/dev/null),-lgmsh)
+
+$(BUILD)/tests/helper/damage: $(BUILD)/tests/helper/damage.o $(LIBRARY)
+	$(CC) $(LDFLAGS) -o $@ $^ $(LDLIBS)
+
+$(BUILD)/tests/helper/%.so: tests/helper/%.c
+	@mkdir -p $(@D)
+	$(CC) -std=c11 -D_GNU_SOURCE $(WARNINGS) -O1 -shared -fPIC -o $@ $< -ldl
+
+# Fuzz targets: with libFuzzer's main, or with one that replays files. Streams are read there without checksums.
+$(BUILD)/fuzz/%: $(BUILD)/tests/fuzz/%.o $(if $(FUZZ),,$(BUILD)/tests/fuzz/replay.o) $(LIBRARY)
+	@mkdir -p $(@D)
+	$(CC) $(LDFLAGS) $(if $(FUZZ),-fsanitize=fuzzer) $(if $(filter stream,$*),-Wl$(comma)--wrap=crc32_z) -o $@ $^ $(LDLIBS)
 
 $(BUILD)/man/man1/%.1: $(BUILD)/bin/% tools/man.awk
 	@mkdir -p $(@D)
@@ -82,7 +99,7 @@ endif
 deps:
 	@bash pipelines/deps.sh
 
-check: all $(UNIT_TESTS)
+check: all $(UNIT_TESTS) $(FUZZ_TARGETS) $(TEST_HELPERS)
 	@BUILD="$(abspath $(BUILD))" bash tests/run.sh
 
 install: all

@@ -34,16 +34,48 @@ static const char usage[] =
 #include "io/msh.h"
 #include "tool.h"
 
+#include <signal.h>
+#include <string.h>
 #include <unistd.h>
 
 enum { UNIT, REGIONS, LIST, BINARY, TEXT, OUTPUT, OPTION_COUNT };
 
+/* libgmsh is C++ and trusts that it gets memory: where it does not, some of its parts report something else,
+ * others crash. These end the program with the right status and one line. */
+typedef void new_handler(void);
+new_handler *set_new_handler(new_handler *handler) __asm__("_ZSt15set_new_handlerPFvvE");
+
+static void leave(const char *message)
+{
+    if (write(STDERR_FILENO, message, strlen(message)) < 0) {
+        _exit((int)STATUS_SYSTEM);
+    }
+    _exit((int)STATUS_SYSTEM);
+}
+
+static void on_no_memory(void)
+{
+    leave("nodes: out of memory\n");
+}
+
+static void on_crash(int number)
+{
+    (void)number;
+    leave("nodes: libgmsh crashed: out of memory? if not, please report this mesh\n");
+}
+
 static void read_mesh(const struct tool *tool, struct msh *msh)
 {
     struct error error;
+    struct sigaction before;
     const char *name;
     int descriptor = tool_open(tool, tool->operands[0], &name);
+    (void)set_new_handler(on_no_memory);
+    if (sigaction(SIGSEGV, NULL, &before) == 0 && before.sa_handler == SIG_DFL) { /* no sanitizer's */
+        signal(SIGSEGV, on_crash);
+    }
     tool_check(tool, msh_read(msh, descriptor, name, &error), &error);
+    sigaction(SIGSEGV, &before, NULL);
     if (descriptor != STDIN_FILENO) {
         close(descriptor);
     }

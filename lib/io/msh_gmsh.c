@@ -12,8 +12,12 @@ enum status msh_gmsh_fail(struct error *error, const char *what)
     char *said = NULL;
     int ierr = 0;
     gmshLoggerGetLastError(&said, &ierr);
-    enum status status = fail(error, STATUS_INPUT, "libgmsh cannot read %s: %s", what,
-                              ierr == 0 && said != NULL && said[0] != '\0' ? said : "no reason given");
+    bool has_reason = ierr == 0 && said != NULL && said[0] != '\0';
+    /* It reads a file of ours, which is there. */
+    bool lacks_means =
+        has_reason && (strstr(said, "Out of memory") != NULL || strstr(said, "Unable to open") != NULL);
+    enum status status = fail(error, lacks_means ? STATUS_SYSTEM : STATUS_INPUT, "libgmsh cannot read %s: %s",
+                              what, has_reason ? said : "no reason given");
     gmshFree(said);
     return status;
 }

@@ -16,6 +16,7 @@ static const char *process_name; /* tool->name, for the handler of SIGBUS */
 static const char *main_input;   /* the operand that stands in for standard input, or NULL */
 static bool stdin_read;          /* standard input has been read */
 static bool stdout_closed;       /* standard output has been closed, its errors reported */
+static bool ending;              /* the end of the process is our own doing */
 
 static void print_message(const struct tool *tool, const char *format, va_list values)
 {
@@ -32,6 +33,7 @@ _Noreturn void tool_fail(const struct tool *tool, enum status status, const char
     va_start(values, format);
     print_message(tool, format, values);
     va_end(values);
+    ending = true;
     exit((int)status);
 }
 
@@ -113,6 +115,15 @@ static void on_lost_mapping(int number)
     _exit((int)STATUS_SYSTEM);
 }
 
+/* libgomp ends the process with status 1 when it gets no memory; here 1 would be a verdict. */
+static void on_foreign_exit(int status, void *unused)
+{
+    (void)status, (void)unused;
+    if (!ending) {
+        _exit((int)STATUS_SYSTEM);
+    }
+}
+
 void tool_begin(struct tool *tool, const char *usage, struct option options[], int option_count, int least,
                 int most, int argc, char *argv[])
 {
@@ -128,6 +139,7 @@ void tool_begin(struct tool *tool, const char *usage, struct option options[], i
     signal(SIGPIPE, SIG_DFL);
     process_name = tool->name;
     signal(SIGBUS, on_lost_mapping);
+    (void)on_exit(on_foreign_exit, NULL);
     arguments = array_new(argc + 1, sizeof *arguments);
     if (arguments == NULL) {
         tool_fail(tool, STATUS_SYSTEM, "out of memory");
@@ -262,6 +274,7 @@ void tool_copy(const struct tool *tool, const struct stream *stream, bool text)
 
 int tool_end(const struct tool *tool)
 {
+    ending = true;
     if (stdout_closed) {
         return (int)STATUS_OK;
     }

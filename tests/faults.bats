@@ -1,0 +1,225 @@
+# Faults that the programs survive: with a status of their own, one line that names program, place and remedy, and no
+# output that could be taken for whole. make faults prints what was observed.
+
+bats_require_minimum_version 1.5.0
+
+load faults.bash
+
+setup() {
+    cd "$BATS_TEST_TMPDIR"
+    export OMP_NUM_THREADS=1
+    mesh > square.msh
+    scene
+    cloud -d 2 -k jittered -n 5 --box 0,0.1,0,0.1 --jitter 0.2 > cloud.mts
+    ipoints cloud.mts > points.mts
+    support points.mts > lists.mts
+    shapefn lists.mts > table.mts
+}
+
+limit_memory() { [[ $BUILD == *san* ]] || echo 'ulimit -v 4000000;'; }
+
+@test "fault 1: mesh missing, empty, or a directory" {
+    : > empty.msh
+    refused missing 2 "none.msh: No such file" 'nodes -u mm none.msh'
+    refused empty 2 "empty.msh: empty" 'nodes -u mm empty.msh'
+    refused directory 2 "is a directory" 'nodes -u mm .'
+}
+
+@test "fault 2: mesh truncated at any byte, ASCII and binary" {
+    for file in "$BATS_TEST_DIRNAME"/fuzz/corpus/msh/{ascii,binary}{22,41}; do
+        size=$(stat -c %s "$file")
+        for ((at = 0; at < size - 1; at += $(every 40))); do
+            head -c "$at" "$file" > cut.msh
+            run -2 --separate-stderr nodes -u mm cut.msh
+            [ -z "$output" ]
+            [[ ${#stderr_lines[@]} -eq 1 && $stderr == "nodes: cut.msh: "* ]]
+        done
+        head -c $((size - 2)) "$file" > cut.msh
+        refused "$(basename "$file") cut at $((size / $(every 40))) places, the last:" 2 cut.msh 'nodes -u mm cut.msh'
+    done
+}
+
+@test "fault 3: a mesh that is really a script with SystemCall" {
+    command="SystemCall \"touch $PWD/harm\";"
+    { echo "$command"; mesh; } > script.msh
+    { mesh; echo "$command"; } > behind.msh
+    mesh | sed "s|\"body\"|\"body\"$command|" > inside.msh
+    { mesh; printf '$Options\n%s\n$EndOptions\n' "$command"; } > section.msh
+    refused "script in front" 2 "the first line is not \$MeshFormat" 'nodes -u mm script.msh'
+    refused "script behind" 2 "not a section" 'nodes -u mm behind.msh'
+    refused "script inside" 2 "PhysicalNames" 'nodes -u mm inside.msh'
+    accepted "script in a section of options: not looked at" 'nodes -u mm section.msh'
+    [ ! -e harm ]
+}
+
+@test "fault 4: NaN or infinite coordinate" {
+    for bad in nan inf 1e999; do
+        mesh | sed "s/^20 1 0 0/20 $bad 0 0/" > bad.msh
+        refused "$bad in a mesh" 2 "\$Nodes: node 2: coordinate 1 is not finite" 'nodes -u mm bad.msh'
+    done
+    mts text cloud.mts | sed '/^# nodes.x/{n;s/.*/nan 0/}' > bad.mts
+    refused "nan in a stream" 2 "nodes.x: row 0" 'ipoints bad.mts'
+}
+
+@test "fault 5: node count 1e11 in a header, under a memory limit" {
+    mesh | sed 's/^5$/100000000000/' > many.msh
+    refused "nodes of a mesh" 2 "100000000000 cannot be in" "$(limit_memory) nodes -u mm many.msh"
+    mesh | sed 's/^3$/100000000000/' > many.msh
+    refused "elements of a mesh" 2 "100000000000 cannot be in" "$(limit_memory) nodes -u mm many.msh"
+    printf '# mts 1\n%-55s\n1 2 3\n' '# nodes.x f8 100000000000 2 enc=bin' > many.mts
+    refused "rows of a stream" 2 "nodes.x" "$(limit_memory) ipoints many.mts"
+    refused "rows of a stream in a pipe" 2 "nodes.x" "$(limit_memory) cat many.mts | ipoints"
+}
+
+@test "fault 6: element naming an unknown node" {
+    mesh | sed 's/^4 2 2 4 1 10 30 20/4 2 2 4 1 10 30 21/' > bad.msh
+    refused "in a mesh" 2 "names the node 21" 'nodes -u mm bad.msh'
+    mts text cloud.mts | sed '/^# cells /{n;s/^[0-9]*/25/}' > bad.mts
+    refused "in a stream" 2 "cells: row 0: no node 25" 'ipoints bad.mts'
+}
+
+@test "fault 7: physical group absent, empty or misspelt" {
+    refused "region absent" 2 "there are body" 'nodes -u mm -r bdoy square.msh'
+    mesh | sed 's/^2$/3/; s/^2 4 "body"/2 4 "body"\n2 5 "void"/' > void.msh
+    refused "region empty" 2 "there are body" 'nodes -u mm -r void void.msh'
+    with 's/ymax/ymx/'
+    refused "facets of a scene misspelt" 2 "no facet group 'ymx'; present: xmin,xmax,ymin,ymax" 'mtled edited.scene table.mts'
+    with 's/region = body/region = bdoy/'
+    refused "region of a scene misspelt" 2 "no region 'bdoy'; present: body" 'mtled edited.scene table.mts'
+    with 's/facets = ymax/nodes = corner/'
+    refused "node set absent" 2 "sets.ptr" 'mtled edited.scene table.mts'
+}
+
+@test "fault 8: duplicate nodes, orphan nodes, tags with gaps" {
+    mesh | sed 's/^99 5 5 0/99 1 1 0/; s/^5 2 2 4 1 10 30 7/5 2 2 4 1 10 99 7/' > twin.msh
+    refused "two nodes at one place" 2 "nodes 30 and 99 are at the same place" 'nodes -u mm twin.msh'
+    mesh | sed 's/^99 5/30 5/' > twice.msh
+    refused "one tag twice" 2 "node tag 30 stands twice" 'nodes -u mm twice.msh'
+    accepted "orphan node, gaps in the tags" 'nodes -u mm square.msh'
+}
+
+@test "fault 9: inverted or zero-volume cells, a surface-only mesh" {
+    mesh | sed 's/^7 0 1 0/7 0.9 0.2 0/' > folded.msh
+    refused "inverted" 2 "elements 4 and 5 overlap: one is inverted" 'nodes -u mm folded.msh'
+    mesh | sed 's/^7 0 1 0/7 0.5 0.5 0/' > flat.msh
+    refused "no area" 2 "element 5 has no area" 'nodes -u mm flat.msh'
+    mesh | sed 's/^7 0 1 0/7 0 1 0.5/' > surface.msh
+    refused "surface in space" 2 "a surface in space" 'nodes -u mm surface.msh'
+    mesh | sed 's/^3$/1/; /^[45] 2 2 4/d' > curve.msh
+    refused "no cells" 2 "no cells" 'nodes -u mm curve.msh'
+}
+
+@test "fault 10: scene with unknown key, duplicate section, missing unit, comma decimal, CRLF, BOM" {
+    with 's/^rho/colour = red\n&/'
+    refused "unknown key" 2 "edited.scene:8: [material tissue]: colour" 'mtled edited.scene table.mts'
+    { cat block.scene; sed -n '/material/,/rho/p' block.scene; } > edited.scene
+    refused "section twice" 2 "edited.scene:15: [material tissue]: already in line 4" 'mtled edited.scene table.mts'
+    with 's/^components = 0, -0.005/table = load.tsv/'
+    printf '0 0.1 0 -0.005\n' > load.tsv
+    refused "table without unit" 2 "unit" 'mtled edited.scene table.mts'
+    with 's/0.45/0,45/'
+    refused "comma decimal" 2 "edited.scene:7: [material tissue]: nu" 'mtled edited.scene table.mts'
+    with 's/$/\r/'
+    refused "CRLF" 2 "edited.scene:1: carriage return" 'mtled edited.scene table.mts'
+    { printf '\xef\xbb\xbf'; cat block.scene; } > edited.scene
+    refused "byte order mark" 2 "edited.scene:1: begins with a byte order mark" 'mtled edited.scene table.mts'
+    refused "missing" 2 "none.scene: No such file" 'mtled none.scene table.mts'
+}
+
+@test "fault 11: nu >= .5, E <= 0, rho <= 0, NaN" {
+    for entry in nu=0.5 nu=0.7 nu=-1 nu=nan E=0 E=-3000 E=nan E=inf rho=0 rho=-1 rho=nan; do
+        with "s/^${entry%=*} = .*/${entry%=*} = ${entry#*=}/"
+        refused "$entry" 2 "[material tissue]: ${entry%=*}" 'mtled edited.scene table.mts'
+    done
+    mts print points.x points.mts | awk '{ print $0, 3000, 0.45 }' > whole.tsv
+    with 's/^E = .*/table = point.tsv/; s/^nu = .*/unit = m/'
+    for entry in "3000 0.5" "0 0.45" "-1 0.45" "nan 0.45" "3000 nan" "inf 0.45" "3000 -1"; do
+        sed "7s/3000 0.45/$entry/" whole.tsv > point.tsv
+        refused "E nu of a point: $entry" 2 "point.tsv:7" 'mtled edited.scene table.mts'
+    done
+}
+
+@test "fault 12: per-point material rows that do not match" {
+    mts print points.x points.mts | awk '{ print $0, 3000, 0.45 }' > whole.tsv
+    with 's/^E = .*/table = point.tsv/; s/^nu = .*/unit = m/'
+    cp whole.tsv point.tsv
+    accepted "as many rows as points, in their order" 'mtled edited.scene table.mts'
+    sed '$d' whole.tsv > point.tsv
+    refused "one row too few" 2 "31 rows do not match" 'mtled edited.scene table.mts'
+    { cat whole.tsv; tail -n 1 whole.tsv; } > point.tsv
+    refused "one row too many" 2 "33 rows for 32 integration points" 'mtled edited.scene table.mts'
+    tac whole.tsv > point.tsv
+    refused "another order" 2 "do not match" 'mtled edited.scene table.mts'
+    sed 's/0.45$//' whole.tsv > point.tsv
+    refused "a column too few" 2 "point.tsv:1" 'mtled edited.scene table.mts'
+}
+
+@test "fault 13: load curve not monotonic, of one point, or ending early" {
+    with 's/0, -0.005/&\ncurve = curve.tsv/'
+    printf '0 0\n0.7 1\n0.6 1\n1 1\n' > curve.tsv
+    refused "time goes back" 2 "row 3" 'mtled edited.scene table.mts'
+    printf '0 0\n0.5 1\n0.5 2\n1 1\n' > curve.tsv
+    refused "two factors at one time" 2 "row 3" 'mtled edited.scene table.mts'
+    printf '0 0\n' > curve.tsv
+    refused "one point" 2 "[displacement top]" 'mtled edited.scene table.mts'
+    printf '0 0\n0.5 1\n' > curve.tsv
+    refused "ends early" 2 "[displacement top]" 'mtled edited.scene table.mts'
+    printf '0.5 0\n1 1\n' > curve.tsv
+    refused "begins late" 2 "[displacement top]" 'mtled edited.scene table.mts'
+    printf '0 0\n1 nan\n' > curve.tsv
+    refused "nan" 2 "curve.tsv:2" 'mtled edited.scene table.mts'
+    printf '0 0 1\n1 1 1\n' > curve.tsv
+    refused "three columns" 2 "curve.tsv:1" 'mtled edited.scene table.mts'
+}
+
+@test "fault 14: a node prescribed twice with different values" {
+    { cat block.scene; printf '[displacement again]\nfacets = ymax\ncomponents = free, -0.006\n'; } > edited.scene
+    refused "one boundary in two sections" 2 "prescribed twice: -0.006 m here, -0.005 m in [displacement top]" \
+        'mtled edited.scene table.mts'
+    { cat block.scene; printf '[displacement again]\nfacets = ymax\ncomponents = free, -0.005\n'; } > edited.scene
+    accepted "one boundary in two sections that agree" 'mtled edited.scene table.mts'
+}
+
+@test "fault 15: support with too few or coplanar nodes" {
+    support -k 0.4 --no-widen points.mts > narrow.mts
+    refused "too few neighbours" 1 "widen the support" 'shapefn narrow.mts'
+    printf '# mts 1\n# nodes.x f8 5 2 enc=text\n0 0\n1 1\n2 2\n3 3\n4 4\n\n\n# end 1\n' | ipoints --lattice 3 > line.mts
+    refused "nodes on a line" 1 "points.x: row 0 at (0, 0): no good support" 'support line.mts'
+    awk 'BEGIN { print "# mts 1\n# nodes.x f8 25 3 enc=text"
+        for (i = 0; i < 25; i++) print i % 5, int(i / 5), i % 5 + 2 * int(i / 5)
+        print "\n\n# end 1" }' | ipoints --lattice 3 > plane.mts
+    refused "nodes in a plane, 3D" 1 "no good support" 'support plane.mts'
+}
+
+@test "fault 16: upstream killed mid-pipe" {
+    refused "killed while writing" 2 "cut short" '{ head -c 5000 table.mts; kill -9 $BASHPID; } 2> /dev/null | cat | mtled block.scene'
+    refused "failed before writing" 2 "standard input: empty" 'nodes -u mm none.msh 2> /dev/null | ipoints'
+    refused "stopped before its end line" 2 "cut short" 'mts text cloud.mts | head -n -1 | ipoints'
+}
+
+@test "fault 17: a bit flipped, or a byte missing, anywhere in a stream of any stage" {
+    cloud -d 2 -k jittered -n 3 --box 0,0.1,0,0.1 > cloud.mts
+    nodes -u mm square.msh > nodes.mts 2> note
+    ipoints cloud.mts > points.mts
+    support points.mts > lists.mts
+    shapefn lists.mts > table.mts
+    mtled -b block.scene table.mts > u.mts
+    interp -b u.mts > interp.mts 2> note || interp u.mts > interp.mts 2> note
+    streams=(nodes cloud points lists table u interp)
+    for name in "${streams[@]}"; do mts text "$name.mts" > "$name.txt"; done
+    run "$BUILD/tests/helper/damage" ${THOROUGH:+-a} "${streams[@]/%/.mts}" "${streams[@]/%/.txt}"
+    for line in "${lines[@]}"; do record "${line%%:*}" "$status" "${line#*: }" "$([ "$status" -eq 0 ] && echo yes || echo no)"; done
+    [ "$status" -eq 0 ]
+    # The programs say so, too.
+    for stage in 'ipoints:cloud' 'support:points' 'shapefn:lists' 'mtled block.scene:table' 'interp:u' 'fieldcmp u.mts:interp' 'mts text:nodes'; do
+        file=${stage#*:}.mts
+        at=$(($(stat -c %s "$file") / 2))
+        byte=$(od -An -tu1 -j $at -N 1 "$file")
+        { head -c $at "$file"; printf "\\x$(printf %x $((byte ^ 16)))"; tail -c +$((at + 2)) "$file"; } > bad.mts
+        case $stage in
+        fieldcmp*) run -2 --separate-stderr fieldcmp u.mts bad.mts
+            record "fieldcmp" "$status" "$stderr" yes ;;
+        *) refused "${stage%% *}" 2 "bad.mts" "${stage%:*} bad.mts" ;;
+        esac
+    done
+}
