@@ -2,7 +2,9 @@
 
 #include "base/clock.h"
 #include "base/memory.h"
+#include "solid/lowest_frequency.h"
 
+#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -16,6 +18,9 @@ static const int most_augmentations = 20;                        /* of the conta
 static const double penetration_share = 1e-4; /* of the body's size: what a contact may penetrate */
 static const int later_iterations = 3;        /* at every check: the mode is kept, so that it sharpens */
 enum { WINDOWS = 8 };                         /* recent Rayleigh quotients that the error estimate looks at */
+static const double pi = 3.14159265358979324;
+static const int most_spectrum_iterations = 1000;
+static const double spectrum_share = 0.8; /* of its estimate from above */
 
 /* A state to go back to. */
 struct kept_state {
@@ -36,14 +41,20 @@ struct relaxation {
     double *acceleration;
     double time_step, damping, frequency; /* current; frequency: largest */
     double low2;                          /* current estimate of the lowest frequency, squared */
+    double spectrum2; /* what it may not be above: found at the full load; before, INFINITY */
     double window[WINDOWS];
     int64_t checks;
+    double best_error; /* at the full load, since best_step: not yet half of it */
+    int64_t best_step;
+    double spacing;             /* mean, of the nodes, m */
     double penetration_allowed; /* m */
     int augmentations;
     bool mass_changed; /* since the last check: increments of the acceleration mean nothing */
     enum status failure;
     double load, load_rate;      /* steps of the ramp applied so far, and per step */
     double largest_displacement; /* so far, in the norm of the mass */
+    double largest_move;         /* so far, of a node, m */
+    bool spectrum_known;         /* spectrum2 is of the mass and the load as they are */
     double caution;              /* on the time step: 1 until an inversion */
     int retreats;
     struct kept_state newer, older;
@@ -101,6 +112,26 @@ static double mass_product(const struct relaxation *r, const double *x, const do
     return sum;
 }
 
+/* Length of the longest of the nodes' vectors. */
+static double largest_of_nodes(const struct relaxation *r, const double *x)
+{
+    int dim = r->system->dim;
+    double largest2 = 0.0;
+    for (int64_t n = 0; n < r->system->node_count; n++) {
+        double sum = 0.0;
+        for (int a = 0; a < dim; a++) {
+            sum += x[n * dim + a] * x[n * dim + a];
+        }
+        largest2 = fmax(largest2, sum);
+    }
+    return sqrt(largest2);
+}
+
+static double ratio(double part, double whole)
+{
+    return whole > 0.0 ? part / whole : part > 0.0 ? INFINITY : 0.0;
+}
+
 /* Length of the diagonal of the nodes' box. */
 static double body_size(const struct solid_system *system)
 {
@@ -116,20 +147,24 @@ static double body_size(const struct solid_system *system)
     return sqrt(sum);
 }
 
+/* Mean spacing of the nodes. */
+static double node_spacing(const struct solid_system *system)
+{
+    double volume = 0.0;
+    for (int64_t q = 0; q < system->body.point_count; q++) {
+        volume += system->body.weight[q];
+    }
+    return pow(volume / (double)system->node_count, 1.0 / system->dim);
+}
+
 /* Steps to apply the load in: slow enough that a cell is strained by no more than half a percent a step. */
 static int64_t choose_ramp(const struct relaxation *r)
 {
-    const struct constraint_rows *rows = &r->system->rows;
-    const struct body *body = &r->system->body;
-    double largest = 0.0, volume = 0.0;
-    for (int64_t i = 0; i < rows->count; i++) {
-        largest = fmax(largest, fabs(rows->target[i]));
+    double largest = 0.0;
+    for (int64_t i = 0; i < r->system->rows.count; i++) {
+        largest = fmax(largest, fabs(r->system->rows.target[i]));
     }
-    for (int64_t q = 0; q < body->point_count; q++) {
-        volume += body->weight[q];
-    }
-    double spacing = pow(volume / (double)r->system->node_count, 1.0 / r->system->dim);
-    double steps = 200.0 * largest / spacing;
+    double steps = 200.0 * largest / r->spacing;
     return steps > 1e7 ? 10000000 : steps > 200.0 ? (int64_t)steps : 200;
 }
 
@@ -186,6 +221,16 @@ static bool step(struct relaxation *r, double *u, bool measure)
     return true;
 }
 
+/* The lowest frequency that recent estimates have shown, squared. */
+static double least_of_window(const struct relaxation *r)
+{
+    double least2 = INFINITY;
+    for (int i = 0; i < WINDOWS; i++) {
+        least2 = fmin(least2, r->window[i]);
+    }
+    return least2;
+}
+
 /* After a measured step: the Rayleigh quotient of the increments since the last check, the damping, the
  * error. `before` holds the u at which the acceleration was measured. */
 static void estimate(struct relaxation *r)
@@ -202,19 +247,20 @@ static void estimate(struct relaxation *r)
     if (quotient > 0.0 && r->checks > 0 && !r->mass_changed) {
         quotient = fmin(quotient, r->frequency * r->frequency);
         r->low2 = quotient < r->low2 ? quotient : fmin(quotient, 1.2 * r->low2);
+        r->low2 = fmin(r->low2, r->spectrum2);
         r->damping = 2.0 * sqrt(r->low2);
         r->window[r->checks % WINDOWS] = r->low2;
     }
     r->checks++;
     r->mass_changed = false;
-    double least2 = INFINITY;
-    for (int i = 0; i < WINDOWS; i++) {
-        least2 = fmin(least2, r->window[i]);
-    }
-    double remaining = sqrt(mass_product(r, r->acceleration, r->acceleration)) / least2;
+    double least2 = least_of_window(r);
     r->largest_displacement = fmax(r->largest_displacement, sqrt(mass_product(r, r->before, r->before)));
-    double displacement = r->largest_displacement; /* a scene may end at rest */
-    r->report->error = displacement > 0.0 ? remaining / displacement : remaining > 0.0 ? INFINITY : 0.0;
+    r->largest_move = fmax(r->largest_move, largest_of_nodes(r, r->before));
+    /* Of the largest so far: a scene may end at rest. */
+    double on_the_whole =
+        ratio(sqrt(mass_product(r, r->acceleration, r->acceleration)) / least2, r->largest_displacement);
+    double at_worst = ratio(largest_of_nodes(r, r->acceleration) / least2, r->largest_move);
+    r->report->error = fmax(on_the_whole, at_worst);
     r->report->lowest_frequency = sqrt(least2);
 }
 
@@ -283,6 +329,8 @@ static bool update_mass(struct relaxation *r, struct error *error)
     constraint_free(&r->constraint);
     r->failure = system_constrain(r->system, r->mass, &r->constraint, error);
     r->mass_changed = true;
+    r->spectrum2 = INFINITY;
+    r->spectrum_known = false;
     return r->failure == STATUS_OK;
 }
 
@@ -342,6 +390,64 @@ static void change_load(struct relaxation *r, double s)
     }
 }
 
+/* Find the lowest mode at u, where the residual is known: while fast modes die out a slow one does not show
+ * in the increments. Takes the damping from it. False on failure. */
+static bool find_lowest_mode(struct relaxation *r, const double *u, struct error *error)
+{
+    double *work = NULL, value = 0.0;
+    int iterations = 0;
+    r->failure = NEW_ARRAY(&work, 4 * r->size, error);
+    if (r->failure == STATUS_OK) {
+        memcpy(work, r->velocity, (size_t)r->size * sizeof *work);
+        r->failure =
+            system_lowest_eigenvalue(r->system, &r->constraint, u, r->residual, most_spectrum_iterations,
+                                     work, work + r->size, &value, &iterations, error);
+    }
+    free(work);
+    if (r->failure != STATUS_OK) {
+        return false;
+    }
+    r->report->force_evaluations += iterations;
+    r->spectrum2 = INFINITY;
+    if (value > 0.0 && isfinite(value)) {
+        r->spectrum2 = spectrum_share * value;
+        r->low2 = fmin(r->low2, r->spectrum2);
+        r->damping = 2.0 * sqrt(r->low2);
+        for (int i = 0; i < WINDOWS; i++) {
+            r->window[i] = fmin(r->window[i], r->low2);
+        }
+        double least2 = least_of_window(r);
+        r->report->error *= r->report->lowest_frequency * r->report->lowest_frequency / least2;
+        r->report->lowest_frequency = sqrt(least2);
+    }
+    r->spectrum_known = true;
+    return true;
+}
+
+/* Whether the error has not halved for so many periods of the lowest mode and steps. At the full load only.
+ */
+static bool stays(const struct relaxation *r, int64_t n, double periods, int64_t steps)
+{
+    double period = 2.0 * pi / (r->report->lowest_frequency * r->time_step);
+    return (double)(n - r->best_step) > periods * period + (double)steps;
+}
+
+/* The estimate that round-off alone makes: forces are known to some units in the last place of a cell's
+ * stiffness times its size, which the mass is, and most of that is no slow mode. */
+static double round_off(const struct relaxation *r)
+{
+    double low = r->report->lowest_frequency;
+    return 32.0 * DBL_EPSILON * r->spacing / (low * low * r->largest_move);
+}
+
+static void note_best(struct relaxation *r, int64_t n, int64_t at_full_load)
+{
+    if (at_full_load <= check_interval || r->report->error < 0.5 * r->best_error) {
+        r->best_error = r->report->error;
+        r->best_step = n;
+    }
+}
+
 static enum relaxation_outcome iterate(struct relaxation *r, double *u, struct error *error)
 {
     double ramp = (double)r->report->ramp_steps;
@@ -389,13 +495,23 @@ static enum relaxation_outcome iterate(struct relaxation *r, double *u, struct e
         if (!tell(r, n, u)) {
             return RELAXATION_STOPPED;
         }
-        bool small = at_full_load > WINDOWS * check_interval && r->report->error <= r->options->tolerance;
+        bool small = at_full_load > 2 * check_interval && r->report->error <= r->options->tolerance;
         settled = small ? settled + 1 : 0;
-        if (settled >= 2) {
+        if (settled >= 2 && !r->spectrum_known && !find_lowest_mode(r, u, error)) {
+            return RELAXATION_STOPPED;
+        }
+        if (settled >= 2 && r->report->error <= r->options->tolerance) {
             if (contacts_hold(r)) {
                 return RELAXATION_CONVERGED;
             }
             settled = 0;
+        }
+        note_best(r, n, at_full_load);
+        if (r->report->error <= round_off(r) && stays(r, n, 2.0, 200) && contacts_hold(r)) {
+            return RELAXATION_CONVERGED;
+        }
+        if (stays(r, n, 20.0, 5000)) {
+            return RELAXATION_STALLED;
         }
     }
     return RELAXATION_TOO_MANY_STEPS;
@@ -422,7 +538,8 @@ enum status relaxation_run(struct solid_system *system, const struct relaxation_
                            .report = report,
                            .size = system->node_count * system->dim,
                            .load_rate = 1.0,
-                           .caution = 1.0};
+                           .caution = 1.0,
+                           .spectrum2 = INFINITY};
     *report = (struct relaxation_report){.least_jacobian = 1.0};
     TRY(allocate(&r, error));
     system_load_factors(system, 0.0);
@@ -433,6 +550,7 @@ enum status relaxation_run(struct solid_system *system, const struct relaxation_
     (void)system_residual(system, u, r.residual);
     memcpy(r.newer.u, u, (size_t)r.size * sizeof *u);
     memcpy(r.older.u, u, (size_t)r.size * sizeof *u);
+    r.spacing = node_spacing(system);
     r.penetration_allowed = penetration_share * body_size(system);
     report->ramp_steps = options->ramp_steps > 0 ? options->ramp_steps : choose_ramp(&r);
     update_time_step(&r, u, first_iterations);

@@ -3,8 +3,10 @@
  * error.
  *
  * Error estimate: with the projected residual's acceleration a and the lowest frequency w, |e| <= |a| / w^2
- * in the norm of the mass, exactly so for a linear system; w is taken as the least Rayleigh quotient of
- * recent increments. */
+ * in the norm of the mass, exactly so for a linear system; the same is asked of the node that is worst,
+ * relative to the one that moved most. While fast modes die out the increments do not show a slow one: before
+ * a state is taken for the solution, the lowest frequency there is found by Lanczos iteration, and the
+ * relaxation goes on with it where it is lower. */
 #ifndef SOLID_RELAXATION_H
 #define SOLID_RELAXATION_H
 
@@ -23,8 +25,9 @@ struct relaxation_options {
 };
 
 enum relaxation_outcome {
-    RELAXATION_CONVERGED,
+    RELAXATION_CONVERGED, /* report.error above the tolerance: as far as round-off admits */
     RELAXATION_TOO_MANY_STEPS,
+    RELAXATION_STALLED,  /* the error no longer falls, well above round-off: a contact chatters */
     RELAXATION_INVERTED, /* J <= 0 or not a number at a point */
     RELAXATION_STOPPED   /* by the progress function */
 };
@@ -33,7 +36,8 @@ struct relaxation_report {
     enum relaxation_outcome outcome;
     int64_t steps, ramp_steps;
     int64_t force_evaluations;
-    double error;             /* estimated remaining error, relative to the largest displacement of the run */
+    double error;             /* estimated remaining error, relative to the largest displacement of the run:
+                               * the larger of those on the whole and at the worst node */
     double largest_frequency; /* in the fictitious mass's units */
     double lowest_frequency;
     int64_t inverted_point; /* the caller's index, RELAXATION_INVERTED */

@@ -255,17 +255,50 @@ static double norm(const struct lattice *l, const double *mass, const double *a,
     return sqrt(sum);
 }
 
-/* What is estimated to remain is no less than what does. */
+static double largest_move(const struct lattice *l, const double *a, const double *b)
+{
+    int dim = l->system.dim;
+    double largest2 = 0;
+    for (int64_t n = 0; n < l->system.node_count; n++) {
+        double sum = 0;
+        for (int64_t i = n * dim; i < (n + 1) * dim; i++) {
+            double difference = a[i] - (b != NULL ? b[i] : 0);
+            sum += difference * difference;
+        }
+        largest2 = fmax(largest2, sum);
+    }
+    return sqrt(largest2);
+}
+
+/* Problems 0 to 3: clamped. 4: between sliding supports, nearly incompressible, where slow moves aside follow
+ * fast ones. */
+static void problem_of_bound(struct lattice *l, int problem)
+{
+    static const double down[] = {-0.001, -0.03, 0.01, 0}, aside[] = {0, 0.0, 0.02, 0.04};
+    if (problem < 4) {
+        clamp(l, problem == 1 ? 9 : 6, down[problem], aside[problem], problem < 3);
+        return;
+    }
+    struct lattice_options options = lattice_defaults(2, 9);
+    options.jitter = 0.2;
+    options.poisson_ratio = 0.499;
+    options.size[1] = 0.2;
+    lattice_build(l, &options);
+    int32_t curve = lattice_curve(l, curve_of_kind(CURVE_SMOOTH));
+    lattice_slide(l, 1u << 0 | 1u << 2, curve);
+    lattice_push(l, 3, -0.02, curve);
+}
+
+/* What is estimated to remain is no less than what does, on the whole and at the worst node. */
 static void estimate_is_a_bound(void **state)
 {
     (void)state;
-    static const double tolerances[] = {1e-3, 1e-4, 1e-6, 1e-8};
-    for (int problem = 0; problem < 4; problem++) {
+    static const double tolerances[] = {1e-2, 1e-3, 1e-4, 1e-6, 1e-8};
+    for (int problem = 0; problem < 5; problem++) {
         struct lattice l;
         double *mass, largest_overestimate = 0;
-        static const double down[] = {-0.001, -0.03, 0.01, 0}, aside[] = {0, 0.0, 0.02, 0.04};
-        clamp(&l, problem == 1 ? 9 : 6, down[problem], aside[problem], problem < 3);
-        double *exact = relaxed(&l, 1e-11, NULL), *residual = lattice_vector(&l);
+        problem_of_bound(&l, problem);
+        double *exact = relaxed(&l, 1e-10, NULL), *residual = lattice_vector(&l);
         ARRAY(mass, l.system.node_count);
         (void)system_residual(&l.system, exact, residual);
         system_relaxation_mass(&l.system, mass);
@@ -277,6 +310,7 @@ static void estimate_is_a_bound(void **state)
             AT_MOST(report.error, tolerances[k]);
             double remaining = norm(&l, mass, u, exact) / norm(&l, mass, exact, NULL);
             AT_MOST(remaining, report.error);
+            AT_MOST(largest_move(&l, u, exact) / largest_move(&l, exact, NULL), report.error);
             largest_overestimate = fmax(largest_overestimate, report.error / remaining);
             free(u);
         }

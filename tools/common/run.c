@@ -36,7 +36,18 @@ static void judge(const struct run *run, const struct relaxation_report *report)
     const struct scene *scene = run->scene;
     char place[96] = "";
     if (report->outcome == RELAXATION_CONVERGED) {
+        if (report->error > scene->solver.tolerance) {
+            tool_note(run->tool, "%s: estimated error %.2g, not %.2g: round-off admits no less", scene->path,
+                      report->error, scene->solver.tolerance);
+        }
         return;
+    }
+    if (report->outcome == RELAXATION_STALLED) {
+        tool_fail(run->tool, STATUS_VERDICT,
+                  "%s: step %lld: the estimated error stays at %.2g of the displacement: a larger tolerance, "
+                  "a finer cloud at "
+                  "the contacts, or supports against rigid motion may help",
+                  scene->path, (long long)report->steps, report->error);
     }
     if (report->outcome == RELAXATION_INVERTED) {
         const double *x =

@@ -1,0 +1,160 @@
+#include "solid/lowest_frequency.h"
+
+#include "base/memory.h"
+
+#include <math.h>
+#include <stdbool.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const int first_check = 16;
+static const double check_growth = 4.0 / 3.0, settled_change = 0.05;
+static const double least_share =
+    0.6; /* of the ratio of the largest frequency to the lowest: iterations at least */
+static const double strain =
+    1e-6; /* about that much is a cell strained by the move that K is measured with */
+
+/* How many eigenvalues of the symmetric tridiagonal matrix (diagonal[n], beside[n - 1]) are below x: Sturm's
+ * count. */
+static int eigenvalues_below(int n, const double *diagonal, const double *beside, double x)
+{
+    int below = 0;
+    double pivot = 1.0;
+    for (int i = 0; i < n; i++) {
+        double off2 = i > 0 ? beside[i - 1] * beside[i - 1] : 0.0;
+        pivot = diagonal[i] - x - (off2 > 0.0 ? off2 / pivot : 0.0);
+        if (fabs(pivot) < 1e-300) {
+            pivot = -1e-300;
+        }
+        below += pivot < 0.0;
+    }
+    return below;
+}
+
+/* Its least eigenvalue, to a part in 1e4 (or of its rounding errors), by bisection between Gershgorin's
+ * bounds. */
+static double least_eigenvalue(int n, const double *diagonal, const double *beside)
+{
+    double low = INFINITY, high = INFINITY, most = 0.0;
+    for (int i = 0; i < n; i++) {
+        double reach = (i > 0 ? fabs(beside[i - 1]) : 0.0) + (i + 1 < n ? fabs(beside[i]) : 0.0);
+        low = fmin(low, diagonal[i] - reach);
+        high = fmin(high, diagonal[i]); /* no diagonal entry is below the least eigenvalue */
+        most = fmax(most, fabs(diagonal[i]) + reach);
+    }
+    while (high - low > 1e-4 * fmax(fabs(high), 1e-14 * most)) {
+        double middle = 0.5 * (low + high);
+        if (eigenvalues_below(n, diagonal, beside, middle) > 0) {
+            high = middle;
+        } else {
+            low = middle;
+        }
+    }
+    return high;
+}
+
+/* sum m_i x_i y_i */
+static double mass_product(const struct solid_system *system, const double *mass, const double *x,
+                           const double *y)
+{
+    double sum = 0.0;
+    for (int64_t n = 0; n < system->node_count; n++) {
+        double part = 0.0;
+        for (int a = 0; a < system->dim; a++) {
+            part += x[n * system->dim + a] * y[n * system->dim + a];
+        }
+        sum += mass[n] * part;
+    }
+    return sum;
+}
+
+static double largest_entry(const double *x, int64_t size)
+{
+    double largest = 0.0;
+    for (int64_t i = 0; i < size; i++) {
+        largest = fmax(largest, fabs(x[i]));
+    }
+    return largest;
+}
+
+/* product = P M^-1 K move: the change of the residual from u along the move, over the mass, projected. */
+static void apply(struct solid_system *system, struct constraint *constraint, const double *u,
+                  const double *residual, double spacing, const double *move, double *displaced,
+                  double *product)
+{
+    int dim = system->dim;
+    int64_t size = system->node_count * dim;
+    double epsilon = strain * spacing / largest_entry(move, size);
+    for (int64_t i = 0; i < size; i++) {
+        displaced[i] = u[i] + epsilon * move[i];
+    }
+    (void)system_residual(system, displaced, product);
+    for (int64_t i = 0; i < size; i++) {
+        product[i] = (residual[i] - product[i]) / (epsilon * constraint->mass[i / dim]);
+    }
+    constraint_project(constraint, NULL, product);
+}
+
+/* Mean spacing of the points. */
+static double point_spacing(const struct solid_system *system)
+{
+    double volume = 0.0;
+    for (int64_t q = 0; q < system->body.point_count; q++) {
+        volume += system->body.weight[q];
+    }
+    return pow(volume / (double)system->body.point_count, 1.0 / system->dim);
+}
+
+/* Whether `count` iterations can tell the least eigenvalue: fewer than a share of the ratio of the
+ * frequencies stay on a plateau, at a higher mode. */
+static bool enough(int count, double largest, double least)
+{
+    return count >= least_share * sqrt(largest / fmax(least, 1e-14 * largest));
+}
+
+enum status system_lowest_eigenvalue(struct solid_system *system, struct constraint *constraint,
+                                     const double *u, const double *residual, int most_iterations,
+                                     double *start, double *scratch, double *value, int *iterations,
+                                     struct error *error)
+{
+    enum status status;
+    int64_t size = system->node_count * system->dim;
+    double *vector = start, *before = scratch, *product = scratch + size, *displaced = scratch + 2 * size;
+    double *diagonal = NULL, *beside = NULL;
+    double spacing = point_spacing(system), last = INFINITY;
+    int next_check = first_check;
+    *iterations = 0;
+    *value = INFINITY;
+    TRY(NEW_ARRAY(&diagonal, most_iterations, error));
+    TRY(NEW_ARRAY(&beside, most_iterations, error));
+    memset(before, 0, (size_t)size * sizeof *before);
+    constraint_project(constraint, NULL, vector);
+    double norm = sqrt(mass_product(system, constraint->mass, vector, vector)), coupling = 0.0, largest = 0.0;
+    for (int k = 0; k < most_iterations && norm > 1e-12 * largest; k++) {
+        for (int64_t i = 0; i < size; i++) {
+            vector[i] /= norm;
+        }
+        apply(system, constraint, u, residual, spacing, vector, displaced, product);
+        diagonal[k] = mass_product(system, constraint->mass, vector, product);
+        for (int64_t i = 0; i < size; i++) {
+            product[i] -= diagonal[k] * vector[i] + coupling * before[i];
+        }
+        norm = coupling = beside[k] = sqrt(mass_product(system, constraint->mass, product, product));
+        largest = fmax(largest, diagonal[k]);
+        memcpy(before, vector, (size_t)size * sizeof *before);
+        memcpy(vector, product, (size_t)size * sizeof *vector);
+        *iterations = k + 1;
+        if (k + 1 == next_check || k + 1 == most_iterations || !(norm > 1e-12 * largest)) {
+            *value = least_eigenvalue(k + 1, diagonal, beside);
+            if (enough(k + 1, largest, *value) && last - *value < settled_change * *value) {
+                break;
+            }
+            last = *value;
+            next_check = (int)ceil(next_check * check_growth);
+        }
+    }
+done:
+    free(diagonal);
+    free(beside);
+    return status;
+}

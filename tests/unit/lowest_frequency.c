@@ -1,0 +1,102 @@
+/* The lowest frequency of a system: against the eigenvalues of its whole stiffness matrix, by GSL. */
+#include "lattice_fixture.h"
+
+#include "solid/lowest_frequency.h"
+
+#include <gsl/gsl_eigen.h>
+
+/* Eigenvalues of P M^-1 K P, the least of those that are not the constraints' zeros. The matrix is symmetric
+ * in the scaling M^1/2, and measured column by column. */
+static double least_of_all(struct lattice *l, struct constraint *constraint, const double *mass,
+                           const double *u, const double *residual)
+{
+    int dim = l->system.dim;
+    int64_t size = l->system.node_count * dim;
+    gsl_matrix *matrix = gsl_matrix_alloc((size_t)size, (size_t)size);
+    gsl_vector *values = gsl_vector_alloc((size_t)size);
+    gsl_eigen_symm_workspace *work = gsl_eigen_symm_alloc((size_t)size);
+    double *move = lattice_vector(l), *displaced = lattice_vector(l), *after = lattice_vector(l);
+    const double epsilon = 1e-8;
+    for (int64_t j = 0; j < size; j++) {
+        memset(move, 0, (size_t)size * sizeof *move);
+        move[j] = 1.0 / sqrt(mass[j / dim]);
+        constraint_project(constraint, NULL, move);
+        for (int64_t i = 0; i < size; i++) {
+            displaced[i] = u[i] + epsilon * move[i];
+        }
+        (void)system_residual(&l->system, displaced, after);
+        for (int64_t i = 0; i < size; i++) {
+            after[i] = (residual[i] - after[i]) / epsilon / mass[i / dim];
+        }
+        constraint_project(constraint, NULL, after);
+        for (int64_t i = 0; i < size; i++) {
+            gsl_matrix_set(matrix, (size_t)i, (size_t)j, after[i] * sqrt(mass[i / dim]));
+        }
+    }
+    for (size_t i = 0; i < (size_t)size; i++) { /* GSL reads the lower triangle */
+        for (size_t j = 0; j < i; j++) {
+            double mean = 0.5 * (gsl_matrix_get(matrix, i, j) + gsl_matrix_get(matrix, j, i));
+            gsl_matrix_set(matrix, i, j, mean);
+        }
+    }
+    gsl_eigen_symm(matrix, values, work);
+    double largest = gsl_vector_max(values), least = INFINITY;
+    for (size_t i = 0; i < (size_t)size; i++) {
+        double value = gsl_vector_get(values, i);
+        least = value > 1e-6 * largest ? fmin(least, value) : least;
+    }
+    gsl_eigen_symm_free(work);
+    gsl_vector_free(values);
+    gsl_matrix_free(matrix);
+    free(move);
+    free(displaced);
+    free(after);
+    return least;
+}
+
+static void agrees_with_all_eigenvalues(void **state)
+{
+    (void)state;
+    for (int dim = 2; dim <= 3; dim++) {
+        struct lattice l;
+        struct constraint constraint;
+        struct error error;
+        struct lattice_options options = lattice_defaults(dim, dim == 2 ? 9 : 4);
+        double *mass, *scratch, value;
+        int iterations;
+        options.jitter = 0.2;
+        options.size[0] = 0.3;
+        lattice_build(&l, &options);
+        int32_t curve = lattice_curve(&l, curve_of_kind(CURVE_SMOOTH));
+        lattice_slide(&l, dim == 2 ? 1u << 0 | 1u << 2 : 1u << 0 | 1u << 2 | 1u << 4, curve);
+        int64_t size = l.system.node_count * dim;
+        double *u = lattice_vector(&l), *residual = lattice_vector(&l), *start = lattice_vector(&l);
+        ARRAY(mass, l.system.node_count);
+        ARRAY(scratch, 4 * size);
+        for (int64_t i = 0; i < size; i++) { /* a strained state; a start without favour */
+            u[i] = (i % dim == 0 ? -0.05 : 0.05 / (dim - 1)) * l.system.X[i];
+            start[i] = sin(1.0 + (double)(i * i % 97));
+        }
+        (void)system_residual(&l.system, u, residual);
+        system_relaxation_mass(&l.system, mass);
+        GOOD(system_constrain(&l.system, mass, &constraint, &error));
+        double least = least_of_all(&l, &constraint, mass, u, residual);
+        GOOD(system_lowest_eigenvalue(&l.system, &constraint, u, residual, 1000, start, scratch, &value,
+                                      &iterations, &error));
+        print_message("%dD: %g for %g after %d iterations\n", dim, value, least, iterations);
+        AT_MOST(fabs(value / least - 1.0), 0.05);
+        constraint_free(&constraint);
+        free(mass);
+        free(scratch);
+        free(u);
+        free(residual);
+        free(start);
+        lattice_free(&l);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {cmocka_unit_test(agrees_with_all_eigenvalues)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
