@@ -216,6 +216,21 @@ with() {
         END { exit NR != 36 }' u
 }
 
+@test "an initial state: thrown, a body moves on as it was; rows that are not the nodes are refused" {
+    { dynamic_scene | sed '/gravity/d; /^\[displacement/,/^$/d'; printf '[initial]\ntable = begin.tsv\nunit = mm\n'; } > thrown.scene
+    rows nodes.x <(mts text square.mts) | awk '{ print 1e3 * $1, 1e3 * $2, 2, 3, 40, -20 }' > begin.tsv
+    mtled thrown.scene square.mts 2> note | rows u | awk '
+        { d = ($1 - 0.004)^2 + ($2 - 0.002)^2; if (!(d < 1e-24)) exit 1 }
+        END { if (NR != 36) exit 1 }'
+    sed -i '$d' begin.tsv
+    refused 2 "begin.tsv: 35 rows for 36 nodes" mtled thrown.scene square.mts
+    tac begin.tsv > reversed.tsv
+    { cat reversed.tsv; head -n 1 begin.tsv; } > begin.tsv
+    refused 2 "begin.tsv:1: not the place of node 0" mtled thrown.scene square.mts
+    { scene; printf '[initial]\ntable = begin.tsv\nunit = mm\n'; } > edited.scene
+    refused 2 "a quasi-static scene has no time" mtled edited.scene square.mts
+}
+
 @test "a dynamic scene at rest stays at rest" {
     dynamic_scene | sed '/gravity/d' > block.scene
     mtled block.scene square.mts 2> note | rows u > u

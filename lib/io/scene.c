@@ -39,7 +39,7 @@ static enum status read_section(const struct place *place, struct scene *scene)
         TRY(place_fail(
             place, NULL,
             "unknown section: allowed are scene, material, displacement, contact, pressure, traction, "
-            "force, output, solver"));
+            "force, initial, output, solver"));
     }
     if (kind->has_items && section->name[0] == '\0') {
         TRY(place_fail(place, NULL, "lacks its name: write [%s NAME]", section->kind));

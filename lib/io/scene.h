@@ -16,6 +16,7 @@
  * - [pressure NAME]: facets = GROUPS; value (Pa, positive pushes inward); curve
  * - [traction NAME]: facets = GROUPS; components (Pa); curve
  * - [force NAME]: nodes = SETS; components (N on each node; in 2D N per metre of thickness); curve
+ * - [initial]: table = FILE; unit (dynamic)
  * - [output]: frames = COUNT or interval (s, dynamic); stress, strain, energy, reactions, gaps = yes|no
  * - [solver]: constraints = ebciem|direct; constraint_points = hat|node; volume = nodal|pointwise;
  *   pointwise_share (0..1); tolerance; max_steps; ramp_steps; end_time (s), damping (1/s) (dynamic);
@@ -114,6 +115,12 @@ struct scene_load {
     struct scene_curve curve;
 };
 
+/* State at the begin of a dynamic scene. */
+struct scene_initial {
+    char *table; /* NULL: at rest; or rows (dim coordinates, displacement, velocity), one per node in order */
+    double table_unit; /* m per unit of the table, whose velocities are in that unit per second */
+};
+
 struct scene_output {
     int64_t frames;  /* evenly spaced frames besides the final state; 0: none */
     double interval; /* s between frames (dynamic); 0: none. Not both. */
@@ -152,6 +159,7 @@ struct scene {
     int64_t traction_count;
     struct scene_load *forces;
     int64_t force_count;
+    struct scene_initial initial;
     struct scene_output output;
     struct scene_solver solver;
 };

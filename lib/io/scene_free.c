@@ -50,6 +50,7 @@ void scene_free(struct scene *scene)
         free_names(&scene->contacts[i].facets);
         free(scene->contacts[i].rigid);
     }
+    free(scene->initial.table);
     free(scene->materials);
     free(scene->displacements);
     free(scene->contacts);

@@ -193,6 +193,19 @@ static enum status read_force(const struct place *place, struct scene *scene)
                             load);
 }
 
+static enum status read_initial(const struct place *place, struct scene *scene)
+{
+    enum status status = STATUS_OK;
+    TRY(place_only_keys(place, KEYS{"table", "unit", NULL}));
+    if (scene->analysis == SCENE_QUASI_STATIC) {
+        TRY(place_fail(place, NULL, "a quasi-static scene has no time: only dynamic scenes begin somewhere"));
+    }
+    TRY(place_require(place, "table", "name the file of displacements and velocities at the nodes"));
+    TRY(place_table(place, "table", &scene->initial.table, &scene->initial.table_unit));
+done:
+    return status;
+}
+
 static enum status read_output(const struct place *place, struct scene *scene)
 {
     struct scene_output *output = &scene->output;
@@ -268,6 +281,7 @@ static const struct scene_kind kinds[] = {
     {"pressure", read_pressure, ITEMS(pressures, pressure_count)},
     {"traction", read_traction, ITEMS(tractions, traction_count)},
     {"force", read_force, ITEMS(forces, force_count)},
+    {"initial", read_initial, false, 0, 0, 0},
     {"output", read_output, false, 0, 0, 0},
     {"solver", read_solver, false, 0, 0, 0},
 };

@@ -1,4 +1,4 @@
-# A line of compare.tsv: awk -f row.awk -v scheme=NAME -v field=STREAM LOG [ERRORS BESIDE]
+# A line of compare.tsv: awk -f row.awk -v scheme=NAME -v field=STREAM LOG [ERRORS [BESIDE]]
 #
 # LOG is what the tools report with -v, ERRORS and BESIDE what fieldcmp prints of the distances from the reference and from
 # CalculiX; without them the distances are "-".
@@ -22,7 +22,7 @@ NF == 2 { value[file, $1] = $2 }
 }
 
 END {
-    if (nodes == "" || !((1, "steps") in value) || (file > 1 && !((2, "avg") in value && (3, "avg") in value))) {
+    if (nodes == "" || !((1, "steps") in value) || (file > 1 && !((file, "avg") in value && (2, "avg") in value))) {
         print "row.awk: no errors or no report of " scheme > "/dev/stderr"
         exit 1
     }

@@ -31,6 +31,7 @@ components = 0, 0
 ${contact:-}
 [output]
 reactions = yes
+energy = yes
 [solver]
 tolerance = 1e-6
 END
@@ -40,6 +41,12 @@ END
 # force OUT: of the whole block, N/m.
 force() {
     calc "2 * sqrt(($(reaction "$work/$1.dat" middle 2)) ^ 2)"
+}
+
+# pushing PUSH: the force on the middle of the coarse quarter, along the push.
+pushing() {
+    press coarse push 0.49 "$1"
+    reaction "$work/push.dat" middle 2
 }
 
 # balance OUT: the sum of all forces along the push, relative to that of the middle.
@@ -80,6 +87,7 @@ press coarse a 0.49 0.025
 press fine b 0.49 0.025
 at_least 18 'block, 50 %: least J' "$(reported "$work/b.dat" 'least J')" 0.001
 row 18 'block, 50 %: balance of the forces' "$(balance b)" 0 0.01
+row 18 'block, 50 %: work of the force / stored energy' "$(calc "($(work pushing 0.025)) / ($(stored "$work/a.dat"))")" 1 0.01
 row 18 "block, 50 %: force, N/m, $(count fine) nodes against $(count coarse)" "$(force b)" "$(force a)" 0.03
 
 # The bulge would soon go through the plane of the plate. With a rigid flat there it lies against it.
@@ -97,32 +105,44 @@ row 18 'block, 50 %, with contact: balance of the forces' "$(balance b "$(reacti
 row 18 "block, 50 %, with contact: force, N/m, $(count fine) nodes against $(count coarse)" "$(force b)" "$(force a)" 0.01
 
 # At 70 % the corners decide: the finer they are, the sooner they fold over the plate's edge, to another equilibrium. Even
-# lattices of the whole block stay on the first one.
-for n in 17 25; do
-    cloud -d 2 -k regular -n $n --box 0,0.1,0,0.1 | shapefn -o "$work/lattice$n.mts" 2> /dev/null
+# lattices of the whole block stay on the first one, up to 29 x 29 nodes.
+press_lattice() {
     dim=2 scene "$work/a.scene" <<END
 [displacement bottom]
 facets = ymin
 components = 0, 0
 [displacement top]
 facets = ymax
-components = 0, -0.07
+components = 0, $(calc "-($3)")
 [output]
 reactions = yes
+energy = yes
 [solver]
 tolerance = 1e-6
 END
-    relax "$work/a.scene" "$work/lattice$n.mts" "$work/lattice$n.dat"
+    relax "$work/a.scene" "$work/lattice$1.mts" "$work/$2.dat"
+}
+pushing_lattice() {
+    press_lattice 17 push "$1"
+    calc "-($(reaction "$work/push.dat" top 2))"
+}
+for n in 17 21 25; do
+    cloud -d 2 -k regular -n $n --box 0,0.1,0,0.1 | shapefn -o "$work/lattice$n.mts" 2> /dev/null
+    press_lattice $n lattice$n 0.07
 done
 top() {
-    reaction "$work/lattice$1.dat" top 2
+    calc "-($(reaction "$work/lattice$1.dat" top 2))"
 }
 at_least 18 'block, 70 %: least J' "$(reported "$work/lattice25.dat" 'least J')" 0.001
-row 18 'block, 70 %: balance of the forces' "$(calc "1 + $(reaction "$work/lattice25.dat" bottom 2) / $(top 25)")" 0 0.01
-row 18 'block, 70 %: force, N/m, 25 x 25 nodes against 17 x 17' "$(calc "-($(top 25))")" "$(calc "-($(top 17))")" 0.06
+row 18 'block, 70 %: balance of the forces' "$(calc "1 - $(reaction "$work/lattice25.dat" bottom 2) / $(top 25)")" 0 0.01
+row 18 'block, 70 %: work of the force / stored energy' "$(calc "$(work pushing_lattice 0.07) / $(stored "$work/lattice17.dat")")" 1 0.06
+row 18 'block, 70 %: force, N/m, 21 x 21 nodes against 17 x 17' "$(top 21)" "$(top 17)" 0.04
+row 18 'block, 70 %: force, N/m, 25 x 25 nodes against 21 x 21' "$(top 25)" "$(top 21)" 0.03
+at_most 18 'block, 70 %: second difference / first' "$(calc "($(top 25) - $(top 21)) / ($(top 21) - $(top 17))")" 0.8
 
 press coarse a 0.49 -0.05
 press fine b 0.49 -0.05
+row 18 'block, extension 100 %: work of the force / stored energy' "$(calc "($(work pushing -0.05)) / ($(stored "$work/a.dat"))")" 1 0.01
 row 18 "block, extension 100 %: force, N/m ($(count fine) nodes)" "$(force b)" 215.04 0.005
 at_most 18 "block, extension 100 %: error, $(count fine) nodes / $(count coarse)" \
     "$(calc "($(force b) - 215.04) / ($(force a) - 215.04)")" 0.6

@@ -21,6 +21,7 @@ facets = plate
 components = 0, 0, $(calc "-($3)")
 [output]
 reactions = yes
+energy = yes
 [solver]
 tolerance = 1e-5
 END
@@ -39,7 +40,13 @@ count() {
     mts print nodes.x "$work/$1.mts" | wc -l
 }
 
-for mesh in 'coarse 0.015' 'fine 0.0125'; do
+# pushing PUSH: the force of the eighth's plate, along the push.
+pushing() {
+    press coarsest push "$1"
+    calc "-($(reaction "$work/push.dat" plate 3))"
+}
+
+for mesh in 'coarsest 0.018' 'coarse 0.015' 'fine 0.0125'; do
     read -r name h <<< "$mesh"
     gmsh -3 -v 1 -setnumber h "$h" -setnumber Mesh.RandomSeed 1 "$geometry" -o "$work/body.msh" > /dev/null
     nodes -u m "$work/body.msh" | shapefn -o "$work/$name.mts" 2> /dev/null
@@ -50,15 +57,20 @@ row 19 "clamped cube, 20 %: force, N ($(count fine) nodes)" "$(force a)" 9.2 0.0
 press coarse b 0.01
 row 19 "clamped cube, 20 %: force, N, $(count fine) nodes against $(count coarse)" "$(force a)" "$(force b)" 0.005
 
+# These forces still fall: on 1 141 nodes by another 1.6 and 4.2 %.
 for case in '50 0.025 0.02' '70 0.035 0.05'; do
     read -r percent push tolerance <<< "$case"
+    press coarsest c "$push"
     press coarse a "$push"
     press fine b "$push"
     at_least 18 "cube, $percent %: least J" "$(reported "$work/b.dat" 'least J')" 0.001
     row 18 "cube, $percent %: balance of the forces" "$(balance b)" 0 0.01
+    row 18 "cube, $percent %: force, N, $(count coarse) nodes against $(count coarsest)" "$(force a)" "$(force c)" "$(calc "2 * $tolerance")"
     row 18 "cube, $percent %: force, N, $(count fine) nodes against $(count coarse)" "$(force b)" "$(force a)" "$tolerance"
 done
 
+press coarsest a 0.025
+row 18 'cube, 50 %: work of the force / stored energy' "$(calc "$(work pushing 0.025) / $(stored "$work/a.dat")")" 1 0.02
 press coarse a -0.05
 press fine b -0.05
 row 18 "cube, extension 100 %: force, N, $(count fine) nodes against $(count coarse)" "$(force b)" "$(force a)" 0.005

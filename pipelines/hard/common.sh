@@ -55,11 +55,11 @@ calc() {
 }
 
 # scene FILE: write standard input as a scene, after the head and the base material that most scenes share. Variables: dim
-# (default 3), youngs (3000), nu (.49), rho (1000), head (more lines of [scene]).
+# (default 3), youngs (3000), nu (.49), rho (1000), analysis (quasi-static), head (more lines of [scene]).
 scene() {
     cat > "$1" - <(printf '\n[material body]\nregion = body\nE = %s\nnu = %s\nrho = %s\n' \
         "${youngs:-3000}" "${nu:-0.49}" "${rho:-1000}")
-    sed -i "1i [scene]\ndim = ${dim:-3}\nanalysis = quasi-static\n${head:-}" "$1"
+    sed -i "1i [scene]\ndim = ${dim:-3}\nanalysis = ${analysis:-quasi-static}\n${head:-}" "$1"
 }
 
 # relax SCENE TABLE OUT: run mtled; what it says on standard error goes to OUT.log. When it fails its message is shown and
@@ -87,6 +87,23 @@ reaction() {
     mts print reactions "$1" | awk -v rows="$rows" -v section="$2" -v component="$3" '
         BEGIN { split(rows, name, ",") }
         name[NR] == section { print $component }'
+}
+
+# stored FILE: the energy of a quasi-static run whose scene asks for it, J (2D: J/m); nan where the run failed.
+stored() {
+    [ -s "$1" ] || { echo nan; return; }
+    mts print energy "$1" | awk '{ printf "%.12g\n", $1 + $2 }'
+}
+
+# work FORCE PUSH: that of a force along its path from 0 to PUSH, by Gauss' rule of four points; `FORCE AT` prints the force at
+# the push AT.
+work() {
+    local sum=0 point weight
+    for pair in '0.0694318442 0.1739274226' '0.3300094782 0.3260725774' '0.6699905218 0.3260725774' '0.9305681558 0.1739274226'; do
+        read -r point weight <<< "$pair"
+        sum=$(calc "$sum + $weight * ($2) * ($("$1" "$(calc "$point * ($2)")"))")
+    done
+    echo "$sum"
 }
 
 # order COARSE MIDDLE FINE RATIO: observed order of convergence of three values on meshes refined by RATIO.

@@ -366,6 +366,7 @@ static void solver_and_output(void **state)
     fails("[scene]\ndim = 2\nanalysis = dynamic\n" BODY "[solver]\nend_time = 1\ntolerance = .1\n", 11,
           "not allowed");
     fails(HEAD BODY "[output]\nstress = true\n", 10, "'true' is none of no, yes");
+    fails(HEAD BODY "[initial]\ntable = t\nunit = m\n", 9, "only dynamic scenes begin somewhere");
     fails(HEAD BODY "[output]\ninterval = .1\n", 10, "a quasi-static scene has no time: use frames");
     fails(HEAD BODY "[output]\nframes = -1\n", 10, "not a whole number");
     fails(HEAD BODY "[output]\nenergy = /etc/passwd\n", 10,

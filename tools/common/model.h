@@ -63,6 +63,11 @@ MUST_CHECK enum status model_add_curve(const struct model_input *input, const st
                                        const struct scene_curve *curve, struct solid_system *system,
                                        int32_t *index, struct error *error);
 
+/* u, v[node_count * dim]: the state at the begin that the scene's [initial] gives, m and m/s, as parameters.
+ */
+MUST_CHECK enum status model_initial(const struct model_input *input, double *u, double *v,
+                                     struct error *error);
+
 /* field[node_count * dim] = u_h at the nodes. */
 void model_nodal_field(const struct model_input *input, const double *u, double *field);
 

@@ -90,11 +90,17 @@ void run_dynamic(struct run *run)
     struct dynamics_report report;
     struct energy_log log = {0};
     struct error error;
+    double *velocity = NULL;
+    if (run->scene->initial.table != NULL) {
+        velocity = run_new_values(run, run->model->system.node_count * run->scene->dim);
+        tool_check(run->tool, model_initial(&run->model->input, run->u, velocity, &error), &error);
+    }
     double started = clock_seconds();
-    enum status status = dynamics_run(&run->model->system, &options, run->u, NULL, run->model->row_force,
+    enum status status = dynamics_run(&run->model->system, &options, run->u, velocity, run->model->row_force,
                                       output->energy ? &log : NULL, &report, &error);
     run->solve_seconds = clock_seconds() - started;
     run_clear_progress(&run->display);
+    free(velocity);
     tool_check(run->tool, status, &error);
     judge(run, &report);
     if (output->energy) {
