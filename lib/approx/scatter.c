@@ -6,6 +6,7 @@
 #include <gsl/gsl_errno.h>
 #include <gsl/gsl_linalg.h>
 #include <math.h>
+#include <stdbool.h>
 #include <stdlib.h>
 
 /* Singular values below this share of the largest are noise: the points do not determine that combination. */
@@ -56,51 +57,161 @@ static void monomials(int dim, const double *xi, double *p)
     }
 }
 
-/* phi[i]: the weight of neighbour i in the value at x: the first row of the pseudo-inverse of sqrt(W) P. */
-static enum status weights_of(const struct scatter *scatter, const double *x, const struct nearest *nearest,
-                              double *phi, struct error *error)
+/* Columns of a weighted fit, decomposed: U s V^T, those singular values below the cut set to 0. */
+struct part {
+    gsl_matrix *U, *V;
+    gsl_vector *s;
+};
+
+static enum status part_allocate(struct part *part, size_t rows, size_t columns, struct error *error)
 {
-    enum status status = STATUS_OK;
-    int dim = scatter->dim;
-    size_t m = (size_t)(1 + dim + dim * (dim + 1) / 2);
-    size_t rows = (size_t)nearest->count > m ? (size_t)nearest->count : m; /* padded by zeros */
-    double radius = 1.1 * nearest->distance[nearest->count - 1];
-    double root[MOST_NEIGHBOURS], xi[3], p[MOST_MONOMIALS];
-    gsl_error_handler_t *handler = gsl_set_error_handler_off();
-    gsl_matrix *A = gsl_matrix_calloc(rows, m), *V = gsl_matrix_alloc(m, m);
-    gsl_vector *s = gsl_vector_alloc(m), *work = gsl_vector_alloc(m);
-    if (A == NULL || V == NULL || s == NULL || work == NULL) {
-        status = fail_memory(error, "interpolation of a table");
-        goto done;
+    part->U = gsl_matrix_calloc(rows > columns ? rows : columns, columns); /* padded by zeros */
+    part->V = gsl_matrix_calloc(columns, columns);
+    part->s = gsl_vector_calloc(columns);
+    bool good = part->U != NULL && part->V != NULL && part->s != NULL;
+    return good ? STATUS_OK : fail_memory(error, "interpolation of a table");
+}
+
+static void part_free(struct part *part)
+{
+    gsl_matrix_free(part->U);
+    gsl_matrix_free(part->V);
+    gsl_vector_free(part->s);
+}
+
+/* U holds the columns, and receives the left singular vectors. largest: of the singular values, 0: their own.
+ */
+static enum status part_decompose(struct part *part, double largest, struct error *error)
+{
+    gsl_vector *work = gsl_vector_alloc(part->s->size);
+    if (work == NULL) {
+        return fail_memory(error, "interpolation of a table");
     }
+    int failure = gsl_linalg_SV_decomp(part->U, part->V, part->s, work);
+    gsl_vector_free(work);
+    if (failure != GSL_SUCCESS) {
+        return fail(error, STATUS_VERDICT, "interpolation of a table: no singular value decomposition");
+    }
+    double least = cut * (largest > 0.0 ? largest : gsl_vector_get(part->s, 0));
+    for (size_t k = 0; k < part->s->size; k++) {
+        if (!(gsl_vector_get(part->s, k) > least)) {
+            gsl_vector_set(part->s, k, 0.0);
+        }
+    }
+    return STATUS_OK;
+}
+
+/* row[i] += sum_j v[j] A^+(j, i), A^+ the pseudo-inverse. */
+static void add_inverse(const struct part *part, const double *v, int64_t count, double *row)
+{
+    for (size_t k = 0; k < part->s->size; k++) {
+        double s = gsl_vector_get(part->s, k), sum = 0.0;
+        if (s == 0.0) {
+            continue;
+        }
+        for (size_t j = 0; j < part->s->size; j++) {
+            sum += v[j] * gsl_matrix_get(part->V, j, k);
+        }
+        for (int64_t i = 0; i < count; i++) {
+            row[i] += sum / s * gsl_matrix_get(part->U, (size_t)i, k);
+        }
+    }
+}
+
+/* Take out of the columns of Q what the linear part can do: Q -= U U^T Q. */
+static void orthogonalise(const struct part *linear, int64_t count, gsl_matrix *Q)
+{
+    for (size_t c = 0; c < Q->size2; c++) {
+        for (size_t k = 0; k < linear->s->size; k++) {
+            double product = 0.0;
+            for (int64_t i = 0; i < count && gsl_vector_get(linear->s, k) > 0.0; i++) {
+                product += gsl_matrix_get(linear->U, (size_t)i, k) * gsl_matrix_get(Q, (size_t)i, c);
+            }
+            for (int64_t i = 0; i < count; i++) {
+                double value =
+                    gsl_matrix_get(Q, (size_t)i, c) - product * gsl_matrix_get(linear->U, (size_t)i, k);
+                gsl_matrix_set(Q, (size_t)i, c, value);
+            }
+        }
+    }
+}
+
+/* The weighted basis at the neighbours, in coordinates from their weighted mean: the linear columns, and the
+ * quadratic ones. at_x: the basis at x. From the mean, because what the points do not determine is then what
+ * vanishes on them. */
+static void fill_columns(const struct scatter *scatter, const double *x, const struct nearest *nearest,
+                         double *root, gsl_matrix *linear, gsl_matrix *quadratic, double *at_x)
+{
+    int dim = scatter->dim == 2 ? 2 : 3;
+    double radius = 1.1 * nearest->distance[nearest->count - 1], total = 0.0;
+    double mean[3] = {0.0, 0.0, 0.0}, xi[3], p[MOST_MONOMIALS];
     for (int64_t i = 0; i < nearest->count; i++) {
         double weight, slope, relative = nearest->distance[i] / radius;
         weight_evaluate(WEIGHT_QUARTIC, relative * relative, &weight, &slope);
         root[i] = sqrt(weight);
+        total += weight;
         for (int a = 0; a < dim; a++) {
-            xi[a] = (scatter->row[nearest->row[i] * scatter->row_size + a] - x[a] / scatter->unit) / radius;
+            mean[a] += weight * scatter->row[nearest->row[i] * scatter->row_size + a];
+        }
+    }
+    for (int a = 0; a < dim; a++) {
+        mean[a] /= total;
+        xi[a] = (x[a] / scatter->unit - mean[a]) / radius;
+    }
+    monomials(dim, xi, at_x);
+    for (int64_t i = 0; i < nearest->count; i++) {
+        for (int a = 0; a < dim; a++) {
+            xi[a] = (scatter->row[nearest->row[i] * scatter->row_size + a] - mean[a]) / radius;
         }
         monomials(dim, xi, p);
-        for (size_t k = 0; k < m; k++) {
-            gsl_matrix_set(A, (size_t)i, k, root[i] * p[k]);
+        for (size_t k = 0; k < linear->size2; k++) {
+            gsl_matrix_set(linear, (size_t)i, k, root[i] * p[k]);
+        }
+        for (size_t k = 0; k < quadratic->size2; k++) {
+            gsl_matrix_set(quadratic, (size_t)i, k, root[i] * p[linear->size2 + k]);
         }
     }
-    if (gsl_linalg_SV_decomp(A, V, s, work) != GSL_SUCCESS) {
-        status = fail(error, STATUS_VERDICT, "interpolation of a table: no singular value decomposition");
-        goto done;
+}
+
+/* phi[i]: the weight of neighbour i in the value at x. The quadratic monomials fit what the linear ones
+ * leave, so that linear fields come out exactly however few the points are. */
+static enum status weights_of(const struct scatter *scatter, const double *x, const struct nearest *nearest,
+                              double *phi, struct error *error)
+{
+    enum status status;
+    size_t linear_columns = (size_t)(1 + scatter->dim);
+    size_t quadratic_columns = (size_t)(scatter->dim * (scatter->dim + 1) / 2);
+    size_t rows = (size_t)nearest->count;
+    struct part linear = {0}, quadratic = {0};
+    double root[MOST_NEIGHBOURS], value[MOST_NEIGHBOURS] = {0.0}, at_x[MOST_MONOMIALS];
+    double beyond[MOST_MONOMIALS] = {0.0}, moment[MOST_NEIGHBOURS * MOST_MONOMIALS];
+    gsl_error_handler_t *handler = gsl_set_error_handler_off();
+    TRY(part_allocate(&linear, rows, linear_columns, error));
+    TRY(part_allocate(&quadratic, rows, quadratic_columns, error));
+    fill_columns(scatter, x, nearest, root, linear.U, quadratic.U, at_x);
+    for (size_t i = 0; i < rows; i++) {
+        for (size_t k = 0; k < quadratic_columns; k++) {
+            moment[i * quadratic_columns + k] = gsl_matrix_get(quadratic.U, i, k);
+        }
     }
+    TRY(part_decompose(&linear, 0.0, error));
+    orthogonalise(&linear, nearest->count, quadratic.U);
+    TRY(part_decompose(&quadratic, gsl_vector_get(linear.s, 0), error));
+    /* p_l c_l + p_q c_q with c_l = L^+ (b - Q c_q), c_q = Q'^+ b. */
+    add_inverse(&linear, at_x, nearest->count, value);
+    for (size_t k = 0; k < quadratic_columns; k++) {
+        beyond[k] = at_x[linear_columns + k];
+        for (size_t i = 0; i < rows; i++) {
+            beyond[k] -= value[i] * moment[i * quadratic_columns + k];
+        }
+    }
+    add_inverse(&quadratic, beyond, nearest->count, value);
     for (int64_t i = 0; i < nearest->count; i++) {
-        phi[i] = 0.0;
-        for (size_t k = 0; k < m && gsl_vector_get(s, k) > cut * gsl_vector_get(s, 0); k++) {
-            phi[i] +=
-                gsl_matrix_get(V, 0, k) / gsl_vector_get(s, k) * gsl_matrix_get(A, (size_t)i, k) * root[i];
-        }
+        phi[i] = value[i] * root[i];
     }
 done:
-    gsl_matrix_free(A);
-    gsl_matrix_free(V);
-    gsl_vector_free(s);
-    gsl_vector_free(work);
+    part_free(&linear);
+    part_free(&quadratic);
     gsl_set_error_handler(handler);
     return status;
 }

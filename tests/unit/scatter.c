@@ -1,0 +1,102 @@
+/* Displacements from tables of points: linear fields exactly, however few the points; quadratic ones where
+ * there are enough; nothing made up across a line of points. */
+#include "solid_fixture.h"
+
+#include "approx/scatter.h"
+
+static double linear(const double *x, int v)
+{
+    return v == 0 ? 0.3 + 2.0 * x[0] - x[1] : -0.1 + x[1] * 0.5;
+}
+
+static double quadratic(const double *x, int v)
+{
+    return linear(x, v) + (v == 0 ? x[0] * x[0] - x[0] * x[1] : 3.0 * x[1] * x[1]);
+}
+
+/* Rows of x, y and two values, in mm. */
+static struct scatter table(double *row, int64_t count, double (*field)(const double *x, int v))
+{
+    for (int64_t i = 0; i < count; i++) {
+        for (int v = 0; v < 2; v++) {
+            row[4 * i + 2 + v] = field(row + 4 * i, v);
+        }
+    }
+    return (struct scatter){
+        .dim = 2, .value_count = 2, .count = count, .row_size = 4, .row = row, .unit = 1e-3};
+}
+
+static double worst(const struct scatter *scatter, double (*field)(const double *x, int v))
+{
+    struct error error;
+    double largest = 0.0;
+    for (int k = 0; k < 50; k++) {
+        double mm[2] = {0.1 + 0.8 * fabs(sin(3.0 * k)), 0.1 + 0.8 * fabs(cos(5.0 * k))};
+        double x[2] = {1e-3 * mm[0], 1e-3 * mm[1]}, value[2], distance, spacing;
+        GOOD(scatter_evaluate(scatter, x, value, &distance, &spacing, &error));
+        for (int v = 0; v < 2; v++) {
+            largest = fmax(largest, fabs(value[v] * 1e3 - field(mm, v)));
+        }
+    }
+    return largest;
+}
+
+static void few_points_give_linear_fields(void **state)
+{
+    (void)state;
+    double row[6 * 4] = {0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 0.5, 0.4, 0, 0, 0.2, 0.7, 0, 0};
+    for (int64_t count = 3; count <= 6; count++) {
+        struct scatter scatter = table(row, count, linear);
+        AT_MOST(worst(&scatter, linear), 1e-12);
+    }
+}
+
+static void enough_points_give_quadratic_fields(void **state)
+{
+    (void)state;
+    double row[25 * 4];
+    for (int i = 0; i < 25; i++) {
+        row[4 * i] = 0.25 * (i % 5) + 0.01 * sin(i);
+        row[4 * i + 1] = 0.25 * (double)(i / 5) + 0.01 * cos(i);
+    }
+    struct scatter scatter = table(row, 25, quadratic);
+    AT_MOST(worst(&scatter, quadratic), 1e-11);
+}
+
+/* On a line nothing is known of what changes across it. */
+static void a_line_is_extended_across(void **state)
+{
+    (void)state;
+    double row[9 * 4] = {0};
+    for (int i = 0; i < 9; i++) {
+        row[4 * i] = 0.125 * i;
+    }
+    struct scatter scatter = table(row, 9, quadratic);
+    struct error error;
+    double x[2] = {0.4e-3, 0.05e-3}, on[2] = {0.4, 0.0}, value[2], distance, spacing;
+    GOOD(scatter_evaluate(&scatter, x, value, &distance, &spacing, &error));
+    AT_MOST(fabs(value[0] * 1e3 - quadratic(on, 0)), 1e-12);
+    AT_MOST(fabs(value[1] * 1e3 - quadratic(on, 1)), 1e-12);
+}
+
+static void one_point_is_a_constant(void **state)
+{
+    (void)state;
+    double row[4] = {0.3, 0.3, 0, 0};
+    struct scatter scatter = table(row, 1, linear);
+    struct error error;
+    double x[2] = {1e-3, 0}, value[2], distance, spacing;
+    GOOD(scatter_evaluate(&scatter, x, value, &distance, &spacing, &error));
+    AT_MOST(fabs(value[0] * 1e3 - linear(row, 0)), 1e-15);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(few_points_give_linear_fields),
+        cmocka_unit_test(enough_points_give_quadratic_fields),
+        cmocka_unit_test(a_line_is_extended_across),
+        cmocka_unit_test(one_point_is_a_constant),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
