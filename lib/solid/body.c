@@ -15,6 +15,11 @@ static int64_t points_of_block(int dim)
     return dim == 2 ? 64 : PAIRS_MAX_ROWS;
 }
 
+static enum material_model model_of(const struct body_input *input, int64_t point)
+{
+    return input->materials[input->material[point]].model;
+}
+
 /* Points by law, so that blocks are of one, and along a curve, so that they are compact; nodes along the
  * curve, too. */
 static enum status order_all(const struct body_input *input, struct body *body, struct error *error)
@@ -26,7 +31,7 @@ static enum status order_all(const struct body_input *input, struct body *body, 
     TRY(NEW_ARRAY(&body->node_order, input->node_count, error));
     TRY(NEW_ARRAY(&body->node_place, input->node_count, error));
     for (int64_t q = 0; q < input->point_count; q++) {
-        model[q] = (int32_t)input->materials[input->material[q]].model;
+        model[q] = (int32_t)model_of(input, q);
     }
     TRY(renumber_morton(input->dim, input->point_count, input->x, model, body->order, error));
     for (int64_t n = 0; n < input->node_count; n++) {
@@ -75,22 +80,23 @@ done:
     return status;
 }
 
-/* Cut the ordered points into blocks of one law. */
-static enum status cut_blocks(struct body *body, struct error *error)
+/* Cut the ordered points into blocks of one law; within a block the order is free. */
+static enum status cut_blocks(const struct body_input *input, struct body *body, struct error *error)
 {
     enum status status;
     int64_t most = points_of_block(body->dim);
     TRY(NEW_ARRAY(&body->blocks, body->point_count / most + MATERIAL_MODEL_COUNT + 1, error));
     for (int64_t q = 0; q < body->point_count;) {
         struct block *block = &body->blocks[body->block_count++];
-        enum material_model model = body->materials[body->material[q]].model;
+        enum material_model model = model_of(input, body->order[q]);
         block->first_point = q;
         block->neo_hookean = model == MATERIAL_NEO_HOOKEAN;
         while (q < body->point_count && block->point_count < most &&
-               body->materials[body->material[q]].model == model) {
+               model_of(input, body->order[q]) == model) {
             block->point_count++;
             q++;
         }
+        pairs_sort_rows(block->point_count, body->order + block->first_point, input->ptr, NULL);
     }
 done:
     return status;
@@ -295,8 +301,8 @@ enum status body_build(const struct body_input *input, struct body *body, struct
                     (long long)body->point_count);
     }
     TRY(order_all(input, body, error));
+    TRY(cut_blocks(input, body, error));
     TRY(copy_points(input, body, error));
-    TRY(cut_blocks(body, error));
     body->pair_count = input->ptr[input->point_count];
     body->threads = worthwhile_threads(body);
     if (body->averaged) {

@@ -5,6 +5,7 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 /* a_q over the pressure beyond the threshold: buckling stops at about 1 in two dimensions and in three. */
 static const double share_of_pressure = 1.0;
@@ -19,27 +20,29 @@ enum status compatibility_build(const struct body *body, const struct compatibil
     enum status status;
     int corners = body->dim + 1;
     int64_t points = body->point_count;
-    int32_t *of_corner = NULL;
+    int32_t *node_of_corner = NULL;
     *compatibility = (struct compatibility){0};
     TRY(NEW_ARRAY(&compatibility->coefficient, points + BODY_POINT_PADDING, error));
     TRY(NEW_ARRAY(&compatibility->energy, points, error));
-    TRY(NEW_ARRAY(&of_corner, points * corners, error));
-    for (int64_t i = 0; i < points * corners; i++) {
-        of_corner[i] = body->node_place[input->cell_node[body->order[i / corners] * corners + i % corners]];
+    TRY(NEW_ARRAY(&node_of_corner, points * corners, error));
+    for (int64_t q = 0; q < points; q++) {
+        memcpy(node_of_corner + q * corners, input->cell_node + body->order[q] * corners,
+               (size_t)corners * sizeof *node_of_corner);
     }
-    struct pairs_input pairs = {.dim = body->dim,
-                                .width = 1,
+    struct means_input nodes = {.dim = body->dim,
                                 .node_count = body->node_count,
                                 .row_count = body->node_count,
-                                .row = body->node_order,
+                                .order = body->node_order,
                                 .ptr = input->node_ptr,
                                 .idx = input->node_idx,
-                                .value = input->node_phi,
+                                .phi = input->node_phi,
                                 .place = body->node_place,
+                                .corner_count = points * corners,
+                                .row_of_corner = node_of_corner,
                                 .single = body->single};
-    TRY(means_build(&pairs, points * corners, of_corner, &compatibility->nodes, error));
+    TRY(means_build(&nodes, &compatibility->nodes, error));
 done:
-    free(of_corner);
+    free(node_of_corner);
     if (status != STATUS_OK) {
         compatibility_free(compatibility);
     }

@@ -87,9 +87,11 @@ static enum status order_faces(const struct conforming_input *input, int dim, in
     enum status status;
     double *x = NULL;
     TRY(NEW_ARRAY(&x, input->face_count * dim, error));
-    for (int64_t i = 0; i < input->face_count * dim * dim; i++) {
-        int64_t f = i / (dim * dim), k = i / dim % dim, a = i % dim;
-        x[f * dim + a] += input->x[(int64_t)input->face_node[f * dim + k] * dim + a] / dim;
+    for (int64_t f = 0; f < input->face_count; f++) {
+        for (int i = 0; i < dim * dim; i++) {
+            x[f * dim + i % dim] +=
+                input->x[(int64_t)input->face_node[f * dim + i / dim] * dim + i % dim] / dim;
+        }
     }
     TRY(renumber_morton(dim, input->face_count, x, NULL, order, error));
 done:
@@ -112,10 +114,9 @@ static int opposite_corner(int dim, const int32_t *vertex, const int32_t *face)
     return dim;
 }
 
-/* Row of the face opposite each corner. */
+/* The face opposite each corner. */
 static enum status match_corners(const struct conforming_input *input, int dim, int64_t cell_count,
-                                 const int64_t *order, const int64_t *face_order, int32_t *of_corner,
-                                 struct error *error)
+                                 const int64_t *order, int32_t *face_of_corner, struct error *error)
 {
     enum status status;
     int64_t *cell_place = NULL;
@@ -124,21 +125,18 @@ static enum status match_corners(const struct conforming_input *input, int dim, 
         cell_place[order[q]] = q;
     }
     for (int64_t i = 0; i < cell_count * (dim + 1); i++) {
-        of_corner[i] = -1;
+        face_of_corner[i] = -1;
     }
-    for (int64_t r = 0; r < input->face_count; r++) {
-        const int32_t *cell = input->face_cell + 2 * face_order[r];
-        for (int side = 0; side < 2; side++) {
-            if (cell[side] < 0 || cell[side] >= cell_count) {
-                continue;
-            }
-            int corner = opposite_corner(dim, input->cell_node + (int64_t)cell[side] * (dim + 1),
-                                         input->face_node + face_order[r] * dim);
-            of_corner[cell_place[cell[side]] * (dim + 1) + corner] = (int32_t)r;
+    for (int64_t i = 0; i < input->face_count * 2; i++) {
+        int64_t face = i / 2, cell = input->face_cell[i];
+        if (cell >= 0 && cell < cell_count) {
+            int corner =
+                opposite_corner(dim, input->cell_node + cell * (dim + 1), input->face_node + face * dim);
+            face_of_corner[cell_place[cell] * (dim + 1) + corner] = (int32_t)face;
         }
     }
     for (int64_t i = 0; i < cell_count * (dim + 1); i++) {
-        if (of_corner[i] < 0) {
+        if (face_of_corner[i] < 0) {
             status = fail(error, STATUS_INPUT,
                           "faces.cell: cell %lld lacks a face: run ipoints for conforming cells",
                           (long long)order[i / (dim + 1)]);
@@ -157,31 +155,32 @@ enum status conforming_build(const struct conforming_input *input, int dim, int6
     enum status status;
     struct face_means means = {0};
     int64_t *face_order = NULL;
-    int32_t *of_corner = NULL;
+    int32_t *face_of_corner = NULL;
     *conforming = (struct conforming){0};
     TRY(set_hats(input, dim, cell_count, order, conforming, error));
     TRY(NEW_ARRAY(&face_order, input->face_count, error));
-    TRY(NEW_ARRAY(&of_corner, cell_count * (dim + 1), error));
+    TRY(NEW_ARRAY(&face_of_corner, cell_count * (dim + 1), error));
+    TRY(match_corners(input, dim, cell_count, order, face_of_corner, error));
     TRY(order_faces(input, dim, face_order, error));
-    TRY(match_corners(input, dim, cell_count, order, face_order, of_corner, error));
     TRY(average_faces(input, node_count, &means, error));
-    struct pairs_input pairs = {.dim = dim,
-                                .width = 1,
+    struct means_input faces = {.dim = dim,
                                 .node_count = node_count,
                                 .row_count = input->face_count,
-                                .row = face_order,
+                                .order = face_order,
                                 .ptr = means.ptr,
                                 .idx = means.idx,
-                                .value = means.phi,
+                                .phi = means.phi,
                                 .place = place,
+                                .corner_count = cell_count * (dim + 1),
+                                .row_of_corner = face_of_corner,
                                 .single = single};
-    TRY(means_build(&pairs, cell_count * (dim + 1), of_corner, &conforming->faces, error));
+    TRY(means_build(&faces, &conforming->faces, error));
 done:
     free(means.ptr);
     free(means.idx);
     free(means.phi);
     free(face_order);
-    free(of_corner);
+    free(face_of_corner);
     if (status != STATUS_OK) {
         conforming_free(conforming);
     }

@@ -84,26 +84,24 @@ static void stress_block(struct body *body, int64_t b)
     }
 }
 
-/* Mean and variance of J over a hat. */
-static void average_volume(struct body *body, int64_t a, double *mean, double *variance)
+/* Mean and variance of J over a hat: taken of J - 1, which is small. */
+static void average_volume(const struct body *body, int64_t a, double *mean, double *variance)
 {
     const struct volume_hats *hats = &body->hats;
     double sum = 0.0, squares = 0.0;
     for (int64_t i = hats->ptr[a]; i < hats->ptr[a + 1]; i++) {
-        sum += hats->share[i] * body->J[hats->point[i]];
+        double difference = body->J[hats->point[i]] - 1.0, part = hats->share[i] * difference;
+        sum += part;
+        squares += part * difference;
     }
-    for (int64_t i = hats->ptr[a]; i < hats->ptr[a + 1]; i++) {
-        double difference = body->J[hats->point[i]] - sum;
-        squares += hats->share[i] * difference * difference;
-    }
-    *mean = sum;
-    *variance = squares;
+    *mean = 1.0 + sum;
+    *variance = squares > sum * sum ? squares - sum * sum : 0.0;
 }
 
 /* Share s of the pointwise law in a hat. */
 static double share_of(const struct body *body, const struct material *material)
 {
-    return fmax(body->pointwise_share, material->least_share);
+    return body->pointwise_share > material->least_share ? body->pointwise_share : material->least_share;
 }
 
 /* Pressure of a hat, from the derivative of its energy: U'(theta) + kappa (s + 2 c v) (J - theta). */
@@ -114,20 +112,17 @@ static void set_pressure(struct body *body, int64_t a)
     double mean, variance;
     average_volume(body, a, &mean, &variance);
     hats->theta[a] = mean;
-    hats->slope[a] =
-        material_bulk(material) * (share_of(body, material) + 2.0 * body->share_growth * variance);
+    double bulk = material_bulk(material);
+    hats->slope[a] = bulk * (share_of(body, material) + 2.0 * body->share_growth * variance);
     hats->pressure[a] = material_pressure(material, mean) - hats->slope[a] * mean;
 }
 
-/* The force on a node, in the caller's order. */
-static void sum_node(const struct body *body, int64_t node, bool tied, double *force)
+/* Nodes are worked on in stretches of so many. */
+enum { NODES_AT_ONCE = 256 };
+
+static int64_t stretch_end(const struct body *body, int64_t first)
 {
-    double sum[3] = {0.0, 0.0, 0.0};
-    pairs_sum(body->conforming ? &body->cells.faces.pairs : &body->gradients, node, sum);
-    if (tied) {
-        pairs_sum(&body->compatibility->nodes.pairs, node, sum);
-    }
-    memcpy(force + body->node_order[node] * body->dim, sum, (size_t)body->dim * sizeof *sum);
+    return first + NODES_AT_ONCE < body->node_count ? first + NODES_AT_ONCE : body->node_count;
 }
 
 /* The means that conforming cells look at, and what they put on them: loops that threads share. */
@@ -151,13 +146,12 @@ static void scatter_means(const struct body *body, struct means *means)
 static void evaluate(struct body *body, const double *u, double *force)
 {
     bool tied = is_tied(body);
-    int dim = body->dim;
 #pragma omp parallel num_threads(body->threads)
     {
         double local[MAX_LOCAL] __attribute__((aligned(64)));
 #pragma omp for schedule(static)
-        for (int64_t n = 0; n < body->node_count; n++) {
-            memcpy(body->u + n * PAIRS_STRIDE(dim), u + body->node_order[n] * dim, (size_t)dim * sizeof *u);
+        for (int64_t first = 0; first < body->node_count; first += NODES_AT_ONCE) {
+            body->kernels->place(body, first, stretch_end(body, first), u);
         }
         if (body->conforming) {
             gather_means(body, &body->cells.faces, local);
@@ -194,8 +188,8 @@ static void evaluate(struct body *body, const double *u, double *force)
         }
         if (force != NULL) {
 #pragma omp for schedule(static)
-            for (int64_t n = 0; n < body->node_count; n++) {
-                sum_node(body, n, tied, force);
+            for (int64_t first = 0; first < body->node_count; first += NODES_AT_ONCE) {
+                body->kernels->sum(body, first, stretch_end(body, first), force);
             }
         }
     }
@@ -268,18 +262,26 @@ void body_diagonal(const struct body *body, double *stiffness)
         double shear = body->weight[q] * body->shear[q] / cbrt(J * J);
         double tie = is_tied(body) ? 2.0 * body->weight[q] * body->compatibility->coefficient[q] : 0.0;
         double along = body->weight[q] * body->bulk[q] + 5.0 / 9.0 * I1 * shear / (J * J);
+        /* along |J F^-T g|^2 - shear |g|^2 / 3 = g A g */
+        double A[3][3];
+        for (int a = 0; a < dim; a++) {
+            for (int b = 0; b < dim; b++) {
+                A[a][b] = a == b ? -shear / 3.0 : 0.0;
+                for (int k = 0; k < dim; k++) {
+                    A[a][b] += along * C[3 * k + a] * C[3 * k + b];
+                }
+            }
+        }
         for (int64_t i = body->ptr[body->order[q]]; i < body->ptr[body->order[q] + 1]; i++) {
             const double *g = body->dphi + i * dim;
-            double g2 = 0.0, y2 = 0.0; /* |grad phi|^2, |J F^-T grad phi|^2 */
+            double bound = 0.0, g2 = 0.0;
             for (int a = 0; a < dim; a++) {
-                double y = 0.0;
-                for (int k = 0; k < dim; k++) {
-                    y += C[3 * a + k] * g[k];
+                for (int b = 0; b < dim; b++) {
+                    bound += A[a][b] * g[a] * g[b];
                 }
                 g2 += g[a] * g[a];
-                y2 += y * y;
             }
-            stiffness[body->idx[i]] += fmax(0.0, along * y2 - shear * g2 / 3.0) + tie * g2;
+            stiffness[body->idx[i]] += (bound < 0.0 ? 0.0 : bound) + tie * g2;
         }
     }
 }

@@ -6,6 +6,16 @@
 #include "solid/kernel_points.h"
 
 #define KERNEL_SET(set, dim, attribute)                                                                      \
+    attribute static void place_##set##_##dim(struct body *body, int64_t first, int64_t last,                \
+                                              const double *u)                                               \
+    {                                                                                                        \
+        kernel_place(body, first, last, dim, u);                                                             \
+    }                                                                                                        \
+    attribute static void sum_##set##_##dim(const struct body *body, int64_t first, int64_t last,            \
+                                            double *force)                                                   \
+    {                                                                                                        \
+        sum_nodes_##dim(body, first, last, force);                                                           \
+    }                                                                                                        \
     attribute static void gather_##set##_##dim(struct body *body, int64_t b, double *local)                  \
     {                                                                                                        \
         const struct pairs *pairs = &body->gradients;                                                        \
@@ -57,6 +67,8 @@
         kernel_neo_hookean(body, &body->blocks[b], dim, P);                                                  \
     }                                                                                                        \
     static const struct force_kernels kernels_##set##_##dim = {.name = #set,                                 \
+                                                               .place = place_##set##_##dim,                 \
+                                                               .sum = sum_##set##_##dim,                     \
                                                                .gather = gather_##set##_##dim,               \
                                                                .scatter = scatter_##set##_##dim,             \
                                                                .gather_means = gather_means_##set##_##dim,   \

@@ -10,6 +10,10 @@ typedef double block_stress[9][PAIRS_MAX_ROWS];
 /* Each works on the block of that number. local: scratch, room for the displacements of a block's nodes. */
 struct force_kernels {
     const char *name;
+    /* For nodes first .. last - 1: displacements into the body's order; and force, in the caller's, as the
+     * sum of what the blocks put on them. */
+    void (*place)(struct body *body, int64_t first, int64_t last, const double *u);
+    void (*sum)(const struct body *body, int64_t first, int64_t last, double *force);
     /* F and J of points from the table of gradients and body->u; and the forces of weighted stresses P. */
     void (*gather)(struct body *body, int64_t block, double *local);
     void (*scatter)(struct body *body, int64_t block, const block_stress P);

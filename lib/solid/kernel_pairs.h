@@ -6,11 +6,14 @@
 #ifndef SOLID_KERNEL_PAIRS_H
 #define SOLID_KERNEL_PAIRS_H
 
+#include "solid/compatibility.h"
 #include "solid/kernel.h"
 #include "solid/kernel_vector.h"
 
 /* Independent sums of a row: the loop is bound by the latency of the additions otherwise. */
 enum { CHAINS = 4 };
+
+#define UNROLL _Pragma("GCC unroll 4")
 
 /* Displacements of the block's nodes. */
 KERNEL_INLINE void localise(const struct pairs *pairs, const struct pair_block *block, int dim,
@@ -29,10 +32,13 @@ KERNEL_INLINE double table_value(const struct pairs *pairs, int64_t i, bool sing
     return single ? (double)pairs->single_value[i] : pairs->value[i];
 }
 
-/* Prefetch what the next block has in place of this row. */
+/* Prefetch what the next block has in place of this row, of a table that does not stay in cache. */
 KERNEL_INLINE void prefetch_row(const struct pairs *pairs, const struct pair_block *block, int64_t row,
                                 int width, bool single)
 {
+    if (!pairs->large) {
+        return;
+    }
     const int64_t *ptr = pairs->ptr;
     int64_t ahead = ptr[block->first_row + block->row_count] - ptr[block->first_row];
     int64_t first = ptr[row] + ahead, last = ptr[row + 1] + ahead;
@@ -133,7 +139,8 @@ KERNEL_INLINE void scatter_2d(const struct pairs *pairs, const struct pair_block
         int64_t row = block->first_row + p;
         pair2 column0 = {P[0][p], P[2][p]}, column1 = {P[1][p], P[3][p]};
         prefetch_row(pairs, block, row, 2, single);
-        for (int64_t i = pairs->ptr[row], end = pairs->ptr[row + 1]; i < end; i++) {
+        UNROLL for (int64_t i = pairs->ptr[row], end = pairs->ptr[row + 1]; i < end; i++)
+        {
             double *f = force + offset[i];
             pair2 sum;
             LOAD(sum, f);
@@ -153,7 +160,8 @@ KERNEL_INLINE void scatter_3d(const struct pairs *pairs, const struct pair_block
         quad4 column0 = {P[0][p], P[3][p], P[6][p], 0.0}, column1 = {P[1][p], P[4][p], P[7][p], 0.0};
         quad4 column2 = {P[2][p], P[5][p], P[8][p], 0.0};
         prefetch_row(pairs, block, row, 3, single);
-        for (int64_t i = pairs->ptr[row], end = pairs->ptr[row + 1]; i < end; i++) {
+        UNROLL for (int64_t i = pairs->ptr[row], end = pairs->ptr[row + 1]; i < end; i++)
+        {
             double *f = force + offset[i];
             quad4 sum;
             LOAD(sum, f);
@@ -185,50 +193,80 @@ KERNEL_INLINE void kernel_scatter(struct pairs *pairs, int64_t b, int dim, const
     }
 }
 
-/* Means of the rows of a block. Vector: pair2 in 2D, quad4 in 3D. */
-#define MEANS_KERNELS(dim, vector)                                                                           \
-    KERNEL_INLINE void gather_means_##dim(const struct pairs *pairs, const struct pair_block *block,         \
-                                          const double *restrict u, bool single, double *restrict value)     \
-    {                                                                                                        \
-        for (int64_t row = block->first_row; row < block->first_row + block->row_count; row++) {             \
-            vector part[CHAINS] = {{0.0}}, v;                                                                \
-            int64_t i = pairs->ptr[row], end = pairs->ptr[row + 1];                                          \
-            for (; i + CHAINS <= end; i += CHAINS) {                                                         \
-                for (int chain = 0; chain < CHAINS; chain++) {                                               \
-                    LOAD(v, u + pairs->offset[i + chain]);                                                   \
-                    part[chain] += v * table_value(pairs, i + chain, single);                                \
-                }                                                                                            \
-            }                                                                                                \
-            for (; i < end; i++) {                                                                           \
-                LOAD(v, u + pairs->offset[i]);                                                               \
-                part[0] += v * table_value(pairs, i, single);                                                \
-            }                                                                                                \
-            v = (part[0] + part[1]) + (part[2] + part[3]);                                                   \
-            STORE(value + row * PAIRS_STRIDE(dim), v);                                                       \
-        }                                                                                                    \
-    }                                                                                                        \
-    KERNEL_INLINE void scatter_means_##dim(const struct means *means, const struct pair_block *block,        \
-                                           bool single, double *restrict force)                              \
+/* Values of pair i of a group of means. */
+KERNEL_INLINE void load_group(const struct pairs *pairs, int64_t i, bool single, quad4 *phi)
+{
+    if (single) {
+        quad4_float narrow;
+        LOAD(narrow, pairs->single_value + MEANS_GROUP * i);
+        *phi = __builtin_convertvector(narrow, quad4);
+    } else {
+        LOAD(*phi, pairs->value + MEANS_GROUP * i);
+    }
+}
+
+KERNEL_INLINE void add_group(const struct pairs *pairs, int64_t i, int dim, const double *u, bool single,
+                             quad4 mean[3])
+{
+    const double *v = u + pairs->offset[i];
+    quad4 phi;
+    load_group(pairs, i, single, &phi);
+    for (int a = 0; a < dim; a++) {
+        mean[a] += v[a] * phi;
+    }
+}
+
+/* Means of the groups of a block. */
+KERNEL_INLINE void gather_groups(const struct pairs *pairs, const struct pair_block *block, int dim,
+                                 const double *restrict u, bool single, double *restrict value)
+{
+    for (int64_t g = block->first_row; g < block->first_row + block->row_count; g++) {
+        quad4 part[CHAINS][3] = {{{0.0}}};
+        int64_t i = pairs->ptr[g], end = pairs->ptr[g + 1];
+        for (; i + CHAINS <= end; i += CHAINS) {
+            for (int chain = 0; chain < CHAINS; chain++) {
+                add_group(pairs, i + chain, dim, u, single, part[chain]);
+            }
+        }
+        for (; i < end; i++) {
+            add_group(pairs, i, dim, u, single, part[0]);
+        }
+        for (int a = 0; a < dim; a++) {
+            quad4 sum = (part[0][a] + part[1][a]) + (part[2][a] + part[3][a]);
+            STORE(value + (g * dim + a) * MEANS_GROUP, sum);
+        }
+    }
+}
+
+/* The transpose, of what the corners put on the means. Vector: pair2 in 2D, quad4 in 3D. */
+#define SCATTER_GROUPS(dim, vector)                                                                          \
+    KERNEL_INLINE void scatter_groups_##dim(const struct means *means, const struct pair_block *block,       \
+                                            bool single, double *restrict force)                             \
     {                                                                                                        \
         const struct pairs *pairs = &means->pairs;                                                           \
         const uint16_t *restrict offset = pairs->offset;                                                     \
-        for (int64_t row = block->first_row; row < block->first_row + block->row_count; row++) {             \
-            vector part = {0.0}, v;                                                                          \
-            for (int64_t i = means->corner_ptr[row]; i < means->corner_ptr[row + 1]; i++) {                  \
-                LOAD(v, means->corner_force + (int64_t)means->corner[i] * PAIRS_STRIDE(dim));                \
-                part += v;                                                                                   \
+        for (int64_t g = block->first_row; g < block->first_row + block->row_count; g++) {                   \
+            vector total[MEANS_GROUP] = {{0.0}}, v;                                                          \
+            for (int64_t i = means->corner_ptr[g]; i < means->corner_ptr[g + 1]; i++) {                      \
+                for (int r = 0; r < MEANS_GROUP; r++) {                                                      \
+                    LOAD(v, means->corner_force +                                                            \
+                                (int64_t)means->corner[i * MEANS_GROUP + r] * PAIRS_STRIDE(dim));            \
+                    total[r] += v;                                                                           \
+                }                                                                                            \
             }                                                                                                \
-            prefetch_row(pairs, block, row, 1, single);                                                      \
-            for (int64_t i = pairs->ptr[row], end = pairs->ptr[row + 1]; i < end; i++) {                     \
+            prefetch_row(pairs, block, g, MEANS_GROUP, single);                                              \
+            for (int64_t i = pairs->ptr[g], end = pairs->ptr[g + 1]; i < end; i++) {                         \
                 double *f = force + offset[i];                                                               \
                 LOAD(v, f);                                                                                  \
-                v += part * table_value(pairs, i, single);                                                   \
+                for (int r = 0; r < MEANS_GROUP; r++) {                                                      \
+                    v += total[r] * table_value(pairs, i * MEANS_GROUP + r, single);                         \
+                }                                                                                            \
                 STORE(f, v);                                                                                 \
             }                                                                                                \
         }                                                                                                    \
     }
-MEANS_KERNELS(2, pair2)
-MEANS_KERNELS(3, quad4)
+SCATTER_GROUPS(2, pair2)
+SCATTER_GROUPS(3, quad4)
 
 KERNEL_INLINE void kernel_gather_means(struct means *means, int64_t b, int dim, const double *u,
                                        double *local, bool single)
@@ -236,11 +274,7 @@ KERNEL_INLINE void kernel_gather_means(struct means *means, int64_t b, int dim, 
     const struct pairs *pairs = &means->pairs;
     const struct pair_block *block = &pairs->blocks[b];
     localise(pairs, block, dim, u, local);
-    if (dim == 2) {
-        gather_means_2(pairs, block, local, single, means->value);
-    } else {
-        gather_means_3(pairs, block, local, single, means->value);
-    }
+    gather_groups(pairs, block, dim, local, single, means->value);
 }
 
 KERNEL_INLINE void kernel_scatter_means(struct means *means, int64_t b, int dim, bool single)
@@ -248,10 +282,48 @@ KERNEL_INLINE void kernel_scatter_means(struct means *means, int64_t b, int dim,
     const struct pair_block *block = &means->pairs.blocks[b];
     double *force = clear_forces(&means->pairs, block, dim);
     if (dim == 2) {
-        scatter_means_2(means, block, single, force);
+        scatter_groups_2(means, block, single, force);
     } else {
-        scatter_means_3(means, block, single, force);
+        scatter_groups_3(means, block, single, force);
     }
 }
+
+/* Displacements in the body's order. */
+KERNEL_INLINE void kernel_place(struct body *body, int64_t first, int64_t last, int dim, const double *u)
+{
+    for (int64_t n = first; n < last; n++) {
+        for (int a = 0; a < dim; a++) {
+            body->u[n * PAIRS_STRIDE(dim) + a] = u[body->node_order[n] * dim + a];
+        }
+    }
+}
+
+/* What the blocks of a table put on a node. */
+#define SUM_KERNEL(dim, vector)                                                                              \
+    KERNEL_INLINE void add_blocks_##dim(const struct pairs *pairs, int64_t node, vector *sum)                \
+    {                                                                                                        \
+        for (int64_t i = pairs->sum_ptr[node]; i < pairs->sum_ptr[node + 1]; i++) {                          \
+            vector part;                                                                                     \
+            LOAD(part, pairs->block_force + (int64_t)pairs->sum[i] * PAIRS_STRIDE(dim));                     \
+            *sum += part;                                                                                    \
+        }                                                                                                    \
+    }                                                                                                        \
+    KERNEL_INLINE void sum_nodes_##dim(const struct body *body, int64_t first, int64_t last, double *force)  \
+    {                                                                                                        \
+        bool tied = body->compatibility != NULL && body->compatibility->active;                              \
+        const struct pairs *pairs = body->conforming ? &body->cells.faces.pairs : &body->gradients;          \
+        for (int64_t n = first; n < last; n++) {                                                             \
+            vector sum = {0.0};                                                                              \
+            add_blocks_##dim(pairs, n, &sum);                                                                \
+            if (tied) {                                                                                      \
+                add_blocks_##dim(&body->compatibility->nodes.pairs, n, &sum);                                \
+            }                                                                                                \
+            for (int a = 0; a < dim; a++) {                                                                  \
+                force[body->node_order[n] * dim + a] = sum[a];                                               \
+            }                                                                                                \
+        }                                                                                                    \
+    }
+SUM_KERNEL(2, pair2)
+SUM_KERNEL(3, quad4)
 
 #endif

@@ -73,9 +73,9 @@ KERNEL_INLINE void read_corners(const struct means *means, const struct block *b
     const int32_t *of_corner = means->of_corner + block->first_point * (dim + 1);
     for (int64_t i = 0; i < block->point_count; i++) {
         for (int k = 0; k <= dim; k++) {
-            const double *value = means->value + (int64_t)of_corner[i * (dim + 1) + k] * PAIRS_STRIDE(dim);
+            const double *value = means->value + of_corner[i * (dim + 1) + k];
             for (int a = 0; a < dim; a++) {
-                corners[k * dim + a][i] = value[a];
+                corners[k * dim + a][i] = value[a * MEANS_GROUP];
             }
         }
     }

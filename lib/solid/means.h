@@ -1,25 +1,42 @@
 /* Means of the displacement field that the corners of conforming cells look at: one for each face (its mean),
  * or one for each node (its value). Corner k of a cell stands for its vertex k, or for the face opposite.
  *
- * An evaluation gathers the means, works on the cells, and scatters what the corners put on their means. */
+ * An evaluation gathers the means, works on the cells, and scatters what the corners put on their means.
+ * Means are taken four at a time, near ones that share most of their nodes, on one list: a vector has the
+ * values of four, and each displacement and force is touched once for all of them. */
 #ifndef SOLID_MEANS_H
 #define SOLID_MEANS_H
 
 #include "solid/pairs.h"
 
+/* Means of a group, which is a row of the table of pairs. */
+enum { MEANS_GROUP = 4 };
+
 struct means {
-    struct pairs pairs;   /* width 1 */
-    double *value;        /* row_count * stride: at the last evaluation, m */
-    int32_t *of_corner;   /* cells * (dim + 1): the row that each corner looks at */
-    double *corner_force; /* cells * (dim + 1) * stride: what each corner puts on it, N (2D: N/m) */
-    int64_t *corner_ptr;  /* row_count + 1: the corners of each row, ascending */
-    int32_t *corner;
+    struct pairs pairs; /* width MEANS_GROUP */
+    double *value;      /* at the last evaluation, m: component a of mean r of group g at (g dim + a) 4 + r */
+    int32_t *of_corner; /* corner_count: where the value begins that each corner looks at */
+    double *corner_force; /* (corner_count + 1) * stride: what each corner puts on its mean, N (2D: N/m); last
+                             zeros */
+    int64_t *corner_ptr;  /* pairs.row_count + 1: for each group the corners of its means, ascending, */
+    int32_t *corner;      /* corner_ptr[] * MEANS_GROUP: in turn, filled up with the zeros */
 };
 
-/* Lay out a table of width 1, cut into even blocks whatever the input says; of_corner[corner_count] counts
- * rows as they come in the table, and is copied. */
-MUST_CHECK enum status means_build(const struct pairs_input *input, int64_t corner_count,
-                                   const int32_t *of_corner, struct means *means, struct error *error);
+struct means_input {
+    int dim;
+    int64_t node_count, row_count; /* rows: the means */
+    const int64_t *order;          /* row_count: the caller's rows in an order that keeps near ones near */
+    const int64_t *ptr;            /* the caller's table: row_count + 1 */
+    const int32_t *idx;
+    const double *phi;
+    const int32_t *place; /* node_count: the number by which each of the caller's nodes goes in the body */
+    int64_t corner_count;
+    const int32_t *row_of_corner; /* corner_count: the caller's row that each corner looks at */
+    bool single;                  /* keep the table in single precision */
+};
+
+/* Lay out a table; the arrays are copied. */
+MUST_CHECK enum status means_build(const struct means_input *input, struct means *means, struct error *error);
 void means_free(struct means *means);
 
 #endif

@@ -5,6 +5,25 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* Bytes of a table that stays in a core's second cache. */
+static const int64_t second_cache = 1 << 20;
+
+void pairs_sort_rows(int64_t count, int64_t *row, const int64_t *ptr, const int32_t *corners)
+{
+    int64_t key[PAIRS_MAX_ROWS];
+    for (int64_t i = 0; i < count; i++) {
+        int64_t new_row = row[i], at = i;
+        int64_t new_key =
+            ptr[new_row + 1] - ptr[new_row] + (corners != NULL ? (int64_t)corners[new_row] << 32 : 0);
+        for (; at > 0 && key[at - 1] > new_key; at--) {
+            key[at] = key[at - 1];
+            row[at] = row[at - 1];
+        }
+        key[at] = new_key;
+        row[at] = new_row;
+    }
+}
+
 static enum status copy_values(const struct pairs_input *input, struct pairs *pairs, struct error *error)
 {
     enum status status;
@@ -124,6 +143,7 @@ enum status pairs_build(const struct pairs_input *input, struct pairs *pairs, st
                             .row_count = input->row_count,
                             .block_count = input->block_count};
     TRY(copy_values(input, pairs, error));
+    pairs->large = pairs->pair_count * (2 + input->width * (input->single ? 4 : 8)) > second_cache;
     TRY(number_nodes(input, pairs, error));
     TRY(number_sums(pairs, error));
 done:
@@ -142,15 +162,4 @@ void pairs_free(struct pairs *pairs)
         free(arrays[i]);
     }
     *pairs = (struct pairs){0};
-}
-
-void pairs_sum(const struct pairs *pairs, int64_t node, double *sum)
-{
-    int dim = pairs->dim, stride = PAIRS_STRIDE(dim);
-    for (int64_t i = pairs->sum_ptr[node]; i < pairs->sum_ptr[node + 1]; i++) {
-        const double *part = pairs->block_force + (int64_t)pairs->sum[i] * stride;
-        for (int a = 0; a < dim; a++) {
-            sum[a] += part[a];
-        }
-    }
 }

@@ -29,8 +29,9 @@ struct pair_block {
 
 struct pairs {
     int dim;
-    int width; /* values of each pair: dim (a gradient) or 1 (a value) */
+    int width; /* values of each pair: dim (a gradient), or one for each of a group of means (means.h) */
     int64_t node_count, row_count, pair_count;
+    bool large;          /* does not stay in the second cache from one evaluation to the next */
     int64_t *ptr;        /* row_count + 1 */
     uint16_t *offset;    /* pair_count: where the node's displacement begins in those of the block */
     double *value;       /* pair_count * width, and one more, which is read and not used; or NULL and */
@@ -57,11 +58,12 @@ struct pairs_input {
     bool single;              /* keep the values in single precision */
 };
 
+/* Put the rows of one block, row[count], in the order of their length in the caller's lists, and before that
+ * of their corners (means.h; else NULL): loops that go the same way many times in a row are predicted. */
+void pairs_sort_rows(int64_t count, int64_t *row, const int64_t *ptr, const int32_t *corners);
+
 /* Lay out a table; the arrays are copied. STATUS_INPUT when a block has too many nodes. */
 MUST_CHECK enum status pairs_build(const struct pairs_input *input, struct pairs *pairs, struct error *error);
 void pairs_free(struct pairs *pairs);
-
-/* sum[3] += what all blocks put on a node. */
-void pairs_sum(const struct pairs *pairs, int64_t node, double *sum);
 
 #endif
