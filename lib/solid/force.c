@@ -281,7 +281,7 @@ void body_diagonal(const struct body *body, double *stiffness)
                 }
                 g2 += g[a] * g[a];
             }
-            stiffness[body->idx[i]] += (bound < 0.0 ? 0.0 : bound) + tie * g2;
+            stiffness[body->idx[i]] += (bound > 0.0 ? bound : 0.0) + tie * g2;
         }
     }
 }

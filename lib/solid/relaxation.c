@@ -483,21 +483,23 @@ static enum relaxation_outcome iterate(struct relaxation *r, double *u, struct e
         /* Near the end the ties stay as they are, so that the last digits converge. */
         ties_settled =
             ties_settled || (at_full_load > 0 && (r->report->error < 1e-3 || (double)at_full_load > ramp));
+        const double *at = r->before; /* where the residual is known */
         if (!ties_settled) {
             compatibility_update(&r->system->body);
+            (void)system_residual(r->system, u, r->residual);
+            r->report->force_evaluations++;
+            at = u;
         }
-        (void)system_residual(r->system, u, r->residual);
-        r->report->force_evaluations++;
         if (!update_mass(r, error)) {
             return RELAXATION_STOPPED;
         }
-        update_time_step(r, u, later_iterations);
+        update_time_step(r, at, later_iterations);
         if (!tell(r, n, u)) {
             return RELAXATION_STOPPED;
         }
         bool small = at_full_load > 2 * check_interval && r->report->error <= r->options->tolerance;
         settled = small ? settled + 1 : 0;
-        if (settled >= 2 && !r->spectrum_known && !find_lowest_mode(r, u, error)) {
+        if (settled >= 2 && !r->spectrum_known && !find_lowest_mode(r, at, error)) {
             return RELAXATION_STOPPED;
         }
         if (settled >= 2 && r->report->error <= r->options->tolerance) {
