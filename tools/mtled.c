@@ -1,7 +1,7 @@
 static const char usage[] =
     "mtled - total Lagrangian explicit dynamics of a scene, meshless\n"
     "\n"
-    "usage: mtled [-v] [-q] [-b] [-o FILE] SCENE [FILE]\n"
+    "usage: mtled [-v] [-q] [-b] [-c FILE [-e SECONDS]] [-o FILE] SCENE [FILE]\n"
     "\n"
     "Reads a stream with a table of shape functions (see shapefn) and computes the scene, an\n"
     "INI file that names materials, prescribed displacements, contacts and loads on the groups\n"
@@ -27,15 +27,25 @@ static const char usage[] =
     "relative to the largest energy; in a quasi-static scene one row, internal and contact,\n"
     "of the final state (relaxation is no motion that a work could be told of).\n"
     "\n"
+    "With -c, the state of the run is kept in a file, from time to time and when SIGINT, SIGTERM\n"
+    "or SIGHUP end it. The same command then goes on where it was, and ends with the same bytes\n"
+    "as if nothing had happened; with another scene, cloud or version it is refused. FILE is\n"
+    "replaced as a whole, and the one before is FILE.old: one of them is whole whatever happens.\n"
+    "It is a stream (see mts list) with the last field as u.last and the frames so far; once the\n"
+    "results are written, both are removed.\n"
+    "\n"
     "Options:\n"
     "  -v, --verbose        end with a report on standard error: steps, error, cost of each part\n"
     "  -q, --quiet          no progress\n"
     "  -b, --binary         write binary instead of text\n"
+    "  -c, --checkpoint FILE\n"
+    "                       keep the state of the run in FILE, and go on from what is there\n"
+    "  -e, --every SECONDS  how often (default 60)\n"
     "  -o, --output FILE    write to FILE, which appears only when whole\n"
     "\n"
     "Exit status:\n"
     "  0 done; 1 diverged, inverted, out of balance or of steps (nothing is written); 2 usage or\n"
-    "  malformed input; 3 input/output or memory\n"
+    "  malformed input; 3 input/output or memory; 128 + n ended by signal n after a whole step\n"
     "\n"
     "Examples:\n"
     "  nodes -u mm body.msh | shapefn | mtled brain2d.scene > u.dat\n"
@@ -47,7 +57,7 @@ static const char usage[] =
 #include <stdlib.h>
 #include <unistd.h>
 
-enum { VERBOSE, QUIET, BINARY, OUTPUT, OPTION_COUNT };
+enum { VERBOSE, QUIET, BINARY, OUTPUT, CHECKPOINT, EVERY, OPTION_COUNT };
 
 /* The results of an earlier run on the same stream. */
 static void drop_results(struct stream *stream)
@@ -81,10 +91,15 @@ int main(int argc, char *argv[])
         [QUIET] = {.letter = 'q', .name = "quiet"},
         [BINARY] = {.letter = 'b', .name = "binary"},
         [OUTPUT] = {.letter = 'o', .name = "output", .takes_value = true},
+        [CHECKPOINT] = {.letter = 'c', .name = "checkpoint", .takes_value = true, .silent = true},
+        [EVERY] = {.letter = 'e', .name = "every", .takes_value = true, .silent = true},
     };
     threads_settle_waiting(argv);
     tool_begin(&tool, usage, options, OPTION_COUNT, 1, 2, argc, argv);
-    double started = clock_seconds();
+    double every = 60.0, started = clock_seconds();
+    if (options[EVERY].given) {
+        tool_check(&tool, parse_double(options[EVERY].value, "--every", 0.0, 1e9, &every, &error), &error);
+    }
     tool_check(&tool, scene_read(tool.operands[0], &scene, &error), &error);
     tool_read(&tool, tool.operand_count > 1 ? tool.operands[1] : NULL, &stream);
     drop_results(&stream);
@@ -97,21 +112,25 @@ int main(int argc, char *argv[])
         .model = &model,
         .stream = &stream,
         .verbose = options[VERBOSE].given,
+        .checkpoint = {.file = options[CHECKPOINT].value, .interval = every},
         .read_seconds = read,
         .display = {.shown = !options[QUIET].given && isatty(STDERR_FILENO), .started = clock_seconds()}};
     tool_check(&tool, model_build(&stream, &scene, &model, &error), &error);
     tool_check(&tool, NEW_ARRAY(&run.u, model.system.node_count * scene.dim, &error), &error);
     run.prepare_seconds = clock_seconds() - run.display.started;
+    run_checkpoint_begin(&run);
     if (scene.analysis == SCENE_DYNAMIC) {
         run_dynamic(&run);
     } else {
         run_quasi_static(&run);
     }
+    run_checkpoint_end(&run);
     run_put_results(&run);
     drop_tables(&stream);
     started = clock_seconds();
     tool_write(&tool, &stream, !options[BINARY].given);
     run.write_seconds = clock_seconds() - started;
+    run_checkpoint_remove(&run);
     if (run.verbose) {
         run_report_cost(&run);
     }

@@ -12,6 +12,7 @@ struct option {
     char letter;       /* 'k' for -k */
     const char *name;  /* "tolerance" for --tolerance */
     bool takes_value;  /* -k VALUE, -kVALUE, --tolerance VALUE, --tolerance=VALUE */
+    bool silent;       /* with a value that changes nothing in the result: no provenance */
     const char *value; /* set by options_parse: the value, NULL when not given */
     bool given;        /* set by options_parse */
 };

@@ -57,6 +57,19 @@ void compatibility_free(struct compatibility *compatibility)
     *compatibility = (struct compatibility){0};
 }
 
+enum status compatibility_state(struct body *body, const struct state *state, struct error *error)
+{
+    struct compatibility *c = body->compatibility;
+    if (c == NULL) {
+        return STATUS_OK;
+    }
+    const struct state_value values[] = {
+        {"active", STATE_FLAGS, &c->active, 1},
+        {"coefficient", STATE_NUMBERS, c->coefficient, body->point_count},
+    };
+    return state_visit(state, "ties", values, sizeof values / sizeof *values, error);
+}
+
 void compatibility_update(struct body *body)
 {
     struct compatibility *c = body->compatibility;

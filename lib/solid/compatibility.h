@@ -10,6 +10,7 @@
 #ifndef SOLID_COMPATIBILITY_H
 #define SOLID_COMPATIBILITY_H
 
+#include "base/state.h"
 #include "solid/means.h"
 
 struct body;
@@ -33,6 +34,9 @@ struct compatibility {
 MUST_CHECK enum status compatibility_build(const struct body *body, const struct compatibility_input *input,
                                            struct compatibility *compatibility, struct error *error);
 void compatibility_free(struct compatibility *compatibility);
+
+/* What the ties keep from step to step: a_q. */
+MUST_CHECK enum status compatibility_state(struct body *body, const struct state *state, struct error *error);
 
 /* Set a_q from the pressures of the body's last evaluation. */
 void compatibility_update(struct body *body);

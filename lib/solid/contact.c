@@ -126,6 +126,22 @@ void contact_free(struct contact *contact)
     *contact = (struct contact){0};
 }
 
+enum status contact_state(struct contact *contact, const char *prefix, const struct state *state,
+                          struct error *error)
+{
+    int64_t count = contact->count, dim = contact->dim;
+    const struct state_value values[] = {
+        {"multiplier", STATE_NUMBERS, contact->multiplier, count},
+        {"gap", STATE_NUMBERS, contact->gap, count},
+        {"pressure", STATE_NUMBERS, contact->pressure, count},
+        {"normal", STATE_NUMBERS, contact->normal, count * dim},
+        {"behind", STATE_FLAGS, contact->behind, count},
+        {"checked_x", STATE_NUMBERS, contact->checked_x, count * dim},
+        {"checked_distance", STATE_NUMBERS, contact->checked_distance, count},
+    };
+    return state_visit(state, prefix, values, sizeof values / sizeof *values, error);
+}
+
 /* Whether hat a, when it was last looked at, was in front of the plane that touches the surface closest to x,
  * where it now is. */
 static bool was_in_front(const struct contact *contact, int64_t a, const double *x,

@@ -11,6 +11,7 @@
 #define SOLID_CONTACT_H
 
 #include "approx/boundary.h"
+#include "base/state.h"
 #include "solid/rigid.h"
 
 struct contact {
@@ -37,6 +38,10 @@ MUST_CHECK enum status contact_build(const struct boundary_averages *averages, c
                                      struct rigid_surface *surface, double stiffness, struct contact *contact,
                                      struct error *error);
 void contact_free(struct contact *contact);
+
+/* What a contact keeps from one evaluation to the next; `prefix` goes in front of the names. */
+MUST_CHECK enum status contact_state(struct contact *contact, const char *prefix, const struct state *state,
+                                     struct error *error);
 
 /* Evaluate gaps and pressures at parameters u and add the contact forces on the body to
  * force[node_count * dim], N (2D: N/m). They act along the surface's smooth normals: - grad_u of

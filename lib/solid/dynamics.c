@@ -32,7 +32,8 @@ struct dynamics {
     int64_t sample_interval;
     int64_t frames;
     struct energy_balance balance;
-    double tie_work; /* energy put in as ties followed the pressure */
+    double tie_work;        /* energy put in as ties followed the pressure */
+    struct energy_log *log; /* the caller's, or NULL */
 };
 
 static enum status allocate(struct dynamics *d, struct error *error)
@@ -245,8 +246,8 @@ static void add_work(struct dynamics *d, const double *velocity, double step, co
 }
 
 /* Energies at this step; false when their balance is off. */
-static bool sample(struct dynamics *d, bool is_first, double contact, struct energy_log *log,
-                   enum status *status, struct error *error)
+static bool sample(struct dynamics *d, bool is_first, double contact, enum status *status,
+                   struct error *error)
 {
     struct energy row = {.time = is_first ? 0.0 : time_now(d),
                          .kinetic = energy_kinetic(d->system, d->before, d->after),
@@ -257,7 +258,7 @@ static bool sample(struct dynamics *d, bool is_first, double contact, struct ene
     d->report->last_drift = fabs(row.error);
     d->report->largest_drift = d->balance.worst;
     d->report->tie_work = d->tie_work / d->balance.largest;
-    *status = log != NULL ? energy_log_add(log, &row, error) : STATUS_OK;
+    *status = d->log != NULL ? energy_log_add(d->log, &row, error) : STATUS_OK;
     return d->balance.worst <= DYNAMICS_MOST_DRIFT;
 }
 
@@ -279,14 +280,69 @@ static void give_frames(struct dynamics *d)
     }
 }
 
-static bool tell(const struct dynamics *d)
+/* What the next step needs of those before: see base/state.h. */
+static enum status visit(void *run, const struct state *state, struct error *error)
+{
+    enum status status;
+    struct dynamics *d = run;
+    struct dynamics_report *report = d->report;
+    int64_t curves = d->system->curve_count;
+    const struct state_value values[] = {
+        {"u", STATE_NUMBERS, d->u, d->size},
+        {"velocity", STATE_NUMBERS, d->before, d->size},
+        {"mode", STATE_NUMBERS, d->mode, d->size},
+        {"factor_before", STATE_NUMBERS, d->factor_before, curves},
+        {"factor_now", STATE_NUMBERS, d->factor_now, curves},
+        {"steps", STATE_COUNTS, &report->steps, 1},
+        {"time", STATE_NUMBERS, &report->time, 1},
+        {"mark", STATE_NUMBERS, &d->mark, 1},
+        {"step", STATE_NUMBERS, &d->step, 1},
+        {"previous_step", STATE_NUMBERS, &d->previous_step, 1},
+        {"steps_done", STATE_COUNTS, &d->done, 1},
+        {"steps_left", STATE_COUNTS, &d->left, 1},
+        {"frequency", STATE_NUMBERS, &d->frequency, 1},
+        {"contact_squared", STATE_NUMBERS, &d->contact_squared, 1},
+        {"sample_interval", STATE_COUNTS, &d->sample_interval, 1},
+        {"frames", STATE_COUNTS, &d->frames, 1},
+        {"balance.start", STATE_NUMBERS, &d->balance.start, 1},
+        {"balance.work", STATE_NUMBERS, &d->balance.work, 1},
+        {"balance.dissipated", STATE_NUMBERS, &d->balance.dissipated, 1},
+        {"balance.largest", STATE_NUMBERS, &d->balance.largest, 1},
+        {"balance.worst", STATE_NUMBERS, &d->balance.worst, 1},
+        {"tie_work", STATE_NUMBERS, &d->tie_work, 1},
+        {"force_evaluations", STATE_COUNTS, &report->force_evaluations, 1},
+        {"step_changes", STATE_COUNTS, &report->step_changes, 1},
+        {"first_step", STATE_NUMBERS, &report->first_step, 1},
+        {"least_step", STATE_NUMBERS, &report->least_step, 1},
+        {"critical_step", STATE_NUMBERS, &report->critical_step, 1},
+        {"largest_drift", STATE_NUMBERS, &report->largest_drift, 1},
+        {"last_drift", STATE_NUMBERS, &report->last_drift, 1},
+        {"share_of_ties", STATE_NUMBERS, &report->tie_work, 1},
+        {"least_jacobian", STATE_NUMBERS, &report->least_jacobian, 1},
+    };
+    TRY(state_visit(state, NULL, values, sizeof values / sizeof *values, error));
+    if (d->sample_interval == 0) {
+        status = fail(error, STATUS_INPUT, "sample_interval: is 0");
+        goto done;
+    }
+    if (d->log != NULL) {
+        TRY(energy_log_state(d->log, state, error));
+    }
+    TRY(system_state(d->system, state, error));
+done:
+    return status;
+}
+
+static bool tell(struct dynamics *d)
 {
     double now = time_now(d);
     struct progress progress = {.step = d->report->steps,
                                 .time = now,
                                 .error = d->report->last_drift,
                                 .remaining = 1.0 - now / d->options->end_time,
-                                .u = d->u};
+                                .u = d->u,
+                                .state = visit,
+                                .run = d};
     return d->options->progress == NULL || d->options->progress(d->options->context, &progress);
 }
 
@@ -358,12 +414,16 @@ static void accept(struct dynamics *d)
     d->report->time = time_now(d);
 }
 
-static enum dynamics_outcome march(struct dynamics *d, struct energy_log *log, enum status *status,
-                                   struct error *error)
+static bool is_interrupted(const struct dynamics *d)
+{
+    return d->options->interrupted != NULL && *d->options->interrupted != 0;
+}
+
+static enum dynamics_outcome march(struct dynamics *d, enum status *status, struct error *error)
 {
     int64_t most = d->options->most_steps > 0 ? d->options->most_steps : INT64_MAX;
-    factors_at(d, 0.0, d->factor_now);
-    for (int64_t n = 0;; n++) {
+    for (;;) {
+        int64_t n = d->report->steps;
         if (!evaluate(d) || (n % check_interval == 0 && !follow_ties(d))) {
             return DYNAMICS_INVERTED;
         }
@@ -384,7 +444,7 @@ static enum dynamics_outcome march(struct dynamics *d, struct energy_log *log, e
             add_work(d, d->before, d->previous_step, d->factor_before, d->factor_now);
         }
         if (n % d->sample_interval == 0 || is_last) {
-            bool is_balanced = sample(d, n == 0, contact, log, status, error);
+            bool is_balanced = sample(d, n == 0, contact, status, error);
             if (*status != STATUS_OK || !is_balanced) {
                 return DYNAMICS_DRIFTED;
             }
@@ -398,21 +458,16 @@ static enum dynamics_outcome march(struct dynamics *d, struct energy_log *log, e
         add_work(d, d->after, d->step, d->factor_now, d->factor_after);
         give_frames(d);
         accept(d);
-        if (n % check_interval == 0 && !tell(d)) {
+        if ((n % check_interval == 0 || is_interrupted(d)) && !tell(d)) {
             return DYNAMICS_STOPPED;
         }
     }
 }
 
 /* Bring u and v onto the conditions at time 0; what that takes is work. */
-static void begin(struct dynamics *d)
+static void meet_conditions(struct dynamics *d)
 {
     struct solid_system *system = d->system;
-    d->balance = energy_balance_begin(system);
-    d->contact_squared = contact_bound(system, d->scratch);
-    if (system->rows.count == 0) {
-        return;
-    }
     factors_at(d, 0.0, d->factor_now);
     use_factors(d);
     double energy = body_energy(&system->body, d->u) + energy_kinetic(system, d->before, d->before);
@@ -424,25 +479,43 @@ static void begin(struct dynamics *d)
     d->balance.work = energy_internal(system, d->u) + energy_kinetic(system, d->before, d->before) - energy;
 }
 
+/* From u and v (NULL: at rest) at time 0. */
+static void begin(struct dynamics *d, const double *u, const double *v)
+{
+    size_t bytes = (size_t)d->size * sizeof *u;
+    memcpy(d->u, u, bytes);
+    if (v != NULL) {
+        memcpy(d->before, v, bytes);
+    }
+    d->balance = energy_balance_begin(d->system);
+    d->contact_squared = contact_bound(d->system, d->scratch);
+    if (d->system->rows.count > 0) {
+        meet_conditions(d);
+    }
+    factors_at(d, 0.0, d->factor_now);
+}
+
 enum status dynamics_run(struct solid_system *system, const struct dynamics_options *options, double *u,
                          double *v, double *row_force, struct energy_log *log, struct dynamics_report *report,
                          struct error *error)
 {
     enum status status;
-    struct dynamics d = {
-        .system = system, .options = options, .report = report, .size = system->node_count * system->dim};
-    size_t bytes = (size_t)d.size * sizeof *u;
+    struct dynamics d = {.system = system,
+                         .options = options,
+                         .report = report,
+                         .size = system->node_count * system->dim,
+                         .log = log};
     *report = (struct dynamics_report){.least_jacobian = 1.0};
     TRY(allocate(&d, error));
     TRY(system_constrain(system, system->lumped_mass, &d.constraint, error));
-    memcpy(d.u, u, bytes);
-    if (v != NULL) {
-        memcpy(d.before, v, bytes);
+    if (options->restored != NULL) {
+        TRY(visit(&d, options->restored, error));
+    } else {
+        begin(&d, u, v);
     }
-    begin(&d);
-    report->outcome = march(&d, log, &status, error);
+    report->outcome = march(&d, &status, error);
     TRY(status);
-    memcpy(u, d.u, bytes);
+    memcpy(u, d.u, (size_t)d.size * sizeof *u);
     for (int64_t i = 0; v != NULL && i < d.size; i++) {
         v[i] = report->outcome == DYNAMICS_DONE ? 0.5 * (d.before[i] + d.after[i]) : d.before[i];
     }

@@ -12,6 +12,8 @@
 #include "solid/progress.h"
 #include "solid/system.h"
 
+#include <signal.h>
+
 struct dynamics_options {
     double end_time;         /* T, s, > 0; load curves are taken at t / T */
     double time_step_margin; /* share of the critical step, within (0, 1) */
@@ -20,7 +22,11 @@ struct dynamics_options {
     double frame_interval;   /* s between frames, 0: none; the last one may be at T */
     frame_function *frame;   /* NULL: none */
     progress_function *progress;
-    void *context; /* of frame and progress */
+    void *context;                            /* of frame and progress */
+    const volatile sig_atomic_t *interrupted; /* unless NULL: progress is called at the end of the step in
+                                                 which this became other than 0 */
+    const struct state *restored; /* NULL: from the begin; else what was kept of a run of the same system and
+                                     options (see struct progress), to go on from */
 };
 
 /* Beyond this error of the energy balance, relative to the largest energy, the run is not to be trusted. */

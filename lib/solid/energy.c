@@ -8,19 +8,41 @@
 /* Energies below this share of shear modulus times volume are not to be told from round-off. */
 static const double round_off = 1e-12;
 
+static enum status make_room(struct energy_log *log, int64_t capacity, struct error *error)
+{
+    struct energy *grown = array_grow(log->rows, capacity, sizeof *grown);
+    if (grown == NULL) {
+        return fail_memory(error, "energies");
+    }
+    log->rows = grown;
+    log->capacity = capacity;
+    return STATUS_OK;
+}
+
 enum status energy_log_add(struct energy_log *log, const struct energy *row, struct error *error)
 {
+    enum status status = STATUS_OK;
     if (log->count == log->capacity) {
-        int64_t capacity = 2 * log->capacity + 64;
-        struct energy *grown = array_grow(log->rows, capacity, sizeof *grown);
-        if (grown == NULL) {
-            return fail_memory(error, "energies");
-        }
-        log->rows = grown;
-        log->capacity = capacity;
+        TRY(make_room(log, 2 * log->capacity + 64, error));
     }
     log->rows[log->count++] = *row;
-    return STATUS_OK;
+done:
+    return status;
+}
+
+enum status energy_log_state(struct energy_log *log, const struct state *state, struct error *error)
+{
+    _Static_assert(sizeof(struct energy) == ENERGY_COLUMNS * sizeof(double), "a row of numbers");
+    enum status status;
+    const struct state_value count = {"count", STATE_COUNTS, &log->count, 1};
+    TRY(state_visit(state, "energies", &count, 1, error));
+    if (log->count > log->capacity) {
+        TRY(make_room(log, log->count, error));
+    }
+    const struct state_value rows = {"rows", STATE_NUMBERS, log->rows, log->count * ENERGY_COLUMNS};
+    TRY(state_visit(state, "energies", &rows, 1, error));
+done:
+    return status;
 }
 
 void energy_log_free(struct energy_log *log)

@@ -24,6 +24,8 @@ struct energy_log {
 
 MUST_CHECK enum status energy_log_add(struct energy_log *log, const struct energy *row, struct error *error);
 void energy_log_free(struct energy_log *log);
+MUST_CHECK enum status energy_log_state(struct energy_log *log, const struct state *state,
+                                        struct error *error);
 
 /* The balance of a run by central differences. Works are summed by the trapezium rule over each step's
  * displacement; with the kinetic energy 1/2 v- M v+ the balance of a linear system then holds to round-off,

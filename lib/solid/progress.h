@@ -2,8 +2,7 @@
 #ifndef SOLID_PROGRESS_H
 #define SOLID_PROGRESS_H
 
-#include <stdbool.h>
-#include <stdint.h>
+#include "base/state.h"
 
 struct progress {
     int64_t step;
@@ -12,9 +11,13 @@ struct progress {
                      the energy balance relative to the largest energy */
     double remaining; /* estimated share of the steps still to go, 0..1, negative: unknown */
     const double *u;  /* parameters */
+    /* The run's state at this step: state(run, ...), from which a run of the same system and options goes on
+     * to the same bits. */
+    state_function *state;
+    void *run;
 };
 
-/* Called every so many steps; returns false to stop the run. */
+/* Called every so many steps, and at once when the run is interrupted; returns false to stop the run. */
 typedef bool progress_function(void *context, const struct progress *progress);
 
 /* Receives frame `number` (from 1), the parameters u at `time` (as in struct progress). */

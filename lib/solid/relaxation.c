@@ -11,10 +11,10 @@
 
 static const int64_t check_interval = 20;                        /* steps between estimates */
 static const int64_t keep_interval = 200;                        /* steps between states to go back to */
-static const int most_retreats = 8;                              /* from inverted points */
+static const int64_t most_retreats = 8;                          /* from inverted points */
 static const int first_iterations = 40;                          /* of the power iteration, at rest */
 static const double most_stiffening = 1.1, most_softening = 0.5; /* of a node since its mass was set */
-static const int most_augmentations = 20;                        /* of the contacts' multipliers */
+static const int64_t most_augmentations = 20;                    /* of the contacts' multipliers */
 static const double penetration_share = 1e-4; /* of the body's size: what a contact may penetrate */
 static const int later_iterations = 3;        /* at every check: the mode is kept, so that it sharpens */
 enum { WINDOWS = 8 };                         /* recent Rayleigh quotients that the error estimate looks at */
@@ -34,8 +34,10 @@ struct relaxation {
     struct relaxation_report *report;
     struct constraint constraint;
     int64_t size;
+    double *u; /* the caller's */
     double *mass, *velocity, *residual, *before;
-    double *factor_change; /* of the load curves in this step */
+    const double *residual_at; /* where the residual is known, at a check: u or before */
+    double *factor_change;     /* of the load curves in this step */
     double *mode, *scratch;
     double *last_u, *last_acceleration; /* at the last check */
     double *acceleration;
@@ -48,7 +50,7 @@ struct relaxation {
     int64_t best_step;
     double spacing;             /* mean, of the nodes, m */
     double penetration_allowed; /* m */
-    int augmentations;
+    int64_t augmentations;
     bool mass_changed; /* since the last check: increments of the acceleration mean nothing */
     enum status failure;
     double load, load_rate;      /* steps of the ramp applied so far, and per step */
@@ -56,9 +58,12 @@ struct relaxation {
     double largest_move;         /* so far, of a node, m */
     bool spectrum_known;         /* spectrum2 is of the mass and the load as they are */
     double caution;              /* on the time step: 1 until an inversion */
-    int retreats;
+    int64_t retreats;
     struct kept_state newer, older;
-    int64_t frames; /* given so far */
+    int64_t frames;       /* given so far */
+    int64_t at_full_load; /* steps since the full load was reached */
+    int64_t settled;      /* checks in a row with a small error */
+    bool ties_settled;
 };
 
 static enum status allocate(struct relaxation *r, struct error *error)
@@ -264,12 +269,63 @@ static void estimate(struct relaxation *r)
     r->report->lowest_frequency = sqrt(least2);
 }
 
-static bool tell(const struct relaxation *r, int64_t at, const double *u)
+/* What the next step needs of those before: see base/state.h. */
+static enum status visit(void *run, const struct state *state, struct error *error)
+{
+    struct relaxation *r = run;
+    struct relaxation_report *report = r->report;
+    const struct state_value values[] = {
+        {"u", STATE_NUMBERS, r->u, r->size},
+        {"velocity", STATE_NUMBERS, r->velocity, r->size},
+        {"mass", STATE_NUMBERS, r->mass, r->system->node_count},
+        {"mode", STATE_NUMBERS, r->mode, r->size},
+        {"last_u", STATE_NUMBERS, r->last_u, r->size},
+        {"last_acceleration", STATE_NUMBERS, r->last_acceleration, r->size},
+        {"newer.u", STATE_NUMBERS, r->newer.u, r->size},
+        {"newer.load", STATE_NUMBERS, &r->newer.load, 1},
+        {"older.u", STATE_NUMBERS, r->older.u, r->size},
+        {"older.load", STATE_NUMBERS, &r->older.load, 1},
+        {"steps", STATE_COUNTS, &report->steps, 1},
+        {"time_step", STATE_NUMBERS, &r->time_step, 1},
+        {"damping", STATE_NUMBERS, &r->damping, 1},
+        {"frequency", STATE_NUMBERS, &r->frequency, 1},
+        {"low2", STATE_NUMBERS, &r->low2, 1},
+        {"window", STATE_NUMBERS, r->window, WINDOWS},
+        {"spectrum2", STATE_NUMBERS, &r->spectrum2, 1},
+        {"spectrum_known", STATE_FLAGS, &r->spectrum_known, 1},
+        {"best_error", STATE_NUMBERS, &r->best_error, 1},
+        {"best_step", STATE_COUNTS, &r->best_step, 1},
+        {"largest_move", STATE_NUMBERS, &r->largest_move, 1},
+        {"checks", STATE_COUNTS, &r->checks, 1},
+        {"mass_changed", STATE_FLAGS, &r->mass_changed, 1},
+        {"largest_displacement", STATE_NUMBERS, &r->largest_displacement, 1},
+        {"ramp_steps", STATE_COUNTS, &report->ramp_steps, 1},
+        {"load", STATE_NUMBERS, &r->load, 1},
+        {"load_rate", STATE_NUMBERS, &r->load_rate, 1},
+        {"caution", STATE_NUMBERS, &r->caution, 1},
+        {"retreats", STATE_COUNTS, &r->retreats, 1},
+        {"augmentations", STATE_COUNTS, &r->augmentations, 1},
+        {"frames", STATE_COUNTS, &r->frames, 1},
+        {"at_full_load", STATE_COUNTS, &r->at_full_load, 1},
+        {"settled", STATE_COUNTS, &r->settled, 1},
+        {"ties_settled", STATE_FLAGS, &r->ties_settled, 1},
+        {"force_evaluations", STATE_COUNTS, &report->force_evaluations, 1},
+        {"error", STATE_NUMBERS, &report->error, 1},
+        {"lowest_frequency", STATE_NUMBERS, &report->lowest_frequency, 1},
+        {"least_jacobian", STATE_NUMBERS, &report->least_jacobian, 1},
+    };
+    enum status status = state_visit(state, NULL, values, sizeof values / sizeof *values, error);
+    return status == STATUS_OK ? system_state(r->system, state, error) : status;
+}
+
+static bool tell(struct relaxation *r)
 {
     if (r->options->progress == NULL) {
         return true;
     }
-    struct progress progress = {.step = at, .u = u, .error = r->report->error, .remaining = -1.0};
+    int64_t at = r->report->steps;
+    struct progress progress = {
+        .step = at, .u = r->u, .error = r->report->error, .remaining = -1.0, .state = visit, .run = r};
     double ramp = (double)r->report->ramp_steps;
     progress.time = r->load / ramp;
     if (r->load >= ramp && r->report->error > 0.0 && isfinite(r->report->error)) {
@@ -426,10 +482,10 @@ static bool find_lowest_mode(struct relaxation *r, const double *u, struct error
 
 /* Whether the error has not halved for so many periods of the lowest mode and steps. At the full load only.
  */
-static bool stays(const struct relaxation *r, int64_t n, double periods, int64_t steps)
+static bool stays(const struct relaxation *r, double periods, int64_t steps)
 {
     double period = 2.0 * pi / (r->report->lowest_frequency * r->time_step);
-    return (double)(n - r->best_step) > periods * period + (double)steps;
+    return (double)(r->report->steps - r->best_step) > periods * period + (double)steps;
 }
 
 /* The estimate that round-off alone makes: forces are known to some units in the last place of a cell's
@@ -440,80 +496,99 @@ static double round_off(const struct relaxation *r)
     return 32.0 * DBL_EPSILON * r->spacing / (low * low * r->largest_move);
 }
 
-static void note_best(struct relaxation *r, int64_t n, int64_t at_full_load)
+static void note_best(struct relaxation *r)
 {
-    if (at_full_load <= check_interval || r->report->error < 0.5 * r->best_error) {
+    if (r->at_full_load <= check_interval || r->report->error < 0.5 * r->best_error) {
         r->best_error = r->report->error;
-        r->best_step = n;
+        r->best_step = r->report->steps;
     }
 }
 
-static enum relaxation_outcome iterate(struct relaxation *r, double *u, struct error *error)
+/* After a measured step: the error, and what follows the state: mass, time step, ties. False on failure. */
+static bool follow(struct relaxation *r, struct error *error)
+{
+    double *u = r->u, ramp = (double)r->report->ramp_steps;
+    estimate(r);
+    if (r->at_full_load <= check_interval) { /* take out what round-off has left */
+        constraint_project(&r->constraint, r->system->factor, u);
+    }
+    if (r->report->steps % keep_interval == 0) {
+        keep_state(r, u);
+    }
+    /* Near the end the ties stay as they are, so that the last digits converge. */
+    r->ties_settled = r->ties_settled ||
+                      (r->at_full_load > 0 && (r->report->error < 1e-3 || (double)r->at_full_load > ramp));
+    r->residual_at = r->before;
+    if (!r->ties_settled) {
+        compatibility_update(&r->system->body);
+        (void)system_residual(r->system, u, r->residual);
+        r->report->force_evaluations++;
+        r->residual_at = u;
+    }
+    if (!update_mass(r, error)) {
+        return false;
+    }
+    update_time_step(r, r->residual_at, later_iterations);
+    return true;
+}
+
+/* Whether the run ends at this check, and how. A failure ends it, too. */
+static bool ends(struct relaxation *r, enum relaxation_outcome *outcome, struct error *error)
+{
+    const double *error_now = &r->report->error, tolerance = r->options->tolerance;
+    bool small = r->at_full_load > 2 * check_interval && *error_now <= tolerance;
+    r->settled = small ? r->settled + 1 : 0;
+    *outcome = RELAXATION_STOPPED;
+    if (r->settled >= 2 && !r->spectrum_known && !find_lowest_mode(r, r->residual_at, error)) {
+        return true;
+    }
+    *outcome = RELAXATION_CONVERGED;
+    if (r->settled >= 2 && *error_now <= tolerance) {
+        if (contacts_hold(r)) {
+            return true;
+        }
+        r->settled = 0;
+    }
+    note_best(r);
+    if (*error_now <= round_off(r) && stays(r, 2.0, 200) && contacts_hold(r)) {
+        return true;
+    }
+    *outcome = RELAXATION_STALLED;
+    return stays(r, 20.0, 5000);
+}
+
+static bool is_interrupted(const struct relaxation *r)
+{
+    return r->options->interrupted != NULL && *r->options->interrupted != 0;
+}
+
+static enum relaxation_outcome iterate(struct relaxation *r, struct error *error)
 {
     double ramp = (double)r->report->ramp_steps;
     int64_t most = r->options->most_steps > 0 ? r->options->most_steps : 1000000;
-    int64_t settled = 0, at_full_load = 0;
-    bool ties_settled = false;
     bool gives_frames = r->options->frame != NULL && r->options->frames > 0;
-    for (int64_t n = 1; n <= most; n++) {
-        bool measure = n % check_interval == 0;
+    enum relaxation_outcome outcome;
+    while (r->report->steps < most) {
+        bool measure = ++r->report->steps % check_interval == 0;
         r->load = fmin(ramp, r->load + r->load_rate);
-        at_full_load = r->load < ramp ? 0 : at_full_load + 1;
+        r->at_full_load = r->load < ramp ? 0 : r->at_full_load + 1;
         change_load(r, r->load / ramp);
-        r->report->steps = n;
-        if (!step(r, u, measure)) {
-            if (!step_back(r, u)) {
+        if (!step(r, r->u, measure)) {
+            measure = false;
+            if (!step_back(r, r->u)) {
                 return RELAXATION_INVERTED;
             }
-            continue;
+        } else if (gives_frames && r->load < ramp) {
+            give_frames(r, (int64_t)r->load, r->u);
         }
-        if (gives_frames && r->load < ramp) {
-            give_frames(r, (int64_t)r->load, u);
-        }
-        if (!measure) {
-            continue;
-        }
-        estimate(r);
-        if (at_full_load <= check_interval) { /* take out what round-off has left */
-            constraint_project(&r->constraint, r->system->factor, u);
-        }
-        if (n % keep_interval == 0) {
-            keep_state(r, u);
-        }
-        /* Near the end the ties stay as they are, so that the last digits converge. */
-        ties_settled =
-            ties_settled || (at_full_load > 0 && (r->report->error < 1e-3 || (double)at_full_load > ramp));
-        const double *at = r->before; /* where the residual is known */
-        if (!ties_settled) {
-            compatibility_update(&r->system->body);
-            (void)system_residual(r->system, u, r->residual);
-            r->report->force_evaluations++;
-            at = u;
-        }
-        if (!update_mass(r, error)) {
+        if (measure && !follow(r, error)) {
             return RELAXATION_STOPPED;
         }
-        update_time_step(r, at, later_iterations);
-        if (!tell(r, n, u)) {
+        if (measure && ends(r, &outcome, error)) {
+            return outcome;
+        }
+        if ((measure || is_interrupted(r)) && !tell(r)) {
             return RELAXATION_STOPPED;
-        }
-        bool small = at_full_load > 2 * check_interval && r->report->error <= r->options->tolerance;
-        settled = small ? settled + 1 : 0;
-        if (settled >= 2 && !r->spectrum_known && !find_lowest_mode(r, at, error)) {
-            return RELAXATION_STOPPED;
-        }
-        if (settled >= 2 && r->report->error <= r->options->tolerance) {
-            if (contacts_hold(r)) {
-                return RELAXATION_CONVERGED;
-            }
-            settled = 0;
-        }
-        note_best(r, n, at_full_load);
-        if (r->report->error <= round_off(r) && stays(r, n, 2.0, 200) && contacts_hold(r)) {
-            return RELAXATION_CONVERGED;
-        }
-        if (stays(r, n, 20.0, 5000)) {
-            return RELAXATION_STALLED;
         }
     }
     return RELAXATION_TOO_MANY_STEPS;
@@ -531,6 +606,41 @@ static void measure_row_forces(struct relaxation *r, const double *u, double *ro
     memcpy(row_force, r->constraint.multiplier, (size_t)r->system->rows.count * sizeof *row_force);
 }
 
+/* From u, brought onto the conditions, at rest and without load. */
+static enum status begin(struct relaxation *r, struct error *error)
+{
+    enum status status;
+    struct solid_system *system = r->system;
+    size_t bytes = (size_t)r->size * sizeof *r->u;
+    system_load_factors(system, 0.0);
+    (void)system_residual(system, r->u, r->residual);
+    system_relaxation_mass(system, r->mass);
+    TRY(system_constrain(system, r->mass, &r->constraint, error));
+    constraint_project(&r->constraint, system->factor, r->u);
+    (void)system_residual(system, r->u, r->residual);
+    memcpy(r->newer.u, r->u, bytes);
+    memcpy(r->older.u, r->u, bytes);
+    r->report->ramp_steps = r->options->ramp_steps > 0 ? r->options->ramp_steps : choose_ramp(r);
+    update_time_step(r, r->u, first_iterations);
+    r->low2 = r->frequency * r->frequency * 1e-4;
+    r->damping = 2.0 * sqrt(r->low2);
+    for (int i = 0; i < WINDOWS; i++) {
+        r->window[i] = r->low2;
+    }
+done:
+    return status;
+}
+
+/* From where another run was. */
+static enum status resume(struct relaxation *r, struct error *error)
+{
+    enum status status;
+    TRY(visit(r, r->options->restored, error));
+    TRY(system_constrain(r->system, r->mass, &r->constraint, error));
+done:
+    return status;
+}
+
 enum status relaxation_run(struct solid_system *system, const struct relaxation_options *options, double *u,
                            double *row_force, struct relaxation_report *report, struct error *error)
 {
@@ -539,29 +649,16 @@ enum status relaxation_run(struct solid_system *system, const struct relaxation_
                            .options = options,
                            .report = report,
                            .size = system->node_count * system->dim,
+                           .u = u,
                            .load_rate = 1.0,
                            .caution = 1.0,
                            .spectrum2 = INFINITY};
     *report = (struct relaxation_report){.least_jacobian = 1.0};
     TRY(allocate(&r, error));
-    system_load_factors(system, 0.0);
-    (void)system_residual(system, u, r.residual);
-    system_relaxation_mass(system, r.mass);
-    TRY(system_constrain(system, r.mass, &r.constraint, error));
-    constraint_project(&r.constraint, system->factor, u);
-    (void)system_residual(system, u, r.residual);
-    memcpy(r.newer.u, u, (size_t)r.size * sizeof *u);
-    memcpy(r.older.u, u, (size_t)r.size * sizeof *u);
     r.spacing = node_spacing(system);
     r.penetration_allowed = penetration_share * body_size(system);
-    report->ramp_steps = options->ramp_steps > 0 ? options->ramp_steps : choose_ramp(&r);
-    update_time_step(&r, u, first_iterations);
-    r.low2 = r.frequency * r.frequency * 1e-4;
-    r.damping = 2.0 * sqrt(r.low2);
-    for (int i = 0; i < WINDOWS; i++) {
-        r.window[i] = r.low2;
-    }
-    report->outcome = iterate(&r, u, error);
+    TRY(options->restored != NULL ? resume(&r, error) : begin(&r, error));
+    report->outcome = iterate(&r, error);
     TRY(r.failure);
     report->largest_frequency = r.frequency;
     if (report->outcome == RELAXATION_CONVERGED && options->frame != NULL && options->frames > 0) {

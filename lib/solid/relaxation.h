@@ -13,6 +13,8 @@
 #include "solid/progress.h"
 #include "solid/system.h"
 
+#include <signal.h>
+
 struct relaxation_options {
     double tolerance;        /* on the estimated remaining error relative to the displacement, e.g. 1e-6 */
     double time_step_margin; /* share of the critical step, e.g. .9 */
@@ -21,7 +23,11 @@ struct relaxation_options {
     int64_t frames;          /* states to give, evenly over the ramp; the last one is the result */
     frame_function *frame;   /* NULL: none */
     progress_function *progress;
-    void *context; /* of frame and progress */
+    void *context;                            /* of frame and progress */
+    const volatile sig_atomic_t *interrupted; /* unless NULL: progress is called at the end of the step in
+                                                 which this became other than 0 */
+    const struct state *restored; /* NULL: from the begin; else what was kept of a run of the same system and
+                                     options (see struct progress), to go on from */
 };
 
 enum relaxation_outcome {

@@ -5,6 +5,7 @@
 #include "base/memory.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -38,6 +39,21 @@ void system_free(struct solid_system *system)
     compatibility_free(&system->compatibility);
     body_free(&system->body);
     *system = (struct solid_system){0};
+}
+
+enum status system_state(struct solid_system *system, const struct state *state, struct error *error)
+{
+    enum status status;
+    const struct state_value factor = {"factor", STATE_NUMBERS, system->factor, system->curve_count};
+    TRY(state_visit(state, "loads", &factor, 1, error));
+    TRY(compatibility_state(&system->body, state, error));
+    for (int64_t c = 0; c < system->contact_count; c++) {
+        char prefix[32];
+        snprintf(prefix, sizeof prefix, "contact.%lld", (long long)c);
+        TRY(contact_state(&system->contacts[c], prefix, state, error));
+    }
+done:
+    return status;
 }
 
 /* What conditions that were dropped may be missed by, of the largest prescribed displacement. */

@@ -61,6 +61,10 @@ struct solid_system {
 
 void system_free(struct solid_system *system);
 
+/* What the system keeps from step to step, its contacts and ties included. */
+MUST_CHECK enum status system_state(struct solid_system *system, const struct state *state,
+                                    struct error *error);
+
 /* Values of all curves at s within [0, 1], into system->factor. */
 void system_load_factors(struct solid_system *system, double s);
 

@@ -32,7 +32,7 @@ static void on_signal(int number)
 /* A signal that is ignored, or that the tool handles itself, stays so. */
 static void handle_signals(void)
 {
-    static const int numbers[] = {SIGINT, SIGTERM, SIGHUP, SIGXFSZ, SIGXCPU};
+    static const int numbers[] = {SIGINT, SIGTERM, SIGHUP, SIGXCPU};
     for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++) {
         struct sigaction present;
         if (sigaction(numbers[i], NULL, &present) == 0 && present.sa_handler == SIG_DFL) {
@@ -126,7 +126,14 @@ enum status output_commit(struct output *output, struct error *error)
 {
     int descriptor = output->descriptor;
     output->descriptor = -1;
-    enum status status = close(descriptor) != 0 ? fail_output(output, error) : STATUS_OK;
+    enum status status = STATUS_OK;
+    /* Some file systems tell only now that the space is used up. */
+    if (output->temporary != NULL && fsync(descriptor) != 0) {
+        status = fail_output(output, error);
+    }
+    if (close(descriptor) != 0 && status == STATUS_OK) {
+        status = fail_output(output, error);
+    }
     if (status == STATUS_OK && output->temporary != NULL) {
         if (rename(output->temporary, output->target) == 0) {
             pending = NULL;

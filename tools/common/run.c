@@ -6,12 +6,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-bool run_show_progress(void *context, const struct progress *progress)
+static void show_progress(struct display *display, const struct progress *progress)
 {
-    struct display *display = &((struct run *)context)->display;
     double now = clock_seconds();
     if (!display->shown || now - display->last < 0.25) {
-        return true;
+        return;
     }
     display->last = now;
     fprintf(stderr, "\rstep %lld  time %.3f  error %.1e", (long long)progress->step, progress->time,
@@ -20,7 +19,13 @@ bool run_show_progress(void *context, const struct progress *progress)
         fprintf(stderr, "  %.0f s left  ",
                 (now - display->started) * progress->remaining / (1.0 - progress->remaining));
     }
-    return true;
+}
+
+bool run_tell(void *context, const struct progress *progress)
+{
+    struct run *run = context;
+    show_progress(&run->display, progress);
+    return run_checkpoint_tell(run, progress);
 }
 
 void run_clear_progress(const struct display *display)
@@ -49,6 +54,9 @@ static void judge(const struct run *run, const struct relaxation_report *report)
                   "the contacts, or supports against rigid motion may help",
                   scene->path, (long long)report->steps, report->error);
     }
+    if (report->outcome == RELAXATION_STOPPED) {
+        run_checkpoint_stop(run, report->steps);
+    }
     if (report->outcome == RELAXATION_INVERTED) {
         const double *x =
             (const double *)run->model->input.points->data + report->inverted_point * scene->dim;
@@ -57,7 +65,7 @@ static void judge(const struct run *run, const struct relaxation_report *report)
                   "%s: step %lld: integration point %lld at %s is inverted (J = %.3g): apply the load in "
                   "more steps "
                   "(ramp_steps > %lld), or a smaller one, or refine there",
-                  scene->path, (long long)report->steps + 1, (long long)report->inverted_point, place,
+                  scene->path, (long long)report->steps, (long long)report->inverted_point, place,
                   report->least_jacobian, (long long)report->ramp_steps);
     }
     tool_fail(
@@ -77,8 +85,10 @@ void run_quasi_static(struct run *run)
                                          .most_steps = solver->max_steps,
                                          .frames = run->scene->output.frames,
                                          .frame = run_put_frame,
-                                         .progress = run_show_progress,
-                                         .context = run};
+                                         .progress = run_tell,
+                                         .context = run,
+                                         .interrupted = run->checkpoint.interrupted,
+                                         .restored = run_checkpoint_state(run)};
     struct relaxation_report report;
     struct error error;
     double started = clock_seconds();

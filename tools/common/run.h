@@ -3,6 +3,7 @@
 #define TOOLS_RUN_H
 
 #include "model.h"
+#include "run_checkpoint.h"
 #include "base/clock.h"
 #include "solid/relaxation.h"
 
@@ -18,13 +19,14 @@ struct run {
     struct model *model;
     struct stream *stream; /* receives what the scene's [output] asks for */
     struct display display;
+    struct run_checkpoint checkpoint;
     bool verbose;
     double *u; /* parameters, node_count * dim, m */
     double read_seconds, prepare_seconds, solve_seconds, write_seconds;
 };
 
-/* A progress_function; the context is the struct run. */
-bool run_show_progress(void *context, const struct progress *progress);
+/* A progress_function; the context is the struct run: show how far it is, write checkpoints. */
+bool run_tell(void *context, const struct progress *progress);
 void run_clear_progress(const struct display *display);
 
 /* Quasi-static: relax to the full load. Exits with a verdict when it does not converge. */

@@ -39,8 +39,9 @@ static void judge(const struct run *run, const struct dynamics_report *report)
                   "%g): lower time_step_margin (%g), or apply the load more slowly",
                   scene->path, (long long)report->steps, report->time, report->last_drift,
                   DYNAMICS_MOST_DRIFT, scene->solver.time_step_margin);
-    case DYNAMICS_TOO_MANY_STEPS:
     case DYNAMICS_STOPPED:
+        run_checkpoint_stop(run, report->steps);
+    case DYNAMICS_TOO_MANY_STEPS:
     default:
         tool_fail(run->tool, STATUS_VERDICT,
                   "%s: t = %.6g s of %.6g s after %lld steps of %.3g s: allow more (max_steps)", scene->path,
@@ -85,8 +86,10 @@ void run_dynamic(struct run *run)
         .most_steps = solver->max_steps,
         .frame_interval = output->frames > 0 ? solver->end_time / (double)output->frames : output->interval,
         .frame = run_put_frame,
-        .progress = run_show_progress,
-        .context = run};
+        .progress = run_tell,
+        .context = run,
+        .interrupted = run->checkpoint.interrupted,
+        .restored = run_checkpoint_state(run)};
     struct dynamics_report report;
     struct energy_log log = {0};
     struct error error;

@@ -72,8 +72,7 @@ static _Noreturn void print_and_exit(const struct tool *tool, const char *text)
 /* The options of the tool, and behind them those that every tool has. */
 static void parse_options(struct tool *tool, struct option options[], int option_count)
 {
-    static const struct option common[] = {{'h', "help", false, NULL, false},
-                                           {0, "version", false, NULL, false}};
+    static const struct option common[] = {{.letter = 'h', .name = "help"}, {.name = "version"}};
     enum { COMMON = sizeof common / sizeof *common };
     struct error error;
     struct option *all = array_new(option_count + COMMON, sizeof *all);
@@ -98,6 +97,9 @@ static void parse_options(struct tool *tool, struct option options[], int option
         options[i] = all[i];
         if (options[i].letter == 'o') {
             tool->output = options[i].value;
+        }
+        if (options[i].value != NULL && (options[i].silent || options[i].letter == 'o')) {
+            tool->silent[tool->silent_count++] = options[i].value;
         }
     }
     free(all);
@@ -137,6 +139,7 @@ void tool_begin(struct tool *tool, const char *usage, struct option options[], i
     fill_descriptors();
     /* A reader that has seen enough (head) ends us quietly, whatever our parent has set. */
     signal(SIGPIPE, SIG_DFL);
+    signal(SIGXFSZ, SIG_IGN); /* writing beyond a limit fails instead, with a message */
     process_name = tool->name;
     signal(SIGBUS, on_lost_mapping);
     (void)on_exit(on_foreign_exit, NULL);
@@ -190,9 +193,20 @@ void tool_read(const struct tool *tool, const char *file, struct stream *stream)
     }
 }
 
-/* What remains of the option -o in the argument that holds it: "-t" of "-to" or "-toFILE"; NULL if nothing
- * does. The text up to `length` ends with the letter o. */
-static char *without_output(const struct tool *tool, const char *argument, size_t length)
+/* The value of a silent option that is this argument or stands in it, or NULL. */
+static const char *silent_value(const struct tool *tool, const char *argument)
+{
+    for (int i = 0; i < tool->silent_count; i++) {
+        if (tool->silent[i] >= argument && tool->silent[i] <= argument + strlen(argument)) {
+            return tool->silent[i];
+        }
+    }
+    return NULL;
+}
+
+/* What remains of an argument without the silent option in it, whose letter is the last of `length`: "-t" of
+ * "-to" or "-toFILE"; NULL if nothing does. */
+static char *without_silent(const struct tool *tool, const char *argument, size_t length)
 {
     if (length <= 2 || argument[1] == '-') {
         return NULL;
@@ -204,25 +218,27 @@ static char *without_output(const struct tool *tool, const char *argument, size_
     return rest;
 }
 
-/* The command line without what changes nothing in the result: -o FILE, and the operand that was read in
- * place of standard input. So the same input gives the same bytes however it comes and wherever the output
- * goes. */
+/* The command line without what changes nothing in the result: -o FILE and the like, and the operand that was
+ * read in place of standard input. So the same input gives the same bytes however it comes and wherever the
+ * output goes. */
 static void add_provenance(const struct tool *tool, struct stream *stream)
 {
+    enum { MOST = sizeof tool->silent / sizeof *tool->silent };
     struct error error;
-    int count = 0;
-    char *rest = NULL;
-    char **kept = array_new(tool->argc + 1, sizeof *kept);
+    int count = 0, rest_count = 0;
+    char *rests[MOST], **kept = array_new(tool->argc + 1, sizeof *kept);
     if (kept == NULL) {
         tool_fail(tool, STATUS_SYSTEM, "out of memory");
     }
     for (int i = 0; i < tool->argc; i++) {
         char *argument = tool->argv[i];
-        if (tool->output != NULL && tool->output >= argument && tool->output <= argument + strlen(argument)) {
-            rest = tool->output > argument ? without_output(tool, argument, (size_t)(tool->output - argument))
-                                           : without_output(tool, kept[count - 1], strlen(kept[count - 1]));
-            count -= tool->output == argument;
+        const char *value = silent_value(tool, argument);
+        if (value != NULL) {
+            count -= value == argument; /* the option stands before it */
+            char *rest = value > argument ? without_silent(tool, argument, (size_t)(value - argument))
+                                          : without_silent(tool, kept[count], strlen(kept[count]));
             if (rest != NULL) {
+                rests[rest_count++] = rest;
                 kept[count++] = rest;
             }
         } else if (i == 0 || argument != main_input || (stdin_read && strcmp(argument, "-") != 0)) {
@@ -230,7 +246,9 @@ static void add_provenance(const struct tool *tool, struct stream *stream)
         }
     }
     tool_check(tool, stream_add_provenance(stream, count, kept, &error), &error);
-    free(rest);
+    while (rest_count > 0) {
+        free(rests[--rest_count]);
+    }
     free(kept);
 }
 

@@ -16,7 +16,9 @@ struct tool {
     char **argv;
     char **operands; /* operand_count operands, and NULL */
     int operand_count;
-    const char *output; /* value of -o, NULL: standard output */
+    const char *output;    /* value of -o, NULL: standard output */
+    const char *silent[4]; /* values of -o and of silent options, as they stand in argv */
+    int silent_count;
 };
 
 /* Parse the command line. `options` need not list -h, --help, --version: they are handled here (text on

@@ -1,0 +1,33 @@
+#include "base/state.h"
+
+#include <stdio.h>
+
+static enum status check_counts(const struct state_value *value, struct error *error)
+{
+    const int64_t *counts = value->values;
+    for (int64_t i = 0; value->type == STATE_COUNTS && i < value->count; i++) {
+        if (counts[i] < 0) {
+            return fail(error, STATUS_INPUT, "%s: %lld is negative", value->name, (long long)counts[i]);
+        }
+    }
+    return STATUS_OK;
+}
+
+enum status state_visit(const struct state *state, const char *prefix, const struct state_value values[],
+                        int64_t count, struct error *error)
+{
+    enum status status = STATUS_OK;
+    for (int64_t i = 0; status == STATUS_OK && i < count; i++) {
+        char name[96];
+        struct state_value value = values[i];
+        if (prefix != NULL) {
+            snprintf(name, sizeof name, "%s.%s", prefix, value.name);
+            value.name = name;
+        }
+        status = state->visit(state->context, &value, error);
+        if (status == STATUS_OK) {
+            status = check_counts(&value, error);
+        }
+    }
+    return status;
+}

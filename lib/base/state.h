@@ -1,0 +1,40 @@
+/* The state of a run, by name, so that it can be put away and taken up again where it was.
+ *
+ * Each module that keeps something from step to step has a function MODULE_state that lists it. One list
+ * serves both ways: the visitor either copies the values, or replaces them by those that were kept. What a
+ * run computes afresh in each step, or from its input, is no state. */
+#ifndef BASE_STATE_H
+#define BASE_STATE_H
+
+#include "base/status.h"
+
+#include <stdbool.h>
+#include <stdint.h>
+
+enum state_type {
+    STATE_NUMBERS, /* double */
+    STATE_COUNTS,  /* int64_t, never negative */
+    STATE_FLAGS    /* bool */
+};
+
+struct state_value {
+    const char *name; /* a letter, then letters, digits, '.', '_', '-'; each but once in a run */
+    enum state_type type;
+    void *values; /* count */
+    int64_t count;
+};
+
+struct state {
+    enum status (*visit)(void *context, const struct state_value *value, struct error *error);
+    void *context;
+};
+
+/* Goes through the state of what `owner` points to. */
+typedef enum status state_function(void *owner, const struct state *state, struct error *error);
+
+/* Visit `count` values, with "prefix." in front of their names unless it is NULL. STATUS_INPUT for a negative
+ * count that was kept. */
+MUST_CHECK enum status state_visit(const struct state *state, const char *prefix,
+                                   const struct state_value values[], int64_t count, struct error *error);
+
+#endif

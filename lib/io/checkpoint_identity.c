@@ -1,0 +1,90 @@
+/* What a run depends on: the scene with the files that it names, and the stream. */
+#include "io/checkpoint.h"
+
+#include "base/memory.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+#include <zlib.h>
+
+enum { BLOCK = 1 << 16 };
+
+/* Go on with the bytes of a file; nothing for NULL. */
+static enum status add_file(const char *file, uLong *crc, struct error *error)
+{
+    enum status status = STATUS_OK;
+    unsigned char *block = NULL;
+    ssize_t count = 0;
+    if (file == NULL) {
+        return STATUS_OK;
+    }
+    int descriptor = open(file, O_RDONLY | O_CLOEXEC);
+    TRY(NEW_ARRAY(&block, BLOCK, error));
+    while (descriptor >= 0 && (count = read(descriptor, block, BLOCK)) > 0) {
+        *crc = crc32_z(*crc, block, (size_t)count);
+    }
+    if (descriptor < 0 || count < 0) {
+        status = fail(error, STATUS_SYSTEM, "%s: %s", file, strerror(errno));
+    }
+done:
+    if (descriptor >= 0) {
+        close(descriptor);
+    }
+    free(block);
+    return status;
+}
+
+static enum status add_loads(const struct scene_load *loads, int64_t count, uLong *crc, struct error *error)
+{
+    enum status status = STATUS_OK;
+    for (int64_t i = 0; i < count; i++) {
+        TRY(add_file(loads[i].curve.file, crc, error));
+    }
+done:
+    return status;
+}
+
+static enum status add_scene(const struct scene *scene, uLong *crc, struct error *error)
+{
+    enum status status = STATUS_OK;
+    for (int64_t i = 0; i < scene->material_count; i++) {
+        TRY(add_file(scene->materials[i].table, crc, error));
+    }
+    for (int64_t i = 0; i < scene->displacement_count; i++) {
+        TRY(add_file(scene->displacements[i].table, crc, error));
+        TRY(add_file(scene->displacements[i].curve.file, crc, error));
+    }
+    for (int64_t i = 0; i < scene->contact_count; i++) {
+        TRY(add_file(scene->contacts[i].rigid, crc, error));
+    }
+    TRY(add_loads(scene->pressures, scene->pressure_count, crc, error));
+    TRY(add_loads(scene->tractions, scene->traction_count, crc, error));
+    TRY(add_loads(scene->forces, scene->force_count, crc, error));
+done:
+    return status;
+}
+
+static uLong add_section(uLong crc, const struct section *section)
+{
+    const int64_t shape[] = {(int64_t)section->type, section->rows, section->cols};
+    size_t bytes = (size_t)(section->rows * section->cols) * element_size(section->type);
+    crc = crc32_z(crc, (const Bytef *)section->name, strlen(section->name) + 1);
+    crc = crc32_z(crc, (const Bytef *)section->attributes, strlen(section->attributes) + 1);
+    crc = crc32_z(crc, (const Bytef *)shape, sizeof shape);
+    return bytes > 0 ? crc32_z(crc, section->data, bytes) : crc;
+}
+
+enum status checkpoint_identify(const struct scene *scene, const struct stream *input,
+                                struct checkpoint_identity *identity, struct error *error)
+{
+    uLong crc = scene->checksum, sections = crc32_z(0, NULL, 0);
+    for (int64_t i = 0; i < input->section_count; i++) {
+        sections = add_section(sections, &input->sections[i]);
+    }
+    enum status status = add_scene(scene, &crc, error);
+    *identity = (struct checkpoint_identity){.scene = (uint32_t)crc, .input = (uint32_t)sections};
+    return status;
+}

@@ -1,0 +1,171 @@
+#include "run.h"
+
+#include "interrupt.h"
+
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+static const char frame_prefix[] = "u.frame.";
+
+static bool is_frame(const struct section *section)
+{
+    return strncmp(section->name, frame_prefix, sizeof frame_prefix - 1) == 0;
+}
+
+/* Put a section of another stream, which outlives this one. */
+static void share(const struct run *run, struct stream *stream, const struct section *section)
+{
+    struct error error;
+    tool_check(run->tool,
+               stream_put(stream, section->name, section->type, section->rows, section->cols,
+                          section->attributes, section->data, false, &error),
+               &error);
+}
+
+/* The frames that the run had given. */
+static void take_frames(struct run *run)
+{
+    const struct stream *restored = &run->checkpoint.restored;
+    for (int64_t i = 0; i < restored->section_count; i++) {
+        const struct section *section = &restored->sections[i];
+        if (is_frame(section) && section->type == TYPE_F8 && section->rows == run->model->system.node_count &&
+            section->cols == run->scene->dim) {
+            share(run, run->stream, section);
+        }
+    }
+}
+
+static void resume(struct run *run)
+{
+    struct run_checkpoint *checkpoint = &run->checkpoint;
+    struct error error;
+    enum checkpoint_source source;
+    int64_t step = 0;
+    tool_check(run->tool, checkpoint_identify(run->scene, run->stream, &checkpoint->identity, &error),
+               &error);
+    tool_check(run->tool,
+               checkpoint_read(checkpoint->file, &checkpoint->identity, &checkpoint->restored, &source, &step,
+                               &error),
+               &error);
+    if (source == CHECKPOINT_NONE) {
+        return;
+    }
+    tool_note(run->tool, "going on from step %lld, kept in %s%s", (long long)step, checkpoint->file,
+              source == CHECKPOINT_OLD ? ".old" : "");
+    checkpoint->state = checkpoint_state(&checkpoint->restored);
+    checkpoint->is_restored = true;
+    checkpoint->is_ours = source == CHECKPOINT_NEWEST;
+    take_frames(run);
+}
+
+void run_checkpoint_begin(struct run *run)
+{
+    struct run_checkpoint *checkpoint = &run->checkpoint;
+    stream_init(&checkpoint->restored);
+    if (checkpoint->file != NULL) {
+        resume(run);
+    }
+    checkpoint->last = clock_seconds();
+    checkpoint->interrupted = interrupt_catch();
+}
+
+const struct state *run_checkpoint_state(const struct run *run)
+{
+    return run->checkpoint.is_restored ? &run->checkpoint.state : NULL;
+}
+
+/* What to see where the run is: the cloud, the frames so far, and the field at this step. */
+static void put_view(struct run *run, const struct progress *progress, struct stream *stream)
+{
+    static const char *const names[] = {"nodes.x", "cells", "cells.region"};
+    struct error error;
+    int64_t nodes = run->model->system.node_count, dim = run->scene->dim;
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
+        const struct section *section = stream_find(run->stream, names[i]);
+        if (section != NULL) {
+            share(run, stream, section);
+        }
+    }
+    for (int64_t i = 0; i < run->stream->section_count; i++) {
+        if (is_frame(&run->stream->sections[i])) {
+            share(run, stream, &run->stream->sections[i]);
+        }
+    }
+    double *field = run_new_values(run, nodes * dim);
+    model_nodal_field(&run->model->input, progress->u, field);
+    tool_check(run->tool, stream_put(stream, "u.last", TYPE_F8, nodes, dim, "unit=m", field, true, &error),
+               &error);
+}
+
+static enum status write_now(struct run *run, const struct progress *progress, struct error *error)
+{
+    struct run_checkpoint *checkpoint = &run->checkpoint;
+    struct stream stream;
+    enum status status;
+    stream_init(&stream);
+    put_view(run, progress, &stream);
+    TRY(checkpoint_fill(&stream, &checkpoint->identity, progress->step, progress->state, progress->run,
+                        error));
+    TRY(checkpoint_write(checkpoint->file, checkpoint->is_ours, &stream, error));
+    checkpoint->is_ours = true;
+done:
+    stream_free(&stream);
+    checkpoint->last = clock_seconds();
+    return status;
+}
+
+bool run_checkpoint_tell(struct run *run, const struct progress *progress)
+{
+    struct run_checkpoint *checkpoint = &run->checkpoint;
+    bool interrupted = *checkpoint->interrupted != 0;
+    if (checkpoint->file == NULL ||
+        (!interrupted && clock_seconds() - checkpoint->last < checkpoint->interval && checkpoint->is_ours)) {
+        return !interrupted;
+    }
+    bool is_first = !checkpoint->is_ours;
+    checkpoint->status = write_now(run, progress, &checkpoint->error);
+    if (checkpoint->status != STATUS_OK && !interrupted) {
+        run_clear_progress(&run->display);
+        if (is_first) { /* better now than when it is needed */
+            tool_fail(run->tool, checkpoint->status, "%s", checkpoint->error.text);
+        }
+        tool_note(run->tool, "no checkpoint at step %lld: %s; the one before stays",
+                  (long long)progress->step, checkpoint->error.text);
+    }
+    return !interrupted;
+}
+
+void run_checkpoint_end(struct run *run)
+{
+    (void)run;
+    interrupt_release();
+}
+
+void run_checkpoint_stop(const struct run *run, int64_t steps)
+{
+    const struct run_checkpoint *checkpoint = &run->checkpoint;
+    int number = (int)*checkpoint->interrupted;
+    const char *name = sigabbrev_np(number);
+    if (checkpoint->file == NULL) {
+        tool_note(run->tool, "ended by SIG%s after step %lld: to be able to go on, use -c", name,
+                  (long long)steps);
+    } else if (checkpoint->status != STATUS_OK) {
+        tool_note(run->tool, "ended by SIG%s after step %lld: no checkpoint: %s", name, (long long)steps,
+                  checkpoint->error.text);
+    } else {
+        tool_note(run->tool, "ended by SIG%s after step %lld: the same command goes on from %s", name,
+                  (long long)steps, checkpoint->file);
+    }
+    exit(128 + number);
+}
+
+void run_checkpoint_remove(struct run *run)
+{
+    struct run_checkpoint *checkpoint = &run->checkpoint;
+    stream_free(&checkpoint->restored);
+    if (checkpoint->file != NULL) {
+        struct error error;
+        tool_check(run->tool, checkpoint_remove(checkpoint->file, &error), &error);
+    }
+}
