@@ -1,0 +1,156 @@
+# mtled -c: a run that is ended by a signal, killed or cut off goes on to the same bytes; nothing else is taken for it.
+
+bats_require_minimum_version 1.5.0
+
+setup() {
+    cd "$BATS_TEST_TMPDIR"
+    set -o pipefail
+    export OMP_NUM_THREADS=1
+    cloud -d 2 -k jittered -n 8 --box 0,0.1,0,0.1 --jitter 0.2 | shapefn > table.mts 2> note
+    scene > run.scene
+}
+
+# A block pressed onto a floor, slowly, such that there is time to end it.
+scene() {
+    cat << 'SCENE'
+[scene]
+dim = 2
+analysis = quasi-static
+[material body]
+region = body
+E = 3000
+nu = 0.49
+rho = 1000
+[displacement top]
+facets = ymax
+table = top.tsv
+unit = m
+[contact floor]
+facets = ymin
+rigid = floor.tsv
+unit = m
+side = left
+[output]
+frames = 4
+reactions = yes
+gaps = yes
+[solver]
+ramp_steps = 40000
+SCENE
+    printf '0 0.1 0 -0.02\n0.1 0.1 0 -0.02\n' > top.tsv
+    printf -- '-1 -0.005\n2 -0.005\n' > floor.tsv
+}
+
+# Begin a run with checkpoints, wait until one is there, and end it by signal $1.
+begin_and_end() {
+    rm -f run.ckpt*
+    mtled -q -c run.ckpt -e 0 run.scene table.mts > part.dat 2> said 3>&- &
+    local run=$! tries=0
+    while [ ! -e run.ckpt.old ] && [ $((tries += 1)) -lt 500 ]; do sleep 0.02; done
+    kill -s "$1" $run
+    status=0
+    wait $run || status=$?
+}
+
+refused() {
+    local text=$1
+    shift
+    run -2 --separate-stderr "$@"
+    [ -z "$output" ]
+    [ "$(wc -l <<< "$stderr")" -eq 1 ]
+    [[ $stderr == "mtled: "*"$text"* ]]
+}
+
+@test "ended by a signal: one line, status 128 + n, no output; the same command goes on to the same bytes" {
+    mtled run.scene table.mts > whole.dat
+    for signal in TERM HUP; do
+        begin_and_end $signal
+        [ $status -eq $((128 + $(kill -l $signal))) ]
+        [ "$(wc -l < said)" -eq 1 ]
+        grep -q "^mtled: ended by SIG$signal after step [0-9]*: the same command goes on from run.ckpt$" said
+        step=$(mts print checkpoint run.ckpt)
+        run -1 grep -q '^# end' part.dat
+        rm -f out.dat
+    done
+    [ "$step" -gt 20 ]
+    mtled -crun.ckpt --every=30 -o out.dat run.scene table.mts 2> said
+    grep -q "^mtled: going on from step $step, kept in run.ckpt$" said
+    cmp whole.dat out.dat
+    [ -z "$(find . -name 'run.ckpt*')" ]
+}
+
+@test "a checkpoint is a stream that can be looked into" {
+    begin_and_end TERM
+    mts list run.ckpt | grep -q '^checkpoint	i8	1	1	version='
+    mts list run.ckpt.old | grep -q '^state.contact.0.multiplier	f8'
+    mts check run.ckpt
+    mts print u.last run.ckpt | awk 'END { exit NR != 64 }'
+    tovtk -o last.vtu run.ckpt
+    run -2 fieldcmp run.ckpt run.ckpt # it is no result
+}
+
+@test "without -c a signal ends the run in one line, and an existing output stays" {
+    printf 'old\n' > out.dat
+    mtled -q -o out.dat run.scene table.mts 2> said 3>&- &
+    sleep 0.3
+    kill -TERM $!
+    status=0
+    wait $! || status=$?
+    [ $status -eq 143 ]
+    [ "$(wc -l < said)" -eq 1 ]
+    grep -q "^mtled: ended by SIGTERM after step " said
+    [ "$(cat out.dat)" = old ]
+    [ -z "$(find . -name '.out.dat*')" ]
+}
+
+@test "another scene, another table, another file of the scene: refused, and left as it is" {
+    begin_and_end TERM
+    cp run.ckpt kept
+    sed 's/E = 3000/E = 3001/' run.scene > other.scene
+    refused "run.ckpt: checkpoint of another scene" mtled -c run.ckpt other.scene table.mts
+    cp floor.tsv true.tsv
+    printf -- '-1 -0.006\n2 -0.006\n' > floor.tsv
+    refused "or its tables have changed: remove it" mtled -c run.ckpt run.scene table.mts
+    cp true.tsv floor.tsv
+    cloud -d 2 -k jittered -n 8 --box 0,0.1,0,0.1 --jitter 0.21 | shapefn > other.mts 2> note
+    refused "run.ckpt: checkpoint of another cloud or table" mtled -c run.ckpt run.scene other.mts
+    mts text run.ckpt | sed '/^# checkpoint/s/version=[0-9.]*/version=0.0.9/' | mts binary > old.ckpt
+    refused "old.ckpt: checkpoint of version 0.0.9, this is" mtled -c old.ckpt run.scene table.mts
+    refused "table.mts: a stream, but not a checkpoint" mtled -c table.mts run.scene table.mts
+    mts drop state.mass run.ckpt > less.ckpt
+    run -2 --separate-stderr mtled -c less.ckpt run.scene table.mts
+    [[ $stderr == *"state.mass is missing or does not fit" ]]
+    refused "no regular file" mtled -c /dev/null run.scene table.mts
+    cmp run.ckpt kept
+}
+
+@test "a damaged checkpoint: the one before serves; both damaged: refused" {
+    mtled run.scene table.mts > whole.dat
+    begin_and_end KILL
+    [ $status -eq 137 ]
+    printf 'x' | dd of=run.ckpt bs=1 seek=3000 conv=notrunc 2> note
+    cp run.ckpt bad
+    mtled -c run.ckpt run.scene table.mts > u.dat 2> said
+    grep -q "kept in run.ckpt.old$" said
+    cmp u.dat whole.dat
+    cp bad run.ckpt
+    cp bad run.ckpt.old
+    refused "remove it and run.ckpt.old to begin anew" mtled -c run.ckpt run.scene table.mts
+}
+
+@test "a place that cannot be written is told at once; one that fills up later leaves the last checkpoint" {
+    run -3 --separate-stderr mtled -c no/such/folder/run.ckpt run.scene table.mts
+    [[ $stderr == "mtled: no/such/folder/run.ckpt.new: No such file or directory" ]]
+    run -3 --separate-stderr bash -c 'ulimit -f 4; mtled -c run.ckpt run.scene table.mts > /dev/null'
+    [[ $stderr == "mtled: run.ckpt.new: cannot write: File too large" ]]
+    [ -z "$(find . -name 'run.ckpt*')" ]
+    begin_and_end TERM
+    cp run.ckpt kept
+    run -143 --separate-stderr bash -c 'ulimit -f 4; mtled -c run.ckpt run.scene table.mts > /dev/null & sleep 0.3; kill -TERM $!; wait $!'
+    [[ $stderr == *"no checkpoint: run.ckpt.new: cannot write: File too large"* ]]
+    cmp run.ckpt kept
+}
+
+@test "killed at random moments, also while a checkpoint is written: one of two is whole" {
+    bash "$BATS_TEST_DIRNAME/kills.sh" 10
+}

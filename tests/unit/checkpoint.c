@@ -1,0 +1,350 @@
+/* Checkpoints: a run that is interrupted at any step, put away in a file and taken up by another process's
+ * fresh system goes on to the same bits; and whatever becomes of one of the two files, the other one serves.
+ */
+#include "lattice_fixture.h"
+
+#include "io/checkpoint.h"
+#include "solid/dynamics.h"
+#include "solid/relaxation.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <stdio.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+static const struct checkpoint_identity identity = {.scene = 0x12345678, .input = 0xff};
+static char folder[64], file[96], old[96];
+
+/* A soft block over a floor, its top pushed down so far that it touches the floor and the pressure calls for
+ * ties. */
+static void build(struct lattice *l)
+{
+    struct error error;
+    struct rigid_surface floor;
+    static const double corners[4] = {-1, -0.004, 1, -0.004};
+    struct lattice_options options = lattice_defaults(2, 5);
+    options.jitter = 0.2;
+    lattice_build(l, &options);
+    lattice_push(l, 3, -0.03, lattice_curve(l, curve_of_kind(CURVE_SMOOTH)));
+    struct boundary_averages *averages = malloc(sizeof *averages);
+    l->system.contacts = malloc(sizeof *l->system.contacts);
+    assert_true(averages != NULL && l->system.contacts != NULL);
+    *averages = lattice_averages(l, 1u << 2);
+    GOOD(rigid_build(2, 1, corners, true, &floor, &error));
+    GOOD(contact_build(averages, l->system.X, 2, &floor, 1e5, l->system.contacts, &error));
+    l->system.contact_averages = averages;
+    l->system.contact_count = 1;
+}
+
+/* Where to interrupt, and what happened. */
+struct interruption {
+    int64_t at; /* step; 0: never */
+    bool done;
+    double frames; /* sum over what was given */
+};
+
+static bool interrupt(void *context, const struct progress *progress)
+{
+    struct interruption *interruption = context;
+    struct error error;
+    struct stream stream;
+    if (progress->step != interruption->at) {
+        return true;
+    }
+    stream_init(&stream);
+    GOOD(checkpoint_fill(&stream, &identity, progress->step, progress->state, progress->run, &error));
+    GOOD(checkpoint_write(file, false, &stream, &error));
+    stream_free(&stream);
+    interruption->done = true;
+    return false;
+}
+
+static void frame(void *context, int64_t number, double time, const double *u)
+{
+    ((struct interruption *)context)->frames += (double)number * time * u[1];
+}
+
+static const sig_atomic_t always = 1;
+
+/* All that a run leaves behind. */
+struct result {
+    double u[100], row_force[100];
+    struct energy_log log;
+    struct relaxation_report relaxation;
+    struct dynamics_report dynamics;
+};
+
+static void run(bool is_dynamic, struct interruption *interruption, const struct state *restored,
+                struct result *result)
+{
+    struct lattice l;
+    struct error error;
+    build(&l);
+    assert_true(l.system.rows.count <= 100 && l.system.node_count <= 50);
+    *result = (struct result){.log = {0}};
+    if (is_dynamic) {
+        struct dynamics_options options = {.end_time = 0.6,
+                                           .time_step_margin = 0.9,
+                                           .damping = 5,
+                                           .frame_interval = 0.01,
+                                           .frame = frame,
+                                           .progress = interrupt,
+                                           .context = interruption,
+                                           .interrupted = &always,
+                                           .restored = restored};
+        GOOD(dynamics_run(&l.system, &options, result->u, NULL, result->row_force, &result->log,
+                          &result->dynamics, &error));
+        assert_int_equal(result->dynamics.outcome, interruption->at > 0 ? DYNAMICS_STOPPED : DYNAMICS_DONE);
+    } else {
+        struct relaxation_options options = {.tolerance = 1e-6,
+                                             .time_step_margin = 0.9,
+                                             .frames = 5,
+                                             .frame = frame,
+                                             .progress = interrupt,
+                                             .context = interruption,
+                                             .interrupted = &always,
+                                             .restored = restored};
+        GOOD(relaxation_run(&l.system, &options, result->u, result->row_force, &result->relaxation, &error));
+        assert_int_equal(result->relaxation.outcome,
+                         interruption->at > 0 ? RELAXATION_STOPPED : RELAXATION_CONVERGED);
+    }
+    if (interruption->at == 0) { /* the test is of something only if they are in play */
+        double pressure = 0;
+        for (int64_t a = 0; a < l.system.contacts->count; a++) {
+            pressure += l.system.contacts->pressure[a];
+        }
+        assert_true(pressure > 0);
+    }
+    lattice_free(&l);
+}
+
+static void resume(bool is_dynamic, struct interruption *interruption, struct result *result)
+{
+    struct error error;
+    struct stream stream;
+    enum checkpoint_source source;
+    int64_t step;
+    GOOD(checkpoint_read(file, &identity, &stream, &source, &step, &error));
+    assert_int_equal(source, CHECKPOINT_NEWEST);
+    struct state state = checkpoint_state(&stream);
+    run(is_dynamic, interruption, &state, result);
+    stream_free(&stream);
+}
+
+static void same_bits(bool is_dynamic, int64_t first, int64_t second)
+{
+    struct result whole, part;
+    struct interruption none = {0}, once = {.at = first}, twice = {.at = second};
+    run(is_dynamic, &none, NULL, &whole);
+    run(is_dynamic, &once, NULL, &part);
+    energy_log_free(&part.log);
+    twice.frames = once.frames;
+    resume(is_dynamic, &twice, &part);
+    energy_log_free(&part.log);
+    assert_true(once.done && twice.done);
+    struct interruption rest = {.frames = twice.frames};
+    resume(is_dynamic, &rest, &part);
+    assert_memory_equal(whole.u, part.u, sizeof whole.u);
+    assert_memory_equal(whole.row_force, part.row_force, sizeof whole.row_force);
+    assert_memory_equal(&whole.relaxation, &part.relaxation, sizeof whole.relaxation);
+    assert_memory_equal(&whole.dynamics, &part.dynamics, sizeof whole.dynamics);
+    assert_int_equal(whole.log.count, part.log.count);
+    assert_memory_equal(whole.log.rows, part.log.rows, (size_t)whole.log.count * sizeof *whole.log.rows);
+    assert_true(none.frames != 0 && none.frames == rest.frames);
+    energy_log_free(&whole.log);
+    energy_log_free(&part.log);
+}
+
+static void relaxation_goes_on(void **state)
+{
+    (void)state;
+    static const int64_t at[][2] = {{1, 2}, {19, 20}, {21, 200}, {399, 400}, {555, 777}};
+    for (size_t i = 0; i < sizeof at / sizeof *at; i++) {
+        same_bits(false, at[i][0], at[i][1]);
+    }
+}
+
+static void dynamics_goes_on(void **state)
+{
+    (void)state;
+    static const int64_t at[][2] = {{1, 2}, {19, 20}, {21, 60}, {81, 99}};
+    for (size_t i = 0; i < sizeof at / sizeof *at; i++) {
+        same_bits(true, at[i][0], at[i][1]);
+    }
+}
+
+/* A state of two values, for tests of the files. */
+struct pair {
+    int64_t count;
+    double number;
+};
+
+static enum status visit_pair(void *owner, const struct state *state, struct error *error)
+{
+    struct pair *pair = owner;
+    const struct state_value values[] = {{"count", STATE_COUNTS, &pair->count, 1},
+                                         {"number", STATE_NUMBERS, &pair->number, 1}};
+    return state_visit(state, NULL, values, 2, error);
+}
+
+static enum status write_pair(int64_t step, struct error *error)
+{
+    struct stream stream;
+    struct pair pair = {.count = step, .number = (double)step / 3};
+    stream_init(&stream);
+    enum status status = checkpoint_fill(&stream, &identity, step, visit_pair, &pair, error);
+    if (status == STATUS_OK) {
+        status = checkpoint_write(file, true, &stream, error);
+    }
+    stream_free(&stream);
+    return status;
+}
+
+/* The step of what can be read, 0 for nothing, -1 on an error, whose text must contain `text`. */
+static int64_t readable(const struct checkpoint_identity *expected, const char *text)
+{
+    struct stream stream;
+    struct error error = {""};
+    enum checkpoint_source source;
+    int64_t step = 0;
+    enum status status = checkpoint_read(file, expected, &stream, &source, &step, &error);
+    if (status != STATUS_OK) {
+        if (strstr(error.text, text) == NULL) {
+            fail_msg("'%s' does not tell of '%s'", error.text, text);
+        }
+        assert_int_equal(stream.section_count, 0);
+        return -1;
+    }
+    if (source != CHECKPOINT_NONE) {
+        struct pair pair;
+        struct state state = checkpoint_state(&stream);
+        GOOD(visit_pair(&pair, &state, &error));
+        assert_int_equal(pair.count, step);
+        assert_true(pair.number == (double)step / 3);
+    }
+    stream_free(&stream);
+    return step;
+}
+
+static off_t size_of(const char *name)
+{
+    struct stat status;
+    assert_int_equal(stat(name, &status), 0);
+    return status.st_size;
+}
+
+static void one_of_two_serves(void **state)
+{
+    (void)state;
+    struct error error;
+    GOOD(checkpoint_remove(file, &error));
+    assert_int_equal(readable(&identity, ""), 0);
+    GOOD(write_pair(7, &error));
+    assert_int_equal(access(old, F_OK), -1);
+    GOOD(write_pair(8, &error));
+    assert_int_equal(readable(&identity, ""), 8);
+    off_t whole = size_of(file);
+    for (off_t size = 0; size < whole; size += 61) { /* cut short anywhere: the older one */
+        assert_int_equal(truncate(file, size), 0);
+        assert_int_equal(readable(&identity, ""), 7);
+        GOOD(checkpoint_remove(file, &error));
+        GOOD(write_pair(7, &error));
+        GOOD(write_pair(8, &error));
+    }
+    assert_int_equal(unlink(file), 0); /* killed between the two renamings */
+    assert_int_equal(readable(&identity, ""), 7);
+    GOOD(write_pair(9, &error)); /* nothing to keep: the older one stays */
+    assert_int_equal(readable(&identity, ""), 9);
+    assert_int_equal(truncate(file, 100), 0);
+    assert_int_equal(readable(&identity, ""), 7);
+    assert_int_equal(truncate(old, 100), 0);
+    assert_int_equal(readable(&identity, "remove it and "), -1);
+    GOOD(checkpoint_remove(file, &error));
+    assert_int_equal(readable(&identity, ""), 0);
+}
+
+static void of_something_else(void **state)
+{
+    (void)state;
+    struct error error;
+    struct checkpoint_identity other = identity;
+    GOOD(write_pair(3, &error));
+    other.scene++;
+    assert_int_equal(readable(&other, "another scene"), -1);
+    other = identity;
+    other.input++;
+    assert_int_equal(readable(&other, "another cloud or table"), -1);
+    GOOD(checkpoint_remove(file, &error));
+}
+
+/* Whatever goes wrong while writing, what was there stays. */
+static void failures_leave_what_was_there(void **state)
+{
+    (void)state;
+    struct error error;
+    char new[104];
+    snprintf(new, sizeof new, "%s.new", file);
+    GOOD(write_pair(4, &error));
+    assert_int_equal(mkdir(new, 0700), 0); /* the new one cannot be opened */
+    assert_int_equal(write_pair(5, &error), STATUS_SYSTEM);
+    assert_int_equal(readable(&identity, ""), 4);
+    assert_int_equal(rmdir(new), 0);
+    assert_int_equal(symlink("/dev/full", new), 0); /* nor is a link followed */
+    assert_int_equal(write_pair(5, &error), STATUS_SYSTEM);
+    assert_int_equal(readable(&identity, ""), 4);
+    GOOD(write_pair(6, &error)); /* the failed one has been cleared away */
+    assert_int_equal(readable(&identity, ""), 6);
+    GOOD(checkpoint_remove(file, &error));
+    assert_int_equal(symlink("/dev/null", file), 0); /* no device is replaced */
+    assert_int_equal(write_pair(5, &error), STATUS_INPUT);
+    assert_int_equal(readable(&identity, "no regular file"), -1);
+    assert_int_equal(unlink(file), 0);
+}
+
+/* Values that are missing, of another size or out of range. */
+static void states_that_do_not_fit(void **state)
+{
+    (void)state;
+    struct error error;
+    struct stream stream;
+    struct pair pair = {.count = -1};
+    stream_init(&stream);
+    struct state empty = checkpoint_state(&stream);
+    assert_int_equal(visit_pair(&pair, &empty, &error), STATUS_INPUT);
+    GOOD(stream_put(&stream, "state.count", TYPE_I8, 1, 1, "", &pair.count, false, &error));
+    assert_int_equal(visit_pair(&pair, &empty, &error), STATUS_INPUT);
+    assert_non_null(strstr(error.text, "negative"));
+    pair.count = 2;
+    assert_int_equal(visit_pair(&pair, &empty, &error), STATUS_INPUT);
+    assert_non_null(strstr(error.text, "state.number"));
+    static double two[2];
+    GOOD(stream_put(&stream, "state.number", TYPE_F8, 2, 1, "", two, false, &error));
+    assert_int_equal(visit_pair(&pair, &empty, &error), STATUS_INPUT);
+    stream_free(&stream);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(relaxation_goes_on),
+        cmocka_unit_test(dynamics_goes_on),
+        cmocka_unit_test(one_of_two_serves),
+        cmocka_unit_test(of_something_else),
+        cmocka_unit_test(failures_leave_what_was_there),
+        cmocka_unit_test(states_that_do_not_fit),
+    };
+    const char *temporary = getenv("TMPDIR");
+    snprintf(folder, sizeof folder, "%.40s/checkpointXXXXXX", temporary != NULL ? temporary : "/tmp");
+    if (mkdtemp(folder) == NULL) {
+        return 3;
+    }
+    snprintf(file, sizeof file, "%s/run.ckpt", folder);
+    snprintf(old, sizeof old, "%s/run.ckpt.old", folder);
+    int failed = cmocka_run_group_tests(tests, NULL, NULL);
+    struct error error;
+    if (checkpoint_remove(file, &error) != STATUS_OK || rmdir(folder) != 0) {
+        return 3;
+    }
+    return failed;
+}
