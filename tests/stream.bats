@@ -132,8 +132,9 @@ large() {
     echo precious > kept
     run -3 --separate-stderr mts binary text -o missing/kept
     [[ "$stderr" == "mts: missing/kept: No such file or directory" ]]
-    # The limit on file sizes kills with SIGXFSZ in the middle of writing.
-    run -153 bash -c 'ulimit -f 100; exec mts binary text -o kept'
+    # A limit on file sizes, which comes with SIGXFSZ, in the middle of writing.
+    run -3 --separate-stderr bash -c 'ulimit -f 100; exec mts binary text -o kept'
+    [[ "$stderr" == "mts: kept: cannot write: File too large" ]]
     [ "$(cat kept)" = precious ]
     run -2 bash -c 'head -c 1000 binary | mts text -o kept'
     [ "$(cat kept)" = precious ]

@@ -97,7 +97,7 @@ static void run(bool is_dynamic, struct interruption *interruption, const struct
                           &result->dynamics, &error));
         assert_int_equal(result->dynamics.outcome, interruption->at > 0 ? DYNAMICS_STOPPED : DYNAMICS_DONE);
     } else {
-        struct relaxation_options options = {.tolerance = 1e-6,
+        struct relaxation_options options = {.tolerance = 1e-4,
                                              .time_step_margin = 0.9,
                                              .frames = 5,
                                              .frame = frame,

@@ -147,17 +147,17 @@ void run_checkpoint_stop(const struct run *run, int64_t steps)
     const struct run_checkpoint *checkpoint = &run->checkpoint;
     int number = (int)*checkpoint->interrupted;
     const char *name = sigabbrev_np(number);
+    enum status status = (enum status)(128 + number);
     if (checkpoint->file == NULL) {
-        tool_note(run->tool, "ended by SIG%s after step %lld: to be able to go on, use -c", name,
+        tool_fail(run->tool, status, "ended by SIG%s after step %lld: to be able to go on, use -c", name,
                   (long long)steps);
-    } else if (checkpoint->status != STATUS_OK) {
-        tool_note(run->tool, "ended by SIG%s after step %lld: no checkpoint: %s", name, (long long)steps,
-                  checkpoint->error.text);
-    } else {
-        tool_note(run->tool, "ended by SIG%s after step %lld: the same command goes on from %s", name,
-                  (long long)steps, checkpoint->file);
     }
-    exit(128 + number);
+    if (checkpoint->status != STATUS_OK) {
+        tool_fail(run->tool, status, "ended by SIG%s after step %lld: no checkpoint: %s", name,
+                  (long long)steps, checkpoint->error.text);
+    }
+    tool_fail(run->tool, status, "ended by SIG%s after step %lld: the same command goes on from %s", name,
+              (long long)steps, checkpoint->file);
 }
 
 void run_checkpoint_remove(struct run *run)

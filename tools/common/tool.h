@@ -30,7 +30,7 @@ void tool_begin(struct tool *tool, const char *usage, struct option options[], i
 /* Print "name: message" on standard error and exit with `status`; returns when the status is STATUS_OK. */
 void tool_check(const struct tool *tool, enum status status, const struct error *error);
 
-/* Print "name: message" and exit. */
+/* Print "name: message" and exit; `status` may also be 128 + the number of a signal. */
 _Noreturn void tool_fail(const struct tool *tool, enum status status, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 
