@@ -60,6 +60,7 @@ static enum status add_scene(const struct scene *scene, uLong *crc, struct error
     for (int64_t i = 0; i < scene->contact_count; i++) {
         TRY(add_file(scene->contacts[i].rigid, crc, error));
     }
+    TRY(add_file(scene->initial.table, crc, error));
     TRY(add_loads(scene->pressures, scene->pressure_count, crc, error));
     TRY(add_loads(scene->tractions, scene->traction_count, crc, error));
     TRY(add_loads(scene->forces, scene->force_count, crc, error));
