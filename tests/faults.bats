@@ -178,6 +178,15 @@ limit_memory() { [[ $BUILD == *san* ]] || echo 'ulimit -v 4000000;'; }
         'mtled edited.scene table.mts'
     { cat block.scene; printf '[displacement again]\nfacets = ymax\ncomponents = free, -0.005\n'; } > edited.scene
     accepted "one boundary in two sections that agree" 'mtled edited.scene table.mts'
+    with 's/facets = ymax/facets = xmax/'
+    refused "two boundaries that meet" 2 "prescribed twice: -0.005 m here, 0 m in [displacement bottom]" 'mtled edited.scene table.mts'
+    { cat edited.scene; printf '[solver]\nconstraint_points = node\n'; } > nodal.scene
+    refused "two boundaries that meet, by node" 2 "prescribed twice: -0.005 m here, 0 m in [displacement bottom]" 'mtled nodal.scene table.mts'
+    cloud -d 3 -k regular -n 3 --box 0,0.1,0,0.1,0,0.1 | shapefn > cube.mts 2> note
+    sed -i 's/dim = 2/dim = 3/; s/0, 0$/0, 0, 0/; s/0, -0.005/0, -0.005, 0/' edited.scene
+    refused "two boundaries that meet, 3D" 2 "prescribed twice: -0.005 m here, 0 m in [displacement bottom]" 'mtled edited.scene cube.mts'
+    sed -i 's/0, -0.005, 0/free, free, 0.005/; s/0, 0, 0/0, 0, free/' edited.scene
+    accepted "two boundaries that meet, other components, 3D" 'mtled edited.scene cube.mts'
 }
 
 @test "fault 15: support with too few or coplanar nodes" {
@@ -222,4 +231,131 @@ limit_memory() { [[ $BUILD == *san* ]] || echo 'ulimit -v 4000000;'; }
         *) refused "${stage%% *}" 2 "bad.mts" "${stage%:*} bad.mts" ;;
         esac
     done
+}
+
+@test "fault 18: wrong stage order, version or byte order" {
+    refused "no shape functions of the stream's own, no cells" 2 "run nodes" 'cloud -d 2 -k halton -n 30 --box 0,0.1,0,0.1 | mtled block.scene'
+    refused "a mesh for a stream" 2 "a gmsh mesh, not an mts stream: run nodes" 'mtled block.scene square.msh'
+    refused "a stream for a mesh" 2 "not a gmsh mesh" 'nodes -u mm cloud.mts'
+    run -2 --separate-stderr fieldcmp cloud.mts cloud.mts
+    record "no field to compare" "$status" "$stderr" "$([[ $stderr == "fieldcmp: "*mtled* ]] && echo yes || echo no)"
+    [[ $stderr == "fieldcmp: "*mtled* ]]
+    mts drop 'face.*' table.mts > half.mts
+    refused "tables missing in the middle" 2 "run" 'mtled block.scene half.mts'
+    refused "version" 2 "stream version '2', this program reads version 1" "sed '1s/1/2/' cloud.mts | ipoints"
+    # Bytes swapped in every number, as another machine would write them, with the right checksum.
+    swap='{ for (i = 1; i <= NF; i++) { v = $i; s = 0; for (k = 0; k < 4; k++) { s = s * 256 + v % 256; v = int(v / 256) } $i = s >= 2147483648 ? s - 4294967296 : s } print }'
+    mts text cloud.mts | awk "/^#/ { on = \$2 == \"cells\" } on && /^[0-9]/ $swap !(on && /^[0-9]/) { print }" | mts binary > swapped.mts
+    refused "byte order of a stream" 2 "cells: row 0: no node" 'ipoints swapped.mts'
+    # In a binary mesh the number 1 behind the version tells the order.
+    sed 's/^\x01\x00\x00\x00$/\x00\x00\x00\x01/' "$BATS_TEST_DIRNAME/fuzz/corpus/msh/binary41" > swapped.msh
+    refused "byte order of a mesh" 2 "byte" 'nodes -u mm swapped.msh'
+}
+
+# Every program with a command that writes, but for the place.
+commands() {
+    cat << 'END'
+nodes -u mm square.msh
+nodes -l square.msh
+cloud -d 2 -k regular -n 5 --box 0,1,0,1
+ipoints cloud.mts
+support points.mts
+shapefn lists.mts
+mtled block.scene table.mts
+interp u.mts
+fieldcmp u.mts u.mts
+mts list table.mts
+mts print u u.mts
+mts text table.mts
+mts keep u u.mts
+tovtk u.mts
+mtled -h
+mts --version
+END
+}
+
+@test "fault 19: a full device, also at the end of writing" {
+    mtled block.scene table.mts > u.mts
+    while IFS= read -r command; do
+        status=0
+        message=$(bash -c "$command > /dev/full" 2>&1 | grep -v -e 'left out' -e 'with defaults') || true
+        bash -c "$command > /dev/full" 2> /dev/null || status=$?
+        survived=$([[ $status -eq 3 && $message == "${command%% *}: standard output: "*"No space left on device" ]] && echo yes || echo no)
+        record "$command" "$status" "$message" "$survived"
+        [ "$survived" = yes ] || { echo "$command: $status: $message"; false; }
+    done < <(commands)
+}
+
+@test "fault 20: a reader that stops early" {
+    mtled block.scene table.mts > u.mts
+    while IFS= read -r command; do
+        # By then the reader is gone.
+        run --separate-stderr bash -c "{ sleep 0.1; exec $command; } | true; exit \${PIPESTATUS[0]}"
+        message=$(grep -v -e 'left out' -e 'with defaults' <<< "$stderr" || true)
+        survived=$([[ $status -eq 141 && -z $message ]] && echo yes || echo no)
+        record "$command" "$status" "$message" "$survived"
+        [ "$survived" = yes ] || { echo "$command: $status: $message"; false; }
+    done < <(commands)
+}
+
+# The same square under its weight, in time.
+dynamic() {
+    sed 's/quasi-static/dynamic\ngravity = 0, -9.81/; /displacement top/,$d' block.scene
+    printf '[solver]\nend_time = 0.05\n'
+}
+
+walls() { printf '[displacement %s]\nfacets = %s\nnormal = 0\n' left xmin right xmax; }
+
+@test "fault 24: instability: not finite, turned over, step collapse, out of balance, out of steps" {
+    dynamic | sed 's/-9.81/-981000/' > edited.scene
+    refused "dynamic, pressed flat by its weight" 1 "edited.scene: step " 'mtled edited.scene table.mts'
+    dynamic | sed 's/-9.81/-100/' > edited.scene
+    refused "dynamic, steps too coarse for the load" 1 "the energy balance is off" 'mtled edited.scene table.mts'
+    { sed 's/quasi-static/dynamic/; s/-0.005/-0.0999/' block.scene; walls; printf '[solver]\nend_time = 10\ndamping = 1\n'; } > edited.scene
+    refused "dynamic, pressed to a thousandth between walls" 1 "the critical step has fallen" 'mtled edited.scene table.mts'
+    { sed 's/-0.005/-0.11/' block.scene; walls; } > edited.scene
+    refused "quasi-static, pressed beyond its height between walls" 1 "edited.scene: step " 'mtled edited.scene table.mts'
+    with 's/-0.005/-1e200/'
+    refused "quasi-static, numbers out of range" 1 "edited.scene: step " 'mtled edited.scene table.mts'
+    { cat block.scene; printf '[solver]\nmax_steps = 30\n'; } > edited.scene
+    refused "quasi-static, out of steps" 1 "not converged after 30 steps" 'mtled edited.scene table.mts'
+    { dynamic; printf 'max_steps = 3\n'; } > edited.scene
+    refused "dynamic, out of steps" 1 "after 3 steps" 'mtled edited.scene table.mts'
+}
+
+# denied COMMAND...: let its allocations fail in turn. Where one does, status 3, one line (besides what libgmsh may say), no whole
+# stream; or it was not needed, and the output is what it is else.
+denied() {
+    local total step bad=0 hit=0 spared=0 status
+    DENY_COUNT=count LD_PRELOAD=$BUILD/tests/helper/deny.so "$@" > whole 2> whole.message
+    total=$(cat count)
+    step=$(every $((total / 30 + 1)))
+    for ((i = 0; i < total; i += step)); do
+        status=0
+        DENY=$i LD_PRELOAD=$BUILD/tests/helper/deny.so "$@" > out 2> message || status=$?
+        if [ "$status" -eq 0 ] && cmp -s out whole; then
+            spared=$((spared + 1))
+        elif [ "$status" -eq 3 ] && { cmp -s out whole || ! mts list out > /dev/null 2>&1; } &&
+            [ "$(grep . message | grep -vc '^Error *: Out of memory')" -le $(($(grep -c . whole.message) + 1)) ] && tail -n 1 message | grep -q '[a-z]: '; then
+            hit=$((hit + 1))
+        else
+            bad=$((bad + 1))
+            echo "$*: allocation $i: status $status: $(cat message)"
+        fi
+    done
+    record "$*" 3 "$hit of $total allocations denied, each: status 3, one line; $spared not needed; $bad else" "$([ $bad -eq 0 ] && echo yes || echo no)"
+    [ "$bad" -eq 0 ] && [ "$hit" -gt 0 ]
+}
+
+@test "fault 25: malloc fails at each call" {
+    [[ $BUILD != *san* ]] || skip "a sanitizer brings its own allocator"
+    cloud -d 2 -k regular -n 3 --box 0,0.1,0,0.1 > cloud.mts
+    ipoints cloud.mts > points.mts
+    support points.mts > lists.mts
+    shapefn lists.mts > table.mts
+    printf '[output]\nstress = yes\nreactions = yes\nframes = 2\n[solver]\ntolerance = 1e-3\n' >> block.scene
+    mtled block.scene table.mts > u.mts
+    while IFS= read -r command; do
+        denied $command
+    done < <(commands | grep -v -e ' -h$' -e '--version$')
 }

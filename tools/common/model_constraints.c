@@ -1,10 +1,11 @@
-#include "model.h"
+#include "model_claims.h"
 
 #include "approx/scatter.h"
 #include "io/table.h"
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 /* Stiffness of the springs that back hat averages, in layers of cells. */
 static const double spring_share = 1.0;
@@ -14,6 +15,7 @@ struct prescription {
     const struct model_input *input;
     const struct scene_displacement *section;
     struct solid_system *system;
+    struct claims *claims; /* of all sections */
     int32_t number, curve; /* of the section; of its load curve */
     struct table table;    /* SCENE_TABLE */
     double extent;         /* SCENE_TABLE: diagonal of the body's box, m */
@@ -131,6 +133,35 @@ static enum status add_average(const struct prescription *p, const struct bounda
         }
         status = add_row(p, averages, a, axis, value[i], error);
     }
+    return status;
+}
+
+/* What the section prescribes at the node of an average. */
+static enum status add_claims(const struct prescription *p, const struct boundary_averages *averages,
+                              int64_t a, struct error *error)
+{
+    int dim = p->input->cells.dim;
+    const struct scene_displacement *section = p->section;
+    struct claim claim = {.node = averages->node[a], .section = p->number, .value = section->normal};
+    double value[3] = {section->components[0], section->components[1], section->components[2]};
+    if (section->kind == SCENE_NORMAL) {
+        memcpy(claim.direction, averages->normal + a * dim, (size_t)dim * sizeof *claim.direction);
+        return claims_add(p->claims, &claim, error);
+    }
+    enum status status = STATUS_OK;
+    if (section->kind == SCENE_TABLE) {
+        TRY(table_value(p, p->input->cells.x + (int64_t)claim.node * dim, value, error));
+    }
+    for (int i = 0; i < dim; i++) {
+        if (section->kind == SCENE_COMPONENTS && section->is_free[i]) {
+            continue;
+        }
+        memset(claim.direction, 0, sizeof claim.direction);
+        claim.direction[i] = 1.0;
+        claim.value = value[i];
+        TRY(claims_add(p->claims, &claim, error));
+    }
+done:
     return status;
 }
 
@@ -254,6 +285,7 @@ static enum status add_section(struct prescription *p, struct error *error)
     }
     for (int64_t a = 0; a < averages.count; a++) {
         TRY(add_average(p, &averages, a, error));
+        TRY(add_claims(p, &averages, a, error));
     }
     if (section->facets.count > 0 && are_hats(p->input)) {
         TRY(add_springs(p, &set, error));
@@ -333,17 +365,21 @@ enum status model_add_constraints(const struct model_input *input, struct solid_
                                   struct error *error)
 {
     enum status status = STATUS_OK;
+    struct claims claims = {0};
     for (int64_t i = 0; i < input->scene->displacement_count; i++) {
         int64_t first = system->rows.count;
         struct prescription p = {.input = input,
                                  .section = &input->scene->displacements[i],
                                  .system = system,
+                                 .claims = &claims,
                                  .number = (int32_t)i};
         TRY(add_section(&p, error));
         if (i > 0) {
             TRY(settle_repeats(input, &system->rows, first, error));
         }
     }
+    TRY(claims_check(input, &claims, error));
 done:
+    claims_free(&claims);
     return status;
 }
