@@ -6,6 +6,7 @@
 # its regular column: nodes and points lie on the boundary too, mu is absolute in these coordinates, and at most the
 # 20 nearest nodes enter a support. Its irregular cloud is not given: the mean over jittered clouds stands for it.
 set -euo pipefail
+shopt -s inherit_errexit
 seeds=(1 2 3 4 5 6)
 box=-4,4,-4,4
 work=$(mktemp -d)
