@@ -68,7 +68,42 @@ relax() {
     if ! mtled -v "$1" "$2" > "$3" 2> "$3.log"; then
         tail -n 1 "$3.log" >&2
         : > "$3"
+    elif [ -n "${ESTIMATE:-}" ] && grep -q quasi-static "$1"; then
+        estimate "$1" "$2" >> "$ESTIMATE"
     fi
+}
+
+# estimate SCENE TABLE: rows of estimate.tsv, see pipelines/estimate.mk, for runs to two tolerances compared with one to 1e-8. A
+# scene that ends at rest has none: its error is relative to the largest displacement on the way.
+estimate() {
+    local scene=$work/estimate.scene out=$work/estimate tolerance
+    for tolerance in 1e-8 1e-3 1e-5; do
+        grep -v '^tolerance' "$1" > "$scene"
+        grep -q '^\[solver\]' "$scene" || printf '\n[solver]\n' >> "$scene"
+        sed -i "/^\[solver\]/a tolerance = $tolerance" "$scene"
+        mtled -v "$scene" "$2" > "$out.dat" 2> "$out.$tolerance" || return 0
+        mts print u "$out.dat" > "$out.$tolerance.u"
+    done
+    for tolerance in 1e-3 1e-5; do
+        paste "$out.$tolerance.u" "$out.1e-8.u" | awk -v name="$(basename "$0" .sh)" -v tolerance="$tolerance" '
+            NR == FNR { split($0, word, "\t"); told[word[1]] = word[2]; next }
+            {
+                size = difference = 0
+                for (i = 1; i <= NF / 2; i++) { size += $(i + NF / 2) ^ 2; difference += ($i - $(i + NF / 2)) ^ 2 }
+                if (size > largest) largest = size
+                if (difference > worst) worst = difference
+                sizes += size; differences += difference
+            }
+            END {
+                if (largest < 1e-18) exit
+                estimated = told["estimated error"]
+                true = sqrt(worst / largest)
+                if (sqrt(differences / sizes) > true) true = sqrt(differences / sizes)
+                optimum = told["ramp steps"] + log(1 / estimated) * told["frequency ratio"] / 2
+                printf "%s\t%s\t%.3g\t%.3g\t%.3g\t%d\t%d\t%.2f\t%s\n", name, tolerance, estimated, true, true / estimated,
+                    told["steps"], told["ramp steps"], told["steps"] / optimum, (true <= estimated ? "pass" : "FAIL")
+            }' "$out.$tolerance" -
+    done
 }
 
 # reported FILE NAME: a number of mtled's report.
