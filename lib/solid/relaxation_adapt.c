@@ -1,0 +1,132 @@
+/* Load, mass, time step and contacts that follow a relaxation. */
+#include "solid/relaxation_private.h"
+
+#include <math.h>
+#include <string.h>
+
+static const int64_t most_retreats = 8;                          /* from inverted points */
+static const double most_stiffening = 1.1, most_softening = 0.5; /* of a node since its mass was set */
+static const int64_t most_augmentations = 20;                    /* of the contacts' multipliers */
+
+double relaxation_body_size(const struct solid_system *system)
+{
+    double sum = 0.0;
+    for (int a = 0; a < system->dim; a++) {
+        double low = INFINITY, high = -INFINITY;
+        for (int64_t n = 0; n < system->node_count; n++) {
+            low = fmin(low, system->X[n * system->dim + a]);
+            high = fmax(high, system->X[n * system->dim + a]);
+        }
+        sum += (high - low) * (high - low);
+    }
+    return sqrt(sum);
+}
+
+double relaxation_node_spacing(const struct solid_system *system)
+{
+    double volume = 0.0;
+    for (int64_t q = 0; q < system->body.point_count; q++) {
+        volume += system->body.weight[q];
+    }
+    return pow(volume / (double)system->node_count, 1.0 / system->dim);
+}
+
+int64_t relaxation_choose_ramp(const struct relaxation *r)
+{
+    double largest = 0.0;
+    for (int64_t i = 0; i < r->system->rows.count; i++) {
+        largest = fmax(largest, fabs(r->system->rows.target[i]));
+    }
+    double steps = 200.0 * largest / r->spacing;
+    return steps > 1e7 ? 10000000 : steps > 200.0 ? (int64_t)steps : 200;
+}
+
+void relaxation_update_time_step(struct relaxation *r, const double *u, int iterations)
+{
+    double frequency =
+        system_largest_frequency(r->system, r->mass, u, r->residual, iterations, r->mode, r->scratch);
+    r->report->force_evaluations += iterations;
+    /* The estimate is from below and wanders: follow rises at once, falls slowly. */
+    r->frequency = frequency > r->frequency ? frequency : 0.98 * r->frequency + 0.02 * frequency;
+    r->time_step = r->caution * r->options->time_step_margin * 2.0 / r->frequency;
+}
+
+bool relaxation_update_mass(struct relaxation *r, struct error *error)
+{
+    double *mass = r->scratch, highest = 0.0, lowest = INFINITY;
+    system_relaxation_mass(r->system, mass);
+    for (int64_t n = 0; n < r->system->node_count; n++) {
+        highest = fmax(highest, mass[n] / r->mass[n]);
+        lowest = fmin(lowest, mass[n] / r->mass[n]);
+    }
+    if (!(highest > most_stiffening || lowest < most_softening)) {
+        return true;
+    }
+    memcpy(r->mass, mass, (size_t)r->system->node_count * sizeof *mass);
+    constraint_free(&r->constraint);
+    r->failure = system_constrain(r->system, r->mass, &r->constraint, error);
+    r->mass_changed = true;
+    r->spectrum2 = INFINITY;
+    r->spectrum_known = false;
+    return r->failure == STATUS_OK;
+}
+
+void relaxation_keep_state(struct relaxation *r, const double *u)
+{
+    double *spare = r->older.u;
+    r->older = r->newer;
+    r->newer.u = spare;
+    r->newer.load = r->load;
+    memcpy(r->newer.u, u, (size_t)r->size * sizeof *u);
+}
+
+bool relaxation_step_back(struct relaxation *r, double *u)
+{
+    if (r->retreats == most_retreats) {
+        return false;
+    }
+    r->retreats++;
+    r->caution *= 0.8;
+    r->load_rate *= 0.5;
+    r->load = r->older.load;
+    memcpy(u, r->older.u, (size_t)r->size * sizeof *u);
+    memcpy(r->newer.u, r->older.u, (size_t)r->size * sizeof *u);
+    r->newer.load = r->older.load;
+    memset(r->velocity, 0, (size_t)r->size * sizeof *r->velocity);
+    memset(r->mode, 0, (size_t)r->size * sizeof *r->mode);
+    r->mass_changed = true;
+    system_load_factors(r->system, fmin(1.0, r->load / (double)r->report->ramp_steps));
+    (void)system_residual(r->system, u, r->residual);
+    relaxation_update_time_step(r, u, FIRST_ITERATIONS);
+    return true;
+}
+
+/* Deepest penetration of all contacts at the last evaluation, m. */
+static double largest_penetration(const struct relaxation *r)
+{
+    double deepest = 0.0;
+    for (int64_t c = 0; c < r->system->contact_count; c++) {
+        for (int64_t a = 0; a < r->system->contacts[c].count; a++) {
+            deepest = fmax(deepest, -r->system->contacts[c].gap[a]);
+        }
+    }
+    return deepest;
+}
+
+/* Move what the penalties carry into the multipliers, so that the next equilibrium penetrates less. */
+static void augment(struct relaxation *r)
+{
+    for (int64_t c = 0; c < r->system->contact_count; c++) {
+        (void)contact_augment(&r->system->contacts[c]);
+    }
+    r->augmentations++;
+}
+
+bool relaxation_contacts_hold(struct relaxation *r)
+{
+    if (r->augmentations == most_augmentations || !(largest_penetration(r) > r->penetration_allowed)) {
+        return true;
+    }
+    augment(r);
+    return false;
+}

@@ -1,0 +1,142 @@
+/* How far a relaxation is from equilibrium, and its damping. */
+#include "solid/lowest_frequency.h"
+#include "solid/relaxation_private.h"
+
+#include "base/memory.h"
+
+#include <float.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const double pi = 3.14159265358979324;
+static const int most_spectrum_iterations = 1000;
+static const double spectrum_share = 0.8; /* of its estimate from above */
+
+/* sum m_i x_i y_i */
+static double mass_product(const struct relaxation *r, const double *x, const double *y)
+{
+    int dim = r->system->dim;
+    double sum = 0.0;
+    for (int64_t n = 0; n < r->system->node_count; n++) {
+        double part = 0.0;
+        for (int a = 0; a < dim; a++) {
+            part += x[n * dim + a] * y[n * dim + a];
+        }
+        sum += r->mass[n] * part;
+    }
+    return sum;
+}
+
+/* Length of the longest of the nodes' vectors. */
+static double largest_of_nodes(const struct relaxation *r, const double *x)
+{
+    int dim = r->system->dim;
+    double largest2 = 0.0;
+    for (int64_t n = 0; n < r->system->node_count; n++) {
+        double sum = 0.0;
+        for (int a = 0; a < dim; a++) {
+            sum += x[n * dim + a] * x[n * dim + a];
+        }
+        largest2 = fmax(largest2, sum);
+    }
+    return sqrt(largest2);
+}
+
+static double ratio(double part, double whole)
+{
+    return whole > 0.0 ? part / whole : part > 0.0 ? INFINITY : 0.0;
+}
+
+/* The lowest frequency that recent estimates have shown, squared. */
+static double least_of_window(const struct relaxation *r)
+{
+    double least2 = INFINITY;
+    for (int i = 0; i < WINDOWS; i++) {
+        least2 = fmin(least2, r->window[i]);
+    }
+    return least2;
+}
+
+void relaxation_estimate(struct relaxation *r)
+{
+    double *du = r->scratch, *da = r->scratch + r->size;
+    for (int64_t i = 0; i < r->size; i++) {
+        du[i] = r->before[i] - r->last_u[i];
+        da[i] = r->last_acceleration[i] - r->acceleration[i];
+    }
+    double bottom = mass_product(r, du, du);
+    double quotient = bottom > 0.0 ? mass_product(r, du, da) / bottom : 0.0;
+    memcpy(r->last_u, r->before, (size_t)r->size * sizeof *r->before);
+    memcpy(r->last_acceleration, r->acceleration, (size_t)r->size * sizeof *r->acceleration);
+    if (quotient > 0.0 && r->checks > 0 && !r->mass_changed) {
+        quotient = fmin(quotient, r->frequency * r->frequency);
+        r->low2 = quotient < r->low2 ? quotient : fmin(quotient, 1.2 * r->low2);
+        r->low2 = fmin(r->low2, r->spectrum2);
+        r->damping = 2.0 * sqrt(r->low2);
+        r->window[r->checks % WINDOWS] = r->low2;
+    }
+    r->checks++;
+    r->mass_changed = false;
+    double least2 = least_of_window(r);
+    r->largest_displacement = fmax(r->largest_displacement, sqrt(mass_product(r, r->before, r->before)));
+    r->largest_move = fmax(r->largest_move, largest_of_nodes(r, r->before));
+    /* Of the largest so far: a scene may end at rest. */
+    double on_the_whole =
+        ratio(sqrt(mass_product(r, r->acceleration, r->acceleration)) / least2, r->largest_displacement);
+    double at_worst = ratio(largest_of_nodes(r, r->acceleration) / least2, r->largest_move);
+    r->report->error = fmax(on_the_whole, at_worst);
+    r->report->lowest_frequency = sqrt(least2);
+}
+
+bool relaxation_find_lowest_mode(struct relaxation *r, const double *u, struct error *error)
+{
+    double *work = NULL, value = 0.0;
+    int iterations = 0;
+    r->failure = NEW_ARRAY(&work, 4 * r->size, error);
+    if (r->failure == STATUS_OK) {
+        memcpy(work, r->velocity, (size_t)r->size * sizeof *work);
+        r->failure =
+            system_lowest_eigenvalue(r->system, &r->constraint, u, r->residual, most_spectrum_iterations,
+                                     work, work + r->size, &value, &iterations, error);
+    }
+    free(work);
+    if (r->failure != STATUS_OK) {
+        return false;
+    }
+    r->report->force_evaluations += iterations;
+    r->spectrum2 = INFINITY;
+    if (value > 0.0 && isfinite(value)) {
+        r->spectrum2 = spectrum_share * value;
+        r->low2 = fmin(r->low2, r->spectrum2);
+        r->damping = 2.0 * sqrt(r->low2);
+        for (int i = 0; i < WINDOWS; i++) {
+            r->window[i] = fmin(r->window[i], r->low2);
+        }
+        double least2 = least_of_window(r);
+        r->report->error *= r->report->lowest_frequency * r->report->lowest_frequency / least2;
+        r->report->lowest_frequency = sqrt(least2);
+    }
+    r->spectrum_known = true;
+    return true;
+}
+
+bool relaxation_stays(const struct relaxation *r, double periods, int64_t steps)
+{
+    double period = 2.0 * pi / (r->report->lowest_frequency * r->time_step);
+    return (double)(r->report->steps - r->best_step) > periods * period + (double)steps;
+}
+
+double relaxation_round_off(const struct relaxation *r)
+{
+    double low = r->report->lowest_frequency;
+    return 32.0 * DBL_EPSILON * r->spacing / (low * low * r->largest_move);
+}
+
+void relaxation_note_best(struct relaxation *r)
+{
+    if (r->at_full_load <= CHECK_INTERVAL || r->report->error < 0.5 * r->best_error) {
+        r->best_error = r->report->error;
+        r->best_step = r->report->steps;
+    }
+}

@@ -1,0 +1,113 @@
+/* What the parts of the relaxation share; see relaxation.h. */
+#ifndef SOLID_RELAXATION_PRIVATE_H
+#define SOLID_RELAXATION_PRIVATE_H
+
+#include "solid/relaxation.h"
+
+enum { CHECK_INTERVAL = 20 };   /* steps between estimates */
+enum { FIRST_ITERATIONS = 40 }; /* of the power iteration, at rest */
+enum { WINDOWS = 8 };           /* recent Rayleigh quotients that the error estimate looks at */
+
+/* A state to go back to. */
+struct kept_state {
+    double *u;
+    double load;
+};
+
+struct relaxation {
+    struct solid_system *system;
+    const struct relaxation_options *options;
+    struct relaxation_report *report;
+    struct constraint constraint;
+    int64_t size;
+    double *u; /* the caller's */
+    double *mass, *velocity, *residual, *before;
+    const double *residual_at; /* where the residual is known, at a check: u or before */
+    double *factor_change;     /* of the load curves in this step */
+    double *mode, *scratch;
+    double *last_u, *last_acceleration; /* at the last check */
+    double *acceleration;
+    double time_step, damping, frequency; /* current; frequency: largest */
+    double low2;                          /* current estimate of the lowest frequency, squared */
+    double spectrum2; /* what it may not be above: found at the full load; before, INFINITY */
+    double window[WINDOWS];
+    int64_t checks;
+    double best_error; /* at the full load, since best_step: not yet half of it */
+    int64_t best_step;
+    double spacing;             /* mean, of the nodes, m */
+    double penetration_allowed; /* m */
+    int64_t augmentations;
+    bool mass_changed; /* since the last check: increments of the acceleration mean nothing */
+    enum status failure;
+    double load, load_rate;      /* steps of the ramp applied so far, and per step */
+    double largest_displacement; /* so far, in the norm of the mass */
+    double largest_move;         /* so far, of a node, m */
+    bool spectrum_known;         /* spectrum2 is of the mass and the load as they are */
+    double caution;              /* on the time step: 1 until an inversion */
+    int64_t retreats;
+    struct kept_state newer, older;
+    int64_t frames;       /* given so far */
+    int64_t at_full_load; /* steps since the full load was reached */
+    int64_t settled;      /* checks in a row with a small error */
+    bool ties_settled;
+};
+
+/* ---- relaxation_error.c: how far from equilibrium ---- */
+
+/* After a measured step: the Rayleigh quotient of the increments since the last check, the damping, the
+ * error. `before` holds the u at which the acceleration was measured. */
+void relaxation_estimate(struct relaxation *r);
+
+/* Find the lowest mode at u, where the residual is known: while fast modes die out a slow one does not show
+ * in the increments. Takes the damping from it. False on failure. */
+bool relaxation_find_lowest_mode(struct relaxation *r, const double *u, struct error *error);
+
+/* Whether the error has not halved for so many periods of the lowest mode and steps. At the full load only.
+ */
+bool relaxation_stays(const struct relaxation *r, double periods, int64_t steps);
+
+/* The estimate that round-off alone makes: forces are known to some units in the last place of a cell's
+ * stiffness times its size, which the mass is, and most of that is no slow mode. */
+double relaxation_round_off(const struct relaxation *r);
+
+/* Keep the least error at the full load in view. */
+void relaxation_note_best(struct relaxation *r);
+
+/* ---- relaxation_adapt.c: load, mass, time step and contacts that follow the run ---- */
+
+/* Length of the diagonal of the nodes' box. */
+double relaxation_body_size(const struct solid_system *system);
+
+/* Mean spacing of the nodes. */
+double relaxation_node_spacing(const struct solid_system *system);
+
+/* Steps to apply the load in: slow enough that a cell is strained by no more than half a percent a step. */
+int64_t relaxation_choose_ramp(const struct relaxation *r);
+
+/* Take the critical step at u from the largest frequency. */
+void relaxation_update_time_step(struct relaxation *r, const double *u, int iterations);
+
+/* Let the mass follow the stiffness where the body has stiffened or softened since it was last set, so that
+ * the critical step holds through large strains. False on failure. */
+bool relaxation_update_mass(struct relaxation *r, struct error *error);
+
+/* Keep the state every so often; the older of two is safely before any instability that shows. */
+void relaxation_keep_state(struct relaxation *r, const double *u);
+
+/* An inverted point: go back to a state before it, at rest, and go on with smaller steps and a slower load.
+ * False when that has been tried often enough: the deformation itself inverts. */
+bool relaxation_step_back(struct relaxation *r, double *u);
+
+/* Whether a converged state may stand; contacts that penetrate too deep are augmented and relaxed again. */
+bool relaxation_contacts_hold(struct relaxation *r);
+
+/* ---- relaxation_state.c: memory, and what a checkpoint holds ---- */
+
+MUST_CHECK enum status relaxation_allocate(struct relaxation *r, struct error *error);
+
+void relaxation_release(struct relaxation *r);
+
+/* What the next step needs of those before: see base/state.h. */
+MUST_CHECK enum status relaxation_visit(void *run, const struct state *state, struct error *error);
+
+#endif

@@ -1,0 +1,90 @@
+/* The memory of a relaxation, and what a checkpoint holds of it. */
+#include "solid/relaxation_private.h"
+
+#include "base/memory.h"
+
+#include <stdlib.h>
+
+enum status relaxation_allocate(struct relaxation *r, struct error *error)
+{
+    enum status status;
+    TRY(NEW_ARRAY(&r->mass, r->system->node_count, error));
+    TRY(NEW_ARRAY(&r->velocity, r->size, error));
+    TRY(NEW_ARRAY(&r->residual, r->size, error));
+    TRY(NEW_ARRAY(&r->before, r->size, error));
+    TRY(NEW_ARRAY(&r->factor_change, r->system->curve_count, error));
+    TRY(NEW_ARRAY(&r->mode, r->size, error));
+    TRY(NEW_ARRAY(&r->scratch, 2 * r->size, error));
+    TRY(NEW_ARRAY(&r->last_u, r->size, error));
+    TRY(NEW_ARRAY(&r->last_acceleration, r->size, error));
+    TRY(NEW_ARRAY(&r->acceleration, r->size, error));
+    TRY(NEW_ARRAY(&r->newer.u, r->size, error));
+    TRY(NEW_ARRAY(&r->older.u, r->size, error));
+done:
+    return status;
+}
+
+void relaxation_release(struct relaxation *r)
+{
+    free(r->mass);
+    free(r->velocity);
+    free(r->residual);
+    free(r->before);
+    free(r->factor_change);
+    free(r->mode);
+    free(r->scratch);
+    free(r->last_u);
+    free(r->last_acceleration);
+    free(r->acceleration);
+    free(r->newer.u);
+    free(r->older.u);
+    constraint_free(&r->constraint);
+}
+
+enum status relaxation_visit(void *run, const struct state *state, struct error *error)
+{
+    struct relaxation *r = run;
+    struct relaxation_report *report = r->report;
+    const struct state_value values[] = {
+        {"u", STATE_NUMBERS, r->u, r->size},
+        {"velocity", STATE_NUMBERS, r->velocity, r->size},
+        {"mass", STATE_NUMBERS, r->mass, r->system->node_count},
+        {"mode", STATE_NUMBERS, r->mode, r->size},
+        {"last_u", STATE_NUMBERS, r->last_u, r->size},
+        {"last_acceleration", STATE_NUMBERS, r->last_acceleration, r->size},
+        {"newer.u", STATE_NUMBERS, r->newer.u, r->size},
+        {"newer.load", STATE_NUMBERS, &r->newer.load, 1},
+        {"older.u", STATE_NUMBERS, r->older.u, r->size},
+        {"older.load", STATE_NUMBERS, &r->older.load, 1},
+        {"steps", STATE_COUNTS, &report->steps, 1},
+        {"time_step", STATE_NUMBERS, &r->time_step, 1},
+        {"damping", STATE_NUMBERS, &r->damping, 1},
+        {"frequency", STATE_NUMBERS, &r->frequency, 1},
+        {"low2", STATE_NUMBERS, &r->low2, 1},
+        {"window", STATE_NUMBERS, r->window, WINDOWS},
+        {"spectrum2", STATE_NUMBERS, &r->spectrum2, 1},
+        {"spectrum_known", STATE_FLAGS, &r->spectrum_known, 1},
+        {"best_error", STATE_NUMBERS, &r->best_error, 1},
+        {"best_step", STATE_COUNTS, &r->best_step, 1},
+        {"largest_move", STATE_NUMBERS, &r->largest_move, 1},
+        {"checks", STATE_COUNTS, &r->checks, 1},
+        {"mass_changed", STATE_FLAGS, &r->mass_changed, 1},
+        {"largest_displacement", STATE_NUMBERS, &r->largest_displacement, 1},
+        {"ramp_steps", STATE_COUNTS, &report->ramp_steps, 1},
+        {"load", STATE_NUMBERS, &r->load, 1},
+        {"load_rate", STATE_NUMBERS, &r->load_rate, 1},
+        {"caution", STATE_NUMBERS, &r->caution, 1},
+        {"retreats", STATE_COUNTS, &r->retreats, 1},
+        {"augmentations", STATE_COUNTS, &r->augmentations, 1},
+        {"frames", STATE_COUNTS, &r->frames, 1},
+        {"at_full_load", STATE_COUNTS, &r->at_full_load, 1},
+        {"settled", STATE_COUNTS, &r->settled, 1},
+        {"ties_settled", STATE_FLAGS, &r->ties_settled, 1},
+        {"force_evaluations", STATE_COUNTS, &report->force_evaluations, 1},
+        {"error", STATE_NUMBERS, &report->error, 1},
+        {"lowest_frequency", STATE_NUMBERS, &report->lowest_frequency, 1},
+        {"least_jacobian", STATE_NUMBERS, &report->least_jacobian, 1},
+    };
+    enum status status = state_visit(state, NULL, values, sizeof values / sizeof *values, error);
+    return status == STATUS_OK ? system_state(r->system, state, error) : status;
+}
