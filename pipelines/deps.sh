@@ -1,11 +1,26 @@
 #!/bin/bash
 # Install what the project needs and what is missing. Quick and silent when nothing is. Programs may come from any
 # package (gnuplot-qt is as good as gnuplot-nox, which would push it out); libraries are asked for by package.
+# deps.sh lint, deps.sh fuzz: what make lint and make fuzz need, which nothing else does.
 set -eu -o pipefail
 
 # program:package
-programs=(gcc:gcc g++:g++ make:make gmsh:gmsh gnuplot:gnuplot-nox ccx:calculix-ccx bats:bats shellcheck:shellcheck)
-libraries=(libgmsh-dev libgsl-dev libinih-dev zlib1g-dev libcmocka-dev)
+case ${1:-} in
+lint)
+    programs=(clang-tidy:clang-tidy cppcheck:cppcheck shellcheck:shellcheck)
+    libraries=()
+    ;;
+fuzz)
+    # The sanitizers and libFuzzer are in a package that has the version of clang in its name.
+    version=$(apt-cache depends clang 2> /dev/null | sed -n 's/.*Depends: clang-\([0-9]*\)$/\1/p')
+    programs=(clang:clang)
+    libraries=(libomp-dev "libclang-rt-$version-dev")
+    ;;
+*)
+    programs=(gcc:gcc g++:g++ make:make gmsh:gmsh gnuplot:gnuplot-nox ccx:calculix-ccx bats:bats shellcheck:shellcheck)
+    libraries=(libgmsh-dev libgsl-dev libinih-dev zlib1g-dev libcmocka-dev)
+    ;;
+esac
 
 missing=()
 for program in "${programs[@]}"; do

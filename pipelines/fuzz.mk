@@ -5,7 +5,7 @@
 TIME ?= 60
 FUZZ_NAMES := $(FUZZ_TARGETS:$(BUILD)/fuzz/%=%)
 
-.PHONY: fuzz fuzz-build
+.PHONY: fuzz fuzz-build deps-fuzz
 ifdef FUZZ
 fuzz-build: $(FUZZ_TARGETS)
 else
@@ -13,3 +13,6 @@ fuzz:
 	$(MAKE) --no-print-directory FUZZ=1 CC=clang fuzz-build
 	bash pipelines/fuzz.sh build-fuzz-clang/fuzz $(OUT)/fuzz $(TIME) $(FUZZ_NAMES)
 endif
+
+deps-fuzz:
+	@bash pipelines/deps.sh fuzz

@@ -1,0 +1,41 @@
+#!/bin/bash
+# Static checks: clang-tidy (.clang-tidy), cppcheck and shellcheck; see lint.mk. A program that is not installed is told of and left
+# out. Status 1 when something is found.
+# shellcheck disable=SC2317 # functions are called by name
+set -u -o pipefail
+cd "$(dirname "$0")/.." || exit 3
+found=0
+mapfile -t sources < <(printf '%s\n' lib/*/*.c tools/*.c tools/common/*.c)
+mapfile -t scripts < <(find . -name '*.sh' -not -path './build*'; echo .ci/run)
+
+tidy() {
+    printf '%s\n' "${sources[@]}" | xargs -P "$(nproc)" -n 8 bash -c \
+        'clang-tidy --quiet "$@" -- -std=c11 -D_GNU_SOURCE -Ilib -Itools/common -fopenmp 2> /dev/null' tidy
+}
+
+# What is not asked for, and why: missingInclude: system headers need not be read. uninitvar, ctuuninitvar, ctunullpointer: wrong
+# where an array is filled in a loop or an error text by who is called; gcc and clang warn of these as well.
+# arrayIndexOutOfBoundsCond, assignBoolToPointer: one wrong finding each (tools/mts.c, lib/approx/mls.c), of calls that do not return and
+# of a choice between two function pointers.
+cpp() {
+    cppcheck --quiet --std=c11 --enable=warning,performance,portability -D_GNU_SOURCE -Ilib -Itools/common --error-exitcode=1 \
+        --library=pipelines/cppcheck.cfg --template='{file}:{line}: {id}: {message}' --suppress=missingInclude \
+        --suppress=uninitvar --suppress=ctuuninitvar --suppress=ctunullpointer --suppress=arrayIndexOutOfBoundsCond \
+        --suppress=assignBoolToPointer "${sources[@]}"
+}
+
+check() { # PROGRAM FUNCTION
+    if ! command -v "$1" > /dev/null; then
+        echo "lint: no $1: left out (make deps-lint)"
+    elif ! "$2"; then
+        echo "lint: $1 found something"
+        found=1
+    fi
+}
+
+shells() { shellcheck -x -P SCRIPTDIR -S warning -s bash "${scripts[@]}"; }
+
+check clang-tidy tidy
+check cppcheck cpp
+check shellcheck shells
+exit "$found"
