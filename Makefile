@@ -1,6 +1,7 @@
 # make            build the tools into build/bin
 # make deps       install what is missing (Debian, Ubuntu)
 # make check      run all tests                         make SAN=1 check   ... under sanitizers
+# make faults, fuzz, lint, coverage: what the programs survive, what a fuzzer finds, static checks, lines under test
 # make STUDY      run a study of pipelines/ (table1, brain2d): tables and pictures into build/out/STUDY
 # make install PREFIX=/usr/local                        make clean
 

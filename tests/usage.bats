@@ -98,3 +98,14 @@ setup() {
     tovtk -o frames.pvd u.dat
     [ "$(grep -c '<DataSet' frames.pvd)" -ge 10 ]
 }
+
+@test "no program can start another one: they take execv, for themselves, and nothing else of the kind" {
+    for tool in "${tools[@]}"; do
+        nm -D "$BUILD/bin/$tool" > imports
+        grep -q ' U ' imports
+        run -1 grep -E ' U (system|popen|exec(l|le|lp|ve|vp|vpe)|fork|vfork|posix_spawnp?|wordexp)(@|$)' imports
+    done
+    run -0 grep -rn 'exec[a-z]*(' "$top/lib" "$top/tools" --include=*.c
+    [ "${#lines[@]}" -eq 1 ]
+    [[ $output == *'execv("/proc/self/exe", argv);'* ]]
+}

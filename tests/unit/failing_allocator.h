@@ -8,6 +8,7 @@
 
 #include "base/status.h"
 
+#include <malloc.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdbool.h>
@@ -26,6 +27,7 @@ extern void __libc_free(void *memory);
 static bool watched;
 static long before_failure; /* allocations that still succeed */
 static long alive;          /* allocated and not yet freed while watched */
+static int64_t held, most;  /* bytes of these, and the most there were at a time */
 
 static bool is_denied(void)
 {
@@ -34,7 +36,11 @@ static bool is_denied(void)
 
 static void *counted(void *memory)
 {
-    alive += watched && memory != NULL;
+    if (watched && memory != NULL) {
+        alive++;
+        held += (int64_t)malloc_usable_size(memory);
+        most = held > most ? held : most;
+    }
     return memory;
 }
 
@@ -53,7 +59,16 @@ void *realloc(void *memory, size_t size)
     if (is_denied()) {
         return NULL;
     }
-    return memory == NULL ? counted(__libc_realloc(NULL, size)) : __libc_realloc(memory, size);
+    if (memory == NULL || !watched) {
+        return memory == NULL ? counted(__libc_realloc(NULL, size)) : __libc_realloc(memory, size);
+    }
+    int64_t before = (int64_t)malloc_usable_size(memory);
+    void *grown = __libc_realloc(memory, size);
+    if (grown != NULL) {
+        held += (int64_t)malloc_usable_size(grown) - before;
+        most = held > most ? held : most;
+    }
+    return grown;
 }
 
 void *aligned_alloc(size_t alignment, size_t size)
@@ -63,12 +78,15 @@ void *aligned_alloc(size_t alignment, size_t size)
 
 void free(void *memory)
 {
-    alive -= watched && memory != NULL;
+    if (watched && memory != NULL) {
+        alive--;
+        held -= (int64_t)malloc_usable_size(memory);
+    }
     __libc_free(memory);
 }
 
 /* Let the first, the second, ... allocation fail, until none is left to fail. */
-static void fail_each(enum status (*try)(struct error *error), long least)
+static inline void fail_each(enum status (*try)(struct error *error), long least)
 {
     struct error error = {""};
     enum status status = STATUS_SYSTEM;

@@ -1,0 +1,209 @@
+/* What a reader allocates is a small multiple of its input, whatever the input says about its size: measured
+ * on dense inputs, and on headers that announce what is not there. */
+#include "io/msh_scan.h"
+#include "io/scene.h"
+#include "io/stream.h"
+#include "io/table.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <sys/mman.h>
+#include <unistd.h>
+
+#include "failing_allocator.h"
+
+#ifdef FAILING_ALLOCATOR
+
+enum { FIXED = 8 << 20 }; /* buffers of any reader, bytes */
+
+static char *text; /* the input under test */
+static size_t length, room;
+
+static void append(const char *line)
+{
+    size_t size = strlen(line);
+    if (length + size > room) {
+        room = 2 * room + size;
+        text = realloc(text, room);
+        assert_non_null(text);
+    }
+    memcpy(text + length, line, size);
+    length += size;
+}
+
+static void repeat(const char *line, int64_t times)
+{
+    for (int64_t i = 0; i < times; i++) {
+        append(line);
+    }
+}
+
+static int make_file(char path[32], bool mapped)
+{
+    int file = memfd_create("bound", 0);
+    assert_true(file >= 0);
+    assert_int_equal(write(file, "\n", !mapped), !mapped); /* what does not begin its file is not mapped */
+    assert_int_equal(write(file, text, length), length);
+    assert_int_equal(lseek(file, !mapped, SEEK_SET), !mapped);
+    snprintf(path, 32, "/proc/self/fd/%d", file);
+    return file;
+}
+
+/* Watch the allocations from here on. */
+static void begin(void)
+{
+    before_failure = -1;
+    alive = 0;
+    held = most = 0;
+    watched = true;
+}
+
+/* No more than `multiple` times the input beyond the buffers; nothing left. */
+static void end(const char *what, double multiple)
+{
+    watched = false;
+    assert_int_equal(alive, 0);
+    double seen = ((double)most - FIXED) / (double)length;
+    print_message("# %s: %zu bytes read, most allocated %lld: beyond buffers %.1f times\n", what, length,
+                  (long long)most, seen > 0 ? seen : 0.0);
+    assert_true(seen <= multiple);
+    length = 0;
+}
+
+static void read_stream(const char *what, bool mapped, enum status expected, double multiple)
+{
+    struct stream stream;
+    struct error error;
+    char path[32];
+    int file = make_file(path, mapped);
+    begin();
+    assert_int_equal(stream_read(&stream, file, "input", &error), expected);
+    stream_free(&stream);
+    end(what, multiple);
+    close(file);
+}
+
+static void streams(void **state)
+{
+    (void)state;
+    enum { ROWS = 2000000 };
+    for (int mapped = 0; mapped < 2; mapped++) {
+        append("# mts 1\n# x f8 2000000 1 enc=text\n");
+        repeat("0\n", ROWS);
+        append("\n\n# end 1\n");
+        read_stream("stream, two bytes a number", mapped, STATUS_OK, 6.5);
+        append("# mts 1\n");
+        char line[64];
+        for (int i = 0; i < 16000; i++) {
+            snprintf(line, sizeof line, "# x%d f8 0 1 enc=text\n\n\n", i);
+            append(line);
+        }
+        append("# end 16000\n");
+        read_stream("stream, empty sections", mapped, STATUS_OK, 8.0);
+    }
+}
+
+static void announced(void **state)
+{
+    (void)state;
+    static const char *const sizes[] = {"f8 100000000000 1", "f8 1 100000000000", "i4 9223372036854775807 1",
+                                        "f4 3000000000 3000000000"};
+    for (int i = 0; i < 16; i++) {
+        char line[128];
+        append("# mts 1\n");
+        snprintf(line, sizeof line, "# x %s enc=%s", sizes[i / 4], i % 4 / 2 == 0 ? "text" : "bin");
+        append(line);
+        while (length % 64 != 63) {
+            append(" ");
+        }
+        append("\n1 2 3\n");
+        read_stream(line, i % 2 == 1, STATUS_INPUT, 1.0);
+    }
+}
+
+static void tables(void **state)
+{
+    (void)state;
+    struct table table;
+    struct error error;
+    char path[32];
+    for (int blocks = 0; blocks < 2; blocks++) {
+        repeat(blocks ? "0 0\n\n" : "0 0\n", blocks ? 20000 : 1000000);
+        int file = make_file(path, true);
+        begin();
+        assert_int_equal(table_read(path, 2, 2, &table, &error), STATUS_OK);
+        table_free(&table);
+        end(blocks ? "table, a block for each row" : "table, two bytes a number", 16.0);
+        close(file);
+    }
+}
+
+static void scenes(void **state)
+{
+    (void)state;
+    struct scene scene;
+    struct error error;
+    char path[32];
+    append("[scene]\ndim = 2\nanalysis = dynamic\n");
+    for (int i = 0; i < 1000; i++) {
+        char line[64];
+        snprintf(line, sizeof line, "[force f%d]\nnodes = a,b,c,d,e,f,g\ncomponents = 0,0\n", i);
+        append(line);
+    }
+    int file = make_file(path, true);
+    begin();
+    assert_int_equal(scene_read(path, &scene, &error), STATUS_INPUT); /* no material */
+    scene_free(&scene);
+    end("scene of loads", 16.0);
+    close(file);
+}
+
+static void meshes(void **state)
+{
+    (void)state;
+    struct msh_scan scan;
+    struct error error;
+    char line[96];
+    append("$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n160000\n");
+    for (int i = 160000; i > 0; i--) { /* out of order: an index is made */
+        snprintf(line, sizeof line, "%d 0 0 0\n", i);
+        append(line);
+    }
+    append("$EndNodes\n$Elements\n160000\n");
+    for (int i = 160000; i > 0; i--) {
+        snprintf(line, sizeof line, "%d 15 0 1\n", i);
+        append(line);
+    }
+    append("$EndElements\n");
+    begin();
+    assert_int_equal(msh_scan(&scan, text, length, &error), STATUS_OK);
+    msh_scan_free(&scan);
+    end("mesh of points", 6.0);
+    append("$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n100000000000\n1 0 0 0\n");
+    begin();
+    assert_int_equal(msh_scan(&scan, text, length, &error), STATUS_INPUT);
+    end("mesh that announces nodes", 1.0);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(streams), cmocka_unit_test(announced), cmocka_unit_test(tables),
+        cmocka_unit_test(scenes),  cmocka_unit_test(meshes),
+    };
+    int failed = cmocka_run_group_tests(tests, NULL, NULL);
+    free(text);
+    return failed;
+}
+#else
+int main(void)
+{
+    return 0;
+}
+#endif
