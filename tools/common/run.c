@@ -224,12 +224,12 @@ static void put_reactions(struct run *run)
         size += strlen(scene->contacts[i].label.name) + 1;
     }
     char *attributes = (char *)run_new_values(run, (int64_t)(size + 64));
-    snprintf(attributes, size + 64, "unit=%s rows=", dim == 2 ? "N/m" : "N");
+    size_t at = (size_t)snprintf(attributes, size + 64, "unit=%s rows=", dim == 2 ? "N/m" : "N");
     for (int64_t i = 0; i < rows; i++) {
         const char *name = i < scene->displacement_count
                                ? scene->displacements[i].label.name
                                : scene->contacts[i - scene->displacement_count].label.name;
-        strcat(strcat(attributes, i > 0 ? "," : ""), name);
+        at += (size_t)snprintf(attributes + at, size + 64 - at, "%s%s", i > 0 ? "," : "", name);
     }
     const struct constraint_rows *constraint = &system->rows;
     for (int64_t r = 0; r < constraint->count; r++) {
