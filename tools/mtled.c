@@ -1,7 +1,7 @@
 static const char usage[] =
     "mtled - total Lagrangian explicit dynamics of a scene, meshless\n"
     "\n"
-    "usage: mtled [-v] [-q] [-b] [-c FILE [-e SECONDS]] [-o FILE] SCENE [FILE]\n"
+    "usage: mtled [-v] [-q] [-b] [-f] [-c FILE [-e SECONDS]] [-o FILE] SCENE [FILE]\n"
     "\n"
     "Reads a stream with a table of shape functions (see shapefn) and computes the scene, an\n"
     "INI file that names materials, prescribed displacements, contacts and loads on the groups\n"
@@ -38,6 +38,8 @@ static const char usage[] =
     "  -v, --verbose        end with a report on standard error: steps, error, cost of each part\n"
     "  -q, --quiet          no progress\n"
     "  -b, --binary         write binary instead of text\n"
+    "  -f, --float          keep the table of shape functions in single precision: half the memory,\n"
+    "                       fields the same to 1e-5 of the largest displacement\n"
     "  -c, --checkpoint FILE\n"
     "                       keep the state of the run in FILE, and go on from what is there\n"
     "  -e, --every SECONDS  how often (default 60)\n"
@@ -57,7 +59,7 @@ static const char usage[] =
 #include <stdlib.h>
 #include <unistd.h>
 
-enum { VERBOSE, QUIET, BINARY, OUTPUT, CHECKPOINT, EVERY, OPTION_COUNT };
+enum { VERBOSE, QUIET, BINARY, FLOAT, OUTPUT, CHECKPOINT, EVERY, OPTION_COUNT };
 
 /* The results of an earlier run on the same stream. */
 static void drop_results(struct stream *stream)
@@ -90,6 +92,7 @@ int main(int argc, char *argv[])
         [VERBOSE] = {.letter = 'v', .name = "verbose"},
         [QUIET] = {.letter = 'q', .name = "quiet"},
         [BINARY] = {.letter = 'b', .name = "binary"},
+        [FLOAT] = {.letter = 'f', .name = "float"},
         [OUTPUT] = {.letter = 'o', .name = "output", .takes_value = true},
         [CHECKPOINT] = {.letter = 'c', .name = "checkpoint", .takes_value = true, .silent = true},
         [EVERY] = {.letter = 'e', .name = "every", .takes_value = true, .silent = true},
@@ -115,7 +118,7 @@ int main(int argc, char *argv[])
         .checkpoint = {.file = options[CHECKPOINT].value, .interval = every},
         .read_seconds = read,
         .display = {.shown = !options[QUIET].given && isatty(STDERR_FILENO), .started = clock_seconds()}};
-    tool_check(&tool, model_build(&stream, &scene, &model, &error), &error);
+    tool_check(&tool, model_build(&stream, &scene, options[FLOAT].given, &model, &error), &error);
     tool_check(&tool, NEW_ARRAY(&run.u, model.system.node_count * scene.dim, &error), &error);
     run.prepare_seconds = clock_seconds() - run.display.started;
     run_checkpoint_begin(&run);

@@ -161,7 +161,7 @@ static bool has_conforming_cells(const struct model_input *input)
            input->points->rows == input->cells.count;
 }
 
-static enum status build_body(const struct model_input *input, struct solid_system *system,
+static enum status build_body(const struct model_input *input, bool single, struct solid_system *system,
                               struct error *error)
 {
     enum status status;
@@ -213,7 +213,8 @@ static enum status build_body(const struct model_input *input, struct solid_syst
                               .pointwise_share = solver->pointwise_share >= 0.0 ? solver->pointwise_share
                                                                                 : default_pointwise_share,
                               .share_growth = share_growth,
-                              .conforming = has_conforming_cells(input) ? &conforming : NULL};
+                              .conforming = has_conforming_cells(input) ? &conforming : NULL,
+                              .single = single};
     TRY(body_build(&body, &system->body, error));
     if (has_conforming_cells(input)) {
         struct compatibility_input compatibility = {.cell_node = input->cells.node,
@@ -257,8 +258,8 @@ done:
     return status;
 }
 
-enum status model_build(const struct stream *stream, const struct scene *scene, struct model *model,
-                        struct error *error)
+enum status model_build(const struct stream *stream, const struct scene *scene, bool single,
+                        struct model *model, struct error *error)
 {
     enum status status;
     struct solid_system *system = &model->system;
@@ -269,7 +270,7 @@ enum status model_build(const struct stream *stream, const struct scene *scene, 
     system->X = model->input.cells.x;
     constraint_rows_init(&system->rows, scene->dim);
     constraint_rows_init(&system->springs, scene->dim);
-    TRY(build_body(&model->input, system, error));
+    TRY(build_body(&model->input, single, system, error));
     TRY(lump_mass(&model->input, system, error));
     TRY(model_add_constraints(&model->input, system, error));
     TRY(NEW_ARRAY(&model->row_force, system->rows.count, error));
