@@ -50,6 +50,21 @@ KERNEL_INLINE void prefetch_row(const struct pairs *pairs, const struct pair_blo
     prefetch(pairs->offset, first * 2, last * 2);
 }
 
+/* As many values of a table from i on as the vector has lanes. */
+#define LOAD_VALUES(vector)                                                                                  \
+    KERNEL_INLINE void load_##vector(const struct pairs *pairs, int64_t i, bool single, vector *value)       \
+    {                                                                                                        \
+        if (single) {                                                                                        \
+            vector##_float narrow;                                                                           \
+            LOAD(narrow, pairs->single_value + i);                                                           \
+            *value = __builtin_convertvector(narrow, vector);                                                \
+        } else {                                                                                             \
+            LOAD(*value, pairs->value + i);                                                                  \
+        }                                                                                                    \
+    }
+LOAD_VALUES(pair2)
+LOAD_VALUES(quad4)
+
 /* Columns of F += u grad phi. */
 KERNEL_INLINE void outer2(const struct pairs *pairs, int64_t i, const double *u, bool single, pair2 column[2])
 {
@@ -86,13 +101,7 @@ KERNEL_INLINE void outer3(const struct pairs *pairs, int64_t i, const double *u,
 {
     const double *v = u + pairs->offset[i];
     quad4 g;
-    if (single) {
-        quad4_float narrow;
-        LOAD(narrow, pairs->single_value + 3 * i);
-        g = __builtin_convertvector(narrow, quad4);
-    } else {
-        LOAD(g, pairs->value + 3 * i);
-    }
+    load_quad4(pairs, 3 * i, single, &g);
     for (int a = 0; a < 3; a++) {
         row[a] += v[a] * g;
     }
@@ -142,10 +151,11 @@ KERNEL_INLINE void scatter_2d(const struct pairs *pairs, const struct pair_block
         UNROLL for (int64_t i = pairs->ptr[row], end = pairs->ptr[row + 1]; i < end; i++)
         {
             double *f = force + offset[i];
-            pair2 sum;
+            pair2 sum, g;
             LOAD(sum, f);
-            sum += column0 * table_value(pairs, 2 * i, single);
-            sum += column1 * table_value(pairs, 2 * i + 1, single);
+            load_pair2(pairs, 2 * i, single, &g);
+            sum += column0 * g[0];
+            sum += column1 * g[1];
             STORE(f, sum);
         }
     }
@@ -163,11 +173,12 @@ KERNEL_INLINE void scatter_3d(const struct pairs *pairs, const struct pair_block
         UNROLL for (int64_t i = pairs->ptr[row], end = pairs->ptr[row + 1]; i < end; i++)
         {
             double *f = force + offset[i];
-            quad4 sum;
+            quad4 sum, g;
             LOAD(sum, f);
-            sum += column0 * table_value(pairs, 3 * i, single);
-            sum += column1 * table_value(pairs, 3 * i + 1, single);
-            sum += column2 * table_value(pairs, 3 * i + 2, single);
+            load_quad4(pairs, 3 * i, single, &g);
+            sum += column0 * g[0];
+            sum += column1 * g[1];
+            sum += column2 * g[2];
             STORE(f, sum);
         }
     }
@@ -193,24 +204,12 @@ KERNEL_INLINE void kernel_scatter(struct pairs *pairs, int64_t b, int dim, const
     }
 }
 
-/* Values of pair i of a group of means. */
-KERNEL_INLINE void load_group(const struct pairs *pairs, int64_t i, bool single, quad4 *phi)
-{
-    if (single) {
-        quad4_float narrow;
-        LOAD(narrow, pairs->single_value + MEANS_GROUP * i);
-        *phi = __builtin_convertvector(narrow, quad4);
-    } else {
-        LOAD(*phi, pairs->value + MEANS_GROUP * i);
-    }
-}
-
 KERNEL_INLINE void add_group(const struct pairs *pairs, int64_t i, int dim, const double *u, bool single,
                              quad4 mean[3])
 {
     const double *v = u + pairs->offset[i];
     quad4 phi;
-    load_group(pairs, i, single, &phi);
+    load_quad4(pairs, MEANS_GROUP * i, single, &phi);
     for (int a = 0; a < dim; a++) {
         mean[a] += v[a] * phi;
     }
@@ -247,6 +246,7 @@ KERNEL_INLINE void gather_groups(const struct pairs *pairs, const struct pair_bl
         const uint16_t *restrict offset = pairs->offset;                                                     \
         for (int64_t g = block->first_row; g < block->first_row + block->row_count; g++) {                   \
             vector total[MEANS_GROUP] = {{0.0}}, v;                                                          \
+            quad4 phi;                                                                                       \
             for (int64_t i = means->corner_ptr[g]; i < means->corner_ptr[g + 1]; i++) {                      \
                 for (int r = 0; r < MEANS_GROUP; r++) {                                                      \
                     LOAD(v, means->corner_force +                                                            \
@@ -258,8 +258,9 @@ KERNEL_INLINE void gather_groups(const struct pairs *pairs, const struct pair_bl
             for (int64_t i = pairs->ptr[g], end = pairs->ptr[g + 1]; i < end; i++) {                         \
                 double *f = force + offset[i];                                                               \
                 LOAD(v, f);                                                                                  \
+                load_quad4(pairs, i *MEANS_GROUP, single, &phi);                                             \
                 for (int r = 0; r < MEANS_GROUP; r++) {                                                      \
-                    v += total[r] * table_value(pairs, i * MEANS_GROUP + r, single);                         \
+                    v += total[r] * phi[r];                                                                  \
                 }                                                                                            \
                 STORE(f, v);                                                                                 \
             }                                                                                                \

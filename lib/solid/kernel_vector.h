@@ -12,6 +12,7 @@
 
 typedef double pair2 __attribute__((vector_size(16)));
 typedef double quad4 __attribute__((vector_size(32)));
+typedef float pair2_float __attribute__((vector_size(8)));
 typedef float quad4_float __attribute__((vector_size(16)));
 
 /* Points are taken LANES at a time; arrays over points are padded by LANES, so that whole vectors may be
@@ -31,7 +32,7 @@ KERNEL_INLINE void prefetch(const void *array, int64_t first, int64_t last)
 {
     for (uintptr_t at = (uintptr_t)array + (uintptr_t)first; at < (uintptr_t)array + (uintptr_t)last;
          at += 64) {
-        __builtin_prefetch((const void *)at);
+        __builtin_prefetch((const void *)at, 0, 2);
     }
 }
 

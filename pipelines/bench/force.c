@@ -1,9 +1,11 @@
 /* The force loop: one evaluation of the internal forces, in cache in 2D and with a table larger than the
- * caches in 3D, then the same cube from 1e3 to 1e6 nodes, points at the nodes. A row's bytes are those of its
- * table, once. */
+ * caches in 3D, by tables of gradients at points and by means over the faces of conforming cells; then the
+ * same cube from 1e3 to 1e6 nodes, points at the nodes. A row's bytes are those of its table, once; with
+ * nodal volume an evaluation reads it twice, and by means over faces always. */
 #include "bench.h"
 #include "problem.h"
 
+#include "approx/quadrature.h"
 #include "base/memory.h"
 #include "solid/body.h"
 
@@ -30,14 +32,21 @@ static enum status run_force(void *context, struct error *error)
     return STATUS_OK;
 }
 
+/* What is timed. */
+struct variant {
+    const char *kernel;
+    bool averaged, conforming, single;
+};
+
 /* Each cell's volume to its point; nodes share theirs. */
-static enum status make_loop(struct loop *loop, struct problem *problem, bool averaged, struct error *error)
+static enum status make_loop(struct loop *loop, struct problem *problem, const struct variant *variant,
+                             struct error *error)
 {
     enum status status;
     const struct cells *cells = &problem->cells;
     int dim = cells->dim, corners = dim + 1;
-    int64_t count = problem->point_count;
-    double *weight = NULL, *hat_value = NULL;
+    int64_t count = variant->conforming ? cells->count : problem->point_count;
+    double *weight = NULL, *hat_value = NULL, *centroids = NULL;
     int32_t *material_of = NULL;
     struct material material = {.model = MATERIAL_NEO_HOOKEAN, .density = 1000.0};
     *loop = (struct loop){.problem = problem};
@@ -45,24 +54,46 @@ static enum status make_loop(struct loop *loop, struct problem *problem, bool av
     TRY(NEW_ARRAY(&weight, count, error));
     TRY(NEW_ARRAY(&material_of, count, error));
     TRY(NEW_ARRAY(&hat_value, count * corners, error));
+    const double *points = problem->points;
+    if (variant->conforming) {
+        TRY(NEW_ARRAY(&centroids, count * dim, error));
+        for (int64_t q = 0; q < count; q++) {
+            cell_centroid(cells, q, centroids + q * dim);
+        }
+        points = centroids;
+    }
     for (int64_t q = 0; q < count; q++) {
         weight[q] = count == cells->count ? cell_volume(cells, q) : 1e-3 / (double)count;
     }
     for (int64_t i = 0; i < count * corners; i++) {
         hat_value[i] = 1.0 / corners;
     }
+    struct quadrature_rule rule = quadrature_face_rule(dim);
+    struct conforming_input conforming = {.x = cells->x,
+                                          .cell_node = cells->node,
+                                          .face_count = problem->faces.count,
+                                          .face_node = problem->faces.node,
+                                          .face_cell = problem->faces.cell,
+                                          .per_face = rule.points,
+                                          .face_weight = rule.weight,
+                                          .face_ptr = problem->lists.ptr,
+                                          .face_idx = problem->lists.idx,
+                                          .face_phi = problem->phi};
     struct body_input input = {.dim = dim,
+                               .node_x = cells->x,
+                               .conforming = variant->conforming ? &conforming : NULL,
+                               .single = variant->single,
                                .node_count = cells->node_count,
                                .point_count = count,
-                               .x = problem->points,
+                               .x = points,
                                .weight = weight,
-                               .ptr = problem->lists.ptr,
-                               .idx = problem->lists.idx,
-                               .dphi = problem->dphi,
+                               .ptr = variant->conforming ? problem->smoothed.ptr : problem->lists.ptr,
+                               .idx = variant->conforming ? problem->smoothed.idx : problem->lists.idx,
+                               .dphi = variant->conforming ? problem->smoothed.dphi : problem->dphi,
                                .materials = &material,
                                .material = material_of,
                                .material_count = 1,
-                               .hat_node = averaged ? cells->node : NULL,
+                               .hat_node = variant->averaged ? cells->node : NULL,
                                .hat_value = hat_value,
                                .pointwise_share = 0.05,
                                .share_growth = 20.0};
@@ -79,6 +110,7 @@ done:
     free(weight);
     free(material_of);
     free(hat_value);
+    free(centroids);
     return status;
 }
 
@@ -89,25 +121,31 @@ static void free_loop(struct loop *loop)
     free(loop->force);
 }
 
-static void bench(struct problem *problem, const char *kernel, bool averaged, int threads, double seconds)
+/* Bytes of the table that the loop reads. */
+static double table_bytes(const struct body *body)
+{
+    const struct pairs *pairs = body->conforming ? &body->cells.faces.pairs : &body->gradients;
+    return (double)pairs->pair_count * (2.0 + pairs->width * (body->single ? 4.0 : 8.0));
+}
+
+static void bench(struct problem *problem, const struct variant *variant, int threads, double seconds)
 {
     struct bench_times times;
     struct error error;
     struct loop loop;
     char size[96];
-    int dim = problem->cells.dim;
     omp_set_num_threads(threads);
-    bench_check(make_loop(&loop, problem, averaged, &error), &error);
+    bench_check(make_loop(&loop, problem, variant, &error), &error);
     bench_repeat(threads == 1 ? BENCH_CPU : BENCH_WALL, seconds, run_force, &loop, &times);
     double pairs = (double)loop.body.pair_count, nodes = (double)problem->cells.node_count;
-    snprintf(size, sizeof size, "%dD %.0f nodes %lld points %.0f neighbours", dim, nodes,
-             (long long)problem->point_count, pairs / (double)problem->point_count);
-    struct bench_row row = {.kernel = kernel,
+    snprintf(size, sizeof size, "%dD %.0f nodes %lld points %.0f neighbours", problem->cells.dim, nodes,
+             (long long)loop.body.point_count, pairs / (double)loop.body.point_count);
+    struct bench_row row = {.kernel = variant->kernel,
                             .size = size,
                             .threads = threads,
-                            .precision = "double",
+                            .precision = variant->single ? "float" : "double",
                             .pairs = pairs,
-                            .bytes = pairs * (2.0 + 8.0 * dim),
+                            .bytes = table_bytes(&loop.body),
                             .rate = 1.0,
                             .unit = "steps/s",
                             .memory_per_node = loop.heap / nodes};
@@ -115,7 +153,19 @@ static void bench(struct problem *problem, const char *kernel, bool averaged, in
     free_loop(&loop);
 }
 
-static void bench_body(int dim, int64_t per_axis, double seconds)
+static void bench_all(struct problem *problem, bool conforming, double seconds)
+{
+    for (int k = 0; k < 8; k++) {
+        bool averaged = k / 2 % 2 == 1;
+        const char *kernel = conforming ? averaged ? "cells-nodal-volume" : "cells"
+                             : averaged ? "force-nodal-volume"
+                                        : "force";
+        struct variant variant = {kernel, averaged, conforming, k % 2 == 1};
+        bench(problem, &variant, k / 4 + 1, seconds);
+    }
+}
+
+static void bench_points(int dim, int64_t per_axis, double seconds)
 {
     struct problem problem;
     struct error error;
@@ -123,10 +173,20 @@ static void bench_body(int dim, int64_t per_axis, double seconds)
     bench_check(problem_points_in_cells(&problem, &error), &error);
     bench_check(problem_support(&problem, &error), &error);
     bench_check(problem_gradients(&problem, &error), &error);
-    for (int threads = 1; threads <= 2; threads++) {
-        bench(&problem, "force", false, threads, seconds);
-        bench(&problem, "force-nodal-volume", true, threads, seconds);
-    }
+    bench_all(&problem, false, seconds);
+    problem_free(&problem);
+}
+
+static void bench_cells(int dim, int64_t per_axis, double seconds)
+{
+    struct problem problem;
+    struct error error;
+    bench_check(problem_make(&problem, dim, per_axis, 2.12, dim == 2 ? 0.3 : 0.12, &error), &error);
+    bench_check(problem_points_on_faces(&problem, &error), &error);
+    bench_check(problem_support(&problem, &error), &error);
+    bench_check(problem_values(&problem, &error), &error);
+    bench_check(problem_smooth(&problem, &error), &error);
+    bench_all(&problem, true, seconds);
     problem_free(&problem);
 }
 
@@ -134,11 +194,12 @@ static void bench_growth(int64_t per_axis, double seconds)
 {
     struct problem problem;
     struct error error;
+    static const struct variant variant = {"growth-force", false, false, false};
     bench_check(problem_make(&problem, 3, per_axis, 2.12, 0.3, &error), &error);
     bench_check(problem_points_at_nodes(&problem, &error), &error);
     bench_check(problem_support(&problem, &error), &error);
     bench_check(problem_gradients(&problem, &error), &error);
-    bench(&problem, "growth-force", false, 1, seconds);
+    bench(&problem, &variant, 1, seconds);
     problem_free(&problem);
 }
 
@@ -146,8 +207,10 @@ static void bench_growth(int64_t per_axis, double seconds)
 int main(int argc, char *argv[])
 {
     double seconds = argc > 1 ? strtod(argv[1], NULL) : 1.0;
-    bench_body(2, 27, seconds);
-    bench_body(3, 38, seconds);
+    bench_points(2, 27, seconds);
+    bench_points(3, 38, seconds);
+    bench_cells(2, 27, seconds);
+    bench_cells(3, 25, seconds);
     static const int64_t per_axis[] = {10, 22, 46, 100};
     for (int i = 0; i < 4; i++) {
         bench_growth(per_axis[i], seconds);
