@@ -65,6 +65,10 @@ KERNEL_INLINE void prefetch_row(const struct pairs *pairs, const struct pair_blo
 LOAD_VALUES(pair2)
 LOAD_VALUES(quad4)
 
+/* Value i + k of a table, of which `values` holds those from i on: in double precision a load that spreads it
+ * over the lanes is quicker than a shuffle. */
+#define VALUE_OF(values, pairs, i, k, single) ((single) ? (values)[k] : (pairs)->value[(i) + (k)])
+
 /* Columns of F += u grad phi. */
 KERNEL_INLINE void outer2(const struct pairs *pairs, int64_t i, const double *u, bool single, pair2 column[2])
 {
@@ -154,8 +158,8 @@ KERNEL_INLINE void scatter_2d(const struct pairs *pairs, const struct pair_block
             pair2 sum, g;
             LOAD(sum, f);
             load_pair2(pairs, 2 * i, single, &g);
-            sum += column0 * g[0];
-            sum += column1 * g[1];
+            sum += column0 * VALUE_OF(g, pairs, 2 * i, 0, single);
+            sum += column1 * VALUE_OF(g, pairs, 2 * i, 1, single);
             STORE(f, sum);
         }
     }
@@ -176,9 +180,9 @@ KERNEL_INLINE void scatter_3d(const struct pairs *pairs, const struct pair_block
             quad4 sum, g;
             LOAD(sum, f);
             load_quad4(pairs, 3 * i, single, &g);
-            sum += column0 * g[0];
-            sum += column1 * g[1];
-            sum += column2 * g[2];
+            sum += column0 * VALUE_OF(g, pairs, 3 * i, 0, single);
+            sum += column1 * VALUE_OF(g, pairs, 3 * i, 1, single);
+            sum += column2 * VALUE_OF(g, pairs, 3 * i, 2, single);
             STORE(f, sum);
         }
     }
@@ -260,7 +264,7 @@ KERNEL_INLINE void gather_groups(const struct pairs *pairs, const struct pair_bl
                 LOAD(v, f);                                                                                  \
                 load_quad4(pairs, i *MEANS_GROUP, single, &phi);                                             \
                 for (int r = 0; r < MEANS_GROUP; r++) {                                                      \
-                    v += total[r] * phi[r];                                                                  \
+                    v += total[r] * VALUE_OF(phi, pairs, i * MEANS_GROUP, r, single);                        \
                 }                                                                                            \
                 STORE(f, v);                                                                                 \
             }                                                                                                \
