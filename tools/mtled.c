@@ -18,6 +18,11 @@ static const char usage[] =
     "energy balance is off by more than 0.05 of the largest energy. On a terminal, progress is\n"
     "shown with step, time, error and time left.\n"
     "\n"
+    "Nothing is written by a run that ends with such a verdict or by a signal, but where the scene\n"
+    "asks for frames: then those so far and the last good state follow, as a stream that says at\n"
+    "its end that it is not whole. No program takes it for whole; mts recover makes it one. With\n"
+    "-o FILE it is FILE.part.\n"
+    "\n"
     "Sections on request: u.frame.K, the field u at time= (frames K = 1, 2, ..., evenly up to\n"
     "the final state; in a quasi-static scene over the load, from 0 to 1), for tovtk; stress\n"
     "(Cauchy) and strain (Green-Lagrange) of each integration point; reactions, the force of\n"
@@ -46,7 +51,7 @@ static const char usage[] =
     "  -o, --output FILE    write to FILE, which appears only when whole\n"
     "\n"
     "Exit status:\n"
-    "  0 done; 1 diverged, inverted, out of balance or of steps (nothing is written); 2 usage or\n"
+    "  0 done; 1 diverged, inverted, out of balance or of steps; 2 usage or\n"
     "  malformed input; 3 input/output or memory; 128 + n ended by signal n after a whole step\n"
     "\n"
     "Examples:\n"
@@ -69,16 +74,6 @@ static void drop_results(struct stream *stream)
         stream_remove(stream, names[i]);
     }
     stream_remove_prefix(stream, "u.frame.");
-}
-
-/* The sections that only the computation needs leave the stream; the rest passes through. */
-static void drop_tables(struct stream *stream)
-{
-    static const char *const prefixes[] = {"points.", "faces", "facepoints.", "nbr.",
-                                           "face.",   "node.", "shape.",      "support.radius"};
-    for (size_t i = 0; i < sizeof prefixes / sizeof *prefixes; i++) {
-        stream_remove_prefix(stream, prefixes[i]);
-    }
 }
 
 int main(int argc, char *argv[])
@@ -115,6 +110,7 @@ int main(int argc, char *argv[])
         .model = &model,
         .stream = &stream,
         .verbose = options[VERBOSE].given,
+        .text = !options[BINARY].given,
         .checkpoint = {.file = options[CHECKPOINT].value, .interval = every},
         .read_seconds = read,
         .display = {.shown = !options[QUIET].given && isatty(STDERR_FILENO), .started = clock_seconds()}};
@@ -129,9 +125,9 @@ int main(int argc, char *argv[])
     }
     run_checkpoint_end(&run);
     run_put_results(&run);
-    drop_tables(&stream);
+    run_drop_tables(&stream);
     started = clock_seconds();
-    tool_write(&tool, &stream, !options[BINARY].given);
+    tool_write(&tool, &stream, run.text);
     run.write_seconds = clock_seconds() - started;
     run_checkpoint_remove(&run);
     if (run.verbose) {

@@ -6,6 +6,7 @@ static const char usage[] =
     "       mts text [-o FILE] [FILE]\n"
     "       mts binary [-o FILE] [FILE]\n"
     "       mts check [FILE]\n"
+    "       mts recover [-t] [-o FILE] [FILE]\n"
     "       mts keep [-t] [-o FILE] PATTERN[,PATTERN...] [FILE]\n"
     "       mts drop [-t] [-o FILE] PATTERN[,PATTERN...] [FILE]\n"
     "\n"
@@ -19,12 +20,14 @@ static const char usage[] =
     "                in range, cells of positive volume, numbers finite, weights positive, neighbour lists\n"
     "                ascending, shape functions that sum to 1 within 1e-9; a line on standard output for\n"
     "                each violation, and status 1 if there is one\n"
+    "  recover       the whole sections of a stream that was stopped, cut short or damaged, as a stream;\n"
+    "                what is wrong with it on standard error\n"
     "  keep, drop    the stream with only, or without, the sections that match a PATTERN, in which * and ?\n"
     "                stand for any letters, as in a shell; a pattern that nothing matches is an error\n"
     "\n"
     "Options:\n"
     "  -v, --verbose      list: first the command lines that made the stream\n"
-    "  -t, --text         keep, drop: write text instead of binary\n"
+    "  -t, --text         keep, drop, recover: write text instead of binary\n"
     "  -o, --output FILE  write to FILE, which appears only when whole\n"
     "\n"
     "Examples:\n"
@@ -125,6 +128,22 @@ static int check(struct tool *tool, const struct option options[])
     return count > 0 ? (int)STATUS_VERDICT : status;
 }
 
+static int recover(struct tool *tool, const struct option options[])
+{
+    struct stream stream;
+    struct error why, error;
+    const char *name;
+    int descriptor = tool_open(tool, tool->operands[1], &name);
+    tool_check(tool, stream_recover(&stream, descriptor, name, &why, &error), &error);
+    if (why.text[0] != '\0') {
+        tool_note(tool, "%s: %s: took the %lld sections before", name, why.text,
+                  (long long)stream.section_count);
+    }
+    tool_write(tool, &stream, options[TEXT].given);
+    stream_free(&stream);
+    return tool_end(tool);
+}
+
 /* Does the name match one of the comma-separated patterns? Marks in used[] which it matches. */
 static bool matches(const char *name, char *const patterns[], int count, bool used[])
 {
@@ -188,6 +207,7 @@ static const struct command commands[] = {
     {"text", 0, 1, {[OUTPUT] = true}, to_text},
     {"binary", 0, 1, {[OUTPUT] = true}, to_binary},
     {"check", 0, 1, {false}, check},
+    {"recover", 0, 1, {[TEXT] = true, [OUTPUT] = true}, recover},
     {"keep", 1, 2, {[TEXT] = true, [OUTPUT] = true}, keep},
     {"drop", 1, 2, {[TEXT] = true, [OUTPUT] = true}, drop},
 };
@@ -226,9 +246,9 @@ int main(int argc, char *argv[])
 {
     struct tool tool;
     struct option options[OPTION_COUNT] = {
-        [VERBOSE] = {'v', "verbose", false, NULL, false},
-        [TEXT] = {'t', "text", false, NULL, false},
-        [OUTPUT] = {'o', "output", true, NULL, false},
+        [VERBOSE] = {.letter = 'v', .name = "verbose"},
+        [TEXT] = {.letter = 't', .name = "text"},
+        [OUTPUT] = {.letter = 'o', .name = "output", .takes_value = true},
     };
     tool_begin(&tool, usage, options, OPTION_COUNT, 1, 3, argc, argv);
     return find_command(&tool, options)->run(&tool, options);

@@ -71,7 +71,7 @@ static size_t word_length(const char *text)
 
 static enum status name_validate(const char *name, struct error *error)
 {
-    static const char *const reserved[] = {"mts", "end", "crc32"};
+    static const char *const reserved[] = {"mts", "end", "crc32", "stopped"};
     size_t length = word_length(name);
     if (length == 0 || name[length] != '\0' || length > NAME_LIMIT) {
         return fail(error, STATUS_INPUT,

@@ -47,10 +47,20 @@ void stream_free(struct stream *stream);
 MUST_CHECK enum status stream_read(struct stream *stream, int descriptor, const char *name,
                                    struct error *error);
 
+/* Read the sections in front of where a stream was stopped, cut short or damaged; *why receives what is wrong
+ * there, "" when nothing is. STATUS_INPUT when no section is whole. */
+MUST_CHECK enum status stream_recover(struct stream *stream, int descriptor, const char *name,
+                                      struct error *why, struct error *error);
+
 /* Write the stream, as text or binary, with the end line. Does not close the descriptor. Same stream, same
  * bytes, whether written to a pipe or a file. STATUS_SYSTEM with errno's text on a write error. */
 MUST_CHECK enum status stream_write(const struct stream *stream, int descriptor, bool text,
                                     struct error *error);
+
+/* Write what there is of a stream whose making was stopped: in place of the end line, "# stopped REASON", so
+ * that nobody takes it for whole. */
+MUST_CHECK enum status stream_write_stopped(const struct stream *stream, const char *reason, int descriptor,
+                                            bool text, struct error *error);
 
 /* Write the rows of one section as bare text: a line per row, single blanks between the numbers. */
 MUST_CHECK enum status stream_write_rows(const struct section *section, int descriptor, struct error *error);

@@ -12,8 +12,9 @@
 struct reader {
     struct input input;
     struct stream *stream;
-    uLong crc;   /* of the bytes outside the payloads, so far */
-    bool binary; /* some section is binary: the end line must carry the crc */
+    uLong crc;     /* of the bytes outside the payloads, so far */
+    bool binary;   /* some section is binary: the end line must carry the crc */
+    int64_t whole; /* sections read to their end */
 };
 
 /* A line of the frame (everything but payloads): it counts for the crc of the end line. */
@@ -232,8 +233,13 @@ static enum status read_lines(struct reader *reader, struct error *error)
         if (starts_with(line, length, "# end ")) {
             return read_end(reader, line, length, error);
         }
+        if (starts_with(line, length, "# stopped ")) {
+            return fail(error, STATUS_INPUT, "not whole, stopped: %.*s; mts recover takes what there is",
+                        (int)(length < 300 ? length - 10 : 290), line + 10);
+        }
         if (!starts_with(line, length, "# @ ")) {
             TRY(read_section(reader, line, length, error));
+            reader->whole = reader->stream->section_count;
         } else if (reader->stream->section_count > 0) {
             return fail(error, STATUS_INPUT, "a provenance line behind a section");
         } else {
@@ -246,7 +252,17 @@ done:
     return status;
 }
 
-enum status stream_read(struct stream *stream, int descriptor, const char *name, struct error *error)
+/* Sections that are not whole leave the stream. */
+static void drop_torn(const struct reader *reader)
+{
+    while (reader->stream->section_count > reader->whole) {
+        stream_remove(reader->stream, reader->stream->sections[reader->stream->section_count - 1].name);
+    }
+}
+
+/* Unless `why` is NULL, what is wrong behind some whole sections goes there and is no error. */
+static enum status read_stream(struct stream *stream, int descriptor, const char *name, struct error *why,
+                               struct error *error)
 {
     struct reader reader = {.stream = stream, .crc = 0};
     enum status status = STATUS_OK;
@@ -260,6 +276,11 @@ enum status stream_read(struct stream *stream, int descriptor, const char *name,
     TRY(input_open(&reader.input, stream, descriptor, error));
     TRY(read_lines(&reader, error));
 done:
+    if (status == STATUS_INPUT && why != NULL && reader.whole > 0) {
+        *why = *error;
+        drop_torn(&reader);
+        status = STATUS_OK;
+    }
     input_close(&reader.input);
     uselocale(previous);
     freelocale(c_locale);
@@ -268,4 +289,16 @@ done:
         fail_in(error, status, "%s", name);
     }
     return status;
+}
+
+enum status stream_read(struct stream *stream, int descriptor, const char *name, struct error *error)
+{
+    return read_stream(stream, descriptor, name, NULL, error);
+}
+
+enum status stream_recover(struct stream *stream, int descriptor, const char *name, struct error *why,
+                           struct error *error)
+{
+    why->text[0] = '\0';
+    return read_stream(stream, descriptor, name, why, error);
 }

@@ -188,8 +188,19 @@ done:
     return status;
 }
 
+static enum status put_stopped(struct writer *writer, const char *reason, struct error *error)
+{
+    enum status status = STATUS_OK;
+    TRY(put_text(writer, "# stopped ", error));
+    TRY(put_text(writer, reason, error));
+    TRY(put_text(writer, "\n", error));
+done:
+    return status;
+}
+
+/* stopped: why the stream is not whole, or NULL. */
 static enum status put_stream(struct writer *writer, const struct stream *stream, bool text,
-                              struct error *error)
+                              const char *stopped, struct error *error)
 {
     enum status status = STATUS_OK;
     TRY(put_text(writer, "# mts 1\n", error));
@@ -203,7 +214,7 @@ static enum status put_stream(struct writer *writer, const struct stream *stream
         TRY(text ? put_payload_text(writer, section, error)
                  : put_payload_binary(writer, section, crc, error));
     }
-    TRY(put_end(writer, stream, text, error));
+    TRY(stopped != NULL ? put_stopped(writer, stopped, error) : put_end(writer, stream, text, error));
     TRY(flush(writer, error));
 done:
     return status;
@@ -232,15 +243,27 @@ static void writer_close(struct writer *writer)
     free(writer->block);
 }
 
-enum status stream_write(const struct stream *stream, int descriptor, bool text, struct error *error)
+static enum status write_stream(const struct stream *stream, const char *stopped, int descriptor, bool text,
+                                struct error *error)
 {
     struct writer writer;
     enum status status = STATUS_OK;
     TRY(writer_open(&writer, descriptor, error));
-    TRY(put_stream(&writer, stream, text, error));
+    TRY(put_stream(&writer, stream, text, stopped, error));
 done:
     writer_close(&writer);
     return status;
+}
+
+enum status stream_write(const struct stream *stream, int descriptor, bool text, struct error *error)
+{
+    return write_stream(stream, NULL, descriptor, text, error);
+}
+
+enum status stream_write_stopped(const struct stream *stream, const char *reason, int descriptor, bool text,
+                                 struct error *error)
+{
+    return write_stream(stream, reason, descriptor, text, error);
 }
 
 enum status stream_write_rows(const struct section *section, int descriptor, struct error *error)

@@ -495,6 +495,16 @@ static void begin(struct dynamics *d, const double *u, const double *v)
     factors_at(d, 0.0, d->factor_now);
 }
 
+/* Where the largest component of a vector of the nodes is; NaN counts as the largest. */
+static int64_t node_of_largest(const struct dynamics *d, const double *vector)
+{
+    int64_t largest = 0;
+    for (int64_t i = 0; i < d->size && !isnan(vector[largest]); i++) {
+        largest = fabs(vector[i]) <= fabs(vector[largest]) ? largest : i;
+    }
+    return largest / d->system->dim;
+}
+
 enum status dynamics_run(struct solid_system *system, const struct dynamics_options *options, double *u,
                          double *v, double *row_force, struct energy_log *log, struct dynamics_report *report,
                          struct error *error)
@@ -513,17 +523,20 @@ enum status dynamics_run(struct solid_system *system, const struct dynamics_opti
     } else {
         begin(&d, u, v);
     }
+    int64_t first = report->steps;
     report->outcome = march(&d, &status, error);
     TRY(status);
+    report->last_good = report->outcome == DYNAMICS_DRIFTED ? -1.0 : report->time;
+    if (report->outcome == DYNAMICS_INVERTED) {
+        report->last_good = report->steps > first ? report->time - d.previous_step : -1.0;
+        swap(&d.u, &d.next);
+    }
     memcpy(u, d.u, (size_t)d.size * sizeof *u);
     for (int64_t i = 0; v != NULL && i < d.size; i++) {
         v[i] = report->outcome == DYNAMICS_DONE ? 0.5 * (d.before[i] + d.after[i]) : d.before[i];
     }
-    if (report->outcome == DYNAMICS_COLLAPSED) {
-        for (int64_t i = 0, largest = 0; i < d.size; i++) {
-            largest = fabs(d.mode[i]) > fabs(d.mode[largest]) ? i : largest;
-            report->node = largest / system->dim;
-        }
+    if (report->outcome == DYNAMICS_COLLAPSED || report->outcome == DYNAMICS_DRIFTED) {
+        report->node = node_of_largest(&d, report->outcome == DYNAMICS_COLLAPSED ? d.mode : d.before);
     }
     if (row_force != NULL && system->rows.count > 0) {
         memcpy(row_force, d.constraint.multiplier, (size_t)system->rows.count * sizeof *row_force);

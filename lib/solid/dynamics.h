@@ -49,14 +49,17 @@ struct dynamics_report {
     int64_t steps;             /* done */
     int64_t force_evaluations; /* those of the power iteration and of the energies included */
     int64_t step_changes;
-    double time;                      /* reached, s */
+    double time;      /* reached, s */
+    double last_good; /* the time of which u is the state: reached, or DYNAMICS_INVERTED: a step before;
+                         negative when there is none */
     double first_step, least_step;    /* s */
     double critical_step;             /* at the begin, s */
     double largest_drift, last_drift; /* |error| of the energy balance, relative */
     double tie_work;       /* energy put in as ties (compatibility.h) followed the pressure, relative */
     double least_jacobian; /* over the body when last looked at */
     int64_t point;         /* where: the caller's index */
-    int64_t node;          /* DYNAMICS_COLLAPSED: where the fastest mode moves most */
+    int64_t
+        node; /* DYNAMICS_COLLAPSED: where the fastest mode moves most; DYNAMICS_DRIFTED: the fastest one */
 };
 
 /* Step from the parameters u and their velocities v (m/s; NULL: at rest) at time 0 to the end time; both are

@@ -256,6 +256,11 @@ enum status relaxation_run(struct solid_system *system, const struct relaxation_
     report->outcome = iterate(&r, error);
     TRY(r.failure);
     report->largest_frequency = r.frequency;
+    if (report->outcome == RELAXATION_INVERTED) {
+        r.load = r.older.load;
+        memcpy(u, r.older.u, (size_t)r.size * sizeof *u);
+    }
+    report->load = r.load / (double)report->ramp_steps;
     if (report->outcome == RELAXATION_CONVERGED && options->frame != NULL && options->frames > 0) {
         options->frame(options->context, options->frames, 1.0, u);
     }

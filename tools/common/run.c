@@ -3,6 +3,7 @@
 #include "solid/energy.h"
 
 #include <math.h>
+#include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -35,8 +36,50 @@ void run_clear_progress(const struct display *display)
     }
 }
 
+void run_drop_tables(struct stream *stream)
+{
+    static const char *const prefixes[] = {"points.", "faces", "facepoints.", "nbr.",
+                                           "face.",   "node.", "shape.",      "support.radius"};
+    for (size_t i = 0; i < sizeof prefixes / sizeof *prefixes; i++) {
+        stream_remove_prefix(stream, prefixes[i]);
+    }
+}
+
+/* The number behind that of the last frame. */
+static int64_t next_frame(const struct stream *stream)
+{
+    char name[40];
+    for (int64_t number = 1;; number++) {
+        snprintf(name, sizeof name, "u.frame.%lld", (long long)number);
+        if (stream_find(stream, name) == NULL) {
+            return number;
+        }
+    }
+}
+
+void run_fail(struct run *run, enum status status, const char *format, ...)
+{
+    const struct scene_output *output = &run->scene->output;
+    char text[sizeof((struct error *)0)->text];
+    struct error reason;
+    va_list values;
+    va_start(values, format);
+    vsnprintf(text, sizeof text, format, values);
+    va_end(values);
+    fail(&reason, status, "%s", text); /* one line, whatever the names in it contain */
+    tool_note(run->tool, "%s", reason.text);
+    if (output->frames > 0 || output->interval > 0.0) {
+        if (run->last_good >= 0.0) {
+            run_put_frame(run, next_frame(run->stream), run->last_good, run->u);
+        }
+        run_drop_tables(run->stream);
+        tool_write_stopped(run->tool, run->stream, reason.text, run->text);
+    }
+    tool_exit(status);
+}
+
 /* A verdict other than converged ends the run: nothing half-done passes for a result. */
-static void judge(const struct run *run, const struct relaxation_report *report)
+static void judge(struct run *run, const struct relaxation_report *report)
 {
     const struct scene *scene = run->scene;
     char place[96] = "";
@@ -48,11 +91,11 @@ static void judge(const struct run *run, const struct relaxation_report *report)
         return;
     }
     if (report->outcome == RELAXATION_STALLED) {
-        tool_fail(run->tool, STATUS_VERDICT,
-                  "%s: step %lld: the estimated error stays at %.2g of the displacement: a larger tolerance, "
-                  "a finer cloud at "
-                  "the contacts, or supports against rigid motion may help",
-                  scene->path, (long long)report->steps, report->error);
+        run_fail(run, STATUS_VERDICT,
+                 "%s: step %lld: the estimated error stays at %.2g of the displacement: a larger tolerance, "
+                 "a finer cloud at "
+                 "the contacts, or supports against rigid motion may help",
+                 scene->path, (long long)report->steps, report->error);
     }
     if (report->outcome == RELAXATION_STOPPED) {
         run_checkpoint_stop(run, report->steps);
@@ -61,15 +104,15 @@ static void judge(const struct run *run, const struct relaxation_report *report)
         const double *x =
             (const double *)run->model->input.points->data + report->inverted_point * scene->dim;
         point_text(scene->dim, x, place);
-        tool_fail(run->tool, STATUS_VERDICT,
-                  "%s: step %lld: integration point %lld at %s is inverted (J = %.3g): apply the load in "
-                  "more steps "
-                  "(ramp_steps > %lld), or a smaller one, or refine there",
-                  scene->path, (long long)report->steps, (long long)report->inverted_point, place,
-                  report->least_jacobian, (long long)report->ramp_steps);
+        run_fail(run, STATUS_VERDICT,
+                 "%s: step %lld: integration point %lld at %s is inverted (J = %.3g): apply the load in "
+                 "more steps "
+                 "(ramp_steps > %lld), or a smaller one, or refine there",
+                 scene->path, (long long)report->steps, (long long)report->inverted_point, place,
+                 report->least_jacobian, (long long)report->ramp_steps);
     }
-    tool_fail(
-        run->tool, STATUS_VERDICT,
+    run_fail(
+        run, STATUS_VERDICT,
         "%s: not converged after %lld steps: estimated remaining error %.2g of the displacement: allow more "
         "(max_steps), or hold the body against rigid motion",
         scene->path, (long long)report->steps, report->error);
@@ -97,6 +140,7 @@ void run_quasi_static(struct run *run)
     run->solve_seconds = clock_seconds() - started;
     run_clear_progress(&run->display);
     tool_check(run->tool, status, &error);
+    run->last_good = report.load;
     judge(run, &report);
     if (run->verbose) {
         fprintf(stderr, "points\t%lld\npairs\t%lld\nsteps\t%lld\nramp steps\t%lld\nforce evaluations\t%lld\n",

@@ -21,13 +21,23 @@ struct run {
     struct display display;
     struct run_checkpoint checkpoint;
     bool verbose;
-    double *u; /* parameters, node_count * dim, m */
+    bool text;        /* the form of what is written */
+    double *u;        /* parameters, node_count * dim, m */
+    double last_good; /* the time, as in struct progress, of which u is the state; negative: none */
     double read_seconds, prepare_seconds, solve_seconds, write_seconds;
 };
 
 /* A progress_function; the context is the struct run: show how far it is, write checkpoints. */
 bool run_tell(void *context, const struct progress *progress);
 void run_clear_progress(const struct display *display);
+
+/* The run ends without a result: say why and exit. Where the scene asks for frames, those so far and the last
+ * good state are written, as a stream that is not whole. `status` as in tool_fail. */
+_Noreturn void run_fail(struct run *run, enum status status, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
+
+/* The sections that only the computation needs leave the stream; the rest passes through. */
+void run_drop_tables(struct stream *stream);
 
 /* Quasi-static: relax to the full load. Exits with a verdict when it does not converge. */
 void run_quasi_static(struct run *run);

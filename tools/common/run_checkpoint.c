@@ -142,22 +142,22 @@ void run_checkpoint_end(struct run *run)
     interrupt_release();
 }
 
-void run_checkpoint_stop(const struct run *run, int64_t steps)
+void run_checkpoint_stop(struct run *run, int64_t steps)
 {
     const struct run_checkpoint *checkpoint = &run->checkpoint;
     int number = (int)*checkpoint->interrupted;
     const char *name = sigabbrev_np(number);
     enum status status = (enum status)(128 + number);
     if (checkpoint->file == NULL) {
-        tool_fail(run->tool, status, "ended by SIG%s after step %lld: to be able to go on, use -c", name,
-                  (long long)steps);
+        run_fail(run, status, "ended by SIG%s after step %lld: to be able to go on, use -c", name,
+                 (long long)steps);
     }
     if (checkpoint->status != STATUS_OK) {
-        tool_fail(run->tool, status, "ended by SIG%s after step %lld: no checkpoint: %s", name,
-                  (long long)steps, checkpoint->error.text);
+        run_fail(run, status, "ended by SIG%s after step %lld: no checkpoint: %s", name, (long long)steps,
+                 checkpoint->error.text);
     }
-    tool_fail(run->tool, status, "ended by SIG%s after step %lld: the same command goes on from %s", name,
-              (long long)steps, checkpoint->file);
+    run_fail(run, status, "ended by SIG%s after step %lld: the same command goes on from %s", name,
+             (long long)steps, checkpoint->file);
 }
 
 void run_checkpoint_remove(struct run *run)

@@ -38,7 +38,7 @@ bool run_checkpoint_tell(struct run *run, const struct progress *progress);
 void run_checkpoint_end(struct run *run);
 
 /* The run was interrupted after so many steps: say so, and exit 128 + n. */
-_Noreturn void run_checkpoint_stop(const struct run *run, int64_t steps);
+_Noreturn void run_checkpoint_stop(struct run *run, int64_t steps);
 
 /* The results are whole: the checkpoints have served. */
 void run_checkpoint_remove(struct run *run);

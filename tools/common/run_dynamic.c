@@ -12,7 +12,7 @@ static void place_of(const struct run *run, const double *x, int64_t row, char p
 }
 
 /* A verdict other than done ends the run, naming where it went wrong and what to change. */
-static void judge(const struct run *run, const struct dynamics_report *report)
+static void judge(struct run *run, const struct dynamics_report *report)
 {
     const struct scene *scene = run->scene;
     char place[96] = "";
@@ -21,31 +21,33 @@ static void judge(const struct run *run, const struct dynamics_report *report)
         return;
     case DYNAMICS_INVERTED:
         place_of(run, run->model->input.points->data, report->point, place);
-        tool_fail(run->tool, STATUS_VERDICT,
-                  "%s: step %lld, t = %.6g s: integration point %lld at %s is inverted (J = %.3g): apply the "
-                  "load more slowly, or a smaller one, lower time_step_margin (%g), or refine there",
-                  scene->path, (long long)report->steps, report->time, (long long)report->point, place,
-                  report->least_jacobian, scene->solver.time_step_margin);
+        run_fail(run, STATUS_VERDICT,
+                 "%s: step %lld, t = %.6g s: integration point %lld at %s is inverted (J = %.3g): apply the "
+                 "load more slowly, or a smaller one, lower time_step_margin (%g), or refine there",
+                 scene->path, (long long)report->steps, report->time, (long long)report->point, place,
+                 report->least_jacobian, scene->solver.time_step_margin);
     case DYNAMICS_COLLAPSED:
         place_of(run, run->model->input.cells.x, report->node, place);
-        tool_fail(run->tool, STATUS_VERDICT,
-                  "%s: step %lld, t = %.6g s: the critical step has fallen below %g of the first one "
-                  "(%.3g s), by node %lld at %s: apply a smaller load, or refine there",
-                  scene->path, (long long)report->steps, report->time, DYNAMICS_LEAST_STEP,
-                  report->first_step, (long long)report->node, place);
+        run_fail(run, STATUS_VERDICT,
+                 "%s: step %lld, t = %.6g s: the critical step has fallen below %g of the first one "
+                 "(%.3g s), by node %lld at %s: apply a smaller load, or refine there",
+                 scene->path, (long long)report->steps, report->time, DYNAMICS_LEAST_STEP, report->first_step,
+                 (long long)report->node, place);
     case DYNAMICS_DRIFTED:
-        tool_fail(run->tool, STATUS_VERDICT,
-                  "%s: step %lld, t = %.6g s: the energy balance is off by %.2g of the largest energy (most "
-                  "%g): lower time_step_margin (%g), or apply the load more slowly",
-                  scene->path, (long long)report->steps, report->time, report->last_drift,
-                  DYNAMICS_MOST_DRIFT, scene->solver.time_step_margin);
+        place_of(run, run->model->input.cells.x, report->node, place);
+        run_fail(run, STATUS_VERDICT,
+                 "%s: step %lld, t = %.6g s: the energy balance is off by %.2g of the largest energy (most "
+                 "%g), the fastest is node %lld at %s: lower time_step_margin (%g), or apply the load more "
+                 "slowly",
+                 scene->path, (long long)report->steps, report->time, report->last_drift, DYNAMICS_MOST_DRIFT,
+                 (long long)report->node, place, scene->solver.time_step_margin);
     case DYNAMICS_STOPPED:
         run_checkpoint_stop(run, report->steps);
     case DYNAMICS_TOO_MANY_STEPS:
     default:
-        tool_fail(run->tool, STATUS_VERDICT,
-                  "%s: t = %.6g s of %.6g s after %lld steps of %.3g s: allow more (max_steps)", scene->path,
-                  report->time, scene->solver.end_time, (long long)report->steps, report->least_step);
+        run_fail(run, STATUS_VERDICT,
+                 "%s: t = %.6g s of %.6g s after %lld steps of %.3g s: allow more (max_steps)", scene->path,
+                 report->time, scene->solver.end_time, (long long)report->steps, report->least_step);
     }
 }
 
@@ -105,10 +107,11 @@ void run_dynamic(struct run *run)
     run_clear_progress(&run->display);
     free(velocity);
     tool_check(run->tool, status, &error);
-    judge(run, &report);
     if (output->energy) {
         put_energy(run, &log);
     }
+    run->last_good = report.last_good;
+    judge(run, &report);
     energy_log_free(&log);
     if (run->verbose) {
         tell_report(run, &report);

@@ -8,6 +8,7 @@
 #include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 /* Of the whole process, like the descriptors they are about. */
@@ -33,6 +34,11 @@ _Noreturn void tool_fail(const struct tool *tool, enum status status, const char
     va_start(values, format);
     print_message(tool, format, values);
     va_end(values);
+    tool_exit(status);
+}
+
+void tool_exit(enum status status)
+{
     ending = true;
     exit((int)status);
 }
@@ -288,6 +294,35 @@ void tool_copy(const struct tool *tool, const struct stream *stream, bool text)
         tool_fail(tool, status, "%s: %s", tool->output, error.text);
     }
     tool_check(tool, output_commit(&output, &error), &error);
+}
+
+/* Where what there is may go: NAME.part beside a file that is there or could be; not beside a device. */
+static int open_part(const char *output)
+{
+    struct stat present;
+    char *name;
+    if ((stat(output, &present) == 0 && !S_ISREG(present.st_mode)) ||
+        asprintf(&name, "%s.part", output) < 0) {
+        return -1;
+    }
+    int descriptor = open(name, O_WRONLY | O_CREAT | O_TRUNC | O_NOFOLLOW | O_CLOEXEC, 0666);
+    free(name);
+    return descriptor;
+}
+
+void tool_write_stopped(const struct tool *tool, struct stream *stream, const char *reason, bool text)
+{
+    struct error ignored;
+    int descriptor = tool->output != NULL ? open_part(tool->output) : STDOUT_FILENO;
+    if (descriptor < 0 || (tool->output == NULL && !text && isatty(STDOUT_FILENO))) {
+        return;
+    }
+    signal(SIGPIPE, SIG_IGN); /* our own status tells more */
+    add_provenance(tool, stream);
+    if (stream_write_stopped(stream, reason, descriptor, text, &ignored) == STATUS_OK) {
+        (void)fsync(descriptor);
+    }
+    close(descriptor);
 }
 
 int tool_end(const struct tool *tool)

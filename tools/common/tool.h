@@ -34,6 +34,9 @@ void tool_check(const struct tool *tool, enum status status, const struct error 
 _Noreturn void tool_fail(const struct tool *tool, enum status status, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 
+/* Exit without a message. */
+_Noreturn void tool_exit(enum status status);
+
 /* "name: message" on standard error; notes that do not stop the run. */
 void tool_note(const struct tool *tool, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
@@ -51,6 +54,11 @@ void tool_write(const struct tool *tool, struct stream *stream, bool text);
 
 /* The same without a provenance line: for what changes the form of a stream only. */
 void tool_copy(const struct tool *tool, const struct stream *stream, bool text);
+
+/* Write what there is of a result whose making was stopped (see stream_write_stopped): to standard output, or
+ * beside tool->output under that name with ".part"; what is there under the name itself stays. Failures are
+ * ignored: worse has happened. */
+void tool_write_stopped(const struct tool *tool, struct stream *stream, const char *reason, bool text);
 
 /* Close standard output, reporting delayed write errors; for tools that print tables with stdio. Returns the
  * exit status STATUS_OK or exits 3. */
