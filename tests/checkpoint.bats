@@ -116,6 +116,7 @@ refused() {
     refused "run.ckpt: checkpoint of another cloud or table" mtled -c run.ckpt run.scene other.mts
     mts text run.ckpt | sed '/^# checkpoint/s/version=[0-9.]*/version=0.0.9/' | mts binary > old.ckpt
     refused "old.ckpt: checkpoint of version 0.0.9, this is" mtled -c old.ckpt run.scene table.mts
+    refused "run with tables in double precision: run it so" mtled -f -c run.ckpt run.scene table.mts
     refused "table.mts: a stream, but not a checkpoint" mtled -c table.mts run.scene table.mts
     mts drop state.mass run.ckpt > less.ckpt
     run -2 --separate-stderr mtled -c less.ckpt run.scene table.mts

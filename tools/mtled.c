@@ -111,7 +111,9 @@ int main(int argc, char *argv[])
         .stream = &stream,
         .verbose = options[VERBOSE].given,
         .text = !options[BINARY].given,
-        .checkpoint = {.file = options[CHECKPOINT].value, .interval = every},
+        .checkpoint = {.file = options[CHECKPOINT].value,
+                       .interval = every,
+                       .identity = {.single = options[FLOAT].given}},
         .read_seconds = read,
         .display = {.shown = !options[QUIET].given && isatty(STDERR_FILENO), .started = clock_seconds()}};
     tool_check(&tool, model_build(&stream, &scene, options[FLOAT].given, &model, &error), &error);

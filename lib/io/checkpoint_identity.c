@@ -86,6 +86,7 @@ enum status checkpoint_identify(const struct scene *scene, const struct stream *
         sections = add_section(sections, &input->sections[i]);
     }
     enum status status = add_scene(scene, &crc, error);
-    *identity = (struct checkpoint_identity){.scene = (uint32_t)crc, .input = (uint32_t)sections};
+    identity->scene = (uint32_t)crc;
+    identity->input = (uint32_t)sections;
     return status;
 }
