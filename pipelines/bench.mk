@@ -1,8 +1,10 @@
 # make bench: the kernels against a plain read of as many bytes in the same run, into build/out/bench/bench.tsv.
 #
-# Each program of pipelines/bench (but bench.c and problem.c, which they share) prints the rows of some kernels. Times in ns per pair
-# of point and neighbour (streams: per row), least and percentiles over the repeats; bytes are those read and written.
-# One thread is timed by its CPU time, several by the clock: compare threads on an idle machine only.
+# Each program of pipelines/bench (but bench.c and problem.c, which they share) prints the rows of some kernels. Times
+# in ns per pair of point and neighbour (streams: per row), least and percentiles over the repeats; bytes are those read
+# and written (force loop: those of its table). One thread is timed by its CPU time, several by the clock: compare
+# threads on an idle machine only. pipelines/bench/PROFILE.md tells where a step's time goes, what was tried, and what it
+# brought.
 
 BENCH := $(OUT)/bench
 BENCH_SECONDS := 1

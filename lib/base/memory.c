@@ -4,8 +4,8 @@
 #include <string.h>
 #include <sys/mman.h>
 
-/* Arrays of this size and more, bytes, lie on pages of that size where the system has them: tables that are streamed
- * through cost fewer page faults and address translations. */
+/* Bytes. Arrays of twice this size and more lie on such pages where the system has them: tables that are
+ * streamed through cost fewer page faults and address translations. */
 static const size_t huge_page = 1 << 21;
 
 static int bytes_of(int64_t count, size_t size, size_t *bytes)

@@ -26,8 +26,8 @@ typedef int32_t lanes_int __attribute__((vector_size(4 * LANES)));
 #define LOAD(vector, from) memcpy(&(vector), (from), sizeof(vector))
 #define STORE(to, vector) memcpy((to), &(vector), sizeof(vector))
 
-/* Ask for the bytes first .. last of an array that will be read a block later: what waits for memory then
- * runs beside the arithmetic of this block. */
+/* Ask for the bytes first .. last of an array, into the second cache, which will be read a block later: what
+ * waits for memory then runs beside the arithmetic of this block. */
 KERNEL_INLINE void prefetch(const void *array, int64_t first, int64_t last)
 {
     for (uintptr_t at = (uintptr_t)array + (uintptr_t)first; at < (uintptr_t)array + (uintptr_t)last;
