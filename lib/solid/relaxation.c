@@ -9,6 +9,8 @@
 static const int64_t keep_interval = 200;     /* steps between states to go back to */
 static const double penetration_share = 1e-4; /* of the body's size: what a contact may penetrate */
 static const int later_iterations = 3;        /* at every check: the mode is kept, so that it sharpens */
+static const int last_iterations = 1;         /* the same, near the end, */
+static const int64_t last_mass_checks = 5;    /* where the mass is looked at only so often */
 
 /* One step; with `measure` the acceleration of the projected residual at the old u is kept. */
 static bool step(struct relaxation *r, double *u, bool measure)
@@ -119,10 +121,11 @@ static bool follow(struct relaxation *r, struct error *error)
         r->report->force_evaluations++;
         r->residual_at = u;
     }
-    if (!relaxation_update_mass(r, error)) {
+    bool settles = r->ties_settled; /* the body hardly moves any more */
+    if ((!settles || r->checks % last_mass_checks == 0) && !relaxation_update_mass(r, error)) {
         return false;
     }
-    relaxation_update_time_step(r, r->residual_at, later_iterations);
+    relaxation_update_time_step(r, r->residual_at, settles ? last_iterations : later_iterations);
     return true;
 }
 
