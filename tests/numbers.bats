@@ -97,9 +97,10 @@ frames() { grep -c '^u\.frame\.' list; }
 }
 
 @test "ended by a signal: the frames so far are kept, too" {
-    scene dynamic 0.3 'components = 0, 0.01' 'end_time = 200' > run.scene
+    # Long enough for any processor, its first frames soon.
+    scene dynamic 0.3 'components = 0, 0.01' 'end_time = 2e4\nmax_steps = 1000000000' | sed 's/^frames.*/frames = 2000/' > run.scene
     mtled -q run.scene table.mts > u.dat 2> said &
-    sleep 0.3
+    sleep 0.7
     kill -TERM $!
     status=0
     wait $! || status=$?

@@ -165,7 +165,7 @@ static void defaults(void **state)
     assert_int_equal(scene.solver.constraint_points, SCENE_HAT_AVERAGES);
     assert_int_equal(scene.solver.volume, SCENE_NODAL_VOLUME);
     assert_true(scene.solver.pointwise_share < 0);
-    same(scene.solver.tolerance, 1e-6);
+    same(scene.solver.tolerance, 1e-5);
     same(scene.solver.time_step_margin, .9);
     assert_int_equal(scene.displacement_count + scene.contact_count + scene.pressure_count, 0);
     assert_int_equal(scene.output.frames, 0);
