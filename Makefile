@@ -2,7 +2,11 @@
 # make deps       install what is missing (Debian, Ubuntu)
 # make check      run all tests                         make SAN=1 check   ... under sanitizers
 # make faults, fuzz, lint, coverage: what the programs survive, what a fuzzer finds, static checks, lines under test
-# make STUDY      run a study of pipelines/ (table1, brain2d): tables and pictures into build/out/STUDY
+# make STUDY      run a study of pipelines/: tables and pictures into build/out/STUDY; minutes each:
+#   table1  brain2d  brain3d    as in the papers: approximation, a brain section, the whole brain
+#   hard                        cases with known answers
+#   convergence  speed-error    error against mesh size, and against time, beside CalculiX
+#   bench  estimate             speed of the kernels; what the error estimate is worth
 # make install PREFIX=/usr/local                        make clean
 
 SHELL := /bin/bash

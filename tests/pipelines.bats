@@ -30,11 +30,21 @@ make_patch() {
     make_patch
     bash "$pipelines/calculix/solve.sh" patch.scene square.dat > u.dat 2> log
     mts check u.dat
-    [ "$(grep -c . log)" -eq 4 ]
+    [ "$(grep -c . log)" -eq 5 ]
     paste <(mts print nodes.x u.dat) <(mts print u u.dat) | awk '
         { a = $3 - .05 * $1 - .02 * $2; b = $4 + .03 * $1 + .04 * $2; error = a * a + b * b; n++ }
         !(error < 1e-8 ^ 2) { print "node", n - 1, "is off by", sqrt(error); failed = 1 }
         END { exit failed || n != 16 }'
+}
+
+@test "deck: a traction along a side is what the other side holds" {
+    make_patch
+    {
+        sed '/^\[displacement/,$d' patch.scene
+        printf '[displacement foot]\nfacets = ymin\ncomponents = 0, 0\n[traction pull]\nfacets = ymax\ncomponents = 3, -5\n'
+    } > pull.scene
+    bash "$pipelines/calculix/solve.sh" pull.scene square.dat > u.dat 2> log
+    mts print reactions u.dat | awk '!(($1 + 0.3)^2 < 1e-10 && ($2 - 0.5)^2 < 1e-10) { print; exit 1 }'
 }
 
 # A cube of 3 x 3 x 3 nodes whose sides follow u = (.05 x + .02 y, -.03 y + .01 z, .02 x - .04 z).
@@ -144,6 +154,29 @@ make_cube() {
     [ "$output" = "$(printf 'MMLS, 34 points widened\t707\t5052\t0.0500\t0.2000\t3720\t2.45')" ]
     head -n 1 log > half
     run -1 awk -f "$pipelines/brain2d-row.awk" -v scheme=MMLS errors half
+}
+
+@test "convergence: orders between sizes, and the slope over all" {
+    for n in 100 400 1600; do
+        printf 'avg\t%s\nmax\t0.01\n' "$(awk "BEGIN { print 1e-3 * 100 / $n }")" > "block-default-$n.errors"
+        printf 'prepare\t0.1\nsolve\t1\nnodes\t%d\n' $n > "block-default-$n.time"
+    done
+    awk -f "$pipelines/convergence/table.awk" block-default-{100,400,1600}.errors | awk -F '\t' '
+        NR == 2 && !($5 == 1 && $7 == "-" && $8 == 2) || NR > 2 && !($7 == 2 && $8 == 2) { print; exit 1 }
+        END { if (NR != 4) exit 1 }'
+    rm block-default-400.time
+    run -1 awk -f "$pipelines/convergence/table.awk" block-default-{100,400,1600}.errors
+}
+
+@test "speed-error: the time to an error, on a line in log-log; none beyond what was computed" {
+    printf 'case\tscheme\th\tnodes\tprepare_s\tsolve_s\ttotal_s\terror_percent\tforce_N\n' > table
+    for s in default calculix; do
+        printf "c\t$s\t2\t100\t0\t1\t%s\t4\t-\nc\t$s\t1\t400\t0\t8\t%s\t0.5\t-\n" \
+            $([ $s = default ] && echo 1 8 || echo 10 80)
+    done >> table
+    awk -f "$pipelines/speed-error/reach.awk" table > reach
+    grep -q "^c	default	4	>8	8$" reach
+    grep -q "^c	calculix	40	>80	80$" reach
 }
 
 @test "the tables of the brain section are those that its geometry gives" {

@@ -1,11 +1,11 @@
 # The input deck of a scene for CalculiX, with one of deck2d.awk and deck3d.awk for the conditions in that dimension:
 #
-#     awk -f pipelines/stream.awk -f deck.awk -f deck3d.awk -v scene=FILE -v mesh=STREAM [-v increment=PART] > FILE.inp
+#     awk -f pipelines/stream.awk -f deck.awk -f deck3d.awk -v scene=FILE -v mesh=STREAM [-v increment=PART] [-v solver=NAME] > FILE.inp
 #
 # STREAM (text) holds what `nodes` writes. Its triangles become quadratic plane strain elements (CPE6), its tetrahedra
 # quadratic ones (C3D10), with the mid-nodes on the straight edges, so that nodes 1..N are those of the stream and the
 # geometry is the same. Understood of a scene: neo-Hookean materials of one region each, displacements by table or by
-# components on one group of facets, contact of one group with a rigid surface; anything else in it is an error. SI units, in
+# components on one group of facets, contact of one group with a rigid surface, in 2D tractions; anything else in it is an error. SI units, in
 # 2D per metre of thickness. The load is applied in increments of at most PART of it (0.1).
 
 BEGIN {
@@ -22,16 +22,17 @@ BEGIN {
     print_nodes()
     print_elements()
     for (k = 1; k <= section_count; k++) if (kind[k] == "material") print_material(k)
-    else if (kind[k] !~ /^(displacement|contact|solver|output)$/) die(scene ": section [" kind[k] "] is not understood")
+    else if (kind[k] !~ /^(displacement|contact|traction|solver|output)$/) die(scene ": section [" kind[k] "] is not understood")
     for (k = 1; k <= section_count; k++) if (kind[k] == "displacement") collect_displacement(k)
     for (k = 1; k <= section_count; k++) if (kind[k] == "contact") print_contact(k)
     print "*NSET,NSET=CORNERS,GENERATE"
     print "1," rows["nodes.x"] ",1"
     print "*STEP,NLGEOM,INC=2000"
-    print "*STATIC"
+    print "*STATIC" (solver == "" ? "" : ", SOLVER=" solver)
     printf "%g,1.,1.E-7,%g\n", increment / 2, increment
     print "*BOUNDARY"
     for (k = 1; k <= prescribed_count; k++) print prescribed[k]
+    for (k = 1; k <= section_count; k++) if (kind[k] == "traction") print_traction(k)
     print "*NODE PRINT,NSET=CORNERS"
     print "U"
     for (k = 1; k <= section_count; k++) if (kind[k] == "displacement") {
@@ -202,6 +203,21 @@ function prescribe(k, i, n,    u, d) {
     else if (split(scene_value[k, "components"], u, /[ \t]*,[ \t]*/) != dim || scene_value[k, "components"] ~ /free/)
         die(scene ": only displacements by table or by all components")
     for (d = 1; d <= dim; d++) prescribed[++prescribed_count] = sprintf("%d,%d,%d,%.9g", i, d, d, u[d])
+}
+
+# A dead load along edges: the forces of a constant traction on the three nodes of each.
+function print_traction(k,    f, a, b, d, length_, t, node) {
+    if (dim != 2 || split(scene_value[k, "components"], t, /[ \t]*,[ \t]*/) != 2) die(scene ": only tractions of two components in 2D")
+    print "*CLOAD"
+    for (f = 0; f < rows["facets"]; f++) {
+        if (value["facets.set", f, 0] != name_index("facets.set", scene_value[k, "facets"])) continue
+        node[1] = a = value["facets", f, 0] + 1
+        node[2] = b = value["facets", f, 1] + 1
+        node[3] = middle(a, b)
+        length_ = sqrt((x[b, 1] - x[a, 1])^2 + (x[b, 2] - x[a, 2])^2)
+        for (a = 1; a <= 3; a++) for (d = 1; d <= 2; d++)
+            if (t[d] != 0) printf "%d,%d,%.9g\n", node[a], d, (a == 3 ? 4 : 1) / 6 * length_ * t[d]
+    }
 }
 
 # The pair of the surface of group FACETS of contact k and the surface MASTER_.

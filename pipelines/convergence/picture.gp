@@ -1,0 +1,17 @@
+# The mean errors of convergence.tsv over the mean spacing, a panel for each case: gnuplot -e "data=...; cases=...; out=..."
+set terminal pngcairo size 1000,900 font "DejaVu Sans,11"
+set output out
+set datafile separator "\t"
+set logscale xy
+set format y "%g"
+set xlabel "nodes to the power -1/2"
+set ylabel "mean error, mm"
+set key left top samplen 2
+set grid
+set multiplot layout 2,2
+do for [c in cases] {
+    set title c
+    plot for [s in "mls1 mmls default calculix"] data \
+        using (strcol(1) eq c && strcol(2) eq s ? $4 ** -0.5 : NaN):5 with linespoints pt 7 ps 0.8 lw 2 title s
+}
+unset multiplot

@@ -1,0 +1,17 @@
+# The errors of speed-error.tsv over the time, a panel for each case: gnuplot -e "data=...; cases=...; out=..."
+set terminal pngcairo size 1200,450 font "DejaVu Sans,11"
+set output out
+set datafile separator "\t"
+set logscale xy
+set format y "%g"
+set xlabel "processor seconds, one thread"
+set ylabel "error, %"
+set key right top samplen 2
+set grid
+set multiplot layout 1,3
+do for [c in cases] {
+    set title c
+    plot for [s in "mls1 mmls default calculix"] data \
+        using (strcol(1) eq c && strcol(2) eq s ? $7 : NaN):8 with linespoints pt 7 ps 0.8 lw 2 title s
+}
+unset multiplot
