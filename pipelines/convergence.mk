@@ -19,7 +19,7 @@ cube.geometry := $(CONVERGENCE_INPUT)/cube.geo
 square.sizes := 0.0113 0.008 0.0056 0.004
 cook.sizes := 5.6 4 2.8 2
 brain.sizes := 14.6 10.3 7.3 5.2
-cube.sizes := 0.03 0.021 0.0155 0.011 0.0088
+cube.sizes := 0.03 0.021 0.0155 0.011
 square.gmsh = -2 -setnumber h $(1)
 cook.gmsh = -2 -setnumber h $(1)
 brain.gmsh = -2 -setnumber lc $(1) -setnumber kb 0.72 -setnumber kv 0.58 -setnumber kt 1
@@ -69,7 +69,7 @@ $(CONVERGENCE)/brain.reference.dat: examples/brain2d/brain2d_reference.tsv
 $(CONVERGENCE_NESTED:%=$(CONVERGENCE)/%.reference.dat): $(CONVERGENCE)/%.reference.dat: $(CONVERGENCE_INPUT)/%.tsv
 $(CONVERGENCE_CASES:%=$(CONVERGENCE)/%.reference.dat): pipelines/reference.awk
 	@mkdir -p $(@D)
-	awk -f pipelines/reference.awk $< > $@
+	awk -f pipelines/reference.awk $(filter %.tsv,$^) > $@
 
 # All solutions of CASES $(1) as names CASE-SCHEME-SIZE.
 convergence_names = $(foreach c,$(1),$(foreach m,$(CONVERGENCE_SCHEMES),$(foreach s,$($($(c).mesh).sizes),$(c)-$(m)-$(s))))
