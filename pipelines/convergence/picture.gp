@@ -9,9 +9,9 @@ set ylabel "mean error, mm"
 set key left top samplen 2
 set grid
 set multiplot layout 2,2
-do for [c in cases] {
-    set title c
+do for [body in cases] {
+    set title body
     plot for [s in "mls1 mmls default calculix"] data \
-        using (strcol(1) eq c && strcol(2) eq s ? $4 ** -0.5 : NaN):5 with linespoints pt 7 ps 0.8 lw 2 title s
+        using (strcol(1) eq body && strcol(2) eq s ? $4 ** -0.5 : NaN):5 with linespoints pt 7 ps 0.8 lw 2 title s
 }
 unset multiplot
