@@ -20,7 +20,6 @@ square.sizes := 0.0113 0.008 0.0056 0.004
 cook.sizes := 5.6 4 2.8 2
 brain.sizes := 14.6 10.3 7.3 5.2
 cube.sizes := 0.03 0.021 0.0155 0.011 0.0088
-cube.calculix.finer := 0.0066
 square.gmsh = -2 -setnumber h $(1)
 cook.gmsh = -2 -setnumber h $(1)
 brain.gmsh = -2 -setnumber lc $(1) -setnumber kb 0.72 -setnumber kv 0.58 -setnumber kt 1
@@ -52,13 +51,10 @@ $(CONVERGENCE)/$(1)-$(2).msh: $($(1).geometry)
 	@mkdir -p $$(@D)
 	gmsh -v 1 $(call $(1).gmsh,$(2)) -setnumber Mesh.RandomSeed 1 $$< -o $$@
 endef
-$(foreach m,square cook brain cube,$(foreach s,$($(m).sizes) $($(m).calculix.finer),$(eval $(call CONVERGENCE_MESH,$(m),$(s)))))
+$(foreach m,square cook brain cube,$(foreach s,$($(m).sizes),$(eval $(call CONVERGENCE_MESH,$(m),$(s)))))
 
 # A rebuilt tool does not call for all of it again; `make clean` does.
 CONVERGENCE_PROGRAMS := $(addprefix $(BUILD)/bin/,nodes ipoints support shapefn mtled mts fieldcmp)
-
-# $(call convergence_sizes,CASE,SCHEME)
-convergence_sizes = $($($(1).mesh).sizes) $($($(1).mesh).$(2).finer)
 
 # CASE, SCHEME, SIZE
 define CONVERGENCE_SOLUTION
@@ -67,7 +63,7 @@ $(CONVERGENCE)/$(1)-$(2)-$(3).time: $(CONVERGENCE_INPUT)/$(1).scene $(CONVERGENC
 $(CONVERGENCE)/$(1)-$(2)-$(3).errors: $(CONVERGENCE)/$(1)-$(2)-$(3).time $(CONVERGENCE)/$(1).reference.dat
 	fieldcmp $$(<:.time=.dat) $$(lastword $$^) > $$@
 endef
-$(foreach c,$(CONVERGENCE_CASES) cube,$(foreach m,$(CONVERGENCE_SCHEMES),$(foreach s,$(call convergence_sizes,$(c),$(m)),$(eval $(call CONVERGENCE_SOLUTION,$(c),$(m),$(s))))))
+$(foreach c,$(CONVERGENCE_CASES) cube,$(foreach m,$(CONVERGENCE_SCHEMES),$(foreach s,$($($(c).mesh).sizes),$(eval $(call CONVERGENCE_SOLUTION,$(c),$(m),$(s))))))
 
 $(CONVERGENCE)/brain.reference.dat: examples/brain2d/brain2d_reference.tsv
 $(CONVERGENCE_NESTED:%=$(CONVERGENCE)/%.reference.dat): $(CONVERGENCE)/%.reference.dat: $(CONVERGENCE_INPUT)/%.tsv
@@ -76,7 +72,7 @@ $(CONVERGENCE_CASES:%=$(CONVERGENCE)/%.reference.dat): pipelines/reference.awk
 	awk -f pipelines/reference.awk $(filter %.tsv,$^) > $@
 
 # All solutions of CASES $(1) as names CASE-SCHEME-SIZE.
-convergence_names = $(foreach c,$(1),$(foreach m,$(CONVERGENCE_SCHEMES),$(foreach s,$(call convergence_sizes,$(c),$(m)),$(c)-$(m)-$(s))))
+convergence_names = $(foreach c,$(1),$(foreach m,$(CONVERGENCE_SCHEMES),$(foreach s,$($($(c).mesh).sizes),$(c)-$(m)-$(s))))
 CONVERGENCE_NAMES := $(call convergence_names,$(CONVERGENCE_CASES))
 
 $(CONVERGENCE)/convergence.tsv: $(CONVERGENCE_NAMES:%=$(CONVERGENCE)/%.errors) pipelines/convergence/table.awk pipelines/convergence.mk
