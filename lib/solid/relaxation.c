@@ -250,6 +250,7 @@ enum status relaxation_run(struct solid_system *system, const struct relaxation_
                            .u = u,
                            .load_rate = 1.0,
                            .caution = 1.0,
+                           .least_penetration = INFINITY,
                            .spectrum2 = INFINITY};
     *report = (struct relaxation_report){.least_jacobian = 1.0};
     TRY(relaxation_allocate(&r, error));

@@ -6,7 +6,8 @@
 
 static const int64_t most_retreats = 8;                          /* from inverted points */
 static const double most_stiffening = 1.1, most_softening = 0.5; /* of a node since its mass was set */
-static const int64_t most_augmentations = 20;                    /* of the contacts' multipliers */
+static const int64_t most_augmentations = 20;                    /* of the contacts' multipliers, */
+static const int64_t most_fruitless = 3;                         /* of those in a row that change little */
 
 double relaxation_body_size(const struct solid_system *system)
 {
@@ -120,13 +121,19 @@ static void augment(struct relaxation *r)
         (void)contact_augment(&r->system->contacts[c]);
     }
     r->augmentations++;
+    r->best_error = INFINITY; /* another problem begins */
+    r->best_step = r->report->steps;
 }
 
 bool relaxation_contacts_hold(struct relaxation *r)
 {
-    if (r->augmentations == most_augmentations || !(largest_penetration(r) > r->penetration_allowed)) {
+    double deepest = largest_penetration(r);
+    if (!(deepest > r->penetration_allowed) || r->augmentations == most_augmentations ||
+        r->fruitless == most_fruitless) {
         return true;
     }
+    r->fruitless = deepest < 0.8 * r->least_penetration ? 0 : r->fruitless + 1;
+    r->least_penetration = fmin(r->least_penetration, deepest);
     augment(r);
     return false;
 }

@@ -34,10 +34,11 @@ struct relaxation {
     int64_t checks;
     double best_error; /* at the full load, since best_step: not yet half of it */
     int64_t best_step;
-    double spacing;             /* mean, of the nodes, m */
-    double penetration_allowed; /* m */
-    int64_t augmentations;
-    bool mass_changed; /* since the last check: increments of the acceleration mean nothing */
+    double spacing;                   /* mean, of the nodes, m */
+    double penetration_allowed;       /* m */
+    int64_t augmentations, fruitless; /* of the contacts so far; those in a row that changed little */
+    double least_penetration;         /* m, before an augmentation */
+    bool mass_changed;                /* since the last check: increments of the acceleration mean nothing */
     enum status failure;
     double load, load_rate;      /* steps of the ramp applied so far, and per step */
     double largest_displacement; /* so far, in the norm of the mass */

@@ -76,6 +76,8 @@ enum status relaxation_visit(void *run, const struct state *state, struct error 
         {"caution", STATE_NUMBERS, &r->caution, 1},
         {"retreats", STATE_COUNTS, &r->retreats, 1},
         {"augmentations", STATE_COUNTS, &r->augmentations, 1},
+        {"fruitless", STATE_COUNTS, &r->fruitless, 1},
+        {"least_penetration", STATE_NUMBERS, &r->least_penetration, 1},
         {"frames", STATE_COUNTS, &r->frames, 1},
         {"at_full_load", STATE_COUNTS, &r->at_full_load, 1},
         {"settled", STATE_COUNTS, &r->settled, 1},
