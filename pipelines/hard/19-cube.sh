@@ -70,7 +70,7 @@ for case in '50 0.025 0.02' '70 0.035 0.05'; do
 done
 
 press coarsest a 0.025
-row 18 'cube, 50 %: work of the force / stored energy' "$(calc "$(work pushing 0.025) / $(stored "$work/a.dat")")" 1 0.02
+row 18 'cube, 50 %: work of the force / stored energy' "$(calc "$(work pushing 0.025) / $(stored "$work/a.dat")")" 1 0.01
 press coarse a -0.05
 press fine b -0.05
 row 18 "cube, extension 100 %: force, N, $(count fine) nodes against $(count coarse)" "$(force b)" "$(force a)" 0.005
