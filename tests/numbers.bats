@@ -126,5 +126,7 @@ frames() { grep -c '^u\.frame\.' list; }
 
 @test "a long run: memory as at the begin, energy kept" {
     bash "$BATS_TEST_DIRNAME/soak.sh" 200000 > table
-    awk 'NR == 2 && $1 >= 200000 && $2 > 0 && $3 <= $2 * 1.02 && $4 < 2e-3 { good = 1 } END { exit !good }' table
+    growth=1.02
+    ! nm "$(type -P mtled)" | grep -q ' __asan_init$' || growth=10 # it keeps what is freed for a while
+    awk -v growth=$growth 'NR == 2 && $1 >= 200000 && $2 > 0 && $3 <= $2 * growth && $4 < 2e-3 { good = 1 } END { exit !good }' table
 }
