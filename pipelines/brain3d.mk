@@ -48,7 +48,7 @@ $(BRAIN3D)/brain3d.geo: $(BRAIN3D_INPUT)/brain3d.geo
 	cp $< $@
 
 $(BRAIN3D)/small.msh $(BRAIN3D)/large.msh $(BRAIN3D)/fine.msh: $(BRAIN3D)/brain3d.geo $(BRAIN3D)/brain3d_surfaces.msh
-	gmsh -3 -v 2 $< -setnumber lc $(BRAIN3D_SIZE) -o $@
+	gmsh -3 -nt 1 -v 2 $< -setnumber lc $(BRAIN3D_SIZE) -o $@
 
 # The cloud is renewed only when it changes, so that a rebuilt tool does not call for a new CalculiX solution.
 $(BRAIN3D)/small.made: $(BRAIN3D)/small.msh $(BUILD)/bin/nodes
