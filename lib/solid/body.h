@@ -118,6 +118,9 @@ struct deformation {
  * N, in 2D N/m. Fills body->F and body->J. With an inverted point the forces mean nothing. */
 struct deformation body_force(struct body *body, const double *u, double *force);
 
+/* Volume at rest, the sum of the weights of the points, m3 (2D: m2). */
+double body_volume(const struct body *body);
+
 /* Elastic energy at u, J (2D: J/m). Fills body->F and body->J. */
 double body_energy(struct body *body, const double *u);
 

@@ -2,6 +2,7 @@
 
 #include "base/clock.h"
 #include "base/memory.h"
+#include "solid/frequency.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -211,6 +211,15 @@ struct deformation body_force(struct body *body, const double *u, double *force)
     return deformation;
 }
 
+double body_volume(const struct body *body)
+{
+    double volume = 0.0;
+    for (int64_t q = 0; q < body->point_count; q++) {
+        volume += body->weight[q];
+    }
+    return volume;
+}
+
 double body_energy(struct body *body, const double *u)
 {
     double energy = 0.0, F[9];

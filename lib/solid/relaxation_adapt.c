@@ -1,4 +1,5 @@
 /* Load, mass, time step and contacts that follow a relaxation. */
+#include "solid/frequency.h"
 #include "solid/relaxation_private.h"
 
 #include <math.h>
@@ -25,11 +26,7 @@ double relaxation_body_size(const struct solid_system *system)
 
 double relaxation_node_spacing(const struct solid_system *system)
 {
-    double volume = 0.0;
-    for (int64_t q = 0; q < system->body.point_count; q++) {
-        volume += system->body.weight[q];
-    }
-    return pow(volume / (double)system->node_count, 1.0 / system->dim);
+    return pow(body_volume(&system->body) / (double)system->node_count, 1.0 / system->dim);
 }
 
 int64_t relaxation_choose_ramp(const struct relaxation *r)

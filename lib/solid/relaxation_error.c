@@ -1,5 +1,5 @@
 /* How far a relaxation is from equilibrium, and its damping. */
-#include "solid/lowest_frequency.h"
+#include "solid/frequency.h"
 #include "solid/relaxation_private.h"
 
 #include "base/memory.h"
@@ -12,21 +12,6 @@
 static const double pi = 3.14159265358979324;
 static const int most_spectrum_iterations = 1000;
 static const double spectrum_share = 0.8; /* of its estimate from above */
-
-/* sum m_i x_i y_i */
-static double mass_product(const struct relaxation *r, const double *x, const double *y)
-{
-    int dim = r->system->dim;
-    double sum = 0.0;
-    for (int64_t n = 0; n < r->system->node_count; n++) {
-        double part = 0.0;
-        for (int a = 0; a < dim; a++) {
-            part += x[n * dim + a] * y[n * dim + a];
-        }
-        sum += r->mass[n] * part;
-    }
-    return sum;
-}
 
 /* Length of the longest of the nodes' vectors. */
 static double largest_of_nodes(const struct relaxation *r, const double *x)
@@ -65,8 +50,8 @@ void relaxation_estimate(struct relaxation *r)
         du[i] = r->before[i] - r->last_u[i];
         da[i] = r->last_acceleration[i] - r->acceleration[i];
     }
-    double bottom = mass_product(r, du, du);
-    double quotient = bottom > 0.0 ? mass_product(r, du, da) / bottom : 0.0;
+    double bottom = system_mass_product(r->system, r->mass, du, du);
+    double quotient = bottom > 0.0 ? system_mass_product(r->system, r->mass, du, da) / bottom : 0.0;
     memcpy(r->last_u, r->before, (size_t)r->size * sizeof *r->before);
     memcpy(r->last_acceleration, r->acceleration, (size_t)r->size * sizeof *r->acceleration);
     if (quotient > 0.0 && r->checks > 0 && !r->mass_changed) {
@@ -79,11 +64,13 @@ void relaxation_estimate(struct relaxation *r)
     r->checks++;
     r->mass_changed = false;
     double least2 = least_of_window(r);
-    r->largest_displacement = fmax(r->largest_displacement, sqrt(mass_product(r, r->before, r->before)));
+    r->largest_displacement =
+        fmax(r->largest_displacement, sqrt(system_mass_product(r->system, r->mass, r->before, r->before)));
     r->largest_move = fmax(r->largest_move, largest_of_nodes(r, r->before));
     /* Of the largest so far: a scene may end at rest. */
     double on_the_whole =
-        ratio(sqrt(mass_product(r, r->acceleration, r->acceleration)) / least2, r->largest_displacement);
+        ratio(sqrt(system_mass_product(r->system, r->mass, r->acceleration, r->acceleration)) / least2,
+              r->largest_displacement);
     double at_worst = ratio(largest_of_nodes(r, r->acceleration) / least2, r->largest_move);
     r->report->error = fmax(on_the_whole, at_worst);
     r->report->lowest_frequency = sqrt(least2);

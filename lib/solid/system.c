@@ -256,60 +256,16 @@ void system_relaxation_mass(const struct solid_system *system, double *mass)
     }
 }
 
-/* A fixed sequence of pseudo-random numbers in [-1, 1): the same run gives the same bytes. */
-static void start_mode(double *mode, int64_t size)
+double system_mass_product(const struct solid_system *system, const double *mass, const double *x,
+                           const double *y)
 {
-    uint64_t state = 0x9e3779b97f4a7c15u;
-    for (int64_t i = 0; i < size; i++) {
-        state = state * 6364136223846793005u + 1442695040888963407u;
-        mode[i] = (double)(int64_t)state / 9223372036854775808.0;
-    }
-}
-
-static double largest_entry(const double *vector, int64_t size)
-{
-    double largest = 0.0;
-    for (int64_t i = 0; i < size; i++) {
-        largest = fmax(largest, fabs(vector[i]));
-    }
-    return largest;
-}
-
-double system_largest_frequency(struct solid_system *system, const double *mass, const double *u,
-                                const double *residual, int iterations, double *mode, double *scratch)
-{
-    int dim = system->dim;
-    int64_t size = system->node_count * dim;
-    double *displaced = scratch, *response = scratch + size;
-    double eigenvalue = 0.0;
-    if (largest_entry(mode, size) == 0.0) {
-        start_mode(mode, size);
-    }
-    /* A perturbation that strains the body by about 1e-6. */
-    double spacing = 0.0;
-    for (int64_t q = 0; q < system->body.point_count; q++) {
-        spacing += system->body.weight[q];
-    }
-    spacing = pow(spacing / (double)system->body.point_count, 1.0 / dim);
-    for (int it = 0; it < iterations; it++) {
-        double epsilon = 1e-6 * spacing / largest_entry(mode, size);
-        for (int64_t i = 0; i < size; i++) {
-            displaced[i] = u[i] + epsilon * mode[i];
+    double sum = 0.0;
+    for (int64_t n = 0; n < system->node_count; n++) {
+        double part = 0.0;
+        for (int a = 0; a < system->dim; a++) {
+            part += x[n * system->dim + a] * y[n * system->dim + a];
         }
-        (void)system_residual(system, displaced, response);
-        double top = 0.0, bottom = 0.0;
-        for (int64_t i = 0; i < size; i++) {
-            double stiffness = (residual[i] - response[i]) / epsilon;
-            double m = mass[i / dim];
-            top += mode[i] * stiffness;
-            bottom += m * mode[i] * mode[i];
-            response[i] = stiffness / m;
-        }
-        eigenvalue = top / bottom;
-        double scale = 1.0 / largest_entry(response, size);
-        for (int64_t i = 0; i < size; i++) {
-            mode[i] = response[i] * scale;
-        }
+        sum += mass[n] * part;
     }
-    return eigenvalue > 0.0 ? sqrt(eigenvalue) : 0.0;
+    return sum;
 }

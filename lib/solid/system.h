@@ -90,11 +90,8 @@ double system_spring_force(const struct solid_system *system, int64_t r, const d
  * same critical step (1) however the cloud is graded; contact penalties included. mass[node_count] > 0. */
 void system_relaxation_mass(const struct solid_system *system, double *mass);
 
-/* Largest frequency, the root of the largest eigenvalue of M^-1 K at u, by `iterations` steps of power
- * iteration that continue from mode[node_count * dim] (a start of zeros is replaced by a fixed pseudo-random
- * one). residual must hold the residual at u. The estimate is from below; repeated calls sharpen it. scratch:
- * 2 * node_count * dim. */
-double system_largest_frequency(struct solid_system *system, const double *mass, const double *u,
-                                const double *residual, int iterations, double *mode, double *scratch);
+/* sum over the nodes of mass x . y, with mass[node_count] and moves x, y[node_count * dim]. */
+double system_mass_product(const struct solid_system *system, const double *mass, const double *x,
+                           const double *y);
 
 #endif

@@ -1,4 +1,4 @@
-#include "solid/lowest_frequency.h"
+#include "solid/frequency.h"
 
 #include "base/memory.h"
 
@@ -13,6 +13,75 @@ static const double least_share =
     0.6; /* of the ratio of the largest frequency to the lowest: iterations at least */
 static const double strain =
     1e-6; /* about that much is a cell strained by the move that K is measured with */
+
+static double largest_entry(const double *vector, int64_t size)
+{
+    double largest = 0.0;
+    for (int64_t i = 0; i < size; i++) {
+        largest = fmax(largest, fabs(vector[i]));
+    }
+    return largest;
+}
+
+/* Mean spacing of the points. */
+static double point_spacing(const struct solid_system *system)
+{
+    return pow(body_volume(&system->body) / (double)system->body.point_count, 1.0 / system->dim);
+}
+
+/* response = the residual at displaced = u + epsilon move, which strains the body by about `strain`; returns
+ * epsilon. */
+static double residual_along(struct solid_system *system, const double *u, double spacing, const double *move,
+                             double *displaced, double *response)
+{
+    int64_t size = system->node_count * system->dim;
+    double epsilon = strain * spacing / largest_entry(move, size);
+    for (int64_t i = 0; i < size; i++) {
+        displaced[i] = u[i] + epsilon * move[i];
+    }
+    (void)system_residual(system, displaced, response);
+    return epsilon;
+}
+
+/* A fixed sequence of pseudo-random numbers in [-1, 1): the same run gives the same bytes. */
+static void start_mode(double *mode, int64_t size)
+{
+    uint64_t state = 0x9e3779b97f4a7c15u;
+    for (int64_t i = 0; i < size; i++) {
+        state = state * 6364136223846793005u + 1442695040888963407u;
+        mode[i] = (double)(int64_t)state / 9223372036854775808.0;
+    }
+}
+
+double system_largest_frequency(struct solid_system *system, const double *mass, const double *u,
+                                const double *residual, int iterations, double *mode, double *scratch)
+{
+    int dim = system->dim;
+    int64_t size = system->node_count * dim;
+    double *displaced = scratch, *response = scratch + size;
+    double eigenvalue = 0.0;
+    if (largest_entry(mode, size) == 0.0) {
+        start_mode(mode, size);
+    }
+    double spacing = point_spacing(system);
+    for (int it = 0; it < iterations; it++) {
+        double epsilon = residual_along(system, u, spacing, mode, displaced, response);
+        double top = 0.0, bottom = 0.0;
+        for (int64_t i = 0; i < size; i++) {
+            double stiffness = (residual[i] - response[i]) / epsilon;
+            double m = mass[i / dim];
+            top += mode[i] * stiffness;
+            bottom += m * mode[i] * mode[i];
+            response[i] = stiffness / m;
+        }
+        eigenvalue = top / bottom;
+        double scale = 1.0 / largest_entry(response, size);
+        for (int64_t i = 0; i < size; i++) {
+            mode[i] = response[i] * scale;
+        }
+    }
+    return eigenvalue > 0.0 ? sqrt(eigenvalue) : 0.0;
+}
 
 /* How many eigenvalues of the symmetric tridiagonal matrix (diagonal[n], beside[n - 1]) are below x: Sturm's
  * count. */
@@ -53,56 +122,16 @@ static double least_eigenvalue(int n, const double *diagonal, const double *besi
     return high;
 }
 
-/* sum m_i x_i y_i */
-static double mass_product(const struct solid_system *system, const double *mass, const double *x,
-                           const double *y)
-{
-    double sum = 0.0;
-    for (int64_t n = 0; n < system->node_count; n++) {
-        double part = 0.0;
-        for (int a = 0; a < system->dim; a++) {
-            part += x[n * system->dim + a] * y[n * system->dim + a];
-        }
-        sum += mass[n] * part;
-    }
-    return sum;
-}
-
-static double largest_entry(const double *x, int64_t size)
-{
-    double largest = 0.0;
-    for (int64_t i = 0; i < size; i++) {
-        largest = fmax(largest, fabs(x[i]));
-    }
-    return largest;
-}
-
 /* product = P M^-1 K move: the change of the residual from u along the move, over the mass, projected. */
 static void apply(struct solid_system *system, struct constraint *constraint, const double *u,
                   const double *residual, double spacing, const double *move, double *displaced,
                   double *product)
 {
-    int dim = system->dim;
-    int64_t size = system->node_count * dim;
-    double epsilon = strain * spacing / largest_entry(move, size);
-    for (int64_t i = 0; i < size; i++) {
-        displaced[i] = u[i] + epsilon * move[i];
-    }
-    (void)system_residual(system, displaced, product);
-    for (int64_t i = 0; i < size; i++) {
-        product[i] = (residual[i] - product[i]) / (epsilon * constraint->mass[i / dim]);
+    double epsilon = residual_along(system, u, spacing, move, displaced, product);
+    for (int64_t i = 0; i < system->node_count * system->dim; i++) {
+        product[i] = (residual[i] - product[i]) / (epsilon * constraint->mass[i / system->dim]);
     }
     constraint_project(constraint, NULL, product);
-}
-
-/* Mean spacing of the points. */
-static double point_spacing(const struct solid_system *system)
-{
-    double volume = 0.0;
-    for (int64_t q = 0; q < system->body.point_count; q++) {
-        volume += system->body.weight[q];
-    }
-    return pow(volume / (double)system->body.point_count, 1.0 / system->dim);
 }
 
 /* Whether `count` iterations can tell the least eigenvalue: fewer than a share of the ratio of the
@@ -129,17 +158,18 @@ enum status system_lowest_eigenvalue(struct solid_system *system, struct constra
     TRY(NEW_ARRAY(&beside, most_iterations, error));
     memset(before, 0, (size_t)size * sizeof *before);
     constraint_project(constraint, NULL, vector);
-    double norm = sqrt(mass_product(system, constraint->mass, vector, vector)), coupling = 0.0, largest = 0.0;
+    double norm = sqrt(system_mass_product(system, constraint->mass, vector, vector)), coupling = 0.0,
+           largest = 0.0;
     for (int k = 0; k < most_iterations && norm > 1e-12 * largest; k++) {
         for (int64_t i = 0; i < size; i++) {
             vector[i] /= norm;
         }
         apply(system, constraint, u, residual, spacing, vector, displaced, product);
-        diagonal[k] = mass_product(system, constraint->mass, vector, product);
+        diagonal[k] = system_mass_product(system, constraint->mass, vector, product);
         for (int64_t i = 0; i < size; i++) {
             product[i] -= diagonal[k] * vector[i] + coupling * before[i];
         }
-        norm = coupling = beside[k] = sqrt(mass_product(system, constraint->mass, product, product));
+        norm = coupling = beside[k] = sqrt(system_mass_product(system, constraint->mass, product, product));
         largest = fmax(largest, diagonal[k]);
         memcpy(before, vector, (size_t)size * sizeof *before);
         memcpy(vector, product, (size_t)size * sizeof *vector);
