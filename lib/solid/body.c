@@ -80,7 +80,7 @@ done:
     return status;
 }
 
-/* Cut the ordered points into blocks of one law; within a block the order is free. */
+/* Cut the ordered points into blocks of one law. */
 static enum status cut_blocks(const struct body_input *input, struct body *body, struct error *error)
 {
     enum status status;
@@ -96,37 +96,31 @@ static enum status cut_blocks(const struct body_input *input, struct body *body,
             block->point_count++;
             q++;
         }
-        pairs_sort_rows(block->point_count, body->order + block->first_point, input->ptr, NULL);
     }
 done:
     return status;
 }
 
-/* The table of gradients, in the blocks of the points. */
-static enum status build_gradients(const struct body_input *input, struct body *body, struct error *error)
+/* The rows of the table of gradients are the points; within a block their order is free. */
+static enum status order_rows(const struct body_input *input, struct body *body, int64_t **first_row,
+                              struct pairs_rows *rows, struct error *error)
 {
     enum status status;
-    int64_t *first_row = NULL;
-    TRY(NEW_ARRAY(&first_row, body->block_count + 1, error));
+    TRY(NEW_ARRAY(first_row, body->block_count + 1, error));
     for (int64_t b = 0; b < body->block_count; b++) {
-        first_row[b] = body->blocks[b].first_point;
+        (*first_row)[b] = body->blocks[b].first_point;
     }
-    first_row[body->block_count] = body->point_count;
-    struct pairs_input pairs = {.dim = input->dim,
-                                .width = input->dim,
-                                .node_count = input->node_count,
+    (*first_row)[body->block_count] = body->point_count;
+    *rows = (struct pairs_rows){.node_count = input->node_count,
                                 .row_count = input->point_count,
-                                .row = body->order,
                                 .ptr = input->ptr,
                                 .idx = input->idx,
-                                .value = input->dphi,
-                                .place = body->node_place,
+                                .row = body->order,
                                 .block_count = body->block_count,
-                                .first_row = first_row,
-                                .single = input->single};
-    status = pairs_build(&pairs, &body->gradients, error);
+                                .first_row = *first_row,
+                                .least_sharing = input->dim};
+    status = pairs_order(rows, NULL, error);
 done:
-    free(first_row);
     return status;
 }
 
@@ -233,7 +227,6 @@ static enum status build_hats(const struct body_input *input, struct body *body,
     TRY(NEW_ARRAY(&keys, slots, error));
     TRY(NEW_ARRAY(&hats->of_point, slots, error));
     TRY(NEW_ARRAY(&hats->value, slots, error));
-    TRY(NEW_ARRAY(&hats->ptr, slots + 1, error));
     TRY(NEW_ARRAY(&hats->point, slots, error));
     TRY(NEW_ARRAY(&hats->share, slots, error));
     for (int64_t s = 0; s < slots; s++) {
@@ -245,14 +238,15 @@ static enum status build_hats(const struct body_input *input, struct body *body,
     }
     qsort(keys, (size_t)slots, sizeof *keys, compare_hats);
     for (int64_t i = 0; i < slots; i++) {
-        if (i == 0 || keys[i].node != keys[i - 1].node || keys[i].group != keys[i - 1].group) {
-            hats->ptr[hats->count++] = i;
-        }
+        hats->count += i == 0 || keys[i].node != keys[i - 1].node || keys[i].group != keys[i - 1].group;
         hats->of_point[keys[i].slot] = (int32_t)(hats->count - 1);
         hats->point[i] = (int32_t)(keys[i].slot / per_point);
         hats->share[i] = hats->value[keys[i].slot] * body->weight[hats->point[i]];
     }
-    hats->ptr[hats->count] = slots;
+    TRY(NEW_ARRAY(&hats->ptr, hats->count + 1, error));
+    for (int64_t i = 0; i < slots; i++) {
+        hats->ptr[hats->of_point[keys[i].slot] + 1] = i + 1;
+    }
     TRY(NEW_ARRAY(&hats->volume, hats->count, error));
     TRY(NEW_ARRAY(&hats->material, hats->count, error));
     TRY(NEW_ARRAY(&hats->theta, hats->count, error));
@@ -283,6 +277,12 @@ static int worthwhile_threads(const struct body *body)
 enum status body_build(const struct body_input *input, struct body *body, struct error *error)
 {
     enum status status;
+    struct pairs_input pairs = {.dim = input->dim,
+                                .width = input->dim,
+                                .value = input->dphi,
+                                .passes = input->hat_node != NULL ? 2 : 1,
+                                .single = input->single};
+    int64_t *first_row = NULL;
     *body = (struct body){.dim = input->dim,
                           .node_count = input->node_count,
                           .point_count = input->point_count,
@@ -302,6 +302,9 @@ enum status body_build(const struct body_input *input, struct body *body, struct
     }
     TRY(order_all(input, body, error));
     TRY(cut_blocks(input, body, error));
+    if (!body->conforming) {
+        TRY(order_rows(input, body, &first_row, &pairs.rows, error));
+    }
     TRY(copy_points(input, body, error));
     body->pair_count = input->ptr[input->point_count];
     body->threads = worthwhile_threads(body);
@@ -309,13 +312,15 @@ enum status body_build(const struct body_input *input, struct body *body, struct
         TRY(build_hats(input, body, error));
     }
     if (!body->conforming) {
-        TRY(build_gradients(input, body, error));
+        pairs.place = body->node_place;
+        TRY(pairs_build(&pairs, &body->gradients, error));
     } else {
         TRY(conforming_build(input->conforming, input->dim, input->node_count, input->point_count,
                              body->order, body->node_place, input->single, &body->cells, error));
         TRY(check_smoothing(body, error));
     }
 done:
+    free(first_row);
     if (status != STATUS_OK) {
         body_free(body);
     }

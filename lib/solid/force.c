@@ -5,9 +5,6 @@
 #include <math.h>
 #include <string.h>
 
-/* Room for the displacements of a block's nodes. */
-#define MAX_LOCAL (PAIRS_MAX_NODES * 4)
-
 /* Volumetric pressure at a point: that of the hats around it, or its own. */
 double body_pressure(const struct body *body, int64_t point)
 {
@@ -69,7 +66,7 @@ static bool is_tied(const struct body *body)
 }
 
 /* Stresses of a block, and their forces on its nodes, or on the means of its cells. */
-static void stress_block(struct body *body, int64_t b)
+static void stress_block(struct body *body, int64_t b, double *scratch)
 {
     block_stress P;
     if (body->blocks[b].neo_hookean) {
@@ -77,10 +74,15 @@ static void stress_block(struct body *body, int64_t b)
     } else {
         general_block(body, &body->blocks[b], P);
     }
+    for (int64_t i = body->blocks[b].point_count; i % PAIRS_GROUP != 0; i++) {
+        for (int k = 0; k < body->dim * body->dim; k++) {
+            P[k][i] = 0.0;
+        }
+    }
     if (body->conforming) {
         body->kernels->cell_forces(body, b, (const double(*)[PAIRS_MAX_ROWS])P);
     } else {
-        body->kernels->scatter(body, b, (const double(*)[PAIRS_MAX_ROWS])P);
+        body->kernels->scatter(body, b, (const double(*)[PAIRS_MAX_ROWS])P, scratch);
     }
 }
 
@@ -126,19 +128,19 @@ static int64_t stretch_end(const struct body *body, int64_t first)
 }
 
 /* The means that conforming cells look at, and what they put on them: loops that threads share. */
-static void gather_means(const struct body *body, struct means *means, double *local)
+static void gather_means(const struct body *body, struct means *means, double *scratch)
 {
 #pragma omp for schedule(static)
     for (int64_t b = 0; b < means->pairs.block_count; b++) {
-        body->kernels->gather_means(means, b, body->u, local);
+        body->kernels->gather_means(means, b, body->u, scratch);
     }
 }
 
-static void scatter_means(const struct body *body, struct means *means)
+static void scatter_means(const struct body *body, struct means *means, double *scratch)
 {
 #pragma omp for schedule(static)
     for (int64_t b = 0; b < means->pairs.block_count; b++) {
-        body->kernels->scatter_means(means, b);
+        body->kernels->scatter_means(means, b, scratch);
     }
 }
 
@@ -148,26 +150,26 @@ static void evaluate(struct body *body, const double *u, double *force)
     bool tied = is_tied(body);
 #pragma omp parallel num_threads(body->threads)
     {
-        double local[MAX_LOCAL] __attribute__((aligned(64)));
+        double scratch[PAIRS_SCRATCH] __attribute__((aligned(64)));
 #pragma omp for schedule(static)
         for (int64_t first = 0; first < body->node_count; first += NODES_AT_ONCE) {
             body->kernels->place(body, first, stretch_end(body, first), u);
         }
         if (body->conforming) {
-            gather_means(body, &body->cells.faces, local);
+            gather_means(body, &body->cells.faces, scratch);
         }
         if (tied) {
-            gather_means(body, &body->compatibility->nodes, local);
+            gather_means(body, &body->compatibility->nodes, scratch);
         }
 #pragma omp for schedule(static)
         for (int64_t b = 0; b < body->block_count; b++) {
             if (body->conforming) {
                 body->kernels->cell_gradients(body, b);
             } else {
-                body->kernels->gather(body, b, local);
+                body->kernels->gather(body, b, scratch);
             }
             if (!body->averaged) {
-                stress_block(body, b); /* while its part of the table is in cache */
+                stress_block(body, b, scratch); /* while its part of the table is in cache */
             }
         }
         if (body->averaged) {
@@ -177,14 +179,14 @@ static void evaluate(struct body *body, const double *u, double *force)
             }
 #pragma omp for schedule(static)
             for (int64_t b = 0; b < body->block_count; b++) {
-                stress_block(body, b);
+                stress_block(body, b, scratch);
             }
         }
         if (body->conforming) {
-            scatter_means(body, &body->cells.faces);
+            scatter_means(body, &body->cells.faces, scratch);
         }
         if (tied) {
-            scatter_means(body, &body->compatibility->nodes);
+            scatter_means(body, &body->compatibility->nodes, scratch);
         }
         if (force != NULL) {
 #pragma omp for schedule(static)
@@ -283,6 +285,12 @@ void body_diagonal(const struct body *body, double *stiffness)
     for (int64_t q = 0; q < body->point_count; q++) {
         double F[9], C[9], A[9], J = body->J[q], I1 = 0.0;
         full_gradient(body, q, F);
+        if (!isfinite(J)) { /* as at rest: the bounds at its nodes stay positive until the run is told */
+            J = 1.0;
+            for (int k = 0; k < 9; k++) {
+                F[k] = k % 4 == 0 ? 1.0 : 0.0;
+            }
+        }
         cofactor(F, C);
         for (int k = 0; k < 9; k++) {
             I1 += F[k] * F[k];

@@ -16,43 +16,24 @@
     {                                                                                                        \
         sum_nodes_##dim(body, first, last, force);                                                           \
     }                                                                                                        \
-    attribute static void gather_##set##_##dim(struct body *body, int64_t b, double *local)                  \
+    attribute static void gather_##set##_##dim(struct body *body, int64_t b, double *scratch)                \
     {                                                                                                        \
-        const struct pairs *pairs = &body->gradients;                                                        \
-        const struct pair_block *block = &pairs->blocks[b];                                                  \
-        double *F = body->F + block->first_row;                                                              \
-        localise(pairs, block, dim, body->u, local);                                                         \
-        if (pairs->value != NULL) {                                                                          \
-            kernel_gradients(pairs, block, dim, local, false, F, body->point_count);                         \
-        } else {                                                                                             \
-            kernel_gradients(pairs, block, dim, local, true, F, body->point_count);                          \
-        }                                                                                                    \
+        kernel_gather(body, b, dim, scratch);                                                                \
         kernel_determinants(body, &body->blocks[b], dim);                                                    \
     }                                                                                                        \
-    attribute static void scatter_##set##_##dim(struct body *body, int64_t b, const block_stress P)          \
+    attribute static void scatter_##set##_##dim(struct body *body, int64_t b, const block_stress P,          \
+                                                double *scratch)                                             \
     {                                                                                                        \
-        if (body->gradients.value != NULL) {                                                                 \
-            kernel_scatter(&body->gradients, b, dim, P, false);                                              \
-        } else {                                                                                             \
-            kernel_scatter(&body->gradients, b, dim, P, true);                                               \
-        }                                                                                                    \
+        kernel_scatter(&body->gradients, b, dim, P, scratch);                                                \
     }                                                                                                        \
     attribute static void gather_means_##set##_##dim(struct means *means, int64_t b, const double *u,        \
-                                                     double *local)                                          \
+                                                     double *scratch)                                        \
     {                                                                                                        \
-        if (means->pairs.value != NULL) {                                                                    \
-            kernel_gather_means(means, b, dim, u, local, false);                                             \
-        } else {                                                                                             \
-            kernel_gather_means(means, b, dim, u, local, true);                                              \
-        }                                                                                                    \
+        kernel_gather_means(means, b, dim, u, scratch);                                                      \
     }                                                                                                        \
-    attribute static void scatter_means_##set##_##dim(struct means *means, int64_t b)                        \
+    attribute static void scatter_means_##set##_##dim(struct means *means, int64_t b, double *scratch)       \
     {                                                                                                        \
-        if (means->pairs.value != NULL) {                                                                    \
-            kernel_scatter_means(means, b, dim, false);                                                      \
-        } else {                                                                                             \
-            kernel_scatter_means(means, b, dim, true);                                                       \
-        }                                                                                                    \
+        kernel_scatter_means(means, b, dim, scratch);                                                        \
     }                                                                                                        \
     attribute static void cell_gradients_##set##_##dim(struct body *body, int64_t b)                         \
     {                                                                                                        \

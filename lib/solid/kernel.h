@@ -4,10 +4,11 @@
 
 #include "solid/body.h"
 
-/* Something for each point of a block: row k of component k, points along it. */
+/* Something for each point of a block: row k of component k, points along it. A stress has zeros behind the
+ * last point, up to a whole group. */
 typedef double block_stress[9][PAIRS_MAX_ROWS];
 
-/* Each works on the block of that number. local: scratch, room for the displacements of a block's nodes. */
+/* Each works on the block of that number. scratch: PAIRS_SCRATCH. */
 struct force_kernels {
     const char *name;
     /* For nodes first .. last - 1: displacements into the body's order; and force, in the caller's, as the
@@ -15,11 +16,11 @@ struct force_kernels {
     void (*place)(struct body *body, int64_t first, int64_t last, const double *u);
     void (*sum)(const struct body *body, int64_t first, int64_t last, double *force);
     /* F and J of points from the table of gradients and body->u; and the forces of weighted stresses P. */
-    void (*gather)(struct body *body, int64_t block, double *local);
-    void (*scatter)(struct body *body, int64_t block, const block_stress P);
+    void (*gather)(struct body *body, int64_t block, double *scratch);
+    void (*scatter)(struct body *body, int64_t block, const block_stress P, double *scratch);
     /* Means from the field u; and the forces of what the corners put on them. */
-    void (*gather_means)(struct means *means, int64_t block, const double *u, double *local);
-    void (*scatter_means)(struct means *means, int64_t block);
+    void (*gather_means)(struct means *means, int64_t block, const double *u, double *scratch);
+    void (*scatter_means)(struct means *means, int64_t block, double *scratch);
     /* F and J of conforming cells from the means; and from weighted stresses P what the corners put on them,
      * with the ties of compatibility.h where they are active. */
     void (*cell_gradients)(struct body *body, int64_t block);

@@ -1,7 +1,7 @@
 /* Kernels over pairs of row and node; private to lib/solid.
  *
- * Per pair they do no more than a load of the table, a load of the displacement or force, and the
- * multiplications: the tables decide the speed. Each is compiled for tables in double and in single
+ * For each entry of a group they load a displacement or the forces on a node, or four, and the values of four
+ * rows, and multiply: the tables decide the speed. Each is compiled for tables in double and in single
  * precision; sums are double always. */
 #ifndef SOLID_KERNEL_PAIRS_H
 #define SOLID_KERNEL_PAIRS_H
@@ -10,15 +10,226 @@
 #include "solid/kernel.h"
 #include "solid/kernel_vector.h"
 
-/* Independent sums of a row: the loop is bound by the latency of the additions otherwise. */
-enum { CHAINS = 4 };
+/* How a table is read: constants for the compiler. */
+struct reading {
+    int dim, width;
+    bool single; /* its precision */
+};
 
-#define UNROLL _Pragma("GCC unroll 4")
+/* Where a kernel is in a table. */
+struct cursor {
+    const uint16_t *offset;
+    const double *value;
+    const float *single_value;
+    bool prefetches;
+    const char *ahead; /* to prefetch now */
+    int step;          /* bytes of it at each entry */
+};
+
+/* At the beginning of a block. What the next block has in place of this one is prefetched, of a table that
+ * does not stay in cache: a share of it at each entry. Where a block is scattered as soon as it is gathered,
+ * each of the two does half. */
+KERNEL_INLINE struct cursor start_block(const struct pairs *pairs, int64_t b, struct reading how,
+                                        bool scatters)
+{
+    const struct pair_group *first = &pairs->groups[pairs->blocks[b].first_group];
+    const struct pair_group *next = first + pairs->blocks[b].group_count;
+    int64_t bytes = how.width * PAIRS_GROUP * (how.single ? 4 : 8);
+    int64_t at = first->first_entry * how.width * PAIRS_GROUP;
+    struct cursor cursor = {.offset = pairs->offset + first->first_offset,
+                            .prefetches = pairs->large,
+                            .step = (int)(bytes / pairs->passes)};
+    const char *table;
+    if (how.single) {
+        cursor.single_value = pairs->single_value + at;
+        table = (const char *)pairs->single_value;
+    } else {
+        cursor.value = pairs->value + at;
+        table = (const char *)pairs->value;
+    }
+    int64_t half = scatters && pairs->passes == 1 ? (next->first_entry - first->first_entry) * bytes / 2 : 0;
+    cursor.ahead = table + next->first_entry * bytes + half;
+    return cursor;
+}
+
+/* Value k of the rows of an entry. The conversion is spelt out: gcc 12 makes one instruction of it, but not
+ * of
+ * __builtin_convertvector. */
+KERNEL_INLINE void read_value(const struct cursor *cursor, struct reading how, int k, quad4 *value)
+{
+    if (how.single) {
+        const float *v = cursor->single_value + k * PAIRS_GROUP;
+        *value = (quad4){(double)v[0], (double)v[1], (double)v[2], (double)v[3]};
+    } else {
+        LOAD(*value, cursor->value + k * PAIRS_GROUP);
+    }
+}
+
+/* Go to the next entry, this one having so many offsets. */
+KERNEL_INLINE void advance(struct cursor *cursor, struct reading how, int offsets)
+{
+    cursor->offset += offsets;
+    if (how.single) {
+        cursor->single_value += how.width * PAIRS_GROUP;
+    } else {
+        cursor->value += how.width * PAIRS_GROUP;
+    }
+    if (cursor->prefetches) {
+        prefetch(cursor->ahead, how.width * PAIRS_GROUP * (how.single ? 4 : 8));
+        cursor->ahead += cursor->step;
+    }
+}
+
+/* Component a of four vectors, in the lanes of x[a]. */
+KERNEL_INLINE void load_components(const double *const from[PAIRS_GROUP], int dim, quad4 x[4])
+{
+    if (dim == 2) {
+        pair2 v[PAIRS_GROUP];
+        for (int r = 0; r < PAIRS_GROUP; r++) {
+            LOAD(v[r], from[r]);
+        }
+        pair2 first = __builtin_shufflevector(v[0], v[1], 0, 2);
+        pair2 last = __builtin_shufflevector(v[2], v[3], 0, 2);
+        x[0] = __builtin_shufflevector(first, last, 0, 1, 2, 3);
+        first = __builtin_shufflevector(v[0], v[1], 1, 3);
+        last = __builtin_shufflevector(v[2], v[3], 1, 3);
+        x[1] = __builtin_shufflevector(first, last, 0, 1, 2, 3);
+    } else {
+        for (int r = 0; r < PAIRS_GROUP; r++) {
+            LOAD(x[r], from[r]);
+        }
+        transpose(x);
+    }
+}
+
+/* sum += u (x) value: component a of u with value k of the pair in sum[a * width + k]. All rows have the same
+ * node; */
+KERNEL_INLINE void add_shared(struct cursor *cursor, struct reading how, const double *u, quad4 sum[9])
+{
+    const double *v = u + cursor->offset[0];
+    for (int k = 0; k < how.width; k++) {
+        quad4 value;
+        read_value(cursor, how, k, &value);
+        for (int a = 0; a < how.dim; a++) {
+            sum[a * how.width + k] += v[a] * value;
+        }
+    }
+    advance(cursor, how, 1);
+}
+
+/* each has its own. */
+KERNEL_INLINE void add_own(struct cursor *cursor, struct reading how, const double *u, quad4 sum[9])
+{
+    const double *const from[PAIRS_GROUP] = {u + cursor->offset[0], u + cursor->offset[1],
+                                             u + cursor->offset[2], u + cursor->offset[3]};
+    quad4 x[4];
+    load_components(from, how.dim, x);
+    for (int k = 0; k < how.width; k++) {
+        quad4 value;
+        read_value(cursor, how, k, &value);
+        for (int a = 0; a < how.dim; a++) {
+            sum[a * how.width + k] += x[a] * value;
+        }
+    }
+    advance(cursor, how, PAIRS_GROUP);
+}
+
+/* Sums over the entries of a group of u (x) values, in two chains where one would be bound by the latency of
+ * the additions. */
+KERNEL_INLINE void gather_group(const struct pair_group *group, struct reading how, const double *u,
+                                struct cursor *cursor, quad4 sum[9])
+{
+    quad4 odd[9] = {{0.0}};
+    int32_t shared = group->shared, own = group->own;
+    bool two_chains = how.dim * how.width < 9;
+    for (; two_chains && shared >= 2; shared -= 2) {
+        add_shared(cursor, how, u, sum);
+        add_shared(cursor, how, u, odd);
+    }
+    for (; shared > 0; shared--) {
+        add_shared(cursor, how, u, sum);
+    }
+    for (; own > 0; own--) {
+        add_own(cursor, how, u, sum);
+    }
+    for (int k = 0; two_chains && k < how.dim * how.width; k++) {
+        sum[k] += odd[k];
+    }
+}
+
+/* The transpose: sum_k factor[a * width + k] value_k into component a of each row's x. */
+KERNEL_INLINE void multiply(const struct cursor *cursor, struct reading how, const quad4 factor[9],
+                            quad4 x[4])
+{
+    for (int k = 0; k < how.width; k++) {
+        quad4 value;
+        read_value(cursor, how, k, &value);
+        for (int a = 0; a < how.dim; a++) {
+            x[a] += factor[a * how.width + k] * value;
+        }
+    }
+}
+
+/* Add four vectors given by components. */
+KERNEL_INLINE void add_vectors(const quad4 x[4], int dim, double *const to[PAIRS_GROUP])
+{
+    if (dim == 2) {
+        quad4 even = __builtin_shufflevector(x[0], x[1], 0, 4, 2, 6);
+        quad4 odd = __builtin_shufflevector(x[0], x[1], 1, 5, 3, 7);
+        pair2 row[PAIRS_GROUP] = {
+            __builtin_shufflevector(even, even, 0, 1), __builtin_shufflevector(odd, odd, 0, 1),
+            __builtin_shufflevector(even, even, 2, 3), __builtin_shufflevector(odd, odd, 2, 3)};
+        for (int r = 0; r < PAIRS_GROUP; r++) {
+            pair2 sum;
+            LOAD(sum, to[r]);
+            sum += row[r];
+            STORE(to[r], sum);
+        }
+    } else {
+        quad4 row[4] = {x[0], x[1], x[2], {0.0}};
+        transpose(row);
+        for (int r = 0; r < PAIRS_GROUP; r++) {
+            quad4 sum;
+            LOAD(sum, to[r]);
+            sum += row[r];
+            STORE(to[r], sum);
+        }
+    }
+}
+
+/* What a group puts on its nodes. lane_forces has for each node and component a vector along the rows, force
+ * what comes from entries that the rows do not share. */
+KERNEL_INLINE void scatter_group(const struct pair_group *group, struct reading how, const quad4 factor[9],
+                                 double *restrict lane_forces, double *restrict force, struct cursor *cursor)
+{
+    int32_t shared = group->shared, own = group->own;
+    for (; shared > 0; shared--) {
+        double *to = lane_forces + cursor->offset[0] * (how.dim * PAIRS_GROUP / PAIRS_STRIDE(how.dim));
+        quad4 x[4];
+        for (int a = 0; a < how.dim; a++) {
+            LOAD(x[a], to + a * PAIRS_GROUP);
+        }
+        multiply(cursor, how, factor, x);
+        for (int a = 0; a < how.dim; a++) {
+            STORE(to + a * PAIRS_GROUP, x[a]);
+        }
+        advance(cursor, how, 1);
+    }
+    for (; own > 0; own--) {
+        double *const to[PAIRS_GROUP] = {force + cursor->offset[0], force + cursor->offset[1],
+                                         force + cursor->offset[2], force + cursor->offset[3]};
+        quad4 x[4] = {{0.0}};
+        multiply(cursor, how, factor, x);
+        add_vectors(x, how.dim, to);
+        advance(cursor, how, PAIRS_GROUP);
+    }
+}
 
 /* Displacements of the block's nodes. */
-KERNEL_INLINE void localise(const struct pairs *pairs, const struct pair_block *block, int dim,
-                            const double *u, double *restrict local)
+KERNEL_INLINE void localise(const struct pairs *pairs, int64_t b, int dim, const double *u,
+                            double *restrict local)
 {
+    const struct pair_block *block = &pairs->blocks[b];
     const int32_t *node = pairs->block_node + block->first_node;
     int64_t stride = PAIRS_STRIDE(dim);
     for (int64_t i = 0; i < block->node_count; i++) {
@@ -26,270 +237,179 @@ KERNEL_INLINE void localise(const struct pairs *pairs, const struct pair_block *
     }
 }
 
-/* Value i of a table. */
-KERNEL_INLINE double table_value(const struct pairs *pairs, int64_t i, bool single)
+/* Forces of a block on its nodes: none yet. */
+KERNEL_INLINE double *clear_forces(struct pairs *pairs, int64_t b, int dim, double *lane_forces)
 {
-    return single ? (double)pairs->single_value[i] : pairs->value[i];
-}
-
-/* Prefetch what the next block has in place of this row, of a table that does not stay in cache. */
-KERNEL_INLINE void prefetch_row(const struct pairs *pairs, const struct pair_block *block, int64_t row,
-                                int width, bool single)
-{
-    if (!pairs->large) {
-        return;
-    }
-    const int64_t *ptr = pairs->ptr;
-    int64_t ahead = ptr[block->first_row + block->row_count] - ptr[block->first_row];
-    int64_t first = ptr[row] + ahead, last = ptr[row + 1] + ahead;
-    if (single) {
-        prefetch(pairs->single_value, first * width * 4, last * width * 4);
-    } else {
-        prefetch(pairs->value, first * width * 8, last * width * 8);
-    }
-    prefetch(pairs->offset, first * 2, last * 2);
-}
-
-/* As many values of a table from i on as the vector has lanes. */
-#define LOAD_VALUES(vector)                                                                                  \
-    KERNEL_INLINE void load_##vector(const struct pairs *pairs, int64_t i, bool single, vector *value)       \
-    {                                                                                                        \
-        if (single) {                                                                                        \
-            vector##_float narrow;                                                                           \
-            LOAD(narrow, pairs->single_value + i);                                                           \
-            *value = __builtin_convertvector(narrow, vector);                                                \
-        } else {                                                                                             \
-            LOAD(*value, pairs->value + i);                                                                  \
-        }                                                                                                    \
-    }
-LOAD_VALUES(pair2)
-LOAD_VALUES(quad4)
-
-/* Value i + k of a table, of which `values` holds those from i on: in double precision a load that spreads it
- * over the lanes is quicker than a shuffle. */
-#define VALUE_OF(values, pairs, i, k, single) ((single) ? (values)[k] : (pairs)->value[(i) + (k)])
-
-/* Columns of F += u grad phi. */
-KERNEL_INLINE void outer2(const struct pairs *pairs, int64_t i, const double *u, bool single, pair2 column[2])
-{
-    pair2 uu;
-    LOAD(uu, u + pairs->offset[i]);
-    column[0] += uu * table_value(pairs, 2 * i, single);
-    column[1] += uu * table_value(pairs, 2 * i + 1, single);
-}
-
-KERNEL_INLINE void gradients_2d(const struct pairs *pairs, const struct pair_block *block,
-                                const double *restrict u, bool single, double *restrict F, int64_t stride)
-{
-    for (int64_t row = block->first_row; row < block->first_row + block->row_count; row++, F++) {
-        pair2 column[CHAINS][2] = {{{1.0, 0.0}, {0.0, 1.0}}};
-        int64_t i = pairs->ptr[row], end = pairs->ptr[row + 1];
-        for (; i + CHAINS <= end; i += CHAINS) {
-            for (int chain = 0; chain < CHAINS; chain++) {
-                outer2(pairs, i + chain, u, single, column[chain]);
-            }
-        }
-        for (; i < end; i++) {
-            outer2(pairs, i, u, single, column[0]);
-        }
-        for (int b = 0; b < 2; b++) {
-            pair2 sum = (column[0][b] + column[1][b]) + (column[2][b] + column[3][b]);
-            F[b * stride] = sum[0];
-            F[(2 + b) * stride] = sum[1];
-        }
-    }
-}
-
-/* Rows of F += u_a (g0, g1, g2, junk). */
-KERNEL_INLINE void outer3(const struct pairs *pairs, int64_t i, const double *u, bool single, quad4 row[3])
-{
-    const double *v = u + pairs->offset[i];
-    quad4 g;
-    load_quad4(pairs, 3 * i, single, &g);
-    for (int a = 0; a < 3; a++) {
-        row[a] += v[a] * g;
-    }
-}
-
-KERNEL_INLINE void gradients_3d(const struct pairs *pairs, const struct pair_block *block,
-                                const double *restrict u, bool single, double *restrict F, int64_t stride)
-{
-    for (int64_t row = block->first_row; row < block->first_row + block->row_count; row++, F++) {
-        quad4 part[CHAINS][3] = {{{1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}}};
-        int64_t i = pairs->ptr[row], end = pairs->ptr[row + 1];
-        for (; i + CHAINS <= end; i += CHAINS) {
-            for (int chain = 0; chain < CHAINS; chain++) {
-                outer3(pairs, i + chain, u, single, part[chain]);
-            }
-        }
-        for (; i < end; i++) {
-            outer3(pairs, i, u, single, part[0]);
-        }
-        for (int a = 0; a < 3; a++) {
-            quad4 sum = (part[0][a] + part[1][a]) + (part[2][a] + part[3][a]);
-            for (int b = 0; b < 3; b++) {
-                F[(3 * a + b) * stride] = sum[b];
-            }
-        }
-    }
-}
-
-KERNEL_INLINE void kernel_gradients(const struct pairs *pairs, const struct pair_block *block, int dim,
-                                    const double *local, bool single, double *F, int64_t stride)
-{
-    if (dim == 2) {
-        gradients_2d(pairs, block, local, single, F, stride);
-    } else {
-        gradients_3d(pairs, block, local, single, F, stride);
-    }
-}
-
-KERNEL_INLINE void scatter_2d(const struct pairs *pairs, const struct pair_block *block, const block_stress P,
-                              bool single, double *restrict force)
-{
-    const uint16_t *restrict offset = pairs->offset;
-    for (int64_t p = 0; p < block->row_count; p++) {
-        int64_t row = block->first_row + p;
-        pair2 column0 = {P[0][p], P[2][p]}, column1 = {P[1][p], P[3][p]};
-        prefetch_row(pairs, block, row, 2, single);
-        UNROLL for (int64_t i = pairs->ptr[row], end = pairs->ptr[row + 1]; i < end; i++)
-        {
-            double *f = force + offset[i];
-            pair2 sum, g;
-            LOAD(sum, f);
-            load_pair2(pairs, 2 * i, single, &g);
-            sum += column0 * VALUE_OF(g, pairs, 2 * i, 0, single);
-            sum += column1 * VALUE_OF(g, pairs, 2 * i, 1, single);
-            STORE(f, sum);
-        }
-    }
-}
-
-KERNEL_INLINE void scatter_3d(const struct pairs *pairs, const struct pair_block *block, const block_stress P,
-                              bool single, double *restrict force)
-{
-    const uint16_t *restrict offset = pairs->offset;
-    for (int64_t p = 0; p < block->row_count; p++) {
-        int64_t row = block->first_row + p;
-        quad4 column0 = {P[0][p], P[3][p], P[6][p], 0.0}, column1 = {P[1][p], P[4][p], P[7][p], 0.0};
-        quad4 column2 = {P[2][p], P[5][p], P[8][p], 0.0};
-        prefetch_row(pairs, block, row, 3, single);
-        UNROLL for (int64_t i = pairs->ptr[row], end = pairs->ptr[row + 1]; i < end; i++)
-        {
-            double *f = force + offset[i];
-            quad4 sum, g;
-            LOAD(sum, f);
-            load_quad4(pairs, 3 * i, single, &g);
-            sum += column0 * VALUE_OF(g, pairs, 3 * i, 0, single);
-            sum += column1 * VALUE_OF(g, pairs, 3 * i, 1, single);
-            sum += column2 * VALUE_OF(g, pairs, 3 * i, 2, single);
-            STORE(f, sum);
-        }
-    }
-}
-
-/* Forces of the block on its nodes, none yet. */
-KERNEL_INLINE double *clear_forces(struct pairs *pairs, const struct pair_block *block, int dim)
-{
+    const struct pair_block *block = &pairs->blocks[b];
     double *force = pairs->block_force + block->first_node * PAIRS_STRIDE(dim);
     memset(force, 0, (size_t)(block->node_count * PAIRS_STRIDE(dim)) * sizeof *force);
+    memset(lane_forces, 0, (size_t)(block->node_count * dim * PAIRS_GROUP) * sizeof *lane_forces);
     return force;
 }
 
-/* f_j = sum_q P_q grad phi_j */
-KERNEL_INLINE void kernel_scatter(struct pairs *pairs, int64_t b, int dim, const block_stress P, bool single)
+/* Add those in lanes to the others. */
+KERNEL_INLINE void sum_lanes(const struct pair_block *block, int dim, const double *restrict lane_forces,
+                             double *restrict force)
 {
-    const struct pair_block *block = &pairs->blocks[b];
-    double *force = clear_forces(pairs, block, dim);
-    if (dim == 2) {
-        scatter_2d(pairs, block, P, single, force);
-    } else {
-        scatter_3d(pairs, block, P, single, force);
-    }
-}
-
-KERNEL_INLINE void add_group(const struct pairs *pairs, int64_t i, int dim, const double *u, bool single,
-                             quad4 mean[3])
-{
-    const double *v = u + pairs->offset[i];
-    quad4 phi;
-    load_quad4(pairs, MEANS_GROUP * i, single, &phi);
-    for (int a = 0; a < dim; a++) {
-        mean[a] += v[a] * phi;
-    }
-}
-
-/* Means of the groups of a block. */
-KERNEL_INLINE void gather_groups(const struct pairs *pairs, const struct pair_block *block, int dim,
-                                 const double *restrict u, bool single, double *restrict value)
-{
-    for (int64_t g = block->first_row; g < block->first_row + block->row_count; g++) {
-        quad4 part[CHAINS][3] = {{{0.0}}};
-        int64_t i = pairs->ptr[g], end = pairs->ptr[g + 1];
-        for (; i + CHAINS <= end; i += CHAINS) {
-            for (int chain = 0; chain < CHAINS; chain++) {
-                add_group(pairs, i + chain, dim, u, single, part[chain]);
-            }
-        }
-        for (; i < end; i++) {
-            add_group(pairs, i, dim, u, single, part[0]);
-        }
+    for (int64_t i = 0; i < block->node_count; i++, force += PAIRS_STRIDE(dim)) {
+        quad4 row[4] = {{0.0}};
         for (int a = 0; a < dim; a++) {
-            quad4 sum = (part[0][a] + part[1][a]) + (part[2][a] + part[3][a]);
-            STORE(value + (g * dim + a) * MEANS_GROUP, sum);
+            LOAD(row[a], lane_forces + (i * dim + a) * PAIRS_GROUP);
+        }
+        quad4 pairs = __builtin_shufflevector(row[0], row[1], 0, 4, 2, 6) +
+                      __builtin_shufflevector(row[0], row[1], 1, 5, 3, 7);
+        if (dim == 2) {
+            pair2 sum;
+            LOAD(sum, force);
+            sum += __builtin_shufflevector(pairs, pairs, 0, 1) + __builtin_shufflevector(pairs, pairs, 2, 3);
+            STORE(force, sum);
+        } else {
+            quad4 sum, others = __builtin_shufflevector(row[2], row[3], 0, 4, 2, 6) +
+                                __builtin_shufflevector(row[2], row[3], 1, 5, 3, 7);
+            LOAD(sum, force);
+            sum += __builtin_shufflevector(pairs, others, 0, 1, 4, 5) +
+                   __builtin_shufflevector(pairs, others, 2, 3, 6, 7);
+            STORE(force, sum);
         }
     }
 }
 
-/* The transpose, of what the corners put on the means. Vector: pair2 in 2D, quad4 in 3D. */
-#define SCATTER_GROUPS(dim, vector)                                                                          \
-    KERNEL_INLINE void scatter_groups_##dim(const struct means *means, const struct pair_block *block,       \
-                                            bool single, double *restrict force)                             \
-    {                                                                                                        \
-        const struct pairs *pairs = &means->pairs;                                                           \
-        const uint16_t *restrict offset = pairs->offset;                                                     \
-        for (int64_t g = block->first_row; g < block->first_row + block->row_count; g++) {                   \
-            vector total[MEANS_GROUP] = {{0.0}}, v;                                                          \
-            quad4 phi;                                                                                       \
-            for (int64_t i = means->corner_ptr[g]; i < means->corner_ptr[g + 1]; i++) {                      \
-                for (int r = 0; r < MEANS_GROUP; r++) {                                                      \
-                    LOAD(v, means->corner_force +                                                            \
-                                (int64_t)means->corner[i * MEANS_GROUP + r] * PAIRS_STRIDE(dim));            \
-                    total[r] += v;                                                                           \
-                }                                                                                            \
-            }                                                                                                \
-            prefetch_row(pairs, block, g, MEANS_GROUP, single);                                              \
-            for (int64_t i = pairs->ptr[g], end = pairs->ptr[g + 1]; i < end; i++) {                         \
-                double *f = force + offset[i];                                                               \
-                LOAD(v, f);                                                                                  \
-                load_quad4(pairs, i *MEANS_GROUP, single, &phi);                                             \
-                for (int r = 0; r < MEANS_GROUP; r++) {                                                      \
-                    v += total[r] * VALUE_OF(phi, pairs, i * MEANS_GROUP, r, single);                        \
-                }                                                                                            \
-                STORE(f, v);                                                                                 \
-            }                                                                                                \
-        }                                                                                                    \
-    }
-SCATTER_GROUPS(2, pair2)
-SCATTER_GROUPS(3, quad4)
-
-KERNEL_INLINE void kernel_gather_means(struct means *means, int64_t b, int dim, const double *u,
-                                       double *local, bool single)
+/* F of the points of a block, I + u (x) grad phi. */
+KERNEL_INLINE void gather_gradients(struct body *body, int64_t b, struct reading how,
+                                    const double *restrict local)
 {
-    const struct pairs *pairs = &means->pairs;
+    const struct pairs *pairs = &body->gradients;
     const struct pair_block *block = &pairs->blocks[b];
-    localise(pairs, block, dim, u, local);
-    gather_groups(pairs, block, dim, local, single, means->value);
+    struct cursor cursor = start_block(pairs, b, how, false);
+    int dim = how.dim;
+    block_stress F;
+    for (int64_t g = 0; g < block->group_count; g++) {
+        quad4 sum[9] = {{0.0}};
+        for (int a = 0; a < dim; a++) {
+            sum[a * dim + a] += 1.0;
+        }
+        gather_group(&pairs->groups[block->first_group + g], how, local, &cursor, sum);
+        for (int k = 0; k < dim * dim; k++) {
+            STORE(F[k] + g * PAIRS_GROUP, sum[k]);
+        }
+    }
+    for (int k = 0; k < dim * dim; k++) {
+        memcpy(body->F + k * body->point_count + block->first_row, F[k],
+               (size_t)block->row_count * sizeof *F[k]);
+    }
 }
 
-KERNEL_INLINE void kernel_scatter_means(struct means *means, int64_t b, int dim, bool single)
+/* f_j = sum_q P_q grad phi_j */
+KERNEL_INLINE void scatter_gradients(struct pairs *pairs, int64_t b, struct reading how, const block_stress P,
+                                     double *restrict lane_forces)
+{
+    const struct pair_block *block = &pairs->blocks[b];
+    struct cursor cursor = start_block(pairs, b, how, true);
+    double *force = clear_forces(pairs, b, how.dim, lane_forces);
+    for (int64_t g = 0; g < block->group_count; g++) {
+        quad4 stress[9];
+        for (int k = 0; k < how.dim * how.dim; k++) {
+            LOAD(stress[k], P[k] + g * PAIRS_GROUP);
+        }
+        scatter_group(&pairs->groups[block->first_group + g], how, stress, lane_forces, force, &cursor);
+    }
+    sum_lanes(block, how.dim, lane_forces, force);
+}
+
+/* Means of a block. */
+KERNEL_INLINE void gather_means(struct means *means, int64_t b, struct reading how,
+                                const double *restrict local)
 {
     const struct pair_block *block = &means->pairs.blocks[b];
-    double *force = clear_forces(&means->pairs, block, dim);
-    if (dim == 2) {
-        scatter_groups_2(means, block, single, force);
+    struct cursor cursor = start_block(&means->pairs, b, how, false);
+    for (int64_t g = block->first_group; g < block->first_group + block->group_count; g++) {
+        quad4 mean[9] = {{0.0}};
+        gather_group(&means->pairs.groups[g], how, local, &cursor, mean);
+        for (int a = 0; a < how.dim; a++) {
+            STORE(means->value + (g * how.dim + a) * PAIRS_GROUP, mean[a]);
+        }
+    }
+}
+
+/* What the corners put on the means of a group, each component a vector along the means. */
+#define SUM_CORNERS(dim, vector)                                                                             \
+    KERNEL_INLINE void sum_corners_##dim(const struct means *means, int64_t group, quad4 total[4])           \
+    {                                                                                                        \
+        vector sum[PAIRS_GROUP] = {{0.0}}, force;                                                            \
+        double sums[PAIRS_GROUP][sizeof(vector) / sizeof(double)];                                           \
+        const double *const from[PAIRS_GROUP] = {sums[0], sums[1], sums[2], sums[3]};                        \
+        for (int64_t i = means->corner_ptr[group]; i < means->corner_ptr[group + 1]; i++) {                  \
+            for (int r = 0; r < PAIRS_GROUP; r++) {                                                          \
+                int64_t corner = means->corner[i * PAIRS_GROUP + r];                                         \
+                LOAD(force, means->corner_force + corner * PAIRS_STRIDE(dim));                               \
+                sum[r] += force;                                                                             \
+            }                                                                                                \
+        }                                                                                                    \
+        for (int r = 0; r < PAIRS_GROUP; r++) {                                                              \
+            STORE(sums[r], sum[r]);                                                                          \
+        }                                                                                                    \
+        load_components(from, dim, total);                                                                   \
+    }
+SUM_CORNERS(2, pair2)
+SUM_CORNERS(3, quad4)
+
+/* The transpose, of what the corners put on the means. */
+KERNEL_INLINE void scatter_means(struct means *means, int64_t b, struct reading how,
+                                 double *restrict lane_forces)
+{
+    const struct pair_block *block = &means->pairs.blocks[b];
+    struct cursor cursor = start_block(&means->pairs, b, how, true);
+    double *force = clear_forces(&means->pairs, b, how.dim, lane_forces);
+    for (int64_t g = block->first_group; g < block->first_group + block->group_count; g++) {
+        quad4 total[9];
+        if (how.dim == 2) {
+            sum_corners_2(means, g, total);
+        } else {
+            sum_corners_3(means, g, total);
+        }
+        scatter_group(&means->pairs.groups[g], how, total, lane_forces, force, &cursor);
+    }
+    sum_lanes(block, how.dim, lane_forces, force);
+}
+
+/* Each for the table's precision. */
+KERNEL_INLINE void kernel_gather(struct body *body, int64_t b, int dim, double *scratch)
+{
+    localise(&body->gradients, b, dim, body->u, scratch);
+    if (body->gradients.value != NULL) {
+        gather_gradients(body, b, (struct reading){dim, dim, false}, scratch);
     } else {
-        scatter_groups_3(means, block, single, force);
+        gather_gradients(body, b, (struct reading){dim, dim, true}, scratch);
+    }
+}
+
+KERNEL_INLINE void kernel_scatter(struct pairs *pairs, int64_t b, int dim, const block_stress P,
+                                  double *scratch)
+{
+    if (pairs->value != NULL) {
+        scatter_gradients(pairs, b, (struct reading){dim, dim, false}, P, scratch);
+    } else {
+        scatter_gradients(pairs, b, (struct reading){dim, dim, true}, P, scratch);
+    }
+}
+
+KERNEL_INLINE void kernel_gather_means(struct means *means, int64_t b, int dim, const double *u,
+                                       double *scratch)
+{
+    localise(&means->pairs, b, dim, u, scratch);
+    if (means->pairs.value != NULL) {
+        gather_means(means, b, (struct reading){dim, 1, false}, scratch);
+    } else {
+        gather_means(means, b, (struct reading){dim, 1, true}, scratch);
+    }
+}
+
+KERNEL_INLINE void kernel_scatter_means(struct means *means, int64_t b, int dim, double *scratch)
+{
+    if (means->pairs.value != NULL) {
+        scatter_means(means, b, (struct reading){dim, 1, false}, scratch);
+    } else {
+        scatter_means(means, b, (struct reading){dim, 1, true}, scratch);
     }
 }
 

@@ -75,7 +75,7 @@ KERNEL_INLINE void read_corners(const struct means *means, const struct block *b
         for (int k = 0; k <= dim; k++) {
             const double *value = means->value + of_corner[i * (dim + 1) + k];
             for (int a = 0; a < dim; a++) {
-                corners[k * dim + a][i] = value[a * MEANS_GROUP];
+                corners[k * dim + a][i] = value[a * PAIRS_GROUP];
             }
         }
     }
@@ -84,11 +84,24 @@ KERNEL_INLINE void read_corners(const struct means *means, const struct block *b
 KERNEL_INLINE void write_corners(struct means *means, const struct block *block, int dim,
                                  const block_corners corners)
 {
-    double *force = means->corner_force + block->first_point * (dim + 1) * PAIRS_STRIDE(dim);
-    for (int64_t i = 0; i < block->point_count; i++) {
-        for (int k = 0; k <= dim; k++, force += PAIRS_STRIDE(dim)) {
+    int64_t i = 0, stride = (dim + 1) * PAIRS_STRIDE(dim);
+    double *force = means->corner_force + block->first_point * stride;
+    for (; dim == 3 && i + 4 <= block->point_count; i += 4) {
+        for (int k = 0; k <= dim; k++) {
+            quad4 row[4] = {{0.0}};
             for (int a = 0; a < dim; a++) {
-                force[a] = corners[k * dim + a][i];
+                LOAD(row[a], corners[k * dim + a] + i);
+            }
+            transpose(row);
+            for (int r = 0; r < 4; r++) {
+                STORE(force + (i + r) * stride + k * PAIRS_STRIDE(dim), row[r]);
+            }
+        }
+    }
+    for (; i < block->point_count; i++) {
+        for (int k = 0; k <= dim; k++) {
+            for (int a = 0; a < dim; a++) {
+                force[i * stride + k * PAIRS_STRIDE(dim) + a] = corners[k * dim + a][i];
             }
         }
     }

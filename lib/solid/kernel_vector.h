@@ -12,8 +12,6 @@
 
 typedef double pair2 __attribute__((vector_size(16)));
 typedef double quad4 __attribute__((vector_size(32)));
-typedef float pair2_float __attribute__((vector_size(8)));
-typedef float quad4_float __attribute__((vector_size(16)));
 
 /* Points are taken LANES at a time; arrays over points are padded by LANES, so that whole vectors may be
  * read. */
@@ -26,14 +24,26 @@ typedef int32_t lanes_int __attribute__((vector_size(4 * LANES)));
 #define LOAD(vector, from) memcpy(&(vector), (from), sizeof(vector))
 #define STORE(to, vector) memcpy((to), &(vector), sizeof(vector))
 
-/* Ask for the bytes first .. last of an array, into the second cache, which will be read a block later: what
- * waits for memory then runs beside the arithmetic of this block. */
-KERNEL_INLINE void prefetch(const void *array, int64_t first, int64_t last)
+/* A table ahead of the place where a kernel reads is asked for, into the second cache: what waits for memory
+ * then runs beside the arithmetic. `bytes` at a time, from `at` on. */
+KERNEL_INLINE void prefetch(const char *at, int bytes)
 {
-    for (uintptr_t at = (uintptr_t)array + (uintptr_t)first; at < (uintptr_t)array + (uintptr_t)last;
-         at += 64) {
-        __builtin_prefetch((const void *)at, 0, 2);
+    for (int i = 0; i < bytes; i += 64) {
+        __builtin_prefetch(at + i, 0, 2);
     }
+}
+
+/* Transpose the 4 x 4 matrix whose rows these are. */
+KERNEL_INLINE void transpose(quad4 row[4])
+{
+    quad4 a = __builtin_shufflevector(row[0], row[1], 0, 4, 2, 6);
+    quad4 b = __builtin_shufflevector(row[0], row[1], 1, 5, 3, 7);
+    quad4 c = __builtin_shufflevector(row[2], row[3], 0, 4, 2, 6);
+    quad4 d = __builtin_shufflevector(row[2], row[3], 1, 5, 3, 7);
+    row[0] = __builtin_shufflevector(a, c, 0, 1, 4, 5);
+    row[1] = __builtin_shufflevector(b, d, 0, 1, 4, 5);
+    row[2] = __builtin_shufflevector(a, c, 2, 3, 6, 7);
+    row[3] = __builtin_shufflevector(b, d, 2, 3, 6, 7);
 }
 
 #endif

@@ -1,25 +1,20 @@
 /* Means of the displacement field that the corners of conforming cells look at: one for each face (its mean),
  * or one for each node (its value). Corner k of a cell stands for its vertex k, or for the face opposite.
  *
- * An evaluation gathers the means, works on the cells, and scatters what the corners put on their means.
- * Means are taken four at a time, near ones that share most of their nodes, on one list: a vector has the
- * values of four, and each displacement and force is touched once for all of them. */
+ * An evaluation gathers the means, works on the cells, and scatters what the corners put on their means. */
 #ifndef SOLID_MEANS_H
 #define SOLID_MEANS_H
 
 #include "solid/pairs.h"
 
-/* Means of a group, which is a row of the table of pairs. */
-enum { MEANS_GROUP = 4 };
-
 struct means {
-    struct pairs pairs; /* width MEANS_GROUP */
+    struct pairs pairs; /* a row for each mean; all groups but the last are full */
     double *value;      /* at the last evaluation, m: component a of mean r of group g at (g dim + a) 4 + r */
     int32_t *of_corner; /* corner_count: where the value begins that each corner looks at */
     double *corner_force; /* (corner_count + 1) * stride: what each corner puts on its mean, N (2D: N/m); last
                              zeros */
-    int64_t *corner_ptr;  /* pairs.row_count + 1: for each group the corners of its means, ascending, */
-    int32_t *corner;      /* corner_ptr[] * MEANS_GROUP: in turn, filled up with the zeros */
+    int64_t *corner_ptr;  /* pairs.group_count + 1: for each group the corners of its means, ascending, */
+    int32_t *corner;      /* corner_ptr[] * PAIRS_GROUP: in turn, filled up with the zeros */
 };
 
 struct means_input {

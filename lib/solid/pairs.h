@@ -1,6 +1,12 @@
 /* A table over pairs of a row and a node, laid out for the force loop: rows in blocks, each with a compact
  * list of its nodes, so that a block's displacements lie in the first cache and indices take 16 bits.
  *
+ * Rows are worked on in groups of four, one to each lane of a vector. An entry of a group has for each row a
+ * node and its values: first come entries shared by the rows, all with one node, so that its displacement and
+ * force are touched once for four rows; these are the nodes that at least three of the rows have. What is
+ * left of the rows' lists stands side by side in entries where each row has its own node. Values of rows that
+ * lack a shared node, or whose list is at its end, are zero: a table has some 5 % of them.
+ *
  * Gathering computes, for each row, sums over its nodes' displacements; scattering is the transpose, and adds
  * to the nodes. The partition depends on the input alone, never on threads: each block accumulates forces on
  * its own nodes, and each node sums its blocks' contributions in block order, so that any number of threads
@@ -16,25 +22,39 @@
 /* Displacements and forces stand so many doubles apart: 2, or 3 padded to 4. */
 #define PAIRS_STRIDE(dim) ((dim) == 2 ? 2 : 4)
 
+/* Rows of a group. */
+#define PAIRS_GROUP 4
+
 /* The most rows of a block. */
 #define PAIRS_MAX_ROWS 128
 
-/* The most nodes a block may hold: its displacements lie on the stack of a thread. */
-#define PAIRS_MAX_NODES 16384
+/* The most nodes a block may hold, and the doubles that a thread needs on its stack for them: their
+ * displacements, or their forces in each lane. */
+#define PAIRS_MAX_NODES 8192
+#define PAIRS_SCRATCH (PAIRS_MAX_NODES * 3 * PAIRS_GROUP)
 
 struct pair_block {
     int64_t first_row, row_count;
-    int64_t first_node, node_count; /* in block_node and block_force */
+    int64_t first_group, group_count; /* the last group may have less than PAIRS_GROUP rows */
+    int64_t first_node, node_count;   /* in block_node and block_force */
+};
+
+struct pair_group {
+    int64_t first_entry, first_offset;
+    int32_t shared, own; /* entries of each kind, in this order */
 };
 
 struct pairs {
     int dim;
-    int width; /* values of each pair: dim (a gradient), or one for each of a group of means (means.h) */
-    int64_t node_count, row_count, pair_count;
-    bool large;          /* does not stay in the second cache from one evaluation to the next */
-    int64_t *ptr;        /* row_count + 1 */
-    uint16_t *offset;    /* pair_count: where the node's displacement begins in those of the block */
-    double *value;       /* pair_count * width, and one more, which is read and not used; or NULL and */
+    int width; /* values of each pair: dim (a gradient), or 1 (a shape function) */
+    int64_t node_count, row_count, pair_count, group_count, entry_count, offset_count;
+    int passes;                /* over the table in an evaluation, see pairs_input */
+    bool large;                /* does not stay in the second cache from one evaluation to the next */
+    struct pair_group *groups; /* group_count, and one more where the entries end */
+    uint16_t *offset;    /* where the displacement of a node begins in those of the block: one for a shared
+                            entry, PAIRS_GROUP for another */
+    double *value;       /* entry_count * width * PAIRS_GROUP: first values of an entry's rows, then their
+                            second ..; or NULL and */
     float *single_value; /* the same in single precision */
     int64_t block_count;
     struct pair_block *blocks;
@@ -45,25 +65,37 @@ struct pairs {
     int32_t *sum;        /* block_node_count */
 };
 
-struct pairs_input {
-    int dim, width;
+/* The caller's lists, and its rows in blocks. */
+struct pairs_rows {
     int64_t node_count, row_count;
-    const int64_t *row; /* row_count: the caller's row at each place */
-    const int64_t *ptr; /* the caller's lists and values */
+    const int64_t *ptr; /* the nodes of each of the caller's rows */
     const int32_t *idx;
-    const double *value;
-    const int32_t *place; /* node_count: the number by which each of the caller's nodes goes here */
+    int64_t *row; /* row_count: the caller's row at each place */
     int64_t block_count;
     const int64_t *first_row; /* block_count + 1; no block has more than PAIRS_MAX_ROWS */
-    bool single;              /* keep the values in single precision */
+    int least_sharing;        /* so many rows of a group, or more, share a node that they have */
 };
 
-/* Put the rows of one block, row[count], in the order of their length in the caller's lists, and before that
- * of their corners (means.h; else NULL): loops that go the same way many times in a row are predicted. */
-void pairs_sort_rows(int64_t count, int64_t *row, const int64_t *ptr, const int32_t *corners);
+struct pairs_input {
+    struct pairs_rows rows;
+    int dim, width;
+    const double *value;  /* the caller's values */
+    const int32_t *place; /* node_count: the number by which each of the caller's nodes goes here */
+    int passes;           /* 1: a block is scattered as soon as it is gathered; 2: all blocks later */
+    bool single;          /* keep the values in single precision */
+};
+
+/* Order the rows of each block so that those of a group share most of their nodes, and groups so that those
+ * of as many entries, and before that of as many corners (means.h; of each of the caller's rows, else NULL),
+ * follow each other: loops that go the same way many times in a row are predicted. */
+MUST_CHECK enum status pairs_order(const struct pairs_rows *rows, const int32_t *corners,
+                                   struct error *error);
 
 /* Lay out a table; the arrays are copied. STATUS_INPUT when a block has too many nodes. */
 MUST_CHECK enum status pairs_build(const struct pairs_input *input, struct pairs *pairs, struct error *error);
 void pairs_free(struct pairs *pairs);
+
+/* Bytes of the table, which a pass reads. */
+int64_t pairs_bytes(const struct pairs *pairs);
 
 #endif

@@ -125,7 +125,7 @@ static void free_loop(struct loop *loop)
 static double table_bytes(const struct body *body)
 {
     const struct pairs *pairs = body->conforming ? &body->cells.faces.pairs : &body->gradients;
-    return (double)pairs->pair_count * (2.0 + pairs->width * (body->single ? 4.0 : 8.0));
+    return (double)pairs_bytes(pairs);
 }
 
 static void bench(struct problem *problem, const struct variant *variant, int threads, double seconds)
