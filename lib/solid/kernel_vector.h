@@ -26,9 +26,9 @@ typedef int32_t lanes_int __attribute__((vector_size(4 * LANES)));
 
 /* A table ahead of the place where a kernel reads is asked for, into the second cache: what waits for memory
  * then runs beside the arithmetic. `bytes` at a time, from `at` on. */
-KERNEL_INLINE void prefetch(const char *at, int bytes)
+KERNEL_INLINE void prefetch(const char *at, int64_t bytes)
 {
-    for (int i = 0; i < bytes; i += 64) {
+    for (int64_t i = 0; i < bytes; i += 64) {
         __builtin_prefetch(at + i, 0, 2);
     }
 }
