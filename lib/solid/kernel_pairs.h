@@ -59,7 +59,7 @@ KERNEL_INLINE struct cursor start_block(const struct pairs *pairs, int64_t b, st
     return cursor;
 }
 
-/* Value k of the rows of an entry. The conversion is spelt out: gcc 12 makes one instruction of it, several of
+/* Value k of the rows of an entry. The conversion is spelt out: gcc 12 makes one instruction of it, more of
  * __builtin_convertvector. */
 KERNEL_INLINE void read_value(const struct cursor *cursor, struct reading how, int k, quad4 *value)
 {
