@@ -68,6 +68,7 @@ relax() {
     if ! mtled -v "$1" "$2" > "$3" 2> "$3.log"; then
         tail -n 1 "$3.log" >&2
         : > "$3"
+        [ -z "${ESTIMATE:-}" ] || no_estimate - >> "$ESTIMATE"
     elif [ -n "${ESTIMATE:-}" ] && grep -q quasi-static "$1"; then
         estimate "$1" "$2" >> "$ESTIMATE"
     fi
@@ -81,7 +82,7 @@ estimate() {
         grep -v '^tolerance' "$1" > "$scene"
         grep -q '^\[solver\]' "$scene" || printf '\n[solver]\n' >> "$scene"
         sed -i "/^\[solver\]/a tolerance = $tolerance" "$scene"
-        mtled -v "$scene" "$2" > "$out.dat" 2> "$out.$tolerance" || return 0
+        mtled -v "$scene" "$2" > "$out.dat" 2> "$out.$tolerance" || { no_estimate $tolerance; return 0; }
         mts print u "$out.dat" > "$out.$tolerance.u"
     done
     for tolerance in 1e-3 1e-5; do
@@ -104,6 +105,11 @@ estimate() {
                     told["steps"], told["ramp steps"], told["steps"] / optimum, (true <= estimated ? "pass" : "FAIL")
             }' "$out.$tolerance" -
     done
+}
+
+# no_estimate TOLERANCE: the row of a run that fails.
+no_estimate() {
+    printf '%s\t%s\tnone\tnone\t-\t-\t-\t-\tFAIL\n' "$(basename "$0" .sh)" "$1"
 }
 
 # reported FILE NAME: a number of mtled's report.
