@@ -52,10 +52,12 @@ MUST_CHECK enum status boundary_averages_build(const struct face_table *table, c
 MUST_CHECK enum status boundary_nodes_build(const struct face_table *table, const struct facet_set *set,
                                             const struct neighbours *node_lists, const double *node_phi,
                                             struct boundary_averages *averages, struct error *error);
-/* The same with the values at the quadrature points of the facets: one entry per point, `area` its weight, `node` the
- * first node of its facet. */
+
+/* The same with the values at the quadrature points of the facets: one entry per point, `area` its weight,
+ * `node` the first node of its facet. */
 MUST_CHECK enum status boundary_points_build(const struct face_table *table, const struct facet_set *set,
                                              struct boundary_averages *averages, struct error *error);
+
 void boundary_averages_free(struct boundary_averages *averages);
 
 #endif
