@@ -2,6 +2,8 @@
 
 bats_require_minimum_version 1.5.0
 
+load common.bash
+
 setup() {
     cd "$BATS_TEST_TMPDIR"
     set -o pipefail
@@ -12,15 +14,8 @@ setup() {
 
 # A block pressed onto a floor, slowly, such that there is time to end it.
 scene() {
+    block quasi-static
     cat << 'SCENE'
-[scene]
-dim = 2
-analysis = quasi-static
-[material body]
-region = body
-E = 3000
-nu = 0.49
-rho = 1000
 [displacement top]
 facets = ymax
 table = top.tsv
@@ -50,15 +45,6 @@ begin_and_end() {
     kill -s "$1" $run
     status=0
     wait $run || status=$?
-}
-
-refused() {
-    local text=$1
-    shift
-    run -2 --separate-stderr "$@"
-    [ -z "$output" ]
-    [ "$(wc -l <<< "$stderr")" -eq 1 ]
-    [[ $stderr == "mtled: "*"$text"* ]]
 }
 
 @test "ended by a signal: one line, status 128 + n, no output; the same command goes on to the same bytes" {
@@ -107,21 +93,21 @@ refused() {
     begin_and_end TERM
     cp run.ckpt kept
     sed 's/E = 3000/E = 3001/' run.scene > other.scene
-    refused "run.ckpt: checkpoint of another scene" mtled -c run.ckpt other.scene table.mts
+    refused 2 "run.ckpt: checkpoint of another scene" mtled -c run.ckpt other.scene table.mts
     cp floor.tsv true.tsv
     printf -- '-1 -0.006\n2 -0.006\n' > floor.tsv
-    refused "or its tables have changed: remove it" mtled -c run.ckpt run.scene table.mts
+    refused 2 "or its tables have changed: remove it" mtled -c run.ckpt run.scene table.mts
     cp true.tsv floor.tsv
     cloud -d 2 -k jittered -n 8 --box 0,0.1,0,0.1 --jitter 0.21 | shapefn > other.mts 2> note
-    refused "run.ckpt: checkpoint of another cloud or table" mtled -c run.ckpt run.scene other.mts
+    refused 2 "run.ckpt: checkpoint of another cloud or table" mtled -c run.ckpt run.scene other.mts
     mts text run.ckpt | sed '/^# checkpoint/s/version=[0-9.]*/version=0.0.9/' | mts binary > old.ckpt
-    refused "old.ckpt: checkpoint of version 0.0.9, this is" mtled -c old.ckpt run.scene table.mts
-    refused "run with tables in double precision: run it so" mtled -f -c run.ckpt run.scene table.mts
-    refused "table.mts: a stream, but not a checkpoint" mtled -c table.mts run.scene table.mts
+    refused 2 "old.ckpt: checkpoint of version 0.0.9, this is" mtled -c old.ckpt run.scene table.mts
+    refused 2 "run with tables in double precision: run it so" mtled -f -c run.ckpt run.scene table.mts
+    refused 2 "table.mts: a stream, but not a checkpoint" mtled -c table.mts run.scene table.mts
     mts drop state.mass run.ckpt > less.ckpt
     run -2 --separate-stderr mtled -c less.ckpt run.scene table.mts
     [[ $stderr == *"state.mass is missing or does not fit" ]]
-    refused "no regular file" mtled -c /dev/null run.scene table.mts
+    refused 2 "no regular file" mtled -c /dev/null run.scene table.mts
     cmp run.ckpt kept
 }
 
@@ -136,7 +122,7 @@ refused() {
     cmp u.dat whole.dat
     cp bad run.ckpt
     cp bad run.ckpt.old
-    refused "remove it and run.ckpt.old to begin anew" mtled -c run.ckpt run.scene table.mts
+    refused 2 "remove it and run.ckpt.old to begin anew" mtled -c run.ckpt run.scene table.mts
 }
 
 @test "a place that cannot be written is told at once; one that fills up later leaves the last checkpoint" {

@@ -3,13 +3,14 @@
 
 bats_require_minimum_version 1.5.0
 
-load faults.bash
+load common.bash
+load faults.bash # its `refused` is another one
 
 setup() {
     cd "$BATS_TEST_TMPDIR"
     export OMP_NUM_THREADS=1
     mesh > square.msh
-    scene
+    pressed_block > block.scene
     cloud -d 2 -k jittered -n 5 --box 0,0.1,0,0.1 --jitter 0.2 > cloud.mts
     ipoints cloud.mts > points.mts
     support points.mts > lists.mts
@@ -111,14 +112,14 @@ limit_memory() { [[ $BUILD == *san* ]] || echo 'ulimit -v 4000000;'; }
 
 @test "fault 10: scene with unknown key, duplicate section, missing unit, comma decimal, CRLF, BOM" {
     with 's/^rho/colour = red\n&/'
-    refused "unknown key" 2 "edited.scene:8: [material tissue]: colour" 'mtled edited.scene table.mts'
+    refused "unknown key" 2 "edited.scene:9: [material body]: colour" 'mtled edited.scene table.mts'
     { cat block.scene; sed -n '/material/,/rho/p' block.scene; } > edited.scene
-    refused "section twice" 2 "edited.scene:15: [material tissue]: already in line 4" 'mtled edited.scene table.mts'
+    refused "section twice" 2 "edited.scene:18: [material body]: already in line 5" 'mtled edited.scene table.mts'
     with 's/^components = 0, -0.005/table = load.tsv/'
     printf '0 0.1 0 -0.005\n' > load.tsv
     refused "table without unit" 2 "unit" 'mtled edited.scene table.mts'
     with 's/0.45/0,45/'
-    refused "comma decimal" 2 "edited.scene:7: [material tissue]: nu" 'mtled edited.scene table.mts'
+    refused "comma decimal" 2 "edited.scene:8: [material body]: nu" 'mtled edited.scene table.mts'
     with 's/$/\r/'
     refused "CRLF" 2 "edited.scene:1: carriage return" 'mtled edited.scene table.mts'
     { printf '\xef\xbb\xbf'; cat block.scene; } > edited.scene
@@ -129,7 +130,7 @@ limit_memory() { [[ $BUILD == *san* ]] || echo 'ulimit -v 4000000;'; }
 @test "fault 11: nu >= .5, E <= 0, rho <= 0, NaN" {
     for entry in nu=0.5 nu=0.7 nu=-1 nu=nan E=0 E=-3000 E=nan E=inf rho=0 rho=-1 rho=nan; do
         with "s/^${entry%=*} = .*/${entry%=*} = ${entry#*=}/"
-        refused "$entry" 2 "[material tissue]: ${entry%=*}" 'mtled edited.scene table.mts'
+        refused "$entry" 2 "[material body]: ${entry%=*}" 'mtled edited.scene table.mts'
     done
     mts print points.x points.mts | awk '{ print $0, 3000, 0.45 }' > whole.tsv
     with 's/^E = .*/table = point.tsv/; s/^nu = .*/unit = m/'
@@ -349,18 +350,12 @@ begin_and_end() {
     refused "another cloud" 2 "run.ckpt: checkpoint of another cloud or table" 'mtled -c run.ckpt slow.scene other.mts'
 }
 
-# The same square under its weight, in time.
-dynamic() {
-    sed 's/quasi-static/dynamic\ngravity = 0, -9.81/; /displacement top/,$d' block.scene
-    printf '[solver]\nend_time = 0.05\n'
-}
-
 walls() { printf '[displacement %s]\nfacets = %s\nnormal = 0\n' left xmin right xmax; }
 
 @test "fault 24: instability: not finite, turned over, step collapse, out of balance, out of steps" {
-    dynamic | sed 's/-9.81/-981000/' > edited.scene
+    swinging_block | sed 's/-9.81/-981000/' > edited.scene
     refused "dynamic, pressed flat by its weight" 1 "edited.scene: step " 'mtled edited.scene table.mts'
-    dynamic | sed 's/-9.81/-100/' > edited.scene
+    swinging_block | sed 's/-9.81/-100/' > edited.scene
     refused "dynamic, steps too coarse for the load" 1 "the energy balance is off" 'mtled edited.scene table.mts'
     { sed 's/quasi-static/dynamic/; s/-0.005/-0.0999/' block.scene; walls; printf '[solver]\nend_time = 10\ndamping = 1\n'; } > edited.scene
     refused "dynamic, pressed to a thousandth between walls" 1 "the critical step has fallen" 'mtled edited.scene table.mts'
@@ -370,7 +365,7 @@ walls() { printf '[displacement %s]\nfacets = %s\nnormal = 0\n' left xmin right 
     refused "quasi-static, numbers out of range" 1 "edited.scene: step " 'mtled edited.scene table.mts'
     { cat block.scene; printf '[solver]\nmax_steps = 30\n'; } > edited.scene
     refused "quasi-static, out of steps" 1 "not converged after 30 steps" 'mtled edited.scene table.mts'
-    { dynamic; printf 'max_steps = 3\n'; } > edited.scene
+    { swinging_block; printf 'max_steps = 3\n'; } > edited.scene
     refused "dynamic, out of steps" 1 "after 3 steps" 'mtled edited.scene table.mts'
 }
 

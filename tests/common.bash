@@ -1,0 +1,65 @@
+# shellcheck shell=bash
+# What several suites of command-line tests share.
+
+# Rows of section $1 of a text stream.
+rows() {
+    awk -v name="$1" '/^# / { on = $2 == name; next } on && NF' "${2:--}"
+}
+
+# A text stream without its provenance.
+bare() {
+    grep -v '^# @' "$@"
+}
+
+# refused STATUS TEXT COMMAND...: that status, nothing on standard output, one line on standard error, PROGRAM: ...TEXT...,
+# besides the note on stages that were run.
+refused() {
+    local expected=$1 text=$2
+    shift 2
+    run --separate-stderr "$@"
+    stderr=$(grep -v "ran with defaults" <<< "$stderr" || true)
+    [ "$status" -eq "$expected" ] || { echo "status $status: $stderr"; return 1; }
+    [ -z "$output" ] || { echo "output: $output"; return 1; }
+    [ "$(wc -l <<< "$stderr")" -eq 1 ] || { echo "not one line: $stderr"; return 1; }
+    [[ "$stderr" == "$1: "*"$text"* ]] || { echo "message: $stderr"; return 1; }
+}
+
+# The head of a scene of a block, on a cloud of 0.1 x 0.1 m: block ANALYSIS [MORE LINES OF scene]
+block() {
+    cat << END
+[scene]
+dim = 2
+analysis = $1
+${2:+$2
+}
+[material body]
+region = body
+E = 3000
+nu = 0.45
+rho = 1000
+
+END
+}
+
+held_below() {
+    printf '[displacement bottom]\nfacets = ymin\ncomponents = 0, 0\n'
+}
+
+# A block held at its bottom, its top pushed down; sections may be appended.
+pressed_block() {
+    block quasi-static
+    held_below
+    printf '\n[displacement top]\nfacets = ymax\ncomponents = 0, -0.005\n'
+}
+
+# The same block under its weight, in time.
+swinging_block() {
+    block dynamic 'gravity = 0, -9.81'
+    held_below
+    printf '\n[solver]\nend_time = 0.05\n'
+}
+
+# with SED-SCRIPT: block.scene edited, as edited.scene.
+with() {
+    sed "$1" block.scene > edited.scene
+}
