@@ -1,6 +1,7 @@
 #include "model_claims.h"
 
 #include "approx/scatter.h"
+#include "base/box.h"
 #include "io/table.h"
 
 #include <math.h>
@@ -248,20 +249,6 @@ done:
     return status;
 }
 
-static double body_extent(const struct cells *cells)
-{
-    double square = 0.0;
-    for (int a = 0; a < cells->dim; a++) {
-        double low = INFINITY, high = -INFINITY;
-        for (int64_t n = 0; n < cells->node_count; n++) {
-            low = fmin(low, cells->x[n * cells->dim + a]);
-            high = fmax(high, cells->x[n * cells->dim + a]);
-        }
-        square += (high - low) * (high - low);
-    }
-    return sqrt(square);
-}
-
 static enum status add_section(struct prescription *p, struct error *error)
 {
     enum status status;
@@ -274,7 +261,8 @@ static enum status add_section(struct prescription *p, struct error *error)
     TRY(model_add_curve(p->input, &section->label, &section->curve, p->system, &p->curve, error));
     if (section->kind == SCENE_TABLE) {
         TRY(table_read(section->table, 2 * dim, 2 * dim, &p->table, error));
-        p->extent = body_extent(&p->input->cells);
+        struct box box = box_of(dim, p->input->cells.node_count, p->input->cells.x);
+        p->extent = box_diagonal(&box);
     }
     if (section->facets.count > 0) {
         TRY(model_facets(p->input, &section->label, &section->facets, &set, &owned, error));
