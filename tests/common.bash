@@ -63,3 +63,26 @@ swinging_block() {
 with() {
     sed "$1" block.scene > edited.scene
 }
+
+# A square of 100 mm meshed by gmsh, as body.msh, its sides and a corner named.
+square_msh() {
+    cat > square.geo << 'END'
+Point(1) = {0, 0, 0, 25};
+Point(2) = {100, 0, 0, 25};
+Point(3) = {100, 100, 0, 25};
+Point(4) = {0, 100, 0, 25};
+Line(1) = {1, 2};
+Line(2) = {2, 3};
+Line(3) = {3, 4};
+Line(4) = {4, 1};
+Curve Loop(1) = {1, 2, 3, 4};
+Plane Surface(1) = {1};
+Physical Surface("body") = {1};
+Physical Point("corner") = {3};
+Physical Curve("ymin") = {1};
+Physical Curve("xmax") = {2};
+Physical Curve("ymax") = {3};
+Physical Curve("xmin") = {4};
+END
+    gmsh -v 1 -2 square.geo -o body.msh
+}

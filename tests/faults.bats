@@ -402,6 +402,11 @@ denied() {
     [ "$bad" -eq 0 ] && [ "$hit" -gt 0 ]
 }
 
+loads() {
+    printf '[%s top]\nfacets = ymax\n%s\n' pressure 'value = 10' traction 'components = 0, -10'
+    printf '[contact floor]\nfacets = ymin\nrigid = floor.tsv\nunit = m\nside = left\n'
+}
+
 @test "fault 25: malloc fails at each call" {
     [[ $BUILD != *-coverage* ]] || skip "gcov allocates as well"
     [[ $BUILD != *-san*-clang ]] || skip "clang's sanitizers are in the programs, and come before what is preloaded"
@@ -413,7 +418,10 @@ denied() {
     shapefn lists.mts > table.mts
     printf '[output]\nstress = yes\nreactions = yes\nframes = 2\n[solver]\ntolerance = 1e-3\n' >> block.scene
     mtled block.scene table.mts > u.mts
+    printf -- '-1 -0.001\n2 -0.001\n' > floor.tsv
+    { pressed_block | sed '/bottom/,/^$/d' && loads; } > loaded.scene
+    { swinging_block | sed '/bottom/,/^$/d; s/0.05/0.01/' && loads; printf '[output]\nenergy = yes\ngaps = yes\n'; } > moving.scene
     while IFS= read -r command; do
         denied $command
-    done < <(commands | grep -v -e ' -h$' -e '--version$')
+    done < <(commands | grep -v -e ' -h$' -e '--version$' && printf 'mtled %s.scene table.mts\n' loaded moving)
 }
