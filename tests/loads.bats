@@ -67,6 +67,14 @@ near() { fieldcmp "--tol-$1" "$2" other.dat u.dat > /dev/null; }
     holds -3 2
 }
 
+@test "a node of a set goes where it is told, and pulls back as the bottom holds" {
+    { block quasi-static && held_below; } > held.scene
+    solved '[displacement pull]\nnodes = corner\ncomponents = 0.002, free'
+    paste -d ' ' <(rows nodes.x u.dat) <(rows u u.dat) |
+        awk '$1 > 0.0999 && $2 > 0.0999 { d = $3 - 0.002; n++ } END { exit !(n == 1 && d < 1e-8 && d > -1e-8) }'
+    rows reactions u.dat | awk '{ x[NR] = $1 } END { exit !(NR == 2 && x[2] > 0.1 && (x[1] + x[2])^2 < 1e-6 * x[2]^2) }'
+}
+
 @test "a cube: pressure, traction and weight in 3D" {
     cloud -d 3 -k jittered -n 4 --box 0,0.1,0,0.1,0,0.1 --jitter 0.2 | shapefn > cube.mts 2> note
     stream=cube.mts

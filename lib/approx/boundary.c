@@ -213,6 +213,47 @@ enum status boundary_nodes_build(const struct face_table *table, const struct fa
     return build(table, set, node_lists, node_phi, averages, error);
 }
 
+/* The values of one point, as they are, as average `a`. */
+static void put_values(struct boundary_averages *averages, int64_t a, const int32_t *idx, const double *phi,
+                       int64_t length)
+{
+    int64_t at = averages->ptr[a];
+    memcpy(averages->idx + at, idx, (size_t)length * sizeof *idx);
+    memcpy(averages->phi + at, phi, (size_t)length * sizeof *phi);
+    averages->ptr[a + 1] = at + length;
+}
+
+enum status boundary_list_build(int dim, const double *x, const int32_t *nodes, int64_t count,
+                                const struct neighbours *lists, const double *phi,
+                                struct boundary_averages *averages, struct error *error)
+{
+    enum status status;
+    int64_t pairs = 0;
+    *averages = (struct boundary_averages){0};
+    for (int64_t i = 0; i < count; i++) {
+        pairs += lists->ptr[nodes[i] + 1] - lists->ptr[nodes[i]];
+    }
+    TRY(allocate(dim, count, count, averages, error));
+    TRY(NEW_ARRAY(&averages->idx, pairs, error));
+    TRY(NEW_ARRAY(&averages->phi, pairs, error));
+    for (int64_t i = 0; i < count; i++) {
+        int64_t from = lists->ptr[nodes[i]], length = lists->ptr[nodes[i] + 1] - from;
+        averages->node[i] = nodes[i];
+        put_values(averages, i, lists->idx + from, phi + from, length);
+        averages->sample_ptr[i + 1] = i + 1;
+        averages->sample_share[i] = 1.0;
+        for (int a = 0; a < dim; a++) {
+            averages->position[i * dim + a] = averages->sample_x[i * dim + a] =
+                x[(int64_t)nodes[i] * dim + a];
+        }
+    }
+done:
+    if (status != STATUS_OK) {
+        boundary_averages_free(averages);
+    }
+    return status;
+}
+
 enum status boundary_points_build(const struct face_table *table, const struct facet_set *set,
                                   struct boundary_averages *averages, struct error *error)
 {
@@ -245,10 +286,7 @@ enum status boundary_points_build(const struct face_table *table, const struct f
             averages->normal[p * dim + a] = normal[a];
             averages->position[p * dim + a] = averages->sample_x[p * dim + a] = place;
         }
-        averages->ptr[p + 1] = averages->ptr[p] + length;
-        memcpy(averages->idx + averages->ptr[p], table->lists->idx + from,
-               (size_t)length * sizeof *averages->idx);
-        memcpy(averages->phi + averages->ptr[p], table->phi + from, (size_t)length * sizeof *averages->phi);
+        put_values(averages, p, table->lists->idx + from, table->phi + from, length);
     }
 done:
     free(face_of);

@@ -323,6 +323,15 @@ done:
     return status;
 }
 
+double model_away(const double *row, double unit, const double *x, int dim)
+{
+    double away = 0.0;
+    for (int a = 0; a < dim; a++) {
+        away = fmax(away, fabs(row[a] * unit - x[a]));
+    }
+    return away;
+}
+
 void model_nodal_field(const struct model_input *input, const double *u, double *field)
 {
     int dim = input->cells.dim;

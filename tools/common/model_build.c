@@ -30,6 +30,27 @@ static void barycentric(const struct cells *cells, int64_t cell, const double *x
     }
 }
 
+/* node, value[point_count * (dim + 1)]: the vertices of the cell of each point, and their hat functions
+ * there. */
+static enum status list_hats(const struct model_input *input, int32_t **node, double **value,
+                             struct error *error)
+{
+    enum status status;
+    const struct cells *cells = &input->cells;
+    const int32_t *cell = input->point_cell->data;
+    const double *x = input->points->data;
+    int corners = cells->dim + 1;
+    TRY(NEW_ARRAY(node, input->points->rows * corners, error));
+    TRY(NEW_ARRAY(value, input->points->rows * corners, error));
+    for (int64_t q = 0; q < input->points->rows; q++) {
+        memcpy(*node + q * corners, cells->node + (int64_t)cell[q] * corners,
+               (size_t)corners * sizeof **node);
+        barycentric(cells, cell[q], x + q * cells->dim, *value + q * corners);
+    }
+done:
+    return status;
+}
+
 /* One point per cell, in the order of the cells. */
 static bool has_conforming_cells(const struct model_input *input)
 {
@@ -46,20 +67,10 @@ static enum status build_body(const struct model_input *input, bool single, stru
     int32_t *hat_node = NULL;
     double *hat_value = NULL;
     const struct scene_solver *solver = &input->scene->solver;
-    const int32_t *cell = input->point_cell->data;
-    int dim = input->cells.dim, corners = dim + 1;
-    int64_t count = input->points->rows;
+    int dim = input->cells.dim;
     TRY(model_materials(input, &materials, error));
     if (solver->volume == SCENE_NODAL_VOLUME) {
-        TRY(NEW_ARRAY(&hat_node, count * corners, error));
-        TRY(NEW_ARRAY(&hat_value, count * corners, error));
-        for (int64_t q = 0; q < count; q++) {
-            for (int k = 0; k < corners; k++) {
-                hat_node[q * corners + k] = input->cells.node[(int64_t)cell[q] * corners + k];
-            }
-            barycentric(&input->cells, cell[q], (const double *)input->points->data + q * dim,
-                        hat_value + q * corners);
-        }
+        TRY(list_hats(input, &hat_node, &hat_value, error));
     }
     struct quadrature_rule rule = quadrature_face_rule(dim);
     struct conforming_input conforming = {.x = input->cells.x,
@@ -75,7 +86,7 @@ static enum status build_body(const struct model_input *input, bool single, stru
     struct body_input body = {.dim = dim,
                               .node_x = input->cells.x,
                               .node_count = input->cells.node_count,
-                              .point_count = count,
+                              .point_count = input->points->rows,
                               .x = input->points->data,
                               .weight = input->weight->data,
                               .ptr = input->point_lists.ptr,

@@ -29,6 +29,29 @@ static void set_material(const struct scene_material *section, struct material *
     material->least_share = least_share(material);
 }
 
+/* Row `row` of a table is that of point q, and holds moduli. */
+static enum status check_row(const struct model_input *input, const struct scene_material *section,
+                             const struct table *table, int64_t row, int64_t q, struct error *error)
+{
+    int dim = input->cells.dim;
+    const double *x = (const double *)input->points->data + q * dim,
+                 *values = table->values + row * table->cols;
+    double away = row < table->rows ? model_away(values, section->table_unit, x, dim) : 0.0;
+    if (row == table->rows || !(away <= MODEL_SAME_PLACE)) {
+        return scene_fail(error, STATUS_INPUT, input->scene, &section->label,
+                          "table %s: %lld rows do not match the integration points of its regions, first at "
+                          "point %lld (%g m away)",
+                          section->table, (long long)table->rows, (long long)q, away);
+    }
+    double modulus = values[dim], ratio = values[dim + 1];
+    if (!(modulus > 0.0) || !(ratio > -1.0 && ratio < 0.5)) {
+        return scene_fail(error, STATUS_INPUT, input->scene, &section->label,
+                          "%s:%lld: E = %g, nu = %g: E must be positive, nu within (-1, .5)", section->table,
+                          (long long)table->line[row], modulus, ratio);
+    }
+    return STATUS_OK;
+}
+
 /* One row per integration point of the section's regions, in the order of the points: coordinates, E, nu. */
 static enum status add_point_table(const struct model_input *input, int64_t m, struct material_list *list,
                                    struct error *error)
@@ -36,7 +59,6 @@ static enum status add_point_table(const struct model_input *input, int64_t m, s
     enum status status;
     const struct scene_material *section = &input->scene->materials[m];
     const int32_t *cell = input->point_cell->data;
-    const double *x = input->points->data;
     int dim = input->cells.dim;
     struct table table = {0};
     int64_t row = 0;
@@ -51,32 +73,14 @@ static enum status add_point_table(const struct model_input *input, int64_t m, s
         if (input->cell_material[cell[q]] != m) {
             continue;
         }
-        const double *values = table.values + row * table.cols;
-        double away = 0.0;
-        for (int a = 0; row < table.rows && a < dim; a++) {
-            away = fmax(away, fabs(values[a] * section->table_unit - x[q * dim + a]));
-        }
-        if (row == table.rows || !(away <= 1e-6)) {
-            status = scene_fail(
-                error, STATUS_INPUT, input->scene, &section->label,
-                "table %s: %lld rows do not match the integration points of its regions, first at "
-                "point %lld (%g m away)",
-                section->table, (long long)table.rows, (long long)q, row == table.rows ? 0.0 : away);
-            goto done;
-        }
-        double modulus = values[dim], ratio = values[dim + 1];
-        if (!(modulus > 0.0) || !(ratio > -1.0 && ratio < 0.5)) {
-            status = scene_fail(error, STATUS_INPUT, input->scene, &section->label,
-                                "%s:%lld: E = %g, nu = %g: E must be positive, nu within (-1, .5)",
-                                section->table, (long long)table.line[row], modulus, ratio);
-            goto done;
-        }
-        list->items[list->count] = list->items[m];
-        material_set_moduli(&list->items[list->count], modulus, ratio);
-        list->items[list->count].least_share = least_share(&list->items[list->count]);
+        TRY(check_row(input, section, &table, row, q, error));
+        const double *values = table.values + row++ * table.cols;
+        struct material *material = &list->items[list->count];
+        *material = list->items[m];
+        material_set_moduli(material, values[dim], values[dim + 1]);
+        material->least_share = least_share(material);
         list->section[list->count] = (int32_t)m;
         list->of_point[q] = (int32_t)list->count++;
-        row++;
     }
     if (row != table.rows) {
         status = scene_fail(error, STATUS_INPUT, input->scene, &section->label,
