@@ -104,9 +104,9 @@ begin_and_end() {
     refused 2 "old.ckpt: checkpoint of version 0.0.9, this is" mtled -c old.ckpt run.scene table.mts
     refused 2 "run with tables in double precision: run it so" mtled -f -c run.ckpt run.scene table.mts
     refused 2 "table.mts: a stream, but not a checkpoint" mtled -c table.mts run.scene table.mts
-    mts drop state.mass run.ckpt > less.ckpt
+    mts drop state.inertia.mass run.ckpt > less.ckpt
     run -2 --separate-stderr mtled -c less.ckpt run.scene table.mts
-    [[ $stderr == *"state.mass is missing or does not fit" ]]
+    [[ $stderr == *"state.inertia.mass is missing or does not fit" ]]
     refused 2 "no regular file" mtled -c /dev/null run.scene table.mts
     cmp run.ckpt kept
 }

@@ -50,8 +50,10 @@ void dynamics_bound_contacts(struct dynamics *d)
 
 void dynamics_estimate_frequency(struct dynamics *d, int iterations)
 {
-    double frequency = system_largest_frequency(d->system, d->system->lumped_mass, d->u, d->residual,
-                                                iterations, d->mode, d->scratch);
+    struct inertia inertia = {
+        .dim = d->system->dim, .node_count = d->system->node_count, .mass = d->system->lumped_mass};
+    double frequency =
+        system_largest_frequency(d->system, &inertia, d->u, d->residual, iterations, d->mode, d->scratch);
     d->report->force_evaluations += iterations;
     frequency = sqrt(frequency * frequency + d->contact_squared);
     /* The estimate is from below and wanders: follow rises at once, falls slowly. */
