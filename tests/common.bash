@@ -86,3 +86,22 @@ Physical Curve("xmin") = {4};
 END
     gmsh -v 1 -2 square.geo -o body.msh
 }
+
+# Begin a run of scene $2 on table.mts with a checkpoint after every step, and end it by signal $1 when two are there; leaves status,
+# part.dat and what was said. On a busy machine the run may be over before that is seen: then once more.
+begin_and_end() {
+    local run tries
+    for _ in 1 2 3 4 5; do
+        rm -f run.ckpt*
+        env --default-signal=INT mtled -q -c run.ckpt -e 0 "$2" table.mts > part.dat 2> said 3>&- &
+        run=$!
+        for ((tries = 0; tries < 500; tries++)); do
+            [ ! -e run.ckpt.old ] || break
+            sleep 0.02
+        done
+        kill -s "$1" $run 2> kill.said || true
+        status=0
+        wait $run || status=$?
+        [ $status -eq 0 ] || return 0
+    done
+}

@@ -299,32 +299,22 @@ END
     done < <(commands)
 }
 
-# A run that takes a while, with checkpoints after every step, ended by signal $1 when two are there.
-begin_and_end() {
-    local tries=0
-    rm -f run.ckpt*
-    { cat block.scene; printf '[solver]\nramp_steps = 40000\n'; } > slow.scene
-    env --default-signal=INT mtled -q -c run.ckpt -e 0 slow.scene table.mts > part.dat 2> message 3>&- &
-    local run=$!
-    while [ ! -e run.ckpt.old ] && [ $((tries += 1)) -lt 500 ]; do sleep 0.02; done
-    kill -s "$1" $run
-    status=0
-    wait $run || status=$?
-}
+# A run that takes a while.
+slow() { cat block.scene && printf '[solver]\nramp_steps = 40000\n'; }
 
 @test "fault 21: SIGINT, SIGTERM mid-run" {
-    { cat block.scene; printf '[solver]\nramp_steps = 40000\n'; } > slow.scene
+    slow > slow.scene
     mtled slow.scene table.mts > whole.dat
     for signal in INT TERM; do
-        begin_and_end $signal
-        said=$(cat message)
+        begin_and_end $signal slow.scene
+        told=$(cat said)
         survived=no
         mtled -c run.ckpt slow.scene table.mts > again.dat 2> message
-        if [[ $status -eq $((128 + $(kill -l $signal))) && $said == "mtled: ended by SIG$signal after step "* && $said != *$'\n'* ]] &&
+        if [[ $status -eq $((128 + $(kill -l $signal))) && $told == "mtled: ended by SIG$signal after step "* && $told != *$'\n'* ]] &&
             ! mts list part.dat > /dev/null 2>&1 && cmp whole.dat again.dat; then
             survived=yes
         fi
-        record "SIG$signal; going on gives the same bytes" "$status" "$said" "$survived"
+        record "SIG$signal; going on gives the same bytes" "$status" "$told" "$survived"
         [ "$survived" = yes ]
     done
 }
@@ -333,8 +323,8 @@ begin_and_end() {
     run bash "$BATS_TEST_DIRNAME/kills.sh" "$([ -n "${THOROUGH:-}" ] && echo 40 || echo 3)"
     record "killed at random moments, going on from one of two checkpoints" "$status" "${lines[-1]}" "$([ "$status" -eq 0 ] && echo yes || echo no)"
     [ "$status" -eq 0 ]
-    { cat block.scene; printf '[solver]\nramp_steps = 40000\n'; } > slow.scene
-    begin_and_end KILL
+    slow > slow.scene
+    begin_and_end KILL slow.scene
     head -c 1000 run.ckpt > cut && mv cut run.ckpt # as where a file system lost its end
     run -0 --separate-stderr bash -c 'mtled -c run.ckpt slow.scene table.mts > again.dat'
     mtled slow.scene table.mts | cmp - again.dat
@@ -342,10 +332,12 @@ begin_and_end() {
 }
 
 @test "fault 23: checkpoint of another scene" {
-    begin_and_end TERM
+    slow > slow.scene
+    begin_and_end TERM slow.scene
     sed -i 's/E = 3000/E = 3001/' slow.scene
     refused "another scene" 2 "run.ckpt: checkpoint of another scene" 'mtled -c run.ckpt slow.scene table.mts'
-    begin_and_end TERM
+    slow > slow.scene
+    begin_and_end TERM slow.scene
     cloud -d 2 -k jittered -n 5 --box 0,0.1,0,0.1 --jitter 0.21 | shapefn > other.mts 2> note
     refused "another cloud" 2 "run.ckpt: checkpoint of another cloud or table" 'mtled -c run.ckpt slow.scene other.mts'
 }
