@@ -42,7 +42,7 @@ MAN_PAGES := $(TOOLS:%=$(BUILD)/man/man1/%.1) $(patsubst tools/%,$(BUILD)/man/ma
 # Programs that the command-line tests use.
 TEST_HELPERS := $(BUILD)/tests/helper/damage $(BUILD)/tests/helper/deny.so
 
-.PHONY: all lib man deps check install clean
+.PHONY: all lib man deps check install clean always
 all: $(PROGRAMS) $(MAN_PAGES)
 man: $(MAN_PAGES)
 lib: $(LIBRARY)
@@ -115,6 +115,9 @@ install: all
 
 clean:
 	rm -rf build build-*
+
+# For files to be made whenever they are asked for.
+always:
 
 include $(wildcard pipelines/*.mk)
 -include $(shell find $(BUILD) -name '*.d' 2>/dev/null)

@@ -2,6 +2,8 @@
 
 bats_require_minimum_version 1.5.0
 
+load common.bash
+
 setup() {
     cd "$BATS_TEST_TMPDIR"
     set -o pipefail
@@ -12,15 +14,8 @@ setup() {
 
 # A block pressed onto a floor, slowly, such that there is time to end it.
 scene() {
+    block quasi-static | sed 's/^nu = .*/nu = 0.49/'
     cat << 'SCENE'
-[scene]
-dim = 2
-analysis = quasi-static
-[material body]
-region = body
-E = 3000
-nu = 0.49
-rho = 1000
 [displacement top]
 facets = ymax
 table = top.tsv
@@ -41,30 +36,10 @@ SCENE
     printf -- '-1 -0.005\n2 -0.005\n' > floor.tsv
 }
 
-# Begin a run with checkpoints, wait until one is there, and end it by signal $1.
-begin_and_end() {
-    rm -f run.ckpt*
-    mtled -q -c run.ckpt -e 0 run.scene table.mts > part.dat 2> said 3>&- &
-    local run=$! tries=0
-    while [ ! -e run.ckpt.old ] && [ $((tries += 1)) -lt 500 ]; do sleep 0.02; done
-    kill -s "$1" $run
-    status=0
-    wait $run || status=$?
-}
-
-refused() {
-    local text=$1
-    shift
-    run -2 --separate-stderr "$@"
-    [ -z "$output" ]
-    [ "$(wc -l <<< "$stderr")" -eq 1 ]
-    [[ $stderr == "mtled: "*"$text"* ]]
-}
-
 @test "ended by a signal: one line, status 128 + n, no output; the same command goes on to the same bytes" {
     mtled run.scene table.mts > whole.dat
     for signal in TERM HUP; do
-        begin_and_end $signal
+        begin_and_end $signal run.scene
         [ $status -eq $((128 + $(kill -l $signal))) ]
         [ "$(wc -l < said)" -eq 1 ]
         grep -q "^mtled: ended by SIG$signal after step [0-9]*: the same command goes on from run.ckpt$" said
@@ -80,7 +55,7 @@ refused() {
 }
 
 @test "a checkpoint is a stream that can be looked into" {
-    begin_and_end TERM
+    begin_and_end TERM run.scene
     mts list run.ckpt | grep -q '^checkpoint	i8	1	1	version='
     mts list run.ckpt.old | grep -q '^state.contact.0.multiplier	f8'
     mts check run.ckpt
@@ -104,30 +79,30 @@ refused() {
 }
 
 @test "another scene, another table, another file of the scene: refused, and left as it is" {
-    begin_and_end TERM
+    begin_and_end TERM run.scene
     cp run.ckpt kept
     sed 's/E = 3000/E = 3001/' run.scene > other.scene
-    refused "run.ckpt: checkpoint of another scene" mtled -c run.ckpt other.scene table.mts
+    refused 2 "run.ckpt: checkpoint of another scene" mtled -c run.ckpt other.scene table.mts
     cp floor.tsv true.tsv
     printf -- '-1 -0.006\n2 -0.006\n' > floor.tsv
-    refused "or its tables have changed: remove it" mtled -c run.ckpt run.scene table.mts
+    refused 2 "or its tables have changed: remove it" mtled -c run.ckpt run.scene table.mts
     cp true.tsv floor.tsv
     cloud -d 2 -k jittered -n 8 --box 0,0.1,0,0.1 --jitter 0.21 | shapefn > other.mts 2> note
-    refused "run.ckpt: checkpoint of another cloud or table" mtled -c run.ckpt run.scene other.mts
+    refused 2 "run.ckpt: checkpoint of another cloud or table" mtled -c run.ckpt run.scene other.mts
     mts text run.ckpt | sed '/^# checkpoint/s/version=[0-9.]*/version=0.0.9/' | mts binary > old.ckpt
-    refused "old.ckpt: checkpoint of version 0.0.9, this is" mtled -c old.ckpt run.scene table.mts
-    refused "run with tables in double precision: run it so" mtled -f -c run.ckpt run.scene table.mts
-    refused "table.mts: a stream, but not a checkpoint" mtled -c table.mts run.scene table.mts
-    mts drop state.mass run.ckpt > less.ckpt
+    refused 2 "old.ckpt: checkpoint of version 0.0.9, this is" mtled -c old.ckpt run.scene table.mts
+    refused 2 "run with tables in double precision: run it so" mtled -f -c run.ckpt run.scene table.mts
+    refused 2 "table.mts: a stream, but not a checkpoint" mtled -c table.mts run.scene table.mts
+    mts drop state.inertia.mass run.ckpt > less.ckpt
     run -2 --separate-stderr mtled -c less.ckpt run.scene table.mts
-    [[ $stderr == *"state.mass is missing or does not fit" ]]
-    refused "no regular file" mtled -c /dev/null run.scene table.mts
+    [[ $stderr == *"state.inertia.mass is missing or does not fit" ]]
+    refused 2 "no regular file" mtled -c /dev/null run.scene table.mts
     cmp run.ckpt kept
 }
 
 @test "a damaged checkpoint: the one before serves; both damaged: refused" {
     mtled run.scene table.mts > whole.dat
-    begin_and_end KILL
+    begin_and_end KILL run.scene
     [ $status -eq 137 ]
     printf 'x' | dd of=run.ckpt bs=1 seek=3000 conv=notrunc 2> note
     cp run.ckpt bad
@@ -136,7 +111,7 @@ refused() {
     cmp u.dat whole.dat
     cp bad run.ckpt
     cp bad run.ckpt.old
-    refused "remove it and run.ckpt.old to begin anew" mtled -c run.ckpt run.scene table.mts
+    refused 2 "remove it and run.ckpt.old to begin anew" mtled -c run.ckpt run.scene table.mts
 }
 
 @test "a place that cannot be written is told at once; one that fills up later leaves the last checkpoint" {
@@ -145,7 +120,7 @@ refused() {
     run -3 --separate-stderr bash -c 'ulimit -f 4; mtled -c run.ckpt run.scene table.mts > /dev/null'
     [[ $stderr == "mtled: run.ckpt.new: cannot write: File too large" ]]
     [ -z "$(find . -name 'run.ckpt*')" ]
-    begin_and_end TERM
+    begin_and_end TERM run.scene
     cp run.ckpt kept
     run -143 --separate-stderr bash -c 'ulimit -f 4; mtled -c run.ckpt run.scene table.mts > /dev/null & sleep 0.3; kill -TERM $!; wait $!'
     [[ $stderr == *"no checkpoint: run.ckpt.new: cannot write: File too large"* ]]

@@ -2,23 +2,10 @@
 
 bats_require_minimum_version 1.5.0
 
+load common.bash
+
 setup() {
     cd "$BATS_TEST_TMPDIR"
-}
-
-# Rows of section $1 of a text stream.
-rows() {
-    awk -v name="$1" '/^# / { on = $2 == name; next } on && NF' "${2:--}"
-}
-
-# refused TEXT COMMAND...: status 2, nothing on standard output, one line on standard error with TEXT in it.
-refused() {
-    local text=$1
-    shift
-    run -2 --separate-stderr "$@"
-    [ -z "$output" ]
-    [ "${#stderr_lines[@]}" -eq 1 ]
-    [[ "$stderr" == "cloud: "*"$text"* ]] || { echo "message: $stderr"; return 1; }
 }
 
 @test "the cloud of the approximation study" {
@@ -72,21 +59,21 @@ refused() {
 }
 
 @test "usage errors" {
-    refused "--kind is missing" cloud -d 2 -n 4 --box 0,1,0,1
-    refused "--box is missing" cloud -d 2 -k regular -n 4
-    refused "'square' is none of regular, jittered, halton, graded" cloud -d 2 -k square -n 4 --box 0,1,0,1
-    refused "-d: 4 is not within [2, 3]" cloud -d 4 -k regular -n 4 --box 0,1,0,1
-    refused "--box: 4 numbers, not 6" cloud -d 3 -k regular -n 4 --box 0,1,0,1
-    refused "box: 1,1 along axis 2 is no range" cloud -d 2 -k regular -n 4 --box 0,1,1,1
-    refused "-n: 3 numbers" cloud -d 2 -k regular -n 4,4,4 --box 0,1,0,1
-    refused "-n: 2 numbers, not 1" cloud -d 2 -k halton -n 4,4 --box 0,1,0,1
-    refused "-n: 4.5 is not a whole number" cloud -d 2 -k regular -n 4.5 --box 0,1,0,1
-    refused "1 nodes along axis 1" cloud -d 2 -k regular -n 1,4 --box 0,1,0,1
-    refused "more than 2147483647 nodes" cloud -d 3 -k regular -n 2000 --box 0,1,0,1,0,1
-    refused "--jitter goes with another kind" cloud -d 2 -k regular -n 4 --box 0,1,0,1 --jitter 0.1
-    refused "--seed goes with another kind" cloud -d 2 -k graded -n 4 --box 0,1,0,1 --seed 1
-    refused "--ratio goes with another kind" cloud -d 2 -k halton -n 4 --box 0,1,0,1 --ratio 2
-    refused "jitter: 0.6 is not within" cloud -d 2 -k jittered -n 4 --box 0,1,0,1 --jitter 0.6
-    refused "--field: 'sine' is none of paper, linear, quadratic" cloud -d 2 -k regular -n 4 --box 0,1,0,1 --field sine
-    refused "unexpected operand" cloud -d 2 -k regular -n 4 --box 0,1,0,1 file
+    refused 2 "--kind is missing" cloud -d 2 -n 4 --box 0,1,0,1
+    refused 2 "--box is missing" cloud -d 2 -k regular -n 4
+    refused 2 "'square' is none of regular, jittered, halton, graded" cloud -d 2 -k square -n 4 --box 0,1,0,1
+    refused 2 "-d: 4 is not within [2, 3]" cloud -d 4 -k regular -n 4 --box 0,1,0,1
+    refused 2 "--box: 4 numbers, not 6" cloud -d 3 -k regular -n 4 --box 0,1,0,1
+    refused 2 "box: 1,1 along axis 2 is no range" cloud -d 2 -k regular -n 4 --box 0,1,1,1
+    refused 2 "-n: 3 numbers" cloud -d 2 -k regular -n 4,4,4 --box 0,1,0,1
+    refused 2 "-n: 2 numbers, not 1" cloud -d 2 -k halton -n 4,4 --box 0,1,0,1
+    refused 2 "-n: 4.5 is not a whole number" cloud -d 2 -k regular -n 4.5 --box 0,1,0,1
+    refused 2 "1 nodes along axis 1" cloud -d 2 -k regular -n 1,4 --box 0,1,0,1
+    refused 2 "more than 2147483647 nodes" cloud -d 3 -k regular -n 2000 --box 0,1,0,1,0,1
+    refused 2 "--jitter goes with another kind" cloud -d 2 -k regular -n 4 --box 0,1,0,1 --jitter 0.1
+    refused 2 "--seed goes with another kind" cloud -d 2 -k graded -n 4 --box 0,1,0,1 --seed 1
+    refused 2 "--ratio goes with another kind" cloud -d 2 -k halton -n 4 --box 0,1,0,1 --ratio 2
+    refused 2 "jitter: 0.6 is not within" cloud -d 2 -k jittered -n 4 --box 0,1,0,1 --jitter 0.6
+    refused 2 "--field: 'sine' is none of paper, linear, quadratic" cloud -d 2 -k regular -n 4 --box 0,1,0,1 --field sine
+    refused 2 "unexpected operand" cloud -d 2 -k regular -n 4 --box 0,1,0,1 file
 }

@@ -65,26 +65,3 @@ $Elements
 $EndElements
 END
 }
-
-# A square that is pressed, on a stream of cloud, as block.scene.
-scene() {
-    cat > block.scene << 'END'
-[scene]
-dim = 2
-analysis = quasi-static
-[material tissue]
-region = body
-E = 3000
-nu = 0.45
-rho = 1000
-[displacement bottom]
-facets = ymin
-components = 0, 0
-[displacement top]
-facets = ymax
-components = 0, -0.005
-END
-}
-
-# with SED-SCRIPT: block.scene edited, as edited.scene.
-with() { sed "$1" block.scene > edited.scene; }

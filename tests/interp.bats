@@ -21,10 +21,10 @@ near() {
 with_section() {
     local file=$1 name=$2 type=$3 cols=$4
     shift 4
-    "$@" > rows
-    mts text "$file" | awk -v name="$name" -v type="$type" -v cols="$cols" -v rows="$(wc -l < rows)" '
+    "$@" > "rows.$name"
+    mts text "$file" | awk -v name="$name" -v type="$type" -v cols="$cols" -v rows="$(wc -l < "rows.$name")" '
         /^# end/ { printf "# %s %s %d %d enc=text\n", name, type, rows, cols
-                   while ((getline line < "rows") > 0) print line
+                   while ((getline line < ("rows." name)) > 0) print line
                    printf "\n\n# end %d\n", $3 + 1; next }
         { print }'
 }

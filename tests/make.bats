@@ -7,13 +7,14 @@ setup() {
     cd "$BATS_TEST_TMPDIR"
     fake=$(realpath --relative-to "$top" .)/build # the makefiles put CURDIR in front
     mkdir -p build/bin
-    tools=(gmsh gnuplot ccx)
+    tools=(gmsh gnuplot ccx bats)
     for file in "$top"/tools/*.c; do tools+=("$(basename "$file" .c)"); done
     for tool in "${tools[@]}"; do stand_in good > build/bin/"$tool"; done
     chmod +x build/bin/*
 }
 
-# A program that reads its input and writes half of something where it is told to, and then succeeds or fails.
+# A program that reads its input and writes half of something where it is told to, and then succeeds or fails; with
+# FAIL_FROM=N it fails from its Nth run on.
 stand_in() {
     cat << 'END_OF_SCRIPT'
 #!/bin/bash
@@ -28,13 +29,13 @@ while [ $# -gt 0 ]; do
 done
 END_OF_SCRIPT
     if [ "$1" = bad ]; then
-        echo 'echo x >> "$FAILED"; exit 3'
+        echo 'echo x >> "$FAILED"; [ "$(wc -l < "$FAILED")" -lt "${FAIL_FROM:-1}" ] || exit 3'
     fi
 }
 
 # make GOALS with the stand-ins, all that can be made.
 with_stand_ins() {
-    local old=()
+    local tool old=()
     for tool in "${tools[@]}"; do old+=(-o "$fake/bin/$tool"); done
     make -C "$top" -k -j1 BUILD="$fake" OUT="$fake/out" "${old[@]}" "$@" > log 2>&1
 }
@@ -95,14 +96,86 @@ fails() {
     [ ! -e build/out/hard/hard.tsv ] || grep -q 'FAIL$' build/out/hard/hard.tsv
 }
 
+# The smallest that the studies of errors can be: a case in 2D and one in 3D, of one size.
+few_solutions=(CONVERGENCE_CASES=block20 SPEED_ERROR_NAMES= square.sizes=0.03 cube.sizes=0.03)
+
+@test "convergence: whichever program fails" {
+    for tool in nodes ipoints support shapefn mtled; do
+        fails $tool convergence "${few_solutions[@]}" -- convergence/block20-{mls1,mmls}-0.03.{time,dat,errors} \
+            convergence/convergence.tsv
+    done
+    fails mts convergence "${few_solutions[@]}" -- convergence/block20-mls1-0.03.{time,dat,errors} convergence/convergence.tsv
+    fails gmsh convergence "${few_solutions[@]}" -- convergence/square-0.03.msh convergence/block20-default-0.03.{time,dat,errors}
+    fails fieldcmp convergence "${few_solutions[@]}" -- convergence/block20-default-0.03.errors convergence/convergence.tsv
+    for study in convergence speed-error; do
+        fails gnuplot -o "$fake/out/$study/$study.tsv" "$fake/out/$study/$study.png" -- $study/$study.png
+    done
+}
+
+@test "convergence: CalculiX fails on a mesh that is one" {
+    for tool in gmsh nodes; do ln -sf "$(command -v $tool)" build/bin/$tool; done
+    fails ccx convergence "${few_solutions[@]}" -- convergence/block20-calculix-0.03.{time,dat,errors} convergence/convergence.tsv
+    [ -e build/out/convergence/block20-default-0.03.errors ] # the others are made
+}
+
+@test "convergence: the repeats, and a solution that is interrupted, leave no half of one" {
+    FAIL_FROM=2 fails fieldcmp convergence "${few_solutions[@]}" -- convergence/convergence.tsv
+    [ "$(find build/out/convergence -name '*.errors' | wc -l)" -eq 1 ]
+    [ -z "$(find "$top"/examples -name '.*.scene')" ]
+}
+
+@test "speed-error: whichever program fails" {
+    for tool in nodes mtled; do
+        fails $tool speed-error "${few_solutions[@]}" -- convergence/cube-default-0.03.{time,dat,force} speed-error/speed-error.tsv
+    done
+    fails mts speed-error "${few_solutions[@]}" -- convergence/cube-default-0.03.force speed-error/{speed-error,reach}.tsv
+}
+
+@test "estimate: whichever program fails, and when; a run that fails is no row less" {
+    cases=02-homogeneous
+    for tool in cloud shapefn mts; do
+        fails $tool estimate ESTIMATE_CASES=$cases -- estimate/$cases.rows estimate/estimate.tsv
+    done
+    for from in 1 2 4; do
+        FAIL_FROM=$from fails mtled estimate ESTIMATE_CASES=$cases --
+        grep -q "^$cases.*FAIL$" build/out/estimate/estimate.tsv
+    done
+}
+
+@test "bench: whichever kernel fails" {
+    kernels=()
+    for file in "$top"/pipelines/bench/*.c; do
+        kernel=$(basename "$file" .c)
+        case $kernel in bench | problem) ;; *) kernels+=(bench-"$kernel") ;; esac
+    done
+    ln -s bin build/bench
+    old=()
+    for kernel in "${kernels[@]}"; do
+        stand_in good > build/bin/"$kernel"
+        old+=(-o "$fake/bench/$kernel")
+    done
+    chmod +x build/bin/*
+    with_stand_ins bench "${old[@]}"
+    [ "$(wc -l < build/out/bench/bench.tsv)" -eq $((${#kernels[@]} + 1)) ]
+    for kernel in "${kernels[@]}"; do
+        fails "$kernel" bench "${old[@]}" -- bench/bench.tsv
+    done
+}
+
+@test "soak, faults: a run that fails leaves no table" {
+    for tool in cloud shapefn mtled; do
+        fails $tool soak -- soak/soak.tsv
+    done
+    fails bats faults -o "$fake/tests/helper/damage" -o "$fake/tests/helper/deny.so" -- faults/faults.tsv
+}
+
 @test "a target that was there before the failure is gone, too, and made again when nothing fails" {
     rm -rf build/out
     goal=$fake/out/brain2d/default.dat
     with_stand_ins "$goal"
     [ -e build/out/brain2d/default.dat ]
     touch -d tomorrow build/out/brain2d/body.msh
-    FAILED=/dev/null
-    export FAILED
+    export FAILED=$PWD/failures
     stand_in bad > build/bin/mtled
     run -2 with_stand_ins "$goal"
     [ ! -e build/out/brain2d/default.dat ]

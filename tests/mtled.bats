@@ -2,106 +2,14 @@
 
 bats_require_minimum_version 1.5.0
 
+load common.bash
+
 setup() {
     cd "$BATS_TEST_TMPDIR"
     set -o pipefail
     export OMP_NUM_THREADS=1
     cloud -d 2 -k jittered -n 6 --box 0,0.1,0,0.1 --jitter 0.2 > square.mts
-    scene > block.scene
-}
-
-# A block held at its bottom, its top pushed down; sections may be appended.
-scene() {
-    cat << 'END'
-[scene]
-dim = 2
-analysis = quasi-static
-
-[material body]
-region = body
-E = 3000
-nu = 0.45
-rho = 1000
-
-[displacement bottom]
-facets = ymin
-components = 0, 0
-
-[displacement top]
-facets = ymax
-components = 0, -0.005
-END
-}
-
-# The same block under its weight, in time.
-dynamic_scene() {
-    cat << 'END'
-[scene]
-dim = 2
-analysis = dynamic
-gravity = 0, -9.81
-
-[material body]
-region = body
-E = 3000
-nu = 0.45
-rho = 1000
-
-[displacement bottom]
-facets = ymin
-components = 0, 0
-
-[solver]
-end_time = 0.05
-END
-}
-
-# A square meshed by gmsh, in mm.
-square_msh() {
-    cat > square.geo << 'END'
-Point(1) = {0, 0, 0, 25};
-Point(2) = {100, 0, 0, 25};
-Point(3) = {100, 100, 0, 25};
-Point(4) = {0, 100, 0, 25};
-Line(1) = {1, 2};
-Line(2) = {2, 3};
-Line(3) = {3, 4};
-Line(4) = {4, 1};
-Curve Loop(1) = {1, 2, 3, 4};
-Plane Surface(1) = {1};
-Physical Surface("body") = {1};
-Physical Curve("ymin") = {1};
-Physical Curve("ymax") = {3};
-END
-    gmsh -v 1 -2 square.geo -o body.msh
-}
-
-# Rows of section $1 of a text stream.
-rows() {
-    awk -v name="$1" '/^# / { on = $2 == name; next } on && NF' "${2:--}"
-}
-
-# A text stream without its provenance.
-bare() {
-    grep -v '^# @' "$@"
-}
-
-# refused STATUS TEXT COMMAND...: that status, nothing on standard output, one line on standard error with TEXT in it
-# (besides the note on stages that were run).
-refused() {
-    local expected=$1 text=$2
-    shift 2
-    run --separate-stderr "$@"
-    stderr=$(grep -v "ran with defaults" <<< "$stderr" || true)
-    [ "$status" -eq "$expected" ] || { echo "status $status: $stderr"; return 1; }
-    [ -z "$output" ] || { echo "output: $output"; return 1; }
-    [ "$(wc -l <<< "$stderr")" -eq 1 ] || { echo "not one line: $stderr"; return 1; }
-    [[ "$stderr" == "mtled: "*"$text"* ]] || { echo "message: $stderr"; return 1; }
-}
-
-# block.scene edited by a sed script, as edited.scene.
-with() {
-    sed "$1" block.scene > edited.scene
+    pressed_block > block.scene
 }
 
 @test "usage, version, and wrong command lines" {
@@ -140,7 +48,7 @@ with() {
 
 @test "any number of threads gives the same bytes, quasi-static and dynamic" {
     shapefn square.mts > table.mts
-    dynamic_scene > dynamic.scene
+    swinging_block > dynamic.scene
     for scene in block dynamic; do
         for threads in 1 2 3; do
             OMP_NUM_THREADS=$threads mtled $scene.scene table.mts > $scene.$threads
@@ -185,12 +93,12 @@ with() {
     diff <(rows u.frame.3 full.dat) <(rows u full.dat)
     grep -q '^# u.frame.3 .*time=1$' full.dat
     # The results of an earlier run leave the stream.
-    scene > block.scene
+    pressed_block > block.scene
     mtled block.scene full.dat 2> note | bare | cmp - <(bare plain.dat)
 }
 
 @test "a dynamic scene: energies, frames by time, reactions" {
-    dynamic_scene > block.scene
+    swinging_block > block.scene
     printf '[output]\ninterval = 0.02\nenergy = yes\nreactions = yes\n' >> block.scene
     mtled -v block.scene square.mts > u.dat 2> report
     grep -q '^# energy f8 [0-9]* 7 .*cols=time,kinetic,internal,contact,work,dissipated,error' u.dat
@@ -210,14 +118,14 @@ with() {
 }
 
 @test "a free body falls g t^2 / 2, every node alike" {
-    dynamic_scene | sed '/^\[displacement/,/^$/d' > block.scene
+    swinging_block | sed '/^\[displacement/,/^$/d' > block.scene
     mtled block.scene square.mts 2> note | rows u > u
     awk '{ d = $2 + 9.81 * 0.05^2 / 2; if (d > 1e-12 || d < -1e-12 || $1 > 1e-12 || $1 < -1e-12) exit 1 }
         END { exit NR != 36 }' u
 }
 
 @test "an initial state: thrown, a body moves on as it was; rows that are not the nodes are refused" {
-    { dynamic_scene | sed '/gravity/d; /^\[displacement/,/^$/d'; printf '[initial]\ntable = begin.tsv\nunit = mm\n'; } > thrown.scene
+    { swinging_block | sed '/gravity/d; /^\[displacement/,/^$/d'; printf '[initial]\ntable = begin.tsv\nunit = mm\n'; } > thrown.scene
     rows nodes.x <(mts text square.mts) | awk '{ print 1e3 * $1, 1e3 * $2, 2, 3, 40, -20 }' > begin.tsv
     mtled thrown.scene square.mts 2> note | rows u | awk '
         { d = ($1 - 0.004)^2 + ($2 - 0.002)^2; if (!(d < 1e-24)) exit 1 }
@@ -227,12 +135,12 @@ with() {
     tac begin.tsv > reversed.tsv
     { cat reversed.tsv; head -n 1 begin.tsv; } > begin.tsv
     refused 2 "begin.tsv:1: not the place of node 0" mtled thrown.scene square.mts
-    { scene; printf '[initial]\ntable = begin.tsv\nunit = mm\n'; } > edited.scene
+    { pressed_block; printf '[initial]\ntable = begin.tsv\nunit = mm\n'; } > edited.scene
     refused 2 "a quasi-static scene has no time" mtled edited.scene square.mts
 }
 
 @test "a dynamic scene at rest stays at rest" {
-    dynamic_scene | sed '/gravity/d' > block.scene
+    swinging_block | sed '/gravity/d' > block.scene
     mtled block.scene square.mts 2> note | rows u > u
     awk '$1 > 1e-15 || $1 < -1e-15 || $2 > 1e-15 || $2 < -1e-15 { exit 1 } END { exit NR != 36 }' u
 }
@@ -256,10 +164,10 @@ with() {
 
 @test "a node prescribed twice: once if it agrees, an error if it does not" {
     mtled block.scene square.mts 2> note | rows u > once
-    { scene; printf '[displacement again]\nfacets = ymax\ncomponents = free, -0.005\n'; } > twice.scene
+    { pressed_block; printf '[displacement again]\nfacets = ymax\ncomponents = free, -0.005\n'; } > twice.scene
     mtled twice.scene square.mts 2> note | rows u > twice
     paste -d ' ' once twice | awk '{ d = ($1 - $3)^2 + ($2 - $4)^2; if (d > 1e-10) exit 1 }'
-    { scene; printf '[displacement again]\nfacets = ymax\ncomponents = free, -0.006\n'; } > twice.scene
+    { pressed_block; printf '[displacement again]\nfacets = ymax\ncomponents = free, -0.006\n'; } > twice.scene
     refused 2 "prescribed twice: -0.006 m here, -0.005 m in [displacement top]" mtled twice.scene square.mts
 }
 
@@ -295,7 +203,7 @@ with() {
     refused 2 "curve.txt:2" mtled edited.scene square.mts
     printf '0 0\n1 1\n' > curve.txt
     mtled edited.scene square.mts > u.dat 2> note
-    dynamic_scene | sed 's/components = 0, 0/&\ncurve = curve.txt/' > edited.scene
+    swinging_block | sed 's/components = 0, 0/&\ncurve = curve.txt/' > edited.scene
     printf '0 0\n0.049 1\n' > curve.txt # end_time is 0.05
     refused 2 "curve" mtled edited.scene square.mts
 }
@@ -322,14 +230,14 @@ with() {
     [ "$(cat out.dat)" = old ]
     [ "$(ls out.dat*)" = out.dat ]
     refused 1 "not converged after 30 steps" mtled block.scene square.mts
-    dynamic_scene > block.scene
+    swinging_block > block.scene
     sed -i 's/end_time = 0.05/&\nmax_steps = 3/' block.scene
     refused 1 "after 3 steps" mtled block.scene square.mts
 }
 
 @test "a dynamic run that fails names the time, the place, and what to change" {
     printf 'old\n' > out.dat
-    dynamic_scene | sed 's/9.81/981000/' > block.scene
+    swinging_block | sed 's/9.81/981000/' > block.scene
     refused 1 "block.scene: step " mtled -o out.dat block.scene square.mts
     [[ "$stderr" == *"t = "*" s: "* ]]
     [[ "$stderr" == *"time_step_margin"* || "$stderr" == *"refine there"* ]]

@@ -2,6 +2,8 @@
 
 bats_require_minimum_version 1.5.0
 
+load common.bash
+
 setup() {
     cd "$BATS_TEST_TMPDIR"
 }
@@ -56,11 +58,6 @@ END
     gmsh -v 1 -3 cube.geo "${@:2}" -o cube.msh
 }
 
-# Rows of section $1 of a text stream.
-rows() {
-    awk -v name="$1" '/^# / { on = $2 == name; next } on && NF' "${2:--}"
-}
-
 # Sum of the volumes of the cells, and the least one.
 volumes() {
     awk '
@@ -75,17 +72,6 @@ volumes() {
         sum += v; least = (count++ == 0 || v < least) ? v : least
     }
     END { printf "%.9g %d\n", sum, (least > 0) }' "$1"
-}
-
-# refused STATUS TEXT COMMAND...: that status, nothing on standard output, one line on standard error with TEXT in it.
-refused() {
-    local expected=$1 text=$2
-    shift 2
-    run --separate-stderr "$@"
-    [ "$status" -eq "$expected" ] || { echo "status $status: $stderr"; return 1; }
-    [ -z "$output" ] || { echo "output: $output"; return 1; }
-    [ "${#stderr_lines[@]}" -eq 1 ] || { echo "not one line: $stderr"; return 1; }
-    [[ "$stderr" == "nodes: "*"$text"* ]] || { echo "message: $stderr"; return 1; }
 }
 
 # A sanitizer reserves more than any limit.

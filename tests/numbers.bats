@@ -3,6 +3,8 @@
 
 bats_require_minimum_version 1.5.0
 
+load common.bash
+
 setup() {
     cd "$BATS_TEST_TMPDIR"
     export OMP_NUM_THREADS=1
@@ -11,8 +13,9 @@ setup() {
 
 # A square held at its bottom, its top displaced: scene ANALYSIS NU DISPLACEMENT SOLVER_LINES
 scene() {
-    printf '[scene]\ndim = 2\nanalysis = %s\n[material body]\nregion = body\nE = 3000\nnu = %s\nrho = 1000\n' "$1" "$2"
-    printf '[displacement bottom]\nfacets = ymin\ncomponents = 0, 0\n[displacement top]\nfacets = ymax\n%b\n' "$3"
+    block "$1" | sed "s/^nu = .*/nu = $2/"
+    held_below
+    printf '[displacement top]\nfacets = ymax\n%b\n' "$3"
     printf '[output]\nframes = 20\nenergy = yes\n[solver]\n%b\n' "$4"
 }
 

@@ -73,22 +73,13 @@ static struct support_options parse(const struct tool *tool, const struct option
 {
     struct support_options support = support_defaults(dim);
     struct error error;
-    if (options[FACTOR].given && options[RADIUS].given) {
-        tool_fail(tool, STATUS_INPUT, "give one of -k and -R");
-    }
     for (int i = UNIT; i <= LAST_OF_MLS; i++) {
         if (options[i].given && !options[POINTS].given) {
             tool_fail(tool, STATUS_INPUT, "--%s needs -p (else the stream's own table is used)",
                       options[i].name);
         }
     }
-    if (options[FACTOR].given) {
-        tool_check(tool, parse_double(options[FACTOR].value, "-k", 0.1, 100, &support.factor, &error),
-                   &error);
-    }
-    if (options[RADIUS].given) {
-        tool_check(tool, parse_length(options[RADIUS].value, "-R", &support.radius, &error), &error);
-    }
+    tool_check(tool, radius_apply_options(&options[FACTOR], &options[RADIUS], &support, &error), &error);
     if (options[UNIT].given) {
         double unit;
         tool_check(tool, parse_length_unit(options[UNIT].value, "-u", &unit, &error), &error);

@@ -55,16 +55,7 @@ static struct support_options parse(const struct tool *tool, const struct option
 {
     struct support_options support = support_defaults(dim);
     struct error error;
-    if (options[FACTOR].given && options[RADIUS].given) {
-        tool_fail(tool, STATUS_INPUT, "give one of -k and -R");
-    }
-    if (options[FACTOR].given) {
-        tool_check(tool, parse_double(options[FACTOR].value, "-k", 0.1, 100, &support.factor, &error),
-                   &error);
-    }
-    if (options[RADIUS].given) {
-        tool_check(tool, parse_length(options[RADIUS].value, "-R", &support.radius, &error), &error);
-    }
+    tool_check(tool, radius_apply_options(&options[FACTOR], &options[RADIUS], &support, &error), &error);
     if (options[LEAST].given) {
         tool_check(tool, parse_integer(options[LEAST].value, "-m", 1, 100000, &support.least, &error),
                    &error);

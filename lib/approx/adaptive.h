@@ -18,7 +18,8 @@ struct adaptive_options {
         support; /* the shape functions: their lists are made as support_build makes them */
 };
 
-/* Rules exact for quadratics (3 points in 2D, 4 in 3D), four levels (three in 3D), the default shape functions. */
+/* Rules exact for quadratics (3 points in 2D, 4 in 3D), four levels (three in 3D), the default shape
+ * functions. */
 struct adaptive_options adaptive_defaults(int dim);
 
 /* Points in order of the cells, within a cell in order of its subcells. */

@@ -1,4 +1,4 @@
-#include "approx/boundary.h"
+#include "approx/boundary_private.h"
 
 #include "approx/quadrature.h"
 #include "base/memory.h"
@@ -6,189 +6,6 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-
-/* Facets that turn by 45 degrees or more at a node belong to different sides; a little less than that, so
- * that round-off does not decide on chamfers. */
-static const double side_cosine = 0.7072;
-
-/* A face by its sorted nodes, for look-up. */
-struct keyed_face {
-    int32_t key[3];
-    int64_t face;
-};
-
-static void sorted_key(int dim, const int32_t *node, int32_t key[3])
-{
-    key[2] = -1;
-    for (int i = 0; i < dim; i++) {
-        int at = i;
-        for (; at > 0 && key[at - 1] > node[i]; at--) {
-            key[at] = key[at - 1];
-        }
-        key[at] = node[i];
-    }
-}
-
-static int compare_faces(const void *left, const void *right)
-{
-    const struct keyed_face *a = left, *b = right;
-    for (int i = 0; i < 3; i++) {
-        if (a->key[i] != b->key[i]) {
-            return a->key[i] < b->key[i] ? -1 : 1;
-        }
-    }
-    return 0;
-}
-
-/* face_of[i]: the face of the table that facet i of the set is. */
-static enum status find_faces(const struct face_table *table, const struct facet_set *set, int64_t *face_of,
-                              struct error *error)
-{
-    enum status status;
-    struct keyed_face *keyed = NULL;
-    int dim = table->dim;
-    int64_t count = 0;
-    TRY(NEW_ARRAY(&keyed, table->faces->count, error));
-    for (int64_t f = 0; f < table->faces->count; f++) {
-        if (table->faces->cell[2 * f + 1] < 0) {
-            sorted_key(dim, table->faces->node + f * dim, keyed[count].key);
-            keyed[count++].face = f;
-        }
-    }
-    qsort(keyed, (size_t)count, sizeof *keyed, compare_faces);
-    for (int64_t i = 0; i < set->count; i++) {
-        struct keyed_face wanted;
-        sorted_key(dim, set->facet + i * dim, wanted.key);
-        const struct keyed_face *found = bsearch(&wanted, keyed, (size_t)count, sizeof *keyed, compare_faces);
-        if (found == NULL) {
-            status = fail(error, STATUS_INPUT, "facets: row %lld of the set is no boundary face of the cells",
-                          (long long)i);
-            goto done;
-        }
-        face_of[i] = found->face;
-    }
-done:
-    free(keyed);
-    return status;
-}
-
-/* One corner of a facet: which hat part it belongs to. */
-struct corner {
-    int32_t node;
-    int32_t vertex; /* of the facet */
-    int64_t facet;  /* of the set */
-    int64_t part;
-};
-
-static int compare_corners(const void *left, const void *right)
-{
-    const struct corner *a = left, *b = right;
-    if (a->node != b->node) {
-        return a->node < b->node ? -1 : 1;
-    }
-    if (a->facet != b->facet) {
-        return a->facet < b->facet ? -1 : 1;
-    }
-    return a->vertex - b->vertex;
-}
-
-static void unit_normal(const struct face_table *table, const int32_t *facet, double *normal, double *size)
-{
-    double sum = 0.0;
-    normal[2] = 0.0;
-    face_area_vector(table->dim, table->x, facet, normal);
-    for (int a = 0; a < table->dim; a++) {
-        sum += normal[a] * normal[a];
-    }
-    *size = sqrt(sum);
-    for (int a = 0; a < table->dim; a++) {
-        normal[a] /= *size;
-    }
-}
-
-/* Whether two facets at a node are of one side: in 3D they must share an edge there, in 2D they meet anyway.
- */
-static bool same_side(const struct face_table *table, const struct facet_set *set, const struct corner *a,
-                      const struct corner *b)
-{
-    double na[3], nb[3], size;
-    const int32_t *fa = set->facet + a->facet * table->dim, *fb = set->facet + b->facet * table->dim;
-    int shared = 0;
-    for (int i = 0; i < table->dim; i++) {
-        for (int k = 0; k < table->dim; k++) {
-            shared += fa[i] == fb[k];
-        }
-    }
-    if (shared < table->dim - 1) {
-        return false;
-    }
-    unit_normal(table, fa, na, &size);
-    unit_normal(table, fb, nb, &size);
-    return na[0] * nb[0] + na[1] * nb[1] + na[2] * nb[2] >= side_cosine;
-}
-
-/* Number the parts of one node's hat: corners first..last-1 joined through neighbours of one side. */
-static void split_hat(const struct face_table *table, const struct facet_set *set, struct corner *corners,
-                      int64_t first, int64_t last, bool split, int64_t *part_count)
-{
-    for (int64_t i = first; i < last; i++) {
-        corners[i].part = -1;
-    }
-    for (int64_t seed = first; seed < last; seed++) {
-        if (corners[seed].part >= 0) {
-            continue;
-        }
-        corners[seed].part = *part_count;
-        for (bool grew = true; grew;) {
-            grew = false;
-            for (int64_t i = first; i < last; i++) {
-                for (int64_t k = first; corners[i].part < 0 && k < last; k++) {
-                    if (corners[k].part == *part_count &&
-                        (!split || same_side(table, set, &corners[i], &corners[k]))) {
-                        corners[i].part = *part_count;
-                        grew = true;
-                    }
-                }
-            }
-        }
-        ++*part_count;
-    }
-}
-
-static int compare_parts(const void *left, const void *right)
-{
-    const struct corner *a = left, *b = right;
-    if (a->part != b->part) {
-        return a->part < b->part ? -1 : 1;
-    }
-    return compare_corners(left, right);
-}
-
-/* The corners of the set, sorted by hat part. */
-static enum status collect_corners(const struct face_table *table, const struct facet_set *set, bool split,
-                                   struct corner *corners, int64_t *part_count, struct error *error)
-{
-    int dim = table->dim;
-    int64_t count = set->count * dim;
-    for (int64_t i = 0; i < count; i++) {
-        if (set->facet[i] < 0 || set->facet[i] >= table->node_count) {
-            return fail(error, STATUS_INPUT, "facets: no node %d", set->facet[i]);
-        }
-        corners[i] = (struct corner){.node = set->facet[i], .vertex = (int32_t)(i % dim), .facet = i / dim};
-    }
-    qsort(corners, (size_t)count, sizeof *corners, compare_corners);
-    *part_count = 0;
-    for (int64_t first = 0; first < count;) {
-        int64_t last = first;
-        while (last < count && corners[last].node == corners[first].node) {
-            last++;
-        }
-        split_hat(table, set, corners, first, last, split, part_count);
-        first = last;
-    }
-    qsort(corners, (size_t)count, sizeof *corners, compare_parts);
-    return STATUS_OK;
-}
 
 static enum status allocate(int dim, int64_t parts, int64_t samples, struct boundary_averages *averages,
                             struct error *error)
@@ -281,7 +98,7 @@ static enum status add_corner(const struct face_table *table, const struct facet
     while (vertex + 1 < dim && face[vertex] != corner->node) {
         vertex++;
     }
-    unit_normal(table, set->facet + corner->facet * dim, normal, &size);
+    boundary_unit_normal(table, set->facet + corner->facet * dim, normal, &size);
     quadrature_positions(&rule, dim, table->x, face, x);
     for (int g = 0; g < rule.points; g++) {
         double hat = rule.weight[g] * size * rule.barycentric[g * dim + vertex];
@@ -320,6 +137,19 @@ static void normalise(int dim, int64_t part, struct boundary_averages *averages)
     }
 }
 
+/* The node itself in place of the points around it: the one sample of its part. */
+static void take_node(const struct face_table *table, int64_t part, struct boundary_averages *averages)
+{
+    int dim = table->dim;
+    int64_t sample = averages->sample_ptr[part];
+    averages->sample_ptr[part + 1] = sample + 1;
+    averages->sample_share[sample] = 1.0;
+    for (int a = 0; a < dim; a++) {
+        double x = table->x[(int64_t)averages->node[part] * dim + a];
+        averages->position[part * dim + a] = averages->sample_x[sample * dim + a] = x;
+    }
+}
+
 /* Both kinds of averages; node_lists == NULL: hat averages. */
 static enum status build(const struct face_table *table, const struct facet_set *set,
                          const struct neighbours *node_lists, const double *node_phi,
@@ -336,8 +166,8 @@ static enum status build(const struct face_table *table, const struct facet_set 
     TRY(NEW_ARRAY(&face_of, set->count, error));
     TRY(NEW_ARRAY(&row.value, table->node_count, error));
     TRY(NEW_ARRAY(&row.is_touched, table->node_count, error));
-    TRY(collect_corners(table, set, node_lists == NULL, corners, &parts, error));
-    TRY(find_faces(table, set, face_of, error));
+    TRY(boundary_collect_corners(table, set, node_lists == NULL, corners, &parts, error));
+    TRY(boundary_find_faces(table, set, face_of, error));
     TRY(allocate(dim, parts, corner_count * table->per_face, averages, error));
     for (int64_t part = 0, next = 0; part < parts; part++) {
         int32_t node = corners[next].node;
@@ -350,16 +180,10 @@ static enum status build(const struct face_table *table, const struct facet_set 
         double whole = averages->area[part];
         normalise(dim, part, averages);
         if (node_lists != NULL) {
+            whole = 1.0;
+            take_node(table, part, averages);
             for (int64_t i = node_lists->ptr[node]; i < node_lists->ptr[node + 1]; i++) {
                 TRY(row_add(&row, node_lists->idx[i], node_phi[i], error));
-            }
-            whole = 1.0;
-            averages->sample_ptr[part + 1] = averages->sample_ptr[part] + 1;
-            averages->sample_share[averages->sample_ptr[part]] = 1.0;
-            for (int a = 0; a < dim; a++) {
-                double x = table->x[(int64_t)node * dim + a];
-                averages->position[part * dim + a] = x;
-                averages->sample_x[averages->sample_ptr[part] * dim + a] = x;
             }
         }
         TRY(row_finish(&row, whole, part, &capacity, averages, error));
@@ -389,6 +213,47 @@ enum status boundary_nodes_build(const struct face_table *table, const struct fa
     return build(table, set, node_lists, node_phi, averages, error);
 }
 
+/* The values of one point, as they are, as average `a`. */
+static void put_values(struct boundary_averages *averages, int64_t a, const int32_t *idx, const double *phi,
+                       int64_t length)
+{
+    int64_t at = averages->ptr[a];
+    memcpy(averages->idx + at, idx, (size_t)length * sizeof *idx);
+    memcpy(averages->phi + at, phi, (size_t)length * sizeof *phi);
+    averages->ptr[a + 1] = at + length;
+}
+
+enum status boundary_list_build(int dim, const double *x, const int32_t *nodes, int64_t count,
+                                const struct neighbours *lists, const double *phi,
+                                struct boundary_averages *averages, struct error *error)
+{
+    enum status status;
+    int64_t pairs = 0;
+    *averages = (struct boundary_averages){0};
+    for (int64_t i = 0; i < count; i++) {
+        pairs += lists->ptr[nodes[i] + 1] - lists->ptr[nodes[i]];
+    }
+    TRY(allocate(dim, count, count, averages, error));
+    TRY(NEW_ARRAY(&averages->idx, pairs, error));
+    TRY(NEW_ARRAY(&averages->phi, pairs, error));
+    for (int64_t i = 0; i < count; i++) {
+        int64_t from = lists->ptr[nodes[i]], length = lists->ptr[nodes[i] + 1] - from;
+        averages->node[i] = nodes[i];
+        put_values(averages, i, lists->idx + from, phi + from, length);
+        averages->sample_ptr[i + 1] = i + 1;
+        averages->sample_share[i] = 1.0;
+        for (int a = 0; a < dim; a++) {
+            averages->position[i * dim + a] = averages->sample_x[i * dim + a] =
+                x[(int64_t)nodes[i] * dim + a];
+        }
+    }
+done:
+    if (status != STATUS_OK) {
+        boundary_averages_free(averages);
+    }
+    return status;
+}
+
 enum status boundary_points_build(const struct face_table *table, const struct facet_set *set,
                                   struct boundary_averages *averages, struct error *error)
 {
@@ -398,7 +263,7 @@ enum status boundary_points_build(const struct face_table *table, const struct f
     struct quadrature_rule rule = quadrature_face_rule(dim);
     *averages = (struct boundary_averages){0};
     TRY(NEW_ARRAY(&face_of, set->count, error));
-    TRY(find_faces(table, set, face_of, error));
+    TRY(boundary_find_faces(table, set, face_of, error));
     TRY(allocate(dim, count, count, averages, error));
     for (int64_t f = 0; f < set->count; f++) {
         int64_t first = face_of[f] * table->per_face;
@@ -410,7 +275,7 @@ enum status boundary_points_build(const struct face_table *table, const struct f
         int64_t facet = p / table->per_face, point = face_of[facet] * table->per_face + p % table->per_face;
         int64_t from = table->lists->ptr[point], length = table->lists->ptr[point + 1] - from;
         double normal[3], size, x[9];
-        unit_normal(table, set->facet + facet * dim, normal, &size);
+        boundary_unit_normal(table, set->facet + facet * dim, normal, &size);
         quadrature_positions(&rule, dim, table->x, table->faces->node + face_of[facet] * dim, x);
         averages->node[p] = set->facet[facet * dim];
         averages->area[p] = rule.weight[p % table->per_face] * size;
@@ -421,10 +286,7 @@ enum status boundary_points_build(const struct face_table *table, const struct f
             averages->normal[p * dim + a] = normal[a];
             averages->position[p * dim + a] = averages->sample_x[p * dim + a] = place;
         }
-        averages->ptr[p + 1] = averages->ptr[p] + length;
-        memcpy(averages->idx + averages->ptr[p], table->lists->idx + from,
-               (size_t)length * sizeof *averages->idx);
-        memcpy(averages->phi + averages->ptr[p], table->phi + from, (size_t)length * sizeof *averages->phi);
+        put_values(averages, p, table->lists->idx + from, table->phi + from, length);
     }
 done:
     free(face_of);

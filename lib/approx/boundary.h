@@ -52,10 +52,18 @@ MUST_CHECK enum status boundary_averages_build(const struct face_table *table, c
 MUST_CHECK enum status boundary_nodes_build(const struct face_table *table, const struct facet_set *set,
                                             const struct neighbours *node_lists, const double *node_phi,
                                             struct boundary_averages *averages, struct error *error);
-/* The same with the values at the quadrature points of the facets: one entry per point, `area` its weight, `node` the
- * first node of its facet. */
+
+/* Node values at any nodes[count], wherever they lie: one entry each, of one sample; no areas and normals
+ * (0). x, lists and phi are those of all nodes. */
+MUST_CHECK enum status boundary_list_build(int dim, const double *x, const int32_t *nodes, int64_t count,
+                                           const struct neighbours *lists, const double *phi,
+                                           struct boundary_averages *averages, struct error *error);
+
+/* As boundary_averages_build, with the values at the quadrature points of the facets: one entry per point,
+ * `area` its weight, `node` the first node of its facet. */
 MUST_CHECK enum status boundary_points_build(const struct face_table *table, const struct facet_set *set,
                                              struct boundary_averages *averages, struct error *error);
+
 void boundary_averages_free(struct boundary_averages *averages);
 
 #endif

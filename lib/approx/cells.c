@@ -96,20 +96,28 @@ static const int *local_face(int dim, int64_t k)
     return dim == 2 ? triangle_faces[k] : tetrahedron_faces[k];
 }
 
-/* Vertices of a face, ascending. */
-static void sorted_face(const struct cells *cells, int64_t source, int32_t *sorted)
+void face_key(int dim, const int32_t *node, int32_t key[3])
+{
+    key[2] = -1;
+    for (int i = 0; i < dim; i++) {
+        int at = i;
+        for (; at > 0 && key[at - 1] > node[i]; at--) {
+            key[at] = key[at - 1];
+        }
+        key[at] = node[i];
+    }
+}
+
+static void key_of_source(const struct cells *cells, int64_t source, int32_t key[3])
 {
     int dim = cells->dim;
     const int32_t *v = cells->node + source / (dim + 1) * (dim + 1);
     const int *local = local_face(dim, source % (dim + 1));
+    int32_t node[3];
     for (int i = 0; i < dim; i++) {
-        int32_t value = v[local[i]];
-        int at = i;
-        for (; at > 0 && sorted[at - 1] > value; at--) {
-            sorted[at] = sorted[at - 1];
-        }
-        sorted[at] = value;
+        node[i] = v[local[i]];
     }
+    face_key(dim, node, key);
 }
 
 static int same_face(const struct filed_face *a, const struct filed_face *b)
@@ -127,18 +135,17 @@ static enum status match_faces(const struct cells *cells, int64_t *partner, stru
     struct filed_face *filed = NULL;
     TRY(NEW_ARRAY(&start, cells->node_count + 2, error));
     TRY(NEW_ARRAY(&filed, total, error));
-    int32_t sorted[3];
+    int32_t key[3];
     for (int64_t s = 0; s < total; s++) {
-        sorted_face(cells, s, sorted);
-        start[sorted[0] + 2]++;
+        key_of_source(cells, s, key);
+        start[key[0] + 2]++;
     }
     for (int64_t n = 0; n < cells->node_count; n++) {
         start[n + 2] += start[n + 1];
     }
     for (int64_t s = 0; s < total; s++) {
-        sorted_face(cells, s, sorted);
-        filed[start[sorted[0] + 1]++] =
-            (struct filed_face){.key = {sorted[1], dim == 3 ? sorted[2] : -1}, .source = s};
+        key_of_source(cells, s, key);
+        filed[start[key[0] + 1]++] = (struct filed_face){.key = {key[1], key[2]}, .source = s};
         partner[s] = -1;
     }
     for (int64_t n = 0; n < cells->node_count; n++) {

@@ -36,6 +36,10 @@ void cell_centroid(const struct cells *cells, int64_t cell, double *centroid);
 /* Outward normal times length or area of a face of node indices face[dim]. */
 void face_area_vector(int dim, const double *x, const int32_t *face, double *vector);
 
+/* Node indices node[dim] of a face in ascending order, in 2D -1 last: what tells it, whichever way it is
+ * turned. */
+void face_key(int dim, const int32_t *node, int32_t key[3]);
+
 /* All faces of the cells, each once, in the order of their first cell; or only those on the boundary.
  * STATUS_INPUT when a face belongs to more than two cells. */
 MUST_CHECK enum status faces_build(const struct cells *cells, bool boundary_only, struct faces *faces,

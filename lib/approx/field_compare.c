@@ -1,5 +1,6 @@
 #include "approx/field_compare.h"
 
+#include "base/box.h"
 #include "base/memory.h"
 
 #include <gsl/gsl_sort.h>
@@ -7,25 +8,6 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-
-/* The larger extent of two clouds along any axis. */
-static double extent_of(int dim, int64_t a_count, const double *a, int64_t b_count, const double *b)
-{
-    double extent = 0.0;
-    for (int axis = 0; axis < dim; axis++) {
-        double low = INFINITY, high = -INFINITY;
-        for (int64_t n = 0; n < a_count; n++) {
-            low = fmin(low, a[n * dim + axis]);
-            high = fmax(high, a[n * dim + axis]);
-        }
-        for (int64_t n = 0; n < b_count; n++) {
-            low = fmin(low, b[n * dim + axis]);
-            high = fmax(high, b[n * dim + axis]);
-        }
-        extent = fmax(extent, high - low);
-    }
-    return extent;
-}
 
 static bool same_place(int dim, const double *a, const double *b, double tolerance)
 {
@@ -77,7 +59,9 @@ done:
 enum status field_match_nodes(int dim, int64_t a_count, const double *a, int64_t b_count, const double *b,
                               int32_t *match, bool *matched, struct error *error)
 {
-    double tolerance = 1e-9 * extent_of(dim, a_count, a, b_count, b);
+    struct box box = box_of(dim, a_count, a);
+    box_add(&box, b_count, b);
+    double tolerance = 1e-9 * box_side(&box);
     *matched = a_count == b_count;
     if (!*matched) {
         return STATUS_OK;

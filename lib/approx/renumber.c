@@ -1,5 +1,6 @@
 #include "approx/renumber.h"
 
+#include "base/box.h"
 #include "base/memory.h"
 
 #include <math.h>
@@ -44,19 +45,12 @@ enum status renumber_morton(int dim, int64_t count, const double *x, const int32
 {
     enum status status;
     struct sort_key *keys = NULL;
-    double low[3], high, extent = 1e-300;
+    struct box box = box_of(dim, count, x);
+    double extent = fmax(1e-300, box_side(&box));
     TRY(NEW_ARRAY(&keys, count, error));
-    for (int a = 0; a < dim; a++) {
-        low[a] = INFINITY;
-        high = -INFINITY;
-        for (int64_t i = 0; i < count; i++) {
-            low[a] = fmin(low[a], x[i * dim + a]);
-            high = fmax(high, x[i * dim + a]);
-        }
-        extent = fmax(extent, high - low[a]);
-    }
     for (int64_t i = 0; i < count; i++) {
-        keys[i] = (struct sort_key){morton(dim, x + i * dim, low, extent), i, group != NULL ? group[i] : 0};
+        keys[i] =
+            (struct sort_key){morton(dim, x + i * dim, box.low, extent), i, group != NULL ? group[i] : 0};
     }
     qsort(keys, (size_t)count, sizeof *keys, compare_keys);
     for (int64_t i = 0; i < count; i++) {

@@ -1,5 +1,6 @@
 #include "approx/support.h"
 
+#include "base/box.h"
 #include "base/memory.h"
 
 #include <math.h>
@@ -68,16 +69,8 @@ enum status nodes_spacing(int dim, int64_t node_count, const double *x, double *
     struct point_grid grid = {0};
     struct index_list list = {0};
     double *radius = NULL;
-    double low[3], high[3], extent = 0.0;
-    for (int a = 0; a < dim; a++) {
-        low[a] = INFINITY;
-        high[a] = -INFINITY;
-        for (int64_t n = 0; n < node_count; n++) {
-            low[a] = fmin(low[a], x[n * dim + a]);
-            high[a] = fmax(high[a], x[n * dim + a]);
-        }
-        extent = fmax(extent, high[a] - low[a]);
-    }
+    struct box box = box_of(dim, node_count, x);
+    double extent = box_side(&box);
     if (node_count < 2 || !(extent > 0.0)) {
         return fail(error, STATUS_INPUT, "nodes.x: %lld nodes at one place have no spacing",
                     (long long)node_count);

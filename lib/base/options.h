@@ -37,7 +37,8 @@ MUST_CHECK enum status parse_double_list(const char *text, const char *what, dou
 MUST_CHECK enum status parse_length_unit(const char *text, const char *what, double *metres,
                                          struct error *error);
 
-/* Parse a length: a number with a unit (8mm, 0.8cm, 0.008m) or without one (metres), positive; *value in metres. */
+/* Parse a length: a number with a unit (8mm, 0.8cm, 0.008m) or without one (metres), positive; *value in
+ * metres. */
 MUST_CHECK enum status parse_length(const char *text, const char *what, double *value, struct error *error);
 
 /* Index of `text` among `count` choices; the error lists them. */

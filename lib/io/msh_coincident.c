@@ -1,3 +1,4 @@
+#include "base/box.h"
 #include "base/memory.h"
 #include "io/msh_build.h"
 
@@ -17,23 +18,6 @@ static int compare_projections(const void *left, const void *right)
     const struct projection *a = left;
     const struct projection *b = right;
     return a->at != b->at ? (a->at > b->at) - (a->at < b->at) : (a->node > b->node) - (a->node < b->node);
-}
-
-/* Lowest corner and largest side of the box around the nodes. */
-static double bounding_box(const struct mesh *mesh, double corner[3])
-{
-    double extent = 0;
-    for (int k = 0; k < mesh->dim; k++) {
-        double least = INFINITY;
-        double most = -INFINITY;
-        for (int64_t n = 0; n < mesh->node_count; n++) {
-            least = fmin(least, mesh->x[n * mesh->dim + k]);
-            most = fmax(most, mesh->x[n * mesh->dim + k]);
-        }
-        corner[k] = least;
-        extent = fmax(extent, most - least);
-    }
-    return extent;
 }
 
 static enum status fail_coincident(const struct mesh_draft *draft, int32_t a, int32_t b)
@@ -56,14 +40,14 @@ enum status mesh_check_coincident(struct mesh_draft *draft)
     static const double direction[3] = {0.7548776662466927, 0.5698402909980532, 0.3247179572447460};
     enum status status = STATUS_OK;
     const struct mesh *mesh = draft->mesh;
-    double corner[3];
-    double tolerance = COINCIDENT * bounding_box(mesh, corner);
+    struct box box = box_of(mesh->dim, mesh->node_count, mesh->x);
+    double tolerance = COINCIDENT * box_side(&box);
     struct projection *order = NULL;
     TRY(NEW_ARRAY(&order, mesh->node_count, draft->error));
     for (int64_t n = 0; n < mesh->node_count; n++) {
         order[n].node = (int32_t)n;
         for (int k = 0; k < mesh->dim; k++) {
-            order[n].at += direction[k] * (mesh->x[n * mesh->dim + k] - corner[k]);
+            order[n].at += direction[k] * (mesh->x[n * mesh->dim + k] - box.low[k]);
         }
     }
     qsort(order, (size_t)mesh->node_count, sizeof *order, compare_projections);

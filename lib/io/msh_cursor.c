@@ -142,6 +142,15 @@ enum status msh_next_count(struct msh_cursor *cursor, const char *what, int64_t 
     return status;
 }
 
+enum status msh_next_count_line(struct msh_cursor *cursor, const char *what, int64_t least, int64_t *value)
+{
+    bool binary = cursor->binary;
+    cursor->binary = false;
+    enum status status = msh_next_count(cursor, what, least, least, value);
+    cursor->binary = binary;
+    return status == STATUS_OK ? msh_skip_line(cursor) : status;
+}
+
 enum status msh_next_real(struct msh_cursor *cursor, const char *what, double *value)
 {
     if (cursor->binary) {

@@ -32,6 +32,11 @@ MUST_CHECK enum status msh_next_size(struct msh_cursor *cursor, const char *what
 MUST_CHECK enum status msh_next_count(struct msh_cursor *cursor, const char *what, int64_t ascii,
                                       int64_t binary, int64_t *value);
 
+/* The same for the count at the head of a section of MSH 2, which is text on a line of its own also in binary
+ * files; a record has at least so many bytes. */
+MUST_CHECK enum status msh_next_count_line(struct msh_cursor *cursor, const char *what, int64_t least,
+                                           int64_t *value);
+
 /* The next real number; not necessarily finite. */
 MUST_CHECK enum status msh_next_real(struct msh_cursor *cursor, const char *what, double *value);
 

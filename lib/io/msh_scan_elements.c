@@ -117,13 +117,7 @@ done:
 static enum status scan_elements2(struct msh_scan *scan, struct msh_cursor *cursor)
 {
     enum status status = STATUS_OK;
-    cursor->binary = false;
-    status = msh_next_count(cursor, "number of elements", 8, 8, &scan->element_count);
-    cursor->binary = scan->binary;
-    if (status != STATUS_OK) {
-        return status;
-    }
-    TRY(msh_skip_line(cursor));
+    TRY(msh_next_count_line(cursor, "number of elements", 8, &scan->element_count));
     TRY(new_elements(scan, cursor->error));
     TRY(scan->binary ? scan_elements2_binary(scan, cursor) : scan_elements2_ascii(scan, cursor));
 done:

@@ -32,13 +32,7 @@ done:
 static enum status scan_nodes2(struct msh_scan *scan, struct msh_cursor *cursor)
 {
     enum status status = STATUS_OK;
-    cursor->binary = false;
-    status = msh_next_count(cursor, "number of nodes", 8, 28, &scan->node_count);
-    cursor->binary = scan->binary;
-    if (status != STATUS_OK) {
-        return status;
-    }
-    TRY(msh_skip_line(cursor));
+    TRY(msh_next_count_line(cursor, "number of nodes", 8, &scan->node_count));
     TRY(NEW_ARRAY(&scan->node_tag, scan->node_count, cursor->error));
     for (int64_t i = 0; i < scan->node_count; i++) {
         cursor->record = i + 1;

@@ -132,7 +132,7 @@ struct scene_solver {
     enum scene_constraint_points constraint_points;
     enum scene_volume volume;
     double pointwise_share;  /* share of the bulk modulus kept pointwise with nodal volume; < 0: not given */
-    double tolerance;        /* estimated remaining error relative to the displacement; default 1e-6 */
+    double tolerance;        /* estimated remaining error relative to the displacement; default 1e-5 */
     int64_t max_steps;       /* 0: not given */
     int64_t ramp_steps;      /* steps over which a quasi-static load is applied; 0: not given */
     double end_time;         /* s, dynamic; 0 in quasi-static scenes, whose curves run from 0 to 1 */

@@ -163,11 +163,12 @@ done:
     return status;
 }
 
-static enum status put_provenance(struct writer *writer, const char *line, struct error *error)
+/* A line of one kind of words and others. */
+static enum status put_line(struct writer *writer, const char *kind, const char *text, struct error *error)
 {
     enum status status = STATUS_OK;
-    TRY(put_text(writer, "# @ ", error));
-    TRY(put_text(writer, line, error));
+    TRY(put_text(writer, kind, error));
+    TRY(put_text(writer, text, error));
     TRY(put_text(writer, "\n", error));
 done:
     return status;
@@ -188,16 +189,6 @@ done:
     return status;
 }
 
-static enum status put_stopped(struct writer *writer, const char *reason, struct error *error)
-{
-    enum status status = STATUS_OK;
-    TRY(put_text(writer, "# stopped ", error));
-    TRY(put_text(writer, reason, error));
-    TRY(put_text(writer, "\n", error));
-done:
-    return status;
-}
-
 /* stopped: why the stream is not whole, or NULL. */
 static enum status put_stream(struct writer *writer, const struct stream *stream, bool text,
                               const char *stopped, struct error *error)
@@ -205,7 +196,7 @@ static enum status put_stream(struct writer *writer, const struct stream *stream
     enum status status = STATUS_OK;
     TRY(put_text(writer, "# mts 1\n", error));
     for (int64_t i = 0; i < stream->provenance_count; i++) {
-        TRY(put_provenance(writer, stream->provenance[i], error));
+        TRY(put_line(writer, "# @ ", stream->provenance[i], error));
     }
     for (int64_t i = 0; i < stream->section_count; i++) {
         const struct section *section = &stream->sections[i];
@@ -214,7 +205,8 @@ static enum status put_stream(struct writer *writer, const struct stream *stream
         TRY(text ? put_payload_text(writer, section, error)
                  : put_payload_binary(writer, section, crc, error));
     }
-    TRY(stopped != NULL ? put_stopped(writer, stopped, error) : put_end(writer, stream, text, error));
+    TRY(stopped != NULL ? put_line(writer, "# stopped ", stopped, error)
+                        : put_end(writer, stream, text, error));
     TRY(flush(writer, error));
 done:
     return status;

@@ -220,10 +220,10 @@ static double defect(const struct constraint_rows *rows, int64_t r, const double
 void constraint_project(struct constraint *constraint, const double *factor, double *u)
 {
     const struct constraint_rows *rows = constraint->rows;
-    int dim = rows->dim;
-    if (rows->count == 0) {
+    if (rows == NULL || rows->count == 0) {
         return;
     }
+    int dim = rows->dim;
     for (int64_t r = 0; r < rows->count; r++) {
         constraint->multiplier[r] = defect(rows, r, factor, u);
     }

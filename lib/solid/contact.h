@@ -1,9 +1,11 @@
 /* Frictionless contact of boundary averages with a rigid surface, finite sliding.
  *
- * The gap of hat a is that of its averaged position x_a = sum_j Phi_aj (X_j + u_j). Its pressure is
- * p_a = max(0, lambda_a - k g_a): a penalty k, made exact by the multiplier lambda_a (augmented Lagrangian),
- * and the force on the parameters is Phi_aj p_a A_a n: transferred by the same averages that measure the gap,
- * so that the total force on the body is sum_a p_a A_a n. Smooth in time: no projection, no chatter.
+ * The gap of hat a is that of its averaged position x_a = sum_j Phi_aj (X_j + u_j), raised along its normal
+ * by what the mean of the undeformed facets lies beneath their node where the boundary is curved. Its
+ * pressure is p_a = max(0, lambda_a - k g_a): a penalty k, made exact by the multiplier lambda_a (augmented
+ * Lagrangian), and the force on the parameters is Phi_aj p_a A_a n: transferred by the same averages that
+ * measure the gap, so that the total force on the body is sum_a p_a A_a n. Smooth in time: no projection, no
+ * chatter.
  *
  * Contact begins where a hat goes through the surface. One that comes round an open rim to the back, deeper
  * than half its own size, stays free until it is in front again. */
@@ -20,7 +22,7 @@ struct contact {
     const struct boundary_averages *averages; /* the caller's; must outlive the contact */
     struct rigid_surface surface;             /* owned */
     double stiffness;                         /* k, Pa/m, > 0 */
-    double *rest;                             /* count * dim: x_a at u = 0, m */
+    double *rest;                             /* count * dim: x_a at u = 0, so raised, m */
     double *multiplier;                       /* count: lambda_a, Pa, >= 0 */
     double *gap;                              /* count: when last looked at, m; INFINITY beyond a rim */
     double *pressure;                         /* count: p_a, Pa */

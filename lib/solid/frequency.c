@@ -53,28 +53,26 @@ static void start_mode(double *mode, int64_t size)
     }
 }
 
-double system_largest_frequency(struct solid_system *system, const double *mass, const double *u,
+double system_largest_frequency(struct solid_system *system, struct inertia *inertia, const double *u,
                                 const double *residual, int iterations, double *mode, double *scratch)
 {
-    int dim = system->dim;
-    int64_t size = system->node_count * dim;
+    int64_t size = system->node_count * system->dim;
     double *displaced = scratch, *response = scratch + size;
     double eigenvalue = 0.0;
     if (largest_entry(mode, size) == 0.0) {
         start_mode(mode, size);
+        constraint_project(&inertia->constraint, NULL, mode);
     }
     double spacing = point_spacing(system);
     for (int it = 0; it < iterations; it++) {
         double epsilon = residual_along(system, u, spacing, mode, displaced, response);
-        double top = 0.0, bottom = 0.0;
+        double top = 0.0;
         for (int64_t i = 0; i < size; i++) {
-            double stiffness = (residual[i] - response[i]) / epsilon;
-            double m = mass[i / dim];
-            top += mode[i] * stiffness;
-            bottom += m * mode[i] * mode[i];
-            response[i] = stiffness / m;
+            displaced[i] = (residual[i] - response[i]) / epsilon;
+            top += mode[i] * displaced[i];
         }
-        eigenvalue = top / bottom;
+        eigenvalue = top / inertia_product(inertia, mode, mode);
+        inertia_accelerate(inertia, displaced, response);
         double scale = 1.0 / largest_entry(response, size);
         for (int64_t i = 0; i < size; i++) {
             mode[i] = response[i] * scale;
@@ -122,16 +120,16 @@ static double least_eigenvalue(int n, const double *diagonal, const double *besi
     return high;
 }
 
-/* product = P M^-1 K move: the change of the residual from u along the move, over the mass, projected. */
-static void apply(struct solid_system *system, struct constraint *constraint, const double *u,
+/* product = M^-1 K move, from the change of the residual from u along the move. */
+static void apply(struct solid_system *system, struct inertia *inertia, const double *u,
                   const double *residual, double spacing, const double *move, double *displaced,
                   double *product)
 {
     double epsilon = residual_along(system, u, spacing, move, displaced, product);
     for (int64_t i = 0; i < system->node_count * system->dim; i++) {
-        product[i] = (residual[i] - product[i]) / (epsilon * constraint->mass[i / system->dim]);
+        displaced[i] = (residual[i] - product[i]) / epsilon;
     }
-    constraint_project(constraint, NULL, product);
+    inertia_accelerate(inertia, displaced, product);
 }
 
 /* Whether `count` iterations can tell the least eigenvalue: fewer than a share of the ratio of the
@@ -141,10 +139,9 @@ static bool enough(int count, double largest, double least)
     return count >= least_share * sqrt(largest / fmax(least, 1e-14 * largest));
 }
 
-enum status system_lowest_eigenvalue(struct solid_system *system, struct constraint *constraint,
-                                     const double *u, const double *residual, int most_iterations,
-                                     double *start, double *scratch, double *value, int *iterations,
-                                     struct error *error)
+enum status system_lowest_eigenvalue(struct solid_system *system, struct inertia *inertia, const double *u,
+                                     const double *residual, int most_iterations, double *start,
+                                     double *scratch, double *value, int *iterations, struct error *error)
 {
     enum status status;
     int64_t size = system->node_count * system->dim;
@@ -157,19 +154,18 @@ enum status system_lowest_eigenvalue(struct solid_system *system, struct constra
     TRY(NEW_ARRAY(&diagonal, most_iterations, error));
     TRY(NEW_ARRAY(&beside, most_iterations, error));
     memset(before, 0, (size_t)size * sizeof *before);
-    constraint_project(constraint, NULL, vector);
-    double norm = sqrt(system_mass_product(system, constraint->mass, vector, vector)), coupling = 0.0,
-           largest = 0.0;
+    constraint_project(&inertia->constraint, NULL, vector);
+    double norm = sqrt(inertia_product(inertia, vector, vector)), coupling = 0.0, largest = 0.0;
     for (int k = 0; k < most_iterations && norm > 1e-12 * largest; k++) {
         for (int64_t i = 0; i < size; i++) {
             vector[i] /= norm;
         }
-        apply(system, constraint, u, residual, spacing, vector, displaced, product);
-        diagonal[k] = system_mass_product(system, constraint->mass, vector, product);
+        apply(system, inertia, u, residual, spacing, vector, displaced, product);
+        diagonal[k] = inertia_product(inertia, vector, product);
         for (int64_t i = 0; i < size; i++) {
             product[i] -= diagonal[k] * vector[i] + coupling * before[i];
         }
-        norm = coupling = beside[k] = sqrt(system_mass_product(system, constraint->mass, product, product));
+        norm = coupling = beside[k] = sqrt(inertia_product(inertia, product, product));
         largest = fmax(largest, diagonal[k]);
         memcpy(before, vector, (size_t)size * sizeof *before);
         memcpy(vector, product, (size_t)size * sizeof *vector);

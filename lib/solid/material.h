@@ -3,11 +3,13 @@
  * W(F) = W_shape(F) + U(J). Only U is averaged over nodal volumes; St. Venant-Kirchhoff has no such split (U
  * = 0). F is 3 x 3 row-major; plane strain has F33 = 1. Units Pa.
  *
- *   neo-Hookean:        mu/2 (J^(-2/3) I1 - 3) + kappa/2 (J - 1)^2
- *   neo-Hookean (log):  mu/2 (I1 - 3) - mu ln J + lambda/2 (ln J)^2
- *   Mooney-Rivlin:      C10 (I1' - 3) + C01 (I2' - 3) + kappa/2 (J - 1)^2, I1' and I2' isochoric, C10 + C01 =
- * mu/2 Ogden:              2 mu/alpha^2 (l1^alpha + l2^alpha + l3^alpha - 3) + kappa/2 (J - 1)^2, isochoric
- * stretches St. Venant-Kirchhoff: lambda/2 (tr E)^2 + mu E:E, E = (F^T F - I)/2 */
+ *   neo-Hookean            mu/2 (I1' - 3) + kappa/2 (J - 1)^2
+ *   neo-Hookean (log)      mu/2 (I1 - 3) - mu ln J + lambda/2 (ln J)^2
+ *   Mooney-Rivlin          C10 (I1' - 3) + C01 (I2' - 3) + kappa/2 (J - 1)^2
+ *   Ogden                  2 mu/alpha^2 (l1^alpha + l2^alpha + l3^alpha - 3) + kappa/2 (J - 1)^2
+ *   St. Venant-Kirchhoff   lambda/2 (tr E)^2 + mu E:E
+ *
+ * with I1', I2' and the stretches l isochoric (I1' = J^(-2/3) I1), C10 + C01 = mu/2, E = (F^T F - I)/2. */
 #ifndef SOLID_MATERIAL_H
 #define SOLID_MATERIAL_H
 
@@ -29,8 +31,7 @@ struct material {
     double density;       /* kg/m3 */
     double mooney_ratio;  /* C01 / C10 */
     double ogden_alpha;
-    double
-        least_share; /* of U(J) kept pointwise where volumes are averaged, whatever the body's share, 0..1 */
+    double least_share; /* of U(J) kept pointwise where volumes are averaged, at the least, 0..1 */
 };
 
 /* Moduli from Young's modulus (Pa, > 0) and Poisson's ratio (-1 < nu < .5). */

@@ -16,7 +16,6 @@ static const int64_t last_mass_checks = 5;    /* where the mass is looked at onl
 static bool step(struct relaxation *r, double *u, bool measure)
 {
     struct solid_system *system = r->system;
-    int dim = system->dim;
     double dt = r->time_step, grow = 2.0 + r->damping * dt, keep = (2.0 - r->damping * dt) / grow;
     struct deformation deformation = system_residual(system, u, r->residual);
     r->report->force_evaluations++;
@@ -29,16 +28,17 @@ static bool step(struct relaxation *r, double *u, bool measure)
         memcpy(r->acceleration, r->velocity, (size_t)r->size * sizeof *r->velocity);
     }
     memcpy(r->before, u, (size_t)r->size * sizeof *u);
-    double *move = r->velocity;
-    for (int64_t n = 0; n < system->node_count; n++) {
-        double push = 2.0 * dt / (grow * r->mass[n]);
-        for (int64_t i = n * dim; i < (n + 1) * dim; i++) {
-            move[i] = dt * (keep * r->velocity[i] + push * r->residual[i]);
-        }
+    if (inertia_follow(&r->inertia, system, measure)) {
+        relaxation_note_new_mass(r);
+    }
+    inertia_accelerate(&r->inertia, r->residual, r->scratch);
+    double *move = r->velocity, push = 2.0 * dt / grow;
+    for (int64_t i = 0; i < r->size; i++) {
+        move[i] = dt * (keep * r->velocity[i] + push * r->scratch[i]);
     }
     /* The move is projected, not u: round-off relative to u would keep the residual from vanishing. */
     double started = clock_seconds();
-    constraint_project(&r->constraint, r->factor_change, move);
+    constraint_project(&r->inertia.constraint, r->factor_change, move);
     system->cost.constraints += clock_seconds() - started;
     for (int64_t i = 0; i < r->size; i++) {
         u[i] += move[i];
@@ -106,7 +106,7 @@ static bool follow(struct relaxation *r, struct error *error)
     double *u = r->u, ramp = (double)r->report->ramp_steps;
     relaxation_estimate(r);
     if (r->at_full_load <= CHECK_INTERVAL) { /* take out what round-off has left */
-        constraint_project(&r->constraint, r->system->factor, u);
+        constraint_project(&r->inertia.constraint, r->system->factor, u);
     }
     if (r->report->steps % keep_interval == 0) {
         relaxation_keep_state(r, u);
@@ -173,7 +173,7 @@ static enum relaxation_outcome iterate(struct relaxation *r, struct error *error
         change_load(r, r->load / ramp);
         if (!step(r, r->u, measure)) {
             measure = false;
-            if (!relaxation_step_back(r, r->u)) {
+            if (!relaxation_step_back(r, r->u, error)) {
                 return RELAXATION_INVERTED;
             }
         } else if (gives_frames && r->load < ramp) {
@@ -198,10 +198,10 @@ static void measure_row_forces(struct relaxation *r, const double *u, double *ro
     int dim = r->system->dim;
     (void)system_residual(r->system, u, r->residual);
     for (int64_t i = 0; i < r->size; i++) {
-        r->scratch[i] = r->residual[i] / r->mass[i / dim];
+        r->scratch[i] = r->residual[i] / r->inertia.mass[i / dim];
     }
-    constraint_project(&r->constraint, NULL, r->scratch);
-    memcpy(row_force, r->constraint.multiplier, (size_t)r->system->rows.count * sizeof *row_force);
+    constraint_project(&r->inertia.constraint, NULL, r->scratch);
+    memcpy(row_force, r->inertia.constraint.multiplier, (size_t)r->system->rows.count * sizeof *row_force);
 }
 
 /* From u, brought onto the conditions, at rest and without load. */
@@ -212,10 +212,12 @@ static enum status begin(struct relaxation *r, struct error *error)
     size_t bytes = (size_t)r->size * sizeof *r->u;
     system_load_factors(system, 0.0);
     (void)system_residual(system, r->u, r->residual);
-    system_relaxation_mass(system, r->mass);
-    TRY(system_constrain(system, r->mass, &r->constraint, error));
-    constraint_project(&r->constraint, system->factor, r->u);
-    (void)system_residual(system, r->u, r->residual);
+    system_relaxation_mass(system, r->scratch);
+    TRY(inertia_set_mass(&r->inertia, system, r->scratch, error));
+    constraint_project(&r->inertia.constraint, system->factor, r->u);
+    r->residual_at = r->u;
+    TRY(relaxation_measure_inertia(r, error));
+    (void)inertia_follow(&r->inertia, system, true);
     memcpy(r->newer.u, r->u, bytes);
     memcpy(r->older.u, r->u, bytes);
     r->report->ramp_steps = r->options->ramp_steps > 0 ? r->options->ramp_steps : relaxation_choose_ramp(r);
@@ -234,7 +236,7 @@ static enum status resume(struct relaxation *r, struct error *error)
 {
     enum status status;
     TRY(relaxation_visit(r, r->options->restored, error));
-    TRY(system_constrain(r->system, r->mass, &r->constraint, error));
+    TRY(inertia_restore(&r->inertia, r->system, error));
 done:
     return status;
 }

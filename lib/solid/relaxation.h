@@ -1,11 +1,11 @@
-/* Quasi-static solution by dynamic relaxation: central differences with a fictitious mass and a damping that
- * follows the lowest mode still active (a running Rayleigh quotient), stopped by an estimate of the remaining
- * error.
+/* Quasi-static solution by dynamic relaxation: central differences with a fictitious mass (inertia.h) and a
+ * damping that follows the lowest mode still active (a running Rayleigh quotient), stopped by an estimate of
+ * the remaining error.
  *
- * Error estimate: with the projected residual's acceleration a and the lowest frequency w, |e| <= |a| / w^2
- * in the norm of the mass, exactly so for a linear system; the same is asked of the node that is worst,
- * relative to the one that moved most. While fast modes die out the increments do not show a slow one: before
- * a state is taken for the solution, the lowest frequency there is found by Lanczos iteration, and the
+ * Error estimate: with the acceleration a of the residual and the lowest frequency w, |e| <= |a| / w^2, which
+ * is exact for a mode of a linear system; asked in the norm of the diagonal mass, and of the node that is
+ * worst, relative to the one that moved most. While fast modes die out the increments do not show a slow one:
+ * before a state is taken for the solution, the lowest frequency there is found by Lanczos iteration, and the
  * relaxation goes on with it where it is lower. */
 #ifndef SOLID_RELAXATION_H
 #define SOLID_RELAXATION_H

@@ -5,6 +5,9 @@
 #include <math.h>
 #include <string.h>
 
+/* Steps in which the load moves something by as much as a cell, or as the body is long; and at least. */
+static const double steps_per_spacing = 100.0, steps_per_size = 800.0;
+static const int64_t least_ramp = 100;
 static const int64_t most_retreats = 8;                          /* from inverted points */
 static const double most_stiffening = 1.1, most_softening = 0.5; /* of a node since its mass was set */
 static const int64_t most_augmentations = 20;                    /* of the contacts' multipliers, */
@@ -35,14 +38,16 @@ int64_t relaxation_choose_ramp(const struct relaxation *r)
     for (int64_t i = 0; i < r->system->rows.count; i++) {
         largest = fmax(largest, fabs(r->system->rows.target[i]));
     }
-    double steps = 200.0 * largest / r->spacing;
-    return steps > 1e7 ? 10000000 : steps > 200.0 ? (int64_t)steps : 200;
+    double steps = fmax(steps_per_spacing * largest / r->spacing,
+                        steps_per_size * largest / relaxation_body_size(r->system));
+    steps = fmax(steps, (double)least_ramp);
+    return steps > 1e7 ? 10000000 : (int64_t)steps;
 }
 
 void relaxation_update_time_step(struct relaxation *r, const double *u, int iterations)
 {
     double frequency =
-        system_largest_frequency(r->system, r->mass, u, r->residual, iterations, r->mode, r->scratch);
+        system_largest_frequency(r->system, &r->inertia, u, r->residual, iterations, r->mode, r->scratch);
     r->report->force_evaluations += iterations;
     /* The estimate is from below and wanders: follow rises at once, falls slowly. */
     r->frequency = frequency > r->frequency ? frequency : 0.98 * r->frequency + 0.02 * frequency;
@@ -54,19 +59,33 @@ bool relaxation_update_mass(struct relaxation *r, struct error *error)
     double *mass = r->scratch, highest = 0.0, lowest = INFINITY;
     system_relaxation_mass(r->system, mass);
     for (int64_t n = 0; n < r->system->node_count; n++) {
-        highest = fmax(highest, mass[n] / r->mass[n]);
-        lowest = fmin(lowest, mass[n] / r->mass[n]);
+        highest = fmax(highest, mass[n] / r->inertia.mass[n]);
+        lowest = fmin(lowest, mass[n] / r->inertia.mass[n]);
     }
     if (!(highest > most_stiffening || lowest < most_softening)) {
         return true;
     }
-    memcpy(r->mass, mass, (size_t)r->system->node_count * sizeof *mass);
-    constraint_free(&r->constraint);
-    r->failure = system_constrain(r->system, r->mass, &r->constraint, error);
+    r->failure = inertia_set_mass(&r->inertia, r->system, mass, error);
+    if (r->failure == STATUS_OK && inertia_is_stale(&r->inertia)) {
+        r->failure = relaxation_measure_inertia(r, error);
+    }
+    relaxation_note_new_mass(r);
+    return r->failure == STATUS_OK;
+}
+
+void relaxation_note_new_mass(struct relaxation *r)
+{
     r->mass_changed = true;
     r->spectrum2 = INFINITY;
     r->spectrum_known = false;
-    return r->failure == STATUS_OK;
+}
+
+enum status relaxation_measure_inertia(struct relaxation *r, struct error *error)
+{
+    r->report->force_evaluations += r->inertia.size + 1;
+    enum status status = inertia_measure(&r->inertia, r->system, r->residual_at, error);
+    (void)system_residual(r->system, r->residual_at, r->residual); /* the body's last evaluation again */
+    return status;
 }
 
 void relaxation_keep_state(struct relaxation *r, const double *u)
@@ -78,7 +97,7 @@ void relaxation_keep_state(struct relaxation *r, const double *u)
     memcpy(r->newer.u, u, (size_t)r->size * sizeof *u);
 }
 
-bool relaxation_step_back(struct relaxation *r, double *u)
+bool relaxation_step_back(struct relaxation *r, double *u, struct error *error)
 {
     if (r->retreats == most_retreats) {
         return false;
@@ -94,9 +113,17 @@ bool relaxation_step_back(struct relaxation *r, double *u)
     memset(r->mode, 0, (size_t)r->size * sizeof *r->mode);
     r->mass_changed = true;
     system_load_factors(r->system, fmin(1.0, r->load / (double)r->report->ramp_steps));
-    (void)system_residual(r->system, u, r->residual);
+    r->residual_at = u;
+    if (!(system_residual(r->system, u, r->residual).least_jacobian > 0.0)) {
+        return false;
+    }
+    system_relaxation_mass(r->system, r->scratch);
+    r->failure = inertia_set_mass(&r->inertia, r->system, r->scratch, error);
+    if (r->failure == STATUS_OK) {
+        r->failure = relaxation_measure_inertia(r, error);
+    }
     relaxation_update_time_step(r, u, FIRST_ITERATIONS);
-    return true;
+    return r->failure == STATUS_OK;
 }
 
 /* Deepest penetration of all contacts at the last evaluation, m. */

@@ -10,6 +10,7 @@
 #include <string.h>
 
 static const double pi = 3.14159265358979324;
+static const double most_growth = 1.5; /* of the damping's square, from check to check */
 static const int most_spectrum_iterations = 1000;
 static const double spectrum_share = 0.8; /* of its estimate from above */
 
@@ -50,30 +51,32 @@ void relaxation_estimate(struct relaxation *r)
         du[i] = r->before[i] - r->last_u[i];
         da[i] = r->last_acceleration[i] - r->acceleration[i];
     }
-    double bottom = system_mass_product(r->system, r->mass, du, du);
-    double quotient = bottom > 0.0 ? system_mass_product(r->system, r->mass, du, da) / bottom : 0.0;
     memcpy(r->last_u, r->before, (size_t)r->size * sizeof *r->before);
     memcpy(r->last_acceleration, r->acceleration, (size_t)r->size * sizeof *r->acceleration);
+    constraint_project(&r->inertia.constraint, NULL, du);
+    constraint_project(&r->inertia.constraint, NULL, da);
+    double bottom = inertia_product(&r->inertia, du, du);
+    double quotient = bottom > 0.0 ? inertia_product(&r->inertia, du, da) / bottom : 0.0;
     if (quotient > 0.0 && r->checks > 0 && !r->mass_changed) {
         quotient = fmin(quotient, r->frequency * r->frequency);
-        r->low2 = quotient < r->low2 ? quotient : fmin(quotient, 1.2 * r->low2);
+        r->low2 = quotient < r->low2 ? quotient : fmin(quotient, most_growth * r->low2);
         r->low2 = fmin(r->low2, r->spectrum2);
         r->damping = 2.0 * sqrt(r->low2);
         r->window[r->checks % WINDOWS] = r->low2;
     }
     r->checks++;
-    r->mass_changed = false;
     double least2 = least_of_window(r);
-    r->largest_displacement =
-        fmax(r->largest_displacement, sqrt(system_mass_product(r->system, r->mass, r->before, r->before)));
+    r->largest_displacement = fmax(
+        r->largest_displacement, sqrt(system_mass_product(r->system, r->inertia.mass, r->before, r->before)));
     r->largest_move = fmax(r->largest_move, largest_of_nodes(r, r->before));
     /* Of the largest so far: a scene may end at rest. */
-    double on_the_whole =
-        ratio(sqrt(system_mass_product(r->system, r->mass, r->acceleration, r->acceleration)) / least2,
-              r->largest_displacement);
+    double on_the_whole = ratio(
+        sqrt(system_mass_product(r->system, r->inertia.mass, r->acceleration, r->acceleration)) / least2,
+        r->largest_displacement);
     double at_worst = ratio(largest_of_nodes(r, r->acceleration) / least2, r->largest_move);
     r->report->error = fmax(on_the_whole, at_worst);
     r->report->lowest_frequency = sqrt(least2);
+    r->mass_changed = false;
 }
 
 bool relaxation_find_lowest_mode(struct relaxation *r, const double *u, struct error *error)
@@ -84,8 +87,8 @@ bool relaxation_find_lowest_mode(struct relaxation *r, const double *u, struct e
     if (r->failure == STATUS_OK) {
         memcpy(work, r->velocity, (size_t)r->size * sizeof *work);
         r->failure =
-            system_lowest_eigenvalue(r->system, &r->constraint, u, r->residual, most_spectrum_iterations,
-                                     work, work + r->size, &value, &iterations, error);
+            system_lowest_eigenvalue(r->system, &r->inertia, u, r->residual, most_spectrum_iterations, work,
+                                     work + r->size, &value, &iterations, error);
     }
     free(work);
     if (r->failure != STATUS_OK) {

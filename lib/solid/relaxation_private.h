@@ -2,6 +2,7 @@
 #ifndef SOLID_RELAXATION_PRIVATE_H
 #define SOLID_RELAXATION_PRIVATE_H
 
+#include "solid/inertia.h"
 #include "solid/relaxation.h"
 
 enum { CHECK_INTERVAL = 20 };   /* steps between estimates */
@@ -18,10 +19,10 @@ struct relaxation {
     struct solid_system *system;
     const struct relaxation_options *options;
     struct relaxation_report *report;
-    struct constraint constraint;
+    struct inertia inertia;
     int64_t size;
     double *u; /* the caller's */
-    double *mass, *velocity, *residual, *before;
+    double *velocity, *residual, *before;
     const double *residual_at; /* where the residual is known, at a check: u or before */
     double *factor_change;     /* of the load curves in this step */
     double *mode, *scratch;
@@ -82,7 +83,8 @@ double relaxation_body_size(const struct solid_system *system);
 /* Mean spacing of the nodes. */
 double relaxation_node_spacing(const struct solid_system *system);
 
-/* Steps to apply the load in: slow enough that a cell is strained by no more than half a percent a step. */
+/* Steps to apply the load in: slow enough that a cell is strained by about one percent a step, and the whole
+ * by much less, so that what follows the state can do so. */
 int64_t relaxation_choose_ramp(const struct relaxation *r);
 
 /* Take the critical step at u from the largest frequency. */
@@ -92,12 +94,18 @@ void relaxation_update_time_step(struct relaxation *r, const double *u, int iter
  * the critical step holds through large strains. False on failure. */
 bool relaxation_update_mass(struct relaxation *r, struct error *error);
 
+/* What was known of the lowest mode was of another mass. */
+void relaxation_note_new_mass(struct relaxation *r);
+
+/* Measure the stiffness along the fields of the inertia at the state where the residual is known. */
+MUST_CHECK enum status relaxation_measure_inertia(struct relaxation *r, struct error *error);
+
 /* Keep the state every so often; the older of two is safely before any instability that shows. */
 void relaxation_keep_state(struct relaxation *r, const double *u);
 
 /* An inverted point: go back to a state before it, at rest, and go on with smaller steps and a slower load.
- * False when that has been tried often enough: the deformation itself inverts. */
-bool relaxation_step_back(struct relaxation *r, double *u);
+ * False when that has been tried often enough - the deformation itself inverts - and on failure. */
+bool relaxation_step_back(struct relaxation *r, double *u, struct error *error);
 
 /* Whether a converged state may stand; contacts that penetrate too deep are augmented and relaxed again. */
 bool relaxation_contacts_hold(struct relaxation *r);

@@ -8,7 +8,7 @@
 enum status relaxation_allocate(struct relaxation *r, struct error *error)
 {
     enum status status;
-    TRY(NEW_ARRAY(&r->mass, r->system->node_count, error));
+    TRY(inertia_build(r->system, true, &r->inertia, error));
     TRY(NEW_ARRAY(&r->velocity, r->size, error));
     TRY(NEW_ARRAY(&r->residual, r->size, error));
     TRY(NEW_ARRAY(&r->before, r->size, error));
@@ -26,7 +26,6 @@ done:
 
 void relaxation_release(struct relaxation *r)
 {
-    free(r->mass);
     free(r->velocity);
     free(r->residual);
     free(r->before);
@@ -38,7 +37,7 @@ void relaxation_release(struct relaxation *r)
     free(r->acceleration);
     free(r->newer.u);
     free(r->older.u);
-    constraint_free(&r->constraint);
+    inertia_free(&r->inertia);
 }
 
 enum status relaxation_visit(void *run, const struct state *state, struct error *error)
@@ -48,7 +47,6 @@ enum status relaxation_visit(void *run, const struct state *state, struct error 
     const struct state_value values[] = {
         {"u", STATE_NUMBERS, r->u, r->size},
         {"velocity", STATE_NUMBERS, r->velocity, r->size},
-        {"mass", STATE_NUMBERS, r->mass, r->system->node_count},
         {"mode", STATE_NUMBERS, r->mode, r->size},
         {"last_u", STATE_NUMBERS, r->last_u, r->size},
         {"last_acceleration", STATE_NUMBERS, r->last_acceleration, r->size},
@@ -87,6 +85,10 @@ enum status relaxation_visit(void *run, const struct state *state, struct error 
         {"lowest_frequency", STATE_NUMBERS, &report->lowest_frequency, 1},
         {"least_jacobian", STATE_NUMBERS, &report->least_jacobian, 1},
     };
-    enum status status = state_visit(state, NULL, values, sizeof values / sizeof *values, error);
-    return status == STATUS_OK ? system_state(r->system, state, error) : status;
+    enum status status;
+    TRY(state_visit(state, NULL, values, sizeof values / sizeof *values, error));
+    TRY(inertia_state(&r->inertia, state, error));
+    TRY(system_state(r->system, state, error));
+done:
+    return status;
 }

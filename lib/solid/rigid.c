@@ -1,6 +1,7 @@
 /* Building rigid surfaces: vertices and normals; see rigid.h. */
 #include "solid/rigid.h"
 
+#include "base/box.h"
 #include "base/memory.h"
 #include "solid/rigid_private.h"
 
@@ -14,25 +15,16 @@ static const double merge_tolerance = 1e-9;
 /* Triangles whose area is less than this part of their longest edge squared have no normal. */
 static const double least_slenderness = 1e-12;
 
-static enum status measure(struct rigid_surface *surface, const double *corners, double *low, double *high,
-                           struct error *error)
+static enum status check_corners(const struct rigid_surface *surface, const double *corners,
+                                 struct error *error)
 {
-    int dim = surface->dim;
-    double sum = 0.0;
-    for (int a = 0; a < dim; a++) {
-        low[a] = INFINITY;
-        high[a] = -INFINITY;
-        for (int64_t c = 0; c < surface->facet_count * dim; c++) {
-            if (!isfinite(corners[c * dim + a])) {
-                return fail(error, STATUS_INPUT, "rigid surface: facet %lld: coordinate is not finite",
-                            (long long)(c / dim + 1));
-            }
-            low[a] = fmin(low[a], corners[c * dim + a]);
-            high[a] = fmax(high[a], corners[c * dim + a]);
+    int64_t per_facet = (int64_t)surface->dim * surface->dim;
+    for (int64_t i = 0; i < surface->facet_count * per_facet; i++) {
+        if (!isfinite(corners[i])) {
+            return fail(error, STATUS_INPUT, "rigid surface: facet %lld: coordinate is not finite",
+                        (long long)(i / per_facet + 1));
         }
-        sum += (high[a] - low[a]) * (high[a] - low[a]);
     }
-    surface->extent = sqrt(sum);
     return STATUS_OK;
 }
 
@@ -160,17 +152,18 @@ enum status rigid_build(int dim, int64_t facet_count, const double *corners, boo
                         struct rigid_surface *surface, struct error *error)
 {
     enum status status;
-    double low[3], high[3];
     *surface = (struct rigid_surface){.dim = dim, .facet_count = facet_count};
     if (facet_count < 1 || facet_count > INT32_MAX / 3) {
         return fail(error, STATUS_INPUT, "rigid surface: %lld facets: none, or too many",
                     (long long)facet_count);
     }
-    TRY(measure(surface, corners, low, high, error));
+    TRY(check_corners(surface, corners, error));
+    struct box box = box_of(dim, facet_count * dim, corners);
+    surface->extent = box_diagonal(&box);
     TRY(number_vertices(surface, corners, error));
     TRY(make_normals(surface, flip, error));
     TRY(rigid_join_facets(surface, error));
-    TRY(rigid_fill_bins(surface, low, high, error));
+    TRY(rigid_fill_bins(surface, &box, error));
 done:
     if (status != STATUS_OK) {
         rigid_free(surface);

@@ -2,31 +2,25 @@
 #include "base/memory.h"
 #include "solid/rigid_private.h"
 
-/* Box of a facet. */
-static void facet_box(const struct rigid_surface *surface, int64_t f, double *low, double *high)
+static struct box facet_box(const struct rigid_surface *surface, int64_t f)
 {
     int dim = surface->dim;
-    for (int a = 0; a < dim; a++) {
-        low[a] = INFINITY;
-        high[a] = -INFINITY;
-        for (int k = 0; k < dim; k++) {
-            double x = surface->vertex[(int64_t)surface->facet[f * dim + k] * dim + a];
-            low[a] = fmin(low[a], x);
-            high[a] = fmax(high[a], x);
-        }
+    struct box box = box_of(dim, 0, NULL);
+    for (int k = 0; k < dim; k++) {
+        box_add(&box, 1, surface->vertex + (int64_t)surface->facet[f * dim + k] * dim);
     }
+    return box;
 }
 
-/* The same in bins: first[3] to last[3], both included. */
+/* The box of a facet in bins: first[3] to last[3], both included. */
 static void facet_bins(const struct rigid_surface *surface, int64_t f, int64_t first[3], int64_t last[3])
 {
-    double low[3], high[3];
-    facet_box(surface, f, low, high);
+    struct box box = facet_box(surface, f);
     first[2] = last[2] = 0;
     for (int a = 0; a < surface->dim; a++) {
         double most = (double)(surface->bins[a] - 1);
-        first[a] = (int64_t)fmin((low[a] - surface->origin[a]) / surface->bin, most);
-        last[a] = (int64_t)fmin((high[a] - surface->origin[a]) / surface->bin, most);
+        first[a] = (int64_t)fmin((box.low[a] - surface->origin[a]) / surface->bin, most);
+        last[a] = (int64_t)fmin((box.high[a] - surface->origin[a]) / surface->bin, most);
     }
 }
 
@@ -68,36 +62,31 @@ static void visit_bins(struct rigid_surface *surface, int64_t *counts, bool fill
 }
 
 /* Bins of the facets' mean size, but no more than a few for each facet. */
-static void size_bins(struct rigid_surface *surface, const double *low, const double *high)
+static void size_bins(struct rigid_surface *surface, const struct box *box)
 {
     int dim = surface->dim;
     double mean = 0.0, most = 8.0 * (double)surface->facet_count + 64.0, bins;
     for (int64_t f = 0; f < surface->facet_count; f++) {
-        double from[3], to[3], size = 0.0;
-        facet_box(surface, f, from, to);
-        for (int a = 0; a < dim; a++) {
-            size = fmax(size, to[a] - from[a]);
-        }
-        mean += size / (double)surface->facet_count;
+        struct box facet = facet_box(surface, f);
+        mean += box_side(&facet) / (double)surface->facet_count;
     }
     surface->bin = mean;
     do {
         bins = 1.0;
         for (int a = 0; a < 3; a++) {
-            double along = a < dim ? fmax(1.0, ceil((high[a] - low[a]) / surface->bin)) : 1.0;
+            double along = a < dim ? fmax(1.0, ceil((box->high[a] - box->low[a]) / surface->bin)) : 1.0;
             bins *= along;
             surface->bins[a] = along <= most ? (int64_t)along : 1;
-            surface->origin[a] = a < dim ? low[a] : 0.0;
+            surface->origin[a] = a < dim ? box->low[a] : 0.0;
         }
         surface->bin *= bins > most ? 1.25 : 1.0;
     } while (bins > most);
 }
 
-enum status rigid_fill_bins(struct rigid_surface *surface, const double *low, const double *high,
-                            struct error *error)
+enum status rigid_fill_bins(struct rigid_surface *surface, const struct box *box, struct error *error)
 {
     enum status status;
-    size_bins(surface, low, high);
+    size_bins(surface, box);
     int64_t count = surface->bins[0] * surface->bins[1] * surface->bins[2];
     /* Counted two places on, so that filling leaves the starts where they belong. */
     TRY(NEW_ARRAY(&surface->start, count + 2, error));

@@ -2,6 +2,7 @@
 #ifndef SOLID_RIGID_PRIVATE_H
 #define SOLID_RIGID_PRIVATE_H
 
+#include "base/box.h"
 #include "solid/rigid.h"
 
 #include <math.h>
@@ -10,8 +11,8 @@
  * STATUS_INPUT where two facets disagree on the side. */
 MUST_CHECK enum status rigid_join_facets(struct rigid_surface *surface, struct error *error);
 
-/* Fill origin, bin, bins, start and in_bin; low[dim] and high[dim] is the box around the surface. */
-MUST_CHECK enum status rigid_fill_bins(struct rigid_surface *surface, const double *low, const double *high,
+/* Fill origin, bin, bins, start and in_bin; the box is that around the surface. */
+MUST_CHECK enum status rigid_fill_bins(struct rigid_surface *surface, const struct box *box,
                                        struct error *error);
 
 static inline double distance2(int dim, const double *a, const double *b)

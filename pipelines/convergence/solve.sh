@@ -17,6 +17,14 @@ TIMEFORMAT='%U %S'
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
+# OUT.time comes last: where it is, OUT.dat is whole.
+finish() {
+    rm -f "$out.time"
+    mv "$work/u.dat" "$out.dat"
+    mv "$work/time" "$out.time"
+    exit
+}
+
 dim=$(sed -n 's/^dim = //p' "$scene")
 if [ "$scheme" = calculix ]; then
     nodes -u "$unit" -t "$mesh" > "$work/cloud.dat"
@@ -30,9 +38,8 @@ if [ "$scheme" = calculix ]; then
     awk -F '\t' '
         $1 == "nodes" { nodes = $2 }
         $1 == "processor seconds" && (least == "" || $2 < least) { least = $2 }
-        END { printf "prepare\t0\nsolve\t%s\nnodes\t%d\n", least, nodes }' "$work/logs" > "$out.time"
-    mv "$work/u.dat" "$out.dat"
-    exit
+        END { printf "prepare\t0\nsolve\t%s\nnodes\t%d\n", least, nodes }' "$work/logs" > "$work/time"
+    finish
 fi
 
 # The paper's radius is 8 mm at a spacing of 5 mm; spacing is here that of the mesh's mean cell.
@@ -48,7 +55,8 @@ esac
 if [ "$scheme" != default ]; then
     if [ "$dim" -eq 2 ]; then
         nodes -u "$unit" "$mesh" | ipoints -g 1 > "$work/one.mts"
-        support+=" -w regularised -R $(awk -v h="$(spacing "$work/one.mts")" 'BEGIN { print 1.6 * h }')"
+        h=$(spacing "$work/one.mts")
+        support+=" -w regularised -R $(awk -v h="$h" 'BEGIN { print 1.6 * h }')"
     else
         support+=" -k $([ "$scheme" = mls1 ] && echo 1.4 || echo 1.8)"
     fi
@@ -69,8 +77,9 @@ for _ in 1 2 3; do
     printf '%s\t%s\n' "$(cpu "$work/prepare.time")" "$(cpu "$work/solve.time")" >> "$work/times"
     awk 'END { exit $2 < 5 }' "$work/times" && break
 done
-awk -v nodes="$(mts print nodes.x "$work/u.dat" | wc -l)" '
+nodes=$(mts print nodes.x "$work/u.dat" | wc -l)
+awk -v nodes="$nodes" '
     NR == 1 || $1 < prepare { prepare = $1 }
     NR == 1 || $2 < solve { solve = $2 }
-    END { printf "prepare\t%s\nsolve\t%s\nnodes\t%d\n", prepare, solve, nodes }' "$work/times" > "$out.time"
-mv "$work/u.dat" "$out.dat"
+    END { printf "prepare\t%s\nsolve\t%s\nnodes\t%d\n", prepare, solve, nodes }' "$work/times" > "$work/time"
+finish

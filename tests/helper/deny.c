@@ -1,6 +1,7 @@
 /* deny.so, to be preloaded: lets the allocation number DENY of a program fail, counted from 0 at the begin of
  * main, whoever asks for it: the program, the C library, OpenMP, gmsh. Without DENY, none fails, and the
- * number of allocations is written into the file that DENY_COUNT names. */
+ * number of allocations is written into the file that DENY_COUNT names. The memory comes from the allocator
+ * that would serve without it: that of a sanitizer, too (with verify_asan_link_order=0). */
 #include <dlfcn.h>
 #include <errno.h>
 #include <fcntl.h>
@@ -10,11 +11,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <unistd.h>
-
-extern void *__libc_malloc(size_t size);
-extern void *__libc_calloc(size_t count, size_t size);
-extern void *__libc_realloc(void *memory, size_t size);
-extern void *__libc_memalign(size_t alignment, size_t size);
 
 static atomic_bool begun;
 static atomic_long seen;
@@ -30,35 +26,52 @@ static bool is_denied(void)
     return true;
 }
 
+/* The next definition of a function behind this one. */
+#define NEXT(type, name)                                                                                     \
+    static type *next;                                                                                       \
+    if (next == NULL) {                                                                                      \
+        *(void **)&next = dlsym(RTLD_NEXT, #name);                                                           \
+    }
+
+typedef void *one_size(size_t);
+typedef void *two_sizes(size_t, size_t);
+
 void *malloc(size_t size)
 {
-    return is_denied() ? NULL : __libc_malloc(size);
+    NEXT(one_size, malloc)
+    return is_denied() ? NULL : next(size);
 }
 
 void *calloc(size_t count, size_t size)
 {
-    return is_denied() ? NULL : __libc_calloc(count, size);
+    NEXT(two_sizes, calloc)
+    return is_denied() ? NULL : next(count, size);
 }
 
 void *realloc(void *memory, size_t size)
 {
-    return is_denied() ? NULL : __libc_realloc(memory, size);
+    typedef void *resize(void *, size_t);
+    NEXT(resize, realloc)
+    return is_denied() ? NULL : next(memory, size);
 }
 
 void *aligned_alloc(size_t alignment, size_t size)
 {
-    return is_denied() ? NULL : __libc_memalign(alignment, size);
+    NEXT(two_sizes, aligned_alloc)
+    return is_denied() ? NULL : next(alignment, size);
 }
 
 void *memalign(size_t alignment, size_t size)
 {
-    return is_denied() ? NULL : __libc_memalign(alignment, size);
+    NEXT(two_sizes, memalign)
+    return is_denied() ? NULL : next(alignment, size);
 }
 
 int posix_memalign(void **memory, size_t alignment, size_t size)
 {
-    *memory = is_denied() ? NULL : __libc_memalign(alignment, size);
-    return *memory == NULL ? ENOMEM : 0;
+    typedef int align(void **, size_t, size_t);
+    NEXT(align, posix_memalign)
+    return is_denied() ? ENOMEM : next(memory, alignment, size);
 }
 
 static void write_count(void)
@@ -89,9 +102,7 @@ start_function __libc_start_main;
 int __libc_start_main(int (*main)(int, char **, char **), int argc, char **argv, void (*init)(void),
                       void (*fini)(void), void (*rtld_fini)(void), void *stack_end)
 {
-    void *symbol = dlsym(RTLD_NEXT, "__libc_start_main");
-    start_function *start;
-    *(void **)&start = symbol;
+    NEXT(start_function, __libc_start_main)
     program = main;
-    return start(begin, argc, argv, init, fini, rtld_fini, stack_end);
+    return next(begin, argc, argv, init, fini, rtld_fini, stack_end);
 }

@@ -58,6 +58,18 @@ enum status mls_apply_options(const struct option options[MLS_OPTION_COUNT], str
     return status;
 }
 
+enum status radius_apply_options(const struct option *factor, const struct option *radius,
+                                 struct support_options *support, struct error *error)
+{
+    if (factor->given && radius->given) {
+        return fail(error, STATUS_INPUT, "give one of -k and -R");
+    }
+    if (factor->given) {
+        return parse_double(factor->value, "-k", 0.1, 100, &support->factor, error);
+    }
+    return radius->given ? parse_length(radius->value, "-R", &support->radius, error) : STATUS_OK;
+}
+
 void mls_describe(const struct mls *mls, char *text, size_t size)
 {
     snprintf(text, size, "basis=%s weight=%s mu_absolute=%d mu=", basis_names[mls->basis],

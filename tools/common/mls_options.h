@@ -1,8 +1,9 @@
-/* The options -b, -w, --mu, --mu-unit that support and shapefn share. */
+/* Options that several tools share: -b, -w, --mu, --mu-unit of the basis, -k and -R of the supports. */
 #ifndef TOOLS_MLS_OPTIONS_H
 #define TOOLS_MLS_OPTIONS_H
 
 #include "approx/mls.h"
+#include "approx/support.h"
 #include "base/options.h"
 
 /* Entries for a tool's table of options, in this order. */
@@ -19,6 +20,10 @@
  * monomial (3 in 2D: x2,xy,y2; 6 in 3D: x2,xy,xz,y2,yz,z2). */
 MUST_CHECK enum status mls_apply_options(const struct option options[MLS_OPTION_COUNT], struct mls *mls,
                                          struct error *error);
+
+/* Apply -k FACTOR or -R RADIUS to `support`; not both may be given. */
+MUST_CHECK enum status radius_apply_options(const struct option *factor, const struct option *radius,
+                                            struct support_options *support, struct error *error);
 
 /* "basis=mmls2 weight=quartic mu=1e-07,1e-07,1e-07 mu_absolute=0" into text[size], for a section's
  * attributes. */

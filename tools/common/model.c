@@ -1,5 +1,6 @@
 #include "model.h"
 
+#include "approx/quadrature.h"
 #include "io/table.h"
 
 #include <math.h>
@@ -133,7 +134,7 @@ static enum status read_faces_and_nodes(struct model_input *input, struct error 
     enum status status;
     const struct stream *stream = input->stream;
     const struct section *faces, *face_cell, *facepoints, *face_phi, *node_phi;
-    int dim = input->cells.dim, per_face = dim == 2 ? 2 : 3;
+    int dim = input->cells.dim, per_face = quadrature_face_rule(dim).points;
     TRY(stream_need(stream, "faces", TYPE_I4, dim, "ipoints", &faces, error));
     TRY(stream_need(stream, "faces.cell", TYPE_I4, 2, "ipoints", &face_cell, error));
     TRY(stream_need(stream, "facepoints.x", TYPE_F8, dim, "ipoints", &facepoints, error));
@@ -321,6 +322,15 @@ enum status model_add_curve(const struct model_input *input, const struct scene_
 done:
     table_free(&table);
     return status;
+}
+
+double model_away(const double *row, double unit, const double *x, int dim)
+{
+    double away = 0.0;
+    for (int a = 0; a < dim; a++) {
+        away = fmax(away, fabs(row[a] * unit - x[a]));
+    }
+    return away;
 }
 
 void model_nodal_field(const struct model_input *input, const double *u, double *field)

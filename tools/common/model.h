@@ -48,6 +48,17 @@ MUST_CHECK enum status model_add_loads(const struct model_input *input, struct s
 MUST_CHECK enum status model_add_contacts(const struct model_input *input, struct solid_system *system,
                                           struct error *error);
 
+/* Materials of the scene, then one for each row of its tables of points; to be freed also on failure. */
+struct material_list {
+    struct material *items; /* count */
+    int64_t count;
+    int32_t *of_point; /* of each integration point */
+    int32_t *section;  /* count: the scene's section of each */
+};
+MUST_CHECK enum status model_materials(const struct model_input *input, struct material_list *list,
+                                       struct error *error);
+void material_list_free(struct material_list *list);
+
 /* The facets of the named groups; the error lists the groups that exist. set->facet is owned by the caller
  * (free the array through *owned). */
 MUST_CHECK enum status model_facets(const struct model_input *input, const struct scene_label *label,
@@ -68,6 +79,11 @@ MUST_CHECK enum status model_add_curve(const struct model_input *input, const st
  */
 MUST_CHECK enum status model_initial(const struct model_input *input, double *u, double *v,
                                      struct error *error);
+
+/* How far, m, the place that a table's row begins with is from x[dim], along the axis where that is most;
+ * rows that belong to x are no further away than MODEL_SAME_PLACE. */
+double model_away(const double *row, double unit, const double *x, int dim);
+#define MODEL_SAME_PLACE 1e-6
 
 /* field[node_count * dim] = u_h at the nodes. */
 void model_nodal_field(const struct model_input *input, const double *u, double *field);

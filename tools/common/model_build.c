@@ -1,9 +1,7 @@
 #include "model.h"
 
 #include "approx/quadrature.h"
-#include "io/table.h"
 
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -12,127 +10,6 @@
  * would begin to fold. */
 static const double default_pointwise_share = 0.05;
 static const double share_growth = 20.0;
-
-/* A compressible body does not lock, and averaging would only make it too soft in bending: all of the law
- * stays pointwise where the bulk modulus is no more than twice the shear modulus, little of it near
- * incompressibility. */
-static double least_share(const struct material *material)
-{
-    double share = 2.0 * material->shear_modulus / material->bulk_modulus;
-    return share > 0.0 && share < 1.0 ? share : 1.0;
-}
-
-static void set_material(const struct scene_material *section, struct material *material)
-{
-    static const enum material_model models[] = {[SCENE_NEO_HOOKEAN] = MATERIAL_NEO_HOOKEAN,
-                                                 [SCENE_NEO_HOOKEAN_LOG] = MATERIAL_NEO_HOOKEAN_LOG,
-                                                 [SCENE_MOONEY_RIVLIN] = MATERIAL_MOONEY_RIVLIN,
-                                                 [SCENE_OGDEN] = MATERIAL_OGDEN,
-                                                 [SCENE_ST_VENANT_KIRCHHOFF] = MATERIAL_ST_VENANT_KIRCHHOFF};
-    *material = (struct material){.model = models[section->model],
-                                  .density = section->density,
-                                  .mooney_ratio = section->mooney_ratio,
-                                  .ogden_alpha = section->ogden_alpha};
-    material_set_moduli(material, section->youngs_modulus, section->poisson_ratio);
-    material->least_share = least_share(material);
-}
-
-/* Materials of the scene, then one for each row of per-point tables. */
-struct material_list {
-    struct material *items;
-    int64_t count;
-    int32_t *of_point;
-    int32_t *section; /* count: of the scene */
-};
-
-/* One row per integration point of the section's regions, in the order of the points: coordinates, E, nu. */
-static enum status add_point_table(const struct model_input *input, int64_t m, struct material_list *list,
-                                   struct error *error)
-{
-    enum status status;
-    const struct scene_material *section = &input->scene->materials[m];
-    const int32_t *cell = input->point_cell->data;
-    const double *x = input->points->data;
-    int dim = input->cells.dim;
-    struct table table = {0};
-    int64_t row = 0;
-    TRY(table_read(section->table, dim + 2, dim + 2, &table, error));
-    struct material *grown = array_grow(list->items, list->count + table.rows, sizeof *grown);
-    if (grown == NULL) {
-        status = fail_memory(error, "materials");
-        goto done;
-    }
-    list->items = grown;
-    for (int64_t q = 0; q < input->points->rows; q++) {
-        if (input->cell_material[cell[q]] != m) {
-            continue;
-        }
-        const double *values = table.values + row * table.cols;
-        double away = 0.0;
-        for (int a = 0; row < table.rows && a < dim; a++) {
-            away = fmax(away, fabs(values[a] * section->table_unit - x[q * dim + a]));
-        }
-        if (row == table.rows || !(away <= 1e-6)) {
-            status = scene_fail(
-                error, STATUS_INPUT, input->scene, &section->label,
-                "table %s: %lld rows do not match the integration points of its regions, first at "
-                "point %lld (%g m away)",
-                section->table, (long long)table.rows, (long long)q, row == table.rows ? 0.0 : away);
-            goto done;
-        }
-        double modulus = values[dim], ratio = values[dim + 1];
-        if (!(modulus > 0.0) || !(ratio > -1.0 && ratio < 0.5)) {
-            status = scene_fail(error, STATUS_INPUT, input->scene, &section->label,
-                                "%s:%lld: E = %g, nu = %g: E must be positive, nu within (-1, .5)",
-                                section->table, (long long)table.line[row], modulus, ratio);
-            goto done;
-        }
-        list->items[list->count] = list->items[m];
-        material_set_moduli(&list->items[list->count], modulus, ratio);
-        list->items[list->count].least_share = least_share(&list->items[list->count]);
-        list->section[list->count] = (int32_t)m;
-        list->of_point[q] = (int32_t)list->count++;
-        row++;
-    }
-    if (row != table.rows) {
-        status = scene_fail(error, STATUS_INPUT, input->scene, &section->label,
-                            "table %s: %lld rows for %lld integration points", section->table,
-                            (long long)table.rows, (long long)row);
-    }
-done:
-    table_free(&table);
-    return status;
-}
-
-static enum status list_materials(const struct model_input *input, struct material_list *list,
-                                  struct error *error)
-{
-    enum status status = STATUS_OK;
-    const int32_t *cell = input->point_cell->data;
-    const struct scene *scene = input->scene;
-    list->items = array_grow(NULL, scene->material_count, sizeof *list->items);
-    if (list->items == NULL) {
-        return fail_memory(error, "materials");
-    }
-    TRY(NEW_ARRAY(&list->of_point, input->points->rows, error));
-    /* At most one for each section and for each point. */
-    TRY(NEW_ARRAY(&list->section, scene->material_count + input->points->rows, error));
-    list->count = scene->material_count;
-    for (int64_t m = 0; m < scene->material_count; m++) {
-        set_material(&scene->materials[m], &list->items[m]);
-        list->section[m] = (int32_t)m;
-    }
-    for (int64_t q = 0; q < input->points->rows; q++) {
-        list->of_point[q] = input->cell_material[cell[q]];
-    }
-    for (int64_t m = 0; m < scene->material_count; m++) {
-        if (scene->materials[m].table != NULL) {
-            TRY(add_point_table(input, m, list, error));
-        }
-    }
-done:
-    return status;
-}
 
 /* Barycentric coordinates of a point in a cell. */
 static void barycentric(const struct cells *cells, int64_t cell, const double *x, double *value)
@@ -153,6 +30,27 @@ static void barycentric(const struct cells *cells, int64_t cell, const double *x
     }
 }
 
+/* node, value[point_count * (dim + 1)]: the vertices of the cell of each point, and their hat functions
+ * there. */
+static enum status list_hats(const struct model_input *input, int32_t **node, double **value,
+                             struct error *error)
+{
+    enum status status;
+    const struct cells *cells = &input->cells;
+    const int32_t *cell = input->point_cell->data;
+    const double *x = input->points->data;
+    int corners = cells->dim + 1;
+    TRY(NEW_ARRAY(node, input->points->rows * corners, error));
+    TRY(NEW_ARRAY(value, input->points->rows * corners, error));
+    for (int64_t q = 0; q < input->points->rows; q++) {
+        memcpy(*node + q * corners, cells->node + (int64_t)cell[q] * corners,
+               (size_t)corners * sizeof **node);
+        barycentric(cells, cell[q], x + q * cells->dim, *value + q * corners);
+    }
+done:
+    return status;
+}
+
 /* One point per cell, in the order of the cells. */
 static bool has_conforming_cells(const struct model_input *input)
 {
@@ -169,20 +67,10 @@ static enum status build_body(const struct model_input *input, bool single, stru
     int32_t *hat_node = NULL;
     double *hat_value = NULL;
     const struct scene_solver *solver = &input->scene->solver;
-    const int32_t *cell = input->point_cell->data;
-    int dim = input->cells.dim, corners = dim + 1;
-    int64_t count = input->points->rows;
-    TRY(list_materials(input, &materials, error));
+    int dim = input->cells.dim;
+    TRY(model_materials(input, &materials, error));
     if (solver->volume == SCENE_NODAL_VOLUME) {
-        TRY(NEW_ARRAY(&hat_node, count * corners, error));
-        TRY(NEW_ARRAY(&hat_value, count * corners, error));
-        for (int64_t q = 0; q < count; q++) {
-            for (int k = 0; k < corners; k++) {
-                hat_node[q * corners + k] = input->cells.node[(int64_t)cell[q] * corners + k];
-            }
-            barycentric(&input->cells, cell[q], (const double *)input->points->data + q * dim,
-                        hat_value + q * corners);
-        }
+        TRY(list_hats(input, &hat_node, &hat_value, error));
     }
     struct quadrature_rule rule = quadrature_face_rule(dim);
     struct conforming_input conforming = {.x = input->cells.x,
@@ -198,7 +86,7 @@ static enum status build_body(const struct model_input *input, bool single, stru
     struct body_input body = {.dim = dim,
                               .node_x = input->cells.x,
                               .node_count = input->cells.node_count,
-                              .point_count = count,
+                              .point_count = input->points->rows,
                               .x = input->points->data,
                               .weight = input->weight->data,
                               .ptr = input->point_lists.ptr,
@@ -225,9 +113,7 @@ static enum status build_body(const struct model_input *input, bool single, stru
         system->body.compatibility = &system->compatibility;
     }
 done:
-    free(materials.items);
-    free(materials.of_point);
-    free(materials.section);
+    material_list_free(&materials);
     free(hat_node);
     free(hat_value);
     return status;

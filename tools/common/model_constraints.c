@@ -1,6 +1,7 @@
 #include "model_claims.h"
 
 #include "approx/scatter.h"
+#include "base/box.h"
 #include "io/table.h"
 
 #include <math.h>
@@ -183,46 +184,6 @@ static enum status averages_on_facets(const struct model_input *input, const str
     return boundary_averages_build(&input->face_table, set, averages, error);
 }
 
-/* Node values at a list of nodes, as averages of one sample each. The arrays are views and small copies. */
-static enum status averages_at_nodes(const struct model_input *input, const int32_t *nodes, int64_t count,
-                                     struct boundary_averages *averages, struct error *error)
-{
-    enum status status;
-    int dim = input->cells.dim;
-    const struct neighbours *lists = &input->node_lists;
-    int64_t pairs = 0;
-    *averages = (struct boundary_averages){.count = count};
-    for (int64_t i = 0; i < count; i++) {
-        pairs += lists->ptr[nodes[i] + 1] - lists->ptr[nodes[i]];
-    }
-    TRY(NEW_ARRAY(&averages->node, count, error));
-    TRY(NEW_ARRAY(&averages->ptr, count + 1, error));
-    TRY(NEW_ARRAY(&averages->idx, pairs, error));
-    TRY(NEW_ARRAY(&averages->phi, pairs, error));
-    TRY(NEW_ARRAY(&averages->sample_ptr, count + 1, error));
-    TRY(NEW_ARRAY(&averages->sample_x, count * dim, error));
-    TRY(NEW_ARRAY(&averages->sample_share, count, error));
-    for (int64_t i = 0; i < count; i++) {
-        int64_t at = averages->ptr[i];
-        averages->node[i] = nodes[i];
-        for (int64_t k = lists->ptr[nodes[i]]; k < lists->ptr[nodes[i] + 1]; k++) {
-            averages->idx[at] = lists->idx[k];
-            averages->phi[at++] = input->node_phi[k];
-        }
-        averages->ptr[i + 1] = at;
-        averages->sample_ptr[i + 1] = i + 1;
-        averages->sample_share[i] = 1.0;
-        for (int a = 0; a < dim; a++) {
-            averages->sample_x[i * dim + a] = input->cells.x[(int64_t)nodes[i] * dim + a];
-        }
-    }
-done:
-    if (status != STATUS_OK) {
-        boundary_averages_free(averages);
-    }
-    return status;
-}
-
 /* Hold what the hat averages of a set leave free. */
 static enum status add_springs(struct prescription *p, const struct facet_set *set, struct error *error)
 {
@@ -248,20 +209,6 @@ done:
     return status;
 }
 
-static double body_extent(const struct cells *cells)
-{
-    double square = 0.0;
-    for (int a = 0; a < cells->dim; a++) {
-        double low = INFINITY, high = -INFINITY;
-        for (int64_t n = 0; n < cells->node_count; n++) {
-            low = fmin(low, cells->x[n * cells->dim + a]);
-            high = fmax(high, cells->x[n * cells->dim + a]);
-        }
-        square += (high - low) * (high - low);
-    }
-    return sqrt(square);
-}
-
 static enum status add_section(struct prescription *p, struct error *error)
 {
     enum status status;
@@ -274,14 +221,16 @@ static enum status add_section(struct prescription *p, struct error *error)
     TRY(model_add_curve(p->input, &section->label, &section->curve, p->system, &p->curve, error));
     if (section->kind == SCENE_TABLE) {
         TRY(table_read(section->table, 2 * dim, 2 * dim, &p->table, error));
-        p->extent = body_extent(&p->input->cells);
+        struct box box = box_of(dim, p->input->cells.node_count, p->input->cells.x);
+        p->extent = box_diagonal(&box);
     }
     if (section->facets.count > 0) {
         TRY(model_facets(p->input, &section->label, &section->facets, &set, &owned, error));
         TRY(averages_on_facets(p->input, &set, &averages, error));
     } else {
         TRY(model_nodes(p->input, &section->label, &section->nodes, &owned, &count, error));
-        TRY(averages_at_nodes(p->input, owned, count, &averages, error));
+        TRY(boundary_list_build(dim, p->input->cells.x, owned, count, &p->input->node_lists,
+                                p->input->node_phi, &averages, error));
     }
     for (int64_t a = 0; a < averages.count; a++) {
         TRY(add_average(p, &averages, a, error));

@@ -2,18 +2,6 @@
 
 #include "io/table.h"
 
-#include <math.h>
-
-/* The row's coordinates are those of the node. */
-static bool is_at(const double *row, double unit, const double *x, int dim)
-{
-    double away = 0.0;
-    for (int a = 0; a < dim; a++) {
-        away = fmax(away, fabs(row[a] * unit - x[a]));
-    }
-    return away <= 1e-6;
-}
-
 enum status model_initial(const struct model_input *input, double *u, double *v, struct error *error)
 {
     enum status status;
@@ -29,7 +17,7 @@ enum status model_initial(const struct model_input *input, double *u, double *v,
     }
     for (int64_t n = 0; n < cells->node_count; n++) {
         const double *row = table.values + n * table.cols;
-        if (!is_at(row, initial->table_unit, cells->x + n * dim, dim)) {
+        if (!(model_away(row, initial->table_unit, cells->x + n * dim, dim) <= MODEL_SAME_PLACE)) {
             TRY(fail(error, STATUS_INPUT,
                      "%s:%lld: not the place of node %lld: give the nodes in the order of the mesh",
                      initial->table, (long long)table.line[n], (long long)n));

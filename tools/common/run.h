@@ -5,7 +5,7 @@
 #include "model.h"
 #include "run_checkpoint.h"
 #include "base/clock.h"
-#include "solid/relaxation.h"
+#include "solid/progress.h"
 
 /* Progress on a terminal: one line, a few times a second. */
 struct display {

@@ -1,6 +1,7 @@
 #include "stages.h"
 
 #include "approx/quadrature.h"
+#include "base/box.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -107,18 +108,13 @@ static enum status put_lattice(struct stream *stream, const int64_t n[3], struct
     int dim;
     int64_t node_count, count = 1;
     const double *nodes;
-    double low[3], step[3];
+    double step[3];
     double *x = NULL, *weight = NULL;
     int32_t *cell = NULL;
     TRY(stream_nodes(stream, &dim, &node_count, &nodes, error));
+    struct box box = box_of(dim, node_count, nodes);
     for (int a = 0; a < dim; a++) {
-        double high = -INFINITY;
-        low[a] = INFINITY;
-        for (int64_t i = 0; i < node_count; i++) {
-            low[a] = fmin(low[a], nodes[i * dim + a]);
-            high = fmax(high, nodes[i * dim + a]);
-        }
-        step[a] = (high - low[a]) / (double)(n[a] - 1);
+        step[a] = (box.high[a] - box.low[a]) / (double)(n[a] - 1);
         if (n[a] < 2 || __builtin_mul_overflow(count, n[a], &count) || count > INT32_MAX) {
             return fail(error, STATUS_INPUT, "--lattice: give %d numbers of points, each at least 2", dim);
         }
@@ -133,7 +129,7 @@ static enum status put_lattice(struct stream *stream, const int64_t n[3], struct
         for (int a = 0; a < dim; a++) {
             int64_t i = rest % n[a];
             rest /= n[a];
-            x[p * dim + a] = low[a] + step[a] * (double)i;
+            x[p * dim + a] = box.low[a] + step[a] * (double)i;
             weight[p] *= i == 0 || i == n[a] - 1 ? 0.5 * step[a] : step[a];
         }
     }

@@ -2,6 +2,7 @@
 
 #include "output.h"
 
+#include <assert.h>
 #include <errno.h>
 #include <fcntl.h>
 #include <signal.h>
@@ -105,6 +106,7 @@ static void parse_options(struct tool *tool, struct option options[], int option
             tool->output = options[i].value;
         }
         if (options[i].value != NULL && (options[i].silent || options[i].letter == 'o')) {
+            assert(tool->silent_count < TOOL_MOST_SILENT);
             tool->silent[tool->silent_count++] = options[i].value;
         }
     }
@@ -229,10 +231,9 @@ static char *without_silent(const struct tool *tool, const char *argument, size_
  * output goes. */
 static void add_provenance(const struct tool *tool, struct stream *stream)
 {
-    enum { MOST = sizeof tool->silent / sizeof *tool->silent };
     struct error error;
     int count = 0, rest_count = 0;
-    char *rests[MOST], **kept = array_new(tool->argc + 1, sizeof *kept);
+    char *rests[TOOL_MOST_SILENT], **kept = array_new(tool->argc + 1, sizeof *kept);
     if (kept == NULL) {
         tool_fail(tool, STATUS_SYSTEM, "out of memory");
     }

@@ -9,6 +9,9 @@
 
 #include <stdio.h>
 
+/* The most options of a tool that leave no trace in the provenance, -o among them. */
+#define TOOL_MOST_SILENT 4
+
 struct tool {
     const char *name;  /* argv[0] without folders */
     const char *usage; /* the text at the top of the tool's file */
@@ -16,8 +19,8 @@ struct tool {
     char **argv;
     char **operands; /* operand_count operands, and NULL */
     int operand_count;
-    const char *output;    /* value of -o, NULL: standard output */
-    const char *silent[4]; /* values of -o and of silent options, as they stand in argv */
+    const char *output;                   /* value of -o, NULL: standard output */
+    const char *silent[TOOL_MOST_SILENT]; /* values of -o and of silent options, as they stand in argv */
     int silent_count;
 };
 

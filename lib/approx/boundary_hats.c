@@ -1,0 +1,103 @@
+/* The hats of a set of facets, split where the boundary turns. */
+#include "approx/boundary_private.h"
+
+#include <stdlib.h>
+
+/* Facets that turn by 45 degrees or more at a node belong to different sides; a little less than that, so
+ * that round-off does not decide on chamfers. */
+static const double side_cosine = 0.7072;
+
+static int compare_corners(const void *left, const void *right)
+{
+    const struct corner *a = left, *b = right;
+    if (a->node != b->node) {
+        return a->node < b->node ? -1 : 1;
+    }
+    if (a->facet != b->facet) {
+        return a->facet < b->facet ? -1 : 1;
+    }
+    return a->vertex - b->vertex;
+}
+
+/* Whether two facets at a node are of one side: in 3D they must share an edge there, in 2D they meet anyway.
+ */
+static bool same_side(const struct face_table *table, const struct facet_set *set, const struct corner *a,
+                      const struct corner *b)
+{
+    double na[3], nb[3], size;
+    const int32_t *fa = set->facet + a->facet * table->dim, *fb = set->facet + b->facet * table->dim;
+    int shared = 0;
+    for (int i = 0; i < table->dim; i++) {
+        for (int k = 0; k < table->dim; k++) {
+            shared += fa[i] == fb[k];
+        }
+    }
+    if (shared < table->dim - 1) {
+        return false;
+    }
+    boundary_unit_normal(table, fa, na, &size);
+    boundary_unit_normal(table, fb, nb, &size);
+    return na[0] * nb[0] + na[1] * nb[1] + na[2] * nb[2] >= side_cosine;
+}
+
+/* Number the parts of one node's hat: corners first..last-1 joined through neighbours of one side. */
+static void split_hat(const struct face_table *table, const struct facet_set *set, struct corner *corners,
+                      int64_t first, int64_t last, bool split, int64_t *part_count)
+{
+    for (int64_t i = first; i < last; i++) {
+        corners[i].part = -1;
+    }
+    for (int64_t seed = first; seed < last; seed++) {
+        if (corners[seed].part >= 0) {
+            continue;
+        }
+        corners[seed].part = *part_count;
+        for (bool grew = true; grew;) {
+            grew = false;
+            for (int64_t i = first; i < last; i++) {
+                for (int64_t k = first; corners[i].part < 0 && k < last; k++) {
+                    if (corners[k].part == *part_count &&
+                        (!split || same_side(table, set, &corners[i], &corners[k]))) {
+                        corners[i].part = *part_count;
+                        grew = true;
+                    }
+                }
+            }
+        }
+        ++*part_count;
+    }
+}
+
+static int compare_parts(const void *left, const void *right)
+{
+    const struct corner *a = left, *b = right;
+    if (a->part != b->part) {
+        return a->part < b->part ? -1 : 1;
+    }
+    return compare_corners(left, right);
+}
+
+enum status boundary_collect_corners(const struct face_table *table, const struct facet_set *set, bool split,
+                                     struct corner *corners, int64_t *part_count, struct error *error)
+{
+    int dim = table->dim;
+    int64_t count = set->count * dim;
+    for (int64_t i = 0; i < count; i++) {
+        if (set->facet[i] < 0 || set->facet[i] >= table->node_count) {
+            return fail(error, STATUS_INPUT, "facets: no node %d", set->facet[i]);
+        }
+        corners[i] = (struct corner){.node = set->facet[i], .vertex = (int32_t)(i % dim), .facet = i / dim};
+    }
+    qsort(corners, (size_t)count, sizeof *corners, compare_corners);
+    *part_count = 0;
+    for (int64_t first = 0; first < count;) {
+        int64_t last = first;
+        while (last < count && corners[last].node == corners[first].node) {
+            last++;
+        }
+        split_hat(table, set, corners, first, last, split, part_count);
+        first = last;
+    }
+    qsort(corners, (size_t)count, sizeof *corners, compare_parts);
+    return STATUS_OK;
+}

@@ -1,0 +1,32 @@
+/* What the parts of the boundary averages share; see boundary.h. */
+#ifndef APPROX_BOUNDARY_PRIVATE_H
+#define APPROX_BOUNDARY_PRIVATE_H
+
+#include "approx/boundary.h"
+
+/* ---- boundary_facets.c: facets and the faces of the table that they are ---- */
+
+/* face_of[i]: the face of the table that facet i of the set is. STATUS_INPUT where it is none. */
+MUST_CHECK enum status boundary_find_faces(const struct face_table *table, const struct facet_set *set,
+                                           int64_t *face_of, struct error *error);
+
+/* Outward unit normal (three components, in 2D the last one 0) and size, m or m2, of a facet. */
+void boundary_unit_normal(const struct face_table *table, const int32_t *facet, double *normal, double *size);
+
+/* ---- boundary_hats.c: hats, split where the boundary turns ---- */
+
+/* One corner of a facet: which hat part it belongs to. */
+struct corner {
+    int32_t node;
+    int32_t vertex; /* of the facet */
+    int64_t facet;  /* of the set */
+    int64_t part;
+};
+
+/* The corners[set->count * dim] of the set, sorted by hat part; with `split`, a node's hat has a part for
+ * each side of the boundary there. STATUS_INPUT for a node that is not there. */
+MUST_CHECK enum status boundary_collect_corners(const struct face_table *table, const struct facet_set *set,
+                                                bool split, struct corner *corners, int64_t *part_count,
+                                                struct error *error);
+
+#endif

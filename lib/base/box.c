@@ -1,0 +1,39 @@
+#include "base/box.h"
+
+#include <math.h>
+
+struct box box_of(int dim, int64_t count, const double *x)
+{
+    struct box box = {
+        .dim = dim, .low = {INFINITY, INFINITY, INFINITY}, .high = {-INFINITY, -INFINITY, -INFINITY}};
+    box_add(&box, count, x);
+    return box;
+}
+
+void box_add(struct box *box, int64_t count, const double *x)
+{
+    for (int64_t i = 0; i < count; i++) {
+        for (int a = 0; a < box->dim; a++) {
+            box->low[a] = fmin(box->low[a], x[i * box->dim + a]);
+            box->high[a] = fmax(box->high[a], x[i * box->dim + a]);
+        }
+    }
+}
+
+double box_side(const struct box *box)
+{
+    double side = 0.0;
+    for (int a = 0; a < box->dim; a++) {
+        side = fmax(side, box->high[a] - box->low[a]);
+    }
+    return side;
+}
+
+double box_diagonal(const struct box *box)
+{
+    double sum = 0.0;
+    for (int a = 0; a < box->dim; a++) {
+        sum += (box->high[a] - box->low[a]) * (box->high[a] - box->low[a]);
+    }
+    return sqrt(sum);
+}

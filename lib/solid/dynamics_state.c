@@ -1,0 +1,97 @@
+/* The memory of explicit dynamics, and what a checkpoint holds of it. */
+#include "solid/dynamics_private.h"
+
+#include "base/memory.h"
+
+#include <stdlib.h>
+
+enum status dynamics_allocate(struct dynamics *d, struct error *error)
+{
+    enum status status;
+    const struct solid_system *system = d->system;
+    TRY(NEW_ARRAY(&d->u, d->size, error));
+    TRY(NEW_ARRAY(&d->next, d->size, error));
+    TRY(NEW_ARRAY(&d->before, d->size, error));
+    TRY(NEW_ARRAY(&d->after, d->size, error));
+    TRY(NEW_ARRAY(&d->residual, d->size, error));
+    TRY(NEW_ARRAY(&d->mode, d->size, error));
+    TRY(NEW_ARRAY(&d->scratch, 2 * d->size, error));
+    if (system->load_count + system->pressure_count > 0) {
+        TRY(NEW_ARRAY(&d->loads, d->size, error));
+    }
+    TRY(NEW_ARRAY(&d->factor_before, system->curve_count, error));
+    TRY(NEW_ARRAY(&d->factor_now, system->curve_count, error));
+    TRY(NEW_ARRAY(&d->factor_after, system->curve_count, error));
+    TRY(NEW_ARRAY(&d->factor_change, system->curve_count, error));
+done:
+    return status;
+}
+
+void dynamics_release(struct dynamics *d)
+{
+    free(d->u);
+    free(d->next);
+    free(d->before);
+    free(d->after);
+    free(d->residual);
+    free(d->mode);
+    free(d->scratch);
+    free(d->loads);
+    free(d->factor_before);
+    free(d->factor_now);
+    free(d->factor_after);
+    free(d->factor_change);
+    constraint_free(&d->constraint);
+}
+
+enum status dynamics_visit(void *run, const struct state *state, struct error *error)
+{
+    enum status status;
+    struct dynamics *d = run;
+    struct dynamics_report *report = d->report;
+    int64_t curves = d->system->curve_count;
+    const struct state_value values[] = {
+        {"u", STATE_NUMBERS, d->u, d->size},
+        {"velocity", STATE_NUMBERS, d->before, d->size},
+        {"mode", STATE_NUMBERS, d->mode, d->size},
+        {"factor_before", STATE_NUMBERS, d->factor_before, curves},
+        {"factor_now", STATE_NUMBERS, d->factor_now, curves},
+        {"steps", STATE_COUNTS, &report->steps, 1},
+        {"time", STATE_NUMBERS, &report->time, 1},
+        {"mark", STATE_NUMBERS, &d->mark, 1},
+        {"step", STATE_NUMBERS, &d->step, 1},
+        {"previous_step", STATE_NUMBERS, &d->previous_step, 1},
+        {"steps_done", STATE_COUNTS, &d->done, 1},
+        {"steps_left", STATE_COUNTS, &d->left, 1},
+        {"frequency", STATE_NUMBERS, &d->frequency, 1},
+        {"contact_squared", STATE_NUMBERS, &d->contact_squared, 1},
+        {"sample_interval", STATE_COUNTS, &d->sample_interval, 1},
+        {"frames", STATE_COUNTS, &d->frames, 1},
+        {"balance.start", STATE_NUMBERS, &d->balance.start, 1},
+        {"balance.work", STATE_NUMBERS, &d->balance.work, 1},
+        {"balance.dissipated", STATE_NUMBERS, &d->balance.dissipated, 1},
+        {"balance.largest", STATE_NUMBERS, &d->balance.largest, 1},
+        {"balance.worst", STATE_NUMBERS, &d->balance.worst, 1},
+        {"tie_work", STATE_NUMBERS, &d->tie_work, 1},
+        {"force_evaluations", STATE_COUNTS, &report->force_evaluations, 1},
+        {"step_changes", STATE_COUNTS, &report->step_changes, 1},
+        {"first_step", STATE_NUMBERS, &report->first_step, 1},
+        {"least_step", STATE_NUMBERS, &report->least_step, 1},
+        {"critical_step", STATE_NUMBERS, &report->critical_step, 1},
+        {"largest_drift", STATE_NUMBERS, &report->largest_drift, 1},
+        {"last_drift", STATE_NUMBERS, &report->last_drift, 1},
+        {"share_of_ties", STATE_NUMBERS, &report->tie_work, 1},
+        {"least_jacobian", STATE_NUMBERS, &report->least_jacobian, 1},
+    };
+    TRY(state_visit(state, NULL, values, sizeof values / sizeof *values, error));
+    if (d->sample_interval == 0) {
+        status = fail(error, STATUS_INPUT, "sample_interval: is 0");
+        goto done;
+    }
+    if (d->log != NULL) {
+        TRY(energy_log_state(d->log, state, error));
+    }
+    TRY(system_state(d->system, state, error));
+done:
+    return status;
+}

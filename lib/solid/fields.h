@@ -1,0 +1,49 @@
+/* A few smooth fields on a cloud, near which every smooth field is: centres far from each other share unity
+ * among them by their distances (Shepard), and each share stands for itself and for its products with the
+ * coordinates. Linear fields are sums of them exactly. They exist on any cloud, however thin. */
+#ifndef SOLID_FIELDS_H
+#define SOLID_FIELDS_H
+
+#include "base/status.h"
+
+#include <stdint.h>
+
+enum { FIELDS_MOST_CENTRES = 15 };
+enum { FIELDS_MOST_AT_NODE = 4 * FIELDS_MOST_CENTRES };
+
+/* Shares of the centres in the nodes: by node, and by centre (CSR). */
+struct share_table {
+    int64_t *ptr;
+    int32_t *idx;
+    double *share;
+};
+
+/* Fields are numbered c * (dim + 1) + m: the share of centre c, times 1 (m = 0) or a coordinate of the way
+ * from there over the radius. */
+struct fields {
+    int dim;
+    int64_t node_count;
+    const double *X; /* node_count * dim, m; the caller's */
+    int64_t centre_count, count;
+    double centre[FIELDS_MOST_CENTRES * 3]; /* centre_count * dim, m */
+    double radius;                          /* within which a centre has a share, m */
+    struct share_table by_node, by_centre;
+};
+
+/* Fields of so many centres, at most FIELDS_MOST_CENTRES; none for 0. */
+MUST_CHECK enum status fields_build(int dim, int64_t node_count, const double *X, int64_t centre_count,
+                                    struct fields *fields, struct error *error);
+void fields_free(struct fields *fields);
+
+/* The fields that are not zero at a node: their numbers and values; returns how many. */
+int fields_at_node(const struct fields *fields, int64_t node, int field[FIELDS_MOST_AT_NODE],
+                   double value[FIELDS_MOST_AT_NODE]);
+
+/* amount[count * dim] = Z^T force: what nodal forces do along each field, in each direction. Threaded; the
+ * same bits for any number of threads, here and below. */
+void fields_collect(const struct fields *fields, const double *force, double *amount);
+
+/* u[node_count * dim] += Z amount. */
+void fields_add(const struct fields *fields, const double *amount, double *u);
+
+#endif

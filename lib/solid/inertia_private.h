@@ -1,0 +1,23 @@
+/* What the parts of the inertia share; see inertia.h. */
+#ifndef SOLID_INERTIA_PRIVATE_H
+#define SOLID_INERTIA_PRIVATE_H
+
+#include "solid/inertia.h"
+
+/* projected = P D^-1 force */
+void inertia_accelerate_alone(struct inertia *inertia, const double *force, double *projected);
+
+/* amount[size] = Z^T D move */
+void inertia_collect(const struct inertia *inertia, const double *move, double *amount);
+
+/* row[size] += Z^T phi direction, of a row over nodes. */
+void inertia_add_row(const struct inertia *inertia, int64_t length, const int32_t *idx, const double *phi,
+                     const double *direction, double *row);
+
+/* sum of D */
+double inertia_sum_of_mass(const struct inertia *inertia);
+
+/* The inverses, from what body, contacts and mass are. */
+void inertia_invert(struct inertia *inertia, const struct solid_system *system);
+
+#endif

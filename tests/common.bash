@@ -1,0 +1,107 @@
+# shellcheck shell=bash
+# What several suites of command-line tests share.
+
+# Rows of section $1 of a text stream.
+rows() {
+    awk -v name="$1" '/^# / { on = $2 == name; next } on && NF' "${2:--}"
+}
+
+# A text stream without its provenance.
+bare() {
+    grep -v '^# @' "$@"
+}
+
+# refused STATUS TEXT COMMAND...: that status, nothing on standard output, one line on standard error, PROGRAM: ...TEXT...,
+# besides the note on stages that were run.
+refused() {
+    local expected=$1 text=$2
+    shift 2
+    run --separate-stderr "$@"
+    stderr=$(grep -v "ran with defaults" <<< "$stderr" || true)
+    [ "$status" -eq "$expected" ] || { echo "status $status: $stderr"; return 1; }
+    [ -z "$output" ] || { echo "output: $output"; return 1; }
+    [ "$(wc -l <<< "$stderr")" -eq 1 ] || { echo "not one line: $stderr"; return 1; }
+    [[ "$stderr" == "$1: "*"$text"* ]] || { echo "message: $stderr"; return 1; }
+}
+
+# The head of a scene of a block, on a cloud of 0.1 x 0.1 m: block ANALYSIS [MORE LINES OF scene]
+block() {
+    cat << END
+[scene]
+dim = 2
+analysis = $1
+${2:+$2
+}
+[material body]
+region = body
+E = 3000
+nu = 0.45
+rho = 1000
+
+END
+}
+
+held_below() {
+    printf '[displacement bottom]\nfacets = ymin\ncomponents = 0, 0\n'
+}
+
+# A block held at its bottom, its top pushed down; sections may be appended.
+pressed_block() {
+    block quasi-static
+    held_below
+    printf '\n[displacement top]\nfacets = ymax\ncomponents = 0, -0.005\n'
+}
+
+# The same block under its weight, in time.
+swinging_block() {
+    block dynamic 'gravity = 0, -9.81'
+    held_below
+    printf '\n[solver]\nend_time = 0.05\n'
+}
+
+# with SED-SCRIPT: block.scene edited, as edited.scene.
+with() {
+    sed "$1" block.scene > edited.scene
+}
+
+# A square of 100 mm meshed by gmsh, as body.msh, its sides and a corner named.
+square_msh() {
+    cat > square.geo << 'END'
+Point(1) = {0, 0, 0, 25};
+Point(2) = {100, 0, 0, 25};
+Point(3) = {100, 100, 0, 25};
+Point(4) = {0, 100, 0, 25};
+Line(1) = {1, 2};
+Line(2) = {2, 3};
+Line(3) = {3, 4};
+Line(4) = {4, 1};
+Curve Loop(1) = {1, 2, 3, 4};
+Plane Surface(1) = {1};
+Physical Surface("body") = {1};
+Physical Point("corner") = {3};
+Physical Curve("ymin") = {1};
+Physical Curve("xmax") = {2};
+Physical Curve("ymax") = {3};
+Physical Curve("xmin") = {4};
+END
+    gmsh -v 1 -2 square.geo -o body.msh
+}
+
+# Begin a run of scene $2 on table.mts with a checkpoint after every step, and end it by signal $1 when two are there; leaves status,
+# part.dat and what was said. On a busy machine the run may be over before that is seen: then once more.
+begin_and_end() {
+    local run tries
+    for _ in 1 2 3 4 5; do
+        rm -f run.ckpt*
+        env --default-signal=INT mtled -q -c run.ckpt -e 0 "$2" table.mts > part.dat 2> said 3>&- &
+        run=$!
+        for ((tries = 0; tries < 500; tries++)); do
+            [ ! -e run.ckpt.old ] || break
+            sleep 0.02
+        done
+        kill -s "$1" $run 2> kill.said || true
+        status=0
+        wait $run || status=$?
+        [ $status -eq 0 ] || return 0
+    done
+}

@@ -1,0 +1,127 @@
+# Loads and contacts of a scene: what presses on a body is what holds it, whatever kind of load it is; and each fault in a
+# section of them is one line that names it.
+
+bats_require_minimum_version 1.5.0
+
+load common.bash
+
+setup() {
+    cd "$BATS_TEST_TMPDIR"
+    set -o pipefail
+    export OMP_NUM_THREADS=1
+    square_msh
+    nodes -u mm body.msh 2> note | shapefn > square.mts 2> note
+    { block quasi-static && held_below && walls; } > held.scene
+}
+
+# Sides that slide along rigid plates: the top stays as long as it is.
+walls() { printf '[displacement sides]\nfacets = xmin, xmax\nnormal = 0\n'; }
+
+# solved LINES...: the scene of the held block with these lines; leaves u.dat, with reactions.
+solved() {
+    { cat held.scene; printf '%b\n' "$@"; printf '[output]\nreactions = yes\n'; } > run.scene
+    mtled run.scene "${stream:-square.mts}" > u.dat 2> note
+}
+
+# holds FORCE...: what the section `bottom` carries, per component, to 5e-4 of the largest one (a pressure acts on the top as it
+# is, and the walls hold it as long as it is by means).
+holds() {
+    rows reactions u.dat | head -n 1 | awk -v wanted="$*" '
+        { n = split(wanted, w)
+          for (i = 1; i <= n; i++) if ((a = w[i] < 0 ? -w[i] : w[i]) > scale) scale = a
+          for (i = 1; i <= n; i++) { d = $i - w[i]; if (!(d <= 5e-4 * scale && -d <= 5e-4 * scale)) bad = 1 }
+          print "holds " $0 ", to be " wanted }
+        END { exit bad || NF != n || NR != 1 }'
+}
+
+# near KIND TOLERANCE: u.dat is other.dat to so many metres, at the worst node (max) or on average (avg).
+near() { fieldcmp "--tol-$1" "$2" other.dat u.dat > /dev/null; }
+
+@test "traction, pressure, weight: the bottom holds what the top is loaded with" {
+    solved '[traction top]\nfacets = ymax\ncomponents = 0, -300'
+    holds 0 30
+    cp u.dat other.dat
+    solved '[pressure top]\nfacets = ymax\nvalue = 300' # between walls the top stays flat and as long
+    holds 0 30
+    near avg 2e-4 # of 2.6 mm; a pressure acts at the nodes, and wrinkles the coarse top
+    { block quasi-static 'gravity = 0, -9.81' && held_below; } > held.scene
+    solved
+    holds 0 98.1
+}
+
+@test "loads add up, and those that oppose each other cancel" {
+    solved '[traction up]\nfacets = ymax\ncomponents = 0, 300\n[pressure down]\nfacets = ymax\nvalue = 300' \
+        '[traction more]\nfacets = ymax\ncomponents = 0, -150'
+    holds 0 15
+    cp u.dat other.dat
+    solved '[traction top]\nfacets = ymax\ncomponents = 0, -150'
+    near avg 2e-4
+}
+
+@test "a force on a node; its section's own curve in time" {
+    { block quasi-static && held_below; } > held.scene
+    solved '[force pull]\nnodes = corner\ncomponents = 3, -2'
+    holds -3 2
+    printf '0 0\n1 0.5\n' > half.txt
+    solved '[force pull]\nnodes = corner\ncomponents = 6, -4\ncurve = half.txt'
+    holds -3 2
+}
+
+@test "a node of a set goes where it is told, and pulls back as the bottom holds" {
+    { block quasi-static && held_below; } > held.scene
+    solved '[displacement pull]\nnodes = corner\ncomponents = 0.002, free'
+    paste -d ' ' <(rows nodes.x u.dat) <(rows u u.dat) |
+        awk '$1 > 0.0999 && $2 > 0.0999 { d = $3 - 0.002; n++ } END { exit !(n == 1 && d < 1e-8 && d > -1e-8) }'
+    rows reactions u.dat | awk '{ x[NR] = $1 } END { exit !(NR == 2 && x[2] > 0.1 && (x[1] + x[2])^2 < 1e-6 * x[2]^2) }'
+}
+
+@test "a cube: pressure, traction and weight in 3D" {
+    cloud -d 3 -k jittered -n 4 --box 0,0.1,0,0.1,0,0.1 --jitter 0.2 | shapefn > cube.mts 2> note
+    stream=cube.mts
+    block quasi-static 'gravity = 0, 0, -9.81' | sed 's/^dim = 2/dim = 3/' > held.scene
+    printf '[displacement bottom]\nfacets = zmin\ncomponents = 0, 0, 0\n[displacement sides]\nfacets = xmin, xmax, ymin, ymax\nnormal = 0\n' >> held.scene
+    solved '[pressure top]\nfacets = zmax\nvalue = 300\n[traction top]\nfacets = zmax\ncomponents = 0, 0, -100'
+    rows reactions u.dat | awk '{ sum += $3 } END { d = sum - 4 - 9.81; print sum; exit !(d < 7e-3 && d > -7e-3) }'
+}
+
+@test "contact: a rigid floor in any unit, drawn either way; a stiffness of one's own" {
+    { block quasi-static && printf '[displacement top]\nfacets = ymax\ncomponents = 0, -0.005\n'; } > held.scene
+    contact='[contact floor]\nfacets = ymin\nrigid = floor.tsv'
+    printf -- '-1 -0.002\n2 -0.002\n' > floor.tsv
+    solved "$contact\nunit = m\nside = left"
+    rows reactions u.dat | awk '{ y[NR] = $2 } END { exit !(NR == 2 && y[1] < -1 && y[2] > 1 && (y[1] + y[2])^2 < 1e-4 * y[1]^2) }'
+    cp u.dat other.dat
+    printf -- '2000 -2\n-1000 -2\n' > floor.tsv
+    solved "$contact\nunit = mm\nside = right"
+    near max 1e-9
+    solved "$contact\nunit = mm\nside = right\nstiffness = 1e6"
+    near max 2e-5
+}
+
+@test "groups, files and curves that are not there: the line of the section" {
+    mv held.scene block.scene
+    { cat block.scene; printf '%b\n' '[traction a]\nfacets = ymax\ncomponents = 0, 1\ncurve = smooth' '[pressure b]\nfacets = xmax\nvalue = 1\ncurve = smooth' \
+        '[force c]\nnodes = corner\ncomponents = 0, 1\ncurve = smooth' '[contact d]\nfacets = xmin\nrigid = floor.tsv\nunit = m\nside = left'; } > all.scene
+    mv all.scene block.scene
+    printf -- '-1 -0.005\n2 -0.005\n' > floor.tsv
+    for section in 'traction a' 'pressure b' 'contact d'; do
+        with "/^\[$section/,/^facets/s/^facets = .*/facets = roof/"
+        refused 2 "[$section]: the mesh has no facet group 'roof'; present: " mtled edited.scene square.mts
+    done
+    with 's/^nodes = corner/nodes = edge/'
+    refused 2 "[force c]" mtled edited.scene square.mts
+    [[ $stderr == *"'edge'"*corner* ]]
+    for section in 'traction a' 'pressure b' 'force c'; do
+        with "/^\[$section/,/^curve/s/^curve = .*/curve = none.txt/"
+        refused 2 "none.txt" mtled edited.scene square.mts
+    done
+    with 's/^rigid = .*/rigid = none.tsv/'
+    refused 2 "none.tsv" mtled edited.scene square.mts
+    printf '0 0\n' > floor.tsv
+    refused 2 "floor.tsv:1: curve of one point" mtled block.scene square.mts
+    printf '0 0\n1 0\n1 0\n' > floor.tsv
+    refused 2 "floor.tsv:3: repeats the point before" mtled block.scene square.mts
+    mts drop sets.ptr square.mts | mts drop sets.idx > none.mts
+    printf -- '-1 -0.005\n2 -0.005\n' > floor.tsv
+    refused 2 "sets.ptr" mtled block.scene none.mts
+}

@@ -1,0 +1,76 @@
+#include "run.h"
+
+#include "solid/relaxation.h"
+
+/* A verdict other than converged ends the run: nothing half-done passes for a result. */
+static void judge(struct run *run, const struct relaxation_report *report)
+{
+    const struct scene *scene = run->scene;
+    char place[96] = "";
+    if (report->outcome == RELAXATION_CONVERGED) {
+        if (report->error > scene->solver.tolerance) {
+            tool_note(run->tool, "%s: estimated error %.2g, not %.2g: round-off admits no less", scene->path,
+                      report->error, scene->solver.tolerance);
+        }
+        return;
+    }
+    if (report->outcome == RELAXATION_STALLED) {
+        run_fail(run, STATUS_VERDICT,
+                 "%s: step %lld: the estimated error stays at %.2g of the displacement: a larger tolerance, "
+                 "a finer cloud at "
+                 "the contacts, or supports against rigid motion may help",
+                 scene->path, (long long)report->steps, report->error);
+    }
+    if (report->outcome == RELAXATION_STOPPED) {
+        run_checkpoint_stop(run, report->steps);
+    }
+    if (report->outcome == RELAXATION_INVERTED) {
+        const double *x =
+            (const double *)run->model->input.points->data + report->inverted_point * scene->dim;
+        point_text(scene->dim, x, place);
+        run_fail(run, STATUS_VERDICT,
+                 "%s: step %lld: integration point %lld at %s is inverted (J = %.3g): apply the load in "
+                 "more steps "
+                 "(ramp_steps > %lld), or a smaller one, or refine there",
+                 scene->path, (long long)report->steps, (long long)report->inverted_point, place,
+                 report->least_jacobian, (long long)report->ramp_steps);
+    }
+    run_fail(
+        run, STATUS_VERDICT,
+        "%s: not converged after %lld steps: estimated remaining error %.2g of the displacement: allow more "
+        "(max_steps), or hold the body against rigid motion",
+        scene->path, (long long)report->steps, report->error);
+}
+
+void run_quasi_static(struct run *run)
+{
+    const struct scene_solver *solver = &run->scene->solver;
+    const struct body *body = &run->model->system.body;
+    struct relaxation_options options = {.tolerance = solver->tolerance,
+                                         .time_step_margin = solver->time_step_margin,
+                                         .ramp_steps = solver->ramp_steps,
+                                         .most_steps = solver->max_steps,
+                                         .frames = run->scene->output.frames,
+                                         .frame = run_put_frame,
+                                         .progress = run_tell,
+                                         .context = run,
+                                         .interrupted = run->checkpoint.interrupted,
+                                         .restored = run_checkpoint_state(run)};
+    struct relaxation_report report;
+    struct error error;
+    double started = clock_seconds();
+    enum status status =
+        relaxation_run(&run->model->system, &options, run->u, run->model->row_force, &report, &error);
+    run->solve_seconds = clock_seconds() - started;
+    run_clear_progress(&run->display);
+    tool_check(run->tool, status, &error);
+    run->last_good = report.load;
+    judge(run, &report);
+    if (run->verbose) {
+        fprintf(stderr, "points\t%lld\npairs\t%lld\nsteps\t%lld\nramp steps\t%lld\nforce evaluations\t%lld\n",
+                (long long)body->point_count, (long long)body->pair_count, (long long)report.steps,
+                (long long)report.ramp_steps, (long long)report.force_evaluations);
+        fprintf(stderr, "estimated error\t%.3g\nfrequency ratio\t%.5g\nleast J\t%.4g\n", report.error,
+                report.largest_frequency / report.lowest_frequency, report.least_jacobian);
+    }
+}
