@@ -1,4 +1,5 @@
 /* Load, mass, time step and contacts that follow a relaxation. */
+#include "base/box.h"
 #include "solid/frequency.h"
 #include "solid/relaxation_private.h"
 
@@ -15,16 +16,8 @@ static const int64_t most_fruitless = 3;                         /* of those in 
 
 double relaxation_body_size(const struct solid_system *system)
 {
-    double sum = 0.0;
-    for (int a = 0; a < system->dim; a++) {
-        double low = INFINITY, high = -INFINITY;
-        for (int64_t n = 0; n < system->node_count; n++) {
-            low = fmin(low, system->X[n * system->dim + a]);
-            high = fmax(high, system->X[n * system->dim + a]);
-        }
-        sum += (high - low) * (high - low);
-    }
-    return sqrt(sum);
+    struct box box = box_of(system->dim, system->node_count, system->X);
+    return box_diagonal(&box);
 }
 
 double relaxation_node_spacing(const struct solid_system *system)
