@@ -11,6 +11,14 @@ bare() {
     grep -v '^# @' "$@"
 }
 
+# A stream without the last row of section $1, as text.
+shortened() {
+    mts text "$2" | awk -v name="$1" '
+        /^# / { on = $2 == name && NF > 4; if (on) { left = $4 - 1; sub(" " $4 " ", " " left " ") } print; next }
+        on && NF && left-- <= 0 { next }
+        { print }'
+}
+
 # refused STATUS TEXT COMMAND...: that status, nothing on standard output, one line on standard error, PROGRAM: ...TEXT...,
 # besides the note on stages that were run.
 refused() {
