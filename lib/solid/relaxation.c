@@ -8,7 +8,7 @@
 
 static const int64_t keep_interval = 200;     /* steps between states to go back to */
 static const double penetration_share = 1e-4; /* of the body's size: what a contact may penetrate */
-static const int later_iterations = 3;        /* at every check: the mode is kept, so that it sharpens */
+static const int later_iterations = 1;        /* at every check: the mode is kept, so that it sharpens */
 static const int last_iterations = 1;         /* the same, near the end, */
 static const int64_t last_mass_checks = 5;    /* where the mass is looked at only so often */
 

@@ -5,7 +5,7 @@
 #include "solid/inertia.h"
 #include "solid/relaxation.h"
 
-enum { CHECK_INTERVAL = 20 };   /* steps between estimates */
+enum { CHECK_INTERVAL = 10 };   /* steps between estimates */
 enum { FIRST_ITERATIONS = 40 }; /* of the power iteration, at rest */
 enum { WINDOWS = 8 };           /* recent Rayleigh quotients that the error estimate looks at */
 
