@@ -77,7 +77,7 @@ for analysis in quasi-static dynamic; do
         if [ "$now" -lt "$step" ]; then
             echo "$analysis: step $now is kept, where $step was" && exit 1
         fi
-        if [ -e run.ckpt ] && [ -e run.ckpt.old ] && [ $((now - $(mts print checkpoint run.ckpt.old))) -ne ${interval[$analysis]} ]; then
+        if [ -e run.ckpt ] && [ -e run.ckpt.old ] && [ $((now - $(mts print checkpoint run.ckpt.old))) -ne "${interval[$analysis]}" ]; then
             echo "$analysis: step $now is kept, and before it $(mts print checkpoint run.ckpt.old)" && exit 1
         fi
         step=$now
