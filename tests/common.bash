@@ -101,7 +101,7 @@ begin_and_end() {
     local run tries
     for _ in 1 2 3 4 5; do
         rm -f run.ckpt*
-        env --default-signal=INT mtled -q -c run.ckpt -e 0 "$2" table.mts > part.dat 2> said 3>&- &
+        env --default-signal=INT,HUP mtled -q -c run.ckpt -e 0 "$2" table.mts > part.dat 2> said 3>&- &
         run=$!
         for ((tries = 0; tries < 500; tries++)); do
             [ ! -e run.ckpt.old ] || break
