@@ -30,7 +30,7 @@ brain3d: $(BRAIN3D)/compare.tsv $(BRAIN3D)/balance.tsv $(BRAIN3D)/brain3d.png $(
 	@awk -F '\t' '{ printf "%-74s %8s %7s %7s %9s %9s %9s %9s %7s %8s\n", $$1, $$2, $$3, $$4, $$5, $$6, $$7, $$8, $$9, $$10 }' \
 	    $(BRAIN3D)/balance.tsv
 
-$(BRAIN3D)/%: export PATH := $(CURDIR)/$(BUILD)/bin:$(PATH)
+$(BRAIN3D)/%: export PATH := $(abspath $(BUILD))/bin:$(PATH)
 
 # ---- mesh ------------------------------------------------------------------------------------------------------------
 
@@ -134,7 +134,7 @@ $(BRAIN3D)/balance.tsv: $(BRAIN3D_ROWS:%=$(BRAIN3D)/%.balance) pipelines/brain3d
 brain3d-fine: $(BRAIN3D)/small.dat $(BRAIN3D)/large.dat $(BRAIN3D)/fine.dat $(BUILD)/bin/fieldcmp
 	@grep -E '^(points|pairs|steps|least J|solve seconds)' $(BRAIN3D)/fine.log
 	@for coarser in small large; do \
-	    echo "$$coarser - fine, m:"; PATH=$(CURDIR)/$(BUILD)/bin:$$PATH fieldcmp $(BRAIN3D)/$$coarser.dat $(BRAIN3D)/fine.dat | grep -E '^(avg|max)'; \
+	    echo "$$coarser - fine, m:"; PATH=$(abspath $(BUILD))/bin:$$PATH fieldcmp $(BRAIN3D)/$$coarser.dat $(BRAIN3D)/fine.dat | grep -E '^(avg|max)'; \
 	done
 
 # ---- pictures --------------------------------------------------------------------------------------------------------

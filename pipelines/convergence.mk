@@ -43,7 +43,7 @@ calculix.title := CalculiX CPE6
 convergence: $(CONVERGENCE)/convergence.tsv $(CONVERGENCE)/convergence.png
 	@awk -F '\t' '{ printf "%-8s %-20s %9s %7s %9s %9s %7s %7s\n", $$1, $$2, $$3, $$4, $$5, $$6, $$7, $$8 }' $<
 
-$(CONVERGENCE)/%: export PATH := $(CURDIR)/$(BUILD)/bin:$(PATH)
+$(CONVERGENCE)/%: export PATH := $(abspath $(BUILD))/bin:$(PATH)
 
 # $(call mesh,MESH,SIZE)
 define CONVERGENCE_MESH
@@ -88,5 +88,5 @@ cook.nested := 3
 convergence-references: | $(CONVERGENCE_PROGRAMS)
 	mkdir -p $(CONVERGENCE)
 	$(foreach c,$(CONVERGENCE_NESTED),gmsh -v 1 $(call $($(c).mesh).gmsh,$($(c).nested)) $($($(c).mesh).geometry) -o $(CONVERGENCE)/nested.msh && \
-	    PATH=$(CURDIR)/$(BUILD)/bin:$$PATH bash pipelines/convergence/reference.sh $(CONVERGENCE_INPUT)/$(c).scene $(CONVERGENCE)/nested.msh $($($(c).mesh).unit) > $(CONVERGENCE)/$(c).tsv && \
+	    PATH=$(abspath $(BUILD))/bin:$$PATH bash pipelines/convergence/reference.sh $(CONVERGENCE_INPUT)/$(c).scene $(CONVERGENCE)/nested.msh $($($(c).mesh).unit) > $(CONVERGENCE)/$(c).tsv && \
 	    cp $(CONVERGENCE)/$(c).tsv $(CONVERGENCE_INPUT)/ && ) true

@@ -11,7 +11,7 @@ estimate: $(ESTIMATE)/estimate.tsv
 	@awk -F '\t' '{ printf "%-16s %9s %9s %9s %14s %7s %5s %14s  %s\n", $$1, $$2, $$3, $$4, $$5, $$6, $$7, $$8, $$9 }' $<
 	@! grep -q 'FAIL$$' $<
 
-$(ESTIMATE)/%: export PATH := $(CURDIR)/$(BUILD)/bin:$(PATH)
+$(ESTIMATE)/%: export PATH := $(abspath $(BUILD))/bin:$(PATH)
 
 $(ESTIMATE_CASES:%=$(ESTIMATE)/%.rows): $(ESTIMATE)/%.rows: pipelines/hard/%.sh pipelines/hard/common.sh $(HARD_TOOLS) $(wildcard examples/hard/*)
 	@mkdir -p $(@D)

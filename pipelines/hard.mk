@@ -12,7 +12,7 @@ hard: $(HARD)/hard.tsv
 	@awk -F '\t' '{ printf "%-4s %-62s %14s %14s %10s %9s  %s\n", $$1, $$2, $$3, $$4, $$5, $$6, $$7 }' $<
 	@! grep -q 'FAIL$$' $<
 
-$(HARD)/%: export PATH := $(CURDIR)/$(BUILD)/bin:$(PATH)
+$(HARD)/%: export PATH := $(abspath $(BUILD))/bin:$(PATH)
 
 $(HARD_CASES:%=$(HARD)/%.rows): $(HARD)/%.rows: pipelines/hard/%.sh pipelines/hard/common.sh $(HARD_TOOLS) $(wildcard examples/hard/*)
 	@mkdir -p $(@D)

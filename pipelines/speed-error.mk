@@ -16,7 +16,7 @@ speed-error: $(SPEED_ERROR)/speed-error.tsv $(SPEED_ERROR)/reach.tsv $(SPEED_ERR
 	@echo
 	@awk -F '\t' '{ printf "%-8s %-10s %14s %14s %14s\n", $$1, $$2, $$3, $$4, $$5 }' $(SPEED_ERROR)/reach.tsv
 
-$(SPEED_ERROR)/%: export PATH := $(CURDIR)/$(BUILD)/bin:$(PATH)
+$(SPEED_ERROR)/%: export PATH := $(abspath $(BUILD))/bin:$(PATH)
 
 $(SPEED_ERROR_FORCES:%=$(CONVERGENCE)/%.force): %.force: %.time
 	@mkdir -p $(@D)

@@ -7,7 +7,7 @@ TABLE1_TOOLS := $(addprefix $(BUILD)/bin/,cloud ipoints support shapefn interp f
 table1: $(TABLE1)/table1.tsv $(TABLE1)/surface.png
 	@awk -f pipelines/table1.awk pipelines/table1-paper.tsv $<
 
-$(TABLE1)/%: export PATH := $(CURDIR)/$(BUILD)/bin:$(PATH)
+$(TABLE1)/%: export PATH := $(abspath $(BUILD))/bin:$(PATH)
 
 $(TABLE1)/table1.tsv: pipelines/table1.sh pipelines/table1-paper.tsv $(TABLE1_TOOLS)
 	@mkdir -p $(@D)

@@ -11,6 +11,14 @@ bare() {
     grep -v '^# @' "$@"
 }
 
+# A stream without the last row of section $1, as text.
+shortened() {
+    mts text "$2" | awk -v name="$1" '
+        /^# / { on = $2 == name && NF > 4; if (on) { left = $4 - 1; sub(" " $4 " ", " " left " ") } print; next }
+        on && NF && left-- <= 0 { next }
+        { print }'
+}
+
 # refused STATUS TEXT COMMAND...: that status, nothing on standard output, one line on standard error, PROGRAM: ...TEXT...,
 # besides the note on stages that were run.
 refused() {
@@ -93,7 +101,7 @@ begin_and_end() {
     local run tries
     for _ in 1 2 3 4 5; do
         rm -f run.ckpt*
-        env --default-signal=INT mtled -q -c run.ckpt -e 0 "$2" table.mts > part.dat 2> said 3>&- &
+        env --default-signal=INT,HUP mtled -q -c run.ckpt -e 0 "$2" table.mts > part.dat 2> said 3>&- &
         run=$!
         for ((tries = 0; tries < 500; tries++)); do
             [ ! -e run.ckpt.old ] || break

@@ -1,6 +1,6 @@
 #!/bin/bash
 # kills.sh COUNT [SEED]: kill mtled at random moments, COUNT times, each time going on from its checkpoint; check after
-# every kill that a whole checkpoint is there, one interval (20 steps) after the one before and not older than what was
+# every kill that a whole checkpoint is there, one interval after the one before and not older than what was
 # seen, and at the end that the results are those of a run that was left alone. Checkpoints are written at every opportunity, so that most kills hit one being
 # written. The programs are those on PATH. Prints what it saw.
 set -eu -o pipefail
@@ -54,6 +54,7 @@ report() {
     printf '%s\t%d kills\t%d with a file half written\t%d without FILE\t%d whole runs\n' "$@"
 }
 
+declare -A interval=([quasi-static]=10 [dynamic]=20) # steps between opportunities
 for analysis in quasi-static dynamic; do
     mtled -q $analysis.scene table.mts > alone.dat
     kills=0 torn=0 missing=0 runs=0 step=0
@@ -76,7 +77,7 @@ for analysis in quasi-static dynamic; do
         if [ "$now" -lt "$step" ]; then
             echo "$analysis: step $now is kept, where $step was" && exit 1
         fi
-        if [ -e run.ckpt ] && [ -e run.ckpt.old ] && [ $((now - $(mts print checkpoint run.ckpt.old))) -ne 20 ]; then
+        if [ -e run.ckpt ] && [ -e run.ckpt.old ] && [ $((now - $(mts print checkpoint run.ckpt.old))) -ne "${interval[$analysis]}" ]; then
             echo "$analysis: step $now is kept, and before it $(mts print checkpoint run.ckpt.old)" && exit 1
         fi
         step=$now

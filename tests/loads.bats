@@ -67,6 +67,20 @@ near() { fieldcmp "--tol-$1" "$2" other.dat u.dat > /dev/null; }
     holds -3 2
 }
 
+@test "values set at the nodes: the same where the shape functions almost interpolate" {
+    solved
+    { cat held.scene; printf '[displacement top]\nfacets = ymax\ncomponents = 0, -0.005\n'; } > top.scene
+    mv top.scene held.scene
+    nodes -u mm body.msh 2> note | ipoints -g 4 | support -w regularised | shapefn > almost.mts 2> note
+    stream=almost.mts
+    solved '[solver]\nconstraint_points = node'
+    cp u.dat other.dat
+    solved '[solver]\nconstraints = direct\nconstraint_points = node'
+    near max 1e-4
+    paste -d ' ' <(rows nodes.x u.dat) <(rows u u.dat) |
+        awk '$2 > 0.0999 { d = $4 + 0.005; if (!(d < 1e-4 && d > -1e-4)) bad = 1; n++ } END { exit bad || n != 5 }'
+}
+
 @test "a node of a set goes where it is told, and pulls back as the bottom holds" {
     { block quasi-static && held_below; } > held.scene
     solved '[displacement pull]\nnodes = corner\ncomponents = 0.002, free'

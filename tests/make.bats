@@ -5,7 +5,7 @@ bats_require_minimum_version 1.5.0
 setup() {
     top=$BATS_TEST_DIRNAME/..
     cd "$BATS_TEST_TMPDIR"
-    fake=$(realpath --relative-to "$top" .)/build # the makefiles put CURDIR in front
+    fake=$(realpath --relative-to "$top" .)/build
     mkdir -p build/bin
     tools=(gmsh gnuplot ccx bats)
     for file in "$top"/tools/*.c; do tools+=("$(basename "$file" .c)"); done

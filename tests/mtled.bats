@@ -254,6 +254,16 @@ setup() {
     mts drop shape.dphi table.mts > none.mts
     refused 2 "shape.dphi" mtled block.scene none.mts
     refused 2 "" mtled block.scene /dev/null
+    for section in cells.region points.weight points.cell shape.dphi shape.phi faces.cell facepoints.x face.phi node.phi face.idx nbr.ptr; do
+        shortened $section table.mts > short.mts
+        refused 2 "fit" mtled block.scene short.mts
+    done
+    ipoints --lattice 5,5 square.mts | shapefn > lattice.mts 2> note
+    refused 2 "an evaluation lattice cannot be integrated over" mtled block.scene lattice.mts
+    mts text table.mts | sed '/^# faces i4/{n;s/^[0-9]*/36/}' > bad.mts
+    refused 2 "faces: row 0: no node 36" mtled block.scene bad.mts
+    mts text table.mts | sed '/^# facets.set/,/^$/s/^3$/2/' > empty.mts
+    refused 2 "its facet groups are empty" mtled block.scene empty.mts
 }
 
 @test "a full device and a closed pipe" {

@@ -2,6 +2,8 @@
 
 bats_require_minimum_version 1.5.0
 
+load common.bash
+
 setup() {
     cd "$BATS_TEST_TMPDIR"
 }
@@ -196,6 +198,18 @@ violates() {
     printf '# points.weight f8 1 2\n0.5 0.25\n\n\n# end 17\n' >> damaged
     run -1 mts check damaged
     [ "$output" = "points.weight: 2 columns instead of 1" ]
+    violates 'nbr.ptr: 1 columns of i4 instead of 1 of i8' nbr.ptr 's/ i8 / i4 /'
+    square > whole
+    shortened nbr.ptr whole > damaged
+    run -1 mts check damaged
+    [ "${lines[0]}" = "nbr.ptr: 2 rows, but points.x has 2: need one more" ]
+    square | sed '/^# u /,$d' > damaged
+    printf '# faces i4 2 2\n0 1\n1 2\n\n\n# facepoints.x f8 3 2\n0 0\n0 0\n0 0\n\n\n# end 18\n' >> damaged
+    run -1 mts check damaged
+    [[ $output == *"facepoints.x: 3 points on 2 faces"* ]]
+    printf '# mts 1\n# nodes.x f8 1 1\n0\n\n\n# end 1\n' > damaged
+    run -1 mts check damaged
+    [ "${lines[0]}" = "nodes.x: 1 columns instead of 2 or 3" ]
 }
 
 @test "command lines are strict" {

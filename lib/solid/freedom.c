@@ -1,43 +1,26 @@
 #include "solid/freedom.h"
 
-#include <math.h>
+#include "base/box.h"
+
 #include <string.h>
 
 enum { MOST_MOVES = 6 };
 /* A move of which the conditions see no more than this part, squared, beside the others is free. */
 static const double least_seen = 1e-8;
 
-/* The box around the nodes. */
-struct box {
-    double centre[3], size;
-};
-
-static struct box box_of_nodes(const struct solid_system *system)
-{
-    struct box box = {.size = 0.0};
-    for (int a = 0; a < system->dim; a++) {
-        double low = INFINITY, high = -INFINITY;
-        for (int64_t n = 0; n < system->node_count; n++) {
-            low = fmin(low, system->X[n * system->dim + a]);
-            high = fmax(high, system->X[n * system->dim + a]);
-        }
-        box.centre[a] = 0.5 * (low + high);
-        box.size = fmax(box.size, high - low);
-    }
-    return box;
-}
-
 /* Rigid move k at X, of the order of 1: translations, then rotations about the centre. */
-static void rigid_move(int dim, const struct box *box, int k, const double *X, double move[3])
+static void rigid_move(const struct box *box, int k, const double *X, double move[3])
 {
+    int dim = box->dim;
     memset(move, 0, 3 * sizeof *move);
     if (k < dim) {
         move[k] = 1.0;
         return;
     }
     int a = k - dim, b = (a + 1) % dim; /* turns a towards b */
-    move[a] = -(X[b] - box->centre[b]) / box->size;
-    move[b] = (X[a] - box->centre[a]) / box->size;
+    double side = box_side(box);
+    move[a] = -(X[b] - 0.5 * (box->low[b] + box->high[b])) / side;
+    move[b] = (X[a] - 0.5 * (box->low[a] + box->high[a])) / side;
 }
 
 /* What a row of the conditions sees of each rigid move. */
@@ -50,7 +33,7 @@ static void look(const struct solid_system *system, const struct box *box, int64
     for (int64_t i = rows->ptr[r]; i < rows->ptr[r + 1]; i++) {
         for (int k = 0; k < moves; k++) {
             double move[3];
-            rigid_move(dim, box, k, system->X + (int64_t)rows->idx[i] * dim, move);
+            rigid_move(box, k, system->X + (int64_t)rows->idx[i] * dim, move);
             for (int a = 0; a < dim; a++) {
                 value[k] += rows->phi[i] * rows->direction[r * dim + a] * move[a];
             }
@@ -62,7 +45,7 @@ bool system_floats(const struct solid_system *system)
 {
     int moves = system->dim == 2 ? 3 : MOST_MOVES;
     double seen[MOST_MOVES][MOST_MOVES] = {{0.0}}, value[MOST_MOVES], diagonal[MOST_MOVES];
-    struct box box = box_of_nodes(system);
+    struct box box = box_of(system->dim, system->node_count, system->X);
     for (int64_t r = 0; r < system->rows.count; r++) {
         look(system, &box, r, moves, value);
         for (int i = 0; i < moves; i++) {

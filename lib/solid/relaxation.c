@@ -8,7 +8,7 @@
 
 static const int64_t keep_interval = 200;     /* steps between states to go back to */
 static const double penetration_share = 1e-4; /* of the body's size: what a contact may penetrate */
-static const int later_iterations = 3;        /* at every check: the mode is kept, so that it sharpens */
+static const int later_iterations = 1;        /* at every check: the mode is kept, so that it sharpens */
 static const int last_iterations = 1;         /* the same, near the end, */
 static const int64_t last_mass_checks = 5;    /* where the mass is looked at only so often */
 
@@ -126,7 +126,7 @@ static bool follow(struct relaxation *r, struct error *error)
         return false;
     }
     relaxation_update_time_step(r, r->residual_at, settles ? last_iterations : later_iterations);
-    return true;
+    return relaxation_update_inertia(r, error);
 }
 
 /* Whether the run ends at this check, and how. A failure ends it, too. */
@@ -217,11 +217,9 @@ static enum status begin(struct relaxation *r, struct error *error)
     constraint_project(&r->inertia.constraint, system->factor, r->u);
     r->residual_at = r->u;
     TRY(relaxation_measure_inertia(r, error));
-    (void)inertia_follow(&r->inertia, system, true);
     memcpy(r->newer.u, r->u, bytes);
     memcpy(r->older.u, r->u, bytes);
     r->report->ramp_steps = r->options->ramp_steps > 0 ? r->options->ramp_steps : relaxation_choose_ramp(r);
-    relaxation_update_time_step(r, r->u, FIRST_ITERATIONS);
     r->low2 = r->frequency * r->frequency * 1e-4;
     r->damping = 2.0 * sqrt(r->low2);
     for (int i = 0; i < WINDOWS; i++) {
@@ -257,7 +255,8 @@ enum status relaxation_run(struct solid_system *system, const struct relaxation_
     *report = (struct relaxation_report){.least_jacobian = 1.0};
     TRY(relaxation_allocate(&r, error));
     r.spacing = relaxation_node_spacing(system);
-    r.penetration_allowed = penetration_share * relaxation_body_size(system);
+    r.body_size = relaxation_body_size(system);
+    r.penetration_allowed = penetration_share * r.body_size;
     TRY(options->restored != NULL ? resume(&r, error) : begin(&r, error));
     report->outcome = iterate(&r, error);
     TRY(r.failure);

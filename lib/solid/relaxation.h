@@ -51,10 +51,10 @@ struct relaxation_report {
     double least_jacobian;
 };
 
-/* Relax from u (usually zeros) to equilibrium at the full load. reaction[node_count * dim], unless NULL,
- * receives the forces of the constraints on the parameters, N (2D: N/m). STATUS_VERDICT for constraints that
- * depend on each other (the message names the node); an outcome other than converged is no error status: see
- * the report. */
+/* Relax from u (usually zeros) to equilibrium at the full load. row_force[system->rows.count],
+ * unless NULL, receives the forces of the conditions at the end, N (2D: N/m). STATUS_VERDICT for constraints
+ * that depend on each other (the message names the node); an outcome other than converged is no error status:
+ * see the report. */
 MUST_CHECK enum status relaxation_run(struct solid_system *system, const struct relaxation_options *options,
                                       double *u, double *row_force, struct relaxation_report *report,
                                       struct error *error);

@@ -1,4 +1,5 @@
 /* Load, mass, time step and contacts that follow a relaxation. */
+#include "base/box.h"
 #include "solid/frequency.h"
 #include "solid/relaxation_private.h"
 
@@ -8,6 +9,9 @@
 /* Steps in which the load moves something by as much as a cell, or as the body is long; and at least. */
 static const double steps_per_spacing = 100.0, steps_per_size = 800.0;
 static const int64_t least_ramp = 100;
+/* The inertia is measured anew when something moved by so much of the body's size, or the largest frequency
+ * rose by that factor: fields turn with the body, and what was soft becomes stiff. */
+static const double most_moved = 0.15, most_raised = 1.25;
 static const int64_t most_retreats = 8;                          /* from inverted points */
 static const double most_stiffening = 1.1, most_softening = 0.5; /* of a node since its mass was set */
 static const int64_t most_augmentations = 20;                    /* of the contacts' multipliers, */
@@ -15,16 +19,8 @@ static const int64_t most_fruitless = 3;                         /* of those in 
 
 double relaxation_body_size(const struct solid_system *system)
 {
-    double sum = 0.0;
-    for (int a = 0; a < system->dim; a++) {
-        double low = INFINITY, high = -INFINITY;
-        for (int64_t n = 0; n < system->node_count; n++) {
-            low = fmin(low, system->X[n * system->dim + a]);
-            high = fmax(high, system->X[n * system->dim + a]);
-        }
-        sum += (high - low) * (high - low);
-    }
-    return sqrt(sum);
+    struct box box = box_of(system->dim, system->node_count, system->X);
+    return box_diagonal(&box);
 }
 
 double relaxation_node_spacing(const struct solid_system *system)
@@ -38,8 +34,7 @@ int64_t relaxation_choose_ramp(const struct relaxation *r)
     for (int64_t i = 0; i < r->system->rows.count; i++) {
         largest = fmax(largest, fabs(r->system->rows.target[i]));
     }
-    double steps = fmax(steps_per_spacing * largest / r->spacing,
-                        steps_per_size * largest / relaxation_body_size(r->system));
+    double steps = fmax(steps_per_spacing * largest / r->spacing, steps_per_size * largest / r->body_size);
     steps = fmax(steps, (double)least_ramp);
     return steps > 1e7 ? 10000000 : (int64_t)steps;
 }
@@ -66,9 +61,18 @@ bool relaxation_update_mass(struct relaxation *r, struct error *error)
         return true;
     }
     r->failure = inertia_set_mass(&r->inertia, r->system, mass, error);
-    if (r->failure == STATUS_OK && inertia_is_stale(&r->inertia)) {
-        r->failure = relaxation_measure_inertia(r, error);
+    relaxation_note_new_mass(r);
+    return r->failure == STATUS_OK;
+}
+
+bool relaxation_update_inertia(struct relaxation *r, struct error *error)
+{
+    bool moved = r->largest_move > r->measured_move + most_moved * r->body_size;
+    bool stiffened = r->frequency > most_raised * r->measured_frequency;
+    if (r->inertia.size == 0 || !(moved || stiffened || inertia_is_stale(&r->inertia))) {
+        return true;
     }
+    r->failure = relaxation_measure_inertia(r, error);
     relaxation_note_new_mass(r);
     return r->failure == STATUS_OK;
 }
@@ -85,6 +89,11 @@ enum status relaxation_measure_inertia(struct relaxation *r, struct error *error
     r->report->force_evaluations += r->inertia.size + 1;
     enum status status = inertia_measure(&r->inertia, r->system, r->residual_at, error);
     (void)system_residual(r->system, r->residual_at, r->residual); /* the body's last evaluation again */
+    (void)inertia_follow(&r->inertia, r->system, true);
+    r->frequency = 0.0;
+    relaxation_update_time_step(r, r->residual_at, FIRST_ITERATIONS);
+    r->measured_frequency = r->frequency;
+    r->measured_move = r->largest_move;
     return status;
 }
 
@@ -122,7 +131,6 @@ bool relaxation_step_back(struct relaxation *r, double *u, struct error *error)
     if (r->failure == STATUS_OK) {
         r->failure = relaxation_measure_inertia(r, error);
     }
-    relaxation_update_time_step(r, u, FIRST_ITERATIONS);
     return r->failure == STATUS_OK;
 }
 

@@ -5,7 +5,7 @@
 #include "solid/inertia.h"
 #include "solid/relaxation.h"
 
-enum { CHECK_INTERVAL = 20 };   /* steps between estimates */
+enum { CHECK_INTERVAL = 10 };   /* steps between estimates */
 enum { FIRST_ITERATIONS = 40 }; /* of the power iteration, at rest */
 enum { WINDOWS = 8 };           /* recent Rayleigh quotients that the error estimate looks at */
 
@@ -35,11 +35,13 @@ struct relaxation {
     int64_t checks;
     double best_error; /* at the full load, since best_step: not yet half of it */
     int64_t best_step;
-    double spacing;                   /* mean, of the nodes, m */
-    double penetration_allowed;       /* m */
-    int64_t augmentations, fruitless; /* of the contacts so far; those in a row that changed little */
-    double least_penetration;         /* m, before an augmentation */
-    bool mass_changed;                /* since the last check: increments of the acceleration mean nothing */
+    double spacing;                           /* mean, of the nodes, m */
+    double body_size;                         /* diagonal of the nodes' box, m */
+    double measured_frequency, measured_move; /* the largest ones, when the inertia was measured */
+    double penetration_allowed;               /* m */
+    int64_t augmentations, fruitless;         /* of the contacts so far; those in a row that changed little */
+    double least_penetration;                 /* m, before an augmentation */
+    bool mass_changed; /* since the last check: increments of the acceleration mean nothing */
     enum status failure;
     double load, load_rate;      /* steps of the ramp applied so far, and per step */
     double largest_displacement; /* so far, in the norm of the mass */
@@ -97,7 +99,11 @@ bool relaxation_update_mass(struct relaxation *r, struct error *error);
 /* What was known of the lowest mode was of another mass. */
 void relaxation_note_new_mass(struct relaxation *r);
 
-/* Measure the stiffness along the fields of the inertia at the state where the residual is known. */
+/* Measure the inertia anew where the body has changed since that was done. False on failure. */
+bool relaxation_update_inertia(struct relaxation *r, struct error *error);
+
+/* Measure the stiffness along the fields of the inertia at the state where the residual is known, and take
+ * the time step from it. */
 MUST_CHECK enum status relaxation_measure_inertia(struct relaxation *r, struct error *error);
 
 /* Keep the state every so often; the older of two is safely before any instability that shows. */

@@ -58,6 +58,8 @@ enum status relaxation_visit(void *run, const struct state *state, struct error 
         {"time_step", STATE_NUMBERS, &r->time_step, 1},
         {"damping", STATE_NUMBERS, &r->damping, 1},
         {"frequency", STATE_NUMBERS, &r->frequency, 1},
+        {"measured_frequency", STATE_NUMBERS, &r->measured_frequency, 1},
+        {"measured_move", STATE_NUMBERS, &r->measured_move, 1},
         {"low2", STATE_NUMBERS, &r->low2, 1},
         {"window", STATE_NUMBERS, r->window, WINDOWS},
         {"spectrum2", STATE_NUMBERS, &r->spectrum2, 1},

@@ -48,58 +48,37 @@ static int most_threads(void)
     return omp_get_num_procs() > 1 ? 2 : 1;
 }
 
-static void bench_body(int dim, int64_t per_axis, double seconds)
+static void bench_points(struct problem *problem, double seconds)
 {
-    struct problem problem;
-    struct error error;
-    bench_check(problem_make(&problem, dim, per_axis, 2.12, dim == 2 ? 0.3 : 0.12, &error), &error);
-    bench_check(problem_points_in_cells(&problem, &error), &error);
+    int dim = problem->cells.dim;
     for (int threads = 1; threads <= most_threads(); threads++) {
-        bench(&problem, "neighbours", run_search, 0, threads, seconds);
-        bench(&problem, "support", problem_support, 0, threads, seconds);
-        bench(&problem, "shapefn", problem_gradients, 1 + dim, threads, seconds);
-        bench(&problem, "shapefn-values", problem_values, 1, threads, seconds);
+        bench(problem, "neighbours", run_search, 0, threads, seconds);
+        bench(problem, "support", problem_support, 0, threads, seconds);
+        bench(problem, "shapefn", problem_gradients, 1 + dim, threads, seconds);
+        bench(problem, "shapefn-values", problem_values, 1, threads, seconds);
     }
-    problem_free(&problem);
 }
 
-/* Face points of a conforming body: about twelve times its nodes. */
-static void bench_smooth(int dim, int64_t per_axis, double seconds)
+static void bench_cells(struct problem *problem, double seconds)
 {
-    struct problem problem;
     struct error error;
-    bench_check(problem_make(&problem, dim, per_axis, 2.12, dim == 2 ? 0.3 : 0.12, &error), &error);
-    bench_check(problem_points_on_faces(&problem, &error), &error);
-    bench_check(problem_support(&problem, &error), &error);
-    bench_check(problem_values(&problem, &error), &error);
+    bench_check(problem_support(problem, &error), &error);
+    bench_check(problem_values(problem, &error), &error);
     for (int threads = 1; threads <= most_threads(); threads++) {
-        bench(&problem, "shapefn-smooth", problem_smooth, 1, threads, seconds);
+        bench(problem, "shapefn-smooth", problem_smooth, 1, threads, seconds);
     }
-    problem_free(&problem);
 }
 
-static void bench_growth(int64_t per_axis, double seconds)
+static void bench_growth(struct problem *problem, double seconds)
 {
-    struct problem problem;
-    struct error error;
-    bench_check(problem_make(&problem, 3, per_axis, 2.12, 0.3, &error), &error);
-    bench_check(problem_points_at_nodes(&problem, &error), &error);
-    bench(&problem, "growth-support", problem_support, 0, 1, seconds);
-    bench(&problem, "growth-shapefn", problem_gradients, 4, 1, seconds);
-    problem_free(&problem);
+    bench(problem, "growth-support", problem_support, 0, 1, seconds);
+    bench(problem, "growth-shapefn", problem_gradients, 4, 1, seconds);
 }
 
 /* bench-approx [SECONDS]: time spent on each row. */
 int main(int argc, char *argv[])
 {
     double seconds = argc > 1 ? strtod(argv[1], NULL) : 1.0;
-    bench_body(2, 27, seconds);
-    bench_body(3, 38, seconds);
-    bench_smooth(2, 27, seconds);
-    bench_smooth(3, 25, seconds);
-    static const int64_t per_axis[] = {10, 22, 46, 100};
-    for (int i = 0; i < 4; i++) {
-        bench_growth(per_axis[i], seconds);
-    }
+    problem_sweep(bench_points, bench_cells, bench_growth, seconds);
     return 0;
 }

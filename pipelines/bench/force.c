@@ -165,55 +165,36 @@ static void bench_all(struct problem *problem, bool conforming, double seconds)
     }
 }
 
-static void bench_points(int dim, int64_t per_axis, double seconds)
+static void bench_points(struct problem *problem, double seconds)
 {
-    struct problem problem;
     struct error error;
-    bench_check(problem_make(&problem, dim, per_axis, 2.12, dim == 2 ? 0.3 : 0.12, &error), &error);
-    bench_check(problem_points_in_cells(&problem, &error), &error);
-    bench_check(problem_support(&problem, &error), &error);
-    bench_check(problem_gradients(&problem, &error), &error);
-    bench_all(&problem, false, seconds);
-    problem_free(&problem);
+    bench_check(problem_support(problem, &error), &error);
+    bench_check(problem_gradients(problem, &error), &error);
+    bench_all(problem, false, seconds);
 }
 
-static void bench_cells(int dim, int64_t per_axis, double seconds)
+static void bench_cells(struct problem *problem, double seconds)
 {
-    struct problem problem;
     struct error error;
-    bench_check(problem_make(&problem, dim, per_axis, 2.12, dim == 2 ? 0.3 : 0.12, &error), &error);
-    bench_check(problem_points_on_faces(&problem, &error), &error);
-    bench_check(problem_support(&problem, &error), &error);
-    bench_check(problem_values(&problem, &error), &error);
-    bench_check(problem_smooth(&problem, &error), &error);
-    bench_all(&problem, true, seconds);
-    problem_free(&problem);
+    bench_check(problem_support(problem, &error), &error);
+    bench_check(problem_values(problem, &error), &error);
+    bench_check(problem_smooth(problem, &error), &error);
+    bench_all(problem, true, seconds);
 }
 
-static void bench_growth(int64_t per_axis, double seconds)
+static void bench_growth(struct problem *problem, double seconds)
 {
-    struct problem problem;
     struct error error;
     static const struct variant variant = {"growth-force", false, false, false};
-    bench_check(problem_make(&problem, 3, per_axis, 2.12, 0.3, &error), &error);
-    bench_check(problem_points_at_nodes(&problem, &error), &error);
-    bench_check(problem_support(&problem, &error), &error);
-    bench_check(problem_gradients(&problem, &error), &error);
-    bench(&problem, &variant, 1, seconds);
-    problem_free(&problem);
+    bench_check(problem_support(problem, &error), &error);
+    bench_check(problem_gradients(problem, &error), &error);
+    bench(problem, &variant, 1, seconds);
 }
 
 /* bench-force [SECONDS]: time spent on each row. */
 int main(int argc, char *argv[])
 {
     double seconds = argc > 1 ? strtod(argv[1], NULL) : 1.0;
-    bench_points(2, 27, seconds);
-    bench_points(3, 38, seconds);
-    bench_cells(2, 27, seconds);
-    bench_cells(3, 25, seconds);
-    static const int64_t per_axis[] = {10, 22, 46, 100};
-    for (int i = 0; i < 4; i++) {
-        bench_growth(per_axis[i], seconds);
-    }
+    problem_sweep(bench_points, bench_cells, bench_growth, seconds);
     return 0;
 }

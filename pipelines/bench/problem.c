@@ -1,5 +1,6 @@
 #include "problem.h"
 
+#include "bench.h"
 #include "approx/quadrature.h"
 #include "base/memory.h"
 
@@ -142,4 +143,29 @@ void problem_free(struct problem *problem)
     free(problem->points);
     free(problem->phi);
     free(problem->dphi);
+}
+
+typedef enum status place_function(struct problem *problem, struct error *error);
+
+static void time_on(int dim, int64_t per_axis, double jitter, place_function *place, bench_function *run,
+                    double seconds)
+{
+    struct problem problem;
+    struct error error;
+    bench_check(problem_make(&problem, dim, per_axis, 2.12, jitter, &error), &error);
+    bench_check(place(&problem, &error), &error);
+    run(&problem, seconds);
+    problem_free(&problem);
+}
+
+void problem_sweep(bench_function *points, bench_function *cells, bench_function *growth, double seconds)
+{
+    static const int64_t per_axis[] = {10, 22, 46, 100};
+    time_on(2, 27, 0.3, problem_points_in_cells, points, seconds);
+    time_on(3, 38, 0.12, problem_points_in_cells, points, seconds);
+    time_on(2, 27, 0.3, problem_points_on_faces, cells, seconds);
+    time_on(3, 25, 0.12, problem_points_on_faces, cells, seconds);
+    for (int i = 0; i < 4; i++) {
+        time_on(3, per_axis[i], 0.3, problem_points_at_nodes, growth, seconds);
+    }
 }

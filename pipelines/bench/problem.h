@@ -40,4 +40,10 @@ MUST_CHECK enum status problem_gradients(void *context, struct error *error);
 MUST_CHECK enum status problem_values(void *context, struct error *error);
 MUST_CHECK enum status problem_smooth(void *context, struct error *error);
 
+/* Makes the bodies that kernels are timed on, one after the other: with a point in each cell, in 2D and 3D;
+ * with points on the faces of conforming cells (about twelve times the nodes), in 2D and 3D; and cubes of 1e3
+ * to 1e6 nodes with points at the nodes, which tell how things grow. A failure ends the program. */
+typedef void bench_function(struct problem *problem, double seconds);
+void problem_sweep(bench_function *points, bench_function *cells, bench_function *growth, double seconds);
+
 #endif

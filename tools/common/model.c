@@ -256,11 +256,6 @@ enum status model_nodes(const struct model_input *input, const struct scene_labe
     TRY(stream_need(input->stream, "sets.idx", TYPE_I4, 1, "nodes", &idx, error));
     TRY(stream_neighbours(input->stream, "sets", ptr->rows - 1, input->cells.node_count, &sets, error));
     TRY(names_of(ptr, &present, error));
-    if (present[0] == '\0') {
-        free(present);
-        present = NULL;
-        TRY(names_of(idx, &present, error));
-    }
     TRY(NEW_ARRAY(&member, input->cells.node_count, error));
     for (int64_t i = 0; i < names->count; i++) {
         int64_t set = index_in_list(present, names->names[i]);
