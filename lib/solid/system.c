@@ -17,7 +17,8 @@ void system_free(struct solid_system *system)
     for (int64_t i = 0; i < system->pressure_count; i++) {
         free(system->pressures[i].facet);
         free(system->pressures[i].corner);
-        boundary_averages_free(&system->pressures[i].averages);
+        boundary_averages_free(&system->pressures[i].corners);
+        boundary_averages_free(&system->pressures[i].points);
     }
     for (int64_t i = 0; i < system->contact_count; i++) {
         contact_free(&system->contacts[i]);
@@ -131,26 +132,40 @@ static void corner_position(const struct solid_system *system, const struct boun
     }
 }
 
-/* Forces of a following pressure, equally shared among the corners of each deformed facet. */
+/* force += amount[dim] at point p of averages, spread by its values. */
+static void spread(const struct boundary_averages *averages, int64_t p, int dim, const double *amount,
+                   double *force)
+{
+    for (int64_t i = averages->ptr[p]; i < averages->ptr[p + 1]; i++) {
+        for (int a = 0; a < dim; a++) {
+            force[(int64_t)averages->idx[i] * dim + a] += averages->phi[i] * amount[a];
+        }
+    }
+}
+
+/* Forces of a following pressure: those on a deformed facet are shared by its quadrature points as its area
+ * at rest is. */
 static void add_pressure(const struct solid_system *system, const struct pressure_load *load, double pressure,
                          const double *u, double *residual)
 {
     int dim = system->dim;
     static const int32_t in_order[3] = {0, 1, 2};
+    int64_t each = load->points.count / (load->facet_count > 0 ? load->facet_count : 1);
     for (int64_t f = 0; f < load->facet_count; f++) {
-        const int32_t *corner = load->corner + f * dim;
-        double x[9], area[3];
+        double x[9], area[3], at_rest = 0.0;
         for (int k = 0; k < dim; k++) {
-            corner_position(system, &load->averages, corner[k], u, x + k * dim);
+            corner_position(system, &load->corners, load->corner[f * dim + k], u, x + k * dim);
         }
         face_area_vector(dim, x, in_order, area);
-        for (int k = 0; k < dim; k++) {
-            for (int64_t i = load->averages.ptr[corner[k]]; i < load->averages.ptr[corner[k] + 1]; i++) {
-                for (int a = 0; a < dim; a++) {
-                    residual[(int64_t)load->averages.idx[i] * dim + a] -=
-                        pressure * area[a] / dim * load->averages.phi[i];
-                }
+        for (int64_t p = f * each; p < (f + 1) * each; p++) {
+            at_rest += load->points.area[p];
+        }
+        for (int64_t p = f * each; p < (f + 1) * each; p++) {
+            double share[3];
+            for (int a = 0; a < dim; a++) {
+                share[a] = -pressure * area[a] * load->points.area[p] / at_rest;
             }
+            spread(&load->points, p, dim, share, residual);
         }
     }
 }

@@ -17,13 +17,15 @@ struct dead_load {
 };
 
 /* A pressure on facets that follows the deformation: it acts on the deformed facets, whose corners move with
- * the field at the nodes, and is shared by the hat averages of its set. */
+ * the field at the nodes, and is transferred by the facets' own quadrature, as the cells' gradients are made,
+ * so that under a constant pressure the linear patch test holds. */
 struct pressure_load {
     int64_t facet_count;
-    int32_t *facet; /* facet_count * dim, oriented outward */
+    int32_t *facet;                   /* facet_count * dim, oriented outward */
+    struct boundary_averages corners; /* node values on the set: where corners are */
+    int32_t *corner;                  /* facet_count * dim: the entry of each corner */
     struct boundary_averages
-        averages;    /* of node values on the set: where corners are, and what carries them */
-    int32_t *corner; /* facet_count * dim: the average of each corner */
+        points;      /* values at the quadrature points, as many for each facet: what carries it */
     double pressure; /* Pa, positive pushes inward */
     int32_t curve;
 };

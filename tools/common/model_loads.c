@@ -120,15 +120,16 @@ static enum status add_pressure(const struct model_input *input, const struct sc
     TRY(model_facets(input, &load->label, &load->facets, &set, &pressure->facet, error));
     pressure->facet_count = set.count;
     TRY(boundary_nodes_build(&input->face_table, &set, &input->node_lists, input->node_phi,
-                             &pressure->averages, error));
+                             &pressure->corners, error));
+    TRY(boundary_points_build(&input->face_table, &set, &pressure->points, error));
     TRY(model_add_curve(input, &load->label, &load->curve, system, &pressure->curve, error));
     TRY(NEW_ARRAY(&pressure->corner, set.count * dim, error));
     for (int64_t i = 0; i < set.count * dim; i++) {
         /* Averages of node values are in the order of their nodes. */
-        int64_t low = 0, high = pressure->averages.count - 1;
+        int64_t low = 0, high = pressure->corners.count - 1;
         while (low < high) {
             int64_t middle = (low + high) / 2;
-            if (pressure->averages.node[middle] < set.facet[i]) {
+            if (pressure->corners.node[middle] < set.facet[i]) {
                 low = middle + 1;
             } else {
                 high = middle;
