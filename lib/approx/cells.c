@@ -214,6 +214,103 @@ void faces_free(struct faces *faces)
     *faces = (struct faces){0};
 }
 
+/* Mark the nodes where a group ends. faces_at[node_count]: how many faces of the boundary each has. */
+static void mark_ends(const struct cells *cells, const struct named_facets *facets, const int64_t *faces_at,
+                      int64_t *of_group, bool *is_end)
+{
+    int32_t groups = 0;
+    int dim = cells->dim;
+    for (int64_t f = 0; f < facets->count; f++) {
+        groups = facets->set[f] >= groups ? facets->set[f] + 1 : groups;
+    }
+    for (int32_t g = 0; g < groups; g++) {
+        for (int64_t i = 0; i < facets->count * dim; i++) {
+            of_group[facets->facet[i]] += facets->set[i / dim] == g;
+        }
+        for (int64_t i = 0; i < facets->count * dim; i++) {
+            int32_t node = facets->facet[i];
+            is_end[node] = is_end[node] || (of_group[node] > 0 && of_group[node] < faces_at[node]);
+        }
+        for (int64_t i = 0; i < facets->count * dim; i++) {
+            of_group[facets->facet[i]] = 0;
+        }
+    }
+}
+
+/* Set kind[node] of the ends: their unit normals, at two faces 45 degrees apart, have a mean of cos 22.5. */
+static enum status tell_corners(const struct cells *cells, const struct faces *faces, const int64_t *faces_at,
+                                const bool *is_end, enum beside *kind, struct error *error)
+{
+    enum status status;
+    int dim = cells->dim;
+    double *normal = NULL;
+    TRY(NEW_ARRAY(&normal, cells->node_count * 3, error));
+    for (int64_t f = 0; f < faces->count; f++) {
+        double area[3] = {0.0, 0.0, 0.0};
+        const int32_t *v = faces->node + f * dim;
+        face_area_vector(dim, cells->x, v, area);
+        double size = sqrt(area[0] * area[0] + area[1] * area[1] + area[2] * area[2]);
+        for (int i = 0; i < dim * 3; i++) {
+            normal[(int64_t)v[i / 3] * 3 + i % 3] += area[i % 3] / size;
+        }
+    }
+    for (int64_t n = 0; n < cells->node_count; n++) {
+        const double *sum = normal + 3 * n;
+        double mean = sqrt(sum[0] * sum[0] + sum[1] * sum[1] + sum[2] * sum[2]) / (double)faces_at[n];
+        kind[n] = !is_end[n] ? BESIDE_NOTHING : mean < 0.924 ? BESIDE_CORNER : BESIDE_END;
+    }
+done:
+    free(normal);
+    return status;
+}
+
+enum status cells_beside_ends(const struct cells *cells, const struct named_facets *facets,
+                              enum beside *beside, struct error *error)
+{
+    enum status status;
+    struct faces faces = {0};
+    int64_t *faces_at = NULL, *of_group = NULL;
+    bool *is_end = NULL;
+    enum beside *kind = NULL; /* of the ends */
+    int dim = cells->dim, corners = dim + 1;
+    TRY(NEW_ARRAY(&faces_at, cells->node_count, error));
+    TRY(NEW_ARRAY(&of_group, cells->node_count, error));
+    TRY(NEW_ARRAY(&is_end, cells->node_count, error));
+    TRY(NEW_ARRAY(&kind, cells->node_count, error));
+    for (int64_t i = 0; i < facets->count * dim; i++) {
+        if (facets->facet[i] < 0 || facets->facet[i] >= cells->node_count || facets->set[i / dim] < 0) {
+            status = fail(error, STATUS_INPUT, "facets: row %lld: no facet of a group", (long long)(i / dim));
+            goto done;
+        }
+    }
+    TRY(faces_build(cells, true, &faces, error));
+    for (int64_t i = 0; i < faces.count * dim; i++) {
+        faces_at[faces.node[i]]++;
+    }
+    mark_ends(cells, facets, faces_at, of_group, is_end);
+    TRY(tell_corners(cells, &faces, faces_at, is_end, kind, error));
+    for (int64_t n = 0; n < cells->node_count; n++) {
+        beside[n] = BESIDE_NOTHING;
+    }
+    for (int64_t c = 0; c < cells->count; c++) {
+        const int32_t *v = cells->node + c * corners;
+        enum beside most = BESIDE_NOTHING;
+        for (int k = 0; k < corners; k++) {
+            most = kind[v[k]] > most ? kind[v[k]] : most;
+        }
+        for (int k = 0; k < corners; k++) {
+            beside[v[k]] = !is_end[v[k]] && most > beside[v[k]] ? most : beside[v[k]];
+        }
+    }
+done:
+    faces_free(&faces);
+    free(faces_at);
+    free(of_group);
+    free(is_end);
+    free(kind);
+    return status;
+}
+
 enum status cells_node_spacing(const struct cells *cells, double *spacing, struct error *error)
 {
     enum status status;

@@ -18,8 +18,12 @@ static const double extent_of_group = 0.8;
 
 struct support_options support_defaults(int dim)
 {
-    return (struct support_options){
-        .factor = 1.8, .widen = true, .gradient_bound = 6.0, .mls = mls_default(dim)};
+    return (struct support_options){.factor = dim == 2 ? 1.8 : 1.83,
+                                    .end_share = dim == 2 ? 0.7 : 1.0,
+                                    .corner_share = dim == 2 ? 0.8 : 1.0,
+                                    .widen = true,
+                                    .gradient_bound = 6.0,
+                                    .mls = mls_default(dim)};
 }
 
 void point_text(int dim, const double *x, char text[96])

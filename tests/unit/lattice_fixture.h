@@ -191,7 +191,7 @@ static inline void lattice_build(struct lattice *l, const struct lattice_options
     ARRAY(spacing, l->cells.node_count);
     ARRAY(l->radius, l->cells.node_count);
     GOOD(cells_node_spacing(&l->cells, spacing, &error));
-    GOOD(support_radii(&support, l->cells.node_count, spacing, l->radius, &error));
+    GOOD(support_radii(&support, l->cells.node_count, spacing, NULL, l->radius, &error));
     free(spacing);
     GOOD(point_grid_build(&l->grid, dim, l->cells.node_count, l->cells.x, l->radius, &error));
     l->system.dim = dim;

@@ -5,32 +5,57 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Local spacing from the cells where there are any, else from the nearest nodes. */
-static enum status local_spacing(const struct stream *stream, int dim, int64_t node_count, const double *x,
-                                 double *spacing, struct error *error)
+/* Groups of facets in view; none where the stream has none. */
+static enum status view_facets(const struct stream *stream, int dim, struct named_facets *facets,
+                               struct error *error)
 {
-    struct cells cells;
-    enum status status = stream_cells(stream, false, &cells, error);
-    if (status != STATUS_OK) {
-        return status;
+    enum status status = STATUS_OK;
+    const struct section *facet, *set;
+    *facets = (struct named_facets){0};
+    if (stream_find(stream, "facets") == NULL) {
+        return STATUS_OK;
     }
-    return cells.count > 0 ? cells_node_spacing(&cells, spacing, error)
-                           : nodes_spacing(dim, node_count, x, spacing, error);
+    TRY(stream_need(stream, "facets", TYPE_I4, dim, "nodes", &facet, error));
+    TRY(stream_need(stream, "facets.set", TYPE_I4, 1, "nodes", &set, error));
+    if (set->rows != facet->rows) {
+        return fail(error, STATUS_INPUT, "facets.set: does not fit facets");
+    }
+    *facets = (struct named_facets){.count = facet->rows, .facet = facet->data, .set = set->data};
+done:
+    return status;
+}
+
+/* Radii by the local spacing: from the cells where there are any, else from the nearest nodes. */
+static enum status local_radii(const struct stream *stream, const struct support_options *options,
+                               int64_t node_count, const double *x, double *radius, struct error *error)
+{
+    enum status status;
+    struct cells cells;
+    double *spacing = NULL;
+    enum beside *beside = NULL;
+    struct named_facets facets;
+    TRY(NEW_ARRAY(&spacing, node_count, error));
+    TRY(stream_cells(stream, false, &cells, error));
+    if (cells.count > 0) {
+        TRY(cells_node_spacing(&cells, spacing, error));
+        TRY(view_facets(stream, cells.dim, &facets, error));
+        TRY(NEW_ARRAY(&beside, node_count, error));
+        TRY(cells_beside_ends(&cells, &facets, beside, error));
+    } else {
+        TRY(nodes_spacing(options->mls.dim, node_count, x, spacing, error));
+    }
+    TRY(support_radii(options, node_count, spacing, beside, radius, error));
+done:
+    free(spacing);
+    free(beside);
+    return status;
 }
 
 enum status stage_radii(const struct stream *stream, const struct support_options *options,
                         int64_t node_count, const double *x, double *radius, struct error *error)
 {
-    enum status status;
-    double *spacing = NULL;
-    TRY(NEW_ARRAY(&spacing, node_count, error));
-    if (!(options->radius > 0.0)) {
-        TRY(local_spacing(stream, options->mls.dim, node_count, x, spacing, error));
-    }
-    TRY(support_radii(options, node_count, spacing, radius, error));
-done:
-    free(spacing);
-    return status;
+    return options->radius > 0.0 ? support_radii(options, node_count, NULL, NULL, radius, error)
+                                 : local_radii(stream, options, node_count, x, radius, error);
 }
 
 /* Radii of the nodes, put into the stream with the settings they were made for. */
