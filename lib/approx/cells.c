@@ -214,27 +214,50 @@ void faces_free(struct faces *faces)
     *faces = (struct faces){0};
 }
 
-/* Mark the nodes where a group ends. faces_at[node_count]: how many faces of the boundary each has. */
-static void mark_ends(const struct cells *cells, const struct named_facets *facets, const int64_t *faces_at,
-                      int64_t *of_group, bool *is_end)
+/* A facet and the group that it belongs to. */
+struct member {
+    int32_t set;
+    const int32_t *facet;
+};
+
+static int compare_members(const void *left, const void *right)
 {
-    int32_t groups = 0;
+    const struct member *a = left, *b = right;
+    return (a->set > b->set) - (a->set < b->set);
+}
+
+/* Mark the nodes where a group ends. faces_at[node_count]: how many faces of the boundary each has. */
+static enum status mark_ends(const struct cells *cells, const struct named_facets *facets,
+                             const int64_t *faces_at, bool *is_end, struct error *error)
+{
+    enum status status;
     int dim = cells->dim;
+    struct member *members = NULL;
+    int64_t *of_group = NULL;
+    TRY(NEW_ARRAY(&members, facets->count, error));
+    TRY(NEW_ARRAY(&of_group, cells->node_count, error));
     for (int64_t f = 0; f < facets->count; f++) {
-        groups = facets->set[f] >= groups ? facets->set[f] + 1 : groups;
+        members[f] = (struct member){facets->set[f], facets->facet + f * dim};
     }
-    for (int32_t g = 0; g < groups; g++) {
-        for (int64_t i = 0; i < facets->count * dim; i++) {
-            of_group[facets->facet[i]] += facets->set[i / dim] == g;
+    qsort(members, (size_t)facets->count, sizeof *members, compare_members);
+    for (int64_t first = 0, end; first < facets->count; first = end) {
+        for (end = first; end < facets->count && members[end].set == members[first].set; end++) {
+            for (int k = 0; k < dim; k++) {
+                of_group[members[end].facet[k]]++;
+            }
         }
-        for (int64_t i = 0; i < facets->count * dim; i++) {
-            int32_t node = facets->facet[i];
+        for (int64_t i = first * dim; i < end * dim; i++) {
+            int32_t node = members[i / dim].facet[i % dim];
             is_end[node] = is_end[node] || (of_group[node] > 0 && of_group[node] < faces_at[node]);
         }
-        for (int64_t i = 0; i < facets->count * dim; i++) {
-            of_group[facets->facet[i]] = 0;
+        for (int64_t i = first * dim; i < end * dim; i++) {
+            of_group[members[i / dim].facet[i % dim]] = 0;
         }
     }
+done:
+    free(members);
+    free(of_group);
+    return status;
 }
 
 /* Set kind[node] of the ends: their unit normals, at two faces 45 degrees apart, have a mean of cos 22.5. */
@@ -269,12 +292,11 @@ enum status cells_beside_ends(const struct cells *cells, const struct named_face
 {
     enum status status;
     struct faces faces = {0};
-    int64_t *faces_at = NULL, *of_group = NULL;
+    int64_t *faces_at = NULL;
     bool *is_end = NULL;
     enum beside *kind = NULL; /* of the ends */
     int dim = cells->dim, corners = dim + 1;
     TRY(NEW_ARRAY(&faces_at, cells->node_count, error));
-    TRY(NEW_ARRAY(&of_group, cells->node_count, error));
     TRY(NEW_ARRAY(&is_end, cells->node_count, error));
     TRY(NEW_ARRAY(&kind, cells->node_count, error));
     for (int64_t i = 0; i < facets->count * dim; i++) {
@@ -287,7 +309,7 @@ enum status cells_beside_ends(const struct cells *cells, const struct named_face
     for (int64_t i = 0; i < faces.count * dim; i++) {
         faces_at[faces.node[i]]++;
     }
-    mark_ends(cells, facets, faces_at, of_group, is_end);
+    TRY(mark_ends(cells, facets, faces_at, is_end, error));
     TRY(tell_corners(cells, &faces, faces_at, is_end, kind, error));
     for (int64_t n = 0; n < cells->node_count; n++) {
         beside[n] = BESIDE_NOTHING;
@@ -305,7 +327,6 @@ enum status cells_beside_ends(const struct cells *cells, const struct named_face
 done:
     faces_free(&faces);
     free(faces_at);
-    free(of_group);
     free(is_end);
     free(kind);
     return status;
