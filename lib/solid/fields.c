@@ -133,12 +133,13 @@ void fields_free(struct fields *fields)
 }
 
 /* Values at a node of the fields of centre c, which has that share in it. */
-static void monomials(const struct fields *fields, int64_t c, int64_t node, double share, double value[4])
+static inline void monomials(const struct fields *fields, int dim, int64_t c, int64_t node, double share,
+                             double value[4])
 {
-    int dim = fields->dim;
+    double scale = share / fields->radius;
     value[0] = share;
     for (int a = 0; a < dim; a++) {
-        value[a + 1] = share * (fields->X[node * dim + a] - fields->centre[c * dim + a]) / fields->radius;
+        value[a + 1] = scale * (fields->X[node * dim + a] - fields->centre[c * dim + a]);
     }
 }
 
@@ -149,7 +150,7 @@ int fields_at_node(const struct fields *fields, int64_t node, int field[FIELDS_M
     int count = 0;
     for (int64_t i = table->ptr[node]; i < table->ptr[node + 1]; i++) {
         double of_centre[4];
-        monomials(fields, table->idx[i], node, table->share[i], of_centre);
+        monomials(fields, fields->dim, table->idx[i], node, table->share[i], of_centre);
         for (int m = 0; m <= fields->dim; m++, count++) {
             field[count] = table->idx[i] * (fields->dim + 1) + m;
             value[count] = of_centre[m];
@@ -158,43 +159,65 @@ int fields_at_node(const struct fields *fields, int64_t node, int field[FIELDS_M
     return count;
 }
 
-void fields_collect(const struct fields *fields, const double *force, double *amount)
+/* What the forces do along the fields of centre c. The dimension is known when compiling, here and below. */
+static inline void collect_centre(const struct fields *fields, int dim, int64_t c, const double *force,
+                                  double *amount)
 {
     const struct share_table *table = &fields->by_centre;
-    int dim = fields->dim;
-#pragma omp parallel for schedule(dynamic, 1) if (fields->node_count > NODES_FOR_THREADS)
-    for (int64_t c = 0; c < fields->centre_count; c++) {
-        double sum[4][3] = {{0.0}}, value[4];
-        for (int64_t i = table->ptr[c]; i < table->ptr[c + 1]; i++) {
-            const double *f = force + (int64_t)table->idx[i] * dim;
-            monomials(fields, c, table->idx[i], table->share[i], value);
-            for (int m = 0; m <= dim; m++) {
-                for (int a = 0; a < dim; a++) {
-                    sum[m][a] += value[m] * f[a];
-                }
+    double sum[4][3] = {{0.0}}, value[4];
+    for (int64_t i = table->ptr[c]; i < table->ptr[c + 1]; i++) {
+        const double *f = force + (int64_t)table->idx[i] * dim;
+        monomials(fields, dim, c, table->idx[i], table->share[i], value);
+        for (int m = 0; m <= dim; m++) {
+            for (int a = 0; a < dim; a++) {
+                sum[m][a] += value[m] * f[a];
             }
         }
-        for (int m = 0; m <= dim; m++) {
-            memcpy(amount + (c * (dim + 1) + m) * dim, sum[m], (size_t)dim * sizeof *amount);
+    }
+    for (int m = 0; m <= dim; m++) {
+        memcpy(amount + (c * (dim + 1) + m) * dim, sum[m], (size_t)dim * sizeof *amount);
+    }
+}
+
+void fields_collect(const struct fields *fields, const double *force, double *amount)
+{
+#pragma omp parallel for schedule(dynamic, 1) if (fields->node_count > NODES_FOR_THREADS)
+    for (int64_t c = 0; c < fields->centre_count; c++) {
+        if (fields->dim == 2) {
+            collect_centre(fields, 2, c, force, amount);
+        } else {
+            collect_centre(fields, 3, c, force, amount);
         }
+    }
+}
+
+static inline void add_at_node(const struct fields *fields, int dim, int64_t node, const double *amount,
+                               double *u)
+{
+    const struct share_table *table = &fields->by_node;
+    double sum[3] = {0.0, 0.0, 0.0}, value[4];
+    for (int64_t i = table->ptr[node]; i < table->ptr[node + 1]; i++) {
+        const double *of_centre = amount + (int64_t)table->idx[i] * (dim + 1) * dim;
+        monomials(fields, dim, table->idx[i], node, table->share[i], value);
+        for (int m = 0; m <= dim; m++) {
+            for (int a = 0; a < dim; a++) {
+                sum[a] += value[m] * of_centre[m * dim + a];
+            }
+        }
+    }
+    for (int a = 0; a < dim; a++) {
+        u[node * dim + a] += sum[a];
     }
 }
 
 void fields_add(const struct fields *fields, const double *amount, double *u)
 {
-    const struct share_table *table = &fields->by_node;
-    int dim = fields->dim;
 #pragma omp parallel for schedule(static) if (fields->node_count > NODES_FOR_THREADS)
     for (int64_t n = 0; n < fields->node_count; n++) {
-        double value[4];
-        for (int64_t i = table->ptr[n]; i < table->ptr[n + 1]; i++) {
-            const double *of_centre = amount + (int64_t)table->idx[i] * (dim + 1) * dim;
-            monomials(fields, table->idx[i], n, table->share[i], value);
-            for (int m = 0; m <= dim; m++) {
-                for (int a = 0; a < dim; a++) {
-                    u[n * dim + a] += value[m] * of_centre[m * dim + a];
-                }
-            }
+        if (fields->dim == 2) {
+            add_at_node(fields, 2, n, amount, u);
+        } else {
+            add_at_node(fields, 3, n, amount, u);
         }
     }
 }

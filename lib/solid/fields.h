@@ -1,6 +1,6 @@
-/* A few smooth fields on a cloud, near which every smooth field is: centres far from each other share unity
- * among them by their distances (Shepard), and each share stands for itself and for its products with the
- * coordinates. Linear fields are sums of them exactly. They exist on any cloud, however thin. */
+/* A few smooth fields on a cloud, whose sums come near to any smooth field and hold every linear one exactly.
+ * A few centres, nodes far from each other, share unity among them by their distances (Shepard); each share
+ * is a field, and so is its product with each coordinate. They exist on any cloud, however thin. */
 #ifndef SOLID_FIELDS_H
 #define SOLID_FIELDS_H
 
