@@ -196,9 +196,9 @@ void constraint_free(struct constraint *constraint)
     *constraint = (struct constraint){0};
 }
 
-double constraint_rows_value(const struct constraint_rows *rows, int64_t r, const double *u)
+/* The dimension is known when compiling, here and below. */
+static inline double row_value(const struct constraint_rows *rows, int dim, int64_t r, const double *u)
 {
-    int dim = rows->dim;
     double mean[3] = {0.0, 0.0, 0.0}, value = 0.0;
     for (int64_t i = rows->ptr[r]; i < rows->ptr[r + 1]; i++) {
         for (int a = 0; a < dim; a++) {
@@ -209,6 +209,24 @@ double constraint_rows_value(const struct constraint_rows *rows, int64_t r, cons
         value += rows->direction[r * dim + a] * mean[a];
     }
     return value;
+}
+
+double constraint_rows_value(const struct constraint_rows *rows, int64_t r, const double *u)
+{
+    return rows->dim == 2 ? row_value(rows, 2, r, u) : row_value(rows, 3, r, u);
+}
+
+/* u += M^-1 G^T multiplier, of row r */
+static inline void correct(const struct constraint *constraint, int dim, int64_t r, double *u)
+{
+    const struct constraint_rows *rows = constraint->rows;
+    for (int64_t i = rows->ptr[r]; i < rows->ptr[r + 1]; i++) {
+        int32_t node = rows->idx[i];
+        double scale = rows->phi[i] * constraint->multiplier[r] / constraint->mass[node];
+        for (int a = 0; a < dim; a++) {
+            u[(int64_t)node * dim + a] += scale * rows->direction[r * dim + a];
+        }
+    }
 }
 
 static double defect(const struct constraint_rows *rows, int64_t r, const double *factor, const double *u)
@@ -223,18 +241,15 @@ void constraint_project(struct constraint *constraint, const double *factor, dou
     if (rows == NULL || rows->count == 0) {
         return;
     }
-    int dim = rows->dim;
     for (int64_t r = 0; r < rows->count; r++) {
         constraint->multiplier[r] = defect(rows, r, factor, u);
     }
     envelope_solve(&constraint->factor, constraint->multiplier);
     for (int64_t r = 0; r < rows->count; r++) {
-        for (int64_t i = rows->ptr[r]; i < rows->ptr[r + 1]; i++) {
-            int32_t node = rows->idx[i];
-            double scale = rows->phi[i] * constraint->multiplier[r] / constraint->mass[node];
-            for (int a = 0; a < dim; a++) {
-                u[(int64_t)node * dim + a] += scale * rows->direction[r * dim + a];
-            }
+        if (rows->dim == 2) {
+            correct(constraint, 2, r, u);
+        } else {
+            correct(constraint, 3, r, u);
         }
     }
 }

@@ -193,17 +193,27 @@ double system_spring_force(const struct solid_system *system, int64_t r, const d
            (springs->target[r] * system->factor[springs->curve[r]] - constraint_rows_value(springs, r, u));
 }
 
+/* The dimension is known when compiling. */
+static inline void add_spring(const struct constraint_rows *springs, int dim, int64_t r, double pull,
+                              double *force)
+{
+    for (int64_t i = springs->ptr[r]; i < springs->ptr[r + 1]; i++) {
+        for (int a = 0; a < dim; a++) {
+            force[(int64_t)springs->idx[i] * dim + a] +=
+                pull * springs->phi[i] * springs->direction[r * dim + a];
+        }
+    }
+}
+
 void system_add_springs(const struct solid_system *system, const double *u, double *force)
 {
     const struct constraint_rows *springs = &system->springs;
-    int dim = system->dim;
     for (int64_t r = 0; r < springs->count; r++) {
         double pull = system_spring_force(system, r, u);
-        for (int64_t i = springs->ptr[r]; i < springs->ptr[r + 1]; i++) {
-            for (int a = 0; a < dim; a++) {
-                force[(int64_t)springs->idx[i] * dim + a] +=
-                    pull * springs->phi[i] * springs->direction[r * dim + a];
-            }
+        if (system->dim == 2) {
+            add_spring(springs, 2, r, pull, force);
+        } else {
+            add_spring(springs, 3, r, pull, force);
         }
     }
 }
