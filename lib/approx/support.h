@@ -2,7 +2,7 @@
 #ifndef APPROX_SUPPORT_H
 #define APPROX_SUPPORT_H
 
-#include "approx/cells.h"
+#include "approx/ends.h"
 #include "approx/mls.h"
 #include "approx/point_grid.h"
 
