@@ -135,6 +135,14 @@ setup() {
     tac begin.tsv > reversed.tsv
     { cat reversed.tsv; head -n 1 begin.tsv; } > begin.tsv
     refused 2 "begin.tsv:1: not the place of node 0" mtled thrown.scene square.mts
+    # Of a body of a micrometre: what is near is relative to it.
+    cloud -d 2 -k regular -n 6 --box 0,1e-6,0,1e-6 > small.mts
+    sed -i 's/^unit = mm/unit = um/; s/^end_time = .*/end_time = 1e-6/' thrown.scene
+    rows nodes.x <(mts text small.mts) | awk '{ print 1e6 * $1, 1e6 * $2, 0, 0, 0, 0 }' > begin.tsv
+    mtled thrown.scene small.mts > u.dat 2> note
+    tac begin.tsv > reversed.tsv
+    mv reversed.tsv begin.tsv
+    refused 2 "begin.tsv:1: not the place of node 0" mtled thrown.scene small.mts
     { pressed_block; printf '[initial]\ntable = begin.tsv\nunit = mm\n'; } > edited.scene
     refused 2 "a quasi-static scene has no time" mtled edited.scene square.mts
 }
@@ -179,11 +187,11 @@ setup() {
     paste -d ' ' table.u plain.u | awk '{ d = ($1 - $3)^2 + ($2 - $4)^2; if (d > 1e-18) exit 1 }'
     cp points.tsv whole.tsv
     sed '$d' whole.tsv > points.tsv
-    refused 2 "49 rows do not match the integration points" mtled edited.scene square.mts
+    refused 2 "49 rows do not match the integration points of its regions: none is left for point 49" mtled edited.scene square.mts
     { cat whole.tsv; tail -n 1 whole.tsv; } > points.tsv
     refused 2 "51 rows for 50 integration points" mtled edited.scene square.mts
     tac whole.tsv > points.tsv
-    refused 2 "do not match the integration points" mtled edited.scene square.mts
+    refused 2 "points.tsv:1: the rows do not match the integration points" mtled edited.scene square.mts
     sed '7s/0.45$/0.5/' whole.tsv > points.tsv
     refused 2 "points.tsv:7: E = 3000, nu = 0.5" mtled edited.scene square.mts
     sed '7s/0.45$//' whole.tsv > points.tsv

@@ -1,6 +1,7 @@
 #include "model.h"
 
 #include "approx/quadrature.h"
+#include "base/box.h"
 #include "io/table.h"
 
 #include <math.h>
@@ -184,6 +185,8 @@ enum status model_input_read(const struct stream *stream, const struct scene *sc
                       scene->dim, input->cells.dim);
         goto done;
     }
+    struct box box = box_of(scene->dim, input->cells.node_count, input->cells.x);
+    input->extent = box_diagonal(&box);
     TRY(materials_of_cells(input, error));
     TRY(read_points(input, error));
     TRY(read_faces_and_nodes(input, error));
@@ -319,13 +322,13 @@ done:
     return status;
 }
 
-double model_away(const double *row, double unit, const double *x, int dim)
+double model_away(const struct model_input *input, const double *row, double unit, const double *x)
 {
     double away = 0.0;
-    for (int a = 0; a < dim; a++) {
+    for (int a = 0; a < input->cells.dim; a++) {
         away = fmax(away, fabs(row[a] * unit - x[a]));
     }
-    return away;
+    return away / input->extent;
 }
 
 void model_nodal_field(const struct model_input *input, const double *u, double *field)

@@ -19,6 +19,7 @@ struct model_input {
     struct faces faces;
     struct face_table face_table;
     int32_t *cell_material; /* material of each cell; owned */
+    double extent;          /* diagonal of the box of the nodes, m */
 };
 
 struct model {
@@ -80,10 +81,10 @@ MUST_CHECK enum status model_add_curve(const struct model_input *input, const st
 MUST_CHECK enum status model_initial(const struct model_input *input, double *u, double *v,
                                      struct error *error);
 
-/* How far, m, the place that a table's row begins with is from x[dim], along the axis where that is most;
- * rows that belong to x are no further away than MODEL_SAME_PLACE. */
-double model_away(const double *row, double unit, const double *x, int dim);
-#define MODEL_SAME_PLACE 1e-6
+/* How far the place that a table's row begins with is from x[dim], along the axis where that is most, as a
+ * share of the body's extent; rows that belong to x are no further away than MODEL_SAME_PLACE. */
+double model_away(const struct model_input *input, const double *row, double unit, const double *x);
+#define MODEL_SAME_PLACE 1e-5
 
 /* field[node_count * dim] = u_h at the nodes. */
 void model_nodal_field(const struct model_input *input, const double *u, double *field);

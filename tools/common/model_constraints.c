@@ -1,15 +1,11 @@
 #include "model_claims.h"
 
 #include "approx/scatter.h"
-#include "base/box.h"
 #include "io/table.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-
-/* Stiffness of the springs that back hat averages, in layers of cells. */
-static const double spring_share = 1.0;
 
 /* What one displacement section prescribes, and where it goes. */
 struct prescription {
@@ -19,7 +15,6 @@ struct prescription {
     struct claims *claims; /* of all sections */
     int32_t number, curve; /* of the section; of its load curve */
     struct table table;    /* SCENE_TABLE */
-    double extent;         /* SCENE_TABLE: diagonal of the body's box, m */
     bool springs;          /* adding springs, not exact rows */
     double modulus, layer; /* of the springs: Pa, and the size of the cells there, m */
 };
@@ -37,7 +32,7 @@ static enum status table_value(const struct prescription *p, const double *x, do
                               .row = p->table.values,
                               .unit = p->section->table_unit};
     enum status status = scatter_evaluate(&scatter, x, value, &distance, &spacing, error);
-    if (status == STATUS_OK && p->table.rows > 1 && !(distance <= fmin(8.0 * spacing, p->extent))) {
+    if (status == STATUS_OK && p->table.rows > 1 && !(distance <= fmin(8.0 * spacing, p->input->extent))) {
         char place[96];
         point_text(dim, x, place);
         return scene_fail(
@@ -70,8 +65,7 @@ static enum status average_of_table(const struct prescription *p, const struct b
     return STATUS_OK;
 }
 
-/* Springs of about the stiffness of a layer of cells (times the area), at the points of constrained facets.
- */
+/* A spring of about the stiffness of a layer of cells, times the area of its point of the facets. */
 static enum status add_spring(const struct prescription *p, const struct boundary_averages *points, int64_t a,
                               const double *direction, double target, struct error *error)
 {
@@ -88,7 +82,7 @@ static enum status add_spring(const struct prescription *p, const struct boundar
         return fail_memory(error, "springs");
     }
     system->spring_stiffness = grown;
-    grown[system->springs.count - 1] = spring_share * p->modulus * points->area[a] / p->layer;
+    grown[system->springs.count - 1] = p->modulus * points->area[a] / p->layer;
     return STATUS_OK;
 }
 
@@ -221,8 +215,6 @@ static enum status add_section(struct prescription *p, struct error *error)
     TRY(model_add_curve(p->input, &section->label, &section->curve, p->system, &p->curve, error));
     if (section->kind == SCENE_TABLE) {
         TRY(table_read(section->table, 2 * dim, 2 * dim, &p->table, error));
-        struct box box = box_of(dim, p->input->cells.node_count, p->input->cells.x);
-        p->extent = box_diagonal(&box);
     }
     if (section->facets.count > 0) {
         TRY(model_facets(p->input, &section->label, &section->facets, &set, &owned, error));

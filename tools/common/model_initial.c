@@ -17,7 +17,7 @@ enum status model_initial(const struct model_input *input, double *u, double *v,
     }
     for (int64_t n = 0; n < cells->node_count; n++) {
         const double *row = table.values + n * table.cols;
-        if (!(model_away(row, initial->table_unit, cells->x + n * dim, dim) <= MODEL_SAME_PLACE)) {
+        if (!(model_away(input, row, initial->table_unit, cells->x + n * dim) <= MODEL_SAME_PLACE)) {
             TRY(fail(error, STATUS_INPUT,
                      "%s:%lld: not the place of node %lld: give the nodes in the order of the mesh",
                      initial->table, (long long)table.line[n], (long long)n));

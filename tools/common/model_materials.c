@@ -36,12 +36,18 @@ static enum status check_row(const struct model_input *input, const struct scene
     int dim = input->cells.dim;
     const double *x = (const double *)input->points->data + q * dim,
                  *values = table->values + row * table->cols;
-    double away = row < table->rows ? model_away(values, section->table_unit, x, dim) : 0.0;
-    if (row == table->rows || !(away <= MODEL_SAME_PLACE)) {
+    if (row == table->rows) {
         return scene_fail(error, STATUS_INPUT, input->scene, &section->label,
-                          "table %s: %lld rows do not match the integration points of its regions, first at "
-                          "point %lld (%g m away)",
-                          section->table, (long long)table->rows, (long long)q, away);
+                          "table %s: %lld rows do not match the integration points of its regions: none is "
+                          "left for point %lld",
+                          section->table, (long long)table->rows, (long long)q);
+    }
+    double away = model_away(input, values, section->table_unit, x);
+    if (!(away <= MODEL_SAME_PLACE)) {
+        return scene_fail(error, STATUS_INPUT, input->scene, &section->label,
+                          "%s:%lld: the rows do not match the integration points of its regions: %g m from "
+                          "point %lld",
+                          section->table, (long long)table->line[row], away * input->extent, (long long)q);
     }
     double modulus = values[dim], ratio = values[dim + 1];
     if (!(modulus > 0.0) || !(ratio > -1.0 && ratio < 0.5)) {
