@@ -41,6 +41,7 @@ static const char usage[] =
     "  fieldcmp --tol-avg 0.1mm --tol-max 0.5mm u.dat reference.dat\n"
     "  mtled brain2d.scene table.mts | fieldcmp -m difference.mts - reference.dat\n";
 
+#include "regions.h"
 #include "stages.h"
 
 #include "approx/field_compare.h"
@@ -50,6 +51,15 @@ static const char usage[] =
 #include <string.h>
 
 enum { TOL_AVG, TOL_MAX, FIELD, REGION, SKIP_OUTSIDE, PERCENTILES, MAP, TEXT, OPTION_COUNT };
+
+/* What the command line asks for. */
+struct request {
+    double tol_avg, tol_max; /* infinite: any */
+    const char *field;
+    const char *region; /* NULL: all */
+    const char *map;    /* the file; NULL: none */
+    bool skip_outside, percentiles, text;
+};
 
 /* One of the two streams. */
 struct side {
@@ -72,6 +82,21 @@ static double parse_tolerance(const struct tool *tool, const struct option *opti
                      : parse_length(option->value, option->name, &value, &error),
                &error);
     return value;
+}
+
+static struct request parse(const struct tool *tool, const struct option *options)
+{
+    if (options[TEXT].given && !options[MAP].given) {
+        tool_fail(tool, STATUS_INPUT, "-t goes with -m");
+    }
+    return (struct request){.tol_avg = parse_tolerance(tool, &options[TOL_AVG]),
+                            .tol_max = parse_tolerance(tool, &options[TOL_MAX]),
+                            .field = options[FIELD].given ? options[FIELD].value : "u",
+                            .region = options[REGION].value,
+                            .map = options[MAP].value,
+                            .skip_outside = options[SKIP_OUTSIDE].given,
+                            .percentiles = options[PERCENTILES].given,
+                            .text = options[TEXT].given};
 }
 
 static void read_side(const struct tool *tool, const char *file, const char *field, struct side *side)
@@ -97,6 +122,15 @@ static void read_side(const struct tool *tool, const char *file, const char *fie
     side->field.values = section->data;
 }
 
+static void check_same_kind(const struct tool *tool, const struct nodal_field *a, const struct nodal_field *b,
+                            const char *name)
+{
+    if (a->cells.dim != b->cells.dim || a->cols != b->cols) {
+        tool_fail(tool, STATUS_INPUT, "%s: %lld columns in %dD against %lld columns in %dD", name,
+                  (long long)a->cols, a->cells.dim, (long long)b->cols, b->cells.dim);
+    }
+}
+
 /* Notes the first value that is not finite; returns whether there is one. */
 static bool has_unknown(const struct tool *tool, const struct side *side, const char *field)
 {
@@ -110,84 +144,44 @@ static bool has_unknown(const struct tool *tool, const struct side *side, const 
     return false;
 }
 
-/* The regions of A's cells: their names, and for each node the region of every cell at it. */
-struct regions {
-    int count;
-    char **name;
-    char *list;   /* the names' storage */
-    bool *member; /* node_count * count */
+/* What the two fields differ by. */
+struct findings {
+    struct regions regions; /* of A */
+    struct field_comparison comparison;
+    struct field_statistics statistics; /* of all nodes compared */
+    double reference;                   /* largest norm of B's field */
 };
 
-static enum status regions_read(const struct side *side, struct regions *regions, struct error *error)
+static void compare(const struct tool *tool, const struct request *request, const struct side *a,
+                    const struct side *b, struct findings *findings)
 {
-    enum status status = STATUS_OK;
-    const struct section *section = stream_find(&side->stream, "cells.region");
-    const struct cells *cells = &side->field.cells;
-    *regions = (struct regions){0};
-    if (section == NULL || cells->count == 0) {
-        return STATUS_OK;
+    struct error error;
+    struct field_comparison *comparison = &findings->comparison;
+    bool *chosen;
+    tool_check(tool, regions_read(&a->stream, &a->field.cells, &findings->regions, &error), &error);
+    tool_check(tool, regions_choose(&findings->regions, request->region, &chosen, &error), &error);
+    enum status status =
+        field_compare(&a->field, &b->field, chosen, request->skip_outside, comparison, &error);
+    if (status != STATUS_OK) {
+        tool_fail(tool, status, "%s%s", error.text,
+                  comparison->outside > 0 ? ": --skip-outside leaves them out" : "");
     }
-    TRY(stream_need(&side->stream, "cells.region", TYPE_I4, 1, "nodes", &section, error));
-    size_t size = strlen(section->attributes) + 1;
-    TRY(NEW_ARRAY(&regions->list, (int64_t)size, error));
-    if (section->rows != cells->count || !section_attribute(section, "names", regions->list, size)) {
-        status = fail(error, STATUS_INPUT, "cells.region: no names=, or not one row per cell");
-        goto done;
+    if (comparison->count == 0) {
+        tool_fail(tool, STATUS_INPUT, "no node of A to compare");
     }
-    TRY(NEW_ARRAY(&regions->name, (int64_t)size, error));
-    for (char *rest = regions->list; rest != NULL;) {
-        regions->name[regions->count++] = strsep(&rest, ",");
-    }
-    TRY(NEW_ARRAY(&regions->member, cells->node_count * regions->count, error));
-    const int32_t *region = section->data;
-    for (int64_t c = 0; c < cells->count; c++) {
-        if (region[c] < 0 || region[c] >= regions->count) {
-            status =
-                fail(error, STATUS_INPUT, "cells.region: row %lld: no region %d", (long long)c, region[c]);
-            goto done;
-        }
-        for (int k = 0; k <= cells->dim; k++) {
-            regions->member[cells->node[c * (cells->dim + 1) + k] * regions->count + region[c]] = true;
-        }
-    }
-done:
-    return status;
+    tool_check(tool,
+               field_statistics(comparison->count, comparison->node, comparison->difference,
+                                &findings->statistics, &error),
+               &error);
+    findings->reference = field_largest(b->field.cells.node_count, b->field.cols, b->field.values);
+    free(chosen);
 }
 
-static void regions_free(struct regions *regions)
+static void findings_free(struct findings *findings)
 {
-    free(regions->name);
-    free(regions->list);
-    free(regions->member);
-}
-
-/* chosen[node_count]: the nodes of one region; NULL (all) without its name. */
-static enum status choose_nodes(int64_t node_count, const struct regions *regions, const char *region,
-                                bool **chosen, struct error *error)
-{
-    enum status status;
-    int index = 0;
-    *chosen = NULL;
-    if (region == NULL) {
-        return STATUS_OK;
-    }
-    while (index < regions->count && strcmp(regions->name[index], region) != 0) {
-        index++;
-    }
-    if (index == regions->count) {
-        char list[256] = "none";
-        for (int r = 0; r < regions->count; r++) {
-            size_t length = r == 0 ? 0 : strlen(list);
-            snprintf(list + length, sizeof list - length, "%s%s", r == 0 ? "" : ", ", regions->name[r]);
-        }
-        return fail(error, STATUS_INPUT, "--region: no region '%s'; there are: %s", region, list);
-    }
-    TRY(NEW_ARRAY(chosen, node_count, error));
-    for (int64_t n = 0; n < node_count; n++) {
-        (*chosen)[n] = regions->member[n * regions->count + index];
-    }
-done:
-    return status;
+    regions_free(&findings->regions);
+    field_comparison_free(&findings->comparison);
+    field_statistics_free(&findings->statistics);
 }
 
 static void print_line(const char *name, const char *region, double value)
@@ -212,9 +206,10 @@ static double relative(double value, double reference)
     return value == 0.0 ? 0.0 : value / reference;
 }
 
-static void print_table(const struct field_comparison *comparison, const struct field_statistics *all,
-                        const struct side *a, double reference, bool percentiles)
+static void print_table(const struct findings *findings, const struct cells *cells, bool percentiles)
 {
+    const struct field_comparison *comparison = &findings->comparison;
+    const struct field_statistics *all = &findings->statistics;
     print_line("avg", NULL, all->average);
     print_line("max", NULL, all->largest);
     print_line("rmse", NULL, all->rmse);
@@ -224,14 +219,13 @@ static void print_table(const struct field_comparison *comparison, const struct 
         printf("outside\t%lld\n", (long long)comparison->outside);
     }
     printf("clouds\t%s\n", comparison->coincide ? "coincide" : "interpolated");
-    for (int i = 0; i < a->field.cells.dim; i++) {
-        printf("%s%.9g", i == 0 ? "max_at\t" : " ",
-               a->field.cells.x[all->largest_at * a->field.cells.dim + i]);
+    for (int i = 0; i < cells->dim; i++) {
+        printf("%s%.9g", i == 0 ? "max_at\t" : " ", cells->x[all->largest_at * cells->dim + i]);
     }
     putchar('\n');
-    print_line("reference", NULL, reference);
-    print_line("avg_relative", NULL, relative(all->average, reference));
-    print_line("max_relative", NULL, relative(all->largest, reference));
+    print_line("reference", NULL, findings->reference);
+    print_line("avg_relative", NULL, relative(all->average, findings->reference));
+    print_line("max_relative", NULL, relative(all->largest, findings->reference));
 }
 
 /* Statistics of the nodes of each region among those compared. */
@@ -300,14 +294,21 @@ static bool within(const struct tool *tool, const char *name, double value, doub
     return true;
 }
 
+/* Whether all values are numbers, and the differences within the tolerances. */
+static bool judge(const struct tool *tool, const struct request *request, const struct side *a,
+                  const struct side *b, const struct field_statistics *statistics)
+{
+    bool good = !has_unknown(tool, a, request->field);
+    good = !has_unknown(tool, b, request->field) && good;
+    good = within(tool, "avg", statistics->average, request->tol_avg) && good;
+    return within(tool, "max", statistics->largest, request->tol_max) && good;
+}
+
 int main(int argc, char *argv[])
 {
     struct tool tool;
     struct side a, b;
-    struct regions regions;
-    struct field_comparison comparison;
-    bool *chosen;
-    struct field_statistics statistics;
+    struct findings findings;
     struct error error;
     struct option options[OPTION_COUNT] = {
         [TOL_AVG] = {.name = "tol-avg", .takes_value = true},
@@ -320,55 +321,22 @@ int main(int argc, char *argv[])
         [TEXT] = {.letter = 't', .name = "text"},
     };
     tool_begin(&tool, usage, options, OPTION_COUNT, 2, 2, argc, argv);
-    double tol_avg = parse_tolerance(&tool, &options[TOL_AVG]);
-    double tol_max = parse_tolerance(&tool, &options[TOL_MAX]);
-    const char *field = options[FIELD].given ? options[FIELD].value : "u";
-    if (options[TEXT].given && !options[MAP].given) {
-        tool_fail(&tool, STATUS_INPUT, "-t goes with -m");
+    struct request request = parse(&tool, options);
+    read_side(&tool, tool.operands[0], request.field, &a);
+    read_side(&tool, tool.operands[1], request.field, &b);
+    check_same_kind(&tool, &a.field, &b.field, request.field);
+    compare(&tool, &request, &a, &b, &findings);
+    print_table(&findings, &a.field.cells, request.percentiles);
+    if (request.region == NULL) {
+        tool_check(&tool, print_regions(&findings.comparison, &findings.regions, &error), &error);
     }
-    read_side(&tool, tool.operands[0], field, &a);
-    read_side(&tool, tool.operands[1], field, &b);
-    if (a.field.cells.dim != b.field.cells.dim || a.field.cols != b.field.cols) {
-        tool_fail(&tool, STATUS_INPUT, "%s: %lld columns in %dD against %lld columns in %dD", field,
-                  (long long)a.field.cols, a.field.cells.dim, (long long)b.field.cols, b.field.cells.dim);
+    bool good = judge(&tool, &request, &a, &b, &findings.statistics);
+    if (request.map != NULL) {
+        write_map(&tool, &a, &findings.comparison, request.map, request.text);
     }
-
-    tool_check(&tool, regions_read(&a, &regions, &error), &error);
-    tool_check(&tool,
-               choose_nodes(a.field.cells.node_count, &regions, options[REGION].value, &chosen, &error),
-               &error);
-    enum status status =
-        field_compare(&a.field, &b.field, chosen, options[SKIP_OUTSIDE].given, &comparison, &error);
-    if (status != STATUS_OK) {
-        tool_fail(&tool, status, "%s%s", error.text,
-                  comparison.outside > 0 ? ": --skip-outside leaves them out" : "");
-    }
-    if (comparison.count == 0) {
-        tool_fail(&tool, STATUS_INPUT, "no node of A to compare");
-    }
-    tool_check(
-        &tool,
-        field_statistics(comparison.count, comparison.node, comparison.difference, &statistics, &error),
-        &error);
-
-    double reference = field_largest(b.field.cells.node_count, b.field.cols, b.field.values);
-    print_table(&comparison, &statistics, &a, reference, options[PERCENTILES].given);
-    if (!options[REGION].given) {
-        tool_check(&tool, print_regions(&comparison, &regions, &error), &error);
-    }
-    bool good = !has_unknown(&tool, &a, field);
-    good = !has_unknown(&tool, &b, field) && good;
-    good = within(&tool, "avg", statistics.average, tol_avg) && good;
-    good = within(&tool, "max", statistics.largest, tol_max) && good;
-    if (options[MAP].given) {
-        write_map(&tool, &a, &comparison, options[MAP].value, options[TEXT].given);
-    }
-    regions_free(&regions);
-    field_statistics_free(&statistics);
-    field_comparison_free(&comparison);
-    free(chosen);
+    findings_free(&findings);
     stream_free(&a.stream);
     stream_free(&b.stream);
-    int ended = tool_end(&tool);
-    return ended != 0 || good ? ended : (int)STATUS_VERDICT;
+    int status = tool_end(&tool);
+    return good ? status : (int)STATUS_VERDICT;
 }

@@ -219,18 +219,28 @@ static void put_values(const struct tool *tool, const struct section *field, con
                &error);
 }
 
-/* The fields of a list of names, or all. */
-static void put_fields(const struct tool *tool, const struct stream *stream, int64_t node_count,
-                       const char *names, const struct points *points, struct stream *output)
+static void put_all_fields(const struct tool *tool, const struct stream *stream, int64_t node_count,
+                           const struct points *points, struct stream *output)
 {
-    for (int64_t s = 0; names == NULL && s < stream->section_count; s++) {
+    for (int64_t s = 0; s < stream->section_count; s++) {
         if (is_field(&stream->sections[s], node_count)) {
             put_values(tool, &stream->sections[s], points, output);
         }
     }
-    for (const char *at = names; at != NULL; at = strchr(at, ',') != NULL ? strchr(at, ',') + 1 : NULL) {
-        char name[128];
-        snprintf(name, sizeof name, "%.*s", (int)strcspn(at, ","), at);
+    if (output->section_count == 1) {
+        tool_fail(tool, STATUS_INPUT, "no fields: no section of type f8 has one row per node");
+    }
+}
+
+/* The fields of a list of names. */
+static void put_fields(const struct tool *tool, const struct stream *stream, int64_t node_count,
+                       const char *names, const struct points *points, struct stream *output)
+{
+    char *list = strdup(names), *name;
+    if (list == NULL) {
+        tool_fail(tool, STATUS_SYSTEM, "out of memory");
+    }
+    for (char *rest = list; (name = strsep(&rest, ",")) != NULL;) {
         const struct section *field = stream_find(stream, name);
         if (field == NULL || !is_field(field, node_count)) {
             tool_fail(tool, STATUS_INPUT, "-f: no field '%s' of type f8 with one row per node (see mts list)",
@@ -241,16 +251,15 @@ static void put_fields(const struct tool *tool, const struct stream *stream, int
         }
         put_values(tool, field, points, output);
     }
-    if (output->section_count == 1) {
-        tool_fail(tool, STATUS_INPUT, "no fields: no section of type f8 has one row per node");
-    }
+    free(list);
 }
 
 /* x.deformed = points + displacement there. */
 static void put_deformed(const struct tool *tool, const struct stream *stream, int dim, int64_t node_count,
-                         const struct points *points, const char *attributes, struct stream *output)
+                         const struct points *points, struct stream *output)
 {
     struct error error;
+    char attributes[64];
     const struct section *u;
     double *x;
     tool_check(tool, stream_need(stream, "u", TYPE_F8, dim, "mtled", &u, &error), &error);
@@ -264,7 +273,45 @@ static void put_deformed(const struct tool *tool, const struct stream *stream, i
         x[i] += points->x[i];
     }
     tool_check(tool,
-               stream_put(output, "x.deformed", TYPE_F8, points->count, dim, attributes, x, true, &error),
+               stream_put(output, "x.deformed", TYPE_F8, points->count, dim,
+                          vector_attributes(dim, "m", attributes), x, true, &error),
+               &error);
+}
+
+/* The points wanted, with their table: the stream's own, or those of a file. */
+static void find_points(const struct tool *tool, const struct option *options, struct stream *stream, int dim,
+                        int64_t node_count, struct points *points)
+{
+    struct error error;
+    const char *file = options[POINTS].value;
+    struct support_options support = parse(tool, options, dim);
+    if (file == NULL) {
+        stage_fill(tool, stream, "shapefn");
+        tool_check(tool, view_table(stream, dim, node_count, points, &error), &error);
+        return;
+    }
+    if (options[UNIT].given) {
+        read_table(tool, file, options[UNIT].value, dim, points);
+    } else {
+        read_nodes(tool, file, dim, points);
+    }
+    tool_check(tool, make_table(&support, stream, file, points, &error), &error);
+}
+
+/* A stream of the same descent that holds the points; it takes points->x. */
+static void begin_output(const struct tool *tool, struct stream *stream, int dim, const struct points *points,
+                         struct stream *output)
+{
+    struct error error;
+    char attributes[64];
+    stream_init(output);
+    output->provenance = stream->provenance;
+    output->provenance_count = stream->provenance_count;
+    stream->provenance = NULL;
+    stream->provenance_count = 0;
+    tool_check(tool,
+               stream_put(output, "nodes.x", TYPE_F8, points->count, dim,
+                          vector_attributes(dim, "m", attributes), points->x, true, &error),
                &error);
 }
 
@@ -292,32 +339,15 @@ int main(int argc, char *argv[])
     (void)parse(&tool, options, 0); /* usage errors before waiting for the input */
     tool_read(&tool, tool.operands[0], &stream);
     tool_check(&tool, stream_nodes(&stream, &dim, &node_count, &nodes, &error), &error);
-    struct support_options support = parse(&tool, options, dim);
-    const char *file = options[POINTS].value;
-    if (file == NULL) {
-        stage_fill(&tool, &stream, "shapefn");
-        tool_check(&tool, view_table(&stream, dim, node_count, &points, &error), &error);
+    find_points(&tool, options, &stream, dim, node_count, &points);
+    begin_output(&tool, &stream, dim, &points, &output);
+    if (options[FIELD].given) {
+        put_fields(&tool, &stream, node_count, options[FIELD].value, &points, &output);
     } else {
-        if (options[UNIT].given) {
-            read_table(&tool, file, options[UNIT].value, dim, &points);
-        } else {
-            read_nodes(&tool, file, dim, &points);
-        }
-        tool_check(&tool, make_table(&support, &stream, file, &points, &error), &error);
+        put_all_fields(&tool, &stream, node_count, &points, &output);
     }
-
-    const char *attributes = dim == 2 ? "unit=m cols=x,y" : "unit=m cols=x,y,z";
-    stream_init(&output);
-    output.provenance = stream.provenance; /* moved */
-    output.provenance_count = stream.provenance_count;
-    stream.provenance = NULL;
-    stream.provenance_count = 0;
-    tool_check(&tool,
-               stream_put(&output, "nodes.x", TYPE_F8, points.count, dim, attributes, points.x, true, &error),
-               &error);
-    put_fields(&tool, &stream, node_count, options[FIELD].value, &points, &output);
     if (options[DEFORMED].given) {
-        put_deformed(&tool, &stream, dim, node_count, &points, attributes, &output);
+        put_deformed(&tool, &stream, dim, node_count, &points, &output);
     }
     tool_write(&tool, &output, options[TEXT].given);
     field_table_free(&points.own);

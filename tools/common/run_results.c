@@ -6,12 +6,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const char *vector_attributes(int dim, const char *unit, char text[64])
-{
-    snprintf(text, 64, "unit=%s cols=%s", unit, dim == 2 ? "x,y" : "x,y,z");
-    return text;
-}
-
 void run_put_frame(void *context, int64_t number, double time, const double *u)
 {
     const struct run *run = context;

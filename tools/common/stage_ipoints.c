@@ -12,17 +12,12 @@ struct ipoints_options ipoints_defaults(void)
     return (struct ipoints_options){.conforming = true};
 }
 
-static const char *length_attributes(int dim)
-{
-    return dim == 2 ? "unit=m cols=x,y" : "unit=m cols=x,y,z";
-}
-
 /* Add points.x, points.weight, points.cell; the stream takes the arrays. */
 static enum status put_points(struct stream *stream, int dim, int64_t count, const char *rule, double *x,
                               double *weight, int32_t *cell, struct error *error)
 {
-    char attributes[96];
-    snprintf(attributes, sizeof attributes, "%s rule=%s", length_attributes(dim), rule);
+    char vector[64], attributes[96];
+    snprintf(attributes, sizeof attributes, "%s rule=%s", vector_attributes(dim, "m", vector), rule);
     enum status status = stream_put(stream, "points.x", TYPE_F8, count, dim, attributes, x, true, error);
     enum status next = stream_put(stream, "points.weight", TYPE_F8, count, 1,
                                   dim == 2 ? "unit=m2" : "unit=m3", weight, true, error);
@@ -67,7 +62,7 @@ static enum status put_faces(struct stream *stream, const struct cells *cells, b
     int dim = cells->dim;
     struct faces faces = {0};
     double *x = NULL, *weight = NULL;
-    char attributes[96];
+    char vector[64], attributes[96];
     struct quadrature_rule rule = quadrature_face_rule(dim);
     TRY(faces_build(cells, boundary_only, &faces, error));
     int64_t points = faces.count * rule.points;
@@ -88,7 +83,8 @@ static enum status put_faces(struct stream *stream, const struct cells *cells, b
     status = stream_put(stream, "faces", TYPE_I4, face_count, dim, "", node, true, error);
     enum status next = stream_put(stream, "faces.cell", TYPE_I4, face_count, 2, "", cell, true, error);
     TRY(status != STATUS_OK ? status : next);
-    snprintf(attributes, sizeof attributes, "%s per_face=%d", length_attributes(dim), rule.points);
+    snprintf(attributes, sizeof attributes, "%s per_face=%d", vector_attributes(dim, "m", vector),
+             rule.points);
     status = stream_put(stream, "facepoints.x", TYPE_F8, points, dim, attributes, x, true, error);
     next = stream_put(stream, "facepoints.weight", TYPE_F8, points, 1, dim == 2 ? "unit=m" : "unit=m2",
                       weight, true, error);

@@ -64,6 +64,7 @@ static enum status tabulate(struct stream *stream, const struct mls *mls, const 
     const double *nodes;
     const struct section *points, *radius;
     double *phi = NULL, *dphi = NULL;
+    char attributes[64];
     TRY(stream_nodes(stream, &dim, &node_count, &nodes, error));
     TRY(stream_need(stream, section, TYPE_F8, dim, "ipoints", &points, error));
     TRY(stream_need(stream, "support.radius", TYPE_F8, 1, "support", &radius, error));
@@ -91,7 +92,7 @@ static enum status tabulate(struct stream *stream, const struct mls *mls, const 
     phi = NULL;
     if (status == STATUS_OK && gradients) {
         status = stream_put(stream, "shape.dphi", TYPE_F8, pairs, dim,
-                            dim == 2 ? "unit=1/m cols=x,y" : "unit=1/m cols=x,y,z", dphi, true, error);
+                            vector_attributes(dim, "1/m", attributes), dphi, true, error);
         dphi = NULL;
     }
 done:
@@ -131,6 +132,7 @@ static enum status put_smoothed(struct stream *stream, struct error *error)
     struct neighbours lists;
     struct faces faces;
     const struct section *phi, *points;
+    char attributes[64];
     TRY(stream_cells(stream, true, &cells, error));
     int per_face = quadrature_face_rule(cells.dim).points;
     TRY(view_faces(stream, &cells, &faces, error));
@@ -149,7 +151,7 @@ static enum status put_smoothed(struct stream *stream, struct error *error)
     next = stream_put(stream, "shape.phi", TYPE_F8, pairs, 1, "", table.phi, true, error);
     status = status != STATUS_OK ? status : next;
     next = stream_put(stream, "shape.dphi", TYPE_F8, pairs, cells.dim,
-                      cells.dim == 2 ? "unit=1/m cols=x,y" : "unit=1/m cols=x,y,z", table.dphi, true, error);
+                      vector_attributes(cells.dim, "1/m", attributes), table.dphi, true, error);
     status = status != STATUS_OK ? status : next;
     table = (struct smoothed_table){0};
 done:

@@ -87,6 +87,12 @@ enum status stream_neighbours(const struct stream *stream, const char *prefix, i
     return STATUS_OK;
 }
 
+const char *vector_attributes(int dim, const char *unit, char text[64])
+{
+    snprintf(text, 64, "unit=%s cols=%s", unit, dim == 2 ? "x,y" : "x,y,z");
+    return text;
+}
+
 /* A stage that has never run leaves none of its sections. */
 static void fill_one(const struct tool *tool, struct stream *stream, const char *stage, char *ran,
                      size_t size)

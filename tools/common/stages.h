@@ -36,6 +36,9 @@ MUST_CHECK enum status stream_neighbours(const struct stream *stream, const char
 MUST_CHECK enum status stream_nodes(const struct stream *stream, int *dim, int64_t *node_count,
                                     const double **x, struct error *error);
 
+/* Attributes of a section of one vector in each row, "unit=UNIT cols=x,y[,z]", into text[64]; returns it. */
+const char *vector_attributes(int dim, const char *unit, char text[64]);
+
 /* Add the sections of ipoints: points.*, faces, faces.cell, facepoints.* (lib/README.md). *unresolved counts
  * the cells that are too coarse even at the last level of adaptive integration. */
 MUST_CHECK enum status stage_ipoints(struct stream *stream, const struct ipoints_options *options,
