@@ -96,6 +96,10 @@ $(BUILD)/man/man5/%: tools/%
 	@mkdir -p $(@D)
 	cp $< $@
 
+$(BUILD)/man/man5/mts.5: tools/sections.awk lib/README.md tools/mts.5
+	@mkdir -p $(@D)
+	awk -f $^ > $@
+
 # What is built needs what deps installs: with it, goals are made one after the other, whatever -j says.
 ifneq ($(filter deps,$(MAKECMDGOALS)),)
 .NOTPARALLEL:

@@ -72,8 +72,9 @@ setup() {
         [ "$(grep -c . "$tool.1")" -ge "$("$tool" -h | grep -c .)" ]
     done
     grep -q 'mtled\\-scene (5)' mtled.1
+    grep -q '^.fBnodes.x.fR (f8; N x dim; ' "$BUILD/man/man5/mts.5"
     if command -v groff > /dev/null; then
-        for page in ./*.1 "$top"/tools/*.5; do
+        for page in ./*.1 "$BUILD"/man/man5/*.5; do
             groff -man -ww -Tascii "$page" 2> warnings > /dev/null
             [ ! -s warnings ] || { echo "$page: $(head -n 1 warnings)"; false; }
         done
