@@ -54,10 +54,6 @@ balance() {
     calc "($(reaction "$work/$1.dat" plate 2) + $(reaction "$work/$1.dat" middle 2) + ${2:-0}) / $(reaction "$work/$1.dat" middle 2)"
 }
 
-count() {
-    mts print nodes.x "$work/$1.mts" | wc -l
-}
-
 mesh coarse 0.008 0.2
 mesh fine 0.004 0.2
 mesh even 0.004 1

@@ -36,10 +36,6 @@ balance() {
     calc "1 + $(reaction "$work/$1.dat" middle 3) / $(reaction "$work/$1.dat" plate 3)"
 }
 
-count() {
-    mts print nodes.x "$work/$1.mts" | wc -l
-}
-
 # pushing PUSH: the force of the eighth's plate, along the push.
 pushing() {
     press coarsest push "$1"

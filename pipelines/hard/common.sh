@@ -118,6 +118,11 @@ no_estimate() {
     printf '%s\t%s\tnone\tnone\t-\t-\t-\t-\tFAIL\n' "$(basename "$0" .sh)" "$1"
 }
 
+# count TABLE: the number of nodes of $work/TABLE.mts.
+count() {
+    mts print nodes.x "$work/$1.mts" | wc -l
+}
+
 # reported FILE NAME: a number of mtled's report.
 reported() {
     awk -F '\t' -v name="$2" '$1 == name { print $2 }' "$1.log"
