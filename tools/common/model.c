@@ -1,40 +1,13 @@
 #include "model.h"
 
+#include "names.h"
+
 #include "approx/quadrature.h"
 #include "base/box.h"
 #include "io/table.h"
 
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
-
-/* Index of `name` in the comma list `names`, or -1. */
-static int64_t index_in_list(const char *names, const char *name)
-{
-    size_t length = strlen(name);
-    int64_t index = 0;
-    for (const char *at = names;; index++) {
-        size_t item = strcspn(at, ",");
-        if (item == length && strncmp(at, name, length) == 0) {
-            return index;
-        }
-        if (at[item] == '\0') {
-            return -1;
-        }
-        at += item + 1;
-    }
-}
-
-/* The names= of a section, allocated; "" when it has none. */
-static enum status names_of(const struct section *section, char **names, struct error *error)
-{
-    size_t size = strlen(section->attributes) + 1;
-    enum status status = NEW_ARRAY(names, (int64_t)size, error);
-    if (status == STATUS_OK && !section_attribute(section, "names", *names, size)) {
-        (*names)[0] = '\0';
-    }
-    return status;
-}
 
 /* Material of each region: -1 where the scene names none. */
 static enum status materials_of_regions(const struct scene *scene, const char *names, int64_t region_count,
@@ -46,7 +19,7 @@ static enum status materials_of_regions(const struct scene *scene, const char *n
     for (int64_t m = 0; m < scene->material_count; m++) {
         const struct scene_material *section = &scene->materials[m];
         for (int64_t i = 0; i < section->regions.count; i++) {
-            int64_t region = index_in_list(names, section->regions.names[i]);
+            int64_t region = names_index(names, section->regions.names[i]);
             if (region < 0 || region >= region_count) {
                 return scene_fail(error, STATUS_INPUT, scene, &section->label,
                                   "the mesh has no region '%s'; present: %s", section->regions.names[i],
@@ -67,7 +40,7 @@ static enum status materials_of_cells(struct model_input *input, struct error *e
     int32_t *material = NULL;
     int64_t region_count = 1;
     TRY(stream_need(input->stream, "cells.region", TYPE_I4, 1, "nodes", &region, error));
-    TRY(names_of(region, &names, error));
+    TRY(names_of_section(region, &names, error));
     const int32_t *of_cell = region->data;
     for (const char *at = names; *at != '\0'; at++) {
         region_count += *at == ',';
@@ -134,10 +107,9 @@ static enum status read_faces_and_nodes(struct model_input *input, struct error 
 {
     enum status status;
     const struct stream *stream = input->stream;
-    const struct section *faces, *face_cell, *facepoints, *face_phi, *node_phi;
+    const struct section *facepoints, *face_phi, *node_phi;
     int dim = input->cells.dim, per_face = quadrature_face_rule(dim).points;
-    TRY(stream_need(stream, "faces", TYPE_I4, dim, "ipoints", &faces, error));
-    TRY(stream_need(stream, "faces.cell", TYPE_I4, 2, "ipoints", &face_cell, error));
+    TRY(stream_faces(stream, &input->cells, &input->faces, error));
     TRY(stream_need(stream, "facepoints.x", TYPE_F8, dim, "ipoints", &facepoints, error));
     TRY(stream_need(stream, "face.phi", TYPE_F8, 1, "shapefn", &face_phi, error));
     TRY(stream_need(stream, "node.phi", TYPE_F8, 1, "shapefn", &node_phi, error));
@@ -145,21 +117,12 @@ static enum status read_faces_and_nodes(struct model_input *input, struct error 
                           error));
     TRY(stream_neighbours(stream, "node", input->cells.node_count, input->cells.node_count,
                           &input->node_lists, error));
-    input->faces =
-        (struct faces){.dim = dim, .count = faces->rows, .node = faces->data, .cell = face_cell->data};
-    if (face_cell->rows != faces->rows || facepoints->rows != faces->rows * per_face ||
+    if (facepoints->rows != input->faces.count * per_face ||
         face_phi->rows != input->face_lists.ptr[facepoints->rows] ||
         node_phi->rows != input->node_lists.ptr[input->cells.node_count]) {
         status = fail(error, STATUS_INPUT,
                       "faces, face.phi, node.phi: do not fit each other: run the stages again");
         goto done;
-    }
-    for (int64_t i = 0; i < faces->rows * dim; i++) {
-        if (input->faces.node[i] < 0 || input->faces.node[i] >= input->cells.node_count) {
-            status = fail(error, STATUS_INPUT, "faces: row %lld: no node %d", (long long)(i / dim),
-                          input->faces.node[i]);
-            goto done;
-        }
     }
     input->face_phi = face_phi->data;
     input->node_phi = node_phi->data;
@@ -203,87 +166,6 @@ void model_input_free(struct model_input *input)
     input->cell_material = NULL;
 }
 
-enum status model_facets(const struct model_input *input, const struct scene_label *label,
-                         const struct name_list *names, struct facet_set *set, int32_t **owned,
-                         struct error *error)
-{
-    enum status status;
-    const struct section *facets, *of_facet;
-    char *present = NULL;
-    bool *wanted = NULL;
-    int dim = input->cells.dim;
-    *set = (struct facet_set){0};
-    TRY(stream_need(input->stream, "facets", TYPE_I4, dim, "nodes", &facets, error));
-    TRY(stream_need(input->stream, "facets.set", TYPE_I4, 1, "nodes", &of_facet, error));
-    TRY(names_of(of_facet, &present, error));
-    TRY(NEW_ARRAY(&wanted, (int64_t)strlen(present) + 1, error)); /* at least one entry for each name */
-    for (int64_t i = 0; i < names->count; i++) {
-        int64_t group = index_in_list(present, names->names[i]);
-        if (group < 0) {
-            status = scene_fail(error, STATUS_INPUT, input->scene, label,
-                                "the mesh has no facet group '%s'; present: %s", names->names[i],
-                                present[0] != '\0' ? present : "none");
-            goto done;
-        }
-        wanted[group] = true;
-    }
-    TRY(NEW_ARRAY(owned, facets->rows * dim, error));
-    for (int64_t f = 0; f < facets->rows && f < of_facet->rows; f++) {
-        int32_t group = ((const int32_t *)of_facet->data)[f];
-        if (group >= 0 && (size_t)group <= strlen(present) && wanted[group]) {
-            memcpy(*owned + set->count * dim, (const int32_t *)facets->data + f * dim,
-                   (size_t)dim * sizeof **owned);
-            set->count++;
-        }
-    }
-    set->facet = *owned;
-    if (set->count == 0) {
-        status = scene_fail(error, STATUS_INPUT, input->scene, label, "its facet groups are empty");
-    }
-done:
-    free(present);
-    free(wanted);
-    return status;
-}
-
-enum status model_nodes(const struct model_input *input, const struct scene_label *label,
-                        const struct name_list *names, int32_t **nodes, int64_t *count, struct error *error)
-{
-    enum status status;
-    const struct section *ptr, *idx;
-    struct neighbours sets;
-    char *present = NULL;
-    bool *member = NULL;
-    *count = 0;
-    TRY(stream_need(input->stream, "sets.ptr", TYPE_I8, 1, "nodes", &ptr, error));
-    TRY(stream_need(input->stream, "sets.idx", TYPE_I4, 1, "nodes", &idx, error));
-    TRY(stream_neighbours(input->stream, "sets", ptr->rows - 1, input->cells.node_count, &sets, error));
-    TRY(names_of(ptr, &present, error));
-    TRY(NEW_ARRAY(&member, input->cells.node_count, error));
-    for (int64_t i = 0; i < names->count; i++) {
-        int64_t set = index_in_list(present, names->names[i]);
-        if (set < 0 || set >= sets.count) {
-            status = scene_fail(error, STATUS_INPUT, input->scene, label,
-                                "the mesh has no node set '%s'; present: %s", names->names[i],
-                                present[0] != '\0' ? present : "none");
-            goto done;
-        }
-        for (int64_t k = sets.ptr[set]; k < sets.ptr[set + 1]; k++) {
-            member[sets.idx[k]] = true;
-        }
-    }
-    TRY(NEW_ARRAY(nodes, input->cells.node_count, error));
-    for (int64_t n = 0; n < input->cells.node_count; n++) {
-        if (member[n]) {
-            (*nodes)[(*count)++] = (int32_t)n;
-        }
-    }
-done:
-    free(present);
-    free(member);
-    return status;
-}
-
 enum status model_add_curve(const struct model_input *input, const struct scene_label *label,
                             const struct scene_curve *curve, struct solid_system *system, int32_t *index,
                             struct error *error)
@@ -320,6 +202,15 @@ enum status model_add_curve(const struct model_input *input, const struct scene_
 done:
     table_free(&table);
     return status;
+}
+
+double model_stiffest(const struct solid_system *system)
+{
+    double modulus = 0.0;
+    for (int64_t m = 0; m < system->body.material_count; m++) {
+        modulus = fmax(modulus, material_wave_modulus(&system->body.materials[m]));
+    }
+    return modulus;
 }
 
 double model_away(const struct model_input *input, const double *row, double unit, const double *x)

@@ -76,6 +76,9 @@ MUST_CHECK enum status model_add_curve(const struct model_input *input, const st
                                        const struct scene_curve *curve, struct solid_system *system,
                                        int32_t *index, struct error *error);
 
+/* The largest wave modulus of the body's materials, Pa. */
+double model_stiffest(const struct solid_system *system);
+
 /* u, v[node_count * dim]: the state at the begin that the scene's [initial] gives, m and m/s, as parameters.
  */
 MUST_CHECK enum status model_initial(const struct model_input *input, double *u, double *v,

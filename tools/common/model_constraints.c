@@ -1,4 +1,5 @@
 #include "model_claims.h"
+#include "model_repeats.h"
 
 #include "approx/scatter.h"
 #include "io/table.h"
@@ -191,9 +192,7 @@ static enum status add_springs(struct prescription *p, const struct facet_set *s
     area /= (double)set->count;
     p->springs = true;
     p->layer = p->input->cells.dim == 2 ? area : sqrt(2.0 * area);
-    for (int64_t m = 0; m < p->system->body.material_count; m++) {
-        p->modulus = fmax(p->modulus, material_wave_modulus(&p->system->body.materials[m]));
-    }
+    p->modulus = model_stiffest(p->system);
     for (int64_t a = 0; a < points.count; a++) {
         TRY(add_average(p, &points, a, error));
     }
@@ -238,70 +237,6 @@ done:
     return status;
 }
 
-/* Same place, same direction and same pairs as an earlier row? */
-static bool same_row(const struct constraint_rows *rows, int64_t r, int64_t s)
-{
-    int64_t length = rows->ptr[r + 1] - rows->ptr[r];
-    double along = 0.0, across = 0.0;
-    if (rows->node[r] != rows->node[s] || rows->ptr[s + 1] - rows->ptr[s] != length) {
-        return false;
-    }
-    for (int a = 0; a < rows->dim; a++) {
-        along += rows->direction[r * rows->dim + a] * rows->direction[s * rows->dim + a];
-    }
-    for (int64_t i = 0; i < length; i++) {
-        if (rows->idx[rows->ptr[r] + i] != rows->idx[rows->ptr[s] + i]) {
-            return false;
-        }
-        across += fabs(rows->phi[rows->ptr[r] + i] - rows->phi[rows->ptr[s] + i]);
-    }
-    return fabs(along) > 1.0 - 1e-9 && across < 1e-9;
-}
-
-/* Drop a row that repeats an earlier one; with another value it is an error. */
-static enum status settle_repeats(const struct model_input *input, struct constraint_rows *rows,
-                                  int64_t first, struct error *error)
-{
-    struct constraint_rows kept;
-    enum status status = STATUS_OK;
-    constraint_rows_init(&kept, rows->dim);
-    for (int64_t r = 0; r < rows->count; r++) {
-        bool repeated = false;
-        for (int64_t s = 0; r >= first && s < r && !repeated; s++) {
-            if (!same_row(rows, r, s)) {
-                continue;
-            }
-            double along = 0.0;
-            for (int a = 0; a < rows->dim; a++) {
-                along += rows->direction[r * rows->dim + a] * rows->direction[s * rows->dim + a];
-            }
-            repeated = true;
-            if (!(fabs(rows->target[r] - copysign(1.0, along) * rows->target[s]) <=
-                  1e-9 * (fabs(rows->target[r]) + 1e-9))) {
-                char place[96];
-                point_text(rows->dim, input->cells.x + (int64_t)rows->node[r] * rows->dim, place);
-                status = scene_fail(error, STATUS_INPUT, input->scene,
-                                    &input->scene->displacements[rows->section[r]].label,
-                                    "node %d at %s is prescribed twice: %g m here, %g m in [displacement %s]",
-                                    rows->node[r], place, rows->target[r], rows->target[s],
-                                    input->scene->displacements[rows->section[s]].label.name);
-                goto done;
-            }
-        }
-        if (!repeated) {
-            TRY(constraint_rows_add(&kept, rows->ptr[r + 1] - rows->ptr[r], rows->idx + rows->ptr[r],
-                                    rows->phi + rows->ptr[r], rows->direction + r * rows->dim,
-                                    rows->target[r], rows->curve[r], rows->section[r], rows->node[r], error));
-        }
-    }
-    constraint_rows_free(rows);
-    *rows = kept;
-    constraint_rows_init(&kept, rows->dim);
-done:
-    constraint_rows_free(&kept);
-    return status;
-}
-
 enum status model_add_constraints(const struct model_input *input, struct solid_system *system,
                                   struct error *error)
 {
@@ -316,7 +251,7 @@ enum status model_add_constraints(const struct model_input *input, struct solid_
                                  .number = (int32_t)i};
         TRY(add_section(&p, error));
         if (i > 0) {
-            TRY(settle_repeats(input, &system->rows, first, error));
+            TRY(repeats_drop(input, first, &system->rows, error));
         }
     }
     TRY(claims_check(input, &claims, error));

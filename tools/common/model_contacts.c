@@ -35,10 +35,7 @@ done:
 static double default_stiffness(const struct model_input *input, const struct solid_system *system,
                                 const struct boundary_averages *averages)
 {
-    double modulus = 0.0, area = 0.0;
-    for (int64_t m = 0; m < system->body.material_count; m++) {
-        modulus = fmax(modulus, material_wave_modulus(&system->body.materials[m]));
-    }
+    double modulus = model_stiffest(system), area = 0.0;
     for (int64_t a = 0; a < averages->count; a++) {
         area += averages->area[a];
     }

@@ -2,7 +2,6 @@
 
 #include "io/table.h"
 
-#include <math.h>
 #include <stdlib.h>
 
 /* A compressible body does not lock, and averaging would only make it too soft in bending: all of the law

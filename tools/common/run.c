@@ -1,7 +1,6 @@
 #include "run.h"
 
 #include <stdarg.h>
-#include <stdlib.h>
 
 static void show_progress(struct display *display, const struct progress *progress)
 {
@@ -56,8 +55,8 @@ static int64_t next_frame(const struct stream *stream)
 void run_fail(struct run *run, enum status status, const char *format, ...)
 {
     const struct scene_output *output = &run->scene->output;
-    char text[sizeof((struct error *)0)->text];
     struct error reason;
+    char text[sizeof reason.text];
     va_list values;
     va_start(values, format);
     vsnprintf(text, sizeof text, format, values);

@@ -2,7 +2,6 @@
 
 #include "interrupt.h"
 
-#include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 

@@ -15,11 +15,11 @@ static void judge(struct run *run, const struct relaxation_report *report)
         return;
     }
     if (report->outcome == RELAXATION_STALLED) {
-        run_fail(run, STATUS_VERDICT,
-                 "%s: step %lld: the estimated error stays at %.2g of the displacement: a larger tolerance, "
-                 "a finer cloud at "
-                 "the contacts, or supports against rigid motion may help",
-                 scene->path, (long long)report->steps, report->error);
+        run_fail(
+            run, STATUS_VERDICT,
+            "%s: step %lld: the estimated error stays at %.2g of the displacement: a larger tolerance, a "
+            "finer cloud at the contacts, or supports against rigid motion may help",
+            scene->path, (long long)report->steps, report->error);
     }
     if (report->outcome == RELAXATION_STOPPED) {
         run_checkpoint_stop(run, report->steps);
@@ -30,8 +30,7 @@ static void judge(struct run *run, const struct relaxation_report *report)
         point_text(scene->dim, x, place);
         run_fail(run, STATUS_VERDICT,
                  "%s: step %lld: integration point %lld at %s is inverted (J = %.3g): apply the load in "
-                 "more steps "
-                 "(ramp_steps > %lld), or a smaller one, or refine there",
+                 "more steps (ramp_steps > %lld), or a smaller one, or refine there",
                  scene->path, (long long)report->steps, (long long)report->inverted_point, place,
                  report->least_jacobian, (long long)report->ramp_steps);
     }

@@ -101,28 +101,6 @@ done:
     return status;
 }
 
-/* Faces of a stream, in view, their nodes checked; shape_smooth checks their cells. */
-static enum status view_faces(const struct stream *stream, const struct cells *cells, struct faces *faces,
-                              struct error *error)
-{
-    enum status status;
-    const struct section *node, *cell;
-    TRY(stream_need(stream, "faces", TYPE_I4, cells->dim, "ipoints", &node, error));
-    TRY(stream_need(stream, "faces.cell", TYPE_I4, 2, "ipoints", &cell, error));
-    *faces = (struct faces){.dim = cells->dim, .count = node->rows, .node = node->data, .cell = cell->data};
-    if (cell->rows != faces->count) {
-        return fail(error, STATUS_INPUT, "faces.cell: does not fit faces: run ipoints again");
-    }
-    for (int64_t i = 0; i < faces->count * faces->dim; i++) {
-        if (faces->node[i] < 0 || faces->node[i] >= cells->node_count) {
-            return fail(error, STATUS_INPUT, "faces: row %lld: no node %d", (long long)(i / faces->dim),
-                        faces->node[i]);
-        }
-    }
-done:
-    return status;
-}
-
 /* Replace the points' lists and table by those of the conforming cells. */
 static enum status put_smoothed(struct stream *stream, struct error *error)
 {
@@ -135,7 +113,7 @@ static enum status put_smoothed(struct stream *stream, struct error *error)
     char attributes[64];
     TRY(stream_cells(stream, true, &cells, error));
     int per_face = quadrature_face_rule(cells.dim).points;
-    TRY(view_faces(stream, &cells, &faces, error));
+    TRY(stream_faces(stream, &cells, &faces, error)); /* their cells: shape_smooth */
     TRY(stream_need(stream, "face.phi", TYPE_F8, 1, "shapefn", &phi, error));
     TRY(stream_need(stream, "points.x", TYPE_F8, cells.dim, "ipoints", &points, error));
     TRY(stream_neighbours(stream, "face", faces.count * per_face, cells.node_count, &lists, error));
@@ -162,10 +140,9 @@ done:
 enum status stage_shapefn(struct stream *stream, const struct mls *mls, struct error *error)
 {
     enum status status;
-    char rule[32] = "";
     const struct section *points;
     TRY(stream_need(stream, "points.x", TYPE_F8, mls->dim, "ipoints", &points, error));
-    bool conforming = section_attribute(points, "rule", rule, sizeof rule) && strcmp(rule, "conforming") == 0;
+    bool conforming = points_are_conforming(points);
     if (conforming || stream_find(stream, "facepoints.x") != NULL) {
         TRY(tabulate(stream, mls, "facepoints.x", "face", "face.phi", false, error));
     }

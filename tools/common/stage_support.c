@@ -3,27 +3,6 @@
 #include "mls_options.h"
 
 #include <stdlib.h>
-#include <string.h>
-
-/* Groups of facets in view; none where the stream has none. */
-static enum status view_facets(const struct stream *stream, int dim, struct named_facets *facets,
-                               struct error *error)
-{
-    enum status status = STATUS_OK;
-    const struct section *facet, *set;
-    *facets = (struct named_facets){0};
-    if (stream_find(stream, "facets") == NULL) {
-        return STATUS_OK;
-    }
-    TRY(stream_need(stream, "facets", TYPE_I4, dim, "nodes", &facet, error));
-    TRY(stream_need(stream, "facets.set", TYPE_I4, 1, "nodes", &set, error));
-    if (set->rows != facet->rows) {
-        return fail(error, STATUS_INPUT, "facets.set: does not fit facets");
-    }
-    *facets = (struct named_facets){.count = facet->rows, .facet = facet->data, .set = set->data};
-done:
-    return status;
-}
 
 /* Radii by the local spacing: from the cells where there are any, else from the nearest nodes. */
 static enum status local_radii(const struct stream *stream, const struct support_options *options,
@@ -38,7 +17,7 @@ static enum status local_radii(const struct stream *stream, const struct support
     TRY(stream_cells(stream, false, &cells, error));
     if (cells.count > 0) {
         TRY(cells_node_spacing(&cells, spacing, error));
-        TRY(view_facets(stream, cells.dim, &facets, error));
+        TRY(stream_facets(stream, false, cells.dim, &facets, error));
         TRY(NEW_ARRAY(&beside, node_count, error));
         TRY(cells_beside_ends(&cells, &facets, beside, error));
     } else {
@@ -84,10 +63,9 @@ static enum status put_lists(struct stream *stream, const struct support_options
 {
     enum status status, next;
     struct support_lists lists = {0};
-    char name[64], what[64];
-    snprintf(what, sizeof what, "%s", points->name);
+    char name[64];
     int64_t count = points->rows;
-    TRY(support_build(options, grid, count, points->data, what, &lists, error));
+    TRY(support_build(options, grid, count, points->data, points->name, &lists, error));
     int64_t pairs = lists.ptr[count];
     int entry = report->lists++;
     report->list[entry].what = called;
@@ -111,12 +89,6 @@ done:
     return status;
 }
 
-static bool is_conforming(const struct section *points)
-{
-    char rule[32];
-    return section_attribute(points, "rule", rule, sizeof rule) && strcmp(rule, "conforming") == 0;
-}
-
 enum status stage_support(struct stream *stream, const struct support_options *options,
                           struct support_report *report, struct error *error)
 {
@@ -125,22 +97,20 @@ enum status stage_support(struct stream *stream, const struct support_options *o
     int dim;
     int64_t node_count;
     const double *x;
+    const struct section *points, *facepoints;
     static const char *const void_prefixes[] = {"nbr.", "face.", "node.", "support.radius", "shape."};
     *report = (struct support_report){0};
     for (size_t i = 0; i < sizeof void_prefixes / sizeof *void_prefixes; i++) {
         stream_remove_prefix(stream, void_prefixes[i]);
     }
     TRY(stream_nodes(stream, &dim, &node_count, &x, error));
-    const struct section *points;
     TRY(stream_need(stream, "points.x", TYPE_F8, dim, "ipoints", &points, error));
     TRY(put_radii(stream, options, node_count, x, error));
     TRY(point_grid_build(&grid, dim, node_count, x, stream_find(stream, "support.radius")->data, error));
-    if (!is_conforming(stream_find(stream, "points.x"))) {
-        TRY(put_lists(stream, options, &grid, stream_find(stream, "points.x"), "nbr", "integration points",
-                      report, error));
+    if (!points_are_conforming(points)) { /* else shapefn makes their lists from those of the faces */
+        TRY(put_lists(stream, options, &grid, points, "nbr", "integration points", report, error));
     }
-    const struct section *facepoints = stream_find(stream, "facepoints.x");
-    if (facepoints != NULL) {
+    if (stream_find(stream, "facepoints.x") != NULL) {
         TRY(stream_need(stream, "facepoints.x", TYPE_F8, dim, "ipoints", &facepoints, error));
         TRY(put_lists(stream, options, &grid, facepoints, "face", "points on faces", report, error));
     }

@@ -5,10 +5,9 @@
 #define TOOLS_STAGES_H
 
 #include "tool.h"
+#include "views.h"
 
 #include "approx/adaptive.h"
-#include "approx/cells.h"
-#include "approx/shape.h"
 #include "approx/support.h"
 
 /* How ipoints places integration points. */
@@ -20,24 +19,9 @@ struct ipoints_options {
     bool given_radius; /* refinement.support's radius or factor was asked for: else the stream's radii, if any
                         */
     int64_t lattice[3]; /* else, when lattice[0] > 0: a regular lattice of evaluation points over the nodes'
-                           box */
+                           box; zeros behind the first: as that one along all axes */
 };
 struct ipoints_options ipoints_defaults(void);
-
-/* Nodes and background cells of a stream, in view. cells->count is 0 when there are none. */
-MUST_CHECK enum status stream_cells(const struct stream *stream, bool needed, struct cells *cells,
-                                    struct error *error);
-
-/* A CSR list of a stream, in view and checked: PREFIX.ptr (rows + 1), PREFIX.idx (within [0, columns)). */
-MUST_CHECK enum status stream_neighbours(const struct stream *stream, const char *prefix, int64_t rows,
-                                         int64_t columns, struct neighbours *lists, struct error *error);
-
-/* Node coordinates, checked to be finite. */
-MUST_CHECK enum status stream_nodes(const struct stream *stream, int *dim, int64_t *node_count,
-                                    const double **x, struct error *error);
-
-/* Attributes of a section of one vector in each row, "unit=UNIT cols=x,y[,z]", into text[64]; returns it. */
-const char *vector_attributes(int dim, const char *unit, char text[64]);
 
 /* Add the sections of ipoints: points.*, faces, faces.cell, facepoints.* (lib/README.md). *unresolved counts
  * the cells that are too coarse even at the last level of adaptive integration. */

@@ -1,0 +1,140 @@
+#include "views.h"
+
+#include "base/memory.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+enum status stream_nodes(const struct stream *stream, int *dim, int64_t *node_count, const double **x,
+                         struct error *error)
+{
+    const struct section *nodes;
+    enum status status = stream_need(stream, "nodes.x", TYPE_F8, 0, "nodes", &nodes, error);
+    if (status != STATUS_OK) {
+        return status;
+    }
+    if ((nodes->cols != 2 && nodes->cols != 3) || nodes->rows < 1 || nodes->rows > INT32_MAX) {
+        return fail(error, STATUS_INPUT,
+                    "nodes.x: %lld rows of %lld columns: not a cloud in 2 or 3 dimensions",
+                    (long long)nodes->rows, (long long)nodes->cols);
+    }
+    *dim = (int)nodes->cols;
+    *node_count = nodes->rows;
+    *x = nodes->data;
+    for (int64_t i = 0; i < nodes->rows * nodes->cols; i++) {
+        if (!isfinite((*x)[i])) {
+            return fail(error, STATUS_INPUT, "nodes.x: row %lld: not a finite coordinate",
+                        (long long)(i / nodes->cols));
+        }
+    }
+    return STATUS_OK;
+}
+
+enum status stream_cells(const struct stream *stream, bool needed, struct cells *cells, struct error *error)
+{
+    const struct section *section = stream_find(stream, "cells");
+    *cells = (struct cells){0};
+    enum status status = stream_nodes(stream, &cells->dim, &cells->node_count, &cells->x, error);
+    if (status != STATUS_OK || (section == NULL && !needed)) {
+        return status;
+    }
+    status = stream_need(stream, "cells", TYPE_I4, cells->dim + 1, "nodes", &section, error);
+    if (status != STATUS_OK) {
+        return status;
+    }
+    cells->count = section->rows;
+    cells->node = section->data;
+    return cells_check(cells, error);
+}
+
+enum status stream_facets(const struct stream *stream, bool needed, int dim, struct named_facets *facets,
+                          struct error *error)
+{
+    enum status status = STATUS_OK;
+    const struct section *facet, *set;
+    *facets = (struct named_facets){0};
+    if (!needed && stream_find(stream, "facets") == NULL) {
+        return STATUS_OK;
+    }
+    TRY(stream_need(stream, "facets", TYPE_I4, dim, "nodes", &facet, error));
+    TRY(stream_need(stream, "facets.set", TYPE_I4, 1, "nodes", &set, error));
+    if (set->rows != facet->rows) {
+        return fail(error, STATUS_INPUT, "facets.set: does not fit facets");
+    }
+    *facets = (struct named_facets){.count = facet->rows, .facet = facet->data, .set = set->data};
+done:
+    return status;
+}
+
+enum status stream_faces(const struct stream *stream, const struct cells *cells, struct faces *faces,
+                         struct error *error)
+{
+    enum status status;
+    const struct section *node, *cell;
+    TRY(stream_need(stream, "faces", TYPE_I4, cells->dim, "ipoints", &node, error));
+    TRY(stream_need(stream, "faces.cell", TYPE_I4, 2, "ipoints", &cell, error));
+    *faces = (struct faces){.dim = cells->dim, .count = node->rows, .node = node->data, .cell = cell->data};
+    if (cell->rows != faces->count) {
+        return fail(error, STATUS_INPUT, "faces.cell: does not fit faces: run ipoints again");
+    }
+    for (int64_t i = 0; i < faces->count * faces->dim; i++) {
+        if (faces->node[i] < 0 || faces->node[i] >= cells->node_count) {
+            return fail(error, STATUS_INPUT, "faces: row %lld: no node %d", (long long)(i / faces->dim),
+                        faces->node[i]);
+        }
+    }
+done:
+    return status;
+}
+
+bool points_are_conforming(const struct section *points)
+{
+    char rule[32];
+    return section_attribute(points, "rule", rule, sizeof rule) && strcmp(rule, "conforming") == 0;
+}
+
+enum status stream_neighbours(const struct stream *stream, const char *prefix, int64_t rows, int64_t columns,
+                              struct neighbours *lists, struct error *error)
+{
+    char name[64];
+    const struct section *ptr, *idx, *widen;
+    snprintf(name, sizeof name, "%s.ptr", prefix);
+    enum status status = stream_need(stream, name, TYPE_I8, 1, "support", &ptr, error);
+    if (status != STATUS_OK) {
+        return status;
+    }
+    snprintf(name, sizeof name, "%s.idx", prefix);
+    status = stream_need(stream, name, TYPE_I4, 1, "support", &idx, error);
+    if (status != STATUS_OK) {
+        return status;
+    }
+    snprintf(name, sizeof name, "%s.widen", prefix);
+    widen = stream_find(stream, name);
+    *lists = (struct neighbours){.count = rows, .ptr = ptr->data, .idx = idx->data};
+    if (widen != NULL && widen->type == TYPE_F8 && widen->rows == rows) {
+        lists->widen = widen->data;
+    }
+    if (ptr->rows != rows + 1 || lists->ptr[0] != 0 || lists->ptr[rows] != idx->rows) {
+        return fail(error, STATUS_INPUT, "%s.ptr: does not fit its points and %s.idx: run support again",
+                    prefix, prefix);
+    }
+    for (int64_t p = 0; p < rows; p++) {
+        if (lists->ptr[p + 1] < lists->ptr[p]) {
+            return fail(error, STATUS_INPUT, "%s.ptr: row %lld: decreases", prefix, (long long)p + 1);
+        }
+    }
+    for (int64_t i = 0; i < idx->rows; i++) {
+        if (lists->idx[i] < 0 || lists->idx[i] >= columns) {
+            return fail(error, STATUS_INPUT, "%s.idx: row %lld: no node %d", prefix, (long long)i,
+                        lists->idx[i]);
+        }
+    }
+    return STATUS_OK;
+}
+
+const char *vector_attributes(int dim, const char *unit, char text[64])
+{
+    snprintf(text, 64, "unit=%s cols=%s", unit, dim == 2 ? "x,y" : "x,y,z");
+    return text;
+}

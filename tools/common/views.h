@@ -1,0 +1,37 @@
+/* Parts of a stream as the library takes them: in view, their shapes and indices checked. The messages name
+ * the tool that makes what is missing. */
+#ifndef TOOLS_VIEWS_H
+#define TOOLS_VIEWS_H
+
+#include "approx/ends.h"
+#include "approx/shape.h"
+#include "io/stream.h"
+
+/* Node coordinates, checked to be finite. */
+MUST_CHECK enum status stream_nodes(const struct stream *stream, int *dim, int64_t *node_count,
+                                    const double **x, struct error *error);
+
+/* Nodes and background cells. cells->count is 0 when there are none, an error if they are needed. */
+MUST_CHECK enum status stream_cells(const struct stream *stream, bool needed, struct cells *cells,
+                                    struct error *error);
+
+/* Named facets of the boundary, their nodes unchecked. facets->count is 0 when there are none, an error if
+ * they are needed. */
+MUST_CHECK enum status stream_facets(const struct stream *stream, bool needed, int dim,
+                                     struct named_facets *facets, struct error *error);
+
+/* Faces of the cells, their nodes checked, the cells at them not. The view is not to be freed. */
+MUST_CHECK enum status stream_faces(const struct stream *stream, const struct cells *cells,
+                                    struct faces *faces, struct error *error);
+
+/* A CSR list: PREFIX.ptr (rows + 1), PREFIX.idx (within [0, columns)). */
+MUST_CHECK enum status stream_neighbours(const struct stream *stream, const char *prefix, int64_t rows,
+                                         int64_t columns, struct neighbours *lists, struct error *error);
+
+/* Whether points.x has one point for each cell, for gradients smoothed over it. */
+bool points_are_conforming(const struct section *points);
+
+/* Attributes of a section of one vector in each row, "unit=UNIT cols=x,y[,z]", into text[64]; returns it. */
+const char *vector_attributes(int dim, const char *unit, char text[64]);
+
+#endif
