@@ -19,8 +19,8 @@ static const char usage[] =
     "  graded                  lattice whose spacing grows geometrically along each axis, from X0, Y0, Z0;\n"
     "                          the largest spacing is RATIO times the smallest\n"
     "\n"
-    "Fields, r^2 being the sum of the squares of the coordinates (m):\n"
-    "  paper                   (1 - r^2) exp(-r^2 / 2)\n"
+    "Functions:\n"
+    "  paper                   (1 - r^2) exp(-r^2 / 2), r^2 = x^2 + y^2 + z^2 (all in m)\n"
     "  linear                  1 + 2 x + 3 y + 4 z\n"
     "  quadratic               1 + 2 x + 3 y + 4 z + x^2 - 2 x y + 3 y^2 + x z - y z + 2 z^2\n"
     "\n"
@@ -32,7 +32,8 @@ static const char usage[] =
     "      --jitter FRACTION   0 to 0.5 (default 0.5)\n"
     "      --seed SEED         of the random numbers, 0 to 4294967295 (default 1)\n"
     "      --ratio RATIO       1 to 1e6 (default 4)\n"
-    "      --field FUNCTION    add the section u: this function at the nodes\n"
+    "      --field FUNCTION    add the section u: this function at the nodes (paper, linear or\n"
+    "                          quadratic)\n"
     "  -t, --text              write text instead of binary\n"
     "  -o, --output FILE       write to FILE, which appears only when whole\n"
     "\n"
@@ -49,16 +50,24 @@ static const char usage[] =
 
 enum { DIM, KIND, COUNT, BOX, JITTER, SEED, RATIO, FIELD, TEXT, OUTPUT, OPTION_COUNT };
 
-/* An option for one kind only. */
+/* An option that goes with one kind. */
+static void check_kind(const struct tool *tool, const struct option *option, bool applies)
+{
+    if (option->given && !applies) {
+        tool_fail(tool, STATUS_INPUT, "--%s goes with another kind", option->name);
+    }
+}
+
+/* The number that such an option gives, or the value that holds without it. */
 static double parse_for(const struct tool *tool, const struct option *option, bool applies, double least,
                         double most, double value)
 {
     struct error error;
-    if (option->given && !applies) {
-        tool_fail(tool, STATUS_INPUT, "--%s goes with another kind", option->name);
-    }
+    char what[32];
+    check_kind(tool, option, applies);
     if (option->given) {
-        tool_check(tool, parse_double(option->value, option->name, least, most, &value, &error), &error);
+        snprintf(what, sizeof what, "--%s", option->name);
+        tool_check(tool, parse_double(option->value, what, least, most, &value, &error), &error);
     }
     return value;
 }
@@ -102,39 +111,36 @@ static struct cloud_options parse(const struct tool *tool, const struct option o
     static const char *const kinds[] = {"regular", "jittered", "halton", "graded"};
     struct cloud_options cloud = {0};
     struct error error;
-    int64_t number = 1;
+    int64_t dim, seed = 1;
     int kind;
     for (int i = DIM; i <= BOX; i++) {
         if (!options[i].given) {
             tool_fail(tool, STATUS_INPUT, "--%s is missing (see -h)", options[i].name);
         }
     }
-    tool_check(tool, parse_integer(options[DIM].value, "-d", 2, 3, &number, &error), &error);
-    cloud.dim = (int)number;
+    tool_check(tool, parse_integer(options[DIM].value, "-d", 2, 3, &dim, &error), &error);
+    cloud.dim = (int)dim;
     tool_check(tool, parse_choice(options[KIND].value, "-k", kinds, 4, &kind, &error), &error);
     cloud.kind = (enum cloud_kind)kind;
     parse_count(tool, options[COUNT].value, &cloud);
     parse_box(tool, options[BOX].value, &cloud);
     cloud.jitter = parse_for(tool, &options[JITTER], cloud.kind == CLOUD_JITTERED, 0, 0.5, 0.5);
     cloud.ratio = parse_for(tool, &options[RATIO], cloud.kind == CLOUD_GRADED, 1, 1e6, 4);
-    number = 1;
+    check_kind(tool, &options[SEED], cloud.kind == CLOUD_JITTERED);
     if (options[SEED].given) {
-        tool_check(tool, parse_integer(options[SEED].value, "--seed", 0, UINT32_MAX, &number, &error),
-                   &error);
+        tool_check(tool, parse_integer(options[SEED].value, "--seed", 0, UINT32_MAX, &seed, &error), &error);
     }
-    if (options[SEED].given && cloud.kind != CLOUD_JITTERED) {
-        tool_fail(tool, STATUS_INPUT, "--seed goes with another kind");
-    }
-    cloud.seed = (uint32_t)number;
+    cloud.seed = (uint32_t)seed;
     return cloud;
 }
 
 static enum status put_field(struct stream *stream, const struct cloud *cloud, enum cloud_function function,
                              struct error *error)
 {
-    double *values = array_new(cloud->node_count, sizeof *values);
-    if (values == NULL) {
-        return fail_memory(error, "u");
+    double *values;
+    enum status status = NEW_ARRAY(&values, cloud->node_count, error);
+    if (status != STATUS_OK) {
+        return status;
     }
     for (int64_t n = 0; n < cloud->node_count; n++) {
         values[n] = cloud_function_value(function, cloud->dim, &cloud->x[n * cloud->dim]);

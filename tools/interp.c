@@ -3,7 +3,7 @@ static const char usage[] =
     "\n"
     "usage: interp [-f FIELD[,FIELD...]] [--deformed] [-t] [-o FILE] [FILE]\n"
     "       interp -p POINTS [-u UNIT] [-k FACTOR | -R RADIUS] [-b BASIS] [-w WEIGHT] [--mu MU]\n"
-    "              [-f FIELD[,FIELD...]] [--deformed] [-t] [-o FILE] [FILE]\n"
+    "              [--mu-unit UNIT] [-f FIELD[,FIELD...]] [--deformed] [-t] [-o FILE] [FILE]\n"
     "\n"
     "Reads a stream with nodes.x (m) and fields at the nodes, and writes one with nodes.x = the\n"
     "points (m) and the fields there. By default the points are the stream's own points.x, through\n"

@@ -73,13 +73,14 @@ function print_list(from, to,    i, line, text, behind) {
 # Are lines from..to a list? Then some line has an item and, behind two blanks, its text.
 function is_list(from, to,    i) {
     for (i = from; i <= to; i++)
-        if (indent(block[i]) <= 6 && block[i] ~ /^  +[^ ].*[^ ]   *[^ ]/) return 1
+        if (indent(block[i]) <= 6 && block[i] ~ /^  +[^ ](.*[^ ])?   *[^ ]/) return 1
     return 0
 }
 
 function print_block(    i, first) {
     i = 1
     if (block[1] ~ /^[A-Z][A-Za-z]*( [a-z]+)?:$/) {
+        if (block[1] == "Examples:" && !has_status) print_status()
         print ".SH " toupper(substr(block[1], 1, length(block[1]) - 1))
         if (block[1] == "Exit status:") has_status = 1
         i = 2
@@ -97,6 +98,20 @@ function print_block(    i, first) {
         if (is_list(first, i - 1)) print_list(first, i - 1)
         else print_verbatim(first, i - 1)
     }
+    if (block[1] == "Options:") print_common_options()
+}
+
+# Of the options that tool.c gives to every tool.
+function print_common_options() {
+    print ".TP\n\\fB\\-h\\fR, \\fB\\-\\-help\\fR\nprint this text and stop"
+    print ".TP\n\\fB\\-\\-version\\fR\nprint name and version and stop"
+}
+
+# Where the text has no block of that name.
+function print_status() {
+    print ".SH EXIT STATUS"
+    print "0 good; 1 a verdict: differs, diverged, singular, invalid; 2 wrong usage or malformed input;"
+    print "3 input, output or memory failed."
 }
 
 function print_synopsis(    i, text) {
@@ -114,15 +129,15 @@ function print_synopsis(    i, text) {
     after_heading = 1
 }
 
-# Other pages that the text names, as PAGE(5), for SEE ALSO.
+# Other pages that the text names, as PAGE(5) or, of section 1, as "see PAGE", for SEE ALSO.
 function note_pages(text,    page) {
-    while (match(text, /[a-z][-a-z]*\([1-9]\)/)) {
-        page = substr(text, RSTART, RLENGTH - 3)
-        if (page != "mts" && !(page in noted)) {
-            noted[page] = 1
-            pages = pages ".BR " escape(page) " (" substr(text, RSTART + RLENGTH - 2, 1) "),\n"
-        }
+    while (match(text, /see [a-z][-a-z]*(\([1-9]\))?/)) {
+        page = substr(text, RSTART + 4, RLENGTH - 4)
         text = substr(text, RSTART + RLENGTH)
+        if (page !~ /\(/) page = page "(1)"
+        if (page ~ /^mts\(/ || page in noted) continue
+        noted[page] = 1
+        pages[page ~ /\(1/] = pages[page ~ /\(1/] ".BR " escape(substr(page, 1, length(page) - 3)) " " substr(page, length(page) - 2) ",\n"
     }
 }
 
@@ -149,11 +164,6 @@ NR == 1 {
 
 END {
     end_block()
-    if (!has_status) {
-        print ".SH EXIT STATUS"
-        print "0 good; 1 a verdict: differs, diverged, singular, invalid; 2 wrong usage or malformed input;"
-        print "3 input, output or memory failed."
-    }
     print ".SH SEE ALSO"
-    print pages (tool == "mts" ? "" : ".BR mts (1),\n") ".BR mts (5)"
+    print pages[1] (tool == "mts" ? "" : ".BR mts (1),\n") pages[0] ".BR mts (5)"
 }

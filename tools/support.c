@@ -18,7 +18,7 @@ static const char usage[] =
     "                         1.83)\n"
     "  -R, --radius RADIUS    constant radius: a length with its unit, e.g. 8mm (without one: m)\n"
     "      --ends SHARE       of that radius for the nodes beside those where a group of facets ends,\n"
-    "                         in cells with them (default 0.7, in 3D 1; not with -R)\n"
+    "                         in cells with them (default 0.7, in 3D 1; a radius of -R stays)\n"
     "      --corners SHARE    where the boundary turns sharply at these (default 0.8, in 3D 1)\n"
     "  -m, --least LEAST      widen until at least so many neighbours\n"
     "  -n, --most MOST        keep only the MOST nearest neighbours (ties: the lower index)\n"

@@ -1,7 +1,7 @@
 static const char usage[] =
     "tovtk - write a stream for ParaView or gmsh\n"
     "\n"
-    "usage: tovtk [-t] [-f vtu|gmsh] [-o FILE] [STREAM]\n"
+    "usage: tovtk [-t] [-f vtu|gmsh] [-o FILE] [FILE]\n"
     "\n"
     "Reads a stream with nodes.x, the background cells if there are any, and fields:\n"
     "every section with one row for each node or each cell, and names other than\n"
@@ -294,12 +294,11 @@ static void write_series(const struct tool *tool, struct plot *plot, bool text)
     size_t stem = strlen(tool->output) - strlen(".pvd");
     const char *slash = strrchr(tool->output, '/');
     size_t folder = slash != NULL ? (size_t)(slash - tool->output) + 1 : 0;
-    char **paths = array_new(count, sizeof *paths);
-    char **names = array_new(count, sizeof *names); /* relative to the .pvd file: the ends of the paths */
-    double *times = array_new(count, sizeof *times);
-    if (paths == NULL || names == NULL || times == NULL) {
-        tool_fail(tool, STATUS_SYSTEM, "out of memory");
-    }
+    char **paths, **names; /* the names are relative to the .pvd file: the ends of the paths */
+    double *times;
+    tool_check(tool, NEW_ARRAY(&paths, count, &error), &error);
+    tool_check(tool, NEW_ARRAY(&names, count, &error), &error);
+    tool_check(tool, NEW_ARRAY(&times, count, &error), &error);
     for (int64_t i = 0; i < count; i++) {
         int64_t frame = frame_number(plot, i);
         tool_check(tool, time_of(plot, frame, &times[i], &error), &error);

@@ -12,8 +12,8 @@ struct output {
 };
 
 /* Begin to write: a temporary file in the same folder, removed if the program ends by exit() or by SIGINT,
- * SIGTERM or SIGHUP before output_commit. An existing device or pipe is opened as it is. One output at a
- * time. */
+ * SIGTERM, SIGHUP or SIGXCPU before output_commit. An existing device or pipe is opened as it is. One output
+ * at a time. */
 MUST_CHECK enum status output_open(struct output *output, const char *name, struct error *error);
 
 /* Close and give the file its name. STATUS_SYSTEM, with nothing left behind, when that fails. */
