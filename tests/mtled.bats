@@ -21,6 +21,7 @@ setup() {
     refused 2 "" mtled
     refused 2 "nonsense" mtled --nonsense block.scene square.mts
     refused 2 "" mtled -b -b block.scene square.mts
+    refused 2 "-e goes with -c" mtled -e 30 block.scene square.mts
     refused 2 "" mtled -o
     refused 2 "" mtled block.scene square.mts square.mts
     refused 2 "missing.scene" mtled missing.scene square.mts
@@ -262,7 +263,7 @@ setup() {
     mts drop shape.dphi table.mts > none.mts
     refused 2 "shape.dphi" mtled block.scene none.mts
     refused 2 "" mtled block.scene /dev/null
-    for section in cells.region points.weight points.cell shape.dphi shape.phi faces.cell facepoints.x face.phi node.phi face.idx nbr.ptr; do
+    for section in cells.region points.weight points.cell shape.dphi shape.phi faces.cell facets.set facepoints.x face.phi node.phi face.idx nbr.ptr; do
         shortened $section table.mts > short.mts
         refused 2 "fit" mtled block.scene short.mts
     done

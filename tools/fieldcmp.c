@@ -23,9 +23,6 @@ static const char usage[] =
     "\n"
     "A value in A or B that is not a finite number fails the comparison, with or without tolerances.\n"
     "\n"
-    "Exit status: 0 within the tolerances (or none given); 1 beyond one of them, or not a number; 2\n"
-    "unreadable or not comparable; 3 input/output or memory failure.\n"
-    "\n"
     "Options:\n"
     "      --tol-avg M            largest average admitted (m; or with a unit, e.g. 0.1mm)\n"
     "      --tol-max M            largest maximum admitted\n"
@@ -36,6 +33,12 @@ static const char usage[] =
     "  -m, --map FILE             write nodes.x, cells and the section difference (nan where not\n"
     "                             compared) to FILE\n"
     "  -t, --text                 write FILE as text\n"
+    "\n"
+    "Exit status:\n"
+    "  0  within the tolerances, or none given\n"
+    "  1  beyond one of them, or a value is not a number\n"
+    "  2  wrong usage, unreadable or not comparable\n"
+    "  3  input, output or memory failed\n"
     "\n"
     "Examples:\n"
     "  fieldcmp --tol-avg 0.1mm --tol-max 0.5mm u.dat reference.dat\n"
@@ -65,6 +68,7 @@ struct request {
 struct side {
     const char *name;
     struct stream stream;
+    const struct section *section; /* of the field */
     struct nodal_field field;
 };
 
@@ -73,13 +77,15 @@ static double parse_tolerance(const struct tool *tool, const struct option *opti
 {
     struct error error;
     double value = INFINITY;
+    char what[32];
     if (!option->given) {
         return value;
     }
+    snprintf(what, sizeof what, "--%s", option->name);
     bool plain = strspn(option->value, "+-.0123456789eE") == strlen(option->value);
     tool_check(tool,
-               plain ? parse_double(option->value, option->name, 0.0, 1e300, &value, &error)
-                     : parse_length(option->value, option->name, &value, &error),
+               plain ? parse_double(option->value, what, 0.0, 1e300, &value, &error)
+                     : parse_length(option->value, what, &value, &error),
                &error);
     return value;
 }
@@ -118,6 +124,7 @@ static void read_side(const struct tool *tool, const char *file, const char *fie
     if (status != STATUS_OK) {
         tool_fail(tool, status, "%s: %s", side->name, error.text);
     }
+    side->section = section;
     side->field.cols = section->cols;
     side->field.values = section->data;
 }
@@ -265,6 +272,10 @@ static void write_map(struct tool *tool, struct side *a, const struct field_comp
     struct error error;
     static const char *const kept[] = {"nodes.x", "cells", "cells.region"};
     struct stream *stream = &a->stream;
+    char unit[32], attributes[48] = "";
+    if (section_attribute(a->section, "unit", unit, sizeof unit) && strchr(unit, ',') == NULL) {
+        snprintf(attributes, sizeof attributes, "unit=%s", unit);
+    }
     for (int64_t s = stream->section_count; s-- > 0;) {
         bool keep = false;
         for (size_t k = 0; k < sizeof kept / sizeof *kept; k++) {
@@ -275,7 +286,7 @@ static void write_map(struct tool *tool, struct side *a, const struct field_comp
         }
     }
     tool_check(tool,
-               stream_put(stream, "difference", TYPE_F8, a->field.cells.node_count, 1, "unit=m",
+               stream_put(stream, "difference", TYPE_F8, a->field.cells.node_count, 1, attributes,
                           comparison->difference, false, &error),
                &error);
     tool->output = file;

@@ -1,7 +1,7 @@
 static const char usage[] =
     "ipoints - background cells to integration points and weights\n"
     "\n"
-    "usage: ipoints [-c | -g POINTS | --lattice N,N[,N]] [-t] [-o FILE] [FILE]\n"
+    "usage: ipoints [-c | -g POINTS | --lattice N[,N[,N]]] [-v] [-t] [-o FILE] [FILE]\n"
     "       ipoints -a TOLERANCE [-g POINTS] [--levels LEVELS] [-k FACTOR | -R RADIUS] [-b BASIS]\n"
     "               [-w WEIGHT] [--mu MU] [--mu-unit UNIT] [-v] [-t] [-o FILE] [FILE]\n"
     "\n"
@@ -33,8 +33,9 @@ static const char usage[] =
     "  -w, --weight WEIGHT     quartic (default), cubic, wendland or regularised\n"
     "      --mu MU[,MU...]     regularisation of mmls2, see shapefn\n"
     "      --mu-unit UNIT      MU is absolute, in coordinates of that unit\n"
-    "      --lattice N,N[,N]   instead: a regular lattice of evaluation points over the box of the\n"
-    "                          nodes, its ends included; needs no cells\n"
+    "      --lattice N[,N[,N]] instead: a regular lattice of evaluation points over the box of the\n"
+    "                          nodes, its ends included, of N points along each axis (one number:\n"
+    "                          along all); needs no cells\n"
     "  -v, --verbose           report on standard error how many points there are\n"
     "  -t, --text              write text instead of binary\n"
     "  -o, --output FILE       write to FILE, which appears only when whole\n"
@@ -69,16 +70,15 @@ static void parse_lattice(const struct tool *tool, const char *text, int64_t lat
     int count;
     struct error error;
     tool_check(tool, parse_double_list(text, "--lattice", 2, 1e6, 3, numbers, &count, &error), &error);
-    for (int a = 0; a < 3; a++) {
-        double number = numbers[a < count ? a : count - 1];
-        lattice[a] = (int64_t)number;
-        if ((double)lattice[a] != number) {
-            tool_fail(tool, STATUS_INPUT, "--lattice: %g is not a whole number", number);
+    for (int a = 0; a < count; a++) {
+        lattice[a] = (int64_t)numbers[a];
+        if ((double)lattice[a] != numbers[a]) {
+            tool_fail(tool, STATUS_INPUT, "--lattice: %g is not a whole number", numbers[a]);
         }
     }
 }
 
-/* Adaptive integration in `dim` dimensions by shape functions that begin as `mls`. */
+/* Adaptive integration by the shape functions `mls`, but for what the options say of them. */
 static struct adaptive_options parse_adaptive(const struct tool *tool, const struct option *options,
                                               const struct mls *mls)
 {
@@ -87,9 +87,6 @@ static struct adaptive_options parse_adaptive(const struct tool *tool, const str
     struct error error;
     int64_t number;
     support->mls = *mls;
-    if (options[FACTOR].given && options[RADIUS].given) {
-        tool_fail(tool, STATUS_INPUT, "give one of -k and -R");
-    }
     tool_check(tool, parse_double(options[ADAPTIVE].value, "-a", 1e-12, 10, &adaptive.tolerance, &error),
                &error);
     if (options[GAUSS].given) {
@@ -102,13 +99,7 @@ static struct adaptive_options parse_adaptive(const struct tool *tool, const str
                    &error);
         adaptive.levels = (int)number;
     }
-    if (options[FACTOR].given) {
-        tool_check(tool, parse_double(options[FACTOR].value, "-k", 0.1, 100, &support->factor, &error),
-                   &error);
-    }
-    if (options[RADIUS].given) {
-        tool_check(tool, parse_length(options[RADIUS].value, "-R", &support->radius, &error), &error);
-    }
+    tool_check(tool, radius_apply_options(&options[FACTOR], &options[RADIUS], support, &error), &error);
     tool_check(tool, mls_apply_options(options + BASIS, &support->mls, &error), &error);
     return adaptive;
 }

@@ -47,12 +47,15 @@ static const char usage[] =
     "                       fields the same to 1e-5 of the largest displacement\n"
     "  -c, --checkpoint FILE\n"
     "                       keep the state of the run in FILE, and go on from what is there\n"
-    "  -e, --every SECONDS  how often (default 60)\n"
+    "  -e, --every SECONDS  with -c: how often (default 60)\n"
     "  -o, --output FILE    write to FILE, which appears only when whole\n"
     "\n"
     "Exit status:\n"
-    "  0 done; 1 diverged, inverted, out of balance or of steps; 2 usage or\n"
-    "  malformed input; 3 input/output or memory; 128 + n ended by signal n after a whole step\n"
+    "  0        done\n"
+    "  1        diverged, inverted, out of balance or of steps\n"
+    "  2        wrong usage or malformed input\n"
+    "  3        input, output or memory failed\n"
+    "  128 + n  ended by signal n after a whole step\n"
     "\n"
     "Examples:\n"
     "  nodes -u mm body.msh | shapefn | mtled brain2d.scene > u.dat\n"
@@ -95,6 +98,9 @@ int main(int argc, char *argv[])
     threads_settle_waiting(argv);
     tool_begin(&tool, usage, options, OPTION_COUNT, 1, 2, argc, argv);
     double every = 60.0, started = clock_seconds();
+    if (options[EVERY].given && !options[CHECKPOINT].given) {
+        tool_fail(&tool, STATUS_INPUT, "-e goes with -c");
+    }
     if (options[EVERY].given) {
         tool_check(&tool, parse_double(options[EVERY].value, "--every", 0.0, 1e9, &every, &error), &error);
     }

@@ -200,7 +200,7 @@ enum status parse_length(const char *text, const char *what, double *value, stru
     char number[64];
     double unit = 1.0;
     size_t length = strspn(text, "+-.0123456789eE");
-    if (length >= sizeof number) {
+    if (length == 0 || length >= sizeof number) {
         return fail(error, STATUS_INPUT, "%s: '%s' is not a length", what, text);
     }
     memcpy(number, text, length);

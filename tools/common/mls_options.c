@@ -11,6 +11,9 @@ static enum status apply_mu(const char *text, struct mls *mls, struct error *err
         return status;
     }
     bool fits = mls->dim == 0 ? count == 3 || count == 6 : count == wanted;
+    if (count != 1 && !fits && mls->dim == 0) {
+        return fail(error, STATUS_INPUT, "--mu: %d values; give one, or in 2D 3, in 3D 6", count);
+    }
     if (count != 1 && !fits) {
         return fail(error, STATUS_INPUT, "--mu: %d values; in %dD give one, or %d", count, mls->dim, wanted);
     }

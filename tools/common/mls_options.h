@@ -17,7 +17,7 @@
 #define MLS_OPTION_COUNT 4
 
 /* Apply the given ones among options[0..3] to `mls`. --mu takes one value or one for each second-order
- * monomial (3 in 2D: x2,xy,y2; 6 in 3D: x2,xy,xz,y2,yz,z2). */
+ * monomial (3 in 2D: x2,xy,y2; 6 in 3D: x2,xy,xz,y2,yz,z2); with mls->dim 0, not known yet, either. */
 MUST_CHECK enum status mls_apply_options(const struct option options[MLS_OPTION_COUNT], struct mls *mls,
                                          struct error *error);
 

@@ -97,23 +97,40 @@ done:
     return status;
 }
 
-/* n[0] x n[1] (x n[2]) points over the box of the nodes, x fastest; weights of the trapezium rule. */
-static enum status put_lattice(struct stream *stream, const int64_t n[3], struct error *error)
+/* n[dim] points along each axis, from one number for all or one for each; *count receives their product. */
+static enum status count_lattice(const int64_t wanted[3], int dim, int64_t n[3], int64_t *count,
+                                 struct error *error)
+{
+    int given = 1 + (wanted[1] > 0) + (wanted[2] > 0);
+    if (given != 1 && given != dim) {
+        return fail(error, STATUS_INPUT, "--lattice: %d numbers of points, not 1 or %d", given, dim);
+    }
+    *count = 1;
+    for (int a = 0; a < dim; a++) {
+        n[a] = wanted[given == 1 ? 0 : a];
+        if (__builtin_mul_overflow(*count, n[a], count) || *count > INT32_MAX) {
+            return fail(error, STATUS_INPUT, "--lattice: more than %d points", INT32_MAX);
+        }
+    }
+    return STATUS_OK;
+}
+
+/* A lattice of points, at least 2 along each axis, over the box of the nodes, x fastest; weights of the
+ * trapezium rule. */
+static enum status put_lattice(struct stream *stream, const int64_t wanted[3], struct error *error)
 {
     enum status status;
     int dim;
-    int64_t node_count, count = 1;
+    int64_t node_count, count = 0, n[3];
     const double *nodes;
     double step[3];
     double *x = NULL, *weight = NULL;
     int32_t *cell = NULL;
     TRY(stream_nodes(stream, &dim, &node_count, &nodes, error));
+    TRY(count_lattice(wanted, dim, n, &count, error));
     struct box box = box_of(dim, node_count, nodes);
     for (int a = 0; a < dim; a++) {
         step[a] = (box.high[a] - box.low[a]) / (double)(n[a] - 1);
-        if (n[a] < 2 || __builtin_mul_overflow(count, n[a], &count) || count > INT32_MAX) {
-            return fail(error, STATUS_INPUT, "--lattice: give %d numbers of points, each at least 2", dim);
-        }
     }
     TRY(NEW_ARRAY(&x, count * dim, error));
     TRY(NEW_ARRAY(&weight, count, error));
