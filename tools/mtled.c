@@ -69,6 +69,20 @@ static const char usage[] =
 
 enum { VERBOSE, QUIET, BINARY, FLOAT, OUTPUT, CHECKPOINT, EVERY, OPTION_COUNT };
 
+/* Seconds between checkpoints. */
+static double parse_every(const struct tool *tool, const struct option *options)
+{
+    struct error error;
+    double every = 60.0;
+    if (options[EVERY].given && !options[CHECKPOINT].given) {
+        tool_fail(tool, STATUS_INPUT, "-e goes with -c");
+    }
+    if (options[EVERY].given) {
+        tool_check(tool, parse_double(options[EVERY].value, "-e", 0.0, 1e9, &every, &error), &error);
+    }
+    return every;
+}
+
 /* The results of an earlier run on the same stream. */
 static void drop_results(struct stream *stream)
 {
@@ -97,13 +111,7 @@ int main(int argc, char *argv[])
     };
     threads_settle_waiting(argv);
     tool_begin(&tool, usage, options, OPTION_COUNT, 1, 2, argc, argv);
-    double every = 60.0, started = clock_seconds();
-    if (options[EVERY].given && !options[CHECKPOINT].given) {
-        tool_fail(&tool, STATUS_INPUT, "-e goes with -c");
-    }
-    if (options[EVERY].given) {
-        tool_check(&tool, parse_double(options[EVERY].value, "--every", 0.0, 1e9, &every, &error), &error);
-    }
+    double every = parse_every(&tool, options), started = clock_seconds();
     tool_check(&tool, scene_read(tool.operands[0], &scene, &error), &error);
     tool_read(&tool, tool.operand_count > 1 ? tool.operands[1] : NULL, &stream);
     drop_results(&stream);
