@@ -315,8 +315,7 @@ enum status body_build(const struct body_input *input, struct body *body, struct
         pairs.place = body->node_place;
         TRY(pairs_build(&pairs, &body->gradients, error));
     } else {
-        TRY(conforming_build(input->conforming, input->dim, input->node_count, input->point_count,
-                             body->order, body->node_place, input->single, &body->cells, error));
+        TRY(conforming_build(input->conforming, body, &body->cells, error));
         TRY(check_smoothing(body, error));
     }
 done:

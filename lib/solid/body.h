@@ -70,7 +70,6 @@ struct volume_hats {
 };
 
 struct force_kernels;
-struct compatibility;
 
 struct body {
     int dim;
@@ -94,12 +93,11 @@ struct body {
     struct conforming cells; /* instead */
     double *u;               /* node_count * stride: displacements in the body's order */
     double *F;               /* dim * dim rows of point_count: deformation gradients of the last evaluation */
-    double *J;               /* point_count */
+    double *J;               /* point_count: volume ratios, det F, or of cells that of conforming.h */
     bool averaged;           /* nodal volumetric averaging */
     double pointwise_share, share_growth;
     struct volume_hats hats;
     const struct force_kernels *kernels; /* for this processor */
-    struct compatibility *compatibility; /* the caller's, or NULL: see compatibility.h */
     int threads;                         /* worth using for so many pairs */
 };
 

@@ -148,39 +148,82 @@ done:
     return status;
 }
 
-enum status conforming_build(const struct conforming_input *input, int dim, int64_t node_count,
-                             int64_t cell_count, const int64_t *order, const int32_t *place, bool single,
+/* A row for each node; its corners are the vertices of the cells. */
+static enum status build_nodes(const struct conforming_input *input, const struct body *body,
+                               struct means *means, struct error *error)
+{
+    enum status status;
+    int corners = body->dim + 1;
+    int32_t *node_of_corner = NULL;
+    TRY(NEW_ARRAY(&node_of_corner, body->point_count * corners, error));
+    for (int64_t q = 0; q < body->point_count; q++) {
+        memcpy(node_of_corner + q * corners, input->cell_node + body->order[q] * corners,
+               (size_t)corners * sizeof *node_of_corner);
+    }
+    struct means_input nodes = {.dim = body->dim,
+                                .node_count = body->node_count,
+                                .row_count = body->node_count,
+                                .order = body->node_order,
+                                .ptr = input->node_ptr,
+                                .idx = input->node_idx,
+                                .phi = input->node_phi,
+                                .place = body->node_place,
+                                .corner_count = body->point_count * corners,
+                                .row_of_corner = node_of_corner,
+                                .single = body->single};
+    status = means_build(&nodes, means, error);
+done:
+    free(node_of_corner);
+    return status;
+}
+
+/* A row for each face; its corners are those opposite it. */
+static enum status build_faces(const struct conforming_input *input, const struct body *body,
+                               struct means *means, struct error *error)
+{
+    enum status status;
+    int dim = body->dim;
+    int64_t cell_count = body->point_count;
+    struct face_means rows = {0};
+    int64_t *face_order = NULL;
+    int32_t *face_of_corner = NULL;
+    TRY(NEW_ARRAY(&face_order, input->face_count, error));
+    TRY(NEW_ARRAY(&face_of_corner, cell_count * (dim + 1), error));
+    TRY(match_corners(input, dim, cell_count, body->order, face_of_corner, error));
+    TRY(order_faces(input, dim, face_order, error));
+    TRY(average_faces(input, body->node_count, &rows, error));
+    struct means_input faces = {.dim = dim,
+                                .node_count = body->node_count,
+                                .row_count = input->face_count,
+                                .order = face_order,
+                                .ptr = rows.ptr,
+                                .idx = rows.idx,
+                                .phi = rows.phi,
+                                .place = body->node_place,
+                                .corner_count = cell_count * (dim + 1),
+                                .row_of_corner = face_of_corner,
+                                .single = body->single};
+    status = means_build(&faces, means, error);
+done:
+    free(rows.ptr);
+    free(rows.idx);
+    free(rows.phi);
+    free(face_order);
+    free(face_of_corner);
+    return status;
+}
+
+enum status conforming_build(const struct conforming_input *input, const struct body *body,
                              struct conforming *conforming, struct error *error)
 {
     enum status status;
-    struct face_means means = {0};
-    int64_t *face_order = NULL;
-    int32_t *face_of_corner = NULL;
+    int64_t entries = body->point_count * body->dim * body->dim + BODY_POINT_PADDING;
     *conforming = (struct conforming){0};
-    TRY(set_hats(input, dim, cell_count, order, conforming, error));
-    TRY(NEW_ARRAY(&face_order, input->face_count, error));
-    TRY(NEW_ARRAY(&face_of_corner, cell_count * (dim + 1), error));
-    TRY(match_corners(input, dim, cell_count, order, face_of_corner, error));
-    TRY(order_faces(input, dim, face_order, error));
-    TRY(average_faces(input, node_count, &means, error));
-    struct means_input faces = {.dim = dim,
-                                .node_count = node_count,
-                                .row_count = input->face_count,
-                                .order = face_order,
-                                .ptr = means.ptr,
-                                .idx = means.idx,
-                                .phi = means.phi,
-                                .place = place,
-                                .corner_count = cell_count * (dim + 1),
-                                .row_of_corner = face_of_corner,
-                                .single = single};
-    TRY(means_build(&faces, &conforming->faces, error));
+    TRY(set_hats(input, body->dim, body->point_count, body->order, conforming, error));
+    TRY(NEW_ARRAY(&conforming->interpolant, entries, error));
+    TRY(build_faces(input, body, &conforming->faces, error));
+    TRY(build_nodes(input, body, &conforming->nodes, error));
 done:
-    free(means.ptr);
-    free(means.idx);
-    free(means.phi);
-    free(face_order);
-    free(face_of_corner);
     if (status != STATUS_OK) {
         conforming_free(conforming);
     }
@@ -190,6 +233,8 @@ done:
 void conforming_free(struct conforming *conforming)
 {
     means_free(&conforming->faces);
+    means_free(&conforming->nodes);
+    free(conforming->interpolant);
     free(conforming->hat);
     *conforming = (struct conforming){0};
 }

@@ -83,27 +83,6 @@ static bool evaluate(struct dynamics *d)
     return deformation.least_jacobian > 0.0;
 }
 
-/* Let the ties of the gradients (compatibility.h) follow the pressure; the energy that this takes counts as
- * work. */
-static bool follow_ties(struct dynamics *d)
-{
-    struct body *body = &d->system->body;
-    if (body->compatibility == NULL) {
-        return true;
-    }
-    bool were_active = body->compatibility->active;
-    double energy = compatibility_energy(body);
-    compatibility_update(body);
-    if (!were_active && !body->compatibility->active) {
-        return true;
-    }
-    bool is_good = evaluate(d);
-    energy = compatibility_energy(body) - energy;
-    d->balance.work += energy;
-    d->tie_work += energy;
-    return is_good;
-}
-
 /* Go on to the next step. */
 static void accept(struct dynamics *d)
 {
@@ -132,7 +111,7 @@ static enum dynamics_outcome march(struct dynamics *d, struct error *error)
     for (;;) {
         int64_t n = d->report->steps;
         bool is_check = n % check_interval == 0, is_last = n > 0 && d->left == 0;
-        if (!evaluate(d) || (is_check && !follow_ties(d))) {
+        if (!evaluate(d)) {
             return DYNAMICS_INVERTED;
         }
         double contact = energy_contact(d->system);

@@ -51,7 +51,6 @@ bool dynamics_sample(struct dynamics *d, double contact, struct error *error)
     energy_balance_complete(&d->balance, is_first, &row);
     d->report->last_drift = fabs(row.error);
     d->report->largest_drift = d->balance.worst;
-    d->report->tie_work = d->tie_work / d->balance.largest;
     d->failure = d->log != NULL ? energy_log_add(d->log, &row, error) : STATUS_OK;
     return d->failure == STATUS_OK && d->balance.worst <= DYNAMICS_MOST_DRIFT;
 }

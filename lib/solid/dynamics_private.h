@@ -24,7 +24,6 @@ struct dynamics {
     int64_t sample_interval;
     int64_t frames;
     struct energy_balance balance;
-    double tie_work;        /* energy put in as ties followed the pressure */
     struct energy_log *log; /* the caller's, or NULL */
     enum status failure;    /* of the log */
 };

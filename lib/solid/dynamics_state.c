@@ -72,7 +72,6 @@ enum status dynamics_visit(void *run, const struct state *state, struct error *e
         {"balance.dissipated", STATE_NUMBERS, &d->balance.dissipated, 1},
         {"balance.largest", STATE_NUMBERS, &d->balance.largest, 1},
         {"balance.worst", STATE_NUMBERS, &d->balance.worst, 1},
-        {"tie_work", STATE_NUMBERS, &d->tie_work, 1},
         {"force_evaluations", STATE_COUNTS, &report->force_evaluations, 1},
         {"step_changes", STATE_COUNTS, &report->step_changes, 1},
         {"first_step", STATE_NUMBERS, &report->first_step, 1},
@@ -80,7 +79,6 @@ enum status dynamics_visit(void *run, const struct state *state, struct error *e
         {"critical_step", STATE_NUMBERS, &report->critical_step, 1},
         {"largest_drift", STATE_NUMBERS, &report->largest_drift, 1},
         {"last_drift", STATE_NUMBERS, &report->last_drift, 1},
-        {"share_of_ties", STATE_NUMBERS, &report->tie_work, 1},
         {"least_jacobian", STATE_NUMBERS, &report->least_jacobian, 1},
     };
     TRY(state_visit(state, NULL, values, sizeof values / sizeof *values, error));

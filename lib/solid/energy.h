@@ -11,7 +11,7 @@ struct energy {
     double kinetic;    /* 1/2 v- M v+, of the velocities half a step before and after */
     double internal;   /* elastic, of the body and the springs */
     double contact;    /* of the contacts' penalties */
-    double work;       /* of loads, prescribed motion and following ties, since the begin */
+    double work;       /* of loads and prescribed motion, since the begin */
     double dissipated; /* by damping, since the begin */
     double error;      /* of the balance, relative to the largest energy so far */
 };

@@ -1,88 +1,45 @@
 /* The force loop: deformation gradients by gathering, stresses, forces by scattering; see body.h. */
-#include "solid/compatibility.h"
-#include "solid/kernel.h"
+#include "solid/stress.h"
 
 #include <math.h>
 #include <string.h>
 
-/* Volumetric pressure at a point: that of the hats around it, or its own. */
-double body_pressure(const struct body *body, int64_t point)
+/* Stresses of a block of cells, and what they put on the means. */
+static void stress_cell_block(struct body *body, int64_t b)
 {
-    int corners = body->dim + 1;
-    double sum = 0.0;
-    if (!body->averaged) {
-        return material_pressure(&body->materials[body->material[point]], body->J[point]);
+    block_stress P, T;
+    if (body->blocks[b].neo_hookean) {
+        body->kernels->cell_neo_hookean(body, b, P, T);
+    } else {
+        stress_cells(body, &body->blocks[b], P, T);
     }
-    for (int64_t k = point * corners; k < (point + 1) * corners; k++) {
-        int32_t hat = body->hats.of_point[k];
-        sum += body->hats.value[k] * (body->hats.pressure[hat] + body->hats.slope[hat] * body->J[point]);
-    }
-    return sum;
+    body->kernels->cell_forces(body, b, (const double(*)[PAIRS_MAX_ROWS])P,
+                               (const double(*)[PAIRS_MAX_ROWS])T);
 }
 
-/* F at a point, 3 x 3. */
-static void full_gradient(const struct body *body, int64_t q, double F[9])
-{
-    int dim = body->dim;
-    memset(F, 0, 9 * sizeof *F);
-    F[8] = 1.0;
-    for (int a = 0; a < dim; a++) {
-        for (int b = 0; b < dim; b++) {
-            F[3 * a + b] = body->F[(a * dim + b) * body->point_count + q];
-        }
-    }
-}
-
-/* P at a point of the body, 3 x 3, any material. */
-static void full_stress(const struct body *body, int64_t q, double P[9])
-{
-    double F[9], C[9];
-    const struct material *material = &body->materials[body->material[q]];
-    full_gradient(body, q, F);
-    material_shape_stress(material, F, P);
-    cofactor(F, C);
-    double pressure = body_pressure(body, q);
-    for (int k = 0; k < 9; k++) {
-        P[k] += pressure * C[k];
-    }
-}
-
-/* Weighted stresses of a block of any material. */
-static void general_block(const struct body *body, const struct block *block, block_stress P)
-{
-    int dim = body->dim;
-    for (int64_t i = 0; i < block->point_count; i++) {
-        double full[9];
-        full_stress(body, block->first_point + i, full);
-        for (int k = 0; k < dim * dim; k++) {
-            P[k][i] = body->weight[block->first_point + i] * full[3 * (k / dim) + k % dim];
-        }
-    }
-}
-
-static bool is_tied(const struct body *body)
-{
-    return body->compatibility != NULL && body->compatibility->active;
-}
-
-/* Stresses of a block, and their forces on its nodes, or on the means of its cells. */
-static void stress_block(struct body *body, int64_t b, double *scratch)
+/* Stresses of a block of points, and their forces on its nodes. */
+static void stress_point_block(struct body *body, int64_t b, double *scratch)
 {
     block_stress P;
     if (body->blocks[b].neo_hookean) {
         body->kernels->neo_hookean(body, b, P);
     } else {
-        general_block(body, &body->blocks[b], P);
+        stress_points(body, &body->blocks[b], P);
     }
     for (int64_t i = body->blocks[b].point_count; i % PAIRS_GROUP != 0; i++) {
         for (int k = 0; k < body->dim * body->dim; k++) {
             P[k][i] = 0.0;
         }
     }
+    body->kernels->scatter(body, b, (const double(*)[PAIRS_MAX_ROWS])P, scratch);
+}
+
+static void stress_block(struct body *body, int64_t b, double *scratch)
+{
     if (body->conforming) {
-        body->kernels->cell_forces(body, b, (const double(*)[PAIRS_MAX_ROWS])P);
+        stress_cell_block(body, b);
     } else {
-        body->kernels->scatter(body, b, (const double(*)[PAIRS_MAX_ROWS])P, scratch);
+        stress_point_block(body, b, scratch);
     }
 }
 
@@ -147,7 +104,6 @@ static void scatter_means(const struct body *body, struct means *means, double *
 /* The loops over blocks, hats and nodes. With force == NULL only the energies are of use. */
 static void evaluate(struct body *body, const double *u, double *force)
 {
-    bool tied = is_tied(body);
 #pragma omp parallel num_threads(body->threads)
     {
         double scratch[PAIRS_SCRATCH] __attribute__((aligned(64)));
@@ -157,9 +113,7 @@ static void evaluate(struct body *body, const double *u, double *force)
         }
         if (body->conforming) {
             gather_means(body, &body->cells.faces, scratch);
-        }
-        if (tied) {
-            gather_means(body, &body->compatibility->nodes, scratch);
+            gather_means(body, &body->cells.nodes, scratch);
         }
 #pragma omp for schedule(static)
         for (int64_t b = 0; b < body->block_count; b++) {
@@ -184,9 +138,7 @@ static void evaluate(struct body *body, const double *u, double *force)
         }
         if (body->conforming) {
             scatter_means(body, &body->cells.faces, scratch);
-        }
-        if (tied) {
-            scatter_means(body, &body->compatibility->nodes, scratch);
+            scatter_means(body, &body->cells.nodes, scratch);
         }
         if (force != NULL) {
 #pragma omp for schedule(static)
@@ -228,8 +180,12 @@ double body_energy(struct body *body, const double *u)
     evaluate(body, u, NULL);
     for (int64_t q = 0; q < body->point_count; q++) {
         const struct material *material = &body->materials[body->material[q]];
-        full_gradient(body, q, F);
+        stress_matrix(body, body->F, q, F);
         energy += body->weight[q] * material_shape_energy(material, F);
+        if (body->conforming) {
+            struct tie tie = stress_tie(body, q, F);
+            energy += 0.5 * body->weight[q] * tie.stiffness * tie.squares;
+        }
         if (!body->averaged) {
             energy += body->weight[q] * material_volume_energy(material, body->J[q]);
         }
@@ -242,21 +198,7 @@ double body_energy(struct body *body, const double *u)
                                           0.5 * material_bulk(material) * variance *
                                               (share_of(body, material) + body->share_growth * variance));
     }
-    return energy + compatibility_energy(body);
-}
-
-void body_stress(const struct body *body, double *stress)
-{
-    for (int64_t q = 0; q < body->point_count; q++) {
-        full_stress(body, q, stress + body->order[q] * 9);
-    }
-}
-
-void body_gradient(const struct body *body, double *gradient)
-{
-    for (int64_t q = 0; q < body->point_count; q++) {
-        full_gradient(body, q, gradient + body->order[q] * 9);
-    }
+    return energy;
 }
 
 /* What a point adds to the bounds: for each neighbour g A g, if positive, and tie |g|^2, g its gradient. */
@@ -283,9 +225,10 @@ void body_diagonal(const struct body *body, double *stiffness)
     int dim = body->dim;
     memset(stiffness, 0, (size_t)body->node_count * sizeof *stiffness);
     for (int64_t q = 0; q < body->point_count; q++) {
-        double F[9], C[9], A[9], J = body->J[q], I1 = 0.0;
-        full_gradient(body, q, F);
-        if (!isfinite(J)) { /* as at rest: the bounds at its nodes stay positive until the run is told */
+        double F[9], C[9], A[9], I1 = 0.0;
+        stress_matrix(body, body->F, q, F);
+        double J = determinant(F);
+        if (!(J > 0.0 && isfinite(J))) { /* as at rest: its bounds stay positive until the run is told */
             J = 1.0;
             for (int k = 0; k < 9; k++) {
                 F[k] = k % 4 == 0 ? 1.0 : 0.0;
@@ -296,7 +239,7 @@ void body_diagonal(const struct body *body, double *stiffness)
             I1 += F[k] * F[k];
         }
         double shear = body->weight[q] * body->shear[q] / cbrt(J * J);
-        double tie = is_tied(body) ? 2.0 * body->weight[q] * body->compatibility->coefficient[q] : 0.0;
+        double tie = body->conforming ? 2.0 * body->weight[q] * stress_tie(body, q, F).stiffness : 0.0;
         double along = body->weight[q] * body->bulk[q] + 5.0 / 9.0 * I1 * shear / (J * J);
         /* along |J F^-T g|^2 - shear |g|^2 / 3 = g A g */
         for (int k = 0; k < 9; k++) {

@@ -81,6 +81,9 @@ double system_largest_frequency(struct solid_system *system, struct inertia *ine
     return eigenvalue > 0.0 ? sqrt(eigenvalue) : 0.0;
 }
 
+/* Of the largest: an eigenvalue below that is negative by more than differences of residuals can tell. */
+static const double least_told = -1e-6;
+
 /* How many eigenvalues of the symmetric tridiagonal matrix (diagonal[n], beside[n - 1]) are below x: Sturm's
  * count. */
 static int eigenvalues_below(int n, const double *diagonal, const double *beside, double x)
@@ -172,7 +175,8 @@ enum status system_lowest_eigenvalue(struct solid_system *system, struct inertia
         *iterations = k + 1;
         if (k + 1 == next_check || k + 1 == most_iterations || !(norm > 1e-12 * largest)) {
             *value = least_eigenvalue(k + 1, diagonal, beside);
-            if (enough(k + 1, largest, *value) && last - *value < settled_change * *value) {
+            bool is_settled = enough(k + 1, largest, *value) && last - *value < settled_change * *value;
+            if (is_settled || *value < least_told * largest) {
                 break;
             }
             last = *value;

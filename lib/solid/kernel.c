@@ -2,8 +2,8 @@
  * by round-off only (fused multiplications). */
 #include "solid/kernel.h"
 
+#include "solid/kernel_cells.h"
 #include "solid/kernel_pairs.h"
-#include "solid/kernel_points.h"
 
 #define KERNEL_SET(set, dim, attribute)                                                                      \
     attribute static void place_##set##_##dim(struct body *body, int64_t first, int64_t last,                \
@@ -39,25 +39,32 @@
     {                                                                                                        \
         kernel_cell_gradients(body, &body->blocks[b], dim);                                                  \
     }                                                                                                        \
-    attribute static void cell_forces_##set##_##dim(struct body *body, int64_t b, const block_stress P)      \
+    attribute static void cell_neo_hookean_##set##_##dim(const struct body *body, int64_t b, block_stress P, \
+                                                         block_stress T)                                     \
     {                                                                                                        \
-        kernel_cell_forces(body, &body->blocks[b], dim, P);                                                  \
+        kernel_cell_neo_hookean(body, &body->blocks[b], dim, P, T);                                          \
+    }                                                                                                        \
+    attribute static void cell_forces_##set##_##dim(struct body *body, int64_t b, const block_stress P,      \
+                                                    const block_stress T)                                    \
+    {                                                                                                        \
+        kernel_cell_forces(body, &body->blocks[b], dim, P, T);                                               \
     }                                                                                                        \
     attribute static void neo_hookean_##set##_##dim(const struct body *body, int64_t b, block_stress P)      \
     {                                                                                                        \
         kernel_neo_hookean(body, &body->blocks[b], dim, P);                                                  \
     }                                                                                                        \
-    static const struct force_kernels kernels_##set##_##dim = {.name = #set,                                 \
-                                                               .place = place_##set##_##dim,                 \
-                                                               .sum = sum_##set##_##dim,                     \
-                                                               .gather = gather_##set##_##dim,               \
-                                                               .scatter = scatter_##set##_##dim,             \
-                                                               .gather_means = gather_means_##set##_##dim,   \
-                                                               .scatter_means = scatter_means_##set##_##dim, \
-                                                               .cell_gradients =                             \
-                                                                   cell_gradients_##set##_##dim,             \
-                                                               .cell_forces = cell_forces_##set##_##dim,     \
-                                                               .neo_hookean = neo_hookean_##set##_##dim};
+    static const struct force_kernels kernels_##set##_##dim = {                                              \
+        .name = #set,                                                                                        \
+        .place = place_##set##_##dim,                                                                        \
+        .sum = sum_##set##_##dim,                                                                            \
+        .gather = gather_##set##_##dim,                                                                      \
+        .scatter = scatter_##set##_##dim,                                                                    \
+        .gather_means = gather_means_##set##_##dim,                                                          \
+        .scatter_means = scatter_means_##set##_##dim,                                                        \
+        .cell_gradients = cell_gradients_##set##_##dim,                                                      \
+        .cell_neo_hookean = cell_neo_hookean_##set##_##dim,                                                  \
+        .cell_forces = cell_forces_##set##_##dim,                                                            \
+        .neo_hookean = neo_hookean_##set##_##dim};
 
 #define NO_ATTRIBUTE
 KERNEL_SET(plain, 2, NO_ATTRIBUTE)

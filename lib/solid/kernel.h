@@ -21,12 +21,13 @@ struct force_kernels {
     /* Means from the field u; and the forces of what the corners put on them. */
     void (*gather_means)(struct means *means, int64_t block, const double *u, double *scratch);
     void (*scatter_means)(struct means *means, int64_t block, double *scratch);
-    /* F and J of conforming cells from the means; and from weighted stresses P what the corners put on them,
-     * with the ties of compatibility.h where they are active. */
-    void (*cell_gradients)(struct body *body, int64_t block);
-    void (*cell_forces)(struct body *body, int64_t block, const block_stress P);
     /* Weighted stresses of a block of neo-Hookean points. */
     void (*neo_hookean)(const struct body *body, int64_t block, block_stress P);
+    /* F, F_h and J of conforming cells from the means; weighted stresses P on F and T on F_h of a block of
+     * neo-Hookean cells; and what the corners then put on the means. */
+    void (*cell_gradients)(struct body *body, int64_t block);
+    void (*cell_neo_hookean)(const struct body *body, int64_t block, block_stress P, block_stress T);
+    void (*cell_forces)(struct body *body, int64_t block, const block_stress P, const block_stress T);
 };
 
 /* Sets by name, plain, avx2, avx512: NULL where the processor lacks it; the best one for NULL. */

@@ -6,7 +6,6 @@
 #ifndef SOLID_KERNEL_PAIRS_H
 #define SOLID_KERNEL_PAIRS_H
 
-#include "solid/compatibility.h"
 #include "solid/kernel.h"
 #include "solid/kernel_vector.h"
 
@@ -83,28 +82,6 @@ KERNEL_INLINE void advance(struct cursor *cursor, struct reading how, int offset
     if (cursor->prefetches) {
         prefetch(cursor->ahead, entry_bytes(how) * 3 / 4);
         cursor->ahead += cursor->step;
-    }
-}
-
-/* Component a of four vectors, in the lanes of x[a]. */
-KERNEL_INLINE void load_components(const double *const from[PAIRS_GROUP], int dim, quad4 x[4])
-{
-    if (dim == 2) {
-        pair2 v[PAIRS_GROUP];
-        for (int r = 0; r < PAIRS_GROUP; r++) {
-            LOAD(v[r], from[r]);
-        }
-        pair2 first = __builtin_shufflevector(v[0], v[1], 0, 2);
-        pair2 last = __builtin_shufflevector(v[2], v[3], 0, 2);
-        x[0] = __builtin_shufflevector(first, last, 0, 1, 2, 3);
-        first = __builtin_shufflevector(v[0], v[1], 1, 3);
-        last = __builtin_shufflevector(v[2], v[3], 1, 3);
-        x[1] = __builtin_shufflevector(first, last, 0, 1, 2, 3);
-    } else {
-        for (int r = 0; r < PAIRS_GROUP; r++) {
-            LOAD(x[r], from[r]);
-        }
-        transpose(x);
     }
 }
 
@@ -331,9 +308,7 @@ KERNEL_INLINE void gather_means(struct means *means, int64_t b, struct reading h
     for (int64_t g = block->first_group; g < block->first_group + block->group_count; g++) {
         quad4 mean[9] = {{0.0}};
         gather_group(&means->pairs.groups[g], how, local, &cursor, mean);
-        for (int a = 0; a < how.dim; a++) {
-            STORE(means->value + (g * how.dim + a) * PAIRS_GROUP, mean[a]);
-        }
+        store_components(mean, how.dim, means->value + g * PAIRS_GROUP * PAIRS_STRIDE(how.dim));
     }
 }
 
@@ -441,13 +416,12 @@ KERNEL_INLINE void kernel_place(struct body *body, int64_t first, int64_t last, 
     }                                                                                                        \
     KERNEL_INLINE void sum_nodes_##dim(const struct body *body, int64_t first, int64_t last, double *force)  \
     {                                                                                                        \
-        bool tied = body->compatibility != NULL && body->compatibility->active;                              \
         const struct pairs *pairs = body->conforming ? &body->cells.faces.pairs : &body->gradients;          \
         for (int64_t n = first; n < last; n++) {                                                             \
             vector sum = {0.0};                                                                              \
             add_blocks_##dim(pairs, n, &sum);                                                                \
-            if (tied) {                                                                                      \
-                add_blocks_##dim(&body->compatibility->nodes.pairs, n, &sum);                                \
+            if (body->conforming) {                                                                          \
+                add_blocks_##dim(&body->cells.nodes.pairs, n, &sum);                                         \
             }                                                                                                \
             for (int a = 0; a < dim; a++) {                                                                  \
                 force[body->node_order[n] * dim + a] = sum[a];                                               \

@@ -46,4 +46,43 @@ KERNEL_INLINE void transpose(quad4 row[4])
     row[3] = __builtin_shufflevector(b, d, 2, 3, 6, 7);
 }
 
+/* Component a of four vectors, in the lanes of x[a]. */
+KERNEL_INLINE void load_components(const double *const from[PAIRS_GROUP], int dim, quad4 x[4])
+{
+    if (dim == 2) {
+        pair2 v[PAIRS_GROUP];
+        for (int r = 0; r < PAIRS_GROUP; r++) {
+            LOAD(v[r], from[r]);
+        }
+        pair2 first = __builtin_shufflevector(v[0], v[1], 0, 2);
+        pair2 last = __builtin_shufflevector(v[2], v[3], 0, 2);
+        x[0] = __builtin_shufflevector(first, last, 0, 1, 2, 3);
+        first = __builtin_shufflevector(v[0], v[1], 1, 3);
+        last = __builtin_shufflevector(v[2], v[3], 1, 3);
+        x[1] = __builtin_shufflevector(first, last, 0, 1, 2, 3);
+    } else {
+        for (int r = 0; r < PAIRS_GROUP; r++) {
+            LOAD(x[r], from[r]);
+        }
+        transpose(x);
+    }
+}
+
+/* The converse: the four vectors, one behind the other, PAIRS_STRIDE(dim) apart. */
+KERNEL_INLINE void store_components(const quad4 x[4], int dim, double *to)
+{
+    if (dim == 2) {
+        quad4 first = __builtin_shufflevector(x[0], x[1], 0, 4, 1, 5);
+        quad4 last = __builtin_shufflevector(x[0], x[1], 2, 6, 3, 7);
+        STORE(to, first);
+        STORE(to + 4, last);
+    } else {
+        quad4 row[4] = {x[0], x[1], x[2], {0.0}};
+        transpose(row);
+        for (int r = 0; r < PAIRS_GROUP; r++) {
+            STORE(to + r * PAIRS_STRIDE(3), row[r]);
+        }
+    }
+}
+
 #endif

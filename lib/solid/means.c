@@ -77,7 +77,7 @@ static enum status list_corners(const struct means_input *input, const struct me
     for (int64_t i = 0; i < input->corner_count; i++) {
         int32_t row = input->row_of_corner[i];
         int64_t group = place_of[row] / PAIRS_GROUP, lane = place_of[row] % PAIRS_GROUP;
-        means->of_corner[i] = (int32_t)(group * input->dim * PAIRS_GROUP + lane);
+        means->of_corner[i] = (int32_t)(place_of[row] * PAIRS_STRIDE(input->dim));
         means->corner[(means->corner_ptr[group] + filled[row]++) * PAIRS_GROUP + lane] = (int32_t)i;
     }
 done:
@@ -90,6 +90,9 @@ enum status means_build(const struct means_input *input, struct means *means, st
     enum status status;
     struct mean_order order = {0};
     *means = (struct means){0};
+    if (input->row_count > INT32_MAX / PAIRS_STRIDE(input->dim)) {
+        return fail(error, STATUS_INPUT, "faces: %lld are too many", (long long)input->row_count);
+    }
     TRY(order_means(input, &order, error));
     struct pairs_input pairs = {.rows = order.rows,
                                 .dim = input->dim,
@@ -99,7 +102,7 @@ enum status means_build(const struct means_input *input, struct means *means, st
                                 .passes = 2,
                                 .single = input->single};
     TRY(pairs_build(&pairs, &means->pairs, error));
-    TRY(NEW_ARRAY(&means->value, means->pairs.group_count * PAIRS_GROUP * input->dim, error));
+    TRY(NEW_ARRAY(&means->value, means->pairs.group_count * PAIRS_GROUP * PAIRS_STRIDE(input->dim), error));
     TRY(NEW_ARRAY(&means->corner_force, (input->corner_count + 1) * PAIRS_STRIDE(input->dim), error));
     TRY(list_corners(input, &order, means, error));
 done:

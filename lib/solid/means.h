@@ -8,9 +8,9 @@
 #include "solid/pairs.h"
 
 struct means {
-    struct pairs pairs; /* a row for each mean; all groups but the last are full */
-    double *value;      /* at the last evaluation, m: component a of mean r of group g at (g dim + a) 4 + r */
-    int32_t *of_corner; /* corner_count: where the value begins that each corner looks at */
+    struct pairs pairs;   /* a row for each mean; all groups but the last are full */
+    double *value;        /* at the last evaluation, m: PAIRS_STRIDE(dim) for each mean */
+    int32_t *of_corner;   /* corner_count: where the value begins that each corner looks at */
     double *corner_force; /* (corner_count + 1) * stride: what each corner puts on its mean, N (2D: N/m); last
                              zeros */
     int64_t *corner_ptr;  /* pairs.group_count + 1: for each group the corners of its means, ascending, */

@@ -8,9 +8,8 @@
 
 static const int64_t keep_interval = 200;     /* steps between states to go back to */
 static const double penetration_share = 1e-4; /* of the body's size: what a contact may penetrate */
-static const int later_iterations = 1;        /* at every check: the mode is kept, so that it sharpens */
-static const int last_iterations = 1;         /* the same, near the end, */
-static const int64_t last_mass_checks = 5;    /* where the mass is looked at only so often */
+static const int iterations = 1;              /* at every check: the mode is kept, so that it sharpens */
+static const int64_t last_mass_checks = 5;    /* near the end the mass is looked at only so often */
 
 /* One step; with `measure` the acceleration of the projected residual at the old u is kept. */
 static bool step(struct relaxation *r, double *u, bool measure)
@@ -100,7 +99,7 @@ static void change_load(struct relaxation *r, double s)
     }
 }
 
-/* After a measured step: the error, and what follows the state: mass, time step, ties. False on failure. */
+/* After a measured step: the error, and what follows the state: mass, time step. False on failure. */
 static bool follow(struct relaxation *r, struct error *error)
 {
     double *u = r->u, ramp = (double)r->report->ramp_steps;
@@ -111,21 +110,13 @@ static bool follow(struct relaxation *r, struct error *error)
     if (r->report->steps % keep_interval == 0) {
         relaxation_keep_state(r, u);
     }
-    /* Near the end the ties stay as they are, so that the last digits converge. */
-    r->ties_settled = r->ties_settled ||
-                      (r->at_full_load > 0 && (r->report->error < 1e-3 || (double)r->at_full_load > ramp));
+    r->near_end =
+        r->near_end || (r->at_full_load > 0 && (r->report->error < 1e-3 || (double)r->at_full_load > ramp));
     r->residual_at = r->before;
-    if (!r->ties_settled) {
-        compatibility_update(&r->system->body);
-        (void)system_residual(r->system, u, r->residual);
-        r->report->force_evaluations++;
-        r->residual_at = u;
-    }
-    bool settles = r->ties_settled; /* the body hardly moves any more */
-    if ((!settles || r->checks % last_mass_checks == 0) && !relaxation_update_mass(r, error)) {
+    if ((!r->near_end || r->checks % last_mass_checks == 0) && !relaxation_update_mass(r, error)) {
         return false;
     }
-    relaxation_update_time_step(r, r->residual_at, settles ? last_iterations : later_iterations);
+    relaxation_update_time_step(r, r->residual_at, iterations);
     return relaxation_update_inertia(r, error);
 }
 

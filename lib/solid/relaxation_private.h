@@ -53,7 +53,7 @@ struct relaxation {
     int64_t frames;       /* given so far */
     int64_t at_full_load; /* steps since the full load was reached */
     int64_t settled;      /* checks in a row with a small error */
-    bool ties_settled;
+    bool near_end;        /* the body hardly moves any more */
 };
 
 /* ---- relaxation_error.c: how far from equilibrium ---- */

@@ -81,7 +81,7 @@ enum status relaxation_visit(void *run, const struct state *state, struct error 
         {"frames", STATE_COUNTS, &r->frames, 1},
         {"at_full_load", STATE_COUNTS, &r->at_full_load, 1},
         {"settled", STATE_COUNTS, &r->settled, 1},
-        {"ties_settled", STATE_FLAGS, &r->ties_settled, 1},
+        {"near_end", STATE_FLAGS, &r->near_end, 1},
         {"force_evaluations", STATE_COUNTS, &report->force_evaluations, 1},
         {"error", STATE_NUMBERS, &report->error, 1},
         {"lowest_frequency", STATE_NUMBERS, &report->lowest_frequency, 1},

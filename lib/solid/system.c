@@ -37,7 +37,6 @@ void system_free(struct solid_system *system)
     constraint_rows_free(&system->rows);
     constraint_rows_free(&system->springs);
     free(system->spring_stiffness);
-    compatibility_free(&system->compatibility);
     body_free(&system->body);
     *system = (struct solid_system){0};
 }
@@ -47,7 +46,6 @@ enum status system_state(struct solid_system *system, const struct state *state,
     enum status status;
     const struct state_value factor = {"factor", STATE_NUMBERS, system->factor, system->curve_count};
     TRY(state_visit(state, "loads", &factor, 1, error));
-    TRY(compatibility_state(&system->body, state, error));
     for (int64_t c = 0; c < system->contact_count; c++) {
         char prefix[32];
         snprintf(prefix, sizeof prefix, "contact.%lld", (long long)c);

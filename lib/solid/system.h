@@ -4,7 +4,6 @@
 #define SOLID_SYSTEM_H
 
 #include "solid/body.h"
-#include "solid/compatibility.h"
 #include "solid/constraint.h"
 #include "solid/contact.h"
 #include "solid/curve.h"
@@ -40,7 +39,6 @@ struct solid_system {
     int64_t node_count;
     const double *X; /* reference coordinates, node_count * dim, m; the caller's */
     struct body body;
-    struct compatibility compatibility; /* of conforming cells; body.compatibility points to it, or is NULL */
     struct dead_load *loads;
     int64_t load_count;
     struct pressure_load *pressures;
@@ -63,7 +61,7 @@ struct solid_system {
 
 void system_free(struct solid_system *system);
 
-/* What the system keeps from step to step, its contacts and ties included. */
+/* What the system keeps from step to step, its contacts included. */
 MUST_CHECK enum status system_state(struct solid_system *system, const struct state *state,
                                     struct error *error);
 

@@ -78,7 +78,10 @@ static enum status make_loop(struct loop *loop, struct problem *problem, const s
                                           .face_weight = rule.weight,
                                           .face_ptr = problem->lists.ptr,
                                           .face_idx = problem->lists.idx,
-                                          .face_phi = problem->phi};
+                                          .face_phi = problem->phi,
+                                          .node_ptr = problem->node_lists.ptr,
+                                          .node_idx = problem->node_lists.idx,
+                                          .node_phi = problem->node_phi};
     struct body_input input = {.dim = dim,
                                .node_x = cells->x,
                                .conforming = variant->conforming ? &conforming : NULL,
@@ -124,8 +127,9 @@ static void free_loop(struct loop *loop)
 /* Bytes of the table that the loop reads. */
 static double table_bytes(const struct body *body)
 {
-    const struct pairs *pairs = body->conforming ? &body->cells.faces.pairs : &body->gradients;
-    return (double)pairs_bytes(pairs);
+    return body->conforming
+               ? (double)(pairs_bytes(&body->cells.faces.pairs) + pairs_bytes(&body->cells.nodes.pairs))
+               : (double)pairs_bytes(&body->gradients);
 }
 
 static void bench(struct problem *problem, const struct variant *variant, int threads, double seconds)
@@ -179,6 +183,7 @@ static void bench_cells(struct problem *problem, double seconds)
     bench_check(problem_support(problem, &error), &error);
     bench_check(problem_values(problem, &error), &error);
     bench_check(problem_smooth(problem, &error), &error);
+    bench_check(problem_nodes(problem, &error), &error);
     bench_all(problem, true, seconds);
 }
 

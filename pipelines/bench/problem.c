@@ -16,25 +16,43 @@ double problem_heap_bytes(void)
 }
 
 /* Lists as the tool support makes them: the grid belongs to it. */
-enum status problem_support(void *context, struct error *error)
+static enum status build_lists(const struct problem *problem, int64_t count, const double *x,
+                               const char *name, struct support_lists *lists, struct error *error)
 {
     enum status status;
-    struct problem *problem = context;
     struct point_grid grid = {0};
-    support_free(&problem->lists);
+    support_free(lists);
     TRY(point_grid_build(&grid, problem->cloud.dim, problem->cloud.node_count, problem->cloud.x,
                          problem->radius, error));
-    TRY(support_build(&problem->options, &grid, problem->point_count, problem->points, "points.x",
-                      &problem->lists, error));
+    TRY(support_build(&problem->options, &grid, count, x, name, lists, error));
 done:
     point_grid_free(&grid);
     return status;
 }
 
-static struct neighbours view_of(const struct problem *problem)
+enum status problem_support(void *context, struct error *error)
 {
-    return (struct neighbours){problem->point_count, problem->lists.ptr, problem->lists.idx,
-                               problem->lists.widen};
+    struct problem *problem = context;
+    return build_lists(problem, problem->point_count, problem->points, "points.x", &problem->lists, error);
+}
+
+static struct neighbours view_of(const struct support_lists *lists)
+{
+    return (struct neighbours){lists->count, lists->ptr, lists->idx, lists->widen};
+}
+
+enum status problem_nodes(struct problem *problem, struct error *error)
+{
+    enum status status;
+    int64_t count = problem->cells.node_count;
+    const double *x = problem->cells.x;
+    TRY(build_lists(problem, count, x, "nodes.x", &problem->node_lists, error));
+    TRY(NEW_ARRAY(&problem->node_phi, problem->node_lists.ptr[count], error));
+    struct neighbours lists = view_of(&problem->node_lists);
+    TRY(shape_table(&problem->options.mls, x, problem->radius, &lists, x, "nodes.x", problem->node_phi, NULL,
+                    error));
+done:
+    return status;
 }
 
 /* The table, allocated with the first run. */
@@ -42,7 +60,7 @@ static enum status run_shape(struct problem *problem, bool gradients, struct err
 {
     enum status status;
     int64_t pairs = problem->lists.ptr[problem->point_count];
-    struct neighbours lists = view_of(problem);
+    struct neighbours lists = view_of(&problem->lists);
     if (problem->phi == NULL) {
         TRY(NEW_ARRAY(&problem->phi, pairs, error));
     }
@@ -68,7 +86,7 @@ enum status problem_values(void *context, struct error *error)
 enum status problem_smooth(void *context, struct error *error)
 {
     struct problem *problem = context;
-    struct neighbours lists = view_of(problem);
+    struct neighbours lists = view_of(&problem->lists);
     smoothed_table_free(&problem->smoothed);
     return shape_smooth(&problem->cells, &problem->faces, quadrature_face_rule(problem->cells.dim).points,
                         &lists, problem->phi, &problem->smoothed, error);
@@ -138,10 +156,12 @@ void problem_free(struct problem *problem)
     cloud_free(&problem->cloud);
     faces_free(&problem->faces);
     support_free(&problem->lists);
+    support_free(&problem->node_lists);
     smoothed_table_free(&problem->smoothed);
     free(problem->radius);
     free(problem->points);
     free(problem->phi);
+    free(problem->node_phi);
     free(problem->dphi);
 }
 

@@ -15,7 +15,9 @@ struct problem {
     struct smoothed_table smoothed;
     double *radius, *points, *phi, *dphi;
     int64_t point_count;
-    struct support_lists lists;
+    struct support_lists lists;      /* of the points, */
+    struct support_lists node_lists; /* and of the nodes with their values, by problem_nodes */
+    double *node_phi;
     double heap; /* bytes in use before any list or table */
 };
 
@@ -39,6 +41,9 @@ MUST_CHECK enum status problem_support(void *context, struct error *error);
 MUST_CHECK enum status problem_gradients(void *context, struct error *error);
 MUST_CHECK enum status problem_values(void *context, struct error *error);
 MUST_CHECK enum status problem_smooth(void *context, struct error *error);
+
+/* The lists and values of the field at the nodes. */
+MUST_CHECK enum status problem_nodes(struct problem *problem, struct error *error);
 
 /* Makes the bodies that kernels are timed on, one after the other: with a point in each cell, in 2D and 3D;
  * with points on the faces of conforming cells (about twelve times the nodes), in 2D and 3D; and cubes of 1e3

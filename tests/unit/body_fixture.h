@@ -137,7 +137,10 @@ static inline struct conforming_input sample_conforming(const struct sample *sam
                                      .face_weight = sample->face_rule.weight,
                                      .face_ptr = sample->face_lists.ptr,
                                      .face_idx = sample->face_lists.idx,
-                                     .face_phi = sample->face_phi};
+                                     .face_phi = sample->face_phi,
+                                     .node_ptr = sample->node_lists.ptr,
+                                     .node_idx = sample->node_lists.idx,
+                                     .node_phi = sample->node_phi};
 }
 
 /* factor: support radius over local spacing. */

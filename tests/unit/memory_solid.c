@@ -7,7 +7,6 @@
 #ifdef FAILING_ALLOCATOR
 
 #include "solid/body.h"
-#include "solid/compatibility.h"
 #include "solid/contact.h"
 
 /* In place of libgomp's, which ends the program when it gets no memory: all work on this thread. */
@@ -45,14 +44,7 @@ static enum status try_body_of(const struct conforming_input *conforming, struct
                                .pointwise_share = 0.1,
                                .node_x = sample.cloud.x,
                                .conforming = conforming};
-    struct compatibility_input ties = {sample.cells.node, sample.node_lists.ptr, sample.node_lists.idx,
-                                       sample.node_phi};
-    struct compatibility compatibility = {0};
     enum status status = body_build(&input, &body, error);
-    if (status == STATUS_OK && conforming != NULL) {
-        status = compatibility_build(&body, &ties, &compatibility, error);
-    }
-    compatibility_free(&compatibility);
     body_free(&body);
     return status;
 }

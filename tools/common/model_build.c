@@ -82,7 +82,10 @@ static enum status build_body(const struct model_input *input, bool single, stru
                                           .face_weight = rule.weight,
                                           .face_ptr = input->face_lists.ptr,
                                           .face_idx = input->face_lists.idx,
-                                          .face_phi = input->face_phi};
+                                          .face_phi = input->face_phi,
+                                          .node_ptr = input->node_lists.ptr,
+                                          .node_idx = input->node_lists.idx,
+                                          .node_phi = input->node_phi};
     struct body_input body = {.dim = dim,
                               .node_x = input->cells.x,
                               .node_count = input->cells.node_count,
@@ -104,14 +107,6 @@ static enum status build_body(const struct model_input *input, bool single, stru
                               .conforming = has_conforming_cells(input) ? &conforming : NULL,
                               .single = single};
     TRY(body_build(&body, &system->body, error));
-    if (has_conforming_cells(input)) {
-        struct compatibility_input compatibility = {.cell_node = input->cells.node,
-                                                    .node_ptr = input->node_lists.ptr,
-                                                    .node_idx = input->node_lists.idx,
-                                                    .node_phi = input->node_phi};
-        TRY(compatibility_build(&system->body, &compatibility, &system->compatibility, error));
-        system->body.compatibility = &system->compatibility;
-    }
 done:
     material_list_free(&materials);
     free(hat_node);

@@ -59,8 +59,8 @@ static void tell_report(const struct run *run, const struct dynamics_report *rep
             (long long)report->force_evaluations);
     fprintf(stderr, "critical step, s\t%.6g\nfirst step, s\t%.6g\nleast step, s\t%.6g\nstep changes\t%lld\n",
             report->critical_step, report->first_step, report->least_step, (long long)report->step_changes);
-    fprintf(stderr, "largest energy error\t%.3g\nwork of ties\t%.3g\nleast J\t%.4g\n", report->largest_drift,
-            report->tie_work, report->least_jacobian);
+    fprintf(stderr, "largest energy error\t%.3g\nleast J\t%.4g\n", report->largest_drift,
+            report->least_jacobian);
 }
 
 /* The log becomes the section `energy`. */

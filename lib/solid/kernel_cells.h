@@ -1,0 +1,238 @@
+/* Kernels over conforming cells (conforming.h): gradients from the means, the neo-Hookean law, and what the
+ * corners put on the means; private to lib/solid. */
+#ifndef SOLID_KERNEL_CELLS_H
+#define SOLID_KERNEL_CELLS_H
+
+#include "solid/kernel_points.h"
+
+/* What the corners of a block's cells look at: component a of corner k in row k dim + a, cells along it. */
+typedef double block_corners[12][PAIRS_MAX_ROWS];
+
+KERNEL_INLINE void read_corners(const struct means *means, const struct block *block, int dim,
+                                block_corners corners)
+{
+    const int32_t *of_corner = means->of_corner + block->first_point * (dim + 1);
+    int64_t last = block->point_count - 1;
+    for (int64_t i = 0; i <= last; i += 4) {
+        for (int k = 0; k <= dim; k++) {
+            const double *from[PAIRS_GROUP];
+            quad4 value[4];
+            for (int r = 0; r < PAIRS_GROUP; r++) { /* the last one again where there are no more */
+                from[r] = means->value + of_corner[(i + r < last ? i + r : last) * (dim + 1) + k];
+            }
+            load_components(from, dim, value);
+            for (int a = 0; a < dim; a++) {
+                STORE(corners[k * dim + a] + i, value[a]);
+            }
+        }
+    }
+}
+
+KERNEL_INLINE void write_corners(struct means *means, const struct block *block, int dim,
+                                 const block_corners corners)
+{
+    int64_t i = 0, stride = (dim + 1) * PAIRS_STRIDE(dim);
+    double *force = means->corner_force + block->first_point * stride;
+    for (; i + PAIRS_GROUP <= block->point_count; i += PAIRS_GROUP) {
+        for (int k = 0; k <= dim; k++) {
+            double rows[PAIRS_GROUP * PAIRS_STRIDE(3)];
+            quad4 value[4] = {{0.0}};
+            for (int a = 0; a < dim; a++) {
+                LOAD(value[a], corners[k * dim + a] + i);
+            }
+            store_components(value, dim, rows);
+            for (int r = 0; r < PAIRS_GROUP; r++) {
+                memcpy(force + (i + r) * stride + k * PAIRS_STRIDE(dim), rows + r * PAIRS_STRIDE(dim),
+                       PAIRS_STRIDE(dim) * sizeof *rows);
+            }
+        }
+    }
+    for (; i < block->point_count; i++) {
+        for (int k = 0; k <= dim; k++) {
+            for (int a = 0; a < dim; a++) {
+                force[i * stride + k * PAIRS_STRIDE(dim) + a] = corners[k * dim + a][i];
+            }
+        }
+    }
+}
+
+/* Hat gradients of the cells from q on. */
+KERNEL_INLINE void load_hats(const struct body *body, int64_t q, int dim, lanes hat[9])
+{
+    for (int k = 0; k < dim * dim; k++) {
+        LOAD(hat[k], body->cells.hat + k * body->point_count + q);
+    }
+}
+
+/* gradient = sum_k v_k (x) grad N_k for corner values v of the cells i .. of a block. */
+KERNEL_INLINE void corner_gradient(const block_corners v, int64_t i, int dim, const lanes hat[9],
+                                   lanes gradient[9])
+{
+    for (int a = 0; a < dim; a++) {
+        lanes origin;
+        LOAD(origin, v[a] + i);
+        for (int b = 0; b < dim; b++) {
+            gradient[a * dim + b] = (lanes){0.0};
+        }
+        for (int k = 1; k <= dim; k++) {
+            lanes value;
+            LOAD(value, v[k * dim + a] + i);
+            value -= origin;
+            for (int b = 0; b < dim; b++) {
+                gradient[a * dim + b] += value * hat[(k - 1) * dim + b];
+            }
+        }
+    }
+}
+
+/* The transpose: v_k = scale P grad N_k. */
+KERNEL_INLINE void corner_forces(const lanes P[9], int64_t i, int dim, const lanes hat[9], double scale,
+                                 block_corners v)
+{
+    for (int a = 0; a < dim; a++) {
+        lanes all = {0.0};
+        for (int k = 1; k <= dim; k++) {
+            lanes sum = P[a * dim] * hat[(k - 1) * dim];
+            for (int b = 1; b < dim; b++) {
+                sum += P[a * dim + b] * hat[(k - 1) * dim + b];
+            }
+            sum *= scale;
+            all -= sum;
+            STORE(v[k * dim + a] + i, sum);
+        }
+        STORE(v[a] + i, all);
+    }
+}
+
+/* Rows of a block's cells into an array over all cells. */
+KERNEL_INLINE void keep_rows(const struct body *body, const struct block *block, int count,
+                             const block_stress from, double *rows)
+{
+    for (int k = 0; k < count; k++) {
+        memcpy(rows + k * body->point_count + block->first_point, from[k],
+               (size_t)block->point_count * sizeof *from[k]);
+    }
+}
+
+/* F = I - dim sum_k m_k (x) grad N_k, F_h = I + sum_k v_k (x) grad N_k, J = det F_h - cof F_h : (F_h - F);
+ * the least determinant is that of F. */
+KERNEL_INLINE void kernel_cell_gradients(struct body *body, struct block *block, int dim)
+{
+    block_corners mean, value;
+    block_stress F, interpolant;
+    double determinant[PAIRS_MAX_ROWS], J[PAIRS_MAX_ROWS];
+    read_corners(&body->cells.faces, block, dim, mean);
+    read_corners(&body->cells.nodes, block, dim, value);
+    for (int64_t i = 0; i < block->point_count; i += LANES) {
+        lanes hat[9], f[9], h[9], C[9], volume;
+        load_hats(body, block->first_point + i, dim, hat);
+        corner_gradient((const double(*)[PAIRS_MAX_ROWS])mean, i, dim, hat, f);
+        corner_gradient((const double(*)[PAIRS_MAX_ROWS])value, i, dim, hat, h);
+        for (int k = 0; k < dim * dim; k++) {
+            double unit = k % (dim + 1) == 0 ? 1.0 : 0.0;
+            f[k] = unit - (double)dim * f[k];
+            h[k] += unit;
+            STORE(F[k] + i, f[k]);
+            STORE(interpolant[k] + i, h[k]);
+        }
+        lanes_cofactor(f, dim, C);
+        lanes_determinant(f, C, dim, &volume);
+        STORE(determinant + i, volume);
+        lanes_cofactor(h, dim, C);
+        lanes_determinant(h, C, dim, &volume);
+        for (int k = 0; k < dim * dim; k++) {
+            volume -= C[k] * (h[k] - f[k]);
+        }
+        STORE(J + i, volume);
+    }
+    keep_rows(body, block, dim * dim, (const double(*)[PAIRS_MAX_ROWS])F, body->F);
+    keep_rows(body, block, dim * dim, (const double(*)[PAIRS_MAX_ROWS])interpolant, body->cells.interpolant);
+    memcpy(body->J + block->first_point, J, (size_t)block->point_count * sizeof *J);
+    note_least(block, determinant);
+}
+
+/* d cof F_h along D: T : dF_h is by how much cof F_h : D changes. */
+KERNEL_INLINE void cofactor_along(const lanes H[9], const lanes D[9], int dim, lanes T[9])
+{
+    if (dim == 2) {
+        lanes_cofactor(D, dim, T);
+        return;
+    }
+    for (int i = 0; i < 3; i++) {
+        for (int j = 0; j < 3; j++) {
+            int r = 3 * ((i + 1) % 3), s = 3 * ((i + 2) % 3), k = (j + 1) % 3, l = (j + 2) % 3;
+            T[3 * i + j] =
+                H[r + k] * D[s + l] + D[r + k] * H[s + l] - H[r + l] * D[s + k] - D[r + l] * H[s + k];
+        }
+    }
+}
+
+/* dE/dF in P and dE/dF_h in T of w (W_shape(F) + p J + k |F_h - F|^2 / 2), p held, k of W(F): see
+ * conforming.h. */
+KERNEL_INLINE void kernel_cell_neo_hookean(const struct body *body, const struct block *block, int dim,
+                                           block_stress P, block_stress T)
+{
+    double weighted_pressure[PAIRS_MAX_ROWS];
+    kernel_pressures(body, block, dim, weighted_pressure);
+    for (int64_t i = 0; i < block->point_count; i += LANES) {
+        lanes F[9], H[9], D[9], C[9], J, weight, shear, bulk, pressure, squares = {0.0};
+        struct lanes_shape shape;
+        int64_t q = block->first_point + i;
+        load_matrix(body, body->F, q, dim, F);
+        load_matrix(body, body->cells.interpolant, q, dim, H);
+        LOAD(weight, body->weight + q);
+        LOAD(shear, body->shear + q);
+        LOAD(bulk, body->bulk + q);
+        LOAD(pressure, weighted_pressure + i);
+        shear *= weight;
+        bulk *= weight;
+        for (int k = 0; k < dim * dim; k++) {
+            D[k] = H[k] - F[k];
+            squares += D[k] * D[k];
+        }
+        lanes_cofactor(F, dim, C);
+        lanes_determinant(F, C, dim, &J);
+        neo_hookean_shape(F, &J, &shear, dim, &shape);
+        J -= 1.0;
+        lanes strain = (shape.energy + 0.5 * bulk * J * J) / shear;
+        lanes stiffness = shear * TIE_STIFFNESS(strain), share = 0.5 * squares * TIE_SLOPE(strain);
+        lanes along_gradient = (1.0 + share) * shape.along_gradient;
+        lanes along_cofactor = (1.0 + share) * shape.along_cofactor + share * bulk * J;
+        for (int k = 0; k < dim * dim; k++) {
+            F[k] = along_gradient * F[k] + along_cofactor * C[k] - stiffness * D[k];
+        }
+        lanes_cofactor(H, dim, C);
+        for (int k = 0; k < dim * dim; k++) {
+            lanes stress = F[k] + pressure * C[k];
+            STORE(P[k] + i, stress);
+        }
+        cofactor_along(H, D, dim, C);
+        for (int k = 0; k < dim * dim; k++) {
+            lanes stress = stiffness * D[k] - pressure * C[k];
+            STORE(T[k] + i, stress);
+        }
+    }
+}
+
+/* What the corners put on the means of faces, -dim P grad N_k, and on the values at nodes, T grad N_k. */
+KERNEL_INLINE void kernel_cell_forces(struct body *body, const struct block *block, int dim,
+                                      const block_stress P, const block_stress T)
+{
+    block_corners at_faces, at_nodes;
+    for (int64_t i = 0; i < block->point_count; i += LANES) {
+        lanes hat[9], stress[9];
+        load_hats(body, block->first_point + i, dim, hat);
+        for (int k = 0; k < dim * dim; k++) {
+            LOAD(stress[k], P[k] + i);
+        }
+        corner_forces(stress, i, dim, hat, -(double)dim, at_faces);
+        for (int k = 0; k < dim * dim; k++) {
+            LOAD(stress[k], T[k] + i);
+        }
+        corner_forces(stress, i, dim, hat, 1.0, at_nodes);
+    }
+    write_corners(&body->cells.faces, block, dim, (const double(*)[PAIRS_MAX_ROWS])at_faces);
+    write_corners(&body->cells.nodes, block, dim, (const double(*)[PAIRS_MAX_ROWS])at_nodes);
+}
+
+#endif

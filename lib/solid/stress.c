@@ -1,0 +1,137 @@
+#include "solid/stress.h"
+
+#include <string.h>
+
+double body_pressure(const struct body *body, int64_t point)
+{
+    int corners = body->dim + 1;
+    double sum = 0.0;
+    if (!body->averaged) {
+        return material_pressure(&body->materials[body->material[point]], body->J[point]);
+    }
+    for (int64_t k = point * corners; k < (point + 1) * corners; k++) {
+        int32_t hat = body->hats.of_point[k];
+        sum += body->hats.value[k] * (body->hats.pressure[hat] + body->hats.slope[hat] * body->J[point]);
+    }
+    return sum;
+}
+
+void stress_matrix(const struct body *body, const double *rows, int64_t point, double F[9])
+{
+    int dim = body->dim;
+    memset(F, 0, 9 * sizeof *F);
+    F[8] = 1.0;
+    for (int a = 0; a < dim; a++) {
+        for (int b = 0; b < dim; b++) {
+            F[3 * a + b] = rows[(a * dim + b) * body->point_count + point];
+        }
+    }
+}
+
+/* P at a point: of its shape, and along the cofactor of F. */
+static void point_stress(const struct body *body, int64_t q, double P[9])
+{
+    double F[9], C[9];
+    stress_matrix(body, body->F, q, F);
+    material_shape_stress(&body->materials[body->material[q]], F, P);
+    cofactor(F, C);
+    double pressure = body_pressure(body, q);
+    for (int k = 0; k < 9; k++) {
+        P[k] += pressure * C[k];
+    }
+}
+
+/* The part in the body's dimensions, times the weight, to place i of a block. */
+static void put(const struct body *body, int64_t q, int64_t i, const double stress[9], block_stress P)
+{
+    int dim = body->dim;
+    for (int k = 0; k < dim * dim; k++) {
+        P[k][i] = body->weight[q] * stress[3 * (k / dim) + k % dim];
+    }
+}
+
+void stress_points(const struct body *body, const struct block *block, block_stress P)
+{
+    for (int64_t i = 0; i < block->point_count; i++) {
+        double stress[9];
+        point_stress(body, block->first_point + i, stress);
+        put(body, block->first_point + i, i, stress, P);
+    }
+}
+
+struct tie stress_tie(const struct body *body, int64_t point, const double F[9])
+{
+    const struct material *material = &body->materials[body->material[point]];
+    double H[9], squares = 0.0;
+    stress_matrix(body, body->cells.interpolant, point, H);
+    for (int k = 0; k < 9; k++) {
+        squares += (H[k] - F[k]) * (H[k] - F[k]);
+    }
+    double energy = material_shape_energy(material, F) + material_volume_energy(material, determinant(F));
+    double strain = energy / material->shear_modulus;
+    return (struct tie){material->shear_modulus * TIE_STIFFNESS(strain), TIE_SLOPE(strain), squares};
+}
+
+/* d cof F_h along D, by which cof F_h : D changes with F_h. */
+static void cofactor_along(const double H[9], const double D[9], double along[9])
+{
+    double sum[9], both[9], of_H[9], of_D[9];
+    for (int k = 0; k < 9; k++) {
+        sum[k] = H[k] + D[k];
+    }
+    cofactor(sum, both);
+    cofactor(H, of_H);
+    cofactor(D, of_D);
+    for (int k = 0; k < 9; k++) {
+        along[k] = both[k] - of_H[k] - of_D[k];
+    }
+}
+
+static void cell_stress(const struct body *body, int64_t q, double P[9], double T[9])
+{
+    const struct material *material = &body->materials[body->material[q]];
+    double F[9], H[9], C[9], D[9], along[9];
+    stress_matrix(body, body->F, q, F);
+    stress_matrix(body, body->cells.interpolant, q, H);
+    for (int k = 0; k < 9; k++) {
+        D[k] = H[k] - F[k];
+    }
+    struct tie tie = stress_tie(body, q, F);
+    double share = 0.5 * tie.squares * tie.slope, pressure = body_pressure(body, q);
+    double own_pressure = material_pressure(material, determinant(F));
+    material_shape_stress(material, F, P);
+    cofactor(F, C);
+    for (int k = 0; k < 9; k++) {
+        P[k] = (1.0 + share) * P[k] + share * own_pressure * C[k] - tie.stiffness * D[k];
+    }
+    cofactor(H, C);
+    cofactor_along(H, D, along);
+    for (int k = 0; k < 9; k++) {
+        P[k] += pressure * C[k];
+        T[k] = tie.stiffness * D[k] - pressure * along[k];
+    }
+}
+
+void stress_cells(const struct body *body, const struct block *block, block_stress P, block_stress T)
+{
+    for (int64_t i = 0; i < block->point_count; i++) {
+        double on_gradient[9], on_interpolant[9];
+        cell_stress(body, block->first_point + i, on_gradient, on_interpolant);
+        put(body, block->first_point + i, i, on_gradient, P);
+        put(body, block->first_point + i, i, on_interpolant, T);
+    }
+}
+
+void body_stress(const struct body *body, double *stress)
+{
+    for (int64_t q = 0; q < body->point_count; q++) {
+        point_stress(body, q, stress + body->order[q] * 9);
+    }
+}
+
+void body_gradient(const struct body *body, double *gradient)
+{
+    for (int64_t q = 0; q < body->point_count; q++) {
+        stress_matrix(body, body->F, q, gradient + body->order[q] * 9);
+    }
+}
