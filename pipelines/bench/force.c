@@ -38,82 +38,117 @@ struct variant {
     bool averaged, conforming, single;
 };
 
-/* Each cell's volume to its point; nodes share theirs. */
-static enum status make_loop(struct loop *loop, struct problem *problem, const struct variant *variant,
-                             struct error *error)
+/* What a body is built from, beside the problem; not needed any more once it is. */
+struct ingredients {
+    int64_t count;        /* points */
+    double *weight;       /* count: each cell's volume to its point; nodes share theirs */
+    double *hat_value;    /* count * (dim + 1) */
+    double *centroids;    /* count * dim: the points of conforming cells; else NULL */
+    int32_t *material_of; /* count, zero */
+};
+
+static enum status make_ingredients(const struct problem *problem, bool conforming, struct ingredients *made,
+                                    struct error *error)
 {
     enum status status;
     const struct cells *cells = &problem->cells;
     int dim = cells->dim, corners = dim + 1;
-    int64_t count = variant->conforming ? cells->count : problem->point_count;
-    double *weight = NULL, *hat_value = NULL, *centroids = NULL;
-    int32_t *material_of = NULL;
-    struct material material = {.model = MATERIAL_NEO_HOOKEAN, .density = 1000.0};
-    *loop = (struct loop){.problem = problem};
-    material_set_moduli(&material, 3000.0, 0.49);
-    TRY(NEW_ARRAY(&weight, count, error));
-    TRY(NEW_ARRAY(&material_of, count, error));
-    TRY(NEW_ARRAY(&hat_value, count * corners, error));
-    const double *points = problem->points;
-    if (variant->conforming) {
-        TRY(NEW_ARRAY(&centroids, count * dim, error));
-        for (int64_t q = 0; q < count; q++) {
-            cell_centroid(cells, q, centroids + q * dim);
+    *made = (struct ingredients){.count = conforming ? cells->count : problem->point_count};
+    TRY(NEW_ARRAY(&made->weight, made->count, error));
+    TRY(NEW_ARRAY(&made->material_of, made->count, error));
+    TRY(NEW_ARRAY(&made->hat_value, made->count * corners, error));
+    if (conforming) {
+        TRY(NEW_ARRAY(&made->centroids, made->count * dim, error));
+        for (int64_t q = 0; q < made->count; q++) {
+            cell_centroid(cells, q, made->centroids + q * dim);
         }
-        points = centroids;
     }
-    for (int64_t q = 0; q < count; q++) {
-        weight[q] = count == cells->count ? cell_volume(cells, q) : 1e-3 / (double)count;
+    for (int64_t q = 0; q < made->count; q++) {
+        made->weight[q] = made->count == cells->count ? cell_volume(cells, q) : 1e-3 / (double)made->count;
     }
-    for (int64_t i = 0; i < count * corners; i++) {
-        hat_value[i] = 1.0 / corners;
+    for (int64_t i = 0; i < made->count * corners; i++) {
+        made->hat_value[i] = 1.0 / corners;
     }
+done:
+    return status;
+}
+
+static void free_ingredients(struct ingredients *made)
+{
+    free(made->weight);
+    free(made->hat_value);
+    free(made->centroids);
+    free(made->material_of);
+}
+
+static struct conforming_input conforming_input(const struct problem *problem,
+                                                const struct quadrature_rule *rule)
+{
+    const struct cells *cells = &problem->cells;
+    return (struct conforming_input){.x = cells->x,
+                                     .cell_node = cells->node,
+                                     .face_count = problem->faces.count,
+                                     .face_node = problem->faces.node,
+                                     .face_cell = problem->faces.cell,
+                                     .per_face = rule->points,
+                                     .face_weight = rule->weight,
+                                     .face_ptr = problem->lists.ptr,
+                                     .face_idx = problem->lists.idx,
+                                     .face_phi = problem->phi,
+                                     .node_ptr = problem->node_lists.ptr,
+                                     .node_idx = problem->node_lists.idx,
+                                     .node_phi = problem->node_phi};
+}
+
+static enum status build_body(const struct problem *problem, const struct variant *variant,
+                              const struct ingredients *made, struct body *body, struct error *error)
+{
+    const struct cells *cells = &problem->cells;
+    int dim = cells->dim;
     struct quadrature_rule rule = quadrature_face_rule(dim);
-    struct conforming_input conforming = {.x = cells->x,
-                                          .cell_node = cells->node,
-                                          .face_count = problem->faces.count,
-                                          .face_node = problem->faces.node,
-                                          .face_cell = problem->faces.cell,
-                                          .per_face = rule.points,
-                                          .face_weight = rule.weight,
-                                          .face_ptr = problem->lists.ptr,
-                                          .face_idx = problem->lists.idx,
-                                          .face_phi = problem->phi,
-                                          .node_ptr = problem->node_lists.ptr,
-                                          .node_idx = problem->node_lists.idx,
-                                          .node_phi = problem->node_phi};
+    struct conforming_input conforming = conforming_input(problem, &rule);
+    struct material material = {.model = MATERIAL_NEO_HOOKEAN, .density = 1000.0};
+    material_set_moduli(&material, 3000.0, 0.49);
     struct body_input input = {.dim = dim,
                                .node_x = cells->x,
                                .conforming = variant->conforming ? &conforming : NULL,
                                .single = variant->single,
                                .node_count = cells->node_count,
-                               .point_count = count,
-                               .x = points,
-                               .weight = weight,
+                               .point_count = made->count,
+                               .x = made->centroids != NULL ? made->centroids : problem->points,
+                               .weight = made->weight,
                                .ptr = variant->conforming ? problem->smoothed.ptr : problem->lists.ptr,
                                .idx = variant->conforming ? problem->smoothed.idx : problem->lists.idx,
                                .dphi = variant->conforming ? problem->smoothed.dphi : problem->dphi,
                                .materials = &material,
-                               .material = material_of,
+                               .material = made->material_of,
                                .material_count = 1,
                                .hat_node = variant->averaged ? cells->node : NULL,
-                               .hat_value = hat_value,
+                               .hat_value = made->hat_value,
                                .pointwise_share = 0.05,
                                .share_growth = 20.0};
+    return body_build(&input, body, error);
+}
+
+static enum status make_loop(struct loop *loop, struct problem *problem, const struct variant *variant,
+                             struct error *error)
+{
+    enum status status;
+    const struct cells *cells = &problem->cells;
+    struct ingredients made;
+    *loop = (struct loop){.problem = problem};
+    TRY(make_ingredients(problem, variant->conforming, &made, error));
     double before = problem_heap_bytes();
-    TRY(body_build(&input, &loop->body, error));
+    TRY(build_body(problem, variant, &made, &loop->body, error));
     loop->heap = problem_heap_bytes() - before;
-    TRY(NEW_ARRAY(&loop->u, cells->node_count * dim, error));
-    TRY(NEW_ARRAY(&loop->force, cells->node_count * dim, error));
-    for (int64_t i = 0; i < cells->node_count * dim; i++) {
+    TRY(NEW_ARRAY(&loop->u, cells->node_count * cells->dim, error));
+    TRY(NEW_ARRAY(&loop->force, cells->node_count * cells->dim, error));
+    for (int64_t i = 0; i < cells->node_count * cells->dim; i++) {
         double x = cells->x[i];
         loop->u[i] = 0.03 * x + 0.2 * x * x;
     }
 done:
-    free(weight);
-    free(material_of);
-    free(hat_value);
-    free(centroids);
+    free_ingredients(&made);
     return status;
 }
 
