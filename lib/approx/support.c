@@ -1,6 +1,7 @@
 #include "approx/support.h"
 
 #include "approx/candidates.h"
+#include "approx/steep_bound.h"
 #include "base/memory.h"
 
 #include <math.h>
@@ -13,7 +14,7 @@ static const double widen_limit = 8.0;
 /* Points of one unit of work: fixed, so that the result cannot depend on the number of threads. */
 static const int64_t chunk_points = 512;
 /* A group of points shares its search: at most so many of them, in a box of that share of the radius. */
-static const int64_t most_of_group = 32;
+enum { MOST_OF_GROUP = 32 };
 static const double extent_of_group = 0.8;
 
 struct support_options support_defaults(int dim)
@@ -48,7 +49,9 @@ static double distance2_of(int dim, const double *a, const double *b)
 struct worker {
     struct index_list list;
     struct candidates candidates;
+    double bounds[MOST_OF_GROUP]; /* on the gradients at each point of the group, see steep_bounds */
     struct mls_work work;
+    struct steep_work steep;
     double *order;
     int64_t capacity;
 };
@@ -59,6 +62,7 @@ static void worker_free(struct worker *worker)
     candidates_free(&worker->candidates);
     free(worker->order);
     mls_work_free(&worker->work);
+    steep_work_free(&worker->steep);
 }
 
 /* Keep the `most` nearest of the neighbours in index[count], ties going to the lower index. */
@@ -118,9 +122,10 @@ static double spacing_within(const struct support_options *options, const struct
     return reach * pow(unit_ball / (double)count, 1.0 / grid->dim);
 }
 
-/* Whether a support serves: enough nodes, a good moment matrix, bounded gradients. */
+/* Whether a support serves: enough nodes, a good moment matrix, bounded gradients. They need not be looked at
+ * where `bound`, known of them, says enough. */
 static enum status judge(const struct support_options *options, const struct point_grid *grid,
-                         const double *x, double widen, const int32_t *index, int64_t count,
+                         const double *x, double widen, const int32_t *index, int64_t count, double bound,
                          struct worker *worker, bool *serves, struct error *error)
 {
     enum mls_verdict verdict;
@@ -135,17 +140,22 @@ static enum status judge(const struct support_options *options, const struct poi
     if (count < options->least) {
         return STATUS_OK;
     }
+    double spacing = spacing_within(options, grid, x, index, count, widen);
+    if (bound * spacing <= options->gradient_bound) {
+        *serves = true;
+        return STATUS_OK;
+    }
     enum status status = mls_steepest(&options->mls, &support, &worker->work, &steepest, &verdict, error);
     if (status == STATUS_OK && verdict == MLS_GOOD) {
-        *serves = steepest * spacing_within(options, grid, x, index, count, widen) <= options->gradient_bound;
+        *serves = steepest * spacing <= options->gradient_bound;
     }
     return status;
 }
 
 /* Append one point's neighbours to the worker's list; a point in a group has its candidates found. */
 static enum status find_support(const struct support_options *options, const struct point_grid *grid,
-                                const double *x, bool grouped, struct worker *worker, double *widen,
-                                bool *serves, struct error *error)
+                                const double *x, bool grouped, double bound, struct worker *worker,
+                                double *widen, bool *serves, struct error *error)
 {
     enum status status = STATUS_OK;
     int64_t first = worker->list.count;
@@ -162,7 +172,8 @@ static enum status find_support(const struct support_options *options, const str
         worker->list.count = first + count;
         *serves = true;
         if (options->widen) {
-            TRY(judge(options, grid, x, *widen, index, count, worker, serves, error));
+            TRY(judge(options, grid, x, *widen, index, count, *widen > 1.0 ? INFINITY : bound, worker, serves,
+                      error));
         }
         if (*serves) {
             return STATUS_OK;
@@ -182,17 +193,38 @@ static bool is_finite(int dim, const double *x)
     return true;
 }
 
-/* Find the candidates of the points that follow `first` within a box of edges up to `extent`; returns the end
- * of that group. The first point is finite. */
-static enum status begin_group(const struct point_grid *grid, const double *x, int64_t first, int64_t last,
-                               double extent, struct candidates *candidates, int64_t *end,
-                               struct error *error)
+/* What the `count` points x in the box low .. high share: the search for candidates, and bounds on their
+ * gradients where those will be asked for. */
+static enum status study_group(const struct support_options *options, const struct point_grid *grid,
+                               const double *x, int64_t count, const double *low, const double *high,
+                               struct worker *worker, struct error *error)
+{
+    enum status status = STATUS_OK;
+    for (int64_t p = 0; p < count; p++) {
+        worker->bounds[p] = INFINITY;
+    }
+    if (count > 1) {
+        TRY(candidates_find(&worker->candidates, grid, low, high, 1.0, error));
+        if (options->widen && options->most <= 0) {
+            TRY(steep_bounds(&options->mls, &worker->candidates, count, x, &worker->steep, worker->bounds,
+                             error));
+        }
+    }
+done:
+    return status;
+}
+
+/* Study the points that follow `first` within a box of edges up to `extent`; returns the end of that group.
+ * The first point is finite. */
+static enum status begin_group(const struct support_options *options, const struct point_grid *grid,
+                               const double *x, int64_t first, int64_t last, double extent,
+                               struct worker *worker, int64_t *end, struct error *error)
 {
     double low[3], high[3];
     int dim = grid->dim;
     memcpy(low, x + first * dim, (size_t)dim * sizeof *low);
     memcpy(high, x + first * dim, (size_t)dim * sizeof *high);
-    last = first + most_of_group < last ? first + most_of_group : last;
+    last = first + MOST_OF_GROUP < last ? first + MOST_OF_GROUP : last;
     for (*end = first + 1; *end < last && is_finite(dim, x + *end * dim); ++*end) {
         const double *point = x + *end * dim;
         double new_low[3], new_high[3], edge = 0.0;
@@ -207,7 +239,7 @@ static enum status begin_group(const struct point_grid *grid, const double *x, i
         memcpy(low, new_low, (size_t)dim * sizeof *low);
         memcpy(high, new_high, (size_t)dim * sizeof *high);
     }
-    return *end - first > 1 ? candidates_find(candidates, grid, low, high, 1.0, error) : STATUS_OK;
+    return study_group(options, grid, x + first * dim, *end - first, low, high, worker, error);
 }
 
 /* How far apart the points of a group may be where these are the neighbours of one: candidates are found once
@@ -255,8 +287,7 @@ static enum status build_chunk(const struct support_options *options, const stru
     struct worker worker = {0};
     int dim = grid->dim;
     double extent = 0.0;
-    bool grouped = false;
-    int64_t end_of_group = first;
+    int64_t group = first, end_of_group = first;
     for (int64_t p = first; p < last; p++) {
         bool serves;
         const double *point = x + p * dim;
@@ -265,11 +296,12 @@ static enum status build_chunk(const struct support_options *options, const stru
             goto done;
         }
         if (p == end_of_group) {
-            TRY(begin_group(grid, x, p, last, extent, &worker.candidates, &end_of_group, error));
-            grouped = end_of_group > p + 1;
+            group = p;
+            TRY(begin_group(options, grid, x, p, last, extent, &worker, &end_of_group, error));
         }
         int64_t before = worker.list.count;
-        TRY(find_support(options, grid, point, grouped, &worker, &lists->widen[p], &serves, error));
+        TRY(find_support(options, grid, point, end_of_group > group + 1, worker.bounds[p - group], &worker,
+                         &lists->widen[p], &serves, error));
         const int32_t *index = worker.list.index + before;
         int64_t count = worker.list.count - before;
         if (!serves) {
