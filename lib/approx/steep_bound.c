@@ -6,10 +6,9 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* H must be so much smaller than the pivots. */
-static const double least_pivot_by_regularisation = 1e3;
-/* Squared support radii may differ so much among candidates: floats place them in the scale of the largest.
- */
+/* Pivots must exceed H so many times. */
+static const double pivot_per_regularisation = 1e3;
+/* The least squared support radius, as a share of the largest, in whose scale floats place the candidates. */
 static const double least_share_of_reach2 = 1e-2;
 /* The bound is raised for H and for the round-off of floats. */
 static const double allowance = 1.1;
@@ -52,7 +51,7 @@ static void ask_for_pivots(const struct mls *mls, struct steep_group *group)
         int second = k - 1 - mls->dim;
         bool regularised = mls->basis == BASIS_MODIFIED && second >= 0 && second < MLS_MAX_SECOND;
         double mu = regularised ? mls->mu[second] / (mls->mu_absolute ? scale4 : 1.0) : 0.0;
-        group->least_pivot[k] = (float)(least_pivot_by_regularisation * mu);
+        group->least_pivot[k] = (float)(pivot_per_regularisation * mu);
     }
 }
 

@@ -273,60 +273,56 @@ static enum status fail_support(const struct point_grid *grid, const char *what,
                 what, (long long)row, place, widen_limit, (long long)count, stray);
 }
 
-/* The lists of one chunk of points. */
-struct chunk {
-    int32_t *index;
-    int64_t count;
-};
-
+/* Fill the worker's list with the neighbours of the points [first, last); their numbers go to lists->ptr. */
 static enum status build_chunk(const struct support_options *options, const struct point_grid *grid,
                                int64_t first, int64_t last, const double *x, const char *what,
-                               struct support_lists *lists, struct chunk *chunk, struct error *error)
+                               struct support_lists *lists, struct worker *worker, struct error *error)
 {
     enum status status = STATUS_OK;
-    struct worker worker = {0};
     int dim = grid->dim;
     double extent = 0.0;
     int64_t group = first, end_of_group = first;
+    worker->list.count = 0;
     for (int64_t p = first; p < last; p++) {
         bool serves;
         const double *point = x + p * dim;
         if (!is_finite(dim, point)) {
-            status = fail(error, STATUS_INPUT, "%s: row %lld: not a finite coordinate", what, (long long)p);
-            goto done;
+            return fail(error, STATUS_INPUT, "%s: row %lld: not a finite coordinate", what, (long long)p);
         }
         if (p == end_of_group) {
             group = p;
-            TRY(begin_group(options, grid, x, p, last, extent, &worker, &end_of_group, error));
+            TRY(begin_group(options, grid, x, p, last, extent, worker, &end_of_group, error));
         }
-        int64_t before = worker.list.count;
-        TRY(find_support(options, grid, point, end_of_group > group + 1, worker.bounds[p - group], &worker,
+        int64_t before = worker->list.count;
+        TRY(find_support(options, grid, point, end_of_group > group + 1, worker->bounds[p - group], worker,
                          &lists->widen[p], &serves, error));
-        const int32_t *index = worker.list.index + before;
-        int64_t count = worker.list.count - before;
+        const int32_t *index = worker->list.index + before;
+        int64_t count = worker->list.count - before;
         if (!serves) {
-            status = fail_support(grid, what, p, point, index, count, error);
-            goto done;
+            return fail_support(grid, what, p, point, index, count, error);
         }
         lists->ptr[p + 1] = count;
         if (p + 1 == end_of_group) {
             extent = extent_there(grid, index, count);
         }
     }
-    chunk->index = worker.list.index;
-    chunk->count = worker.list.count;
-    worker.list.index = NULL;
 done:
-    worker_free(&worker);
     return status;
 }
 
-/* Join the chunks in order, sum the counts and take stock. */
-static enum status join(struct support_lists *lists, const struct chunk *chunks, int64_t chunk_count,
-                        struct error *error)
+/* Append the list of the points [first, last), which follow those of `all`; sum the counts and take stock. */
+static enum status append_chunk(struct support_lists *lists, int64_t first, int64_t last,
+                                const struct index_list *own, struct index_list *all, struct error *error)
 {
-    enum status status;
-    for (int64_t p = 0; p < lists->count; p++) {
+    enum status status = index_list_reserve(all, own->count, error);
+    if (status != STATUS_OK) {
+        return status;
+    }
+    if (own->count > 0) {
+        memcpy(all->index + all->count, own->index, (size_t)own->count * sizeof *own->index);
+        all->count += own->count;
+    }
+    for (int64_t p = first; p < last; p++) {
         int64_t neighbours = lists->ptr[p + 1];
         lists->fewest = p == 0 || neighbours < lists->fewest ? neighbours : lists->fewest;
         lists->most = neighbours > lists->most ? neighbours : lists->most;
@@ -334,52 +330,56 @@ static enum status join(struct support_lists *lists, const struct chunk *chunks,
         lists->widened += lists->widen[p] > 1.0;
         lists->widest = fmax(lists->widest, lists->widen[p]);
     }
-    TRY(NEW_ARRAY(&lists->idx, lists->ptr[lists->count], error));
-    int64_t at = 0;
-    for (int64_t c = 0; c < chunk_count; c++) {
-        if (chunks[c].count > 0) {
-            memcpy(lists->idx + at, chunks[c].index, (size_t)chunks[c].count * sizeof *lists->idx);
+    return STATUS_OK;
+}
+
+/* All chunks, appended to `all` in their order whichever thread has built them. Of several that fail the
+ * first tells. */
+static enum status build_chunks(const struct support_options *options, const struct point_grid *grid,
+                                const double *x, const char *what, struct support_lists *lists,
+                                struct index_list *all, struct error *error)
+{
+    int64_t chunk_count = (lists->count + chunk_points - 1) / chunk_points;
+    enum status failure = STATUS_OK;
+#pragma omp parallel
+    {
+        struct worker worker = {0};
+#pragma omp for ordered schedule(dynamic, 1)
+        for (int64_t c = 0; c < chunk_count; c++) {
+            struct error own;
+            int64_t first = c * chunk_points;
+            int64_t last = first + chunk_points < lists->count ? first + chunk_points : lists->count;
+            enum status outcome = build_chunk(options, grid, first, last, x, what, lists, &worker, &own);
+#pragma omp ordered
+            if (failure == STATUS_OK) {
+                failure = outcome == STATUS_OK ? append_chunk(lists, first, last, &worker.list, all, &own)
+                                               : outcome;
+                if (failure != STATUS_OK) {
+                    *error = own;
+                }
+            }
         }
-        at += chunks[c].count;
+        worker_free(&worker);
     }
-done:
-    return status;
+    return failure;
 }
 
 enum status support_build(const struct support_options *options, const struct point_grid *grid, int64_t count,
                           const double *x, const char *what, struct support_lists *lists, struct error *error)
 {
     enum status status;
-    int64_t chunk_count = (count + chunk_points - 1) / chunk_points;
-    int64_t failed = chunk_count; /* the first chunk that failed: the same whichever thread came first */
-    enum status failure = STATUS_OK;
-    struct chunk *chunks = NULL;
+    struct index_list all = {0};
     *lists = (struct support_lists){.count = count, .widest = 1.0};
-    TRY(NEW_ARRAY(&chunks, chunk_count, error));
     TRY(NEW_ARRAY(&lists->ptr, count + 1, error));
     TRY(NEW_ARRAY(&lists->widen, count, error));
-#pragma omp parallel for schedule(dynamic, 1)
-    for (int64_t c = 0; c < chunk_count; c++) {
-        struct error own;
-        int64_t first = c * chunk_points;
-        int64_t last = first + chunk_points < count ? first + chunk_points : count;
-        enum status outcome = build_chunk(options, grid, first, last, x, what, lists, &chunks[c], &own);
-        if (outcome != STATUS_OK) {
-#pragma omp critical(support_failure)
-            if (c < failed) {
-                failed = c;
-                failure = outcome;
-                *error = own;
-            }
-        }
+    TRY(build_chunks(options, grid, x, what, lists, &all, error));
+    lists->idx = array_grow(all.index, all.count, sizeof *all.index); /* no longer than it need be */
+    if (lists->idx == NULL) {
+        TRY(fail_memory(error, "neighbour list"));
     }
-    TRY(failure);
-    TRY(join(lists, chunks, chunk_count, error));
+    all.index = NULL;
 done:
-    for (int64_t c = 0; chunks != NULL && c < chunk_count; c++) {
-        free(chunks[c].index);
-    }
-    free(chunks);
+    free(all.index);
     if (status != STATUS_OK) {
         support_free(lists);
     }
