@@ -16,6 +16,8 @@ static const int64_t chunk_points = 512;
 /* A group of points shares its search: at most so many of them, in a box of that share of the radius. */
 enum { MOST_OF_GROUP = 32 };
 static const double extent_of_group = 0.8;
+/* Fewer than that are sooner judged one by one than bounded together. */
+static const int64_t fewest_to_bound = 3;
 
 struct support_options support_defaults(int dim)
 {
@@ -205,7 +207,7 @@ static enum status study_group(const struct support_options *options, const stru
     }
     if (count > 1) {
         TRY(candidates_find(&worker->candidates, grid, low, high, 1.0, error));
-        if (options->widen && options->most <= 0) {
+        if (options->widen && options->most <= 0 && count >= fewest_to_bound) {
             TRY(steep_bounds(&options->mls, &worker->candidates, count, x, &worker->steep, worker->bounds,
                              error));
         }
