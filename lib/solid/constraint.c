@@ -17,6 +17,8 @@ void constraint_rows_init(struct constraint_rows *rows, int dim)
 void constraint_rows_free(struct constraint_rows *rows)
 {
     free(rows->ptr);
+    free(rows->first);
+    free(rows->list);
     free(rows->idx);
     free(rows->phi);
     free(rows->direction);
@@ -43,17 +45,19 @@ static enum status grow(void *array, int64_t count, size_t size, struct error *e
 static enum status reserve(struct constraint_rows *rows, int64_t length, struct error *error)
 {
     enum status status = STATUS_OK;
-    int64_t pairs = rows->count > 0 ? rows->ptr[rows->count] : 0;
+    int64_t pairs = rows->list_count > 0 ? rows->ptr[rows->list_count] : 0;
     if (rows->count == rows->capacity) {
         int64_t capacity = rows->capacity * 2 + 64;
         TRY(grow(&rows->ptr, capacity + 1, sizeof *rows->ptr, error));
+        TRY(grow(&rows->first, capacity + 1, sizeof *rows->first, error));
+        TRY(grow(&rows->list, capacity, sizeof *rows->list, error));
         TRY(grow(&rows->direction, capacity * rows->dim, sizeof *rows->direction, error));
         TRY(grow(&rows->target, capacity, sizeof *rows->target, error));
         TRY(grow(&rows->curve, capacity, sizeof *rows->curve, error));
         TRY(grow(&rows->section, capacity, sizeof *rows->section, error));
         TRY(grow(&rows->node, capacity, sizeof *rows->node, error));
         rows->capacity = capacity;
-        rows->ptr[0] = 0;
+        rows->ptr[0] = rows->first[0] = 0;
     }
     if (pairs + length > rows->pair_capacity) {
         int64_t capacity = (pairs + length) * 2 + 1024;
@@ -65,6 +69,18 @@ done:
     return status;
 }
 
+/* Is that the list of the last row? */
+static bool is_last_list(const struct constraint_rows *rows, int64_t length, const int32_t *idx,
+                         const double *phi)
+{
+    if (rows->count == 0) {
+        return false;
+    }
+    struct constraint_pairs last = constraint_rows_pairs(rows, rows->count - 1);
+    return last.length == length && memcmp(last.idx, idx, (size_t)length * sizeof *idx) == 0 &&
+           memcmp(last.phi, phi, (size_t)length * sizeof *phi) == 0;
+}
+
 enum status constraint_rows_add(struct constraint_rows *rows, int64_t length, const int32_t *idx,
                                 const double *phi, const double *direction, double target, int32_t curve,
                                 int32_t section, int32_t node, struct error *error)
@@ -73,11 +89,16 @@ enum status constraint_rows_add(struct constraint_rows *rows, int64_t length, co
     if (status != STATUS_OK) {
         return status;
     }
-    int64_t row = rows->count++, at = rows->ptr[row];
-    memcpy(rows->idx + at, idx, (size_t)length * sizeof *idx);
-    memcpy(rows->phi + at, phi, (size_t)length * sizeof *phi);
+    if (!is_last_list(rows, length, idx, phi)) {
+        int64_t at = rows->ptr[rows->list_count++];
+        memcpy(rows->idx + at, idx, (size_t)length * sizeof *idx);
+        memcpy(rows->phi + at, phi, (size_t)length * sizeof *phi);
+        rows->ptr[rows->list_count] = at + length;
+    }
+    int64_t row = rows->count++;
+    rows->list[row] = rows->list_count - 1;
+    rows->first[rows->list_count] = rows->count;
     memcpy(rows->direction + row * rows->dim, direction, (size_t)rows->dim * sizeof *direction);
-    rows->ptr[row + 1] = at + length;
     rows->target[row] = target;
     rows->curve[row] = curve;
     rows->section[row] = section;
@@ -85,26 +106,114 @@ enum status constraint_rows_add(struct constraint_rows *rows, int64_t length, co
     return STATUS_OK;
 }
 
-/* Rows that touch each node, CSR: entries are pair indices of the rows. */
+struct constraint_pairs constraint_rows_pairs(const struct constraint_rows *rows, int64_t r)
+{
+    int64_t list = rows->list[r], at = rows->ptr[list];
+    return (struct constraint_pairs){rows->ptr[list + 1] - at, rows->idx + at, rows->phi + at};
+}
+
+/* sum_j phi_j u_j over a list. The dimension is known when compiling, here and below. */
+static inline void list_mean(const struct constraint_rows *rows, int dim, int64_t list, const double *u,
+                             double mean[3])
+{
+    mean[0] = mean[1] = mean[2] = 0.0;
+    for (int64_t i = rows->ptr[list]; i < rows->ptr[list + 1]; i++) {
+        const double *at = u + (int64_t)rows->idx[i] * dim;
+        for (int a = 0; a < dim; a++) {
+            mean[a] += rows->phi[i] * at[a];
+        }
+    }
+}
+
+static inline double along(const struct constraint_rows *rows, int dim, int64_t r, const double mean[3])
+{
+    double sum = 0.0;
+    for (int a = 0; a < dim; a++) {
+        sum += rows->direction[r * dim + a] * mean[a];
+    }
+    return sum;
+}
+
+static inline void all_values(const struct constraint_rows *rows, int dim, const double *u, double *value)
+{
+    for (int64_t l = 0; l < rows->list_count; l++) {
+        double mean[3];
+        list_mean(rows, dim, l, u, mean);
+        for (int64_t r = rows->first[l]; r < rows->first[l + 1]; r++) {
+            value[r] = along(rows, dim, r, mean);
+        }
+    }
+}
+
+void constraint_rows_values(const struct constraint_rows *rows, const double *u, double *value)
+{
+    if (rows->dim == 2) {
+        all_values(rows, 2, u, value);
+    } else {
+        all_values(rows, 3, u, value);
+    }
+}
+
+double constraint_rows_value(const struct constraint_rows *rows, int64_t r, const double *u)
+{
+    double mean[3];
+    list_mean(rows, rows->dim, rows->list[r], u, mean);
+    return along(rows, rows->dim, r, mean);
+}
+
+static inline void spread(const struct constraint_rows *rows, int dim, const double *amount,
+                          const double *mass, double *u)
+{
+    for (int64_t l = 0; l < rows->list_count; l++) {
+        double total[3] = {0.0, 0.0, 0.0};
+        for (int64_t r = rows->first[l]; r < rows->first[l + 1]; r++) {
+            for (int a = 0; a < dim; a++) {
+                total[a] += amount[r] * rows->direction[r * dim + a];
+            }
+        }
+        for (int64_t i = rows->ptr[l]; i < rows->ptr[l + 1]; i++) {
+            int32_t node = rows->idx[i];
+            double share = mass != NULL ? rows->phi[i] / mass[node] : rows->phi[i];
+            for (int a = 0; a < dim; a++) {
+                u[(int64_t)node * dim + a] += share * total[a];
+            }
+        }
+    }
+}
+
+void constraint_rows_spread(const struct constraint_rows *rows, const double *amount, const double *mass,
+                            double *u)
+{
+    if (rows->dim == 2) {
+        spread(rows, 2, amount, mass, u);
+    } else {
+        spread(rows, 3, amount, mass, u);
+    }
+}
+
+/* Rows that touch each node, CSR. */
 static enum status rows_of_nodes(const struct constraint_rows *rows, int64_t node_count, int64_t **ptr,
                                  int64_t **row, double **phi, struct error *error)
 {
     enum status status;
-    int64_t pairs = rows->ptr[rows->count];
     TRY(NEW_ARRAY(ptr, node_count + 2, error));
-    TRY(NEW_ARRAY(row, pairs, error));
-    TRY(NEW_ARRAY(phi, pairs, error));
-    for (int64_t i = 0; i < pairs; i++) {
-        (*ptr)[rows->idx[i] + 2]++;
+    for (int64_t r = 0; r < rows->count; r++) {
+        struct constraint_pairs pairs = constraint_rows_pairs(rows, r);
+        for (int64_t i = 0; i < pairs.length; i++) {
+            (*ptr)[pairs.idx[i] + 2]++;
+        }
     }
     for (int64_t n = 0; n < node_count; n++) {
         (*ptr)[n + 2] += (*ptr)[n + 1];
     }
+    TRY(NEW_ARRAY(row, (*ptr)[node_count + 1], error));
+    TRY(NEW_ARRAY(phi, (*ptr)[node_count + 1], error));
     for (int64_t r = 0; r < rows->count; r++) {
-        for (int64_t i = rows->ptr[r]; i < rows->ptr[r + 1]; i++) {
-            int64_t at = (*ptr)[rows->idx[i] + 1]++;
+        struct constraint_pairs pairs = constraint_rows_pairs(rows, r);
+        for (int64_t i = 0; i < pairs.length; i++) {
+            int64_t at = (*ptr)[pairs.idx[i] + 1]++;
             (*row)[at] = r;
-            (*phi)[at] = rows->phi[i];
+            (*phi)[at] = pairs.phi[i];
         }
     }
 done:
@@ -126,18 +235,19 @@ static enum status assemble(const struct constraint_rows *rows, int64_t node_cou
     TRY(NEW_ARRAY(&sum, rows->count, error));
     for (int64_t r = 0; r < rows->count; r++) {
         int64_t count = 0, at = (*ptr)[r];
-        for (int64_t i = rows->ptr[r]; i < rows->ptr[r + 1]; i++) {
-            int32_t node = rows->idx[i];
+        struct constraint_pairs pairs = constraint_rows_pairs(rows, r);
+        for (int64_t i = 0; i < pairs.length; i++) {
+            int32_t node = pairs.idx[i];
             for (int64_t k = node_ptr[node]; k < node_ptr[node + 1]; k++) {
                 int64_t s = node_row[k];
-                double along = 0.0;
+                double cosine = 0.0;
                 for (int a = 0; a < dim; a++) {
-                    along += rows->direction[r * dim + a] * rows->direction[s * dim + a];
+                    cosine += rows->direction[r * dim + a] * rows->direction[s * dim + a];
                 }
-                if (fabs(along) < 1e-14) {
+                if (fabs(cosine) < 1e-14) {
                     continue;
                 }
-                double part = along * rows->phi[i] * node_phi[k] / mass[node];
+                double part = cosine * pairs.phi[i] * node_phi[k] / mass[node];
                 if (sum[s] == 0.0) {
                     touched[count++] = s;
                     sum[s] = 1e-300; /* marks it as touched even if the first part is zero */
@@ -196,62 +306,19 @@ void constraint_free(struct constraint *constraint)
     *constraint = (struct constraint){0};
 }
 
-/* The dimension is known when compiling, here and below. */
-static inline double row_value(const struct constraint_rows *rows, int dim, int64_t r, const double *u)
-{
-    double mean[3] = {0.0, 0.0, 0.0}, value = 0.0;
-    for (int64_t i = rows->ptr[r]; i < rows->ptr[r + 1]; i++) {
-        for (int a = 0; a < dim; a++) {
-            mean[a] += rows->phi[i] * u[(int64_t)rows->idx[i] * dim + a];
-        }
-    }
-    for (int a = 0; a < dim; a++) {
-        value += rows->direction[r * dim + a] * mean[a];
-    }
-    return value;
-}
-
-double constraint_rows_value(const struct constraint_rows *rows, int64_t r, const double *u)
-{
-    return rows->dim == 2 ? row_value(rows, 2, r, u) : row_value(rows, 3, r, u);
-}
-
-/* u += M^-1 G^T multiplier, of row r */
-static inline void correct(const struct constraint *constraint, int dim, int64_t r, double *u)
-{
-    const struct constraint_rows *rows = constraint->rows;
-    for (int64_t i = rows->ptr[r]; i < rows->ptr[r + 1]; i++) {
-        int32_t node = rows->idx[i];
-        double scale = rows->phi[i] * constraint->multiplier[r] / constraint->mass[node];
-        for (int a = 0; a < dim; a++) {
-            u[(int64_t)node * dim + a] += scale * rows->direction[r * dim + a];
-        }
-    }
-}
-
-static double defect(const struct constraint_rows *rows, int64_t r, const double *factor, const double *u)
-{
-    return (factor != NULL ? rows->target[r] * factor[rows->curve[r]] : 0.0) -
-           constraint_rows_value(rows, r, u);
-}
-
 void constraint_project(struct constraint *constraint, const double *factor, double *u)
 {
     const struct constraint_rows *rows = constraint->rows;
     if (rows == NULL || rows->count == 0) {
         return;
     }
+    double *multiplier = constraint->multiplier;
+    constraint_rows_values(rows, u, multiplier);
     for (int64_t r = 0; r < rows->count; r++) {
-        constraint->multiplier[r] = defect(rows, r, factor, u);
+        multiplier[r] = (factor != NULL ? rows->target[r] * factor[rows->curve[r]] : 0.0) - multiplier[r];
     }
-    envelope_solve(&constraint->factor, constraint->multiplier);
-    for (int64_t r = 0; r < rows->count; r++) {
-        if (rows->dim == 2) {
-            correct(constraint, 2, r, u);
-        } else {
-            correct(constraint, 3, r, u);
-        }
-    }
+    envelope_solve(&constraint->factor, multiplier);
+    constraint_rows_spread(rows, multiplier, constraint->mass, u);
 }
 
 double constraint_violation(const struct constraint *constraint, const double *factor, const double *u,
@@ -259,7 +326,9 @@ double constraint_violation(const struct constraint *constraint, const double *f
 {
     double worst = 0.0;
     for (int64_t r = 0; r < constraint->rows->count; r++) {
-        double violation = fabs(defect(constraint->rows, r, factor, u));
+        const struct constraint_rows *rows = constraint->rows;
+        double wanted = factor != NULL ? rows->target[r] * factor[rows->curve[r]] : 0.0;
+        double violation = fabs(wanted - constraint_rows_value(rows, r, u));
         if (!(violation <= worst)) {
             worst = violation;
             if (row != NULL) {

@@ -8,14 +8,19 @@
 #include "base/envelope.h"
 #include "base/status.h"
 
+#include <stdbool.h>
 #include <stdint.h>
 
-/* Rows as they are collected: row r prescribes direction . (sum_j phi_rj u_j) = target * factor(curve, time).
- */
+/* Rows as they are collected: row r prescribes direction . (sum_j phi_j u_j) = target * factor(curve, time),
+ * where the sum is over the pairs of a list. Rows that follow each other share a list where they can: an
+ * average that is held along several directions is taken once. */
 struct constraint_rows {
     int dim;
     int64_t count, capacity;
-    int64_t *ptr; /* count + 1 */
+    int64_t list_count;
+    int64_t *ptr;   /* list_count + 1: pairs of each list */
+    int64_t *first; /* list_count + 1: its rows */
+    int64_t *list;  /* count: that of each row */
     int64_t pair_capacity;
     int32_t *idx;
     double *phi;
@@ -34,8 +39,21 @@ MUST_CHECK enum status constraint_rows_add(struct constraint_rows *rows, int64_t
                                            const double *phi, const double *direction, double target,
                                            int32_t curve, int32_t section, int32_t node, struct error *error);
 
-/* direction . (sum_j phi_rj u_j) of row r. */
+/* The pairs that row r sums over. */
+struct constraint_pairs {
+    int64_t length;
+    const int32_t *idx;
+    const double *phi;
+};
+struct constraint_pairs constraint_rows_pairs(const struct constraint_rows *rows, int64_t r);
+
+/* value[count]: direction . (sum_j phi_j u_j) of each row; and of row r alone. */
+void constraint_rows_values(const struct constraint_rows *rows, const double *u, double *value);
 double constraint_rows_value(const struct constraint_rows *rows, int64_t r, const double *u);
+
+/* The transpose: u_j += amount_r phi_j direction_r, divided by mass[node] unless mass is NULL. */
+void constraint_rows_spread(const struct constraint_rows *rows, const double *amount, const double *mass,
+                            double *u);
 
 /* The factored system. */
 struct constraint {

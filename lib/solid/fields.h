@@ -8,7 +8,7 @@
 
 #include <stdint.h>
 
-enum { FIELDS_MOST_CENTRES = 15 };
+enum { FIELDS_MOST_CENTRES = 8 };
 enum { FIELDS_MOST_AT_NODE = 4 * FIELDS_MOST_CENTRES };
 
 /* Shares of the centres in the nodes: by node, and by centre (CSR). */

@@ -36,6 +36,7 @@ enum status inertia_build(const struct solid_system *system, bool coarse, struct
     TRY(NEW_ARRAY(&inertia->body, cells, error));
     TRY(NEW_ARRAY(&inertia->weight, cells, error));
     TRY(NEW_ARRAY(&inertia->free_weight, cells, error));
+    TRY(NEW_ARRAY(&inertia->held, system->rows.count * inertia->size, error));
     TRY(NEW_ARRAY(&inertia->inverse, cells, error));
     TRY(NEW_ARRAY(&inertia->beside, cells, error));
     TRY(NEW_ARRAY(&inertia->amount, 2 * inertia->size, error));
@@ -57,19 +58,12 @@ void inertia_free(struct inertia *inertia)
     free(inertia->normal);
     free(inertia->weight);
     free(inertia->free_weight);
+    free(inertia->held);
     free(inertia->inverse);
     free(inertia->beside);
     free(inertia->amount);
     free(inertia->field);
     *inertia = (struct inertia){0};
-}
-
-void inertia_accelerate_alone(struct inertia *inertia, const double *force, double *projected)
-{
-    for (int64_t i = 0; i < inertia->node_count * inertia->dim; i++) {
-        projected[i] = force[i] / inertia->mass[i / inertia->dim];
-    }
-    constraint_project(&inertia->constraint, NULL, projected);
 }
 
 void inertia_collect(const struct inertia *inertia, const double *move, double *amount)
@@ -91,16 +85,51 @@ static void multiply(int64_t n, const double *matrix, const double *x, double *r
     }
 }
 
+void inertia_collect_force(struct inertia *inertia, const double *force, double *acceleration, double *amount)
+{
+    const struct constraint_rows *rows = inertia->constraint.rows;
+    double *seen = inertia->constraint.multiplier;
+    for (int64_t i = 0; i < inertia->node_count * inertia->dim; i++) {
+        acceleration[i] = force[i] / inertia->mass[i / inertia->dim];
+    }
+    if (inertia->size > 0) {
+        fields_collect(&inertia->fields, force, amount);
+    }
+    if (rows == NULL) {
+        return;
+    }
+    constraint_rows_values(rows, acceleration, seen);
+    for (int64_t r = 0; r < rows->count; r++) {
+        const double *held = inertia->held + r * inertia->size;
+        for (int64_t k = 0; k < inertia->size && seen[r] != 0.0; k++) {
+            amount[k] -= held[k] * seen[r];
+        }
+    }
+}
+
 void inertia_accelerate(struct inertia *inertia, const double *force, double *acceleration)
 {
-    double *amount = inertia->amount, *solved = inertia->amount + inertia->size;
-    inertia_accelerate_alone(inertia, force, acceleration);
+    struct constraint *constraint = &inertia->constraint;
+    const struct constraint_rows *rows = constraint->rows;
+    double *multiplier = constraint->multiplier, *solved = inertia->amount + inertia->size;
+    inertia_collect_force(inertia, force, acceleration, inertia->amount);
     if (inertia->size > 0) {
-        inertia_collect(inertia, acceleration, amount); /* Z^T P^T force */
-        multiply(inertia->size, inertia->inverse, amount, solved);
+        multiply(inertia->size, inertia->inverse, inertia->amount, solved);
         fields_add(&inertia->fields, solved, acceleration);
-        constraint_project(&inertia->constraint, NULL, acceleration);
     }
+    if (rows == NULL || rows->count == 0) {
+        return;
+    }
+    envelope_solve(&constraint->factor, multiplier);
+    for (int64_t r = 0; r < rows->count; r++) {
+        const double *held = inertia->held + r * inertia->size;
+        double sum = multiplier[r];
+        for (int64_t k = 0; k < inertia->size; k++) {
+            sum += held[k] * solved[k];
+        }
+        multiplier[r] = -sum;
+    }
+    constraint_rows_spread(rows, multiplier, inertia->mass, acceleration);
 }
 
 double inertia_product(const struct inertia *inertia, const double *x, const double *y)

@@ -6,6 +6,9 @@
  * A near P^T K P along the fields,
  *
  *   M^-1 = P (D^-1 + Z A^-1 Z^T) P^T
+ * where, with the conditions' rows G and S = G D^-1 G^T, P^T f = f - G^T S^-1 G D^-1 f; so one look at G D^-1
+ * f tells both the fields' amounts and the conditions' forces. Also
+ *
  *   x . M y = x . D y - (Z^T D x) . (A + Z^T D P Z)^-1 (Z^T D y)   for moves x, y that the conditions admit,
  *
  * so that the slowest modes left are those that the fields do not resolve. In the terms of linear systems, a
@@ -33,10 +36,11 @@ struct inertia {
     int64_t hat_count;
     double *weight;      /* Z^T D Z */
     double *free_weight; /* Z^T D P Z */
-    double *inverse;     /* A^-1 */
-    double *beside;      /* (A + Z^T D P Z)^-1 */
-    double *amount;      /* 2 * size: scratch */
-    double *field;       /* node_count * dim: scratch */
+    double *held; /* rows of the conditions * size: (G D^-1 G^T)^-1 G Z, what they put against each field */
+    double *inverse; /* A^-1 */
+    double *beside;  /* (A + Z^T D P Z)^-1 */
+    double *amount;  /* 2 * size: scratch */
+    double *field;   /* node_count * dim: scratch */
 };
 
 /* Memory and fields for a system; `coarse` false: no fields. */

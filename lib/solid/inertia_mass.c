@@ -58,8 +58,9 @@ static enum status weigh_conditions(struct inertia *inertia, struct error *error
     TRY(NEW_ARRAY(&conditions, rows->count * size, error));
     TRY(NEW_ARRAY(&solved, rows->count, error));
     for (int64_t r = 0; r < rows->count; r++) {
-        inertia_add_row(inertia, rows->ptr[r + 1] - rows->ptr[r], rows->idx + rows->ptr[r],
-                        rows->phi + rows->ptr[r], rows->direction + r * inertia->dim, conditions + r * size);
+        struct constraint_pairs pairs = constraint_rows_pairs(rows, r);
+        inertia_add_row(inertia, pairs.length, pairs.idx, pairs.phi, rows->direction + r * inertia->dim,
+                        conditions + r * size);
     }
     for (int64_t k = 0; k < size; k++) {
         double *column = inertia->free_weight + k * size; /* or row: symmetric */
@@ -68,6 +69,7 @@ static enum status weigh_conditions(struct inertia *inertia, struct error *error
         }
         envelope_solve(&inertia->constraint.factor, solved);
         for (int64_t r = 0; r < rows->count; r++) {
+            inertia->held[r * size + k] = solved[r];
             for (int64_t i = 0; i < size && solved[r] != 0.0; i++) {
                 column[i] -= solved[r] * conditions[r * size + i];
             }

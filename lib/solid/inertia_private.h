@@ -4,8 +4,10 @@
 
 #include "solid/inertia.h"
 
-/* projected = P D^-1 force */
-void inertia_accelerate_alone(struct inertia *inertia, const double *force, double *projected);
+/* amount[size] = Z^T P^T force, and acceleration = D^-1 force, whose values by the rows of the conditions are
+ * left in their multipliers. */
+void inertia_collect_force(struct inertia *inertia, const double *force, double *acceleration,
+                           double *amount);
 
 /* amount[size] = Z^T D move */
 void inertia_collect(const struct inertia *inertia, const double *move, double *amount);

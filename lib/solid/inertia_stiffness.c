@@ -149,8 +149,7 @@ enum status inertia_measure(struct inertia *inertia, struct solid_system *system
         for (int64_t i = 0; i < values; i++) {
             force[i] = (force[i] - at_u[i]) / epsilon;
         }
-        inertia_accelerate_alone(inertia, force, moved);
-        inertia_collect(inertia, moved, inertia->body + k * inertia->size); /* Z^T P^T force */
+        inertia_collect_force(inertia, force, moved, inertia->body + k * inertia->size);
     }
     make_symmetric(inertia->size, inertia->body);
     inertia->measured_mass = inertia_sum_of_mass(inertia);

@@ -37,6 +37,7 @@ void system_free(struct solid_system *system)
     constraint_rows_free(&system->rows);
     constraint_rows_free(&system->springs);
     free(system->spring_stiffness);
+    free(system->spring_pull);
     body_free(&system->body);
     *system = (struct solid_system){0};
 }
@@ -191,29 +192,16 @@ double system_spring_force(const struct solid_system *system, int64_t r, const d
            (springs->target[r] * system->factor[springs->curve[r]] - constraint_rows_value(springs, r, u));
 }
 
-/* The dimension is known when compiling. */
-static inline void add_spring(const struct constraint_rows *springs, int dim, int64_t r, double pull,
-                              double *force)
-{
-    for (int64_t i = springs->ptr[r]; i < springs->ptr[r + 1]; i++) {
-        for (int a = 0; a < dim; a++) {
-            force[(int64_t)springs->idx[i] * dim + a] +=
-                pull * springs->phi[i] * springs->direction[r * dim + a];
-        }
-    }
-}
-
-void system_add_springs(const struct solid_system *system, const double *u, double *force)
+void system_add_springs(struct solid_system *system, const double *u, double *force)
 {
     const struct constraint_rows *springs = &system->springs;
+    double *pull = system->spring_pull;
+    constraint_rows_values(springs, u, pull);
     for (int64_t r = 0; r < springs->count; r++) {
-        double pull = system_spring_force(system, r, u);
-        if (system->dim == 2) {
-            add_spring(springs, 2, r, pull, force);
-        } else {
-            add_spring(springs, 3, r, pull, force);
-        }
+        double target = springs->target[r] * system->factor[springs->curve[r]];
+        pull[r] = system->spring_stiffness[r] * (target - pull[r]);
     }
+    constraint_rows_spread(springs, pull, NULL, force);
 }
 
 double system_spring_energy(const struct solid_system *system, const double *u)
@@ -264,9 +252,9 @@ void system_relaxation_mass(const struct solid_system *system, double *mass)
         }
     }
     for (int64_t r = 0; r < system->springs.count; r++) {
-        for (int64_t i = system->springs.ptr[r]; i < system->springs.ptr[r + 1]; i++) {
-            mass[system->springs.idx[i]] +=
-                system->spring_stiffness[r] * system->springs.phi[i] * system->springs.phi[i];
+        struct constraint_pairs pairs = constraint_rows_pairs(&system->springs, r);
+        for (int64_t i = 0; i < pairs.length; i++) {
+            mass[pairs.idx[i]] += system->spring_stiffness[r] * pairs.phi[i] * pairs.phi[i];
         }
     }
     for (int64_t n = 0; n < system->node_count; n++) {

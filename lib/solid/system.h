@@ -52,6 +52,7 @@ struct solid_system {
      * They vanish wherever the field meets them, so that a linear field stays exact. */
     struct constraint_rows springs;
     double *spring_stiffness; /* springs.count, N/m (2D: N/m2) */
+    double *spring_pull;      /* springs.count: scratch */
     struct load_curve *curves;
     int64_t curve_count;
     double *lumped_mass; /* node_count, kg (2D: kg/m), positive: each cell shares its mass among its nodes */
@@ -80,7 +81,7 @@ void system_add_loads(const struct solid_system *system, const double *u, double
 struct deformation system_residual(struct solid_system *system, const double *u, double *residual);
 
 /* Forces of the springs, added to force; and their energy. */
-void system_add_springs(const struct solid_system *system, const double *u, double *force);
+void system_add_springs(struct solid_system *system, const double *u, double *force);
 double system_spring_energy(const struct solid_system *system, const double *u);
 
 /* Force of spring r at u along its direction, N (2D: N/m). */

@@ -188,6 +188,7 @@ static inline void lattice_build(struct lattice *l, const struct lattice_options
                               .count = l->cloud.cell_count,
                               .node = l->cloud.cells};
     struct support_options support = support_defaults(dim);
+    support.factor = 1.8; /* wider ones need the springs that back conditions, which are not here */
     ARRAY(spacing, l->cells.node_count);
     ARRAY(l->radius, l->cells.node_count);
     GOOD(cells_node_spacing(&l->cells, spacing, &error));

@@ -78,12 +78,14 @@ static enum status add_spring(const struct prescription *p, const struct boundar
     if (status != STATUS_OK) {
         return status;
     }
-    double *grown = array_grow(system->spring_stiffness, system->springs.count, sizeof *grown);
-    if (grown == NULL) {
+    double *stiffness = array_grow(system->spring_stiffness, system->springs.count, sizeof *stiffness);
+    system->spring_stiffness = stiffness != NULL ? stiffness : system->spring_stiffness;
+    double *pull = array_grow(system->spring_pull, system->springs.count, sizeof *pull);
+    system->spring_pull = pull != NULL ? pull : system->spring_pull;
+    if (stiffness == NULL || pull == NULL) {
         return fail_memory(error, "springs");
     }
-    system->spring_stiffness = grown;
-    grown[system->springs.count - 1] = p->modulus * points->area[a] / p->layer;
+    stiffness[system->springs.count - 1] = p->modulus * points->area[a] / p->layer;
     return STATUS_OK;
 }
 

@@ -15,16 +15,16 @@ static double cosine(const struct constraint_rows *rows, int64_t r, int64_t s)
 /* Same place, same direction or its opposite, and same pairs? */
 static bool is_same(const struct constraint_rows *rows, int64_t r, int64_t s)
 {
-    int64_t length = rows->ptr[r + 1] - rows->ptr[r];
+    struct constraint_pairs one = constraint_rows_pairs(rows, r), other = constraint_rows_pairs(rows, s);
     double apart = 0.0;
-    if (rows->node[r] != rows->node[s] || rows->ptr[s + 1] - rows->ptr[s] != length) {
+    if (rows->node[r] != rows->node[s] || one.length != other.length) {
         return false;
     }
-    for (int64_t i = 0; i < length; i++) {
-        if (rows->idx[rows->ptr[r] + i] != rows->idx[rows->ptr[s] + i]) {
+    for (int64_t i = 0; i < one.length; i++) {
+        if (one.idx[i] != other.idx[i]) {
             return false;
         }
-        apart += fabs(rows->phi[rows->ptr[r] + i] - rows->phi[rows->ptr[s] + i]);
+        apart += fabs(one.phi[i] - other.phi[i]);
     }
     return fabs(cosine(rows, r, s)) > 1.0 - 1e-9 && apart < 1e-9;
 }
@@ -68,9 +68,9 @@ enum status repeats_drop(const struct model_input *input, int64_t first, struct 
             TRY(check_value(input, rows, r, earlier, error));
             continue;
         }
-        TRY(constraint_rows_add(&kept, rows->ptr[r + 1] - rows->ptr[r], rows->idx + rows->ptr[r],
-                                rows->phi + rows->ptr[r], rows->direction + r * rows->dim, rows->target[r],
-                                rows->curve[r], rows->section[r], rows->node[r], error));
+        struct constraint_pairs pairs = constraint_rows_pairs(rows, r);
+        TRY(constraint_rows_add(&kept, pairs.length, pairs.idx, pairs.phi, rows->direction + r * rows->dim,
+                                rows->target[r], rows->curve[r], rows->section[r], rows->node[r], error));
     }
     constraint_rows_free(rows);
     *rows = kept;
