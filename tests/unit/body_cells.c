@@ -1,0 +1,241 @@
+/* Conforming cells in the force loop: the patch test, gradients as those of the table, and volume ratios that
+ * make up the volume within the boundary. */
+#include "body_setup.h"
+
+/* A linear field of a body of one material is in equilibrium inside: with conforming cells to round-off. */
+static void patch(void **state)
+{
+    (void)state;
+    static const double A[9] = {1.1, 0.2, 0, 0.1, 0.95, 0, 0, 0, 1};
+    for (int dim = 2; dim <= 3; dim++) {
+        struct sample sample = make_sample(dim, true, dim == 2 ? 9 : 7);
+        for (int averaged = 0; averaged < 2; averaged++) {
+            struct setup setup = one_material(MATERIAL_NEO_HOOKEAN, averaged == 1, 0.1);
+            setup.faces = true;
+            struct body body = make_body(&sample, &setup);
+            int64_t inner = 0;
+            double *u = linear_field(&sample, A, NULL);
+            double *force = sample_array(sample.cloud.node_count * dim, sizeof *force);
+            bool *outer = sample_array(sample.cloud.node_count, sizeof *outer);
+            for (int64_t f = 0; f < sample.faces.count; f++) {
+                for (int g = 0; g < sample.face_rule.points && sample.faces.cell[2 * f + 1] < 0; g++) {
+                    int64_t point = f * sample.face_rule.points + g;
+                    for (int64_t i = sample.face_lists.ptr[point]; i < sample.face_lists.ptr[point + 1];
+                         i++) {
+                        outer[sample.face_lists.idx[i]] = true; /* the boundary's integral feels it */
+                    }
+                }
+            }
+            (void)body_force(&body, u, force);
+            double most = largest(force, sample.cloud.node_count * dim);
+            for (int64_t n = 0; n < sample.cloud.node_count; n++) {
+                inner += !outer[n];
+                for (int a = 0; a < dim && !outer[n]; a++) {
+                    NEAR_TO(force[n * dim + a], 0.0, 1e-12 * most);
+                }
+            }
+            assert_true(inner > 0);
+            free(u);
+            free(force);
+            free(outer);
+            body_free(&body);
+        }
+        sample_free(&sample);
+    }
+}
+
+/* Displacement at a node, or mean over a face, from the tables of shape functions. */
+static void value_at_node(const struct sample *sample, int64_t node, const double *u, double *value)
+{
+    int dim = sample->dim;
+    memset(value, 0, 3 * sizeof *value);
+    for (int64_t i = sample->node_lists.ptr[node]; i < sample->node_lists.ptr[node + 1]; i++) {
+        for (int a = 0; a < dim; a++) {
+            value[a] += sample->node_phi[i] * u[(int64_t)sample->node_lists.idx[i] * dim + a];
+        }
+    }
+}
+
+static void mean_of_face(const struct sample *sample, int64_t face, const double *u, double *mean)
+{
+    int dim = sample->dim, points = sample->face_rule.points;
+    memset(mean, 0, 3 * sizeof *mean);
+    for (int64_t p = face * points; p < (face + 1) * points; p++) {
+        for (int64_t i = sample->face_lists.ptr[p]; i < sample->face_lists.ptr[p + 1]; i++) {
+            double share = sample->face_rule.weight[p % points] * sample->face_phi[i];
+            for (int a = 0; a < dim; a++) {
+                mean[a] += share * u[(int64_t)sample->face_lists.idx[i] * dim + a];
+            }
+        }
+    }
+}
+
+/* Area vector of a facet with corners x, by its cross product; its sense is that of the corners. */
+static void area_of(int dim, double x[3][3], double area[3])
+{
+    double a[3], b[3];
+    for (int i = 0; i < 3; i++) {
+        a[i] = x[1][i] - x[0][i];
+        b[i] = dim == 3 ? 0.5 * (x[2][i] - x[0][i]) : i == 2 ? 1.0 : 0.0;
+    }
+    for (int i = 0; i < 3; i++) {
+        area[i] = a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3];
+    }
+}
+
+static double dot(const double a[3], const double b[3])
+{
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+/* What a facet of the boundary adds to the volume inside: of the cone over the triangle of its deformed
+ * corners, and what lies between that and the face, whose mean is known. */
+static double volume_below(const struct sample *sample, int64_t face, const double *u)
+{
+    int dim = sample->dim;
+    const int32_t *vertex = sample->faces.node + face * dim, *cell = sample->cells.node;
+    double rest[3][3] = {{0.0}}, x[3][3] = {{0.0}}, inside[3] = {0.0}, centre[3] = {0.0}, mean[3], area[3];
+    cell += (int64_t)sample->faces.cell[2 * face] * (dim + 1);
+    mean_of_face(sample, face, u, mean);
+    for (int k = 0; k < dim; k++) {
+        double value[3];
+        value_at_node(sample, vertex[k], u, value);
+        for (int a = 0; a < dim; a++) {
+            rest[k][a] = sample->cloud.x[(int64_t)vertex[k] * dim + a];
+            x[k][a] = rest[k][a] + value[a];
+            centre[a] += x[k][a] / dim;
+            mean[a] += rest[k][a] / dim;
+        }
+    }
+    for (int k = 0; k <= dim; k++) { /* from the facet into its cell */
+        for (int a = 0; a < dim; a++) {
+            inside[a] += sample->cloud.x[(int64_t)cell[k] * dim + a] - rest[0][a];
+        }
+    }
+    area_of(dim, rest, area);
+    double sense = dot(area, inside) < 0.0 ? 1.0 : -1.0;
+    area_of(dim, x, area);
+    for (int a = 0; a < 3; a++) {
+        mean[a] += centre[a] / dim - centre[a];
+    }
+    return sense * dot(mean, area);
+}
+
+/* Whatever the field, the volume ratios of conforming cells make up the volume within the boundary. */
+static void enclosed_volume(void **state)
+{
+    (void)state;
+    struct random random = {17};
+    for (int i = 0; i < 4; i += 2) {
+        const struct sample *sample = &samples[i];
+        struct setup setup = one_material(MATERIAL_NEO_HOOKEAN, true, 0.1);
+        setup.faces = true;
+        struct body body = make_body(sample, &setup);
+        double *u = random_field(sample, 0.05 * sample_size, &random), sum = 0.0, means = 0.0, inside = 0.0;
+        double *F = sample_array(sample->point_count * 9, sizeof *F), rest = pow(sample_size, sample->dim);
+        (void)body_energy(&body, u);
+        body_gradient(&body, F);
+        for (int64_t q = 0; q < body.point_count; q++) {
+            sum += body.weight[q] * body.J[q];
+            means += body.weight[q] * determinant(F + 9 * body.order[q]);
+        }
+        for (int64_t f = 0; f < sample->faces.count; f++) {
+            inside += sample->faces.cell[2 * f + 1] < 0 ? volume_below(sample, f, u) : 0.0;
+        }
+        NEAR_TO(sum, inside, 1e-13 * rest);
+
+        assert_true(fabs(means - inside) > 1e-4 * rest); /* the determinants of the means do not */
+        free(u);
+        free(F);
+        body_free(&body);
+    }
+}
+
+/* Conforming cells by means over their faces: the gradients of the table, but for round-off; and for a small
+ * field, where J differs from det F by a square, its forces and energy. */
+static void faces(void **state)
+{
+    (void)state;
+    struct random random = {11};
+    for (int i = 0; i < 4; i += 2) {
+        for (int kind = 0; kind < 2; kind++) {
+            const struct sample *sample = &samples[i];
+            struct setup setup = three_materials(kind == 1, 0.1);
+            int64_t count = sample->cloud.node_count * sample->dim, size = sample->point_count * 9;
+            struct body by_table = make_body(sample, &setup);
+            setup.faces = true;
+            struct body by_faces = make_body(sample, &setup);
+            double *force = sample_array(count, sizeof *force),
+                   *expected = sample_array(count, sizeof *expected);
+            double *F = sample_array(size, sizeof *F), *F_expected = sample_array(size, sizeof *F_expected);
+            double *u = deformed_field(sample, &by_table, expected, &random);
+            struct deformation least = body_force(&by_table, u, expected),
+                               other = body_force(&by_faces, u, force);
+            body_gradient(&by_table, F_expected);
+            body_gradient(&by_faces, F);
+            for (int64_t k = 0; k < size; k++) {
+                NEAR_TO(F[k], F_expected[k], 1e-12);
+            }
+            NEAR_TO(least.least_jacobian, other.least_jacobian, 1e-12);
+            assert_int_equal(least.point, other.point);
+            for (int64_t k = 0; k < count; k++) {
+                u[k] *= 1e-5;
+            }
+            (void)body_force(&by_table, u, expected);
+            (void)body_force(&by_faces, u, force);
+            for (int64_t k = 0; k < count; k++) {
+                NEAR_TO(force[k], expected[k], 1e-4 * largest(expected, count));
+            }
+            double energy = body_energy(&by_table, u);
+            NEAR_TO(body_energy(&by_faces, u), energy, 1e-4 * energy);
+            free(u);
+            free(F);
+            free(F_expected);
+            free(force);
+            free(expected);
+            body_free(&by_table);
+            body_free(&by_faces);
+        }
+    }
+}
+
+/* The kernels of the neo-Hookean law and what serves all laws, one cell at a time: the same forces. */
+static void general_law(void **state)
+{
+    (void)state;
+    struct random random = {13};
+    for (int i = 0; i < 8; i++) {
+        const struct sample *sample = &samples[i % 4];
+        int64_t count = sample->cloud.node_count * sample->dim;
+        struct setup setup = one_material(MATERIAL_NEO_HOOKEAN, i < 4, 0.1);
+        setup.growth = 3.0;
+        setup.faces = sample->conforming;
+        struct body body = make_body(sample, &setup);
+        double *force = sample_array(count, sizeof *force), *expected = sample_array(count, sizeof *expected);
+        double *u = deformed_field(sample, &body, force, &random);
+        (void)body_force(&body, u, force);
+        for (int64_t b = 0; b < body.block_count; b++) {
+            assert_true(body.blocks[b].neo_hookean);
+            body.blocks[b].neo_hookean = false;
+        }
+        (void)body_force(&body, u, expected);
+        for (int64_t k = 0; k < count; k++) {
+            NEAR_TO(force[k], expected[k], 1e-12 * largest(expected, count));
+        }
+        free(u);
+        free(force);
+        free(expected);
+        body_free(&body);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(patch),
+        cmocka_unit_test(faces),
+        cmocka_unit_test(enclosed_volume),
+        cmocka_unit_test(general_law),
+    };
+    return cmocka_run_group_tests(tests, make_samples, free_samples);
+}

@@ -1,0 +1,273 @@
+/* How the force loop computes: the same bits from any number of threads, the same forces whatever the
+ * instructions, tables in single precision, hats, the bound of the stiffness, and inversion told where it is.
+ */
+#include "body_setup.h"
+
+#include "solid/kernel.h"
+
+#include <omp.h>
+
+/* The same bits for 1, 2 and 3 threads, and from one call to the next. */
+static void check_threads(const struct sample *sample, const struct setup *setup, struct random *random)
+{
+    if (setup->model_count == 1 && (setup->averaged || setup->material[0].model != MATERIAL_NEO_HOOKEAN)) {
+        return; /* threads that wait for each other are slow on a busy machine: not for every law */
+    }
+    int64_t count = sample->cloud.node_count * sample->dim;
+    double *first = NULL, *u = random_field(sample, 1e-3, random), energy = 0.0;
+    int before = omp_get_max_threads();
+    for (int threads = 1; threads <= 3; threads++) {
+        omp_set_num_threads(threads);
+        struct body body = make_body(sample, setup);
+        double *force = sample_array(count, sizeof *force);
+        body.threads = threads; /* also where so many would not pay */
+        for (int call = 0; call < 2; call++) {
+            (void)body_force(&body, u, force);
+            if (first == NULL) {
+                first = sample_array(count, sizeof *first);
+                memcpy(first, force, (size_t)count * sizeof *first);
+                energy = body_energy(&body, u);
+            }
+            assert_memory_equal(force, first, (size_t)count * sizeof *first);
+            NEAR_TO(body_energy(&body, u), energy, 0.0);
+        }
+        free(force);
+        body_free(&body);
+    }
+    omp_set_num_threads(before);
+    free(first);
+    free(u);
+}
+
+static void threads(void **state)
+{
+    (void)state;
+    for_all(check_threads);
+}
+
+/* Whatever the instructions: the same forces but for round-off. */
+static void check_instructions(const struct sample *sample, const struct setup *setup, struct random *random)
+{
+    int64_t count = sample->cloud.node_count * sample->dim;
+    static const char *const sets[] = {"plain", "avx2", "avx512"};
+    struct body body = make_body(sample, setup);
+    double *force = sample_array(count, sizeof *force), *expected = sample_array(count, sizeof *expected);
+    double *u = deformed_field(sample, &body, force, random);
+    (void)body_force(&body, u, expected);
+    for (int k = 0; k < 3; k++) {
+        const struct force_kernels *kernels = force_kernels_select(sets[k], sample->dim);
+        if (kernels == NULL) {
+            assert_int_not_equal(k, 0); /* one for every processor */
+            continue;
+        }
+        body.kernels = kernels;
+        (void)body_force(&body, u, force);
+        for (int64_t i = 0; i < count; i++) {
+            NEAR_TO(force[i], expected[i], 1e-12 * largest(expected, count));
+        }
+    }
+    free(u);
+    free(force);
+    free(expected);
+    body_free(&body);
+}
+
+static void instructions(void **state)
+{
+    (void)state;
+    for_all(check_instructions);
+}
+
+/* Tables in single precision: forces as in double to 1e-5. */
+static void check_single(const struct sample *sample, const struct setup *setup, struct random *random)
+{
+    int64_t count = sample->cloud.node_count * sample->dim;
+    struct setup narrow = *setup;
+    narrow.single = true;
+    struct body body = make_body(sample, setup), narrowed = make_body(sample, &narrow);
+    double *force = sample_array(count, sizeof *force), *expected = sample_array(count, sizeof *expected);
+    double *u = deformed_field(sample, &body, expected, random), most = 0.0;
+    (void)body_force(&body, u, expected);
+    (void)body_force(&narrowed, u, force);
+    for (int64_t k = 0; k < count; k++) {
+        NEAR_TO(force[k], expected[k], 1e-5 * largest(expected, count));
+        most = fmax(most, fabs(force[k] - expected[k]));
+    }
+    assert_true(most > 0.0); /* it is another table */
+    NEAR_TO(body_energy(&narrowed, u), body_energy(&body, u), 1e-5 * body_energy(&body, u));
+    free(u);
+    free(force);
+    free(expected);
+    body_free(&body);
+    body_free(&narrowed);
+}
+
+static void single_precision(void **state)
+{
+    (void)state;
+    for_all(check_single);
+}
+
+/* Keeping the whole volume pointwise is the same as not averaging, where U is a square. */
+static void whole_share(void **state)
+{
+    (void)state;
+    struct random random = {2};
+    for (int i = 0; i < 4; i++) {
+        const struct sample *sample = &samples[i];
+        struct setup none = three_materials(false, 0.0), whole = three_materials(true, 1.0);
+        struct body one = make_body(sample, &none), other = make_body(sample, &whole);
+        int64_t count = sample->cloud.node_count * sample->dim;
+        double *force = sample_array(count, sizeof *force), *expected = sample_array(count, sizeof *expected);
+        double *u = deformed_field(sample, &one, force, &random), energy = body_energy(&one, u);
+        (void)body_force(&one, u, expected);
+        (void)body_force(&other, u, force);
+        for (int64_t k = 0; k < count; k++) {
+            NEAR_TO(force[k], expected[k], 1e-12 * largest(expected, count));
+        }
+        NEAR_TO(body_energy(&other, u), energy, 1e-12 * energy);
+        free(u);
+        free(force);
+        free(expected);
+        body_free(&one);
+        body_free(&other);
+    }
+}
+
+/* The averaged volume of each hat is that of its points, and the hats share the body out. */
+static void hats(void **state)
+{
+    (void)state;
+    struct random random = {3};
+    for (int dim = 2; dim <= 3; dim++) {
+        struct sample sample = make_sample(dim, false, 5);
+        struct setup setup = three_materials(true, 0.0);
+        struct body body = make_body(&sample, &setup);
+        double *u = random_field(&sample, 1e-3, &random), volume = 0.0, deformed = 0.0, expected = 0.0;
+        (void)body_energy(&body, u);
+        for (int64_t a = 0; a < body.hats.count; a++) {
+            double share = 0.0;
+            for (int64_t i = body.hats.ptr[a]; i < body.hats.ptr[a + 1]; i++) {
+                share += body.hats.share[i];
+                assert_int_equal(body.material[body.hats.point[i]], body.hats.material[a]);
+            }
+            NEAR_TO(share, 1.0, 1e-14);
+            volume += body.hats.volume[a];
+            deformed += body.hats.volume[a] * body.hats.theta[a];
+        }
+        for (int64_t q = 0; q < body.point_count; q++) {
+            expected += body.weight[q] * body.J[q];
+        }
+        NEAR_TO(volume, pow(sample_size, dim), 1e-15);
+        NEAR_TO(deformed, expected, 1e-15);
+        assert_true(body.hats.count > sample.cloud.node_count); /* some nodes lie between materials */
+        free(u);
+        body_free(&body);
+        sample_free(&sample);
+    }
+}
+
+/* The bound of the stiffness, at rest and deformed: no diagonal entry exceeds it, and at rest the sum over
+ * the components is known. */
+static void diagonal(void **state)
+{
+    (void)state;
+    struct random random = {5};
+    for (int i = 0; i < 4; i++) {
+        const struct sample *sample = &samples[i / 2 * 2];
+        int dim = sample->dim;
+        bool deformed = i % 2 == 1;
+        struct setup setup = one_material(MATERIAL_NEO_HOOKEAN, false, 1.0);
+        struct body body = make_body(sample, &setup);
+        int64_t count = sample->cloud.node_count * dim;
+        double mu = setup.material[0].shear_modulus, h = 1e-8;
+        double wave = material_wave_modulus(&setup.material[0]), lambda = wave - 2.0 * mu;
+        double *bound = sample_array(sample->cloud.node_count, sizeof *bound);
+        double *force = sample_array(count, sizeof *force);
+        double *u = deformed ? deformed_field(sample, &body, force, &random) : sample_array(count, sizeof *u);
+        (void)body_force(&body, u, force);
+        body_diagonal(&body, bound);
+        for (int64_t n = 0; n < sample->cloud.node_count; n++) {
+            double trace = 0.0;
+            for (int64_t k = n * dim; k < (n + 1) * dim; k++) {
+                double at = u[k], low;
+                u[k] = at - h;
+                (void)body_force(&body, u, force);
+                low = force[k];
+                u[k] = at + h;
+                (void)body_force(&body, u, force);
+                u[k] = at;
+                AT_MOST((force[k] - low) / (2.0 * h), bound[n] * (1.0 + 1e-6));
+                trace += (force[k] - low) / (2.0 * h);
+            }
+            if (!deformed) {
+                NEAR_TO(trace, bound[n] * (lambda + (dim + 1) * mu) / wave, 1e-6 * bound[n]);
+            }
+        }
+        free(bound);
+        free(u);
+        free(force);
+        body_free(&body);
+    }
+}
+
+/* The least J and where it is, inverted or not; not a number counts as the worst. */
+static void check_inversion(const struct sample *sample, const struct setup *setup, struct random *random)
+{
+    int dim = sample->dim;
+    int64_t count = sample->cloud.node_count * dim, nodes = sample->cloud.node_count;
+    struct body body = make_body(sample, setup);
+    double *force = sample_array(count, sizeof *force), *F = sample_array(sample->point_count * 9, sizeof *F);
+    double *u = random_field(sample, 1e-4, random);
+    for (int round = 0; round < 4; round++) {
+        int64_t node = (int64_t)uniform(random, 0.0, (double)nodes), least = 0;
+        double inward = sample->cloud.x[node * dim] < 0.5 * sample_size ? 1.0 : -1.0;
+        u[node * dim] += 3.0 * sample_size * inward; /* through its neighbours */
+        struct deformation deformation = body_force(&body, u, force);
+        body_gradient(&body, F);
+        for (int64_t q = 0; q < sample->point_count; q++) {
+            double G[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+            for (int64_t i = sample->ptr[q]; i < sample->ptr[q + 1]; i++) {
+                for (int k = 0; k < dim * dim; k++) {
+                    G[k / dim * 3 + k % dim] +=
+                        u[(int64_t)sample->idx[i] * dim + k / dim] * sample->dphi[i * dim + k % dim];
+                }
+            }
+            for (int k = 0; k < 9; k++) {
+                NEAR_TO(F[9 * q + k], G[k], 1e-11);
+            }
+            least = determinant(F + 9 * q) < determinant(F + 9 * least) ? q : least;
+        }
+        assert_true(deformation.least_jacobian < 0.0);
+        NEAR_TO(deformation.least_jacobian, determinant(F + 9 * least), 1e-11);
+        assert_int_equal(deformation.point, least);
+    }
+    u[3] = (double)NAN;
+    struct deformation deformation = body_force(&body, u, force);
+    assert_true(isnan(deformation.least_jacobian));
+    bool touched = false;
+    for (int64_t i = sample->ptr[deformation.point]; i < sample->ptr[deformation.point + 1]; i++) {
+        touched = touched || sample->idx[i] == 3 / dim;
+    }
+    assert_true(touched || setup->faces); /* faces are worked on in groups: a neighbour may have it first */
+    free(u);
+    free(F);
+    free(force);
+    body_free(&body);
+}
+
+static void inversion(void **state)
+{
+    (void)state;
+    for_all(check_inversion);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(threads),          cmocka_unit_test(instructions), cmocka_unit_test(whole_share),
+        cmocka_unit_test(single_precision), cmocka_unit_test(hats),         cmocka_unit_test(diagonal),
+        cmocka_unit_test(inversion),
+    };
+    return cmocka_run_group_tests(tests, make_samples, free_samples);
+}

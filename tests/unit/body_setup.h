@@ -1,0 +1,194 @@
+/* How the tests of the force loop make bodies of the fixture's samples, and what they have in common: fields,
+ * and a check of every kind of body. */
+#ifndef TESTS_BODY_SETUP_H
+#define TESTS_BODY_SETUP_H
+
+#include "body_fixture.h"
+
+#include "solid/body.h"
+
+#include <omp.h>
+
+enum { MATERIALS = 3 };
+
+/* How a body is made from a sample. */
+struct setup {
+    bool averaged;
+    double share, growth; /* pointwise */
+    bool faces;           /* conforming cells: by means over faces, not by the table of gradients */
+    bool single;
+    int model_count; /* points take the models in turn, by their place */
+    struct material material[MATERIALS];
+};
+
+static inline struct material make_material(enum material_model model, double youngs_modulus)
+{
+    struct material material = {.model = model, .density = 1000.0, .mooney_ratio = 0.4, .ogden_alpha = -4.7};
+    material_set_moduli(&material, youngs_modulus, 0.49);
+    return material;
+}
+
+static inline struct setup one_material(enum material_model model, bool averaged, double share)
+{
+    struct setup setup = {.averaged = averaged, .share = share, .model_count = 1};
+    setup.material[0] = make_material(model, 3000.0);
+    return setup;
+}
+
+static inline struct setup three_materials(bool averaged, double share)
+{
+    struct setup setup = {.averaged = averaged, .share = share, .model_count = 3};
+    setup.material[0] = make_material(MATERIAL_NEO_HOOKEAN, 3000.0);
+    setup.material[1] = make_material(MATERIAL_OGDEN, 2000.0);
+    setup.material[2] = make_material(MATERIAL_NEO_HOOKEAN, 6000.0);
+    return setup;
+}
+
+/* Materials lie in layers across axis 0. */
+static inline int32_t material_at(const struct sample *sample, const struct setup *setup, int64_t q)
+{
+    return (int32_t)(sample->x[q * sample->dim] / sample_size * setup->model_count);
+}
+
+static inline struct body make_body(const struct sample *sample, const struct setup *setup)
+{
+    struct body body;
+    struct error error;
+    struct conforming_input conforming = sample_conforming(sample);
+    int32_t *material = sample_array(sample->point_count, sizeof *material);
+    for (int64_t q = 0; q < sample->point_count; q++) {
+        material[q] = material_at(sample, setup, q);
+    }
+    struct body_input input = {.dim = sample->dim,
+                               .node_count = sample->cloud.node_count,
+                               .point_count = sample->point_count,
+                               .node_x = sample->cloud.x,
+                               .conforming = setup->faces ? &conforming : NULL,
+                               .single = setup->single,
+                               .x = sample->x,
+                               .weight = sample->weight,
+                               .ptr = sample->ptr,
+                               .idx = sample->idx,
+                               .dphi = sample->dphi,
+                               .materials = setup->material,
+                               .material = material,
+                               .material_count = setup->model_count,
+                               .hat_node = setup->averaged ? sample->hat_node : NULL,
+                               .hat_value = sample->hat_value,
+                               .pointwise_share = setup->share,
+                               .share_growth = setup->growth};
+    GOOD(body_build(&input, &body, &error));
+    free(material);
+    return body;
+}
+
+/* u = (A - I) x + b */
+static inline double *linear_field(const struct sample *sample, const double *A, const double *b)
+{
+    int dim = sample->dim;
+    double *u = sample_array(sample->cloud.node_count * dim, sizeof *u);
+    for (int64_t n = 0; n < sample->cloud.node_count; n++) {
+        for (int i = 0; i < dim; i++) {
+            u[n * dim + i] = b != NULL ? b[i] : 0.0;
+            for (int k = 0; k < dim; k++) {
+                u[n * dim + i] += (A[3 * i + k] - (i == k)) * sample->cloud.x[n * dim + k];
+            }
+        }
+    }
+    return u;
+}
+
+static inline double *random_field(const struct sample *sample, double size, struct random *random)
+{
+    int64_t count = sample->cloud.node_count * sample->dim;
+    double *u = sample_array(count, sizeof *u);
+    for (int64_t i = 0; i < count; i++) {
+        u[i] = size * uniform(random, -1.0, 1.0);
+    }
+    return u;
+}
+
+/* Made once: conforming cells and Gauss points in 2D, the same in 3D. */
+static struct sample samples[4];
+
+static inline int make_samples(void **state)
+{
+    (void)state;
+    omp_set_num_threads(1); /* bodies so small gain nothing by more */
+    for (int i = 0; i < 4; i++) {
+        samples[i] = make_sample(2 + i / 2, i % 2 == 0, i < 2 ? 6 : 4);
+    }
+    return 0;
+}
+
+static inline int free_samples(void **state)
+{
+    (void)state;
+    for (int i = 0; i < 4; i++) {
+        sample_free(&samples[i]);
+    }
+    return 0;
+}
+
+/* Every combination of dimension, integration, material and averaging. */
+static inline void for_all(void (*check)(const struct sample *, const struct setup *, struct random *))
+{
+    static const double shares[] = {0.0, 0.1, 1.0};
+    struct random random = {1};
+    for (int i = 0; i < 4; i++) {
+        for (int model = 0; model < (int)MATERIAL_MODEL_COUNT; model++) {
+            struct setup setup = one_material((enum material_model)model, false, 0.5);
+            check(&samples[i], &setup, &random);
+            setup = one_material((enum material_model)model, true, 0.1);
+            check(&samples[i], &setup, &random);
+            setup.faces = samples[i].conforming;
+            check(&samples[i], &setup, &random);
+        }
+        for (int s = 0; s < 3; s++) {
+            struct setup setup = three_materials(true, shares[s]);
+            setup.growth = 3.0;
+            check(&samples[i], &setup, &random);
+            setup = one_material(MATERIAL_NEO_HOOKEAN, true, shares[s]);
+            check(&samples[i], &setup, &random);
+            setup.growth = 20.0;
+            check(&samples[i], &setup, &random);
+        }
+        for (int averaged = 0; averaged < 2 && samples[i].conforming; averaged++) {
+            struct setup setup = three_materials(averaged == 1, 0.1);
+            setup.growth = 3.0;
+            setup.faces = true;
+            check(&samples[i], &setup, &random);
+        }
+    }
+    for (int i = 0; i < 4; i += 2) {
+        for (int model = 0; model < (int)MATERIAL_MODEL_COUNT; model++) {
+            struct setup setup = one_material((enum material_model)model, false, 0.0);
+            setup.faces = true;
+            check(&samples[i], &setup, &random);
+        }
+    }
+}
+
+static inline double largest(const double *values, int64_t count)
+{
+    double most = 0.0;
+    for (int64_t i = 0; i < count; i++) {
+        most = fabs(values[i]) <= most ? most : isnan(values[i]) ? INFINITY : fabs(values[i]);
+    }
+    return most;
+}
+
+/* Random displacements, as large as leaves J > 0.3. */
+static inline double *deformed_field(const struct sample *sample, struct body *body, double *force,
+                                     struct random *random)
+{
+    double *u = random_field(sample, 0.05 * sample_size, random);
+    while (body_force(body, u, force).least_jacobian < 0.3) {
+        for (int64_t i = 0; i < sample->cloud.node_count * sample->dim; i++) {
+            u[i] *= 0.9;
+        }
+    }
+    return u;
+}
+
+#endif
