@@ -232,6 +232,31 @@ setup() {
     refused 2 "load.tsv" mtled edited.scene square.mts
 }
 
+@test "a slender beam bent far by a dead load: the load waits for it, and no step is taken back" {
+    cat > beam.scene <<'END'
+[scene]
+dim = 2
+analysis = quasi-static
+[material beam]
+region = body
+E = 3000
+nu = 0
+rho = 1000
+[displacement clamp]
+facets = xmin
+components = 0, 0
+[traction end]
+facets = xmax
+components = 0, -6.25
+[solver]
+tolerance = 1e-3
+END
+    cloud -d 2 -k regular -n 41,3 --box 0,1,0,0.05 | ipoints -g 3 | shapefn 2> note > beam.mts # P L2 / E I = 10
+    mtled -v beam.scene beam.mts 2> report > u.dat
+    paste <(rows nodes.x u.dat) <(rows u u.dat) | awk '$1 > 1 - 1e-9 { n++; sum += $4 / 0.810609 } END { exit !(n == 3 && (sum / n + 1) ^ 2 < 1e-4) }'
+    awk -F '\t' '$1 == "steps" { steps = $2 } $1 == "loading steps" { loading = $2 } END { exit !(steps < 700 && loading > 100 && loading < steps) }' report
+}
+
 @test "what does not converge ends with status 1, and an existing output stays" {
     printf 'old\n' > out.dat
     printf '[solver]\nmax_steps = 30\n' >> block.scene

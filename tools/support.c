@@ -15,7 +15,7 @@ static const char usage[] =
     "\n"
     "Options:\n"
     "  -k, --factor FACTOR    radius = FACTOR times the local node spacing (default 1.8, in 3D\n"
-    "                         1.87)\n"
+    "                         1.9)\n"
     "  -R, --radius RADIUS    constant radius: a length with its unit, e.g. 8mm (without one: m)\n"
     "      --ends SHARE       of that radius for the nodes beside those where a group of facets ends,\n"
     "                         in cells with them (default 0.7, in 3D 1; a radius of -R stays)\n"

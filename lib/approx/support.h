@@ -17,7 +17,7 @@ struct support_options {
     struct mls mls;        /* what the lists are for */
 };
 
-/* Factor 1.8 of the local spacing, .7 of that beside ends and .8 beside corners, in 3D 1.87 throughout;
+/* Factor 1.8 of the local spacing, .7 of that beside ends and .8 beside corners, in 3D 1.9 throughout;
  * widening on, the default MLS. */
 struct support_options support_defaults(int dim);
 

@@ -57,7 +57,7 @@ static enum status copy_points(const struct body_input *input, struct body *body
     TRY(NEW_ARRAY(&body->weight, points + BODY_POINT_PADDING, error));
     TRY(NEW_ARRAY(&body->material, points, error));
     TRY(NEW_ARRAY(&body->shear, points + BODY_POINT_PADDING, error));
-    TRY(NEW_ARRAY(&body->bulk, points, error));
+    TRY(NEW_ARRAY(&body->bulk, points + BODY_POINT_PADDING, error));
     TRY(NEW_ARRAY(&body->u, body->node_count * PAIRS_STRIDE(dim), error));
     TRY(NEW_ARRAY(&body->F, points * dim * dim + BODY_POINT_PADDING, error));
     TRY(NEW_ARRAY(&body->J, points + BODY_POINT_PADDING, error));

@@ -37,8 +37,8 @@ struct body_input {
     bool single;     /* keep the table in single precision; sums are double always */
 };
 
-/* Points are worked on so many at a time; weight, shear, J and F have as many entries more, which are read
- * and not used. */
+/* Points are worked on so many at a time; weight, shear, bulk, J and F have as many entries more, which are
+ * read and not used. */
 #define BODY_POINT_PADDING 8
 
 struct block {
@@ -108,8 +108,8 @@ void body_free(struct body *body);
 
 /* How far an evaluation is from inversion. */
 struct deformation {
-    double least_jacobian;
-    int64_t point; /* where, in the caller's order */
+    double least_jacobian; /* least det F, or volume ratio of a cell */
+    int64_t point;         /* where, in the caller's order */
 };
 
 /* force[node_count * dim] = internal forces - grad_u of the energy - at the parameters u[node_count * dim];
@@ -131,10 +131,10 @@ void body_stress(const struct body *body, double *stress);
 /* F of each point at the last evaluation, gradient[point_count * 9], caller's order. */
 void body_gradient(const struct body *body, double *gradient);
 
-/* stiffness[node_count], N/m (2D: N/m2): bounds the diagonal of the stiffness at the last evaluation's F, as
- * sum_q w W''(y (x) grad phi), the second derivative of the energy along the rank-one change of F that is
- * stiffest, y = F^-T grad phi; at rest sum_q w (lambda + 2 mu) |grad phi|^2. The neo-Hookean formula serves
- * all materials. */
+/* stiffness[node_count], N/m (2D: N/m2): bounds the diagonal of the stiffness at the last evaluation's F (of
+ * conforming cells about, far strained ones may exceed it), as sum_q w W''(y (x) grad phi), the second
+ * derivative of the energy along the rank-one change of F that is stiffest, y = F^-T grad phi; at rest sum_q
+ * w (lambda + 2 mu) |grad phi|^2. The neo-Hookean formula serves all materials. */
 void body_diagonal(const struct body *body, double *stiffness);
 
 #endif

@@ -15,20 +15,31 @@
  *
  * V det F_h is the volume between the vertices, and -V cof F_h : (F_h - F) what lies between them and the
  * cell's faces: the mean offset of each face times the area of the deformed facet, with the opposite sign in
- * the neighbour. So sum V J is the volume within the boundary, whatever the field; and as J and det F differ
- * by the square of F_h - F only, what is exact for linear fields stays so.
+ * the neighbour. So sum V J is the volume within the deformed facets of the boundary and their faces'
+ * offsets, whatever the field is inside; and as J and det F differ by the square of F_h - F only, what is
+ * exact for linear fields stays so.
  *
- * What is left free is that single cells fold, F_h against F. The energy k |F_h - F|^2 / 2 ties the two where
- * a cell is strained so far that this pays: k = 2 mu e^2 / (1 + e), where e is the energy W(F) of the cell by
- * its shear modulus mu, 0.05 at a strain of 20 %, 1 and more where cells fold. */
+ * What is left free is that single cells fold, F_h against F, and that free sides crease too early under
+ * compression: by linear theory a body pressed along one axis may from a stretch of .44 on, from .56 if
+ * disturbed. The energy k |F_h - F|^2 / 2 ties the two where a cell is strained far:
+ *
+ *   k / mu = 2 e^2 / (1 + e) + s e^3 (1 + e) / (.4 + e^3),
+ *
+ * where e is the energy W(F) of the cell by its shear modulus mu - .05 at a strain of 20 %, .6 at a stretch
+ * of .5, more where cells fold - and s is more than 0 in cells at the boundary only. What was tried:
+ * pipelines/convergence/DEFAULTS.md. */
 #ifndef SOLID_CONFORMING_H
 #define SOLID_CONFORMING_H
 
 #include "solid/means.h"
 
-/* k of the ties, in shear moduli, and its derivative, at the energy e; of numbers and of vectors of them. */
-#define TIE_STIFFNESS(e) (2.0 * (e) * (e) / (1.0 + (e)))
-#define TIE_SLOPE(e) (2.0 * (e) * (2.0 + (e)) / ((1.0 + (e)) * (1.0 + (e))))
+/* k of a tie by mu, and its derivative by e; of numbers and of vectors of them. */
+#define TIE_STIFFNESS(e, s)                                                                                  \
+    (2.0 * (e) * (e) / (1.0 + (e)) + (s) * (e) * (e) * (e) * (1.0 + (e)) / (0.4 + (e) * (e) * (e)))
+#define TIE_SLOPE(e, s)                                                                                      \
+    (2.0 * (e) * (2.0 + (e)) / ((1.0 + (e)) * (1.0 + (e))) +                                                 \
+     (s) * (e) * (e) * (1.2 + 1.6 * (e) + (e) * (e) * (e) * (e)) /                                           \
+         ((0.4 + (e) * (e) * (e)) * (0.4 + (e) * (e) * (e))))
 
 struct body;
 
@@ -53,6 +64,7 @@ struct conforming {
     struct means faces;  /* means of the field over the faces */
     struct means nodes;  /* values of the field at the vertices */
     double *interpolant; /* F_h at the last evaluation, as body->F */
+    double *strength;    /* s of the ties, and BODY_POINT_PADDING more */
     double *hat; /* dim * dim rows of as many as there are cells, and BODY_POINT_PADDING more: row (k - 1) dim
                     + b holds component b of the gradient of hat k = 1 .. dim in each cell; those of all
                     vanish together, 1/m */

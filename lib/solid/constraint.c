@@ -85,6 +85,9 @@ enum status constraint_rows_add(struct constraint_rows *rows, int64_t length, co
                                 const double *phi, const double *direction, double target, int32_t curve,
                                 int32_t section, int32_t node, struct error *error)
 {
+    if (length < 1) {
+        return fail(error, STATUS_INPUT, "a condition at node %d over no nodes", node);
+    }
     enum status status = reserve(rows, length, error);
     if (status != STATUS_OK) {
         return status;

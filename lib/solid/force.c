@@ -4,6 +4,19 @@
 #include <math.h>
 #include <string.h>
 
+/* A law of ln J knows no volume ratio below zero: where it is the cell's own, such a cell counts as inverted.
+ */
+static void note_volumes(const struct body *body, struct block *block)
+{
+    for (int64_t q = block->first_point; q < block->first_point + block->point_count; q++) {
+        bool is_log = body->materials[body->material[q]].model == MATERIAL_NEO_HOOKEAN_LOG;
+        if (is_log && !body->averaged && body->J[q] <= 0.0 && block->least_jacobian > 0.0) {
+            block->least_jacobian = body->J[q];
+            block->worst_point = q;
+        }
+    }
+}
+
 /* Stresses of a block of cells, and what they put on the means. */
 static void stress_cell_block(struct body *body, int64_t b)
 {
@@ -12,6 +25,7 @@ static void stress_cell_block(struct body *body, int64_t b)
         body->kernels->cell_neo_hookean(body, b, P, T);
     } else {
         stress_cells(body, &body->blocks[b], P, T);
+        note_volumes(body, &body->blocks[b]);
     }
     body->kernels->cell_forces(body, b, (const double(*)[PAIRS_MAX_ROWS])P,
                                (const double(*)[PAIRS_MAX_ROWS])T);

@@ -132,10 +132,10 @@ void inertia_accelerate(struct inertia *inertia, const double *force, double *ac
     constraint_rows_spread(rows, multiplier, inertia->mass, acceleration);
 }
 
-double inertia_product(const struct inertia *inertia, const double *x, const double *y)
+double inertia_product_alone(const struct inertia *inertia, const double *x, const double *y)
 {
     int dim = inertia->dim;
-    double *amount = inertia->amount, *solved = inertia->amount + inertia->size, sum = 0.0;
+    double sum = 0.0;
     for (int64_t n = 0; n < inertia->node_count; n++) {
         double part = 0.0;
         for (int a = 0; a < dim; a++) {
@@ -143,6 +143,13 @@ double inertia_product(const struct inertia *inertia, const double *x, const dou
         }
         sum += inertia->mass[n] * part;
     }
+    return sum;
+}
+
+double inertia_product(const struct inertia *inertia, const double *x, const double *y)
+{
+    double *amount = inertia->amount, *solved = inertia->amount + inertia->size;
+    double sum = inertia_product_alone(inertia, x, y);
     if (inertia->size > 0) {
         inertia_collect(inertia, x, amount);
         multiply(inertia->size, inertia->beside, amount, solved);

@@ -67,6 +67,9 @@ bool inertia_follow(struct inertia *inertia, const struct solid_system *system, 
 /* acceleration = M^-1 force. */
 void inertia_accelerate(struct inertia *inertia, const double *force, double *acceleration);
 
+/* x . D y */
+double inertia_product_alone(const struct inertia *inertia, const double *x, const double *y);
+
 /* x . M y of moves that the conditions admit. */
 double inertia_product(const struct inertia *inertia, const double *x, const double *y);
 

@@ -131,8 +131,7 @@ enum status inertia_measure(struct inertia *inertia, struct solid_system *system
     enum status status = STATUS_OK;
     int64_t values = inertia->node_count * inertia->dim;
     double *at_u = NULL, *moved = NULL, *force = NULL;
-    double spacing = pow(body_volume(&system->body) / (double)inertia->node_count, 1.0 / inertia->dim);
-    double epsilon = strain * spacing;
+    double epsilon = strain * system_node_spacing(system);
     if (inertia->size == 0) {
         return STATUS_OK;
     }

@@ -4,8 +4,8 @@
 
 #include "solid/body.h"
 
-/* Something for each point of a block: row k of component k, points along it. A stress has zeros behind the
- * last point, up to a whole group. */
+/* Something for each point of a block: row k of component k, points along it. A stress that is scattered
+ * has zeros behind the last point, up to a whole group. */
 typedef double block_stress[9][PAIRS_MAX_ROWS];
 
 /* Each works on the block of that number. scratch: PAIRS_SCRATCH. */

@@ -175,7 +175,7 @@ KERNEL_INLINE void kernel_cell_neo_hookean(const struct body *body, const struct
     double weighted_pressure[PAIRS_MAX_ROWS];
     kernel_pressures(body, block, dim, weighted_pressure);
     for (int64_t i = 0; i < block->point_count; i += LANES) {
-        lanes F[9], H[9], D[9], C[9], J, weight, shear, bulk, pressure, squares = {0.0};
+        lanes F[9], H[9], D[9], C[9], J, weight, shear, bulk, pressure, strength, squares = {0.0};
         struct lanes_shape shape;
         int64_t q = block->first_point + i;
         load_matrix(body, body->F, q, dim, F);
@@ -184,6 +184,7 @@ KERNEL_INLINE void kernel_cell_neo_hookean(const struct body *body, const struct
         LOAD(shear, body->shear + q);
         LOAD(bulk, body->bulk + q);
         LOAD(pressure, weighted_pressure + i);
+        LOAD(strength, body->cells.strength + q);
         shear *= weight;
         bulk *= weight;
         for (int k = 0; k < dim * dim; k++) {
@@ -195,7 +196,8 @@ KERNEL_INLINE void kernel_cell_neo_hookean(const struct body *body, const struct
         neo_hookean_shape(F, &J, &shear, dim, &shape);
         J -= 1.0;
         lanes strain = (shape.energy + 0.5 * bulk * J * J) / shear;
-        lanes stiffness = shear * TIE_STIFFNESS(strain), share = 0.5 * squares * TIE_SLOPE(strain);
+        lanes stiffness = shear * TIE_STIFFNESS(strain, strength);
+        lanes share = 0.5 * squares * TIE_SLOPE(strain, strength);
         lanes along_gradient = (1.0 + share) * shape.along_gradient;
         lanes along_cofactor = (1.0 + share) * shape.along_cofactor + share * bulk * J;
         for (int k = 0; k < dim * dim; k++) {

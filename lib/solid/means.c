@@ -91,7 +91,7 @@ enum status means_build(const struct means_input *input, struct means *means, st
     struct mean_order order = {0};
     *means = (struct means){0};
     if (input->row_count > INT32_MAX / PAIRS_STRIDE(input->dim)) {
-        return fail(error, STATUS_INPUT, "faces: %lld are too many", (long long)input->row_count);
+        return fail(error, STATUS_INPUT, "%lld faces or nodes: too many", (long long)input->row_count);
     }
     TRY(order_means(input, &order, error));
     struct pairs_input pairs = {.rows = order.rows,

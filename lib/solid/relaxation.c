@@ -104,6 +104,7 @@ static bool follow(struct relaxation *r, struct error *error)
 {
     double *u = r->u, ramp = (double)r->report->ramp_steps;
     relaxation_estimate(r);
+    relaxation_pace(r);
     if (r->at_full_load <= CHECK_INTERVAL) { /* take out what round-off has left */
         constraint_project(&r->inertia.constraint, r->system->factor, u);
     }
@@ -161,6 +162,7 @@ static enum relaxation_outcome iterate(struct relaxation *r, struct error *error
         bool measure = ++r->report->steps % CHECK_INTERVAL == 0;
         r->load = fmin(ramp, r->load + r->load_rate);
         r->at_full_load = r->load < ramp ? 0 : r->at_full_load + 1;
+        r->report->loading_steps += r->at_full_load == 0;
         change_load(r, r->load / ramp);
         if (!step(r, r->u, measure)) {
             measure = false;
@@ -240,13 +242,15 @@ enum status relaxation_run(struct solid_system *system, const struct relaxation_
                            .size = system->node_count * system->dim,
                            .u = u,
                            .load_rate = 1.0,
+                           .top_rate = 1.0,
                            .caution = 1.0,
                            .least_penetration = INFINITY,
                            .spectrum2 = INFINITY};
     *report = (struct relaxation_report){.least_jacobian = 1.0};
     TRY(relaxation_allocate(&r, error));
-    r.spacing = relaxation_node_spacing(system);
+    r.spacing = system_node_spacing(system);
     r.body_size = relaxation_body_size(system);
+    r.thickness = relaxation_thickness(system);
     r.penetration_allowed = penetration_share * r.body_size;
     TRY(options->restored != NULL ? resume(&r, error) : begin(&r, error));
     report->outcome = iterate(&r, error);

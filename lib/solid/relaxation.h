@@ -40,7 +40,9 @@ enum relaxation_outcome {
 
 struct relaxation_report {
     enum relaxation_outcome outcome;
-    int64_t steps, ramp_steps;
+    int64_t steps;
+    int64_t ramp_steps;    /* over which the load was to be applied, */
+    int64_t loading_steps; /* and in which it was, retreats included */
     int64_t force_evaluations;
     double error;             /* estimated remaining error, relative to the largest displacement of the run:
                                * the larger of those on the whole and at the worst node */

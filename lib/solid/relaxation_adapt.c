@@ -7,11 +7,15 @@
 #include <string.h>
 
 /* Steps in which the load moves something by as much as a cell, or as the body is long; and at least. */
-static const double steps_per_spacing = 100.0, steps_per_size = 800.0;
+static const double steps_per_spacing = 50.0, steps_per_size = 400.0;
 static const int64_t least_ramp = 100;
-/* The inertia is measured anew when something moved by so much of the body's size, or the largest frequency
- * rose by that factor: fields turn with the body, and what was soft becomes stiff. */
-static const double most_moved = 0.15, most_raised = 1.25;
+/* The inertia is measured anew when something moved by so much of the body's thickness, or the largest
+ * frequency rose by that factor: as a body turns, what was soft becomes stiff, the more the slenderer it is.
+ */
+static const double most_moved = 1.4, most_raised = 1.25;
+/* The load waits when something moves by more than this part of the body's size in a step, a little more than
+ * a ramp makes. */
+static const double most_paced = 1.0 / 320.0;
 static const int64_t most_retreats = 8;                          /* from inverted points */
 static const double most_stiffening = 1.1, most_softening = 0.5; /* of a node since its mass was set */
 static const int64_t most_augmentations = 20;                    /* of the contacts' multipliers, */
@@ -23,9 +27,9 @@ double relaxation_body_size(const struct solid_system *system)
     return box_diagonal(&box);
 }
 
-double relaxation_node_spacing(const struct solid_system *system)
+double relaxation_thickness(const struct solid_system *system)
 {
-    return pow(body_volume(&system->body) / (double)system->node_count, 1.0 / system->dim);
+    return pow(body_volume(&system->body) / relaxation_body_size(system), 1.0 / (system->dim - 1));
 }
 
 int64_t relaxation_choose_ramp(const struct relaxation *r)
@@ -37,6 +41,12 @@ int64_t relaxation_choose_ramp(const struct relaxation *r)
     double steps = fmax(steps_per_spacing * largest / r->spacing, steps_per_size * largest / r->body_size);
     steps = fmax(steps, (double)least_ramp);
     return steps > 1e7 ? 10000000 : (int64_t)steps;
+}
+
+void relaxation_pace(struct relaxation *r)
+{
+    double allowed = CHECK_INTERVAL * most_paced * r->body_size, factor = fmax(0.3, allowed / r->moved);
+    r->load_rate = fmin(r->top_rate, fmin(factor, 1.2) * r->load_rate);
 }
 
 void relaxation_update_time_step(struct relaxation *r, const double *u, int iterations)
@@ -67,13 +77,12 @@ bool relaxation_update_mass(struct relaxation *r, struct error *error)
 
 bool relaxation_update_inertia(struct relaxation *r, struct error *error)
 {
-    bool moved = r->largest_move > r->measured_move + most_moved * r->body_size;
+    bool moved = r->largest_move > r->measured_move + most_moved * r->thickness;
     bool stiffened = r->frequency > most_raised * r->measured_frequency;
     if (r->inertia.size == 0 || !(moved || stiffened || inertia_is_stale(&r->inertia))) {
         return true;
     }
     r->failure = relaxation_measure_inertia(r, error);
-    relaxation_note_new_mass(r);
     return r->failure == STATUS_OK;
 }
 
@@ -90,6 +99,7 @@ enum status relaxation_measure_inertia(struct relaxation *r, struct error *error
     enum status status = inertia_measure(&r->inertia, r->system, r->residual_at, error);
     (void)system_residual(r->system, r->residual_at, r->residual); /* the body's last evaluation again */
     (void)inertia_follow(&r->inertia, r->system, true);
+    relaxation_note_new_mass(r);
     r->frequency = 0.0;
     relaxation_update_time_step(r, r->residual_at, FIRST_ITERATIONS);
     r->measured_frequency = r->frequency;
@@ -113,14 +123,14 @@ bool relaxation_step_back(struct relaxation *r, double *u, struct error *error)
     }
     r->retreats++;
     r->caution *= 0.8;
-    r->load_rate *= 0.5;
+    r->top_rate *= 0.5;
+    r->load_rate = r->top_rate;
     r->load = r->older.load;
     memcpy(u, r->older.u, (size_t)r->size * sizeof *u);
     memcpy(r->newer.u, r->older.u, (size_t)r->size * sizeof *u);
     r->newer.load = r->older.load;
     memset(r->velocity, 0, (size_t)r->size * sizeof *r->velocity);
     memset(r->mode, 0, (size_t)r->size * sizeof *r->mode);
-    r->mass_changed = true;
     system_load_factors(r->system, fmin(1.0, r->load / (double)r->report->ramp_steps));
     r->residual_at = u;
     if (!(system_residual(r->system, u, r->residual).least_jacobian > 0.0)) {

@@ -53,6 +53,7 @@ void relaxation_estimate(struct relaxation *r)
         du[i] = r->before[i] - r->last_u[i];
         da[i] = r->last_acceleration[i] - r->acceleration[i];
     }
+    r->moved = largest_of_nodes(r, du);
     memcpy(r->last_u, r->before, (size_t)r->size * sizeof *r->before);
     memcpy(r->last_acceleration, r->acceleration, (size_t)r->size * sizeof *r->acceleration);
     constraint_project(&r->inertia.constraint, NULL, du);
@@ -68,13 +69,13 @@ void relaxation_estimate(struct relaxation *r)
     }
     r->checks++;
     double least2 = least_of_window(r);
-    r->largest_displacement = fmax(
-        r->largest_displacement, sqrt(system_mass_product(r->system, r->inertia.mass, r->before, r->before)));
+    r->largest_displacement =
+        fmax(r->largest_displacement, sqrt(inertia_product_alone(&r->inertia, r->before, r->before)));
     r->largest_move = fmax(r->largest_move, largest_of_nodes(r, r->before));
     /* Of the largest so far: a scene may end at rest. */
-    double on_the_whole = ratio(
-        sqrt(system_mass_product(r->system, r->inertia.mass, r->acceleration, r->acceleration)) / least2,
-        r->largest_displacement);
+    double on_the_whole =
+        ratio(sqrt(inertia_product_alone(&r->inertia, r->acceleration, r->acceleration)) / least2,
+              r->largest_displacement);
     double at_worst = ratio(largest_of_nodes(r, r->acceleration) / least2, r->largest_move);
     r->report->error = safety * fmax(on_the_whole, at_worst);
     r->report->lowest_frequency = sqrt(least2);

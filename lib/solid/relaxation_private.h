@@ -37,13 +37,16 @@ struct relaxation {
     int64_t best_step;
     double spacing;                           /* mean, of the nodes, m */
     double body_size;                         /* diagonal of the nodes' box, m */
+    double thickness;                         /* mean, across that, m */
     double measured_frequency, measured_move; /* the largest ones, when the inertia was measured */
     double penetration_allowed;               /* m */
     int64_t augmentations, fruitless;         /* of the contacts so far; those in a row that changed little */
     double least_penetration;                 /* m, before an augmentation */
     bool mass_changed; /* since the last check: increments of the acceleration mean nothing */
     enum status failure;
-    double load, load_rate;      /* steps of the ramp applied so far, and per step */
+    double load, load_rate;      /* steps of the ramp applied so far, and per step, at most top_rate */
+    double top_rate;             /* 1 until an inversion */
+    double moved;                /* of a node between the last two checks, m */
     double largest_displacement; /* so far, in the norm of the mass */
     double largest_move;         /* so far, of a node, m */
     bool spectrum_known;         /* spectrum2 is of the mass and the load as they are */
@@ -82,12 +85,16 @@ void relaxation_note_best(struct relaxation *r);
 /* Length of the diagonal of the nodes' box. */
 double relaxation_body_size(const struct solid_system *system);
 
-/* Mean spacing of the nodes. */
-double relaxation_node_spacing(const struct solid_system *system);
+/* Width of a bar that is as long as the box's diagonal and has the body's volume. */
+double relaxation_thickness(const struct solid_system *system);
 
-/* Steps to apply the load in: slow enough that a cell is strained by about one percent a step, and the whole
+/* Steps to apply the load in: slow enough that a cell is strained by about two percent a step, and the whole
  * by much less, so that what follows the state can do so. */
 int64_t relaxation_choose_ramp(const struct relaxation *r);
+
+/* Let the load go on only as fast as the body can follow: forces may move it as far as prescribed
+ * displacements never do in a step. */
+void relaxation_pace(struct relaxation *r);
 
 /* Take the critical step at u from the largest frequency. */
 void relaxation_update_time_step(struct relaxation *r, const double *u, int iterations);

@@ -73,6 +73,8 @@ enum status relaxation_visit(void *run, const struct state *state, struct error 
         {"ramp_steps", STATE_COUNTS, &report->ramp_steps, 1},
         {"load", STATE_NUMBERS, &r->load, 1},
         {"load_rate", STATE_NUMBERS, &r->load_rate, 1},
+        {"top_rate", STATE_NUMBERS, &r->top_rate, 1},
+        {"loading_steps", STATE_COUNTS, &report->loading_steps, 1},
         {"caution", STATE_NUMBERS, &r->caution, 1},
         {"retreats", STATE_COUNTS, &r->retreats, 1},
         {"augmentations", STATE_COUNTS, &r->augmentations, 1},

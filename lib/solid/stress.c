@@ -69,7 +69,9 @@ struct tie stress_tie(const struct body *body, int64_t point, const double F[9])
     }
     double energy = material_shape_energy(material, F) + material_volume_energy(material, determinant(F));
     double strain = energy / material->shear_modulus;
-    return (struct tie){material->shear_modulus * TIE_STIFFNESS(strain), TIE_SLOPE(strain), squares};
+    double strength = body->cells.strength[point];
+    return (struct tie){material->shear_modulus * TIE_STIFFNESS(strain, strength),
+                        TIE_SLOPE(strain, strength), squares};
 }
 
 /* d cof F_h along D, by which cof F_h : D changes with F_h. */

@@ -267,16 +267,7 @@ void system_relaxation_mass(const struct solid_system *system, double *mass)
     }
 }
 
-double system_mass_product(const struct solid_system *system, const double *mass, const double *x,
-                           const double *y)
+double system_node_spacing(const struct solid_system *system)
 {
-    double sum = 0.0;
-    for (int64_t n = 0; n < system->node_count; n++) {
-        double part = 0.0;
-        for (int a = 0; a < system->dim; a++) {
-            part += x[n * system->dim + a] * y[n * system->dim + a];
-        }
-        sum += mass[n] * part;
-    }
-    return sum;
+    return pow(body_volume(&system->body) / (double)system->node_count, 1.0 / system->dim);
 }

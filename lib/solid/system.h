@@ -91,8 +91,7 @@ double system_spring_force(const struct solid_system *system, int64_t r, const d
  * same critical step (1) however the cloud is graded; contact penalties included. mass[node_count] > 0. */
 void system_relaxation_mass(const struct solid_system *system, double *mass);
 
-/* sum over the nodes of mass x . y, with mass[node_count] and moves x, y[node_count * dim]. */
-double system_mass_product(const struct solid_system *system, const double *mass, const double *x,
-                           const double *y);
+/* Mean spacing of the nodes, m. */
+double system_node_spacing(const struct solid_system *system);
 
 #endif

@@ -96,9 +96,9 @@ estimate() {
                 estimated = told["estimated error"]
                 true = sqrt(worst / largest)
                 if (sqrt(differences / sizes) > true) true = sqrt(differences / sizes)
-                optimum = told["ramp steps"] + log(1 / estimated) * told["frequency ratio"] / 2
+                optimum = told["loading steps"] + log(1 / estimated) * told["frequency ratio"] / 2
                 printf "%s\t%s\t%.3g\t%.3g\t%.3g\t%d\t%d\t%.2f\t%s\n", name, tolerance, estimated, true, true / estimated,
-                    told["steps"], told["ramp steps"], told["steps"] / optimum, (true <= estimated ? "pass" : "FAIL")
+                    told["steps"], told["loading steps"], told["steps"] / optimum, (true <= estimated ? "pass" : "FAIL")
             }' "$work/estimate.run" -
     done
 }

@@ -15,9 +15,12 @@ static double cosine(const struct constraint_rows *rows, int64_t r, int64_t s)
 /* Same place, same direction or its opposite, and same pairs? */
 static bool is_same(const struct constraint_rows *rows, int64_t r, int64_t s)
 {
+    if (rows->node[r] != rows->node[s]) {
+        return false;
+    }
     struct constraint_pairs one = constraint_rows_pairs(rows, r), other = constraint_rows_pairs(rows, s);
     double apart = 0.0;
-    if (rows->node[r] != rows->node[s] || one.length != other.length) {
+    if (one.length != other.length) {
         return false;
     }
     for (int64_t i = 0; i < one.length; i++) {

@@ -66,9 +66,10 @@ void run_quasi_static(struct run *run)
     run->last_good = report.load;
     judge(run, &report);
     if (run->verbose) {
-        fprintf(stderr, "points\t%lld\npairs\t%lld\nsteps\t%lld\nramp steps\t%lld\nforce evaluations\t%lld\n",
+        fprintf(stderr,
+                "points\t%lld\npairs\t%lld\nsteps\t%lld\nloading steps\t%lld\nforce evaluations\t%lld\n",
                 (long long)body->point_count, (long long)body->pair_count, (long long)report.steps,
-                (long long)report.ramp_steps, (long long)report.force_evaluations);
+                (long long)report.loading_steps, (long long)report.force_evaluations);
         fprintf(stderr, "estimated error\t%.3g\nfrequency ratio\t%.5g\nleast J\t%.4g\n", report.error,
                 report.largest_frequency / report.lowest_frequency, report.least_jacobian);
     }
