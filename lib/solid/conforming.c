@@ -7,8 +7,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* s of the ties in cells with a face on the boundary. */
-static const double strength_at_boundary = 5.0;
+/* s of the ties in cells with a face on the boundary that no condition holds. */
+static const double strength_at_free_faces = 6.0;
 
 /* Gradients of the hat functions 1 .. dim of a simplex, dim x dim. */
 static void hat_gradients(int dim, const double *x, const int32_t *vertex, double *gradient)
@@ -225,8 +225,9 @@ static enum status set_strength(const struct conforming_input *input, const stru
     TRY(NEW_ARRAY(strength, body->point_count + BODY_POINT_PADDING, error));
     for (int64_t f = 0; f < input->face_count; f++) {
         int64_t cell = input->face_cell[2 * f];
-        if (input->face_cell[2 * f + 1] < 0 && cell >= 0 && cell < body->point_count) {
-            of_cell[cell] = strength_at_boundary;
+        bool is_free = input->face_cell[2 * f + 1] < 0 && (input->held == NULL || !input->held[f]);
+        if (is_free && cell >= 0 && cell < body->point_count) {
+            of_cell[cell] = strength_at_free_faces;
         }
     }
     for (int64_t q = 0; q < body->point_count; q++) {

@@ -26,7 +26,7 @@
  *   k / mu = 2 e^2 / (1 + e) + s e^3 (1 + e) / (.4 + e^3),
  *
  * where e is the energy W(F) of the cell by its shear modulus mu - .05 at a strain of 20 %, .6 at a stretch
- * of .5, more where cells fold - and s is more than 0 in cells at the boundary only. What was tried:
+ * of .5, more where cells fold - and s is more than 0 in cells with a free face only. What was tried:
  * pipelines/convergence/DEFAULTS.md. */
 #ifndef SOLID_CONFORMING_H
 #define SOLID_CONFORMING_H
@@ -58,6 +58,7 @@ struct conforming_input {
     const int64_t *node_ptr; /* and at the nodes: node_count + 1 */
     const int32_t *node_idx;
     const double *node_phi;
+    const bool *held; /* face_count: conditions hold this face of the boundary; NULL: none is held */
 };
 
 struct conforming {

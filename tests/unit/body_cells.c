@@ -229,13 +229,47 @@ static void general_law(void **state)
     }
 }
 
+/* Cells with a free face of the boundary are tied more; what conditions hold is not free. */
+static void free_faces(void **state)
+{
+    (void)state;
+    for (int i = 0; i < 4; i += 2) {
+        const struct sample *sample = &samples[i];
+        struct conforming_input input = sample_conforming(sample);
+        struct setup setup = one_material(MATERIAL_NEO_HOOKEAN, true, 0.1);
+        bool *held = sample_array(sample->faces.count, sizeof *held);
+        int64_t tied[3] = {0}, free_count = 0;
+        setup.faces = true;
+        for (int kind = 0; kind < 3; kind++) { /* none told, all but one held, all held */
+            struct error error;
+            struct body body = make_body(sample, &setup);
+            struct conforming cells;
+            input.held = kind == 0 ? NULL : held;
+            for (int64_t f = 0; f < sample->faces.count; f++) {
+                bool is_outer = sample->faces.cell[2 * f + 1] < 0;
+                held[f] = is_outer && (kind == 2 || free_count > 0);
+                free_count += kind == 1 && is_outer && !held[f];
+            }
+            GOOD(conforming_build(&input, &body, &cells, &error));
+            for (int64_t q = 0; q < body.point_count; q++) {
+                tied[kind] += cells.strength[q] > 0.0;
+            }
+            conforming_free(&cells);
+            body_free(&body);
+        }
+        assert_int_equal(free_count, 1);
+        assert_true(tied[0] > 1 && tied[0] < sample->point_count);
+        assert_int_equal(tied[1], 1);
+        assert_int_equal(tied[2], 0);
+        free(held);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(patch),
-        cmocka_unit_test(faces),
-        cmocka_unit_test(enclosed_volume),
-        cmocka_unit_test(general_law),
+        cmocka_unit_test(patch),      cmocka_unit_test(faces),       cmocka_unit_test(enclosed_volume),
+        cmocka_unit_test(free_faces), cmocka_unit_test(general_law),
     };
     return cmocka_run_group_tests(tests, make_samples, free_samples);
 }

@@ -66,11 +66,15 @@ static enum status build_body(const struct model_input *input, bool single, stru
     struct material_list materials = {0};
     int32_t *hat_node = NULL;
     double *hat_value = NULL;
+    bool *held = NULL;
     const struct scene_solver *solver = &input->scene->solver;
     int dim = input->cells.dim;
     TRY(model_materials(input, &materials, error));
     if (solver->volume == SCENE_NODAL_VOLUME) {
         TRY(list_hats(input, &hat_node, &hat_value, error));
+    }
+    if (has_conforming_cells(input)) {
+        TRY(model_held_faces(input, &held, error));
     }
     struct quadrature_rule rule = quadrature_face_rule(dim);
     struct conforming_input conforming = {.x = input->cells.x,
@@ -85,7 +89,8 @@ static enum status build_body(const struct model_input *input, bool single, stru
                                           .face_phi = input->face_phi,
                                           .node_ptr = input->node_lists.ptr,
                                           .node_idx = input->node_lists.idx,
-                                          .node_phi = input->node_phi};
+                                          .node_phi = input->node_phi,
+                                          .held = held};
     struct body_input body = {.dim = dim,
                               .node_x = input->cells.x,
                               .node_count = input->cells.node_count,
@@ -111,6 +116,7 @@ done:
     material_list_free(&materials);
     free(hat_node);
     free(hat_value);
+    free(held);
     return status;
 }
 
