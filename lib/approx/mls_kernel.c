@@ -2,6 +2,7 @@
 
 #include "approx/mls_vector.h"
 #include "approx/weight_formulas.h"
+#include "base/processor.h"
 
 /* One point's neighbours in local scaled coordinates. */
 struct mls_point {
@@ -312,24 +313,22 @@ KERNEL_SET(avx512, AVX512)
 
 const struct mls_kernels *mls_kernels_named(const char *name)
 {
+    static const struct mls_kernels *const sets[] = {
 #if defined(__x86_64__)
-    __builtin_cpu_init();
-    if (strcmp(name, "avx512") == 0) {
-        return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
-                       __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512bw")
-                   ? &avx512_kernels
-                   : NULL;
-    }
-    if (strcmp(name, "avx2") == 0) {
-        return __builtin_cpu_supports("avx2") ? &avx2_kernels : NULL;
-    }
+        &avx512_kernels,
+        &avx2_kernels,
 #endif
-    return strcmp(name, "plain") == 0 ? &plain_kernels : NULL;
+        &plain_kernels
+    };
+    for (size_t i = 0; i < sizeof sets / sizeof *sets; i++) {
+        if (strcmp(sets[i]->name, name) == 0 && processor_has(name)) {
+            return sets[i];
+        }
+    }
+    return NULL;
 }
 
 const struct mls_kernels *mls_kernels_select(void)
 {
-    const struct mls_kernels *best = mls_kernels_named("avx512");
-    best = best != NULL ? best : mls_kernels_named("avx2");
-    return best != NULL ? best : &plain_kernels;
+    return mls_kernels_named(processor_best_set());
 }

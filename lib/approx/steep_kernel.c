@@ -24,6 +24,7 @@ typedef int32_t lane_bits __attribute__((vector_size(4 * LANES)));
 typedef lanes mls_coefficient;
 
 #include "approx/mls_moments.h"
+#include "base/processor.h"
 
 /* Pivots must exceed this times the diagonal entry. */
 static const float least_share = 1e-2F;
@@ -219,24 +220,22 @@ KERNEL_SET(avx512, AVX512)
 
 const struct steep_kernels *steep_kernels_named(const char *name)
 {
+    static const struct steep_kernels *const sets[] = {
 #if defined(__x86_64__)
-    __builtin_cpu_init();
-    if (strcmp(name, "avx512") == 0) {
-        return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
-                       __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512bw")
-                   ? &avx512_kernels
-                   : NULL;
-    }
-    if (strcmp(name, "avx2") == 0) {
-        return __builtin_cpu_supports("avx2") ? &avx2_kernels : NULL;
-    }
+        &avx512_kernels,
+        &avx2_kernels,
 #endif
-    return strcmp(name, "plain") == 0 ? &plain_kernels : NULL;
+        &plain_kernels
+    };
+    for (size_t i = 0; i < sizeof sets / sizeof *sets; i++) {
+        if (strcmp(sets[i]->name, name) == 0 && processor_has(name)) {
+            return sets[i];
+        }
+    }
+    return NULL;
 }
 
 const struct steep_kernels *steep_kernels_select(void)
 {
-    const struct steep_kernels *best = steep_kernels_named("avx512");
-    best = best != NULL ? best : steep_kernels_named("avx2");
-    return best != NULL ? best : &plain_kernels;
+    return steep_kernels_named(processor_best_set());
 }

@@ -2,6 +2,7 @@
  * by round-off only (fused multiplications). */
 #include "solid/kernel.h"
 
+#include "base/processor.h"
 #include "solid/kernel_cells.h"
 #include "solid/kernel_pairs.h"
 
@@ -81,21 +82,17 @@ KERNEL_SET(avx512, 3, AVX512)
 
 const struct force_kernels *force_kernels_select(const char *name, int dim)
 {
-    const struct force_kernels *sets[3];
-    int count = 0;
+    const struct force_kernels *const sets[] = { /* the best first */
 #if defined(__x86_64__)
-    __builtin_cpu_init();
-    if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
-        __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512bw")) {
-        sets[count++] = dim == 2 ? &kernels_avx512_2 : &kernels_avx512_3;
-    }
-    if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) {
-        sets[count++] = dim == 2 ? &kernels_avx2_2 : &kernels_avx2_3;
-    }
+                                                 dim == 2 ? &kernels_avx512_2 : &kernels_avx512_3,
+                                                 dim == 2 ? &kernels_avx2_2 : &kernels_avx2_3,
 #endif
-    sets[count++] = dim == 2 ? &kernels_plain_2 : &kernels_plain_3;
-    for (int i = 0; i < count; i++) {
-        if (name == NULL || strcmp(sets[i]->name, name) == 0) {
+                                                 dim == 2 ? &kernels_plain_2 : &kernels_plain_3
+    };
+    for (size_t i = 0; i < sizeof sets / sizeof *sets; i++) {
+        bool lacks_fma = strcmp(sets[i]->name, "avx2") == 0 && !processor_has("fma");
+        if ((name == NULL || strcmp(sets[i]->name, name) == 0) && processor_has(sets[i]->name) &&
+            !lacks_fma) {
             return sets[i];
         }
     }
