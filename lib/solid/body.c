@@ -2,6 +2,7 @@
 
 #include "approx/renumber.h"
 #include "base/memory.h"
+#include "solid/hats.h"
 #include "solid/kernel.h"
 
 #include <math.h>
@@ -164,108 +165,6 @@ done:
     return status;
 }
 
-/* One hat for each pair of background node and group: pressures of different groups do not mix. */
-struct hat_key {
-    int32_t node, group;
-    int64_t slot; /* point * (dim + 1) + vertex */
-};
-
-static int compare_hats(const void *left, const void *right)
-{
-    const struct hat_key *a = left, *b = right;
-    if (a->node != b->node) {
-        return a->node < b->node ? -1 : 1;
-    }
-    if (a->group != b->group) {
-        return a->group < b->group ? -1 : 1;
-    }
-    return (a->slot > b->slot) - (a->slot < b->slot);
-}
-
-/* The law of each hat: that of its points, or of the mean moduli where they differ. */
-static enum status choose_hat_laws(struct body *body, struct error *error)
-{
-    struct volume_hats *hats = &body->hats;
-    int64_t count = body->material_count, capacity = count;
-    for (int64_t a = 0; a < hats->count; a++) {
-        int32_t first = body->material[hats->point[hats->ptr[a]]];
-        struct material mean = body->materials[first];
-        bool is_mixed = false;
-        mean.shear_modulus = mean.bulk_modulus = mean.least_share = 0.0;
-        for (int64_t i = hats->ptr[a]; i < hats->ptr[a + 1]; i++) {
-            const struct material *material = &body->materials[body->material[hats->point[i]]];
-            is_mixed = is_mixed || body->material[hats->point[i]] != first;
-            mean.shear_modulus += hats->share[i] * material->shear_modulus;
-            mean.bulk_modulus += hats->share[i] * material->bulk_modulus;
-            mean.least_share += hats->share[i] * material->least_share;
-        }
-        hats->material[a] = first;
-        if (!is_mixed) {
-            continue;
-        }
-        if (count == capacity) {
-            capacity = 2 * capacity + 64;
-            struct material *grown = array_grow(body->materials, capacity, sizeof *grown);
-            if (grown == NULL) {
-                return fail_memory(error, "materials");
-            }
-            body->materials = grown;
-        }
-        hats->material[a] = (int32_t)count;
-        body->materials[count++] = mean;
-    }
-    return STATUS_OK;
-}
-
-static enum status build_hats(const struct body_input *input, struct body *body, struct error *error)
-{
-    enum status status;
-    struct volume_hats *hats = &body->hats;
-    int per_point = body->dim + 1;
-    int64_t slots = body->point_count * per_point;
-    struct hat_key *keys = NULL;
-    TRY(NEW_ARRAY(&keys, slots, error));
-    TRY(NEW_ARRAY(&hats->of_point, slots, error));
-    TRY(NEW_ARRAY(&hats->value, slots, error));
-    TRY(NEW_ARRAY(&hats->point, slots, error));
-    TRY(NEW_ARRAY(&hats->share, slots, error));
-    for (int64_t s = 0; s < slots; s++) {
-        int64_t from = body->order[s / per_point] * per_point + s % per_point;
-        int32_t material = body->material[s / per_point];
-        keys[s] =
-            (struct hat_key){input->hat_node[from], input->group ? input->group[material] : material, s};
-        hats->value[s] = input->hat_value[from];
-    }
-    qsort(keys, (size_t)slots, sizeof *keys, compare_hats);
-    for (int64_t i = 0; i < slots; i++) {
-        hats->count += i == 0 || keys[i].node != keys[i - 1].node || keys[i].group != keys[i - 1].group;
-        hats->of_point[keys[i].slot] = (int32_t)(hats->count - 1);
-        hats->point[i] = (int32_t)(keys[i].slot / per_point);
-        hats->share[i] = hats->value[keys[i].slot] * body->weight[hats->point[i]];
-    }
-    TRY(NEW_ARRAY(&hats->ptr, hats->count + 1, error));
-    for (int64_t i = 0; i < slots; i++) {
-        hats->ptr[hats->of_point[keys[i].slot] + 1] = i + 1;
-    }
-    TRY(NEW_ARRAY(&hats->volume, hats->count, error));
-    TRY(NEW_ARRAY(&hats->material, hats->count, error));
-    TRY(NEW_ARRAY(&hats->theta, hats->count, error));
-    TRY(NEW_ARRAY(&hats->pressure, hats->count, error));
-    TRY(NEW_ARRAY(&hats->slope, hats->count, error));
-    for (int64_t a = 0; a < hats->count; a++) {
-        for (int64_t i = hats->ptr[a]; i < hats->ptr[a + 1]; i++) {
-            hats->volume[a] += hats->share[i];
-        }
-        for (int64_t i = hats->ptr[a]; i < hats->ptr[a + 1]; i++) {
-            hats->share[i] = hats->volume[a] > 0.0 ? hats->share[i] / hats->volume[a] : 0.0;
-        }
-    }
-    status = choose_hat_laws(body, error);
-done:
-    free(keys);
-    return status;
-}
-
 /* Waiting for each other costs threads some microseconds a step: each must have more to do than that. */
 static int worthwhile_threads(const struct body *body)
 {
@@ -309,7 +208,7 @@ enum status body_build(const struct body_input *input, struct body *body, struct
     body->pair_count = input->ptr[input->point_count];
     body->threads = worthwhile_threads(body);
     if (body->averaged) {
-        TRY(build_hats(input, body, error));
+        TRY(hats_build(input, body, error));
     }
     if (!body->conforming) {
         pairs.place = body->node_place;
@@ -330,28 +229,10 @@ void body_free(struct body *body)
 {
     pairs_free(&body->gradients);
     conforming_free(&body->cells);
-    void *arrays[] = {body->order,
-                      body->weight,
-                      body->materials,
-                      body->material,
-                      body->shear,
-                      body->bulk,
-                      body->blocks,
-                      body->node_order,
-                      body->node_place,
-                      body->u,
-                      body->F,
-                      body->J,
-                      body->hats.ptr,
-                      body->hats.point,
-                      body->hats.share,
-                      body->hats.volume,
-                      body->hats.theta,
-                      body->hats.value,
-                      body->hats.pressure,
-                      body->hats.slope,
-                      body->hats.material,
-                      body->hats.of_point};
+    hats_free(&body->hats);
+    void *arrays[] = {body->order,      body->weight, body->materials, body->material,
+                      body->shear,      body->bulk,   body->blocks,    body->node_order,
+                      body->node_place, body->u,      body->F,         body->J};
     for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) {
         free(arrays[i]);
     }

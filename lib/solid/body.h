@@ -58,11 +58,10 @@ struct block {
 struct volume_hats {
     int64_t count;
     int32_t *of_point; /* point_count * (dim + 1), hat of each vertex */
-    double *value;     /* point_count * (dim + 1) */
+    double *share;     /* point_count * (dim + 1): its part of the point's volume, N_a(q) w_q, m2 or m3 */
     int64_t *ptr;      /* count + 1 */
-    int32_t *point;    /* ptr[count] */
-    double *share;     /* ptr[count]: N_a(q) w_q / V_a */
-    double *volume;    /* count: V_a = sum N_a w, m2 or m3 */
+    int32_t *slot;     /* ptr[count]: the places of a hat in these two, ascending */
+    double *volume;    /* count: V_a = sum N_a w */
     int32_t *material; /* count: of the body's materials, behind them the means of mixed hats */
     double *theta;     /* count: scratch, averaged J */
     double *pressure;  /* count: scratch; the pressure at a point of the hat is pressure + slope * J, Pa */
@@ -94,6 +93,8 @@ struct body {
     double *u;               /* node_count * stride: displacements in the body's order */
     double *F;               /* dim * dim rows of point_count: deformation gradients of the last evaluation */
     double *J;               /* point_count: volume ratios, det F, or of cells that of conforming.h */
+    bool keeps_state;        /* F and J are those at u: an evaluation of points with pointwise volume has no
+                                need of them, body_keep_state makes them */
     bool averaged;           /* nodal volumetric averaging */
     double pointwise_share, share_growth;
     struct volume_hats hats;
@@ -113,28 +114,28 @@ struct deformation {
 };
 
 /* force[node_count * dim] = internal forces - grad_u of the energy - at the parameters u[node_count * dim];
- * N, in 2D N/m. Fills body->F and body->J. With an inverted point the forces mean nothing. */
+ * N, in 2D N/m. With an inverted point the forces mean nothing. */
 struct deformation body_force(struct body *body, const double *u, double *force);
 
 /* Volume at rest, the sum of the weights of the points, m3 (2D: m2). */
 double body_volume(const struct body *body);
 
-/* Elastic energy at u, J (2D: J/m). Fills body->F and body->J. */
+/* Elastic energy at u, J (2D: J/m). */
 double body_energy(struct body *body, const double *u);
 
-/* Volumetric pressure dU/dJ at a point (body's order) at the last evaluation, Pa; negative in compression. */
-double body_pressure(const struct body *body, int64_t point);
+/* See that body->F and body->J are those of the last evaluation. */
+void body_keep_state(struct body *body);
 
 /* First Piola stress of each point at the last evaluation: stress[point_count * 9], caller's order, Pa. */
-void body_stress(const struct body *body, double *stress);
+void body_stress(struct body *body, double *stress);
 
 /* F of each point at the last evaluation, gradient[point_count * 9], caller's order. */
-void body_gradient(const struct body *body, double *gradient);
+void body_gradient(struct body *body, double *gradient);
 
 /* stiffness[node_count], N/m (2D: N/m2): bounds the diagonal of the stiffness at the last evaluation's F (of
  * conforming cells about, far strained ones may exceed it), as sum_q w W''(y (x) grad phi), the second
  * derivative of the energy along the rank-one change of F that is stiffest, y = F^-T grad phi; at rest sum_q
  * w (lambda + 2 mu) |grad phi|^2. The neo-Hookean formula serves all materials. */
-void body_diagonal(const struct body *body, double *stiffness);
+void body_diagonal(struct body *body, double *stiffness);
 
 #endif

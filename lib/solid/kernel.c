@@ -17,12 +17,13 @@
     {                                                                                                        \
         sum_nodes_##dim(body, first, last, force);                                                           \
     }                                                                                                        \
-    attribute static void gather_##set##_##dim(struct body *body, int64_t b, double *scratch)                \
+    attribute static void gather_##set##_##dim(struct body *body, int64_t b, struct block_state *state,      \
+                                               double *scratch)                                              \
     {                                                                                                        \
-        kernel_gather(body, b, dim, scratch);                                                                \
-        kernel_determinants(body, &body->blocks[b], dim);                                                    \
+        kernel_gather(&body->gradients, b, dim, body->u, state->F, scratch);                                 \
+        kernel_determinants(&body->blocks[b], dim, state);                                                   \
     }                                                                                                        \
-    attribute static void scatter_##set##_##dim(struct body *body, int64_t b, const block_stress P,          \
+    attribute static void scatter_##set##_##dim(struct body *body, int64_t b, const block_rows P,            \
                                                 double *scratch)                                             \
     {                                                                                                        \
         kernel_scatter(&body->gradients, b, dim, P, scratch);                                                \
@@ -40,19 +41,20 @@
     {                                                                                                        \
         kernel_cell_gradients(body, &body->blocks[b], dim);                                                  \
     }                                                                                                        \
-    attribute static void cell_neo_hookean_##set##_##dim(const struct body *body, int64_t b, block_stress P, \
-                                                         block_stress T)                                     \
+    attribute static void cell_neo_hookean_##set##_##dim(const struct body *body, int64_t b, block_rows P,   \
+                                                         block_rows T)                                       \
     {                                                                                                        \
         kernel_cell_neo_hookean(body, &body->blocks[b], dim, P, T);                                          \
     }                                                                                                        \
-    attribute static void cell_forces_##set##_##dim(struct body *body, int64_t b, const block_stress P,      \
-                                                    const block_stress T)                                    \
+    attribute static void cell_forces_##set##_##dim(struct body *body, int64_t b, const block_rows P,        \
+                                                    const block_rows T)                                      \
     {                                                                                                        \
         kernel_cell_forces(body, &body->blocks[b], dim, P, T);                                               \
     }                                                                                                        \
-    attribute static void neo_hookean_##set##_##dim(const struct body *body, int64_t b, block_stress P)      \
+    attribute static void neo_hookean_##set##_##dim(const struct body *body, int64_t b,                      \
+                                                    struct block_view state, block_rows P)                   \
     {                                                                                                        \
-        kernel_neo_hookean(body, &body->blocks[b], dim, P);                                                  \
+        kernel_neo_hookean(body, &body->blocks[b], state, dim, P);                                           \
     }                                                                                                        \
     static const struct force_kernels kernels_##set##_##dim = {                                              \
         .name = #set,                                                                                        \

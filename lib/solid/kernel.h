@@ -4,9 +4,21 @@
 
 #include "solid/body.h"
 
-/* Something for each point of a block: row k of component k, points along it. A stress that is scattered
- * has zeros behind the last point, up to a whole group. */
-typedef double block_stress[9][PAIRS_MAX_ROWS];
+/* Matrices of the points of a block: row k of component k, points along it. A stress that is scattered has
+ * zeros behind the last point, up to a whole group. */
+typedef double block_rows[9][PAIRS_MAX_ROWS];
+
+/* What an evaluation finds at the points of a block; */
+struct block_state {
+    block_rows F;
+    double J[PAIRS_MAX_ROWS];
+};
+
+/* that, or what the body keeps of it: components of F so far apart. */
+struct block_view {
+    const double *F, *J;
+    int64_t apart;
+};
 
 /* Each works on the block of that number. scratch: PAIRS_SCRATCH. */
 struct force_kernels {
@@ -15,19 +27,20 @@ struct force_kernels {
      * sum of what the blocks put on them. */
     void (*place)(struct body *body, int64_t first, int64_t last, const double *u);
     void (*sum)(const struct body *body, int64_t first, int64_t last, double *force);
-    /* F and J of points from the table of gradients and body->u; and the forces of weighted stresses P. */
-    void (*gather)(struct body *body, int64_t block, double *scratch);
-    void (*scatter)(struct body *body, int64_t block, const block_stress P, double *scratch);
+    /* F and J of points from the table of gradients and body->u; and the forces of weighted stresses P, added
+     * to those of the block's patch. */
+    void (*gather)(struct body *body, int64_t block, struct block_state *state, double *scratch);
+    void (*scatter)(struct body *body, int64_t block, const block_rows P, double *scratch);
     /* Means from the field u; and the forces of what the corners put on them. */
     void (*gather_means)(struct means *means, int64_t block, const double *u, double *scratch);
     void (*scatter_means)(struct means *means, int64_t block, double *scratch);
     /* Weighted stresses of a block of neo-Hookean points. */
-    void (*neo_hookean)(const struct body *body, int64_t block, block_stress P);
+    void (*neo_hookean)(const struct body *body, int64_t block, struct block_view state, block_rows P);
     /* F, F_h and J of conforming cells from the means; weighted stresses P on F and T on F_h of a block of
      * neo-Hookean cells; and what the corners then put on the means. */
     void (*cell_gradients)(struct body *body, int64_t block);
-    void (*cell_neo_hookean)(const struct body *body, int64_t block, block_stress P, block_stress T);
-    void (*cell_forces)(struct body *body, int64_t block, const block_stress P, const block_stress T);
+    void (*cell_neo_hookean)(const struct body *body, int64_t block, block_rows P, block_rows T);
+    void (*cell_forces)(struct body *body, int64_t block, const block_rows P, const block_rows T);
 };
 
 /* Sets by name, plain, avx2, avx512: NULL where the processor lacks it; the best one for NULL. */

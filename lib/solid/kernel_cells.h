@@ -59,9 +59,7 @@ KERNEL_INLINE void write_corners(struct means *means, const struct block *block,
 /* Hat gradients of the cells from q on. */
 KERNEL_INLINE void load_hats(const struct body *body, int64_t q, int dim, lanes hat[9])
 {
-    for (int k = 0; k < dim * dim; k++) {
-        LOAD(hat[k], body->cells.hat + k * body->point_count + q);
-    }
+    load_matrix(body->cells.hat + q, body->point_count, dim, hat);
 }
 
 /* gradient = sum_k v_k (x) grad N_k for corner values v of the cells i .. of a block. */
@@ -106,7 +104,7 @@ KERNEL_INLINE void corner_forces(const lanes P[9], int64_t i, int dim, const lan
 
 /* Rows of a block's cells into an array over all cells. */
 KERNEL_INLINE void keep_rows(const struct body *body, const struct block *block, int count,
-                             const block_stress from, double *rows)
+                             const block_rows from, double *rows)
 {
     for (int k = 0; k < count; k++) {
         memcpy(rows + k * body->point_count + block->first_point, from[k],
@@ -119,7 +117,7 @@ KERNEL_INLINE void keep_rows(const struct body *body, const struct block *block,
 KERNEL_INLINE void kernel_cell_gradients(struct body *body, struct block *block, int dim)
 {
     block_corners mean, value;
-    block_stress F, interpolant;
+    block_rows F, interpolant;
     double determinant[PAIRS_MAX_ROWS], J[PAIRS_MAX_ROWS];
     read_corners(&body->cells.faces, block, dim, mean);
     read_corners(&body->cells.nodes, block, dim, value);
@@ -170,16 +168,16 @@ KERNEL_INLINE void cofactor_along(const lanes H[9], const lanes D[9], int dim, l
 /* dE/dF in P and dE/dF_h in T of w (W_shape(F) + p J + k |F_h - F|^2 / 2), p held, k of W(F): see
  * conforming.h. */
 KERNEL_INLINE void kernel_cell_neo_hookean(const struct body *body, const struct block *block, int dim,
-                                           block_stress P, block_stress T)
+                                           block_rows P, block_rows T)
 {
     double weighted_pressure[PAIRS_MAX_ROWS];
-    kernel_pressures(body, block, dim, weighted_pressure);
+    kernel_pressures(body, block, body->J + block->first_point, dim, weighted_pressure);
     for (int64_t i = 0; i < block->point_count; i += LANES) {
         lanes F[9], H[9], D[9], C[9], J, weight, shear, bulk, pressure, strength, squares = {0.0};
         struct lanes_shape shape;
         int64_t q = block->first_point + i;
-        load_matrix(body, body->F, q, dim, F);
-        load_matrix(body, body->cells.interpolant, q, dim, H);
+        load_matrix(body->F + q, body->point_count, dim, F);
+        load_matrix(body->cells.interpolant + q, body->point_count, dim, H);
         LOAD(weight, body->weight + q);
         LOAD(shear, body->shear + q);
         LOAD(bulk, body->bulk + q);
@@ -218,7 +216,7 @@ KERNEL_INLINE void kernel_cell_neo_hookean(const struct body *body, const struct
 
 /* What the corners put on the means of faces, -dim P grad N_k, and on the values at nodes, T grad N_k. */
 KERNEL_INLINE void kernel_cell_forces(struct body *body, const struct block *block, int dim,
-                                      const block_stress P, const block_stress T)
+                                      const block_rows P, const block_rows T)
 {
     block_corners at_faces, at_nodes;
     for (int64_t i = 0; i < block->point_count; i += LANES) {

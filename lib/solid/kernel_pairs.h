@@ -180,14 +180,18 @@ KERNEL_INLINE void add_vectors(const quad4 x[4], int dim, double *const to[PAIRS
     }
 }
 
-/* What a group puts on its nodes. lane_forces has for each node and component a vector along the rows, force
- * what comes from entries that the rows do not share. */
+/* Forces on a node in lanes stand so many doubles apart. */
+#define LANES_STRIDE(dim) ((dim) == 2 ? 12 : 16)
+
+/* What a group puts on its nodes: lane_forces has for each node and component a vector along the rows, and
+ * behind them, as a vector of components, what comes from entries that the rows do not share. */
 KERNEL_INLINE void scatter_group(const struct pair_group *group, struct reading how, const quad4 factor[9],
-                                 double *restrict lane_forces, double *restrict force, struct cursor *cursor)
+                                 double *restrict lane_forces, struct cursor *cursor)
 {
     int32_t shared = group->shared, own = group->own;
+    int apart = LANES_STRIDE(how.dim) / PAIRS_STRIDE(how.dim);
     for (; shared > 0; shared--) {
-        double *to = lane_forces + cursor->offset[0] * (how.dim * PAIRS_GROUP / PAIRS_STRIDE(how.dim));
+        double *to = lane_forces + cursor->offset[0] * apart;
         quad4 x[4];
         for (int a = 0; a < how.dim; a++) {
             LOAD(x[a], to + a * PAIRS_GROUP);
@@ -199,8 +203,10 @@ KERNEL_INLINE void scatter_group(const struct pair_group *group, struct reading 
         advance(cursor, how, 1);
     }
     for (; own > 0; own--) {
-        double *const to[PAIRS_GROUP] = {force + cursor->offset[0], force + cursor->offset[1],
-                                         force + cursor->offset[2], force + cursor->offset[3]};
+        double *own_forces = lane_forces + how.dim * PAIRS_GROUP;
+        double *const to[PAIRS_GROUP] = {
+            own_forces + cursor->offset[0] * apart, own_forces + cursor->offset[1] * apart,
+            own_forces + cursor->offset[2] * apart, own_forces + cursor->offset[3] * apart};
         quad4 x[4] = {{0.0}};
         multiply(cursor, how, factor, x);
         add_vectors(x, how.dim, to);
@@ -221,51 +227,51 @@ KERNEL_INLINE void localise(const struct pairs *pairs, int64_t b, int dim, const
 }
 
 /* Forces of a block on its nodes: none yet. */
-KERNEL_INLINE double *clear_forces(struct pairs *pairs, int64_t b, int dim, double *lane_forces)
+KERNEL_INLINE void clear_lanes(const struct pair_block *block, int dim, double *lane_forces)
 {
-    const struct pair_block *block = &pairs->blocks[b];
-    double *force = pairs->block_force + block->first_node * PAIRS_STRIDE(dim);
-    memset(force, 0, (size_t)(block->node_count * PAIRS_STRIDE(dim)) * sizeof *force);
-    memset(lane_forces, 0, (size_t)(block->node_count * dim * PAIRS_GROUP) * sizeof *lane_forces);
-    return force;
+    memset(lane_forces, 0, (size_t)(block->node_count * LANES_STRIDE(dim)) * sizeof *lane_forces);
 }
 
-/* Add those in lanes to the others. */
-KERNEL_INLINE void sum_lanes(const struct pair_block *block, int dim, const double *restrict lane_forces,
-                             double *restrict force)
+/* Add them to those of the patch. */
+KERNEL_INLINE void sum_lanes(struct pairs *pairs, int64_t b, int dim, const double *restrict lane_forces)
 {
-    for (int64_t i = 0; i < block->node_count; i++, force += PAIRS_STRIDE(dim)) {
+    const struct pair_block *block = &pairs->blocks[b];
+    const int32_t *place = pairs->block_place + block->first_node;
+    for (int64_t i = 0; i < block->node_count; i++, lane_forces += LANES_STRIDE(dim)) {
+        double *force = pairs->patch_force + (int64_t)place[i] * PAIRS_STRIDE(dim);
         quad4 row[4] = {{0.0}};
         for (int a = 0; a < dim; a++) {
-            LOAD(row[a], lane_forces + (i * dim + a) * PAIRS_GROUP);
+            LOAD(row[a], lane_forces + a * PAIRS_GROUP);
         }
-        quad4 pairs = __builtin_shufflevector(row[0], row[1], 0, 4, 2, 6) +
-                      __builtin_shufflevector(row[0], row[1], 1, 5, 3, 7);
+        quad4 pairs_of_lanes = __builtin_shufflevector(row[0], row[1], 0, 4, 2, 6) +
+                               __builtin_shufflevector(row[0], row[1], 1, 5, 3, 7);
         if (dim == 2) {
-            pair2 sum;
+            pair2 sum, own;
             LOAD(sum, force);
-            sum += __builtin_shufflevector(pairs, pairs, 0, 1) + __builtin_shufflevector(pairs, pairs, 2, 3);
+            LOAD(own, lane_forces + dim * PAIRS_GROUP);
+            sum += own + (__builtin_shufflevector(pairs_of_lanes, pairs_of_lanes, 0, 1) +
+                          __builtin_shufflevector(pairs_of_lanes, pairs_of_lanes, 2, 3));
             STORE(force, sum);
         } else {
-            quad4 sum, others = __builtin_shufflevector(row[2], row[3], 0, 4, 2, 6) +
-                                __builtin_shufflevector(row[2], row[3], 1, 5, 3, 7);
+            quad4 sum, own,
+                others = __builtin_shufflevector(row[2], row[3], 0, 4, 2, 6) +
+                         __builtin_shufflevector(row[2], row[3], 1, 5, 3, 7);
             LOAD(sum, force);
-            sum += __builtin_shufflevector(pairs, others, 0, 1, 4, 5) +
-                   __builtin_shufflevector(pairs, others, 2, 3, 6, 7);
+            LOAD(own, lane_forces + dim * PAIRS_GROUP);
+            sum += own + (__builtin_shufflevector(pairs_of_lanes, others, 0, 1, 4, 5) +
+                          __builtin_shufflevector(pairs_of_lanes, others, 2, 3, 6, 7));
             STORE(force, sum);
         }
     }
 }
 
 /* F of the points of a block, I + u (x) grad phi. */
-KERNEL_INLINE void gather_gradients(struct body *body, int64_t b, struct reading how,
-                                    const double *restrict local)
+KERNEL_INLINE void gather_gradients(const struct pairs *pairs, int64_t b, struct reading how,
+                                    const double *restrict local, block_rows F)
 {
-    const struct pairs *pairs = &body->gradients;
     const struct pair_block *block = &pairs->blocks[b];
     struct cursor cursor = start_block(pairs, b, how, false);
     int dim = how.dim;
-    block_stress F;
     for (int64_t g = 0; g < block->group_count; g++) {
         quad4 sum[9] = {{0.0}};
         for (int a = 0; a < dim; a++) {
@@ -276,27 +282,23 @@ KERNEL_INLINE void gather_gradients(struct body *body, int64_t b, struct reading
             STORE(F[k] + g * PAIRS_GROUP, sum[k]);
         }
     }
-    for (int k = 0; k < dim * dim; k++) {
-        memcpy(body->F + k * body->point_count + block->first_row, F[k],
-               (size_t)block->row_count * sizeof *F[k]);
-    }
 }
 
 /* f_j = sum_q P_q grad phi_j */
-KERNEL_INLINE void scatter_gradients(struct pairs *pairs, int64_t b, struct reading how, const block_stress P,
+KERNEL_INLINE void scatter_gradients(struct pairs *pairs, int64_t b, struct reading how, const block_rows P,
                                      double *restrict lane_forces)
 {
     const struct pair_block *block = &pairs->blocks[b];
     struct cursor cursor = start_block(pairs, b, how, true);
-    double *force = clear_forces(pairs, b, how.dim, lane_forces);
+    clear_lanes(block, how.dim, lane_forces);
     for (int64_t g = 0; g < block->group_count; g++) {
         quad4 stress[9];
         for (int k = 0; k < how.dim * how.dim; k++) {
             LOAD(stress[k], P[k] + g * PAIRS_GROUP);
         }
-        scatter_group(&pairs->groups[block->first_group + g], how, stress, lane_forces, force, &cursor);
+        scatter_group(&pairs->groups[block->first_group + g], how, stress, lane_forces, &cursor);
     }
-    sum_lanes(block, how.dim, lane_forces, force);
+    sum_lanes(pairs, b, how.dim, lane_forces);
 }
 
 /* Means of a block. */
@@ -340,7 +342,7 @@ KERNEL_INLINE void scatter_means(struct means *means, int64_t b, struct reading 
 {
     const struct pair_block *block = &means->pairs.blocks[b];
     struct cursor cursor = start_block(&means->pairs, b, how, true);
-    double *force = clear_forces(&means->pairs, b, how.dim, lane_forces);
+    clear_lanes(block, how.dim, lane_forces);
     for (int64_t g = block->first_group; g < block->first_group + block->group_count; g++) {
         quad4 total[9];
         if (how.dim == 2) {
@@ -348,23 +350,24 @@ KERNEL_INLINE void scatter_means(struct means *means, int64_t b, struct reading 
         } else {
             sum_corners_3(means, g, total);
         }
-        scatter_group(&means->pairs.groups[g], how, total, lane_forces, force, &cursor);
+        scatter_group(&means->pairs.groups[g], how, total, lane_forces, &cursor);
     }
-    sum_lanes(block, how.dim, lane_forces, force);
+    sum_lanes(&means->pairs, b, how.dim, lane_forces);
 }
 
 /* Each for the table's precision. */
-KERNEL_INLINE void kernel_gather(struct body *body, int64_t b, int dim, double *scratch)
+KERNEL_INLINE void kernel_gather(const struct pairs *pairs, int64_t b, int dim, const double *u, block_rows F,
+                                 double *scratch)
 {
-    localise(&body->gradients, b, dim, body->u, scratch);
-    if (body->gradients.value != NULL) {
-        gather_gradients(body, b, (struct reading){dim, dim, false}, scratch);
+    localise(pairs, b, dim, u, scratch);
+    if (pairs->value != NULL) {
+        gather_gradients(pairs, b, (struct reading){dim, dim, false}, scratch, F);
     } else {
-        gather_gradients(body, b, (struct reading){dim, dim, true}, scratch);
+        gather_gradients(pairs, b, (struct reading){dim, dim, true}, scratch, F);
     }
 }
 
-KERNEL_INLINE void kernel_scatter(struct pairs *pairs, int64_t b, int dim, const block_stress P,
+KERNEL_INLINE void kernel_scatter(struct pairs *pairs, int64_t b, int dim, const block_rows P,
                                   double *scratch)
 {
     if (pairs->value != NULL) {
@@ -404,13 +407,13 @@ KERNEL_INLINE void kernel_place(struct body *body, int64_t first, int64_t last, 
     }
 }
 
-/* What the blocks of a table put on a node. */
+/* What the patches of a table put on a node. */
 #define SUM_KERNEL(dim, vector)                                                                              \
-    KERNEL_INLINE void add_blocks_##dim(const struct pairs *pairs, int64_t node, vector *sum)                \
+    KERNEL_INLINE void add_patches_##dim(const struct pairs *pairs, int64_t node, vector *sum)               \
     {                                                                                                        \
         for (int64_t i = pairs->sum_ptr[node]; i < pairs->sum_ptr[node + 1]; i++) {                          \
             vector part;                                                                                     \
-            LOAD(part, pairs->block_force + (int64_t)pairs->sum[i] * PAIRS_STRIDE(dim));                     \
+            LOAD(part, pairs->patch_force + (int64_t)pairs->sum[i] * PAIRS_STRIDE(dim));                     \
             *sum += part;                                                                                    \
         }                                                                                                    \
     }                                                                                                        \
@@ -419,9 +422,9 @@ KERNEL_INLINE void kernel_place(struct body *body, int64_t first, int64_t last, 
         const struct pairs *pairs = body->conforming ? &body->cells.faces.pairs : &body->gradients;          \
         for (int64_t n = first; n < last; n++) {                                                             \
             vector sum = {0.0};                                                                              \
-            add_blocks_##dim(pairs, n, &sum);                                                                \
+            add_patches_##dim(pairs, n, &sum);                                                               \
             if (body->conforming) {                                                                          \
-                add_blocks_##dim(&body->cells.nodes.pairs, n, &sum);                                         \
+                add_patches_##dim(&body->cells.nodes.pairs, n, &sum);                                        \
             }                                                                                                \
             for (int a = 0; a < dim; a++) {                                                                  \
                 force[body->node_order[n] * dim + a] = sum[a];                                               \

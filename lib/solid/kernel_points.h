@@ -7,11 +7,11 @@
 
 #include <math.h>
 
-/* Entries of the matrices of the points from q on, from rows of as many as there are points. */
-KERNEL_INLINE void load_matrix(const struct body *body, const double *rows, int64_t q, int dim, lanes F[9])
+/* Entries of the matrices of the points at `row` and behind it, their components so far apart. */
+KERNEL_INLINE void load_matrix(const double *row, int64_t apart, int dim, lanes F[9])
 {
     for (int k = 0; k < dim * dim; k++) {
-        LOAD(F[k], rows + k * body->point_count + q);
+        LOAD(F[k], row + k * apart);
     }
 }
 
@@ -60,18 +60,16 @@ KERNEL_INLINE void note_least(struct block *block, const double determinant[PAIR
 }
 
 /* J from F, and the least of the block. */
-KERNEL_INLINE void kernel_determinants(struct body *body, struct block *block, int dim)
+KERNEL_INLINE void kernel_determinants(struct block *block, int dim, struct block_state *state)
 {
-    double determinant[PAIRS_MAX_ROWS];
     for (int64_t i = 0; i < block->point_count; i += LANES) {
         lanes F[9], C[9], J;
-        load_matrix(body, body->F, block->first_point + i, dim, F);
+        load_matrix(state->F[0] + i, PAIRS_MAX_ROWS, dim, F);
         lanes_cofactor(F, dim, C);
         lanes_determinant(F, C, dim, &J);
-        STORE(determinant + i, J);
+        STORE(state->J + i, J);
     }
-    memcpy(body->J + block->first_point, determinant, (size_t)block->point_count * sizeof *determinant);
-    note_least(block, determinant);
+    note_least(block, state->J);
 }
 
 /* x^(-1/3) for x > 0 by Newton's iteration from a guess by the exponent: exact to a few ulp. */
@@ -90,13 +88,12 @@ KERNEL_INLINE void inverse_cube_root(const lanes *x, lanes *root)
     *root = y;
 }
 
-/* Volumetric pressure of each point of a neo-Hookean block, weighted: its own, or that of the hats around it.
- */
-KERNEL_INLINE void kernel_pressures(const struct body *body, const struct block *block, int dim,
-                                    double *pressure)
+/* Volumetric pressure of each point of a neo-Hookean block, weighted: its own, or that of the hats around it;
+ * J: of its points. */
+KERNEL_INLINE void kernel_pressures(const struct body *body, const struct block *block, const double *J,
+                                    int dim, double *pressure)
 {
-    const double *J = body->J + block->first_point, *bulk = body->bulk + block->first_point;
-    const double *weight = body->weight + block->first_point;
+    const double *bulk = body->bulk + block->first_point, *weight = body->weight + block->first_point;
     if (!body->averaged) {
         for (int64_t i = 0; i < block->point_count; i++) {
             pressure[i] = weight[i] * bulk[i] * (J[i] - 1.0);
@@ -104,14 +101,14 @@ KERNEL_INLINE void kernel_pressures(const struct body *body, const struct block 
         return;
     }
     const int32_t *hat = body->hats.of_point + block->first_point * (dim + 1);
-    const double *value = body->hats.value + block->first_point * (dim + 1);
+    const double *share = body->hats.share + block->first_point * (dim + 1);
     for (int64_t i = 0; i < block->point_count; i++) {
         double level = 0.0, slope = 0.0;
         for (int64_t k = i * (dim + 1); k < (i + 1) * (dim + 1); k++) {
-            level += value[k] * body->hats.pressure[hat[k]];
-            slope += value[k] * body->hats.slope[hat[k]];
+            level += share[k] * body->hats.pressure[hat[k]];
+            slope += share[k] * body->hats.slope[hat[k]];
         }
-        pressure[i] = weight[i] * (level + slope * J[i]);
+        pressure[i] = level + slope * J[i];
     }
 }
 
@@ -136,18 +133,18 @@ KERNEL_INLINE void neo_hookean_shape(const lanes F[9], const lanes *J, const lan
 }
 
 /* P = mu J^(-2/3) (F - I1/3 F^-T) + p J F^-T, times the weight. */
-KERNEL_INLINE void kernel_neo_hookean(const struct body *body, const struct block *block, int dim,
-                                      block_stress P)
+KERNEL_INLINE void kernel_neo_hookean(const struct body *body, const struct block *block,
+                                      struct block_view state, int dim, block_rows P)
 {
     double weighted_pressure[PAIRS_MAX_ROWS];
-    kernel_pressures(body, block, dim, weighted_pressure);
+    kernel_pressures(body, block, state.J, dim, weighted_pressure);
     for (int64_t i = 0; i < block->point_count; i += LANES) {
         lanes F[9], C[9], J, weight, shear, pressure;
         struct lanes_shape shape;
         int64_t q = block->first_point + i;
-        load_matrix(body, body->F, q, dim, F);
+        load_matrix(state.F + i, state.apart, dim, F);
         lanes_cofactor(F, dim, C);
-        LOAD(J, body->J + q);
+        LOAD(J, state.J + i);
         LOAD(weight, body->weight + q);
         LOAD(shear, body->shear + q);
         LOAD(pressure, weighted_pressure + i);

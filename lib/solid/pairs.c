@@ -2,6 +2,7 @@
 
 #include "base/memory.h"
 #include "solid/pairs_entries.h"
+#include "solid/pairs_patches.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -148,28 +149,8 @@ static enum status fill(const struct pairs_input *input, struct pairs *pairs, st
             numbering.local_of[pairs->block_node[block->first_node + i]] = -1;
         }
     }
-    TRY(NEW_ARRAY(&pairs->block_force, pairs->block_node_count * PAIRS_STRIDE(input->dim), error));
 done:
     free(numbering.local_of);
-    return status;
-}
-
-/* For each node the entries of block_force that are its own. */
-static enum status number_sums(struct pairs *pairs, struct error *error)
-{
-    enum status status;
-    TRY(NEW_ARRAY(&pairs->sum_ptr, pairs->node_count + 2, error));
-    TRY(NEW_ARRAY(&pairs->sum, pairs->block_node_count, error));
-    for (int64_t i = 0; i < pairs->block_node_count; i++) {
-        pairs->sum_ptr[pairs->block_node[i] + 2]++;
-    }
-    for (int64_t n = 0; n < pairs->node_count; n++) {
-        pairs->sum_ptr[n + 2] += pairs->sum_ptr[n + 1];
-    }
-    for (int64_t i = 0; i < pairs->block_node_count; i++) {
-        pairs->sum[pairs->sum_ptr[pairs->block_node[i] + 1]++] = (int32_t)i;
-    }
-done:
     return status;
 }
 
@@ -187,7 +168,7 @@ enum status pairs_build(const struct pairs_input *input, struct pairs *pairs, st
     TRY(entries_make(&input->rows, &entries, error));
     count_entries(&input->rows, pairs, &entries);
     TRY(fill(input, pairs, &entries, error));
-    TRY(number_sums(pairs, error));
+    TRY(patches_make(pairs, error));
     pairs->large = pairs_bytes(pairs) > second_cache;
 done:
     entries_free(&entries);
@@ -195,6 +176,13 @@ done:
         pairs_free(pairs);
     }
     return status;
+}
+
+void pairs_clear_forces(struct pairs *pairs, const struct pair_patch *patch)
+{
+    int64_t stride = PAIRS_STRIDE(pairs->dim);
+    memset(pairs->patch_force + patch->first_force * stride, 0,
+           (size_t)(patch->force_count * stride) * sizeof *pairs->patch_force);
 }
 
 int64_t pairs_bytes(const struct pairs *pairs)
@@ -206,8 +194,9 @@ int64_t pairs_bytes(const struct pairs *pairs)
 
 void pairs_free(struct pairs *pairs)
 {
-    void *arrays[] = {pairs->groups,     pairs->offset,      pairs->value, pairs->single_value, pairs->blocks,
-                      pairs->block_node, pairs->block_force, pairs->sum,   pairs->sum_ptr};
+    void *arrays[] = {pairs->groups,      pairs->offset,     pairs->value,   pairs->single_value,
+                      pairs->blocks,      pairs->block_node, pairs->patches, pairs->patch_force,
+                      pairs->block_place, pairs->sum,        pairs->sum_ptr};
     for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) {
         free(arrays[i]);
     }

@@ -8,9 +8,9 @@
  * lack a shared node, or whose list is at its end, are zero: a table has some 5 % of them.
  *
  * Gathering computes, for each row, sums over its nodes' displacements; scattering is the transpose, and adds
- * to the nodes. The partition depends on the input alone, never on threads: each block accumulates forces on
- * its own nodes, and each node sums its blocks' contributions in block order, so that any number of threads
- * gives the same bits. */
+ * to the nodes. The partition depends on the input alone, never on threads: the blocks of a patch, one after
+ * the other, add to forces on its own nodes, and each node sums what its patches put on it, in their order,
+ * so that any number of threads gives the same bits. */
 #ifndef SOLID_PAIRS_H
 #define SOLID_PAIRS_H
 
@@ -29,14 +29,21 @@
 #define PAIRS_MAX_ROWS 128
 
 /* The most nodes a block may hold, and the doubles that a thread needs on its stack for them: their
- * displacements, or their forces in each lane. */
+ * displacements, or their forces in each lane and behind them. */
 #define PAIRS_MAX_NODES 8192
-#define PAIRS_SCRATCH (PAIRS_MAX_NODES * 3 * PAIRS_GROUP)
+#define PAIRS_SCRATCH (PAIRS_MAX_NODES * 16)
 
 struct pair_block {
     int64_t first_row, row_count;
     int64_t first_group, group_count; /* the last group may have less than PAIRS_GROUP rows */
-    int64_t first_node, node_count;   /* in block_node and block_force */
+    int64_t first_node, node_count;   /* in block_node and block_place */
+};
+
+/* Blocks whose forces are summed before the nodes see them: near each other, they share most of their nodes.
+ * One thread works on a patch. */
+struct pair_patch {
+    int64_t first_block, block_count;
+    int64_t first_force, force_count; /* in patch_force */
 };
 
 struct pair_group {
@@ -59,10 +66,13 @@ struct pairs {
     int64_t block_count;
     struct pair_block *blocks;
     int64_t block_node_count;
-    int32_t *block_node; /* block_node_count */
-    double *block_force; /* block_node_count * stride: scratch */
-    int64_t *sum_ptr;    /* node_count + 1: entries of block_force of each node, in block order */
-    int32_t *sum;        /* block_node_count */
+    int32_t *block_node;  /* block_node_count */
+    int32_t *block_place; /* block_node_count: the force in patch_force of each */
+    int64_t patch_count, force_count;
+    struct pair_patch *patches;
+    double *patch_force; /* force_count * stride: scratch */
+    int64_t *sum_ptr;    /* node_count + 1: entries of patch_force of each node, in the patches' order */
+    int32_t *sum;        /* force_count */
 };
 
 /* The caller's lists, and its rows in blocks. */
@@ -94,6 +104,9 @@ MUST_CHECK enum status pairs_order(const struct pairs_rows *rows, const int32_t 
 /* Lay out a table; the arrays are copied. STATUS_INPUT when a block has too many nodes. */
 MUST_CHECK enum status pairs_build(const struct pairs_input *input, struct pairs *pairs, struct error *error);
 void pairs_free(struct pairs *pairs);
+
+/* Before the blocks of a patch scatter: no forces yet. */
+void pairs_clear_forces(struct pairs *pairs, const struct pair_patch *patch);
 
 /* Bytes of the table, which a pass reads. */
 int64_t pairs_bytes(const struct pairs *pairs);

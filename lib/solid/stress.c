@@ -2,47 +2,46 @@
 
 #include <string.h>
 
-double body_pressure(const struct body *body, int64_t point)
+/* Volumetric pressure dU/dJ at a point, Pa; negative in compression. */
+static double point_pressure(const struct body *body, int64_t q, double J)
 {
+    const struct volume_hats *hats = &body->hats;
     int corners = body->dim + 1;
     double sum = 0.0;
     if (!body->averaged) {
-        return material_pressure(&body->materials[body->material[point]], body->J[point]);
+        return material_pressure(&body->materials[body->material[q]], J);
     }
-    for (int64_t k = point * corners; k < (point + 1) * corners; k++) {
-        int32_t hat = body->hats.of_point[k];
-        sum += body->hats.value[k] * (body->hats.pressure[hat] + body->hats.slope[hat] * body->J[point]);
+    for (int64_t k = q * corners; k < (q + 1) * corners; k++) {
+        sum += hats->share[k] * (hats->pressure[hats->of_point[k]] + hats->slope[hats->of_point[k]] * J);
     }
-    return sum;
+    return sum / body->weight[q];
 }
 
-void stress_matrix(const struct body *body, const double *rows, int64_t point, double F[9])
+void stress_matrix(int dim, const double *row, int64_t apart, double F[9])
 {
-    int dim = body->dim;
     memset(F, 0, 9 * sizeof *F);
     F[8] = 1.0;
     for (int a = 0; a < dim; a++) {
         for (int b = 0; b < dim; b++) {
-            F[3 * a + b] = rows[(a * dim + b) * body->point_count + point];
+            F[3 * a + b] = row[(a * dim + b) * apart];
         }
     }
 }
 
 /* P at a point: of its shape, and along the cofactor of F. */
-static void point_stress(const struct body *body, int64_t q, double P[9])
+static void point_stress(const struct body *body, int64_t q, const double F[9], double J, double P[9])
 {
-    double F[9], C[9];
-    stress_matrix(body, body->F, q, F);
+    double C[9];
     material_shape_stress(&body->materials[body->material[q]], F, P);
     cofactor(F, C);
-    double pressure = body_pressure(body, q);
+    double pressure = point_pressure(body, q, J);
     for (int k = 0; k < 9; k++) {
         P[k] += pressure * C[k];
     }
 }
 
 /* The part in the body's dimensions, times the weight, to place i of a block. */
-static void put(const struct body *body, int64_t q, int64_t i, const double stress[9], block_stress P)
+static void put(const struct body *body, int64_t q, int64_t i, const double stress[9], block_rows P)
 {
     int dim = body->dim;
     for (int k = 0; k < dim * dim; k++) {
@@ -50,11 +49,12 @@ static void put(const struct body *body, int64_t q, int64_t i, const double stre
     }
 }
 
-void stress_points(const struct body *body, const struct block *block, block_stress P)
+void stress_points(const struct body *body, const struct block *block, struct block_view state, block_rows P)
 {
     for (int64_t i = 0; i < block->point_count; i++) {
-        double stress[9];
-        point_stress(body, block->first_point + i, stress);
+        double F[9], stress[9];
+        stress_matrix(body->dim, state.F + i, state.apart, F);
+        point_stress(body, block->first_point + i, F, state.J[i], stress);
         put(body, block->first_point + i, i, stress, P);
     }
 }
@@ -63,7 +63,7 @@ struct tie stress_tie(const struct body *body, int64_t point, const double F[9])
 {
     const struct material *material = &body->materials[body->material[point]];
     double H[9], squares = 0.0;
-    stress_matrix(body, body->cells.interpolant, point, H);
+    stress_matrix(body->dim, body->cells.interpolant + point, body->point_count, H);
     for (int k = 0; k < 9; k++) {
         squares += (H[k] - F[k]) * (H[k] - F[k]);
     }
@@ -93,13 +93,13 @@ static void cell_stress(const struct body *body, int64_t q, double P[9], double 
 {
     const struct material *material = &body->materials[body->material[q]];
     double F[9], H[9], C[9], D[9], along[9];
-    stress_matrix(body, body->F, q, F);
-    stress_matrix(body, body->cells.interpolant, q, H);
+    stress_matrix(body->dim, body->F + q, body->point_count, F);
+    stress_matrix(body->dim, body->cells.interpolant + q, body->point_count, H);
     for (int k = 0; k < 9; k++) {
         D[k] = H[k] - F[k];
     }
     struct tie tie = stress_tie(body, q, F);
-    double share = 0.5 * tie.squares * tie.slope, pressure = body_pressure(body, q);
+    double share = 0.5 * tie.squares * tie.slope, pressure = point_pressure(body, q, body->J[q]);
     double own_pressure = material_pressure(material, determinant(F));
     material_shape_stress(material, F, P);
     cofactor(F, C);
@@ -114,7 +114,7 @@ static void cell_stress(const struct body *body, int64_t q, double P[9], double 
     }
 }
 
-void stress_cells(const struct body *body, const struct block *block, block_stress P, block_stress T)
+void stress_cells(const struct body *body, const struct block *block, block_rows P, block_rows T)
 {
     for (int64_t i = 0; i < block->point_count; i++) {
         double on_gradient[9], on_interpolant[9];
@@ -124,16 +124,20 @@ void stress_cells(const struct body *body, const struct block *block, block_stre
     }
 }
 
-void body_stress(const struct body *body, double *stress)
+void body_stress(struct body *body, double *stress)
 {
+    body_keep_state(body);
     for (int64_t q = 0; q < body->point_count; q++) {
-        point_stress(body, q, stress + body->order[q] * 9);
+        double F[9];
+        stress_matrix(body->dim, body->F + q, body->point_count, F);
+        point_stress(body, q, F, body->J[q], stress + body->order[q] * 9);
     }
 }
 
-void body_gradient(const struct body *body, double *gradient)
+void body_gradient(struct body *body, double *gradient)
 {
+    body_keep_state(body);
     for (int64_t q = 0; q < body->point_count; q++) {
-        stress_matrix(body, body->F, q, gradient + body->order[q] * 9);
+        stress_matrix(body->dim, body->F + q, body->point_count, gradient + body->order[q] * 9);
     }
 }

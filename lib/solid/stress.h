@@ -4,14 +4,14 @@
 
 #include "solid/kernel.h"
 
-/* A matrix of a point, 3 x 3 with 1 at the end in plane strain, from rows laid out as body->F. */
-void stress_matrix(const struct body *body, const double *rows, int64_t point, double F[9]);
+/* A matrix of a point, 3 x 3 with 1 at the end in plane strain, from rows that lie so far apart. */
+void stress_matrix(int dim, const double *row, int64_t apart, double F[9]);
 
 /* Weighted stresses P of a block of points. */
-void stress_points(const struct body *body, const struct block *block, block_stress P);
+void stress_points(const struct body *body, const struct block *block, struct block_view state, block_rows P);
 
 /* Weighted stresses of a block of cells, P on F and T on F_h: see conforming.h. */
-void stress_cells(const struct body *body, const struct block *block, block_stress P, block_stress T);
+void stress_cells(const struct body *body, const struct block *block, block_rows P, block_rows T);
 
 /* What ties F_h of a cell to F, that is given. */
 struct tie {

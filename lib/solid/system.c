@@ -237,7 +237,7 @@ struct deformation system_residual(struct solid_system *system, const double *u,
     return deformation;
 }
 
-void system_relaxation_mass(const struct solid_system *system, double *mass)
+void system_relaxation_mass(struct solid_system *system, double *mass)
 {
     double sum = 0.0;
     body_diagonal(&system->body, mass);

@@ -89,7 +89,7 @@ double system_spring_force(const struct solid_system *system, int64_t r, const d
 
 /* Mass for relaxation: a bound of each node's stiffness, N/m, so that all parts of the body have about the
  * same critical step (1) however the cloud is graded; contact penalties included. mass[node_count] > 0. */
-void system_relaxation_mass(const struct solid_system *system, double *mass);
+void system_relaxation_mass(struct solid_system *system, double *mass);
 
 /* Mean spacing of the nodes, m. */
 double system_node_spacing(const struct solid_system *system);

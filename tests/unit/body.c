@@ -222,12 +222,62 @@ static void faults(void **state)
     fault_of_smoothing();
 }
 
+/* A body so large that forces of several blocks are summed in patches: forces from the caller's table and the
+ * stresses, one point after the other; of conforming cells as the slope of the energy. */
+static void patches(void **state)
+{
+    (void)state;
+    struct random random = {7};
+    for (int i = 0; i < 4; i++) {
+        bool by_faces = i >= 2;
+        struct sample sample = make_sample(2, by_faces, by_faces ? 80 : 45);
+        struct setup setup = three_materials(i % 2 == 1, 0.1);
+        setup.faces = by_faces;
+        struct body body = make_body(&sample, &setup);
+        const struct pairs *pairs = by_faces ? &body.cells.faces.pairs : &body.gradients;
+        int64_t count = sample.cloud.node_count * 2;
+        double *force = sample_array(count, sizeof *force), *expected = sample_array(count, sizeof *expected);
+        double *P = sample_array(sample.point_count * 9, sizeof *P);
+        double *u = deformed_field(&sample, &body, force, &random), slope = 0.0, h = 1e-9, high;
+        assert_true(pairs->patches[0].block_count > 1);
+        (void)body_force(&body, u, force);
+        body_stress(&body, P);
+        for (int64_t q = 0; q < sample.point_count && !by_faces; q++) {
+            for (int64_t k = sample.ptr[q] * 2; k < sample.ptr[q + 1] * 2; k++) {
+                for (int a = 0; a < 2; a++) {
+                    expected[sample.idx[k / 2] * 2 + a] +=
+                        sample.weight[q] * P[9 * q + 3 * a + k % 2] * sample.dphi[k];
+                }
+            }
+        }
+        for (int64_t k = 0; k < count && !by_faces; k++) {
+            NEAR_TO(force[k], expected[k], 1e-12 * largest(expected, count));
+        }
+        double *along = random_field(&sample, 1.0, &random);
+        for (int64_t k = 0; k < count; k++) {
+            slope += force[k] * along[k];
+            u[k] += h * along[k];
+        }
+        high = body_energy(&body, u);
+        for (int64_t k = 0; k < count; k++) {
+            u[k] -= 2.0 * h * along[k];
+        }
+        NEAR_TO((high - body_energy(&body, u)) / (2.0 * h), slope, 1e-5 * fabs(slope));
+        free(along);
+        free(P);
+        free(u);
+        free(force);
+        free(expected);
+        body_free(&body);
+        sample_free(&sample);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(rigid_motion), cmocka_unit_test(force_is_gradient),
-        cmocka_unit_test(balance),      cmocka_unit_test(linear_fields),
-        cmocka_unit_test(faults),
+        cmocka_unit_test(rigid_motion),  cmocka_unit_test(force_is_gradient), cmocka_unit_test(balance),
+        cmocka_unit_test(linear_fields), cmocka_unit_test(patches),           cmocka_unit_test(faults),
     };
     return cmocka_run_group_tests(tests, make_samples, free_samples);
 }

@@ -148,10 +148,12 @@ static void hats(void **state)
         for (int64_t a = 0; a < body.hats.count; a++) {
             double share = 0.0;
             for (int64_t i = body.hats.ptr[a]; i < body.hats.ptr[a + 1]; i++) {
-                share += body.hats.share[i];
-                assert_int_equal(body.material[body.hats.point[i]], body.hats.material[a]);
+                int32_t slot = body.hats.slot[i];
+                share += body.hats.share[slot];
+                assert_int_equal(body.hats.of_point[slot], a);
+                assert_int_equal(body.material[slot / (dim + 1)], body.hats.material[a]);
             }
-            NEAR_TO(share, 1.0, 1e-14);
+            NEAR_TO(share, body.hats.volume[a], 1e-14 * body.hats.volume[a]);
             volume += body.hats.volume[a];
             deformed += body.hats.volume[a] * body.hats.theta[a];
         }

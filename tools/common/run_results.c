@@ -25,7 +25,7 @@ static const int tensor_2d[4] = {0, 4, 8, 1}, tensor_3d[6] = {0, 4, 8, 1, 2, 5};
 /* Cauchy stress P F^T / J, or Green-Lagrange strain, per integration point, with the points' places. */
 static void put_tensors(struct run *run)
 {
-    const struct body *body = &run->model->system.body;
+    struct body *body = &run->model->system.body;
     const struct scene *scene = run->scene;
     int count = scene->dim == 2 ? 4 : 6;
     const int *order = scene->dim == 2 ? tensor_2d : tensor_3d;
