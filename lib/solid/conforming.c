@@ -4,6 +4,7 @@
 #include "base/memory.h"
 #include "solid/body.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -151,6 +152,32 @@ done:
     return status;
 }
 
+/* Values of the field at the nodes must be those of these nodes: they reproduce 1 and x. */
+static enum status check_nodes(const struct conforming_input *input, int dim, int64_t node_count,
+                               struct error *error)
+{
+    for (int64_t n = 0; n < node_count; n++) {
+        double sum[4] = {-1.0}, size = 0.0, extent = 0.0;
+        for (int64_t i = input->node_ptr[n]; i < input->node_ptr[n + 1]; i++) {
+            sum[0] += input->node_phi[i];
+            size += fabs(input->node_phi[i]);
+            for (int a = 0; a < dim; a++) {
+                double offset = input->x[(int64_t)input->node_idx[i] * dim + a] - input->x[n * dim + a];
+                sum[1 + a] += input->node_phi[i] * offset;
+                extent = fmax(extent, fabs(offset));
+            }
+        }
+        for (int k = 0; k <= dim; k++) {
+            if (!(fabs(sum[k]) <= 1e-5 * size * (k == 0 ? 1.0 : extent))) {
+                return fail(error, STATUS_INPUT,
+                            "node.phi: node %lld: not the shape functions at this node: run shapefn again",
+                            (long long)n);
+            }
+        }
+    }
+    return STATUS_OK;
+}
+
 /* A row for each node; its corners are the vertices of the cells. */
 static enum status build_nodes(const struct conforming_input *input, const struct body *body,
                                struct means *means, struct error *error)
@@ -158,6 +185,7 @@ static enum status build_nodes(const struct conforming_input *input, const struc
     enum status status;
     int corners = body->dim + 1;
     int32_t *node_of_corner = NULL;
+    TRY(check_nodes(input, body->dim, body->node_count, error));
     TRY(NEW_ARRAY(&node_of_corner, body->point_count * corners, error));
     for (int64_t q = 0; q < body->point_count; q++) {
         memcpy(node_of_corner + q * corners, input->cell_node + body->order[q] * corners,

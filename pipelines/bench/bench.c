@@ -1,6 +1,7 @@
 #include "bench.h"
 
 #include "base/memory.h"
+#include "base/processor.h"
 
 #include <omp.h>
 #include <stdio.h>
@@ -120,19 +121,6 @@ static void cpu_model(char *text, size_t size)
     }
 }
 
-static const char *instruction_sets(void)
-{
-#if defined(__x86_64__)
-    __builtin_cpu_init();
-    if (__builtin_cpu_supports("avx512f")) {
-        return "avx512";
-    }
-    return __builtin_cpu_supports("avx2") ? "avx2" : "sse2";
-#else
-    return "plain";
-#endif
-}
-
 void bench_print(const struct bench_row *row, const struct bench_times *times)
 {
     char cpu[128];
@@ -149,6 +137,6 @@ void bench_print(const struct bench_row *row, const struct bench_times *times)
         printf("-");
     }
     printf("\t%d\t%s\t%s, %s\t%s\n", times->count, times->clock == BENCH_CPU ? "cpu" : "wall", cpu,
-           instruction_sets(), BENCH_FLAGS);
+           processor_best_set(), BENCH_FLAGS);
     fflush(stdout);
 }

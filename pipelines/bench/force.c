@@ -1,7 +1,8 @@
 /* The force loop: one evaluation of the internal forces, in cache in 2D and with a table larger than the
  * caches in 3D, by tables of gradients at points and by means over the faces of conforming cells; then the
- * same cube from 1e3 to 1e6 nodes, points at the nodes. A row's bytes are those of its table, once; with
- * nodal volume an evaluation reads it twice, and by means over faces always. */
+ * same cube from 1e3 to 1e6 nodes, points at the nodes, and with a million points in cells. A row's bytes are
+ * those of its table, once; with nodal volume an evaluation reads it twice, and by means over faces always.
+ */
 #include "bench.h"
 #include "problem.h"
 
@@ -231,10 +232,22 @@ static void bench_growth(struct problem *problem, double seconds)
     bench(problem, &variant, 1, seconds);
 }
 
+static void bench_large(struct problem *problem, double seconds)
+{
+    struct error error;
+    bench_check(problem_support(problem, &error), &error);
+    bench_check(problem_gradients(problem, &error), &error);
+    for (int k = 0; k < 4; k++) {
+        struct variant variant = {"force", false, false, k % 2 == 1};
+        bench(problem, &variant, k / 2 + 1, seconds);
+    }
+}
+
 /* bench-force [SECONDS]: time spent on each row. */
 int main(int argc, char *argv[])
 {
     double seconds = argc > 1 ? strtod(argv[1], NULL) : 1.0;
     problem_sweep(bench_points, bench_cells, bench_growth, seconds);
+    problem_large(bench_large, seconds);
     return 0;
 }

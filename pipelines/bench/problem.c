@@ -178,6 +178,11 @@ static void time_on(int dim, int64_t per_axis, double jitter, place_function *pl
     problem_free(&problem);
 }
 
+void problem_large(bench_function *points, double seconds)
+{
+    time_on(3, 56, 0.12, problem_points_in_cells, points, seconds);
+}
+
 void problem_sweep(bench_function *points, bench_function *cells, bench_function *growth, double seconds)
 {
     static const int64_t per_axis[] = {10, 22, 46, 100};

@@ -153,7 +153,7 @@ static void linear_fields(void **state)
     for_all(check_linear);
 }
 
-/* A table of gradients that is not that of the faces. */
+/* Tables that are not those of the faces or nodes. */
 static void fault_of_smoothing(void)
 {
     struct body body;
@@ -178,6 +178,13 @@ static void fault_of_smoothing(void)
     *changed += 1.0;
     assert_int_equal(body_build(&input, &body, &error), STATUS_INPUT);
     assert_string_equal(error.text, "shape.dphi: row 7: not smoothed from face.phi: run shapefn again");
+    *changed = before;
+    changed = &sample->node_phi[sample->node_lists.ptr[5]];
+    before = *changed;
+    *changed += 0.01;
+    assert_int_equal(body_build(&input, &body, &error), STATUS_INPUT);
+    assert_string_equal(error.text,
+                        "node.phi: node 5: not the shape functions at this node: run shapefn again");
     *changed = before;
     conforming.face_count--;
     assert_int_equal(body_build(&input, &body, &error), STATUS_INPUT);
