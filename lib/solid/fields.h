@@ -11,12 +11,10 @@
 enum { FIELDS_MOST_CENTRES = 8 };
 enum { FIELDS_MOST_AT_NODE = 4 * FIELDS_MOST_CENTRES };
 
-/* Shares of the centres in the nodes: by node, and by centre (CSR). */
-struct share_table {
-    int64_t *ptr;
-    int32_t *idx;
-    double *share;
-};
+/* A number for each centre; 0 behind the last. */
+typedef double of_centres __attribute__((vector_size(8 * FIELDS_MOST_CENTRES)));
+
+struct field_kernels;
 
 /* Fields are numbered c * (dim + 1) + m: the share of centre c, times 1 (m = 0) or a coordinate of the way
  * from there over the radius. */
@@ -25,9 +23,10 @@ struct fields {
     int64_t node_count;
     const double *X; /* node_count * dim, m; the caller's */
     int64_t centre_count, count;
-    double centre[FIELDS_MOST_CENTRES * 3]; /* centre_count * dim, m */
-    double radius;                          /* within which a centre has a share, m */
-    struct share_table by_node, by_centre;
+    of_centres centre[3];                /* dim coordinates, m */
+    double radius;                       /* within which a centre has a share, m */
+    of_centres *share;                   /* node_count: sum 1 */
+    const struct field_kernels *kernels; /* for this processor */
 };
 
 /* Fields of so many centres, at most FIELDS_MOST_CENTRES; none for 0. */
@@ -39,11 +38,15 @@ void fields_free(struct fields *fields);
 int fields_at_node(const struct fields *fields, int64_t node, int field[FIELDS_MOST_AT_NODE],
                    double value[FIELDS_MOST_AT_NODE]);
 
-/* amount[count * dim] = Z^T force: what nodal forces do along each field, in each direction. Threaded; the
- * same bits for any number of threads, here and below. */
-void fields_collect(const struct fields *fields, const double *force, double *amount);
+/* amount[count * dim] = Z^T v: what nodal vectors, such as forces, do along each field, in each direction; or
+ * Z^T (weight v) with a weight for each node, unless that is NULL. Threaded; the same bits for any number of
+ * threads and on any processor, here and below. */
+void fields_collect(const struct fields *fields, const double *weight, const double *v, double *amount);
 
 /* u[node_count * dim] += Z amount. */
 void fields_add(const struct fields *fields, const double *amount, double *u);
+
+/* The kernels compiled for an instruction set, see base/processor.h, or NULL where there are none. */
+const struct field_kernels *field_kernels_of(const char *set);
 
 #endif

@@ -18,7 +18,7 @@ static double largest_entry(const double *vector, int64_t size)
 {
     double largest = 0.0;
     for (int64_t i = 0; i < size; i++) {
-        largest = fmax(largest, fabs(vector[i]));
+        largest = fabs(vector[i]) > largest ? fabs(vector[i]) : largest;
     }
     return largest;
 }

@@ -40,7 +40,6 @@ enum status inertia_build(const struct solid_system *system, bool coarse, struct
     TRY(NEW_ARRAY(&inertia->inverse, cells, error));
     TRY(NEW_ARRAY(&inertia->beside, cells, error));
     TRY(NEW_ARRAY(&inertia->amount, 2 * inertia->size, error));
-    TRY(NEW_ARRAY(&inertia->field, inertia->size > 0 ? system->node_count * system->dim : 0, error));
 done:
     if (status != STATUS_OK) {
         inertia_free(inertia);
@@ -62,16 +61,12 @@ void inertia_free(struct inertia *inertia)
     free(inertia->inverse);
     free(inertia->beside);
     free(inertia->amount);
-    free(inertia->field);
     *inertia = (struct inertia){0};
 }
 
 void inertia_collect(const struct inertia *inertia, const double *move, double *amount)
 {
-    for (int64_t i = 0; i < inertia->node_count * inertia->dim; i++) {
-        inertia->field[i] = inertia->mass[i / inertia->dim] * move[i];
-    }
-    fields_collect(&inertia->fields, inertia->field, amount);
+    fields_collect(&inertia->fields, inertia->mass, move, amount);
 }
 
 /* y = matrix x, the matrix symmetric */
@@ -89,11 +84,14 @@ void inertia_collect_force(struct inertia *inertia, const double *force, double 
 {
     const struct constraint_rows *rows = inertia->constraint.rows;
     double *seen = inertia->constraint.multiplier;
-    for (int64_t i = 0; i < inertia->node_count * inertia->dim; i++) {
-        acceleration[i] = force[i] / inertia->mass[i / inertia->dim];
+    for (int64_t n = 0; n < inertia->node_count; n++) {
+        double inverse = 1.0 / inertia->mass[n];
+        for (int64_t i = n * inertia->dim; i < (n + 1) * inertia->dim; i++) {
+            acceleration[i] = inverse * force[i];
+        }
     }
     if (inertia->size > 0) {
-        fields_collect(&inertia->fields, force, amount);
+        fields_collect(&inertia->fields, NULL, force, amount);
     }
     if (rows == NULL) {
         return;
@@ -153,7 +151,9 @@ double inertia_product(const struct inertia *inertia, const double *x, const dou
     if (inertia->size > 0) {
         inertia_collect(inertia, x, amount);
         multiply(inertia->size, inertia->beside, amount, solved);
-        inertia_collect(inertia, y, amount);
+        if (y != x) {
+            inertia_collect(inertia, y, amount);
+        }
         for (int64_t k = 0; k < inertia->size; k++) {
             sum -= amount[k] * solved[k];
         }

@@ -40,7 +40,6 @@ struct inertia {
     double *inverse; /* A^-1 */
     double *beside;  /* (A + Z^T D P Z)^-1 */
     double *amount;  /* 2 * size: scratch */
-    double *field;   /* node_count * dim: scratch */
 };
 
 /* Memory and fields for a system; `coarse` false: no fields. */

@@ -26,7 +26,7 @@ static double largest_of_nodes(const struct relaxation *r, const double *x)
         for (int a = 0; a < dim; a++) {
             sum += x[n * dim + a] * x[n * dim + a];
         }
-        largest2 = fmax(largest2, sum);
+        largest2 = sum > largest2 ? sum : largest2;
     }
     return sqrt(largest2);
 }

@@ -1,0 +1,61 @@
+/* Chunks cover a loop, alike for any number of threads. */
+#include "base/chunks.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include <omp.h>
+
+/* Each item lies in one chunk, and chunks differ by one item at most. */
+static void check_cover(const struct chunks *chunks, int64_t items)
+{
+    int64_t least = items / chunks->count;
+    assert_int_equal(chunks_begin(chunks, 0), 0);
+    assert_int_equal(chunks_begin(chunks, chunks->count), items);
+    for (int64_t c = 0; c < chunks->count; c++) {
+        int64_t length = chunks_begin(chunks, c + 1) - chunks_begin(chunks, c);
+        assert_true(length == least || length == least + 1);
+    }
+}
+
+static void cover(void **state)
+{
+    (void)state;
+    static const int64_t lengths[] = {0, 1, 99, 199, 200, 301, 6400, 6499, 100000, INT64_MAX / 2};
+    int before = omp_get_max_threads();
+    for (size_t i = 0; i < sizeof lengths / sizeof *lengths; i++) {
+        int64_t first = 0;
+        for (int threads = 1; threads <= 3; threads++) {
+            omp_set_num_threads(threads);
+            struct chunks chunks = chunks_of(lengths[i], 100);
+            check_cover(&chunks, lengths[i]);
+            assert_in_range(chunks.count, 1, CHUNKS_MOST);
+            assert_in_range(chunks.threads, 1, threads);
+            assert_true(chunks.threads <= chunks.count);
+            first = threads == 1 ? chunks.count : first;
+            assert_int_equal(chunks.count, first);
+        }
+    }
+    omp_set_num_threads(before);
+}
+
+/* What is not worth a second thread is one chunk; what is, is worth two. */
+static void worthwhile(void **state)
+{
+    (void)state;
+    assert_int_equal(chunks_of(199, 100).count, 1);
+    assert_int_equal(chunks_of(200, 100).count, 2);
+    assert_int_equal(chunks_of(1000000, 100).count, CHUNKS_MOST);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(cover),
+        cmocka_unit_test(worthwhile),
+    };
+    return cmocka_run_group_tests_name("chunks", tests, NULL, NULL);
+}
