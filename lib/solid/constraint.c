@@ -76,7 +76,7 @@ static bool is_last_list(const struct constraint_rows *rows, int64_t length, con
     if (rows->count == 0) {
         return false;
     }
-    struct constraint_pairs last = constraint_rows_pairs(rows, rows->count - 1);
+    struct average last = constraint_rows_average(rows, rows->count - 1);
     return last.length == length && memcmp(last.idx, idx, (size_t)length * sizeof *idx) == 0 &&
            memcmp(last.phi, phi, (size_t)length * sizeof *phi) == 0;
 }
@@ -109,88 +109,59 @@ enum status constraint_rows_add(struct constraint_rows *rows, int64_t length, co
     return STATUS_OK;
 }
 
-struct constraint_pairs constraint_rows_pairs(const struct constraint_rows *rows, int64_t r)
+/* List l as an average. */
+static struct average average_of_list(const struct constraint_rows *rows, int64_t l)
 {
-    int64_t list = rows->list[r], at = rows->ptr[list];
-    return (struct constraint_pairs){rows->ptr[list + 1] - at, rows->idx + at, rows->phi + at};
+    int64_t at = rows->ptr[l];
+    return (struct average){rows->ptr[l + 1] - at, rows->idx + at, rows->phi + at};
 }
 
-/* sum_j phi_j u_j over a list. The dimension is known when compiling, here and below. */
-static inline void list_mean(const struct constraint_rows *rows, int dim, int64_t list, const double *u,
-                             double mean[3])
+struct average constraint_rows_average(const struct constraint_rows *rows, int64_t r)
 {
-    mean[0] = mean[1] = mean[2] = 0.0;
-    for (int64_t i = rows->ptr[list]; i < rows->ptr[list + 1]; i++) {
-        const double *at = u + (int64_t)rows->idx[i] * dim;
-        for (int a = 0; a < dim; a++) {
-            mean[a] += rows->phi[i] * at[a];
-        }
-    }
+    return average_of_list(rows, rows->list[r]);
 }
 
-static inline double along(const struct constraint_rows *rows, int dim, int64_t r, const double mean[3])
+static double along(const struct constraint_rows *rows, int64_t r, const double *mean)
 {
     double sum = 0.0;
-    for (int a = 0; a < dim; a++) {
-        sum += rows->direction[r * dim + a] * mean[a];
+    for (int a = 0; a < rows->dim; a++) {
+        sum += rows->direction[r * rows->dim + a] * mean[a];
     }
     return sum;
 }
 
-static inline void all_values(const struct constraint_rows *rows, int dim, const double *u, double *value)
-{
-    for (int64_t l = 0; l < rows->list_count; l++) {
-        double mean[3];
-        list_mean(rows, dim, l, u, mean);
-        for (int64_t r = rows->first[l]; r < rows->first[l + 1]; r++) {
-            value[r] = along(rows, dim, r, mean);
-        }
-    }
-}
-
 void constraint_rows_values(const struct constraint_rows *rows, const double *u, double *value)
 {
-    if (rows->dim == 2) {
-        all_values(rows, 2, u, value);
-    } else {
-        all_values(rows, 3, u, value);
+    for (int64_t l = 0; l < rows->list_count; l++) {
+        struct average average = average_of_list(rows, l);
+        double mean[3];
+        average_take(&average, rows->dim, u, mean);
+        for (int64_t r = rows->first[l]; r < rows->first[l + 1]; r++) {
+            value[r] = along(rows, r, mean);
+        }
     }
 }
 
 double constraint_rows_value(const struct constraint_rows *rows, int64_t r, const double *u)
 {
+    struct average average = constraint_rows_average(rows, r);
     double mean[3];
-    list_mean(rows, rows->dim, rows->list[r], u, mean);
-    return along(rows, rows->dim, r, mean);
-}
-
-static inline void spread(const struct constraint_rows *rows, int dim, const double *amount,
-                          const double *mass, double *u)
-{
-    for (int64_t l = 0; l < rows->list_count; l++) {
-        double total[3] = {0.0, 0.0, 0.0};
-        for (int64_t r = rows->first[l]; r < rows->first[l + 1]; r++) {
-            for (int a = 0; a < dim; a++) {
-                total[a] += amount[r] * rows->direction[r * dim + a];
-            }
-        }
-        for (int64_t i = rows->ptr[l]; i < rows->ptr[l + 1]; i++) {
-            int32_t node = rows->idx[i];
-            double share = mass != NULL ? rows->phi[i] / mass[node] : rows->phi[i];
-            for (int a = 0; a < dim; a++) {
-                u[(int64_t)node * dim + a] += share * total[a];
-            }
-        }
-    }
+    average_take(&average, rows->dim, u, mean);
+    return along(rows, r, mean);
 }
 
 void constraint_rows_spread(const struct constraint_rows *rows, const double *amount, const double *mass,
                             double *u)
 {
-    if (rows->dim == 2) {
-        spread(rows, 2, amount, mass, u);
-    } else {
-        spread(rows, 3, amount, mass, u);
+    for (int64_t l = 0; l < rows->list_count; l++) {
+        struct average average = average_of_list(rows, l);
+        double total[3] = {0.0, 0.0, 0.0};
+        for (int64_t r = rows->first[l]; r < rows->first[l + 1]; r++) {
+            for (int a = 0; a < rows->dim; a++) {
+                total[a] += amount[r] * rows->direction[r * rows->dim + a];
+            }
+        }
+        average_spread(&average, rows->dim, total, mass, u);
     }
 }
 
@@ -201,9 +172,9 @@ static enum status rows_of_nodes(const struct constraint_rows *rows, int64_t nod
     enum status status;
     TRY(NEW_ARRAY(ptr, node_count + 2, error));
     for (int64_t r = 0; r < rows->count; r++) {
-        struct constraint_pairs pairs = constraint_rows_pairs(rows, r);
-        for (int64_t i = 0; i < pairs.length; i++) {
-            (*ptr)[pairs.idx[i] + 2]++;
+        struct average average = constraint_rows_average(rows, r);
+        for (int64_t i = 0; i < average.length; i++) {
+            (*ptr)[average.idx[i] + 2]++;
         }
     }
     for (int64_t n = 0; n < node_count; n++) {
@@ -212,11 +183,11 @@ static enum status rows_of_nodes(const struct constraint_rows *rows, int64_t nod
     TRY(NEW_ARRAY(row, (*ptr)[node_count + 1], error));
     TRY(NEW_ARRAY(phi, (*ptr)[node_count + 1], error));
     for (int64_t r = 0; r < rows->count; r++) {
-        struct constraint_pairs pairs = constraint_rows_pairs(rows, r);
-        for (int64_t i = 0; i < pairs.length; i++) {
-            int64_t at = (*ptr)[pairs.idx[i] + 1]++;
+        struct average average = constraint_rows_average(rows, r);
+        for (int64_t i = 0; i < average.length; i++) {
+            int64_t at = (*ptr)[average.idx[i] + 1]++;
             (*row)[at] = r;
-            (*phi)[at] = pairs.phi[i];
+            (*phi)[at] = average.phi[i];
         }
     }
 done:
@@ -238,9 +209,9 @@ static enum status assemble(const struct constraint_rows *rows, int64_t node_cou
     TRY(NEW_ARRAY(&sum, rows->count, error));
     for (int64_t r = 0; r < rows->count; r++) {
         int64_t count = 0, at = (*ptr)[r];
-        struct constraint_pairs pairs = constraint_rows_pairs(rows, r);
-        for (int64_t i = 0; i < pairs.length; i++) {
-            int32_t node = pairs.idx[i];
+        struct average average = constraint_rows_average(rows, r);
+        for (int64_t i = 0; i < average.length; i++) {
+            int32_t node = average.idx[i];
             for (int64_t k = node_ptr[node]; k < node_ptr[node + 1]; k++) {
                 int64_t s = node_row[k];
                 double cosine = 0.0;
@@ -250,7 +221,7 @@ static enum status assemble(const struct constraint_rows *rows, int64_t node_cou
                 if (fabs(cosine) < 1e-14) {
                     continue;
                 }
-                double part = cosine * pairs.phi[i] * node_phi[k] / mass[node];
+                double part = cosine * average.phi[i] * node_phi[k] / mass[node];
                 if (sum[s] == 0.0) {
                     touched[count++] = s;
                     sum[s] = 1e-300; /* marks it as touched even if the first part is zero */

@@ -7,6 +7,7 @@
 
 #include "base/envelope.h"
 #include "base/status.h"
+#include "solid/average.h"
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -39,13 +40,8 @@ MUST_CHECK enum status constraint_rows_add(struct constraint_rows *rows, int64_t
                                            const double *phi, const double *direction, double target,
                                            int32_t curve, int32_t section, int32_t node, struct error *error);
 
-/* The pairs that row r sums over. */
-struct constraint_pairs {
-    int64_t length;
-    const int32_t *idx;
-    const double *phi;
-};
-struct constraint_pairs constraint_rows_pairs(const struct constraint_rows *rows, int64_t r);
+/* The average that row r prescribes. */
+struct average constraint_rows_average(const struct constraint_rows *rows, int64_t r);
 
 /* value[count]: direction . (sum_j phi_j u_j) of each row; and of row r alone. */
 void constraint_rows_values(const struct constraint_rows *rows, const double *u, double *value);

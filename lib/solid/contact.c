@@ -1,5 +1,6 @@
 #include "solid/contact.h"
 
+#include "base/chunks.h"
 #include "base/memory.h"
 
 #include <math.h>
@@ -8,6 +9,7 @@
 
 /* Depths below this part of a hat's length are none. */
 static const double round_off = 1e-6;
+enum { HATS_FOR_THREAD = 1000 }; /* see chunks_of */
 
 /* How deep a hat may be when it is first seen behind the surface without having gone through: half its
  * length, m. */
@@ -18,17 +20,10 @@ static double most_depth(const struct contact *contact, int64_t a)
 }
 
 /* sum_j Phi_aj v_j for node values v */
-static void average(const struct contact *contact, int64_t a, const double *v, double x[3])
+static void take_mean(const struct contact *contact, int64_t a, const double *v, double x[3])
 {
-    const struct boundary_averages *averages = contact->averages;
-    int dim = contact->dim;
-    x[0] = x[1] = x[2] = 0.0;
-    for (int64_t i = averages->ptr[a]; i < averages->ptr[a + 1]; i++) {
-        const double *value = v + (int64_t)averages->idx[i] * dim;
-        for (int c = 0; c < dim; c++) {
-            x[c] += averages->phi[i] * value[c];
-        }
-    }
+    struct average average = average_of_boundary(contact->averages, a);
+    average_take(&average, contact->dim, v, x);
 }
 
 /* Cosine between the body's outward normal at hat a and the direction in which the surface's side lies: at a
@@ -95,7 +90,7 @@ enum status contact_build(const struct boundary_averages *averages, const double
     TRY(NEW_ARRAY(&contact->checked_distance, count, error));
     for (int64_t a = 0; a < count; a++) {
         double x[3];
-        average(contact, a, X, x);
+        take_mean(contact, a, X, x);
         contact->gap[a] = INFINITY;
         raise_to_node(contact, a, X, x);
         for (int c = 0; c < dim; c++) {
@@ -190,26 +185,36 @@ static double pressure_at(struct contact *contact, int64_t a, const double *x)
     return fmax(0.0, multiplier - contact->stiffness * contact->gap[a]);
 }
 
-void contact_force(struct contact *contact, const double *u, double *force)
+/* Pressures of the hats from `begin` to before `end`. */
+static void press_hats(struct contact *contact, int64_t begin, int64_t end, const double *u)
 {
-    const struct boundary_averages *averages = contact->averages;
     int dim = contact->dim;
-    for (int64_t a = 0; a < contact->count; a++) {
+    for (int64_t a = begin; a < end; a++) {
         double x[3];
-        average(contact, a, u, x);
+        take_mean(contact, a, u, x);
         for (int c = 0; c < dim; c++) {
             x[c] += contact->rest[a * dim + c];
         }
         contact->pressure[a] = pressure_at(contact, a, x);
-        if (!(contact->pressure[a] > 0.0)) {
-            continue;
-        }
-        double strength = contact->pressure[a] * averages->area[a];
-        for (int64_t i = averages->ptr[a]; i < averages->ptr[a + 1]; i++) {
-            double *f = force + (int64_t)averages->idx[i] * dim;
+    }
+}
+
+void contact_force(struct contact *contact, const double *u, double *force)
+{
+    int dim = contact->dim;
+    struct chunks hats = chunks_of(contact->count, HATS_FOR_THREAD);
+#pragma omp parallel for schedule(static) num_threads(hats.threads)
+    for (int64_t c = 0; c < hats.count; c++) {
+        press_hats(contact, chunks_begin(&hats, c), chunks_begin(&hats, c + 1), u);
+    }
+    for (int64_t a = 0; a < contact->count; a++) {
+        if (contact->pressure[a] > 0.0) {
+            struct average average = average_of_boundary(contact->averages, a);
+            double force_on_hat[3], strength = contact->pressure[a] * contact->averages->area[a];
             for (int c = 0; c < dim; c++) {
-                f[c] += averages->phi[i] * strength * contact->normal[a * dim + c];
+                force_on_hat[c] = strength * contact->normal[a * dim + c];
             }
+            average_spread(&average, dim, force_on_hat, NULL, force);
         }
     }
 }

@@ -14,6 +14,7 @@
 
 #include "approx/boundary.h"
 #include "base/state.h"
+#include "solid/average.h"
 #include "solid/rigid.h"
 
 struct contact {

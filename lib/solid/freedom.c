@@ -30,13 +30,13 @@ static void look(const struct solid_system *system, const struct box *box, int64
     const struct constraint_rows *rows = &system->rows;
     int dim = system->dim;
     memset(value, 0, (size_t)moves * sizeof *value);
-    struct constraint_pairs pairs = constraint_rows_pairs(rows, r);
-    for (int64_t i = 0; i < pairs.length; i++) {
+    struct average average = constraint_rows_average(rows, r);
+    for (int64_t i = 0; i < average.length; i++) {
         for (int k = 0; k < moves; k++) {
             double move[3];
-            rigid_move(box, k, system->X + (int64_t)pairs.idx[i] * dim, move);
+            rigid_move(box, k, system->X + (int64_t)average.idx[i] * dim, move);
             for (int a = 0; a < dim; a++) {
-                value[k] += pairs.phi[i] * rows->direction[r * dim + a] * move[a];
+                value[k] += average.phi[i] * rows->direction[r * dim + a] * move[a];
             }
         }
     }

@@ -32,16 +32,16 @@ static void weigh_fields(struct inertia *inertia)
     }
 }
 
-void inertia_add_row(const struct inertia *inertia, int64_t length, const int32_t *idx, const double *phi,
-                     const double *direction, double *row)
+void inertia_add_row(const struct inertia *inertia, const struct average *average, const double *direction,
+                     double *row)
 {
     int field[FIELDS_MOST_AT_NODE], dim = inertia->dim;
     double value[FIELDS_MOST_AT_NODE];
-    for (int64_t i = 0; i < length; i++) {
-        int count = fields_at_node(&inertia->fields, idx[i], field, value);
+    for (int64_t i = 0; i < average->length; i++) {
+        int count = fields_at_node(&inertia->fields, average->idx[i], field, value);
         for (int k = 0; k < count; k++) {
             for (int a = 0; a < dim; a++) {
-                row[field[k] * dim + a] += phi[i] * value[k] * direction[a];
+                row[field[k] * dim + a] += average->phi[i] * value[k] * direction[a];
             }
         }
     }
@@ -58,9 +58,8 @@ static enum status weigh_conditions(struct inertia *inertia, struct error *error
     TRY(NEW_ARRAY(&conditions, rows->count * size, error));
     TRY(NEW_ARRAY(&solved, rows->count, error));
     for (int64_t r = 0; r < rows->count; r++) {
-        struct constraint_pairs pairs = constraint_rows_pairs(rows, r);
-        inertia_add_row(inertia, pairs.length, pairs.idx, pairs.phi, rows->direction + r * inertia->dim,
-                        conditions + r * size);
+        struct average average = constraint_rows_average(rows, r);
+        inertia_add_row(inertia, &average, rows->direction + r * inertia->dim, conditions + r * size);
     }
     for (int64_t k = 0; k < size; k++) {
         double *column = inertia->free_weight + k * size; /* or row: symmetric */

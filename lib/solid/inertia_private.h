@@ -12,9 +12,9 @@ void inertia_collect_force(struct inertia *inertia, const double *force, double 
 /* amount[size] = Z^T D move */
 void inertia_collect(const struct inertia *inertia, const double *move, double *amount);
 
-/* row[size] += Z^T phi direction, of a row over nodes. */
-void inertia_add_row(const struct inertia *inertia, int64_t length, const int32_t *idx, const double *phi,
-                     const double *direction, double *row);
+/* row[size] += Z^T phi direction, of an average along a direction. */
+void inertia_add_row(const struct inertia *inertia, const struct average *average, const double *direction,
+                     double *row);
 
 /* sum of D */
 double inertia_sum_of_mass(const struct inertia *inertia);

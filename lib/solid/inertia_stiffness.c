@@ -43,10 +43,9 @@ static void add_contacts(const struct inertia *inertia, const struct solid_syste
             if (!inertia->touching[hat]) {
                 continue;
             }
-            int64_t first = averages->ptr[a];
+            struct average average = average_of_boundary(averages, a);
             memset(row, 0, (size_t)size * sizeof *row);
-            inertia_add_row(inertia, averages->ptr[a + 1] - first, averages->idx + first,
-                            averages->phi + first, inertia->normal + hat * inertia->dim, row);
+            inertia_add_row(inertia, &average, inertia->normal + hat * inertia->dim, row);
             for (int64_t i = 0; i < size; i++) {
                 double part = contact->stiffness * averages->area[a] * row[i];
                 for (int64_t k = 0; k < size && part != 0.0; k++) {

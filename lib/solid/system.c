@@ -121,24 +121,10 @@ static void corner_position(const struct solid_system *system, const struct boun
                             int64_t a, const double *u, double *x)
 {
     int dim = system->dim;
+    struct average average = average_of_boundary(averages, a);
+    average_take(&average, dim, u, x);
     for (int i = 0; i < dim; i++) {
-        x[i] = system->X[(int64_t)averages->node[a] * dim + i];
-    }
-    for (int64_t k = averages->ptr[a]; k < averages->ptr[a + 1]; k++) {
-        for (int i = 0; i < dim; i++) {
-            x[i] += averages->phi[k] * u[(int64_t)averages->idx[k] * dim + i];
-        }
-    }
-}
-
-/* force += amount[dim] at point p of averages, spread by its values. */
-static void spread(const struct boundary_averages *averages, int64_t p, int dim, const double *amount,
-                   double *force)
-{
-    for (int64_t i = averages->ptr[p]; i < averages->ptr[p + 1]; i++) {
-        for (int a = 0; a < dim; a++) {
-            force[(int64_t)averages->idx[i] * dim + a] += averages->phi[i] * amount[a];
-        }
+        x[i] += system->X[(int64_t)averages->node[a] * dim + i];
     }
 }
 
@@ -164,7 +150,8 @@ static void add_pressure(const struct solid_system *system, const struct pressur
             for (int a = 0; a < dim; a++) {
                 share[a] = -pressure * area[a] * load->points.area[p] / at_rest;
             }
-            spread(&load->points, p, dim, share, residual);
+            struct average average = average_of_boundary(&load->points, p);
+            average_spread(&average, dim, share, NULL, residual);
         }
     }
 }
@@ -237,6 +224,14 @@ struct deformation system_residual(struct solid_system *system, const double *u,
     return deformation;
 }
 
+/* What a spring that holds an average adds to the stiffness of its nodes. */
+static void add_to_bound(const struct average *average, double stiffness, double *mass)
+{
+    for (int64_t i = 0; i < average->length; i++) {
+        mass[average->idx[i]] += stiffness * average->phi[i] * average->phi[i];
+    }
+}
+
 void system_relaxation_mass(struct solid_system *system, double *mass)
 {
     double sum = 0.0;
@@ -245,17 +240,13 @@ void system_relaxation_mass(struct solid_system *system, double *mass)
         const struct contact *contact = &system->contacts[c];
         const struct boundary_averages *averages = contact->averages;
         for (int64_t a = 0; a < averages->count; a++) {
-            for (int64_t i = averages->ptr[a]; i < averages->ptr[a + 1]; i++) {
-                mass[averages->idx[i]] +=
-                    contact->stiffness * averages->area[a] * averages->phi[i] * averages->phi[i];
-            }
+            struct average average = average_of_boundary(averages, a);
+            add_to_bound(&average, contact->stiffness * averages->area[a], mass);
         }
     }
     for (int64_t r = 0; r < system->springs.count; r++) {
-        struct constraint_pairs pairs = constraint_rows_pairs(&system->springs, r);
-        for (int64_t i = 0; i < pairs.length; i++) {
-            mass[pairs.idx[i]] += system->spring_stiffness[r] * pairs.phi[i] * pairs.phi[i];
-        }
+        struct average average = constraint_rows_average(&system->springs, r);
+        add_to_bound(&average, system->spring_stiffness[r], mass);
     }
     for (int64_t n = 0; n < system->node_count; n++) {
         sum += mass[n];

@@ -18,7 +18,7 @@ static bool is_same(const struct constraint_rows *rows, int64_t r, int64_t s)
     if (rows->node[r] != rows->node[s]) {
         return false;
     }
-    struct constraint_pairs one = constraint_rows_pairs(rows, r), other = constraint_rows_pairs(rows, s);
+    struct average one = constraint_rows_average(rows, r), other = constraint_rows_average(rows, s);
     double apart = 0.0;
     if (one.length != other.length) {
         return false;
@@ -71,9 +71,10 @@ enum status repeats_drop(const struct model_input *input, int64_t first, struct 
             TRY(check_value(input, rows, r, earlier, error));
             continue;
         }
-        struct constraint_pairs pairs = constraint_rows_pairs(rows, r);
-        TRY(constraint_rows_add(&kept, pairs.length, pairs.idx, pairs.phi, rows->direction + r * rows->dim,
-                                rows->target[r], rows->curve[r], rows->section[r], rows->node[r], error));
+        struct average average = constraint_rows_average(rows, r);
+        TRY(constraint_rows_add(&kept, average.length, average.idx, average.phi,
+                                rows->direction + r * rows->dim, rows->target[r], rows->curve[r],
+                                rows->section[r], rows->node[r], error));
     }
     constraint_rows_free(rows);
     *rows = kept;

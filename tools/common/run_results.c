@@ -99,9 +99,9 @@ static void add_condition_forces(const struct run *run, double *total)
     int dim = run->scene->dim;
     for (int64_t r = 0; r < rows->count; r++) {
         double share = 0.0;
-        struct constraint_pairs pairs = constraint_rows_pairs(rows, r);
-        for (int64_t i = 0; i < pairs.length; i++) {
-            share += pairs.phi[i]; /* 1 but for round-off */
+        struct average average = constraint_rows_average(rows, r);
+        for (int64_t i = 0; i < average.length; i++) {
+            share += average.phi[i]; /* 1 but for round-off */
         }
         for (int a = 0; a < dim; a++) {
             total[rows->section[r] * dim + a] +=

@@ -1,0 +1,26 @@
+/* One average of a nodal field, sum_j phi_j u_j over a list of nodes, and its transpose: conditions, springs,
+ * contacts and following pressures act through such averages. */
+#ifndef SOLID_AVERAGE_H
+#define SOLID_AVERAGE_H
+
+#include "approx/boundary.h"
+
+#include <stdint.h>
+
+struct average {
+    int64_t length;
+    const int32_t *idx; /* length: nodes, */
+    const double *phi;  /* length: and their weights; both somebody else's */
+};
+
+/* Average a of a boundary. */
+struct average average_of_boundary(const struct boundary_averages *averages, int64_t a);
+
+/* mean[dim] = sum_j phi_j u_j of u[node_count * dim]. */
+void average_take(const struct average *average, int dim, const double *u, double *mean);
+
+/* The transpose: u_j += phi_j amount[dim], divided by mass[node] unless mass is NULL. */
+void average_spread(const struct average *average, int dim, const double *amount, const double *mass,
+                    double *u);
+
+#endif
