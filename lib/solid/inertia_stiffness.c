@@ -101,20 +101,6 @@ static void set_field(struct inertia *inertia, int64_t k, double *field)
     constraint_project(&inertia->constraint, NULL, field);
 }
 
-/* force = what body and springs put against u */
-static void resist(struct solid_system *system, const double *u, double *force)
-{
-    int64_t values = system->node_count * system->dim;
-    (void)body_force(&system->body, u, force);
-    for (int64_t i = 0; i < values; i++) {
-        force[i] = -force[i];
-    }
-    system_add_springs(system, u, force);
-    for (int64_t i = 0; i < values; i++) {
-        force[i] = -force[i];
-    }
-}
-
 static void make_symmetric(int64_t n, double *matrix)
 {
     for (int64_t i = 0; i < n; i++) {
@@ -137,13 +123,13 @@ enum status inertia_measure(struct inertia *inertia, struct solid_system *system
     TRY(NEW_ARRAY(&at_u, values, error));
     TRY(NEW_ARRAY(&moved, values, error));
     TRY(NEW_ARRAY(&force, values, error));
-    resist(system, u, at_u);
+    system_resist(system, u, at_u);
     for (int64_t k = 0; k < inertia->size; k++) {
         set_field(inertia, k, moved);
         for (int64_t i = 0; i < values; i++) {
             moved[i] = u[i] + epsilon * moved[i];
         }
-        resist(system, moved, force);
+        system_resist(system, moved, force);
         for (int64_t i = 0; i < values; i++) {
             force[i] = (force[i] - at_u[i]) / epsilon;
         }

@@ -201,15 +201,29 @@ double system_spring_energy(const struct solid_system *system, const double *u)
     return energy;
 }
 
+static void negate(const struct solid_system *system, double *force)
+{
+    for (int64_t i = 0; i < system->node_count * system->dim; i++) {
+        force[i] = -force[i];
+    }
+}
+
+void system_resist(struct solid_system *system, const double *u, double *force)
+{
+    double started = clock_seconds();
+    (void)body_force(&system->body, u, force);
+    system->cost.force += clock_seconds() - started;
+    negate(system, force);
+    system_add_springs(system, u, force);
+    negate(system, force);
+}
+
 struct deformation system_residual(struct solid_system *system, const double *u, double *residual)
 {
-    int64_t size = system->node_count * system->dim;
     double started = clock_seconds();
     struct deformation deformation = body_force(&system->body, u, residual);
     double forced = clock_seconds();
-    for (int64_t i = 0; i < size; i++) {
-        residual[i] = -residual[i];
-    }
+    negate(system, residual);
     system_add_loads(system, u, residual);
     double loaded = clock_seconds();
     system_add_springs(system, u, residual);

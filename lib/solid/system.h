@@ -80,6 +80,10 @@ void system_add_loads(const struct solid_system *system, const double *u, double
 /* residual[node_count * dim] = loads at system->factor + contact - internal forces, at parameters u. */
 struct deformation system_residual(struct solid_system *system, const double *u, double *residual);
 
+/* force[node_count * dim] = what body and springs put against u: the residual without loads and contacts, and
+ * the other way round. */
+void system_resist(struct solid_system *system, const double *u, double *force);
+
 /* Forces of the springs, added to force; and their energy. */
 void system_add_springs(struct solid_system *system, const double *u, double *force);
 double system_spring_energy(const struct solid_system *system, const double *u);
