@@ -54,8 +54,8 @@ $(BUILD)/%.o: %.c Makefile
 # Objects are kept, also those that make finds out about on the way to a program.
 .PRECIOUS: $(BUILD)/%.o
 
-# No fused multiplications there: neighbour lists and shape functions come out the same on every processor.
-$(BUILD)/lib/approx/%.o: CFLAGS += -ffp-contract=off
+# No fused multiplications there: neighbour lists, shape functions and sums along fields come out the same on every processor.
+$(BUILD)/lib/approx/%.o $(BUILD)/lib/solid/fields_kernel.o: CFLAGS += -ffp-contract=off
 # The force loop may fuse: to round-off it is the same everywhere, and to the bit for any number of threads.
 $(BUILD)/lib/solid/kernel.o: CFLAGS += -ffp-contract=fast
 
