@@ -9,7 +9,6 @@
 static const int64_t keep_interval = 200;     /* steps between states to go back to */
 static const double penetration_share = 1e-4; /* of the body's size: what a contact may penetrate */
 static const int iterations = 1;              /* at every check: the mode is kept, so that it sharpens */
-static const int64_t last_mass_checks = 5;    /* near the end the mass is looked at only so often */
 
 /* One step; with `measure` the acceleration of the projected residual at the old u is kept. */
 static bool step(struct relaxation *r, double *u, bool measure)
@@ -102,7 +101,7 @@ static void change_load(struct relaxation *r, double s)
 /* After a measured step: the error, and what follows the state: mass, time step. False on failure. */
 static bool follow(struct relaxation *r, struct error *error)
 {
-    double *u = r->u, ramp = (double)r->report->ramp_steps;
+    double *u = r->u;
     relaxation_estimate(r);
     relaxation_pace(r);
     if (r->at_full_load <= CHECK_INTERVAL) { /* take out what round-off has left */
@@ -111,10 +110,8 @@ static bool follow(struct relaxation *r, struct error *error)
     if (r->report->steps % keep_interval == 0) {
         relaxation_keep_state(r, u);
     }
-    r->near_end =
-        r->near_end || (r->at_full_load > 0 && (r->report->error < 1e-3 || (double)r->at_full_load > ramp));
     r->residual_at = r->before;
-    if ((!r->near_end || r->checks % last_mass_checks == 0) && !relaxation_update_mass(r, error)) {
+    if (r->checks >= r->next_mass_check && !relaxation_update_mass(r, error)) {
         return false;
     }
     relaxation_update_time_step(r, r->residual_at, iterations);

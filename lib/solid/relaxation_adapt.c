@@ -18,6 +18,7 @@ static const double most_moved = 1.4, most_raised = 1.25;
 static const double most_paced = 1.0 / 320.0;
 static const int64_t most_retreats = 8;                          /* from inverted points */
 static const double most_stiffening = 1.1, most_softening = 0.5; /* of a node since its mass was set */
+static const double most_mass_checks = 5.0;                      /* from one look at that to the next */
 static const int64_t most_augmentations = 20;                    /* of the contacts' multipliers, */
 static const int64_t most_fruitless = 3;                         /* of those in a row that change little */
 
@@ -59,15 +60,27 @@ void relaxation_update_time_step(struct relaxation *r, const double *u, int iter
     r->time_step = r->caution * r->options->time_step_margin * 2.0 / r->frequency;
 }
 
+/* Whether the mass is to be set anew. The next look is when the stiffness, changing on as it did, would have
+ * come half the way to that: a look costs as much as some evaluations. */
+static bool note_mass_change(struct relaxation *r, double change)
+{
+    double a_check = fabs(change - r->mass_change) / (double)(r->checks - r->last_mass_check);
+    r->mass_change = change > 1.0 ? 0.0 : change;
+    r->last_mass_check = r->checks;
+    r->next_mass_check =
+        r->checks + (int64_t)fmin(most_mass_checks, fmax(1.0, 0.5 * (1.0 - r->mass_change) / a_check));
+    return change > 1.0;
+}
+
 bool relaxation_update_mass(struct relaxation *r, struct error *error)
 {
-    double *mass = r->scratch, highest = 0.0, lowest = INFINITY;
+    double *mass = r->scratch, highest = 1.0, lowest = 1.0;
     system_relaxation_mass(r->system, mass);
     for (int64_t n = 0; n < r->system->node_count; n++) {
         highest = fmax(highest, mass[n] / r->inertia.mass[n]);
         lowest = fmin(lowest, mass[n] / r->inertia.mass[n]);
     }
-    if (!(highest > most_stiffening || lowest < most_softening)) {
+    if (!note_mass_change(r, fmax(log(highest) / log(most_stiffening), log(lowest) / log(most_softening)))) {
         return true;
     }
     r->failure = inertia_set_mass(&r->inertia, r->system, mass, error);
@@ -137,6 +150,8 @@ bool relaxation_step_back(struct relaxation *r, double *u, struct error *error)
         return false;
     }
     system_relaxation_mass(r->system, r->scratch);
+    r->mass_change = 0.0;
+    r->last_mass_check = r->next_mass_check = r->checks;
     r->failure = inertia_set_mass(&r->inertia, r->system, r->scratch, error);
     if (r->failure == STATUS_OK) {
         r->failure = relaxation_measure_inertia(r, error);

@@ -56,7 +56,8 @@ struct relaxation {
     int64_t frames;       /* given so far */
     int64_t at_full_load; /* steps since the full load was reached */
     int64_t settled;      /* checks in a row with a small error */
-    bool near_end;        /* the body hardly moves any more */
+    double mass_change;   /* of the stiffness since the mass was set: 1 where it is set anew */
+    int64_t last_mass_check, next_mass_check; /* checks: when that was looked at, and is again */
 };
 
 /* ---- relaxation_error.c: how far from equilibrium ---- */
@@ -100,7 +101,7 @@ void relaxation_pace(struct relaxation *r);
 void relaxation_update_time_step(struct relaxation *r, const double *u, int iterations);
 
 /* Let the mass follow the stiffness where the body has stiffened or softened since it was last set, so that
- * the critical step holds through large strains. False on failure. */
+ * the critical step holds through large strains; and say when to look again. False on failure. */
 bool relaxation_update_mass(struct relaxation *r, struct error *error);
 
 /* What was known of the lowest mode was of another mass. */
