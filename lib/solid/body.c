@@ -207,6 +207,7 @@ enum status body_build(const struct body_input *input, struct body *body, struct
     TRY(copy_points(input, body, error));
     body->pair_count = input->ptr[input->point_count];
     body->threads = worthwhile_threads(body);
+    TRY(body_make_bounds(body, error));
     if (body->averaged) {
         TRY(hats_build(input, body, error));
     }
@@ -230,9 +231,9 @@ void body_free(struct body *body)
     pairs_free(&body->gradients);
     conforming_free(&body->cells);
     hats_free(&body->hats);
-    void *arrays[] = {body->order,      body->weight, body->materials, body->material,
-                      body->shear,      body->bulk,   body->blocks,    body->node_order,
-                      body->node_place, body->u,      body->F,         body->J};
+    void *arrays[] = {body->order, body->weight, body->materials,  body->material,   body->shear,
+                      body->bulk,  body->blocks, body->node_order, body->node_place, body->u,
+                      body->F,     body->bound,  body->J};
     for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) {
         free(arrays[i]);
     }

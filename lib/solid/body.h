@@ -5,6 +5,7 @@
 #ifndef SOLID_BODY_H
 #define SOLID_BODY_H
 
+#include "base/chunks.h"
 #include "base/status.h"
 #include "solid/conforming.h"
 #include "solid/material.h"
@@ -100,6 +101,8 @@ struct body {
     struct volume_hats hats;
     const struct force_kernels *kernels; /* for this processor */
     int threads;                         /* worth using for so many pairs */
+    struct chunks bound_parts;           /* of the points, by each of which body_diagonal sums; */
+    double *bound;                       /* node_count for each but the first: scratch */
 };
 
 /* Lay out a body; but for the table the input arrays are copied. STATUS_INPUT for a point without neighbours

@@ -1,60 +1,90 @@
 /* The bound of the diagonal of the stiffness: body_diagonal. */
+#include "base/memory.h"
 #include "solid/stress.h"
 
 #include <math.h>
 #include <string.h>
 
-/* What a point adds to the bounds: for each neighbour g A g, if positive, and tie |g|^2, g its gradient. */
-static inline __attribute__((always_inline)) void add_bounds(const struct body *body, int64_t row, int dim,
-                                                             const double A[9], double tie, double *stiffness)
+/* Each part of the points has sums of its own, so that there are few, whatever the number of threads; fewer
+ * points than that are one part. */
+enum { MOST_PARTS = 4, LEAST_POINTS = 5000 };
+
+enum status body_make_bounds(struct body *body, struct error *error)
 {
-    for (int64_t i = body->ptr[row]; i < body->ptr[row + 1]; i++) {
-        const double *g = body->dphi + i * dim;
-        double bound = 0.0, g2 = 0.0;
-        for (int a = 0; a < dim; a++) {
-            double half = 0.5 * A[3 * a + a] * g[a];
-            for (int b = 0; b < a; b++) {
-                half += A[3 * a + b] * g[b];
-            }
-            bound += 2.0 * half * g[a];
-            g2 += g[a] * g[a];
+    int64_t least = body->point_count / MOST_PARTS;
+    body->bound_parts = chunks_of(body->point_count, least > LEAST_POINTS ? least : LEAST_POINTS);
+    return NEW_ARRAY(&body->bound, (body->bound_parts.count - 1) * body->node_count, error);
+}
+
+/* Along the gradient g of a shape function the energy of a point has the second derivative g A g, and that of
+ * its tie. */
+struct bound {
+    double A[9], tie;
+};
+
+static struct bound bound_at(const struct body *body, int64_t q)
+{
+    struct bound bound = {.tie = 0.0};
+    double F[9], C[9], I1 = 0.0;
+    stress_matrix(body->dim, body->F + q, body->point_count, F);
+    double J = determinant(F);
+    if (!(J > 0.0 && isfinite(J))) { /* as at rest: its bounds stay positive until the run is told */
+        J = 1.0;
+        for (int k = 0; k < 9; k++) {
+            F[k] = k % 4 == 0 ? 1.0 : 0.0;
         }
-        stiffness[body->idx[i]] += (bound > 0.0 ? bound : 0.0) + tie * g2;
+    }
+    cofactor(F, C);
+    for (int k = 0; k < 9; k++) {
+        I1 += F[k] * F[k];
+    }
+    double shear = body->weight[q] * body->shear[q] / cbrt(J * J);
+    double along = body->weight[q] * body->bulk[q] + 5.0 / 9.0 * I1 * shear / (J * J);
+    /* along |J F^-T g|^2 - shear |g|^2 / 3 = g A g */
+    for (int k = 0; k < 9; k++) {
+        int a = k / 3, b = k % 3;
+        bound.A[k] =
+            along * (C[a] * C[b] + C[3 + a] * C[3 + b] + C[6 + a] * C[6 + b]) - (a == b ? shear / 3.0 : 0.0);
+    }
+    if (body->conforming) {
+        bound.tie = 2.0 * body->weight[q] * stress_tie(body, q, F).stiffness;
+    }
+    return bound;
+}
+
+static void add_points(const struct body *body, int64_t first, int64_t last, double *stiffness)
+{
+    double sum[64];
+    memset(stiffness, 0, (size_t)body->node_count * sizeof *stiffness);
+    for (int64_t q = first; q < last; q++) {
+        struct bound bound = bound_at(body, q);
+        int64_t end = body->ptr[body->order[q] + 1];
+        for (int64_t i = body->ptr[body->order[q]]; i < end; i += 64) {
+            int64_t count = end - i < 64 ? end - i : 64;
+            body->kernels->bounds(body->dphi + i * body->dim, count, bound.A, bound.tie, sum);
+            for (int64_t k = 0; k < count; k++) {
+                stiffness[body->idx[i + k]] += sum[k];
+            }
+        }
     }
 }
 
 void body_diagonal(struct body *body, double *stiffness)
 {
-    int dim = body->dim;
+    const struct chunks *parts = &body->bound_parts;
     body_keep_state(body);
-    memset(stiffness, 0, (size_t)body->node_count * sizeof *stiffness);
-    for (int64_t q = 0; q < body->point_count; q++) {
-        double F[9], C[9], A[9], I1 = 0.0;
-        stress_matrix(body->dim, body->F + q, body->point_count, F);
-        double J = determinant(F);
-        if (!(J > 0.0 && isfinite(J))) { /* as at rest: its bounds stay positive until the run is told */
-            J = 1.0;
-            for (int k = 0; k < 9; k++) {
-                F[k] = k % 4 == 0 ? 1.0 : 0.0;
+#pragma omp parallel num_threads(parts->threads)
+    {
+#pragma omp for schedule(static)
+        for (int64_t p = 0; p < parts->count; p++) {
+            double *sum = p == 0 ? stiffness : body->bound + (p - 1) * body->node_count;
+            add_points(body, chunks_begin(parts, p), chunks_begin(parts, p + 1), sum);
+        }
+#pragma omp for schedule(static)
+        for (int64_t n = 0; n < body->node_count; n++) {
+            for (int64_t p = 1; p < parts->count; p++) {
+                stiffness[n] += body->bound[(p - 1) * body->node_count + n];
             }
-        }
-        cofactor(F, C);
-        for (int k = 0; k < 9; k++) {
-            I1 += F[k] * F[k];
-        }
-        double shear = body->weight[q] * body->shear[q] / cbrt(J * J);
-        double tie = body->conforming ? 2.0 * body->weight[q] * stress_tie(body, q, F).stiffness : 0.0;
-        double along = body->weight[q] * body->bulk[q] + 5.0 / 9.0 * I1 * shear / (J * J);
-        /* along |J F^-T g|^2 - shear |g|^2 / 3 = g A g */
-        for (int k = 0; k < 9; k++) {
-            int a = k / 3, b = k % 3;
-            A[k] = along * (C[a] * C[b] + C[3 + a] * C[3 + b] + C[6 + a] * C[6 + b]) -
-                   (a == b ? shear / 3.0 : 0.0);
-        }
-        if (dim == 2) {
-            add_bounds(body, body->order[q], 2, A, tie, stiffness);
-        } else {
-            add_bounds(body, body->order[q], 3, A, tie, stiffness);
         }
     }
 }

@@ -56,6 +56,11 @@
     {                                                                                                        \
         kernel_neo_hookean(body, &body->blocks[b], state, dim, P);                                           \
     }                                                                                                        \
+    attribute static void bounds_##set##_##dim(const double *g, int64_t count, const double A[9],            \
+                                               double tie, double *sum)                                      \
+    {                                                                                                        \
+        kernel_bounds(g, count, dim, A, tie, sum);                                                           \
+    }                                                                                                        \
     static const struct force_kernels kernels_##set##_##dim = {                                              \
         .name = #set,                                                                                        \
         .place = place_##set##_##dim,                                                                        \
@@ -67,7 +72,8 @@
         .cell_gradients = cell_gradients_##set##_##dim,                                                      \
         .cell_neo_hookean = cell_neo_hookean_##set##_##dim,                                                  \
         .cell_forces = cell_forces_##set##_##dim,                                                            \
-        .neo_hookean = neo_hookean_##set##_##dim};
+        .neo_hookean = neo_hookean_##set##_##dim,                                                            \
+        .bounds = bounds_##set##_##dim};
 
 #define NO_ATTRIBUTE
 KERNEL_SET(plain, 2, NO_ATTRIBUTE)

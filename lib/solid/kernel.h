@@ -36,6 +36,8 @@ struct force_kernels {
     void (*scatter_means)(struct means *means, int64_t block, double *scratch);
     /* Weighted stresses of a block of neo-Hookean points. */
     void (*neo_hookean)(const struct body *body, int64_t block, struct block_view state, block_rows P);
+    /* What gradients g[count * dim] add to bounds of the stiffness: g A g, if positive, and tie |g|^2. */
+    void (*bounds)(const double *g, int64_t count, const double A[9], double tie, double *sum);
     /* F, F_h and J of conforming cells from the means; weighted stresses P on F and T on F_h of a block of
      * neo-Hookean cells; and what the corners then put on the means. */
     void (*cell_gradients)(struct body *body, int64_t block);
@@ -45,5 +47,8 @@ struct force_kernels {
 
 /* Sets by name, plain, avx2, avx512: NULL where the processor lacks it; the best one for NULL. */
 const struct force_kernels *force_kernels_select(const char *name, int dim);
+
+/* What body_diagonal needs. */
+MUST_CHECK enum status body_make_bounds(struct body *body, struct error *error);
 
 #endif

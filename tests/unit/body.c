@@ -260,6 +260,14 @@ static void patches(void **state)
         for (int64_t k = 0; k < count && !by_faces; k++) {
             NEAR_TO(force[k], expected[k], 1e-12 * largest(expected, count));
         }
+        assert_true(body.bound_parts.count > 1);
+        body_diagonal(&body, force);
+        body.bound_parts = (struct chunks){sample.point_count, 1, 1};
+        body_diagonal(&body, expected);
+        for (int64_t n = 0; n < sample.cloud.node_count; n++) {
+            NEAR_TO(force[n], expected[n], 1e-14 * expected[n]);
+        }
+        (void)body_force(&body, u, force);
         double *along = random_field(&sample, 1.0, &random);
         for (int64_t k = 0; k < count; k++) {
             slope += force[k] * along[k];
