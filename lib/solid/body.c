@@ -56,17 +56,16 @@ static enum status copy_points(const struct body_input *input, struct body *body
     int dim = input->dim;
     int64_t points = input->point_count;
     TRY(NEW_ARRAY(&body->weight, points + BODY_POINT_PADDING, error));
-    TRY(NEW_ARRAY(&body->material, points, error));
-    TRY(NEW_ARRAY(&body->shear, points + BODY_POINT_PADDING, error));
-    TRY(NEW_ARRAY(&body->bulk, points + BODY_POINT_PADDING, error));
+    TRY(NEW_ARRAY(&body->material, points + BODY_POINT_PADDING, error));
     TRY(NEW_ARRAY(&body->u, body->node_count * PAIRS_STRIDE(dim), error));
-    TRY(NEW_ARRAY(&body->F, points * dim * dim + BODY_POINT_PADDING, error));
-    TRY(NEW_ARRAY(&body->J, points + BODY_POINT_PADDING, error));
+    if (body->conforming || body->averaged) {
+        TRY(NEW_ARRAY(&body->F, points * dim * dim + BODY_POINT_PADDING, error));
+        TRY(NEW_ARRAY(&body->J, points + BODY_POINT_PADDING, error));
+    }
     TRY(NEW_ARRAY(&body->materials, input->material_count, error));
     memcpy(body->materials, input->materials, (size_t)input->material_count * sizeof *body->materials);
     for (int64_t q = 0; q < points; q++) {
         int64_t from = body->order[q];
-        const struct material *material = &input->materials[input->material[from]];
         if (input->ptr[from + 1] <= input->ptr[from] || !(input->weight[from] > 0.0)) {
             status = fail(error, STATUS_INPUT, "points.weight: row %lld: no weight or no neighbours",
                           (long long)from);
@@ -74,8 +73,6 @@ static enum status copy_points(const struct body_input *input, struct body *body
         }
         body->weight[q] = input->weight[from];
         body->material[q] = input->material[from];
-        body->shear[q] = material->shear_modulus;
-        body->bulk[q] = material->bulk_modulus;
     }
 done:
     return status;
@@ -231,9 +228,9 @@ void body_free(struct body *body)
     pairs_free(&body->gradients);
     conforming_free(&body->cells);
     hats_free(&body->hats);
-    void *arrays[] = {body->order, body->weight, body->materials,  body->material,   body->shear,
-                      body->bulk,  body->blocks, body->node_order, body->node_place, body->u,
-                      body->F,     body->bound,  body->J};
+    void *arrays[] = {body->order,  body->weight,     body->materials,  body->material,
+                      body->blocks, body->node_order, body->node_place, body->u,
+                      body->F,      body->bound,      body->J};
     for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) {
         free(arrays[i]);
     }

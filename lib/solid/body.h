@@ -38,7 +38,7 @@ struct body_input {
     bool single;     /* keep the table in single precision; sums are double always */
 };
 
-/* Points are worked on so many at a time; weight, shear, bulk, J and F have as many entries more, which are
+/* Points are worked on so many at a time; weight, material, J and F have as many entries more, which are
  * read and not used. */
 #define BODY_POINT_PADDING 8
 
@@ -84,8 +84,7 @@ struct body {
     double *weight;             /* point_count */
     struct material *materials; /* material_count, and those of mixed hats */
     int64_t material_count;
-    int32_t *material;    /* point_count */
-    double *shear, *bulk; /* point_count: moduli of the neo-Hookean law, Pa */
+    int32_t *material; /* point_count */
     int64_t block_count;
     struct block *blocks;
     bool conforming, single;
@@ -93,15 +92,14 @@ struct body {
     struct conforming cells; /* instead */
     double *u;               /* node_count * stride: displacements in the body's order */
     double *F;               /* dim * dim rows of point_count: deformation gradients of the last evaluation */
-    double *J;               /* point_count: volume ratios, det F, or of cells that of conforming.h */
-    bool keeps_state;        /* F and J are those at u: an evaluation of points with pointwise volume has no
-                                need of them, body_keep_state makes them */
-    bool averaged;           /* nodal volumetric averaging */
+    double *J;     /* point_count: volume ratios, det F, or of cells that of conforming.h. Points with
+                      pointwise volume keep neither: NULL */
+    bool averaged; /* nodal volumetric averaging */
     double pointwise_share, share_growth;
     struct volume_hats hats;
     const struct force_kernels *kernels; /* for this processor */
     int threads;                         /* worth using for so many pairs */
-    struct chunks bound_parts;           /* of the points, by each of which body_diagonal sums; */
+    struct chunks bound_parts;           /* of the blocks, by each of which body_diagonal sums; */
     double *bound;                       /* node_count for each but the first: scratch */
 };
 
@@ -125,9 +123,6 @@ double body_volume(const struct body *body);
 
 /* Elastic energy at u, J (2D: J/m). */
 double body_energy(struct body *body, const double *u);
-
-/* See that body->F and body->J are those of the last evaluation. */
-void body_keep_state(struct body *body);
 
 /* First Piola stress of each point at the last evaluation: stress[point_count * 9], caller's order, Pa. */
 void body_stress(struct body *body, double *stress);

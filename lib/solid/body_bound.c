@@ -5,14 +5,14 @@
 #include <math.h>
 #include <string.h>
 
-/* Each part of the points has sums of its own, so that there are few, whatever the number of threads; fewer
- * points than that are one part. */
-enum { MOST_PARTS = 4, LEAST_POINTS = 5000 };
+/* Each part of the blocks has sums of its own, so that there are few, whatever the number of threads; fewer
+ * blocks than that are one part. */
+enum { MOST_PARTS = 4, LEAST_BLOCKS = 50 };
 
 enum status body_make_bounds(struct body *body, struct error *error)
 {
-    int64_t least = body->point_count / MOST_PARTS;
-    body->bound_parts = chunks_of(body->point_count, least > LEAST_POINTS ? least : LEAST_POINTS);
+    int64_t least = body->block_count / MOST_PARTS;
+    body->bound_parts = chunks_of(body->block_count, least > LEAST_BLOCKS ? least : LEAST_BLOCKS);
     return NEW_ARRAY(&body->bound, (body->bound_parts.count - 1) * body->node_count, error);
 }
 
@@ -22,11 +22,11 @@ struct bound {
     double A[9], tie;
 };
 
-static struct bound bound_at(const struct body *body, int64_t q)
+static struct bound bound_at(const struct body *body, int64_t q, double F[9])
 {
+    const struct material *material = &body->materials[body->material[q]];
     struct bound bound = {.tie = 0.0};
-    double F[9], C[9], I1 = 0.0;
-    stress_matrix(body->dim, body->F + q, body->point_count, F);
+    double C[9], I1 = 0.0;
     double J = determinant(F);
     if (!(J > 0.0 && isfinite(J))) { /* as at rest: its bounds stay positive until the run is told */
         J = 1.0;
@@ -38,8 +38,8 @@ static struct bound bound_at(const struct body *body, int64_t q)
     for (int k = 0; k < 9; k++) {
         I1 += F[k] * F[k];
     }
-    double shear = body->weight[q] * body->shear[q] / cbrt(J * J);
-    double along = body->weight[q] * body->bulk[q] + 5.0 / 9.0 * I1 * shear / (J * J);
+    double shear = body->weight[q] * material->shear_modulus / cbrt(J * J);
+    double along = body->weight[q] * material->bulk_modulus + 5.0 / 9.0 * I1 * shear / (J * J);
     /* along |J F^-T g|^2 - shear |g|^2 / 3 = g A g */
     for (int k = 0; k < 9; k++) {
         int a = k / 3, b = k % 3;
@@ -52,19 +52,31 @@ static struct bound bound_at(const struct body *body, int64_t q)
     return bound;
 }
 
-static void add_points(const struct body *body, int64_t first, int64_t last, double *stiffness)
+static void add_point(const struct body *body, int64_t row, const struct bound *bound, double *stiffness)
 {
     double sum[64];
+    int64_t end = body->ptr[row + 1];
+    for (int64_t i = body->ptr[row]; i < end; i += 64) {
+        int64_t count = end - i < 64 ? end - i : 64;
+        body->kernels->bounds(body->dphi + i * body->dim, count, bound->A, bound->tie, sum);
+        for (int64_t k = 0; k < count; k++) {
+            stiffness[body->idx[i + k]] += sum[k];
+        }
+    }
+}
+
+static void add_blocks(struct body *body, int64_t first, int64_t last, double *stiffness)
+{
+    double scratch[PAIRS_SCRATCH] __attribute__((aligned(64))), F[9];
+    struct block_state state;
     memset(stiffness, 0, (size_t)body->node_count * sizeof *stiffness);
-    for (int64_t q = first; q < last; q++) {
-        struct bound bound = bound_at(body, q);
-        int64_t end = body->ptr[body->order[q] + 1];
-        for (int64_t i = body->ptr[body->order[q]]; i < end; i += 64) {
-            int64_t count = end - i < 64 ? end - i : 64;
-            body->kernels->bounds(body->dphi + i * body->dim, count, bound.A, bound.tie, sum);
-            for (int64_t k = 0; k < count; k++) {
-                stiffness[body->idx[i + k]] += sum[k];
-            }
+    for (int64_t b = first; b < last; b++) {
+        struct block_view view = body_state(body, b, &state, scratch);
+        for (int64_t i = 0; i < body->blocks[b].point_count; i++) {
+            int64_t q = body->blocks[b].first_point + i;
+            stress_matrix(body->dim, view.F + i, view.apart, F);
+            struct bound bound = bound_at(body, q, F);
+            add_point(body, body->order[q], &bound, stiffness);
         }
     }
 }
@@ -72,13 +84,12 @@ static void add_points(const struct body *body, int64_t first, int64_t last, dou
 void body_diagonal(struct body *body, double *stiffness)
 {
     const struct chunks *parts = &body->bound_parts;
-    body_keep_state(body);
 #pragma omp parallel num_threads(parts->threads)
     {
 #pragma omp for schedule(static)
         for (int64_t p = 0; p < parts->count; p++) {
             double *sum = p == 0 ? stiffness : body->bound + (p - 1) * body->node_count;
-            add_points(body, chunks_begin(parts, p), chunks_begin(parts, p + 1), sum);
+            add_blocks(body, chunks_begin(parts, p), chunks_begin(parts, p + 1), sum);
         }
 #pragma omp for schedule(static)
         for (int64_t n = 0; n < body->node_count; n++) {

@@ -51,7 +51,7 @@ static void stress_point_block(struct body *body, int64_t b, struct block_view s
 
 /* Loops over blocks, hats and nodes, that threads share. */
 
-/* F and J of a block of points are kept where others than its own stresses need them. */
+/* F and J of a block of points are kept where volumes are averaged. */
 static void keep_state(struct body *body, const struct block *block, const struct block_state *state)
 {
     size_t size = (size_t)block->point_count * sizeof *body->F;
@@ -61,9 +61,14 @@ static void keep_state(struct body *body, const struct block *block, const struc
     memcpy(body->J + block->first_point, state->J, size);
 }
 
-static struct block_view kept_state(const struct body *body, const struct block *block)
+struct block_view body_state(struct body *body, int64_t b, struct block_state *state, double *scratch)
 {
-    return (struct block_view){body->F + block->first_point, body->J + block->first_point, body->point_count};
+    int64_t first = body->blocks[b].first_point;
+    if (body->F != NULL) {
+        return (struct block_view){body->F + first, body->J + first, body->point_count};
+    }
+    body->kernels->gather(body, b, state, scratch);
+    return (struct block_view){state->F[0], state->J, PAIRS_MAX_ROWS};
 }
 
 static void set_pressures(struct body *body)
@@ -84,7 +89,7 @@ static void gather_points(struct body *body, double *scratch)
     }
 }
 
-/* Stresses and forces of points: with pointwise volume F and J are gathered here, while the block's part of
+/* Stresses and forces of points: with pointwise volume F and J are gathered here, when the block's part of
  * the table comes into the cache. */
 static void force_points(struct body *body, double *scratch)
 {
@@ -95,12 +100,7 @@ static void force_points(struct body *body, double *scratch)
         pairs_clear_forces(pairs, patch);
         for (int64_t b = patch->first_block; b < patch->first_block + patch->block_count; b++) {
             struct block_state state;
-            struct block_view view = {state.F[0], state.J, PAIRS_MAX_ROWS};
-            if (body->averaged) {
-                view = kept_state(body, &body->blocks[b]);
-            } else {
-                body->kernels->gather(body, b, &state, scratch);
-            }
+            struct block_view view = body_state(body, b, &state, scratch);
             stress_point_block(body, b, view, scratch);
         }
     }
@@ -183,12 +183,11 @@ static void find_state(struct body *body, double *scratch)
 
 static void evaluate(struct body *body, const double *u, double *force)
 {
-    body->keeps_state = body->conforming || body->averaged;
 #pragma omp parallel num_threads(body->threads)
     {
         double scratch[PAIRS_SCRATCH] __attribute__((aligned(64)));
         place_nodes(body, u);
-        if (body->keeps_state) {
+        if (body->F != NULL) {
             find_state(body, scratch);
         }
         if (body->conforming) {
@@ -199,19 +198,6 @@ static void evaluate(struct body *body, const double *u, double *force)
             force_points(body, scratch);
         }
         sum_nodes(body, force);
-    }
-}
-
-void body_keep_state(struct body *body)
-{
-    if (body->keeps_state) {
-        return;
-    }
-    body->keeps_state = true;
-#pragma omp parallel num_threads(body->threads)
-    {
-        double scratch[PAIRS_SCRATCH] __attribute__((aligned(64)));
-        find_state(body, scratch);
     }
 }
 
@@ -240,23 +226,38 @@ double body_volume(const struct body *body)
     return volume;
 }
 
+/* All but that of the averaged volumes. */
+static double point_energy(const struct body *body, int64_t q, const double F[9], double J)
+{
+    const struct material *material = &body->materials[body->material[q]];
+    double energy = material_shape_energy(material, F);
+    if (body->conforming) {
+        struct tie tie = stress_tie(body, q, F);
+        energy += 0.5 * tie.stiffness * tie.squares;
+    }
+    if (!body->averaged) {
+        energy += material_volume_energy(material, J);
+    }
+    return body->weight[q] * energy;
+}
+
 double body_energy(struct body *body, const double *u)
 {
-    double energy = 0.0, F[9];
-    body->keeps_state = false;
+    double scratch[PAIRS_SCRATCH] __attribute__((aligned(64))), energy = 0.0, F[9];
+    struct block_state state;
 #pragma omp parallel num_threads(body->threads)
-    place_nodes(body, u);
-    body_keep_state(body);
-    for (int64_t q = 0; q < body->point_count; q++) {
-        const struct material *material = &body->materials[body->material[q]];
-        stress_matrix(body->dim, body->F + q, body->point_count, F);
-        energy += body->weight[q] * material_shape_energy(material, F);
-        if (body->conforming) {
-            struct tie tie = stress_tie(body, q, F);
-            energy += 0.5 * body->weight[q] * tie.stiffness * tie.squares;
+    {
+        double of_thread[PAIRS_SCRATCH] __attribute__((aligned(64)));
+        place_nodes(body, u);
+        if (body->F != NULL) {
+            find_state(body, of_thread);
         }
-        if (!body->averaged) {
-            energy += body->weight[q] * material_volume_energy(material, body->J[q]);
+    }
+    for (int64_t b = 0; b < body->block_count; b++) {
+        struct block_view view = body_state(body, b, &state, scratch);
+        for (int64_t i = 0; i < body->blocks[b].point_count; i++) {
+            stress_matrix(body->dim, view.F + i, view.apart, F);
+            energy += point_energy(body, body->blocks[b].first_point + i, F, view.J[i]);
         }
     }
     return body->averaged ? energy + hats_energy(body) : energy;

@@ -179,8 +179,7 @@ KERNEL_INLINE void kernel_cell_neo_hookean(const struct body *body, const struct
         load_matrix(body->F + q, body->point_count, dim, F);
         load_matrix(body->cells.interpolant + q, body->point_count, dim, H);
         LOAD(weight, body->weight + q);
-        LOAD(shear, body->shear + q);
-        LOAD(bulk, body->bulk + q);
+        load_moduli(body, q, &shear, &bulk);
         LOAD(pressure, weighted_pressure + i);
         LOAD(strength, body->cells.strength + q);
         shear *= weight;

@@ -15,6 +15,16 @@ KERNEL_INLINE void load_matrix(const double *row, int64_t apart, int dim, lanes 
     }
 }
 
+/* Moduli of the points from q on, Pa. */
+KERNEL_INLINE void load_moduli(const struct body *body, int64_t q, lanes *shear, lanes *bulk)
+{
+    for (int i = 0; i < LANES; i++) {
+        const struct material *material = &body->materials[body->material[q + i]];
+        (*shear)[i] = material->shear_modulus;
+        (*bulk)[i] = material->bulk_modulus;
+    }
+}
+
 /* Cofactor J F^-T; in two dimensions that of the part in the plane. */
 KERNEL_INLINE void lanes_cofactor(const lanes F[9], int dim, lanes C[9])
 {
@@ -93,10 +103,11 @@ KERNEL_INLINE void inverse_cube_root(const lanes *x, lanes *root)
 KERNEL_INLINE void kernel_pressures(const struct body *body, const struct block *block, const double *J,
                                     int dim, double *pressure)
 {
-    const double *bulk = body->bulk + block->first_point, *weight = body->weight + block->first_point;
+    const int32_t *material = body->material + block->first_point;
+    const double *weight = body->weight + block->first_point;
     if (!body->averaged) {
         for (int64_t i = 0; i < block->point_count; i++) {
-            pressure[i] = weight[i] * bulk[i] * (J[i] - 1.0);
+            pressure[i] = weight[i] * body->materials[material[i]].bulk_modulus * (J[i] - 1.0);
         }
         return;
     }
@@ -139,14 +150,14 @@ KERNEL_INLINE void kernel_neo_hookean(const struct body *body, const struct bloc
     double weighted_pressure[PAIRS_MAX_ROWS];
     kernel_pressures(body, block, state.J, dim, weighted_pressure);
     for (int64_t i = 0; i < block->point_count; i += LANES) {
-        lanes F[9], C[9], J, weight, shear, pressure;
+        lanes F[9], C[9], J, weight, shear, bulk, pressure;
         struct lanes_shape shape;
         int64_t q = block->first_point + i;
         load_matrix(state.F + i, state.apart, dim, F);
         lanes_cofactor(F, dim, C);
         LOAD(J, state.J + i);
         LOAD(weight, body->weight + q);
-        LOAD(shear, body->shear + q);
+        load_moduli(body, q, &shear, &bulk);
         LOAD(pressure, weighted_pressure + i);
         shear *= weight;
         neo_hookean_shape(F, &J, &shear, dim, &shape);

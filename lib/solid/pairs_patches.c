@@ -7,7 +7,7 @@
 
 /* So many patches let any number of threads have its share; the forces of so many blocks stay in the second
  * cache. */
-enum { LEAST_PATCHES = 64, MOST_BLOCKS = 32 };
+enum { LEAST_PATCHES = 16, MOST_BLOCKS = 16 };
 
 static int64_t blocks_of_patch(const struct pairs *pairs)
 {

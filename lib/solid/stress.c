@@ -126,18 +126,27 @@ void stress_cells(const struct body *body, const struct block *block, block_rows
 
 void body_stress(struct body *body, double *stress)
 {
-    body_keep_state(body);
-    for (int64_t q = 0; q < body->point_count; q++) {
-        double F[9];
-        stress_matrix(body->dim, body->F + q, body->point_count, F);
-        point_stress(body, q, F, body->J[q], stress + body->order[q] * 9);
+    double scratch[PAIRS_SCRATCH] __attribute__((aligned(64))), F[9];
+    struct block_state state;
+    for (int64_t b = 0; b < body->block_count; b++) {
+        struct block_view view = body_state(body, b, &state, scratch);
+        for (int64_t i = 0; i < body->blocks[b].point_count; i++) {
+            int64_t q = body->blocks[b].first_point + i;
+            stress_matrix(body->dim, view.F + i, view.apart, F);
+            point_stress(body, q, F, view.J[i], stress + body->order[q] * 9);
+        }
     }
 }
 
 void body_gradient(struct body *body, double *gradient)
 {
-    body_keep_state(body);
-    for (int64_t q = 0; q < body->point_count; q++) {
-        stress_matrix(body->dim, body->F + q, body->point_count, gradient + body->order[q] * 9);
+    double scratch[PAIRS_SCRATCH] __attribute__((aligned(64)));
+    struct block_state state;
+    for (int64_t b = 0; b < body->block_count; b++) {
+        struct block_view view = body_state(body, b, &state, scratch);
+        for (int64_t i = 0; i < body->blocks[b].point_count; i++) {
+            int64_t q = body->blocks[b].first_point + i;
+            stress_matrix(body->dim, view.F + i, view.apart, gradient + body->order[q] * 9);
+        }
     }
 }

@@ -4,6 +4,9 @@
 
 #include "solid/kernel.h"
 
+/* F and J of a block at the last evaluation, kept or gathered anew into `state`. scratch: PAIRS_SCRATCH. */
+struct block_view body_state(struct body *body, int64_t block, struct block_state *state, double *scratch);
+
 /* A matrix of a point, 3 x 3 with 1 at the end in plane strain, from rows that lie so far apart. */
 void stress_matrix(int dim, const double *row, int64_t apart, double F[9]);
 

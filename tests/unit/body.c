@@ -262,7 +262,7 @@ static void patches(void **state)
         }
         assert_true(body.bound_parts.count > 1);
         body_diagonal(&body, force);
-        body.bound_parts = (struct chunks){sample.point_count, 1, 1};
+        body.bound_parts = (struct chunks){body.block_count, 1, 1};
         body_diagonal(&body, expected);
         for (int64_t n = 0; n < sample.cloud.node_count; n++) {
             NEAR_TO(force[n], expected[n], 1e-14 * expected[n]);
