@@ -49,8 +49,6 @@ static void stress_point_block(struct body *body, int64_t b, struct block_view s
     body->kernels->scatter(body, b, (const double(*)[PAIRS_MAX_ROWS])P, scratch);
 }
 
-/* Loops over blocks, hats and nodes, that threads share. */
-
 /* F and J of a block of points are kept where volumes are averaged. */
 static void keep_state(struct body *body, const struct block *block, const struct block_state *state)
 {
@@ -70,6 +68,8 @@ struct block_view body_state(struct body *body, int64_t b, struct block_state *s
     body->kernels->gather(body, b, state, scratch);
     return (struct block_view){state->F[0], state->J, PAIRS_MAX_ROWS};
 }
+
+/* Loops over blocks, hats and nodes, that threads share, are those below. */
 
 static void set_pressures(struct body *body)
 {
@@ -166,7 +166,7 @@ static void sum_nodes(const struct body *body, double *force)
     }
 }
 
-/* F, J and pressures, kept. */
+/* F, J and pressures, where they are kept. */
 static void find_state(struct body *body, double *scratch)
 {
     if (body->conforming) {
@@ -181,6 +181,7 @@ static void find_state(struct body *body, double *scratch)
     }
 }
 
+/* Internal forces at u. */
 static void evaluate(struct body *body, const double *u, double *force)
 {
 #pragma omp parallel num_threads(body->threads)
