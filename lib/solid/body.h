@@ -47,6 +47,7 @@ struct block {
     bool neo_hookean;                 /* all its points; else the general law */
     double least_jacobian;            /* at the last evaluation, and where, in the body's order */
     int64_t worst_point;
+    double energy; /* at the last call of body_energy, but for averaged volumes, J */
 };
 
 /* Volumes to average over: hat functions of the background nodes, one for each group of

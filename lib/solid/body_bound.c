@@ -22,17 +22,16 @@ struct bound {
     double A[9], tie;
 };
 
-static struct bound bound_at(const struct body *body, int64_t q, double F[9])
+static struct bound bound_at(const struct body *body, int64_t q, const double *F)
 {
+    static const double at_rest[9] = {1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0};
     const struct material *material = &body->materials[body->material[q]];
     struct bound bound = {.tie = 0.0};
     double C[9], I1 = 0.0;
     double J = determinant(F);
     if (!(J > 0.0 && isfinite(J))) { /* as at rest: its bounds stay positive until the run is told */
         J = 1.0;
-        for (int k = 0; k < 9; k++) {
-            F[k] = k % 4 == 0 ? 1.0 : 0.0;
-        }
+        F = at_rest;
     }
     cofactor(F, C);
     for (int k = 0; k < 9; k++) {
@@ -52,31 +51,17 @@ static struct bound bound_at(const struct body *body, int64_t q, double F[9])
     return bound;
 }
 
-static void add_point(const struct body *body, int64_t row, const struct bound *bound, double *stiffness)
+static void add_point(const struct body *body, int64_t q, const double F[9], double J, void *stiffness)
 {
-    double sum[64];
-    int64_t end = body->ptr[row + 1];
+    (void)J; /* of cells not det F */
+    struct bound bound = bound_at(body, q, F);
+    double sum[64], *of_node = stiffness;
+    int64_t row = body->order[q], end = body->ptr[row + 1];
     for (int64_t i = body->ptr[row]; i < end; i += 64) {
         int64_t count = end - i < 64 ? end - i : 64;
-        body->kernels->bounds(body->dphi + i * body->dim, count, bound->A, bound->tie, sum);
+        body->kernels->bounds(body->dphi + i * body->dim, count, bound.A, bound.tie, sum);
         for (int64_t k = 0; k < count; k++) {
-            stiffness[body->idx[i + k]] += sum[k];
-        }
-    }
-}
-
-static void add_blocks(struct body *body, int64_t first, int64_t last, double *stiffness)
-{
-    double scratch[PAIRS_SCRATCH] __attribute__((aligned(64))), F[9];
-    struct block_state state;
-    memset(stiffness, 0, (size_t)body->node_count * sizeof *stiffness);
-    for (int64_t b = first; b < last; b++) {
-        struct block_view view = body_state(body, b, &state, scratch);
-        for (int64_t i = 0; i < body->blocks[b].point_count; i++) {
-            int64_t q = body->blocks[b].first_point + i;
-            stress_matrix(body->dim, view.F + i, view.apart, F);
-            struct bound bound = bound_at(body, q, F);
-            add_point(body, body->order[q], &bound, stiffness);
+            of_node[body->idx[i + k]] += sum[k];
         }
     }
 }
@@ -89,7 +74,8 @@ void body_diagonal(struct body *body, double *stiffness)
 #pragma omp for schedule(static)
         for (int64_t p = 0; p < parts->count; p++) {
             double *sum = p == 0 ? stiffness : body->bound + (p - 1) * body->node_count;
-            add_blocks(body, chunks_begin(parts, p), chunks_begin(parts, p + 1), sum);
+            memset(sum, 0, (size_t)body->node_count * sizeof *sum);
+            body_visit(body, chunks_begin(parts, p), chunks_begin(parts, p + 1), add_point, sum);
         }
 #pragma omp for schedule(static)
         for (int64_t n = 0; n < body->node_count; n++) {

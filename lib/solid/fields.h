@@ -38,9 +38,9 @@ void fields_free(struct fields *fields);
 int fields_at_node(const struct fields *fields, int64_t node, int field[FIELDS_MOST_AT_NODE],
                    double value[FIELDS_MOST_AT_NODE]);
 
-/* amount[count * dim] = Z^T v: what nodal vectors, such as forces, do along each field, in each direction; or
- * Z^T (weight v) with a weight for each node, unless that is NULL. Threaded; the same bits for any number of
- * threads and on any processor, here and below. */
+/* amount[count * dim] = Z^T v, count > 0: what nodal vectors, such as forces, do along each field, in each
+ * direction; or Z^T (weight v) with a weight for each node, unless that is NULL. Threaded; the same bits for
+ * any number of threads and on any processor, here and below. */
 void fields_collect(const struct fields *fields, const double *weight, const double *v, double *amount);
 
 /* u[node_count * dim] += Z amount. */

@@ -59,7 +59,8 @@ static void keep_state(struct body *body, const struct block *block, const struc
     memcpy(body->J + block->first_point, state->J, size);
 }
 
-struct block_view body_state(struct body *body, int64_t b, struct block_state *state, double *scratch)
+/* F and J of a block at the last evaluation: kept, or gathered anew into `state`. */
+static struct block_view state_of(struct body *body, int64_t b, struct block_state *state, double *scratch)
 {
     int64_t first = body->blocks[b].first_point;
     if (body->F != NULL) {
@@ -69,8 +70,20 @@ struct block_view body_state(struct body *body, int64_t b, struct block_state *s
     return (struct block_view){state->F[0], state->J, PAIRS_MAX_ROWS};
 }
 
-/* Loops over blocks, hats and nodes, that threads share, are those below. */
+void body_visit(struct body *body, int64_t first, int64_t last, body_visitor *visit, void *context)
+{
+    double scratch[PAIRS_SCRATCH] __attribute__((aligned(64))), F[9];
+    struct block_state state;
+    for (int64_t b = first; b < last; b++) {
+        struct block_view view = state_of(body, b, &state, scratch);
+        for (int64_t i = 0; i < body->blocks[b].point_count; i++) {
+            stress_matrix(body->dim, view.F + i, view.apart, F);
+            visit(body, body->blocks[b].first_point + i, F, view.J[i], context);
+        }
+    }
+}
 
+/* What threads share: loops over hats, blocks, patches and nodes. */
 static void set_pressures(struct body *body)
 {
 #pragma omp for schedule(static)
@@ -100,7 +113,7 @@ static void force_points(struct body *body, double *scratch)
         pairs_clear_forces(pairs, patch);
         for (int64_t b = patch->first_block; b < patch->first_block + patch->block_count; b++) {
             struct block_state state;
-            struct block_view view = body_state(body, b, &state, scratch);
+            struct block_view view = state_of(body, b, &state, scratch);
             stress_point_block(body, b, view, scratch);
         }
     }
@@ -227,39 +240,44 @@ double body_volume(const struct body *body)
     return volume;
 }
 
-/* All but that of the averaged volumes. */
-static double point_energy(const struct body *body, int64_t q, const double F[9], double J)
+/* Energy of a point, but for averaged volumes, added to *energy. */
+static void add_energy(const struct body *body, int64_t q, const double F[9], double J, void *energy)
 {
     const struct material *material = &body->materials[body->material[q]];
-    double energy = material_shape_energy(material, F);
+    double sum = material_shape_energy(material, F);
     if (body->conforming) {
         struct tie tie = stress_tie(body, q, F);
-        energy += 0.5 * tie.stiffness * tie.squares;
+        sum += 0.5 * tie.stiffness * tie.squares;
     }
     if (!body->averaged) {
-        energy += material_volume_energy(material, J);
+        sum += material_volume_energy(material, J);
     }
-    return body->weight[q] * energy;
+    *(double *)energy += body->weight[q] * sum;
+}
+
+static void set_state(struct body *body, const double *u)
+{
+#pragma omp parallel num_threads(body->threads)
+    {
+        double scratch[PAIRS_SCRATCH] __attribute__((aligned(64)));
+        place_nodes(body, u);
+        if (body->F != NULL) {
+            find_state(body, scratch);
+        }
+    }
 }
 
 double body_energy(struct body *body, const double *u)
 {
-    double scratch[PAIRS_SCRATCH] __attribute__((aligned(64))), energy = 0.0, F[9];
-    struct block_state state;
-#pragma omp parallel num_threads(body->threads)
-    {
-        double of_thread[PAIRS_SCRATCH] __attribute__((aligned(64)));
-        place_nodes(body, u);
-        if (body->F != NULL) {
-            find_state(body, of_thread);
-        }
+    double energy = 0.0;
+    set_state(body, u);
+#pragma omp parallel for schedule(static) num_threads(body->threads)
+    for (int64_t b = 0; b < body->block_count; b++) {
+        body->blocks[b].energy = 0.0;
+        body_visit(body, b, b + 1, add_energy, &body->blocks[b].energy);
     }
     for (int64_t b = 0; b < body->block_count; b++) {
-        struct block_view view = body_state(body, b, &state, scratch);
-        for (int64_t i = 0; i < body->blocks[b].point_count; i++) {
-            stress_matrix(body->dim, view.F + i, view.apart, F);
-            energy += point_energy(body, body->blocks[b].first_point + i, F, view.J[i]);
-        }
+        energy += body->blocks[b].energy;
     }
     return body->averaged ? energy + hats_energy(body) : energy;
 }

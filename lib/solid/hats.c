@@ -23,6 +23,12 @@ static int compare_hats(const void *left, const void *right)
     return (a->slot > b->slot) - (a->slot < b->slot);
 }
 
+/* For means over a hat: those of one without volume, as all its values are zero, are 0. */
+static double divisor_of(const struct volume_hats *hats, int64_t a)
+{
+    return hats->volume[a] > 0.0 ? hats->volume[a] : 1.0;
+}
+
 /* The law of each hat: that of its points, or of the mean moduli where they differ. */
 static enum status choose_hat_laws(struct body *body, struct error *error)
 {
@@ -37,7 +43,7 @@ static enum status choose_hat_laws(struct body *body, struct error *error)
         for (int64_t i = hats->ptr[a]; i < hats->ptr[a + 1]; i++) {
             int32_t number = body->material[hats->slot[i] / corners];
             const struct material *material = &body->materials[number];
-            double share = hats->share[hats->slot[i]] / hats->volume[a];
+            double share = hats->share[hats->slot[i]] / divisor_of(hats, a);
             is_mixed = is_mixed || number != first;
             mean.shear_modulus += share * material->shear_modulus;
             mean.bulk_modulus += share * material->bulk_modulus;
@@ -117,9 +123,8 @@ static inline __attribute__((always_inline)) void average_hat(const struct body 
         sum += part;
         squares += part * difference;
     }
-    double volume = hats->volume[a] > 0.0 ? hats->volume[a] : 1.0; /* none: all its hat values are zero */
-    sum /= volume;
-    squares /= volume;
+    sum /= divisor_of(hats, a);
+    squares /= divisor_of(hats, a);
     *mean = 1.0 + sum;
     *variance = squares > sum * sum ? squares - sum * sum : 0.0;
 }

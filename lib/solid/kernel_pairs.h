@@ -282,6 +282,10 @@ KERNEL_INLINE void gather_gradients(const struct pairs *pairs, int64_t b, struct
             STORE(F[k] + g * PAIRS_GROUP, sum[k]);
         }
     }
+    for (int k = 0; block->group_count * PAIRS_GROUP % LANES != 0 && k < dim * dim; k++) { /* whole vectors */
+        quad4 rest = k % (dim + 1) == 0 ? (quad4){1.0, 1.0, 1.0, 1.0} : (quad4){0.0};
+        STORE(F[k] + block->group_count * PAIRS_GROUP, rest);
+    }
 }
 
 /* f_j = sum_q P_q grad phi_j */

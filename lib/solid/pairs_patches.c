@@ -1,30 +1,32 @@
 #include "solid/pairs_patches.h"
 
+#include "base/chunks.h"
 #include "base/memory.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-/* So many patches let any number of threads have its share; the forces of so many blocks stay in the second
- * cache. */
-enum { LEAST_PATCHES = 16, MOST_BLOCKS = 16 };
+/* Up to so many threads have their share of any table that has as many blocks; the forces of so many blocks
+ * stay in the second cache. */
+enum { LEAST_PATCHES = 32, MOST_BLOCKS = 16 };
 
-static int64_t blocks_of_patch(const struct pairs *pairs)
+static int64_t count_patches(int64_t blocks)
 {
-    int64_t blocks = pairs->block_count / LEAST_PATCHES;
-    return blocks < 1 ? 1 : blocks > MOST_BLOCKS ? MOST_BLOCKS : blocks;
+    int64_t least = blocks < LEAST_PATCHES ? blocks : LEAST_PATCHES;
+    int64_t count = (blocks + MOST_BLOCKS - 1) / MOST_BLOCKS;
+    return count > least ? count : least;
 }
 
 static enum status cut_patches(struct pairs *pairs, struct error *error)
 {
     enum status status;
-    int64_t most = blocks_of_patch(pairs);
-    pairs->patch_count = (pairs->block_count + most - 1) / most;
+    struct chunks even = {pairs->block_count, count_patches(pairs->block_count), 1};
+    pairs->patch_count = even.count;
     TRY(NEW_ARRAY(&pairs->patches, pairs->patch_count, error));
     for (int64_t p = 0; p < pairs->patch_count; p++) {
-        int64_t left = pairs->block_count - p * most;
-        pairs->patches[p] =
-            (struct pair_patch){.first_block = p * most, .block_count = left < most ? left : most};
+        struct pair_patch *patch = &pairs->patches[p];
+        patch->first_block = chunks_begin(&even, p);
+        patch->block_count = chunks_begin(&even, p + 1) - patch->first_block;
     }
 done:
     return status;

@@ -124,29 +124,23 @@ void stress_cells(const struct body *body, const struct block *block, block_rows
     }
 }
 
+static void put_stress(const struct body *body, int64_t q, const double F[9], double J, void *stress)
+{
+    point_stress(body, q, F, J, (double *)stress + body->order[q] * 9);
+}
+
 void body_stress(struct body *body, double *stress)
 {
-    double scratch[PAIRS_SCRATCH] __attribute__((aligned(64))), F[9];
-    struct block_state state;
-    for (int64_t b = 0; b < body->block_count; b++) {
-        struct block_view view = body_state(body, b, &state, scratch);
-        for (int64_t i = 0; i < body->blocks[b].point_count; i++) {
-            int64_t q = body->blocks[b].first_point + i;
-            stress_matrix(body->dim, view.F + i, view.apart, F);
-            point_stress(body, q, F, view.J[i], stress + body->order[q] * 9);
-        }
-    }
+    body_visit(body, 0, body->block_count, put_stress, stress);
+}
+
+static void put_gradient(const struct body *body, int64_t q, const double F[9], double J, void *gradient)
+{
+    (void)J;
+    memcpy((double *)gradient + body->order[q] * 9, F, 9 * sizeof *F);
 }
 
 void body_gradient(struct body *body, double *gradient)
 {
-    double scratch[PAIRS_SCRATCH] __attribute__((aligned(64)));
-    struct block_state state;
-    for (int64_t b = 0; b < body->block_count; b++) {
-        struct block_view view = body_state(body, b, &state, scratch);
-        for (int64_t i = 0; i < body->blocks[b].point_count; i++) {
-            int64_t q = body->blocks[b].first_point + i;
-            stress_matrix(body->dim, view.F + i, view.apart, gradient + body->order[q] * 9);
-        }
-    }
+    body_visit(body, 0, body->block_count, put_gradient, gradient);
 }

@@ -4,8 +4,10 @@
 
 #include "solid/kernel.h"
 
-/* F and J of a block at the last evaluation, kept or gathered anew into `state`. scratch: PAIRS_SCRATCH. */
-struct block_view body_state(struct body *body, int64_t block, struct block_state *state, double *scratch);
+/* Visit the points of blocks first .. last - 1 with F and J at the last evaluation. Where these are not kept
+ * they are gathered anew, into the thread's stack; a block's least determinant is noted again, as it was. */
+typedef void body_visitor(const struct body *body, int64_t point, const double F[9], double J, void *context);
+void body_visit(struct body *body, int64_t first, int64_t last, body_visitor *visit, void *context);
 
 /* A matrix of a point, 3 x 3 with 1 at the end in plane strain, from rows that lie so far apart. */
 void stress_matrix(int dim, const double *row, int64_t apart, double F[9]);

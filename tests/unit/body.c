@@ -260,8 +260,17 @@ static void patches(void **state)
         for (int64_t k = 0; k < count && !by_faces; k++) {
             NEAR_TO(force[k], expected[k], 1e-12 * largest(expected, count));
         }
+        memcpy(expected, force, (size_t)count * sizeof *force);
+        for (body.threads = 2; body.threads <= 3; body.threads++) {
+            (void)body_force(&body, u, force);
+            assert_memory_equal(force, expected, (size_t)count * sizeof *force);
+        }
         assert_true(body.bound_parts.count > 1);
-        body_diagonal(&body, force);
+        body_diagonal(&body, expected);
+        for (body.bound_parts.threads = 2; body.bound_parts.threads <= 3; body.bound_parts.threads++) {
+            body_diagonal(&body, force);
+            assert_memory_equal(force, expected, (size_t)sample.cloud.node_count * sizeof *force);
+        }
         body.bound_parts = (struct chunks){body.block_count, 1, 1};
         body_diagonal(&body, expected);
         for (int64_t n = 0; n < sample.cloud.node_count; n++) {

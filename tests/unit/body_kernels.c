@@ -169,6 +169,38 @@ static void hats(void **state)
     }
 }
 
+/* Hats of no volume, between two materials of a group, count for nothing. */
+static void empty_hats(void **state)
+{
+    (void)state;
+    struct body body;
+    struct error error;
+    struct material material[2] = {make_material(MATERIAL_NEO_HOOKEAN, 3000.0),
+                                   make_material(MATERIAL_NEO_HOOKEAN, 6000.0)};
+    struct body_input input = {.dim = 2,
+                               .node_count = 4,
+                               .point_count = 2,
+                               .x = (double[]){0.6, 0.3, 0.3, 0.6},
+                               .weight = (double[]){0.5, 0.5},
+                               .ptr = (int64_t[]){0, 3, 6},
+                               .idx = (int32_t[]){0, 1, 2, 0, 2, 3},
+                               .dphi = (double[]){-1, 0, 1, -1, 0, 1, 0, -1, 1, 0, -1, 1},
+                               .materials = material,
+                               .material = (int32_t[]){0, 1},
+                               .material_count = 2,
+                               .group = (int32_t[]){0, 0},
+                               .hat_node = (int32_t[]){0, 1, 2, 0, 3, 2},
+                               .hat_value = (double[]){0.5, 0.5, 0.0, 0.4, 0.6, 0.0}};
+    double u[8] = {0.0, 0.0, 0.1, 0.0, 0.0, 0.2, 0.0, 0.1}, force[8];
+    GOOD(body_build(&input, &body, &error));
+    (void)body_force(&body, u, force);
+    for (int i = 0; i < 8; i++) {
+        assert_true(isfinite(force[i]));
+    }
+    assert_true(body_energy(&body, u) > 0.0);
+    body_free(&body);
+}
+
 /* The bound of the stiffness, at rest and deformed: no diagonal entry exceeds it, and at rest, also by means
  * over faces, the sum over the components is known. */
 static void diagonal(void **state)
@@ -271,7 +303,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(threads),          cmocka_unit_test(instructions), cmocka_unit_test(whole_share),
         cmocka_unit_test(single_precision), cmocka_unit_test(hats),         cmocka_unit_test(diagonal),
-        cmocka_unit_test(inversion),
+        cmocka_unit_test(inversion),        cmocka_unit_test(empty_hats),
     };
     return cmocka_run_group_tests(tests, make_samples, free_samples);
 }
