@@ -301,14 +301,11 @@ KERNEL_INLINE bool kernel_evaluate(const struct mls *mls, const struct mls_suppo
     static const struct mls_kernels set##_kernels = {                                                        \
         #set, {linear_2_##set, linear_3_##set}, {quadratic_2_##set, quadratic_3_##set}};
 
-#define NO_ATTRIBUTE
-KERNEL_SET(plain, NO_ATTRIBUTE)
+KERNEL_SET(plain, PLAIN_SET)
 
 #if defined(__x86_64__)
-#define AVX2 __attribute__((target("avx2")))
-#define AVX512 __attribute__((target("avx512f,avx512dq,avx512vl,avx512bw,avx2")))
-KERNEL_SET(avx2, AVX2)
-KERNEL_SET(avx512, AVX512)
+KERNEL_SET(avx2, AVX2_SET)
+KERNEL_SET(avx512, AVX512_SET)
 #endif
 
 const struct mls_kernels *mls_kernels_named(const char *name)

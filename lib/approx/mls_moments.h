@@ -4,9 +4,9 @@
 #ifndef APPROX_MLS_MOMENTS_H
 #define APPROX_MLS_MOMENTS_H
 
-#include <stdint.h>
+#include "base/processor.h"
 
-#define KERNEL_INLINE static inline __attribute__((always_inline))
+#include <stdint.h>
 
 /* Before the loops over monomials: in full, so that what they index stays in registers. */
 #define UNROLL _Pragma("GCC unroll 10")

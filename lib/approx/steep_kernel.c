@@ -208,14 +208,11 @@ KERNEL_INLINE void bound_lanes(int dim, int m, struct steep_group *group, const 
     static const struct steep_kernels set##_kernels = {                                                      \
         #set, {linear_2_##set, linear_3_##set}, {quadratic_2_##set, quadratic_3_##set}};
 
-#define NO_ATTRIBUTE
-KERNEL_SET(plain, NO_ATTRIBUTE)
+KERNEL_SET(plain, PLAIN_SET)
 
 #if defined(__x86_64__)
-#define AVX2 __attribute__((target("avx2")))
-#define AVX512 __attribute__((target("avx512f,avx512dq,avx512vl,avx512bw,avx2")))
-KERNEL_SET(avx2, AVX2)
-KERNEL_SET(avx512, AVX512)
+KERNEL_SET(avx2, AVX2_SET)
+KERNEL_SET(avx512, AVX512_SET)
 #endif
 
 const struct steep_kernels *steep_kernels_named(const char *name)

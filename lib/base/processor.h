@@ -1,4 +1,4 @@
-/* What the processor can do, for kernels that are compiled for several instruction sets. */
+/* Kernels that are compiled for several instruction sets, and which of these the processor runs. */
 #ifndef BASE_PROCESSOR_H
 #define BASE_PROCESSOR_H
 
@@ -7,6 +7,12 @@
 /* Whether it runs code for "plain" (always), "avx2", "avx512" (its f, dq, vl and bw) or "fma"; false for any
  * other name. */
 bool processor_has(const char *set);
+
+/* A part of such kernels; and the attribute of one for each set. */
+#define KERNEL_INLINE static inline __attribute__((always_inline))
+#define PLAIN_SET
+#define AVX2_SET __attribute__((target("avx2")))
+#define AVX512_SET __attribute__((target("avx512f,avx512dq,avx512vl,avx512bw,avx2")))
 
 /* The last of "plain", "avx2", "avx512" that it runs. */
 const char *processor_best_set(void);

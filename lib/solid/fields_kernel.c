@@ -4,8 +4,6 @@
 
 #include <string.h>
 
-#define KERNEL_INLINE static inline __attribute__((always_inline))
-
 typedef double four_centres __attribute__((vector_size(32)));
 typedef double two_centres __attribute__((vector_size(16)));
 
@@ -84,12 +82,11 @@ KERNEL_INLINE void add(const struct fields *fields, int dim, int64_t begin, int6
     }                                                                                                        \
     static const struct field_kernels kernels_##set = {collect_##set, add_##set};
 
-#define NO_ATTRIBUTE
-KERNEL_SET(plain, NO_ATTRIBUTE)
+KERNEL_SET(plain, PLAIN_SET)
 
 #if defined(__x86_64__)
-KERNEL_SET(avx2, __attribute__((target("avx2"))))
-KERNEL_SET(avx512, __attribute__((target("avx512f,avx512dq,avx512vl,avx512bw,avx2"))))
+KERNEL_SET(avx2, AVX2_SET)
+KERNEL_SET(avx512, AVX512_SET)
 #endif
 
 const struct field_kernels *field_kernels_of(const char *set)

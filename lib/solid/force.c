@@ -179,14 +179,15 @@ static void sum_nodes(const struct body *body, double *force)
     }
 }
 
-/* F, J and pressures, where they are kept. */
-static void find_state(struct body *body, double *scratch)
+/* The displacements, and where they are kept F, J and pressures. */
+static void set_state(struct body *body, const double *u, double *scratch)
 {
+    place_nodes(body, u);
     if (body->conforming) {
         gather_means(body, &body->cells.faces, scratch);
         gather_means(body, &body->cells.nodes, scratch);
         gather_cells(body);
-    } else {
+    } else if (body->averaged) {
         gather_points(body, scratch);
     }
     if (body->averaged) {
@@ -200,10 +201,7 @@ static void evaluate(struct body *body, const double *u, double *force)
 #pragma omp parallel num_threads(body->threads)
     {
         double scratch[PAIRS_SCRATCH] __attribute__((aligned(64)));
-        place_nodes(body, u);
-        if (body->F != NULL) {
-            find_state(body, scratch);
-        }
+        set_state(body, u, scratch);
         if (body->conforming) {
             force_cells(body);
             scatter_means(body, &body->cells.faces, scratch);
@@ -255,22 +253,14 @@ static void add_energy(const struct body *body, int64_t q, const double F[9], do
     *(double *)energy += body->weight[q] * sum;
 }
 
-static void set_state(struct body *body, const double *u)
-{
-#pragma omp parallel num_threads(body->threads)
-    {
-        double scratch[PAIRS_SCRATCH] __attribute__((aligned(64)));
-        place_nodes(body, u);
-        if (body->F != NULL) {
-            find_state(body, scratch);
-        }
-    }
-}
-
 double body_energy(struct body *body, const double *u)
 {
     double energy = 0.0;
-    set_state(body, u);
+#pragma omp parallel num_threads(body->threads)
+    {
+        double scratch[PAIRS_SCRATCH] __attribute__((aligned(64)));
+        set_state(body, u, scratch);
+    }
 #pragma omp parallel for schedule(static) num_threads(body->threads)
     for (int64_t b = 0; b < body->block_count; b++) {
         body->blocks[b].energy = 0.0;

@@ -4,7 +4,7 @@
 
 #include "base/processor.h"
 #include "solid/kernel_cells.h"
-#include "solid/kernel_pairs.h"
+#include "solid/kernel_means.h"
 
 #define KERNEL_SET(set, dim, attribute)                                                                      \
     attribute static void place_##set##_##dim(struct body *body, int64_t first, int64_t last,                \
@@ -75,17 +75,17 @@
         .neo_hookean = neo_hookean_##set##_##dim,                                                            \
         .bounds = bounds_##set##_##dim};
 
-#define NO_ATTRIBUTE
-KERNEL_SET(plain, 2, NO_ATTRIBUTE)
-KERNEL_SET(plain, 3, NO_ATTRIBUTE)
+KERNEL_SET(plain, 2, PLAIN_SET)
+KERNEL_SET(plain, 3, PLAIN_SET)
 
 #if defined(__x86_64__)
-#define AVX2 __attribute__((target("avx2,fma")))
-#define AVX512 __attribute__((target("avx512f,avx512dq,avx512vl,avx512bw,avx2,fma")))
-KERNEL_SET(avx2, 2, AVX2)
-KERNEL_SET(avx2, 3, AVX2)
-KERNEL_SET(avx512, 2, AVX512)
-KERNEL_SET(avx512, 3, AVX512)
+/* Unlike others, these may fuse multiplications. */
+#define AVX2_FUSED __attribute__((target("avx2,fma")))
+#define AVX512_FUSED __attribute__((target("avx512f,avx512dq,avx512vl,avx512bw,avx2,fma")))
+KERNEL_SET(avx2, 2, AVX2_FUSED)
+KERNEL_SET(avx2, 3, AVX2_FUSED)
+KERNEL_SET(avx512, 2, AVX512_FUSED)
+KERNEL_SET(avx512, 3, AVX512_FUSED)
 #endif
 
 const struct force_kernels *force_kernels_select(const char *name, int dim)

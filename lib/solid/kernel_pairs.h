@@ -180,16 +180,13 @@ KERNEL_INLINE void add_vectors(const quad4 x[4], int dim, double *const to[PAIRS
     }
 }
 
-/* Forces on a node in lanes stand so many doubles apart. */
-#define LANES_STRIDE(dim) ((dim) == 2 ? 12 : 16)
-
 /* What a group puts on its nodes: lane_forces has for each node and component a vector along the rows, and
  * behind them, as a vector of components, what comes from entries that the rows do not share. */
 KERNEL_INLINE void scatter_group(const struct pair_group *group, struct reading how, const quad4 factor[9],
                                  double *restrict lane_forces, struct cursor *cursor)
 {
     int32_t shared = group->shared, own = group->own;
-    int apart = LANES_STRIDE(how.dim) / PAIRS_STRIDE(how.dim);
+    int apart = PAIRS_LANES(how.dim) / PAIRS_STRIDE(how.dim);
     for (; shared > 0; shared--) {
         double *to = lane_forces + cursor->offset[0] * apart;
         quad4 x[4];
@@ -229,7 +226,7 @@ KERNEL_INLINE void localise(const struct pairs *pairs, int64_t b, int dim, const
 /* Forces of a block on its nodes: none yet. */
 KERNEL_INLINE void clear_lanes(const struct pair_block *block, int dim, double *lane_forces)
 {
-    memset(lane_forces, 0, (size_t)(block->node_count * LANES_STRIDE(dim)) * sizeof *lane_forces);
+    memset(lane_forces, 0, (size_t)(block->node_count * PAIRS_LANES(dim)) * sizeof *lane_forces);
 }
 
 /* Add them to those of the patch. */
@@ -237,7 +234,7 @@ KERNEL_INLINE void sum_lanes(struct pairs *pairs, int64_t b, int dim, const doub
 {
     const struct pair_block *block = &pairs->blocks[b];
     const int32_t *place = pairs->block_place + block->first_node;
-    for (int64_t i = 0; i < block->node_count; i++, lane_forces += LANES_STRIDE(dim)) {
+    for (int64_t i = 0; i < block->node_count; i++, lane_forces += PAIRS_LANES(dim)) {
         double *force = pairs->patch_force + (int64_t)place[i] * PAIRS_STRIDE(dim);
         quad4 row[4] = {{0.0}};
         for (int a = 0; a < dim; a++) {
@@ -305,60 +302,6 @@ KERNEL_INLINE void scatter_gradients(struct pairs *pairs, int64_t b, struct read
     sum_lanes(pairs, b, how.dim, lane_forces);
 }
 
-/* Means of a block. */
-KERNEL_INLINE void gather_means(struct means *means, int64_t b, struct reading how,
-                                const double *restrict local)
-{
-    const struct pair_block *block = &means->pairs.blocks[b];
-    struct cursor cursor = start_block(&means->pairs, b, how, false);
-    for (int64_t g = block->first_group; g < block->first_group + block->group_count; g++) {
-        quad4 mean[9] = {{0.0}};
-        gather_group(&means->pairs.groups[g], how, local, &cursor, mean);
-        store_components(mean, how.dim, means->value + g * PAIRS_GROUP * PAIRS_STRIDE(how.dim));
-    }
-}
-
-/* What the corners put on the means of a group, each component a vector along the means. */
-#define SUM_CORNERS(dim, vector)                                                                             \
-    KERNEL_INLINE void sum_corners_##dim(const struct means *means, int64_t group, quad4 total[4])           \
-    {                                                                                                        \
-        vector sum[PAIRS_GROUP] = {{0.0}}, force;                                                            \
-        double sums[PAIRS_GROUP][sizeof(vector) / sizeof(double)];                                           \
-        const double *const from[PAIRS_GROUP] = {sums[0], sums[1], sums[2], sums[3]};                        \
-        for (int64_t i = means->corner_ptr[group]; i < means->corner_ptr[group + 1]; i++) {                  \
-            for (int r = 0; r < PAIRS_GROUP; r++) {                                                          \
-                int64_t corner = means->corner[i * PAIRS_GROUP + r];                                         \
-                LOAD(force, means->corner_force + corner * PAIRS_STRIDE(dim));                               \
-                sum[r] += force;                                                                             \
-            }                                                                                                \
-        }                                                                                                    \
-        for (int r = 0; r < PAIRS_GROUP; r++) {                                                              \
-            STORE(sums[r], sum[r]);                                                                          \
-        }                                                                                                    \
-        load_components(from, dim, total);                                                                   \
-    }
-SUM_CORNERS(2, pair2)
-SUM_CORNERS(3, quad4)
-
-/* The transpose, of what the corners put on the means. */
-KERNEL_INLINE void scatter_means(struct means *means, int64_t b, struct reading how,
-                                 double *restrict lane_forces)
-{
-    const struct pair_block *block = &means->pairs.blocks[b];
-    struct cursor cursor = start_block(&means->pairs, b, how, true);
-    clear_lanes(block, how.dim, lane_forces);
-    for (int64_t g = block->first_group; g < block->first_group + block->group_count; g++) {
-        quad4 total[9];
-        if (how.dim == 2) {
-            sum_corners_2(means, g, total);
-        } else {
-            sum_corners_3(means, g, total);
-        }
-        scatter_group(&means->pairs.groups[g], how, total, lane_forces, &cursor);
-    }
-    sum_lanes(&means->pairs, b, how.dim, lane_forces);
-}
-
 /* Each for the table's precision. */
 KERNEL_INLINE void kernel_gather(const struct pairs *pairs, int64_t b, int dim, const double *u, block_rows F,
                                  double *scratch)
@@ -378,26 +321,6 @@ KERNEL_INLINE void kernel_scatter(struct pairs *pairs, int64_t b, int dim, const
         scatter_gradients(pairs, b, (struct reading){dim, dim, false}, P, scratch);
     } else {
         scatter_gradients(pairs, b, (struct reading){dim, dim, true}, P, scratch);
-    }
-}
-
-KERNEL_INLINE void kernel_gather_means(struct means *means, int64_t b, int dim, const double *u,
-                                       double *scratch)
-{
-    localise(&means->pairs, b, dim, u, scratch);
-    if (means->pairs.value != NULL) {
-        gather_means(means, b, (struct reading){dim, 1, false}, scratch);
-    } else {
-        gather_means(means, b, (struct reading){dim, 1, true}, scratch);
-    }
-}
-
-KERNEL_INLINE void kernel_scatter_means(struct means *means, int64_t b, int dim, double *scratch)
-{
-    if (means->pairs.value != NULL) {
-        scatter_means(means, b, (struct reading){dim, 1, false}, scratch);
-    } else {
-        scatter_means(means, b, (struct reading){dim, 1, true}, scratch);
     }
 }
 

@@ -3,12 +3,11 @@
 #ifndef SOLID_KERNEL_VECTOR_H
 #define SOLID_KERNEL_VECTOR_H
 
+#include "base/processor.h"
 #include "solid/body.h"
 
 #include <stdint.h>
 #include <string.h>
-
-#define KERNEL_INLINE static inline __attribute__((always_inline))
 
 typedef double pair2 __attribute__((vector_size(16)));
 typedef double quad4 __attribute__((vector_size(32)));

@@ -25,13 +25,17 @@
 /* Rows of a group. */
 #define PAIRS_GROUP 4
 
+/* Forces on a node in lanes stand so many doubles apart: for each component one for each row of a group, and
+ * behind these a vector of components. */
+#define PAIRS_LANES(dim) ((dim) == 2 ? 12 : 16)
+
 /* The most rows of a block. */
 #define PAIRS_MAX_ROWS 128
 
 /* The most nodes a block may hold, and the doubles that a thread needs on its stack for them: their
  * displacements, or their forces in each lane and behind them. */
 #define PAIRS_MAX_NODES 8192
-#define PAIRS_SCRATCH (PAIRS_MAX_NODES * 16)
+#define PAIRS_SCRATCH (PAIRS_MAX_NODES * PAIRS_LANES(3))
 
 struct pair_block {
     int64_t first_row, row_count;
