@@ -38,8 +38,8 @@ setup() {
     for command in "ipoints -g 5x" "ipoints -c -g 3" "ipoints --lattice 1" "ipoints --lattice 3,x" "ipoints --lattice 2.5" \
         "ipoints -g 3 --lattice 4,4" "support -k 0" "support -k nan" "support -R 8parsec" "support -R -3mm" \
         "support -k 2 -R 8mm" "support -m 9 -n 5" "support -n 0" "support -b mls3" "support -w gauss" "support --mu -1" \
-        "support --mu 1,2" "support --mu-unit mm" "support --bound 0.1" "support --ends 0" \
-        "support --corners x" "shapefn --mu 1,2,3,4" "shapefn -b spline" \
+        "support --mu 1,2" "support --mu-unit mm" "support --bound 0.1" \
+        "shapefn --mu 1,2,3,4" "shapefn -b spline" \
         "shapefn --mu 1e-7 --mu-unit foot"; do
         run -2 --separate-stderr $command < /dev/null
         [[ "$stderr" == "${command%% *}: "* ]]
@@ -270,24 +270,6 @@ END
         widened=$(mts print "${list%%:*}.widen" lists.mts | awk '$1 > 1 { n++ } END { print n + 0 }')
         grep -Fx "$report $widened" <<< "$stderr"
     done
-}
-
-@test "supports: a share of the radius beside ends of groups of facets, of local radii only" {
-    ipoints square.mts > points.mts
-    radii() { support "$@" | mts print support.radius; }
-    paste <(mts print nodes.x points.mts) <(radii --corners 1 points.mts) <(radii points.mts) <(radii --corners 0.5 points.mts) > radii
-    # The four sides of a square end at its corners: those beside them are in a cell with one.
-    paste <(seq 0 48) <(mts print nodes.x points.mts) | awk '($2 == 0 || $2 > 0.09999) && ($3 == 0 || $3 > 0.09999) { print $1 }' > ends
-    [ "$(wc -l < ends)" -eq 4 ]
-    mts print cells points.mts | awk 'NR == FNR { end[$1]; next }
-        { for (i = 1; i <= 3; i++) if ($i in end) { for (k = 1; k <= 3; k++) if (!($k in end)) print $k } }' ends - | sort -un > beside
-    awk 'function off(a, b) { return (a / b - 1) ^ 2 > 1e-24 }
-        NR == FNR { at[$1]; next }
-        { near = FNR - 1 in at; n[near]++; if (off($4, (near ? 0.8 : 1) * $3) || off($5, (near ? 0.5 : 1) * $3)) exit 1 }
-        END { exit !(n[1] >= 8 && n[0] > n[1]) }' beside radii
-    radii -R 30mm --corners 0.5 points.mts | sort -u | grep -c . | grep -Fx 1
-    # Without groups there are no ends.
-    cmp <(mts keep 'nodes.*,cells,cells.*' square.mts | ipoints | radii) <(radii --corners 1 points.mts)
 }
 
 @test "supports: groups of facets out of range are refused" {

@@ -1,7 +1,7 @@
 static const char usage[] =
     "support - support domains and neighbour lists\n"
     "\n"
-    "usage: support [-k FACTOR | -R RADIUS] [--ends SHARE] [--corners SHARE] [-m LEAST] [-n MOST]\n"
+    "usage: support [-k FACTOR | -R RADIUS] [-m LEAST] [-n MOST]\n"
     "               [--no-widen] [--bound BOUND] [-b BASIS] [-w WEIGHT] [--mu MU] [--mu-unit UNIT]\n"
     "               [-v] [-t] [-o FILE] [FILE]\n"
     "\n"
@@ -15,11 +15,8 @@ static const char usage[] =
     "\n"
     "Options:\n"
     "  -k, --factor FACTOR    radius = FACTOR times the local node spacing (default 1.8, in 3D\n"
-    "                         1.9)\n"
+    "                         2.2)\n"
     "  -R, --radius RADIUS    constant radius: a length with its unit, e.g. 8mm (without one: m)\n"
-    "      --ends SHARE       of that radius for the nodes beside those where a group of facets ends,\n"
-    "                         in cells with them (default 0.7, in 3D 1; a radius of -R stays)\n"
-    "      --corners SHARE    where the boundary turns sharply at these (default 0.8, in 3D 1)\n"
     "  -m, --least LEAST      widen until at least so many neighbours\n"
     "  -n, --most MOST        keep only the MOST nearest neighbours (ties: the lower index)\n"
     "      --no-widen         leave unfit supports as they are, for shapefn to report\n"
@@ -44,8 +41,6 @@ static const char usage[] =
 enum {
     FACTOR,
     RADIUS,
-    ENDS,
-    CORNERS,
     LEAST,
     MOST,
     NO_WIDEN,
@@ -63,15 +58,6 @@ static struct support_options parse(const struct tool *tool, const struct option
     struct support_options support = support_defaults(dim);
     struct error error;
     tool_check(tool, radius_apply_options(&options[FACTOR], &options[RADIUS], &support, &error), &error);
-    if (options[ENDS].given) {
-        tool_check(tool, parse_double(options[ENDS].value, "--ends", 0.1, 10, &support.end_share, &error),
-                   &error);
-    }
-    if (options[CORNERS].given) {
-        tool_check(tool,
-                   parse_double(options[CORNERS].value, "--corners", 0.1, 10, &support.corner_share, &error),
-                   &error);
-    }
     if (options[LEAST].given) {
         tool_check(tool, parse_integer(options[LEAST].value, "-m", 1, 100000, &support.least, &error),
                    &error);
@@ -119,8 +105,6 @@ int main(int argc, char *argv[])
     struct option options[OPTION_COUNT] = {
         [FACTOR] = {.letter = 'k', .name = "factor", .takes_value = true},
         [RADIUS] = {.letter = 'R', .name = "radius", .takes_value = true},
-        [ENDS] = {.name = "ends", .takes_value = true},
-        [CORNERS] = {.name = "corners", .takes_value = true},
         [LEAST] = {.letter = 'm', .name = "least", .takes_value = true},
         [MOST] = {.letter = 'n', .name = "most", .takes_value = true},
         [NO_WIDEN] = {.name = "no-widen"},

@@ -55,7 +55,7 @@ enum status field_table_build(const struct support_options *options, int64_t nod
     struct point_grid grid = {0};
     *table = (struct field_table){0};
     TRY(NEW_ARRAY(&radius, node_count, error));
-    TRY(support_radii(options, node_count, spacing, NULL, radius, error));
+    TRY(support_radii(options, node_count, spacing, radius, error));
     TRY(point_grid_build(&grid, options->mls.dim, node_count, nodes, radius, error));
     TRY(support_build(options, &grid, count, x, what, &table->lists, error));
     TRY(NEW_ARRAY(&table->phi, table->lists.ptr[count], error));

@@ -21,9 +21,7 @@ static const int64_t fewest_to_bound = 3;
 
 struct support_options support_defaults(int dim)
 {
-    return (struct support_options){.factor = dim == 2 ? 1.8 : 1.9,
-                                    .end_share = dim == 2 ? 0.7 : 1.0,
-                                    .corner_share = dim == 2 ? 0.8 : 1.0,
+    return (struct support_options){.factor = dim == 2 ? 1.8 : 2.2,
                                     .widen = true,
                                     .gradient_bound = 6.0,
                                     .mls = mls_default(dim)};

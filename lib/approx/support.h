@@ -2,23 +2,19 @@
 #ifndef APPROX_SUPPORT_H
 #define APPROX_SUPPORT_H
 
-#include "approx/ends.h"
 #include "approx/mls.h"
 #include "approx/point_grid.h"
 
 struct support_options {
     double radius;         /* constant support radius, m; 0: factor times the local spacing */
     double factor;         /* support radius / local node spacing */
-    double end_share;      /* of that radius for nodes beside ends, see cells_beside_ends, */
-    double corner_share;   /* and of those beside corners */
     int64_t least, most;   /* neighbours: widen until `least`; keep the `most` nearest (0: all) */
     bool widen;            /* widen where the moment matrix is unfit or a gradient too large */
     double gradient_bound; /* largest |grad phi| h admitted, h the mean spacing within the support */
     struct mls mls;        /* what the lists are for */
 };
 
-/* Factor 1.8 of the local spacing, .7 of that beside ends and .8 beside corners, in 3D 1.9 throughout;
- * widening on, the default MLS. */
+/* Factor 1.8 of the local spacing, in 3D 2.2; widening on, the default MLS. */
 struct support_options support_defaults(int dim);
 
 /* Neighbour lists of `count` points (CSR). */
@@ -37,11 +33,9 @@ struct support_lists {
 MUST_CHECK enum status nodes_spacing(int dim, int64_t node_count, const double *x, double *spacing,
                                      struct error *error);
 
-/* radius[node_count], m, from the options, the local spacing, and what the nodes lie beside (NULL: nothing).
- */
+/* radius[node_count], m, from the options and the local spacing. */
 MUST_CHECK enum status support_radii(const struct support_options *options, int64_t node_count,
-                                     const double *spacing, const enum beside *beside, double *radius,
-                                     struct error *error);
+                                     const double *spacing, double *radius, struct error *error);
 
 /* The lists of points x[count * dim]; `what` names them in messages. Threads share the work; the result does
  * not depend on their number. STATUS_VERDICT, naming the point, when widening up to eightfold does not help;

@@ -92,14 +92,10 @@ done:
 }
 
 enum status support_radii(const struct support_options *options, int64_t node_count, const double *spacing,
-                          const enum beside *beside, double *radius, struct error *error)
+                          double *radius, struct error *error)
 {
     for (int64_t n = 0; n < node_count; n++) {
-        enum beside place = beside != NULL ? beside[n] : BESIDE_NOTHING;
-        double share = place == BESIDE_END      ? options->end_share
-                       : place == BESIDE_CORNER ? options->corner_share
-                                                : 1.0;
-        radius[n] = options->radius > 0.0 ? options->radius : share * options->factor * spacing[n];
+        radius[n] = options->radius > 0.0 ? options->radius : options->factor * spacing[n];
         if (!(radius[n] > 0.0) || !isfinite(radius[n])) {
             return fail(error, STATUS_INPUT,
                         "nodes.x: row %lld: the node has no spacing: it coincides with others", (long long)n);

@@ -112,7 +112,7 @@ enum status scene_read(const char *path, struct scene *scene, struct error *erro
     struct ini_file file = {0};
     enum status status = STATUS_OK;
     *scene = (struct scene){.path = strdup(path), .title = strdup("")};
-    scene->solver = (struct scene_solver){.pointwise_share = -1, .tolerance = 1e-5, .time_step_margin = .9};
+    scene->solver = (struct scene_solver){.tolerance = 1e-5, .time_step_margin = .9};
     if (scene->path == NULL || scene->title == NULL) {
         TRY(fail_memory(error, path));
     }

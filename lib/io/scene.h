@@ -19,7 +19,7 @@
  * - [initial]: table = FILE; unit (dynamic)
  * - [output]: frames = COUNT or interval (s, dynamic); stress, strain, energy, reactions, gaps = yes|no
  * - [solver]: constraints = ebciem|direct; constraint_points = hat|node; volume = nodal|pointwise;
- *   pointwise_share (0..1); tolerance; max_steps; ramp_steps; end_time (s), damping (1/s) (dynamic);
+ *   tolerance; max_steps; ramp_steps; end_time (s), damping (1/s) (dynamic);
  *   time_step_margin (0..1)
  *
  * unit = m|cm|mm|um is the unit of the lengths in a table; curve = smooth (default)|linear|step|FILE. */
@@ -131,12 +131,11 @@ struct scene_solver {
     enum scene_constraints constraints;
     enum scene_constraint_points constraint_points;
     enum scene_volume volume;
-    double pointwise_share;  /* share of the bulk modulus kept pointwise with nodal volume; < 0: not given */
     double tolerance;        /* estimated remaining error relative to the displacement; default 1e-5 */
     int64_t max_steps;       /* 0: not given */
     int64_t ramp_steps;      /* steps over which a quasi-static load is applied; 0: not given */
     double end_time;         /* s, dynamic; 0 in quasi-static scenes, whose curves run from 0 to 1 */
-    double time_step_margin; /* share of the estimated critical step; default .9 */
+    double time_step_margin; /* share of the estimated critical step; default .9, dynamic .8 */
     double damping;          /* 1/s, dynamic; default 0 */
 };
 

@@ -241,7 +241,7 @@ static enum status read_solver(const struct place *place, struct scene *scene)
     int volume = (int)solver->volume;
     enum status status = STATUS_OK;
     TRY(place_only_keys(place,
-                        KEYS{"constraints", "constraint_points", "volume", "pointwise_share", "tolerance",
+                        KEYS{"constraints", "constraint_points", "volume", "tolerance",
                              "max_steps", "ramp_steps", "end_time", "time_step_margin", "damping", NULL}));
     TRY(place_choice(place, "constraints", constraints, &constraint));
     TRY(place_choice(place, "constraint_points", points, &point));
@@ -249,10 +249,9 @@ static enum status read_solver(const struct place *place, struct scene *scene)
     solver->constraints = (enum scene_constraints)constraint;
     solver->constraint_points = (enum scene_constraint_points)point;
     solver->volume = (enum scene_volume)volume;
-    if (solver->volume == SCENE_POINTWISE_VOLUME) {
-        TRY(place_forbid(place, "pointwise_share", "it belongs to volume = nodal"));
+    if (scene->analysis == SCENE_DYNAMIC) { /* steps are to be accurate, not stable only */
+        solver->time_step_margin = 0.8;
     }
-    TRY(place_number(place, "pointwise_share", range_share, &solver->pointwise_share));
     TRY(place_number(place, "time_step_margin", range_open_share, &solver->time_step_margin));
     TRY(place_count(place, "max_steps", most_steps, &solver->max_steps));
     if (scene->analysis == SCENE_DYNAMIC) {

@@ -12,7 +12,6 @@
 const struct range range_any = {-DBL_MAX, DBL_MAX, false, false};
 const struct range range_positive = {0, DBL_MAX, true, false};
 const struct range range_not_negative = {0, DBL_MAX, false, false};
-const struct range range_share = {0, 1, false, false};
 const struct range range_open_share = {0, 1, true, true};
 
 enum status place_fail(const struct place *place, const char *key, const char *format, ...)

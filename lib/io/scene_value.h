@@ -24,7 +24,7 @@ struct range {
     bool open_least, open_most;
 };
 
-extern const struct range range_any, range_positive, range_not_negative, range_share, range_open_share;
+extern const struct range range_any, range_positive, range_not_negative, range_open_share;
 
 /* fail() with STATUS_INPUT at a key's line, or with key NULL at the section's. */
 enum status place_fail(const struct place *place, const char *key, const char *format, ...)

@@ -2,8 +2,8 @@
 
 #include "approx/renumber.h"
 #include "base/memory.h"
-#include "solid/hats.h"
 #include "solid/kernel.h"
+#include "solid/nodal_volume.h"
 
 #include <math.h>
 #include <omp.h>
@@ -189,9 +189,7 @@ enum status body_build(const struct body_input *input, struct body *body, struct
                           .conforming = input->conforming != NULL,
                           .single = input->single,
                           .kernels = force_kernels_select(NULL, input->dim),
-                          .averaged = input->hat_node != NULL,
-                          .pointwise_share = input->pointwise_share,
-                          .share_growth = input->share_growth};
+                          .averaged = input->hat_node != NULL};
     if (body->point_count < 1 || body->point_count > INT32_MAX / (body->dim + 1)) {
         return fail(error, STATUS_INPUT, "points.x: %lld points: none, or too many",
                     (long long)body->point_count);
@@ -206,7 +204,7 @@ enum status body_build(const struct body_input *input, struct body *body, struct
     body->threads = worthwhile_threads(body);
     TRY(body_make_bounds(body, error));
     if (body->averaged) {
-        TRY(hats_build(input, body, error));
+        TRY(nodal_volumes_build(input, body, error));
     }
     if (!body->conforming) {
         pairs.place = body->node_place;
@@ -227,7 +225,7 @@ void body_free(struct body *body)
 {
     pairs_free(&body->gradients);
     conforming_free(&body->cells);
-    hats_free(&body->hats);
+    nodal_volumes_free(&body->volumes);
     void *arrays[] = {body->order,  body->weight,     body->materials,  body->material,
                       body->blocks, body->node_order, body->node_place, body->u,
                       body->F,      body->bound,      body->J};

@@ -31,8 +31,6 @@ struct body_input {
     /* Nodal volumetric averaging; NULL: pointwise volume throughout. */
     const int32_t *hat_node; /* point_count * (dim + 1): vertices of the background cell of each point */
     const double *hat_value; /* point_count * (dim + 1): their hat functions at the point, sum 1 */
-    double pointwise_share;  /* s and c of the volumetric energy, see struct volume_hats; both >= 0 */
-    double share_growth;
     const struct conforming_input
         *conforming; /* the points are cells, dphi smoothed over them; NULL: any points */
     bool single;     /* keep the table in single precision; sums are double always */
@@ -47,27 +45,21 @@ struct block {
     bool neo_hookean;                 /* all its points; else the general law */
     double least_jacobian;            /* at the last evaluation, and where, in the body's order */
     int64_t worst_point;
-    double energy; /* at the last call of body_energy, but for averaged volumes, J */
+    double energy; /* at the last call of body_energy, J (2D: J/m) */
 };
 
-/* Volumes to average over: hat functions of the background nodes, one for each group of
- * materials at a node.
- *
- * The volumetric energy of hat a is V_a (U(theta_a) + kappa/2 (s v_a + c v_a^2)), where theta_a is the mean
- * of J over the hat and v_a its variance. With s = 1, c = 0 it is the pointwise energy of U = kappa/2 (J -
- * 1)^2, with s = c = 0 pure nodal averaging, which does not lock but lets single cells fold: so the share s +
- * 2 c v_a of the pointwise law grows where J varies within a hat, and vanishes where it does not. */
-struct volume_hats {
+/* Nodal volumes, over which volume ratios and pressures are averaged: see nodal_volume.h. */
+struct nodal_volumes {
     int64_t count;
-    int32_t *of_point; /* point_count * (dim + 1), hat of each vertex */
-    double *share;     /* point_count * (dim + 1): its part of the point's volume, N_a(q) w_q, m2 or m3 */
+    int32_t *of_point; /* point_count * (dim + 1): the nodal volume at each vertex of a point's cell */
+    double *share;     /* point_count * (dim + 1): its part of the point's volume, N_a(q) w_q, m3 (2D: m2) */
     int64_t *ptr;      /* count + 1 */
-    int32_t *slot;     /* ptr[count]: the places of a hat in these two, ascending */
-    double *volume;    /* count: V_a = sum N_a w */
-    int32_t *material; /* count: of the body's materials, behind them the means of mixed hats */
-    double *theta;     /* count: scratch, averaged J */
-    double *pressure;  /* count: scratch; the pressure at a point of the hat is pressure + slope * J, Pa */
-    double *slope;
+    int32_t *slot;     /* ptr[count]: the places of a nodal volume in these two, ascending */
+    double *volume;    /* count: V_a, m3 (2D: m2) */
+    double *ratio;     /* count: theta_a - 1 at the last evaluation */
+    double *pressure;  /* count: pi_a, Pa */
+    double *mean;      /* point_count: Jbar */
+    double *carried;   /* point_count: what is averaged to pi_a, Pa */
 };
 
 struct force_kernels;
@@ -83,7 +75,7 @@ struct body {
     int64_t *node_order;        /* node_count: the caller's index of each node */
     int32_t *node_place;        /* node_count: the body's index of each of the caller's nodes */
     double *weight;             /* point_count */
-    struct material *materials; /* material_count, and those of mixed hats */
+    struct material *materials; /* material_count */
     int64_t material_count;
     int32_t *material; /* point_count */
     int64_t block_count;
@@ -96,8 +88,7 @@ struct body {
     double *J;     /* point_count: volume ratios, det F, or of cells that of conforming.h. Points with
                       pointwise volume keep neither: NULL */
     bool averaged; /* nodal volumetric averaging */
-    double pointwise_share, share_growth;
-    struct volume_hats hats;
+    struct nodal_volumes volumes;
     const struct force_kernels *kernels; /* for this processor */
     int threads;                         /* worth using for so many pairs */
     struct chunks bound_parts;           /* of the blocks, by each of which body_diagonal sums; */
@@ -136,5 +127,9 @@ void body_gradient(struct body *body, double *gradient);
  * derivative of the energy along the rank-one change of F that is stiffest, y = F^-T grad phi; at rest sum_q
  * w (lambda + 2 mu) |grad phi|^2. The neo-Hookean formula serves all materials. */
 void body_diagonal(struct body *body, double *stiffness);
+
+/* The same of conforming cells for parameters that are about the values at the nodes (nodal_basis.h): with
+ * the hat functions of the cells for phi. */
+void body_nodal_diagonal(struct body *body, double *stiffness);
 
 #endif

@@ -46,7 +46,7 @@ static struct bound bound_at(const struct body *body, int64_t q, const double *F
             along * (C[a] * C[b] + C[3 + a] * C[3 + b] + C[6 + a] * C[6 + b]) - (a == b ? shear / 3.0 : 0.0);
     }
     if (body->conforming) {
-        bound.tie = 2.0 * body->weight[q] * stress_tie(body, q, F).stiffness;
+        bound.tie = 2.0 * body->weight[q] * SMOOTHING_STIFFNESS(body->dim) * material->shear_modulus;
     }
     return bound;
 }
@@ -66,7 +66,27 @@ static void add_point(const struct body *body, int64_t q, const double F[9], dou
     }
 }
 
-void body_diagonal(struct body *body, double *stiffness)
+/* The same for parameters that are values at the nodes, whose functions are about the hat functions of a
+ * cell. */
+static void add_cell(const struct body *body, int64_t q, const double F[9], double J, void *stiffness)
+{
+    (void)J;
+    struct bound bound = bound_at(body, q, F);
+    double gradient[12] = {0.0}, sum[4], *of_node = stiffness;
+    int dim = body->dim;
+    for (int k = 1; k <= dim; k++) {
+        for (int b = 0; b < dim; b++) {
+            gradient[k * dim + b] = body->cells.hat[((k - 1) * dim + b) * body->point_count + q];
+            gradient[b] -= gradient[k * dim + b];
+        }
+    }
+    body->kernels->bounds(gradient, dim + 1, bound.A, bound.tie, sum);
+    for (int k = 0; k <= dim; k++) {
+        of_node[body->cells.cell_node[body->order[q] * (dim + 1) + k]] += sum[k];
+    }
+}
+
+static void sum_bounds(struct body *body, body_visitor *add, double *stiffness)
 {
     const struct chunks *parts = &body->bound_parts;
 #pragma omp parallel num_threads(parts->threads)
@@ -75,7 +95,7 @@ void body_diagonal(struct body *body, double *stiffness)
         for (int64_t p = 0; p < parts->count; p++) {
             double *sum = p == 0 ? stiffness : body->bound + (p - 1) * body->node_count;
             memset(sum, 0, (size_t)body->node_count * sizeof *sum);
-            body_visit(body, chunks_begin(parts, p), chunks_begin(parts, p + 1), add_point, sum);
+            body_visit(body, chunks_begin(parts, p), chunks_begin(parts, p + 1), add, sum);
         }
 #pragma omp for schedule(static)
         for (int64_t n = 0; n < body->node_count; n++) {
@@ -84,4 +104,14 @@ void body_diagonal(struct body *body, double *stiffness)
             }
         }
     }
+}
+
+void body_diagonal(struct body *body, double *stiffness)
+{
+    sum_bounds(body, add_point, stiffness);
+}
+
+void body_nodal_diagonal(struct body *body, double *stiffness)
+{
+    sum_bounds(body, add_cell, stiffness);
 }

@@ -8,9 +8,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* s of the ties in cells with a face on the boundary that no condition holds. */
-static const double strength_at_free_faces = 6.0;
-
 /* Gradients of the hat functions 1 .. dim of a simplex, dim x dim. */
 static void hat_gradients(int dim, const double *x, const int32_t *vertex, double *gradient)
 {
@@ -244,38 +241,15 @@ done:
     return status;
 }
 
-static enum status set_strength(const struct conforming_input *input, const struct body *body,
-                                double **strength, struct error *error)
-{
-    enum status status;
-    double *of_cell = NULL; /* in the caller's order */
-    TRY(NEW_ARRAY(&of_cell, body->point_count, error));
-    TRY(NEW_ARRAY(strength, body->point_count + BODY_POINT_PADDING, error));
-    for (int64_t f = 0; f < input->face_count; f++) {
-        int64_t cell = input->face_cell[2 * f];
-        bool is_free = input->face_cell[2 * f + 1] < 0 && (input->held == NULL || !input->held[f]);
-        if (is_free && cell >= 0 && cell < body->point_count) {
-            of_cell[cell] = strength_at_free_faces;
-        }
-    }
-    for (int64_t q = 0; q < body->point_count; q++) {
-        (*strength)[q] = of_cell[body->order[q]];
-    }
-done:
-    free(of_cell);
-    return status;
-}
-
 enum status conforming_build(const struct conforming_input *input, const struct body *body,
                              struct conforming *conforming, struct error *error)
 {
     enum status status;
     int64_t entries = body->point_count * body->dim * body->dim + BODY_POINT_PADDING;
-    *conforming = (struct conforming){0};
+    *conforming = (struct conforming){.cell_node = input->cell_node};
     TRY(set_hats(input, body->dim, body->point_count, body->order, conforming, error));
     TRY(NEW_ARRAY(&conforming->interpolant, entries, error));
     TRY(build_faces(input, body, &conforming->faces, error));
-    TRY(set_strength(input, body, &conforming->strength, error));
     TRY(build_nodes(input, body, &conforming->nodes, error));
 done:
     if (status != STATUS_OK) {
@@ -289,7 +263,6 @@ void conforming_free(struct conforming *conforming)
     means_free(&conforming->faces);
     means_free(&conforming->nodes);
     free(conforming->interpolant);
-    free(conforming->strength);
     free(conforming->hat);
     *conforming = (struct conforming){0};
 }

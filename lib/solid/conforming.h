@@ -19,27 +19,22 @@
  * offsets, whatever the field is inside; and as J and det F differ by the square of F_h - F only, what is
  * exact for linear fields stays so.
  *
- * What is left free is that single cells fold, F_h against F, and that free sides crease too early under
- * compression: by linear theory a body pressed along one axis may from a stretch of .44 on, from .56 if
- * disturbed. The energy k |F_h - F|^2 / 2 ties the two where a cell is strained far:
+ * Smoothing loses the energy of what varies within a cell. The energy
  *
- *   k / mu = 2 e^2 / (1 + e) + s e^3 (1 + e) / (.4 + e^3),
+ *   k |F_h - F|^2 / 2,      k = mu in two dimensions, 2 mu / 3 in three,
  *
- * where e is the energy W(F) of the cell by its shear modulus mu - .05 at a strain of 20 %, .6 at a stretch
- * of .5, more where cells fold - and s is more than 0 in cells with a free face only. What was tried:
+ * gives it back (stabilised nodal integration: Puso, Chen, Zywicz and Elmer 2008). k is derived: for a
+ * quadratic field on a regular simplex, mu / 2 times the variance of the gradient within the cell equals this
+ * energy, in 2D for each field with trace-free second derivatives, in 3D in the mean over all such fields. It
+ * is of second order in the size of the cells, at any strain, and the same in all cells. What was tried:
  * pipelines/convergence/DEFAULTS.md. */
 #ifndef SOLID_CONFORMING_H
 #define SOLID_CONFORMING_H
 
 #include "solid/means.h"
 
-/* k of a tie by mu, and its derivative by e; of numbers and of vectors of them. */
-#define TIE_STIFFNESS(e, s)                                                                                  \
-    (2.0 * (e) * (e) / (1.0 + (e)) + (s) * (e) * (e) * (e) * (1.0 + (e)) / (0.4 + (e) * (e) * (e)))
-#define TIE_SLOPE(e, s)                                                                                      \
-    (2.0 * (e) * (2.0 + (e)) / ((1.0 + (e)) * (1.0 + (e))) +                                                 \
-     (s) * (e) * (e) * (1.2 + 1.6 * (e) + (e) * (e) * (e) * (e)) /                                           \
-         ((0.4 + (e) * (e) * (e)) * (0.4 + (e) * (e) * (e))))
+/* k by mu. */
+#define SMOOTHING_STIFFNESS(dim) ((dim) == 2 ? 1.0 : 2.0 / 3.0)
 
 struct body;
 
@@ -58,14 +53,13 @@ struct conforming_input {
     const int64_t *node_ptr; /* and at the nodes: node_count + 1 */
     const int32_t *node_idx;
     const double *node_phi;
-    const bool *held; /* face_count: conditions hold this face of the boundary; NULL: none is held */
 };
 
 struct conforming {
-    struct means faces;  /* means of the field over the faces */
-    struct means nodes;  /* values of the field at the vertices */
-    double *interpolant; /* F_h at the last evaluation, as body->F */
-    double *strength;    /* s of the ties, and BODY_POINT_PADDING more */
+    struct means faces;       /* means of the field over the faces */
+    struct means nodes;       /* values of the field at the vertices */
+    const int32_t *cell_node; /* the caller's */
+    double *interpolant;      /* F_h at the last evaluation, as body->F */
     double *hat; /* dim * dim rows of as many as there are cells, and BODY_POINT_PADDING more: row (k - 1) dim
                     + b holds component b of the gradient of hat k = 1 .. dim in each cell; those of all
                     vanish together, 1/m */

@@ -1,5 +1,5 @@
 /* The force loop: deformation gradients by gathering, stresses, forces by scattering; see body.h. */
-#include "solid/hats.h"
+#include "solid/nodal_volume.h"
 #include "solid/stress.h"
 
 #include <math.h>
@@ -83,15 +83,7 @@ void body_visit(struct body *body, int64_t first, int64_t last, body_visitor *vi
     }
 }
 
-/* What threads share: loops over hats, blocks, patches and nodes. */
-static void set_pressures(struct body *body)
-{
-#pragma omp for schedule(static)
-    for (int64_t a = 0; a < body->hats.count; a++) {
-        hats_set_pressure(body, a);
-    }
-}
-
+/* What threads share: loops over blocks, patches and nodes. */
 static void gather_points(struct body *body, double *scratch)
 {
 #pragma omp for schedule(static)
@@ -191,7 +183,7 @@ static void set_state(struct body *body, const double *u, double *scratch)
         gather_points(body, scratch);
     }
     if (body->averaged) {
-        set_pressures(body);
+        nodal_volumes_evaluate(body);
     }
 }
 
@@ -238,18 +230,15 @@ double body_volume(const struct body *body)
     return volume;
 }
 
-/* Energy of a point, but for averaged volumes, added to *energy. */
+/* Energy of a point, added to *energy. */
 static void add_energy(const struct body *body, int64_t q, const double F[9], double J, void *energy)
 {
     const struct material *material = &body->materials[body->material[q]];
     double sum = material_shape_energy(material, F);
     if (body->conforming) {
-        struct tie tie = stress_tie(body, q, F);
-        sum += 0.5 * tie.stiffness * tie.squares;
+        sum += stress_smoothing_energy(body, q, F);
     }
-    if (!body->averaged) {
-        sum += material_volume_energy(material, J);
-    }
+    sum += body->averaged ? nodal_volume_energy(body, q) : material_volume_energy(material, J);
     *(double *)energy += body->weight[q] * sum;
 }
 
@@ -269,5 +258,5 @@ double body_energy(struct body *body, const double *u)
     for (int64_t b = 0; b < body->block_count; b++) {
         energy += body->blocks[b].energy;
     }
-    return body->averaged ? energy + hats_energy(body) : energy;
+    return energy;
 }

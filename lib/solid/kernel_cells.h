@@ -165,15 +165,14 @@ KERNEL_INLINE void cofactor_along(const lanes H[9], const lanes D[9], int dim, l
     }
 }
 
-/* dE/dF in P and dE/dF_h in T of w (W_shape(F) + p J + k |F_h - F|^2 / 2), p held, k of W(F): see
- * conforming.h. */
+/* dE/dF in P and dE/dF_h in T of w (W_shape(F) + p J + k |F_h - F|^2 / 2), p held: see conforming.h. */
 KERNEL_INLINE void kernel_cell_neo_hookean(const struct body *body, const struct block *block, int dim,
                                            block_rows P, block_rows T)
 {
     double weighted_pressure[PAIRS_MAX_ROWS];
     kernel_pressures(body, block, body->J + block->first_point, dim, weighted_pressure);
     for (int64_t i = 0; i < block->point_count; i += LANES) {
-        lanes F[9], H[9], D[9], C[9], J, weight, shear, bulk, pressure, strength, squares = {0.0};
+        lanes F[9], H[9], D[9], C[9], J, weight, shear, bulk, pressure, stiffness;
         struct lanes_shape shape;
         int64_t q = block->first_point + i;
         load_matrix(body->F + q, body->point_count, dim, F);
@@ -181,24 +180,14 @@ KERNEL_INLINE void kernel_cell_neo_hookean(const struct body *body, const struct
         LOAD(weight, body->weight + q);
         load_moduli(body, q, &shear, &bulk);
         LOAD(pressure, weighted_pressure + i);
-        LOAD(strength, body->cells.strength + q);
         shear *= weight;
-        bulk *= weight;
-        for (int k = 0; k < dim * dim; k++) {
-            D[k] = H[k] - F[k];
-            squares += D[k] * D[k];
-        }
+        stiffness = SMOOTHING_STIFFNESS(dim) * shear;
         lanes_cofactor(F, dim, C);
         lanes_determinant(F, C, dim, &J);
         neo_hookean_shape(F, &J, &shear, dim, &shape);
-        J -= 1.0;
-        lanes strain = (shape.energy + 0.5 * bulk * J * J) / shear;
-        lanes stiffness = shear * TIE_STIFFNESS(strain, strength);
-        lanes share = 0.5 * squares * TIE_SLOPE(strain, strength);
-        lanes along_gradient = (1.0 + share) * shape.along_gradient;
-        lanes along_cofactor = (1.0 + share) * shape.along_cofactor + share * bulk * J;
         for (int k = 0; k < dim * dim; k++) {
-            F[k] = along_gradient * F[k] + along_cofactor * C[k] - stiffness * D[k];
+            D[k] = H[k] - F[k];
+            F[k] = shape.along_gradient * F[k] + shape.along_cofactor * C[k] - stiffness * D[k];
         }
         lanes_cofactor(H, dim, C);
         for (int k = 0; k < dim * dim; k++) {

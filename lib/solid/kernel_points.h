@@ -4,6 +4,7 @@
 
 #include "solid/kernel.h"
 #include "solid/kernel_vector.h"
+#include "solid/nodal_volume.h"
 
 #include <math.h>
 
@@ -98,8 +99,8 @@ KERNEL_INLINE void inverse_cube_root(const lanes *x, lanes *root)
     *root = y;
 }
 
-/* Volumetric pressure of each point of a neo-Hookean block, weighted: its own, or that of the hats around it;
- * J: of its points. */
+/* Volumetric pressure of each point of a neo-Hookean block, weighted: by its own law, or by the nodal volumes
+ * around it (nodal_volume.h); J: of its points. */
 KERNEL_INLINE void kernel_pressures(const struct body *body, const struct block *block, const double *J,
                                     int dim, double *pressure)
 {
@@ -111,15 +112,14 @@ KERNEL_INLINE void kernel_pressures(const struct body *body, const struct block 
         }
         return;
     }
-    const int32_t *hat = body->hats.of_point + block->first_point * (dim + 1);
-    const double *share = body->hats.share + block->first_point * (dim + 1);
+    const int32_t *volume = body->volumes.of_point + block->first_point * (dim + 1);
+    const double *share = body->volumes.share + block->first_point * (dim + 1);
     for (int64_t i = 0; i < block->point_count; i++) {
-        double level = 0.0, slope = 0.0;
+        double sum = 0.0;
         for (int64_t k = i * (dim + 1); k < (i + 1) * (dim + 1); k++) {
-            level += share[k] * body->hats.pressure[hat[k]];
-            slope += share[k] * body->hats.slope[hat[k]];
+            sum += share[k] * body->volumes.pressure[volume[k]];
         }
-        pressure[i] = level + slope * J[i];
+        pressure[i] = sum + weight[i] * nodal_volume_modulus(&body->materials[material[i]]) * (J[i] - 1.0);
     }
 }
 

@@ -31,7 +31,6 @@ struct material {
     double density;       /* kg/m3 */
     double mooney_ratio;  /* C01 / C10 */
     double ogden_alpha;
-    double least_share; /* of U(J) kept pointwise where volumes are averaged, at the least, 0..1 */
 };
 
 /* Moduli from Young's modulus (Pa, > 0) and Poisson's ratio (-1 < nu < .5). */

@@ -59,7 +59,7 @@ static bool tell(struct relaxation *r)
     }
     int64_t at = r->report->steps;
     struct progress progress = {.step = at,
-                                .u = r->u,
+                                .u = relaxation_parameters(r, r->u),
                                 .error = r->report->error,
                                 .remaining = -1.0,
                                 .state = relaxation_visit,
@@ -81,7 +81,8 @@ static void give_frames(struct relaxation *r, int64_t n, const double *u)
     const struct relaxation_options *options = r->options;
     double each = (double)r->report->ramp_steps / (double)options->frames;
     while (r->frames + 1 < options->frames && (double)n >= each * (double)(r->frames + 1)) {
-        options->frame(options->context, ++r->frames, (double)n / (double)r->report->ramp_steps, u);
+        options->frame(options->context, ++r->frames, (double)n / (double)r->report->ramp_steps,
+                       relaxation_parameters(r, u));
     }
 }
 
@@ -237,13 +238,13 @@ enum status relaxation_run(struct solid_system *system, const struct relaxation_
                            .options = options,
                            .report = report,
                            .size = system->node_count * system->dim,
-                           .u = u,
                            .load_rate = 1.0,
                            .top_rate = 1.0,
                            .caution = 1.0,
                            .least_penetration = INFINITY,
                            .spectrum2 = INFINITY};
     *report = (struct relaxation_report){.least_jacobian = 1.0};
+    TRY(relaxation_enter_basis(&r, u, error));
     TRY(relaxation_allocate(&r, error));
     r.spacing = system_node_spacing(system);
     r.body_size = relaxation_body_size(system);
@@ -255,16 +256,20 @@ enum status relaxation_run(struct solid_system *system, const struct relaxation_
     report->largest_frequency = r.frequency;
     if (report->outcome == RELAXATION_INVERTED) {
         r.load = r.older.load;
-        memcpy(u, r.older.u, (size_t)r.size * sizeof *u);
+        memcpy(r.u, r.older.u, (size_t)r.size * sizeof *r.u);
     }
     report->load = r.load / (double)report->ramp_steps;
+    if (row_force != NULL && system->rows.count > 0) {
+        measure_row_forces(&r, r.u, row_force);
+    }
+    if (r.u != u) {
+        memcpy(u, relaxation_parameters(&r, r.u), (size_t)r.size * sizeof *u);
+    }
     if (report->outcome == RELAXATION_CONVERGED && options->frame != NULL && options->frames > 0) {
         options->frame(options->context, options->frames, 1.0, u);
     }
-    if (row_force != NULL && system->rows.count > 0) {
-        measure_row_forces(&r, u, row_force);
-    }
 done:
     relaxation_release(&r);
+    relaxation_leave_basis(&r);
     return status;
 }

@@ -21,7 +21,11 @@ struct relaxation {
     struct relaxation_report *report;
     struct inertia inertia;
     int64_t size;
-    double *u; /* the caller's */
+    double *u; /* the unknowns: nodal parameters where there is a basis */
+    struct nodal_basis basis;
+    struct constraint_rows rows; /* on these; */
+    struct constraint_rows on_u; /* the system's own meanwhile */
+    double *shown;               /* parameters, for progress and frames */
     double *velocity, *residual, *before;
     const double *residual_at; /* where the residual is known, at a check: u or before */
     double *factor_change;     /* of the load curves in this step */
@@ -127,6 +131,14 @@ bool relaxation_contacts_hold(struct relaxation *r);
 /* ---- relaxation_state.c: memory, and what a checkpoint holds ---- */
 
 MUST_CHECK enum status relaxation_allocate(struct relaxation *r, struct error *error);
+
+/* Let the system work in nodal parameters (nodal_basis.h) where it is made of conforming cells, from its
+ * parameters u; and let it work in u again. */
+MUST_CHECK enum status relaxation_enter_basis(struct relaxation *r, double *u, struct error *error);
+void relaxation_leave_basis(struct relaxation *r);
+
+/* The parameters of the state v. */
+const double *relaxation_parameters(struct relaxation *r, const double *v);
 
 void relaxation_release(struct relaxation *r);
 

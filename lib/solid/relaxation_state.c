@@ -5,6 +5,62 @@
 
 #include <stdlib.h>
 
+enum status relaxation_enter_basis(struct relaxation *r, double *u, struct error *error)
+{
+    enum status status = STATUS_OK;
+    struct solid_system *system = r->system;
+    const struct neighbours *lists = system->node_lists;
+    r->u = u;
+    if (lists == NULL || !system->body.conforming) {
+        return STATUS_OK;
+    }
+    TRY(nodal_basis_build(system->dim, system->node_count, system->X, lists->ptr, lists->idx,
+                          system->node_phi, &r->basis, error));
+    TRY(nodal_basis_transform_rows(&r->basis, &system->rows, &r->rows, error));
+    r->u = NULL;
+    TRY(NEW_ARRAY(&r->u, r->size, error));
+    TRY(NEW_ARRAY(&r->shown, r->size, error));
+    TRY(NEW_ARRAY(&system->basis_u, r->size, error));
+    TRY(NEW_ARRAY(&system->basis_force, r->size, error));
+    for (int64_t n = 0; n < system->node_count; n++) { /* the field's values at the nodes */
+        struct average value = {lists->ptr[n + 1] - lists->ptr[n], lists->idx + lists->ptr[n],
+                                system->node_phi + lists->ptr[n]};
+        average_take(&value, system->dim, u, r->u + n * system->dim);
+    }
+    r->on_u = system->rows;
+    system->rows = r->rows;
+    system->basis = &r->basis;
+done:
+    return status;
+}
+
+void relaxation_leave_basis(struct relaxation *r)
+{
+    struct solid_system *system = r->system;
+    if (system->basis != NULL) {
+        system->rows = r->on_u;
+        system->basis = NULL;
+    }
+    if (r->shown != NULL) {
+        free(r->u);
+    }
+    constraint_rows_free(&r->rows);
+    nodal_basis_free(&r->basis);
+    free(r->shown);
+    free(system->basis_u);
+    free(system->basis_force);
+    system->basis_u = system->basis_force = r->shown = NULL;
+}
+
+const double *relaxation_parameters(struct relaxation *r, const double *v)
+{
+    if (r->system->basis == NULL) {
+        return v;
+    }
+    nodal_basis_apply(&r->basis, v, r->shown);
+    return r->shown;
+}
+
 enum status relaxation_allocate(struct relaxation *r, struct error *error)
 {
     enum status status;

@@ -1,20 +1,14 @@
 #include "solid/stress.h"
 
+#include "solid/nodal_volume.h"
+
 #include <string.h>
 
-/* Volumetric pressure dU/dJ at a point, Pa; negative in compression. */
+/* Volumetric pressure at a point, Pa; negative in compression. */
 static double point_pressure(const struct body *body, int64_t q, double J)
 {
-    const struct volume_hats *hats = &body->hats;
-    int corners = body->dim + 1;
-    double sum = 0.0;
-    if (!body->averaged) {
-        return material_pressure(&body->materials[body->material[q]], J);
-    }
-    for (int64_t k = q * corners; k < (q + 1) * corners; k++) {
-        sum += hats->share[k] * (hats->pressure[hats->of_point[k]] + hats->slope[hats->of_point[k]] * J);
-    }
-    return sum / body->weight[q];
+    return body->averaged ? nodal_volume_pressure(body, q)
+                          : material_pressure(&body->materials[body->material[q]], J);
 }
 
 void stress_matrix(int dim, const double *row, int64_t apart, double F[9])
@@ -59,19 +53,15 @@ void stress_points(const struct body *body, const struct block *block, struct bl
     }
 }
 
-struct tie stress_tie(const struct body *body, int64_t point, const double F[9])
+double stress_smoothing_energy(const struct body *body, int64_t point, const double F[9])
 {
-    const struct material *material = &body->materials[body->material[point]];
     double H[9], squares = 0.0;
     stress_matrix(body->dim, body->cells.interpolant + point, body->point_count, H);
     for (int k = 0; k < 9; k++) {
         squares += (H[k] - F[k]) * (H[k] - F[k]);
     }
-    double energy = material_shape_energy(material, F) + material_volume_energy(material, determinant(F));
-    double strain = energy / material->shear_modulus;
-    double strength = body->cells.strength[point];
-    return (struct tie){material->shear_modulus * TIE_STIFFNESS(strain, strength),
-                        TIE_SLOPE(strain, strength), squares};
+    double shear = body->materials[body->material[point]].shear_modulus;
+    return 0.5 * SMOOTHING_STIFFNESS(body->dim) * shear * squares;
 }
 
 /* d cof F_h along D, by which cof F_h : D changes with F_h. */
@@ -98,19 +88,14 @@ static void cell_stress(const struct body *body, int64_t q, double P[9], double 
     for (int k = 0; k < 9; k++) {
         D[k] = H[k] - F[k];
     }
-    struct tie tie = stress_tie(body, q, F);
-    double share = 0.5 * tie.squares * tie.slope, pressure = point_pressure(body, q, body->J[q]);
-    double own_pressure = material_pressure(material, determinant(F));
+    double stiffness = SMOOTHING_STIFFNESS(body->dim) * material->shear_modulus;
+    double pressure = point_pressure(body, q, body->J[q]);
     material_shape_stress(material, F, P);
-    cofactor(F, C);
-    for (int k = 0; k < 9; k++) {
-        P[k] = (1.0 + share) * P[k] + share * own_pressure * C[k] - tie.stiffness * D[k];
-    }
     cofactor(H, C);
     cofactor_along(H, D, along);
     for (int k = 0; k < 9; k++) {
-        P[k] += pressure * C[k];
-        T[k] = tie.stiffness * D[k] - pressure * along[k];
+        P[k] += pressure * C[k] - stiffness * D[k];
+        T[k] = stiffness * D[k] - pressure * along[k];
     }
 }
 
@@ -124,9 +109,18 @@ void stress_cells(const struct body *body, const struct block *block, block_rows
     }
 }
 
+/* The derivative of the energy when F, and in a cell F_h with it, change alike. */
 static void put_stress(const struct body *body, int64_t q, const double F[9], double J, void *stress)
 {
-    point_stress(body, q, F, J, (double *)stress + body->order[q] * 9);
+    double *P = (double *)stress + body->order[q] * 9, T[9];
+    if (!body->conforming) {
+        point_stress(body, q, F, J, P);
+        return;
+    }
+    cell_stress(body, q, P, T);
+    for (int k = 0; k < 9; k++) {
+        P[k] += T[k];
+    }
 }
 
 void body_stress(struct body *body, double *stress)

@@ -18,12 +18,7 @@ void stress_points(const struct body *body, const struct block *block, struct bl
 /* Weighted stresses of a block of cells, P on F and T on F_h: see conforming.h. */
 void stress_cells(const struct body *body, const struct block *block, block_rows P, block_rows T);
 
-/* What ties F_h of a cell to F, that is given. */
-struct tie {
-    double stiffness; /* k, Pa */
-    double slope;     /* dk/dW */
-    double squares;   /* |F_h - F|^2 */
-};
-struct tie stress_tie(const struct body *body, int64_t point, const double F[9]);
+/* Energy k |F_h - F|^2 / 2 of a cell, Pa: see conforming.h. */
+double stress_smoothing_energy(const struct body *body, int64_t point, const double F[9]);
 
 #endif

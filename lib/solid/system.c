@@ -208,39 +208,73 @@ static void negate(const struct solid_system *system, double *force)
     }
 }
 
-void system_resist(struct solid_system *system, const double *u, double *force)
+/* The parameters u of what a caller has, and where forces on them go. */
+static const double *parameters_of(const struct solid_system *system, const double *v)
 {
-    double started = clock_seconds();
-    (void)body_force(&system->body, u, force);
-    system->cost.force += clock_seconds() - started;
-    negate(system, force);
-    system_add_springs(system, u, force);
-    negate(system, force);
+    if (system->basis == NULL) {
+        return v;
+    }
+    nodal_basis_apply(system->basis, v, system->basis_u);
+    return system->basis_u;
 }
 
-struct deformation system_residual(struct solid_system *system, const double *u, double *residual)
+static double *forces_of(const struct solid_system *system, double *force)
 {
+    return system->basis == NULL ? force : system->basis_force;
+}
+
+static void return_forces(const struct solid_system *system, double *force)
+{
+    if (system->basis != NULL) {
+        nodal_basis_apply_transposed(system->basis, system->basis_force, force);
+    }
+}
+
+void system_resist(struct solid_system *system, const double *v, double *force)
+{
+    const double *u = parameters_of(system, v);
+    double *on_u = forces_of(system, force);
     double started = clock_seconds();
-    struct deformation deformation = body_force(&system->body, u, residual);
+    (void)body_force(&system->body, u, on_u);
+    system->cost.force += clock_seconds() - started;
+    negate(system, on_u);
+    system_add_springs(system, u, on_u);
+    negate(system, on_u);
+    return_forces(system, force);
+}
+
+struct deformation system_residual(struct solid_system *system, const double *v, double *residual)
+{
+    const double *u = parameters_of(system, v);
+    double *on_u = forces_of(system, residual);
+    double started = clock_seconds();
+    struct deformation deformation = body_force(&system->body, u, on_u);
     double forced = clock_seconds();
-    negate(system, residual);
-    system_add_loads(system, u, residual);
+    negate(system, on_u);
+    system_add_loads(system, u, on_u);
     double loaded = clock_seconds();
-    system_add_springs(system, u, residual);
+    system_add_springs(system, u, on_u);
     double held = clock_seconds();
     for (int64_t c = 0; c < system->contact_count; c++) {
-        contact_force(&system->contacts[c], u, residual);
+        contact_force(&system->contacts[c], u, on_u);
     }
     system->cost.force += forced - started;
     system->cost.loads += loaded - forced;
     system->cost.constraints += held - loaded;
     system->cost.contact += clock_seconds() - held;
+    return_forces(system, residual);
     return deformation;
 }
 
-/* What a spring that holds an average adds to the stiffness of its nodes. */
-static void add_to_bound(const struct average *average, double stiffness, double *mass)
+/* What a spring that holds an average adds to the stiffness of its nodes; nodal parameters have about the
+ * average at the node that it stands for. */
+static void add_to_bound(const struct solid_system *system, const struct average *average, int32_t node,
+                         double stiffness, double *mass)
 {
+    if (system->basis != NULL) {
+        mass[node] += stiffness;
+        return;
+    }
     for (int64_t i = 0; i < average->length; i++) {
         mass[average->idx[i]] += stiffness * average->phi[i] * average->phi[i];
     }
@@ -249,18 +283,22 @@ static void add_to_bound(const struct average *average, double stiffness, double
 void system_relaxation_mass(struct solid_system *system, double *mass)
 {
     double sum = 0.0;
-    body_diagonal(&system->body, mass);
+    if (system->basis != NULL) {
+        body_nodal_diagonal(&system->body, mass);
+    } else {
+        body_diagonal(&system->body, mass);
+    }
     for (int64_t c = 0; c < system->contact_count; c++) {
         const struct contact *contact = &system->contacts[c];
         const struct boundary_averages *averages = contact->averages;
         for (int64_t a = 0; a < averages->count; a++) {
             struct average average = average_of_boundary(averages, a);
-            add_to_bound(&average, contact->stiffness * averages->area[a], mass);
+            add_to_bound(system, &average, averages->node[a], contact->stiffness * averages->area[a], mass);
         }
     }
     for (int64_t r = 0; r < system->springs.count; r++) {
         struct average average = constraint_rows_average(&system->springs, r);
-        add_to_bound(&average, system->spring_stiffness[r], mass);
+        add_to_bound(system, &average, system->springs.node[r], system->spring_stiffness[r], mass);
     }
     for (int64_t n = 0; n < system->node_count; n++) {
         sum += mass[n];

@@ -7,6 +7,7 @@
 #include "solid/constraint.h"
 #include "solid/contact.h"
 #include "solid/curve.h"
+#include "solid/nodal_basis.h"
 
 /* A dead load: forces on the parameters, scaled by a load curve. */
 struct dead_load {
@@ -39,6 +40,12 @@ struct solid_system {
     int64_t node_count;
     const double *X; /* reference coordinates, node_count * dim, m; the caller's */
     struct body body;
+    const struct neighbours *node_lists; /* values of the shape functions at the nodes, the caller's; NULL: */
+    const double *node_phi;              /* not known */
+    /* While a relaxation runs in nodal parameters v, u = Q v: what goes by u in system_residual and
+     * system_resist is v, forces are those on v, and `rows` act on v. NULL: none of that. */
+    const struct nodal_basis *basis;
+    double *basis_u, *basis_force; /* node_count * dim: scratch, with a basis */
     struct dead_load *loads;
     int64_t load_count;
     struct pressure_load *pressures;

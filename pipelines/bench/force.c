@@ -125,9 +125,7 @@ static enum status build_body(const struct problem *problem, const struct varian
                                .material = made->material_of,
                                .material_count = 1,
                                .hat_node = variant->averaged ? cells->node : NULL,
-                               .hat_value = made->hat_value,
-                               .pointwise_share = 0.05,
-                               .share_growth = 20.0};
+                               .hat_value = made->hat_value};
     return body_build(&input, body, error);
 }
 

@@ -35,8 +35,7 @@ static struct body body_of(int dim, int64_t per_axis)
     body.radius = calloc((size_t)body.cells.node_count, sizeof *body.radius);
     good(cells_node_spacing(&body.cells, spacing, &error), &error);
     body.options.support.factor = 2.4; /* smooth: where supports are widened, gradients jump */
-    good(support_radii(&body.options.support, body.cells.node_count, spacing, NULL, body.radius, &error),
-         &error);
+    good(support_radii(&body.options.support, body.cells.node_count, spacing, body.radius, &error), &error);
     free(spacing);
     return body;
 }

@@ -110,7 +110,7 @@ static inline enum status tabulate(const struct support_options *options, int64_
     *table = (struct table){.radius = calloc((size_t)count, sizeof(double))};
     status = options->radius > 0.0 ? STATUS_OK : nodes_spacing(dim, count, x, spacing, error);
     if (status == STATUS_OK) {
-        status = support_radii(options, count, spacing, NULL, table->radius, error);
+        status = support_radii(options, count, spacing, table->radius, error);
     }
     free(spacing);
     if (status == STATUS_OK) {

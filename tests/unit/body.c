@@ -158,7 +158,7 @@ static void fault_of_smoothing(void)
 {
     struct body body;
     struct error error;
-    struct setup setup = one_material(MATERIAL_NEO_HOOKEAN, false, 1.0);
+    struct setup setup = one_material(MATERIAL_NEO_HOOKEAN, false);
     struct sample *sample = &samples[0];
     struct conforming_input conforming = sample_conforming(sample);
     int32_t *material = sample_array(sample->point_count, sizeof *material);
@@ -238,7 +238,7 @@ static void patches(void **state)
     for (int i = 0; i < 4; i++) {
         bool by_faces = i >= 2;
         struct sample sample = make_sample(2, by_faces, by_faces ? 80 : 45);
-        struct setup setup = three_materials(i % 2 == 1, 0.1);
+        struct setup setup = three_materials(i % 2 == 1);
         setup.faces = by_faces;
         struct body body = make_body(&sample, &setup);
         const struct pairs *pairs = by_faces ? &body.cells.faces.pairs : &body.gradients;

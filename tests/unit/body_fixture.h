@@ -163,7 +163,7 @@ static inline struct sample make_wide_sample(int dim, bool conforming, int64_t p
     sample.options.factor = factor;
     sample.radius = sample_array(sample.cloud.node_count, sizeof(double));
     GOOD(cells_node_spacing(&sample.cells, spacing, &error));
-    GOOD(support_radii(&sample.options, sample.cloud.node_count, spacing, NULL, sample.radius, &error));
+    GOOD(support_radii(&sample.options, sample.cloud.node_count, spacing, sample.radius, &error));
     GOOD(point_grid_build(&sample.grid, dim, sample.cloud.node_count, sample.cloud.x, sample.radius, &error));
     free(spacing);
     sample_faces(&sample);

@@ -14,8 +14,7 @@ enum { MATERIALS = 3 };
 /* How a body is made from a sample. */
 struct setup {
     bool averaged;
-    double share, growth; /* pointwise */
-    bool faces;           /* conforming cells: by means over faces, not by the table of gradients */
+    bool faces; /* conforming cells: by means over faces, not by the table of gradients */
     bool single;
     int model_count; /* points take the models in turn, by their place */
     struct material material[MATERIALS];
@@ -28,16 +27,16 @@ static inline struct material make_material(enum material_model model, double yo
     return material;
 }
 
-static inline struct setup one_material(enum material_model model, bool averaged, double share)
+static inline struct setup one_material(enum material_model model, bool averaged)
 {
-    struct setup setup = {.averaged = averaged, .share = share, .model_count = 1};
+    struct setup setup = {.averaged = averaged, .model_count = 1};
     setup.material[0] = make_material(model, 3000.0);
     return setup;
 }
 
-static inline struct setup three_materials(bool averaged, double share)
+static inline struct setup three_materials(bool averaged)
 {
-    struct setup setup = {.averaged = averaged, .share = share, .model_count = 3};
+    struct setup setup = {.averaged = averaged, .model_count = 3};
     setup.material[0] = make_material(MATERIAL_NEO_HOOKEAN, 3000.0);
     setup.material[1] = make_material(MATERIAL_OGDEN, 2000.0);
     setup.material[2] = make_material(MATERIAL_NEO_HOOKEAN, 6000.0);
@@ -74,9 +73,7 @@ static inline struct body make_body(const struct sample *sample, const struct se
                                .material = material,
                                .material_count = setup->model_count,
                                .hat_node = setup->averaged ? sample->hat_node : NULL,
-                               .hat_value = sample->hat_value,
-                               .pointwise_share = setup->share,
-                               .share_growth = setup->growth};
+                               .hat_value = sample->hat_value};
     GOOD(body_build(&input, &body, &error));
     free(material);
     return body;
@@ -133,38 +130,19 @@ static inline int free_samples(void **state)
 /* Every combination of dimension, integration, material and averaging. */
 static inline void for_all(void (*check)(const struct sample *, const struct setup *, struct random *))
 {
-    static const double shares[] = {0.0, 0.1, 1.0};
     struct random random = {1};
     for (int i = 0; i < 4; i++) {
-        for (int model = 0; model < (int)MATERIAL_MODEL_COUNT; model++) {
-            struct setup setup = one_material((enum material_model)model, false, 0.5);
-            check(&samples[i], &setup, &random);
-            setup = one_material((enum material_model)model, true, 0.1);
-            check(&samples[i], &setup, &random);
-            setup.faces = samples[i].conforming;
-            check(&samples[i], &setup, &random);
-        }
-        for (int s = 0; s < 3; s++) {
-            struct setup setup = three_materials(true, shares[s]);
-            setup.growth = 3.0;
-            check(&samples[i], &setup, &random);
-            setup = one_material(MATERIAL_NEO_HOOKEAN, true, shares[s]);
-            check(&samples[i], &setup, &random);
-            setup.growth = 20.0;
-            check(&samples[i], &setup, &random);
-        }
-        for (int averaged = 0; averaged < 2 && samples[i].conforming; averaged++) {
-            struct setup setup = three_materials(averaged == 1, 0.1);
-            setup.growth = 3.0;
-            setup.faces = true;
-            check(&samples[i], &setup, &random);
-        }
-    }
-    for (int i = 0; i < 4; i += 2) {
-        for (int model = 0; model < (int)MATERIAL_MODEL_COUNT; model++) {
-            struct setup setup = one_material((enum material_model)model, false, 0.0);
-            setup.faces = true;
-            check(&samples[i], &setup, &random);
+        for (int averaged = 0; averaged < 2; averaged++) {
+            for (int faces = 0; faces < 1 + (int)samples[i].conforming; faces++) {
+                for (int model = 0; model < (int)MATERIAL_MODEL_COUNT; model++) {
+                    struct setup setup = one_material((enum material_model)model, averaged == 1);
+                    setup.faces = faces == 1;
+                    check(&samples[i], &setup, &random);
+                }
+                struct setup setup = three_materials(averaged == 1);
+                setup.faces = faces == 1;
+                check(&samples[i], &setup, &random);
+            }
         }
     }
 }

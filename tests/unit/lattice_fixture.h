@@ -192,7 +192,7 @@ static inline void lattice_build(struct lattice *l, const struct lattice_options
     ARRAY(spacing, l->cells.node_count);
     ARRAY(l->radius, l->cells.node_count);
     GOOD(cells_node_spacing(&l->cells, spacing, &error));
-    GOOD(support_radii(&support, l->cells.node_count, spacing, NULL, l->radius, &error));
+    GOOD(support_radii(&support, l->cells.node_count, spacing, l->radius, &error));
     free(spacing);
     GOOD(point_grid_build(&l->grid, dim, l->cells.node_count, l->cells.x, l->radius, &error));
     l->system.dim = dim;
@@ -203,6 +203,8 @@ static inline void lattice_build(struct lattice *l, const struct lattice_options
     lattice_tabulate(l, l->cells.node_count, l->cells.x, &l->node_lists, &l->node_phi, NULL);
     l->node_neighbours =
         (struct neighbours){l->node_lists.count, l->node_lists.ptr, l->node_lists.idx, l->node_lists.widen};
+    l->system.node_lists = &l->node_neighbours;
+    l->system.node_phi = l->node_phi;
     lattice_body(l);
 }
 

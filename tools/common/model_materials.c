@@ -4,15 +4,6 @@
 
 #include <stdlib.h>
 
-/* A compressible body does not lock, and averaging would only make it too soft in bending: all of the law
- * stays pointwise where the bulk modulus is no more than twice the shear modulus, little of it near
- * incompressibility. */
-static double least_share(const struct material *material)
-{
-    double share = 2.0 * material->shear_modulus / material->bulk_modulus;
-    return share > 0.0 && share < 1.0 ? share : 1.0;
-}
-
 static void set_material(const struct scene_material *section, struct material *material)
 {
     static const enum material_model models[] = {[SCENE_NEO_HOOKEAN] = MATERIAL_NEO_HOOKEAN,
@@ -25,7 +16,6 @@ static void set_material(const struct scene_material *section, struct material *
                                   .mooney_ratio = section->mooney_ratio,
                                   .ogden_alpha = section->ogden_alpha};
     material_set_moduli(material, section->youngs_modulus, section->poisson_ratio);
-    material->least_share = least_share(material);
 }
 
 /* Row `row` of a table is that of point q, and holds moduli. */
@@ -83,8 +73,7 @@ static enum status add_point_table(const struct model_input *input, int64_t m, s
         struct material *material = &list->items[list->count];
         *material = list->items[m];
         material_set_moduli(material, values[dim], values[dim + 1]);
-        material->least_share = least_share(material);
-        list->section[list->count] = (int32_t)m;
+            list->section[list->count] = (int32_t)m;
         list->of_point[q] = (int32_t)list->count++;
     }
     if (row != table.rows) {

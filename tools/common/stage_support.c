@@ -11,29 +11,23 @@ static enum status local_radii(const struct stream *stream, const struct support
     enum status status;
     struct cells cells;
     double *spacing = NULL;
-    enum beside *beside = NULL;
-    struct named_facets facets;
     TRY(NEW_ARRAY(&spacing, node_count, error));
     TRY(stream_cells(stream, false, &cells, error));
     if (cells.count > 0) {
         TRY(cells_node_spacing(&cells, spacing, error));
-        TRY(stream_facets(stream, false, cells.dim, &facets, error));
-        TRY(NEW_ARRAY(&beside, node_count, error));
-        TRY(cells_beside_ends(&cells, &facets, beside, error));
     } else {
         TRY(nodes_spacing(options->mls.dim, node_count, x, spacing, error));
     }
-    TRY(support_radii(options, node_count, spacing, beside, radius, error));
+    TRY(support_radii(options, node_count, spacing, radius, error));
 done:
     free(spacing);
-    free(beside);
     return status;
 }
 
 enum status stage_radii(const struct stream *stream, const struct support_options *options,
                         int64_t node_count, const double *x, double *radius, struct error *error)
 {
-    return options->radius > 0.0 ? support_radii(options, node_count, NULL, NULL, radius, error)
+    return options->radius > 0.0 ? support_radii(options, node_count, NULL, radius, error)
                                  : local_radii(stream, options, node_count, x, radius, error);
 }
 

@@ -3,7 +3,7 @@
 #ifndef TOOLS_VIEWS_H
 #define TOOLS_VIEWS_H
 
-#include "approx/ends.h"
+#include "approx/cells.h"
 #include "approx/shape.h"
 #include "io/stream.h"
 
@@ -14,6 +14,12 @@ MUST_CHECK enum status stream_nodes(const struct stream *stream, int *dim, int64
 /* Nodes and background cells. cells->count is 0 when there are none, an error if they are needed. */
 MUST_CHECK enum status stream_cells(const struct stream *stream, bool needed, struct cells *cells,
                                     struct error *error);
+
+/* Named facets of the boundary: facet[count * dim] node indices, set[count] the group of each. */
+struct named_facets {
+    int64_t count;
+    const int32_t *facet, *set;
+};
 
 /* Named facets of the boundary, their nodes unchecked. facets->count is 0 when there are none, an error if
  * they are needed. */

@@ -1,0 +1,47 @@
+/* Parameters that are about the values of the field at the nodes.
+ *
+ * Shape functions of moving least squares do not interpolate: with parameters u_j the field at node i is
+ * (P u)_i = sum_j phi_j(x_i) u_j. The wider the supports, the nearer P is to singular (least eigenvalues .66,
+ * .14, .07, .015 at supports of 1.8 spacings in 2D, and of 1.9, 2, 2.2 in 3D; on regular lattices 0): some
+ * patterns of parameters make hardly any field, and no energy. A relaxation in the parameters is slow along
+ * these. Here the unknowns of the relaxation are v, with u = Q v and Q a sparse approximate left inverse of P
+ * (Grote and Huckle 1997): row i of Q has the pattern of row i of P and minimises |q_i P - e_i|^2, subject
+ * to keeping linear fields, sum_j q_ij = 1, sum_j q_ij x_j = x_i. Forces on v are Q^T times those on u. The
+ * state of equilibrium does not depend on Q. */
+#ifndef SOLID_NODAL_BASIS_H
+#define SOLID_NODAL_BASIS_H
+
+#include "base/status.h"
+#include "solid/constraint.h"
+
+#include <stdint.h>
+
+/* A sparse matrix by rows, and its transpose; the same bits for any number of threads. */
+struct nodal_basis {
+    int dim;
+    int64_t node_count;
+    int64_t *ptr; /* node_count + 1 */
+    int32_t *idx; /* ptr[node_count]: columns */
+    double *value;
+    int64_t *transposed_ptr; /* the transpose, likewise */
+    int32_t *transposed_idx;
+    double *transposed_value;
+};
+
+/* From the values of the shape functions at the nodes, in CSR: ptr[node_count + 1], idx and phi;
+ * X[node_count * dim], m. */
+MUST_CHECK enum status nodal_basis_build(int dim, int64_t node_count, const double *X, const int64_t *ptr,
+                                         const int32_t *idx, const double *phi, struct nodal_basis *basis,
+                                         struct error *error);
+void nodal_basis_free(struct nodal_basis *basis);
+
+/* u = Q v, and v = Q^T f; vectors of node_count * dim, not the same. */
+void nodal_basis_apply(const struct nodal_basis *basis, const double *v, double *u);
+void nodal_basis_apply_transposed(const struct nodal_basis *basis, const double *f, double *v);
+
+/* The rows G as rows on v, G Q, in the same order. */
+MUST_CHECK enum status nodal_basis_transform_rows(const struct nodal_basis *basis,
+                                                  const struct constraint_rows *rows,
+                                                  struct constraint_rows *transformed, struct error *error);
+
+#endif
