@@ -131,6 +131,9 @@ int main(int argc, char *argv[])
         .read_seconds = read,
         .display = {.shown = !options[QUIET].given && isatty(STDERR_FILENO), .started = clock_seconds()}};
     tool_check(&tool, model_build(&stream, &scene, options[FLOAT].given, &model, &error), &error);
+    if (model.note.text[0] != '\0') {
+        tool_note(&tool, "%s", model.note.text);
+    }
     tool_check(&tool, NEW_ARRAY(&run.u, model.system.node_count * scene.dim, &error), &error);
     run.prepare_seconds = clock_seconds() - run.display.started;
     run_checkpoint_begin(&run);

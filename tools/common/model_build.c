@@ -159,7 +159,12 @@ enum status model_build(const struct stream *stream, const struct scene *scene, 
     constraint_rows_init(&system->springs, scene->dim);
     TRY(build_body(&model->input, single, system, error));
     TRY(lump_mass(&model->input, system, error));
-    TRY(model_add_constraints(&model->input, system, error));
+    TRY(model_add_constraints(&model->input, system, &model->note, error));
+    TRY(NEW_ARRAY(&model->condition_names, scene->displacement_count, error));
+    for (int64_t i = 0; i < scene->displacement_count; i++) {
+        model->condition_names[i] = scene->displacements[i].label.name;
+    }
+    system->condition_names = model->condition_names;
     TRY(NEW_ARRAY(&model->row_force, system->rows.count, error));
     TRY(model_add_loads(&model->input, system, error));
     TRY(model_add_contacts(&model->input, system, error));
@@ -174,6 +179,8 @@ void model_free(struct model *model)
 {
     model_input_free(&model->input);
     system_free(&model->system);
+    free(model->condition_names);
     free(model->row_force);
+    model->condition_names = NULL;
     model->row_force = NULL;
 }

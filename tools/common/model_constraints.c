@@ -1,5 +1,5 @@
 #include "model_claims.h"
-#include "model_repeats.h"
+#include "model_held.h"
 
 #include "approx/scatter.h"
 #include "io/table.h"
@@ -13,7 +13,9 @@ struct prescription {
     const struct model_input *input;
     const struct scene_displacement *section;
     struct solid_system *system;
-    struct claims *claims; /* of all sections */
+    struct claims *claims;        /* of all sections */
+    struct held_directions *held; /* by the sections before */
+    bool *shared; /* group_count * dim: sections before hold that component at some of the group's nodes */
     int32_t number, curve; /* of the section; of its load curve */
     struct table table;    /* SCENE_TABLE */
     bool springs;          /* adding springs, not exact rows */
@@ -107,29 +109,113 @@ static enum status add_row(const struct prescription *p, const struct boundary_a
                                direction, target, p->curve, p->number, averages->node[a], error);
 }
 
-/* All rows of one average. */
+/* What a section asks of one average: the displacement, or its component along the normal. */
+struct demand {
+    int count;
+    double direction[9]; /* count * dim, unit */
+    double value[3];     /* count: m */
+};
+
+static bool is_free(const struct scene_displacement *section, int i)
+{
+    return section->kind == SCENE_COMPONENTS && section->is_free[i];
+}
+
+/* How many directions the section prescribes at a place. */
+static int direction_count(const struct prescription *p)
+{
+    int count = 0;
+    for (int i = 0; i < p->input->cells.dim; i++) {
+        count += !is_free(p->section, i);
+    }
+    return p->section->kind == SCENE_NORMAL ? 1 : count;
+}
+
+static bool is_full(const struct prescription *p)
+{
+    return direction_count(p) == p->input->cells.dim;
+}
+
+static enum status demand_of(const struct prescription *p, const struct boundary_averages *averages,
+                             int64_t a, struct demand *demand, struct error *error)
+{
+    int dim = p->input->cells.dim;
+    const struct scene_displacement *section = p->section;
+    double value[3] = {section->components[0], section->components[1], section->components[2]};
+    *demand = (struct demand){.count = 0};
+    if (section->kind == SCENE_NORMAL) {
+        memcpy(demand->direction, averages->normal + a * dim, (size_t)dim * sizeof *demand->direction);
+        demand->value[demand->count++] = section->normal;
+        return STATUS_OK;
+    }
+    if (section->kind == SCENE_TABLE) {
+        enum status status = average_of_table(p, averages, a, value, error);
+        if (status != STATUS_OK) {
+            return status;
+        }
+    }
+    for (int i = 0; i < dim; i++) {
+        if (!is_free(section, i)) {
+            demand->direction[demand->count * dim + i] = 1.0;
+            demand->value[demand->count++] = value[i];
+        }
+    }
+    return STATUS_OK;
+}
+
+/* All rows of one average, whatever is held already. */
 static enum status add_average(const struct prescription *p, const struct boundary_averages *averages,
                                int64_t a, struct error *error)
 {
-    enum status status = STATUS_OK;
-    int dim = p->input->cells.dim;
-    double value[3] = {0.0, 0.0, 0.0};
-    if (p->section->kind == SCENE_NORMAL) {
-        return add_row(p, averages, a, averages->normal + a * dim, p->section->normal, error);
+    struct demand demand;
+    enum status status = demand_of(p, averages, a, &demand, error);
+    for (int k = 0; status == STATUS_OK && k < demand.count; k++) {
+        status = add_row(p, averages, a, demand.direction + k * p->input->cells.dim, demand.value[k], error);
     }
-    if (p->section->kind == SCENE_TABLE) {
-        status = average_of_table(p, averages, a, value, error);
-    }
-    for (int i = 0; status == STATUS_OK && i < dim; i++) {
-        double axis[3] = {0.0, 0.0, 0.0};
-        axis[i] = 1.0;
-        if (p->section->kind == SCENE_COMPONENTS) {
-            value[i] = p->section->components[i];
-            if (p->section->is_free[i]) {
-                continue;
-            }
+    return status;
+}
+
+/* Note, for the group of an average, which components are held at its node. */
+static void note_shared(const struct prescription *p, int32_t node, bool *shared)
+{
+    int dim = p->held->dim;
+    const double *axis = p->held->axis + (int64_t)node * dim * dim;
+    for (int k = 0; k < p->held->count[node]; k++) {
+        for (int i = 0; i < dim; i++) {
+            shared[i] = shared[i] || fabs(axis[k * dim + i]) > HELD_LEAST;
         }
-        status = add_row(p, averages, a, axis, value[i], error);
+    }
+}
+
+/* The rows of one average along directions that no section before holds at its node. Where the whole
+ * displacement is prescribed, the directions are turned to be across what is held. */
+static enum status add_rest(const struct prescription *p, const struct boundary_averages *averages, int64_t a,
+                            bool *shared, struct error *error)
+{
+    int dim = p->input->cells.dim, count = 0;
+    int32_t node = averages->node[a];
+    struct demand demand;
+    double mine[9];
+    bool full = is_full(p);
+    enum status status = demand_of(p, averages, a, &demand, error);
+    for (int k = 0; status == STATUS_OK && k < demand.count; k++) {
+        double rest[3], target = demand.value[k], *direction = demand.direction + k * dim;
+        double length = held_rest(p->held, node, full ? count : 0, mine, direction, rest);
+        if (!(length > HELD_LEAST)) {
+            if (shared != NULL) {
+                note_shared(p, node, shared);
+            }
+            continue;
+        }
+        if (full) {
+            target = 0.0;
+            for (int i = 0; i < dim; i++) {
+                direction[i] = mine[count * dim + i] = rest[i] / length;
+                target += direction[i] * demand.value[i];
+            }
+            count++;
+        }
+        status = add_row(p, averages, a, direction, target, error);
     }
     return status;
 }
@@ -151,7 +237,7 @@ static enum status add_claims(const struct prescription *p, const struct boundar
         TRY(table_value(p, p->input->cells.x + (int64_t)claim.node * dim, value, error));
     }
     for (int i = 0; i < dim; i++) {
-        if (section->kind == SCENE_COMPONENTS && section->is_free[i]) {
+        if (is_free(section, i)) {
             continue;
         }
         memset(claim.direction, 0, sizeof claim.direction);
@@ -168,17 +254,6 @@ static bool are_hats(const struct model_input *input)
 {
     const struct scene_solver *solver = &input->scene->solver;
     return solver->constraint_points == SCENE_HAT_AVERAGES && solver->constraints == SCENE_EBCIEM;
-}
-
-/* Averages over facets: by hats, or by node values where the scene says so. */
-static enum status averages_on_facets(const struct model_input *input, const struct facet_set *set,
-                                      struct boundary_averages *averages, struct error *error)
-{
-    if (!are_hats(input)) {
-        return boundary_nodes_build(&input->face_table, set, &input->node_lists, input->node_phi, averages,
-                                    error);
-    }
-    return boundary_averages_build(&input->face_table, set, averages, error);
 }
 
 /* Hold what the hat averages of a set leave free. */
@@ -204,60 +279,155 @@ done:
     return status;
 }
 
+/* Whether the mean over a flat side is to be held along axis i: where hats of its group are left to other
+ * sections; and, but for one side of a group, because a hat round an edge holds both sides at once, where the
+ * traction may jump. Where the whole displacement is constant no linear field makes it jump. */
+static bool holds_side(const struct prescription *p, const bool *shared, int i, bool exempt)
+{
+    bool constant = p->section->kind == SCENE_COMPONENTS && is_full(p);
+    return !is_free(p->section, i) && (shared[i] || (!exempt && !constant));
+}
+
+/* The mean over side a, along the axes that need it; along its normal, if that is one. */
+static enum status add_side(const struct prescription *p, const struct boundary_averages *averages,
+                            const struct boundary_sides *sides, int64_t a, bool exempt, struct error *error)
+{
+    int dim = p->input->cells.dim;
+    const bool *shared = p->shared + sides->group[a] * dim;
+    struct demand demand;
+    enum status status = demand_of(p, averages, a, &demand, error);
+    if (p->section->kind == SCENE_NORMAL) {
+        bool any = shared[0] || shared[1] || shared[dim - 1];
+        return status == STATUS_OK && any ? add_row(p, averages, a, demand.direction, demand.value[0], error)
+                                          : status;
+    }
+    for (int i = 0, k = 0; status == STATUS_OK && i < dim; i++) {
+        double axis[3] = {0.0, 0.0, 0.0};
+        axis[i] = 1.0;
+        if (holds_side(p, shared, i, exempt)) {
+            status = add_row(p, averages, a, axis, demand.value[k], error);
+        }
+        k += !is_free(p->section, i);
+    }
+    return status;
+}
+
+/* Rows on hat averages: hats, then means over sides. */
+static enum status add_hats(struct prescription *p, const struct facet_set *set, struct error *error)
+{
+    enum status status;
+    struct boundary_averages averages = {0};
+    struct boundary_sides sides = {0};
+    bool *exempt = NULL; /* the mean of a side of that group follows from those of the others */
+    int dim = p->input->cells.dim;
+    int64_t first = p->system->rows.count;
+    TRY(boundary_sides_build(&p->input->face_table, set, p->section->kind == SCENE_NORMAL, &averages, &sides,
+                             error));
+    TRY(NEW_ARRAY(&p->shared, sides.group_count * dim, error));
+    for (int64_t a = 0; a < sides.hat_count; a++) {
+        TRY(add_rest(p, &averages, a, p->shared + sides.group[a] * dim, error));
+        TRY(add_claims(p, &averages, a, error));
+    }
+    held_note(p->held, &p->system->rows, first, p->system->rows.count);
+    TRY(NEW_ARRAY(&exempt, sides.group_count, error));
+    for (int64_t g = 0; g < sides.group_count; g++) {
+        exempt[g] = true;
+    }
+    for (int64_t a = sides.hat_count; a < averages.count; a++) {
+        exempt[sides.group[a]] = exempt[sides.group[a]] && sides.flat[a];
+    }
+    for (int64_t a = sides.hat_count; a < averages.count; a++) {
+        if (sides.flat[a]) {
+            TRY(add_side(p, &averages, &sides, a, exempt[sides.group[a]], error));
+            exempt[sides.group[a]] = false;
+        }
+    }
+done:
+    free(exempt);
+    free(p->shared);
+    p->shared = NULL;
+    boundary_averages_free(&averages);
+    boundary_sides_free(&sides);
+    return status;
+}
+
+/* Rows on values at the nodes of facets or of sets. */
+static enum status add_nodes(struct prescription *p, const struct facet_set *set, struct error *error)
+{
+    enum status status;
+    const struct model_input *input = p->input;
+    struct boundary_averages averages = {0};
+    int32_t *owned = NULL;
+    int64_t first = p->system->rows.count, count;
+    if (set->count > 0) {
+        TRY(boundary_nodes_build(&input->face_table, set, &input->node_lists, input->node_phi, &averages,
+                                 error));
+    } else {
+        TRY(model_nodes(input, &p->section->label, &p->section->nodes, &owned, &count, error));
+        TRY(boundary_list_build(input->cells.dim, input->cells.x, owned, count, &input->node_lists,
+                                input->node_phi, &averages, error));
+    }
+    for (int64_t a = 0; a < averages.count; a++) {
+        TRY(add_rest(p, &averages, a, NULL, error));
+        TRY(add_claims(p, &averages, a, error));
+    }
+    held_note(p->held, &p->system->rows, first, p->system->rows.count);
+done:
+    free(owned);
+    boundary_averages_free(&averages);
+    return status;
+}
+
 static enum status add_section(struct prescription *p, struct error *error)
 {
     enum status status;
     int dim = p->input->cells.dim;
     const struct scene_displacement *section = p->section;
-    struct boundary_averages averages = {0};
     struct facet_set set = {0};
     int32_t *owned = NULL;
-    int64_t count;
     TRY(model_add_curve(p->input, &section->label, &section->curve, p->system, &p->curve, error));
     if (section->kind == SCENE_TABLE) {
         TRY(table_read(section->table, 2 * dim, 2 * dim, &p->table, error));
     }
     if (section->facets.count > 0) {
         TRY(model_facets(p->input, &section->label, &section->facets, &set, &owned, error));
-        TRY(averages_on_facets(p->input, &set, &averages, error));
-    } else {
-        TRY(model_nodes(p->input, &section->label, &section->nodes, &owned, &count, error));
-        TRY(boundary_list_build(dim, p->input->cells.x, owned, count, &p->input->node_lists,
-                                p->input->node_phi, &averages, error));
-    }
-    for (int64_t a = 0; a < averages.count; a++) {
-        TRY(add_average(p, &averages, a, error));
-        TRY(add_claims(p, &averages, a, error));
     }
     if (section->facets.count > 0 && are_hats(p->input)) {
+        TRY(add_hats(p, &set, error));
         TRY(add_springs(p, &set, error));
+    } else {
+        TRY(add_nodes(p, &set, error));
     }
 done:
     free(owned);
-    boundary_averages_free(&averages);
     table_free(&p->table);
     return status;
 }
 
 enum status model_add_constraints(const struct model_input *input, struct solid_system *system,
-                                  struct error *error)
+                                  struct error *note, struct error *error)
 {
     enum status status = STATUS_OK;
     struct claims claims = {0};
-    for (int64_t i = 0; i < input->scene->displacement_count; i++) {
-        int64_t first = system->rows.count;
-        struct prescription p = {.input = input,
-                                 .section = &input->scene->displacements[i],
-                                 .system = system,
-                                 .claims = &claims,
-                                 .number = (int32_t)i};
-        TRY(add_section(&p, error));
-        if (i > 0) {
-            TRY(repeats_drop(input, first, &system->rows, error));
+    struct held_directions held = {0};
+    TRY(held_build(input->cells.dim, input->cells.node_count, &held, error));
+    /* Sections that hold few directions come first: what slides along a plane stays on it to its rim. */
+    for (int directions = 1; directions <= input->cells.dim; directions++) {
+        for (int64_t i = 0; i < input->scene->displacement_count; i++) {
+            struct prescription p = {.input = input,
+                                     .section = &input->scene->displacements[i],
+                                     .system = system,
+                                     .claims = &claims,
+                                     .held = &held,
+                                     .number = (int32_t)i};
+            if (direction_count(&p) == directions) {
+                TRY(add_section(&p, error));
+            }
         }
     }
-    TRY(claims_check(input, &claims, error));
+    TRY(claims_check(input, &claims, note, error));
 done:
     claims_free(&claims);
+    held_free(&held);
     return status;
 }
