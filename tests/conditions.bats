@@ -116,3 +116,86 @@ x < 1e-9/(x - 0.56)^2 + (y - 0.13)^2 + (z - 0.4)^2 < 0.002/2.088
 x < 1e-9/x > 0.6 && x < 0.8 && (y > 0.399 || y < 1e-9 || z > 0.399 || z < 1e-9)/8.561
 END
 }
+
+# freed SCENE-LINES...: the square block with these lines is free to do $what.
+freed() {
+    { block quasi-static; printf '%b\n' "$@"; } > free.scene
+    refused 1 "free.scene: nothing holds the body: it $what: add a [displacement] that forbids that" mtled free.scene "${stream:-square.mts}"
+}
+
+@test "what is free to move or turn is named before the first step" {
+    square_msh
+    nodes -u mm body.msh 2> note | shapefn > square.mts 2> note
+    what='may move along any direction and turn about any axis' freed '[traction t]\nfacets = xmax\ncomponents = 1, 0'
+    what='may turn about (0.1, 0.1)' freed '[displacement c]\nnodes = corner\ncomponents = 0, 0'
+    what='may move along (0, 1)' freed '[displacement l]\nfacets = xmin\nnormal = 0'
+    what='may move along (1, 0), may turn about (0.1, 0.05)' freed '[displacement l]\nnodes = corner\ncomponents = free, 0'
+    { block quasi-static; held_below; } > free.scene
+    mtled free.scene square.mts > u.dat 2> said
+    cloud -d 3 -k regular -n 4 --box 0,0.1,0,0.1,0,0.1 | shapefn > cube.mts 2> note
+    { head3; printf '[displacement l]\nfacets = xmin\nnormal = 0\n[displacement b]\nfacets = ymin\nnormal = 0\n[traction t]\nfacets = zmax\ncomponents = 0, 0, 5\n'; } > free.scene
+    refused 1 "nothing holds the body: it may move along (0, 0, 1): " mtled free.scene cube.mts
+    { head3; printf '[displacement l]\nfacets = zmin\nnormal = 0\n[displacement b]\nfacets = zmax\nnormal = 0\n'; } > free.scene
+    refused 1 "it may move along (1, 0, 0), may move along (0, 1, 0), may turn about the axis through (0.05, 0.05, 0.05) along (0, 0, 1): " mtled free.scene cube.mts
+}
+
+# two: two blocks of 0.1 x 0.1 m, one 1 m above the other, the upper one of region lid
+two() {
+    cat > two.geo << 'END'
+SetFactory("OpenCASCADE");
+Mesh.MeshSizeMax = 25;
+Rectangle(1) = {0, 0, 0, 100, 100};
+Rectangle(2) = {0, 1000, 0, 100, 100};
+Physical Surface("body") = {1};
+Physical Surface("lid") = {2};
+Physical Curve("floor") = {1};
+Physical Curve("right") = {6};
+Physical Curve("lower") = {5};
+END
+    gmsh -v 1 -2 two.geo -o two.msh
+    nodes -u mm two.msh 2> note | shapefn > two.mts 2> note
+}
+
+@test "of several bodies the free one is named; what only contact holds runs, and is told" {
+    two
+    { block quasi-static 'gravity = 0, -1' | sed 's/^region = body/region = body, lid/'; printf '[displacement floor]\nfacets = floor\ncomponents = 0, 0\n'; } > two.scene
+    refused 1 "nothing holds body 2 (region lid, near (0.05, 1.05)): it may move along any direction and turn about any axis: " mtled two.scene two.mts
+    { cat two.scene; printf '[displacement right]\nfacets = right\nnormal = 0\n'; } > slide.scene
+    refused 1 "nothing holds body 2 (region lid, near (0.05, 1.05)): it may move along (0, 1): " mtled slide.scene two.mts
+    printf -- '-1 0.999\n2 0.999\n' > wall.tsv
+    { cat slide.scene; printf '[contact wall]\nfacets = lower\nrigid = wall.tsv\nunit = m\nside = left\n[output]\nreactions = yes\n'; } > rest.scene
+    mtled -v rest.scene two.mts > u.dat 2> said
+    grep -q '^mtled: rest.scene: only contact holds body 2 (region lid, near (0.05, 1.05)): it may move along (0, 1) otherwise' said
+    reaction 3 | awk '{ d = $2 - 10; exit !(d < 0.01 && -d < 0.01) }'
+    mtled rest.scene two.mts 2> said > u.dat
+    [ ! -s said ]
+}
+
+@test "moments: in balance with each other and with the load, about any point; their unit and names" {
+    square_msh
+    nodes -u mm body.msh 2> note | shapefn > square.mts 2> note
+    { block quasi-static; held_below; printf '[displacement top]\nfacets = ymax\ncomponents = 0.01, 0.005\n[output]\nreactions = yes\nmoments = yes\n[solver]\ntolerance = 1e-8\n'; } > bend.scene
+    mtled bend.scene square.mts > u.dat
+    grep -q '^# moments f8 2 1 .*unit=N about=0,0 cols=z rows=bottom,top' u.dat
+    rows moments u.dat | awk '{ m[NR] = $1 } END { d = m[1] + m[2]; exit !(NR == 2 && m[1]^2 > 0.01 && d^2 < 1e-10 * m[1]^2) }'
+    rows moments u.dat > origin
+    sed 's/^moments = yes/&\nmoments_about = 0.3, -0.2/' bend.scene > about.scene
+    mtled about.scene square.mts > v.dat
+    grep -q '^# moments .*about=0.3,-0.2 ' v.dat
+    paste origin <(rows moments v.dat) <(rows reactions u.dat) | awk '{ d = $2 - ($1 - (0.3 * $4 + 0.2 * $3)); if (!(d^2 < 1e-12)) bad = 1 } END { exit bad || NR != 2 }'
+    # A traction along y on the right side, in 3D: the bottom holds its moment about the middle of the bottom.
+    cloud -d 3 -k jittered -n 5 --box 0,0.1,0,0.1,0,0.1 --jitter 0.1 | shapefn > cube.mts 2> note
+    { head3; printf '[displacement bottom]\nfacets = zmin\ncomponents = 0, 0, 0\n[traction push]\nfacets = xmax\ncomponents = 0, 1, 0\n'
+        printf '[solver]\ntolerance = 1e-8\n'; } | sed 's/^reactions = yes/moments = yes\nmoments_about = 0.05, 0.05, 0/' > twist.scene
+    mtled twist.scene cube.mts > u.dat
+    grep -q '^# moments f8 1 3 .*unit=N.m about=0.05,0.05,0 cols=x,y,z rows=bottom' u.dat
+    rows moments u.dat | awk '{ x = $1 / 5e-4 - 1; z = $3 / -5e-4 - 1; print; exit !(x^2 < 1e-4 && z^2 < 1e-4 && $2^2 < 1e-12) }'
+}
+
+@test "moments: a point out of all reason, or without moments" {
+    cloud -d 2 -k regular -n 4 --box 0,0.1,0,0.1 | shapefn > square.mts 2> note
+    { pressed_block; printf '[output]\nmoments = yes\nmoments_about = 0, 2e5\n'; } > far.scene
+    refused 2 "far.scene: [output]: moments_about: 2e+05 m from the body of 0.141 m: give a point near it, in m" mtled far.scene square.mts
+    sed -i '/^moments = /d' far.scene
+    refused 2 "moments_about: not allowed: it goes with moments = yes" mtled far.scene square.mts
+}

@@ -1,7 +1,9 @@
 #include "model.h"
 
 #include "approx/quadrature.h"
+#include "base/box.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -10,6 +12,7 @@
  * would begin to fold. */
 static const double default_pointwise_share = 0.05;
 static const double share_growth = 20.0;
+static const double farthest_moments = 1e6; /* of the body's size */
 
 /* Barycentric coordinates of a point in a cell. */
 static void barycentric(const struct cells *cells, int64_t cell, const double *x, double *value)
@@ -145,6 +148,23 @@ done:
     return status;
 }
 
+/* Moments about a point that far away are differences of huge numbers: a unit or a sign is wrong. */
+static enum status check_moments(const struct model_input *input, struct error *error)
+{
+    const double *about = input->scene->output.about;
+    struct box box = box_of(input->cells.dim, input->cells.node_count, input->cells.x);
+    for (int a = 0; a < input->cells.dim && input->scene->output.moments; a++) {
+        double away = fmax(box.low[a] - about[a], about[a] - box.high[a]);
+        if (!(away <= farthest_moments * input->extent)) {
+            return fail(
+                error, STATUS_INPUT,
+                "%s: [output]: moments_about: %.3g m from the body of %.3g m: give a point near it, in m",
+                input->scene->path, away, input->extent);
+        }
+    }
+    return STATUS_OK;
+}
+
 enum status model_build(const struct stream *stream, const struct scene *scene, bool single,
                         struct model *model, struct error *error)
 {
@@ -152,6 +172,7 @@ enum status model_build(const struct stream *stream, const struct scene *scene, 
     struct solid_system *system = &model->system;
     *model = (struct model){0};
     TRY(model_input_read(stream, scene, &model->input, error));
+    TRY(check_moments(&model->input, error));
     system->dim = scene->dim;
     system->node_count = model->input.cells.node_count;
     system->X = model->input.cells.x;
