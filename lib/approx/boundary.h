@@ -49,7 +49,7 @@ MUST_CHECK enum status boundary_averages_build(const struct face_table *table, c
 
 /* The same, and after the hats an average over each whole side of the set: a part of it within which facets
  * that share an edge (2D: a node) turn by less than 45 degrees. Hats are split between sides, or not: a hat
- * round an edge then holds both sides together, and the averages of the sides let the traction jump there. */
+ * round an edge then holds both sides together. */
 struct boundary_sides {
     int64_t hat_count;   /* averages before this one are hats, the others sides */
     int64_t group_count; /* of groups */

@@ -1,72 +1,8 @@
-#include "model_claims.h"
-#include "model_held.h"
-
-#include "approx/scatter.h"
-#include "io/table.h"
+#include "model_prescription.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-
-/* What one displacement section prescribes, and where it goes. */
-struct prescription {
-    const struct model_input *input;
-    const struct scene_displacement *section;
-    struct solid_system *system;
-    struct claims *claims;        /* of all sections */
-    struct held_directions *held; /* by the sections before */
-    bool *shared; /* group_count * dim: sections before hold that component at some of the group's nodes */
-    int32_t number, curve; /* of the section; of its load curve */
-    struct table table;    /* SCENE_TABLE */
-    bool springs;          /* adding springs, not exact rows */
-    double modulus, layer; /* of the springs: Pa, and the size of the cells there, m */
-};
-
-/* The prescribed displacement at one place. */
-static enum status table_value(const struct prescription *p, const double *x, double *value,
-                               struct error *error)
-{
-    int dim = p->input->cells.dim;
-    double distance, spacing;
-    struct scatter scatter = {.dim = dim,
-                              .value_count = dim,
-                              .count = p->table.rows,
-                              .row_size = p->table.cols,
-                              .row = p->table.values,
-                              .unit = p->section->table_unit};
-    enum status status = scatter_evaluate(&scatter, x, value, &distance, &spacing, error);
-    if (status == STATUS_OK && p->table.rows > 1 && !(distance <= fmin(8.0 * spacing, p->input->extent))) {
-        char place[96];
-        point_text(dim, x, place);
-        return scene_fail(
-            error, STATUS_INPUT, p->input->scene, &p->section->label,
-            "table %s: its nearest point is %.3g m from the boundary at %s, its points are %.3g m "
-            "apart: wrong unit or wrong place",
-            p->section->table, distance, place, spacing);
-    }
-    return status;
-}
-
-/* Mean of the table over the samples of one average. */
-static enum status average_of_table(const struct prescription *p, const struct boundary_averages *averages,
-                                    int64_t a, double *mean, struct error *error)
-{
-    int dim = p->input->cells.dim;
-    for (int i = 0; i < dim; i++) {
-        mean[i] = 0.0;
-    }
-    for (int64_t s = averages->sample_ptr[a]; s < averages->sample_ptr[a + 1]; s++) {
-        double value[3];
-        enum status status = table_value(p, averages->sample_x + s * dim, value, error);
-        if (status != STATUS_OK) {
-            return status;
-        }
-        for (int i = 0; i < dim; i++) {
-            mean[i] += averages->sample_share[s] * value[i];
-        }
-    }
-    return STATUS_OK;
-}
 
 /* A spring of about the stiffness of a layer of cells, times the area of its point of the facets. */
 static enum status add_spring(const struct prescription *p, const struct boundary_averages *points, int64_t a,
@@ -109,66 +45,12 @@ static enum status add_row(const struct prescription *p, const struct boundary_a
                                direction, target, p->curve, p->number, averages->node[a], error);
 }
 
-/* What a section asks of one average: the displacement, or its component along the normal. */
-struct demand {
-    int count;
-    double direction[9]; /* count * dim, unit */
-    double value[3];     /* count: m */
-};
-
-static bool is_free(const struct scene_displacement *section, int i)
-{
-    return section->kind == SCENE_COMPONENTS && section->is_free[i];
-}
-
-/* How many directions the section prescribes at a place. */
-static int direction_count(const struct prescription *p)
-{
-    int count = 0;
-    for (int i = 0; i < p->input->cells.dim; i++) {
-        count += !is_free(p->section, i);
-    }
-    return p->section->kind == SCENE_NORMAL ? 1 : count;
-}
-
-static bool is_full(const struct prescription *p)
-{
-    return direction_count(p) == p->input->cells.dim;
-}
-
-static enum status demand_of(const struct prescription *p, const struct boundary_averages *averages,
-                             int64_t a, struct demand *demand, struct error *error)
-{
-    int dim = p->input->cells.dim;
-    const struct scene_displacement *section = p->section;
-    double value[3] = {section->components[0], section->components[1], section->components[2]};
-    *demand = (struct demand){.count = 0};
-    if (section->kind == SCENE_NORMAL) {
-        memcpy(demand->direction, averages->normal + a * dim, (size_t)dim * sizeof *demand->direction);
-        demand->value[demand->count++] = section->normal;
-        return STATUS_OK;
-    }
-    if (section->kind == SCENE_TABLE) {
-        enum status status = average_of_table(p, averages, a, value, error);
-        if (status != STATUS_OK) {
-            return status;
-        }
-    }
-    for (int i = 0; i < dim; i++) {
-        if (!is_free(section, i)) {
-            demand->direction[demand->count * dim + i] = 1.0;
-            demand->value[demand->count++] = value[i];
-        }
-    }
-    return STATUS_OK;
-}
-
 /* All rows of one average, whatever is held already. */
 static enum status add_average(const struct prescription *p, const struct boundary_averages *averages,
                                int64_t a, struct error *error)
 {
     struct demand demand;
-    enum status status = demand_of(p, averages, a, &demand, error);
+    enum status status = prescription_demand(p, averages, a, &demand, error);
     for (int k = 0; status == STATUS_OK && k < demand.count; k++) {
         status = add_row(p, averages, a, demand.direction + k * p->input->cells.dim, demand.value[k], error);
     }
@@ -196,8 +78,8 @@ static enum status add_rest(const struct prescription *p, const struct boundary_
     int32_t node = averages->node[a];
     struct demand demand;
     double mine[9];
-    bool full = is_full(p);
-    enum status status = demand_of(p, averages, a, &demand, error);
+    bool full = prescription_is_full(p);
+    enum status status = prescription_demand(p, averages, a, &demand, error);
     for (int k = 0; status == STATUS_OK && k < demand.count; k++) {
         double rest[3], target = demand.value[k], *direction = demand.direction + k * dim;
         double length = held_rest(p->held, node, full ? count : 0, mine, direction, rest);
@@ -234,10 +116,10 @@ static enum status add_claims(const struct prescription *p, const struct boundar
     }
     enum status status = STATUS_OK;
     if (section->kind == SCENE_TABLE) {
-        TRY(table_value(p, p->input->cells.x + (int64_t)claim.node * dim, value, error));
+        TRY(prescription_value(p, p->input->cells.x + (int64_t)claim.node * dim, value, error));
     }
     for (int i = 0; i < dim; i++) {
-        if (is_free(section, i)) {
+        if (prescription_is_free(section, i)) {
             continue;
         }
         memset(claim.direction, 0, sizeof claim.direction);
@@ -279,23 +161,15 @@ done:
     return status;
 }
 
-/* Whether the mean over a flat side is to be held along axis i: where hats of its group are left to other
- * sections; and, but for one side of a group, because a hat round an edge holds both sides at once, where the
- * traction may jump. Where the whole displacement is constant no linear field makes it jump. */
-static bool holds_side(const struct prescription *p, const bool *shared, int i, bool exempt)
-{
-    bool constant = p->section->kind == SCENE_COMPONENTS && is_full(p);
-    return !is_free(p->section, i) && (shared[i] || (!exempt && !constant));
-}
-
-/* The mean over side a, along the axes that need it; along its normal, if that is one. */
+/* The mean over side a, along the axes along which hats of its group are left to other sections; along its
+ * normal, if that is what is held. */
 static enum status add_side(const struct prescription *p, const struct boundary_averages *averages,
-                            const struct boundary_sides *sides, int64_t a, bool exempt, struct error *error)
+                            const struct boundary_sides *sides, int64_t a, struct error *error)
 {
     int dim = p->input->cells.dim;
     const bool *shared = p->shared + sides->group[a] * dim;
     struct demand demand;
-    enum status status = demand_of(p, averages, a, &demand, error);
+    enum status status = prescription_demand(p, averages, a, &demand, error);
     if (p->section->kind == SCENE_NORMAL) {
         bool any = shared[0] || shared[1] || shared[dim - 1];
         return status == STATUS_OK && any ? add_row(p, averages, a, demand.direction, demand.value[0], error)
@@ -304,46 +178,57 @@ static enum status add_side(const struct prescription *p, const struct boundary_
     for (int i = 0, k = 0; status == STATUS_OK && i < dim; i++) {
         double axis[3] = {0.0, 0.0, 0.0};
         axis[i] = 1.0;
-        if (holds_side(p, shared, i, exempt)) {
+        if (!prescription_is_free(p->section, i) && shared[i]) {
             status = add_row(p, averages, a, axis, demand.value[k], error);
         }
-        k += !is_free(p->section, i);
+        k += !prescription_is_free(p->section, i);
     }
     return status;
 }
 
-/* Rows on hat averages: hats, then means over sides. */
+/* Hats for a section. Split, two for each node of an edge, they carry a traction that jumps there; not split
+ * they leave the field beside the edge as free as elsewhere. A displacement that is constant makes no linear
+ * field but rest, whose traction could jump; and on curved sides none is exact anyway. */
+static enum status build_hats(const struct prescription *p, const struct facet_set *set,
+                              struct boundary_averages *averages, struct boundary_sides *sides,
+                              struct error *error)
+{
+    bool split = p->section->kind == SCENE_NORMAL;
+    enum status status = boundary_sides_build(&p->input->face_table, set, split, averages, sides, error);
+    if (split || status != STATUS_OK || (p->section->kind == SCENE_COMPONENTS && prescription_is_full(p))) {
+        return status;
+    }
+    for (int64_t a = sides->hat_count; a < averages->count; a++) {
+        if (!sides->flat[a]) {
+            return STATUS_OK;
+        }
+    }
+    boundary_averages_free(averages);
+    boundary_sides_free(sides);
+    return boundary_sides_build(&p->input->face_table, set, true, averages, sides, error);
+}
+
+/* Rows on hat averages: hats, then means over flat sides. */
 static enum status add_hats(struct prescription *p, const struct facet_set *set, struct error *error)
 {
     enum status status;
     struct boundary_averages averages = {0};
     struct boundary_sides sides = {0};
-    bool *exempt = NULL; /* the mean of a side of that group follows from those of the others */
     int dim = p->input->cells.dim;
     int64_t first = p->system->rows.count;
-    TRY(boundary_sides_build(&p->input->face_table, set, p->section->kind == SCENE_NORMAL, &averages, &sides,
-                             error));
+    TRY(build_hats(p, set, &averages, &sides, error));
     TRY(NEW_ARRAY(&p->shared, sides.group_count * dim, error));
     for (int64_t a = 0; a < sides.hat_count; a++) {
         TRY(add_rest(p, &averages, a, p->shared + sides.group[a] * dim, error));
         TRY(add_claims(p, &averages, a, error));
     }
     held_note(p->held, &p->system->rows, first, p->system->rows.count);
-    TRY(NEW_ARRAY(&exempt, sides.group_count, error));
-    for (int64_t g = 0; g < sides.group_count; g++) {
-        exempt[g] = true;
-    }
-    for (int64_t a = sides.hat_count; a < averages.count; a++) {
-        exempt[sides.group[a]] = exempt[sides.group[a]] && sides.flat[a];
-    }
     for (int64_t a = sides.hat_count; a < averages.count; a++) {
         if (sides.flat[a]) {
-            TRY(add_side(p, &averages, &sides, a, exempt[sides.group[a]], error));
-            exempt[sides.group[a]] = false;
+            TRY(add_side(p, &averages, &sides, a, error));
         }
     }
 done:
-    free(exempt);
     free(p->shared);
     p->shared = NULL;
     boundary_averages_free(&averages);
@@ -420,7 +305,7 @@ enum status model_add_constraints(const struct model_input *input, struct solid_
                                      .claims = &claims,
                                      .held = &held,
                                      .number = (int32_t)i};
-            if (direction_count(&p) == directions) {
+            if (prescription_directions(&p) == directions) {
                 TRY(add_section(&p, error));
             }
         }
