@@ -11,12 +11,13 @@ static const char usage[] =
     "shapefn are run first, with the same result.\n"
     "\n"
     "Quasi-static scenes are relaxed until the estimated remaining error, relative to the\n"
-    "displacement, is below the scene's tolerance. Dynamic scenes are stepped to their end\n"
-    "time by central differences with the true mass, at a share (time_step_margin) of the\n"
-    "critical step, which is watched all along. They stop with a verdict when a point is\n"
-    "inverted, when the critical step collapses (below 0.001 of the first one), and when the\n"
-    "energy balance is off by more than 0.05 of the largest energy. On a terminal, progress is\n"
-    "shown with step, time, error and time left.\n"
+    "displacement, is below the scene's tolerance. A body that no displacement of the scene keeps\n"
+    "from moving or turning as a whole, and no contact acts on, is a verdict before the first\n"
+    "step. Dynamic scenes are stepped to their end time by central differences with the true\n"
+    "mass, at a share (time_step_margin) of the critical step, which is watched all along. They\n"
+    "stop with a verdict when a point is inverted, when the critical step collapses (below 0.001\n"
+    "of the first one), and when the energy balance is off by more than 0.05 of the largest\n"
+    "energy. On a terminal, progress is shown with step, time, error and time left.\n"
     "\n"
     "Nothing is written by a run that ends with such a verdict or by a signal, but where the scene\n"
     "asks for frames: then those so far and the last good state follow, as a stream that says at\n"
@@ -25,12 +26,14 @@ static const char usage[] =
     "\n"
     "Sections on request: u.frame.K, the field u at time= (frames K = 1, 2, ..., evenly up to\n"
     "the final state; in a quasi-static scene over the load, from 0 to 1), for tovtk; stress\n"
-    "(Cauchy) and strain (Green-Lagrange) of each integration point; reactions, the force of\n"
-    "each displacement and contact; gaps and pressures of contacts; energy, J (2D: J/m): in a\n"
-    "dynamic scene about 200 rows of time (s), kinetic, internal and contact energy, work of\n"
-    "loads and prescribed motion, energy dissipated by damping, and error of the balance\n"
-    "relative to the largest energy; in a quasi-static scene one row, internal and contact,\n"
-    "of the final state (relaxation is no motion that a work could be told of).\n"
+    "(Cauchy) and strain (Green-Lagrange) of each integration point; reactions and moments, the\n"
+    "force of each displacement and contact on the body and its moment about the scene's\n"
+    "moments_about, at the deformed places where it acts; gaps and pressures of contacts;\n"
+    "energy, J (2D: J/m): in a dynamic scene about 200 rows of time (s), kinetic, internal and\n"
+    "contact energy, work of loads and prescribed motion, energy dissipated by damping, and\n"
+    "error of the balance relative to the largest energy; in a quasi-static scene one row,\n"
+    "internal and contact, of the final state (relaxation is no motion that a work could be\n"
+    "told of).\n"
     "\n"
     "With -c, the state of the run is kept in a file, from time to time and when SIGINT, SIGTERM\n"
     "or SIGHUP end it. The same command then goes on where it was, and ends with the same bytes\n"
@@ -52,7 +55,7 @@ static const char usage[] =
     "\n"
     "Exit status:\n"
     "  0        done\n"
-    "  1        diverged, inverted, out of balance or of steps\n"
+    "  1        a body that nothing holds; diverged, inverted, out of balance or of steps\n"
     "  2        wrong usage or malformed input\n"
     "  3        input, output or memory failed\n"
     "  128 + n  ended by signal n after a whole step\n"
@@ -86,7 +89,7 @@ static double parse_every(const struct tool *tool, const struct option *options)
 /* The results of an earlier run on the same stream. */
 static void drop_results(struct stream *stream)
 {
-    static const char *const names[] = {"u", "stress", "strain", "reactions", "gaps", "energy"};
+    static const char *const names[] = {"u", "stress", "strain", "reactions", "moments", "gaps", "energy"};
     for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
         stream_remove(stream, names[i]);
     }
@@ -131,6 +134,9 @@ int main(int argc, char *argv[])
         .read_seconds = read,
         .display = {.shown = !options[QUIET].given && isatty(STDERR_FILENO), .started = clock_seconds()}};
     tool_check(&tool, model_build(&stream, &scene, options[FLOAT].given, &model, &error), &error);
+    if (model.note.text[0] != '\0') {
+        tool_note(&tool, "%s", model.note.text);
+    }
     tool_check(&tool, NEW_ARRAY(&run.u, model.system.node_count * scene.dim, &error), &error);
     run.prepare_seconds = clock_seconds() - run.display.started;
     run_checkpoint_begin(&run);

@@ -121,8 +121,8 @@ static enum status add_corner(const struct face_table *table, const struct facet
     return STATUS_OK;
 }
 
-/* From integrals to averages. */
-static void normalise(int dim, int64_t part, struct boundary_averages *averages)
+/* From integrals to averages; returns the length of the mean normal. */
+static double normalise(int dim, int64_t part, struct boundary_averages *averages)
 {
     double length2 = 0.0;
     for (int a = 0; a < dim; a++) {
@@ -135,6 +135,7 @@ static void normalise(int dim, int64_t part, struct boundary_averages *averages)
     for (int64_t s = averages->sample_ptr[part]; s < averages->sample_ptr[part + 1]; s++) {
         averages->sample_share[s] /= averages->area[part];
     }
+    return sqrt(length2) / averages->area[part];
 }
 
 /* The node itself in place of the points around it: the one sample of its part. */
@@ -150,14 +151,38 @@ static void take_node(const struct face_table *table, int64_t part, struct bound
     }
 }
 
-/* Both kinds of averages; node_lists == NULL: hat averages. */
-static enum status build(const struct face_table *table, const struct facet_set *set,
-                         const struct neighbours *node_lists, const double *node_phi,
-                         struct boundary_averages *averages, struct error *error)
+/* The parts that averages are made of: hats, split where the boundary turns or not, and, with `sides`, whole
+ * sides after them. */
+static enum status collect_parts(const struct face_table *table, const struct facet_set *set, bool split,
+                                 struct boundary_sides *sides, struct corner *corners, int64_t *parts,
+                                 struct error *error)
+{
+    enum status status;
+    int64_t *group = NULL, count = 2 * set->count * table->dim;
+    TRY(boundary_collect_corners(table, set, split, corners, parts, error));
+    if (sides != NULL) {
+        sides->hat_count = *parts;
+        TRY(NEW_ARRAY(&group, set->count, error));
+        TRY(boundary_add_sides(table, set, split, corners, parts, group, &sides->group_count, error));
+        TRY(NEW_ARRAY(&sides->group, *parts, error));
+        TRY(NEW_ARRAY(&sides->flat, *parts, error));
+        for (int64_t i = 0; i < count; i++) {
+            sides->group[corners[i].part] = group[corners[i].facet];
+        }
+    }
+done:
+    free(group);
+    return status;
+}
+
+/* All kinds of averages; node_lists == NULL: hat averages. */
+static enum status build(const struct face_table *table, const struct facet_set *set, bool split,
+                         struct boundary_sides *sides, const struct neighbours *node_lists,
+                         const double *node_phi, struct boundary_averages *averages, struct error *error)
 {
     enum status status;
     int dim = table->dim;
-    int64_t corner_count = set->count * dim, parts = 0, capacity = 0;
+    int64_t corner_count = (sides != NULL ? 2 : 1) * set->count * dim, parts = 0, capacity = 0;
     struct corner *corners = NULL;
     int64_t *face_of = NULL;
     struct dense_row row = {0};
@@ -166,7 +191,7 @@ static enum status build(const struct face_table *table, const struct facet_set 
     TRY(NEW_ARRAY(&face_of, set->count, error));
     TRY(NEW_ARRAY(&row.value, table->node_count, error));
     TRY(NEW_ARRAY(&row.is_touched, table->node_count, error));
-    TRY(boundary_collect_corners(table, set, node_lists == NULL, corners, &parts, error));
+    TRY(collect_parts(table, set, split, sides, corners, &parts, error));
     TRY(boundary_find_faces(table, set, face_of, error));
     TRY(allocate(dim, parts, corner_count * table->per_face, averages, error));
     for (int64_t part = 0, next = 0; part < parts; part++) {
@@ -178,7 +203,10 @@ static enum status build(const struct face_table *table, const struct facet_set 
         }
         averages->node[part] = node;
         double whole = averages->area[part];
-        normalise(dim, part, averages);
+        double mean = normalise(dim, part, averages);
+        if (sides != NULL) {
+            sides->flat[part] = mean > 1.0 - 0.5e-6;
+        }
         if (node_lists != NULL) {
             whole = 1.0;
             take_node(table, part, averages);
@@ -203,14 +231,33 @@ done:
 enum status boundary_averages_build(const struct face_table *table, const struct facet_set *set,
                                     struct boundary_averages *averages, struct error *error)
 {
-    return build(table, set, NULL, NULL, averages, error);
+    return build(table, set, true, NULL, NULL, NULL, averages, error);
+}
+
+enum status boundary_sides_build(const struct face_table *table, const struct facet_set *set, bool split,
+                                 struct boundary_averages *averages, struct boundary_sides *sides,
+                                 struct error *error)
+{
+    *sides = (struct boundary_sides){0};
+    enum status status = build(table, set, split, sides, NULL, NULL, averages, error);
+    if (status != STATUS_OK) {
+        boundary_sides_free(sides);
+    }
+    return status;
+}
+
+void boundary_sides_free(struct boundary_sides *sides)
+{
+    free(sides->group);
+    free(sides->flat);
+    *sides = (struct boundary_sides){0};
 }
 
 enum status boundary_nodes_build(const struct face_table *table, const struct facet_set *set,
                                  const struct neighbours *node_lists, const double *node_phi,
                                  struct boundary_averages *averages, struct error *error)
 {
-    return build(table, set, node_lists, node_phi, averages, error);
+    return build(table, set, false, NULL, node_lists, node_phi, averages, error);
 }
 
 /* The values of one point, as they are, as average `a`. */

@@ -47,6 +47,21 @@ struct boundary_averages {
 MUST_CHECK enum status boundary_averages_build(const struct face_table *table, const struct facet_set *set,
                                                struct boundary_averages *averages, struct error *error);
 
+/* The same, and after the hats an average over each whole side of the set: a part of it within which facets
+ * that share an edge (2D: a node) turn by less than 45 degrees. Hats are split between sides, or not: a hat
+ * round an edge then holds both sides together. */
+struct boundary_sides {
+    int64_t hat_count;   /* averages before this one are hats, the others sides */
+    int64_t group_count; /* of groups */
+    int64_t *group;      /* averages.count: of split hats the side, else the piece of the set, connected by
+                            nodes, that each average lies on */
+    bool *flat;          /* averages.count: all of its facets have one normal, to a thousandth */
+};
+MUST_CHECK enum status boundary_sides_build(const struct face_table *table, const struct facet_set *set,
+                                            bool split, struct boundary_averages *averages,
+                                            struct boundary_sides *sides, struct error *error);
+void boundary_sides_free(struct boundary_sides *sides);
+
 /* The same with node values, Phi_a u = u_h(x_a), from a table at the nodes: one entry per node of the set;
  * areas, normals as above. Splits where the boundary turns are not made. */
 MUST_CHECK enum status boundary_nodes_build(const struct face_table *table, const struct facet_set *set,

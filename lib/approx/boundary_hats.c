@@ -1,6 +1,8 @@
 /* The hats of a set of facets, split where the boundary turns. */
 #include "approx/boundary_private.h"
 
+#include "base/memory.h"
+
 #include <stdlib.h>
 
 /* Facets that turn by 45 degrees or more at a node belong to different sides; a little less than that, so
@@ -100,4 +102,68 @@ enum status boundary_collect_corners(const struct face_table *table, const struc
     }
     qsort(corners, (size_t)count, sizeof *corners, compare_parts);
     return STATUS_OK;
+}
+
+/* The first of the facets that facet f is joined with; the chains in `first` are shortened on the way. */
+static int64_t first_of(int64_t *first, int64_t f)
+{
+    while (first[f] != f) {
+        first[f] = first[first[f]];
+        f = first[f];
+    }
+    return f;
+}
+
+static void join(int64_t *first, int64_t f, int64_t g)
+{
+    int64_t a = first_of(first, f), b = first_of(first, g);
+    first[a > b ? a : b] = a > b ? b : a;
+}
+
+/* side, piece[set->count]: the first facet of the side and of the piece of each. */
+static void join_facets(const struct face_table *table, const struct facet_set *set,
+                        const struct corner *corners, int64_t *side, int64_t *piece)
+{
+    int64_t count = set->count * table->dim;
+    for (int64_t f = 0; f < set->count; f++) {
+        side[f] = piece[f] = f;
+    }
+    for (int64_t begin = 0, i = 0; i < count; i++) {
+        begin = corners[i].node == corners[begin].node ? begin : i;
+        join(piece, corners[begin].facet, corners[i].facet);
+        for (int64_t k = begin; k < i; k++) {
+            if (same_side(table, set, &corners[i], &corners[k])) {
+                join(side, corners[i].facet, corners[k].facet);
+            }
+        }
+    }
+}
+
+enum status boundary_add_sides(const struct face_table *table, const struct facet_set *set, bool split,
+                               struct corner *corners, int64_t *part_count, int64_t *group,
+                               int64_t *group_count, struct error *error)
+{
+    enum status status;
+    int dim = table->dim;
+    int64_t count = set->count * dim, *side = NULL, *piece = NULL, *part = NULL;
+    TRY(NEW_ARRAY(&side, set->count, error));
+    TRY(NEW_ARRAY(&piece, set->count, error));
+    TRY(NEW_ARRAY(&part, set->count, error));
+    join_facets(table, set, corners, side, piece);
+    *group_count = 0;
+    for (int64_t f = 0; f < set->count; f++) {
+        int64_t of_side = first_of(side, f), first = split ? of_side : first_of(piece, f);
+        group[f] = first == f ? (*group_count)++ : group[first];
+        part[f] = of_side == f ? (*part_count)++ : part[of_side];
+        for (int k = 0; k < dim; k++) {
+            corners[count + f * dim + k] =
+                (struct corner){.node = set->facet[f * dim + k], .vertex = k, .facet = f, .part = part[f]};
+        }
+    }
+    qsort(corners, (size_t)(2 * count), sizeof *corners, compare_parts);
+done:
+    free(side);
+    free(piece);
+    free(part);
+    return status;
 }

@@ -29,4 +29,12 @@ MUST_CHECK enum status boundary_collect_corners(const struct face_table *table, 
                                                 bool split, struct corner *corners, int64_t *part_count,
                                                 struct error *error);
 
+/* Append to the corners[2 * set->count * dim], sorted by part, those of whole sides: a part with all corners
+ * of its facets for each side. Sides are the parts of a set within which facets that share an edge (2D: a
+ * node) turn by less than 45 degrees, pieces those that hang together by nodes. group[set->count]: with
+ * `split` the side, else the piece of each facet, numbered as they come. */
+MUST_CHECK enum status boundary_add_sides(const struct face_table *table, const struct facet_set *set,
+                                          bool split, struct corner *corners, int64_t *part_count,
+                                          int64_t *group, int64_t *group_count, struct error *error);
+
 #endif

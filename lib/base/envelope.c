@@ -11,16 +11,27 @@
  * dependent ones: a small pivot among the first would spoil all that follow. */
 static const double weak_pivot = 1e-3;
 
+/* Rows with more than this times the mean number of entries are put last, too: elsewhere they would widen the
+ * envelope of all rows behind them. */
+static const int64_t most_entries = 8;
+
 /* Reverse Cuthill-McKee: breadth first from a node of least degree in each component. order[i] is the old
- * row. */
+ * row; the last *longs are the long rows. */
 static enum status order_rows(int64_t n, const int64_t *ptr, const int64_t *column, int64_t *order,
-                              struct error *error)
+                              int64_t *longs, struct error *error)
 {
     enum status status;
     bool *placed = NULL;
-    int64_t count = 0;
+    int64_t count = 0, last = n;
     TRY(NEW_ARRAY(&placed, n, error));
-    while (count < n) {
+    for (int64_t i = 0; i < n; i++) {
+        placed[i] = (ptr[i + 1] - ptr[i]) * n > most_entries * ptr[n];
+        if (placed[i]) {
+            order[--last] = i;
+        }
+    }
+    *longs = n - last;
+    while (count < last) {
         int64_t seed = -1;
         for (int64_t i = 0; i < n; i++) {
             if (!placed[i] && (seed < 0 || ptr[i + 1] - ptr[i] < ptr[seed + 1] - ptr[seed])) {
@@ -40,10 +51,10 @@ static enum status order_rows(int64_t n, const int64_t *ptr, const int64_t *colu
             }
         }
     }
-    for (int64_t i = 0; i < n / 2; i++) {
+    for (int64_t i = 0; i < last / 2; i++) {
         int64_t swap = order[i];
-        order[i] = order[n - 1 - i];
-        order[n - 1 - i] = swap;
+        order[i] = order[last - 1 - i];
+        order[last - 1 - i] = swap;
     }
 done:
     free(placed);
@@ -173,7 +184,7 @@ static int64_t order_by_pivot(int64_t count, double *matrix, const double *diago
     return count;
 }
 
-/* Put the rows that pass 1 has dropped behind the others, those first that depend least; *kept receives how
+/* Put the rows that pass 1 has left out behind the others, those first that depend least; *kept receives how
  * many of the n rows are independent. */
 static enum status order_weak(int64_t n, const int64_t *ptr, const int64_t *column, const double *value,
                               double least, struct envelope *factor, int64_t *kept, struct error *error)
@@ -224,16 +235,20 @@ enum status envelope_factorise(int64_t n, const int64_t *ptr, const int64_t *col
                                double least, struct envelope *factor, struct error *error)
 {
     enum status status;
-    int64_t kept = n;
+    int64_t kept = n, longs;
     *factor = (struct envelope){.n = n};
     TRY(NEW_ARRAY(&factor->order, n, error));
     TRY(NEW_ARRAY(&factor->first, n, error));
     TRY(NEW_ARRAY(&factor->start, n + 1, error));
     TRY(NEW_ARRAY(&factor->scratch, n, error));
-    TRY(order_rows(n, ptr, column, factor->order, error));
+    TRY(order_rows(n, ptr, column, factor->order, &longs, error));
     TRY(fill(n, ptr, column, value, factor, error));
     for (int64_t i = 0; i < n; i++) {
-        (void)factor_row(factor, i, weak_pivot);
+        if (i < n - longs) {
+            (void)factor_row(factor, i, weak_pivot);
+        } else {
+            drop_row(factor, i);
+        }
     }
     if (factor->dropped > 0) {
         TRY(order_weak(n, ptr, column, value, least, factor, &kept, error));
@@ -241,7 +256,8 @@ enum status envelope_factorise(int64_t n, const int64_t *ptr, const int64_t *col
         factor->dropped = 0;
         for (int64_t i = 0; i < n; i++) {
             if (i < kept) {
-                (void)factor_row(factor, i, 0.0);
+                /* A pivot that was above `least` before cannot be far below now, but by round-off. */
+                (void)factor_row(factor, i, 0.1 * least);
             } else {
                 drop_row(factor, i);
             }
@@ -252,6 +268,15 @@ done:
         envelope_free(factor);
     }
     return status;
+}
+
+void envelope_dropped(const struct envelope *factor, int64_t *row)
+{
+    for (int64_t i = 0; i < factor->n; i++) {
+        if (isinf(row_at(factor, i)[i])) {
+            *row++ = factor->order[i];
+        }
+    }
 }
 
 void envelope_free(struct envelope *factor)

@@ -1,5 +1,6 @@
 /* Cholesky factorization of a sparse symmetric positive definite matrix within its envelope (skyline), rows
- * reordered by reverse Cuthill-McKee. For constraint systems: factored once, solved every step. */
+ * reordered by reverse Cuthill-McKee; long rows and those that depend on others most come last. For
+ * constraint systems: factored once, solved every step. */
 #ifndef BASE_ENVELOPE_H
 #define BASE_ENVELOPE_H
 
@@ -24,6 +25,9 @@ MUST_CHECK enum status envelope_factorise(int64_t n, const int64_t *ptr, const i
                                           const double *value, double least, struct envelope *factor,
                                           struct error *error);
 void envelope_free(struct envelope *factor);
+
+/* row[factor->dropped]: the caller's rows that were dropped. */
+void envelope_dropped(const struct envelope *factor, int64_t *row);
 
 /* Solve in place: x[n] holds the right-hand side, then the solution. */
 void envelope_solve(const struct envelope *factor, double *x);

@@ -61,7 +61,7 @@ struct constraint {
 };
 
 /* Factor G M^-1 G^T. Rows that depend on others are dropped (factor.dropped): they are met when their targets
- * agree with the others', see constraint_violation, and bear no force. */
+ * agree with the others', see constraint_violation, and bear no force until constraint_share_out. */
 MUST_CHECK enum status constraint_build(const struct constraint_rows *rows, int64_t node_count,
                                         const double *mass, struct constraint *constraint,
                                         struct error *error);
@@ -70,6 +70,12 @@ void constraint_free(struct constraint *constraint);
 /* u += M^-1 G^T multiplier such that G u = target * factor[curve]. With factor == NULL the targets are zero.
  */
 void constraint_project(struct constraint *constraint, const double *factor, double *u);
+
+/* force[count]: forces along the rows that hold the body, none on the rows that were dropped, become those
+ * with the same effect and the least norm, sum_r (G M^-1 G^T)_rr force_r^2: rows that say the same share the
+ * force. */
+MUST_CHECK enum status constraint_share_out(const struct constraint *constraint, double *force,
+                                            struct error *error);
 
 /* Largest |target * factor - G u|, m; *row, unless NULL, receives where. */
 double constraint_violation(const struct constraint *constraint, const double *factor, const double *u,

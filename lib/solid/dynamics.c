@@ -223,6 +223,7 @@ enum status dynamics_run(struct solid_system *system, const struct dynamics_opti
     }
     if (row_force != NULL && system->rows.count > 0) {
         memcpy(row_force, d.constraint.multiplier, (size_t)system->rows.count * sizeof *row_force);
+        TRY(constraint_share_out(&d.constraint, row_force, error));
     }
 done:
     dynamics_release(&d);

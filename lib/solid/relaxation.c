@@ -184,7 +184,8 @@ static enum relaxation_outcome iterate(struct relaxation *r, struct error *error
 }
 
 /* Forces of the constraints: what balances the residual along them. */
-static void measure_row_forces(struct relaxation *r, const double *u, double *row_force)
+static enum status measure_row_forces(struct relaxation *r, const double *u, double *row_force,
+                                      struct error *error)
 {
     int dim = r->system->dim;
     (void)system_residual(r->system, u, r->residual);
@@ -193,6 +194,7 @@ static void measure_row_forces(struct relaxation *r, const double *u, double *ro
     }
     constraint_project(&r->inertia.constraint, NULL, r->scratch);
     memcpy(row_force, r->inertia.constraint.multiplier, (size_t)r->system->rows.count * sizeof *row_force);
+    return constraint_share_out(&r->inertia.constraint, row_force, error);
 }
 
 /* From u, brought onto the conditions, at rest and without load. */
@@ -260,7 +262,7 @@ enum status relaxation_run(struct solid_system *system, const struct relaxation_
     }
     report->load = r.load / (double)report->ramp_steps;
     if (row_force != NULL && system->rows.count > 0) {
-        measure_row_forces(&r, r.u, row_force);
+        TRY(measure_row_forces(&r, r.u, row_force, error));
     }
     if (r.u != u) {
         memcpy(u, relaxation_parameters(&r, r.u), (size_t)r.size * sizeof *u);

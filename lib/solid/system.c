@@ -1,6 +1,7 @@
 #include "solid/system.h"
 
 #include "approx/cells.h"
+#include "approx/support.h"
 #include "base/clock.h"
 #include "base/memory.h"
 
@@ -59,14 +60,56 @@ done:
 /* What conditions that were dropped may be missed by, of the largest prescribed displacement. */
 static const double most_missed = 1e-4;
 
+/* The row of another section that acts nearest to row r in much the same direction, or -1. */
+static int64_t nearest_of_others(const struct solid_system *system, int64_t r)
+{
+    const struct constraint_rows *rows = &system->rows;
+    int64_t nearest = -1;
+    int dim = system->dim;
+    double least = INFINITY;
+    for (int64_t s = 0; s < rows->count; s++) {
+        double cosine = 0.0, distance2 = 0.0;
+        for (int a = 0; a < dim; a++) {
+            double apart =
+                system->X[(int64_t)rows->node[s] * dim + a] - system->X[(int64_t)rows->node[r] * dim + a];
+            cosine += rows->direction[s * dim + a] * rows->direction[r * dim + a];
+            distance2 += apart * apart;
+        }
+        if (rows->section[s] != rows->section[r] && fabs(cosine) > 0.5 && distance2 < least) {
+            least = distance2;
+            nearest = s;
+        }
+    }
+    return nearest;
+}
+
+/* Row r cannot be met with the others. */
+static enum status fail_at_row(const struct solid_system *system, int64_t r, double missed,
+                               struct error *error)
+{
+    const struct constraint_rows *rows = &system->rows;
+    const char *const *names = system->condition_names;
+    int64_t other = nearest_of_others(system, r);
+    char place[96], with[160] = "others";
+    point_text(system->dim, system->X + (int64_t)rows->node[r] * system->dim, place);
+    if (names != NULL && other >= 0) {
+        snprintf(with, sizeof with, "those of [displacement %.100s] and others", names[rows->section[other]]);
+    }
+    return fail(
+        error, STATUS_VERDICT,
+        "[displacement %.100s]: the conditions at node %d at %s disagree with %s by %.2g m: prescribe its "
+        "displacement once, as by components = free in one section, or refine the cloud there",
+        names != NULL ? names[rows->section[r]] : "?", rows->node[r], place, with, missed);
+}
+
 /* Do the conditions that were dropped agree with the others throughout? */
 static enum status check_dropped(const struct solid_system *system, struct constraint *constraint,
                                  struct error *error)
 {
     enum status status;
     const struct constraint_rows *rows = &system->rows;
-    double *u = NULL, *factor = NULL, largest = 0.0;
-    int64_t size = system->node_count * system->dim, row = 0;
+    double *u = NULL, *factor = NULL, largest = 0.0, worst = 0.0;
+    int64_t size = system->node_count * system->dim, row = 0, worst_row = -1;
     enum { TIMES = 5 };
     TRY(NEW_ARRAY(&u, size, error));
     TRY(NEW_ARRAY(&factor, system->curve_count, error));
@@ -84,14 +127,13 @@ static enum status check_dropped(const struct solid_system *system, struct const
             constraint_project(constraint, factor, u);
         }
         double missed = constraint_violation(constraint, factor, u, &row);
-        if (!(missed <= most_missed * largest * fmax(most, 1.0))) {
-            status = fail(error, STATUS_VERDICT,
-                          "the conditions at node %d disagree with others by %.2g m: prescribe its "
-                          "displacement once, or "
-                          "refine the cloud there",
-                          rows->node[row], missed);
-            goto done;
+        if (!(missed <= most_missed * largest * fmax(most, 1.0)) && !(missed <= worst)) {
+            worst = missed;
+            worst_row = row;
         }
+    }
+    if (worst_row >= 0) {
+        status = fail_at_row(system, worst_row, worst, error);
     }
 done:
     free(u);

@@ -54,6 +54,7 @@ struct solid_system {
     struct boundary_averages *contact_averages; /* contact_count: what the contacts act on */
     int64_t contact_count;
     struct constraint_rows rows;
+    const char *const *condition_names; /* of the sections of the rows, for messages; NULL: they have none */
     /* Hat averages leave free what varies within a hat, and under a pressure of some ten shear moduli that
      * grows: springs at the quadrature points of the constrained facets hold the field to the same targets.
      * They vanish wherever the field meets them, so that a linear field stays exact. */
@@ -77,7 +78,7 @@ MUST_CHECK enum status system_state(struct solid_system *system, const struct st
 void system_load_factors(struct solid_system *system, double s);
 
 /* Factor the conditions with a mass, which the constraint keeps in view. Conditions that follow from others
- * are left to them; STATUS_VERDICT, naming the node, when they disagree. */
+ * are left to them; STATUS_VERDICT, naming sections, node and place, when they disagree. */
 MUST_CHECK enum status system_constrain(const struct solid_system *system, const double *mass,
                                         struct constraint *constraint, struct error *error);
 

@@ -332,6 +332,60 @@ static void gentle_and_sharp_turns(void **state)
     }
 }
 
+/* Hats that are not split, and the mean over each side of the box: the hats of a side, split there, make its
+ * mean. Of split hats the groups are the sides. */
+static void whole_sides(void **state)
+{
+    (void)state;
+    for (int dim = 2; dim <= 3; dim++) {
+        struct sample sample = make_sample(dim, true, 5);
+        struct face_table table = face_table(&sample);
+        struct facet_set set = all_facets(&sample);
+        struct error error;
+        for (int split = 0; split < 2; split++) {
+            struct boundary_averages averages;
+            struct boundary_sides sides;
+            int64_t nodes = 0, parts = 0;
+            double whole = pow(sample_size, dim - 1);
+            GOOD(boundary_sides_build(&table, &set, split == 1, &averages, &sides, &error));
+            for (int32_t n = 0; n < sample.cloud.node_count; n++) {
+                nodes += sides_at(&sample, n) > 0;
+                parts += sides_at(&sample, n);
+            }
+            assert_int_equal(sides.hat_count, split == 1 ? parts : nodes);
+            assert_int_equal(averages.count, sides.hat_count + 2 * dim);
+            assert_int_equal(sides.group_count, split == 1 ? 2 * dim : 1);
+            for (int64_t a = 0; a < averages.count; a++) {
+                bool is_side = a >= sides.hat_count;
+                double extent = 0.0;
+                assert_int_equal(sides.flat[a],
+                                 is_side || split == 1 || sides_at(&sample, averages.node[a]) == 1);
+                for (int c = 0; c < dim; c++) {
+                    double along = fabs(averages.normal[a * dim + c]);
+                    extent = along > extent ? along : extent;
+                    if (is_side && along < 0.5) {
+                        NEAR_TO(averages.position[a * dim + c], 0.5 * sample_size, 1e-14);
+                    }
+                }
+                if (is_side) {
+                    NEAR_TO(averages.area[a], whole, 1e-12 * whole);
+                    NEAR_TO(extent, 1.0, 1e-12);
+                }
+            }
+            for (int64_t s = sides.hat_count; s < averages.count && split == 1; s++) {
+                double area = 0.0;
+                for (int64_t a = 0; a < sides.hat_count; a++) {
+                    area += sides.group[a] == sides.group[s] ? averages.area[a] : 0.0;
+                }
+                NEAR_TO(area, whole, 1e-12 * whole);
+            }
+            boundary_averages_free(&averages);
+            boundary_sides_free(&sides);
+        }
+        sample_free(&sample);
+    }
+}
+
 /* Node values: one entry for each node, never split, with the table's row of the node. */
 static void node_values(void **state)
 {
@@ -413,10 +467,15 @@ static void faults(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(hats_split_at_corners), cmocka_unit_test(sides),
-        cmocka_unit_test(divergence_theorem),    cmocka_unit_test(other_vertex_orders),
-        cmocka_unit_test(touching_facets),       cmocka_unit_test(gentle_and_sharp_turns),
-        cmocka_unit_test(node_values),           cmocka_unit_test(faults),
+        cmocka_unit_test(hats_split_at_corners),
+        cmocka_unit_test(sides),
+        cmocka_unit_test(divergence_theorem),
+        cmocka_unit_test(other_vertex_orders),
+        cmocka_unit_test(touching_facets),
+        cmocka_unit_test(gentle_and_sharp_turns),
+        cmocka_unit_test(whole_sides),
+        cmocka_unit_test(node_values),
+        cmocka_unit_test(faults),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -365,6 +365,7 @@ static void solver_and_output(void **state)
     fails(HEAD BODY "[initial]\ntable = t\nunit = m\n", 9, "only dynamic scenes begin somewhere");
     fails(HEAD BODY "[output]\ninterval = .1\n", 10, "a quasi-static scene has no time: use frames");
     fails(HEAD BODY "[output]\nframes = -1\n", 10, "not a whole number");
+    fails(HEAD BODY "[output]\nmoments_about = 0, 0\n", 10, "it goes with moments = yes");
     fails(HEAD BODY "[output]\nenergy = /etc/passwd\n", 10,
           "is none of no, yes"); /* no scene names an output */
 }

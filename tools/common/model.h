@@ -25,6 +25,8 @@ struct model_input {
 struct model {
     struct model_input input;
     struct solid_system system;
+    const char **condition_names; /* of the scene's displacements: system.condition_names */
+    struct error note;            /* a remark on the scene that is no error; empty text: none */
     double *row_force; /* system.rows.count: force of each constraint along its direction, N (2D: N/m), once
                           solved */
 };
@@ -43,7 +45,7 @@ void model_free(struct model *model);
 
 /* The parts of model_build, in their own files. */
 MUST_CHECK enum status model_add_constraints(const struct model_input *input, struct solid_system *system,
-                                             struct error *error);
+                                             struct error *note, struct error *error);
 MUST_CHECK enum status model_add_loads(const struct model_input *input, struct solid_system *system,
                                        struct error *error);
 MUST_CHECK enum status model_add_contacts(const struct model_input *input, struct solid_system *system,

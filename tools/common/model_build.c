@@ -1,9 +1,13 @@
 #include "model.h"
 
 #include "approx/quadrature.h"
+#include "base/box.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
+
+static const double farthest_moments = 1e6; /* of the body's size */
 
 /* Barycentric coordinates of a point in a cell. */
 static void barycentric(const struct cells *cells, int64_t cell, const double *x, double *value)
@@ -130,6 +134,23 @@ done:
     return status;
 }
 
+/* Moments about a point that far away are differences of huge numbers: a unit or a sign is wrong. */
+static enum status check_moments(const struct model_input *input, struct error *error)
+{
+    const double *about = input->scene->output.about;
+    struct box box = box_of(input->cells.dim, input->cells.node_count, input->cells.x);
+    for (int a = 0; a < input->cells.dim && input->scene->output.moments; a++) {
+        double away = fmax(box.low[a] - about[a], about[a] - box.high[a]);
+        if (!(away <= farthest_moments * input->extent)) {
+            return fail(
+                error, STATUS_INPUT,
+                "%s: [output]: moments_about: %.3g m from the body of %.3g m: give a point near it, in m",
+                input->scene->path, away, input->extent);
+        }
+    }
+    return STATUS_OK;
+}
+
 enum status model_build(const struct stream *stream, const struct scene *scene, bool single,
                         struct model *model, struct error *error)
 {
@@ -137,6 +158,7 @@ enum status model_build(const struct stream *stream, const struct scene *scene, 
     struct solid_system *system = &model->system;
     *model = (struct model){0};
     TRY(model_input_read(stream, scene, &model->input, error));
+    TRY(check_moments(&model->input, error));
     system->dim = scene->dim;
     system->node_count = model->input.cells.node_count;
     system->X = model->input.cells.x;
@@ -146,7 +168,12 @@ enum status model_build(const struct stream *stream, const struct scene *scene, 
     system->node_lists = &model->input.node_lists;
     system->node_phi = model->input.node_phi;
     TRY(lump_mass(&model->input, system, error));
-    TRY(model_add_constraints(&model->input, system, error));
+    TRY(model_add_constraints(&model->input, system, &model->note, error));
+    TRY(NEW_ARRAY(&model->condition_names, scene->displacement_count, error));
+    for (int64_t i = 0; i < scene->displacement_count; i++) {
+        model->condition_names[i] = scene->displacements[i].label.name;
+    }
+    system->condition_names = model->condition_names;
     TRY(NEW_ARRAY(&model->row_force, system->rows.count, error));
     TRY(model_add_loads(&model->input, system, error));
     TRY(model_add_contacts(&model->input, system, error));
@@ -161,6 +188,8 @@ void model_free(struct model *model)
 {
     model_input_free(&model->input);
     system_free(&model->system);
+    free(model->condition_names);
     free(model->row_force);
+    model->condition_names = NULL;
     model->row_force = NULL;
 }

@@ -1,6 +1,6 @@
 /* Where boundaries of two displacement sections meet, they share nodes: each section claims a value there.
- * The means over hats on either side of such a node are conditions of their own, so that a jump between them
- * would bend the field, not stop the run. */
+ * The section that comes first holds the node (model_held.h), so that another value would be left out
+ * silently. */
 #ifndef TOOLS_MODEL_CLAIMS_H
 #define TOOLS_MODEL_CLAIMS_H
 
@@ -22,9 +22,10 @@ MUST_CHECK enum status claims_add(struct claims *claims, const struct claim *cla
 void claims_free(struct claims *claims);
 
 /* Two sections that claim values of one node along one direction, further apart than a tenth of the largest
- * value that either prescribes, are an error that names them. (Less than that is smoothed over: measured
- * values at a rim.) */
+ * value that either prescribes, are an error that names them. Of those that are nearer, as measured values at
+ * a rim may be, the first is told in `note`, which is empty when all agree; the section that holds fewer
+ * directions decides, or the one that comes first in the scene. */
 MUST_CHECK enum status claims_check(const struct model_input *input, struct claims *claims,
-                                    struct error *error);
+                                    struct error *note, struct error *error);
 
 #endif

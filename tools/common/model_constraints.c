@@ -1,8 +1,4 @@
-#include "model_claims.h"
-#include "model_repeats.h"
-
-#include "approx/scatter.h"
-#include "io/table.h"
+#include "model_prescription.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -11,64 +7,6 @@
 /* Penalty of the constraints between their averages, by the shear modulus and per size of a cell, as in
  * Nitsche's method. Results do not depend on it from .0001 to 100. */
 static const double spring_factor = 10.0;
-
-/* What one displacement section prescribes, and where it goes. */
-struct prescription {
-    const struct model_input *input;
-    const struct scene_displacement *section;
-    struct solid_system *system;
-    struct claims *claims; /* of all sections */
-    int32_t number, curve; /* of the section; of its load curve */
-    struct table table;    /* SCENE_TABLE */
-    bool springs;          /* adding springs, not exact rows */
-    double modulus, layer; /* of the springs: Pa, and the size of the cells there, m */
-};
-
-/* The prescribed displacement at one place. */
-static enum status table_value(const struct prescription *p, const double *x, double *value,
-                               struct error *error)
-{
-    int dim = p->input->cells.dim;
-    double distance, spacing;
-    struct scatter scatter = {.dim = dim,
-                              .value_count = dim,
-                              .count = p->table.rows,
-                              .row_size = p->table.cols,
-                              .row = p->table.values,
-                              .unit = p->section->table_unit};
-    enum status status = scatter_evaluate(&scatter, x, value, &distance, &spacing, error);
-    if (status == STATUS_OK && p->table.rows > 1 && !(distance <= fmin(8.0 * spacing, p->input->extent))) {
-        char place[96];
-        point_text(dim, x, place);
-        return scene_fail(
-            error, STATUS_INPUT, p->input->scene, &p->section->label,
-            "table %s: its nearest point is %.3g m from the boundary at %s, its points are %.3g m "
-            "apart: wrong unit or wrong place",
-            p->section->table, distance, place, spacing);
-    }
-    return status;
-}
-
-/* Mean of the table over the samples of one average. */
-static enum status average_of_table(const struct prescription *p, const struct boundary_averages *averages,
-                                    int64_t a, double *mean, struct error *error)
-{
-    int dim = p->input->cells.dim;
-    for (int i = 0; i < dim; i++) {
-        mean[i] = 0.0;
-    }
-    for (int64_t s = averages->sample_ptr[a]; s < averages->sample_ptr[a + 1]; s++) {
-        double value[3];
-        enum status status = table_value(p, averages->sample_x + s * dim, value, error);
-        if (status != STATUS_OK) {
-            return status;
-        }
-        for (int i = 0; i < dim; i++) {
-            mean[i] += averages->sample_share[s] * value[i];
-        }
-    }
-    return STATUS_OK;
-}
 
 /* A spring of about the stiffness of a layer of cells, times the area of its point of the facets. */
 static enum status add_spring(const struct prescription *p, const struct boundary_averages *points, int64_t a,
@@ -111,29 +49,59 @@ static enum status add_row(const struct prescription *p, const struct boundary_a
                                direction, target, p->curve, p->number, averages->node[a], error);
 }
 
-/* All rows of one average. */
+/* All rows of one average, whatever is held already. */
 static enum status add_average(const struct prescription *p, const struct boundary_averages *averages,
                                int64_t a, struct error *error)
 {
-    enum status status = STATUS_OK;
-    int dim = p->input->cells.dim;
-    double value[3] = {0.0, 0.0, 0.0};
-    if (p->section->kind == SCENE_NORMAL) {
-        return add_row(p, averages, a, averages->normal + a * dim, p->section->normal, error);
+    struct demand demand;
+    enum status status = prescription_demand(p, averages, a, &demand, error);
+    for (int k = 0; status == STATUS_OK && k < demand.count; k++) {
+        status = add_row(p, averages, a, demand.direction + k * p->input->cells.dim, demand.value[k], error);
     }
-    if (p->section->kind == SCENE_TABLE) {
-        status = average_of_table(p, averages, a, value, error);
-    }
-    for (int i = 0; status == STATUS_OK && i < dim; i++) {
-        double axis[3] = {0.0, 0.0, 0.0};
-        axis[i] = 1.0;
-        if (p->section->kind == SCENE_COMPONENTS) {
-            value[i] = p->section->components[i];
-            if (p->section->is_free[i]) {
-                continue;
-            }
+    return status;
+}
+
+/* Note, for the group of an average, which components are held at its node. */
+static void note_shared(const struct prescription *p, int32_t node, bool *shared)
+{
+    int dim = p->held->dim;
+    const double *axis = p->held->axis + (int64_t)node * dim * dim;
+    for (int k = 0; k < p->held->count[node]; k++) {
+        for (int i = 0; i < dim; i++) {
+            shared[i] = shared[i] || fabs(axis[k * dim + i]) > HELD_LEAST;
         }
-        status = add_row(p, averages, a, axis, value[i], error);
+    }
+}
+
+/* The rows of one average along directions that no section before holds at its node. Where the whole
+ * displacement is prescribed, the directions are turned to be across what is held. */
+static enum status add_rest(const struct prescription *p, const struct boundary_averages *averages, int64_t a,
+                            bool *shared, struct error *error)
+{
+    int dim = p->input->cells.dim, count = 0;
+    int32_t node = averages->node[a];
+    struct demand demand;
+    double mine[9];
+    bool full = prescription_is_full(p);
+    enum status status = prescription_demand(p, averages, a, &demand, error);
+    for (int k = 0; status == STATUS_OK && k < demand.count; k++) {
+        double rest[3], target = demand.value[k], *direction = demand.direction + k * dim;
+        double length = held_rest(p->held, node, full ? count : 0, mine, direction, rest);
+        if (!(length > HELD_LEAST)) {
+            if (shared != NULL) {
+                note_shared(p, node, shared);
+            }
+            continue;
+        }
+        if (full) {
+            target = 0.0;
+            for (int i = 0; i < dim; i++) {
+                direction[i] = mine[count * dim + i] = rest[i] / length;
+                target += direction[i] * demand.value[i];
+            }
+            count++;
+        }
+        status = add_row(p, averages, a, direction, target, error);
     }
     return status;
 }
@@ -152,10 +120,10 @@ static enum status add_claims(const struct prescription *p, const struct boundar
     }
     enum status status = STATUS_OK;
     if (section->kind == SCENE_TABLE) {
-        TRY(table_value(p, p->input->cells.x + (int64_t)claim.node * dim, value, error));
+        TRY(prescription_value(p, p->input->cells.x + (int64_t)claim.node * dim, value, error));
     }
     for (int i = 0; i < dim; i++) {
-        if (section->kind == SCENE_COMPONENTS && section->is_free[i]) {
+        if (prescription_is_free(section, i)) {
             continue;
         }
         memset(claim.direction, 0, sizeof claim.direction);
@@ -172,17 +140,6 @@ static bool are_hats(const struct model_input *input)
 {
     const struct scene_solver *solver = &input->scene->solver;
     return solver->constraint_points == SCENE_HAT_AVERAGES && solver->constraints == SCENE_EBCIEM;
-}
-
-/* Averages over facets: by hats, or by node values where the scene says so. */
-static enum status averages_on_facets(const struct model_input *input, const struct facet_set *set,
-                                      struct boundary_averages *averages, struct error *error)
-{
-    if (!are_hats(input)) {
-        return boundary_nodes_build(&input->face_table, set, &input->node_lists, input->node_phi, averages,
-                                    error);
-    }
-    return boundary_averages_build(&input->face_table, set, averages, error);
 }
 
 /* Hold what the hat averages of a set leave free. */
@@ -208,60 +165,158 @@ done:
     return status;
 }
 
+/* The mean over side a, along the axes along which hats of its group are left to other sections; along its
+ * normal, if that is what is held. */
+static enum status add_side(const struct prescription *p, const struct boundary_averages *averages,
+                            const struct boundary_sides *sides, int64_t a, struct error *error)
+{
+    int dim = p->input->cells.dim;
+    const bool *shared = p->shared + sides->group[a] * dim;
+    struct demand demand;
+    enum status status = prescription_demand(p, averages, a, &demand, error);
+    if (p->section->kind == SCENE_NORMAL) {
+        bool any = shared[0] || shared[1] || shared[dim - 1];
+        return status == STATUS_OK && any ? add_row(p, averages, a, demand.direction, demand.value[0], error)
+                                          : status;
+    }
+    for (int i = 0, k = 0; status == STATUS_OK && i < dim; i++) {
+        double axis[3] = {0.0, 0.0, 0.0};
+        axis[i] = 1.0;
+        if (!prescription_is_free(p->section, i) && shared[i]) {
+            status = add_row(p, averages, a, axis, demand.value[k], error);
+        }
+        k += !prescription_is_free(p->section, i);
+    }
+    return status;
+}
+
+/* Hats for a section. Split, two for each node of an edge, they carry a traction that jumps there; not split
+ * they leave the field beside the edge as free as elsewhere. A displacement that is constant makes no linear
+ * field but rest, whose traction could jump; and on curved sides none is exact anyway. */
+static enum status build_hats(const struct prescription *p, const struct facet_set *set,
+                              struct boundary_averages *averages, struct boundary_sides *sides,
+                              struct error *error)
+{
+    bool split = p->section->kind == SCENE_NORMAL;
+    enum status status = boundary_sides_build(&p->input->face_table, set, split, averages, sides, error);
+    if (split || status != STATUS_OK || (p->section->kind == SCENE_COMPONENTS && prescription_is_full(p))) {
+        return status;
+    }
+    for (int64_t a = sides->hat_count; a < averages->count; a++) {
+        if (!sides->flat[a]) {
+            return STATUS_OK;
+        }
+    }
+    boundary_averages_free(averages);
+    boundary_sides_free(sides);
+    return boundary_sides_build(&p->input->face_table, set, true, averages, sides, error);
+}
+
+/* Rows on hat averages: hats, then means over flat sides. */
+static enum status add_hats(struct prescription *p, const struct facet_set *set, struct error *error)
+{
+    enum status status;
+    struct boundary_averages averages = {0};
+    struct boundary_sides sides = {0};
+    int dim = p->input->cells.dim;
+    int64_t first = p->system->rows.count;
+    TRY(build_hats(p, set, &averages, &sides, error));
+    TRY(NEW_ARRAY(&p->shared, sides.group_count * dim, error));
+    for (int64_t a = 0; a < sides.hat_count; a++) {
+        TRY(add_rest(p, &averages, a, p->shared + sides.group[a] * dim, error));
+        TRY(add_claims(p, &averages, a, error));
+    }
+    held_note(p->held, &p->system->rows, first, p->system->rows.count);
+    for (int64_t a = sides.hat_count; a < averages.count; a++) {
+        if (sides.flat[a]) {
+            TRY(add_side(p, &averages, &sides, a, error));
+        }
+    }
+done:
+    free(p->shared);
+    p->shared = NULL;
+    boundary_averages_free(&averages);
+    boundary_sides_free(&sides);
+    return status;
+}
+
+/* Rows on values at the nodes of facets or of sets. */
+static enum status add_nodes(struct prescription *p, const struct facet_set *set, struct error *error)
+{
+    enum status status;
+    const struct model_input *input = p->input;
+    struct boundary_averages averages = {0};
+    int32_t *owned = NULL;
+    int64_t first = p->system->rows.count, count;
+    if (set->count > 0) {
+        TRY(boundary_nodes_build(&input->face_table, set, &input->node_lists, input->node_phi, &averages,
+                                 error));
+    } else {
+        TRY(model_nodes(input, &p->section->label, &p->section->nodes, &owned, &count, error));
+        TRY(boundary_list_build(input->cells.dim, input->cells.x, owned, count, &input->node_lists,
+                                input->node_phi, &averages, error));
+    }
+    for (int64_t a = 0; a < averages.count; a++) {
+        TRY(add_rest(p, &averages, a, NULL, error));
+        TRY(add_claims(p, &averages, a, error));
+    }
+    held_note(p->held, &p->system->rows, first, p->system->rows.count);
+done:
+    free(owned);
+    boundary_averages_free(&averages);
+    return status;
+}
+
 static enum status add_section(struct prescription *p, struct error *error)
 {
     enum status status;
     int dim = p->input->cells.dim;
     const struct scene_displacement *section = p->section;
-    struct boundary_averages averages = {0};
     struct facet_set set = {0};
     int32_t *owned = NULL;
-    int64_t count;
     TRY(model_add_curve(p->input, &section->label, &section->curve, p->system, &p->curve, error));
     if (section->kind == SCENE_TABLE) {
         TRY(table_read(section->table, 2 * dim, 2 * dim, &p->table, error));
     }
     if (section->facets.count > 0) {
         TRY(model_facets(p->input, &section->label, &section->facets, &set, &owned, error));
-        TRY(averages_on_facets(p->input, &set, &averages, error));
-    } else {
-        TRY(model_nodes(p->input, &section->label, &section->nodes, &owned, &count, error));
-        TRY(boundary_list_build(dim, p->input->cells.x, owned, count, &p->input->node_lists,
-                                p->input->node_phi, &averages, error));
-    }
-    for (int64_t a = 0; a < averages.count; a++) {
-        TRY(add_average(p, &averages, a, error));
-        TRY(add_claims(p, &averages, a, error));
     }
     if (section->facets.count > 0 && are_hats(p->input)) {
+        TRY(add_hats(p, &set, error));
         TRY(add_springs(p, &set, error));
+    } else {
+        TRY(add_nodes(p, &set, error));
     }
 done:
     free(owned);
-    boundary_averages_free(&averages);
     table_free(&p->table);
     return status;
 }
 
 enum status model_add_constraints(const struct model_input *input, struct solid_system *system,
-                                  struct error *error)
+                                  struct error *note, struct error *error)
 {
     enum status status = STATUS_OK;
     struct claims claims = {0};
-    for (int64_t i = 0; i < input->scene->displacement_count; i++) {
-        int64_t first = system->rows.count;
-        struct prescription p = {.input = input,
-                                 .section = &input->scene->displacements[i],
-                                 .system = system,
-                                 .claims = &claims,
-                                 .number = (int32_t)i};
-        TRY(add_section(&p, error));
-        if (i > 0) {
-            TRY(repeats_drop(input, first, &system->rows, error));
+    struct held_directions held = {0};
+    TRY(held_build(input->cells.dim, input->cells.node_count, &held, error));
+    /* Sections that hold few directions come first: what slides along a plane stays on it to its rim. */
+    for (int directions = 1; directions <= input->cells.dim; directions++) {
+        for (int64_t i = 0; i < input->scene->displacement_count; i++) {
+            struct prescription p = {.input = input,
+                                     .section = &input->scene->displacements[i],
+                                     .system = system,
+                                     .claims = &claims,
+                                     .held = &held,
+                                     .number = (int32_t)i};
+            if (prescription_directions(&p) == directions) {
+                TRY(add_section(&p, error));
+            }
         }
     }
-    TRY(claims_check(input, &claims, error));
+    TRY(claims_check(input, &claims, note, error));
 done:
     claims_free(&claims);
+    held_free(&held);
     return status;
 }

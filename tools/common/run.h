@@ -39,6 +39,10 @@ _Noreturn void run_fail(struct run *run, enum status status, const char *format,
 /* The sections that only the computation needs leave the stream; the rest passes through. */
 void run_drop_tables(struct stream *stream);
 
+/* Exits with a verdict where a body is free to move as a whole, and no contact acts on it; with -v, tells
+ * what only contacts hold. */
+void run_check_freedom(struct run *run);
+
 /* Quasi-static: relax to the full load. Exits with a verdict when it does not converge. */
 void run_quasi_static(struct run *run);
 
@@ -57,6 +61,9 @@ void run_report_cost(const struct run *run);
 /* Add section `name`: rows x cols values, which the stream takes. Exits on failure. */
 void run_put(const struct run *run, const char *name, int64_t rows, int64_t cols, const char *attributes,
              double *values);
+
+/* Add the sections reactions and moments, if asked for, of the system's last evaluation, at u. */
+void run_put_forces(struct run *run);
 
 /* Add u at the nodes and the optional outputs of the final state: stress, strain, reactions, gaps, and
  * in a quasi-static run its energy. */

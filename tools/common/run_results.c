@@ -66,71 +66,6 @@ static void put_tensors(struct run *run)
     }
 }
 
-/* The name of row r of the reactions: displacements, then contacts. */
-static const char *reaction_name(const struct scene *scene, int64_t r)
-{
-    return r < scene->displacement_count ? scene->displacements[r].label.name
-                                         : scene->contacts[r - scene->displacement_count].label.name;
-}
-
-/* "unit=N rows=bottom,top", allocated. */
-static char *reaction_attributes(const struct run *run, int64_t rows)
-{
-    struct error error;
-    const struct scene *scene = run->scene;
-    size_t size = 32, at;
-    char *attributes;
-    for (int64_t r = 0; r < rows; r++) {
-        size += strlen(reaction_name(scene, r)) + 1;
-    }
-    tool_check(run->tool, NEW_ARRAY(&attributes, (int64_t)size, &error), &error);
-    at = (size_t)snprintf(attributes, size, "unit=%s rows=", scene->dim == 2 ? "N/m" : "N");
-    for (int64_t r = 0; r < rows; r++) {
-        at += (size_t)snprintf(attributes + at, size - at, "%s%s", r > 0 ? "," : "", reaction_name(scene, r));
-    }
-    return attributes;
-}
-
-/* total[rows * dim]: the forces of the conditions and of the springs that back them, by section. */
-static void add_condition_forces(const struct run *run, double *total)
-{
-    const struct solid_system *system = &run->model->system;
-    const struct constraint_rows *rows = &system->rows, *springs = &system->springs;
-    int dim = run->scene->dim;
-    for (int64_t r = 0; r < rows->count; r++) {
-        double share = 0.0;
-        struct average average = constraint_rows_average(rows, r);
-        for (int64_t i = 0; i < average.length; i++) {
-            share += average.phi[i]; /* 1 but for round-off */
-        }
-        for (int a = 0; a < dim; a++) {
-            total[rows->section[r] * dim + a] +=
-                share * run->model->row_force[r] * rows->direction[r * dim + a];
-        }
-    }
-    for (int64_t r = 0; r < springs->count; r++) {
-        double pull = system_spring_force(system, r, run->u);
-        for (int a = 0; a < dim; a++) {
-            total[springs->section[r] * dim + a] += pull * springs->direction[r * dim + a];
-        }
-    }
-}
-
-/* Total force of each displacement section and contact: a row each. */
-static void put_reactions(struct run *run)
-{
-    const struct scene *scene = run->scene;
-    int64_t rows = scene->displacement_count + scene->contact_count;
-    double *total = run_new_values(run, rows * scene->dim);
-    char *attributes = reaction_attributes(run, rows);
-    add_condition_forces(run, total);
-    for (int64_t c = 0; c < scene->contact_count; c++) {
-        contact_total(&run->model->system.contacts[c], total + (scene->displacement_count + c) * scene->dim);
-    }
-    run_put(run, "reactions", rows, scene->dim, attributes, total);
-    free(attributes);
-}
-
 /* Gap, pressure and place of every hat of every contact. */
 static void put_gaps(struct run *run)
 {
@@ -180,9 +115,7 @@ void run_put_results(struct run *run)
     if (output->stress || output->strain) {
         put_tensors(run);
     }
-    if (output->reactions) {
-        put_reactions(run);
-    }
+    run_put_forces(run);
     if (output->energy && run->scene->analysis == SCENE_QUASI_STATIC) {
         put_energy(run);
     }

@@ -1,0 +1,21 @@
+// The eighth of a hollow ball, inner radius a, outer radius b, m.
+SetFactory("OpenCASCADE");
+DefineConstant[ h = 0.0125 ];
+a = 0.05;
+b = 0.1;
+Mesh.MeshSizeMin = h;
+Mesh.MeshSizeMax = h;
+Sphere(1) = {0, 0, 0, b};
+Sphere(2) = {0, 0, 0, a};
+Box(3) = {0, 0, 0, b, b, b};
+BooleanDifference(4) = { Volume{1}; Delete; }{ Volume{2}; Delete; };
+BooleanIntersection(5) = { Volume{4}; Delete; }{ Volume{3}; Delete; };
+e = 1e-6;
+all() = Boundary{ Volume{5}; };
+Physical Volume("body") = {5};
+x() = Surface In BoundingBox{-e, -e, -e, e, 2 * b, 2 * b};
+y() = Surface In BoundingBox{-e, -e, -e, 2 * b, e, 2 * b};
+z() = Surface In BoundingBox{-e, -e, -e, 2 * b, 2 * b, e};
+inner() = Surface In BoundingBox{-e, -e, -e, a + e, a + e, a + e};
+Physical Surface("planes") = {x(), y(), z()};
+Physical Surface("inner") = {inner()};

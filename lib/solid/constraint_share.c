@@ -1,0 +1,99 @@
+/* The forces of conditions that depend on each other. */
+#include "base/memory.h"
+#include "solid/constraint.h"
+
+#include <gsl/gsl_errno.h>
+#include <gsl/gsl_linalg.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* null[count * dropped]: for each row that was dropped, the combination of rows that is zero. */
+static enum status null_rows(const struct constraint *constraint, double *null, struct error *error)
+{
+    enum status status;
+    const struct constraint_rows *rows = constraint->rows;
+    int64_t size = constraint->node_count * rows->dim, *dropped = NULL;
+    double *unit = NULL, *u = NULL;
+    TRY(NEW_ARRAY(&dropped, constraint->factor.dropped, error));
+    TRY(NEW_ARRAY(&unit, rows->count, error));
+    TRY(NEW_ARRAY(&u, size, error));
+    envelope_dropped(&constraint->factor, dropped);
+    for (int64_t d = 0; d < constraint->factor.dropped; d++) {
+        double *combination = null + d * rows->count;
+        memset(u, 0, (size_t)size * sizeof *u);
+        unit[dropped[d]] = 1.0;
+        constraint_rows_spread(rows, unit, constraint->mass, u);
+        unit[dropped[d]] = 0.0;
+        constraint_rows_values(rows, u, combination);
+        envelope_solve(&constraint->factor, combination);
+        combination[dropped[d]] -= 1.0;
+    }
+done:
+    free(dropped);
+    free(unit);
+    free(u);
+    return status;
+}
+
+/* scale[count] = the diagonal of G M^-1 G^T */
+static void diagonal(const struct constraint *constraint, double *scale)
+{
+    for (int64_t r = 0; r < constraint->rows->count; r++) {
+        struct average average = constraint_rows_average(constraint->rows, r);
+        scale[r] = 0.0;
+        for (int64_t i = 0; i < average.length; i++) {
+            scale[r] += average.phi[i] * average.phi[i] / constraint->mass[average.idx[i]];
+        }
+    }
+}
+
+enum status constraint_share_out(const struct constraint *constraint, double *force, struct error *error)
+{
+    enum status status = STATUS_OK;
+    int64_t dropped = constraint->factor.dropped, count = dropped > 0 ? constraint->rows->count : 0;
+    double *null = NULL, *scale = NULL;
+    gsl_matrix *gram = NULL;
+    gsl_vector *amount = NULL;
+    if (dropped == 0) {
+        return STATUS_OK;
+    }
+    gsl_error_handler_t *handler = gsl_set_error_handler_off();
+    TRY(NEW_ARRAY(&null, count * dropped, error));
+    TRY(NEW_ARRAY(&scale, count, error));
+    TRY(null_rows(constraint, null, error));
+    diagonal(constraint, scale);
+    gram = gsl_matrix_calloc((size_t)dropped, (size_t)dropped);
+    amount = gsl_vector_calloc((size_t)dropped);
+    if (gram == NULL || amount == NULL) {
+        status = fail_memory(error, "constraints");
+        goto done;
+    }
+    for (int64_t i = 0; i < dropped; i++) {
+        for (int64_t r = 0; r < count; r++) {
+            double part = scale[r] * null[i * count + r];
+            *gsl_vector_ptr(amount, (size_t)i) += part * force[r];
+            for (int64_t k = 0; k <= i && fpclassify(part) != FP_ZERO; k++) {
+                *gsl_matrix_ptr(gram, (size_t)i, (size_t)k) += part * null[k * count + r];
+            }
+        }
+    }
+    /* Each combination has a row of its own: positive definite. */
+    if (gsl_linalg_cholesky_decomp1(gram) != GSL_SUCCESS ||
+        gsl_linalg_cholesky_svx(gram, amount) != GSL_SUCCESS) {
+        status = fail(error, STATUS_VERDICT, "constraints: the shares of dependent conditions are singular");
+        goto done;
+    }
+    for (int64_t i = 0; i < dropped; i++) {
+        for (int64_t r = 0; r < count; r++) {
+            force[r] -= gsl_vector_get(amount, (size_t)i) * null[i * count + r];
+        }
+    }
+done:
+    gsl_set_error_handler(handler);
+    free(null);
+    free(scale);
+    gsl_matrix_free(gram);
+    gsl_vector_free(amount);
+    return status;
+}

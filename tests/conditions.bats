@@ -1,0 +1,201 @@
+# Conditions: patches that go round a body's end, sections that share nodes, redundant ones, and the forces that they report.
+
+bats_require_minimum_version 1.5.0
+
+load common.bash
+
+setup() {
+    cd "$BATS_TEST_TMPDIR"
+    set -o pipefail
+    export OMP_NUM_THREADS=1
+}
+
+# head of a scene in 3D with the base material
+head3() {
+    printf '[scene]\ndim = 3\nanalysis = quasi-static\n[material body]\nregion = body\nE = 3000\nnu = 0.49\nrho = 1000\n'
+    printf '[output]\nreactions = yes\nenergy = yes\n'
+}
+
+# shear_table: u = 0.05 y along x, at the corners of a cube of 1 m, as shear.tsv
+shear_table() {
+    for x in 0 1; do for y in 0 1; do for z in 0 1; do echo "$x $y $z $(awk "BEGIN { print 0.05 * $y }") 0 0"; done; done; done > shear.tsv
+}
+
+# reaction ROW: of u.dat, its components
+reaction() { rows reactions u.dat | sed -n "$1p"; }
+
+# close TOLERANCE VALUE...: pairs of a value and what it is to be
+close() {
+    local tolerance=$1
+    shift
+    printf '%s %s\n' "$@" | awk -v t="$tolerance" '{ d = $1 - $2; if (!(d <= t && -d <= t)) { bad = 1; print $1, "is not", $2 } } END { exit bad || NR == 0 }'
+}
+
+# patches: of the cloud box.mts, facets with centres in `held` (awk, of x, y, z) become the group held, those in `moved` moved
+patches() {
+    mts text box.mts > box.txt
+    awk -v held="$1" -v moved="$2" '
+        FNR == 1 { file++ }
+        /^# / { on = $2; next }
+        !NF { next }
+        file == 1 && on == "nodes.x" { x[n] = $1; y[n] = $2; z[n++] = $3 }
+        file == 1 && on == "facets" { cx[f] = (x[$1] + x[$2] + x[$3]) / 3; cy[f] = (y[$1] + y[$2] + y[$3]) / 3; cz[f++] = (z[$1] + z[$2] + z[$3]) / 3 }
+        END { for (i = 0; i < f; i++) print cx[i], cy[i], cz[i] }' box.txt > centres
+    awk "{ x = \$1; y = \$2; z = \$3; print ($1) ? 0 : ($2) ? 1 : 2 }" centres > groups
+    awk '
+        NR == FNR { group[n++] = $1; next }
+        /^# facets.set / { sub(/names=[^ ]*/, "names=held,moved,rest"); on = 1; print; next }
+        /^# / { on = 0 }
+        on && NF { print group[row++]; next }
+        { print }' groups box.txt | shapefn > patched.mts 2> note
+}
+
+@test "all sides of a cube sheared, in one section or in six: the forces of the closed form" {
+    cloud -d 3 -k regular -n 5 --box 0,0.1,0,0.1,0,0.1 | shapefn > cube.mts 2> note
+    shear_table
+    { head3; for side in xmin xmax ymin ymax zmin zmax; do printf '[displacement %s]\nfacets = %s\ntable = shear.tsv\nunit = m\n' $side $side; done; } > six.scene
+    printf '[solver]\ntolerance = 1e-9\n' >> six.scene
+    mtled six.scene cube.mts > u.dat
+    # P = mu (F - I1 / 3 F^-T), J = 1, times 0.01 m2
+    read -r t n s <<< "$(awk 'BEGIN { mu = 1500 / 1.49; g = 0.05; printf "%.15g %.15g %.15g\n", 0.01 * mu * g, -0.01 * mu * g * g / 3, 0.01 * mu * g * (1 + g * g / 3) }')"
+    read -r -a x <<< "$(reaction 2)"
+    read -r -a y <<< "$(reaction 4)"
+    read -r -a z <<< "$(reaction 6)"
+    close 1e-7 "${x[0]}" "$n" "${x[1]}" "$s" "${x[2]}" 0 "${y[0]}" "$t" "${y[1]}" "$n" "${y[2]}" 0 "${z[0]}" 0 "${z[1]}" 0 "${z[2]}" "$n"
+    { head3; printf '[displacement all]\nfacets = xmin, xmax, ymin, ymax, zmin, zmax\ntable = shear.tsv\nunit = m\n[solver]\ntolerance = 1e-9\n'; } > one.scene
+    mtled one.scene cube.mts > v.dat
+    fieldcmp --tol-max 1e-9 u.dat v.dat > /dev/null
+    paste <(mts print nodes.x v.dat) <(mts print u v.dat) | awk '{ d = $4 - 0.05 * $2; if (!(d < 1e-9 && -d < 1e-9)) exit 1 }'
+}
+
+@test "the same group in two sections: they share its force, and the result stays" {
+    cloud -d 3 -k regular -n 4 --box 0,0.1,0,0.1,0,0.1 | shapefn > cube.mts 2> note
+    { head3; printf '[displacement bottom]\nfacets = zmin\ncomponents = 0, 0, 0\n[displacement top]\nfacets = zmax\ncomponents = 0, 0, -0.005\n'; } > once.scene
+    { cat once.scene; printf '[displacement again]\nfacets = zmax\ncomponents = free, free, -0.005\n'; } > twice.scene
+    mtled once.scene cube.mts > once.dat
+    mtled twice.scene cube.mts > u.dat 2> said
+    [ ! -s said ]
+    fieldcmp --tol-max 1e-5 once.dat u.dat > /dev/null
+    force=$(rows reactions once.dat | awk 'NR == 2 { print $3 }')
+    rows reactions u.dat | awk -v force="$force" '
+        { f[NR] = $3 / force }
+        END { d = f[2] + f[3] - 1; exit !(d < 1e-3 && -d < 1e-3 && f[2] > 0.01 && f[3] > 0.01) }'
+}
+
+@test "sections that ask for nearly the same at a node: told with both values; in round-off of each other: not" {
+    cloud -d 3 -k regular -n 4 --box 0,0.1,0,0.1,0,0.1 | shapefn > cube.mts 2> note
+    { head3; printf '[displacement top]\nfacets = zmax\ncomponents = 0, 0, -0.005\n[displacement bottom]\nfacets = zmin\ncomponents = 0, 0, 0\n'; } > base.scene
+    { cat base.scene; printf '[displacement side]\nfacets = xmin\ncomponents = free, free, -0.0048\n'; } > near.scene
+    sed -i 's/facets = zmin/facets = xmax/; s/0, 0, 0$/0, 0, free/' near.scene
+    mtled near.scene cube.mts > u.dat 2> said
+    [ "$(wc -l < said)" -eq 1 ]
+    grep -q "^mtled: near.scene:.*\[displacement side\]: node 48 at (0, 0, 0.1) is prescribed twice: -0.0048 m here, -0.005 m in \[displacement top\]" said
+    for size in 1 1e-6; do # whatever the unit
+        sed "s/-0.0048/-0.0050000000000001/; s/\(-0.005[0-9]*\)/\1e${size#1e}/; s/e1\$//" near.scene > same.scene
+        mtled same.scene cube.mts > u.dat 2> said
+        ! grep -q 'prescribed twice' said
+    done
+    sed 's/-0.0048/-0.0040/' near.scene > far.scene
+    refused 2 "prescribed twice: -0.004 m here, -0.005 m in [displacement top]" mtled far.scene cube.mts
+}
+
+# Forces of mixed elements (quadratic displacement, linear pressure, FreeFEM 4.11, linear) on the same tetrahedra; these
+# are 1 to 10 % above the limit themselves.
+@test "patches round an end, a corner, a girdle, a single facet: forces of mixed elements, no verdict, no stall" {
+    cloud -d 3 -k jittered -n 11,5,5 --box 0,1,0,0.4,0,0.4 --jitter 0.1 --seed 4 > box.mts
+    { head3; printf '[displacement held]\nfacets = held\ncomponents = 0, 0, 0\n[displacement moved]\nfacets = moved\ncomponents = 0.01, 0, 0\n'; } > patch.scene
+    while IFS=/ read -r held moved force; do
+        patches "$held" "$moved"
+        mtled -v patch.scene patched.mts > u.dat 2> said
+        awk '$1 == "steps" { exit !($2 < 2000) }' said
+        reaction 2 | awk -v mixed="$force" '{ print "force " $1 ", to be " mixed; exit !($1 < 1.03 * mixed && $1 > 0.97 * mixed) }'
+    done << 'END'
+x < 0.12/x > 0.88/6.549
+x < 0.12/x > 0.75 && y > 0.25 && z > 0.25/4.283
+x < 1e-9/(x - 0.56)^2 + (y - 0.13)^2 + (z - 0.4)^2 < 0.002/2.088
+x < 1e-9/x > 0.6 && x < 0.8 && (y > 0.399 || y < 1e-9 || z > 0.399 || z < 1e-9)/8.561
+END
+}
+
+# freed SCENE-LINES...: the square block with these lines is free to do $what.
+freed() {
+    { block quasi-static; printf '%b\n' "$@"; } > free.scene
+    refused 1 "free.scene: nothing holds the body: it $what: add a [displacement] that forbids that" mtled free.scene "${stream:-square.mts}"
+}
+
+@test "what is free to move or turn is named before the first step" {
+    square_msh
+    nodes -u mm body.msh 2> note | shapefn > square.mts 2> note
+    what='may move along any direction and turn about any axis' freed '[traction t]\nfacets = xmax\ncomponents = 1, 0'
+    what='may turn about (0.1, 0.1)' freed '[displacement c]\nnodes = corner\ncomponents = 0, 0'
+    what='may move along (0, 1)' freed '[displacement l]\nfacets = xmin\nnormal = 0'
+    what='may move along (1, 0), may turn about (0.1, 0.05)' freed '[displacement l]\nnodes = corner\ncomponents = free, 0'
+    { block quasi-static; held_below; } > free.scene
+    mtled free.scene square.mts > u.dat 2> said
+    cloud -d 3 -k regular -n 4 --box 0,0.1,0,0.1,0,0.1 | shapefn > cube.mts 2> note
+    { head3; printf '[displacement l]\nfacets = xmin\nnormal = 0\n[displacement b]\nfacets = ymin\nnormal = 0\n[traction t]\nfacets = zmax\ncomponents = 0, 0, 5\n'; } > free.scene
+    refused 1 "nothing holds the body: it may move along (0, 0, 1): " mtled free.scene cube.mts
+    { head3; printf '[displacement l]\nfacets = zmin\nnormal = 0\n[displacement b]\nfacets = zmax\nnormal = 0\n'; } > free.scene
+    refused 1 "it may move along (1, 0, 0), may move along (0, 1, 0), may turn about the axis through (0.05, 0.05, 0.05) along (0, 0, 1): " mtled free.scene cube.mts
+}
+
+# two: two blocks of 0.1 x 0.1 m, one 1 m above the other, the upper one of region lid
+two() {
+    cat > two.geo << 'END'
+SetFactory("OpenCASCADE");
+Mesh.MeshSizeMax = 25;
+Rectangle(1) = {0, 0, 0, 100, 100};
+Rectangle(2) = {0, 1000, 0, 100, 100};
+Physical Surface("body") = {1};
+Physical Surface("lid") = {2};
+Physical Curve("floor") = {1};
+Physical Curve("right") = {6};
+Physical Curve("lower") = {5};
+END
+    gmsh -v 1 -2 two.geo -o two.msh
+    nodes -u mm two.msh 2> note | shapefn > two.mts 2> note
+}
+
+@test "of several bodies the free one is named; what only contact holds runs, and is told" {
+    two
+    { block quasi-static 'gravity = 0, -1' | sed 's/^region = body/region = body, lid/'; printf '[displacement floor]\nfacets = floor\ncomponents = 0, 0\n'; } > two.scene
+    refused 1 "nothing holds body 2 (region lid, near (0.05, 1.05)): it may move along any direction and turn about any axis: " mtled two.scene two.mts
+    { cat two.scene; printf '[displacement right]\nfacets = right\nnormal = 0\n'; } > slide.scene
+    refused 1 "nothing holds body 2 (region lid, near (0.05, 1.05)): it may move along (0, 1): " mtled slide.scene two.mts
+    printf -- '-1 0.999\n2 0.999\n' > wall.tsv
+    { cat slide.scene; printf '[contact wall]\nfacets = lower\nrigid = wall.tsv\nunit = m\nside = left\n[output]\nreactions = yes\n'; } > rest.scene
+    mtled -v rest.scene two.mts > u.dat 2> said
+    grep -q '^mtled: rest.scene: only contact holds body 2 (region lid, near (0.05, 1.05)): it may move along (0, 1) otherwise' said
+    reaction 3 | awk '{ d = $2 - 10; exit !(d < 0.01 && -d < 0.01) }'
+    mtled rest.scene two.mts 2> said > u.dat
+    [ ! -s said ]
+}
+
+@test "moments: in balance with each other and with the load, about any point; their unit and names" {
+    square_msh
+    nodes -u mm body.msh 2> note | shapefn > square.mts 2> note
+    { block quasi-static; held_below; printf '[displacement top]\nfacets = ymax\ncomponents = 0.01, 0.005\n[output]\nreactions = yes\nmoments = yes\n[solver]\ntolerance = 1e-8\n'; } > bend.scene
+    mtled bend.scene square.mts > u.dat
+    grep -q '^# moments f8 2 1 .*unit=N about=0,0 cols=z rows=bottom,top' u.dat
+    rows moments u.dat | awk '{ m[NR] = $1 } END { d = m[1] + m[2]; exit !(NR == 2 && m[1]^2 > 0.01 && d^2 < 1e-10 * m[1]^2) }'
+    rows moments u.dat > origin
+    sed 's/^moments = yes/&\nmoments_about = 0.3, -0.2/' bend.scene > about.scene
+    mtled about.scene square.mts > v.dat
+    grep -q '^# moments .*about=0.3,-0.2 ' v.dat
+    paste origin <(rows moments v.dat) <(rows reactions u.dat) | awk '{ d = $2 - ($1 - (0.3 * $4 + 0.2 * $3)); if (!(d^2 < 1e-12)) bad = 1 } END { exit bad || NR != 2 }'
+    # A traction along y on the right side, in 3D: the bottom holds its moment about the middle of the bottom.
+    cloud -d 3 -k jittered -n 5 --box 0,0.1,0,0.1,0,0.1 --jitter 0.1 | shapefn > cube.mts 2> note
+    { head3; printf '[displacement bottom]\nfacets = zmin\ncomponents = 0, 0, 0\n[traction push]\nfacets = xmax\ncomponents = 0, 1, 0\n'
+        printf '[solver]\ntolerance = 1e-8\n'; } | sed 's/^reactions = yes/moments = yes\nmoments_about = 0.05, 0.05, 0/' > twist.scene
+    mtled twist.scene cube.mts > u.dat
+    grep -q '^# moments f8 1 3 .*unit=N.m about=0.05,0.05,0 cols=x,y,z rows=bottom' u.dat
+    rows moments u.dat | awk '{ x = $1 / 5e-4 - 1; z = $3 / -5e-4 - 1; print; exit !(x^2 < 1e-4 && z^2 < 1e-4 && $2^2 < 1e-12) }'
+}
+
+@test "moments: a point out of all reason, or without moments" {
+    cloud -d 2 -k regular -n 4 --box 0,0.1,0,0.1 | shapefn > square.mts 2> note
+    { pressed_block; printf '[output]\nmoments = yes\nmoments_about = 0, 2e5\n'; } > far.scene
+    refused 2 "far.scene: [output]: moments_about: 2e+05 m from the body of 0.141 m: give a point near it, in m" mtled far.scene square.mts
+    sed -i '/^moments = /d' far.scene
+    refused 2 "moments_about: not allowed: it goes with moments = yes" mtled far.scene square.mts
+}

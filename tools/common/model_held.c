@@ -1,0 +1,72 @@
+#include "model_held.h"
+
+#include "base/memory.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum status held_build(int dim, int64_t node_count, struct held_directions *held, struct error *error)
+{
+    enum status status;
+    *held = (struct held_directions){.dim = dim};
+    TRY(NEW_ARRAY(&held->count, node_count, error));
+    TRY(NEW_ARRAY(&held->axis, node_count * dim * dim, error));
+done:
+    if (status != STATUS_OK) {
+        held_free(held);
+    }
+    return status;
+}
+
+void held_free(struct held_directions *held)
+{
+    free(held->count);
+    free(held->axis);
+    *held = (struct held_directions){0};
+}
+
+/* rest -= its part along the first `count` of some orthonormal vectors */
+static void take_out(int dim, int count, const double *axis, double *rest)
+{
+    for (int k = 0; k < count; k++) {
+        double along = 0.0;
+        for (int i = 0; i < dim; i++) {
+            along += axis[k * dim + i] * rest[i];
+        }
+        for (int i = 0; i < dim; i++) {
+            rest[i] -= along * axis[k * dim + i];
+        }
+    }
+}
+
+double held_rest(const struct held_directions *held, int32_t node, int count, const double *more,
+                 const double *direction, double *rest)
+{
+    int dim = held->dim;
+    double sum = 0.0;
+    memcpy(rest, direction, (size_t)dim * sizeof *rest);
+    for (int twice = 0; twice < 2; twice++) { /* against round-off */
+        take_out(dim, held->count[node], held->axis + (int64_t)node * dim * dim, rest);
+        take_out(dim, count, more, rest);
+    }
+    for (int i = 0; i < dim; i++) {
+        sum += rest[i] * rest[i];
+    }
+    return sqrt(sum);
+}
+
+void held_note(struct held_directions *held, const struct constraint_rows *rows, int64_t first, int64_t last)
+{
+    int dim = held->dim;
+    for (int64_t r = first; r < last; r++) {
+        int32_t node = rows->node[r];
+        double rest[3], length = held_rest(held, node, 0, NULL, rows->direction + r * dim, rest);
+        if (length > HELD_LEAST) {
+            double *axis = held->axis + ((int64_t)node * dim + held->count[node]++) * dim;
+            for (int i = 0; i < dim; i++) {
+                axis[i] = rest[i] / length;
+            }
+        }
+    }
+}
