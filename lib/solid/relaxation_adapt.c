@@ -35,10 +35,7 @@ double relaxation_thickness(const struct solid_system *system)
 
 int64_t relaxation_choose_ramp(const struct relaxation *r)
 {
-    double largest = 0.0;
-    for (int64_t i = 0; i < r->system->rows.count; i++) {
-        largest = fmax(largest, fabs(r->system->rows.target[i]));
-    }
+    double largest = system_longest_way(r->system);
     double steps = fmax(steps_per_spacing * largest / r->spacing, steps_per_size * largest / r->body_size);
     steps = fmax(steps, (double)least_ramp);
     return steps > 1e7 ? 10000000 : (int64_t)steps;
@@ -184,6 +181,7 @@ static void augment(struct relaxation *r)
 
 bool relaxation_contacts_hold(struct relaxation *r)
 {
+    system_measure_contacts(r->system, r->residual_at, false);
     double deepest = largest_penetration(r);
     if (!(deepest > r->penetration_allowed) || r->augmentations == most_augmentations ||
         r->fruitless == most_fruitless) {

@@ -43,6 +43,60 @@ static double default_stiffness(const struct model_input *input, const struct so
     return modulus / (input->cells.dim == 2 ? area : sqrt(area));
 }
 
+/* A curve that takes more than half of its largest factor in this share of the scene's time jumps. */
+static const double jump_time = 1e-3;
+
+/* The surface moves from where its file has it, and without jumps. */
+static enum status check_curve(const struct model_input *input, const struct scene_contact *section,
+                               const char *key, const struct load_curve *curve, struct error *error)
+{
+    const struct scene_label *label = &section->label;
+    double largest = 0.0, at_begin = curve_value(curve, 0.0);
+    for (int64_t i = 0; i < curve->count; i++) {
+        largest = fmax(largest, fabs(curve->factor[i]));
+    }
+    if (fabs(at_begin) > 1e-12 * largest) {
+        return scene_fail(
+            error, STATUS_INPUT, input->scene, label,
+            "%s: begins at %g, with a jump: begin at time 0 with factor 0, where the file has the "
+            "surface",
+            key, at_begin);
+    }
+    for (int64_t i = 0; i < curve->count; i++) {
+        double s = curve->time[i] / curve->end;
+        if (fabs(curve_value(curve, s + jump_time) - curve_value(curve, s)) > 0.5 * largest) {
+            return scene_fail(error, STATUS_INPUT, input->scene, label,
+                              "%s: jumps from %g to %g at time %g: give the surface more time to move there",
+                              key, curve_value(curve, s), curve_value(curve, s + jump_time), curve->time[i]);
+        }
+    }
+    return STATUS_OK;
+}
+
+/* The motion of the section's surface, with its curves. */
+static enum status add_motion(const struct model_input *input, const struct scene_contact *section,
+                              struct solid_system *system, struct rigid_motion *motion, struct error *error)
+{
+    enum status status = STATUS_OK;
+    *motion = (struct rigid_motion){.moves = section->moves, .angle = section->angle * (M_PI / 180.0)};
+    if (!section->moves) {
+        return STATUS_OK;
+    }
+    for (int i = 0; i < 3; i++) {
+        motion->translation[i] = section->translation[i];
+        motion->point[i] = section->axis_point[i];
+        motion->axis[i] = section->angle != 0.0 ? section->axis[i] : (double)(i == 2);
+    }
+    TRY(rigid_motion_check(motion, system->dim, error));
+    TRY(model_add_curve(input, &section->label, &section->curve, system, &motion->translation_curve, error));
+    TRY(check_curve(input, section, "curve", &system->curves[motion->translation_curve], error));
+    TRY(model_add_curve(input, &section->label, &section->angle_curve, system, &motion->rotation_curve,
+                        error));
+    TRY(check_curve(input, section, "angle_curve", &system->curves[motion->rotation_curve], error));
+done:
+    return status;
+}
+
 static enum status add_contact(const struct model_input *input, const struct scene_contact *section,
                                struct solid_system *system, struct error *error)
 {
@@ -64,8 +118,9 @@ static enum status add_contact(const struct model_input *input, const struct sce
         section->stiffness > 0.0 ? section->stiffness : default_stiffness(input, system, averages);
     TRY(contact_build(averages, system->X, system->dim, &surface, stiffness,
                       &system->contacts[system->contact_count], error));
-    system->contact_count++;
+    struct contact *contact = &system->contacts[system->contact_count++];
     averages = NULL;
+    TRY(add_motion(input, section, system, &contact->motion, error));
 done:
     if (averages != NULL) {
         boundary_averages_free(averages);

@@ -176,6 +176,7 @@ void run_put_results(struct run *run)
     double *field = run_new_values(run, nodes * dim), *scratch = run_new_values(run, nodes * dim);
     /* Bring F, stresses and gaps to the final state. */
     (void)system_residual(&model->system, run->u, scratch);
+    system_measure_contacts(&model->system, run->u, true);
     free(scratch);
     if (output->stress || output->strain) {
         put_tensors(run);
