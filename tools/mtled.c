@@ -134,6 +134,7 @@ int main(int argc, char *argv[])
     tool_check(&tool, NEW_ARRAY(&run.u, model.system.node_count * scene.dim, &error), &error);
     run.prepare_seconds = clock_seconds() - run.display.started;
     run_checkpoint_begin(&run);
+    run_folds_begin(&run);
     if (scene.analysis == SCENE_DYNAMIC) {
         run_dynamic(&run);
     } else {
@@ -149,6 +150,7 @@ int main(int argc, char *argv[])
     if (run.verbose) {
         run_report_cost(&run);
     }
+    run_folds_free(&run);
     model_free(&model);
     free(run.u);
     scene_free(&scene);

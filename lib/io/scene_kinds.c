@@ -260,10 +260,12 @@ done:
 
 static enum status read_output(const struct place *place, struct scene *scene)
 {
+    static const char *const folds[] = {"refused", "allowed", NULL};
     struct scene_output *output = &scene->output;
+    int allowed = 0;
     enum status status = STATUS_OK;
-    TRY(place_only_keys(place,
-                        KEYS{"frames", "interval", "stress", "strain", "energy", "reactions", "gaps", NULL}));
+    TRY(place_only_keys(
+        place, KEYS{"frames", "interval", "stress", "strain", "energy", "reactions", "gaps", "folds", NULL}));
     TRY(place_count(place, "frames", 1000000, &output->frames));
     TRY(place_number(place, "interval", range_positive, &output->interval));
     if (place_has(place, "frames")) {
@@ -277,6 +279,8 @@ static enum status read_output(const struct place *place, struct scene *scene)
     TRY(place_yes(place, "energy", &output->energy));
     TRY(place_yes(place, "reactions", &output->reactions));
     TRY(place_yes(place, "gaps", &output->gaps));
+    TRY(place_choice(place, "folds", folds, &allowed));
+    output->folds_allowed = allowed == 1;
 done:
     return status;
 }

@@ -174,9 +174,23 @@ static void augment(struct relaxation *r)
     for (int64_t c = 0; c < r->system->contact_count; c++) {
         (void)contact_augment(&r->system->contacts[c]);
     }
-    r->augmentations++;
-    r->best_error = INFINITY; /* another problem begins */
-    r->best_step = r->report->steps;
+}
+
+/* An augmentation every T makes the multipliers the integral of the gaps, over T. With a damping c that is
+ * stable where c T > k / (k + stiffness of the body), so at c T = 1 and above; this is c T. */
+static const double least_pause = 2.0;
+
+void relaxation_follow_contacts(struct relaxation *r)
+{
+    double pause = (double)(r->report->steps - r->augmented_step) * r->time_step;
+    if (r->system->contact_count == 0 || r->at_full_load > 0 || r->damping * pause < least_pause) {
+        return;
+    }
+    system_measure_contacts(r->system, r->residual_at, false);
+    if (largest_penetration(r) > r->penetration_allowed) {
+        augment(r);
+        r->augmented_step = r->report->steps;
+    }
 }
 
 bool relaxation_contacts_hold(struct relaxation *r)
@@ -190,5 +204,8 @@ bool relaxation_contacts_hold(struct relaxation *r)
     r->fruitless = deepest < 0.8 * r->least_penetration ? 0 : r->fruitless + 1;
     r->least_penetration = fmin(r->least_penetration, deepest);
     augment(r);
+    r->augmentations++;
+    r->best_error = INFINITY; /* another problem begins */
+    r->best_step = r->report->steps;
     return false;
 }

@@ -8,7 +8,7 @@
 
 void run_put_frame(void *context, int64_t number, double time, const double *u)
 {
-    const struct run *run = context;
+    struct run *run = context;
     int dim = run->scene->dim;
     int64_t nodes = run->model->system.node_count;
     char name[40], vector[64], attributes[128];
@@ -17,6 +17,7 @@ void run_put_frame(void *context, int64_t number, double time, const double *u)
     snprintf(name, sizeof name, "u.frame.%lld", (long long)number);
     snprintf(attributes, sizeof attributes, "%s time=%.12g", vector_attributes(dim, "m", vector), time);
     run_put(run, name, nodes, dim, attributes, field);
+    run_folds_look(run, u, time, true);
 }
 
 /* Components of a symmetric tensor in output order. */
