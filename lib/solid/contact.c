@@ -71,9 +71,9 @@ static void raise_to_node(const struct contact *contact, int64_t a, const double
     }
 }
 
-enum status contact_build(const struct boundary_averages *averages, const double *X, int dim,
-                          struct rigid_surface *surface, double stiffness, struct contact *contact,
-                          struct error *error)
+/* An empty contact that takes over the surface. */
+static enum status begin(const struct boundary_averages *averages, int dim, struct rigid_surface *surface,
+                         double stiffness, struct contact *contact, struct error *error)
 {
     enum status status;
     int64_t count = averages->count;
@@ -89,17 +89,41 @@ enum status contact_build(const struct boundary_averages *averages, const double
     TRY(NEW_ARRAY(&contact->checked_x, count * dim, error));
     TRY(NEW_ARRAY(&contact->checked_distance, count, error));
     for (int64_t a = 0; a < count; a++) {
-        double x[3];
-        take_mean(contact, a, X, x);
         contact->gap[a] = INFINITY;
-        raise_to_node(contact, a, X, x);
-        for (int c = 0; c < dim; c++) {
-            contact->rest[a * dim + c] = x[c];
-            contact->checked_x[a * dim + c] =
-                INFINITY; /* never looked at: it may be in contact from the start */
-        }
+    }
+    for (int64_t i = 0; i < count * dim; i++) {
+        contact->checked_x[i] = INFINITY; /* never looked at: it may be in contact from the start */
+    }
+done:
+    return status;
+}
+
+enum status contact_build(const struct boundary_averages *averages, const double *X, int dim,
+                          struct rigid_surface *surface, double stiffness, struct contact *contact,
+                          struct error *error)
+{
+    enum status status;
+    TRY(begin(averages, dim, surface, stiffness, contact, error));
+    for (int64_t a = 0; a < averages->count; a++) {
+        take_mean(contact, a, X, contact->rest + a * dim);
+        raise_to_node(contact, a, X, contact->rest + a * dim);
     }
     TRY(check_side(contact, error));
+done:
+    if (status != STATUS_OK) {
+        contact_free(contact);
+    }
+    return status;
+}
+
+enum status contact_build_points(const struct boundary_averages *points, int dim,
+                                 struct rigid_surface *surface, double stiffness, struct contact *contact,
+                                 struct error *error)
+{
+    enum status status;
+    TRY(begin(points, dim, surface, stiffness, contact, error));
+    contact->penalty_only = true;
+    memcpy(contact->rest, points->position, (size_t)(points->count * dim) * sizeof *contact->rest);
 done:
     if (status != STATUS_OK) {
         contact_free(contact);
@@ -244,7 +268,7 @@ double contact_augment(struct contact *contact)
 {
     double deepest = 0.0;
     for (int64_t a = 0; a < contact->count; a++) {
-        contact->multiplier[a] = contact->pressure[a];
+        contact->multiplier[a] = contact->penalty_only ? 0.0 : contact->pressure[a];
         deepest = fmax(deepest, -contact->gap[a]);
     }
     return deepest;

@@ -28,6 +28,8 @@ struct contact {
     struct rigid_surface surface;             /* owned; at rest */
     struct rigid_motion motion;               /* of the surface */
     struct rigid_place place;                 /* where the surface is: see contact_move */
+    int32_t section;                          /* the caller's label */
+    bool penalty_only;                        /* no multipliers: see contact_build_points */
     double stiffness;                         /* k, Pa/m, > 0 */
     double *rest;                             /* count * dim: x_a at u = 0, so raised, m */
     double *multiplier;                       /* count: lambda_a, Pa, >= 0 */
@@ -48,6 +50,13 @@ struct contact {
 MUST_CHECK enum status contact_build(const struct boundary_averages *averages, const double *X, int dim,
                                      struct rigid_surface *surface, double stiffness, struct contact *contact,
                                      struct error *error);
+/* The same for the values at the quadrature points of the facets, which a contact of hats leaves free to vary
+ * within a hat. Under a pressure of some ten shear moduli that grows; a penalty on the points alone, with a
+ * multiple of the hats' stiffness, keeps it down and vanishes where the hats' contact is met. The points are
+ * taken where they are, on the chords of a curved boundary, and there is no wrong side. */
+MUST_CHECK enum status contact_build_points(const struct boundary_averages *points, int dim,
+                                            struct rigid_surface *surface, double stiffness,
+                                            struct contact *contact, struct error *error);
 void contact_free(struct contact *contact);
 
 /* What a contact keeps from one evaluation to the next; `prefix` goes in front of the names. */
@@ -67,7 +76,8 @@ void contact_move(struct contact *contact, const double *factor);
  * the surface is too far away for a pressure. */
 void contact_measure(struct contact *contact, const double *u, bool all);
 
-/* Augment: lambda_a = p_a of the last evaluation; returns the largest penetration seen then, m. */
+/* Augment: lambda_a = p_a of the last evaluation, unless there is the penalty only; returns the largest
+ * penetration seen then, m. */
 double contact_augment(struct contact *contact);
 
 /* Energy of the penalty at the last evaluation, sum A_a (p_a^2 - lambda_a^2) / (2 k), J (2D: J/m). */

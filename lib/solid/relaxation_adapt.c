@@ -156,13 +156,14 @@ bool relaxation_step_back(struct relaxation *r, double *u, struct error *error)
     return r->failure == STATUS_OK;
 }
 
-/* Deepest penetration of all contacts at the last evaluation, m. */
+/* Deepest penetration of all contacts that can be augmented, at the last evaluation, m. */
 static double largest_penetration(const struct relaxation *r)
 {
     double deepest = 0.0;
     for (int64_t c = 0; c < r->system->contact_count; c++) {
-        for (int64_t a = 0; a < r->system->contacts[c].count; a++) {
-            deepest = fmax(deepest, -r->system->contacts[c].gap[a]);
+        const struct contact *contact = &r->system->contacts[c];
+        for (int64_t a = 0; a < contact->count && !contact->penalty_only; a++) {
+            deepest = fmax(deepest, -contact->gap[a]);
         }
     }
     return deepest;

@@ -97,37 +97,79 @@ done:
     return status;
 }
 
-static enum status add_contact(const struct model_input *input, const struct scene_contact *section,
-                               struct solid_system *system, struct error *error)
+/* The surface of a section. */
+static enum status read_surface(const struct scene_contact *section, int dim, struct rigid_surface *surface,
+                                struct error *error)
 {
     enum status status;
-    struct facet_set set;
-    struct rigid_surface surface = {0};
     struct table table = {0};
     double *corners = NULL;
-    int32_t *owned = NULL;
     int64_t count;
+    bool flip = section->side == SCENE_LEFT || section->side == SCENE_BACK;
+    TRY(surface_read(section->rigid, dim, &table, error));
+    TRY(rigid_corners(section, &table, dim, &corners, &count, error));
+    TRY(rigid_build(dim, count, corners, flip, surface, error));
+done:
+    free(corners);
+    table_free(&table);
+    return status;
+}
+
+/* Where a surface presses, it is kept out at the quadrature points, too, by a penalty of so much of the
+ * hats'. From 4 to 16 the force on a block that is pressed to 30 % between plates changes by 0.3 %. */
+static const double points_share = 8.0;
+
+/* The contact of the points of a section's facets, which moves as that of the hats does. */
+static enum status add_points(const struct model_input *input, const struct scene_contact *section,
+                              const struct facet_set *set, struct solid_system *system,
+                              const struct contact *hats, struct error *error)
+{
+    enum status status;
+    struct rigid_surface surface = {0};
+    struct boundary_averages *points = &system->contact_averages[system->contact_count];
+    struct contact *contact = &system->contacts[system->contact_count];
+    TRY(boundary_points_build(&input->face_table, set, points, error));
+    TRY(read_surface(section, system->dim, &surface, error));
+    TRY(contact_build_points(points, system->dim, &surface, points_share * hats->stiffness, contact, error));
+    contact->section = hats->section;
+    contact->motion = hats->motion;
+    system->contact_count++;
+    points = NULL;
+done:
+    if (points != NULL) {
+        boundary_averages_free(points);
+    }
+    return status;
+}
+
+static enum status add_contact(const struct model_input *input, int32_t number, struct solid_system *system,
+                               struct error *error)
+{
+    enum status status;
+    const struct scene_contact *section = &input->scene->contacts[number];
+    struct facet_set set;
+    struct rigid_surface surface = {0};
+    int32_t *owned = NULL;
     struct boundary_averages *averages = &system->contact_averages[system->contact_count];
+    struct contact *contact = &system->contacts[system->contact_count];
     TRY(model_facets(input, &section->label, &section->facets, &set, &owned, error));
     TRY(boundary_averages_build(&input->face_table, &set, averages, error));
-    TRY(surface_read(section->rigid, system->dim, &table, error));
-    TRY(rigid_corners(section, &table, system->dim, &corners, &count, error));
-    bool flip = section->side == SCENE_LEFT || section->side == SCENE_BACK;
-    TRY(rigid_build(system->dim, count, corners, flip, &surface, error));
+    TRY(read_surface(section, system->dim, &surface, error));
     double stiffness =
         section->stiffness > 0.0 ? section->stiffness : default_stiffness(input, system, averages);
-    TRY(contact_build(averages, system->X, system->dim, &surface, stiffness,
-                      &system->contacts[system->contact_count], error));
-    struct contact *contact = &system->contacts[system->contact_count++];
+    TRY(contact_build(averages, system->X, system->dim, &surface, stiffness, contact, error));
+    system->contact_count++;
     averages = NULL;
+    contact->section = number;
     TRY(add_motion(input, section, system, &contact->motion, error));
+    if (section->moves && input->scene->analysis == SCENE_QUASI_STATIC) {
+        TRY(add_points(input, section, &set, system, contact, error));
+    }
 done:
     if (averages != NULL) {
         boundary_averages_free(averages);
     }
     free(owned);
-    free(corners);
-    table_free(&table);
     return status;
 }
 
@@ -135,10 +177,11 @@ enum status model_add_contacts(const struct model_input *input, struct solid_sys
                                struct error *error)
 {
     enum status status;
-    TRY(NEW_ARRAY(&system->contacts, input->scene->contact_count, error));
-    TRY(NEW_ARRAY(&system->contact_averages, input->scene->contact_count, error));
-    for (int64_t i = 0; i < input->scene->contact_count; i++) {
-        TRY(add_contact(input, &input->scene->contacts[i], system, error));
+    int64_t sections = input->scene->contact_count;
+    TRY(NEW_ARRAY(&system->contacts, 2 * sections, error));
+    TRY(NEW_ARRAY(&system->contact_averages, 2 * sections, error));
+    for (int64_t i = 0; i < sections; i++) {
+        TRY(add_contact(input, (int32_t)i, system, error));
     }
 done:
     return status;

@@ -125,8 +125,13 @@ static void put_reactions(struct run *run)
     double *total = run_new_values(run, rows * scene->dim);
     char *attributes = reaction_attributes(run, rows);
     add_condition_forces(run, total);
-    for (int64_t c = 0; c < scene->contact_count; c++) {
-        contact_total(&run->model->system.contacts[c], total + (scene->displacement_count + c) * scene->dim);
+    for (int64_t c = 0; c < run->model->system.contact_count; c++) {
+        const struct contact *contact = &run->model->system.contacts[c];
+        double sum[3];
+        contact_total(contact, sum);
+        for (int i = 0; i < scene->dim; i++) {
+            total[(scene->displacement_count + contact->section) * scene->dim + i] += sum[i];
+        }
     }
     run_put(run, "reactions", rows, scene->dim, attributes, total);
     free(attributes);
@@ -139,12 +144,12 @@ static void put_gaps(struct run *run)
     int dim = run->scene->dim, cols = dim + 2;
     int64_t rows = 0, at = 0;
     for (int64_t c = 0; c < system->contact_count; c++) {
-        rows += system->contacts[c].count;
+        rows += system->contacts[c].penalty_only ? 0 : system->contacts[c].count;
     }
     double *values = run_new_values(run, rows * cols);
     for (int64_t c = 0; c < system->contact_count; c++) {
         const struct contact *contact = &system->contacts[c];
-        for (int64_t a = 0; a < contact->count; a++, at++) {
+        for (int64_t a = 0; a < contact->count && !contact->penalty_only; a++, at++) {
             memcpy(values + at * cols, contact->averages->position + a * dim, (size_t)dim * sizeof *values);
             values[at * cols + dim] = contact->gap[a];
             values[at * cols + dim + 1] = contact->pressure[a];
