@@ -80,6 +80,7 @@ struct folds {
     bool crosses_at_rest; /* then crossings are not looked for */
     /* Scratch. */
     double *y;              /* node_count * dim: positions */
+    double largest;         /* of their coordinates, m */
     struct fold_box *boxes; /* facet_count, by low */
     double *plane; /* facet_count * 7: of the support that begins with each facet: the sum of its area
                     * vectors,  of its corners, their number */
@@ -92,8 +93,8 @@ void folds_free(struct folds *folds);
 /* Look for folds of the displacement field u[node_count * dim] at the nodes: where the map is not one-to-one.
  * Of
  * several kinds the one that comes first in the list of kinds is returned. Nodes that are `stopped`
- * [node_count] have something that presses on them. A cell between such nodes and held ones is pressed flat
- * against a plate; as averages are held and no nodes, it may be turned over a little, and does not count. */
+ * [node_count] have a surface against them. A cell between such nodes and held ones is pressed flat against a
+ * plate; as averages are held and no nodes, it may be turned over a little, and does not count. */
 struct fold folds_find(struct folds *folds, const double *u, const bool *stopped);
 
 /* Look for free facets that have gone through the plane of a support: by more than a thousandth of the body's

@@ -6,7 +6,7 @@
 
 static const double full_turn = 6.28318530717958648;
 
-/* Angles and volumes below this share of what they are sums of are round-off. */
+/* Positions below this share of the largest coordinate are round-off. */
 static const double round_off = 1e-12;
 
 /* See folds_find_beyond. */
@@ -123,11 +123,17 @@ static bool pierces(const struct folds *folds, int32_t p, int32_t q, int64_t f)
     const double *c = dim == 3 ? at(folds, node[2]) : NULL;
     double before = dim == 2 ? signed_volume(2, a, b, x, NULL) : signed_volume(3, a, b, c, x);
     double after = dim == 2 ? signed_volume(2, a, b, y, NULL) : signed_volume(3, a, b, c, y);
-    double least = round_off * (fabs(before) + fabs(after));
+    double size = 0.0, side[3] = {0.0, 0.0, 0.0}, way[3];
+    fold_way(dim, x, y, way);
+    size = sqrt(fold_dot(dim, way, way));
+    fold_way(dim, x, a, way);
+    size += sqrt(fold_dot(dim, way, way));
+    fold_way(dim, a, b, way);
+    size += sqrt(fold_dot(dim, way, way));
+    double least = round_off * folds->largest * (dim == 2 ? size : size * size);
     if (!(fmin(before, after) < -least && fmax(before, after) > least)) {
         return false;
     }
-    double side[3] = {0.0, 0.0, 0.0}, sum = 0.0;
     if (dim == 2) {
         side[0] = signed_volume(2, x, y, a, NULL);
         side[1] = -signed_volume(2, x, y, b, NULL);
@@ -137,10 +143,6 @@ static bool pierces(const struct folds *folds, int32_t p, int32_t q, int64_t f)
         side[1] = signed_volume(3, x, y, b, c);
         side[2] = signed_volume(3, x, y, c, a);
     }
-    for (int k = 0; k < 3; k++) {
-        sum += fabs(side[k]);
-    }
-    least = round_off * sum;
     return (side[0] > least && side[1] > least && side[2] > least) ||
            (side[0] < -least && side[1] < -least && side[2] < -least);
 }
@@ -263,8 +265,10 @@ double folds_rim_beyond(const struct folds *folds, const struct fold_rim *rim, c
 
 static void take_positions(struct folds *folds, const double *u)
 {
+    folds->largest = 0.0;
     for (int64_t i = 0; i < folds->input.node_count * folds->input.dim; i++) {
         folds->y[i] = folds->input.x[i] + u[i];
+        folds->largest = fmax(folds->largest, fabs(folds->y[i]));
     }
 }
 

@@ -69,16 +69,20 @@ void run_folds_free(struct run *run)
     free(run->folds.stopped);
 }
 
-/* Nodes on which a contact presses: the surface is there. */
+/* A surface that is no further away than this share of a facet's size stands against it. */
+static const double near_share = 0.25;
+
+/* Nodes that a rigid surface stands against. */
 static void mark_stopped(const struct run *run, bool *stopped)
 {
     const struct solid_system *system = &run->model->system;
     memset(stopped, 0, (size_t)system->node_count * sizeof *stopped);
     for (int64_t c = 0; c < system->contact_count; c++) {
         const struct contact *contact = &system->contacts[c];
-        for (int64_t a = 0; a < contact->count; a++) {
+        for (int64_t a = 0; a < contact->count && !contact->penalty_only; a++) {
             int32_t node = contact->averages->node[a];
-            stopped[node] = stopped[node] || contact->pressure[a] > 0.0;
+            double area = contact->averages->area[a], length = contact->dim == 2 ? area : sqrt(area);
+            stopped[node] = stopped[node] || contact->gap[a] < near_share * length;
         }
     }
 }
