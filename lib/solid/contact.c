@@ -264,11 +264,12 @@ void contact_force(struct contact *contact, const double *u, double *force)
     }
 }
 
-double contact_augment(struct contact *contact)
+double contact_augment(struct contact *contact, double allowed)
 {
-    double deepest = 0.0;
+    double deepest = 0.0, least = contact->stiffness * allowed;
     for (int64_t a = 0; a < contact->count; a++) {
-        contact->multiplier[a] = contact->penalty_only ? 0.0 : contact->pressure[a];
+        double p = contact->pressure[a];
+        contact->multiplier[a] = contact->penalty_only || !(p > least) ? 0.0 : p;
         deepest = fmax(deepest, -contact->gap[a]);
     }
     return deepest;

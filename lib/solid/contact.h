@@ -76,9 +76,10 @@ void contact_move(struct contact *contact, const double *factor);
  * the surface is too far away for a pressure. */
 void contact_measure(struct contact *contact, const double *u, bool all);
 
-/* Augment: lambda_a = p_a of the last evaluation, unless there is the penalty only; returns the largest
- * penetration seen then, m. */
-double contact_augment(struct contact *contact);
+/* Augment: lambda_a = p_a of the last evaluation, unless there is the penalty only. Pressures that the
+ * penalty alone makes of a penetration of no more than `allowed`, m, need no multiplier and get none. Returns
+ * the largest penetration seen then, m. */
+double contact_augment(struct contact *contact, double allowed);
 
 /* Energy of the penalty at the last evaluation, sum A_a (p_a^2 - lambda_a^2) / (2 k), J (2D: J/m). */
 double contact_energy(const struct contact *contact);

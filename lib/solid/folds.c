@@ -84,6 +84,18 @@ static const int parts_2d[3][3] = {{0, 1, 2}, {1, 2, 0}, {2, 0, 1}};
 static const int parts_3d[6][4] = {{0, 1, 2, 3}, {0, 2, 1, 3}, {0, 3, 1, 2},
                                    {1, 2, 0, 3}, {1, 3, 0, 2}, {2, 3, 0, 1}};
 
+/* Whether an order of a cell's corners is an even permutation. */
+static bool is_even(const int *order, int corners)
+{
+    bool even = true;
+    for (int i = 0; i < corners; i++) {
+        for (int k = i + 1; k < corners; k++) {
+            even = order[i] > order[k] ? !even : even;
+        }
+    }
+    return even;
+}
+
 /* Visit the parts of all cells that are on rings: count them, or, with `fill`, list their nodes. */
 static void visit_parts(struct folds *folds, bool fill)
 {
@@ -98,6 +110,9 @@ static void visit_parts(struct folds *folds, bool fill)
                 continue;
             }
             int64_t at = folds->ring_ptr[ring]++;
+            if (fill) {
+                folds->ring_turn[at] = is_even(part, corners) ? 1 : -1;
+            }
             for (int i = 0; i < corners && fill; i++) {
                 folds->ring_cell[at * corners + i] = cell[part[i]];
             }
@@ -124,6 +139,7 @@ static enum status build_rings(struct folds *folds, const struct side *sides, st
         folds->ring_ptr[r] = sum;
         sum += here;
     }
+    TRY(NEW_ARRAY(&folds->ring_turn, sum, error));
     TRY(NEW_ARRAY(&folds->ring_cell, sum * (folds->input.dim + 1), error));
     visit_parts(folds, true);
     for (int64_t r = folds->ring_count; r > 0; r--) { /* each had moved on to the begin of the next */
@@ -251,6 +267,7 @@ void folds_free(struct folds *folds)
     free(folds->rings);
     free(folds->ring_ptr);
     free(folds->ring_cell);
+    free(folds->ring_turn);
     free(folds->rims);
     free(folds->support);
     free(folds->is_held);

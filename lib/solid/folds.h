@@ -2,9 +2,10 @@
  * should be one-to-one.
  *
  * It is when all cells keep their orientation and the boundary does not cross itself (Meisters and Olech,
- * Duke Math. J. 30, 1963); so both are looked at, without tolerances that decide. Cells: the sign of the
+ * Duke Math. J. 30, 1963); so both are looked at. Cells: the sign of the
  * volume of each, which is that of det F of the linear interpolant; it also turns where a facet of the
- * boundary is turned over against the cell behind it. Boundary: facets that share no node are crossed, or
+ * boundary is turned over against the cell behind it. Slivers turn over by what a field at the nodes is
+ * uncertain by, so that it is told how far a cell has. Boundary: facets that share no node are crossed, or
  * pierced by edges; those that meet have passed through each other when the angles of the cells around the
  * place where they meet add up to more than a full turn.
  *
@@ -20,16 +21,17 @@
 
 enum fold_kind {
     FOLD_NONE,
-    FOLD_CELL,     /* a cell is inverted between its nodes */
-    FOLD_CREASE,   /* the facets that meet at a node (2D) or an edge (3D) have passed through each other */
+    FOLD_CELL,   /* a cell is turned over: a node is beyond the opposite side by a tenth of the cell's size */
+    FOLD_CREASE, /* the facets that meet at a node (2D) or an edge (3D) have passed through each other */
     FOLD_CROSSING, /* two parts of the boundary have passed through each other */
+    FOLD_FLAT,     /* cells are inverted between their nodes, but by less: of a sliver, that is soon said */
     FOLD_SUPPORT   /* a free facet at the rim of a plane support has gone through its plane */
 };
 
 struct fold {
     enum fold_kind kind;
     int64_t count;    /* of that kind */
-    int64_t cell;     /* FOLD_CELL: the first one; else -1 */
+    int64_t cell;     /* FOLD_CELL, FOLD_FLAT: the first one; else -1 */
     int64_t facet[2]; /* else: facets of the input, those of the first one, -1 where there is none;
                          FOLD_SUPPORT: the free one, then that of the support */
     double place[3];  /* at rest, m: middle of the cell or of the first facet */
@@ -71,6 +73,7 @@ struct folds {
     struct fold_ring *rings; /* ring_count, ordered by their nodes */
     int64_t ring_count;
     int64_t *ring_ptr;     /* ring_count + 1: the cells around each, */
+    int8_t *ring_turn;     /* 1 where these nodes are in a positive order, else -1 */
     int32_t *ring_cell;    /* by their dim + 1 nodes, those of the ring first */
     struct fold_rim *rims; /* rim_count */
     int64_t rim_count;

@@ -11,6 +11,7 @@ static const double round_off = 1e-12;
 
 /* See folds_find_beyond. */
 static const double beyond_body = 1e-3, beyond_facet = 0.05;
+static const double turned_share = 0.1; /* see is_turned_over */
 
 static const double *at(const struct folds *folds, int32_t node)
 {
@@ -55,30 +56,62 @@ static bool is_flattened(const struct folds *folds, const int32_t *node, const b
     return all && any;
 }
 
-static bool find_cells(const struct folds *folds, const bool *stopped, struct fold *fold)
+/* The volume of a cell as signed_volume has it. */
+static double cell_size(const struct folds *folds, const int32_t *node)
+{
+    int dim = folds->input.dim;
+    return signed_volume(dim, at(folds, node[0]), at(folds, node[1]), at(folds, node[2]),
+                         dim == 3 ? at(folds, node[3]) : NULL);
+}
+
+/* Whether a cell of that volume < 0 is turned over: its least height is more than a tenth of its longest
+ * edge. */
+static bool is_turned_over(const struct folds *folds, const int32_t *node, double volume)
+{
+    int dim = folds->input.dim;
+    double longest2 = 0.0, largest2 = 0.0;
+    for (int k = 0; k <= dim; k++) {
+        int32_t side[3] = {0, 0, 0};
+        double area[3], edge[3];
+        for (int i = 0; i < dim; i++) {
+            side[i] = node[(k + 1 + i) % (dim + 1)];
+        }
+        fold_area_vector(dim, folds->y, side, area);
+        largest2 = fmax(largest2, fold_dot(dim, area, area));
+        for (int m = k + 1; m <= dim; m++) {
+            fold_way(dim, at(folds, node[k]), at(folds, node[m]), edge);
+            longest2 = fmax(longest2, fold_dot(dim, edge, edge));
+        }
+    }
+    return !(volume * volume <= turned_share * turned_share * longest2 * largest2);
+}
+
+/* Turned cells, or else inverted ones. */
+static void find_cells(const struct folds *folds, const bool *stopped, struct fold *fold)
 {
     const struct fold_input *input = &folds->input;
     int dim = input->dim, corners = dim + 1;
     for (int64_t c = 0; c < input->cell_count; c++) {
         const int32_t *node = input->cell + c * corners;
-        double volume = signed_volume(dim, at(folds, node[0]), at(folds, node[1]), at(folds, node[2]),
-                                      dim == 3 ? at(folds, node[3]) : NULL);
+        double volume = cell_size(folds, node);
         if (volume > 0.0 || is_flattened(folds, node, stopped)) {
             continue;
         }
-        for (int k = 0; k < corners && fold->count == 0; k++) {
-            for (int i = 0; i < dim; i++) {
-                fold->place[i] += input->x[(int64_t)node[k] * dim + i] / corners;
+        enum fold_kind kind = is_turned_over(folds, node, volume) ? FOLD_CELL : FOLD_FLAT;
+        if (fold->kind == FOLD_NONE || (fold->kind == FOLD_FLAT && kind == FOLD_CELL)) {
+            *fold = (struct fold){.kind = kind, .cell = c, .facet = {-1, -1}};
+            for (int k = 0; k < corners; k++) {
+                for (int i = 0; i < dim; i++) {
+                    fold->place[i] += input->x[(int64_t)node[k] * dim + i] / corners;
+                }
             }
         }
-        fold->cell = fold->count++ == 0 ? c : fold->cell;
+        fold->count += kind == fold->kind;
     }
-    fold->kind = fold->count > 0 ? FOLD_CELL : FOLD_NONE;
-    return fold->count > 0;
 }
 
-/* Angle that a cell takes around the ring that its first nodes are. */
-static double angle_around(const struct folds *folds, const int32_t *node)
+/* Angle that a cell takes around the ring that its first nodes are; negative where it is inverted. */
+static double angle_around(const struct folds *folds, const int32_t *node, int8_t turn)
 {
     int dim = folds->input.dim;
     double a[3], b[3], axis[3], cosine, sine2;
@@ -95,7 +128,8 @@ static double angle_around(const struct folds *folds, const int32_t *node)
     }
     cosine = fold_dot(dim, a, b);
     sine2 = fold_dot(dim, a, a) * fold_dot(dim, b, b) - cosine * cosine;
-    return atan2(sqrt(fmax(0.0, sine2)), cosine);
+    double angle = atan2(sqrt(fmax(0.0, sine2)), cosine);
+    return cell_size(folds, node) * turn > 0.0 ? angle : -angle;
 }
 
 static bool find_creases(const struct folds *folds, struct fold *fold)
@@ -104,7 +138,7 @@ static bool find_creases(const struct folds *folds, struct fold *fold)
     for (int64_t r = 0; r < folds->ring_count; r++) {
         double sum = 0.0;
         for (int64_t i = folds->ring_ptr[r]; i < folds->ring_ptr[r + 1]; i++) {
-            sum += angle_around(folds, folds->ring_cell + i * corners);
+            sum += angle_around(folds, folds->ring_cell + i * corners, folds->ring_turn[i]);
         }
         if (sum > full_turn * (1.0 + 1e-6) && fold->count++ == 0) {
             name_facets(folds, folds->rings[r].facet, -1, fold);
@@ -274,12 +308,16 @@ static void take_positions(struct folds *folds, const double *u)
 
 struct fold folds_find(struct folds *folds, const double *u, const bool *stopped)
 {
-    struct fold fold = {.cell = -1, .facet = {-1, -1}};
+    struct fold cells = {.cell = -1, .facet = {-1, -1}}, fold = cells;
     take_positions(folds, u);
-    if (!find_cells(folds, stopped, &fold) && !find_creases(folds, &fold) && !folds->crosses_at_rest) {
+    find_cells(folds, stopped, &cells);
+    if (cells.kind == FOLD_CELL) {
+        return cells;
+    }
+    if (!find_creases(folds, &fold) && !folds->crosses_at_rest) {
         find_crossings(folds, &fold);
     }
-    return fold;
+    return fold.kind != FOLD_NONE ? fold : cells;
 }
 
 struct fold folds_find_beyond(struct folds *folds, const double *u, const bool *stopped)

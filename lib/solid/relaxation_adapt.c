@@ -156,24 +156,34 @@ bool relaxation_step_back(struct relaxation *r, double *u, struct error *error)
     return r->failure == STATUS_OK;
 }
 
-/* Deepest penetration of all contacts that can be augmented, at the last evaluation, m. */
-static double largest_penetration(const struct relaxation *r)
+/* How contacts that can be augmented stand at the last evaluation. */
+struct standing {
+    double miss; /* the largest, m: penetration, or a multiplier that presses before the surface is reached */
+    bool carries; /* there are multipliers */
+    bool idle;    /* and one of them is not needed */
+};
+
+static struct standing stand(const struct relaxation *r)
 {
-    double deepest = 0.0;
+    struct standing now = {0.0, false, false};
     for (int64_t c = 0; c < r->system->contact_count; c++) {
         const struct contact *contact = &r->system->contacts[c];
+        double least = contact->stiffness * r->penetration_allowed;
         for (int64_t a = 0; a < contact->count && !contact->penalty_only; a++) {
-            deepest = fmax(deepest, -contact->gap[a]);
+            double gap = contact->gap[a];
+            now.miss = fmax(now.miss, contact->pressure[a] > 0.0 ? fabs(gap) : -gap);
+            now.carries = now.carries || contact->multiplier[a] > 0.0;
+            now.idle = now.idle || (contact->multiplier[a] > 0.0 && !(contact->pressure[a] > least));
         }
     }
-    return deepest;
+    return now;
 }
 
 /* Move what the penalties carry into the multipliers, so that the next equilibrium penetrates less. */
 static void augment(struct relaxation *r)
 {
     for (int64_t c = 0; c < r->system->contact_count; c++) {
-        (void)contact_augment(&r->system->contacts[c]);
+        (void)contact_augment(&r->system->contacts[c], r->penetration_allowed);
     }
 }
 
@@ -188,7 +198,8 @@ void relaxation_follow_contacts(struct relaxation *r)
         return;
     }
     system_measure_contacts(r->system, r->residual_at, false);
-    if (largest_penetration(r) > r->penetration_allowed) {
+    struct standing now = stand(r);
+    if (now.carries || now.miss > r->penetration_allowed) {
         augment(r);
         r->augmented_step = r->report->steps;
     }
@@ -197,13 +208,13 @@ void relaxation_follow_contacts(struct relaxation *r)
 bool relaxation_contacts_hold(struct relaxation *r)
 {
     system_measure_contacts(r->system, r->residual_at, false);
-    double deepest = largest_penetration(r);
-    if (!(deepest > r->penetration_allowed) || r->augmentations == most_augmentations ||
+    struct standing now = stand(r);
+    if (!(now.idle || now.miss > r->penetration_allowed) || r->augmentations == most_augmentations ||
         r->fruitless == most_fruitless) {
         return true;
     }
-    r->fruitless = deepest < 0.8 * r->least_penetration ? 0 : r->fruitless + 1;
-    r->least_penetration = fmin(r->least_penetration, deepest);
+    r->fruitless = now.miss < 0.8 * r->least_penetration ? 0 : r->fruitless + 1;
+    r->least_penetration = fmin(r->least_penetration, now.miss);
     augment(r);
     r->augmentations++;
     r->best_error = INFINITY; /* another problem begins */

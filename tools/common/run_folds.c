@@ -112,9 +112,13 @@ void run_folds_look(struct run *run, const double *u, double time, bool is_frame
     model_nodal_field(&run->model->input, u, folds->field);
     mark_stopped(run, folds->stopped);
     struct fold fold = folds_find(&folds->folds, folds->field, folds->stopped);
-    note(folds, FOLDED, &fold, time, counts);
-    fold = folds_find_beyond(&folds->folds, folds->field, folds->stopped);
-    note(folds, BEYOND, &fold, time, counts);
+    struct fold none = {.kind = FOLD_NONE}, noted = fold;
+    bool is_flat = fold.kind == FOLD_FLAT;
+    if (!is_flat) {
+        noted = folds_find_beyond(&folds->folds, folds->field, folds->stopped);
+    }
+    note(folds, FOLDED, is_flat ? &none : &fold, time, counts);
+    note(folds, NOTED, &noted, time, counts);
 }
 
 /* A spell; counts of state are never negative. */
@@ -144,8 +148,8 @@ enum status run_folds_state(struct run *run, const struct state *state, struct e
     enum status status;
     TRY(spell_state(&run->folds.now[FOLDED], "folds.now", state, error));
     TRY(spell_state(&run->folds.past[FOLDED], "folds.past", state, error));
-    TRY(spell_state(&run->folds.now[BEYOND], "beyond.now", state, error));
-    TRY(spell_state(&run->folds.past[BEYOND], "beyond.past", state, error));
+    TRY(spell_state(&run->folds.now[NOTED], "noted.now", state, error));
+    TRY(spell_state(&run->folds.past[NOTED], "noted.past", state, error));
 done:
     return status;
 }
@@ -191,7 +195,11 @@ void run_folds_describe(const struct run *run, int which, char *text, size_t siz
     }
     const struct fold *fold = &spell->fold;
     point_text(run->scene->dim, fold->place, place);
-    snprintf(when, sizeof when, dynamic ? "from t = %.4g s on" : "from %.4g of the load on", spell->since);
+    snprintf(when, sizeof when,
+             dynamic              ? "from t = %.4g s on"
+             : spell->since < 1.0 ? "from %.4g of the load on"
+                                  : "at the whole load",
+             spell->since);
     if (isfinite(spell->until)) {
         snprintf(when, sizeof when, dynamic ? "from t = %.4g to %.4g s" : "from %.4g to %.4g of the load",
                  spell->since, spell->until);
@@ -204,8 +212,8 @@ void run_folds_describe(const struct run *run, int which, char *text, size_t siz
     }
     switch (fold->kind) {
     case FOLD_CELL:
-        snprintf(text, size, "the body folds %s: cell %lld at %s is inverted between its nodes", when,
-                 (long long)fold->cell, place);
+        snprintf(text, size, "the body folds %s: cell %lld at %s is turned over", when, (long long)fold->cell,
+                 place);
         return;
     case FOLD_CREASE:
         snprintf(text, size, "the body folds %s: facets of %s that meet at %s pass through each other", when,
@@ -213,6 +221,12 @@ void run_folds_describe(const struct run *run, int which, char *text, size_t siz
         return;
     case FOLD_CROSSING:
         snprintf(text, size, "the body folds %s: %s at %s goes through %s", when, one, place, other);
+        return;
+    case FOLD_FLAT:
+        snprintf(text, size,
+                 "%s, cells are inverted between their nodes, by less than a tenth of their size: %lld, "
+                 "the first one cell %lld at %s",
+                 when, (long long)fold->count, (long long)fold->cell, place);
         return;
     case FOLD_SUPPORT:
         snprintf(text, size, "%s, %s at %s is beyond the plane of %s, where nothing in the scene stops it",
@@ -236,7 +250,7 @@ void run_folds_judge(struct run *run)
                  text);
     }
     if (text[0] == '\0') {
-        run_folds_describe(run, BEYOND, text, sizeof text);
+        run_folds_describe(run, NOTED, text, sizeof text);
     }
     if (text[0] != '\0') {
         tool_note(run->tool, "%s: %s", run->scene->path, text);

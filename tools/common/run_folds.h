@@ -15,9 +15,10 @@ struct fold_spell {
     bool counts;         /* also when it ends: a frame shows it, or it is of a dynamic run */
 };
 
-/* FOLDED: the map of the body is no longer one-to-one, a verdict. BEYOND: a free side is beyond the plane of
- * a support, which the scene as it is does not forbid, a note. */
-enum { FOLDED, BEYOND, FOLD_SPELLS };
+/* FOLDED: the map of the body is no longer one-to-one, a verdict. NOTED: cells that are
+ * just inverted, or else a free side beyond the plane of a support, which the scene as it is does not forbid.
+ */
+enum { FOLDED, NOTED, FOLD_SPELLS };
 
 struct run_folds {
     struct folds folds;
@@ -40,11 +41,11 @@ void run_folds_look(struct run *run, const double *u, double time, bool is_frame
 /* What was seen, as state of the run. */
 MUST_CHECK enum status run_folds_state(struct run *run, const struct state *state, struct error *error);
 
-/* Where and from when on, for FOLDED or BEYOND, into text[size]; empty when that was not seen. */
+/* Where and from when on, for FOLDED or NOTED, into text[size]; empty when that was not seen. */
 void run_folds_describe(const struct run *run, int which, char *text, size_t size);
 
-/* After the last step: a body that folds ends the run with a verdict, unless the scene allows it; a side
- * beyond the plane of a support is noted. */
+/* After the last step: a body that folds ends the run with a verdict, unless the scene allows it; what is to
+ * be noted is. */
 void run_folds_judge(struct run *run);
 
 #endif
