@@ -121,14 +121,18 @@ void run_folds_look(struct run *run, const double *u, double time, bool is_frame
     note(folds, NOTED, &noted, time, counts);
 }
 
-/* A spell; counts of state are never negative. */
+/* A spell. */
 static enum status spell_state(struct fold_spell *spell, const char *prefix, const struct state *state,
                                struct error *error)
 {
     enum status status;
     struct fold *fold = &spell->fold;
-    int64_t counts[5] = {(int64_t)fold->kind, fold->count, fold->cell + 1, fold->facet[0] + 1,
-                         fold->facet[1] + 1};
+    int64_t *counts = spell->kept;
+    counts[0] = (int64_t)fold->kind;
+    counts[1] = fold->count;
+    counts[2] = fold->cell + 1;
+    counts[3] = fold->facet[0] + 1;
+    counts[4] = fold->facet[1] + 1;
     const struct state_value values[] = {
         {"seen", STATE_FLAGS, &spell->seen, 1},     {"since", STATE_NUMBERS, &spell->since, 1},
         {"until", STATE_NUMBERS, &spell->until, 1}, {"fold", STATE_COUNTS, counts, 5},

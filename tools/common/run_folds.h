@@ -13,6 +13,7 @@ struct fold_spell {
     double since, until; /* times as in struct progress; until: INFINITY while it lasts */
     struct fold fold;    /* at the first look */
     bool counts;         /* also when it ends: a frame shows it, or it is of a dynamic run */
+    int64_t kept[5];     /* the fold's whole numbers, as they are kept in a checkpoint: never negative */
 };
 
 /* FOLDED: the map of the body is no longer one-to-one, a verdict. NOTED: cells that are
