@@ -19,6 +19,9 @@ static const char usage[] =
     "of the first one), and when the energy balance is off by more than 0.05 of the largest\n"
     "energy. On a terminal, progress is shown with step, time, error and time left.\n"
     "\n"
+    "A body that folds - cells turned over, facets passed through each other - is a verdict, too,\n"
+    "that says where and from which load on, unless the scene allows it ([output] folds).\n"
+    "\n"
     "Nothing is written by a run that ends with such a verdict or by a signal, but where the scene\n"
     "asks for frames: then those so far and the last good state follow, as a stream that says at\n"
     "its end that it is not whole. No program takes it for whole; mts recover makes it one. With\n"
@@ -32,8 +35,7 @@ static const char usage[] =
     "energy, J (2D: J/m): in a dynamic scene about 200 rows of time (s), kinetic, internal and\n"
     "contact energy, work of loads and prescribed motion, energy dissipated by damping, and\n"
     "error of the balance relative to the largest energy; in a quasi-static scene one row,\n"
-    "internal and contact, of the final state (relaxation is no motion that a work could be\n"
-    "told of).\n"
+    "internal and contact, of the final state.\n"
     "\n"
     "With -c, the state of the run is kept in a file, from time to time and when SIGINT, SIGTERM\n"
     "or SIGHUP end it. The same command then goes on where it was, and ends with the same bytes\n"
@@ -55,7 +57,7 @@ static const char usage[] =
     "\n"
     "Exit status:\n"
     "  0        done\n"
-    "  1        a body that nothing holds; diverged, inverted, out of balance or of steps\n"
+    "  1        a body that nothing holds; diverged, inverted, folded, out of balance or of steps\n"
     "  2        wrong usage or malformed input\n"
     "  3        input, output or memory failed\n"
     "  128 + n  ended by signal n after a whole step\n"
@@ -140,6 +142,7 @@ int main(int argc, char *argv[])
     tool_check(&tool, NEW_ARRAY(&run.u, model.system.node_count * scene.dim, &error), &error);
     run.prepare_seconds = clock_seconds() - run.display.started;
     run_checkpoint_begin(&run);
+    run_folds_begin(&run);
     if (scene.analysis == SCENE_DYNAMIC) {
         run_dynamic(&run);
     } else {
@@ -155,6 +158,7 @@ int main(int argc, char *argv[])
     if (run.verbose) {
         run_report_cost(&run);
     }
+    run_folds_free(&run);
     model_free(&model);
     free(run.u);
     scene_free(&scene);

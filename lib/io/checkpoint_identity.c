@@ -59,6 +59,8 @@ static enum status add_scene(const struct scene *scene, uLong *crc, struct error
     }
     for (int64_t i = 0; i < scene->contact_count; i++) {
         TRY(add_file(scene->contacts[i].rigid, crc, error));
+        TRY(add_file(scene->contacts[i].curve.file, crc, error));
+        TRY(add_file(scene->contacts[i].angle_curve.file, crc, error));
     }
     TRY(add_file(scene->initial.table, crc, error));
     TRY(add_loads(scene->pressures, scene->pressure_count, crc, error));

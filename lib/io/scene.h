@@ -12,13 +12,14 @@
  * - [displacement NAME]: facets = GROUPS or nodes = SETS; one of table = FILE with unit, components =
  * UX,UY[,UZ] (m, or `free`), normal = VALUE (m, along the outward normal; facets only); curve
  * - [contact NAME]: facets = GROUPS; rigid = FILE; unit; side = left|right (2D), front|back (3D); stiffness
- *   (Pa/m)
+ *   (Pa/m); the motion of the surface: angle (degrees), axis_point (m), axis (3D), translation (m), curve,
+ *   angle_curve
  * - [pressure NAME]: facets = GROUPS; value (Pa, positive pushes inward); curve
  * - [traction NAME]: facets = GROUPS; components (Pa); curve
  * - [force NAME]: nodes = SETS; components (N on each node; in 2D N per metre of thickness); curve
  * - [initial]: table = FILE; unit (dynamic)
  * - [output]: frames = COUNT or interval (s, dynamic); stress, strain, energy, reactions, moments,
- *   gaps = yes|no; moments_about = X,Y[,Z] (m)
+ *   gaps = yes|no; moments_about = X,Y[,Z] (m); folds = refused (default)|allowed
  * - [solver]: constraints = ebciem|direct; constraint_points = hat|node; volume = nodal|pointwise;
  *   tolerance; max_steps; ramp_steps; end_time (s), damping (1/s) (dynamic);
  *   time_step_margin (0..1)
@@ -104,6 +105,13 @@ struct scene_contact {
     double rigid_unit;       /* m per unit of the file */
     enum scene_side side;    /* left, right in 2D; front, back in 3D */
     double stiffness;        /* Pa/m, > 0; 0: not given, chosen by the solver */
+    /* Motion of the surface: it is turned, then moved. */
+    bool moves;            /* false: it stays, and there are no curves */
+    double translation[3]; /* m, dim components */
+    double angle;          /* degrees; right-handed about the axis, in 2D counter-clockwise */
+    double axis_point[3];  /* m, dim components */
+    double axis[3];        /* not 0, of any length; in 2D (0, 0, 1) */
+    struct scene_curve curve, angle_curve;
 };
 
 /* A pressure, traction or force. */
@@ -126,7 +134,8 @@ struct scene_output {
     int64_t frames;  /* evenly spaced frames besides the final state; 0: none */
     double interval; /* s between frames (dynamic); 0: none. Not both. */
     bool stress, strain, energy, reactions, moments, gaps;
-    double about[3]; /* the point of the moments, m; default the origin */
+    double about[3];    /* the point of the moments, m; default the origin */
+    bool folds_allowed; /* a body that folds is no verdict */
 };
 
 struct scene_solver {

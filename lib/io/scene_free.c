@@ -49,6 +49,8 @@ void scene_free(struct scene *scene)
         free_label(&scene->contacts[i].label);
         free_names(&scene->contacts[i].facets);
         free(scene->contacts[i].rigid);
+        free(scene->contacts[i].curve.file);
+        free(scene->contacts[i].angle_curve.file);
     }
     free(scene->initial.table);
     free(scene->materials);

@@ -130,13 +130,64 @@ done:
     return status;
 }
 
+/* The motion of a rigid surface, if it has one. */
+static enum status read_motion(const struct place *place, int dim, struct scene_contact *contact)
+{
+    enum status status = STATUS_OK;
+    bool turns = place_has(place, "angle");
+    double length2 = 0.0;
+    contact->moves = turns || place_has(place, "translation");
+    contact->axis[2] = dim == 2 ? 1.0 : 0.0;
+    if (!turns) {
+        TRY(place_forbid(place, "axis_point", "no angle is given"));
+        TRY(place_forbid(place, "axis", "no angle is given"));
+        TRY(place_forbid(place, "angle_curve", "no angle is given"));
+    }
+    if (!contact->moves) {
+        TRY(place_forbid(place, "curve", "the surface has neither translation nor angle"));
+        goto done;
+    }
+    TRY(place_require(place, "curve",
+                      "a surface that moves needs smooth, linear, or a file of time and factor"));
+    if (turns) {
+        TRY(place_require(place, "axis_point", "give a point of the axis of rotation in m"));
+    }
+    if (turns && dim == 3) {
+        TRY(place_require(place, "axis", "give the direction of the axis of rotation"));
+    }
+    if (dim == 2) {
+        TRY(place_forbid(place, "axis", "in 2D a surface turns in the plane, about axis_point"));
+    }
+    TRY(place_vector(place, "translation", dim, contact->translation, NULL));
+    TRY(place_number(place, "angle", range_any, &contact->angle));
+    TRY(place_vector(place, "axis_point", dim, contact->axis_point, NULL));
+    TRY(place_vector(place, "axis", dim, contact->axis, NULL));
+    for (int i = 0; i < 3; i++) {
+        length2 += contact->axis[i] * contact->axis[i];
+    }
+    if (turns && !(length2 > 0.0)) {
+        TRY(place_fail(place, "axis", "has no length: give a direction, as 0, 0, 1"));
+    }
+    TRY(place_curve(place, "curve", &contact->curve));
+    TRY(place_curve(place, place_has(place, "angle_curve") ? "angle_curve" : "curve", &contact->angle_curve));
+    for (int i = 0; i < 2; i++) {
+        if ((i == 0 ? contact->curve : contact->angle_curve).kind == SCENE_CURVE_STEP) {
+            TRY(place_fail(place, i == 0 ? "curve" : "angle_curve",
+                           "step jumps: a rigid surface moves by smooth, linear, or a file"));
+        }
+    }
+done:
+    return status;
+}
+
 static enum status read_contact(const struct place *place, struct scene *scene)
 {
     static const char *const sides[2][3] = {{"left", "right", NULL}, {"front", "back", NULL}};
     struct scene_contact *contact = &scene->contacts[scene->contact_count - 1];
     int side = 0;
     enum status status = STATUS_OK;
-    TRY(place_only_keys(place, KEYS{"facets", "rigid", "unit", "side", "stiffness", NULL}));
+    TRY(place_only_keys(place, KEYS{"facets", "rigid", "unit", "side", "stiffness", "translation", "angle",
+                                    "axis_point", "axis", "curve", "angle_curve", NULL}));
     TRY(place_require(place, "facets", "name the facet groups that may touch"));
     TRY(place_require(place, "rigid", "name the file of the rigid surface"));
     TRY(place_require(place, "side",
@@ -147,6 +198,7 @@ static enum status read_contact(const struct place *place, struct scene *scene)
     TRY(place_choice(place, "side", sides[scene->dim - 2], &side));
     TRY(place_number(place, "stiffness", range_positive, &contact->stiffness));
     contact->side = (enum scene_side)(side + 2 * (scene->dim - 2));
+    TRY(read_motion(place, scene->dim, contact));
 done:
     return status;
 }
@@ -208,10 +260,12 @@ done:
 
 static enum status read_output(const struct place *place, struct scene *scene)
 {
+    static const char *const folds[] = {"refused", "allowed", NULL};
     struct scene_output *output = &scene->output;
+    int allowed = 0;
     enum status status = STATUS_OK;
     TRY(place_only_keys(place, KEYS{"frames", "interval", "stress", "strain", "energy", "reactions",
-                                    "moments", "moments_about", "gaps", NULL}));
+                                    "moments", "moments_about", "gaps", "folds", NULL}));
     TRY(place_count(place, "frames", 1000000, &output->frames));
     TRY(place_number(place, "interval", range_positive, &output->interval));
     if (place_has(place, "frames")) {
@@ -230,6 +284,8 @@ static enum status read_output(const struct place *place, struct scene *scene)
         TRY(place_forbid(place, "moments_about", "it goes with moments = yes"));
     }
     TRY(place_yes(place, "gaps", &output->gaps));
+    TRY(place_choice(place, "folds", folds, &allowed));
+    output->folds_allowed = allowed == 1;
 done:
     return status;
 }
@@ -245,9 +301,8 @@ static enum status read_solver(const struct place *place, struct scene *scene)
     int point = (int)solver->constraint_points;
     int volume = (int)solver->volume;
     enum status status = STATUS_OK;
-    TRY(place_only_keys(place,
-                        KEYS{"constraints", "constraint_points", "volume", "tolerance",
-                             "max_steps", "ramp_steps", "end_time", "time_step_margin", "damping", NULL}));
+    TRY(place_only_keys(place, KEYS{"constraints", "constraint_points", "volume", "tolerance", "max_steps",
+                                    "ramp_steps", "end_time", "time_step_margin", "damping", NULL}));
     TRY(place_choice(place, "constraints", constraints, &constraint));
     TRY(place_choice(place, "constraint_points", points, &point));
     TRY(place_choice(place, "volume", volumes, &volume));

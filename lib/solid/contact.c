@@ -71,9 +71,9 @@ static void raise_to_node(const struct contact *contact, int64_t a, const double
     }
 }
 
-enum status contact_build(const struct boundary_averages *averages, const double *X, int dim,
-                          struct rigid_surface *surface, double stiffness, struct contact *contact,
-                          struct error *error)
+/* An empty contact that takes over the surface. */
+static enum status begin(const struct boundary_averages *averages, int dim, struct rigid_surface *surface,
+                         double stiffness, struct contact *contact, struct error *error)
 {
     enum status status;
     int64_t count = averages->count;
@@ -89,17 +89,41 @@ enum status contact_build(const struct boundary_averages *averages, const double
     TRY(NEW_ARRAY(&contact->checked_x, count * dim, error));
     TRY(NEW_ARRAY(&contact->checked_distance, count, error));
     for (int64_t a = 0; a < count; a++) {
-        double x[3];
-        take_mean(contact, a, X, x);
         contact->gap[a] = INFINITY;
-        raise_to_node(contact, a, X, x);
-        for (int c = 0; c < dim; c++) {
-            contact->rest[a * dim + c] = x[c];
-            contact->checked_x[a * dim + c] =
-                INFINITY; /* never looked at: it may be in contact from the start */
-        }
+    }
+    for (int64_t i = 0; i < count * dim; i++) {
+        contact->checked_x[i] = INFINITY; /* never looked at: it may be in contact from the start */
+    }
+done:
+    return status;
+}
+
+enum status contact_build(const struct boundary_averages *averages, const double *X, int dim,
+                          struct rigid_surface *surface, double stiffness, struct contact *contact,
+                          struct error *error)
+{
+    enum status status;
+    TRY(begin(averages, dim, surface, stiffness, contact, error));
+    for (int64_t a = 0; a < averages->count; a++) {
+        take_mean(contact, a, X, contact->rest + a * dim);
+        raise_to_node(contact, a, X, contact->rest + a * dim);
     }
     TRY(check_side(contact, error));
+done:
+    if (status != STATUS_OK) {
+        contact_free(contact);
+    }
+    return status;
+}
+
+enum status contact_build_points(const struct boundary_averages *points, int dim,
+                                 struct rigid_surface *surface, double stiffness, struct contact *contact,
+                                 struct error *error)
+{
+    enum status status;
+    TRY(begin(points, dim, surface, stiffness, contact, error));
+    contact->penalty_only = true;
+    memcpy(contact->rest, points->position, (size_t)(points->count * dim) * sizeof *contact->rest);
 done:
     if (status != STATUS_OK) {
         contact_free(contact);
@@ -149,7 +173,7 @@ static bool was_in_front(const struct contact *contact, int64_t a, const double 
     return height >= 0.0;
 }
 
-/* Find gap and normal of hat a, now at x. */
+/* Find gap and normal of hat a, now at x in the surface's frame. */
 static void look(struct contact *contact, int64_t a, const double *x)
 {
     int dim = contact->dim;
@@ -167,9 +191,10 @@ static void look(struct contact *contact, int64_t a, const double *x)
         contact->normal[a * dim + c] = closest.smooth[c];
         contact->checked_x[a * dim + c] = x[c];
     }
+    rigid_place_turn(&contact->place, dim, contact->normal + a * dim);
 }
 
-/* p_a at x. Hats that cannot have reached the surface are not looked at. */
+/* p_a at x in the surface's frame. Hats that cannot have reached the surface are not looked at. */
 static double pressure_at(struct contact *contact, int64_t a, const double *x)
 {
     double moved2 = 0.0, multiplier = contact->multiplier[a];
@@ -190,45 +215,61 @@ static void press_hats(struct contact *contact, int64_t begin, int64_t end, cons
 {
     int dim = contact->dim;
     for (int64_t a = begin; a < end; a++) {
-        double x[3];
+        double x[3], in_frame[3];
         take_mean(contact, a, u, x);
         for (int c = 0; c < dim; c++) {
             x[c] += contact->rest[a * dim + c];
         }
-        contact->pressure[a] = pressure_at(contact, a, x);
+        rigid_place_to_rest(&contact->place, dim, x, in_frame);
+        contact->pressure[a] = pressure_at(contact, a, in_frame);
+    }
+}
+
+void contact_move(struct contact *contact, const double *factor)
+{
+    contact->place = rigid_place_at(&contact->motion, factor);
+}
+
+void contact_measure(struct contact *contact, const double *u, bool all)
+{
+    struct chunks hats = chunks_of(contact->count, HATS_FOR_THREAD);
+    if (all) {
+        memset(contact->checked_distance, 0, (size_t)contact->count * sizeof *contact->checked_distance);
+    }
+#pragma omp parallel for schedule(static) num_threads(hats.threads)
+    for (int64_t c = 0; c < hats.count; c++) {
+        press_hats(contact, chunks_begin(&hats, c), chunks_begin(&hats, c + 1), u);
+    }
+}
+
+/* Force on hat a at the last evaluation. */
+static void force_on_hat(const struct contact *contact, int64_t a, double force[3])
+{
+    double strength = contact->pressure[a] * contact->averages->area[a];
+    for (int c = 0; c < contact->dim; c++) {
+        force[c] = strength * contact->normal[a * contact->dim + c];
     }
 }
 
 void contact_force(struct contact *contact, const double *u, double *force)
 {
-    int dim = contact->dim;
-    struct chunks hats = chunks_of(contact->count, HATS_FOR_THREAD);
-#pragma omp parallel for schedule(static) num_threads(hats.threads)
-    for (int64_t c = 0; c < hats.count; c++) {
-        press_hats(contact, chunks_begin(&hats, c), chunks_begin(&hats, c + 1), u);
-    }
+    contact_measure(contact, u, false);
     for (int64_t a = 0; a < contact->count; a++) {
         if (contact->pressure[a] > 0.0) {
             struct average average = average_of_boundary(contact->averages, a);
-            double force_on_hat[3], strength = contact->pressure[a] * contact->averages->area[a];
-            for (int c = 0; c < dim; c++) {
-                force_on_hat[c] = strength * contact->normal[a * dim + c];
-            }
-            average_spread(&average, dim, force_on_hat, NULL, force);
+            double on_hat[3];
+            force_on_hat(contact, a, on_hat);
+            average_spread(&average, contact->dim, on_hat, NULL, force);
         }
     }
 }
 
-void contact_look_again(struct contact *contact)
+double contact_augment(struct contact *contact, double allowed)
 {
-    memset(contact->checked_distance, 0, (size_t)contact->count * sizeof *contact->checked_distance);
-}
-
-double contact_augment(struct contact *contact)
-{
-    double deepest = 0.0;
+    double deepest = 0.0, least = contact->stiffness * allowed;
     for (int64_t a = 0; a < contact->count; a++) {
-        contact->multiplier[a] = contact->pressure[a];
+        double p = contact->pressure[a];
+        contact->multiplier[a] = contact->penalty_only || !(p > least) ? 0.0 : p;
         deepest = fmax(deepest, -contact->gap[a]);
     }
     return deepest;
@@ -253,4 +294,53 @@ void contact_total(const struct contact *contact, double *total)
                 contact->pressure[a] * contact->averages->area[a] * contact->normal[a * contact->dim + c];
         }
     }
+}
+
+void contact_moment(const struct contact *contact, const double *point, double moment[3])
+{
+    int dim = contact->dim;
+    memset(moment, 0, 3 * sizeof *moment);
+    for (int64_t a = 0; a < contact->count; a++) {
+        double arm[3] = {0.0, 0.0, 0.0}, force[3] = {0.0, 0.0, 0.0};
+        if (!(contact->pressure[a] > 0.0)) {
+            continue;
+        }
+        force_on_hat(contact, a, force);
+        rigid_place_from_rest(&contact->place, dim, contact->checked_x + a * dim, arm);
+        for (int c = 0; c < dim; c++) {
+            double raised = contact->rest[a * dim + c] - contact->averages->position[a * dim + c];
+            arm[c] -= raised + point[c];
+        }
+        for (int c = 0; c < 3; c++) {
+            int i = (c + 1) % 3, j = (c + 2) % 3;
+            moment[c] += arm[i] * force[j] - arm[j] * force[i];
+        }
+    }
+}
+
+struct contact_work contact_work(const struct contact *contact, const double *factor_from,
+                                 const double *factor_to)
+{
+    struct contact_work sum = {0.0, 0.0};
+    int dim = contact->dim;
+    if (!contact->motion.moves) {
+        return sum;
+    }
+    struct rigid_place from = rigid_place_at(&contact->motion, factor_from);
+    struct rigid_place to = rigid_place_at(&contact->motion, factor_to);
+    for (int64_t a = 0; a < contact->count; a++) {
+        double before[3], after[3], force[3];
+        if (!(contact->pressure[a] > 0.0)) {
+            continue;
+        }
+        force_on_hat(contact, a, force);
+        rigid_place_from_rest(&from, dim, contact->checked_x + a * dim, before);
+        rigid_place_from_rest(&to, dim, contact->checked_x + a * dim, after);
+        for (int c = 0; c < dim; c++) {
+            double way = after[c] - before[c];
+            sum.work += force[c] * way;
+            sum.unresolved += contact->stiffness * contact->averages->area[a] * way * way;
+        }
+    }
+    return sum;
 }

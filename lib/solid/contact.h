@@ -7,6 +7,9 @@
  * measure the gap, so that the total force on the body is sum_a p_a A_a n. Smooth in time: no projection, no
  * chatter.
  *
+ * The surface may move: hats are looked at in the frame in which it rests, where all that is remembered of
+ * them is kept, so that nothing else depends on its motion.
+ *
  * Contact begins where a hat goes through the surface. One that comes round an open rim to the back, deeper
  * than half its own size, stays free until it is in front again. */
 #ifndef SOLID_CONTACT_H
@@ -16,12 +19,17 @@
 #include "base/state.h"
 #include "solid/average.h"
 #include "solid/rigid.h"
+#include "solid/rigid_motion.h"
 
 struct contact {
     int dim;
     int64_t count;
     const struct boundary_averages *averages; /* the caller's; must outlive the contact */
-    struct rigid_surface surface;             /* owned */
+    struct rigid_surface surface;             /* owned; at rest */
+    struct rigid_motion motion;               /* of the surface */
+    struct rigid_place place;                 /* where the surface is: see contact_move */
+    int32_t section;                          /* the caller's label */
+    bool penalty_only;                        /* no multipliers: see contact_build_points */
     double stiffness;                         /* k, Pa/m, > 0 */
     double *rest;                             /* count * dim: x_a at u = 0, so raised, m */
     double *multiplier;                       /* count: lambda_a, Pa, >= 0 */
@@ -29,17 +37,26 @@ struct contact {
     double *pressure;                         /* count: p_a, Pa */
     double *normal;                           /* count * dim: unit, on the body; 0 beyond a rim */
     bool *behind;                             /* count: came to the back without going through */
-    /* A hat is not looked at again before it has moved as far as the surface was away. */
-    double *checked_x;        /* count * dim: position when it was last looked at */
+    /* A hat is not looked at again before it has moved, in the surface's frame, as far as the surface was
+     * away. */
+    double *checked_x;        /* count * dim: position when it was last looked at, in that frame */
     double *checked_distance; /* count */
 };
 
-/* Takes over `surface` (also on failure: it becomes empty). X: nodes, m. STATUS_INPUT when a hat starts
+/* Takes over `surface` (also on failure: it becomes empty), which stays where it is unless the caller sets
+ * contact->motion, whose factors must be 0 at the begin. X: nodes, m. STATUS_INPUT when a hat starts
  * behind the surface, deeper than half its size or facing away from it: the surface's side is the wrong one.
  */
 MUST_CHECK enum status contact_build(const struct boundary_averages *averages, const double *X, int dim,
                                      struct rigid_surface *surface, double stiffness, struct contact *contact,
                                      struct error *error);
+/* The same for the values at the quadrature points of the facets, which a contact of hats leaves free to vary
+ * within a hat. Under a pressure of some ten shear moduli that grows; a penalty on the points alone, with a
+ * multiple of the hats' stiffness, keeps it down and vanishes where the hats' contact is met. The points are
+ * taken where they are, on the chords of a curved boundary, and there is no wrong side. */
+MUST_CHECK enum status contact_build_points(const struct boundary_averages *points, int dim,
+                                            struct rigid_surface *surface, double stiffness,
+                                            struct contact *contact, struct error *error);
 void contact_free(struct contact *contact);
 
 /* What a contact keeps from one evaluation to the next; `prefix` goes in front of the names. */
@@ -52,16 +69,37 @@ MUST_CHECK enum status contact_state(struct contact *contact, const char *prefix
  * angle, which cancels along each facet. */
 void contact_force(struct contact *contact, const double *u, double *force);
 
-/* Have the next contact_force look at all hats, so that every gap is that of its u. */
-void contact_look_again(struct contact *contact);
+/* Move the surface to its place at these values of the load curves; for the evaluations that follow. */
+void contact_move(struct contact *contact, const double *factor);
 
-/* Augment: lambda_a = p_a of the last evaluation; returns the largest penetration seen then, m. */
-double contact_augment(struct contact *contact);
+/* The same without forces: gaps and pressures at parameters u. Only with `all` are gaps those of u also where
+ * the surface is too far away for a pressure. */
+void contact_measure(struct contact *contact, const double *u, bool all);
+
+/* Augment: lambda_a = p_a of the last evaluation, unless there is the penalty only. Pressures that the
+ * penalty alone makes of a penetration of no more than `allowed`, m, need no multiplier and get none. Returns
+ * the largest penetration seen then, m. */
+double contact_augment(struct contact *contact, double allowed);
 
 /* Energy of the penalty at the last evaluation, sum A_a (p_a^2 - lambda_a^2) / (2 k), J (2D: J/m). */
 double contact_energy(const struct contact *contact);
 
 /* Total force on the body at the last evaluation, total[dim], N (2D: N/m). */
 void contact_total(const struct contact *contact, double *total);
+
+/* Moment on the body about point[dim] at the last evaluation, N m (2D: N): that of the forces on the
+ * parameters where their nodes' parameters have moved to. In 2D moment[2] alone is not 0. */
+void contact_moment(const struct contact *contact, const double *point, double moment[3]);
+
+/* What the surface does on the body, by the pressures of the last evaluation, while it goes from its place at
+ * one set of factors to that at another. */
+struct contact_work {
+    double work;       /* sum p A n . w, w the way of the surface's point under each hat, J (2D: J/m) */
+    double unresolved; /* sum k A w^2 over the hats that touch: what the penalty makes of the way, J (2D:
+                        * J/m). A hat that is first touched within a step has its work wrong by an eighth of
+                        * that at the most */
+};
+struct contact_work contact_work(const struct contact *contact, const double *factor_from,
+                                 const double *factor_to);
 
 #endif

@@ -117,6 +117,7 @@ static enum dynamics_outcome march(struct dynamics *d, struct error *error)
         double contact = energy_contact(d->system);
         if (is_check && !is_last) {
             dynamics_estimate_frequency(d, n == 0 ? first_iterations : later_iterations);
+            system_measure_contacts(d->system, d->u, false);
             if (!dynamics_choose_step(d)) {
                 return DYNAMICS_COLLAPSED;
             }

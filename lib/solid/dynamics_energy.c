@@ -17,7 +17,7 @@ void dynamics_add_work(struct dynamics *d, const double *velocity, double step, 
 {
     const struct solid_system *system = d->system;
     const struct constraint_rows *rows = &system->rows;
-    double work = 0.0;
+    double work = 0.0, unresolved = 0.0;
     if (d->loads != NULL) {
         work += step * product(d->loads, velocity, d->size);
     }
@@ -32,6 +32,14 @@ void dynamics_add_work(struct dynamics *d, const double *velocity, double step, 
             work += system_spring_force(system, r, d->u) * path;
         }
     }
+    for (int64_t c = 0; c < system->contact_count; c++) {
+        struct contact_work done = contact_work(&system->contacts[c], factor_from, factor_to);
+        work += done.work;
+        unresolved += done.unresolved;
+    }
+    /* A surface that moves onto a body at rest: until the energy is that much, what the balance lacks of the
+     * first touch within a step, an eighth of `unresolved`, is no drift. */
+    d->balance.largest = fmax(d->balance.largest, unresolved / (8.0 * DYNAMICS_MOST_DRIFT));
     d->balance.work += 0.5 * work;
     if (d->options->damping > 0.0) {
         double speed =

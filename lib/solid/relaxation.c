@@ -116,6 +116,7 @@ static bool follow(struct relaxation *r, struct error *error)
         return false;
     }
     relaxation_update_time_step(r, r->residual_at, iterations);
+    relaxation_follow_contacts(r);
     return relaxation_update_inertia(r, error);
 }
 

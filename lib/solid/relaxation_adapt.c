@@ -35,10 +35,7 @@ double relaxation_thickness(const struct solid_system *system)
 
 int64_t relaxation_choose_ramp(const struct relaxation *r)
 {
-    double largest = 0.0;
-    for (int64_t i = 0; i < r->system->rows.count; i++) {
-        largest = fmax(largest, fabs(r->system->rows.target[i]));
-    }
+    double largest = system_longest_way(r->system);
     double steps = fmax(steps_per_spacing * largest / r->spacing, steps_per_size * largest / r->body_size);
     steps = fmax(steps, (double)least_ramp);
     return steps > 1e7 ? 10000000 : (int64_t)steps;
@@ -159,38 +156,68 @@ bool relaxation_step_back(struct relaxation *r, double *u, struct error *error)
     return r->failure == STATUS_OK;
 }
 
-/* Deepest penetration of all contacts at the last evaluation, m. */
-static double largest_penetration(const struct relaxation *r)
+/* How contacts that can be augmented stand at the last evaluation. */
+struct standing {
+    double miss; /* the largest, m: penetration, or a multiplier that presses before the surface is reached */
+    bool carries; /* there are multipliers */
+    bool idle;    /* and one of them is not needed */
+};
+
+static struct standing stand(const struct relaxation *r)
 {
-    double deepest = 0.0;
+    struct standing now = {0.0, false, false};
     for (int64_t c = 0; c < r->system->contact_count; c++) {
-        for (int64_t a = 0; a < r->system->contacts[c].count; a++) {
-            deepest = fmax(deepest, -r->system->contacts[c].gap[a]);
+        const struct contact *contact = &r->system->contacts[c];
+        double least = contact->stiffness * r->penetration_allowed;
+        for (int64_t a = 0; a < contact->count && !contact->penalty_only; a++) {
+            double gap = contact->gap[a];
+            now.miss = fmax(now.miss, contact->pressure[a] > 0.0 ? fabs(gap) : -gap);
+            now.carries = now.carries || contact->multiplier[a] > 0.0;
+            now.idle = now.idle || (contact->multiplier[a] > 0.0 && !(contact->pressure[a] > least));
         }
     }
-    return deepest;
+    return now;
 }
 
 /* Move what the penalties carry into the multipliers, so that the next equilibrium penetrates less. */
 static void augment(struct relaxation *r)
 {
     for (int64_t c = 0; c < r->system->contact_count; c++) {
-        (void)contact_augment(&r->system->contacts[c]);
+        (void)contact_augment(&r->system->contacts[c], r->penetration_allowed);
     }
-    r->augmentations++;
-    r->best_error = INFINITY; /* another problem begins */
-    r->best_step = r->report->steps;
+}
+
+/* An augmentation every T makes the multipliers the integral of the gaps, over T. With a damping c that is
+ * stable where c T > k / (k + stiffness of the body), so at c T = 1 and above; this is c T. */
+static const double least_pause = 2.0;
+
+void relaxation_follow_contacts(struct relaxation *r)
+{
+    double pause = (double)(r->report->steps - r->augmented_step) * r->time_step;
+    if (r->system->contact_count == 0 || r->at_full_load > 0 || r->damping * pause < least_pause) {
+        return;
+    }
+    system_measure_contacts(r->system, r->residual_at, false);
+    struct standing now = stand(r);
+    if (now.carries || now.miss > r->penetration_allowed) {
+        augment(r);
+        r->augmented_step = r->report->steps;
+    }
 }
 
 bool relaxation_contacts_hold(struct relaxation *r)
 {
-    double deepest = largest_penetration(r);
-    if (!(deepest > r->penetration_allowed) || r->augmentations == most_augmentations ||
+    system_measure_contacts(r->system, r->residual_at, false);
+    struct standing now = stand(r);
+    if (!(now.idle || now.miss > r->penetration_allowed) || r->augmentations == most_augmentations ||
         r->fruitless == most_fruitless) {
         return true;
     }
-    r->fruitless = deepest < 0.8 * r->least_penetration ? 0 : r->fruitless + 1;
-    r->least_penetration = fmin(r->least_penetration, deepest);
+    r->fruitless = now.miss < 0.8 * r->least_penetration ? 0 : r->fruitless + 1;
+    r->least_penetration = fmin(r->least_penetration, now.miss);
     augment(r);
+    r->augmentations++;
+    r->best_error = INFINITY; /* another problem begins */
+    r->best_step = r->report->steps;
     return false;
 }

@@ -46,6 +46,7 @@ struct relaxation {
     double penetration_allowed;               /* m */
     int64_t augmentations, fruitless;         /* of the contacts so far; those in a row that changed little */
     double least_penetration;                 /* m, before an augmentation */
+    int64_t augmented_step;                   /* of the last one while the load grew */
     bool mass_changed; /* since the last check: increments of the acceleration mean nothing */
     enum status failure;
     double load, load_rate;      /* steps of the ramp applied so far, and per step, at most top_rate */
@@ -124,6 +125,10 @@ void relaxation_keep_state(struct relaxation *r, const double *u);
 /* An inverted point: go back to a state before it, at rest, and go on with smaller steps and a slower load.
  * False when that has been tried often enough - the deformation itself inverts - and on failure. */
 bool relaxation_step_back(struct relaxation *r, double *u, struct error *error);
+
+/* While the load grows, after a check: augment contacts that penetrate too deep. Left to the end, their
+ * pressures would double at once. */
+void relaxation_follow_contacts(struct relaxation *r);
 
 /* Whether a converged state may stand; contacts that penetrate too deep are augmented and relaxed again. */
 bool relaxation_contacts_hold(struct relaxation *r);

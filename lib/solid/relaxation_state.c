@@ -136,6 +136,7 @@ enum status relaxation_visit(void *run, const struct state *state, struct error 
         {"augmentations", STATE_COUNTS, &r->augmentations, 1},
         {"fruitless", STATE_COUNTS, &r->fruitless, 1},
         {"least_penetration", STATE_NUMBERS, &r->least_penetration, 1},
+        {"augmented_step", STATE_COUNTS, &r->augmented_step, 1},
         {"frames", STATE_COUNTS, &r->frames, 1},
         {"at_full_load", STATE_COUNTS, &r->at_full_load, 1},
         {"settled", STATE_COUNTS, &r->settled, 1},

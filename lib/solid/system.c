@@ -298,6 +298,7 @@ struct deformation system_residual(struct solid_system *system, const double *v,
     system_add_springs(system, u, on_u);
     double held = clock_seconds();
     for (int64_t c = 0; c < system->contact_count; c++) {
+        contact_move(&system->contacts[c], system->factor);
         contact_force(&system->contacts[c], u, on_u);
     }
     system->cost.force += forced - started;
@@ -306,6 +307,33 @@ struct deformation system_residual(struct solid_system *system, const double *v,
     system->cost.contact += clock_seconds() - held;
     return_forces(system, residual);
     return deformation;
+}
+
+void system_measure_contacts(struct solid_system *system, const double *v, bool all)
+{
+    const double *u = parameters_of(system, v);
+    double started = clock_seconds();
+    for (int64_t c = 0; c < system->contact_count; c++) {
+        contact_move(&system->contacts[c], system->factor);
+        contact_measure(&system->contacts[c], u, all);
+    }
+    system->cost.contact += clock_seconds() - started;
+}
+
+double system_longest_way(const struct solid_system *system)
+{
+    double longest = 0.0;
+    for (int64_t r = 0; r < system->rows.count; r++) {
+        longest = fmax(longest, fabs(system->rows.target[r]));
+    }
+    for (int64_t c = 0; c < system->contact_count; c++) {
+        const struct contact *contact = &system->contacts[c];
+        for (int64_t a = 0; a < contact->count; a++) {
+            double way = rigid_motion_way(&contact->motion, system->dim, contact->rest + a * system->dim);
+            longest = fmax(longest, way);
+        }
+    }
+    return longest;
 }
 
 /* What a spring that holds an average adds to the stiffness of its nodes; nodal parameters have about the

@@ -88,6 +88,13 @@ void system_add_loads(const struct solid_system *system, const double *u, double
 /* residual[node_count * dim] = loads at system->factor + contact - internal forces, at parameters u. */
 struct deformation system_residual(struct solid_system *system, const double *u, double *residual);
 
+/* Gaps and pressures of the contacts at parameters u and system->factor, see contact_measure. Other
+ * evaluations between may have left those of another state. */
+void system_measure_contacts(struct solid_system *system, const double *u, bool all);
+
+/* The longest way on which a condition or a rigid surface takes a place of the body, at factor 1, m. */
+double system_longest_way(const struct solid_system *system);
+
 /* force[node_count * dim] = what body and springs put against u: the residual without loads and contacts, and
  * the other way round. */
 void system_resist(struct solid_system *system, const double *u, double *force);

@@ -32,6 +32,7 @@ ${contact:-}
 [output]
 reactions = yes
 energy = yes
+folds = allowed
 [solver]
 tolerance = 1e-6
 END
@@ -113,6 +114,7 @@ components = 0, $(calc "-($3)")
 [output]
 reactions = yes
 energy = yes
+folds = allowed
 [solver]
 tolerance = 1e-6
 END

@@ -22,6 +22,7 @@ components = 0, 0, $(calc "-($3)")
 [output]
 reactions = yes
 energy = yes
+folds = allowed
 [solver]
 tolerance = 1e-5
 END

@@ -1,137 +1,7 @@
 /* Contact of hats with rigid surfaces: forces are the gradient of the energy and balance, hats are skipped
  * only where that changes nothing, multipliers remove the penetration, and nothing is pulled in from behind.
  */
-#include "solid_fixture.h"
-
-#include "solid/contact.h"
-
-enum { HATS = 12, NODES = 20, EACH = 4 };
-
-/* Hats made up of a few nodes each, with random weights of sum 1; some negative, as quadratic bases give. */
-struct hats {
-    int dim;
-    double X[NODES * 3], area[HATS], phi[HATS * EACH];
-    double normal[HATS * 3]; /* zero: hats are where their mean is */
-    int32_t node[HATS], idx[HATS * EACH];
-    int64_t ptr[HATS + 1];
-    struct boundary_averages averages;
-};
-
-static void make_hats(struct hats *hats, int dim, double area, struct random *random)
-{
-    *hats = (struct hats){.dim = dim};
-    for (int i = 0; i < NODES * dim; i++) {
-        hats->X[i] = uniform(random, -0.6, 0.6);
-    }
-    for (int a = 0; a < HATS; a++) {
-        double sum = 0.0;
-        hats->area[a] = area * uniform(random, 0.5, 1.0);
-        hats->node[a] = a;
-        hats->ptr[a + 1] = (a + 1) * EACH;
-        for (int i = a * EACH; i < (a + 1) * EACH; i++) { /* the first one outweighs the others */
-            hats->idx[i] = (a + (i - a * EACH) * 2) % NODES;
-            hats->phi[i] = i == a * EACH ? 1.0 : uniform(random, -0.1, 0.5);
-            sum += hats->phi[i];
-        }
-        for (int i = a * EACH; i < (a + 1) * EACH; i++) {
-            hats->phi[i] /= sum;
-        }
-    }
-    hats->averages = (struct boundary_averages){.count = HATS,
-                                                .node = hats->node,
-                                                .area = hats->area,
-                                                .normal = hats->normal,
-                                                .ptr = hats->ptr,
-                                                .idx = hats->idx,
-                                                .phi = hats->phi};
-}
-
-/* Hats that are each one node, where X says. */
-static void make_particles(struct hats *hats, int dim, double area)
-{
-    *hats = (struct hats){.dim = dim};
-    for (int a = 0; a < HATS; a++) {
-        hats->area[a] = area;
-        hats->node[a] = hats->idx[a] = a;
-        hats->ptr[a + 1] = a + 1;
-        hats->phi[a] = 1.0;
-    }
-    hats->averages = (struct boundary_averages){.count = HATS,
-                                                .node = hats->node,
-                                                .area = hats->area,
-                                                .normal = hats->normal,
-                                                .ptr = hats->ptr,
-                                                .idx = hats->idx,
-                                                .phi = hats->phi};
-}
-
-/* A polygon of that many sides about the origin, or a cube with its faces in two triangles; the body is
- * inside. `open`: one side is left out. */
-static struct rigid_surface make_shell(int dim, int sides, double radius, bool open)
-{
-    struct rigid_surface surface;
-    struct error error;
-    double corners[24 * 9];
-    int64_t count = 0;
-    if (dim == 2) {
-        for (int i = 0; i < sides - open; i++, count++) {
-            for (int k = 0; k < 2; k++) {
-                corners[4 * i + 2 * k] = radius * cos(2.0 * M_PI * (i + k) / sides);
-                corners[4 * i + 2 * k + 1] = radius * sin(2.0 * M_PI * (i + k) / sides);
-            }
-        }
-    } else {
-        static const int order[2][6] = {{0, 2, 1, 0, 3, 2}, {0, 1, 2, 0, 2, 3}};
-        for (int face = 0; face < 6 - open; face++) {
-            for (int i = 0; i < 6; i++) {
-                int k = order[face % 2][i], axis = face / 2;
-                double *corner = corners + (count * 3 + i) * 3;
-                corner[axis] = face % 2 ? radius : -radius;
-                corner[(axis + 1) % 3] = k == 1 || k == 2 ? radius : -radius;
-                corner[(axis + 2) % 3] = k >= 2 ? radius : -radius;
-            }
-            count += 2;
-        }
-    }
-    GOOD(rigid_build(dim, count, corners, true, &surface, &error));
-    return surface;
-}
-
-static struct contact built(const struct hats *hats, struct rigid_surface surface, double stiffness)
-{
-    struct contact contact;
-    struct error error;
-    GOOD(contact_build(&hats->averages, hats->X, hats->dim, &surface, stiffness, &contact, &error));
-    assert_null(surface.vertex);
-    return contact;
-}
-
-static double position(const struct hats *hats, const double *u, int a, int axis)
-{
-    double x = 0.0;
-    for (int64_t i = hats->ptr[a]; i < hats->ptr[a + 1]; i++) {
-        int at = hats->idx[i] * hats->dim + axis;
-        x += hats->phi[i] * (hats->X[at] + u[at]);
-    }
-    return x;
-}
-
-/* Displacements that bring about half of the hats into contact. */
-static void push_out(double *u, struct random *random)
-{
-    for (int i = 0; i < NODES * 3; i++) {
-        u[i] = uniform(random, -1.0, 1.0);
-    }
-}
-
-static int touching(const struct contact *contact)
-{
-    int count = 0;
-    for (int64_t a = 0; a < contact->count; a++) {
-        count += contact->pressure[a] > 0.0;
-    }
-    return count;
-}
+#include "contact_fixture.h"
 
 /* force = - d energy / du, with and without multipliers. */
 static void force_is_gradient(void **state)
@@ -258,14 +128,14 @@ static void skipping(void **state)
                 u[i] += velocity[i];
             }
             if (step % 500 == 499) {
-                contact_augment(&contact);
-                contact_augment(&always);
+                contact_augment(&contact, 0.0);
+                contact_augment(&always, 0.0);
             }
             for (int a = 0; a < HATS; a++) {
                 contact.normal[a * dim] = 2.0; /* to see who is skipped */
             }
             contact_force(&contact, u, force);
-            contact_look_again(&always);
+            contact_measure(&always, u, true);
             contact_force(&always, u, expected);
             assert_memory_equal(force, expected, sizeof force);
             contacts += touching(&contact);
@@ -303,7 +173,7 @@ static void augmentation(void **state)
                     u[i] += 0.01 * (force[i] + toward - spring * u[i]);
                 }
             }
-            deepest = contact_augment(&contact);
+            deepest = contact_augment(&contact, 0.0);
             assert_true(round == 0 ? deepest > 0.01 : deepest < 0.9 * before || deepest < 1e-9);
         }
         AT_MOST(deepest, 1e-9);
@@ -340,7 +210,7 @@ static void frictionless(void **state)
     }
     /* p = 10; with a multiplier of 10, p = 20. */
     NEAR_TO(contact_energy(&contact), HATS * 0.5 * 100.0 / 200.0, 1e-12);
-    NEAR_TO(contact_augment(&contact), 0.1, 1e-15);
+    NEAR_TO(contact_augment(&contact, 0.0), 0.1, 1e-15);
     contact_force(&contact, u, force);
     NEAR_TO(contact_energy(&contact), HATS * 0.5 * 300.0 / 200.0, 1e-12);
     contact_free(&contact);

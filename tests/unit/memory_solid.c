@@ -1,5 +1,5 @@
-/* Fault 25: whichever allocation fails, bodies, boundary averages, rigid surfaces and contacts report it with
- * STATUS_SYSTEM and leave nothing allocated. */
+/* Fault 25: whichever allocation fails, bodies, boundary averages, rigid surfaces, contacts and folds report
+ * it with STATUS_SYSTEM and leave nothing allocated. */
 #include "body_fixture.h"
 
 #include "failing_allocator.h"
@@ -8,6 +8,7 @@
 
 #include "solid/body.h"
 #include "solid/contact.h"
+#include "solid/folds.h"
 
 /* In place of libgomp's, which ends the program when it gets no memory: all work on this thread. */
 void GOMP_parallel(void (*work)(void *), void *data, unsigned threads, unsigned flags);
@@ -108,6 +109,43 @@ static enum status try_contact(struct error *error)
     return status;
 }
 
+static enum status try_points(struct error *error)
+{
+    static const double corners[] = {1, -1, -1, -1};
+    struct boundary_averages averages;
+    struct rigid_surface surface;
+    struct contact contact = {0};
+    enum status status = build_averages(&averages, error);
+    if (status == STATUS_OK) {
+        status = rigid_build(2, 1, corners, false, &surface, error);
+    }
+    if (status == STATUS_OK) {
+        status = contact_build_points(&averages, 2, &surface, 1.0, &contact, error);
+    }
+    contact_free(&contact);
+    boundary_averages_free(&averages);
+    return status;
+}
+
+static enum status try_folds(struct error *error)
+{
+    static const double x[] = {0, 0, 1, 0, 1, 1, 0, 1};
+    static const int32_t cell[] = {0, 1, 2, 0, 2, 3}, facet[] = {0, 1, 1, 2, 2, 3, 3, 0};
+    static const bool prescribed[] = {true, false, false, false};
+    struct folds folds;
+    struct fold_input input = {.dim = 2,
+                               .node_count = 4,
+                               .x = x,
+                               .cell_count = 2,
+                               .cell = cell,
+                               .facet_count = 4,
+                               .facet = facet,
+                               .held = prescribed};
+    enum status status = folds_build(&input, &folds, error);
+    folds_free(&folds);
+    return status;
+}
+
 static void bodies(void **state)
 {
     (void)state;
@@ -131,15 +169,20 @@ static void contacts(void **state)
 {
     (void)state;
     fail_each(try_contact, 30);
+    fail_each(try_points, 30);
+}
+
+static void folds_of_bodies(void **state)
+{
+    (void)state;
+    fail_each(try_folds, 12);
 }
 
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(bodies),
-        cmocka_unit_test(boundaries),
-        cmocka_unit_test(rigid_surfaces),
-        cmocka_unit_test(contacts),
+        cmocka_unit_test(bodies),   cmocka_unit_test(boundaries),      cmocka_unit_test(rigid_surfaces),
+        cmocka_unit_test(contacts), cmocka_unit_test(folds_of_bodies),
     };
     sample = make_sample(2, true, 3); /* so small that sorting allocates nothing */
     int failed = cmocka_run_group_tests(tests, NULL, NULL);

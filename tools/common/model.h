@@ -68,7 +68,6 @@ MUST_CHECK enum status model_facets(const struct model_input *input, const struc
                                     const struct name_list *names, struct facet_set *set, int32_t **owned,
                                     struct error *error);
 
-
 /* The nodes of the named sets, ascending; *nodes is owned by the caller. */
 MUST_CHECK enum status model_nodes(const struct model_input *input, const struct scene_label *label,
                                    const struct name_list *names, int32_t **nodes, int64_t *count,
@@ -82,6 +81,10 @@ MUST_CHECK enum status model_add_curve(const struct model_input *input, const st
 /* The largest shear modulus of the body's materials, Pa: penalties are multiples of it, so that they do not
  * grow with the bulk modulus. */
 double model_largest_shear(const struct solid_system *system);
+
+/* held[faces.count]: whether all nodes of that face are those of facets that one displacement section names;
+ * the caller's to free. */
+MUST_CHECK enum status model_held_faces(const struct model_input *input, bool **held, struct error *error);
 
 /* u, v[node_count * dim]: the state at the begin that the scene's [initial] gives, m and m/s, as parameters.
  */

@@ -48,6 +48,46 @@ done:
     return status;
 }
 
+/* Mark the faces whose nodes are all stamped with the section's number. */
+static void hold_faces(const struct faces *faces, int dim, const int64_t *stamp, int64_t section, bool *held)
+{
+    for (int64_t f = 0; f < faces->count; f++) {
+        bool is_held = true;
+        for (int k = 0; k < dim; k++) {
+            is_held = is_held && stamp[faces->node[f * dim + k]] == section;
+        }
+        held[f] = held[f] || is_held;
+    }
+}
+
+enum status model_held_faces(const struct model_input *input, bool **held, struct error *error)
+{
+    enum status status;
+    int dim = input->cells.dim;
+    int64_t *stamp = NULL; /* of each node: the last section that names it, from 1 on */
+    int32_t *owned = NULL;
+    TRY(NEW_ARRAY(held, input->faces.count, error));
+    TRY(NEW_ARRAY(&stamp, input->cells.node_count, error));
+    for (int64_t i = 0; i < input->scene->displacement_count; i++) {
+        const struct scene_displacement *section = &input->scene->displacements[i];
+        struct facet_set set;
+        if (section->facets.count == 0) {
+            continue;
+        }
+        TRY(model_facets(input, &section->label, &section->facets, &set, &owned, error));
+        for (int64_t k = 0; k < set.count * dim; k++) {
+            stamp[set.facet[k]] = i + 1;
+        }
+        hold_faces(&input->faces, dim, stamp, i + 1, *held);
+        free(owned);
+        owned = NULL;
+    }
+done:
+    free(owned);
+    free(stamp);
+    return status;
+}
+
 enum status model_nodes(const struct model_input *input, const struct scene_label *label,
                         const struct name_list *names, int32_t **nodes, int64_t *count, struct error *error)
 {

@@ -73,7 +73,7 @@ static enum status add_point_table(const struct model_input *input, int64_t m, s
         struct material *material = &list->items[list->count];
         *material = list->items[m];
         material_set_moduli(material, values[dim], values[dim + 1]);
-            list->section[list->count] = (int32_t)m;
+        list->section[list->count] = (int32_t)m;
         list->of_point[q] = (int32_t)list->count++;
     }
     if (row != table.rows) {

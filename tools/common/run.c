@@ -21,6 +21,7 @@ bool run_tell(void *context, const struct progress *progress)
 {
     struct run *run = context;
     show_progress(&run->display, progress);
+    run_folds_look(run, progress->u, progress->time, false);
     return run_checkpoint_tell(run, progress);
 }
 
@@ -56,12 +57,16 @@ void run_fail(struct run *run, enum status status, const char *format, ...)
 {
     const struct scene_output *output = &run->scene->output;
     struct error reason;
-    char text[sizeof reason.text];
+    char text[sizeof reason.text], folds[sizeof reason.text] = "";
     va_list values;
     va_start(values, format);
     vsnprintf(text, sizeof text, format, values);
     va_end(values);
-    fail(&reason, status, "%s", text); /* one line, whatever the names in it contain */
+    if (status == STATUS_VERDICT && !run->folds.told) {
+        run_folds_describe(run, FOLDED, folds, sizeof folds);
+    }
+    /* One line, whatever the names in it contain. */
+    fail(&reason, status, "%s%s%s", text, folds[0] != '\0' ? "; " : "", folds);
     tool_note(run->tool, "%s", reason.text);
     if (output->frames > 0 || output->interval > 0.0) {
         if (run->last_good >= 0.0) {

@@ -4,6 +4,7 @@
 
 #include "model.h"
 #include "run_checkpoint.h"
+#include "run_folds.h"
 #include "base/clock.h"
 #include "solid/progress.h"
 
@@ -20,6 +21,7 @@ struct run {
     struct stream *stream; /* receives what the scene's [output] asks for */
     struct display display;
     struct run_checkpoint checkpoint;
+    struct run_folds folds;
     bool verbose;
     bool text;        /* the form of what is written */
     double *u;        /* parameters, node_count * dim, m */

@@ -97,6 +97,22 @@ static void put_view(struct run *run, const struct progress *progress, struct st
                &error);
 }
 
+/* The state of the run and of what this program saw of it. */
+struct whole_state {
+    struct run *run;
+    const struct progress *progress;
+};
+
+static enum status visit_whole(void *owner, const struct state *state, struct error *error)
+{
+    const struct whole_state *whole = owner;
+    enum status status;
+    TRY(whole->progress->state(whole->progress->run, state, error));
+    TRY(run_folds_state(whole->run, state, error));
+done:
+    return status;
+}
+
 static enum status write_now(struct run *run, const struct progress *progress, struct error *error)
 {
     struct run_checkpoint *checkpoint = &run->checkpoint;
@@ -104,8 +120,8 @@ static enum status write_now(struct run *run, const struct progress *progress, s
     enum status status;
     stream_init(&stream);
     put_view(run, progress, &stream);
-    TRY(checkpoint_fill(&stream, &checkpoint->identity, progress->step, progress->state, progress->run,
-                        error));
+    struct whole_state whole = {run, progress};
+    TRY(checkpoint_fill(&stream, &checkpoint->identity, progress->step, visit_whole, &whole, error));
     TRY(checkpoint_write(checkpoint->file, checkpoint->is_ours, &stream, error));
     checkpoint->is_ours = true;
 done:

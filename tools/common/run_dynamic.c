@@ -18,6 +18,7 @@ static void judge(struct run *run, const struct dynamics_report *report)
     char place[96] = "";
     switch (report->outcome) {
     case DYNAMICS_DONE:
+        run_folds_judge(run);
         return;
     case DYNAMICS_INVERTED:
         place_of(run, run->model->input.points->data, report->point, place);
@@ -111,6 +112,7 @@ void run_dynamic(struct run *run)
         put_energy(run, &log);
     }
     run->last_good = report.last_good;
+    run_folds_look(run, run->u, report.time, true);
     judge(run, &report);
     energy_log_free(&log);
     if (run->verbose) {

@@ -78,7 +78,7 @@ static void add_contacts(const struct run *run, struct totals *totals)
             for (int a = 0; a < dim; a++) {
                 force[a] = contact->pressure[h] * contact->averages->area[h] * contact->normal[h * dim + a];
             }
-            add_force(run, &average, force, run->scene->displacement_count + c, totals);
+            add_force(run, &average, force, run->scene->displacement_count + contact->section, totals);
         }
     }
 }

@@ -12,6 +12,7 @@ static void judge(struct run *run, const struct relaxation_report *report)
             tool_note(run->tool, "%s: estimated error %.2g, not %.2g: round-off admits no less", scene->path,
                       report->error, scene->solver.tolerance);
         }
+        run_folds_judge(run);
         return;
     }
     if (report->outcome == RELAXATION_STALLED) {
@@ -65,6 +66,7 @@ void run_quasi_static(struct run *run)
     run_clear_progress(&run->display);
     tool_check(run->tool, status, &error);
     run->last_good = report.load;
+    run_folds_look(run, run->u, report.load, true);
     judge(run, &report);
     if (run->verbose) {
         fprintf(stderr,

@@ -8,7 +8,7 @@
 
 void run_put_frame(void *context, int64_t number, double time, const double *u)
 {
-    const struct run *run = context;
+    struct run *run = context;
     int dim = run->scene->dim;
     int64_t nodes = run->model->system.node_count;
     char name[40], vector[64], attributes[128];
@@ -17,6 +17,7 @@ void run_put_frame(void *context, int64_t number, double time, const double *u)
     snprintf(name, sizeof name, "u.frame.%lld", (long long)number);
     snprintf(attributes, sizeof attributes, "%s time=%.12g", vector_attributes(dim, "m", vector), time);
     run_put(run, name, nodes, dim, attributes, field);
+    run_folds_look(run, u, time, true);
 }
 
 /* Components of a symmetric tensor in output order. */
@@ -73,12 +74,12 @@ static void put_gaps(struct run *run)
     int dim = run->scene->dim, cols = dim + 2;
     int64_t rows = 0, at = 0;
     for (int64_t c = 0; c < system->contact_count; c++) {
-        rows += system->contacts[c].count;
+        rows += system->contacts[c].penalty_only ? 0 : system->contacts[c].count;
     }
     double *values = run_new_values(run, rows * cols);
     for (int64_t c = 0; c < system->contact_count; c++) {
         const struct contact *contact = &system->contacts[c];
-        for (int64_t a = 0; a < contact->count; a++, at++) {
+        for (int64_t a = 0; a < contact->count && !contact->penalty_only; a++, at++) {
             memcpy(values + at * cols, contact->averages->position + a * dim, (size_t)dim * sizeof *values);
             values[at * cols + dim] = contact->gap[a];
             values[at * cols + dim + 1] = contact->pressure[a];
@@ -111,6 +112,7 @@ void run_put_results(struct run *run)
     double *field = run_new_values(run, nodes * dim), *scratch = run_new_values(run, nodes * dim);
     /* Bring F, stresses and gaps to the final state. */
     (void)system_residual(&model->system, run->u, scratch);
+    system_measure_contacts(&model->system, run->u, true);
     free(scratch);
     if (output->stress || output->strain) {
         put_tensors(run);

@@ -1,0 +1,108 @@
+/* Where a body folds: the positions of its nodes, joined by the background cells, are a map of the body that
+ * should be one-to-one.
+ *
+ * It is when all cells keep their orientation and the boundary does not cross itself (Meisters and Olech,
+ * Duke Math. J. 30, 1963); so both are looked at. Cells: the sign of the
+ * volume of each, which is that of det F of the linear interpolant; it also turns where a facet of the
+ * boundary is turned over against the cell behind it. Slivers turn over by what a field at the nodes is
+ * uncertain by, so that it is told how far a cell has. Boundary: facets that share no node are crossed, or
+ * pierced by edges; those that meet have passed through each other when the angles of the cells around the
+ * place where they meet add up to more than a full turn.
+ *
+ * Beside that, something that a model may well do, but that a plate would not let it: a free facet that is
+ * turned from the rim of a plane support through the plane of that support. */
+#ifndef SOLID_FOLDS_H
+#define SOLID_FOLDS_H
+
+#include "base/status.h"
+
+#include <stdbool.h>
+#include <stdint.h>
+
+enum fold_kind {
+    FOLD_NONE,
+    FOLD_CELL,   /* a cell is turned over: a node is beyond the opposite side by a tenth of the cell's size */
+    FOLD_CREASE, /* the facets that meet at a node (2D) or an edge (3D) have passed through each other */
+    FOLD_CROSSING, /* two parts of the boundary have passed through each other */
+    FOLD_FLAT,     /* cells are inverted between their nodes, but by less: of a sliver, that is soon said */
+    FOLD_SUPPORT   /* a free facet at the rim of a plane support has gone through its plane */
+};
+
+struct fold {
+    enum fold_kind kind;
+    int64_t count;    /* of that kind */
+    int64_t cell;     /* FOLD_CELL, FOLD_FLAT: the first one; else -1 */
+    int64_t facet[2]; /* else: facets of the input, those of the first one, -1 where there is none;
+                         FOLD_SUPPORT: the free one, then that of the support */
+    double place[3];  /* at rest, m: middle of the cell or of the first facet */
+};
+
+struct fold_input {
+    int dim;
+    int64_t node_count;
+    const double *x; /* node_count * dim, at rest, m */
+    int64_t cell_count;
+    const int32_t *cell; /* cell_count * (dim + 1), positively oriented */
+    int64_t facet_count;
+    const int32_t *facet; /* facet_count * dim: the boundary, oriented outward */
+    const bool
+        *held; /* facet_count: whether the displacement is prescribed there, if only along one direction */
+};
+
+/* Where facets meet: a node (2D) or an edge (3D) of the boundary. */
+struct fold_ring {
+    int32_t node[2]; /* ascending; in 2D the second is -1 */
+    int64_t facet;   /* one of those that meet */
+};
+
+/* A free facet beside a plane support that it does not go on from: it is turned back by more than 22.5
+ * degrees at rest. */
+struct fold_rim {
+    int64_t facet, beside; /* the free one, and that of the support */
+    int32_t node, on_rim;  /* a node of the free one off the support, and one that both have */
+};
+
+/* The extent of a facet along the first axis. */
+struct fold_box {
+    double low, high;
+    int64_t facet;
+};
+
+struct folds {
+    struct fold_input input; /* the caller's arrays, which must outlive it */
+    struct fold_ring *rings; /* ring_count, ordered by their nodes */
+    int64_t ring_count;
+    int64_t *ring_ptr;     /* ring_count + 1: the cells around each, */
+    int8_t *ring_turn;     /* 1 where these nodes are in a positive order, else -1 */
+    int32_t *ring_cell;    /* by their dim + 1 nodes, those of the ring first */
+    struct fold_rim *rims; /* rim_count */
+    int64_t rim_count;
+    bool *is_held;        /* node_count: of a held facet */
+    int64_t *support;     /* facet_count: the first facet of the plane support that it is in; -1: free */
+    double extent;        /* diagonal of the box around the nodes, m */
+    bool crosses_at_rest; /* then crossings are not looked for */
+    /* Scratch. */
+    double *y;              /* node_count * dim: positions */
+    double largest;         /* of their coordinates, m */
+    struct fold_box *boxes; /* facet_count, by low */
+    double *plane; /* facet_count * 7: of the support that begins with each facet: the sum of its area
+                    * vectors,  of its corners, their number */
+};
+
+/* STATUS_SYSTEM for memory. */
+MUST_CHECK enum status folds_build(const struct fold_input *input, struct folds *folds, struct error *error);
+void folds_free(struct folds *folds);
+
+/* Look for folds of the displacement field u[node_count * dim] at the nodes: where the map is not one-to-one.
+ * Of
+ * several kinds the one that comes first in the list of kinds is returned. Nodes that are `stopped`
+ * [node_count] have a surface against them. A cell between such nodes and held ones is pressed flat against a
+ * plate; as averages are held and no nodes, it may be turned over a little, and does not count. */
+struct fold folds_find(struct folds *folds, const double *u, const bool *stopped);
+
+/* Look for free facets that have gone through the plane of a support: by more than a thousandth of the body's
+ * size and a twentieth of the facet's, as conditions hold averages and no nodes. Nodes that are `stopped` do
+ * not count. FOLD_NONE or FOLD_SUPPORT. */
+struct fold folds_find_beyond(struct folds *folds, const double *u, const bool *stopped);
+
+#endif

@@ -1,0 +1,338 @@
+/* Looking for folds of a displacement field; see folds.h. */
+#include "solid/folds_private.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+static const double full_turn = 6.28318530717958648;
+
+/* Positions below this share of the largest coordinate are round-off. */
+static const double round_off = 1e-12;
+
+/* See folds_find_beyond. */
+static const double beyond_body = 1e-3, beyond_facet = 0.05;
+static const double turned_share = 0.1; /* see is_turned_over */
+
+static const double *at(const struct folds *folds, int32_t node)
+{
+    return folds->y + (int64_t)node * folds->input.dim;
+}
+
+/* Area (2D: twice) or volume (3D: six times) of the simplex of these corners. */
+static double signed_volume(int dim, const double *a, const double *b, const double *c, const double *d)
+{
+    double u[3], v[3], w[3];
+    fold_way(dim, a, b, u);
+    fold_way(dim, a, c, v);
+    if (dim == 2) {
+        return u[0] * v[1] - u[1] * v[0];
+    }
+    fold_way(dim, a, d, w);
+    return u[0] * (v[1] * w[2] - v[2] * w[1]) + u[1] * (v[2] * w[0] - v[0] * w[2]) +
+           u[2] * (v[0] * w[1] - v[1] * w[0]);
+}
+
+/* Take `facet` for the first one found, with its middle. */
+static void name_facets(const struct folds *folds, int64_t facet, int64_t other, struct fold *fold)
+{
+    int dim = folds->input.dim;
+    fold->facet[0] = facet;
+    fold->facet[1] = other;
+    for (int k = 0; k < dim; k++) {
+        for (int i = 0; i < dim; i++) {
+            fold->place[i] += folds->input.x[(int64_t)folds->input.facet[facet * dim + k] * dim + i] / dim;
+        }
+    }
+}
+
+/* Whether something presses the cell flat: all nodes are held or stopped, not all of them held. */
+static bool is_flattened(const struct folds *folds, const int32_t *node, const bool *stopped)
+{
+    bool all = true, any = false;
+    for (int k = 0; k <= folds->input.dim; k++) {
+        all = all && (folds->is_held[node[k]] || stopped[node[k]]);
+        any = any || stopped[node[k]];
+    }
+    return all && any;
+}
+
+/* The volume of a cell as signed_volume has it. */
+static double cell_size(const struct folds *folds, const int32_t *node)
+{
+    int dim = folds->input.dim;
+    return signed_volume(dim, at(folds, node[0]), at(folds, node[1]), at(folds, node[2]),
+                         dim == 3 ? at(folds, node[3]) : NULL);
+}
+
+/* Whether a cell of that volume < 0 is turned over: its least height is more than a tenth of its longest
+ * edge. */
+static bool is_turned_over(const struct folds *folds, const int32_t *node, double volume)
+{
+    int dim = folds->input.dim;
+    double longest2 = 0.0, largest2 = 0.0;
+    for (int k = 0; k <= dim; k++) {
+        int32_t side[3] = {0, 0, 0};
+        double area[3], edge[3];
+        for (int i = 0; i < dim; i++) {
+            side[i] = node[(k + 1 + i) % (dim + 1)];
+        }
+        fold_area_vector(dim, folds->y, side, area);
+        largest2 = fmax(largest2, fold_dot(dim, area, area));
+        for (int m = k + 1; m <= dim; m++) {
+            fold_way(dim, at(folds, node[k]), at(folds, node[m]), edge);
+            longest2 = fmax(longest2, fold_dot(dim, edge, edge));
+        }
+    }
+    return !(volume * volume <= turned_share * turned_share * longest2 * largest2);
+}
+
+/* Turned cells, or else inverted ones. */
+static void find_cells(const struct folds *folds, const bool *stopped, struct fold *fold)
+{
+    const struct fold_input *input = &folds->input;
+    int dim = input->dim, corners = dim + 1;
+    for (int64_t c = 0; c < input->cell_count; c++) {
+        const int32_t *node = input->cell + c * corners;
+        double volume = cell_size(folds, node);
+        if (volume > 0.0 || is_flattened(folds, node, stopped)) {
+            continue;
+        }
+        enum fold_kind kind = is_turned_over(folds, node, volume) ? FOLD_CELL : FOLD_FLAT;
+        if (fold->kind == FOLD_NONE || (fold->kind == FOLD_FLAT && kind == FOLD_CELL)) {
+            *fold = (struct fold){.kind = kind, .cell = c, .facet = {-1, -1}};
+            for (int k = 0; k < corners; k++) {
+                for (int i = 0; i < dim; i++) {
+                    fold->place[i] += input->x[(int64_t)node[k] * dim + i] / corners;
+                }
+            }
+        }
+        fold->count += kind == fold->kind;
+    }
+}
+
+/* Angle that a cell takes around the ring that its first nodes are; negative where it is inverted. */
+static double angle_around(const struct folds *folds, const int32_t *node, int8_t turn)
+{
+    int dim = folds->input.dim;
+    double a[3], b[3], axis[3], cosine, sine2;
+    const double *first = at(folds, node[dim - 1]), *second = at(folds, node[dim]);
+    fold_way(dim, at(folds, node[0]), first, a);
+    fold_way(dim, at(folds, node[0]), second, b);
+    if (dim == 3) { /* across the edge */
+        fold_way(dim, at(folds, node[0]), at(folds, node[1]), axis);
+        double length2 = fold_dot(3, axis, axis), on_a = fold_dot(3, a, axis), on_b = fold_dot(3, b, axis);
+        for (int i = 0; i < 3; i++) {
+            a[i] -= on_a / length2 * axis[i];
+            b[i] -= on_b / length2 * axis[i];
+        }
+    }
+    cosine = fold_dot(dim, a, b);
+    sine2 = fold_dot(dim, a, a) * fold_dot(dim, b, b) - cosine * cosine;
+    double angle = atan2(sqrt(fmax(0.0, sine2)), cosine);
+    return cell_size(folds, node) * turn > 0.0 ? angle : -angle;
+}
+
+static bool find_creases(const struct folds *folds, struct fold *fold)
+{
+    int corners = folds->input.dim + 1;
+    for (int64_t r = 0; r < folds->ring_count; r++) {
+        double sum = 0.0;
+        for (int64_t i = folds->ring_ptr[r]; i < folds->ring_ptr[r + 1]; i++) {
+            sum += angle_around(folds, folds->ring_cell + i * corners, folds->ring_turn[i]);
+        }
+        if (sum > full_turn * (1.0 + 1e-6) && fold->count++ == 0) {
+            name_facets(folds, folds->rings[r].facet, -1, fold);
+        }
+    }
+    fold->kind = fold->count > 0 ? FOLD_CREASE : FOLD_NONE;
+    return fold->count > 0;
+}
+
+/* Whether the segment p q goes through facet f, at neither's border. */
+static bool pierces(const struct folds *folds, int32_t p, int32_t q, int64_t f)
+{
+    int dim = folds->input.dim;
+    const int32_t *node = folds->input.facet + f * dim;
+    const double *x = at(folds, p), *y = at(folds, q), *a = at(folds, node[0]), *b = at(folds, node[1]);
+    const double *c = dim == 3 ? at(folds, node[2]) : NULL;
+    double before = dim == 2 ? signed_volume(2, a, b, x, NULL) : signed_volume(3, a, b, c, x);
+    double after = dim == 2 ? signed_volume(2, a, b, y, NULL) : signed_volume(3, a, b, c, y);
+    double size = 0.0, side[3] = {0.0, 0.0, 0.0}, way[3];
+    fold_way(dim, x, y, way);
+    size = sqrt(fold_dot(dim, way, way));
+    fold_way(dim, x, a, way);
+    size += sqrt(fold_dot(dim, way, way));
+    fold_way(dim, a, b, way);
+    size += sqrt(fold_dot(dim, way, way));
+    double least = round_off * folds->largest * (dim == 2 ? size : size * size);
+    if (!(fmin(before, after) < -least && fmax(before, after) > least)) {
+        return false;
+    }
+    if (dim == 2) {
+        side[0] = signed_volume(2, x, y, a, NULL);
+        side[1] = -signed_volume(2, x, y, b, NULL);
+        side[2] = side[0];
+    } else {
+        side[0] = signed_volume(3, x, y, a, b);
+        side[1] = signed_volume(3, x, y, b, c);
+        side[2] = signed_volume(3, x, y, c, a);
+    }
+    return (side[0] > least && side[1] > least && side[2] > least) ||
+           (side[0] < -least && side[1] < -least && side[2] < -least);
+}
+
+/* Whether an edge of facet f (2D: the facet) that has no node of facet g goes through g. */
+static bool goes_through(const struct folds *folds, int64_t f, int64_t g)
+{
+    int dim = folds->input.dim;
+    const int32_t *edge = folds->input.facet + f * dim, *node = folds->input.facet + g * dim;
+    for (int k = 0; k < (dim == 2 ? 1 : 3); k++) {
+        int32_t p = edge[k], q = edge[(k + 1) % dim];
+        bool apart = true;
+        for (int i = 0; i < dim; i++) {
+            apart = apart && node[i] != p && node[i] != q;
+        }
+        if (apart && pierces(folds, p, q, g)) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/* Whether the boxes of two facets meet along the other axes than the first. */
+static bool boxes_meet(const struct folds *folds, int64_t f, int64_t g)
+{
+    int dim = folds->input.dim;
+    for (int i = 1; i < dim; i++) {
+        double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
+        for (int k = 0; k < dim; k++) {
+            double a = at(folds, folds->input.facet[f * dim + k])[i];
+            double b = at(folds, folds->input.facet[g * dim + k])[i];
+            low[0] = fmin(low[0], a);
+            high[0] = fmax(high[0], a);
+            low[1] = fmin(low[1], b);
+            high[1] = fmax(high[1], b);
+        }
+        if (low[0] > high[1] || low[1] > high[0]) {
+            return false;
+        }
+    }
+    return true;
+}
+
+static int compare_boxes(const void *left, const void *right)
+{
+    const struct fold_box *a = left, *b = right;
+    if (a->low != b->low) {
+        return a->low < b->low ? -1 : 1;
+    }
+    return (a->facet > b->facet) - (a->facet < b->facet);
+}
+
+static void sort_boxes(struct folds *folds)
+{
+    int dim = folds->input.dim;
+    for (int64_t f = 0; f < folds->input.facet_count; f++) {
+        struct fold_box *box = &folds->boxes[f];
+        *box = (struct fold_box){.low = INFINITY, .high = -INFINITY, .facet = f};
+        for (int k = 0; k < dim; k++) {
+            double place = at(folds, folds->input.facet[f * dim + k])[0];
+            box->low = fmin(box->low, place);
+            box->high = fmax(box->high, place);
+        }
+    }
+    qsort(folds->boxes, (size_t)folds->input.facet_count, sizeof *folds->boxes, compare_boxes);
+}
+
+static void find_crossings(struct folds *folds, struct fold *fold)
+{
+    int64_t count = folds->input.facet_count;
+    sort_boxes(folds);
+    for (int64_t i = 0; i < count; i++) {
+        int64_t f = folds->boxes[i].facet;
+        for (int64_t k = i + 1; k < count && folds->boxes[k].low <= folds->boxes[i].high; k++) {
+            int64_t g = folds->boxes[k].facet;
+            if (!boxes_meet(folds, f, g) || !(goes_through(folds, f, g) || goes_through(folds, g, f))) {
+                continue;
+            }
+            if (fold->count++ == 0) {
+                name_facets(folds, f < g ? f : g, f < g ? g : f, fold);
+            }
+        }
+    }
+    fold->kind = fold->count > 0 ? FOLD_CROSSING : FOLD_NONE;
+}
+
+void folds_fill_planes(struct folds *folds, const double *y)
+{
+    int dim = folds->input.dim;
+    memset(folds->plane, 0, (size_t)folds->input.facet_count * 7 * sizeof *folds->plane);
+    for (int64_t f = 0; f < folds->input.facet_count; f++) {
+        double area[3], *plane = folds->plane + folds->support[f] * 7;
+        if (folds->support[f] < 0) {
+            continue;
+        }
+        fold_area_vector(dim, y, folds->input.facet + f * dim, area);
+        for (int i = 0; i < dim; i++) {
+            plane[i] += area[i];
+            for (int k = 0; k < dim; k++) {
+                plane[3 + i] += y[(int64_t)folds->input.facet[f * dim + k] * dim + i];
+            }
+        }
+        plane[6] += dim;
+    }
+}
+
+double folds_rim_beyond(const struct folds *folds, const struct fold_rim *rim, const double *y, double *reach)
+{
+    int dim = folds->input.dim;
+    const double *plane = folds->plane + folds->support[rim->beside] * 7;
+    const double *node = y + (int64_t)rim->node * dim;
+    double depth = 0.0, way[3];
+    for (int i = 0; i < dim; i++) {
+        depth += plane[i] * (node[i] - plane[3 + i] / plane[6]);
+    }
+    fold_way(dim, y + (int64_t)rim->on_rim * dim, node, way);
+    *reach = sqrt(fold_dot(dim, way, way));
+    return depth / sqrt(fold_dot(dim, plane, plane));
+}
+
+static void take_positions(struct folds *folds, const double *u)
+{
+    folds->largest = 0.0;
+    for (int64_t i = 0; i < folds->input.node_count * folds->input.dim; i++) {
+        folds->y[i] = folds->input.x[i] + u[i];
+        folds->largest = fmax(folds->largest, fabs(folds->y[i]));
+    }
+}
+
+struct fold folds_find(struct folds *folds, const double *u, const bool *stopped)
+{
+    struct fold cells = {.cell = -1, .facet = {-1, -1}}, fold = cells;
+    take_positions(folds, u);
+    find_cells(folds, stopped, &cells);
+    if (cells.kind == FOLD_CELL) {
+        return cells;
+    }
+    if (!find_creases(folds, &fold) && !folds->crosses_at_rest) {
+        find_crossings(folds, &fold);
+    }
+    return fold.kind != FOLD_NONE ? fold : cells;
+}
+
+struct fold folds_find_beyond(struct folds *folds, const double *u, const bool *stopped)
+{
+    struct fold fold = {.cell = -1, .facet = {-1, -1}};
+    take_positions(folds, u);
+    folds_fill_planes(folds, folds->y);
+    for (int64_t r = 0; r < folds->rim_count; r++) {
+        const struct fold_rim *rim = &folds->rims[r];
+        double reach, depth = folds_rim_beyond(folds, rim, folds->y, &reach);
+        if (!stopped[rim->node] && depth > fmax(beyond_body * folds->extent, beyond_facet * reach) &&
+            fold.count++ == 0) {
+            name_facets(folds, rim->facet, rim->beside, &fold);
+        }
+    }
+    fold.kind = fold.count > 0 ? FOLD_SUPPORT : FOLD_NONE;
+    return fold;
+}

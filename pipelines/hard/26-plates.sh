@@ -1,0 +1,127 @@
+#!/bin/bash
+# Row 26: a block and a cube of .1 m bonded to plates that are wider than they are, pressed to 50 and 70 %. The plates are
+# rigid surfaces that move with the bonded faces, and the sides that bulge lie down on them; without them they would go
+# through the planes of the plates, which is told.
+#
+# A quarter of the block, an eighth of the cube; the middle stays and the plate comes down. The force is that of the bonded
+# face and of the plate together. A plate that is turned as it presses ends the row.
+. "$(dirname "$0")/common.sh"
+examples=$(dirname "$0")/../../examples/hard
+
+# press DIM MESH OUT PUSH: the plate by PUSH (m; half of the whole); `plates=no` leaves the rigid plate out.
+press() {
+    local down symmetry=xmin sides=xmax side=right plate=
+    down="0, $(calc "-($4)")"
+    if [ "$1" -eq 3 ]; then
+        down="0, $down" symmetry='xmin, ymin' sides='xmax, ymax' side=front
+    fi
+    [ "${plates:-}" = no ] || plate="[contact rigid]
+facets = $sides
+rigid = plate$1.tsv
+unit = m
+side = $side
+translation = $down
+curve = smooth"
+    dim=$1 scene "$work/a.scene" <<END
+[displacement symmetry]
+facets = $symmetry
+normal = 0
+[displacement middle]
+facets = middle
+normal = 0
+[displacement plate]
+facets = plate
+components = $down
+$plate
+[output]
+reactions = yes
+energy = yes
+[solver]
+tolerance = $([ "$1" -eq 2 ] && echo 1e-6 || echo 1e-5)
+END
+    relax "$work/a.scene" "$work/$2.mts" "$work/$3.dat"
+}
+
+# force DIM OUT: of bonded face and plate, upwards on them, N (2D: N/m), of the part that is computed.
+force() {
+    calc "-($(reaction "$work/$2.dat" plate "$1")) - ($(reaction "$work/$2.dat" rigid "$1"))"
+}
+
+printf -- '-1 0.05\n1 0.05\n' > "$work/plate2.tsv"
+echo '-1 -1 0.05  1 1 0.05  1 -1 0.05
+-1 -1 0.05  -1 1 0.05  1 1 0.05' > "$work/plate3.tsv"
+for mesh in 'coarse 0.004 1' 'fine 0.002 1' 'graded 0.004 0.2'; do
+    read -r name h rim <<< "$mesh"
+    gmsh -2 -v 1 -setnumber h "$h" -setnumber rim "$rim" "$examples/block.geo" -o "$work/body.msh" > /dev/null
+    nodes -u m "$work/body.msh" | shapefn -o "$work/$name.mts" 2> /dev/null
+done
+for mesh in 'cube 0.015' 'finer 0.01'; do
+    read -r name h <<< "$mesh"
+    gmsh -3 -v 1 -setnumber h "$h" -setnumber rim 1 -setnumber Mesh.RandomSeed 1 "$examples/cube.geo" -o "$work/body.msh" > /dev/null
+    nodes -u m "$work/body.msh" | shapefn -o "$work/$name.mts" 2> /dev/null
+done
+
+pushing2() {
+    press 2 coarse push "$1"
+    force 2 push
+}
+pushing3() {
+    press 3 cube push "$1"
+    force 3 push
+}
+
+for part in '50 0.025' '70 0.035'; do
+    read -r percent push <<< "$part"
+    for mesh in coarse fine graded; do
+        press 2 $mesh $mesh "$push"
+    done
+    row 26 "block, $percent %, plates: work / stored energy ($(count coarse) nodes)" \
+        "$(calc "$(work pushing2 "$push") / $(stored "$work/coarse.dat")")" 1 0.01
+    row 26 "block, $percent %, plates: force, N/m, $(count fine) nodes against $(count coarse)" \
+        "$(force 2 fine)" "$(force 2 coarse)" 0.02
+    row 26 "block, $percent %, plates: force, N/m, $(count graded) graded against $(count fine)" \
+        "$(force 2 graded)" "$(force 2 fine)" 0.02
+    row 26 "block, $percent %, plates: balance of the forces" \
+        "$(calc "$(reaction "$work/fine.dat" middle 2) / ($(force 2 fine)) - 1")" 0 0.001
+done
+for part in '50 0.025' '70 0.035'; do
+    read -r percent push <<< "$part"
+    press 3 cube cube "$push"
+    row 26 "cube, $percent %, plates: work / stored energy ($(count cube) nodes)" \
+        "$(calc "$(work pushing3 "$push") / $(stored "$work/cube.dat")")" 1 0.01
+    press 3 finer finer "$push"
+    row 26 "cube, $percent %, plates: balance of the forces ($(count finer) nodes)" \
+        "$(calc "$(reaction "$work/finer.dat" middle 3) / ($(force 3 finer)) - 1")" 0 0.001
+done
+
+# Without plates the run says where and from which load on.
+plates=no press 2 fine alone 0.035 2> "$work/said"
+row 26 'block, 70 %, without plates: told that it folds' "$(grep -c 'the body folds from 0\.[0-9]* of the load on' "$work/said")" 1 0
+
+# A plate over a block that is held at its bottom, tilted by 5 degrees as it comes down by 15 %: the force is along its normal.
+cloud -d 2 -k regular -n 13 --box 0,0.1,0,0.1 | shapefn -o "$work/tilted.mts" 2> /dev/null
+printf -- '-1 0.1\n1 0.1\n' > "$work/lid.tsv"
+dim=2 scene "$work/a.scene" <<END
+[displacement bottom]
+facets = ymin
+components = 0, 0
+[contact lid]
+facets = ymax
+rigid = lid.tsv
+unit = m
+side = right
+translation = 0, -0.015
+angle = 5
+axis_point = 0.05, 0.1
+curve = linear
+[output]
+reactions = yes
+gaps = yes
+[solver]
+tolerance = 1e-7
+END
+relax "$work/a.scene" "$work/tilted.mts" "$work/tilted.dat"
+row 26 'tilted plate: deepest penetration / size' "$([ ! -s "$work/tilted.dat" ] && echo nan ||
+    mts print gaps "$work/tilted.dat" | awk '$3 < -most { most = -$3 } END { print most / 0.1 }')" 0 1e-3
+row 26 'tilted plate: direction of its force, degrees' \
+    "$(calc "atan2($(reaction "$work/tilted.dat" lid 1), -($(reaction "$work/tilted.dat" lid 2))) * 180 / pi")" 5 1e-6

@@ -1,0 +1,155 @@
+# Rigid surfaces that move, and bodies that fold: what presses, what is told, and what is refused.
+
+bats_require_minimum_version 1.5.0
+
+load common.bash
+
+setup() {
+    cd "$BATS_TEST_TMPDIR"
+    set -o pipefail
+    export OMP_NUM_THREADS=1
+    cloud -d 2 -k regular -n 9 --box 0,0.1,0,0.1 | shapefn > block.mts 2> note
+    printf -- '-1 0.1\n2 0.1\n' > lid.tsv
+}
+
+# held ANALYSIS: a block held at its bottom.
+held() { block "$1" && held_below && printf '\n'; }
+
+# lid LINES...: a rigid lid on the block, with these lines of its section.
+lid() {
+    printf '[contact lid]\nfacets = ymax\nrigid = lid.tsv\nunit = m\nside = right\n'
+    printf '%b\n' "$@"
+}
+
+output() { printf '\n[output]\nreactions = yes\nenergy = yes\ngaps = yes\n%b' "$1"; }
+
+# row NUMBER COLUMN: of the reactions of u.dat.
+reaction() { rows reactions u.dat | awk -v row="$1" -v column="$2" 'NR == row { print $column }'; }
+
+@test "a lid that comes down presses as one that stands still while the block comes up" {
+    { held quasi-static && lid 'translation = 0, -0.01' 'curve = smooth' && output; } > down.scene
+    mtled down.scene block.mts > u.dat
+    down=$(reaction 2 2)
+    { held quasi-static | sed 's/^components = 0, 0/components = 0, 0.01/' && lid && output; } > up.scene
+    mtled up.scene block.mts > u.dat
+    awk -v down="$down" -v up="$(reaction 2 2)" 'BEGIN { d = down / up - 1; print down, up; exit !(up < -10 && d < 5e-3 && -d < 5e-3) }'
+}
+
+@test "a lid that turns: the force is along its normal, gaps are met, and a probe's motion needs no lid of its own" {
+    { held quasi-static && lid 'translation = 0, -0.01' 'angle = 5' 'axis_point = 0.05, 0.1' 'curve = linear' 'angle_curve = later.tsv' && output; } > turn.scene
+    printf '0 0\n0.5 0\n1 1\n' > later.tsv
+    mtled turn.scene block.mts > u.dat
+    awk -v x="$(reaction 2 1)" -v y="$(reaction 2 2)" 'BEGIN { a = atan2(x, -y) * 45 / atan2(1, 1) - 5; print a; exit !(y < -5 && a < 1e-6 && -a < 1e-6) }'
+    rows gaps u.dat | awk '$4 > 0 { n++; if ($3 < -1e-4 || $3 > 1e-4) bad = 1 } END { exit bad || n < 5 }'
+}
+
+@test "work of a lid equals stored energy, quasi-static and in time" {
+    { held dynamic && lid 'translation = 0, -0.01' 'angle = 3' 'axis_point = 0, 0.1' 'curve = smooth' && output && printf '[solver]\nend_time = 0.4\n'; } > swing.scene
+    mtled swing.scene block.mts > u.dat
+    rows energy u.dat | awk '{ e = $7 < 0 ? -$7 : $7; if (NR > 20 && e > most) most = e; work = $5 } END { print most, work; exit !(most < 1e-3 && work > 0.05) }'
+}
+
+@test "a lid in 3D, turned about an axis in its plane; the same in other threads" {
+    cloud -d 3 -k regular -n 4 --box 0,0.1,0,0.1,0,0.1 | shapefn > cube.mts 2> note
+    printf -- '-1 -1 0.1 1 1 0.1 1 -1 0.1\n-1 -1 0.1 -1 1 0.1 1 1 0.1\n' > lid.tsv
+    { block quasi-static | sed 's/dim = 2/dim = 3/' && printf '[displacement bottom]\nfacets = zmin\ncomponents = 0, 0, 0\n' &&
+        lid 'translation = 0, 0, -0.01' 'angle = 4' 'axis_point = 0.05, 0, 0.1' 'axis = 0, 2, 0' 'curve = smooth' | sed 's/ymax/zmax/; s/right/front/' && output; } > cube.scene
+    mtled cube.scene cube.mts > u.dat
+    # Turned about +y, the normal leans by 4 degrees to -x: the push is down and to -x.
+    awk -v x="$(reaction 2 1)" -v y="$(reaction 2 2)" -v z="$(reaction 2 3)" 'BEGIN {
+        a = atan2(x, z) * 45 / atan2(1, 1); a += a < 0 ? 180 : -180
+        d = (a < 0 ? -a : a) - 4; print a, y; exit !(z < -0.1 && d < 1e-6 && -d < 1e-6 && y < 1e-3 * -z && -y < 1e-3 * -z) }'
+    OMP_NUM_THREADS=2 mtled cube.scene cube.mts | cmp - u.dat
+}
+
+@test "gaps of the final state, however far away the body is" {
+    { block quasi-static && printf '[displacement ends]\nfacets = ymin, ymax\ncomponents = -0.03, 0\n' &&
+        printf '[contact wall]\nfacets = xmin\nrigid = wall.tsv\nunit = m\nside = right\n' && output; } > away.scene
+    printf -- '-0.05 -1\n-0.05 1\n' > wall.tsv
+    mtled away.scene block.mts > u.dat
+    rows gaps u.dat | awk '{ d = $3 - 0.02; if (d > 1e-3 || d < -1e-3) bad = 1; n++ } END { exit bad || n != 9 }'
+}
+
+@test "a motion that cannot be: one line, with the key and the remedy" {
+    try() {
+        { held quasi-static && lid "${@:2}" && output; } > bad.scene
+        refused 2 "$1" mtled bad.scene block.mts
+    }
+    try 'curve: missing: a surface that moves needs smooth, linear, or a file' 'translation = 0, -0.01'
+    try 'curve: step jumps: a rigid surface moves by smooth, linear, or a file' 'translation = 0, -0.01' 'curve = step'
+    try 'angle_curve: step jumps' 'angle = 4' 'axis_point = 0, 0' 'curve = smooth' 'angle_curve = step'
+    printf '0 0.5\n1 1\n' > jump.tsv
+    try '[contact lid]: curve: begins at 0.5, with a jump: begin at time 0 with factor 0' 'translation = 0, -0.01' 'curve = jump.tsv'
+    printf '0 0\n0.5 0\n0.50001 1\n1 1\n' > jump.tsv
+    try '[contact lid]: curve: jumps from 0 to 1 at time 0.5: give the surface more time' 'translation = 0, -0.01' 'curve = jump.tsv'
+    try 'curve: not allowed: the surface has neither translation nor angle' 'curve = smooth'
+    try 'axis_point: missing: give a point of the axis' 'angle = 4' 'curve = smooth'
+    try 'axis: not allowed: in 2D a surface turns in the plane' 'angle = 4' 'axis_point = 0, 0' 'axis = 0, 0' 'curve = smooth'
+    try 'axis_point: not allowed: no angle is given' 'translation = 0, 0' 'axis_point = 0, 0' 'curve = smooth'
+    try 'translation: has 3 components' 'translation = 0, 0, 1' 'curve = smooth'
+    printf -- '-1 -1 0.1 1 1 0.1 1 -1 0.1\n' > lid.tsv
+    { block quasi-static | sed 's/dim = 2/dim = 3/' && lid 'angle = 4' 'axis_point = 0, 0, 0' 'axis = 0, 0, 0' 'curve = smooth' | sed 's/right/front/'; } > bad.scene
+    refused 2 '[contact lid]: axis: has no length: give a direction, as 0, 0, 1' mtled bad.scene block.mts
+    sed -i '/^axis =/d' bad.scene
+    refused 2 'axis: missing: give the direction' mtled bad.scene block.mts
+}
+
+# A block between bonded plates, pressed by 70 %; LINES of [output].
+crushed() {
+    block quasi-static | sed 's/0.45/0.49/'
+    held_below
+    printf '\n[displacement top]\nfacets = ymax\ncomponents = 0, -0.07\n\n[output]\n%b\n[solver]\ntolerance = 1e-3\n' "$1"
+}
+
+@test "a body that folds is a verdict that says where and from which load on, unless the scene allows it" {
+    cloud -d 2 -k regular -n 17 --box 0,0.1,0,0.1 | shapefn > fine.mts 2> note
+    crushed 'stress = yes' > fold.scene
+    refused 1 'fold.scene: the body folds from 0.' mtled fold.scene fine.mts
+    [[ $stderr == *" of the load on: cell "*" is turned over: press less, refine there, or allow it ([output] folds = allowed)" ]]
+    crushed 'folds = allowed' > allowed.scene
+    run --separate-stderr mtled -o u.dat allowed.scene fine.mts
+    [ "$status" -eq 0 ]
+    [[ $stderr == "mtled: allowed.scene: the body folds from 0."* && $(wc -l <<< "$stderr") -eq 1 ]]
+    mts list u.dat | grep -q '^u	f8	289'
+    crushed 'folds = maybe' > bad.scene
+    refused 2 "folds: 'maybe' is none of refused, allowed" mtled bad.scene fine.mts
+}
+
+@test "no frame of a run that folds is lost" {
+    cloud -d 2 -k regular -n 17 --box 0,0.1,0,0.1 | shapefn > fine.mts 2> note
+    crushed 'frames = 5' > fold.scene
+    run --separate-stderr mtled -o u.dat fold.scene fine.mts
+    [ "$status" -eq 1 ]
+    [ ! -e u.dat ]
+    mts recover u.dat.part 2> said | mts list > list
+    [ "$(grep -c '^u\.frame\.' list)" -eq 5 ]
+}
+
+@test "a side beyond the plane of its support is noted; a rigid plate there stops it" {
+    crushed '' | sed 's/-0.07/-0.05/' > bulge.scene
+    cloud -d 2 -k regular -n 17 --box 0,0.1,0,0.1 | shapefn > fine.mts 2> note
+    mtled bulge.scene fine.mts > u.dat 2> said
+    grep -q '^mtled: bulge.scene: from 0\.[0-9]* of the load on, xm.. at (.*) is beyond the plane of y..., where nothing in the scene stops it$' said
+    [ "$(wc -l < said)" -eq 1 ]
+    printf -- '-1 0.1\n2 0.1\n' > top.tsv
+    printf -- '-1 0\n2 0\n' > bottom.tsv
+    { cat bulge.scene; printf '[contact top]\nfacets = xmin, xmax\nrigid = top.tsv\nunit = m\nside = right\ntranslation = 0, -0.05\ncurve = smooth\n'
+        printf '[contact bottom]\nfacets = xmin, xmax\nrigid = bottom.tsv\nunit = m\nside = left\n'; } > plates.scene
+    mtled plates.scene fine.mts > u.dat 2> said
+    [ ! -s said ]
+}
+
+@test "what was seen of a fold outlasts an interruption" {
+    cloud -d 2 -k regular -n 17 --box 0,0.1,0,0.1 | shapefn > fine.mts 2> note
+    crushed 'folds = allowed' > fold.scene
+    sed -i 's/tolerance = 1e-3/tolerance = 1e-6/' fold.scene
+    mtled fold.scene fine.mts > whole.dat 2> said
+    for try in 1 2 3 4 5 6; do
+        status=0
+        timeout -s INT 0.3 mtled -c run.ckpt -e 0.01 -o u.dat fold.scene fine.mts 2> note || status=$?
+        [ "$status" -ne 0 ] || break
+    done
+    [ "$status" -eq 0 ] || mtled -c run.ckpt -o u.dat fold.scene fine.mts 2> note
+    [ "$(grep 'folds' note)" = "$(cat said)" ]
+    cmp <(bare whole.dat) <(bare u.dat)
+}

@@ -1,0 +1,253 @@
+/* Contacts whose surface moves, their work and moments; what of them is of this state alone; contacts of
+ * points.
+ */
+#include "contact_fixture.h"
+
+/* Curves' values: of the translation, of the rotation. */
+static const double one_each[2] = {1.0, 1.0};
+
+/* A motion with everything in it; its two curves are numbers 0 and 1. */
+static struct rigid_motion some_motion(int dim, struct random *random)
+{
+    struct error error;
+    struct rigid_motion motion = {.moves = true, .angle = uniform(random, -3.0, 3.0), .rotation_curve = 1};
+    for (int i = 0; i < 3; i++) {
+        motion.translation[i] = uniform(random, -0.5, 0.5);
+        motion.point[i] = uniform(random, -1.0, 1.0);
+        motion.axis[i] = uniform(random, -2.0, 2.0);
+    }
+    GOOD(rigid_motion_check(&motion, dim, &error));
+    return motion;
+}
+
+/* Known places, and the order: turned first, about an axis that does not move. */
+static void motions(void **state)
+{
+    (void)state;
+    struct error error;
+    struct rigid_motion motion = {.moves = true,
+                                  .translation = {1.0, 0.0, 5.0},
+                                  .point = {0.0, 1.0, 7.0},
+                                  .axis = {0.0, 0.0, -3.0},
+                                  .angle = -M_PI / 2.0,
+                                  .rotation_curve = 1};
+    const double X[3] = {2.0, 1.0, 3.0};
+    for (int dim = 2; dim <= 3; dim++) {
+        double x[3], back[3], normal[3] = {1.0, 0.0, 0.0}, factor[2] = {0.5, 1.0};
+        GOOD(rigid_motion_check(&motion, dim, &error));
+        motion.angle = dim == 2 ? M_PI / 2.0 : -M_PI / 2.0; /* in 2D about +z, in 3D about -z */
+        struct rigid_place place = rigid_place_at(&motion, factor);
+        rigid_place_from_rest(&place, dim, X, x);
+        rigid_place_to_rest(&place, dim, x, back);
+        rigid_place_turn(&place, dim, normal);
+        NEAR_TO(x[0], 0.5, 1e-15);
+        NEAR_TO(x[1], 3.0, 1e-15);
+        NEAR_TO(normal[1], 1.0, 1e-15);
+        for (int i = 0; i < dim; i++) {
+            NEAR_TO(back[i], X[i], 1e-14);
+        }
+        NEAR_TO(rigid_motion_way(&motion, dim, X), (dim == 2 ? 1.0 : sqrt(26.0)) + M_PI, 1e-14);
+        motion = (struct rigid_motion){.moves = true,
+                                       .translation = {1.0, 0.0, 5.0},
+                                       .point = {0.0, 1.0, 7.0},
+                                       .axis = {0.0, 0.0, -3.0},
+                                       .rotation_curve = 1};
+        motion.angle = -M_PI / 2.0;
+    }
+    motion.axis[2] = 0.0;
+    assert_int_equal(rigid_motion_check(&motion, 3, &error), STATUS_INPUT);
+    assert_string_equal(error.text, "rigid surface: the axis of rotation has no length");
+    motion.axis[2] = 1.0;
+    motion.angle = (double)INFINITY;
+    assert_int_equal(rigid_motion_check(&motion, 3, &error), STATUS_INPUT);
+}
+
+/* A shell that moves, and hats that move with it, are as a shell and hats at rest: gaps, pressures and energy
+ * the same, forces turned. Along the way hats are skipped as they may be. */
+static void moved_together(void **state)
+{
+    (void)state;
+    struct random random = {7};
+    struct hats hats;
+    int contacts = 0;
+    for (int round = 0; round < 20; round++) {
+        int dim = 2 + round % 2;
+        make_hats(&hats, dim, 10.0, &random);
+        struct contact rests = built(&hats, make_shell(dim, 12, 0.8, false), 7e3);
+        struct contact moves = built(&hats, make_shell(dim, 12, 0.8, false), 7e3);
+        moves.motion = some_motion(dim, &random);
+        double u[NODES * 3], turned[NODES * 3];
+        push_out(u, &random);
+        for (int step = 0; step <= 20; step++) {
+            double factor[2] = {0.05 * step, sin(0.05 * step)}, force[NODES * 3] = {0.0},
+                   other[NODES * 3] = {0.0};
+            struct rigid_place place = rigid_place_at(&moves.motion, factor);
+            for (int n = 0; n < NODES; n++) {
+                double x[3], moved[3];
+                for (int i = 0; i < dim; i++) {
+                    x[i] = hats.X[n * dim + i] + u[n * dim + i];
+                }
+                rigid_place_from_rest(&place, dim, x, moved);
+                for (int i = 0; i < dim; i++) {
+                    turned[n * dim + i] = moved[i] - hats.X[n * dim + i];
+                }
+            }
+            contact_force(&rests, u, force);
+            contact_move(&moves, factor);
+            contact_force(&moves, turned, other);
+            for (int n = 0; n < NODES; n++) {
+                rigid_place_turn(&place, dim, force + n * dim);
+            }
+            for (int i = 0; i < NODES * dim; i++) {
+                NEAR_TO(other[i], force[i], 1e-7);
+            }
+            NEAR_TO(contact_energy(&moves), contact_energy(&rests), 1e-8 * contact_energy(&rests));
+            contacts += touching(&moves);
+        }
+        contact_free(&rests);
+        contact_free(&moves);
+    }
+    assert_true(contacts > 400);
+}
+
+/* While the surface moves and the hats stay, the energy of the penalty grows by the work of the surface. */
+static void work_of_the_surface(void **state)
+{
+    (void)state;
+    struct random random = {8};
+    struct hats hats;
+    int pressed = 0;
+    for (int round = 0; round < 10; round++) {
+        int dim = 2 + round % 2, steps = 2000;
+        double u[NODES * 3] = {0.0}, work = 0.0, unresolved = 0.0, begin = 0.0;
+        make_hats(&hats, dim, 10.0, &random);
+        struct contact contact = built(&hats, make_shell(dim, 4, 0.8, false), 7e3);
+        contact.motion = some_motion(dim, &random);
+        contact.motion.angle = fmod(contact.motion.angle, 0.3);
+        for (int step = 0; step <= steps; step++) {
+            double now[2], next[2], last[2];
+            for (int i = 0; i < 2; i++) {
+                last[i] = (step - 1.0) / steps;
+                now[i] = (double)step / steps;
+                next[i] = (step + 1.0) / steps;
+            }
+            contact_move(&contact, now);
+            contact_measure(&contact, u, false);
+            begin = step == 0 ? contact_energy(&contact) : begin;
+            struct contact_work before = contact_work(&contact, last, now);
+            struct contact_work after = contact_work(&contact, now, next);
+            work += 0.5 * ((step > 0 ? before.work : 0.0) + (step < steps ? after.work : 0.0));
+            unresolved = fmax(unresolved, after.unresolved);
+        }
+        double energy = contact_energy(&contact) - begin;
+        NEAR_TO(work, energy, 1e-4 * fabs(energy) + 2.0 * unresolved);
+        pressed += fabs(energy) > 1.0 && unresolved > 0.0 && unresolved < 1e-3 * fabs(energy);
+        contact_free(&contact);
+    }
+    assert_true(pressed >= 8);
+}
+
+/* The moment is that of the forces on the parameters, about any point, also where hats are raised. */
+static void moment(void **state)
+{
+    (void)state;
+    struct random random = {9};
+    struct hats hats;
+    for (int round = 0; round < 20; round++) {
+        int dim = 2 + round % 2;
+        double u[NODES * 3], force[NODES * 3] = {0.0}, position_[HATS * 3], sum[3] = {0.0}, told[3],
+                                           zero[NODES * 3] = {0.0};
+        double point[3] = {0.3, -0.2, 0.7};
+        make_hats(&hats, dim, 10.0, &random);
+        for (int a = 0; a < HATS; a++) {
+            hats.normal[a * dim] = 1.0;
+            for (int i = 0; i < dim; i++) {
+                position_[a * dim + i] = position(&hats, zero, a, i);
+            }
+        }
+        hats.averages.position = position_;
+        struct contact contact = built(&hats, make_shell(dim, 12, 2.0, false), 7e3);
+        contact.motion = some_motion(dim, &random);
+        push_out(u, &random);
+        contact_move(&contact, one_each);
+        contact_force(&contact, u, force);
+        contact_moment(&contact, point, told);
+        for (int n = 0; n < NODES; n++) {
+            double arm[3] = {0.0}, f[3] = {0.0};
+            for (int i = 0; i < dim; i++) {
+                arm[i] = hats.X[n * dim + i] + u[n * dim + i] - point[i];
+                f[i] = force[n * dim + i];
+            }
+            for (int i = 0; i < 3; i++) {
+                sum[i] += arm[(i + 1) % 3] * f[(i + 2) % 3] - arm[(i + 2) % 3] * f[(i + 1) % 3];
+            }
+        }
+        for (int i = 0; i < 3; i++) {
+            NEAR_TO(told[i], sum[i], 1e-8 * (1.0 + fabs(sum[i])));
+        }
+        contact_free(&contact);
+    }
+}
+
+/* Hats that are too far away to be looked at have the gaps of this state where all are measured. */
+static void gaps_of_this_state(void **state)
+{
+    (void)state;
+    struct hats hats;
+    struct random random = {10};
+    make_hats(&hats, 2, 0.1, &random);
+    struct contact contact = built(&hats, make_shell(2, 12, 5.0, false), 1.0);
+    double u[NODES * 3] = {0.0}, first[HATS];
+    contact_measure(&contact, u, false);
+    memcpy(first, contact.gap, sizeof first);
+    for (int i = 0; i < NODES; i++) {
+        u[2 * i] = 0.5;
+    }
+    contact_measure(&contact, u, true);
+    double changed = 0.0;
+    for (int a = 0; a < HATS; a++) {
+        double x[2] = {position(&hats, u, a, 0), position(&hats, u, a, 1)};
+        NEAR_TO(contact.gap[a], rigid_closest(&contact.surface, x, INFINITY).gap, 1e-14);
+        changed = fmax(changed, fabs(contact.gap[a] - first[a]));
+    }
+    assert_true(changed > 0.2);
+    contact_free(&contact);
+}
+
+/* Points press with the penalty alone, and begin where they are. */
+static void points_without_multipliers(void **state)
+{
+    (void)state;
+    struct hats hats;
+    struct error error;
+    double place[HATS * 2], u[NODES * 3] = {0.0}, force[NODES * 3] = {0.0};
+    make_particles(&hats, 2, 0.5);
+    for (int a = 0; a < HATS; a++) {
+        place[2 * a] = hats.X[2 * a] = 0.01 * a;
+        place[2 * a + 1] = hats.X[2 * a + 1] = 0.0;
+    }
+    hats.averages.position = place;
+    struct rigid_surface surface = make_shell(2, 4, 0.5, false);
+    struct contact contact;
+    GOOD(contact_build_points(&hats.averages, 2, &surface, 100.0, &contact, &error));
+    for (int round = 0; round < 3; round++) {
+        u[0] = 0.6;
+        contact_force(&contact, u, force);
+        NEAR_TO(contact.pressure[0], 10.0, 1e-12);
+        NEAR_TO(contact_augment(&contact, 0.0), 0.1, 1e-14);
+    }
+    contact_free(&contact);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(motions),
+        cmocka_unit_test(moved_together),
+        cmocka_unit_test(work_of_the_surface),
+        cmocka_unit_test(moment),
+        cmocka_unit_test(gaps_of_this_state),
+        cmocka_unit_test(points_without_multipliers),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,350 @@
+/* Folds: bodies that are bent, turned and stretched one-to-one have none; each kind is found where it is. */
+#include "solid_fixture.h"
+
+#include "approx/cells.h"
+#include "solid/folds.h"
+
+enum { MOST_NODES = 400, MOST_CELLS = 1600 };
+
+/* A body of simplices, with its boundary. */
+struct shape {
+    int dim;
+    int64_t nodes;
+    double x[MOST_NODES * 3];
+    int64_t cells;
+    int32_t cell[MOST_CELLS * 4];
+    int32_t facet[MOST_CELLS * 4 * 3];
+    bool held[MOST_CELLS * 4];
+    struct folds folds;
+};
+
+static void add_cell(struct shape *shape, const int32_t *node)
+{
+    int corners = shape->dim + 1;
+    int32_t *cell = shape->cell + shape->cells++ * corners;
+    struct cells one = {
+        .dim = shape->dim, .node_count = shape->nodes, .x = shape->x, .count = 1, .node = cell};
+    memcpy(cell, node, (size_t)corners * sizeof *cell);
+    if (cell_volume(&one, 0) < 0.0) {
+        int32_t first = cell[0];
+        cell[0] = cell[1];
+        cell[1] = first;
+    }
+}
+
+/* The body between quadrangles of the plane: triangles, or, for as many layers of nodes along z, tetrahedra.
+ */
+static void add_quadrangle(struct shape *shape, const int32_t corner[4], int64_t layer)
+{
+    static const int triangles[2][3] = {{0, 1, 2}, {0, 2, 3}};
+    for (int t = 0; t < 2; t++) {
+        int32_t a = corner[triangles[t][0]], b = corner[triangles[t][1]], c = corner[triangles[t][2]];
+        int32_t up = (int32_t)layer;
+        if (shape->dim == 2) {
+            add_cell(shape, (int32_t[]){a, b, c});
+            continue;
+        }
+        /* Prisms split alike on both sides of what they share: by ascending nodes. */
+        int32_t low = a < b ? a : b, high = a < b ? b : a, middle = c;
+        if (middle < low) {
+            int32_t kept = low;
+            low = middle;
+            middle = kept;
+        }
+        if (middle > high) {
+            int32_t kept = high;
+            high = middle;
+            middle = kept;
+        }
+        add_cell(shape, (int32_t[]){low, middle, high, high + up});
+        add_cell(shape, (int32_t[]){low, middle, middle + up, high + up});
+        add_cell(shape, (int32_t[]){low, low + up, middle + up, high + up});
+    }
+}
+
+/* Boundary and folds; facets whose corners all have x[axis] = place are held (axis < 0: none). */
+static void finish(struct shape *shape, int axis, double place)
+{
+    struct cells cells = {.dim = shape->dim,
+                          .node_count = shape->nodes,
+                          .x = shape->x,
+                          .count = shape->cells,
+                          .node = shape->cell};
+    struct faces faces;
+    struct error error;
+    GOOD(cells_check(&cells, &error));
+    GOOD(faces_build(&cells, true, &faces, &error));
+    memcpy(shape->facet, faces.node, (size_t)(faces.count * shape->dim) * sizeof *faces.node);
+    for (int64_t f = 0; f < faces.count; f++) {
+        shape->held[f] = axis >= 0;
+        for (int k = 0; k < shape->dim && axis >= 0; k++) {
+            double at = shape->x[(int64_t)faces.node[f * shape->dim + k] * shape->dim + axis];
+            shape->held[f] = shape->held[f] && fabs(at - place) < 1e-12;
+        }
+    }
+    struct fold_input input = {.dim = shape->dim,
+                               .node_count = shape->nodes,
+                               .x = shape->x,
+                               .cell_count = shape->cells,
+                               .cell = shape->cell,
+                               .facet_count = faces.count,
+                               .facet = shape->facet,
+                               .held = shape->held};
+    GOOD(folds_build(&input, &shape->folds, &error));
+    faces_free(&faces);
+}
+
+/* n x m quadrangles over [0, 1] x [0, 1], and in 3D two layers over [0, .2]; held at y = 0. */
+static void make_grid(struct shape *shape, int dim, int n, int m)
+{
+    *shape = (struct shape){.dim = dim};
+    int64_t layer = (n + 1) * (m + 1);
+    shape->nodes = layer * (dim - 1);
+    for (int64_t k = 0; k < shape->nodes; k++) {
+        double *x = shape->x + k * dim;
+        x[0] = (double)(k % layer % (n + 1)) / n;
+        x[1] = (double)(k % layer / (n + 1)) / m;
+        if (dim == 3) {
+            x[2] = 0.2 * (double)(k / layer);
+        }
+    }
+    for (int32_t j = 0; j < m; j++) {
+        for (int32_t i = 0; i < n; i++) {
+            int32_t a = j * (n + 1) + i;
+            add_quadrangle(shape, (int32_t[]){a, a + 1, a + n + 2, a + n + 1}, layer);
+        }
+    }
+    finish(shape, 1, 0.0);
+}
+
+/* A sector of a disc of that angle, of triangles around its middle; in 3D a wedge. */
+static void make_fan(struct shape *shape, int dim, int n, double angle)
+{
+    *shape = (struct shape){.dim = dim};
+    int64_t layer = n + 2;
+    shape->nodes = layer * (dim - 1);
+    for (int64_t k = 0; k < shape->nodes; k++) {
+        double *x = shape->x + k * dim, turned = angle * (double)(k % layer - 1) / n;
+        x[0] = k % layer > 0 ? cos(turned) : 0.0;
+        x[1] = k % layer > 0 ? sin(turned) : 0.0;
+        if (dim == 3) {
+            x[2] = 0.2 * (double)(k / layer);
+        }
+    }
+    for (int32_t i = 1; i <= n; i++) {
+        int32_t up = (int32_t)layer;
+        if (dim == 2) {
+            add_cell(shape, (int32_t[]){0, i, i + 1});
+        } else {
+            add_cell(shape, (int32_t[]){0, i, i + 1, i + 1 + up});
+            add_cell(shape, (int32_t[]){0, i, i + up, i + 1 + up});
+            add_cell(shape, (int32_t[]){0, up, i + up, i + 1 + up});
+        }
+    }
+    finish(shape, -1, 0.0);
+}
+
+static struct fold found(struct shape *shape, const double *y)
+{
+    double u[MOST_NODES * 3];
+    bool stopped[MOST_NODES] = {false};
+    for (int64_t i = 0; i < shape->nodes * shape->dim; i++) {
+        u[i] = y[i] - shape->x[i];
+    }
+    return folds_find(&shape->folds, u, stopped);
+}
+
+/* Turned by an angle in the plane x y, in 3D also tilted, stretched, and moved. */
+static void turn(const struct shape *shape, double angle, double stretch, double *y)
+{
+    int dim = shape->dim;
+    for (int64_t k = 0; k < shape->nodes; k++) {
+        const double *x = shape->x + k * dim;
+        double *at = y + k * dim, along = stretch * x[0], up = x[1] / stretch, deep = dim == 3 ? x[2] : 0.0;
+        at[0] = 3.0 + cos(angle) * along - sin(angle) * up;
+        at[1] = sin(angle) * along + cos(angle) * up;
+        if (dim == 3) {
+            double level = at[1];
+            at[1] = cos(2.0 * angle) * level - sin(2.0 * angle) * deep;
+            at[2] = sin(2.0 * angle) * level + cos(2.0 * angle) * deep;
+        }
+    }
+}
+
+/* Bent along x to an arc of that angle whose inner radius is .5, with a drift along the last axis (3D) that
+ * keeps nothing apart. */
+static void bend(const struct shape *shape, double angle, double *y)
+{
+    for (int64_t k = 0; k < shape->nodes; k++) {
+        const double *x = shape->x + k * shape->dim;
+        double *at = y + k * shape->dim, r = 0.5 + 0.2 * (1.0 - x[1]);
+        at[0] = r * sin(angle * x[0]);
+        at[1] = -r * cos(angle * x[0]);
+        if (shape->dim == 3) {
+            at[2] = x[2];
+        }
+    }
+}
+
+static void one_to_one(void **state)
+{
+    (void)state;
+    static struct shape shape;
+    double y[MOST_NODES * 3];
+    for (int dim = 2; dim <= 3; dim++) {
+        make_grid(&shape, dim, 32, 2);
+        for (int i = 0; i < 10; i++) {
+            turn(&shape, 0.7 * i, pow(1.7, i - 5), y);
+            assert_int_equal(found(&shape, y).kind, FOLD_NONE);
+            bend(&shape, 0.62 * (i + 1), y); /* up to 355 degrees */
+            assert_int_equal(found(&shape, y).kind, FOLD_NONE);
+        }
+        folds_free(&shape.folds);
+    }
+}
+
+/* Bent until the ends pass through each other. */
+static void crossing(void **state)
+{
+    (void)state;
+    static struct shape shape;
+    double y[MOST_NODES * 3];
+    for (int dim = 2; dim <= 3; dim++) {
+        make_grid(&shape, dim, 32, 2);
+        for (int i = 0; i < 2; i++) {
+            /* In 3D the ends lie against each other exactly: lifted a little, edges go through facets. */
+            bend(&shape, 6.5, y);
+            for (int64_t k = 0; k < shape.nodes && dim == 3; k++) {
+                y[k * 3 + 2] += (i == 0 ? 0.03 : 0.5) * shape.x[k * 3];
+            }
+            struct fold fold = found(&shape, y);
+            assert_int_equal(fold.kind, dim == 3 && i == 1 ? FOLD_NONE : FOLD_CROSSING);
+            if (fold.kind == FOLD_CROSSING) {
+                assert_true(fold.facet[0] >= 0 && fold.facet[1] > fold.facet[0]);
+                assert_true(fold.place[0] < 0.1 || fold.place[0] > 0.9);
+            }
+        }
+        folds_free(&shape.folds);
+    }
+}
+
+/* A wedge whose sides pass through each other at its edge, all cells right way round. */
+static void crease(void **state)
+{
+    (void)state;
+    static struct shape shape;
+    double y[MOST_NODES * 3];
+    for (int dim = 2; dim <= 3; dim++) {
+        make_fan(&shape, dim, 12, 5.0);
+        int64_t layer = 14;
+        for (double angle = 6.0; angle < 6.6; angle += 0.1) {
+            memcpy(y, shape.x, sizeof y);
+            for (int64_t k = 0; k < shape.nodes; k++) {
+                if (k % layer > 0) { /* a spiral: only at the middle do the sides meet */
+                    double part = (double)(k % layer - 1) / 12.0;
+                    y[k * dim] = (1.0 + part) * cos(angle * part);
+                    y[k * dim + 1] = (1.0 + part) * sin(angle * part);
+                }
+            }
+            struct fold fold = found(&shape, y);
+            assert_int_equal(fold.kind, angle < 2.0 * M_PI ? FOLD_NONE : FOLD_CREASE);
+            if (fold.kind == FOLD_CREASE) {
+                assert_int_equal(fold.count, 1);
+                assert_true(fold.facet[0] >= 0 && fold.facet[1] == -1);
+            }
+        }
+        folds_free(&shape.folds);
+    }
+}
+
+/* A node beyond the far side of its cells: those and only those that are inverted, the first one with its
+ * place. */
+static void inverted(void **state)
+{
+    (void)state;
+    static struct shape shape;
+    double y[MOST_NODES * 3];
+    for (int dim = 2; dim <= 3; dim++) {
+        make_grid(&shape, dim, 5, 5);
+        int corners = dim + 1;
+        for (int side = 0; side < 3; side++) {
+            memcpy(y, shape.x, sizeof y);
+            for (int64_t k = 14; k < shape.nodes;
+                 k += 36) { /* at (.4, .4), all layers; neighbours at (.6, .4) */
+                y[k * dim] += side == 0 ? 0.19 : side == 1 ? 0.21 : 0.3;
+            }
+            struct fold fold = found(&shape, y);
+            assert_int_equal(fold.kind, side == 0 ? FOLD_NONE : side == 1 ? FOLD_FLAT : FOLD_CELL);
+            if (side > 0) {
+                struct cells cells = {
+                    .dim = dim, .node_count = shape.nodes, .x = y, .count = shape.cells, .node = shape.cell};
+                int64_t count = 0, first = -1;
+                for (int64_t c = 0; c < shape.cells; c++) {
+                    if (cell_volume(&cells, c) <= 0.0) {
+                        first = count++ == 0 ? c : first;
+                    }
+                }
+                assert_true(side == 1 ? fold.count == count : fold.count > 0 && fold.count <= count);
+                assert_true(fold.cell >= first);
+                first = fold.cell;
+                for (int i = 0; i < dim; i++) {
+                    double mean = 0.0;
+                    for (int k = 0; k < corners; k++) {
+                        mean += shape.x[shape.cell[first * corners + k] * dim + i] / corners;
+                    }
+                    NEAR_TO(fold.place[i], mean, 1e-15);
+                }
+            }
+        }
+        y[0] = (double)NAN;
+        assert_int_equal(found(&shape, y).kind, FOLD_CELL);
+        folds_free(&shape.folds);
+    }
+}
+
+/* The side's lowest nodes go below the plane of the support under the body, unless something presses on them.
+ */
+static void through_the_plane(void **state)
+{
+    (void)state;
+    static struct shape shape;
+    double u[MOST_NODES * 3];
+    bool stopped[MOST_NODES];
+    for (int dim = 2; dim <= 3; dim++) {
+        make_grid(&shape, dim, 5, 5);
+        assert_true(shape.folds.rim_count > 0);
+        for (int i = 0; i < 4; i++) {
+            double lift = i == 3 ? 0.3 : 0.0, depth = i == 0 ? 5e-4 : 0.05;
+            memset(u, 0, sizeof u);
+            memset(stopped, 0, sizeof stopped);
+            for (int64_t k = 0; k < shape.nodes; k++) {
+                u[k * dim + 1] += lift; /* the plane moves with the support */
+                if (k % 36 == 11) {     /* at (1, .2) */
+                    u[k * dim] = 0.3;
+                    u[k * dim + 1] -= 0.2 + depth;
+                    stopped[k] = i == 2;
+                }
+            }
+            struct fold fold = folds_find_beyond(&shape.folds, u, stopped);
+            assert_int_equal(fold.kind, i == 0 || i == 2 ? FOLD_NONE : FOLD_SUPPORT);
+            if (fold.kind == FOLD_SUPPORT) {
+                assert_false(shape.held[fold.facet[0]]);
+                assert_true(shape.held[fold.facet[1]]);
+                AT_MOST(0.9, fold.place[0]);
+            }
+            /* The cell in the corner is turned over as well, but pressed flat it does not count. */
+            fold = folds_find(&shape.folds, u, stopped);
+            assert_int_equal(fold.kind, i == 2 && dim == 2 ? FOLD_NONE : fold.kind);
+        }
+        folds_free(&shape.folds);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(one_to_one), cmocka_unit_test(crossing),          cmocka_unit_test(crease),
+        cmocka_unit_test(inverted),   cmocka_unit_test(through_the_plane),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,262 @@
+#include "run.h"
+
+#include "names.h"
+
+#include "approx/cells.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* The faces of the boundary. */
+static enum status list_boundary(const struct model_input *input, struct run_folds *folds, int64_t *count,
+                                 struct error *error)
+{
+    enum status status;
+    const struct faces *faces = &input->faces;
+    int dim = input->cells.dim;
+    bool *held = NULL;
+    *count = 0;
+    TRY(model_held_faces(input, &held, error));
+    TRY(NEW_ARRAY(&folds->facet, faces->count * dim, error));
+    TRY(NEW_ARRAY(&folds->held, faces->count, error));
+    for (int64_t f = 0; f < faces->count; f++) {
+        if (faces->cell[2 * f + 1] < 0) {
+            memcpy(folds->facet + *count * dim, faces->node + f * dim, (size_t)dim * sizeof *folds->facet);
+            folds->held[(*count)++] = held[f];
+        }
+    }
+done:
+    free(held);
+    return status;
+}
+
+static enum status build(const struct model_input *input, struct run_folds *folds, struct error *error)
+{
+    enum status status;
+    const struct cells *cells = &input->cells;
+    struct fold_input body = {.dim = cells->dim,
+                              .node_count = cells->node_count,
+                              .x = cells->x,
+                              .cell_count = cells->count,
+                              .cell = cells->node};
+    TRY(list_boundary(input, folds, &body.facet_count, error));
+    body.facet = folds->facet;
+    body.held = folds->held;
+    TRY(NEW_ARRAY(&folds->field, cells->node_count * cells->dim, error));
+    TRY(NEW_ARRAY(&folds->stopped, cells->node_count, error));
+    TRY(folds_build(&body, &folds->folds, error));
+done:
+    return status;
+}
+
+void run_folds_begin(struct run *run)
+{
+    struct error error;
+    const struct state *restored = run_checkpoint_state(run);
+    tool_check(run->tool, build(&run->model->input, &run->folds, &error), &error);
+    if (restored != NULL) {
+        tool_check(run->tool, run_folds_state(run, restored, &error), &error);
+    }
+}
+
+void run_folds_free(struct run *run)
+{
+    folds_free(&run->folds.folds);
+    free(run->folds.facet);
+    free(run->folds.held);
+    free(run->folds.field);
+    free(run->folds.stopped);
+}
+
+/* A surface that is no further away than this share of a facet's size stands against it. */
+static const double near_share = 0.25;
+
+/* Nodes that a rigid surface stands against. */
+static void mark_stopped(const struct run *run, bool *stopped)
+{
+    const struct solid_system *system = &run->model->system;
+    memset(stopped, 0, (size_t)system->node_count * sizeof *stopped);
+    for (int64_t c = 0; c < system->contact_count; c++) {
+        const struct contact *contact = &system->contacts[c];
+        for (int64_t a = 0; a < contact->count && !contact->penalty_only; a++) {
+            int32_t node = contact->averages->node[a];
+            double area = contact->averages->area[a], length = contact->dim == 2 ? area : sqrt(area);
+            stopped[node] = stopped[node] || contact->gap[a] < near_share * length;
+        }
+    }
+}
+
+/* Take what was found at a time into the spells. */
+static void note(struct run_folds *folds, int which, const struct fold *fold, double time, bool counts)
+{
+    struct fold_spell *now = &folds->now[which], *past = &folds->past[which];
+    if (fold->kind == FOLD_NONE) {
+        if (now->seen && now->counts && !past->seen) {
+            *past = *now;
+            past->until = time;
+        }
+        *now = (struct fold_spell){.seen = false};
+        return;
+    }
+    if (!now->seen) {
+        *now = (struct fold_spell){.seen = true, .since = time, .until = INFINITY, .fold = *fold};
+    }
+    now->counts = now->counts || counts;
+}
+
+void run_folds_look(struct run *run, const double *u, double time, bool is_frame)
+{
+    struct run_folds *folds = &run->folds;
+    bool counts = is_frame || run->scene->analysis == SCENE_DYNAMIC;
+    model_nodal_field(&run->model->input, u, folds->field);
+    mark_stopped(run, folds->stopped);
+    struct fold fold = folds_find(&folds->folds, folds->field, folds->stopped);
+    struct fold none = {.kind = FOLD_NONE}, noted = fold;
+    bool is_flat = fold.kind == FOLD_FLAT;
+    if (!is_flat) {
+        noted = folds_find_beyond(&folds->folds, folds->field, folds->stopped);
+    }
+    note(folds, FOLDED, is_flat ? &none : &fold, time, counts);
+    note(folds, NOTED, &noted, time, counts);
+}
+
+/* A spell. */
+static enum status spell_state(struct fold_spell *spell, const char *prefix, const struct state *state,
+                               struct error *error)
+{
+    enum status status;
+    struct fold *fold = &spell->fold;
+    int64_t *counts = spell->kept;
+    counts[0] = (int64_t)fold->kind;
+    counts[1] = fold->count;
+    counts[2] = fold->cell + 1;
+    counts[3] = fold->facet[0] + 1;
+    counts[4] = fold->facet[1] + 1;
+    const struct state_value values[] = {
+        {"seen", STATE_FLAGS, &spell->seen, 1},     {"since", STATE_NUMBERS, &spell->since, 1},
+        {"until", STATE_NUMBERS, &spell->until, 1}, {"fold", STATE_COUNTS, counts, 5},
+        {"place", STATE_NUMBERS, fold->place, 3},   {"counts", STATE_FLAGS, &spell->counts, 1}};
+    TRY(state_visit(state, prefix, values, sizeof values / sizeof *values, error));
+    fold->kind = (enum fold_kind)counts[0];
+    fold->count = counts[1];
+    fold->cell = counts[2] - 1;
+    fold->facet[0] = counts[3] - 1;
+    fold->facet[1] = counts[4] - 1;
+done:
+    return status;
+}
+
+enum status run_folds_state(struct run *run, const struct state *state, struct error *error)
+{
+    enum status status;
+    TRY(spell_state(&run->folds.now[FOLDED], "folds.now", state, error));
+    TRY(spell_state(&run->folds.past[FOLDED], "folds.past", state, error));
+    TRY(spell_state(&run->folds.now[NOTED], "noted.now", state, error));
+    TRY(spell_state(&run->folds.past[NOTED], "noted.past", state, error));
+done:
+    return status;
+}
+
+/* The names of the groups that a facet of the boundary is in, or "unnamed". */
+static void name_facet(const struct run *run, int64_t f, char *name, size_t size)
+{
+    const struct stream *stream = run->stream;
+    const struct section *facets = stream_find(stream, "facets"), *set = stream_find(stream, "facets.set");
+    int dim = run->scene->dim;
+    char *names = NULL;
+    struct error error;
+    int32_t key[3], other[3];
+    snprintf(name, size, "the boundary");
+    if (facets == NULL || set == NULL || names_of_section(set, &names, &error) != STATUS_OK) {
+        return;
+    }
+    face_key(dim, run->folds.facet + f * dim, key);
+    for (int64_t i = 0; i < facets->rows && i < set->rows; i++) {
+        face_key(dim, (const int32_t *)facets->data + i * dim, other);
+        if (memcmp(key, other, sizeof key) == 0) {
+            const char *at = names;
+            for (int32_t k = ((const int32_t *)set->data)[i]; k > 0; k--) {
+                at += strcspn(at, ",");
+                at += *at == ',';
+            }
+            snprintf(name, size, "%.*s", (int)strcspn(at, ","), at);
+            break;
+        }
+    }
+    free(names);
+}
+
+void run_folds_describe(const struct run *run, int which, char *text, size_t size)
+{
+    const struct run_folds *folds = &run->folds;
+    const struct fold_spell *spell = folds->now[which].seen ? &folds->now[which] : &folds->past[which];
+    bool dynamic = run->scene->analysis == SCENE_DYNAMIC;
+    char place[96], one[64], other[64], when[96];
+    text[0] = '\0';
+    if (!spell->seen) {
+        return;
+    }
+    const struct fold *fold = &spell->fold;
+    point_text(run->scene->dim, fold->place, place);
+    snprintf(when, sizeof when,
+             dynamic              ? "from t = %.4g s on"
+             : spell->since < 1.0 ? "from %.4g of the load on"
+                                  : "at the whole load",
+             spell->since);
+    if (isfinite(spell->until)) {
+        snprintf(when, sizeof when, dynamic ? "from t = %.4g to %.4g s" : "from %.4g to %.4g of the load",
+                 spell->since, spell->until);
+    }
+    if (fold->facet[0] >= 0) {
+        name_facet(run, fold->facet[0], one, sizeof one);
+    }
+    if (fold->facet[1] >= 0) {
+        name_facet(run, fold->facet[1], other, sizeof other);
+    }
+    switch (fold->kind) {
+    case FOLD_CELL:
+        snprintf(text, size, "the body folds %s: cell %lld at %s is turned over", when, (long long)fold->cell,
+                 place);
+        return;
+    case FOLD_CREASE:
+        snprintf(text, size, "the body folds %s: facets of %s that meet at %s pass through each other", when,
+                 one, place);
+        return;
+    case FOLD_CROSSING:
+        snprintf(text, size, "the body folds %s: %s at %s goes through %s", when, one, place, other);
+        return;
+    case FOLD_FLAT:
+        snprintf(text, size,
+                 "%s, cells are inverted between their nodes, by less than a tenth of their size: %lld, "
+                 "the first one cell %lld at %s",
+                 when, (long long)fold->count, (long long)fold->cell, place);
+        return;
+    case FOLD_SUPPORT:
+        snprintf(text, size, "%s, %s at %s is beyond the plane of %s, where nothing in the scene stops it",
+                 when, one, place, other);
+        return;
+    case FOLD_NONE:
+    default:
+        return;
+    }
+}
+
+void run_folds_judge(struct run *run)
+{
+    char text[400];
+    run_folds_describe(run, FOLDED, text, sizeof text);
+    if (text[0] != '\0' && !run->scene->output.folds_allowed) {
+        run->folds.told = true;
+        run->last_good = -1.0; /* the frames are all there */
+        run_fail(run, STATUS_VERDICT,
+                 "%s: %s: press less, refine there, or allow it ([output] folds = allowed)", run->scene->path,
+                 text);
+    }
+    if (text[0] == '\0') {
+        run_folds_describe(run, NOTED, text, sizeof text);
+    }
+    if (text[0] != '\0') {
+        tool_note(run->tool, "%s: %s", run->scene->path, text);
+    }
+}

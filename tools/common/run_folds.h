@@ -1,0 +1,52 @@
+/* Folds of a run (see solid/folds.h): looked for while it lasts, told at its end. */
+#ifndef TOOLS_RUN_FOLDS_H
+#define TOOLS_RUN_FOLDS_H
+
+#include "base/state.h"
+#include "solid/folds.h"
+
+struct run;
+
+/* Looks in a row that show a fold. */
+struct fold_spell {
+    bool seen;
+    double since, until; /* times as in struct progress; until: INFINITY while it lasts */
+    struct fold fold;    /* at the first look */
+    bool counts;         /* also when it ends: a frame shows it, or it is of a dynamic run */
+    int64_t kept[5];     /* the fold's whole numbers, as they are kept in a checkpoint: never negative */
+};
+
+/* FOLDED: the map of the body is no longer one-to-one, a verdict. NOTED: cells that are
+ * just inverted, or else a free side beyond the plane of a support, which the scene as it is does not forbid.
+ */
+enum { FOLDED, NOTED, FOLD_SPELLS };
+
+struct run_folds {
+    struct folds folds;
+    int32_t *facet; /* of the boundary, with nodes, */
+    bool *held;     /* and whether the displacement is prescribed there: what folds.input points to */
+    double *field;  /* scratch: node_count * dim */
+    bool *stopped;  /* scratch: node_count */
+    bool told;      /* in the message that ends the run */
+    struct fold_spell now[FOLD_SPELLS];
+    struct fold_spell past[FOLD_SPELLS]; /* the first one that ended and counts */
+};
+
+/* Before the first step; the model must be built. With a checkpoint: what was seen before it. */
+void run_folds_begin(struct run *run);
+void run_folds_free(struct run *run);
+
+/* Look at parameters u at a time of the run; `is_frame`: the state is given as a frame. */
+void run_folds_look(struct run *run, const double *u, double time, bool is_frame);
+
+/* What was seen, as state of the run. */
+MUST_CHECK enum status run_folds_state(struct run *run, const struct state *state, struct error *error);
+
+/* Where and from when on, for FOLDED or NOTED, into text[size]; empty when that was not seen. */
+void run_folds_describe(const struct run *run, int which, char *text, size_t size);
+
+/* After the last step: a body that folds ends the run with a verdict, unless the scene allows it; what is to
+ * be noted is. */
+void run_folds_judge(struct run *run);
+
+#endif
