@@ -23,6 +23,7 @@ dim=$(awk '$2 == "nodes.x" { print $5; exit }' "$mesh")
 awk -f "$here/../stream.awk" -f "$here/../scene.awk" -f "$here/problem.awk" -v scene="$scene" -v mesh="$mesh" -v out="$work"
 TIMEFORMAT='%U %S'
 if ! { time (cd "$work" && FreeFem++-nw -nw -v 0 "$here/solve${dim}d.edp" > log 2>&1); } 2> "$work/time"; then
+    [ ! -s "$work/failure" ] || { echo "solve.sh: $scene: $(cat "$work/failure")" >&2; exit 1; }
     tail -n 20 "$work/log" >&2
     echo "solve.sh: FreeFEM failed on $scene" >&2
     exit 1
