@@ -90,7 +90,7 @@ $(BRAIN3D_AT_NODES:%=$(BRAIN3D)/%.dat): $(BRAIN3D)/%.dat: $(BRAIN3D)/small.msh $
 	(nodes -u mm $< | ipoints -g 4 | support -v $($*.support) | shapefn | \
 	    mtled -v $(BRAIN3D_INPUT)/paper.scene) > $@ $(BRAIN3D_LOG)
 
-BRAIN3D_CALCULIX := $(addprefix pipelines/,calculix/solve.sh calculix/deck.awk calculix/deck3d.awk calculix/field.awk stream.awk)
+BRAIN3D_CALCULIX := $(addprefix pipelines/,calculix/solve.sh calculix/deck.awk calculix/deck3d.awk calculix/field.awk stream.awk scene.awk)
 
 $(BRAIN3D)/calculix-free.dat: $(BRAIN3D_INPUT)/free.scene $(BRAIN3D)/small.cloud.dat $(BRAIN3D_TABLES) $(BRAIN3D_CALCULIX)
 	bash pipelines/calculix/solve.sh $(wordlist 1,2,$^) 0.25 > $@ $(BRAIN3D_LOG)

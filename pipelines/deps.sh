@@ -1,6 +1,7 @@
 #!/bin/bash
 # Install what the project needs and what is missing. Quick and silent when nothing is. Programs may come from any
 # package (gnuplot-qt is as good as gnuplot-nox, which would push it out); libraries are asked for by package.
+# CalculiX and FreeFEM (with a BLAS that does it justice) are for comparison only: the studies need them, no program does.
 # deps.sh lint, deps.sh fuzz: what make lint and make fuzz need, which nothing else does.
 set -eu -o pipefail
 
@@ -17,8 +18,9 @@ fuzz)
     libraries=(libomp-dev "libclang-rt-$version-dev")
     ;;
 *)
-    programs=(gcc:gcc g++:g++ make:make gmsh:gmsh gnuplot:gnuplot-nox ccx:calculix-ccx bats:bats shellcheck:shellcheck)
-    libraries=(libgmsh-dev libgsl-dev libinih-dev zlib1g-dev libcmocka-dev)
+    programs=(gcc:gcc g++:g++ make:make gmsh:gmsh gnuplot:gnuplot-nox ccx:calculix-ccx FreeFem++-nw:freefem++
+        bats:bats shellcheck:shellcheck)
+    libraries=(libgmsh-dev libgsl-dev libinih-dev zlib1g-dev libcmocka-dev libfreefem++ libopenblas0-serial)
     ;;
 esac
 

@@ -7,7 +7,7 @@ setup() {
     cd "$BATS_TEST_TMPDIR"
     fake=$(realpath --relative-to "$top" .)/build
     mkdir -p build/bin
-    tools=(gmsh gnuplot ccx bats)
+    tools=(gmsh gnuplot ccx FreeFem++-nw bats)
     for file in "$top"/tools/*.c; do tools+=("$(basename "$file" .c)"); done
     for tool in "${tools[@]}"; do stand_in good > build/bin/"$tool"; done
     chmod +x build/bin/*
@@ -97,7 +97,7 @@ fails() {
 }
 
 # The smallest that the studies of errors can be: a case in 2D and one in 3D, of one size.
-few_solutions=(CONVERGENCE_CASES=block20 SPEED_ERROR_NAMES= square.sizes=0.03 cube.sizes=0.03)
+few_solutions=(CONVERGENCE_CASES=block20 SPEED_ERROR_CASES=cube square.sizes=0.03 cube.sizes=0.03)
 
 @test "convergence: whichever program fails" {
     for tool in nodes ipoints support shapefn mtled; do
@@ -115,6 +115,12 @@ few_solutions=(CONVERGENCE_CASES=block20 SPEED_ERROR_NAMES= square.sizes=0.03 cu
 @test "convergence: CalculiX fails on a mesh that is one" {
     for tool in gmsh nodes; do ln -sf "$(command -v $tool)" build/bin/$tool; done
     fails ccx convergence "${few_solutions[@]}" -- convergence/block20-calculix-0.03.{time,dat,errors} convergence/convergence.tsv
+    [ -e build/out/convergence/block20-default-0.03.errors ] # the others are made
+}
+
+@test "convergence: FreeFEM fails on a mesh that is one" {
+    for tool in gmsh nodes; do ln -sf "$(command -v $tool)" build/bin/$tool; done
+    fails FreeFem++-nw convergence "${few_solutions[@]}" -- convergence/block20-mixed-0.03.{time,dat,errors} convergence/convergence.tsv
     [ -e build/out/convergence/block20-default-0.03.errors ] # the others are made
 }
 

@@ -86,7 +86,7 @@ make_cube() {
     printf '0 0 0 1 0 0 0 1 0\n1 0 0 1 1 0.5 0 1 0\n' > back.tsv # normals up, away from a body below
     for side in back front; do
         (cat cube.scene; printf '[contact roof]\nfacets = zmax\nrigid = back.tsv\nunit = cm\nside = %s\n' $side) > contact.scene
-        awk -f "$pipelines/stream.awk" -f "$pipelines/calculix/deck.awk" -f "$pipelines/calculix/deck3d.awk" \
+        awk -f "$pipelines/stream.awk" -f "$pipelines/scene.awk" -f "$pipelines/calculix/deck.awk" -f "$pipelines/calculix/deck3d.awk" \
             -v scene=contact.scene -v mesh=cube.dat > deck.inp
         awk -F, -v up=$([ $side = back ] && echo 1 || echo -1) '
             /^\*/ { part = $0; next }
@@ -108,7 +108,7 @@ make_cube() {
     printf '2 0.5\n1 0\n0 0\n' > right.tsv
     for side in left right; do
         (cat patch.scene; printf '[contact floor]\nfacets = ymin\nrigid = %s.tsv\nunit = cm\nside = %s\n' $side $side) > contact.scene
-        awk -f "$pipelines/stream.awk" -f "$pipelines/calculix/deck.awk" -f "$pipelines/calculix/deck2d.awk" -v scene=contact.scene -v mesh=square.dat > deck.inp
+        awk -f "$pipelines/stream.awk" -f "$pipelines/scene.awk" -f "$pipelines/calculix/deck.awk" -f "$pipelines/calculix/deck2d.awk" -v scene=contact.scene -v mesh=square.dat > deck.inp
         awk -F, '
             /^\*/ { part = $0; next }
             part ~ /^\*NODE/ { x[$1] = $2; y[$1] = $3 }
@@ -122,9 +122,95 @@ make_cube() {
     done
 }
 
+# A block of a jittered cloud in D dimensions, pressed by a fifth between sides on which it slides: confined, the stress is uniform.
+make_confined() {
+    cloud -d "$1" -k jittered -n 4 --box 0,0.1,0,0.1"$([ "$1" -eq 2 ] || echo ,0,0.1)" --jitter 0.3 -t -o body.dat
+    cat > confined.scene << END
+[scene]
+dim = $1
+analysis = quasi-static
+[material all]
+region = body
+E = 3000
+nu = 0.49
+rho = 1000
+[displacement walls]
+facets = xmin, xmax, $([ "$1" -eq 2 ] && echo ymin || echo ymin, ymax, zmin)
+normal = 0
+[displacement lid]
+facets = $([ "$1" -eq 2 ] && echo ymax || echo zmax)
+normal = -0.02
+END
+}
+
+@test "mixed elements: a confined block, exact to round-off in 2D and 3D, nodes of the mesh first" {
+    for dim in 2 3; do
+        make_confined $dim
+        bash "$pipelines/mixed/solve.sh" confined.scene body.dat > u.dat 2> log
+        mts check u.dat
+        grep -q '^solver seconds	[0-9]' log
+        mts print nodes.x body.dat > corners
+        mts print nodes.x u.dat | head -n "$(wc -l < corners)" | paste - corners | awk -v dim=$dim '
+            { for (i = 1; i <= dim; i++) if (!(($i - $(i + dim)) ^ 2 < 1e-20)) { print; exit 1 } }'
+        paste <(mts print nodes.x u.dat) <(mts print u u.dat) | awk -v dim=$dim '
+            { for (i = 1; i <= dim; i++) if (!(($(i + dim) + (i == dim ? 0.2 * $i : 0)) ^ 2 < 1e-18)) { print; exit 1 } }
+            END { if (NR <= 4 ^ dim) exit 1 }'
+        mts print reactions u.dat | awk -v dim=$dim '
+            NR == 2 { force = $dim / 0.1 ^ (dim - 1); if (!((force / -10350.4555 - 1) ^ 2 < 1e-14)) { print force; exit 1 } }
+            END { if (NR != 2) exit 1 }'
+    done
+}
+
+@test "mixed elements: a traction along a side is what the other side holds" {
+    make_patch
+    {
+        sed '/^\[displacement/,$d' patch.scene
+        printf '[displacement foot]\nfacets = ymin\ncomponents = 0, 0\n[traction pull]\nfacets = ymax\ncomponents = 3, -5\n'
+    } > pull.scene
+    bash "$pipelines/mixed/solve.sh" pull.scene square.dat > u.dat 2> log
+    mts print reactions u.dat | awk '!(($1 + 0.3)^2 < 1e-10 && ($2 - 0.5)^2 < 1e-10) { print; exit 1 }'
+}
+
+@test "mixed elements: what they do not understand, and a missing or failing FreeFEM, are one line" {
+    make_confined 2
+    try() { run --separate-stderr "$1" bash "$pipelines/mixed/solve.sh" "$2" body.dat; [ -z "$output" ]; }
+    (cat confined.scene; printf '[contact floor]\nfacets = ymin\nrigid = a.tsv\nunit = m\nside = left\n') > contact.scene
+    try -2 contact.scene
+    [[ $stderr == *"section [contact] is not understood"* && ${#stderr_lines[@]} -eq 1 ]]
+    sed 's/normal = -0.02/components = free, -0.02/; s/ymin$/ymax/' confined.scene > twice.scene
+    try -2 twice.scene
+    [[ $stderr == *"ymax is moved in two ways"* ]]
+    sed 's/E = 3000/E = 3000\nmodel = mooney-rivlin/' confined.scene > other.scene
+    try -2 other.scene
+    sed 's/-0.02/-0.11/' confined.scene > through.scene # through the floor
+    try -1 through.scene
+    [[ $stderr == "solve.sh: through.scene: no equilibrium found beyond 0."*" of the load" ]]
+    mkdir bin
+    for program in bash awk sed mktemp rm dirname tail cat head; do ln -s "$(command -v $program)" bin; done
+    PATH=$PWD/bin try -1 confined.scene
+    [ "$stderr" = "solve.sh: no FreeFem++-nw: run make deps" ]
+    printf '#!/bin/bash\nexit 1\n' > bin/FreeFem++-nw
+    chmod +x bin/FreeFem++-nw
+    PATH=$PWD/bin try -1 confined.scene
+    [ "$stderr" = "solve.sh: FreeFEM failed on confined.scene" ]
+}
+
+@test "reference: a quarter of a table becomes the whole body" {
+    printf '# head\n0.05 0 0.004 0\n0.05 0.05 0 -0.01\n' | awk -f "$pipelines/reference.awk" -v push=0.02 > whole.dat
+    mts check whole.dat
+    paste <(mts print nodes.x whole.dat) <(mts print u whole.dat) | awk '{ printf "%.4f %.4f %.4f %.4f\n", $1, $2, $3 + 1e-9, $4 + 1e-9 }' |
+        sort > rows
+    [ "$(cat rows)" = "0.0000 0.0000 0.0000 0.0000
+0.0000 0.0500 -0.0040 -0.0100
+0.0000 0.1000 0.0000 -0.0200
+0.1000 0.0000 0.0000 0.0000
+0.1000 0.0500 0.0040 -0.0100
+0.1000 0.1000 0.0000 -0.0200" ]
+}
+
 @test "deck: what it does not understand, and a stream cut short, are errors" {
     make_patch
-    deck() { awk -f "$pipelines/stream.awk" -f "$pipelines/calculix/deck.awk" -f "$pipelines/calculix/deck2d.awk" -v scene="$1" -v mesh="$2"; }
+    deck() { awk -f "$pipelines/stream.awk" -f "$pipelines/scene.awk" -f "$pipelines/calculix/deck.awk" -f "$pipelines/calculix/deck2d.awk" -v scene="$1" -v mesh="$2"; }
     (cat patch.scene; printf '[pressure top]\nfacets = ymax\nvalue = 1\n') > pressure.scene
     run ! deck pressure.scene square.dat
     sed 's/facets = ymax/facets = roof/' patch.scene > roof.scene
@@ -169,14 +255,27 @@ make_cube() {
 }
 
 @test "speed-error: the time to an error, on a line in log-log; none beyond what was computed" {
-    printf 'case\tscheme\th\tnodes\tprepare_s\tsolve_s\ttotal_s\terror_percent\tforce_N\n' > table
-    for s in default calculix; do
-        printf "c\t$s\t2\t100\t0\t1\t%s\t4\t-\nc\t$s\t1\t400\t0\t8\t%s\t0.5\t-\n" \
-            $([ $s = default ] && echo 1 8 || echo 10 80)
+    printf 'case\tscheme\th\tnodes\tprepare_s\tsolve_s\ttotal_s\terror_percent\tforce_N\tsolver_s\n' > table
+    for s in default calculix mixed; do
+        printf "c\t$s\t2\t100\t0\t1\t%s\t4\t-\t%s\nc\t$s\t1\t400\t0\t8\t%s\t0.5\t-\t%s\n" \
+            $([ $s = default ] && echo 1 - 8 - || { [ $s = mixed ] && echo 2 0.5 16 4 || echo 10 - 80 -; })
     done >> table
     awk -f "$pipelines/speed-error/reach.awk" table > reach
-    grep -q "^c	default	4	>8	8$" reach
-    grep -q "^c	calculix	40	>80	80$" reach
+    grep -q "^c	default	4	>8	>8	8	4	>8	>8$" reach
+    grep -q "^c	calculix	40	>80	>80	80	4	>8	>8$" reach
+    grep -q "^c	mixed	8	>16	>16	16	4	>8	>8$" reach
+    grep -q "^c	mixed_solver	2	>4	>4	4	2	>4	>4$" reach
+}
+
+@test "speed-error: a row from errors, times and force; none where one of the first two is missing" {
+    printf 'avg_relative\t0.0123\n' > cube-mixed-0.03.errors
+    printf 'prepare\t0.5\nsolve\t1.5\nsolver\t1\nnodes\t100\n' > cube-mixed-0.03.time
+    awk -f "$pipelines/speed-error/table.awk" cube-mixed-0.03.errors > table
+    grep -q "^cube	mixed	0.03	100	0.500	1.500	2.000	1.2300	-	1.000$" table
+    printf '0.1 -9.5 -9.25\n' > cube-mixed-0.03.force
+    awk -f "$pipelines/speed-error/table.awk" cube-mixed-0.03.errors | grep -q "1.2300	9.25	1.000$"
+    rm cube-mixed-0.03.time
+    run -1 awk -f "$pipelines/speed-error/table.awk" cube-mixed-0.03.errors
 }
 
 @test "the tables of the brain section are those that its geometry gives" {

@@ -1,6 +1,6 @@
 # The input deck of a scene for CalculiX, with one of deck2d.awk and deck3d.awk for the conditions in that dimension:
 #
-#     awk -f pipelines/stream.awk -f deck.awk -f deck3d.awk -v scene=FILE -v mesh=STREAM [-v increment=PART] [-v solver=NAME] > FILE.inp
+#     awk -f pipelines/stream.awk -f pipelines/scene.awk -f deck.awk -f deck3d.awk -v scene=FILE -v mesh=STREAM [-v increment=PART] [-v solver=NAME] > FILE.inp
 #
 # STREAM (text) holds what `nodes` writes. Its triangles become quadratic plane strain elements (CPE6), its tetrahedra
 # quadratic ones (C3D10), with the mid-nodes on the straight edges, so that nodes 1..N are those of the stream and the
@@ -42,41 +42,7 @@ BEGIN {
     print "*END STEP"
 }
 
-# ---- scene -----------------------------------------------------------------------------------------------------------
-
-# Sections k = 1..section_count: kind[k], label[k], scene_value[k, KEY]; [scene] itself under scene_value["scene", KEY].
-function read_scene(file,    line, equals, where, words) {
-    folder = file
-    if (!sub(/\/[^\/]*$/, "/", folder)) folder = ""
-    while ((getline line < file) > 0) {
-        sub(/(^|[ \t])[#;].*/, "", line)
-        if (line ~ /^\[/) {
-            gsub(/[][]/, "", line)
-            split(line, words)
-            if (words[1] == "scene") { where = "scene"; continue }
-            where = ++section_count
-            kind[where] = words[1]
-            label[where] = words[2]
-        } else if ((equals = index(line, "=")) > 0) {
-            scene_value[where, trim(substr(line, 1, equals - 1))] = trim(substr(line, equals + 1))
-        }
-    }
-    close(file)
-    if (section_count == 0) die(file ": no scene")
-}
-
-function trim(text) {
-    gsub(/^[ \t]+|[ \t]+$/, "", text)
-    return text
-}
-
-function metres(unit) {
-    if (unit == "m") return 1
-    if (unit == "cm") return 1e-2
-    if (unit == "mm") return 1e-3
-    if (unit == "um") return 1e-6
-    die("unknown unit " unit)
-}
+# ---- tables of the scene -----------------------------------------------------------------------------------------------
 
 # Rows of a table of the scene: table[row, column], in metres, rows from 1; returns their number. Blank lines and
 # comments are skipped.
@@ -93,13 +59,6 @@ function read_table(k, key, width,    file, line, field, count, n, i) {
     close(file)
     if (n < 2) die(file ": no table")
     return n
-}
-
-# The number, from 0, of NAME among the names= of a section.
-function name_index(section, name,    names, count, i) {
-    count = split(attribute[section, "names"], names, ",")
-    for (i = 1; i <= count; i++) if (names[i] == name) return i - 1
-    die("no group " name " in section " section)
 }
 
 # ---- mesh ------------------------------------------------------------------------------------------------------------

@@ -2,7 +2,7 @@
 # A converged solution: reference.sh SCENE MESH UNIT > TABLE (x y ux uy, m). Run by hand (make convergence-references); its tables
 # are kept in examples/convergence, so that the study needs minutes only.
 #
-# CalculiX's quadratic triangles (CPE6) on MESH (gmsh), its halves and its quarters; the fields at the common nodes give the order
+# Mixed elements (quadratic displacement, linear pressure) on MESH (gmsh), its halves and its quarters; the fields at the common nodes give the order
 # at which they converge, and with it the limit at the nodes of the halves (Richardson). The head of the table tells all that.
 set -euo pipefail
 export LC_ALL=C
@@ -15,7 +15,7 @@ cp "$2" "$work/0.msh"
 for level in 0 1 2; do
     [ $level -eq 0 ] || gmsh -v 1 "$work/$((level - 1)).msh" -refine -o "$work/$level.msh" > /dev/null
     nodes -u "$unit" -t "$work/$level.msh" > "$work/$level.dat"
-    bash "$here/../calculix/solve.sh" "$scene" "$work/$level.dat" 1 > "$work/$level.u" 2> "$work/$level.log" ||
+    bash "$here/../mixed/solve.sh" "$scene" "$work/$level.dat" > "$work/$level.u" 2> "$work/$level.log" ||
         { cat "$work/$level.log" >&2; exit 1; }
     paste <(mts print nodes.x "$work/$level.u") <(mts print u "$work/$level.u") > "$work/$level.tsv"
 done
@@ -30,7 +30,7 @@ awk -v scene="$(basename "$scene")" -v nodes="$(sed -n 's/^nodes\t//p' "$work"/[
         for (i = 1; i <= count; i++) { first += change(0, 1, common[i]); second += change(1, 2, common[i]) }
         order = log(first / second) / log(2)
         share = 1 / (2 ^ order - 1)
-        printf "# %s by CalculiX CPE6 on nested meshes of %snodes, extrapolated.\n", scene, nodes
+        printf "# %s by mixed elements (P2-P1, FreeFEM) on nested meshes of %snodes, extrapolated.\n", scene, nodes
         printf "# Mean changes %.5f and %.5f mm: order %.2f; from the finest to here %.5f mm.\n# x_m y_m ux_m uy_m\n",
             1e3 * first / count, 1e3 * second / count, order, 1e3 * share * second / count
         for (i = 1; i <= places; i++) {

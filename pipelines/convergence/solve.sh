@@ -6,6 +6,9 @@
 #   mls1, mmls         the founding paper's: 4 points per cell, pointwise volume, conditions at the nodes, regularised weight, constant
 #                      radius (2D), or quartic weight and local radius (3D); mmls with mu = 1e-7 for lengths in mm
 #   default            these programs by default
+#   mixed              FreeFEM: quadratic displacement and linear pressure on the same mesh, Newton's method, a sparse direct solver; its
+#                      seconds of solution are assembly and direct solver, `solver` the latter alone, those of preparation the rest of
+#                      the process
 #   calculix           quadratic triangles or tetrahedra on the same mesh, the load in halves, with contact in tenths, or less where
 #                      that fails; in 3D by the
 #                      quicker one of its solvers, direct or iterative
@@ -39,6 +42,24 @@ if [ "$scheme" = calculix ]; then
         $1 == "nodes" { nodes = $2 }
         $1 == "processor seconds" && (least == "" || $2 < least) { least = $2 }
         END { printf "prepare\t0\nsolve\t%s\nnodes\t%d\n", least, nodes }' "$work/logs" > "$work/time"
+    finish
+fi
+
+if [ "$scheme" = mixed ]; then
+    nodes -u "$unit" -t "$mesh" > "$work/cloud.dat"
+    for _ in 1 2 3; do
+        bash "$here/../mixed/solve.sh" "$scene" "$work/cloud.dat" > "$work/u.dat" 2> "$work/log" || { cat "$work/log" >&2; exit 1; }
+        cat "$work/log" >> "$work/logs"
+        awk -F '\t' '$1 == "processor seconds" { exit $2 < 5 }' "$work/log" && break
+    done
+    awk -F '\t' '
+        { told[$1] = $2 }
+        $1 == "processor seconds" && (least == "" || $2 < least) {
+            least = $2
+            solver = told["solver seconds"]
+            solve = solver + told["assembly seconds"]
+        }
+        END { printf "prepare\t%s\nsolve\t%s\nsolver\t%s\nnodes\t%d\n", least - solve, solve, solver, told["nodes"] }' "$work/logs" > "$work/time"
     finish
 fi
 
