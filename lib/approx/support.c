@@ -47,9 +47,23 @@ static double distance2_of(int dim, const double *a, const double *b)
     return sum;
 }
 
+/* What lists are made of. */
+struct search {
+    const struct support_options *options;
+    const struct point_grid *grid;
+    const struct reach *reach; /* NULL: supports are as large as their radii */
+    struct reach_places places;
+    const double *x;
+    const char *what;
+};
+
 /* One thread's growing lists and scratch. */
 struct worker {
     struct index_list list;
+    int64_t around_count, around_capacity; /* neighbours seen around corners */
+    int64_t *around_pair;                  /* places in the list */
+    double *around_offset;
+    struct reach_work reach;
     struct candidates candidates;
     double bounds[MOST_OF_GROUP]; /* on the gradients at each point of the group, see steep_bounds */
     struct mls_work work;
@@ -61,16 +75,30 @@ struct worker {
 static void worker_free(struct worker *worker)
 {
     free(worker->list.index);
+    free(worker->around_pair);
+    free(worker->around_offset);
+    reach_work_free(&worker->reach);
     candidates_free(&worker->candidates);
     free(worker->order);
     mls_work_free(&worker->work);
     steep_work_free(&worker->steep);
 }
 
-/* Keep the `most` nearest of the neighbours in index[count], ties going to the lower index. */
-static enum status keep_nearest(const struct point_grid *grid, const double *x, int64_t most, int32_t *index,
-                                int64_t *count, struct worker *worker, struct error *error)
+/* Squared distance from x to a neighbour; around a corner, along the path. */
+static double neighbour_distance2(const struct point_grid *grid, const double *x, int32_t node,
+                                  const double *image)
 {
+    static const double origin[3] = {0.0, 0.0, 0.0};
+    return image != NULL ? distance2_of(grid->dim, image, origin)
+                         : distance2_of(grid->dim, x, grid->x + (int64_t)node * grid->dim);
+}
+
+/* Keep the `most` nearest of the neighbours in index[count], ties going to the lower index; image[count *
+ * dim] or NULL. */
+static enum status keep_nearest(const struct point_grid *grid, const double *x, int64_t most, int32_t *index,
+                                double *image, int64_t *count, struct worker *worker, struct error *error)
+{
+    int dim = grid->dim;
     if (most <= 0 || *count <= most) {
         return STATUS_OK;
     }
@@ -86,7 +114,7 @@ static enum status keep_nearest(const struct point_grid *grid, const double *x, 
     }
     double *distance2 = worker->order;
     for (int64_t i = 0; i < *count; i++) {
-        distance2[i] = distance2_of(grid->dim, x, grid->x + (int64_t)index[i] * grid->dim);
+        distance2[i] = neighbour_distance2(grid, x, index[i], image != NULL ? image + i * dim : NULL);
     }
     /* Drop the farthest (of equals the highest index) until `most` remain; the order stays ascending. */
     for (; *count > most; --*count) {
@@ -98,6 +126,10 @@ static enum status keep_nearest(const struct point_grid *grid, const double *x, 
             index[i] = index[i + 1];
             distance2[i] = distance2[i + 1];
         }
+        if (image != NULL) {
+            memmove(image + farthest * dim, image + (farthest + 1) * dim,
+                    (size_t)((*count - 1 - farthest) * dim) * sizeof *image);
+        }
     }
     return STATUS_OK;
 }
@@ -105,12 +137,14 @@ static enum status keep_nearest(const struct point_grid *grid, const double *x, 
 /* Mean spacing of the nodes in a support: the edge of the cube (square) that each of them has to itself. A
  * list cut to the nearest reaches only as far as its farthest node. */
 static double spacing_within(const struct support_options *options, const struct point_grid *grid,
-                             const double *x, const int32_t *index, int64_t count, double widen)
+                             const double *x, const int32_t *index, const double *image, int64_t count,
+                             double widen)
 {
     double reach = 0.0;
     if (count == options->most) {
         for (int64_t i = 0; i < count; i++) {
-            double distance2 = distance2_of(grid->dim, x, grid->x + (int64_t)index[i] * grid->dim);
+            double distance2 =
+                neighbour_distance2(grid, x, index[i], image != NULL ? image + i * grid->dim : NULL);
             reach = distance2 > reach ? distance2 : reach;
         }
         reach = sqrt(reach);
@@ -126,23 +160,26 @@ static double spacing_within(const struct support_options *options, const struct
 
 /* Whether a support serves: enough nodes, a good moment matrix, bounded gradients. They need not be looked at
  * where `bound`, known of them, says enough. */
-static enum status judge(const struct support_options *options, const struct point_grid *grid,
-                         const double *x, double widen, const int32_t *index, int64_t count, double bound,
-                         struct worker *worker, bool *serves, struct error *error)
+static enum status judge(const struct search *search, const double *x, double widen, const int32_t *index,
+                         const double *image, int64_t count, double bound, struct worker *worker,
+                         bool *serves, struct error *error)
 {
+    const struct support_options *options = search->options;
+    const struct point_grid *grid = search->grid;
     enum mls_verdict verdict;
     struct mls_support support = {.x = x,
                                   .nodes = grid->x,
                                   .radius = grid->radius,
                                   .widen = widen,
                                   .neighbours = index,
-                                  .count = count};
+                                  .count = count,
+                                  .image = image};
     double steepest;
     *serves = false;
     if (count < options->least) {
         return STATUS_OK;
     }
-    double spacing = spacing_within(options, grid, x, index, count, widen);
+    double spacing = spacing_within(options, grid, x, index, image, count, widen);
     if (bound * spacing <= options->gradient_bound) {
         *serves = true;
         return STATUS_OK;
@@ -154,13 +191,50 @@ static enum status judge(const struct support_options *options, const struct poi
     return status;
 }
 
-/* Append one point's neighbours to the worker's list; a point in a group has its candidates found. */
-static enum status find_support(const struct support_options *options, const struct point_grid *grid,
-                                const double *x, bool grouped, double bound, struct worker *worker,
-                                double *widen, bool *serves, struct error *error)
+/* Put down the neighbours of the list from `first` on that are seen around corners: those whose images are
+ * not where they are. */
+static enum status note_around(const struct point_grid *grid, const double *x, const double *image,
+                               int64_t first, struct worker *worker, struct error *error)
+{
+    int dim = grid->dim;
+    for (int64_t i = first; i < worker->list.count; i++, image += dim) {
+        const double *node = grid->x + (int64_t)worker->list.index[i] * dim;
+        bool straight = true;
+        for (int a = 0; a < dim; a++) {
+            straight = straight && image[a] == node[a] - x[a];
+        }
+        if (straight) {
+            continue;
+        }
+        if (worker->around_count == worker->around_capacity) {
+            int64_t capacity = 2 * worker->around_capacity + 64;
+            int64_t *pair = array_grow(worker->around_pair, capacity, sizeof *pair);
+            worker->around_pair = pair != NULL ? pair : worker->around_pair;
+            double *offset = array_grow(worker->around_offset, capacity, (size_t)dim * sizeof *offset);
+            worker->around_offset = offset != NULL ? offset : worker->around_offset;
+            if (pair == NULL || offset == NULL) {
+                return fail_memory(error, "neighbours around corners");
+            }
+            worker->around_capacity = capacity;
+        }
+        worker->around_pair[worker->around_count] = i;
+        memcpy(worker->around_offset + worker->around_count++ * dim, image, (size_t)dim * sizeof *image);
+    }
+    return STATUS_OK;
+}
+
+/* Append the neighbours of point p to the worker's list; a point in a group has its candidates found. */
+static enum status find_support(const struct search *search, int64_t p, bool grouped, double bound,
+                                struct worker *worker, double *widen, bool *serves, struct error *error)
 {
     enum status status = STATUS_OK;
+    const struct support_options *options = search->options;
+    const struct point_grid *grid = search->grid;
+    const double *x = search->x + p * grid->dim;
     int64_t first = worker->list.count;
+    if (search->reach != NULL) {
+        TRY(reach_begin(search->reach, &search->places, p, x, &worker->reach, error));
+    }
     for (*widen = 1.0; *widen <= widen_limit; *widen *= widen_step) {
         worker->list.count = first;
         if (*widen > 1.0 || !grouped) {
@@ -170,15 +244,25 @@ static enum status find_support(const struct support_options *options, const str
         }
         int64_t count = worker->list.count - first;
         int32_t *index = worker->list.index + first;
-        TRY(keep_nearest(grid, x, options->most, index, &count, worker, error));
+        double *image = NULL;
+        bool as_bound = *widen == 1.0;
+        if (search->reach != NULL) {
+            if (*widen == 1.0 && !grouped) {
+                TRY(reach_group(search->reach, x, x, index, count, &worker->reach, error));
+            }
+            TRY(reach_filter(search->reach, *widen, index, &count, &worker->reach, error));
+            image = worker->reach.around > 0 ? worker->reach.image : NULL;
+            as_bound = as_bound && worker->reach.changed == 0;
+        }
+        TRY(keep_nearest(grid, x, options->most, index, image, &count, worker, error));
         worker->list.count = first + count;
         *serves = true;
         if (options->widen) {
-            TRY(judge(options, grid, x, *widen, index, count, *widen > 1.0 ? INFINITY : bound, worker, serves,
+            TRY(judge(search, x, *widen, index, image, count, as_bound ? bound : INFINITY, worker, serves,
                       error));
         }
         if (*serves) {
-            return STATUS_OK;
+            return image != NULL ? note_around(grid, x, image, first, worker, error) : STATUS_OK;
         }
     }
 done:
@@ -197,16 +281,20 @@ static bool is_finite(int dim, const double *x)
 
 /* What the `count` points x in the box low .. high share: the search for candidates, and bounds on their
  * gradients where those will be asked for. */
-static enum status study_group(const struct support_options *options, const struct point_grid *grid,
-                               const double *x, int64_t count, const double *low, const double *high,
-                               struct worker *worker, struct error *error)
+static enum status study_group(const struct search *search, const double *x, int64_t count, const double *low,
+                               const double *high, struct worker *worker, struct error *error)
 {
     enum status status = STATUS_OK;
+    const struct support_options *options = search->options;
     for (int64_t p = 0; p < count; p++) {
         worker->bounds[p] = INFINITY;
     }
     if (count > 1) {
-        TRY(candidates_find(&worker->candidates, grid, low, high, 1.0, error));
+        TRY(candidates_find(&worker->candidates, search->grid, low, high, 1.0, error));
+        if (search->reach != NULL) {
+            TRY(reach_group(search->reach, low, high, worker->candidates.list.index,
+                            worker->candidates.list.count, &worker->reach, error));
+        }
         if (options->widen && options->most <= 0 && count >= fewest_to_bound) {
             TRY(steep_bounds(&options->mls, &worker->candidates, count, x, &worker->steep, worker->bounds,
                              error));
@@ -218,12 +306,12 @@ done:
 
 /* Study the points that follow `first` within a box of edges up to `extent`; returns the end of that group.
  * The first point is finite. */
-static enum status begin_group(const struct support_options *options, const struct point_grid *grid,
-                               const double *x, int64_t first, int64_t last, double extent,
+static enum status begin_group(const struct search *search, int64_t first, int64_t last, double extent,
                                struct worker *worker, int64_t *end, struct error *error)
 {
     double low[3], high[3];
-    int dim = grid->dim;
+    int dim = search->grid->dim;
+    const double *x = search->x;
     memcpy(low, x + first * dim, (size_t)dim * sizeof *low);
     memcpy(high, x + first * dim, (size_t)dim * sizeof *high);
     last = first + MOST_OF_GROUP < last ? first + MOST_OF_GROUP : last;
@@ -241,7 +329,7 @@ static enum status begin_group(const struct support_options *options, const stru
         memcpy(low, new_low, (size_t)dim * sizeof *low);
         memcpy(high, new_high, (size_t)dim * sizeof *high);
     }
-    return study_group(options, grid, x + first * dim, *end - first, low, high, worker, error);
+    return study_group(search, x + first * dim, *end - first, low, high, worker, error);
 }
 
 /* How far apart the points of a group may be where these are the neighbours of one: candidates are found once
@@ -256,12 +344,13 @@ static double extent_there(const struct point_grid *grid, const int32_t *index, 
 }
 
 /* The message for a point without a good support; a stray node shows by its radius. */
-static enum status fail_support(const struct point_grid *grid, const char *what, int64_t row, const double *x,
-                                const int32_t *index, int64_t count, struct error *error)
+static enum status fail_support(const struct search *search, int64_t row, const int32_t *index, int64_t count,
+                                struct error *error)
 {
     char place[96], stray[96] = "";
+    const struct point_grid *grid = search->grid;
     int64_t widest = 0;
-    point_text(grid->dim, x, place);
+    point_text(grid->dim, search->x + row * grid->dim, place);
     for (int64_t i = 1; i < count; i++) {
         widest = grid->radius[index[i]] > grid->radius[index[widest]] ? i : widest;
     }
@@ -270,38 +359,39 @@ static enum status fail_support(const struct point_grid *grid, const char *what,
                  grid->radius[index[widest]], index[widest]);
     }
     return fail(error, STATUS_VERDICT,
-                "%s: row %lld at %s: no good support even at %g times the radius (%lld nodes within%s): "
+                "%s: row %lld at %s: no good support even at %g times the radius (%lld nodes within%s%s): "
                 "coplanar, stray or too few nodes there",
-                what, (long long)row, place, widen_limit, (long long)count, stray);
+                search->what, (long long)row, place, widen_limit, (long long)count,
+                search->reach != NULL ? " reach through the cells" : "", stray);
 }
 
 /* Fill the worker's list with the neighbours of the points [first, last); their numbers go to lists->ptr. */
-static enum status build_chunk(const struct support_options *options, const struct point_grid *grid,
-                               int64_t first, int64_t last, const double *x, const char *what,
+static enum status build_chunk(const struct search *search, int64_t first, int64_t last,
                                struct support_lists *lists, struct worker *worker, struct error *error)
 {
     enum status status = STATUS_OK;
+    const struct point_grid *grid = search->grid;
     int dim = grid->dim;
     double extent = 0.0;
     int64_t group = first, end_of_group = first;
-    worker->list.count = 0;
+    worker->list.count = worker->around_count = 0;
     for (int64_t p = first; p < last; p++) {
         bool serves;
-        const double *point = x + p * dim;
-        if (!is_finite(dim, point)) {
-            return fail(error, STATUS_INPUT, "%s: row %lld: not a finite coordinate", what, (long long)p);
+        if (!is_finite(dim, search->x + p * dim)) {
+            return fail(error, STATUS_INPUT, "%s: row %lld: not a finite coordinate", search->what,
+                        (long long)p);
         }
         if (p == end_of_group) {
             group = p;
-            TRY(begin_group(options, grid, x, p, last, extent, worker, &end_of_group, error));
+            TRY(begin_group(search, p, last, extent, worker, &end_of_group, error));
         }
         int64_t before = worker->list.count;
-        TRY(find_support(options, grid, point, end_of_group > group + 1, worker->bounds[p - group], worker,
+        TRY(find_support(search, p, end_of_group > group + 1, worker->bounds[p - group], worker,
                          &lists->widen[p], &serves, error));
         const int32_t *index = worker->list.index + before;
         int64_t count = worker->list.count - before;
         if (!serves) {
-            return fail_support(grid, what, p, point, index, count, error);
+            return fail_support(search, p, index, count, error);
         }
         lists->ptr[p + 1] = count;
         if (p + 1 == end_of_group) {
@@ -312,11 +402,39 @@ done:
     return status;
 }
 
-/* Append the list of the points [first, last), which follow those of `all`; sum the counts and take stock. */
-static enum status append_chunk(struct support_lists *lists, int64_t first, int64_t last,
-                                const struct index_list *own, struct index_list *all, struct error *error)
+/* Append a worker's neighbours around corners to those of the lists, whose pairs are `before` so far. */
+static enum status append_around(int dim, const struct worker *worker, int64_t before,
+                                 struct support_lists *lists, struct error *error)
 {
+    int64_t count = lists->around_count + worker->around_count;
+    if (worker->around_count == 0) {
+        return STATUS_OK;
+    }
+    int64_t *pair = array_grow(lists->around_pair, count, sizeof *pair);
+    lists->around_pair = pair != NULL ? pair : lists->around_pair;
+    double *offset = array_grow(lists->around_offset, count, (size_t)dim * sizeof *offset);
+    lists->around_offset = offset != NULL ? offset : lists->around_offset;
+    if (pair == NULL || offset == NULL) {
+        return fail_memory(error, "neighbours around corners");
+    }
+    for (int64_t i = 0; i < worker->around_count; i++) {
+        pair[lists->around_count + i] = before + worker->around_pair[i];
+    }
+    memcpy(offset + lists->around_count * dim, worker->around_offset,
+           (size_t)(worker->around_count * dim) * sizeof *offset);
+    lists->around_count = count;
+    return STATUS_OK;
+}
+
+/* Append the list of the points [first, last), which follow those of `all`; sum the counts and take stock. */
+static enum status append_chunk(int dim, struct support_lists *lists, int64_t first, int64_t last,
+                                const struct worker *worker, struct index_list *all, struct error *error)
+{
+    const struct index_list *own = &worker->list;
     enum status status = index_list_reserve(all, own->count, error);
+    if (status == STATUS_OK) {
+        status = append_around(dim, worker, all->count, lists, error);
+    }
     if (status != STATUS_OK) {
         return status;
     }
@@ -337,8 +455,7 @@ static enum status append_chunk(struct support_lists *lists, int64_t first, int6
 
 /* All chunks, appended to `all` in their order whichever thread has built them. Of several that fail the
  * first tells. */
-static enum status build_chunks(const struct support_options *options, const struct point_grid *grid,
-                                const double *x, const char *what, struct support_lists *lists,
+static enum status build_chunks(const struct search *search, struct support_lists *lists,
                                 struct index_list *all, struct error *error)
 {
     int64_t chunk_count = (lists->count + chunk_points - 1) / chunk_points;
@@ -351,11 +468,12 @@ static enum status build_chunks(const struct support_options *options, const str
             struct error own;
             int64_t first = c * chunk_points;
             int64_t last = first + chunk_points < lists->count ? first + chunk_points : lists->count;
-            enum status outcome = build_chunk(options, grid, first, last, x, what, lists, &worker, &own);
+            enum status outcome = build_chunk(search, first, last, lists, &worker, &own);
 #pragma omp ordered
             if (failure == STATUS_OK) {
-                failure = outcome == STATUS_OK ? append_chunk(lists, first, last, &worker.list, all, &own)
-                                               : outcome;
+                failure = outcome == STATUS_OK
+                              ? append_chunk(search->grid->dim, lists, first, last, &worker, all, &own)
+                              : outcome;
                 if (failure != STATUS_OK) {
                     *error = own;
                 }
@@ -369,12 +487,24 @@ static enum status build_chunks(const struct support_options *options, const str
 enum status support_build(const struct support_options *options, const struct point_grid *grid, int64_t count,
                           const double *x, const char *what, struct support_lists *lists, struct error *error)
 {
+    return support_build_within(options, grid, NULL, NULL, count, x, what, lists, error);
+}
+
+enum status support_build_within(const struct support_options *options, const struct point_grid *grid,
+                                 const struct reach *reach, const struct reach_places *places, int64_t count,
+                                 const double *x, const char *what, struct support_lists *lists,
+                                 struct error *error)
+{
     enum status status;
     struct index_list all = {0};
     *lists = (struct support_lists){.count = count, .widest = 1.0};
     TRY(NEW_ARRAY(&lists->ptr, count + 1, error));
     TRY(NEW_ARRAY(&lists->widen, count, error));
-    TRY(build_chunks(options, grid, x, what, lists, &all, error));
+    struct search search = {.options = options, .grid = grid, .reach = reach, .x = x, .what = what};
+    if (places != NULL) {
+        search.places = *places;
+    }
+    TRY(build_chunks(&search, lists, &all, error));
     lists->idx = array_grow(all.index, all.count, sizeof *all.index); /* no longer than it need be */
     if (lists->idx == NULL) {
         TRY(fail_memory(error, "neighbour list"));
@@ -393,5 +523,7 @@ void support_free(struct support_lists *lists)
     free(lists->ptr);
     free(lists->idx);
     free(lists->widen);
+    free(lists->around_pair);
+    free(lists->around_offset);
     *lists = (struct support_lists){0};
 }
