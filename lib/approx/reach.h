@@ -20,9 +20,10 @@ extern const char *const reach_names[REACH_RULE_COUNT];
 
 /* A facet of the boundary: its plane is normal . x = offset, the body where it is less. */
 struct reach_facet {
-    int32_t node[3];
+    int32_t node[3], cell;
     double normal[3], offset;
-    double middle[3], radius; /* of a ball around it */
+    double dual[2][3], from[2]; /* dual . x - from: the second and third barycentric coordinates of x there */
+    double middle[3], radius;   /* of a ball around it */
 };
 
 /* The cells and the grid are the caller's and must outlive this. */
@@ -43,8 +44,8 @@ struct reach {
     bool *corner;            /* node_count: paths may bend there */
     int64_t *edge_ptr; /* node_count + 1: 3D: the other ends of the re-entrant edges at each node (CSR) */
     int32_t *edge;
-    int64_t *view_ptr; /* node_count + 1: the nodes in sight of each corner, within their radii (CSR) */
-    int32_t *view;
+    int64_t *seen_ptr; /* node_count + 1: the corners that a node, within its radius, is in sight of (CSR) */
+    int32_t *seen;
 };
 
 /* Errors: STATUS_INPUT for cells that share a face with more than one other; STATUS_SYSTEM (memory). */
@@ -63,20 +64,22 @@ struct reach_places {
 
 /* Scratch space for one thread, all zero at first; grows on demand. */
 struct reach_work {
-    const double *x;       /* the point that is looked from */
-    const int32_t *cell;   /* the cells that it lies in */
-    int64_t cell_count;    /* -1: not looked for yet */
-    int32_t given[2];      /* what `cell` may view */
-    struct index_list own; /* likewise */
-    uint32_t serial;       /* of the point */
-    uint32_t *mark;        /* node_count: 2 serial, and 1 more for a node that is hidden */
-    double *length;        /* node_count: of the shortest path to a hidden node, infinite: none yet */
-    int32_t *before;       /* node_count: the node before on that path, -1: the point itself */
+    const double *x;                /* the point that is looked from */
+    const int32_t *cell;            /* the cells that it lies in */
+    int64_t cell_count;             /* -1: not looked for yet */
+    int32_t given[2];               /* what `cell` may view */
+    struct index_list own;          /* likewise */
+    uint32_t serial;                /* of the point */
+    uint32_t *mark;                 /* node_count: 2 serial, and 1 more for a node that is hidden */
+    uint32_t pass;                  /* serial of the search for paths */
+    uint32_t *passed;               /* node_count: the last pass that put down a length and a node before */
+    double *length;                 /* node_count: of the shortest path, infinite: none yet */
+    int32_t *before;                /* node_count: the node before on that path, -1: the point itself */
     int32_t *near_begin, *near_end; /* node_count: for the candidates of the group, the facets that may be
                                        between, in `near` */
     struct index_list near;
     int32_t *passes; /* scratch */
-    struct index_list corners, stack, visited;
+    struct index_list hidden, stack, visited;
     int64_t changed;  /* candidates of the last filter that were out of sight */
     int64_t around;   /* neighbours of the last filter that are seen around corners */
     int64_t capacity; /* neighbours that `image` serves */

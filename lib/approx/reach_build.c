@@ -66,6 +66,34 @@ done:
     return status;
 }
 
+/* The dual of the edges from the first vertex, within the facet. */
+static void set_dual(const struct reach *reach, struct reach_facet *facet)
+{
+    int dim = reach->cells.dim;
+    double edge[2][3] = {{0.0}}, product[2][2] = {{0.0}};
+    const double *first = reach->cells.x + (int64_t)facet->node[0] * dim;
+    for (int k = 0; k < dim - 1; k++) {
+        for (int a = 0; a < dim; a++) {
+            edge[k][a] = reach->cells.x[(int64_t)facet->node[k + 1] * dim + a] - first[a];
+        }
+    }
+    for (int a = 0; a < dim; a++) {
+        product[0][0] += edge[0][a] * edge[0][a];
+        product[0][1] += edge[0][a] * edge[1][a];
+        product[1][1] += edge[1][a] * edge[1][a];
+    }
+    if (dim == 2) {
+        product[1][1] = 1.0;
+    }
+    double determinant = product[0][0] * product[1][1] - product[0][1] * product[0][1];
+    for (int a = 0; a < dim; a++) {
+        facet->dual[0][a] = (product[1][1] * edge[0][a] - product[0][1] * edge[1][a]) / determinant;
+        facet->dual[1][a] = (product[0][0] * edge[1][a] - product[0][1] * edge[0][a]) / determinant;
+        facet->from[0] += facet->dual[0][a] * first[a];
+        facet->from[1] += facet->dual[1][a] * first[a];
+    }
+}
+
 static enum status set_facets(const struct faces *faces, struct reach *reach, struct error *error)
 {
     enum status status;
@@ -76,6 +104,7 @@ static enum status set_facets(const struct faces *faces, struct reach *reach, st
         struct reach_facet *facet = &reach->facet[f];
         double area[3] = {0.0, 0.0, 0.0};
         memcpy(facet->node, faces->node + f * dim, (size_t)dim * sizeof *facet->node);
+        facet->cell = faces->cell[2 * f];
         face_area_vector(dim, reach->cells.x, facet->node, area);
         double size = sqrt(area[0] * area[0] + area[1] * area[1] + area[2] * area[2]);
         for (int a = 0; a < dim; a++) {
@@ -89,6 +118,7 @@ static enum status set_facets(const struct faces *faces, struct reach *reach, st
             const double *vertex = reach->cells.x + (int64_t)facet->node[k] * dim;
             facet->radius = fmax(facet->radius, reach_distance(dim, facet->middle, vertex) * (1.0 + 1e-6));
         }
+        set_dual(reach, facet);
     }
 done:
     return status;
@@ -298,11 +328,11 @@ static enum status file_views(struct reach *reach, struct reach_work *work, stru
             TRY(reach_sees(reach, x, reach->star + reach->star_ptr[n],
                            reach->star_ptr[n + 1] - reach->star_ptr[n], near.index[i], work, &seen, error));
             if (seen && near.index[i] != n) {
-                TRY(add_pair(&pairs, (int32_t)n, near.index[i], error));
+                TRY(add_pair(&pairs, near.index[i], (int32_t)n, error));
             }
         }
     }
-    TRY(file_pairs(&pairs, reach->cells.node_count, &reach->view_ptr, &reach->view, error));
+    TRY(file_pairs(&pairs, reach->cells.node_count, &reach->seen_ptr, &reach->seen, error));
 done:
     free(pairs.pair);
     free(near.index);
@@ -347,7 +377,7 @@ void reach_free(struct reach *reach)
     free(reach->corner);
     free(reach->edge_ptr);
     free(reach->edge);
-    free(reach->view_ptr);
-    free(reach->view);
+    free(reach->seen_ptr);
+    free(reach->seen);
     *reach = (struct reach){0};
 }

@@ -1,4 +1,4 @@
-/* Shortest paths around corners (Dijkstra), and their bends slid along re-entrant edges. */
+/* Shortest paths around corners, and their bends slid along re-entrant edges. */
 #include "approx/reach_private.h"
 
 #include "base/memory.h"
@@ -17,6 +17,7 @@ enum status reach_work_reserve(const struct reach *reach, struct reach_work *wor
     enum status status = STATUS_OK;
     if (work->mark == NULL) {
         TRY(NEW_ARRAY(&work->mark, reach->cells.node_count, error));
+        TRY(NEW_ARRAY(&work->passed, reach->cells.node_count, error));
         TRY(NEW_ARRAY(&work->length, reach->cells.node_count, error));
         TRY(NEW_ARRAY(&work->before, reach->cells.node_count, error));
         TRY(NEW_ARRAY(&work->near_begin, reach->cells.node_count, error));
@@ -31,40 +32,42 @@ void reach_work_free(struct reach_work *work)
 {
     free(work->own.index);
     free(work->mark);
+    free(work->passed);
     free(work->length);
     free(work->before);
     free(work->near_begin);
     free(work->near_end);
     free(work->near.index);
     free(work->passes);
-    free(work->corners.index);
+    free(work->hidden.index);
     free(work->stack.index);
     free(work->visited.index);
     free(work->image);
     *work = (struct reach_work){0};
 }
 
-static enum status add_corner(struct reach_work *work, int32_t node, struct error *error)
+/* Shorten the path to a hidden node by way of the corners that it is in sight of, when lengths are known of
+ * them. */
+static bool shorten(const struct reach *reach, int32_t node, double limit, struct reach_work *work)
 {
-    enum status status = index_list_reserve(&work->corners, 1, error);
-    if (status == STATUS_OK) {
-        work->corners.index[work->corners.count++] = node;
+    int dim = reach->cells.dim;
+    const double *x = reach->cells.x;
+    double least = fmin(work->length[node], limit);
+    bool shorter = false;
+    for (int64_t i = reach->seen_ptr[node]; i < reach->seen_ptr[node + 1]; i++) {
+        int32_t corner = reach->seen[i];
+        if (work->passed[corner] != work->pass || !(work->length[corner] < least)) {
+            continue;
+        }
+        double length =
+            work->length[corner] + reach_distance(dim, x + (int64_t)corner * dim, x + (int64_t)node * dim);
+        if (length < least) {
+            least = work->length[node] = length;
+            work->before[node] = corner;
+            shorter = true;
+        }
     }
-    return status;
-}
-
-/* Take out the corner of the shortest path; of equals the lowest. */
-static int32_t take_nearest(struct reach_work *work)
-{
-    int32_t *corner = work->corners.index;
-    int64_t nearest = 0;
-    for (int64_t i = 1; i < work->corners.count; i++) {
-        double difference = work->length[corner[i]] - work->length[corner[nearest]];
-        nearest = difference < 0.0 || (difference == 0.0 && corner[i] < corner[nearest]) ? i : nearest;
-    }
-    int32_t taken = corner[nearest];
-    corner[nearest] = corner[--work->corners.count];
-    return taken;
+    return shorter;
 }
 
 enum status reach_paths(const struct reach *reach, double widen, const int32_t *index, int64_t count,
@@ -72,67 +75,66 @@ enum status reach_paths(const struct reach *reach, double widen, const int32_t *
 {
     enum status status = STATUS_OK;
     int dim = reach->cells.dim;
-    const double *x = reach->cells.x;
     double limit = dim == 3 ? most_slack * widen : widen;
-    work->corners.count = 0;
+    if (++work->pass == UINT32_MAX) {
+        memset(work->passed, 0, (size_t)reach->cells.node_count * sizeof *work->passed);
+        work->pass = 1;
+    }
+    work->hidden.count = 0;
+    TRY(index_list_reserve(&work->hidden, count, error));
     for (int64_t i = 0; i < count; i++) {
         int32_t node = index[i];
-        bool hidden = reach_is_hidden(work, node);
-        work->length[node] = hidden ? INFINITY : reach_distance(dim, work->x, x + (int64_t)node * dim);
-        work->before[node] = -1;
-        if (!hidden && reach->corner[node] &&
-            work->length[node] > REACH_ON_PLANE * reach->grid->radius[node]) {
-            TRY(add_corner(work, node, error));
+        if (reach_is_hidden(work, node)) {
+            work->hidden.index[work->hidden.count++] = node;
+            work->length[node] = INFINITY;
+        } else if (reach->corner[node]) {
+            double length = reach_distance(dim, work->x, reach->cells.x + (int64_t)node * dim);
+            /* From the corner itself nothing is to be had that it does not see. */
+            work->length[node] = length > REACH_ON_PLANE * reach->grid->radius[node] ? length : INFINITY;
+        } else {
+            continue;
         }
+        work->before[node] = -1;
+        work->passed[node] = work->pass;
     }
-    while (work->corners.count > 0) {
-        int32_t corner = take_nearest(work);
-        for (int64_t i = reach->view_ptr[corner]; i < reach->view_ptr[corner + 1]; i++) {
-            int32_t node = reach->view[i];
-            if (!reach_is_hidden(work, node)) {
-                continue;
-            }
-            double length = work->length[corner] +
-                            reach_distance(dim, x + (int64_t)corner * dim, x + (int64_t)node * dim);
-            if (length < work->length[node] && length < limit * reach->grid->radius[node]) {
-                if (reach->corner[node] && !(work->length[node] < INFINITY)) {
-                    TRY(add_corner(work, node, error));
-                }
-                work->length[node] = length;
-                work->before[node] = corner;
-            }
+    /* Each pass over all settles paths of one bend more, at least. */
+    for (bool shorter = true; shorter;) {
+        shorter = false;
+        for (int64_t i = 0; i < work->hidden.count; i++) {
+            int32_t node = work->hidden.index[i];
+            bool now = shorten(reach, node, limit * reach->grid->radius[node], work);
+            shorter = shorter || (now && reach->corner[node]);
         }
     }
 done:
     return status;
 }
 
-/* The point of the edge from a to b over which the way from p to q is shortest: at a if one of them is in
- * line with the edge. */
-static void shortest_over_edge(const double *a, const double *b, const double *p, const double *q, double *at)
+/* The shortest way from p to q over the edge from a to b: its length, unrolled into a plane, and how far
+ * along the edge it passes, 0 to 1: 0 where p or q is in line with the edge. */
+static double shortest_over_edge(const double *a, const double *b, const double *p, const double *q,
+                                 double *passes)
 {
-    double u[3], length2 = 0.0, along[2] = {0.0, 0.0}, off[2] = {0.0, 0.0};
-    const double *const end[2] = {p, q};
+    double length2 = 0.0, pu = 0.0, qu = 0.0, pp = 0.0, qq = 0.0;
     for (int i = 0; i < 3; i++) {
-        u[i] = b[i] - a[i];
-        length2 += u[i] * u[i];
+        double u = b[i] - a[i], from_p = p[i] - a[i], from_q = q[i] - a[i];
+        length2 += u * u;
+        pu += from_p * u;
+        qu += from_q * u;
+        pp += from_p * from_p;
+        qq += from_q * from_q;
     }
-    for (int e = 0; e < 2; e++) {
-        for (int i = 0; i < 3; i++) {
-            along[e] += (end[e][i] - a[i]) * u[i] / length2;
-        }
-        for (int i = 0; i < 3; i++) {
-            double d = end[e][i] - a[i] - along[e] * u[i];
-            off[e] += d * d;
-        }
-        off[e] = sqrt(off[e]);
+    /* Squares of the distances from the line, and places along it in lengths of the edge. */
+    double off_p2 = pp - pu * pu / length2, off_q2 = qq - qu * qu / length2, least = 1e-12 * length2;
+    double along_p = pu / length2, along_q = qu / length2, t = 0.0;
+    double off_p = sqrt(fmax(off_p2, 0.0)), off_q = sqrt(fmax(off_q2, 0.0));
+    if (off_p2 > least && off_q2 > least) {
+        t = (along_p * off_q + along_q * off_p) / (off_p + off_q);
+        t = t < 0.0 ? 0.0 : t > 1.0 ? 1.0 : t;
     }
-    double sum = off[0] + off[1], least = 1e-9 * sqrt(length2);
-    double t = off[0] > least && off[1] > least ? (along[0] * off[1] + along[1] * off[0]) / sum : 0.0;
-    t = t < 0.0 ? 0.0 : t > 1.0 ? 1.0 : t;
-    for (int i = 0; i < 3; i++) {
-        at[i] = a[i] + t * u[i];
-    }
+    *passes = t;
+    return sqrt(off_p * off_p + (along_p - t) * (along_p - t) * length2) +
+           sqrt(off_q * off_q + (along_q - t) * (along_q - t) * length2);
 }
 
 /* Slide a bend at a node along the re-entrant edge there that makes the way between its neighbours shortest.
@@ -144,12 +146,14 @@ static void slide(const struct reach *reach, const double *before, const double 
     double least = reach_distance(3, before, corner) + reach_distance(3, corner, after);
     memcpy(bend, corner, 3 * sizeof *bend);
     for (int64_t e = reach->edge_ptr[node]; e < reach->edge_ptr[node + 1]; e++) {
-        double at[3];
-        shortest_over_edge(corner, reach->cells.x + (int64_t)reach->edge[e] * 3, before, after, at);
-        double length = reach_distance(3, before, at) + reach_distance(3, at, after);
-        if (length < least) {
+        double passes;
+        const double *other = reach->cells.x + (int64_t)reach->edge[e] * 3;
+        double length = shortest_over_edge(corner, other, before, after, &passes);
+        if (length < least && passes > 0.0) {
             least = length;
-            memcpy(bend, at, sizeof at);
+            for (int a = 0; a < 3; a++) {
+                bend[a] = corner[a] + passes * (other[a] - corner[a]);
+            }
         }
     }
 }

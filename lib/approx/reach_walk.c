@@ -154,8 +154,9 @@ done:
 /* How a segment passes a facet: not; through it, out of the body; or too near its rim or its ends to say. */
 enum passage { PASSES_NOT, PASSES, PASSES_CLOSE };
 
+/* `own`: x lies in the facet's cell and in no other, so that the way out of it is a way out of the body. */
 static enum passage passage_of(const struct reach *reach, const struct reach_facet *facet, double radius,
-                               const double *x, const double *y)
+                               const double *x, bool own, const double *y)
 {
     int dim = reach->cells.dim;
     double of_x = dot(dim, facet->normal, x) - facet->offset;
@@ -166,30 +167,19 @@ static enum passage passage_of(const struct reach *reach, const struct reach_fac
     if (of_x > tolerance) {
         return PASSES_NOT;
     }
-    double t = of_x < 0.0 ? of_x / (of_x - of_y) : 0.0, from[3], edge[2][3], normal[3], place[3];
-    const double *first = reach->cells.x + (int64_t)facet->node[0] * dim;
+    double t = of_x < 0.0 ? of_x / (of_x - of_y) : 0.0, second = -facet->from[0], third = -facet->from[1];
     for (int a = 0; a < dim; a++) {
-        from[a] = x[a] + t * (y[a] - x[a]) - first[a];
+        double place = x[a] + t * (y[a] - x[a]);
+        second += facet->dual[0][a] * place;
+        third += facet->dual[1][a] * place;
     }
-    subtract(dim, reach->cells.x + (int64_t)facet->node[1] * dim, first, edge[0]);
-    if (dim == 2) {
-        place[0] = dot(2, from, edge[0]) / dot(2, edge[0], edge[0]);
-        place[1] = place[2] = 1.0 - place[0];
-    } else {
-        double turned[3];
-        subtract(3, reach->cells.x + (int64_t)facet->node[2] * 3, first, edge[1]);
-        cross(edge[0], edge[1], normal);
-        double size2 = dot(3, normal, normal);
-        cross(from, edge[1], turned);
-        place[0] = dot(3, turned, normal) / size2;
-        cross(edge[0], from, turned);
-        place[1] = dot(3, turned, normal) / size2;
-        place[2] = 1.0 - place[0] - place[1];
+    double within = 1.0 - second - third;
+    within = second < within ? second : within;
+    within = dim == 3 && third < within ? third : within;
+    if (within < -beside_facet) {
+        return PASSES_NOT;
     }
-    double within = fmin(place[0], fmin(place[1], place[2]));
-    return within < -beside_facet                       ? PASSES_NOT
-           : within > beside_facet && of_x < -tolerance ? PASSES
-                                                        : PASSES_CLOSE;
+    return within > beside_facet && (own || of_x < -tolerance) ? PASSES : PASSES_CLOSE;
 }
 
 enum status reach_sees(const struct reach *reach, const double *x, const int32_t *cell, int64_t cell_count,
@@ -199,8 +189,9 @@ enum status reach_sees(const struct reach *reach, const double *x, const int32_t
     bool close = false;
     *arrives = true;
     for (int32_t i = work->near_begin[node]; i < work->near_end[node]; i++) {
-        enum passage passage =
-            passage_of(reach, &reach->facet[work->near.index[i]], reach->grid->radius[node], x, y);
+        const struct reach_facet *facet = &reach->facet[work->near.index[i]];
+        bool own = cell_count == 1 && facet->cell == cell[0];
+        enum passage passage = passage_of(reach, facet, reach->grid->radius[node], x, own, y);
         if (passage == PASSES) {
             *arrives = false;
             return STATUS_OK;
