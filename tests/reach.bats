@@ -129,6 +129,28 @@ rests() {
     rests u.dat 0.0099
 }
 
+@test "a body too small for the basis is named, however near the others are" {
+    blocks 0.5
+    sed -i '/^Physical Surface/d' blocks.geo
+    cat >> blocks.geo <<END
+Point(21) = {20.4, 4, 0, 9};
+Point(22) = {22.4, 4, 0, 9};
+Point(23) = {20.4, 6, 0, 9};
+Line(21) = {21, 22};
+Line(22) = {22, 23};
+Line(23) = {23, 21};
+Curve Loop(21) = {21, 22, 23};
+Plane Surface(21) = {21};
+Physical Surface("body", 1) = {1, 2, 21};
+END
+    gmsh -2 -v 0 blocks.geo -o blocks.msh > /dev/null
+    nodes -u mm blocks.msh > blocks.mts
+    support blocks.mts > lists.mts 2> notes
+    support --reach distance -b mls2 blocks.mts > lists.mts 2> notes
+    run -1 --separate-stderr support -b mls2 blocks.mts
+    [[ "$stderr" == *"x: row "*" at (0.02"*"nodes within reach through the cells"* ]]
+}
+
 @test "--reach is recorded, and refused where it cannot be" {
     cloud -d 2 -k regular -n 5 --box 0,0.1,0,0.1 > square.mts
     support --reach distance -t square.mts 2> notes | grep '^# support.radius' | grep -q 'reach=distance'

@@ -1,5 +1,6 @@
 #include "approx/reach_private.h"
 
+#include "base/box.h"
 #include "base/memory.h"
 
 #include <math.h>
@@ -39,17 +40,21 @@ static bool find_near(const struct reach *reach, int32_t node, const double *mid
     return any != 0;
 }
 
-enum status reach_group(const struct reach *reach, const double *low, const double *high,
-                        const int32_t *index, int64_t count, struct reach_work *work, struct error *error)
+enum status reach_group(const struct reach *reach, int64_t points, const double *x, const int32_t *index,
+                        int64_t count, struct reach_work *work, struct error *error)
 {
     enum status status = reach_work_reserve(reach, work, error);
     int dim = reach->cells.dim;
-    double middle[3], radius = 0.5 * reach_distance(dim, low, high);
+    struct box box = box_of(dim, points, x);
+    double middle[3], radius = 0.0;
     if (status != STATUS_OK) {
         return status;
     }
     for (int a = 0; a < dim; a++) {
-        middle[a] = 0.5 * (low[a] + high[a]);
+        middle[a] = 0.5 * (box.low[a] + box.high[a]);
+    }
+    for (int64_t p = 0; p < points; p++) {
+        radius = fmax(radius, reach_distance(dim, middle, x + p * dim));
     }
     work->near.count = 0;
     for (int64_t i = 0; i < count; i++) {

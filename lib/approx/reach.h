@@ -87,9 +87,9 @@ struct reach_work {
 };
 void reach_work_free(struct reach_work *work);
 
-/* The points to be looked from next are in the box low .. high, and their candidates within their radii are
- * among index[count]: puts aside the facets that can be between none of them. */
-MUST_CHECK enum status reach_group(const struct reach *reach, const double *low, const double *high,
+/* The points to be looked from next are among x[points * dim], and their candidates within their radii among
+ * index[count]: puts aside the facets that can be between none of them. */
+MUST_CHECK enum status reach_group(const struct reach *reach, int64_t points, const double *x,
                                    const int32_t *index, int64_t count, struct reach_work *work,
                                    struct error *error);
 

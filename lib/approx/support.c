@@ -1,7 +1,5 @@
-#include "approx/support.h"
+#include "approx/support_private.h"
 
-#include "approx/candidates.h"
-#include "approx/steep_bound.h"
 #include "base/memory.h"
 
 #include <math.h>
@@ -9,12 +7,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const double widen_step = 1.05;
-static const double widen_limit = 8.0;
 /* Points of one unit of work: fixed, so that the result cannot depend on the number of threads. */
 static const int64_t chunk_points = 512;
-/* A group of points shares its search: at most so many of them, in a box of that share of the radius. */
-enum { MOST_OF_GROUP = 32 };
+/* A group of points shares its search, in a box of that share of the radius. */
 static const double extent_of_group = 0.8;
 /* Fewer than that are sooner judged one by one than bounded together. */
 static const int64_t fewest_to_bound = 3;
@@ -38,40 +33,6 @@ void point_text(int dim, const double *x, char text[96])
     }
 }
 
-static double distance2_of(int dim, const double *a, const double *b)
-{
-    double sum = 0.0;
-    for (int i = 0; i < dim; i++) {
-        sum += (a[i] - b[i]) * (a[i] - b[i]);
-    }
-    return sum;
-}
-
-/* What lists are made of. */
-struct search {
-    const struct support_options *options;
-    const struct point_grid *grid;
-    const struct reach *reach; /* NULL: supports are as large as their radii */
-    struct reach_places places;
-    const double *x;
-    const char *what;
-};
-
-/* One thread's growing lists and scratch. */
-struct worker {
-    struct index_list list;
-    int64_t around_count, around_capacity; /* neighbours seen around corners */
-    int64_t *around_pair;                  /* places in the list */
-    double *around_offset;
-    struct reach_work reach;
-    struct candidates candidates;
-    double bounds[MOST_OF_GROUP]; /* on the gradients at each point of the group, see steep_bounds */
-    struct mls_work work;
-    struct steep_work steep;
-    double *order;
-    int64_t capacity;
-};
-
 static void worker_free(struct worker *worker)
 {
     free(worker->list.index);
@@ -82,191 +43,6 @@ static void worker_free(struct worker *worker)
     free(worker->order);
     mls_work_free(&worker->work);
     steep_work_free(&worker->steep);
-}
-
-/* Squared distance from x to a neighbour; around a corner, along the path. */
-static double neighbour_distance2(const struct point_grid *grid, const double *x, int32_t node,
-                                  const double *image)
-{
-    static const double origin[3] = {0.0, 0.0, 0.0};
-    return image != NULL ? distance2_of(grid->dim, image, origin)
-                         : distance2_of(grid->dim, x, grid->x + (int64_t)node * grid->dim);
-}
-
-/* Keep the `most` nearest of the neighbours in index[count], ties going to the lower index; image[count *
- * dim] or NULL. */
-static enum status keep_nearest(const struct point_grid *grid, const double *x, int64_t most, int32_t *index,
-                                double *image, int64_t *count, struct worker *worker, struct error *error)
-{
-    int dim = grid->dim;
-    if (most <= 0 || *count <= most) {
-        return STATUS_OK;
-    }
-    if (*count > worker->capacity) {
-        int64_t capacity = 2 * *count + 64;
-        free(worker->order);
-        worker->capacity = 0;
-        enum status status = NEW_ARRAY(&worker->order, capacity, error);
-        if (status != STATUS_OK) {
-            return status;
-        }
-        worker->capacity = capacity;
-    }
-    double *distance2 = worker->order;
-    for (int64_t i = 0; i < *count; i++) {
-        distance2[i] = neighbour_distance2(grid, x, index[i], image != NULL ? image + i * dim : NULL);
-    }
-    /* Drop the farthest (of equals the highest index) until `most` remain; the order stays ascending. */
-    for (; *count > most; --*count) {
-        int64_t farthest = 0;
-        for (int64_t i = 1; i < *count; i++) {
-            farthest = distance2[i] >= distance2[farthest] ? i : farthest;
-        }
-        for (int64_t i = farthest; i + 1 < *count; i++) {
-            index[i] = index[i + 1];
-            distance2[i] = distance2[i + 1];
-        }
-        if (image != NULL) {
-            memmove(image + farthest * dim, image + (farthest + 1) * dim,
-                    (size_t)((*count - 1 - farthest) * dim) * sizeof *image);
-        }
-    }
-    return STATUS_OK;
-}
-
-/* Mean spacing of the nodes in a support: the edge of the cube (square) that each of them has to itself. A
- * list cut to the nearest reaches only as far as its farthest node. */
-static double spacing_within(const struct support_options *options, const struct point_grid *grid,
-                             const double *x, const int32_t *index, const double *image, int64_t count,
-                             double widen)
-{
-    double reach = 0.0;
-    if (count == options->most) {
-        for (int64_t i = 0; i < count; i++) {
-            double distance2 =
-                neighbour_distance2(grid, x, index[i], image != NULL ? image + i * grid->dim : NULL);
-            reach = distance2 > reach ? distance2 : reach;
-        }
-        reach = sqrt(reach);
-    } else {
-        for (int64_t i = 0; i < count; i++) {
-            reach = grid->radius[index[i]] > reach ? grid->radius[index[i]] : reach;
-        }
-        reach *= widen;
-    }
-    double unit_ball = grid->dim == 2 ? 3.141592653589793 : 4.1887902047863905;
-    return reach * pow(unit_ball / (double)count, 1.0 / grid->dim);
-}
-
-/* Whether a support serves: enough nodes, a good moment matrix, bounded gradients. They need not be looked at
- * where `bound`, known of them, says enough. */
-static enum status judge(const struct search *search, const double *x, double widen, const int32_t *index,
-                         const double *image, int64_t count, double bound, struct worker *worker,
-                         bool *serves, struct error *error)
-{
-    const struct support_options *options = search->options;
-    const struct point_grid *grid = search->grid;
-    enum mls_verdict verdict;
-    struct mls_support support = {.x = x,
-                                  .nodes = grid->x,
-                                  .radius = grid->radius,
-                                  .widen = widen,
-                                  .neighbours = index,
-                                  .count = count,
-                                  .image = image};
-    double steepest;
-    *serves = false;
-    if (count < options->least) {
-        return STATUS_OK;
-    }
-    double spacing = spacing_within(options, grid, x, index, image, count, widen);
-    if (bound * spacing <= options->gradient_bound) {
-        *serves = true;
-        return STATUS_OK;
-    }
-    enum status status = mls_steepest(&options->mls, &support, &worker->work, &steepest, &verdict, error);
-    if (status == STATUS_OK && verdict == MLS_GOOD) {
-        *serves = steepest * spacing <= options->gradient_bound;
-    }
-    return status;
-}
-
-/* Put down the neighbours of the list from `first` on that are seen around corners: those whose images are
- * not where they are. */
-static enum status note_around(const struct point_grid *grid, const double *x, const double *image,
-                               int64_t first, struct worker *worker, struct error *error)
-{
-    int dim = grid->dim;
-    for (int64_t i = first; i < worker->list.count; i++, image += dim) {
-        const double *node = grid->x + (int64_t)worker->list.index[i] * dim;
-        bool straight = true;
-        for (int a = 0; a < dim; a++) {
-            straight = straight && image[a] == node[a] - x[a];
-        }
-        if (straight) {
-            continue;
-        }
-        if (worker->around_count == worker->around_capacity) {
-            int64_t capacity = 2 * worker->around_capacity + 64;
-            int64_t *pair = array_grow(worker->around_pair, capacity, sizeof *pair);
-            worker->around_pair = pair != NULL ? pair : worker->around_pair;
-            double *offset = array_grow(worker->around_offset, capacity, (size_t)dim * sizeof *offset);
-            worker->around_offset = offset != NULL ? offset : worker->around_offset;
-            if (pair == NULL || offset == NULL) {
-                return fail_memory(error, "neighbours around corners");
-            }
-            worker->around_capacity = capacity;
-        }
-        worker->around_pair[worker->around_count] = i;
-        memcpy(worker->around_offset + worker->around_count++ * dim, image, (size_t)dim * sizeof *image);
-    }
-    return STATUS_OK;
-}
-
-/* Append the neighbours of point p to the worker's list; a point in a group has its candidates found. */
-static enum status find_support(const struct search *search, int64_t p, bool grouped, double bound,
-                                struct worker *worker, double *widen, bool *serves, struct error *error)
-{
-    enum status status = STATUS_OK;
-    const struct support_options *options = search->options;
-    const struct point_grid *grid = search->grid;
-    const double *x = search->x + p * grid->dim;
-    int64_t first = worker->list.count;
-    if (search->reach != NULL) {
-        TRY(reach_begin(search->reach, &search->places, p, x, &worker->reach, error));
-    }
-    for (*widen = 1.0; *widen <= widen_limit; *widen *= widen_step) {
-        worker->list.count = first;
-        if (*widen > 1.0 || !grouped) {
-            TRY(point_grid_query(grid, x, *widen, &worker->list, error));
-        } else {
-            TRY(candidates_within(&worker->candidates, x, &worker->list, error));
-        }
-        int64_t count = worker->list.count - first;
-        int32_t *index = worker->list.index + first;
-        double *image = NULL;
-        bool as_bound = *widen == 1.0;
-        if (search->reach != NULL) {
-            if (*widen == 1.0 && !grouped) {
-                TRY(reach_group(search->reach, x, x, index, count, &worker->reach, error));
-            }
-            TRY(reach_filter(search->reach, *widen, index, &count, &worker->reach, error));
-            image = worker->reach.around > 0 ? worker->reach.image : NULL;
-            as_bound = as_bound && worker->reach.changed == 0;
-        }
-        TRY(keep_nearest(grid, x, options->most, index, image, &count, worker, error));
-        worker->list.count = first + count;
-        *serves = true;
-        if (options->widen) {
-            TRY(judge(search, x, *widen, index, image, count, as_bound ? bound : INFINITY, worker, serves,
-                      error));
-        }
-        if (*serves) {
-            return image != NULL ? note_around(grid, x, image, first, worker, error) : STATUS_OK;
-        }
-    }
-done:
-    return status;
 }
 
 static bool is_finite(int dim, const double *x)
@@ -292,7 +68,7 @@ static enum status study_group(const struct search *search, const double *x, int
     if (count > 1) {
         TRY(candidates_find(&worker->candidates, search->grid, low, high, 1.0, error));
         if (search->reach != NULL) {
-            TRY(reach_group(search->reach, low, high, worker->candidates.list.index,
+            TRY(reach_group(search->reach, count, x, worker->candidates.list.index,
                             worker->candidates.list.count, &worker->reach, error));
         }
         if (options->widen && options->most <= 0 && count >= fewest_to_bound) {
@@ -361,7 +137,7 @@ static enum status fail_support(const struct search *search, int64_t row, const 
     return fail(error, STATUS_VERDICT,
                 "%s: row %lld at %s: no good support even at %g times the radius (%lld nodes within%s%s): "
                 "coplanar, stray or too few nodes there",
-                search->what, (long long)row, place, widen_limit, (long long)count,
+                search->what, (long long)row, place, SUPPORT_WIDEN_LIMIT, (long long)count,
                 search->reach != NULL ? " reach through the cells" : "", stray);
 }
 
@@ -386,7 +162,7 @@ static enum status build_chunk(const struct search *search, int64_t first, int64
             TRY(begin_group(search, p, last, extent, worker, &end_of_group, error));
         }
         int64_t before = worker->list.count;
-        TRY(find_support(search, p, end_of_group > group + 1, worker->bounds[p - group], worker,
+        TRY(support_find(search, p, end_of_group > group + 1, worker->bounds[p - group], worker,
                          &lists->widen[p], &serves, error));
         const int32_t *index = worker->list.index + before;
         int64_t count = worker->list.count - before;
