@@ -115,9 +115,9 @@ rests() {
         { u[NR] = $2 > 0.01 || ($2 == 0.01 && $1 > 0.016) ? 1 : 0 }
         END { printf "# u f8 %d 1 enc=text unit=m\n", NR; for (i = 1; i <= NR; i++) print u[i]; print "\n" }'
       awk '$2 == "end" { print "# end " $3 + 1 }' slit.dat; } > field.dat
-    printf '30 9.8\n30 10.2\n36 9.75\n36 10.25\n' > points.tsv
+    printf '30 9.8\n30 10.2\n36 9.78\n36 10.22\n36 9.85\n36 10.15\n' > points.tsv # the last two in the slit
     interp -f u -p points.tsv -u mm field.dat > at.dat
-    mts print u at.dat | xargs | awk '{ exit !(($1 ^ 2) < 1e-20 && ($2 - 1) ^ 2 < 1e-20 && $3 ^ 2 < 1e-20 && ($4 - 1) ^ 2 < 1e-20) }'
+    mts print u at.dat | xargs | awk '{ for (i = 1; i <= NF; i++) if (!(($i - (i % 2 == 0)) ^ 2 < 1e-20)) bad++; exit bad + 0 != 0 || NF != 6 }'
 }
 
 @test "bodies that touch by faces that are not one do not see each other" {

@@ -86,6 +86,8 @@ enum status reach_begin(const struct reach *reach, const struct reach_places *pl
         work->serial = 1;
     }
     work->x = x;
+    work->outside = false;
+    memcpy(work->from, x, (size_t)reach->cells.dim * sizeof *x);
     work->cell_count = -1;
     if (places->nodes) {
         work->cell = reach->star + reach->star_ptr[p];
@@ -110,26 +112,24 @@ static enum status mark_hidden(const struct reach *reach, double widen, const in
 {
     enum status status = STATUS_OK;
     *hidden = 0;
-    if (widen <= 1.0 && work->near.count == 0) {
+    for (int64_t i = 0; i < count && work->cell_count < 0; i++) {
+        if (widen > 1.0 || reach->opposing_ptr[index[i]] < reach->opposing_ptr[index[i] + 1]) {
+            TRY(reach_locate(reach, work->x, work, error));
+        }
+    }
+    bool by_facets = widen <= 1.0 && !work->outside;
+    if ((by_facets && work->near.count == 0) || work->cell_count <= 0) {
         return STATUS_OK;
     }
     for (int64_t i = 0; i < count; i++) {
         int32_t node = index[i];
-        if ((widen <= 1.0 && work->near_begin[node] == work->near_end[node]) || work->cell_count == 0) {
+        if (by_facets && work->near_begin[node] == work->near_end[node]) {
             continue;
         }
         if (work->mark[node] / 2 != work->serial) {
             bool seen;
-            if (work->cell_count < 0) {
-                work->own.count = 0;
-                TRY(reach_locate(reach, work->x, &work->own, error));
-                work->cell = work->own.index;
-                work->cell_count = work->own.count;
-                i--;
-                continue;
-            }
-            TRY((widen <= 1.0 ? reach_sees : reach_walk)(reach, work->x, work->cell, work->cell_count, node,
-                                                         work, &seen, error));
+            TRY((by_facets ? reach_sees : reach_walk)(reach, work->from, work->cell, work->cell_count, node,
+                                                      work, &seen, error));
             work->mark[node] = 2 * work->serial + !seen;
         }
         *hidden += reach_is_hidden(work, node);

@@ -53,8 +53,8 @@ MUST_CHECK enum status reach_build(const struct cells *cells, const struct point
                                    struct reach *reach, struct error *error);
 void reach_free(struct reach *reach);
 
-/* The cells that points lie in. Zeros: unknown, to be found. A point outside of all cells reaches as far as
- * its supports do. */
+/* The cells that points lie in. Zeros: unknown, to be found. A point outside of all cells sees what the
+ * nearest place in a cell sees; far from all cells, all that is near enough. */
 struct reach_places {
     bool nodes;             /* point p is node p */
     const int32_t *cell;    /* else, unless NULL: cells, -1 for none, per_row for each row */
@@ -64,7 +64,9 @@ struct reach_places {
 
 /* Scratch space for one thread, all zero at first; grows on demand. */
 struct reach_work {
-    const double *x;                /* the point that is looked from */
+    const double *x; /* the point that is looked from */
+    double from[3];  /* itself; or for a point outside, its place in the nearest cell */
+    bool outside;
     const int32_t *cell;            /* the cells that it lies in */
     int64_t cell_count;             /* -1: not looked for yet */
     int32_t given[2];               /* what `cell` may view */

@@ -88,7 +88,7 @@ enum status reach_paths(const struct reach *reach, double widen, const int32_t *
             work->hidden.index[work->hidden.count++] = node;
             work->length[node] = INFINITY;
         } else if (reach->corner[node]) {
-            double length = reach_distance(dim, work->x, reach->cells.x + (int64_t)node * dim);
+            double length = reach_distance(dim, work->from, reach->cells.x + (int64_t)node * dim);
             /* From the corner itself nothing is to be had that it does not see. */
             work->length[node] = length > REACH_ON_PLANE * reach->grid->radius[node] ? length : INFINITY;
         } else {
@@ -180,11 +180,11 @@ void reach_first_bend(const struct reach *reach, int32_t node, const struct reac
     }
     for (int sweep = 0; sweep < (bends == 1 ? 1 : SWEEPS); sweep++) {
         for (int b = 0; b < bends; b++) {
-            slide(reach, b == 0 ? work->x : place[b - 1], place[b + 1], at[b], place[b]);
+            slide(reach, b == 0 ? work->from : place[b - 1], place[b + 1], at[b], place[b]);
         }
     }
     memcpy(bend, place[0], sizeof *place);
-    *length = reach_distance(3, work->x, place[0]);
+    *length = reach_distance(3, work->from, place[0]);
     for (int b = 0; b < bends; b++) {
         *length += reach_distance(3, place[b], place[b + 1]);
     }

@@ -18,8 +18,9 @@ MUST_CHECK enum status reach_sees(const struct reach *reach, const double *x, co
                                   int64_t cell_count, int32_t node, struct reach_work *work, bool *arrives,
                                   struct error *error);
 
-/* Append the cells that contain x to list. */
-MUST_CHECK enum status reach_locate(const struct reach *reach, const double *x, struct index_list *list,
+/* Set the cells of work to those that contain x; or to the nearest, and work->from to the place in it from
+ * which is looked instead. Of the cells at the nodes whose supports contain x; none: none. */
+MUST_CHECK enum status reach_locate(const struct reach *reach, const double *x, struct reach_work *work,
                                     struct error *error);
 
 /* Paths around corners, from the point of `work` to the nodes marked as hidden: their lengths below `widen`

@@ -5,6 +5,7 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 /* Barycentric coordinates within this of 0 are on a face. */
 static const double on_face = 1e-9;
@@ -201,23 +202,61 @@ enum status reach_sees(const struct reach *reach, const double *x, const int32_t
     return close ? reach_walk(reach, x, cell, cell_count, node, work, arrives, error) : STATUS_OK;
 }
 
-/* Of the cells at the nodes whose supports contain x. */
-enum status reach_locate(const struct reach *reach, const double *x, struct index_list *list,
+/* The point of a cell that has x's barycentric coordinates but for negative ones; returns its distance from
+ * x. */
+static double pull_into(const struct cells *cells, int64_t cell, const double *x, double *pulled)
+{
+    int dim = cells->dim;
+    double place[4], same[4], sum = 0.0;
+    barycentric(cells, cell, x, x, place, same);
+    for (int a = 0; a < dim; a++) {
+        pulled[a] = 0.0;
+    }
+    for (int k = 0; k <= dim; k++) {
+        place[k] = place[k] > 0.0 ? place[k] : 0.0;
+        sum += place[k];
+    }
+    for (int i = 0; i < (dim + 1) * dim; i++) {
+        int32_t node = cells->node[cell * (dim + 1) + i / dim];
+        pulled[i % dim] += place[i / dim] / sum * cells->x[(int64_t)node * dim + i % dim];
+    }
+    return reach_distance(dim, x, pulled);
+}
+
+enum status reach_locate(const struct reach *reach, const double *x, struct reach_work *work,
                          struct error *error)
 {
     enum status status;
     struct index_list near = {0};
-    double least[4];
+    double least[4], nearest = INFINITY, pulled[3];
+    work->own.count = 0;
+    work->outside = false;
     TRY(point_grid_query(reach->grid, x, 1.0, &near, error));
+    TRY(index_list_reserve(&work->own, 1, error));
     for (int64_t i = 0; i < near.count; i++) {
         for (int64_t s = reach->star_ptr[near.index[i]]; s < reach->star_ptr[near.index[i] + 1]; s++) {
             int32_t cell = reach->star[s];
-            if (touches(&reach->cells, cell, x, x, least) && !contains(list, cell)) {
-                TRY(index_list_reserve(list, 1, error));
-                list->index[list->count++] = cell;
+            if (touches(&reach->cells, cell, x, x, least)) {
+                work->own.count = work->outside ? 0 : work->own.count;
+                work->outside = false;
+                nearest = 0.0;
+                if (!contains(&work->own, cell)) {
+                    TRY(index_list_reserve(&work->own, 1, error));
+                    work->own.index[work->own.count++] = cell;
+                }
+            } else if (nearest > 0.0 && pull_into(&reach->cells, cell, x, pulled) < nearest) {
+                nearest = pull_into(&reach->cells, cell, x, work->from);
+                work->own.index[0] = cell;
+                work->own.count = 1;
+                work->outside = true;
             }
         }
     }
+    if (!work->outside) {
+        memcpy(work->from, x, (size_t)reach->cells.dim * sizeof *x);
+    }
+    work->cell = work->own.index;
+    work->cell_count = work->own.count;
 done:
     free(near.index);
     return status;
