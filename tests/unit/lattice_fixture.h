@@ -66,7 +66,7 @@ static inline void lattice_tabulate(struct lattice *l, int64_t count, const doub
     struct error error;
     struct support_options options = support_defaults(l->options.dim);
     GOOD(support_build(&options, &l->grid, count, x, "points", lists, &error));
-    struct neighbours neighbours = support_view(&lists);
+    struct neighbours neighbours = support_view(lists);
     ARRAY(*phi, lists->ptr[count]);
     if (dphi != NULL) {
         ARRAY(*dphi, lists->ptr[count] * l->options.dim);
