@@ -66,11 +66,11 @@ $(BRAIN2D)/u.dat: $(BRAIN2D)/default.dat
 $(BRAIN2D)/u.vtu: $(BRAIN2D)/u.dat $(BUILD)/bin/tovtk
 	tovtk -o $@ $<
 
-# The others: four points per triangle, conditions at the nodes, and these supports.
-paper-mls1.support := -R 8mm -b mls1 -w regularised
-paper-mmls.support := -R 8mm -b mmls2 --mu 1e-7 --mu-unit mm -w regularised
-quartic-mls1.support := -R 8mm -b mls1 -w quartic
-quartic-mmls.support := -R 10mm -b mmls2 --mu 1e-7 --mu-unit mm -w quartic
+# The others: four points per triangle, conditions at the nodes, and these supports, by distance as in the paper.
+paper-mls1.support := --reach distance -R 8mm -b mls1 -w regularised
+paper-mmls.support := --reach distance -R 8mm -b mmls2 --mu 1e-7 --mu-unit mm -w regularised
+quartic-mls1.support := --reach distance -R 8mm -b mls1 -w quartic
+quartic-mmls.support := --reach distance -R 10mm -b mmls2 --mu 1e-7 --mu-unit mm -w quartic
 
 $(BRAIN2D_AT_NODES:%=$(BRAIN2D)/%.dat): $(BRAIN2D)/%.dat: $(BRAIN2D_INPUT)/paper.scene $(BRAIN2D_PIPELINE)
 	(nodes -u mm $(@D)/body.msh | ipoints -g 4 | support -v $($*.support) | shapefn | \

@@ -82,8 +82,8 @@ $(BRAIN3D)/small-free.dat $(BRAIN3D)/large-free.dat: $(BRAIN3D)/%-free.dat: $(BR
 	$(BRAIN3D_SOLVE)
 
 # The paper's schemes, with local radii as these clouds are graded: four points per tetrahedron, conditions at the nodes.
-mls1-at-nodes.support := -k 1.4 -b mls1
-mmls-at-nodes.support := -k 1.8 -b mmls2
+mls1-at-nodes.support := --reach distance -k 1.4 -b mls1
+mmls-at-nodes.support := --reach distance -k 1.8 -b mmls2
 
 $(BRAIN3D_AT_NODES:%=$(BRAIN3D)/%.dat): $(BRAIN3D)/%.dat: $(BRAIN3D)/small.msh $(BRAIN3D_INPUT)/paper.scene \
         $(BRAIN3D_TABLES) $(BRAIN3D_PROGRAMS)

@@ -158,8 +158,7 @@ static enum status make_table(const struct support_options *support, const struc
                  file, (long long)outside, place);
         goto done;
     }
-    TRY(field_table_build(support, cells.node_count, cells.x, spacing, points->count, points->x, file,
-                          &points->own, error));
+    TRY(field_table_build(support, &cells, spacing, points->count, points->x, file, &points->own, error));
     points->ptr = points->own.lists.ptr;
     points->idx = points->own.lists.idx;
     points->phi = points->own.phi;

@@ -145,7 +145,9 @@ static struct ipoints_options parse_for(const struct tool *tool, const struct op
     struct mls mls;
     tool_check(tool, stream_nodes(stream, &dim, &node_count, &x, &error), &error);
     tool_check(tool, stage_recorded_mls(stream, dim, &mls, &error), &error);
-    return parse(tool, options, &mls);
+    struct ipoints_options ipoints = parse(tool, options, &mls);
+    tool_check(tool, stage_recorded_reach(stream, &ipoints.refinement.support.reach, &error), &error);
+    return ipoints;
 }
 
 int main(int argc, char *argv[])

@@ -2,16 +2,23 @@ static const char usage[] =
     "support - support domains and neighbour lists\n"
     "\n"
     "usage: support [-k FACTOR | -R RADIUS] [-m LEAST] [-n MOST]\n"
-    "               [--no-widen] [--bound BOUND] [-b BASIS] [-w WEIGHT] [--mu MU] [--mu-unit UNIT]\n"
-    "               [-v] [-t] [-o FILE] [FILE]\n"
+    "               [--no-widen] [--bound BOUND] [--reach RULE] [-b BASIS] [-w WEIGHT] [--mu MU]\n"
+    "               [--mu-unit UNIT] [-v] [-t] [-o FILE] [FILE]\n"
     "\n"
     "Reads a stream with nodes.x (m) and points (see ipoints) and adds the support radius of every\n"
     "node and the lists of neighbours - the nodes whose supports contain the point - of the\n"
-    "integration points, of the points on faces, and of the nodes. Where a list holds too few nodes,\n"
-    "or badly placed ones, for the basis, all radii are widened for that point until the moment\n"
-    "matrix is well conditioned and the gradients of the shape functions are bounded; if eightfold is\n"
-    "not enough, the tool stops (status 1) and names the point. Without earlier sections the defaults\n"
-    "of ipoints are run first.\n"
+    "integration points, of the points on faces, and of the nodes.\n"
+    "\n"
+    "Supports do not act across gaps: a neighbour is a node in sight through the cells or, around\n"
+    "re-entrant corners, one to which a path through the cells is shorter than its support radius; its\n"
+    "weight follows the length of that path. Bodies that no face of a cell joins do not see each\n"
+    "other, even where they touch; a node that cells share sees, and is seen by, all of them. Clouds\n"
+    "without cells have neighbours by distance alone.\n"
+    "\n"
+    "Where a list holds too few nodes, or badly placed ones, for the basis, all radii are widened for\n"
+    "that point until the moment matrix is well conditioned and the gradients of the shape functions\n"
+    "are bounded; if eightfold is not enough, the tool stops (status 1) and names the point. Without\n"
+    "earlier sections the defaults of ipoints are run first.\n"
     "\n"
     "Options:\n"
     "  -k, --factor FACTOR    radius = FACTOR times the local node spacing (default 1.8, in 3D\n"
@@ -21,6 +28,7 @@ static const char usage[] =
     "  -n, --most MOST        keep only the MOST nearest neighbours (ties: the lower index)\n"
     "      --no-widen         leave unfit supports as they are, for shapefn to report\n"
     "      --bound BOUND      largest |grad phi| times spacing admitted (default 6)\n"
+    "      --reach RULE       cells (default where there are cells), or distance: also across gaps\n"
     "  -b, --basis BASIS      mls1, mls2 or mmls2 (default): what the lists are for; shapefn follows\n"
     "                         it\n"
     "  -w, --weight WEIGHT    quartic (default), cubic, wendland or regularised; shapefn follows it\n"
@@ -45,6 +53,7 @@ enum {
     MOST,
     NO_WIDEN,
     BOUND,
+    REACH,
     BASIS,
     LAST_OF_MLS = BASIS + MLS_OPTION_COUNT - 1,
     VERBOSE,
@@ -73,6 +82,14 @@ static struct support_options parse(const struct tool *tool, const struct option
                    parse_double(options[BOUND].value, "--bound", 1.0, 1e6, &support.gradient_bound, &error),
                    &error);
     }
+    if (options[REACH].given) {
+        int choice;
+        tool_check(
+            tool,
+            parse_choice(options[REACH].value, "--reach", reach_names, REACH_RULE_COUNT, &choice, &error),
+            &error);
+        support.reach = (enum reach_rule)choice;
+    }
     support.widen = !options[NO_WIDEN].given;
     tool_check(tool, mls_apply_options(options + BASIS, &support.mls, &error), &error);
     return support;
@@ -87,6 +104,9 @@ static void note_report(const struct tool *tool, const struct support_report *re
         widened += report->list[l].widened;
         widest = report->list[l].widest > widest ? report->list[l].widest : widest;
     }
+    if (report->reach == REACH_DISTANCE) {
+        tool_note(tool, "neighbours by distance alone: supports act across gaps");
+    }
     tool_note(tool, "widened at %lld points, at most %.3g times", (long long)widened, widest);
     for (int l = 0; l < report->lists; l++) {
         int64_t points = report->list[l].points;
@@ -94,6 +114,10 @@ static void note_report(const struct tool *tool, const struct support_report *re
                   report->list[l].what, (long long)report->list[l].fewest, (long long)report->list[l].most,
                   points > 0 ? (double)report->list[l].pairs / (double)points : 0.0,
                   (long long)report->list[l].widened);
+        if (report->list[l].around > 0) {
+            tool_note(tool, "%lld neighbours of %s are around corners", (long long)report->list[l].around,
+                      report->list[l].what);
+        }
     }
 }
 
@@ -109,6 +133,7 @@ int main(int argc, char *argv[])
         [MOST] = {.letter = 'n', .name = "most", .takes_value = true},
         [NO_WIDEN] = {.name = "no-widen"},
         [BOUND] = {.name = "bound", .takes_value = true},
+        [REACH] = {.name = "reach", .takes_value = true},
         [BASIS] = MLS_OPTIONS,
         [VERBOSE] = {.letter = 'v', .name = "verbose"},
         [TEXT] = {.letter = 't', .name = "text"},
@@ -125,6 +150,9 @@ int main(int argc, char *argv[])
     struct support_options support = parse(&tool, options, dim);
     stage_fill(&tool, &stream, "ipoints");
     tool_check(&tool, stage_support(&stream, &support, &report, &error), &error);
+    if (options[REACH].given && report.reach != support.reach) {
+        tool_fail(&tool, STATUS_INPUT, "--reach cells: the input has no cells: --reach distance");
+    }
     if (options[VERBOSE].given) {
         note_report(&tool, &report);
     }

@@ -45,6 +45,7 @@ void adaptive_positions(const struct quadrature_rule *rule, int dim, const doubl
 /* Points of a subcell's own rule and of its children's, with their signs in the difference. */
 struct sample {
     int64_t per_leaf;
+    int32_t cell[BATCH_LEAVES];
     double *x;
     struct support_lists lists;
     double *phi, *dphi;
@@ -70,6 +71,7 @@ static enum status sample_leaves(const struct refinement *refinement, struct lea
     TRY(NEW_ARRAY(&sample->x, points * dim, error));
     double *x = sample->x;
     for (int64_t l = 0; l < count; l++) {
+        sample->cell[l] = leaf[l]->cell;
         adaptive_positions(&refinement->rule, dim, leaf[l]->vertex, x);
         x += per_rule * dim;
         for (int child = 0; child < adaptive_children(dim); child++) {
@@ -79,12 +81,15 @@ static enum status sample_leaves(const struct refinement *refinement, struct lea
             x += per_rule * dim;
         }
     }
-    TRY(support_build(&refinement->options->support, &refinement->grid, points, sample->x, "adaptive points",
-                      &sample->lists, error));
+    bool by_cells = refinement->options->support.reach == REACH_CELLS;
+    struct reach_places places = {.cell = sample->cell, .per_row = 1, .points_per_row = sample->per_leaf};
+    TRY(support_build_within(&refinement->options->support, &refinement->grid,
+                             by_cells ? &refinement->reach : NULL, &places, points, sample->x,
+                             "adaptive points", &sample->lists, error));
     int64_t pairs = sample->lists.ptr[points];
     TRY(NEW_ARRAY(&sample->phi, pairs, error));
     TRY(NEW_ARRAY(&sample->dphi, pairs * dim, error));
-    struct neighbours lists = {points, sample->lists.ptr, sample->lists.idx, sample->lists.widen};
+    struct neighbours lists = support_view(&sample->lists);
     TRY(shape_table(mls, cells->x, refinement->radius, &lists, sample->x, "adaptive points", sample->phi,
                     sample->dphi, error));
 done:

@@ -27,6 +27,7 @@ struct refinement {
     const struct cells *cells;
     const double *radius;
     struct point_grid grid;
+    struct reach reach; /* unless options->support.reach is REACH_DISTANCE */
     struct quadrature_rule rule;
     double *norm; /* |K| of each cell, by the rule on the whole cell */
 };

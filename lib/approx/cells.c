@@ -8,6 +8,9 @@
 /* Faces opposite each vertex's complement, outward from a positively oriented simplex. */
 static const int triangle_faces[3][2] = {{0, 1}, {1, 2}, {2, 0}};
 static const int tetrahedron_faces[4][3] = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}};
+/* The vertex that is not of the face. */
+static const int triangle_opposite[3] = {2, 0, 1};
+static const int tetrahedron_opposite[4] = {3, 2, 0, 1};
 
 static void edge_vector(int dim, const double *x, int32_t from, int32_t to, double *edge)
 {
@@ -204,6 +207,22 @@ done:
     if (status != STATUS_OK) {
         faces_free(faces);
     }
+    return status;
+}
+
+enum status cells_across(const struct cells *cells, int32_t *across, struct error *error)
+{
+    enum status status;
+    int corners = cells->dim + 1;
+    int64_t *partner = NULL;
+    TRY(NEW_ARRAY(&partner, cells->count * corners, error));
+    TRY(match_faces(cells, partner, error));
+    for (int64_t s = 0; s < cells->count * corners; s++) {
+        int opposite = cells->dim == 2 ? triangle_opposite[s % corners] : tetrahedron_opposite[s % corners];
+        across[s / corners * corners + opposite] = partner[s] < 0 ? -1 : (int32_t)(partner[s] / corners);
+    }
+done:
+    free(partner);
     return status;
 }
 

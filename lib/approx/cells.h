@@ -46,6 +46,10 @@ MUST_CHECK enum status faces_build(const struct cells *cells, bool boundary_only
                                    struct error *error);
 void faces_free(struct faces *faces);
 
+/* across[count * (dim + 1)]: the cell beyond the face opposite each vertex, -1 on the boundary. Errors as
+ * faces_build. */
+MUST_CHECK enum status cells_across(const struct cells *cells, int32_t *across, struct error *error);
+
 /* spacing[node_count]: mean length of the cell edges at each node; 0 at nodes of no cell. */
 MUST_CHECK enum status cells_node_spacing(const struct cells *cells, double *spacing, struct error *error);
 

@@ -46,23 +46,29 @@ done:
     return status;
 }
 
-enum status field_table_build(const struct support_options *options, int64_t node_count, const double *nodes,
+enum status field_table_build(const struct support_options *options, const struct cells *cells,
                               const double *spacing, int64_t count, const double *x, const char *what,
                               struct field_table *table, struct error *error)
 {
+    struct reach reach = {0};
+    bool by_cells = options->reach == REACH_CELLS && cells->count > 0;
     enum status status;
     double *radius = NULL;
     struct point_grid grid = {0};
     *table = (struct field_table){0};
-    TRY(NEW_ARRAY(&radius, node_count, error));
-    TRY(support_radii(options, node_count, spacing, radius, error));
-    TRY(point_grid_build(&grid, options->mls.dim, node_count, nodes, radius, error));
-    TRY(support_build(options, &grid, count, x, what, &table->lists, error));
+    TRY(NEW_ARRAY(&radius, cells->node_count, error));
+    TRY(support_radii(options, cells->node_count, spacing, radius, error));
+    TRY(point_grid_build(&grid, options->mls.dim, cells->node_count, cells->x, radius, error));
+    if (by_cells) {
+        TRY(reach_build(cells, &grid, &reach, error));
+    }
+    TRY(support_build_within(options, &grid, by_cells ? &reach : NULL, NULL, count, x, what, &table->lists,
+                             error));
     TRY(NEW_ARRAY(&table->phi, table->lists.ptr[count], error));
-    struct neighbours lists = {
-        .count = count, .ptr = table->lists.ptr, .idx = table->lists.idx, .widen = table->lists.widen};
-    TRY(shape_table(&options->mls, nodes, radius, &lists, x, what, table->phi, NULL, error));
+    struct neighbours lists = support_view(&table->lists);
+    TRY(shape_table(&options->mls, cells->x, radius, &lists, x, what, table->phi, NULL, error));
 done:
+    reach_free(&reach);
     point_grid_free(&grid);
     free(radius);
     if (status != STATUS_OK) {

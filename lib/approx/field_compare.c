@@ -198,8 +198,8 @@ static enum status interpolate(const struct nodal_field *a, const struct nodal_f
     TRY(NEW_ARRAY(&values, a->cells.node_count * a->cols, error));
     TRY(field_spacing(&b->cells, spacing, error));
     TRY(drop_outside(a, b, spacing, skip, comparison, points, error));
-    TRY(field_table_build(&support, b->cells.node_count, b->cells.x, spacing, comparison->count, points,
-                          "nodes of A within B", &table, error));
+    TRY(field_table_build(&support, &b->cells, spacing, comparison->count, points, "nodes of A within B",
+                          &table, error));
     field_evaluate(comparison->count, table.lists.ptr, table.lists.idx, table.phi, b->cols, b->values,
                    values);
     for (int64_t i = 0; i < comparison->count; i++) {

@@ -66,6 +66,8 @@ struct mls_support {
     double widen;         /* factor on the radii at this point */
     const int32_t *neighbours;
     int64_t count;
+    const double *image; /* count * dim, or NULL: offsets from x to where the neighbours seem to be, which
+                            their weights follow; NULL: to where they are (see reach.h) */
 };
 
 /* Values phi[count] and, unless dphi is NULL, full gradients dphi[count * dim] (per unit of x) at a point.

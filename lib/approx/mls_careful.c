@@ -24,6 +24,10 @@ gather(const struct mls *mls, const struct mls_support *support, int dim, int m,
         for (int a = 0; a < dim; a++) {
             double difference = support->nodes[node * dim + a] - support->x[a];
             xi[a] = difference / scale;
+            if (support->image != NULL) {
+                difference = support->image[j * dim + a];
+            }
+            local->image[a * local->stride + j] = difference / scale;
             distance2 += difference * difference;
         }
         double relative = distance2 / (radius * radius);
@@ -32,7 +36,8 @@ gather(const struct mls *mls, const struct mls_support *support, int dim, int m,
             weight_evaluate(mls->weight, relative, &weight, &slope_over_r);
         }
         local->weight[j] = weight;
-        /* d w / d x_a = w'(r)/r (x - x_j)_a / R^2 = -slope[j] xi_a, in units of 1/s */
+        /* d w / d x_a = w'(r)/r (x - x_j)_a / R^2 = -slope[j] xi_a, in units of 1/s; around a corner the
+         * distance grows against the first leg of the path, which leads to the image */
         local->slope[j] = slope_over_r * (scale / radius) * (scale / radius);
         double *p = local->monomials + j;
         p[0] = 1.0;
@@ -103,9 +108,9 @@ static inline __attribute__((always_inline)) void values(int m, struct mls_local
 static inline __attribute__((always_inline)) void
 gradient_right_side(int m, int a, const struct mls_local *local, double *right)
 {
-    const double *xi = local->monomials + (1 + a) * local->stride;
+    const double *image = local->image + a * local->stride;
     for (int64_t j = 0; j < local->count; j++) {
-        local->row[j] = local->slope[j] * xi[j] * local->projection[j];
+        local->row[j] = local->slope[j] * image[j] * local->projection[j];
     }
     for (int k = 0; k < m; k++) {
         const double *pk = local->monomials + k * local->stride;

@@ -23,11 +23,16 @@ KERNEL_INLINE void store_row(const struct mls_point *point, int row, int64_t j, 
     memcpy(point->row + row * point->stride + j, v, sizeof *v);
 }
 
-KERNEL_INLINE void load_xi(int dim, const struct mls_point *point, int64_t j, lanes *xi)
+KERNEL_INLINE void load_vector(int dim, const struct mls_point *point, int row, int64_t j, lanes *v)
 {
     for (int a = 0; a < dim; a++) {
-        load_row(point, ROW_XI + a, j, &xi[a]);
+        load_row(point, row + a, j, &v[a]);
     }
+}
+
+KERNEL_INLINE void load_xi(int dim, const struct mls_point *point, int64_t j, lanes *xi)
+{
+    load_vector(dim, point, ROW_XI, j, xi);
 }
 
 /* Differences of coordinates and radii, side by side; the largest radius. */
@@ -53,11 +58,27 @@ KERNEL_INLINE void gather(const struct mls_support *support, int dim, struct mls
     point->scale = largest * support->widen;
 }
 
+/* Where the neighbours seem to be, which their weights follow, in the same way. */
+KERNEL_INLINE void gather_images(const struct mls_support *support, int dim, struct mls_point *point)
+{
+    double *image = point->row + ROW_IMAGE * point->stride, inverse = 1.0 / point->scale;
+    for (int64_t j = 0; j < support->count; j++) {
+        for (int a = 0; a < dim; a++) {
+            image[a * point->stride + j] = support->image[j * dim + a] * inverse;
+        }
+    }
+    for (int64_t j = support->count; j < point->padded; j++) {
+        for (int a = 0; a < dim; a++) {
+            image[a * point->stride + j] = 2.0;
+        }
+    }
+}
+
 #define WEIGHT_LOOP(formula)                                                                                 \
     for (int64_t j = 0; j < point->padded; j++) {                                                            \
         double relative = 0.0, value, slope_over_r, square = ratio[j] * ratio[j];                            \
         for (int a = 0; a < dim; a++) {                                                                      \
-            relative += xi[a * stride + j] * xi[a * stride + j];                                             \
+            relative += seen[a * stride + j] * seen[a * stride + j];                                         \
         }                                                                                                    \
         relative *= square;                                                                                  \
         formula(relative < 1.0 ? relative : 1.0, &value, &slope_over_r);                                     \
@@ -65,13 +86,15 @@ KERNEL_INLINE void gather(const struct mls_support *support, int dim, struct mls
         slope[j] = relative < 1.0 ? slope_over_r * square : 0.0;                                             \
     }
 
-/* Scale the coordinates; weights, and slopes: grad w = -slope xi / s. */
-KERNEL_INLINE void weigh(enum weight_function function, double widen, int dim, struct mls_point *point)
+/* Scale the coordinates; weights, and slopes: grad w = -slope xi / s, or the image for xi. */
+KERNEL_INLINE void weigh(enum weight_function function, double widen, int dim, bool images,
+                         struct mls_point *point)
 {
     int64_t stride = point->stride;
     double *restrict xi = point->row, *restrict ratio = point->row + ROW_RATIO * stride;
     double *restrict weight = point->row + ROW_WEIGHT * stride, *restrict slope =
                                                                     point->row + ROW_SLOPE * stride;
+    const double *seen = images ? point->row + ROW_IMAGE * stride : xi;
     double inverse = 1.0 / point->scale, relative_scale = point->scale / widen;
     for (int a = 0; a < dim; a++) {
         for (int64_t j = 0; j < point->padded; j++) {
@@ -140,13 +163,15 @@ KERNEL_INLINE double larger_defect(double worst, double defect)
 }
 
 /* phi_j = w_j p_j.c into ROW_PHI, slope_j p_j.c into ROW_SLOPE; where gradients are wanted, the right sides
- * of their coefficients, e_a - (d_a M) c = e_a + sum_j slope_j xi_a p_j.c p_j (moments again), one a per
- * lane. Returns the largest defect of sum phi p = p(0), p linear. */
-KERNEL_INLINE double values(int dim, int m, const double *c, bool gradients, const struct mls_point *point,
-                            lanes *right)
+ * of their coefficients, e_a - (d_a M) c = e_a + sum_j slope_j xi_a p_j.c p_j, one a per lane: moments again,
+ * of one degree more, or with images for xi_a those of each. Returns the largest defect of sum phi p = p(0),
+ * p linear. */
+KERNEL_INLINE double values(int dim, int m, const double *c, bool gradients, bool images,
+                            const struct mls_point *point, lanes *right)
 {
-    int degree = m > dim + 1 ? 3 : 2;
-    lanes moment[20], defect[4];
+    enum { OF_ONE = 10 }; /* moments up to the second degree */
+    int degree = images ? 2 : m > dim + 1 ? 3 : 2, moments = moment_count(dim, degree) * (images ? dim : 1);
+    lanes moment[3 * OF_ONE], defect[4];
     memset(moment, 0, sizeof moment);
     memset(defect, 0, sizeof defect);
     for (int64_t j = 0; j < point->padded; j += LANES) {
@@ -164,18 +189,29 @@ KERNEL_INLINE double values(int dim, int m, const double *c, bool gradients, con
             load_row(point, ROW_SLOPE, j, &slope);
             slope *= projection;
             store_row(point, ROW_SLOPE, j, &slope);
-            add_moments(dim, degree, &slope, xi, moment);
+            if (images) {
+                lanes image[3];
+                load_vector(dim, point, ROW_IMAGE, j, image);
+                for (int a = 0; a < dim; a++) {
+                    image[a] *= slope;
+                    add_moments(dim, degree, &image[a], xi, moment + a * moment_count(dim, degree));
+                }
+            } else {
+                add_moments(dim, degree, &slope, xi, moment);
+            }
         }
     }
     if (gradients) {
-        double total[20];
-        for (int k = 0; k < moment_count(dim, degree); k++) {
+        double total[3 * OF_ONE];
+        for (int k = 0; k < moments; k++) {
             total[k] = lane_sum(&moment[k]);
         }
         for (int k = 0; k < m; k++) {
             right[k] = (lanes){0.0, 0.0, 0.0, 0.0};
             for (int a = 0; a < dim; a++) {
-                right[k][a] = total[moment_index(dim, 1 + a, k)] + (k == 1 + a ? 1.0 : 0.0);
+                double sum = images ? total[a * moment_count(dim, degree) + moment_index(dim, 0, k)]
+                                    : total[moment_index(dim, 1 + a, k)];
+                right[k][a] = sum + (k == 1 + a ? 1.0 : 0.0);
             }
         }
     }
@@ -186,10 +222,10 @@ KERNEL_INLINE double values(int dim, int m, const double *c, bool gradients, con
     return worst;
 }
 
-/* s d_a phi_j = w_j p_j.g_a - slope_j xi_a p_j.c into ROW_GRADIENT + a. Returns the largest defect of
- * sum grad phi p = grad p(0), p linear; *steepest2: the largest squared gradient. */
-KERNEL_INLINE double gradients(int dim, int m, const lanes *coefficient, const struct mls_point *point,
-                               double *steepest2)
+/* s d_a phi_j = w_j p_j.g_a - slope_j xi_a p_j.c (the image for xi_a) into ROW_GRADIENT + a. Returns the
+ * largest defect of sum grad phi p = grad p(0), p linear; *steepest2: the largest squared gradient. */
+KERNEL_INLINE double gradients(int dim, int m, const lanes *coefficient, bool images,
+                               const struct mls_point *point, double *steepest2)
 {
     double g[3][MLS_MAX_BASIS], worst = 0.0;
     lanes defect[3][4], most = {0.0, 0.0, 0.0, 0.0};
@@ -200,14 +236,15 @@ KERNEL_INLINE double gradients(int dim, int m, const lanes *coefficient, const s
         }
     }
     for (int64_t j = 0; j < point->padded; j += LANES) {
-        lanes xi[3], weight, slope, square = {0.0, 0.0, 0.0, 0.0};
+        lanes xi[3], image[3], weight, slope, square = {0.0, 0.0, 0.0, 0.0};
         load_xi(dim, point, j, xi);
+        load_vector(dim, point, images ? ROW_IMAGE : ROW_XI, j, image);
         load_row(point, ROW_WEIGHT, j, &weight);
         load_row(point, ROW_SLOPE, j, &slope);
         for (int a = 0; a < dim; a++) {
             lanes gradient;
             polynomial(dim, m, g[a], xi, &gradient);
-            gradient = weight * gradient - slope * xi[a];
+            gradient = weight * gradient - slope * image[a];
             store_row(point, ROW_GRADIENT + a, j, &gradient);
             square += gradient * gradient;
             defect[a][0] += gradient;
@@ -239,7 +276,8 @@ KERNEL_INLINE void put_gradients(int dim, const struct mls_point *point, double 
 }
 
 KERNEL_INLINE bool kernel_evaluate(const struct mls *mls, const struct mls_support *support, int dim, int m,
-                                   double *scratch, int64_t stride, const struct mls_result *result)
+                                   bool images, double *scratch, int64_t stride,
+                                   const struct mls_result *result)
 {
     /* Pivots above this need no further look: the condition cannot be bad in so small a matrix. */
     static const double safe_pivot = 1e-5;
@@ -255,19 +293,22 @@ KERNEL_INLINE bool kernel_evaluate(const struct mls *mls, const struct mls_suppo
     double steepest2 = 0.0, c[MLS_MAX_BASIS];
     lanes right[MLS_MAX_BASIS];
     gather(support, dim, &point);
-    weigh(mls->weight, support->widen, dim, &point);
+    if (images) {
+        gather_images(support, dim, &point);
+    }
+    weigh(mls->weight, support->widen, dim, images, &point);
     assemble(dim, m, &point, &system);
     regularise(mls, dim, m, point.scale, &system);
     if (!factorise(dim, m, safe_pivot, mls->basis == BASIS_MODIFIED ? least_pivot : safe_pivot, &system)) {
         return false;
     }
     substitute_unit(m, &system, c);
-    if (!(values(dim, m, c, with_gradients, &point, right) <= most_defect)) {
+    if (!(values(dim, m, c, with_gradients, images, &point, right) <= most_defect)) {
         return false;
     }
     if (with_gradients) {
         substitute(m, &system, right);
-        if (!(gradients(dim, m, right, &point, &steepest2) <= most_defect)) {
+        if (!(gradients(dim, m, right, images, &point, &steepest2) <= most_defect)) {
             return false;
         }
     }
@@ -290,7 +331,9 @@ KERNEL_INLINE bool kernel_evaluate(const struct mls *mls, const struct mls_suppo
                                                 double *scratch, int64_t stride,                             \
                                                 const struct mls_result *result)                             \
     {                                                                                                        \
-        return kernel_evaluate(mls, support, dim, m, scratch, stride, result);                               \
+        return support->image == NULL                                                                        \
+                   ? kernel_evaluate(mls, support, dim, m, false, scratch, stride, result)                   \
+                   : kernel_evaluate(mls, support, dim, m, true, scratch, stride, result);                   \
     }
 
 #define KERNEL_SET(set, attribute)                                                                           \

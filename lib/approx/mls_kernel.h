@@ -17,7 +17,8 @@ enum mls_row {
     ROW_SLOPE,
     ROW_PHI,
     ROW_GRADIENT,
-    MLS_KERNEL_ROWS = ROW_GRADIENT + 3
+    ROW_IMAGE = ROW_GRADIENT + 3,
+    MLS_KERNEL_ROWS = ROW_IMAGE + 3
 };
 
 /* What is asked for, where not NULL. */

@@ -21,6 +21,7 @@ void mls_local_layout(struct mls_local *local, double *scratch, int64_t count, i
     local->slope = rest + stride;
     local->projection = rest + 2 * stride;
     local->row = rest + 3 * stride;
+    local->image = rest + 4 * stride;
 }
 
 /* L E L^T of the scaled matrix; returns the smallest pivot of the first `leading` columns and of all. */

@@ -4,8 +4,8 @@
 
 #include "approx/mls.h"
 
-/* Rows of scratch per neighbour: monomials, QR copy of them, weight, slope, projection, row. */
-#define MLS_ROWS (2 * MLS_MAX_BASIS + 4)
+/* Rows of scratch per neighbour: monomials, QR copy of them, weight, slope, projection, row, image. */
+#define MLS_ROWS (2 * MLS_MAX_BASIS + 4 + 3)
 
 /* A row is so much longer than the number of neighbours: for the rows of H, and for whole vectors. */
 #define MLS_PADDING 16
@@ -17,7 +17,8 @@ struct mls_local {
     double *monomials;  /* [m][stride]: p_k(xi_j) */
     double *orthogonal; /* [m][stride]: scratch of the orthogonal factorization, count + m used */
     double *weight;     /* w_j */
-    double *slope;      /* grad w_j = -slope_j xi_j / s */
+    double *slope;      /* grad w_j = -slope_j image_j / s */
+    double *image;      /* [dim][stride]: where the neighbour seems to be; xi_j but around corners */
     double *projection; /* p_j . c */
     double *row;        /* scratch */
     double matrix[MLS_MAX_BASIS * MLS_MAX_BASIS]; /* moment matrix with H, m x m */

@@ -1,11 +1,73 @@
 #include "approx/shape.h"
 
-#include "approx/support.h"
 #include "base/memory.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 static const int64_t chunk_points = 512;
+
+struct neighbours support_view(const struct support_lists *lists)
+{
+    return (struct neighbours){
+        .count = lists->count,
+        .ptr = lists->ptr,
+        .idx = lists->idx,
+        .widen = lists->widen,
+        .around = {lists->around_count, lists->around_pair, lists->around_offset},
+    };
+}
+
+/* Offsets from points to where their neighbours seem to be. */
+struct images {
+    int64_t next; /* of struct around */
+    int64_t capacity;
+    double *offset;
+};
+
+/* Set support->image where neighbours [first, last) of the lists, those of the next point, are seen around
+ * corners. */
+static enum status find_images(int dim, const struct neighbours *lists, int64_t first, int64_t last,
+                               struct images *images, struct mls_support *support, struct error *error)
+{
+    enum status status = STATUS_OK;
+    const struct around *around = &lists->around;
+    if (images->next == around->count || around->pair[images->next] >= last) {
+        return STATUS_OK;
+    }
+    if (last - first > images->capacity) {
+        free(images->offset);
+        images->capacity = 0;
+        TRY(NEW_ARRAY(&images->offset, 2 * (last - first) * dim, error));
+        images->capacity = 2 * (last - first);
+    }
+    for (int64_t i = 0; i < (last - first) * dim; i++) {
+        images->offset[i] =
+            support->nodes[(int64_t)lists->idx[first + i / dim] * dim + i % dim] - support->x[i % dim];
+    }
+    for (; images->next < around->count && around->pair[images->next] < last; images->next++) {
+        memcpy(images->offset + (around->pair[images->next] - first) * dim,
+               around->offset + images->next * dim, (size_t)dim * sizeof *images->offset);
+    }
+    support->image = images->offset;
+done:
+    return status;
+}
+
+/* The first neighbour from `pair` on that is seen around a corner. */
+static int64_t first_around(const struct around *around, int64_t pair)
+{
+    int64_t low = 0, high = around->count;
+    while (low < high) {
+        int64_t middle = low + (high - low) / 2;
+        if (around->pair[middle] < pair) {
+            low = middle + 1;
+        } else {
+            high = middle;
+        }
+    }
+    return low;
+}
 
 static enum status chunk_of_table(const struct mls *mls, const double *nodes, const double *radius,
                                   const struct neighbours *lists, int64_t first, int64_t last,
@@ -14,6 +76,7 @@ static enum status chunk_of_table(const struct mls *mls, const double *nodes, co
 {
     enum status status = STATUS_OK;
     struct mls_work work = {0};
+    struct images images = {.next = first_around(&lists->around, lists->ptr[first])};
     int dim = mls->dim;
     for (int64_t p = first; p < last; p++) {
         enum mls_verdict verdict;
@@ -24,6 +87,7 @@ static enum status chunk_of_table(const struct mls *mls, const double *nodes, co
                                       .widen = lists->widen[p],
                                       .neighbours = lists->idx + at,
                                       .count = lists->ptr[p + 1] - at};
+        TRY(find_images(dim, lists, at, lists->ptr[p + 1], &images, &support, error));
         TRY(mls_evaluate(mls, &support, &work, phi + at, dphi != NULL ? dphi + at * dim : NULL, &verdict,
                          error));
         if (verdict != MLS_GOOD) {
@@ -38,6 +102,7 @@ static enum status chunk_of_table(const struct mls *mls, const double *nodes, co
     }
 done:
     mls_work_free(&work);
+    free(images.offset);
     return status;
 }
 

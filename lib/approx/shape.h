@@ -4,6 +4,14 @@
 
 #include "approx/cells.h"
 #include "approx/mls.h"
+#include "approx/support.h"
+
+/* The neighbours that points see around corners (see reach.h). */
+struct around {
+    int64_t count;
+    const int64_t *pair;  /* count: places in idx, ascending */
+    const double *offset; /* count * dim: from the point to where the neighbour seems to be, m */
+};
 
 /* Lists of neighbours in view (CSR), as support_build makes them. */
 struct neighbours {
@@ -11,7 +19,11 @@ struct neighbours {
     const int64_t *ptr; /* count + 1 */
     const int32_t *idx;
     const double *widen; /* count */
+    struct around around;
 };
+
+/* A view of lists. */
+struct neighbours support_view(const struct support_lists *lists);
 
 /* phi[ptr[count]] and, unless NULL, dphi[ptr[count] * dim] (1/m) at the points x[count * dim]. `what` names
  * the points in messages. STATUS_VERDICT, naming the first point whose moment matrix is singular,

@@ -1,7 +1,5 @@
-#include "approx/support.h"
+#include "approx/support_private.h"
 
-#include "approx/candidates.h"
-#include "approx/steep_bound.h"
 #include "base/memory.h"
 
 #include <math.h>
@@ -9,12 +7,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const double widen_step = 1.05;
-static const double widen_limit = 8.0;
 /* Points of one unit of work: fixed, so that the result cannot depend on the number of threads. */
 static const int64_t chunk_points = 512;
-/* A group of points shares its search: at most so many of them, in a box of that share of the radius. */
-enum { MOST_OF_GROUP = 32 };
+/* A group of points shares its search, in a box of that share of the radius. */
 static const double extent_of_group = 0.8;
 /* Fewer than that are sooner judged one by one than bounded together. */
 static const int64_t fewest_to_bound = 3;
@@ -34,151 +29,16 @@ void point_text(int dim, const double *x, char text[96])
     }
 }
 
-static double distance2_of(int dim, const double *a, const double *b)
-{
-    double sum = 0.0;
-    for (int i = 0; i < dim; i++) {
-        sum += (a[i] - b[i]) * (a[i] - b[i]);
-    }
-    return sum;
-}
-
-/* One thread's growing lists and scratch. */
-struct worker {
-    struct index_list list;
-    struct candidates candidates;
-    double bounds[MOST_OF_GROUP]; /* on the gradients at each point of the group, see steep_bounds */
-    struct mls_work work;
-    struct steep_work steep;
-    double *order;
-    int64_t capacity;
-};
-
 static void worker_free(struct worker *worker)
 {
     free(worker->list.index);
+    free(worker->around_pair);
+    free(worker->around_offset);
+    reach_work_free(&worker->reach);
     candidates_free(&worker->candidates);
     free(worker->order);
     mls_work_free(&worker->work);
     steep_work_free(&worker->steep);
-}
-
-/* Keep the `most` nearest of the neighbours in index[count], ties going to the lower index. */
-static enum status keep_nearest(const struct point_grid *grid, const double *x, int64_t most, int32_t *index,
-                                int64_t *count, struct worker *worker, struct error *error)
-{
-    if (most <= 0 || *count <= most) {
-        return STATUS_OK;
-    }
-    if (*count > worker->capacity) {
-        int64_t capacity = 2 * *count + 64;
-        free(worker->order);
-        worker->capacity = 0;
-        enum status status = NEW_ARRAY(&worker->order, capacity, error);
-        if (status != STATUS_OK) {
-            return status;
-        }
-        worker->capacity = capacity;
-    }
-    double *distance2 = worker->order;
-    for (int64_t i = 0; i < *count; i++) {
-        distance2[i] = distance2_of(grid->dim, x, grid->x + (int64_t)index[i] * grid->dim);
-    }
-    /* Drop the farthest (of equals the highest index) until `most` remain; the order stays ascending. */
-    for (; *count > most; --*count) {
-        int64_t farthest = 0;
-        for (int64_t i = 1; i < *count; i++) {
-            farthest = distance2[i] >= distance2[farthest] ? i : farthest;
-        }
-        for (int64_t i = farthest; i + 1 < *count; i++) {
-            index[i] = index[i + 1];
-            distance2[i] = distance2[i + 1];
-        }
-    }
-    return STATUS_OK;
-}
-
-/* Mean spacing of the nodes in a support: the edge of the cube (square) that each of them has to itself. A
- * list cut to the nearest reaches only as far as its farthest node. */
-static double spacing_within(const struct support_options *options, const struct point_grid *grid,
-                             const double *x, const int32_t *index, int64_t count, double widen)
-{
-    double reach = 0.0;
-    if (count == options->most) {
-        for (int64_t i = 0; i < count; i++) {
-            double distance2 = distance2_of(grid->dim, x, grid->x + (int64_t)index[i] * grid->dim);
-            reach = distance2 > reach ? distance2 : reach;
-        }
-        reach = sqrt(reach);
-    } else {
-        for (int64_t i = 0; i < count; i++) {
-            reach = grid->radius[index[i]] > reach ? grid->radius[index[i]] : reach;
-        }
-        reach *= widen;
-    }
-    double unit_ball = grid->dim == 2 ? 3.141592653589793 : 4.1887902047863905;
-    return reach * pow(unit_ball / (double)count, 1.0 / grid->dim);
-}
-
-/* Whether a support serves: enough nodes, a good moment matrix, bounded gradients. They need not be looked at
- * where `bound`, known of them, says enough. */
-static enum status judge(const struct support_options *options, const struct point_grid *grid,
-                         const double *x, double widen, const int32_t *index, int64_t count, double bound,
-                         struct worker *worker, bool *serves, struct error *error)
-{
-    enum mls_verdict verdict;
-    struct mls_support support = {.x = x,
-                                  .nodes = grid->x,
-                                  .radius = grid->radius,
-                                  .widen = widen,
-                                  .neighbours = index,
-                                  .count = count};
-    double steepest;
-    *serves = false;
-    if (count < options->least) {
-        return STATUS_OK;
-    }
-    double spacing = spacing_within(options, grid, x, index, count, widen);
-    if (bound * spacing <= options->gradient_bound) {
-        *serves = true;
-        return STATUS_OK;
-    }
-    enum status status = mls_steepest(&options->mls, &support, &worker->work, &steepest, &verdict, error);
-    if (status == STATUS_OK && verdict == MLS_GOOD) {
-        *serves = steepest * spacing <= options->gradient_bound;
-    }
-    return status;
-}
-
-/* Append one point's neighbours to the worker's list; a point in a group has its candidates found. */
-static enum status find_support(const struct support_options *options, const struct point_grid *grid,
-                                const double *x, bool grouped, double bound, struct worker *worker,
-                                double *widen, bool *serves, struct error *error)
-{
-    enum status status = STATUS_OK;
-    int64_t first = worker->list.count;
-    for (*widen = 1.0; *widen <= widen_limit; *widen *= widen_step) {
-        worker->list.count = first;
-        if (*widen > 1.0 || !grouped) {
-            TRY(point_grid_query(grid, x, *widen, &worker->list, error));
-        } else {
-            TRY(candidates_within(&worker->candidates, x, &worker->list, error));
-        }
-        int64_t count = worker->list.count - first;
-        int32_t *index = worker->list.index + first;
-        TRY(keep_nearest(grid, x, options->most, index, &count, worker, error));
-        worker->list.count = first + count;
-        *serves = true;
-        if (options->widen) {
-            TRY(judge(options, grid, x, *widen, index, count, *widen > 1.0 ? INFINITY : bound, worker, serves,
-                      error));
-        }
-        if (*serves) {
-            return STATUS_OK;
-        }
-    }
-done:
-    return status;
 }
 
 static bool is_finite(int dim, const double *x)
@@ -193,16 +53,20 @@ static bool is_finite(int dim, const double *x)
 
 /* What the `count` points x in the box low .. high share: the search for candidates, and bounds on their
  * gradients where those will be asked for. */
-static enum status study_group(const struct support_options *options, const struct point_grid *grid,
-                               const double *x, int64_t count, const double *low, const double *high,
-                               struct worker *worker, struct error *error)
+static enum status study_group(const struct search *search, const double *x, int64_t count, const double *low,
+                               const double *high, struct worker *worker, struct error *error)
 {
     enum status status = STATUS_OK;
+    const struct support_options *options = search->options;
     for (int64_t p = 0; p < count; p++) {
         worker->bounds[p] = INFINITY;
     }
     if (count > 1) {
-        TRY(candidates_find(&worker->candidates, grid, low, high, 1.0, error));
+        TRY(candidates_find(&worker->candidates, search->grid, low, high, 1.0, error));
+        if (search->reach != NULL) {
+            TRY(reach_group(search->reach, count, x, worker->candidates.list.index,
+                            worker->candidates.list.count, &worker->reach, error));
+        }
         if (options->widen && options->most <= 0 && count >= fewest_to_bound) {
             TRY(steep_bounds(&options->mls, &worker->candidates, count, x, &worker->steep, worker->bounds,
                              error));
@@ -214,12 +78,12 @@ done:
 
 /* Study the points that follow `first` within a box of edges up to `extent`; returns the end of that group.
  * The first point is finite. */
-static enum status begin_group(const struct support_options *options, const struct point_grid *grid,
-                               const double *x, int64_t first, int64_t last, double extent,
+static enum status begin_group(const struct search *search, int64_t first, int64_t last, double extent,
                                struct worker *worker, int64_t *end, struct error *error)
 {
     double low[3], high[3];
-    int dim = grid->dim;
+    int dim = search->grid->dim;
+    const double *x = search->x;
     memcpy(low, x + first * dim, (size_t)dim * sizeof *low);
     memcpy(high, x + first * dim, (size_t)dim * sizeof *high);
     last = first + MOST_OF_GROUP < last ? first + MOST_OF_GROUP : last;
@@ -237,7 +101,7 @@ static enum status begin_group(const struct support_options *options, const stru
         memcpy(low, new_low, (size_t)dim * sizeof *low);
         memcpy(high, new_high, (size_t)dim * sizeof *high);
     }
-    return study_group(options, grid, x + first * dim, *end - first, low, high, worker, error);
+    return study_group(search, x + first * dim, *end - first, low, high, worker, error);
 }
 
 /* How far apart the points of a group may be where these are the neighbours of one: candidates are found once
@@ -252,12 +116,13 @@ static double extent_there(const struct point_grid *grid, const int32_t *index, 
 }
 
 /* The message for a point without a good support; a stray node shows by its radius. */
-static enum status fail_support(const struct point_grid *grid, const char *what, int64_t row, const double *x,
-                                const int32_t *index, int64_t count, struct error *error)
+static enum status fail_support(const struct search *search, int64_t row, const int32_t *index, int64_t count,
+                                struct error *error)
 {
     char place[96], stray[96] = "";
+    const struct point_grid *grid = search->grid;
     int64_t widest = 0;
-    point_text(grid->dim, x, place);
+    point_text(grid->dim, search->x + row * grid->dim, place);
     for (int64_t i = 1; i < count; i++) {
         widest = grid->radius[index[i]] > grid->radius[index[widest]] ? i : widest;
     }
@@ -266,38 +131,39 @@ static enum status fail_support(const struct point_grid *grid, const char *what,
                  grid->radius[index[widest]], index[widest]);
     }
     return fail(error, STATUS_VERDICT,
-                "%s: row %lld at %s: no good support even at %g times the radius (%lld nodes within%s): "
+                "%s: row %lld at %s: no good support even at %g times the radius (%lld nodes within%s%s): "
                 "coplanar, stray or too few nodes there",
-                what, (long long)row, place, widen_limit, (long long)count, stray);
+                search->what, (long long)row, place, SUPPORT_WIDEN_LIMIT, (long long)count,
+                search->reach != NULL ? " reach through the cells" : "", stray);
 }
 
 /* Fill the worker's list with the neighbours of the points [first, last); their numbers go to lists->ptr. */
-static enum status build_chunk(const struct support_options *options, const struct point_grid *grid,
-                               int64_t first, int64_t last, const double *x, const char *what,
+static enum status build_chunk(const struct search *search, int64_t first, int64_t last,
                                struct support_lists *lists, struct worker *worker, struct error *error)
 {
     enum status status = STATUS_OK;
+    const struct point_grid *grid = search->grid;
     int dim = grid->dim;
     double extent = 0.0;
     int64_t group = first, end_of_group = first;
-    worker->list.count = 0;
+    worker->list.count = worker->around_count = 0;
     for (int64_t p = first; p < last; p++) {
         bool serves;
-        const double *point = x + p * dim;
-        if (!is_finite(dim, point)) {
-            return fail(error, STATUS_INPUT, "%s: row %lld: not a finite coordinate", what, (long long)p);
+        if (!is_finite(dim, search->x + p * dim)) {
+            return fail(error, STATUS_INPUT, "%s: row %lld: not a finite coordinate", search->what,
+                        (long long)p);
         }
         if (p == end_of_group) {
             group = p;
-            TRY(begin_group(options, grid, x, p, last, extent, worker, &end_of_group, error));
+            TRY(begin_group(search, p, last, extent, worker, &end_of_group, error));
         }
         int64_t before = worker->list.count;
-        TRY(find_support(options, grid, point, end_of_group > group + 1, worker->bounds[p - group], worker,
+        TRY(support_find(search, p, end_of_group > group + 1, worker->bounds[p - group], worker,
                          &lists->widen[p], &serves, error));
         const int32_t *index = worker->list.index + before;
         int64_t count = worker->list.count - before;
         if (!serves) {
-            return fail_support(grid, what, p, point, index, count, error);
+            return fail_support(search, p, index, count, error);
         }
         lists->ptr[p + 1] = count;
         if (p + 1 == end_of_group) {
@@ -308,11 +174,39 @@ done:
     return status;
 }
 
-/* Append the list of the points [first, last), which follow those of `all`; sum the counts and take stock. */
-static enum status append_chunk(struct support_lists *lists, int64_t first, int64_t last,
-                                const struct index_list *own, struct index_list *all, struct error *error)
+/* Append a worker's neighbours around corners to those of the lists, whose pairs are `before` so far. */
+static enum status append_around(int dim, const struct worker *worker, int64_t before,
+                                 struct support_lists *lists, struct error *error)
 {
+    int64_t count = lists->around_count + worker->around_count;
+    if (worker->around_count == 0) {
+        return STATUS_OK;
+    }
+    int64_t *pair = array_grow(lists->around_pair, count, sizeof *pair);
+    lists->around_pair = pair != NULL ? pair : lists->around_pair;
+    double *offset = array_grow(lists->around_offset, count, (size_t)dim * sizeof *offset);
+    lists->around_offset = offset != NULL ? offset : lists->around_offset;
+    if (pair == NULL || offset == NULL) {
+        return fail_memory(error, "neighbours around corners");
+    }
+    for (int64_t i = 0; i < worker->around_count; i++) {
+        pair[lists->around_count + i] = before + worker->around_pair[i];
+    }
+    memcpy(offset + lists->around_count * dim, worker->around_offset,
+           (size_t)(worker->around_count * dim) * sizeof *offset);
+    lists->around_count = count;
+    return STATUS_OK;
+}
+
+/* Append the list of the points [first, last), which follow those of `all`; sum the counts and take stock. */
+static enum status append_chunk(int dim, struct support_lists *lists, int64_t first, int64_t last,
+                                const struct worker *worker, struct index_list *all, struct error *error)
+{
+    const struct index_list *own = &worker->list;
     enum status status = index_list_reserve(all, own->count, error);
+    if (status == STATUS_OK) {
+        status = append_around(dim, worker, all->count, lists, error);
+    }
     if (status != STATUS_OK) {
         return status;
     }
@@ -333,8 +227,7 @@ static enum status append_chunk(struct support_lists *lists, int64_t first, int6
 
 /* All chunks, appended to `all` in their order whichever thread has built them. Of several that fail the
  * first tells. */
-static enum status build_chunks(const struct support_options *options, const struct point_grid *grid,
-                                const double *x, const char *what, struct support_lists *lists,
+static enum status build_chunks(const struct search *search, struct support_lists *lists,
                                 struct index_list *all, struct error *error)
 {
     int64_t chunk_count = (lists->count + chunk_points - 1) / chunk_points;
@@ -347,11 +240,12 @@ static enum status build_chunks(const struct support_options *options, const str
             struct error own;
             int64_t first = c * chunk_points;
             int64_t last = first + chunk_points < lists->count ? first + chunk_points : lists->count;
-            enum status outcome = build_chunk(options, grid, first, last, x, what, lists, &worker, &own);
+            enum status outcome = build_chunk(search, first, last, lists, &worker, &own);
 #pragma omp ordered
             if (failure == STATUS_OK) {
-                failure = outcome == STATUS_OK ? append_chunk(lists, first, last, &worker.list, all, &own)
-                                               : outcome;
+                failure = outcome == STATUS_OK
+                              ? append_chunk(search->grid->dim, lists, first, last, &worker, all, &own)
+                              : outcome;
                 if (failure != STATUS_OK) {
                     *error = own;
                 }
@@ -365,12 +259,24 @@ static enum status build_chunks(const struct support_options *options, const str
 enum status support_build(const struct support_options *options, const struct point_grid *grid, int64_t count,
                           const double *x, const char *what, struct support_lists *lists, struct error *error)
 {
+    return support_build_within(options, grid, NULL, NULL, count, x, what, lists, error);
+}
+
+enum status support_build_within(const struct support_options *options, const struct point_grid *grid,
+                                 const struct reach *reach, const struct reach_places *places, int64_t count,
+                                 const double *x, const char *what, struct support_lists *lists,
+                                 struct error *error)
+{
     enum status status;
     struct index_list all = {0};
     *lists = (struct support_lists){.count = count, .widest = 1.0};
     TRY(NEW_ARRAY(&lists->ptr, count + 1, error));
     TRY(NEW_ARRAY(&lists->widen, count, error));
-    TRY(build_chunks(options, grid, x, what, lists, &all, error));
+    struct search search = {.options = options, .grid = grid, .reach = reach, .x = x, .what = what};
+    if (places != NULL) {
+        search.places = *places;
+    }
+    TRY(build_chunks(&search, lists, &all, error));
     lists->idx = array_grow(all.index, all.count, sizeof *all.index); /* no longer than it need be */
     if (lists->idx == NULL) {
         TRY(fail_memory(error, "neighbour list"));
@@ -389,5 +295,7 @@ void support_free(struct support_lists *lists)
     free(lists->ptr);
     free(lists->idx);
     free(lists->widen);
+    free(lists->around_pair);
+    free(lists->around_offset);
     *lists = (struct support_lists){0};
 }

@@ -4,6 +4,7 @@
 
 #include "approx/mls.h"
 #include "approx/point_grid.h"
+#include "approx/reach.h"
 
 struct support_options {
     double radius;         /* constant support radius, m; 0: factor times the local spacing */
@@ -11,6 +12,7 @@ struct support_options {
     int64_t least, most;   /* neighbours: widen until `least`; keep the `most` nearest (0: all) */
     bool widen;            /* widen where the moment matrix is unfit or a gradient too large */
     double gradient_bound; /* largest |grad phi| h admitted, h the mean spacing within the support */
+    enum reach_rule reach; /* what else a neighbour must be, besides near */
     struct mls mls;        /* what the lists are for */
 };
 
@@ -26,6 +28,9 @@ struct support_lists {
     int64_t widened;      /* how many points needed widening */
     double widest;        /* the largest factor */
     int64_t fewest, most; /* neighbours of a point; 0 without points */
+    int64_t around_count; /* neighbours seen around corners (see struct around) */
+    int64_t *around_pair;
+    double *around_offset;
 };
 
 /* spacing[node_count], m: mean distance to the 2 dim nearest other nodes. For clouds without cells (with
@@ -44,6 +49,13 @@ MUST_CHECK enum status support_radii(const struct support_options *options, int6
 MUST_CHECK enum status support_build(const struct support_options *options, const struct point_grid *grid,
                                      int64_t count, const double *x, const char *what,
                                      struct support_lists *lists, struct error *error);
+/* The same with neighbours that are within reach through the cells only: of the points, which lie in these
+ * cells. Without reach (NULL) within their radii as the crow flies. */
+MUST_CHECK enum status support_build_within(const struct support_options *options,
+                                            const struct point_grid *grid, const struct reach *reach,
+                                            const struct reach_places *places, int64_t count, const double *x,
+                                            const char *what, struct support_lists *lists,
+                                            struct error *error);
 void support_free(struct support_lists *lists);
 
 /* Print "(x, y[, z])" of a point into text[96], for messages. */

@@ -44,6 +44,9 @@ static const struct rule rules[] = {
     {"face.widen", TYPE_F8, 1, "facepoints.x", AT_LEAST_ONE, NULL},
     {"node.idx", TYPE_I4, 1, NULL, INDEX, "nodes.x"},
     {"node.widen", TYPE_F8, 1, "nodes.x", AT_LEAST_ONE, NULL},
+    {"nbr.image", TYPE_F8, DIM, "nbr.around", FINITE, NULL},
+    {"face.image", TYPE_F8, DIM, "face.around", FINITE, NULL},
+    {"node.image", TYPE_F8, DIM, "node.around", FINITE, NULL},
     {"shape.phi", TYPE_F8, 1, "nbr.idx", FINITE, NULL},
     {"shape.dphi", TYPE_F8, DIM, "nbr.idx", FINITE, NULL},
     {"face.phi", TYPE_F8, 1, "face.idx", FINITE, NULL},
@@ -51,16 +54,16 @@ static const struct rule rules[] = {
 };
 
 /* Compressed lists: PTR holds the beginnings of the lists in IDX, one list for each row of ROWS_OF; PHI sums
- * to 1 over each. */
+ * to 1 over each; AROUND holds rows of IDX, ascending. */
 static const struct list_rule {
     const char *ptr, *idx;
     const char *rows_of; /* a section, or "names": the list in the attributes of PTR */
-    const char *phi;
+    const char *phi, *around;
 } list_rules[] = {
-    {"sets.ptr", "sets.idx", "names", NULL},
-    {"nbr.ptr", "nbr.idx", "points.x", "shape.phi"},
-    {"face.ptr", "face.idx", "facepoints.x", "face.phi"},
-    {"node.ptr", "node.idx", "nodes.x", "node.phi"},
+    {"sets.ptr", "sets.idx", "names", NULL, NULL},
+    {"nbr.ptr", "nbr.idx", "points.x", "shape.phi", "nbr.around"},
+    {"face.ptr", "face.idx", "facepoints.x", "face.phi", "face.around"},
+    {"node.ptr", "node.idx", "nodes.x", "node.phi", "node.around"},
 };
 
 struct check {
@@ -269,8 +272,27 @@ static bool beginnings_are_right(struct check *check, const struct section *ptr,
     return true;
 }
 
+/* Rows of a list, ascending. */
+static void check_around(struct check *check, const struct section *around, int64_t length)
+{
+    const int64_t *row = around->data;
+    if (around->type != TYPE_I8 || around->cols != 1) {
+        violation(check, around, "%" PRId64 " columns of %s instead of 1 of i8", around->cols,
+                  element_type_name(around->type));
+        return;
+    }
+    for (int64_t i = 0; i < around->rows; i++) {
+        if (row[i] < (i > 0 ? row[i - 1] + 1 : 0) || row[i] >= length) {
+            violation(check, around, "row %" PRId64 ": %" PRId64 " is no row of the list, or not ascending",
+                      i, row[i]);
+            return;
+        }
+    }
+}
+
 static void check_lists(struct check *check, const struct list_rule *rule)
 {
+    const struct section *around = rule->around != NULL ? stream_find(check->stream, rule->around) : NULL;
     const struct section *ptr = stream_find(check->stream, rule->ptr);
     const struct section *idx = stream_find(check->stream, rule->idx);
     const struct section *phi = rule->phi != NULL ? stream_find(check->stream, rule->phi) : NULL;
@@ -295,6 +317,9 @@ static void check_lists(struct check *check, const struct list_rule *rule)
         return;
     }
     check_ascending(check, ptr, idx);
+    if (around != NULL) {
+        check_around(check, around, idx->rows);
+    }
     if (phi != NULL && phi->type == TYPE_F8 && phi->cols == 1 && phi->rows == idx->rows) {
         check_unity(check, ptr, phi);
     }

@@ -38,7 +38,7 @@ enum status problem_support(void *context, struct error *error)
 
 static struct neighbours view_of(const struct support_lists *lists)
 {
-    return (struct neighbours){lists->count, lists->ptr, lists->idx, lists->widen};
+    return support_view(lists);
 }
 
 enum status problem_nodes(struct problem *problem, struct error *error)

@@ -124,7 +124,7 @@ static double *stiffness(const struct body *body, int64_t count, const double *x
     good(support_build(&body->options.support, &grid, count, x, "points.x", &found, &error), &error);
     double *phi = calloc((size_t)found.ptr[count], sizeof *phi);
     double *dphi = calloc((size_t)(found.ptr[count] * dim), sizeof *dphi);
-    struct neighbours view = {count, found.ptr, found.idx, found.widen};
+    struct neighbours view = support_view(&found);
     good(shape_table(&body->options.support.mls, body->cells.x, body->radius, &view, x, "points.x", phi, dphi,
                      &error),
          &error);

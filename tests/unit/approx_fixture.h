@@ -123,7 +123,7 @@ static inline enum status tabulate(const struct support_options *options, int64_
         int64_t pairs = table->lists.ptr[point_count];
         table->phi = malloc((size_t)pairs * sizeof(double));
         table->dphi = malloc((size_t)(pairs * dim) * sizeof(double));
-        struct neighbours lists = {point_count, table->lists.ptr, table->lists.idx, table->lists.widen};
+        struct neighbours lists = support_view(&table->lists);
         status = shape_table(&options->mls, x, table->radius, &lists, points, "points.x", table->phi,
                              table->dphi, error);
     }

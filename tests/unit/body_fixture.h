@@ -59,8 +59,7 @@ static inline void sample_faces(struct sample *sample)
     }
     GOOD(support_build(&sample->options, &sample->grid, count, sample->face_x, "faces", &sample->face_lists,
                        &error));
-    sample->face_neighbours =
-        (struct neighbours){count, sample->face_lists.ptr, sample->face_lists.idx, sample->face_lists.widen};
+    sample->face_neighbours = support_view(&sample->face_lists);
     sample->face_phi = sample_array(sample->face_lists.ptr[count], sizeof(double));
     GOOD(shape_table(&sample->options.mls, sample->cloud.x, sample->radius, &sample->face_neighbours,
                      sample->face_x, "faces", sample->face_phi, NULL, &error));
@@ -102,7 +101,7 @@ static inline void sample_points(struct sample *sample, int per_cell)
         struct support_lists lists;
         GOOD(support_build(&sample->options, &sample->grid, sample->point_count, sample->x, "points", &lists,
                            &error));
-        struct neighbours neighbours = {lists.count, lists.ptr, lists.idx, lists.widen};
+        struct neighbours neighbours = support_view(&lists);
         sample->phi = sample_array(lists.ptr[lists.count], sizeof(double));
         sample->dphi = sample_array(lists.ptr[lists.count] * dim, sizeof(double));
         GOOD(shape_table(&sample->options.mls, sample->cloud.x, sample->radius, &neighbours, sample->x,
@@ -118,8 +117,7 @@ static inline void sample_nodes(struct sample *sample)
     struct error error;
     GOOD(support_build(&sample->options, &sample->grid, sample->cloud.node_count, sample->cloud.x, "nodes",
                        &sample->node_lists, &error));
-    struct neighbours neighbours = {sample->cloud.node_count, sample->node_lists.ptr, sample->node_lists.idx,
-                                    sample->node_lists.widen};
+    struct neighbours neighbours = support_view(&sample->node_lists);
     sample->node_phi = sample_array(sample->node_lists.ptr[sample->cloud.node_count], sizeof(double));
     GOOD(shape_table(&sample->options.mls, sample->cloud.x, sample->radius, &neighbours, sample->cloud.x,
                      "nodes", sample->node_phi, NULL, &error));

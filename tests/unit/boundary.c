@@ -307,7 +307,7 @@ static void gentle_and_sharp_turns(void **state)
                 phi[2 * p + k] = rule.barycentric[p % 2 * 2 + k];
             }
         }
-        struct neighbours lists = {faces.count * 2, ptr, idx, widen};
+        struct neighbours lists = {.count = faces.count * 2, .ptr = ptr, .idx = idx, .widen = widen};
         struct face_table table = {2, corners + 1, x, &faces, 2, &lists, phi};
         struct facet_set set = {corners, facets};
         GOOD(boundary_averages_build(&table, &set, &averages, &error));
@@ -397,7 +397,7 @@ static void node_values(void **state)
         struct boundary_averages averages;
         int64_t count = sample.cloud.node_count, expected = 0;
         GOOD(support_build(&sample.options, &sample.grid, count, sample.cloud.x, "nodes", &lists, &error));
-        struct neighbours neighbours = {count, lists.ptr, lists.idx, lists.widen};
+        struct neighbours neighbours = support_view(&lists);
         double *phi = sample_array(lists.ptr[count], sizeof *phi), area = 0.0;
         GOOD(shape_table(&sample.options.mls, sample.cloud.x, sample.radius, &neighbours, sample.cloud.x,
                          "nodes", phi, NULL, &error));

@@ -66,7 +66,7 @@ static inline void lattice_tabulate(struct lattice *l, int64_t count, const doub
     struct error error;
     struct support_options options = support_defaults(l->options.dim);
     GOOD(support_build(&options, &l->grid, count, x, "points", lists, &error));
-    struct neighbours neighbours = {count, lists->ptr, lists->idx, lists->widen};
+    struct neighbours neighbours = support_view(lists);
     ARRAY(*phi, lists->ptr[count]);
     if (dphi != NULL) {
         ARRAY(*dphi, lists->ptr[count] * l->options.dim);
@@ -88,8 +88,7 @@ static inline void lattice_faces(struct lattice *l)
                              l->face_x + f * rule.points * dim);
     }
     lattice_tabulate(l, l->faces.count * rule.points, l->face_x, &l->face_lists, &l->face_phi, NULL);
-    l->face_neighbours =
-        (struct neighbours){l->face_lists.count, l->face_lists.ptr, l->face_lists.idx, l->face_lists.widen};
+    l->face_neighbours = support_view(&l->face_lists);
     l->face_table = (struct face_table){.dim = dim,
                                         .node_count = l->cells.node_count,
                                         .x = l->cells.x,
@@ -201,8 +200,7 @@ static inline void lattice_build(struct lattice *l, const struct lattice_options
     constraint_rows_init(&l->system.rows, dim);
     lattice_faces(l);
     lattice_tabulate(l, l->cells.node_count, l->cells.x, &l->node_lists, &l->node_phi, NULL);
-    l->node_neighbours =
-        (struct neighbours){l->node_lists.count, l->node_lists.ptr, l->node_lists.idx, l->node_lists.widen};
+    l->node_neighbours = support_view(&l->node_lists);
     l->system.node_lists = &l->node_neighbours;
     l->system.node_phi = l->node_phi;
     lattice_body(l);

@@ -11,6 +11,7 @@
 #include <malloc.h>
 #include <omp.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "failing_allocator.h"
 
@@ -53,7 +54,7 @@ static enum status try_table(struct error *error)
     TRY(point_grid_build(&grid, 2, cells.node_count, cloud.x, radius, error));
     TRY(support_build(&options, &grid, 2 * faces.count, points, "points", &lists, error));
     TRY(NEW_ARRAY(&phi, lists.ptr[lists.count], error));
-    struct neighbours view = {lists.count, lists.ptr, lists.idx, lists.widen};
+    struct neighbours view = support_view(&lists);
     TRY(shape_table(&options.mls, cloud.x, radius, &view, points, "points", phi, NULL, error));
     TRY(shape_smooth(&cells, &faces, 2, &view, phi, &table, error));
 done:
@@ -61,6 +62,49 @@ done:
     support_free(&lists);
     point_grid_free(&grid);
     faces_free(&faces);
+    cloud_free(&cloud);
+    free(phi);
+    return status;
+}
+
+/* Around the corner of an L: the lists at its nodes, and their values. */
+static enum status try_reach(struct error *error)
+{
+    enum status status;
+    struct cloud_options wanted = {.kind = CLOUD_REGULAR, .dim = 2, .count = {7, 7}, .high = {1.0, 1.0}};
+    struct support_options options = support_defaults(2);
+    struct cloud cloud = {0};
+    struct point_grid grid = {0};
+    struct reach reach = {0};
+    struct support_lists lists = {0};
+    struct reach_places places = {0}; /* to be found */
+    double radius[49], *phi = NULL;
+    int64_t kept = 0;
+    TRY(cloud_make(&wanted, &cloud, error));
+    for (int64_t c = 0; c < cloud.cell_count; c++) {
+        double middle[2];
+        struct cells all = {2, cloud.node_count, cloud.x, cloud.cell_count, cloud.cells};
+        cell_centroid(&all, c, middle);
+        if (middle[0] < 0.5 || middle[1] < 0.5) {
+            memmove(cloud.cells + 3 * kept++, cloud.cells + 3 * c, 3 * sizeof *cloud.cells);
+        }
+    }
+    for (int n = 0; n < 49; n++) {
+        radius[n] = 0.5;
+    }
+    struct cells cells = {2, cloud.node_count, cloud.x, kept, cloud.cells};
+    TRY(point_grid_build(&grid, 2, cells.node_count, cloud.x, radius, error));
+    TRY(reach_build(&cells, &grid, &reach, error));
+    TRY(support_build_within(&options, &grid, &reach, &places, cells.node_count, cloud.x, "nodes", &lists,
+                             error));
+    TRY(NEW_ARRAY(&phi, lists.ptr[lists.count], error));
+    struct neighbours view = support_view(&lists);
+    TRY(shape_table(&options.mls, cloud.x, radius, &view, cloud.x, "nodes", phi, NULL, error));
+    status = lists.around_count > 0 ? STATUS_OK : STATUS_INPUT;
+done:
+    support_free(&lists);
+    reach_free(&reach);
+    point_grid_free(&grid);
     cloud_free(&cloud);
     free(phi);
     return status;
@@ -122,6 +166,14 @@ static void tables(void **state)
     fail_each(try_table, 30);
 }
 
+static void around_corners(void **state)
+{
+    (void)state;
+    struct error error;
+    assert_int_equal(try_reach(&error), STATUS_OK);
+    fail_each(try_reach, 30);
+}
+
 static void adaptive(void **state)
 {
     (void)state;
@@ -142,6 +194,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(tables),
+        cmocka_unit_test(around_corners),
         cmocka_unit_test(adaptive),
         cmocka_unit_test(comparisons),
     };

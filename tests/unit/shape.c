@@ -232,7 +232,7 @@ static void smoothed_build(struct smoothed *s, int dim, int64_t per_axis, enum b
                              s->points + f * rule.points * dim);
     }
     good(tabulate(&options, s->cells.node_count, s->cells.x, count, s->points, &s->table, &error), &error);
-    s->lists = (struct neighbours){count, s->table.lists.ptr, s->table.lists.idx, s->table.lists.widen};
+    s->lists = support_view(&s->table.lists);
     good(shape_smooth(&s->cells, &s->faces, s->per_face, &s->lists, s->table.phi, &s->smooth, &error),
          &error);
 }

@@ -75,7 +75,7 @@ static int compare(struct group *group, const struct mls *mls)
         enum mls_verdict verdict;
         list.count = 0;
         good(candidates_within(&group->candidates, x, &list, &error), &error);
-        struct mls_support support = {x, group->cloud.x, group->radius, 1.0, list.index, list.count};
+        struct mls_support support = {x, group->cloud.x, group->radius, 1.0, list.index, list.count, NULL};
         good(mls_steepest(mls, &support, &work, &steepest, &verdict, &error), &error);
         if (isfinite(group->bound[p])) {
             bounded++;

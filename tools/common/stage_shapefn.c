@@ -39,6 +39,19 @@ done:
     return status;
 }
 
+enum status stage_recorded_reach(const struct stream *stream, enum reach_rule *reach, struct error *error)
+{
+    const struct section *radius = stream_find(stream, "support.radius");
+    char value[64];
+    int choice = REACH_CELLS;
+    enum status status = STATUS_OK;
+    if (radius != NULL && section_attribute(radius, "reach", value, sizeof value)) {
+        status = parse_choice(value, "support.radius: reach", reach_names, REACH_RULE_COUNT, &choice, error);
+    }
+    *reach = (enum reach_rule)choice;
+    return status;
+}
+
 /* Sections may come from anywhere: finite coordinates, radii and factors that are finite and positive. */
 static enum status check_numbers(const struct section *section, bool positive, struct error *error)
 {

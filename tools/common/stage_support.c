@@ -40,9 +40,9 @@ static enum status put_radii(struct stream *stream, const struct support_options
     char attributes[512];
     TRY(NEW_ARRAY(&radius, node_count, error));
     TRY(stage_radii(stream, options, node_count, x, radius, error));
-    mls_describe(&options->mls, attributes, sizeof attributes - 8);
-    char described[sizeof attributes + 8];
-    snprintf(described, sizeof described, "unit=m %s", attributes);
+    mls_describe(&options->mls, attributes, sizeof attributes - 32);
+    char described[sizeof attributes + 32];
+    snprintf(described, sizeof described, "unit=m reach=%s %s", reach_names[options->reach], attributes);
     status = stream_put(stream, "support.radius", TYPE_F8, node_count, 1, described, radius, true, error);
     radius = NULL;
 done:
@@ -50,25 +50,51 @@ done:
     return status;
 }
 
-/* Lists PREFIX.ptr, .idx, .widen of the points of one section, which the report calls `called`. */
-static enum status put_lists(struct stream *stream, const struct support_options *options,
-                             const struct point_grid *grid, const struct section *points, const char *prefix,
-                             const char *called, struct support_report *report, struct error *error)
+/* Sections PREFIX.around and .image of the neighbours that are seen around corners; the stream takes them. */
+static enum status put_around(struct stream *stream, int dim, const char *prefix, struct support_lists *lists,
+                              struct error *error)
 {
+    char name[64], vector[64];
+    snprintf(name, sizeof name, "%s.around", prefix);
+    enum status status =
+        stream_put(stream, name, TYPE_I8, lists->around_count, 1, "", lists->around_pair, true, error);
+    snprintf(name, sizeof name, "%s.image", prefix);
+    enum status next = stream_put(stream, name, TYPE_F8, lists->around_count, dim,
+                                  vector_attributes(dim, "m", vector), lists->around_offset, true, error);
+    lists->around_pair = NULL;
+    lists->around_offset = NULL;
+    return status != STATUS_OK ? status : next;
+}
+
+/* Points of one section, in those cells: lists PREFIX.ptr, .idx, .widen, and what the report calls them. */
+struct listed {
+    const struct section *points;
+    struct reach_places places;
+    const char *prefix, *called;
+};
+
+static enum status put_lists(struct stream *stream, const struct support_options *options,
+                             const struct point_grid *grid, const struct reach *reach,
+                             const struct listed *listed, struct support_report *report, struct error *error)
+{
+    const struct section *points = listed->points;
+    const char *prefix = listed->prefix;
     enum status status, next;
     struct support_lists lists = {0};
     char name[64];
     int64_t count = points->rows;
-    TRY(support_build(options, grid, count, points->data, points->name, &lists, error));
+    TRY(support_build_within(options, grid, reach, &listed->places, count, points->data, points->name, &lists,
+                             error));
     int64_t pairs = lists.ptr[count];
     int entry = report->lists++;
-    report->list[entry].what = called;
+    report->list[entry].what = listed->called;
     report->list[entry].points = count;
     report->list[entry].pairs = pairs;
     report->list[entry].fewest = lists.fewest;
     report->list[entry].most = lists.most;
     report->list[entry].widened = lists.widened;
     report->list[entry].widest = lists.widest;
+    report->list[entry].around = lists.around_count;
     snprintf(name, sizeof name, "%s.ptr", prefix);
     status = stream_put(stream, name, TYPE_I8, count + 1, 1, "", lists.ptr, true, error);
     snprintf(name, sizeof name, "%s.idx", prefix);
@@ -77,9 +103,43 @@ static enum status put_lists(struct stream *stream, const struct support_options
     snprintf(name, sizeof name, "%s.widen", prefix);
     next = stream_put(stream, name, TYPE_F8, count, 1, "", lists.widen, true, error);
     status = status != STATUS_OK ? status : next;
-    lists = (struct support_lists){0};
+    lists.ptr = NULL;
+    lists.idx = NULL;
+    lists.widen = NULL;
+    if (status == STATUS_OK && lists.around_count > 0) {
+        status = put_around(stream, (int)points->cols, prefix, &lists, error);
+    }
 done:
     support_free(&lists);
+    return status;
+}
+
+/* The cells of points from a section of `per_row` of them for as many rows as share the points evenly; to be
+ * found by place where there is no such section. */
+static enum status places_of(const struct stream *stream, const struct cells *cells, const char *name,
+                             int per_row, int64_t points, struct reach_places *places, struct error *error)
+{
+    enum status status = STATUS_OK;
+    const struct section *section = stream_find(stream, name);
+    *places = (struct reach_places){0};
+    if (section == NULL || points == 0) {
+        return STATUS_OK;
+    }
+    TRY(stream_need(stream, name, TYPE_I4, per_row, "ipoints", &section, error));
+    if (section->rows == 0 || points % section->rows != 0) {
+        return fail(error, STATUS_INPUT, "%s: %lld rows for %lld points: run ipoints again", name,
+                    (long long)section->rows, (long long)points);
+    }
+    const int32_t *cell = section->data;
+    for (int64_t i = 0; i < section->rows * per_row; i++) {
+        if (cell[i] < -1 || (cells->count > 0 && cell[i] >= cells->count)) {
+            return fail(error, STATUS_INPUT, "%s: row %lld: no cell %d", name, (long long)(i / per_row),
+                        cell[i]);
+        }
+    }
+    *places =
+        (struct reach_places){.cell = cell, .per_row = per_row, .points_per_row = points / section->rows};
+done:
     return status;
 }
 
@@ -92,6 +152,10 @@ enum status stage_support(struct stream *stream, const struct support_options *o
     int64_t node_count;
     const double *x;
     const struct section *points, *facepoints;
+    struct support_options actual = *options;
+    struct reach reach = {0};
+    struct cells cells;
+    struct listed listed;
     static const char *const void_prefixes[] = {"nbr.", "face.", "node.", "support.radius", "shape."};
     *report = (struct support_report){0};
     for (size_t i = 0; i < sizeof void_prefixes / sizeof *void_prefixes; i++) {
@@ -99,17 +163,35 @@ enum status stage_support(struct stream *stream, const struct support_options *o
     }
     TRY(stream_nodes(stream, &dim, &node_count, &x, error));
     TRY(stream_need(stream, "points.x", TYPE_F8, dim, "ipoints", &points, error));
-    TRY(put_radii(stream, options, node_count, x, error));
+    TRY(stream_cells(stream, false, &cells, error));
+    if (cells.count == 0) {
+        actual.reach = REACH_DISTANCE;
+    }
+    report->reach = actual.reach;
+    TRY(put_radii(stream, &actual, node_count, x, error));
     TRY(point_grid_build(&grid, dim, node_count, x, stream_find(stream, "support.radius")->data, error));
+    if (actual.reach == REACH_CELLS) {
+        TRY(reach_build(&cells, &grid, &reach, error));
+    }
+    const struct reach *within = actual.reach == REACH_CELLS ? &reach : NULL;
     if (!points_are_conforming(points)) { /* else shapefn makes their lists from those of the faces */
-        TRY(put_lists(stream, options, &grid, points, "nbr", "integration points", report, error));
+        listed = (struct listed){.points = points, .prefix = "nbr", .called = "integration points"};
+        TRY(places_of(stream, &cells, "points.cell", 1, points->rows, &listed.places, error));
+        TRY(put_lists(stream, &actual, &grid, within, &listed, report, error));
     }
     if (stream_find(stream, "facepoints.x") != NULL) {
         TRY(stream_need(stream, "facepoints.x", TYPE_F8, dim, "ipoints", &facepoints, error));
-        TRY(put_lists(stream, options, &grid, facepoints, "face", "points on faces", report, error));
+        listed = (struct listed){.points = facepoints, .prefix = "face", .called = "points on faces"};
+        TRY(places_of(stream, &cells, "faces.cell", 2, facepoints->rows, &listed.places, error));
+        TRY(put_lists(stream, &actual, &grid, within, &listed, report, error));
     }
-    TRY(put_lists(stream, options, &grid, stream_find(stream, "nodes.x"), "node", "nodes", report, error));
+    listed = (struct listed){.points = stream_find(stream, "nodes.x"),
+                             .places = {.nodes = true},
+                             .prefix = "node",
+                             .called = "nodes"};
+    TRY(put_lists(stream, &actual, &grid, within, &listed, report, error));
 done:
+    reach_free(&reach);
     point_grid_free(&grid);
     return status;
 }

@@ -35,10 +35,12 @@ MUST_CHECK enum status stage_radii(const struct stream *stream, const struct sup
 
 /* What support found, for each of its lists. */
 struct support_report {
+    enum reach_rule reach; /* by distance also where there are no cells */
     int lists;
     struct {
         const char *what; /* "points on faces" */
         int64_t points, pairs, fewest, most, widened;
+        int64_t around; /* pairs that see each other around corners */
         double widest;
     } list[3];
 };
@@ -53,6 +55,10 @@ MUST_CHECK enum status stage_shapefn(struct stream *stream, const struct mls *ml
 /* The MLS settings that support recorded in the stream; mls_default() where it recorded none. */
 MUST_CHECK enum status stage_recorded_mls(const struct stream *stream, int dim, struct mls *mls,
                                           struct error *error);
+
+/* The rule of reach that support recorded in the stream; by the cells where it recorded none. */
+MUST_CHECK enum status stage_recorded_reach(const struct stream *stream, enum reach_rule *reach,
+                                            struct error *error);
 
 /* Run the defaults of every stage up to shapefn whose sections are missing, saying so once on standard error
  * and adding the provenance of the stages run. `upto` is "ipoints", "support" or "shapefn". Exits on failure.

@@ -94,6 +94,44 @@ bool points_are_conforming(const struct section *points)
     return section_attribute(points, "rule", rule, sizeof rule) && strcmp(rule, "conforming") == 0;
 }
 
+/* The sections PREFIX.around and .image of lists with so many pairs, where there are any. */
+static enum status view_around(const struct stream *stream, const char *prefix, int64_t pairs,
+                               struct around *around, struct error *error)
+{
+    enum status status;
+    char name[64];
+    int dim;
+    int64_t node_count;
+    const double *x;
+    const struct section *pair, *image;
+    *around = (struct around){0};
+    snprintf(name, sizeof name, "%s.around", prefix);
+    if (stream_find(stream, name) == NULL) {
+        return STATUS_OK;
+    }
+    TRY(stream_nodes(stream, &dim, &node_count, &x, error));
+    TRY(stream_need(stream, name, TYPE_I8, 1, "support", &pair, error));
+    snprintf(name, sizeof name, "%s.image", prefix);
+    TRY(stream_need(stream, name, TYPE_F8, dim, "support", &image, error));
+    *around = (struct around){.count = pair->rows, .pair = pair->data, .offset = image->data};
+    if (image->rows != pair->rows) {
+        return fail(error, STATUS_INPUT, "%s: does not fit %s.around: run support again", name, prefix);
+    }
+    for (int64_t i = 0; i < pair->rows; i++) {
+        if (around->pair[i] < (i > 0 ? around->pair[i - 1] + 1 : 0) || around->pair[i] >= pairs) {
+            return fail(error, STATUS_INPUT, "%s.around: row %lld: no neighbour %lld, or not ascending",
+                        prefix, (long long)i, (long long)around->pair[i]);
+        }
+    }
+    for (int64_t i = 0; i < image->rows * dim; i++) {
+        if (!isfinite(around->offset[i])) {
+            return fail(error, STATUS_INPUT, "%s: row %lld: not a finite offset", name, (long long)(i / dim));
+        }
+    }
+done:
+    return status;
+}
+
 enum status stream_neighbours(const struct stream *stream, const char *prefix, int64_t rows, int64_t columns,
                               struct neighbours *lists, struct error *error)
 {
@@ -130,7 +168,7 @@ enum status stream_neighbours(const struct stream *stream, const char *prefix, i
                         lists->idx[i]);
         }
     }
-    return STATUS_OK;
+    return view_around(stream, prefix, idx->rows, &lists->around, error);
 }
 
 const char *vector_attributes(int dim, const char *unit, char text[64])

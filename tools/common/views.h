@@ -30,7 +30,8 @@ MUST_CHECK enum status stream_facets(const struct stream *stream, bool needed, i
 MUST_CHECK enum status stream_faces(const struct stream *stream, const struct cells *cells,
                                     struct faces *faces, struct error *error);
 
-/* A CSR list: PREFIX.ptr (rows + 1), PREFIX.idx (within [0, columns)). */
+/* A CSR list: PREFIX.ptr (rows + 1), PREFIX.idx (within [0, columns)), and PREFIX.widen, .around and .image
+ * where there are any. */
 MUST_CHECK enum status stream_neighbours(const struct stream *stream, const char *prefix, int64_t rows,
                                          int64_t columns, struct neighbours *lists, struct error *error);
 

@@ -1,0 +1,24 @@
+// A block of 40 x 20 mm, held at its left, with a V slit from the right to x = 16: .5 mm wide at its mouth; mm.
+// gmsh -2 -setnumber h 2 slit.geo; a share of h at the tip, where the stress is singular: -setnumber tip 1.
+If (!Exists(h)) h = 2; EndIf
+If (!Exists(tip)) tip = 1; EndIf
+Point(1) = {0, 0, 0, h};
+Point(2) = {40, 0, 0, h};
+Point(3) = {40, 9.75, 0, h};
+Point(4) = {16, 10, 0, tip * h};
+Point(5) = {40, 10.25, 0, h};
+Point(6) = {40, 20, 0, h};
+Point(7) = {0, 20, 0, h};
+Line(1) = {1, 2};
+Line(2) = {2, 3};
+Line(3) = {3, 4};
+Line(4) = {4, 5};
+Line(5) = {5, 6};
+Line(6) = {6, 7};
+Line(7) = {7, 1};
+Curve Loop(1) = {1, 2, 3, 4, 5, 6, 7};
+Plane Surface(1) = {1};
+Physical Surface("body", 1) = {1};
+Physical Curve("held", 11) = {7};
+Physical Curve("lifted", 12) = {5};
+Physical Curve("lower", 13) = {2};

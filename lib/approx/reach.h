@@ -1,0 +1,109 @@
+/* What a point reaches through the cells of the body, so that supports do not act across gaps.
+ *
+ * A node is in sight of a point when the straight segment between them stays within the cells, from face to
+ * face (visibility: Belytschko, Lu and Gu 1994). Around a re-entrant corner the distance is the length of the
+ * shortest path through the body (diffraction: Organ, Fleming, Terry and Belytschko 1996), which grows
+ * continuously from the straight one, so that the weights do. What no path shorter than the support radius
+ * leads to is no neighbour. Paths bend at re-entrant nodes, in 3D also within re-entrant edges; a node where
+ * cells hang together by no face joins nothing but itself: it sees what each of its cells sees. */
+#ifndef APPROX_REACH_H
+#define APPROX_REACH_H
+
+#include "approx/cells.h"
+#include "approx/point_grid.h"
+
+/* What neighbours are: nodes within reach through the cells, where there are cells; or all that are near. */
+enum reach_rule { REACH_CELLS, REACH_DISTANCE, REACH_RULE_COUNT };
+
+/* Names for command lines and headers: "cells", "distance". */
+extern const char *const reach_names[REACH_RULE_COUNT];
+
+/* A facet of the boundary: its plane is normal . x = offset, the body where it is less. */
+struct reach_facet {
+    int32_t node[3], cell;
+    double normal[3], offset;
+    double dual[2][3], from[2]; /* dual . x - from: the second and third barycentric coordinates of x there */
+    double middle[3], radius;   /* of a ball around it */
+};
+
+/* The cells and the grid are the caller's and must outlive this. */
+struct reach {
+    struct cells cells;
+    const struct point_grid *grid;
+    int32_t *across;   /* cells_across */
+    int64_t *star_ptr; /* node_count + 1: the cells at each node (CSR) */
+    int32_t *star;
+    int64_t facet_count;
+    struct reach_facet *facet;
+    int64_t *opposing_ptr; /* node_count + 1: the facets within its radius that hide a node from points behind
+                              them (CSR) */
+    int32_t *opposing;
+    int64_t most_opposing;
+    float *opposing_view[8]; /* with `opposing`, from the node: the facet's normal, the height of the node
+                                above its plane, the middle and the radius of its ball */
+    bool *corner;            /* node_count: paths may bend there */
+    int64_t *edge_ptr; /* node_count + 1: 3D: the other ends of the re-entrant edges at each node (CSR) */
+    int32_t *edge;
+    int64_t *seen_ptr; /* node_count + 1: the corners that a node, within its radius, is in sight of (CSR) */
+    int32_t *seen;
+};
+
+/* Errors: STATUS_INPUT for cells that share a face with more than one other; STATUS_SYSTEM (memory). */
+MUST_CHECK enum status reach_build(const struct cells *cells, const struct point_grid *grid,
+                                   struct reach *reach, struct error *error);
+void reach_free(struct reach *reach);
+
+/* The cells that points lie in. Zeros: unknown, to be found. A point outside of all cells sees what the
+ * nearest place in a cell sees; far from all cells, all that is near enough. */
+struct reach_places {
+    bool nodes;             /* point p is node p */
+    const int32_t *cell;    /* else, unless NULL: cells, -1 for none, per_row for each row */
+    int64_t per_row;        /* 1 or 2 */
+    int64_t points_per_row; /* row of point p: p / points_per_row */
+};
+
+/* Scratch space for one thread, all zero at first; grows on demand. */
+struct reach_work {
+    const double *x; /* the point that is looked from */
+    double from[3];  /* itself; or for a point outside, its place in the nearest cell */
+    bool outside;
+    const int32_t *cell;            /* the cells that it lies in */
+    int64_t cell_count;             /* -1: not looked for yet */
+    int32_t given[2];               /* what `cell` may view */
+    struct index_list own;          /* likewise */
+    uint32_t serial;                /* of the point */
+    uint32_t *mark;                 /* node_count: 2 serial, and 1 more for a node that is hidden */
+    uint32_t pass;                  /* serial of the search for paths */
+    uint32_t *passed;               /* node_count: the last pass that put down a length and a node before */
+    double *length;                 /* node_count: of the shortest path, infinite: none yet */
+    int32_t *before;                /* node_count: the node before on that path, -1: the point itself */
+    int32_t *near_begin, *near_end; /* node_count: for the candidates of the group, the facets that may be
+                                       between, in `near` */
+    struct index_list near;
+    int32_t *passes; /* scratch */
+    struct index_list hidden, stack, visited;
+    int64_t changed;  /* candidates of the last filter that were out of sight */
+    int64_t around;   /* neighbours of the last filter that are seen around corners */
+    int64_t capacity; /* neighbours that `image` serves */
+    double *image;    /* those neighbours' offsets from the point to where they seem to be: see mls_support */
+};
+void reach_work_free(struct reach_work *work);
+
+/* The points to be looked from next are among x[points * dim], and their candidates within their radii among
+ * index[count]: puts aside the facets that can be between none of them. */
+MUST_CHECK enum status reach_group(const struct reach *reach, int64_t points, const double *x,
+                                   const int32_t *index, int64_t count, struct reach_work *work,
+                                   struct error *error);
+
+/* Look from point p of x[][dim], one of the group. */
+MUST_CHECK enum status reach_begin(const struct reach *reach, const struct reach_places *places, int64_t p,
+                                   const double *x, struct reach_work *work, struct error *error);
+
+/* Of the candidates index[*count], nodes that are nearer than `widen` times their radius, keep those whose
+ * shortest path is as well. Where work->around > 0, work->image[*count * dim] holds the offset to each of
+ * them: straight to a node in sight, and along the first leg of the path, as long as the path is, to others.
+ */
+MUST_CHECK enum status reach_filter(const struct reach *reach, double widen, int32_t *index, int64_t *count,
+                                    struct reach_work *work, struct error *error);
+
+#endif

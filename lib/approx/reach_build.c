@@ -1,0 +1,383 @@
+/* What is known of a body before anything is looked at from a point. */
+#include "approx/reach_private.h"
+
+#include "base/memory.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Pairs (row, value), to become a CSR. */
+struct pairs {
+    int64_t count, capacity;
+    struct {
+        int32_t row, value;
+    } * pair;
+};
+
+static enum status add_pair(struct pairs *pairs, int32_t row, int32_t value, struct error *error)
+{
+    if (pairs->count == pairs->capacity) {
+        int64_t capacity = 2 * pairs->capacity + 256;
+        void *grown = array_grow(pairs->pair, capacity, sizeof *pairs->pair);
+        if (grown == NULL) {
+            return fail_memory(error, "connections of the body");
+        }
+        pairs->pair = grown;
+        pairs->capacity = capacity;
+    }
+    pairs->pair[pairs->count].row = row;
+    pairs->pair[pairs->count++].value = value;
+    return STATUS_OK;
+}
+
+/* ptr[rows + 1], idx: the values of each row in their order. */
+static enum status file_pairs(const struct pairs *pairs, int64_t rows, int64_t **ptr, int32_t **idx,
+                              struct error *error)
+{
+    enum status status;
+    TRY(NEW_ARRAY(ptr, rows + 2, error));
+    TRY(NEW_ARRAY(idx, pairs->count, error));
+    int64_t *start = *ptr;
+    for (int64_t i = 0; i < pairs->count; i++) {
+        start[pairs->pair[i].row + 2]++;
+    }
+    for (int64_t r = 0; r < rows; r++) {
+        start[r + 2] += start[r + 1];
+    }
+    for (int64_t i = 0; i < pairs->count; i++) {
+        (*idx)[start[pairs->pair[i].row + 1]++] = pairs->pair[i].value;
+    }
+done:
+    return status;
+}
+
+static enum status file_stars(struct reach *reach, struct error *error)
+{
+    enum status status = STATUS_OK;
+    struct pairs pairs = {0};
+    int corners = reach->cells.dim + 1;
+    for (int64_t i = 0; i < reach->cells.count * corners; i++) {
+        TRY(add_pair(&pairs, reach->cells.node[i], (int32_t)(i / corners), error));
+    }
+    TRY(file_pairs(&pairs, reach->cells.node_count, &reach->star_ptr, &reach->star, error));
+done:
+    free(pairs.pair);
+    return status;
+}
+
+/* The dual of the edges from the first vertex, within the facet. */
+static void set_dual(const struct reach *reach, struct reach_facet *facet)
+{
+    int dim = reach->cells.dim;
+    double edge[2][3] = {{0.0}}, product[2][2] = {{0.0}};
+    const double *first = reach->cells.x + (int64_t)facet->node[0] * dim;
+    for (int k = 0; k < dim - 1; k++) {
+        for (int a = 0; a < dim; a++) {
+            edge[k][a] = reach->cells.x[(int64_t)facet->node[k + 1] * dim + a] - first[a];
+        }
+    }
+    for (int a = 0; a < dim; a++) {
+        product[0][0] += edge[0][a] * edge[0][a];
+        product[0][1] += edge[0][a] * edge[1][a];
+        product[1][1] += edge[1][a] * edge[1][a];
+    }
+    if (dim == 2) {
+        product[1][1] = 1.0;
+    }
+    double determinant = product[0][0] * product[1][1] - product[0][1] * product[0][1];
+    for (int a = 0; a < dim; a++) {
+        facet->dual[0][a] = (product[1][1] * edge[0][a] - product[0][1] * edge[1][a]) / determinant;
+        facet->dual[1][a] = (product[0][0] * edge[1][a] - product[0][1] * edge[0][a]) / determinant;
+        facet->from[0] += facet->dual[0][a] * first[a];
+        facet->from[1] += facet->dual[1][a] * first[a];
+    }
+}
+
+static enum status set_facets(const struct faces *faces, struct reach *reach, struct error *error)
+{
+    enum status status;
+    int dim = reach->cells.dim;
+    TRY(NEW_ARRAY(&reach->facet, faces->count, error));
+    reach->facet_count = faces->count;
+    for (int64_t f = 0; f < faces->count; f++) {
+        struct reach_facet *facet = &reach->facet[f];
+        double area[3] = {0.0, 0.0, 0.0};
+        memcpy(facet->node, faces->node + f * dim, (size_t)dim * sizeof *facet->node);
+        facet->cell = faces->cell[2 * f];
+        face_area_vector(dim, reach->cells.x, facet->node, area);
+        double size = sqrt(area[0] * area[0] + area[1] * area[1] + area[2] * area[2]);
+        for (int a = 0; a < dim; a++) {
+            facet->normal[a] = area[a] / size;
+            facet->offset += facet->normal[a] * reach->cells.x[(int64_t)facet->node[0] * dim + a];
+            for (int k = 0; k < dim; k++) {
+                facet->middle[a] += reach->cells.x[(int64_t)facet->node[k] * dim + a] / dim;
+            }
+        }
+        for (int k = 0; k < dim; k++) {
+            const double *vertex = reach->cells.x + (int64_t)facet->node[k] * dim;
+            facet->radius = fmax(facet->radius, reach_distance(dim, facet->middle, vertex) * (1.0 + 1e-6));
+        }
+        set_dual(reach, facet);
+    }
+done:
+    return status;
+}
+
+static double height_above(const struct reach *reach, const struct reach_facet *facet, int32_t node)
+{
+    double height = -facet->offset;
+    for (int a = 0; a < reach->cells.dim; a++) {
+        height += facet->normal[a] * reach->cells.x[(int64_t)node * reach->cells.dim + a];
+    }
+    return height;
+}
+
+static bool is_of_facet(int dim, const struct reach_facet *facet, int32_t node)
+{
+    return facet->node[0] == node || facet->node[1] == node || (dim == 3 && facet->node[2] == node);
+}
+
+/* Nodes whose supports reach a facet and that are beyond it, or on it without being its own. */
+static enum status file_opposing(struct reach *reach, struct error *error)
+{
+    enum status status = STATUS_OK;
+    struct pairs pairs = {0};
+    struct index_list near = {0};
+    int dim = reach->cells.dim;
+    for (int64_t f = 0; f < reach->facet_count; f++) {
+        const struct reach_facet *facet = &reach->facet[f];
+        double low[3], high[3];
+        for (int a = 0; a < dim; a++) {
+            low[a] = INFINITY;
+            high[a] = -INFINITY;
+            for (int k = 0; k < dim; k++) {
+                double x = reach->cells.x[(int64_t)facet->node[k] * dim + a];
+                low[a] = fmin(low[a], x);
+                high[a] = fmax(high[a], x);
+            }
+        }
+        near.count = 0;
+        TRY(point_grid_query_box(reach->grid, low, high, 1.0, &near, error));
+        for (int64_t i = 0; i < near.count; i++) {
+            int32_t node = near.index[i];
+            double height = height_above(reach, facet, node),
+                   tolerance = REACH_ON_PLANE * reach->grid->radius[node];
+            const double *x = reach->cells.x + (int64_t)node * dim;
+            if (height > tolerance || (height >= -tolerance && !is_of_facet(dim, facet, node) &&
+                                       reach_distance(dim, facet->middle, x) <= facet->radius)) {
+                TRY(add_pair(&pairs, node, (int32_t)f, error));
+            }
+        }
+    }
+    TRY(file_pairs(&pairs, reach->cells.node_count, &reach->opposing_ptr, &reach->opposing, error));
+    for (int a = 0; a < 8; a++) {
+        TRY(NEW_ARRAY(&reach->opposing_view[a], pairs.count, error));
+    }
+    for (int32_t n = 0; n < reach->cells.node_count; n++) {
+        int64_t first = reach->opposing_ptr[n], last = reach->opposing_ptr[n + 1];
+        reach->most_opposing = last - first > reach->most_opposing ? last - first : reach->most_opposing;
+        for (int64_t i = first; i < last; i++) {
+            const struct reach_facet *facet = &reach->facet[reach->opposing[i]];
+            for (int a = 0; a < dim; a++) {
+                reach->opposing_view[a][i] = (float)facet->normal[a];
+                reach->opposing_view[4 + a][i] =
+                    (float)(facet->middle[a] - reach->cells.x[(int64_t)n * dim + a]);
+            }
+            reach->opposing_view[3][i] = (float)height_above(reach, facet, n);
+            reach->opposing_view[7][i] = (float)facet->radius;
+        }
+    }
+done:
+    free(pairs.pair);
+    free(near.index);
+    return status;
+}
+
+/* Where facets meet: a node, in 3D an edge; and the vertex of the facet that is not there. */
+struct ridge {
+    int32_t node[2]; /* ascending; 2D: the second is -1 */
+    int32_t facet, opposite;
+};
+
+static int compare_ridges(const void *left, const void *right)
+{
+    const struct ridge *a = left, *b = right;
+    if (a->node[0] != b->node[0]) {
+        return a->node[0] < b->node[0] ? -1 : 1;
+    }
+    return a->node[1] != b->node[1] ? (a->node[1] < b->node[1] ? -1 : 1) : a->facet - b->facet;
+}
+
+static void list_ridges(const struct reach *reach, struct ridge *ridges)
+{
+    int dim = reach->cells.dim;
+    for (int64_t i = 0; i < reach->facet_count * dim; i++) {
+        const int32_t *node = reach->facet[i / dim].node;
+        int k = (int)(i % dim);
+        int32_t a = node[(k + 1) % dim], b = dim == 3 ? node[(k + 2) % dim] : -1;
+        bool turned = b >= 0 && b < a;
+        ridges[i] = (struct ridge){
+            .node = {turned ? b : a, turned ? a : b}, .facet = (int32_t)(i / dim), .opposite = node[k]};
+    }
+    qsort(ridges, (size_t)(reach->facet_count * dim), sizeof *ridges, compare_ridges);
+}
+
+/* Whether the cells at a node hang together by faces at it. */
+static enum status hangs_together(const struct reach *reach, int32_t node, struct reach_work *work,
+                                  bool *together, struct error *error)
+{
+    const double *x = reach->cells.x + (int64_t)node * reach->cells.dim;
+    enum status status =
+        reach_walk(reach, x, reach->star + reach->star_ptr[node], 1, -1, work, together, error);
+    int64_t met = 0;
+    for (int64_t i = 0; status == STATUS_OK && i < work->visited.count; i++) {
+        const int32_t *v = reach->cells.node + (int64_t)work->visited.index[i] * (reach->cells.dim + 1);
+        for (int k = 0; k <= reach->cells.dim; k++) {
+            met += v[k] == node;
+        }
+    }
+    *together = met == reach->star_ptr[node + 1] - reach->star_ptr[node];
+    return status;
+}
+
+/* Whether the body's angle between two facets is larger than a straight one: up to a full turn, where they
+ * lie on each other. */
+static bool is_reentrant(const struct reach *reach, const struct ridge *first, const struct ridge *second)
+{
+    int dim = reach->cells.dim;
+    const double *ridge = reach->cells.x + (int64_t)first->node[0] * dim;
+    const double *ends[2] = {reach->cells.x + (int64_t)first->opposite * dim,
+                             reach->cells.x + (int64_t)second->opposite * dim};
+    double height = height_above(reach, &reach->facet[first->facet], second->opposite);
+    double tolerance = REACH_ON_PLANE * reach->grid->radius[first->node[0]], u[2][3], along[2][2] = {{0.0}};
+    double edge[3] = {0.0, 0.0, 0.0}, product = 0.0;
+    if (fabs(height) > tolerance) {
+        return height > 0.0;
+    }
+    /* In one plane: on the same side of the ridge? */
+    for (int a = 0; a < dim; a++) {
+        u[0][a] = ends[0][a] - ridge[a];
+        u[1][a] = ends[1][a] - ridge[a];
+        edge[a] = dim == 3 ? reach->cells.x[(int64_t)first->node[1] * 3 + a] - ridge[a] : 0.0;
+        product += u[0][a] * u[1][a];
+        along[0][0] += u[0][a] * edge[a];
+        along[1][0] += u[1][a] * edge[a];
+        along[0][1] += edge[a] * edge[a];
+    }
+    if (dim == 3) {
+        product -= along[0][0] * along[1][0] / along[0][1];
+    }
+    return product > 0.0;
+}
+
+/* Corners: nodes of re-entrant ridges. Where more than two facets meet the body only touches itself. */
+static enum status find_corners(struct reach *reach, struct reach_work *work, struct error *error)
+{
+    enum status status;
+    struct pairs edges = {0};
+    struct ridge *ridges = NULL;
+    int dim = reach->cells.dim;
+    int64_t count = reach->facet_count * dim;
+    TRY(NEW_ARRAY(&ridges, count, error));
+    TRY(NEW_ARRAY(&reach->corner, reach->cells.node_count, error));
+    list_ridges(reach, ridges);
+    for (int64_t i = 0, end; i < count; i = end) {
+        for (end = i + 1; end < count && ridges[end].node[0] == ridges[i].node[0] &&
+                          ridges[end].node[1] == ridges[i].node[1];
+             end++) {
+        }
+        int32_t a = ridges[i].node[0], b = ridges[i].node[1];
+        if (end - i != 2 || !is_reentrant(reach, &ridges[i], &ridges[i + 1])) {
+            continue;
+        }
+        reach->corner[a] = true;
+        if (b >= 0) {
+            reach->corner[b] = true;
+            TRY(add_pair(&edges, a, b, error));
+            TRY(add_pair(&edges, b, a, error));
+        }
+    }
+    for (int64_t n = 0; n < reach->cells.node_count; n++) {
+        if (reach->corner[n]) {
+            TRY(hangs_together(reach, (int32_t)n, work, &reach->corner[n], error));
+        }
+    }
+    TRY(file_pairs(&edges, reach->cells.node_count, &reach->edge_ptr, &reach->edge, error));
+done:
+    free(ridges);
+    free(edges.pair);
+    return status;
+}
+
+static enum status file_views(struct reach *reach, struct reach_work *work, struct error *error)
+{
+    enum status status = STATUS_OK;
+    struct pairs pairs = {0};
+    struct index_list near = {0};
+    int dim = reach->cells.dim;
+    for (int64_t n = 0; n < reach->cells.node_count; n++) {
+        const double *x = reach->cells.x + n * dim;
+        near.count = 0;
+        if (reach->corner[n]) {
+            TRY(point_grid_query(reach->grid, x, 1.0, &near, error));
+            TRY(reach_group(reach, 1, x, near.index, near.count, work, error));
+        }
+        for (int64_t i = 0; i < near.count; i++) {
+            bool seen;
+            TRY(reach_sees(reach, x, reach->star + reach->star_ptr[n],
+                           reach->star_ptr[n + 1] - reach->star_ptr[n], near.index[i], work, &seen, error));
+            if (seen && near.index[i] != n) {
+                TRY(add_pair(&pairs, near.index[i], (int32_t)n, error));
+            }
+        }
+    }
+    TRY(file_pairs(&pairs, reach->cells.node_count, &reach->seen_ptr, &reach->seen, error));
+done:
+    free(pairs.pair);
+    free(near.index);
+    return status;
+}
+
+enum status reach_build(const struct cells *cells, const struct point_grid *grid, struct reach *reach,
+                        struct error *error)
+{
+    enum status status;
+    struct faces faces = {0};
+    struct reach_work work = {0};
+    *reach = (struct reach){.cells = *cells, .grid = grid};
+    TRY(NEW_ARRAY(&reach->across, cells->count * (cells->dim + 1), error));
+    TRY(cells_across(cells, reach->across, error));
+    TRY(faces_build(cells, true, &faces, error));
+    TRY(file_stars(reach, error));
+    TRY(set_facets(&faces, reach, error));
+    TRY(file_opposing(reach, error));
+    TRY(find_corners(reach, &work, error));
+    TRY(file_views(reach, &work, error));
+done:
+    faces_free(&faces);
+    reach_work_free(&work);
+    if (status != STATUS_OK) {
+        reach_free(reach);
+    }
+    return status;
+}
+
+void reach_free(struct reach *reach)
+{
+    free(reach->across);
+    free(reach->star_ptr);
+    free(reach->star);
+    free(reach->facet);
+    free(reach->opposing_ptr);
+    free(reach->opposing);
+    for (int a = 0; a < 8; a++) {
+        free(reach->opposing_view[a]);
+    }
+    free(reach->corner);
+    free(reach->edge_ptr);
+    free(reach->edge);
+    free(reach->seen_ptr);
+    free(reach->seen);
+    *reach = (struct reach){0};
+}

@@ -1,0 +1,191 @@
+/* Shortest paths around corners, and their bends slid along re-entrant edges. */
+#include "approx/reach_private.h"
+
+#include "base/memory.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Bends of one path that are slid, and how often. */
+enum { MOST_BENDS = 8, SWEEPS = 3 };
+/* Paths over nodes may be so much longer than a radius, in 3D, before their bends are slid. */
+static const double most_slack = 1.2;
+
+enum status reach_work_reserve(const struct reach *reach, struct reach_work *work, struct error *error)
+{
+    enum status status = STATUS_OK;
+    if (work->mark == NULL) {
+        TRY(NEW_ARRAY(&work->mark, reach->cells.node_count, error));
+        TRY(NEW_ARRAY(&work->passed, reach->cells.node_count, error));
+        TRY(NEW_ARRAY(&work->length, reach->cells.node_count, error));
+        TRY(NEW_ARRAY(&work->before, reach->cells.node_count, error));
+        TRY(NEW_ARRAY(&work->near_begin, reach->cells.node_count, error));
+        TRY(NEW_ARRAY(&work->near_end, reach->cells.node_count, error));
+        TRY(NEW_ARRAY(&work->passes, reach->most_opposing, error));
+    }
+done:
+    return status;
+}
+
+void reach_work_free(struct reach_work *work)
+{
+    free(work->own.index);
+    free(work->mark);
+    free(work->passed);
+    free(work->length);
+    free(work->before);
+    free(work->near_begin);
+    free(work->near_end);
+    free(work->near.index);
+    free(work->passes);
+    free(work->hidden.index);
+    free(work->stack.index);
+    free(work->visited.index);
+    free(work->image);
+    *work = (struct reach_work){0};
+}
+
+/* Shorten the path to a hidden node by way of the corners that it is in sight of, when lengths are known of
+ * them. */
+static bool shorten(const struct reach *reach, int32_t node, double limit, struct reach_work *work)
+{
+    int dim = reach->cells.dim;
+    const double *x = reach->cells.x;
+    double least = fmin(work->length[node], limit);
+    bool shorter = false;
+    for (int64_t i = reach->seen_ptr[node]; i < reach->seen_ptr[node + 1]; i++) {
+        int32_t corner = reach->seen[i];
+        if (work->passed[corner] != work->pass || !(work->length[corner] < least)) {
+            continue;
+        }
+        double length =
+            work->length[corner] + reach_distance(dim, x + (int64_t)corner * dim, x + (int64_t)node * dim);
+        if (length < least) {
+            least = work->length[node] = length;
+            work->before[node] = corner;
+            shorter = true;
+        }
+    }
+    return shorter;
+}
+
+enum status reach_paths(const struct reach *reach, double widen, const int32_t *index, int64_t count,
+                        struct reach_work *work, struct error *error)
+{
+    enum status status = STATUS_OK;
+    int dim = reach->cells.dim;
+    double limit = dim == 3 ? most_slack * widen : widen;
+    if (++work->pass == UINT32_MAX) {
+        memset(work->passed, 0, (size_t)reach->cells.node_count * sizeof *work->passed);
+        work->pass = 1;
+    }
+    work->hidden.count = 0;
+    TRY(index_list_reserve(&work->hidden, count, error));
+    for (int64_t i = 0; i < count; i++) {
+        int32_t node = index[i];
+        if (reach_is_hidden(work, node)) {
+            work->hidden.index[work->hidden.count++] = node;
+            work->length[node] = INFINITY;
+        } else if (reach->corner[node]) {
+            double length = reach_distance(dim, work->from, reach->cells.x + (int64_t)node * dim);
+            /* From the corner itself nothing is to be had that it does not see. */
+            work->length[node] = length > REACH_ON_PLANE * reach->grid->radius[node] ? length : INFINITY;
+        } else {
+            continue;
+        }
+        work->before[node] = -1;
+        work->passed[node] = work->pass;
+    }
+    /* Each pass over all settles paths of one bend more, at least. */
+    for (bool shorter = true; shorter;) {
+        shorter = false;
+        for (int64_t i = 0; i < work->hidden.count; i++) {
+            int32_t node = work->hidden.index[i];
+            bool now = shorten(reach, node, limit * reach->grid->radius[node], work);
+            shorter = shorter || (now && reach->corner[node]);
+        }
+    }
+done:
+    return status;
+}
+
+/* The shortest way from p to q over the edge from a to b: its length, unrolled into a plane, and how far
+ * along the edge it passes, 0 to 1: 0 where p or q is in line with the edge. */
+static double shortest_over_edge(const double *a, const double *b, const double *p, const double *q,
+                                 double *passes)
+{
+    double length2 = 0.0, pu = 0.0, qu = 0.0, pp = 0.0, qq = 0.0;
+    for (int i = 0; i < 3; i++) {
+        double u = b[i] - a[i], from_p = p[i] - a[i], from_q = q[i] - a[i];
+        length2 += u * u;
+        pu += from_p * u;
+        qu += from_q * u;
+        pp += from_p * from_p;
+        qq += from_q * from_q;
+    }
+    /* Squares of the distances from the line, and places along it in lengths of the edge. */
+    double off_p2 = pp - pu * pu / length2, off_q2 = qq - qu * qu / length2, least = 1e-12 * length2;
+    double along_p = pu / length2, along_q = qu / length2, t = 0.0;
+    double off_p = sqrt(fmax(off_p2, 0.0)), off_q = sqrt(fmax(off_q2, 0.0));
+    if (off_p2 > least && off_q2 > least) {
+        t = (along_p * off_q + along_q * off_p) / (off_p + off_q);
+        t = t < 0.0 ? 0.0 : t > 1.0 ? 1.0 : t;
+    }
+    *passes = t;
+    return sqrt(off_p * off_p + (along_p - t) * (along_p - t) * length2) +
+           sqrt(off_q * off_q + (along_q - t) * (along_q - t) * length2);
+}
+
+/* Slide a bend at a node along the re-entrant edge there that makes the way between its neighbours shortest.
+ */
+static void slide(const struct reach *reach, const double *before, const double *after, int32_t node,
+                  double *bend)
+{
+    const double *corner = reach->cells.x + (int64_t)node * 3;
+    double least = reach_distance(3, before, corner) + reach_distance(3, corner, after);
+    memcpy(bend, corner, 3 * sizeof *bend);
+    for (int64_t e = reach->edge_ptr[node]; e < reach->edge_ptr[node + 1]; e++) {
+        double passes;
+        const double *other = reach->cells.x + (int64_t)reach->edge[e] * 3;
+        double length = shortest_over_edge(corner, other, before, after, &passes);
+        if (length < least && passes > 0.0) {
+            least = length;
+            for (int a = 0; a < 3; a++) {
+                bend[a] = corner[a] + passes * (other[a] - corner[a]);
+            }
+        }
+    }
+}
+
+void reach_first_bend(const struct reach *reach, int32_t node, const struct reach_work *work, double *bend,
+                      double *length)
+{
+    int dim = reach->cells.dim, bends = 0;
+    int32_t first = work->before[node], at[MOST_BENDS];
+    double place[MOST_BENDS + 1][3];
+    for (int32_t n = work->before[node]; n >= 0; n = work->before[n], bends++) {
+        first = n;
+    }
+    memcpy(bend, reach->cells.x + (int64_t)first * dim, (size_t)dim * sizeof *bend);
+    *length = work->length[node];
+    if (dim == 2 || bends > MOST_BENDS) {
+        return;
+    }
+    memcpy(place[bends], reach->cells.x + (int64_t)node * 3, sizeof *place);
+    int32_t n = work->before[node];
+    for (int b = bends - 1; b >= 0; b--, n = work->before[n]) {
+        at[b] = n;
+        memcpy(place[b], reach->cells.x + (int64_t)n * 3, sizeof *place);
+    }
+    for (int sweep = 0; sweep < (bends == 1 ? 1 : SWEEPS); sweep++) {
+        for (int b = 0; b < bends; b++) {
+            slide(reach, b == 0 ? work->from : place[b - 1], place[b + 1], at[b], place[b]);
+        }
+    }
+    memcpy(bend, place[0], sizeof *place);
+    *length = reach_distance(3, work->from, place[0]);
+    for (int b = 0; b < bends; b++) {
+        *length += reach_distance(3, place[b], place[b + 1]);
+    }
+}

@@ -1,0 +1,54 @@
+/* Parts of reach.c; private to lib/approx. */
+#ifndef APPROX_REACH_PRIVATE_H
+#define APPROX_REACH_PRIVATE_H
+
+#include "approx/reach.h"
+
+/* Nearer than this to a plane, of the support radius, is on it. */
+#define REACH_ON_PLANE 1e-9
+
+/* Whether the segment from x, in any of the cells, to a node stays within cells that follow each other by
+ * faces. For node -1, no cell's, work->visited is left with the cells around x that hang together. */
+MUST_CHECK enum status reach_walk(const struct reach *reach, const double *x, const int32_t *cell,
+                                  int64_t cell_count, int32_t node, struct reach_work *work, bool *arrives,
+                                  struct error *error);
+
+/* The same for a candidate of the group, without a walk where the facets tell. */
+MUST_CHECK enum status reach_sees(const struct reach *reach, const double *x, const int32_t *cell,
+                                  int64_t cell_count, int32_t node, struct reach_work *work, bool *arrives,
+                                  struct error *error);
+
+/* Set the cells of work to those that contain x; or to the nearest, and work->from to the place in it from
+ * which is looked instead. Of the cells at the nodes whose supports contain x; none: none. */
+MUST_CHECK enum status reach_locate(const struct reach *reach, const double *x, struct reach_work *work,
+                                    struct error *error);
+
+/* Paths around corners, from the point of `work` to the nodes marked as hidden: their lengths below `widen`
+ * times the radius, and the nodes before. The candidates are index[count]. */
+MUST_CHECK enum status reach_paths(const struct reach *reach, double widen, const int32_t *index,
+                                   int64_t count, struct reach_work *work, struct error *error);
+
+/* The place where the path to a hidden node first bends; the path's length, shortened in 3D by sliding its
+ * bends along re-entrant edges. */
+void reach_first_bend(const struct reach *reach, int32_t node, const struct reach_work *work, double *bend,
+                      double *length);
+
+/* Scratch for the nodes. */
+MUST_CHECK enum status reach_work_reserve(const struct reach *reach, struct reach_work *work,
+                                          struct error *error);
+
+static inline bool reach_is_hidden(const struct reach_work *work, int32_t node)
+{
+    return work->mark[node] == 2 * work->serial + 1;
+}
+
+static inline double reach_distance(int dim, const double *a, const double *b)
+{
+    double sum = 0.0;
+    for (int i = 0; i < dim; i++) {
+        sum += (a[i] - b[i]) * (a[i] - b[i]);
+    }
+    return __builtin_sqrt(sum);
+}
+
+#endif

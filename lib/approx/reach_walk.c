@@ -1,0 +1,263 @@
+/* Segments through the cells. */
+#include "approx/reach_private.h"
+
+#include "base/memory.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Barycentric coordinates within this of 0 are on a face. */
+static const double on_face = 1e-9;
+/* A segment passes a facet where it meets its plane nearer than this, barycentric, to the facet. */
+static const double beside_facet = 1e-6;
+
+static void subtract(int dim, const double *a, const double *b, double *difference)
+{
+    for (int i = 0; i < dim; i++) {
+        difference[i] = a[i] - b[i];
+    }
+}
+
+static double dot(int dim, const double *a, const double *b)
+{
+    double sum = 0.0;
+    for (int i = 0; i < dim; i++) {
+        sum += a[i] * b[i];
+    }
+    return sum;
+}
+
+static void cross(const double *u, const double *v, double *w)
+{
+    w[0] = u[1] * v[2] - u[2] * v[1];
+    w[1] = u[2] * v[0] - u[0] * v[2];
+    w[2] = u[0] * v[1] - u[1] * v[0];
+}
+
+/* The barycentric coordinates of two points in a cell. */
+static void barycentric(const struct cells *cells, int64_t cell, const double *x, const double *y,
+                        double *of_x, double *of_y)
+{
+    int dim = cells->dim;
+    const int32_t *v = cells->node + cell * (dim + 1);
+    const double *first = cells->x + (int64_t)v[0] * dim;
+    double edge[3][3], dual[3][3], from_x[3], from_y[3];
+    for (int k = 0; k < dim; k++) {
+        subtract(dim, cells->x + (int64_t)v[k + 1] * dim, first, edge[k]);
+    }
+    subtract(dim, x, first, from_x);
+    subtract(dim, y, first, from_y);
+    if (dim == 2) {
+        dual[0][0] = edge[1][1];
+        dual[0][1] = -edge[1][0];
+        dual[1][0] = -edge[0][1];
+        dual[1][1] = edge[0][0];
+    } else {
+        cross(edge[1], edge[2], dual[0]);
+        cross(edge[2], edge[0], dual[1]);
+        cross(edge[0], edge[1], dual[2]);
+    }
+    double volume = dot(dim, edge[0], dual[0]);
+    of_x[0] = of_y[0] = 1.0;
+    for (int k = 0; k < dim; k++) {
+        of_x[k + 1] = dot(dim, from_x, dual[k]) / volume;
+        of_y[k + 1] = dot(dim, from_y, dual[k]) / volume;
+        of_x[0] -= of_x[k + 1];
+        of_y[0] -= of_y[k + 1];
+    }
+}
+
+/* Whether the segment touches a cell; least[dim + 1]: its coordinates there. */
+static bool touches(const struct cells *cells, int64_t cell, const double *x, const double *y, double *least)
+{
+    double a[4], b[4], begin = 0.0, end = 1.0;
+    int corners = cells->dim + 1;
+    barycentric(cells, cell, x, y, a, b);
+    for (int k = 0; k < corners; k++) {
+        double slope = b[k] - a[k];
+        if (a[k] < -on_face && b[k] < -on_face) {
+            return false;
+        }
+        if (a[k] < -on_face) {
+            begin = fmax(begin, (-on_face - a[k]) / slope);
+        } else if (b[k] < -on_face) {
+            end = fmin(end, (-on_face - a[k]) / slope);
+        }
+    }
+    for (int k = 0; k < corners; k++) {
+        double at_begin = a[k] + begin * (b[k] - a[k]), at_end = a[k] + end * (b[k] - a[k]);
+        least[k] = fmin(at_begin, at_end);
+    }
+    return begin <= end + on_face;
+}
+
+static bool contains(const struct index_list *list, int32_t value)
+{
+    for (int64_t i = list->count; i-- > 0;) {
+        if (list->index[i] == value) {
+            return true;
+        }
+    }
+    return false;
+}
+
+static enum status visit(int32_t cell, struct reach_work *work, struct error *error)
+{
+    enum status status = STATUS_OK;
+    if (cell >= 0 && !contains(&work->visited, cell)) {
+        TRY(index_list_reserve(&work->visited, 1, error));
+        TRY(index_list_reserve(&work->stack, 1, error));
+        work->visited.index[work->visited.count++] = cell;
+        work->stack.index[work->stack.count++] = cell;
+    }
+done:
+    return status;
+}
+
+static bool has_node(const struct cells *cells, int64_t cell, int32_t node)
+{
+    const int32_t *v = cells->node + cell * (cells->dim + 1);
+    return v[0] == node || v[1] == node || v[2] == node || (cells->dim == 3 && v[3] == node);
+}
+
+enum status reach_walk(const struct reach *reach, const double *x, const int32_t *cell, int64_t cell_count,
+                       int32_t node, struct reach_work *work, bool *arrives, struct error *error)
+{
+    enum status status = STATUS_OK;
+    int corners = reach->cells.dim + 1;
+    const double *y = node < 0 ? x : reach->cells.x + (int64_t)node * reach->cells.dim;
+    work->visited.count = work->stack.count = 0;
+    *arrives = false;
+    for (int64_t i = 0; i < cell_count; i++) {
+        TRY(visit(cell[i], work, error));
+    }
+    while (work->stack.count > 0) {
+        double least[4];
+        int32_t at = work->stack.index[--work->stack.count];
+        if (!touches(&reach->cells, at, x, y, least)) {
+            continue;
+        }
+        if (has_node(&reach->cells, at, node)) {
+            *arrives = true;
+            break;
+        }
+        for (int k = 0; k < corners; k++) {
+            if (least[k] <= on_face) {
+                TRY(visit(reach->across[(int64_t)at * corners + k], work, error));
+            }
+        }
+    }
+done:
+    return status;
+}
+
+/* How a segment passes a facet: not; through it, out of the body; or too near its rim or its ends to say. */
+enum passage { PASSES_NOT, PASSES, PASSES_CLOSE };
+
+/* `own`: x lies in the facet's cell and in no other, so that the way out of it is a way out of the body. */
+static enum passage passage_of(const struct reach *reach, const struct reach_facet *facet, double radius,
+                               const double *x, bool own, const double *y)
+{
+    int dim = reach->cells.dim;
+    double of_x = dot(dim, facet->normal, x) - facet->offset;
+    double of_y = dot(dim, facet->normal, y) - facet->offset, tolerance = REACH_ON_PLANE * radius;
+    if (of_y <= tolerance) {
+        return of_y < -tolerance ? PASSES_NOT : PASSES_CLOSE; /* the target is on the facet, from elsewhere */
+    }
+    if (of_x > tolerance) {
+        return PASSES_NOT;
+    }
+    double t = of_x < 0.0 ? of_x / (of_x - of_y) : 0.0, second = -facet->from[0], third = -facet->from[1];
+    for (int a = 0; a < dim; a++) {
+        double place = x[a] + t * (y[a] - x[a]);
+        second += facet->dual[0][a] * place;
+        third += facet->dual[1][a] * place;
+    }
+    double within = 1.0 - second - third;
+    within = second < within ? second : within;
+    within = dim == 3 && third < within ? third : within;
+    if (within < -beside_facet) {
+        return PASSES_NOT;
+    }
+    return within > beside_facet && (own || of_x < -tolerance) ? PASSES : PASSES_CLOSE;
+}
+
+enum status reach_sees(const struct reach *reach, const double *x, const int32_t *cell, int64_t cell_count,
+                       int32_t node, struct reach_work *work, bool *arrives, struct error *error)
+{
+    const double *y = reach->cells.x + (int64_t)node * reach->cells.dim;
+    bool close = false;
+    *arrives = true;
+    for (int32_t i = work->near_begin[node]; i < work->near_end[node]; i++) {
+        const struct reach_facet *facet = &reach->facet[work->near.index[i]];
+        bool own = cell_count == 1 && facet->cell == cell[0];
+        enum passage passage = passage_of(reach, facet, reach->grid->radius[node], x, own, y);
+        if (passage == PASSES) {
+            *arrives = false;
+            return STATUS_OK;
+        }
+        close = close || passage == PASSES_CLOSE;
+    }
+    return close ? reach_walk(reach, x, cell, cell_count, node, work, arrives, error) : STATUS_OK;
+}
+
+/* The point of a cell that has x's barycentric coordinates but for negative ones; returns its distance from
+ * x. */
+static double pull_into(const struct cells *cells, int64_t cell, const double *x, double *pulled)
+{
+    int dim = cells->dim;
+    double place[4], same[4], sum = 0.0;
+    barycentric(cells, cell, x, x, place, same);
+    for (int a = 0; a < dim; a++) {
+        pulled[a] = 0.0;
+    }
+    for (int k = 0; k <= dim; k++) {
+        place[k] = place[k] > 0.0 ? place[k] : 0.0;
+        sum += place[k];
+    }
+    for (int i = 0; i < (dim + 1) * dim; i++) {
+        int32_t node = cells->node[cell * (dim + 1) + i / dim];
+        pulled[i % dim] += place[i / dim] / sum * cells->x[(int64_t)node * dim + i % dim];
+    }
+    return reach_distance(dim, x, pulled);
+}
+
+enum status reach_locate(const struct reach *reach, const double *x, struct reach_work *work,
+                         struct error *error)
+{
+    enum status status;
+    struct index_list near = {0};
+    double least[4], nearest = INFINITY, pulled[3];
+    work->own.count = 0;
+    work->outside = false;
+    TRY(point_grid_query(reach->grid, x, 1.0, &near, error));
+    TRY(index_list_reserve(&work->own, 1, error));
+    for (int64_t i = 0; i < near.count; i++) {
+        for (int64_t s = reach->star_ptr[near.index[i]]; s < reach->star_ptr[near.index[i] + 1]; s++) {
+            int32_t cell = reach->star[s];
+            if (touches(&reach->cells, cell, x, x, least)) {
+                work->own.count = work->outside ? 0 : work->own.count;
+                work->outside = false;
+                nearest = 0.0;
+                if (!contains(&work->own, cell)) {
+                    TRY(index_list_reserve(&work->own, 1, error));
+                    work->own.index[work->own.count++] = cell;
+                }
+            } else if (nearest > 0.0 && pull_into(&reach->cells, cell, x, pulled) < nearest) {
+                nearest = pull_into(&reach->cells, cell, x, work->from);
+                work->own.index[0] = cell;
+                work->own.count = 1;
+                work->outside = true;
+            }
+        }
+    }
+    if (!work->outside) {
+        memcpy(work->from, x, (size_t)reach->cells.dim * sizeof *x);
+    }
+    work->cell = work->own.index;
+    work->cell_count = work->own.count;
+done:
+    free(near.index);
+    return status;
+}

@@ -1,0 +1,203 @@
+/* The support of one point. */
+#include "approx/support_private.h"
+
+#include "base/memory.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const double widen_step = 1.05;
+
+static double distance2_of(int dim, const double *a, const double *b)
+{
+    double sum = 0.0;
+    for (int i = 0; i < dim; i++) {
+        sum += (a[i] - b[i]) * (a[i] - b[i]);
+    }
+    return sum;
+}
+
+/* Squared distance from x to a neighbour; around a corner, along the path. */
+static double neighbour_distance2(const struct point_grid *grid, const double *x, int32_t node,
+                                  const double *image)
+{
+    static const double origin[3] = {0.0, 0.0, 0.0};
+    return image != NULL ? distance2_of(grid->dim, image, origin)
+                         : distance2_of(grid->dim, x, grid->x + (int64_t)node * grid->dim);
+}
+
+/* Keep the `most` nearest of the neighbours in index[count], ties going to the lower index; image[count *
+ * dim] or NULL. */
+static enum status keep_nearest(const struct point_grid *grid, const double *x, int64_t most, int32_t *index,
+                                double *image, int64_t *count, struct worker *worker, struct error *error)
+{
+    int dim = grid->dim;
+    if (most <= 0 || *count <= most) {
+        return STATUS_OK;
+    }
+    if (*count > worker->capacity) {
+        int64_t capacity = 2 * *count + 64;
+        free(worker->order);
+        worker->capacity = 0;
+        enum status status = NEW_ARRAY(&worker->order, capacity, error);
+        if (status != STATUS_OK) {
+            return status;
+        }
+        worker->capacity = capacity;
+    }
+    double *distance2 = worker->order;
+    for (int64_t i = 0; i < *count; i++) {
+        distance2[i] = neighbour_distance2(grid, x, index[i], image != NULL ? image + i * dim : NULL);
+    }
+    /* Drop the farthest (of equals the highest index) until `most` remain; the order stays ascending. */
+    for (; *count > most; --*count) {
+        int64_t farthest = 0;
+        for (int64_t i = 1; i < *count; i++) {
+            farthest = distance2[i] >= distance2[farthest] ? i : farthest;
+        }
+        for (int64_t i = farthest; i + 1 < *count; i++) {
+            index[i] = index[i + 1];
+            distance2[i] = distance2[i + 1];
+        }
+        if (image != NULL) {
+            memmove(image + farthest * dim, image + (farthest + 1) * dim,
+                    (size_t)((*count - 1 - farthest) * dim) * sizeof *image);
+        }
+    }
+    return STATUS_OK;
+}
+
+/* Mean spacing of the nodes in a support: the edge of the cube (square) that each of them has to itself. A
+ * list cut to the nearest reaches only as far as its farthest node. */
+static double spacing_within(const struct support_options *options, const struct point_grid *grid,
+                             const double *x, const int32_t *index, const double *image, int64_t count,
+                             double widen)
+{
+    double reach = 0.0;
+    if (count == options->most) {
+        for (int64_t i = 0; i < count; i++) {
+            double distance2 =
+                neighbour_distance2(grid, x, index[i], image != NULL ? image + i * grid->dim : NULL);
+            reach = distance2 > reach ? distance2 : reach;
+        }
+        reach = sqrt(reach);
+    } else {
+        for (int64_t i = 0; i < count; i++) {
+            reach = grid->radius[index[i]] > reach ? grid->radius[index[i]] : reach;
+        }
+        reach *= widen;
+    }
+    double unit_ball = grid->dim == 2 ? 3.141592653589793 : 4.1887902047863905;
+    return reach * pow(unit_ball / (double)count, 1.0 / grid->dim);
+}
+
+/* Whether a support serves: enough nodes, a good moment matrix, bounded gradients. They need not be looked at
+ * where `bound`, known of them, says enough. */
+static enum status judge(const struct search *search, const double *x, double widen, const int32_t *index,
+                         const double *image, int64_t count, double bound, struct worker *worker,
+                         bool *serves, struct error *error)
+{
+    const struct support_options *options = search->options;
+    const struct point_grid *grid = search->grid;
+    enum mls_verdict verdict;
+    struct mls_support support = {.x = x,
+                                  .nodes = grid->x,
+                                  .radius = grid->radius,
+                                  .widen = widen,
+                                  .neighbours = index,
+                                  .count = count,
+                                  .image = image};
+    double steepest;
+    *serves = false;
+    if (count < options->least) {
+        return STATUS_OK;
+    }
+    double spacing = spacing_within(options, grid, x, index, image, count, widen);
+    if (bound * spacing <= options->gradient_bound) {
+        *serves = true;
+        return STATUS_OK;
+    }
+    enum status status = mls_steepest(&options->mls, &support, &worker->work, &steepest, &verdict, error);
+    if (status == STATUS_OK && verdict == MLS_GOOD) {
+        *serves = steepest * spacing <= options->gradient_bound;
+    }
+    return status;
+}
+
+/* Put down the neighbours of the list from `first` on that are seen around corners: those whose images are
+ * not where they are. */
+static enum status note_around(const struct point_grid *grid, const double *x, const double *image,
+                               int64_t first, struct worker *worker, struct error *error)
+{
+    int dim = grid->dim;
+    for (int64_t i = first; i < worker->list.count; i++, image += dim) {
+        const double *node = grid->x + (int64_t)worker->list.index[i] * dim;
+        bool straight = true;
+        for (int a = 0; a < dim; a++) {
+            straight = straight && image[a] == node[a] - x[a];
+        }
+        if (straight) {
+            continue;
+        }
+        if (worker->around_count == worker->around_capacity) {
+            int64_t capacity = 2 * worker->around_capacity + 64;
+            int64_t *pair = array_grow(worker->around_pair, capacity, sizeof *pair);
+            worker->around_pair = pair != NULL ? pair : worker->around_pair;
+            double *offset = array_grow(worker->around_offset, capacity, (size_t)dim * sizeof *offset);
+            worker->around_offset = offset != NULL ? offset : worker->around_offset;
+            if (pair == NULL || offset == NULL) {
+                return fail_memory(error, "neighbours around corners");
+            }
+            worker->around_capacity = capacity;
+        }
+        worker->around_pair[worker->around_count] = i;
+        memcpy(worker->around_offset + worker->around_count++ * dim, image, (size_t)dim * sizeof *image);
+    }
+    return STATUS_OK;
+}
+
+enum status support_find(const struct search *search, int64_t p, bool grouped, double bound,
+                         struct worker *worker, double *widen, bool *serves, struct error *error)
+{
+    enum status status = STATUS_OK;
+    const struct support_options *options = search->options;
+    const struct point_grid *grid = search->grid;
+    const double *x = search->x + p * grid->dim;
+    int64_t first = worker->list.count;
+    if (search->reach != NULL) {
+        TRY(reach_begin(search->reach, &search->places, p, x, &worker->reach, error));
+    }
+    for (*widen = 1.0; *widen <= SUPPORT_WIDEN_LIMIT; *widen *= widen_step) {
+        worker->list.count = first;
+        if (*widen > 1.0 || !grouped) {
+            TRY(point_grid_query(grid, x, *widen, &worker->list, error));
+        } else {
+            TRY(candidates_within(&worker->candidates, x, &worker->list, error));
+        }
+        int64_t count = worker->list.count - first;
+        int32_t *index = worker->list.index + first;
+        double *image = NULL;
+        bool as_bound = *widen == 1.0;
+        if (search->reach != NULL) {
+            if (*widen == 1.0 && !grouped) {
+                TRY(reach_group(search->reach, 1, x, index, count, &worker->reach, error));
+            }
+            TRY(reach_filter(search->reach, *widen, index, &count, &worker->reach, error));
+            image = worker->reach.around > 0 ? worker->reach.image : NULL;
+            as_bound = as_bound && worker->reach.changed == 0;
+        }
+        TRY(keep_nearest(grid, x, options->most, index, image, &count, worker, error));
+        worker->list.count = first + count;
+        *serves = true;
+        if (options->widen) {
+            TRY(judge(search, x, *widen, index, image, count, as_bound ? bound : INFINITY, worker, serves,
+                      error));
+        }
+        if (*serves) {
+            return image != NULL ? note_around(grid, x, image, first, worker, error) : STATUS_OK;
+        }
+    }
+done:
+    return status;
+}

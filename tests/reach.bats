@@ -1,0 +1,186 @@
+# Supports see only what is connected: two blocks, a slit, bodies that touch, and what the stream records of it.
+
+bats_require_minimum_version 1.5.0
+
+setup() {
+    cd "$BATS_TEST_TMPDIR"
+    set -o pipefail
+    top=$BATS_TEST_DIRNAME/..
+    export OMP_NUM_THREADS=1
+}
+
+# blocks GAP: blocks.mts, two blocks of 20 x 10 mm with nodes every 2 mm, GAP mm apart.
+blocks() {
+    cat > blocks.geo <<END
+Point(1) = {0, 0, 0, 2};
+Point(2) = {20, 0, 0, 2};
+Point(3) = {20, 10, 0, 2};
+Point(4) = {0, 10, 0, 2};
+Point(5) = {0, 10 + $1, 0, 2};
+Point(6) = {20, 10 + $1, 0, 2};
+Point(7) = {20, 20 + $1, 0, 2};
+Point(8) = {0, 20 + $1, 0, 2};
+Line(1) = {1, 2};
+Line(2) = {2, 3};
+Line(3) = {3, 4};
+Line(4) = {4, 1};
+Line(5) = {5, 6};
+Line(6) = {6, 7};
+Line(7) = {7, 8};
+Line(8) = {8, 5};
+Curve Loop(1) = {1, 2, 3, 4};
+Curve Loop(2) = {5, 6, 7, 8};
+Plane Surface(1) = {1};
+Plane Surface(2) = {2};
+Physical Surface("body", 1) = {1, 2};
+Physical Curve("bottom", 11) = {1};
+Physical Curve("top", 12) = {7};
+END
+    gmsh -2 -v 0 blocks.geo -o blocks.msh > /dev/null
+    nodes -u mm blocks.msh > blocks.mts
+}
+
+# drag ANALYSIS SOLVER_LINE: the scene of the upper block dragged away, the lower one held.
+drag() {
+    printf '[scene]\ndim = 2\nanalysis = %s\n[material body]\nregion = body\nE = 3000\nnu = 0.49\nrho = 1000\n' "$1"
+    printf '[displacement bottom]\nfacets = bottom\ncomponents = 0, 0\n[displacement top]\nfacets = top\n'
+    printf 'components = 1e-3, 2e-3\n[output]\nreactions = yes\n[solver]\n%s\n' "$2"
+}
+
+# rests FILE HEIGHT: whether the nodes below HEIGHT stay where they are, but for the round-off of some mm.
+rests() {
+    paste <(mts print nodes.x "$1") <(mts print u "$1") | awk -v height="$2" '
+        $2 < height { n++; if (!($3 ^ 2 + $4 ^ 2 < 1e-16 ^ 2)) bad++ }
+        END { exit !(n > 40 && bad + 0 == 0) }'
+}
+
+@test "two blocks with a gap: the other neither moves nor feels a force" {
+    blocks 0.5
+    drag dynamic 'end_time = 0.02' > dynamic.scene
+    drag quasi-static 'tolerance = 1e-9' > a.scene
+    support blocks.mts 2> notes | shapefn > table.mts
+    mtled dynamic.scene table.mts > u.dat
+    rests u.dat 0.0101
+    mts print reactions u.dat | awk 'NR == 1 { exit !($1 ^ 2 + $2 ^ 2 < 1e-12 ^ 2) }'
+    mtled a.scene table.mts > u.dat
+    mts print reactions u.dat | awk '{ for (i = 1; i <= NF; i++) if (!($i ^ 2 < 1e-12)) bad = 1 } END { exit bad || NR == 0 }'
+    # By distance the gap carries a force: what the default is for.
+    support --reach distance blocks.mts 2> notes | shapefn | mtled a.scene > u.dat
+    mts print reactions u.dat | awk '{ for (i = 1; i <= NF; i++) if ($i > most) most = $i } END { exit !(most > 1) }'
+}
+
+@test "a slit: force and motion of the other arm as by finite elements" {
+    # By CalculiX (CPE6) on examples/hard/slit.geo: .31564 N/m and .48381 mm with -setnumber h 1 -setnumber tip .05, .31489 and
+    # .48439 with h = .5, tip = .02 (see pipelines/hard/24-slit.sh). At 2 mm by distance: .558 N/m and 2.98 mm.
+    gmsh -2 -v 0 -setnumber h 2 "$top/examples/hard/slit.geo" -o slit.msh > /dev/null
+    printf '[scene]\ndim = 2\nanalysis = quasi-static\n[material body]\nregion = body\nE = 3000\nnu = 0.49\nrho = 1000\n' > a.scene
+    printf '[displacement held]\nfacets = held\ncomponents = 0, 0\n[displacement lifted]\nfacets = lifted\n' >> a.scene
+    printf 'components = 0, 3e-3\n[output]\nreactions = yes\n' >> a.scene
+    nodes -u mm slit.msh | shapefn 2> notes | mtled a.scene > u.dat
+    mts print reactions u.dat | xargs | awk '{ e = $NF / 0.31489 - 1; exit !(e ^ 2 < 0.05 ^ 2) }'
+    paste <(mts print nodes.x u.dat) <(mts print u u.dat) | awk '
+        $1 > 0.0399 && $2 < 0.00976 { sum += $4; n++ }
+        END { e = sum / n / 0.48439e-3 - 1; exit !(n == 6 && e ^ 2 < 0.05 ^ 2) }'
+    # The same bytes for any number of threads; what is around the tip stands in the stream, and the table keeps to it.
+    nodes -u mm slit.msh | ipoints -g 4 > points.mts
+    for threads in 1 2 3; do
+        OMP_NUM_THREADS=$threads support points.mts | OMP_NUM_THREADS=$threads shapefn > $threads.mts
+        cmp 1.mts $threads.mts
+    done
+    mts check 1.mts
+    mts list 1.mts | grep -q 'nbr\.around'
+    mts list 1.mts | grep -q 'nbr\.image'
+    mts text 1.mts | grep '^# support.radius' | grep -q 'reach=cells'
+    # Far from the tip neither arm sees the other.
+    mts print nodes.x 1.mts > x
+    mts print node.ptr 1.mts > ptr
+    mts print node.idx 1.mts > idx
+    awk 'FILENAME == "x" { x[FNR - 1] = $1; y[FNR - 1] = $2; next }
+        FILENAME == "ptr" { ptr[FNR - 1] = $1; next }
+        { idx[FNR - 1] = $1 }
+        END {
+            for (n in x) if (x[n] > 0.024) for (i = ptr[n]; i < ptr[n + 1]; i++) {
+                pairs++
+                if (x[idx[i]] > 0.024 && (y[n] < 0.01) != (y[idx[i]] < 0.01)) bad++
+            }
+            exit !(pairs > 500 && bad + 0 == 0)
+        }' x ptr idx
+}
+
+@test "fields are not interpolated across a slit" {
+    gmsh -2 -v 0 -setnumber h 2 "$top/examples/hard/slit.geo" -o slit.msh > /dev/null
+    nodes -u mm -t slit.msh > slit.dat
+    # A field that is 1 on the upper arm and 0 on the lower one, at points of the arms beside the slit.
+    { sed '/^# end/d' slit.dat; mts print nodes.x slit.dat | awk '
+        { u[NR] = $2 > 0.01 || ($2 == 0.01 && $1 > 0.016) ? 1 : 0 }
+        END { printf "# u f8 %d 1 enc=text unit=m\n", NR; for (i = 1; i <= NR; i++) print u[i]; print "\n" }'
+      awk '$2 == "end" { print "# end " $3 + 1 }' slit.dat; } > field.dat
+    printf '30 9.8\n30 10.2\n36 9.78\n36 10.22\n36 9.85\n36 10.15\n' > points.tsv # the last two in the slit
+    interp -f u -p points.tsv -u mm field.dat > at.dat
+    mts print u at.dat | xargs | awk '{ for (i = 1; i <= NF; i++) if (!(($i - (i % 2 == 0)) ^ 2 < 1e-20)) bad++; exit bad + 0 != 0 || NF != 6 }'
+}
+
+@test "bodies that touch by faces that are not one do not see each other" {
+    blocks 0.5
+    mts text blocks.mts | awk '/^# [^@]/ { at = $2 == "nodes.x" } at && NF == 2 && $1 != "#" && $2 > 0.0102 { $2 = $2 > 0.01051 ? $2 - 5e-4 : 0.01 } 1' > touch.dat
+    drag dynamic 'end_time = 0.02' > dynamic.scene
+    [ "$(mts print nodes.x touch.dat | awk '{ printf "%.9f %.9f\n", $1, $2 }' | sort | uniq -d | wc -l)" -eq 11 ] # coincident nodes
+    shapefn touch.dat 2> notes | mtled dynamic.scene > u.dat
+    rests u.dat 0.0099
+}
+
+@test "a body too small for the basis is named, however near the others are" {
+    blocks 0.5
+    sed -i '/^Physical Surface/d' blocks.geo
+    cat >> blocks.geo <<END
+Point(21) = {20.4, 4, 0, 9};
+Point(22) = {22.4, 4, 0, 9};
+Point(23) = {20.4, 6, 0, 9};
+Line(21) = {21, 22};
+Line(22) = {22, 23};
+Line(23) = {23, 21};
+Curve Loop(21) = {21, 22, 23};
+Plane Surface(21) = {21};
+Physical Surface("body", 1) = {1, 2, 21};
+END
+    gmsh -2 -v 0 blocks.geo -o blocks.msh > /dev/null
+    nodes -u mm blocks.msh > blocks.mts
+    support blocks.mts > lists.mts 2> notes
+    support --reach distance -b mls2 blocks.mts > lists.mts 2> notes
+    run -1 --separate-stderr support -b mls2 blocks.mts
+    [[ "$stderr" == *"x: row "*" at (0.02"*"nodes within reach through the cells"* ]]
+}
+
+@test "--reach is recorded, and refused where it cannot be" {
+    cloud -d 2 -k regular -n 5 --box 0,0.1,0,0.1 > square.mts
+    support --reach distance -t square.mts 2> notes | grep '^# support.radius' | grep -q 'reach=distance'
+    support -v --reach distance -o lists.mts square.mts 2> notes
+    grep -q 'neighbours by distance alone' notes
+    # Nothing is between the nodes of a square: the same lists.
+    ipoints square.mts | support -t | grep -v '^# [@s]' > a.txt
+    ipoints square.mts | support -t --reach distance | grep -v '^# [@s]' | cmp - a.txt
+    run -2 --separate-stderr support --reach sight square.mts
+    [[ "$stderr" == "support: --reach: "* ]]
+    # Without cells: by distance, and cells cannot be asked for.
+    mts text square.mts | awk '/^# [^@]/ { skip = $2 == "cells" || $2 ~ /^(facets|cells)/ } !skip' | sed '/^# end/d' > cloud.dat
+    printf '# points.x f8 1 2 enc=text unit=m\n0.05 0.05\n\n\n# end 2\n' >> cloud.dat
+    support -v -t cloud.dat 2> notes | grep '^# support.radius' | grep -q 'reach=distance'
+    grep -q 'neighbours by distance alone' notes
+    run -2 --separate-stderr support --reach cells cloud.dat
+    [[ "$stderr" == *"the input has no cells"* ]]
+    [ -z "$output" ]
+}
+
+@test "sections of what is around corners that do not fit are refused" {
+    gmsh -2 -v 0 -setnumber h 3 "$top/examples/hard/slit.geo" -o slit.msh > /dev/null
+    nodes -u mm slit.msh | support -t > lists.dat 2> notes
+    rows=$(awk '$2 == "face.around" { print $4 }' lists.dat)
+    [ "$rows" -gt 2 ]
+    awk '$2 == "face.around" { print; getline; print 1000000; next } { print }' lists.dat > bad.dat
+    run -2 --separate-stderr shapefn bad.dat
+    [[ "$stderr" == "shapefn: face.around: row "* ]]
+    run -1 --separate-stderr mts check bad.dat
+    awk '$2 == "face.image" { print; getline; print "nan 0"; next } { print }' lists.dat > bad.dat
+    run -2 --separate-stderr shapefn bad.dat
+    [[ "$stderr" == "shapefn: face.image: row 0"* ]]
+}
