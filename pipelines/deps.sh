@@ -1,6 +1,7 @@
 #!/bin/bash
 # Install what the project needs and what is missing. Quick and silent when nothing is. Programs may come from any
-# package (gnuplot-qt is as good as gnuplot-nox, which would push it out); libraries are asked for by package.
+# package (gnuplot-qt is as good as gnuplot-nox, which would push it out); libraries are asked for by package. Python's
+# are for the tests, which read what tovtk writes.
 # deps.sh lint, deps.sh fuzz: what make lint and make fuzz need, which nothing else does.
 set -eu -o pipefail
 
@@ -18,7 +19,7 @@ fuzz)
     ;;
 *)
     programs=(gcc:gcc g++:g++ make:make gmsh:gmsh gnuplot:gnuplot-nox ccx:calculix-ccx bats:bats shellcheck:shellcheck)
-    libraries=(libgmsh-dev libgsl-dev libinih-dev zlib1g-dev libcmocka-dev)
+    libraries=(libgmsh-dev libgsl-dev libinih-dev zlib1g-dev libcmocka-dev python3-numpy python3-vtk9 python3-meshio)
     ;;
 esac
 
