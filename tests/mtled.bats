@@ -77,7 +77,7 @@ setup() {
 
 @test "sections come when they are asked for, and only then" {
     mtled block.scene square.mts 2> note > plain.dat
-    run -1 grep -qE '^# (stress|strain|reactions|energy|gaps|u.frame)' plain.dat
+    run -1 grep -qE '^# (stress|strain|pressure|volume_ratio|reactions|energy|gaps|u.frame)' plain.dat
     printf '[output]\nframes = 3\nstress = yes\nstrain = yes\nenergy = yes\nreactions = yes\n' >> block.scene
     mtled block.scene square.mts 2> note > full.dat
     diff <(rows u plain.dat) <(rows u full.dat)
@@ -96,6 +96,31 @@ setup() {
     # The results of an earlier run leave the stream.
     pressed_block > block.scene
     mtled block.scene full.dat 2> note | bare | cmp - <(bare plain.dat)
+}
+
+@test "pressure is minus the mean of the normal stresses, volume_ratio the J of the material" {
+    printf '[output]\npressure = yes\nvolume_ratio = yes\n' >> block.scene
+    shapefn square.mts > table.mts 2> note
+    mtled block.scene table.mts > asked.dat
+    grep -q '^# pressure f8 50 1 .*unit=Pa' asked.dat
+    grep -q '^# volume_ratio f8 50 1 .*unit=1' asked.dat
+    run -1 grep -qE '^# (stress|strain)' asked.dat
+    printf 'stress = yes\n' >> block.scene
+    mtled block.scene table.mts > all.dat
+    diff <(rows pressure asked.dat) <(rows pressure all.dat)
+    paste -d ' ' <(rows pressure all.dat) <(rows stress all.dat) |
+        awk '{ d = $1 + ($2 + $3 + $4) / 3; if (!(d * d <= 1e-20 * $1 * $1)) exit failed = 1; sum += $1 } END { exit failed || NR != 50 || !(sum > 0) }'
+    # A linear field: J is that of the map, 1.05 * 0.96 + 0.02 * 0.03, and the pressure kappa (1 - J).
+    { sed '/^\[displacement/,/^$/d' block.scene; printf '[displacement all]\nfacets = xmin, xmax, ymin, ymax\ntable = map.tsv\nunit = m\n'; } > linear.scene
+    printf '%s\n' '0 0' '0.1 0' '0 0.1' '0.1 0.1' | awk '{ print $1, $2, 0.05 * $1 + 0.02 * $2, -0.03 * $1 - 0.04 * $2 }' > map.tsv
+    mtled linear.scene table.mts > linear.dat
+    rows volume_ratio linear.dat | awk '!(($1 - 1.0086) ^ 2 < 1e-10) { print; exit 1 }'
+    rows pressure linear.dat | awk '!(($1 + 86) ^ 2 < 0.1) { print; exit 1 }'
+    # On Gauss points J is det F: that of the strain.
+    printf 'strain = yes\n' >> block.scene
+    ipoints -g 4 square.mts | shapefn 2> note | mtled block.scene > gauss.dat
+    paste -d ' ' <(rows volume_ratio gauss.dat) <(rows strain gauss.dat) |
+        awk '{ J = sqrt((1 + 2 * $2) * (1 + 2 * $3) - 4 * $5 * $5); if (!(($1 - J) ^ 2 < 1e-24)) exit failed = 1 } END { exit failed || NR != 200 }'
 }
 
 @test "a dynamic scene: energies, frames by time, reactions" {

@@ -86,7 +86,7 @@ without_studies() { sed '/^<!-- stud/,/^<!-- end/d' "$1"; }
     printf '[scene]\ndim = 2\nanalysis = quasi-static\n[material all]\nregion = body\nE = 3000\nnu = 0.4\nrho = 1000\n' > all.scene
     printf '[displacement low]\nfacets = ymin\ncomponents = 0, 0\n[displacement high]\nfacets = ymax\ncomponents = 0, -0.01\n' >> all.scene
     printf '[contact wall]\nfacets = xmax\nrigid = wall.tsv\nunit = m\nside = left\n' >> all.scene
-    printf '[output]\nframes = 1\nstress = yes\nstrain = yes\nreactions = yes\ngaps = yes\nenergy = yes\n' >> all.scene
+    printf '[output]\nframes = 1\nstress = yes\nstrain = yes\npressure = yes\nvolume_ratio = yes\nreactions = yes\ngaps = yes\nenergy = yes\n' >> all.scene
     printf '2 -1\n2 2\n' > wall.tsv
     mtled all.scene table.mts > u.dat
     interp -f u --deformed -t <(mts drop 'u.frame.*' u.dat | shapefn 2> note) > deformed.dat
@@ -94,7 +94,7 @@ without_studies() { sed '/^<!-- stud/,/^<!-- end/d' "$1"; }
     for stream in table.mts u.dat deformed.dat map.mts; do
         mts list $stream | cut -f 1 | sed 's/^u.frame.*/u.frame.K/'
     done | sort -u > names
-    for name in u.frame.K stress strain reactions gaps energy difference x.deformed; do
+    for name in u.frame.K stress strain pressure volume_ratio reactions gaps energy difference x.deformed; do
         grep -qx "$name" names
     done
     while IFS= read -r name; do

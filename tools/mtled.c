@@ -25,8 +25,9 @@ static const char usage[] =
     "\n"
     "Sections on request: u.frame.K, the field u at time= (frames K = 1, 2, ..., evenly up to\n"
     "the final state; in a quasi-static scene over the load, from 0 to 1), for tovtk; stress\n"
-    "(Cauchy) and strain (Green-Lagrange) of each integration point; reactions, the force of\n"
-    "each displacement and contact; gaps and pressures of contacts; energy, J (2D: J/m): in a\n"
+    "(Cauchy), strain (Green-Lagrange), pressure and volume_ratio of each integration point;\n"
+    "reactions, the force of each displacement and contact; gaps and pressures of contacts;\n"
+    "energy, J (2D: J/m): in a\n"
     "dynamic scene about 200 rows of time (s), kinetic, internal and contact energy, work of\n"
     "loads and prescribed motion, energy dissipated by damping, and error of the balance\n"
     "relative to the largest energy; in a quasi-static scene one row, internal and contact,\n"
@@ -86,7 +87,7 @@ static double parse_every(const struct tool *tool, const struct option *options)
 /* The results of an earlier run on the same stream. */
 static void drop_results(struct stream *stream)
 {
-    static const char *const names[] = {"u", "stress", "strain", "reactions", "gaps", "energy"};
+    static const char *const names[] = {"u", "stress", "strain", "pressure", "volume_ratio", "reactions", "gaps", "energy"};
     for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
         stream_remove(stream, names[i]);
     }

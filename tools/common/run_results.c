@@ -19,50 +19,87 @@ void run_put_frame(void *context, int64_t number, double time, const double *u)
     run_put(run, name, nodes, dim, attributes, field);
 }
 
-/* Components of a symmetric tensor in output order. */
-static const int tensor_2d[4] = {0, 4, 8, 1}, tensor_3d[6] = {0, 4, 8, 1, 2, 5};
+/* Add section `name`: a row for each integration point. */
+static void put_point_values(const struct run *run, const char *name, int64_t cols, const char *attributes,
+                             double *values)
+{
+    run_put(run, name, run->model->system.body.point_count, cols, attributes, values);
+}
 
-/* Cauchy stress P F^T / J, or Green-Lagrange strain, per integration point, with the points' places. */
-static void put_tensors(struct run *run)
+/* P F^T / J */
+static void cauchy_stress(const double F[9], const double P[9], double stress[9])
+{
+    double J = determinant(F);
+    for (int k = 0; k < 9; k++) {
+        const double *p = P + k / 3 * 3, *f = F + k % 3 * 3;
+        stress[k] = (p[0] * f[0] + p[1] * f[1] + p[2] * f[2]) / J;
+    }
+}
+
+/* (F^T F - 1) / 2 */
+static void green_lagrange_strain(const double F[9], double strain[9])
+{
+    for (int k = 0; k < 9; k++) {
+        int i = k / 3, j = k % 3;
+        strain[k] = 0.5 * (F[i] * F[j] + F[3 + i] * F[3 + j] + F[6 + i] * F[6 + j] - (i == j));
+    }
+}
+
+/* tensors[points * 9]: their symmetric components, as section `name`. */
+static void put_tensors(const struct run *run, const char *name, const char *kind, const double *tensors)
+{
+    static const int order[2][6] = {{0, 4, 8, 1}, {0, 4, 8, 1, 2, 5}};
+    static const char *const cols[2] = {"xx,yy,zz,xy", "xx,yy,zz,xy,xz,yz"};
+    int dim = run->scene->dim, count = dim == 2 ? 4 : 6;
+    int64_t points = run->model->system.body.point_count;
+    char attributes[96];
+    double *values = run_new_values(run, points * count);
+    for (int64_t i = 0; i < points * count; i++) {
+        values[i] = tensors[9 * (i / count) + order[dim - 2][i % count]];
+    }
+    snprintf(attributes, sizeof attributes, "%s cols=%s", kind, cols[dim - 2]);
+    put_point_values(run, name, count, attributes, values);
+}
+
+/* What the scene asks for at the integration points: Cauchy stress, Green-Lagrange strain, pressure, volume
+ * ratio. */
+static void put_point_fields(struct run *run)
 {
     struct body *body = &run->model->system.body;
-    const struct scene *scene = run->scene;
-    int count = scene->dim == 2 ? 4 : 6;
-    const int *order = scene->dim == 2 ? tensor_2d : tensor_3d;
-    const char *names = scene->dim == 2 ? "cols=xx,yy,zz,xy" : "cols=xx,yy,zz,xy,xz,yz";
-    char attributes[64];
+    const struct scene_output *output = &run->scene->output;
     int64_t points = body->point_count;
+    if (output->volume_ratio) {
+        double *ratio = run_new_values(run, points);
+        body_volume_ratio(body, ratio);
+        put_point_values(run, "volume_ratio", 1, "unit=1", ratio);
+    }
+    if (!output->stress && !output->strain && !output->pressure) {
+        return;
+    }
     double *F = run_new_values(run, points * 9), *P = run_new_values(run, points * 9);
-    double *stress = run_new_values(run, points * count), *strain = run_new_values(run, points * count);
+    double *pressure = run_new_values(run, points);
     body_gradient(body, F);
     body_stress(body, P);
     for (int64_t q = 0; q < points; q++) {
-        const double *f = F + 9 * q, *p = P + 9 * q;
-        double J = determinant(f);
-        for (int k = 0; k < count; k++) {
-            int i = order[k] / 3, j = order[k] % 3;
-            double s = 0.0, e = i == j ? -1.0 : 0.0;
-            for (int a = 0; a < 3; a++) {
-                s += p[3 * i + a] * f[3 * j + a] / J;
-                e += f[3 * a + i] * f[3 * a + j];
-            }
-            stress[q * count + k] = s;
-            strain[q * count + k] = 0.5 * e;
-        }
+        double *f = F + 9 * q, *p = P + 9 * q, stress[9], strain[9];
+        cauchy_stress(f, p, stress);
+        green_lagrange_strain(f, strain);
+        memcpy(f, strain, sizeof strain);
+        memcpy(p, stress, sizeof stress);
+        pressure[q] = (0.0 - stress[0] - stress[4] - stress[8]) / 3.0;
+    }
+    if (output->stress) {
+        put_tensors(run, "stress", "unit=Pa measure=cauchy", P);
+    }
+    if (output->strain) {
+        put_tensors(run, "strain", "unit=1 measure=green-lagrange", F);
     }
     free(F);
     free(P);
-    if (scene->output.stress) {
-        snprintf(attributes, sizeof attributes, "unit=Pa measure=cauchy %s", names);
-        run_put(run, "stress", points, count, attributes, stress);
+    if (output->pressure) {
+        put_point_values(run, "pressure", 1, "unit=Pa", pressure);
     } else {
-        free(stress);
-    }
-    if (scene->output.strain) {
-        snprintf(attributes, sizeof attributes, "unit=1 measure=green-lagrange %s", names);
-        run_put(run, "strain", points, count, attributes, strain);
-    } else {
-        free(strain);
+        free(pressure);
     }
 }
 
@@ -177,9 +214,7 @@ void run_put_results(struct run *run)
     /* Bring F, stresses and gaps to the final state. */
     (void)system_residual(&model->system, run->u, scratch);
     free(scratch);
-    if (output->stress || output->strain) {
-        put_tensors(run);
-    }
+    put_point_fields(run);
     if (output->reactions) {
         put_reactions(run);
     }
