@@ -18,7 +18,7 @@ fuzz)
     libraries=(libomp-dev "libclang-rt-$version-dev")
     ;;
 *)
-    programs=(gcc:gcc g++:g++ make:make gmsh:gmsh gnuplot:gnuplot-nox ccx:calculix-ccx bats:bats shellcheck:shellcheck)
+    programs=(gcc:gcc g++:g++ make:make pkg-config:pkg-config gmsh:gmsh gnuplot:gnuplot-nox ccx:calculix-ccx bats:bats shellcheck:shellcheck)
     libraries=(libgmsh-dev libgsl-dev libinih-dev zlib1g-dev libcmocka-dev python3-numpy python3-vtk9 python3-meshio)
     ;;
 esac
