@@ -23,15 +23,20 @@ static const char usage[] =
     "its end that it is not whole. No program takes it for whole; mts recover makes it one. With\n"
     "-o FILE it is FILE.part.\n"
     "\n"
-    "Sections on request: u.frame.K, the field u at time= (frames K = 1, 2, ..., evenly up to\n"
-    "the final state; in a quasi-static scene over the load, from 0 to 1), for tovtk; stress\n"
-    "(Cauchy), strain (Green-Lagrange), pressure and volume_ratio of each integration point;\n"
-    "reactions, the force of each displacement and contact; gaps and pressures of contacts;\n"
-    "energy, J (2D: J/m): in a\n"
+    "Sections on request, of the final state: stress (Cauchy), strain (Green-Lagrange),\n"
+    "pressure and volume_ratio of each integration point; reactions, the force of each\n"
+    "displacement and contact; gaps and pressures of contacts; energy, J (2D: J/m): in a\n"
     "dynamic scene about 200 rows of time (s), kinetic, internal and contact energy, work of\n"
     "loads and prescribed motion, energy dissipated by damping, and error of the balance\n"
-    "relative to the largest energy; in a quasi-static scene one row, internal and contact,\n"
-    "of the final state (relaxation is no motion that a work could be told of).\n"
+    "relative to the largest energy; in a quasi-static scene one row, internal and contact\n"
+    "(relaxation is no motion that a work could be told of).\n"
+    "\n"
+    "And of frames, states on the way: u.frame.K, the field u at time=, K = 0, the state at the\n"
+    "begin, 1, 2, ..., evenly up to the final state. In a quasi-static scene time goes from 0 to\n"
+    "1 over the load, which is held at each frame until the estimated error is below the\n"
+    "tolerance: a frame is what a run to its load alone would come to. What else the scene asks\n"
+    "for is there of each of these frames, too: stress.frame.K and so on, and in tables with a\n"
+    "row for each frame, time first, reactions.frames and energy.frames: a load curve.\n"
     "\n"
     "With -c, the state of the run is kept in a file, from time to time and when SIGINT, SIGTERM\n"
     "or SIGHUP end it. The same command then goes on where it was, and ends with the same bytes\n"
@@ -91,7 +96,7 @@ static void drop_results(struct stream *stream)
     for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
         stream_remove(stream, names[i]);
     }
-    stream_remove_prefix(stream, "u.frame.");
+    run_drop_frames(stream);
 }
 
 int main(int argc, char *argv[])

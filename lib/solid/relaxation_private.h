@@ -21,7 +21,7 @@ struct relaxation {
     struct relaxation_report *report;
     struct inertia inertia;
     int64_t size;
-    double *u; /* the caller's */
+    double *u, *row_force; /* the caller's; row_force may be NULL */
     double *velocity, *residual, *before;
     const double *residual_at; /* where the residual is known, at a check: u or before */
     double *factor_change;     /* of the load curves in this step */
@@ -30,10 +30,10 @@ struct relaxation {
     double *acceleration;
     double time_step, damping, frequency; /* current; frequency: largest */
     double low2;                          /* current estimate of the lowest frequency, squared */
-    double spectrum2; /* what it may not be above: found at the full load; before, INFINITY */
+    double spectrum2; /* what it may not be above: found at the load that is held; before, INFINITY */
     double window[WINDOWS];
     int64_t checks;
-    double best_error; /* at the full load, since best_step: not yet half of it */
+    double best_error; /* at the load that is held, since best_step: not yet half of it */
     int64_t best_step;
     double spacing;                           /* mean, of the nodes, m */
     double body_size;                         /* diagonal of the nodes' box, m */
@@ -53,10 +53,11 @@ struct relaxation {
     double caution;              /* on the time step: 1 until an inversion */
     int64_t retreats;
     struct kept_state newer, older;
-    int64_t frames;       /* given so far */
-    int64_t at_full_load; /* steps since the full load was reached */
-    int64_t settled;      /* checks in a row with a small error */
-    double mass_change;   /* of the stiffness since the mass was set: 1 where it is set anew */
+    int64_t frames; /* given so far, but for the first, 0 */
+    int64_t
+        at_full_load;   /* steps since the load that is held, that of a frame or the full one, was reached */
+    int64_t settled;    /* checks in a row with a small error */
+    double mass_change; /* of the stiffness since the mass was set: 1 where it is set anew */
     int64_t last_mass_check, next_mass_check; /* checks: when that was looked at, and is again */
 };
 

@@ -48,6 +48,16 @@ void run_dynamic(struct run *run);
 /* A frame_function; the context is the struct run: adds the section u.frame.NUMBER. */
 void run_put_frame(void *context, int64_t number, double time, const double *u);
 
+/* The same of a state of equilibrium, run->u, at which the system was evaluated last, with all that the scene
+ * asks for: sections X.frame.NUMBER, and a row more in reactions.frames and energy.frames. */
+void run_put_equilibrium(void *context, int64_t number, double time, const double *u);
+
+/* Does a section of this name belong to the frames? */
+bool run_is_of_frames(const char *name);
+
+/* Remove all sections of frames. */
+void run_drop_frames(struct stream *stream);
+
 /* Zeros; exits when there is no memory. */
 double *run_new_values(const struct run *run, int64_t count);
 

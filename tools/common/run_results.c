@@ -1,29 +1,58 @@
 /* The sections that a run adds to its stream. */
+#include "frames.h"
 #include "run.h"
 
 #include "solid/energy.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+
+/* The state that sections are of: the final one, or a frame. */
+struct moment {
+    int64_t frame; /* FRAME_NONE: the final one */
+    double time;
+};
+
+/* Add section `name` of a state. */
+static void put(const struct run *run, const struct moment *moment, const char *name, int64_t rows,
+                int64_t cols, const char *attributes, double *values)
+{
+    char full[64], timed[192];
+    if (moment->frame == FRAME_NONE) {
+        run_put(run, name, rows, cols, attributes, values);
+        return;
+    }
+    snprintf(full, sizeof full, "%s.frame.%lld", name, (long long)moment->frame);
+    snprintf(timed, sizeof timed, "%s time=%.12g", attributes, moment->time);
+    run_put(run, full, rows, cols, timed, values);
+}
 
 void run_put_frame(void *context, int64_t number, double time, const double *u)
 {
     const struct run *run = context;
     int dim = run->scene->dim;
-    int64_t nodes = run->model->system.node_count;
-    char name[40], vector[64], attributes[128];
-    double *field = run_new_values(run, nodes * dim);
+    char vector[64];
+    double *field = run_new_values(run, run->model->system.node_count * dim);
     model_nodal_field(&run->model->input, u, field);
-    snprintf(name, sizeof name, "u.frame.%lld", (long long)number);
-    snprintf(attributes, sizeof attributes, "%s time=%.12g", vector_attributes(dim, "m", vector), time);
-    run_put(run, name, nodes, dim, attributes, field);
+    put(run, &(struct moment){number, time}, "u", run->model->system.node_count, dim,
+        vector_attributes(dim, "m", vector), field);
 }
 
-/* Add section `name`: a row for each integration point. */
-static void put_point_values(const struct run *run, const char *name, int64_t cols, const char *attributes,
-                             double *values)
+bool run_is_of_frames(const char *name)
 {
-    run_put(run, name, run->model->system.body.point_count, cols, attributes, values);
+    size_t length;
+    return frame_of(name, &length) != FRAME_NONE || strcmp(name, "reactions.frames") == 0 ||
+           strcmp(name, "energy.frames") == 0;
+}
+
+void run_drop_frames(struct stream *stream)
+{
+    for (int64_t i = stream->section_count - 1; i >= 0; i--) {
+        if (run_is_of_frames(stream->sections[i].name)) {
+            stream_remove(stream, stream->sections[i].name);
+        }
+    }
 }
 
 /* P F^T / J */
@@ -46,7 +75,8 @@ static void green_lagrange_strain(const double F[9], double strain[9])
 }
 
 /* tensors[points * 9]: their symmetric components, as section `name`. */
-static void put_tensors(const struct run *run, const char *name, const char *kind, const double *tensors)
+static void put_tensors(const struct run *run, const struct moment *moment, const char *name,
+                        const char *kind, const double *tensors)
 {
     static const int order[2][6] = {{0, 4, 8, 1}, {0, 4, 8, 1, 2, 5}};
     static const char *const cols[2] = {"xx,yy,zz,xy", "xx,yy,zz,xy,xz,yz"};
@@ -58,12 +88,12 @@ static void put_tensors(const struct run *run, const char *name, const char *kin
         values[i] = tensors[9 * (i / count) + order[dim - 2][i % count]];
     }
     snprintf(attributes, sizeof attributes, "%s cols=%s", kind, cols[dim - 2]);
-    put_point_values(run, name, count, attributes, values);
+    put(run, moment, name, points, count, attributes, values);
 }
 
 /* What the scene asks for at the integration points: Cauchy stress, Green-Lagrange strain, pressure, volume
  * ratio. */
-static void put_point_fields(struct run *run)
+static void put_point_fields(struct run *run, const struct moment *moment)
 {
     struct body *body = &run->model->system.body;
     const struct scene_output *output = &run->scene->output;
@@ -71,7 +101,7 @@ static void put_point_fields(struct run *run)
     if (output->volume_ratio) {
         double *ratio = run_new_values(run, points);
         body_volume_ratio(body, ratio);
-        put_point_values(run, "volume_ratio", 1, "unit=1", ratio);
+        put(run, moment, "volume_ratio", points, 1, "unit=1", ratio);
     }
     if (!output->stress && !output->strain && !output->pressure) {
         return;
@@ -89,15 +119,15 @@ static void put_point_fields(struct run *run)
         pressure[q] = (0.0 - stress[0] - stress[4] - stress[8]) / 3.0;
     }
     if (output->stress) {
-        put_tensors(run, "stress", "unit=Pa measure=cauchy", P);
+        put_tensors(run, moment, "stress", "unit=Pa measure=cauchy", P);
     }
     if (output->strain) {
-        put_tensors(run, "strain", "unit=1 measure=green-lagrange", F);
+        put_tensors(run, moment, "strain", "unit=1 measure=green-lagrange", F);
     }
     free(F);
     free(P);
     if (output->pressure) {
-        put_point_values(run, "pressure", 1, "unit=Pa", pressure);
+        put(run, moment, "pressure", points, 1, "unit=Pa", pressure);
     } else {
         free(pressure);
     }
@@ -110,20 +140,32 @@ static const char *reaction_name(const struct scene *scene, int64_t r)
                                          : scene->contacts[r - scene->displacement_count].label.name;
 }
 
-/* "unit=N rows=bottom,top", allocated. */
-static char *reaction_attributes(const struct run *run, int64_t rows)
+/* Attributes of the reactions, allocated. "unit=N rows=bottom,top", a row for each condition; or in one row,
+ * behind the time: "unit=1,N,N,N,N cols=time,bottom.x,bottom.y,top.x,top.y". */
+static char *reaction_attributes(const struct run *run, int64_t conditions, bool in_one_row)
 {
-    struct error error;
     const struct scene *scene = run->scene;
-    size_t size = 32, at;
-    char *attributes;
-    for (int64_t r = 0; r < rows; r++) {
-        size += strlen(reaction_name(scene, r)) + 1;
+    const char *unit = scene->dim == 2 ? "N/m" : "N";
+    char *attributes = NULL;
+    size_t size;
+    FILE *text = open_memstream(&attributes, &size);
+    if (text != NULL) {
+        fprintf(text, "unit=%s", in_one_row ? "1" : unit);
+        for (int64_t i = 0; in_one_row && i < conditions * scene->dim; i++) {
+            fprintf(text, ",%s", unit);
+        }
+        fputs(in_one_row ? " cols=time" : " rows=", text);
+        for (int64_t r = 0; r < conditions; r++) {
+            for (int a = 0; in_one_row && a < scene->dim; a++) {
+                fprintf(text, ",%s.%c", reaction_name(scene, r), "xyz"[a]);
+            }
+            if (!in_one_row) {
+                fprintf(text, "%s%s", r > 0 ? "," : "", reaction_name(scene, r));
+            }
+        }
     }
-    tool_check(run->tool, NEW_ARRAY(&attributes, (int64_t)size, &error), &error);
-    at = (size_t)snprintf(attributes, size, "unit=%s rows=", scene->dim == 2 ? "N/m" : "N");
-    for (int64_t r = 0; r < rows; r++) {
-        at += (size_t)snprintf(attributes + at, size - at, "%s%s", r > 0 ? "," : "", reaction_name(scene, r));
+    if (text == NULL || fclose(text) != 0) {
+        tool_fail(run->tool, STATUS_SYSTEM, "out of memory");
     }
     return attributes;
 }
@@ -153,23 +195,45 @@ static void add_condition_forces(const struct run *run, double *total)
     }
 }
 
-/* Total force of each displacement section and contact: a row each. */
-static void put_reactions(struct run *run)
+/* Add a row, the time and values[count], to section `name`, a table over the frames. */
+static void append_row(const struct run *run, const char *name, double time, const double *values,
+                       int64_t count, const char *attributes)
+{
+    const struct section *before = stream_find(run->stream, name);
+    bool fits = before != NULL && before->type == TYPE_F8 && before->cols == count + 1;
+    int64_t rows = fits ? before->rows : 0;
+    double *table = run_new_values(run, (rows + 1) * (count + 1)), *row = table + rows * (count + 1);
+    if (fits) {
+        memcpy(table, before->data, (size_t)(rows * (count + 1)) * sizeof *table);
+    }
+    row[0] = time;
+    memcpy(row + 1, values, (size_t)count * sizeof *row);
+    run_put(run, name, rows + 1, count + 1, attributes, table);
+}
+
+/* Total force of each displacement section and contact: a row each; of a frame, a row of the table over the
+ * frames. */
+static void put_reactions(struct run *run, const struct moment *moment)
 {
     const struct scene *scene = run->scene;
     int64_t rows = scene->displacement_count + scene->contact_count;
     double *total = run_new_values(run, rows * scene->dim);
-    char *attributes = reaction_attributes(run, rows);
+    char *attributes = reaction_attributes(run, rows, moment->frame != FRAME_NONE);
     add_condition_forces(run, total);
     for (int64_t c = 0; c < scene->contact_count; c++) {
         contact_total(&run->model->system.contacts[c], total + (scene->displacement_count + c) * scene->dim);
     }
-    run_put(run, "reactions", rows, scene->dim, attributes, total);
+    if (moment->frame == FRAME_NONE) {
+        run_put(run, "reactions", rows, scene->dim, attributes, total);
+    } else {
+        append_row(run, "reactions.frames", moment->time, total, rows * scene->dim, attributes);
+        free(total);
+    }
     free(attributes);
 }
 
 /* Gap, pressure and place of every hat of every contact. */
-static void put_gaps(struct run *run)
+static void put_gaps(const struct run *run, const struct moment *moment)
 {
     const struct solid_system *system = &run->model->system;
     int dim = run->scene->dim, cols = dim + 2;
@@ -186,26 +250,53 @@ static void put_gaps(struct run *run)
             values[at * cols + dim + 1] = contact->pressure[a];
         }
     }
-    run_put(run, "gaps", rows, cols,
-            dim == 2 ? "unit=m,m,m,Pa cols=x,y,gap,pressure" : "unit=m,m,m,m,Pa cols=x,y,z,gap,pressure",
-            values);
+    put(run, moment, "gaps", rows, cols,
+        dim == 2 ? "unit=m,m,m,Pa cols=x,y,gap,pressure" : "unit=m,m,m,m,Pa cols=x,y,z,gap,pressure", values);
 }
 
 /* Of the state of rest. What the loads did on the way there means nothing: relaxation is no motion. */
-static void put_energy(struct run *run)
+static void put_energy(struct run *run, const struct moment *moment)
 {
     struct solid_system *system = &run->model->system;
-    double *values = run_new_values(run, 2);
-    values[0] = energy_internal(system, run->u);
-    values[1] = energy_contact(system);
+    bool is_plane = run->scene->dim == 2;
+    double values[2] = {energy_internal(system, run->u), energy_contact(system)};
+    if (moment->frame != FRAME_NONE) {
+        append_row(run, "energy.frames", moment->time, values, 2,
+                   is_plane ? "unit=1,J/m,J/m cols=time,internal,contact"
+                            : "unit=1,J,J cols=time,internal,contact");
+        return;
+    }
+    double *row = run_new_values(run, 2);
+    memcpy(row, values, sizeof values);
     run_put(run, "energy", 1, 2,
-            run->scene->dim == 2 ? "unit=J/m,J/m cols=internal,contact" : "unit=J,J cols=internal,contact",
-            values);
+            is_plane ? "unit=J/m,J/m cols=internal,contact" : "unit=J,J cols=internal,contact", row);
+}
+
+/* What the scene asks for besides u, of the state run->u at which the system was evaluated last. */
+static void put_state(struct run *run, const struct moment *moment)
+{
+    const struct scene_output *output = &run->scene->output;
+    put_point_fields(run, moment);
+    if (output->reactions) {
+        put_reactions(run, moment);
+    }
+    if (output->energy && run->scene->analysis == SCENE_QUASI_STATIC) {
+        put_energy(run, moment);
+    }
+    if (output->gaps && run->model->system.contact_count > 0) {
+        put_gaps(run, moment);
+    }
+}
+
+void run_put_equilibrium(void *context, int64_t number, double time, const double *u)
+{
+    struct run *run = context;
+    run_put_frame(run, number, time, u);
+    put_state(run, &(struct moment){number, time});
 }
 
 void run_put_results(struct run *run)
 {
-    const struct scene_output *output = &run->scene->output;
     struct model *model = run->model;
     char attributes[64];
     int dim = run->scene->dim;
@@ -214,16 +305,7 @@ void run_put_results(struct run *run)
     /* Bring F, stresses and gaps to the final state. */
     (void)system_residual(&model->system, run->u, scratch);
     free(scratch);
-    put_point_fields(run);
-    if (output->reactions) {
-        put_reactions(run);
-    }
-    if (output->energy && run->scene->analysis == SCENE_QUASI_STATIC) {
-        put_energy(run);
-    }
-    if (output->gaps && model->system.contact_count > 0) {
-        put_gaps(run);
-    }
+    put_state(run, &(struct moment){.frame = FRAME_NONE});
     model_nodal_field(&model->input, run->u, field);
     run_put(run, "u", nodes, dim, vector_attributes(dim, "m", attributes), field);
 }
