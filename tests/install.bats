@@ -46,8 +46,10 @@ int main(void)
     struct error error;
     double x[] = {0, 0, 1, 0, 0, 0.5};
     stream_init(&stream);
-    enum status status = stream_put(&stream, "nodes.x", TYPE_F8, 3, 2, "unit=m cols=x,y", x, false, &error);
-    return status != STATUS_OK || stream_write(&stream, 1, false, &error) != STATUS_OK;
+    bool failed = stream_put(&stream, "nodes.x", TYPE_F8, 3, 2, "unit=m cols=x,y", x, false, &error) != STATUS_OK ||
+        stream_write(&stream, 1, false, &error) != STATUS_OK;
+    stream_free(&stream);
+    return failed;
 }
 END
     export PKG_CONFIG_PATH=$PWD/root/lib/pkgconfig

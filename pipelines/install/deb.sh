@@ -48,4 +48,4 @@ Description: meshless simulation of soft tissue by small programs in a pipe
  Least Squares, forces and stepping by Meshless Total Lagrangian Explicit
  Dynamics. Each stage is one program that reads a stream and writes a stream.
 END
-dpkg-deb --build --root-owner-group "$root" "$package"
+dpkg-deb -z3 --build --root-owner-group "$root" "$package"
