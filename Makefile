@@ -7,7 +7,7 @@
 #   hard                        cases with known answers
 #   convergence  speed-error    error against mesh size, and against time, beside mixed elements and CalculiX
 #   bench  estimate             speed of the kernels; what the error estimate is worth
-# make install PREFIX=/usr/local                        make clean
+# make install PREFIX=/usr/local    make deb    make clean    (pipelines/install.mk)
 
 SHELL := /bin/bash
 .SHELLFLAGS := -eu -o pipefail -c
@@ -42,7 +42,7 @@ MAN_PAGES := $(TOOLS:%=$(BUILD)/man/man1/%.1) $(patsubst tools/%,$(BUILD)/man/ma
 # Programs that the command-line tests use.
 TEST_HELPERS := $(BUILD)/tests/helper/damage $(BUILD)/tests/helper/deny.so
 
-.PHONY: all lib man deps check install clean always
+.PHONY: all lib man deps check clean always
 all: $(PROGRAMS) $(MAN_PAGES)
 man: $(MAN_PAGES)
 lib: $(LIBRARY)
@@ -110,12 +110,6 @@ deps:
 
 check: all $(UNIT_TESTS) $(FUZZ_TARGETS) $(TEST_HELPERS)
 	@BUILD="$(abspath $(BUILD))" bash tests/run.sh
-
-install: all
-	install -d $(DESTDIR)$(PREFIX)/bin $(DESTDIR)$(PREFIX)/share/man/man1 $(DESTDIR)$(PREFIX)/share/man/man5
-	install -m 755 $(PROGRAMS) $(DESTDIR)$(PREFIX)/bin
-	install -m 644 $(filter %.1,$(MAN_PAGES)) $(DESTDIR)$(PREFIX)/share/man/man1
-	install -m 644 $(filter %.5,$(MAN_PAGES)) $(DESTDIR)$(PREFIX)/share/man/man5
 
 clean:
 	rm -rf build build-*

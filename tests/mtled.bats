@@ -77,10 +77,10 @@ setup() {
 
 @test "sections come when they are asked for, and only then" {
     mtled block.scene square.mts 2> note > plain.dat
-    run -1 grep -qE '^# (stress|strain|reactions|energy|gaps|u.frame)' plain.dat
+    run -1 grep -qE '^# (stress|strain|pressure|volume_ratio|reactions|energy|gaps|u.frame)' plain.dat
     printf '[output]\nframes = 3\nstress = yes\nstrain = yes\nenergy = yes\nreactions = yes\n' >> block.scene
     mtled block.scene square.mts 2> note > full.dat
-    diff <(rows u plain.dat) <(rows u full.dat)
+    paste -d ' ' <(rows u plain.dat) <(rows u full.dat) | awk '{ if (!(($1 - $3) ^ 2 + ($2 - $4) ^ 2 < 5e-8 ^ 2)) exit 1 }'
     grep -q '^# stress f8 50 4 .*unit=Pa.* cols=xx,yy,zz,xy' full.dat
     grep -q '^# strain f8 50 4 .*cols=xx,yy,zz,xy' full.dat
     grep -q '^# reactions f8 2 2 .*unit=N/m.* rows=bottom,top' full.dat
@@ -93,9 +93,100 @@ setup() {
     done
     diff <(rows u.frame.3 full.dat) <(rows u full.dat)
     grep -q '^# u.frame.3 .*time=1$' full.dat
+    [ "$(mts list full.dat | grep -oE '^[^	]*\.frames?[^	]*' | xargs)" = "u.frame.0 stress.frame.0 strain.frame.0 \
+reactions.frames energy.frames u.frame.1 stress.frame.1 strain.frame.1 u.frame.2 stress.frame.2 strain.frame.2 u.frame.3 \
+stress.frame.3 strain.frame.3" ]
+    for name in stress strain; do
+        rows $name.frame.0 full.dat | awk '{ for (i = 1; i <= 4; i++) if ($i != 0) exit 1 } END { exit NR != 50 }'
+        diff <(rows $name.frame.3 full.dat) <(rows $name full.dat)
+    done
+    # One row for each frame: time, and force on bottom and top; the last is the final state.
+    grep -q '^# reactions.frames f8 4 5 .*unit=1,N/m,N/m,N/m,N/m cols=time,bottom.x,bottom.y,top.x,top.y' full.dat
+    grep -q '^# energy.frames f8 4 3 .*unit=1,J/m,J/m cols=time,internal,contact' full.dat
+    [ "$(rows reactions.frames full.dat | tail -n 1)" = "1 $(rows reactions full.dat | xargs)" ]
+    [ "$(rows energy.frames full.dat | tail -n 1)" = "1 $(rows energy full.dat)" ]
+    [ "$(rows reactions.frames full.dat | head -n 1)" = "0 0 0 0 0" ]
+    rows reactions.frames full.dat | awk '$3 < last { exit failed = 1 } { last = $3 } END { exit failed }'
     # The results of an earlier run leave the stream.
     pressed_block > block.scene
     mtled block.scene full.dat 2> note | bare | cmp - <(bare plain.dat)
+}
+
+# scaled FACTOR: block.scene with its load times that.
+scaled() {
+    awk -v factor="$1" '/^components = 0, -0/ { print "components = 0, " (-0.02 * factor); next } { print }' block.scene | sed '/^\[output/,/^$/d'
+    printf '[output]\nstress = yes\nreactions = yes\nenergy = yes\ngaps = yes\n'
+}
+
+# near TOLERANCE A B: two tables of vectors, which differ by so much of the longest of B.
+near() {
+    paste -d ' ' "$2" "$3" | awk -v tolerance="$1" '
+        { d = m = 0; n = NF / 2; for (i = 1; i <= n; i++) { d += ($i - $(i + n)) ^ 2; m += $(i + n) ^ 2 }
+          if (!(d <= worst)) worst = d
+          if (m > most) most = m }
+        END { if (!(NR && worst <= tolerance ^ 2 * most)) { print "off by " sqrt(worst / most); exit 1 } }'
+}
+
+# frames_hold TOLERANCE: each of four frames of block.scene is what a run to its load comes to.
+frames_hold() {
+    { cat block.scene; printf '[output]\nframes = 4\nstress = yes\nreactions = yes\nenergy = yes\ngaps = yes\n'; } > frames.scene
+    mtled frames.scene table.mts > frames.dat
+    [ "$(rows reactions.frames frames.dat | wc -l)" -eq 5 ]
+    for k in 1 2 3 4; do
+        factor=$(awk -v s=0.25 -v k=$k 'BEGIN { s *= k; printf "%.17g", s ^ 3 * (10 - 15 * s + 6 * s * s) }')
+        scaled "$factor" > alone.scene
+        mtled alone.scene table.mts > alone.dat
+        near "$1" <(rows u.frame.$k frames.dat) <(rows u alone.dat)
+        near "$1" <(rows stress.frame.$k frames.dat) <(rows stress alone.dat)
+        near "$1" <(rows reactions.frames frames.dat | awk -v k=$k 'NR == k + 1 { for (i = 2; i < NF; i += 2) print $i, $(i + 1) }') <(rows reactions alone.dat)
+        near "$1" <(rows energy.frames frames.dat | awk -v k=$k 'NR == k + 1 { print $2 }') <(rows energy alone.dat | cut -d ' ' -f 1)
+    done
+}
+
+@test "frames are states of equilibrium: each is what a run to its load comes to, within the tolerance" {
+    sed -i 's/^nu = .*/nu = 0.49/; s/-0.005/-0.02/' block.scene
+    shapefn square.mts > table.mts 2> note
+    frames_hold 1e-5
+    tovtk -o curve.pvd frames.dat
+    [ "$(grep -c '<DataSet' curve.pvd)" -eq 5 ]
+    for k in 0 1 2 3 4; do
+        grep -q 'Name="stress.von_mises"' curve-000$k.vtu
+    done
+}
+
+@test "frames with contact: as far as contacts may give way, 1e-4 of the body's size" {
+    sed -i 's/^nu = .*/nu = 0.49/; s/-0.005/-0.02/' block.scene
+    printf '[contact wall]\nfacets = xmax\nrigid = wall.tsv\nunit = m\nside = left\n' >> block.scene
+    printf '0.101 -1\n0.101 1\n' > wall.tsv
+    shapefn square.mts > table.mts 2> note
+    frames_hold 7e-4 # 1e-4 * 0.14 m / 0.02 m
+    rows reactions.frames frames.dat | awk '{ wall[NR] = $6 } END { exit !(wall[1] == 0 && wall[5] < -1) }'
+    mts list frames.dat | grep -c '^gaps.frame.' | grep -qx 5
+}
+
+@test "pressure is minus the mean of the normal stresses, volume_ratio the J of the material" {
+    printf '[output]\npressure = yes\nvolume_ratio = yes\n' >> block.scene
+    shapefn square.mts > table.mts 2> note
+    mtled block.scene table.mts > asked.dat
+    grep -q '^# pressure f8 50 1 .*unit=Pa' asked.dat
+    grep -q '^# volume_ratio f8 50 1 .*unit=1' asked.dat
+    run -1 grep -qE '^# (stress|strain)' asked.dat
+    printf 'stress = yes\n' >> block.scene
+    mtled block.scene table.mts > all.dat
+    diff <(rows pressure asked.dat) <(rows pressure all.dat)
+    paste -d ' ' <(rows pressure all.dat) <(rows stress all.dat) |
+        awk '{ d = $1 + ($2 + $3 + $4) / 3; if (!(d * d <= 1e-20 * $1 * $1)) exit failed = 1; sum += $1 } END { exit failed || NR != 50 || !(sum > 0) }'
+    # A linear field: J is that of the map, 1.05 * 0.96 + 0.02 * 0.03, and the pressure kappa (1 - J).
+    { sed '/^\[displacement/,/^$/d' block.scene; printf '[displacement all]\nfacets = xmin, xmax, ymin, ymax\ntable = map.tsv\nunit = m\n'; } > linear.scene
+    printf '%s\n' '0 0' '0.1 0' '0 0.1' '0.1 0.1' | awk '{ print $1, $2, 0.05 * $1 + 0.02 * $2, -0.03 * $1 - 0.04 * $2 }' > map.tsv
+    mtled linear.scene table.mts > linear.dat
+    rows volume_ratio linear.dat | awk '!(($1 - 1.0086) ^ 2 < 1e-10) { print; exit 1 }'
+    rows pressure linear.dat | awk '!(($1 + 86) ^ 2 < 0.1) { print; exit 1 }'
+    # On Gauss points J is det F: that of the strain.
+    printf 'strain = yes\n' >> block.scene
+    ipoints -g 4 square.mts | shapefn 2> note | mtled block.scene > gauss.dat
+    paste -d ' ' <(rows volume_ratio gauss.dat) <(rows strain gauss.dat) |
+        awk '{ J = sqrt((1 + 2 * $2) * (1 + 2 * $3) - 4 * $5 * $5); if (!(($1 - J) ^ 2 < 1e-24)) exit failed = 1 } END { exit failed || NR != 200 }'
 }
 
 @test "a dynamic scene: energies, frames by time, reactions" {
@@ -115,7 +206,8 @@ setup() {
     mtled block.scene square.mts 2> note > u.dat
     diff <(rows u.frame.5 u.dat) <(rows u u.dat)
     tovtk -o u.pvd u.dat
-    [ "$(grep -c '<DataSet' u.pvd)" -eq 5 ]
+    [ "$(grep -c '<DataSet' u.pvd)" -eq 6 ]
+    rows u.frame.0 u.dat | awk '$1 != 0 || $2 != 0 { exit 1 } END { exit NR != 36 }'
 }
 
 @test "a free body falls g t^2 / 2, every node alike" {

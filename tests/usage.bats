@@ -95,7 +95,7 @@ setup() {
     gmsh -2 -v 2 "$top/examples/brain2d/brain2d.geo" -o body.msh
     nodes -u mm body.msh | shapefn 2> note | mtled sample.scene > u.dat
     mts check u.dat
-    [ "$(mts list u.dat | grep -c '^u\.frame\.')" -eq 10 ]
+    [ "$(mts list u.dat | grep -c '^u\.frame\.')" -eq 11 ]
     tovtk -o frames.pvd u.dat
     [ "$(grep -c '<DataSet' frames.pvd)" -ge 10 ]
 }

@@ -11,31 +11,31 @@ static const char usage[] =
     "shapefn are run first, with the same result.\n"
     "\n"
     "Quasi-static scenes are relaxed until the estimated remaining error, relative to the\n"
-    "displacement, is below the scene's tolerance. A body that no displacement of the scene keeps\n"
-    "from moving or turning as a whole, and no contact acts on, is a verdict before the first\n"
-    "step. Dynamic scenes are stepped to their end time by central differences with the true\n"
-    "mass, at a share (time_step_margin) of the critical step, which is watched all along. They\n"
-    "stop with a verdict when a point is inverted, when the critical step collapses (below 0.001\n"
-    "of the first one), and when the energy balance is off by more than 0.05 of the largest\n"
-    "energy. On a terminal, progress is shown with step, time, error and time left.\n"
+    "displacement, is below the scene's tolerance. Dynamic scenes are stepped to their end time by\n"
+    "central differences with the true mass, at a share (time_step_margin) of the critical step.\n"
+    "Verdicts are: a body that may move or turn as a whole, as neither a displacement nor a contact\n"
+    "holds it; a point that is inverted; a body that folds (see mtled-scene(5)); in a dynamic scene\n"
+    "a critical step that collapses (below 0.001 of the first one) and an energy balance that is\n"
+    "off by more than 0.05 of the largest energy. A terminal shows progress.\n"
     "\n"
-    "A body that folds - cells turned over, facets passed through each other - is a verdict, too,\n"
-    "that says where and from which load on, unless the scene allows it ([output] folds).\n"
+    "Nothing is written by a run that ends with a verdict or by a signal, but where the scene asks\n"
+    "for frames: then those so far and the last good state follow, as a stream that says at its\n"
+    "end that it is not whole; mts recover makes it one. With -o FILE it is FILE.part.\n"
     "\n"
-    "Nothing is written by a run that ends with such a verdict or by a signal, but where the scene\n"
-    "asks for frames: then those so far and the last good state follow, as a stream that says at\n"
-    "its end that it is not whole. No program takes it for whole; mts recover makes it one. With\n"
-    "-o FILE it is FILE.part.\n"
+    "Sections on request, of the final state: stress (Cauchy), strain (Green-Lagrange), pressure\n"
+    "and volume_ratio of each integration point; reactions and moments, the force of each\n"
+    "displacement and contact on the body and its moment about moments_about, at the deformed\n"
+    "places where it acts; gaps and pressures of contacts; energy, J (2D: J/m): in a dynamic scene\n"
+    "about 200 rows of time (s), kinetic, internal and contact energy, work of loads and\n"
+    "prescribed motion, energy dissipated, and error of the balance relative to the largest\n"
+    "energy; in a quasi-static scene one row, internal and contact.\n"
     "\n"
-    "Sections on request: u.frame.K, the field u at time= (frames K = 1, 2, ..., evenly up to\n"
-    "the final state; in a quasi-static scene over the load, from 0 to 1), for tovtk; stress\n"
-    "(Cauchy) and strain (Green-Lagrange) of each integration point; reactions and moments, the\n"
-    "force of each displacement and contact on the body and its moment about the scene's\n"
-    "moments_about, at the deformed places where it acts; gaps and pressures of contacts;\n"
-    "energy, J (2D: J/m): in a dynamic scene about 200 rows of time (s), kinetic, internal and\n"
-    "contact energy, work of loads and prescribed motion, energy dissipated by damping, and\n"
-    "error of the balance relative to the largest energy; in a quasi-static scene one row,\n"
-    "internal and contact, of the final state.\n"
+    "And of frames, states on the way: u.frame.K, the field u at time=, K = 0, the state at the\n"
+    "begin, 1, 2, ..., evenly up to the final state. In a quasi-static scene time goes from 0 to\n"
+    "1 over the load, which is held at each frame until the estimated error is below the\n"
+    "tolerance. What else the scene asks for is there of each of these frames, too:\n"
+    "stress.frame.K and so on, and tables with a row for each frame, time first, reactions.frames,\n"
+    "moments.frames, energy.frames: a load curve.\n"
     "\n"
     "With -c, the state of the run is kept in a file, from time to time and when SIGINT, SIGTERM\n"
     "or SIGHUP end it. The same command then goes on where it was, and ends with the same bytes\n"
@@ -91,11 +91,12 @@ static double parse_every(const struct tool *tool, const struct option *options)
 /* The results of an earlier run on the same stream. */
 static void drop_results(struct stream *stream)
 {
-    static const char *const names[] = {"u", "stress", "strain", "reactions", "moments", "gaps", "energy"};
+    static const char *const names[] = {"u",         "stress",  "strain", "pressure", "volume_ratio",
+                                        "reactions", "moments", "gaps",   "energy"};
     for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
         stream_remove(stream, names[i]);
     }
-    stream_remove_prefix(stream, "u.frame.");
+    run_drop_frames(stream);
 }
 
 int main(int argc, char *argv[])

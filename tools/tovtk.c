@@ -6,15 +6,33 @@ static const char usage[] =
     "Reads a stream with nodes.x, the background cells if there are any, and fields:\n"
     "every section with one row for each node or each cell, and names other than\n"
     "lists (.ptr, .idx), facets, faces and sets. Nodes without cells become points.\n"
-    "Vectors in 2D are padded to three components. Where nodes and cells are equally\n"
-    "many, sections cells.* and points.* belong to the cells, all others to the nodes.\n"
+    "Where nodes and cells are equally many, sections cells.*, points.*, stress,\n"
+    "strain, pressure and volume_ratio belong to the cells, all others to the nodes.\n"
     "Everything is in SI units, displacements are in m.\n"
     "\n"
-    "mtled with frames writes u.frame.1, u.frame.2, ... beside the final u. Name a\n"
-    ".pvd file to write them all: NAME.pvd lists NAME-0001.vtu, NAME-0002.vtu, ... with\n"
-    "their times, each with the fields of its frame and those that nodes, support and\n"
-    "ipoints made. Other files hold the final state only. With -f gmsh, views hold all\n"
-    "frames as their time steps.\n"
+    "Vectors in 2D get a third component of zeros. Symmetric tensors have six\n"
+    "components in the order of VTK, xx, yy, zz, xy, yz, xz, in 2D too, so that\n"
+    "ParaView's tensor filters give their principal values. What follows from the\n"
+    "stress and the strain is added:\n"
+    "  stress.von_mises   Pa\n"
+    "  stress.principal   the principal stresses, Pa, the largest first\n"
+    "  pressure           -tr(stress)/3, Pa, unless the stream has it\n"
+    "  strain.principal   the principal strains, the largest first\n"
+    "  J                  volume ratio sqrt det(1 + 2 strain), unless the stream has\n"
+    "                     volume_ratio\n"
+    "A vtu file holds the groups, too: facets.NAME and set.NAME are 1 at the nodes of\n"
+    "each group of facets and each node set, 0 elsewhere, and region.NAME, field data,\n"
+    "is the number of that region in cells.region.\n"
+    "\n"
+    "mtled with frames writes u.frame.0, u.frame.1, ... beside the final u, and other\n"
+    "sections X.frame.K. Name a .pvd file to write them all: NAME.pvd lists\n"
+    "NAME-0000.vtu, NAME-0001.vtu, ... with their times, each with the fields of its\n"
+    "frame and those that nodes, support and ipoints made. Other files hold the final\n"
+    "state only. With -f gmsh, views hold all frames as their time steps.\n"
+    "\n"
+    "The name's ending says what is written: .vtu, .pvd, or .msh as with -f gmsh. A name\n"
+    "without ending, and standard output, are vtu unless -f says otherwise. Other\n"
+    "endings need -f; legacy files, .vtk, are not written.\n"
     "\n"
     "Options:\n"
     "  -f, --format FORMAT  vtu: VTK XML unstructured grid, for ParaView (default);\n"
@@ -24,12 +42,11 @@ static const char usage[] =
     "\n"
     "Examples:\n"
     "  mtled brain2d.scene < table.mts | tovtk -o brain2d.pvd\n"
-    "  tovtk -f gmsh u.dat > u.msh && gmsh u.msh\n";
+    "  tovtk -o u.msh u.dat && gmsh u.msh\n";
 
 #include "output.h"
-#include "stages.h"
-
-#include "io/vtk.h"
+#include "plot.h"
+#include "tool.h"
 
 #include <errno.h>
 #include <stdlib.h>
@@ -38,180 +55,10 @@ static const char usage[] =
 
 enum { FORMAT, TEXT, OUTPUT, OPTION_COUNT };
 
-static const char frame_infix[] = ".frame.";
-
-struct label {
-    char text[128];
-};
-
-/* What is written: the stream, seen as a mesh, fields and frames. */
-struct plot {
-    struct stream stream;
-    struct vtk_mesh mesh;
-    struct vtk_field *fields; /* of the frame chosen last; room for every section */
-    struct label *labels;     /* their names */
-    int64_t field_count;
-    int64_t *frames; /* the numbers of the frames, ascending */
-    int64_t frame_count;
-    char names[1 << 16]; /* of the regions */
-};
-
-static bool begins_with(const char *text, const char *prefix)
+static bool is_named(const char *path, const char *ending)
 {
-    return strncmp(text, prefix, strlen(prefix)) == 0;
-}
-
-static bool ends_with(const char *text, const char *suffix)
-{
-    size_t length = strlen(text);
-    size_t tail = strlen(suffix);
-    return length >= tail && strcmp(text + length - tail, suffix) == 0;
-}
-
-/* K of a section X.frame.K with K >= 1; 0 for another section. *length receives that of X. */
-static int64_t frame_of(const char *name, size_t *length)
-{
-    struct error ignored;
-    int64_t frame = 0;
-    const char *infix = strstr(name, frame_infix);
-    *length = infix != NULL ? (size_t)(infix - name) : strlen(name);
-    if (infix == NULL ||
-        parse_integer(infix + strlen(frame_infix), name, 1, INT32_MAX, &frame, &ignored) != STATUS_OK) {
-        return 0;
-    }
-    return frame;
-}
-
-/* Does a section of this name (X of X.frame.K) describe the reference state, the same in all frames? */
-static bool is_static(const char *name)
-{
-    return begins_with(name, "cells.") || begins_with(name, "nodes.") || begins_with(name, "support.") ||
-           strcmp(name, "points.weight") == 0;
-}
-
-/* Lists, geometry and what belongs to neither nodes nor cells, whatever its number of rows. */
-static bool is_structure(const char *name)
-{
-    static const char *const exact[] = {"nodes.x", "cells", "facets", "faces", "points.x", "points.cell"};
-    for (size_t i = 0; i < sizeof exact / sizeof exact[0]; i++) {
-        if (strcmp(name, exact[i]) == 0) {
-            return true;
-        }
-    }
-    return begins_with(name, "facets.") || begins_with(name, "faces.") || begins_with(name, "facepoints.") ||
-           begins_with(name, "sets.") || ends_with(name, ".ptr") || ends_with(name, ".idx");
-}
-
-/* Is the section a field on nodes or cells? */
-static bool is_field(const struct vtk_mesh *mesh, const struct section *section, bool *of_cells)
-{
-    bool for_cells = begins_with(section->name, "cells.") || begins_with(section->name, "points.");
-    bool fits_cells = mesh->node != NULL && section->rows == mesh->cell_count;
-    bool fits_nodes = section->rows == mesh->node_count;
-    *of_cells = fits_cells && (for_cells || !fits_nodes);
-    return (fits_cells || fits_nodes) && section->cols > 0 && !is_structure(section->name);
-}
-
-/* Choose the fields of a frame, or of the final state when frame == 0. */
-static void choose_fields(struct plot *plot, int64_t frame)
-{
-    plot->field_count = 0;
-    for (int64_t s = 0; s < plot->stream.section_count; s++) {
-        const struct section *section = &plot->stream.sections[s];
-        struct vtk_field field = {.section = section};
-        size_t length;
-        bool is_wanted = frame_of(section->name, &length) == frame ||
-                         (frame_of(section->name, &length) == 0 && is_static(section->name));
-        if (is_wanted && is_field(&plot->mesh, section, &field.of_cells)) {
-            struct label *label = &plot->labels[plot->field_count];
-            snprintf(label->text, sizeof label->text, "%.*s", (int)length, section->name);
-            field.name = label->text;
-            plot->fields[plot->field_count++] = field;
-        }
-    }
-}
-
-static int compare_frames(const void *a, const void *b)
-{
-    int64_t left = *(const int64_t *)a;
-    int64_t right = *(const int64_t *)b;
-    return (left > right) - (left < right);
-}
-
-static enum status find_frames(struct plot *plot, struct error *error)
-{
-    enum status status = STATUS_OK;
-    int64_t count = 0;
-    TRY(NEW_ARRAY(&plot->frames, plot->stream.section_count, error));
-    for (int64_t s = 0; s < plot->stream.section_count; s++) {
-        size_t length;
-        int64_t frame = frame_of(plot->stream.sections[s].name, &length);
-        if (frame > 0) {
-            plot->frames[count++] = frame;
-        }
-    }
-    qsort(plot->frames, (size_t)count, sizeof *plot->frames, compare_frames);
-    for (int64_t i = 0; i < count; i++) {
-        if (i == 0 || plot->frames[i] != plot->frames[i - 1]) {
-            plot->frames[plot->frame_count++] = plot->frames[i];
-        }
-    }
-done:
-    return status;
-}
-
-/* attribute time= of the first section of the frame that has one, else its number; 0 for the final state. */
-static enum status time_of(const struct plot *plot, int64_t frame, double *time, struct error *error)
-{
-    *time = (double)frame;
-    for (int64_t s = 0; s < plot->stream.section_count; s++) {
-        const struct section *section = &plot->stream.sections[s];
-        size_t length;
-        char text[64];
-        if (frame > 0 && frame_of(section->name, &length) == frame &&
-            section_attribute(section, "time", text, sizeof text)) {
-            return parse_double(text, section->name, -1e300, 1e300, time, error);
-        }
-    }
-    return STATUS_OK;
-}
-
-static enum status find_mesh(struct plot *plot, struct error *error)
-{
-    const struct section *region = stream_find(&plot->stream, "cells.region");
-    struct cells cells;
-    enum status status = STATUS_OK;
-    struct vtk_mesh *mesh = &plot->mesh;
-    TRY(stream_nodes(&plot->stream, &mesh->dim, &mesh->node_count, &mesh->x, error));
-    TRY(stream_cells(&plot->stream, false, &cells, error));
-    mesh->cell_count = cells.count;
-    mesh->node = cells.count > 0 ? cells.node : NULL;
-    mesh->region_names = plot->names;
-    if (mesh->node != NULL && region != NULL) {
-        TRY(stream_need(&plot->stream, "cells.region", TYPE_I4, 1, "nodes", &region, error));
-        if (region->rows != cells.count) {
-            TRY(fail(error, STATUS_INPUT, "cells.region: has %lld rows, cells %lld", (long long)region->rows,
-                     (long long)cells.count));
-        }
-        mesh->region = region->data;
-        section_attribute(region, "names", plot->names, sizeof plot->names);
-    }
-    TRY(NEW_ARRAY(&plot->fields, plot->stream.section_count, error));
-    TRY(NEW_ARRAY(&plot->labels, plot->stream.section_count, error));
-    TRY(find_frames(plot, error));
-done:
-    return status;
-}
-
-/* Number i of the frames; 0, the final state, when there are none. */
-static int64_t frame_number(const struct plot *plot, int64_t i)
-{
-    return plot->frame_count > 0 ? plot->frames[i] : 0;
-}
-
-static int64_t state_count(const struct plot *plot)
-{
-    return plot->frame_count > 0 ? plot->frame_count : 1;
+    size_t length = strlen(path), tail = strlen(ending);
+    return length >= tail && strcmp(path + length - tail, ending) == 0;
 }
 
 /* The mesh and all frames. */
@@ -219,14 +66,14 @@ static enum status write_gmsh(struct plot *plot, FILE *file, struct error *error
 {
     enum status status = STATUS_OK;
     TRY(gmsh_write_mesh(file, &plot->mesh, error));
-    for (int64_t i = 0; i < state_count(plot); i++) {
-        int64_t frame = frame_number(plot, i);
+    for (int64_t i = 0; i < plot_state_count(plot); i++) {
+        int64_t frame = plot_frame(plot, i);
         double time;
-        TRY(time_of(plot, frame, &time, error));
-        choose_fields(plot, frame);
+        TRY(plot_time(plot, frame, &time, error));
+        plot_choose_fields(plot, frame);
         for (int64_t f = 0; f < plot->field_count; f++) {
             const struct vtk_field *field = &plot->fields[f];
-            if (i == 0 || !is_static(field->name)) { /* the reference state once */
+            if (i == 0 || !field->is_static) { /* the reference state once */
                 TRY(gmsh_write_field(file, &plot->mesh, field, i, time, error));
             }
         }
@@ -238,7 +85,7 @@ done:
 /* One frame as a vtu file. */
 static enum status write_vtu(struct plot *plot, int64_t frame, bool text, FILE *file, struct error *error)
 {
-    choose_fields(plot, frame);
+    plot_choose_fields(plot, frame);
     return vtu_write(file, &plot->mesh, plot->fields, plot->field_count, text, error);
 }
 
@@ -290,7 +137,7 @@ static void write_series(const struct tool *tool, struct plot *plot, bool text)
 {
     struct error error;
     struct target target;
-    int64_t count = state_count(plot);
+    int64_t count = plot_state_count(plot);
     size_t stem = strlen(tool->output) - strlen(".pvd");
     const char *slash = strrchr(tool->output, '/');
     size_t folder = slash != NULL ? (size_t)(slash - tool->output) + 1 : 0;
@@ -300,9 +147,10 @@ static void write_series(const struct tool *tool, struct plot *plot, bool text)
     tool_check(tool, NEW_ARRAY(&names, count, &error), &error);
     tool_check(tool, NEW_ARRAY(&times, count, &error), &error);
     for (int64_t i = 0; i < count; i++) {
-        int64_t frame = frame_number(plot, i);
-        tool_check(tool, time_of(plot, frame, &times[i], &error), &error);
-        if (asprintf(&paths[i], "%.*s-%04lld.vtu", (int)stem, tool->output, (long long)frame) < 0) {
+        int64_t frame = plot_frame(plot, i);
+        tool_check(tool, plot_time(plot, frame, &times[i], &error), &error);
+        if (asprintf(&paths[i], "%.*s-%04lld.vtu", (int)stem, tool->output,
+                     frame == FRAME_NONE ? 0LL : (long long)frame) < 0) {
             tool_fail(tool, STATUS_SYSTEM, "out of memory");
         }
         target_open(tool, &target, paths[i]);
@@ -319,9 +167,43 @@ static void write_series(const struct tool *tool, struct plot *plot, bool text)
     free(times);
 }
 
-int main(int argc, char *argv[])
+enum format { FORMAT_VTU, FORMAT_GMSH };
+
+/* The format that -f (NULL: not given) and the ending of the output's name say; exits where they disagree. */
+static enum format choose_format(const struct tool *tool, const char *given)
 {
     static const char *const formats[] = {"vtu", "gmsh"};
+    static const struct {
+        const char *ending;
+        enum format format;
+    } endings[] = {{".vtu", FORMAT_VTU}, {".pvd", FORMAT_VTU}, {".msh", FORMAT_GMSH}};
+    struct error error;
+    int format = FORMAT_VTU;
+    const char *path = tool->output != NULL ? tool->output : "", *slash = strrchr(path, '/');
+    const char *ending = strrchr(slash != NULL ? slash + 1 : path, '.');
+    if (given != NULL) {
+        tool_check(tool, parse_choice(given, "-f", formats, 2, &format, &error), &error);
+    }
+    for (size_t i = 0; ending != NULL && i < sizeof endings / sizeof *endings; i++) {
+        if (strcmp(ending, endings[i].ending) == 0) {
+            if (given != NULL && endings[i].format != (enum format)format) {
+                tool_fail(tool, STATUS_INPUT, "%s: a %s file is not for -f %s", path, ending, given);
+            }
+            return endings[i].format;
+        }
+    }
+    if (ending != NULL && strcmp(ending, ".vtk") == 0) {
+        tool_fail(tool, STATUS_INPUT, "%s: legacy VTK files are not written: name it .vtu", path);
+    }
+    if (ending != NULL && given == NULL) {
+        tool_fail(tool, STATUS_INPUT,
+                  "%s: unknown ending: name it .vtu or .pvd (ParaView), .msh (gmsh), or give -f", path);
+    }
+    return (enum format)format;
+}
+
+int main(int argc, char *argv[])
+{
     struct tool tool;
     struct error error;
     struct option options[OPTION_COUNT] = {
@@ -331,18 +213,14 @@ int main(int argc, char *argv[])
     };
     struct plot plot = {0};
     struct target target;
-    int format = 0;
     tool_begin(&tool, usage, options, OPTION_COUNT, 0, 1, argc, argv);
-    if (options[FORMAT].given) {
-        tool_check(&tool, parse_choice(options[FORMAT].value, "-f", formats, 2, &format, &error), &error);
-    }
-    bool is_gmsh = format == 1;
-    bool is_series = tool.output != NULL && ends_with(tool.output, ".pvd");
-    if (is_gmsh && (is_series || options[TEXT].given)) {
-        tool_fail(&tool, STATUS_INPUT, "%s is for -f vtu", is_series ? "a .pvd file" : "-t");
+    bool is_gmsh = choose_format(&tool, options[FORMAT].given ? options[FORMAT].value : NULL) == FORMAT_GMSH;
+    bool is_series = tool.output != NULL && is_named(tool.output, ".pvd");
+    if (is_gmsh && options[TEXT].given) {
+        tool_fail(&tool, STATUS_INPUT, "-t is for vtu files");
     }
     tool_read(&tool, tool.operands[0], &plot.stream);
-    tool_check(&tool, find_mesh(&plot, &error), &error);
+    tool_check(&tool, plot_find(&plot, !is_gmsh, &error), &error);
     if (is_series) {
         write_series(&tool, &plot, options[TEXT].given);
     } else {
@@ -353,12 +231,9 @@ int main(int argc, char *argv[])
         target_open(&tool, &target, tool.output);
         target_close(&tool, &target,
                      is_gmsh ? write_gmsh(&plot, target.file, &error)
-                             : write_vtu(&plot, 0, options[TEXT].given, target.file, &error),
+                             : write_vtu(&plot, FRAME_NONE, options[TEXT].given, target.file, &error),
                      &error);
     }
-    stream_free(&plot.stream);
-    free(plot.fields);
-    free(plot.labels);
-    free(plot.frames);
+    plot_free(&plot);
     return tool_end(&tool);
 }

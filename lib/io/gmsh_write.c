@@ -101,10 +101,10 @@ static void write_view(FILE *file, const char *name, const struct vtk_field *fie
 enum status gmsh_write_field(FILE *file, const struct vtk_mesh *mesh, const struct vtk_field *field,
                              int64_t step, double time, struct error *error)
 {
-    int64_t columns = vtk_columns(mesh, field->section);
-    bool is_vector = columns == 3 && (mesh->dim == 3 || field->section->cols == 2); /* not xx, yy, xy */
+    int64_t columns = field->section->cols;
+    bool is_vector = columns == mesh->dim && (columns == 3 || vtk_is_floating(field->section));
     if (columns == 1 || is_vector || columns == 9) {
-        write_view(file, field->name, field, 0, columns, step, time);
+        write_view(file, field->name, field, 0, is_vector ? 3 : columns, step, time);
         return vtk_check_written(file, error);
     }
     for (int64_t column = 0; column < columns; column++) {

@@ -18,8 +18,8 @@
  * - [traction NAME]: facets = GROUPS; components (Pa); curve
  * - [force NAME]: nodes = SETS; components (N on each node; in 2D N per metre of thickness); curve
  * - [initial]: table = FILE; unit (dynamic)
- * - [output]: frames = COUNT or interval (s, dynamic); stress, strain, energy, reactions, moments,
- *   gaps = yes|no; moments_about = X,Y[,Z] (m); folds = refused (default)|allowed
+ * - [output]: frames = COUNT or interval (s, dynamic); stress, strain, pressure, volume_ratio, energy,
+ *   reactions, moments, gaps = yes|no; moments_about = X,Y[,Z] (m); folds = refused (default)|allowed
  * - [solver]: constraints = ebciem|direct; constraint_points = hat|node; volume = nodal|pointwise;
  *   tolerance; max_steps; ramp_steps; end_time (s), damping (1/s) (dynamic);
  *   time_step_margin (0..1)
@@ -133,7 +133,7 @@ struct scene_initial {
 struct scene_output {
     int64_t frames;  /* evenly spaced frames besides the final state; 0: none */
     double interval; /* s between frames (dynamic); 0: none. Not both. */
-    bool stress, strain, energy, reactions, moments, gaps;
+    bool stress, strain, pressure, volume_ratio, energy, reactions, moments, gaps;
     double about[3];    /* the point of the moments, m; default the origin */
     bool folds_allowed; /* a body that folds is no verdict */
 };

@@ -264,8 +264,9 @@ static enum status read_output(const struct place *place, struct scene *scene)
     struct scene_output *output = &scene->output;
     int allowed = 0;
     enum status status = STATUS_OK;
-    TRY(place_only_keys(place, KEYS{"frames", "interval", "stress", "strain", "energy", "reactions",
-                                    "moments", "moments_about", "gaps", "folds", NULL}));
+    TRY(place_only_keys(place,
+                        KEYS{"frames", "interval", "stress", "strain", "pressure", "volume_ratio", "energy",
+                             "reactions", "moments", "moments_about", "gaps", "folds", NULL}));
     TRY(place_count(place, "frames", 1000000, &output->frames));
     TRY(place_number(place, "interval", range_positive, &output->interval));
     if (place_has(place, "frames")) {
@@ -276,6 +277,8 @@ static enum status read_output(const struct place *place, struct scene *scene)
     }
     TRY(place_yes(place, "stress", &output->stress));
     TRY(place_yes(place, "strain", &output->strain));
+    TRY(place_yes(place, "pressure", &output->pressure));
+    TRY(place_yes(place, "volume_ratio", &output->volume_ratio));
     TRY(place_yes(place, "energy", &output->energy));
     TRY(place_yes(place, "reactions", &output->reactions));
     TRY(place_yes(place, "moments", &output->moments));

@@ -24,12 +24,19 @@ struct vtk_mesh {
 struct vtk_field {
     const char *name;
     bool of_cells;
+    bool is_static;                /* the same in all states */
     const struct section *section; /* one row for each node or cell; attribute cols= names the components */
 };
 
+/* Whether the columns of a section are those of a symmetric tensor, by their names: xx, yy, zz, xy and, in
+ * 3D, xz and yz, in any order. from[6] receives the column of xx, yy, zz, xy, yz, xz, VTK's order; -1 for yz
+ * and xz in 2D, which are zero. */
+bool vtk_tensor(const struct section *section, int64_t from[6]);
+
 /* Write a VTK XML unstructured grid: data inline, base64 of little-endian values, or as text. Vectors of 2D
- * fields (two floating columns) are padded to three. Errors: STATUS_SYSTEM, also when `file` has an error
- * pending. */
+ * meshes (two floating columns) are padded to three, symmetric tensors are written with six components in
+ * VTK's order. Each region is an array "region.NAME" of the field data that holds its index. Errors:
+ * STATUS_SYSTEM, also when `file` has an error pending. */
 MUST_CHECK enum status vtu_write(FILE *file, const struct vtk_mesh *mesh, const struct vtk_field *fields,
                                  int64_t field_count, bool text, struct error *error);
 

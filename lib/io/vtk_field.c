@@ -4,12 +4,6 @@
 #include <inttypes.h>
 #include <string.h>
 
-int64_t vtk_columns(const struct vtk_mesh *mesh, const struct section *section)
-{
-    bool is_floating = section->type == TYPE_F4 || section->type == TYPE_F8;
-    return is_floating && mesh->dim == 2 && section->cols == 2 ? 3 : section->cols;
-}
-
 bool vtk_list_item(const char *list, int64_t index, char *text, size_t size)
 {
     for (; index > 0; index--) {
@@ -33,6 +27,37 @@ bool vtk_column_name(const struct section *section, int64_t column, char *text, 
     char names[1024];
     return section_attribute(section, "cols", names, sizeof names) &&
            vtk_list_item(names, column, text, size);
+}
+
+/* The column of that name, or -1. */
+static int64_t find_column(const struct section *section, const char *wanted)
+{
+    char name[64];
+    for (int64_t column = 0; column < section->cols; column++) {
+        if (vtk_column_name(section, column, name, sizeof name) && strcmp(name, wanted) == 0) {
+            return column;
+        }
+    }
+    return -1;
+}
+
+bool vtk_tensor(const struct section *section, int64_t from[6])
+{
+    static const char *const names[6] = {"xx", "yy", "zz", "xy", "yz", "xz"};
+    int64_t found = 0;
+    if (!vtk_is_floating(section) || (section->cols != 4 && section->cols != 6)) {
+        return false;
+    }
+    for (int k = 0; k < 6; k++) {
+        from[k] = find_column(section, names[k]);
+        found += from[k] >= 0;
+    }
+    return found == section->cols && (section->cols == 6 || (from[4] < 0 && from[5] < 0));
+}
+
+bool vtk_is_floating(const struct section *section)
+{
+    return section->type == TYPE_F4 || section->type == TYPE_F8;
 }
 
 void vtk_print_element(FILE *file, const struct section *section, int64_t index)

@@ -4,14 +4,14 @@
 
 #include "io/vtk.h"
 
-/* Columns written: those of the section, or 3 for a vector of a 2D mesh. */
-int64_t vtk_columns(const struct vtk_mesh *mesh, const struct section *section);
-
 /* Copy the name of a column, from attribute cols=, into text[size]; false when it has none. */
 bool vtk_column_name(const struct section *section, int64_t column, char *text, size_t size);
 
 /* Copy item `index` of a comma list into text[size]; false when there is none. */
 bool vtk_list_item(const char *list, int64_t index, char *text, size_t size);
+
+/* Whether the values are floating-point numbers. */
+bool vtk_is_floating(const struct section *section);
 
 /* Print an element of a section so that it reads back exactly. */
 void vtk_print_element(FILE *file, const struct section *section, int64_t index);

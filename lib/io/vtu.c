@@ -88,22 +88,46 @@ static void put_integer(struct writer *writer, int64_t value, size_t size)
     }
 }
 
-/* Rows of a section, padded with zero columns. */
-static void put_rows(struct writer *writer, const struct section *section, int64_t columns)
+/* What is written of a section: `count` columns, each one of its own or, -1, of zeros. */
+struct layout {
+    int64_t count;
+    bool is_tensor;
+    int64_t tensor[6]; /* columns of a symmetric tensor in VTK's order */
+};
+
+static struct layout layout_of(const struct vtk_mesh *mesh, const struct section *section)
+{
+    struct layout layout = {.count = section->cols};
+    layout.is_tensor = vtk_tensor(section, layout.tensor);
+    if (layout.is_tensor) {
+        layout.count = 6;
+    } else if (vtk_is_floating(section) && mesh->dim == 2 && section->cols == 2) {
+        layout.count = 3;
+    }
+    return layout;
+}
+
+static int64_t layout_column(const struct layout *layout, const struct section *section, int64_t column)
+{
+    return layout->is_tensor ? layout->tensor[column] : column < section->cols ? column : -1;
+}
+
+static void put_rows(struct writer *writer, const struct section *section, const struct layout *layout)
 {
     static const char zeros[8];
     size_t size = element_size(section->type);
-    begin_data(writer, section->rows * columns, size);
+    begin_data(writer, section->rows * layout->count, size);
     for (int64_t row = 0; row < section->rows; row++) {
-        for (int64_t column = 0; column < columns; column++) {
+        for (int64_t k = 0; k < layout->count; k++) {
+            int64_t column = layout_column(layout, section, k);
             int64_t index = row * section->cols + column;
-            bool padded = column >= section->cols;
             if (!writer->text) {
-                put_bytes(writer, padded ? zeros : (const char *)section->data + (size_t)index * size, size);
+                put_bytes(writer, column < 0 ? zeros : (const char *)section->data + (size_t)index * size,
+                          size);
                 continue;
             }
-            fputs(column > 0 ? " " : "", writer->file);
-            if (padded) {
+            fputs(k > 0 ? " " : "", writer->file);
+            if (column < 0) {
                 fputc('0', writer->file);
             } else {
                 vtk_print_element(writer->file, section, index);
@@ -117,41 +141,40 @@ static void put_rows(struct writer *writer, const struct section *section, int64
 static void put_field(struct writer *writer, const struct vtk_mesh *mesh, const struct vtk_field *field)
 {
     static const char *const types[] = {"Int32", "Int64", "Float32", "Float64"};
-    int64_t columns = vtk_columns(mesh, field->section);
+    static const char *const added[] = {"", "", "z", "", "yz", "xz"}; /* names of columns of zeros */
+    struct layout layout = layout_of(mesh, field->section);
     char name[64];
-    begin_array(writer, types[field->section->type], field->name, columns);
-    for (int64_t column = 0; columns > 1 && column < field->section->cols; column++) {
-        if (vtk_column_name(field->section, column, name, sizeof name)) {
-            fprintf(writer->file, " ComponentName%" PRId64 "=\"", column);
+    begin_array(writer, types[field->section->type], field->name, layout.count);
+    bool is_named = layout.count > 1 && vtk_column_name(field->section, 0, name, sizeof name);
+    for (int64_t k = 0; is_named && k < layout.count; k++) {
+        int64_t column = layout_column(&layout, field->section, k);
+        if (column < 0) {
+            fprintf(writer->file, " ComponentName%" PRId64 "=\"%s\"", k, added[k]);
+        } else if (vtk_column_name(field->section, column, name, sizeof name)) {
+            fprintf(writer->file, " ComponentName%" PRId64 "=\"", k);
             print_escaped(writer->file, name);
             fputc('"', writer->file);
         }
     }
-    put_rows(writer, field->section, columns);
+    put_rows(writer, field->section, &layout);
 }
 
-/* The names of the regions, as the strings that cells.region indexes: VTK writes them as character codes. */
+/* The regions by name, each with its index in cells.region: readers other than VTK know no arrays of strings.
+ */
 static void put_region_names(struct writer *writer, const char *names)
 {
-    char name[256];
-    int64_t count = 0;
-    while (vtk_list_item(names, count, name, sizeof name)) {
-        count++;
-    }
-    if (count == 0) {
-        return;
-    }
-    fprintf(writer->file,
-            "<FieldData>\n<Array type=\"String\" Name=\"region_names\" NumberOfTuples=\"%" PRId64
-            "\" format=\"ascii\">\n",
-            count);
+    char name[256], label[300];
     for (int64_t i = 0; vtk_list_item(names, i, name, sizeof name); i++) {
-        for (const char *c = name; *c != '\0'; c++) {
-            fprintf(writer->file, "%d ", (unsigned char)*c);
-        }
-        fputs("0\n", writer->file);
+        fputs(i == 0 ? "<FieldData>\n" : "", writer->file);
+        snprintf(label, sizeof label, "region.%s", name);
+        fputs("<DataArray type=\"Int64\" Name=\"", writer->file);
+        print_escaped(writer->file, label);
+        fputs("\" NumberOfTuples=\"1\"", writer->file);
+        begin_data(writer, 1, 8);
+        put_integer(writer, i, 8);
+        end_array(writer);
     }
-    fputs("</Array>\n</FieldData>\n", writer->file);
+    fputs(vtk_list_item(names, 0, name, sizeof name) ? "</FieldData>\n" : "", writer->file);
 }
 
 static void put_cells(struct writer *writer, const struct vtk_mesh *mesh)
@@ -212,7 +235,7 @@ enum status vtu_write(FILE *file, const struct vtk_mesh *mesh, const struct vtk_
     fprintf(file, "<Piece NumberOfPoints=\"%" PRId64 "\" NumberOfCells=\"%" PRId64 "\">\n<Points>\n",
             mesh->node_count, cell_count);
     begin_array(&writer, "Float64", "Points", 3);
-    put_rows(&writer, &points, 3);
+    put_rows(&writer, &points, &(struct layout){.count = 3});
     fputs("</Points>\n", file);
     put_cells(&writer, mesh);
     put_fields(&writer, mesh, fields, field_count, false);

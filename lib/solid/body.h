@@ -122,6 +122,10 @@ void body_stress(struct body *body, double *stress);
 /* F of each point at the last evaluation, gradient[point_count * 9], caller's order. */
 void body_gradient(struct body *body, double *gradient);
 
+/* Volume ratio of each point at the last evaluation that its volumetric law takes, ratio[point_count],
+ * caller's order: det F, or of conforming cells that of conforming.h. */
+void body_volume_ratio(struct body *body, double *ratio);
+
 /* stiffness[node_count], N/m (2D: N/m2): bounds the diagonal of the stiffness at the last evaluation's F (of
  * conforming cells about, far strained ones may exceed it), as sum_q w W''(y (x) grad phi), the second
  * derivative of the energy along the rank-one change of F that is stiffest, y = F^-T grad phi; at rest sum_q

@@ -20,7 +20,8 @@ struct progress {
 /* Called every so many steps, and at once when the run is interrupted; returns false to stop the run. */
 typedef bool progress_function(void *context, const struct progress *progress);
 
-/* Receives frame `number` (from 1), the parameters u at `time` (as in struct progress). */
+/* Receives frame `number` (from 1; 0: the state at the begin), the parameters u at `time` (as in struct
+ * progress). */
 typedef void frame_function(void *context, int64_t number, double time, const double *u);
 
 #endif

@@ -75,15 +75,56 @@ static bool tell(struct relaxation *r)
     return r->options->progress(r->options->context, &progress);
 }
 
-/* Frames that are due at step n of the ramp; the last one is not given before the end. */
-static void give_frames(struct relaxation *r, int64_t n, const double *u)
+/* Evaluate the system at u; the forces of the constraints: what balances the residual along them. */
+static enum status measure_row_forces(struct relaxation *r, const double *u, double *row_force,
+                                      struct error *error)
 {
-    const struct relaxation_options *options = r->options;
-    double each = (double)r->report->ramp_steps / (double)options->frames;
-    while (r->frames + 1 < options->frames && (double)n >= each * (double)(r->frames + 1)) {
-        options->frame(options->context, ++r->frames, (double)n / (double)r->report->ramp_steps,
-                       relaxation_parameters(r, u));
+    int dim = r->system->dim;
+    (void)system_residual(r->system, u, r->residual);
+    if (row_force == NULL || r->system->rows.count == 0) {
+        return STATUS_OK;
     }
+    for (int64_t i = 0; i < r->size; i++) {
+        r->scratch[i] = r->residual[i] / r->inertia.mass[i / dim];
+    }
+    constraint_project(&r->inertia.constraint, NULL, r->scratch);
+    memcpy(row_force, r->inertia.constraint.multiplier, (size_t)r->system->rows.count * sizeof *row_force);
+    return constraint_share_out(&r->inertia.constraint, row_force, error);
+}
+
+static bool gives_frames(const struct relaxation *r)
+{
+    return r->options->frame != NULL && r->options->frames > 0;
+}
+
+/* The load at which the next equilibrium is sought, in steps of the ramp: that of the next frame, at last the
+ * whole load. */
+static double load_to_hold(const struct relaxation *r)
+{
+    double ramp = (double)r->report->ramp_steps, frames = (double)r->options->frames;
+    return gives_frames(r) ? ramp * fmin(1.0, (double)(r->frames + 1) / frames) : ramp;
+}
+
+/* Give u, which is in equilibrium, as the next frame. False on failure. */
+static bool give_frame(struct relaxation *r, struct error *error)
+{
+    r->failure = measure_row_forces(r, r->u, r->row_force, error);
+    if (r->failure != STATUS_OK) {
+        return false;
+    }
+    r->frames++;
+    relaxation_show(r, r->frames, r->load / (double)r->report->ramp_steps);
+    return true;
+}
+
+/* After an equilibrium on the way the load goes on: what was known of the held load is no longer so. */
+static void let_go(struct relaxation *r)
+{
+    r->at_full_load = r->settled = 0;
+    r->spectrum2 = INFINITY;
+    r->spectrum_known = false;
+    r->augmentations = r->fruitless = 0;
+    r->least_penetration = INFINITY;
 }
 
 /* Set the load factors, and by how much they change. */
@@ -155,12 +196,12 @@ static enum relaxation_outcome iterate(struct relaxation *r, struct error *error
 {
     double ramp = (double)r->report->ramp_steps;
     int64_t most = r->options->most_steps > 0 ? r->options->most_steps : 1000000;
-    bool gives_frames = r->options->frame != NULL && r->options->frames > 0;
     enum relaxation_outcome outcome;
     while (r->report->steps < most) {
         bool measure = ++r->report->steps % CHECK_INTERVAL == 0;
-        r->load = fmin(ramp, r->load + r->load_rate);
-        r->at_full_load = r->load < ramp ? 0 : r->at_full_load + 1;
+        double hold = load_to_hold(r);
+        r->load = fmin(hold, r->load + r->load_rate);
+        r->at_full_load = r->load < hold ? 0 : r->at_full_load + 1;
         r->report->loading_steps += r->at_full_load == 0;
         change_load(r, r->load / ramp);
         if (!step(r, r->u, measure)) {
@@ -168,34 +209,24 @@ static enum relaxation_outcome iterate(struct relaxation *r, struct error *error
             if (!relaxation_step_back(r, r->u, error)) {
                 return RELAXATION_INVERTED;
             }
-        } else if (gives_frames && r->load < ramp) {
-            give_frames(r, (int64_t)r->load, r->u);
         }
         if (measure && !follow(r, error)) {
             return RELAXATION_STOPPED;
         }
         if (measure && ends(r, &outcome, error)) {
-            return outcome;
+            if (outcome != RELAXATION_CONVERGED || hold == ramp) {
+                return outcome;
+            }
+            if (!give_frame(r, error)) {
+                return RELAXATION_STOPPED;
+            }
+            let_go(r);
         }
         if ((measure || is_interrupted(r)) && !tell(r)) {
             return RELAXATION_STOPPED;
         }
     }
     return RELAXATION_TOO_MANY_STEPS;
-}
-
-/* Forces of the constraints: what balances the residual along them. */
-static enum status measure_row_forces(struct relaxation *r, const double *u, double *row_force,
-                                      struct error *error)
-{
-    int dim = r->system->dim;
-    (void)system_residual(r->system, u, r->residual);
-    for (int64_t i = 0; i < r->size; i++) {
-        r->scratch[i] = r->residual[i] / r->inertia.mass[i / dim];
-    }
-    constraint_project(&r->inertia.constraint, NULL, r->scratch);
-    memcpy(row_force, r->inertia.constraint.multiplier, (size_t)r->system->rows.count * sizeof *row_force);
-    return constraint_share_out(&r->inertia.constraint, row_force, error);
 }
 
 /* From u, brought onto the conditions, at rest and without load. */
@@ -206,6 +237,9 @@ static enum status begin(struct relaxation *r, struct error *error)
     size_t bytes = (size_t)r->size * sizeof *r->u;
     system_load_factors(system, 0.0);
     (void)system_residual(system, r->u, r->residual);
+    if (gives_frames(r)) {
+        relaxation_show(r, 0, 0.0);
+    }
     system_relaxation_mass(system, r->scratch);
     TRY(inertia_set_mass(&r->inertia, system, r->scratch, error));
     constraint_project(&r->inertia.constraint, system->factor, r->u);
@@ -241,6 +275,8 @@ enum status relaxation_run(struct solid_system *system, const struct relaxation_
                            .options = options,
                            .report = report,
                            .size = system->node_count * system->dim,
+                           .caller_u = u,
+                           .row_force = row_force,
                            .load_rate = 1.0,
                            .top_rate = 1.0,
                            .caution = 1.0,
@@ -262,14 +298,14 @@ enum status relaxation_run(struct solid_system *system, const struct relaxation_
         memcpy(r.u, r.older.u, (size_t)r.size * sizeof *r.u);
     }
     report->load = r.load / (double)report->ramp_steps;
-    if (row_force != NULL && system->rows.count > 0) {
-        TRY(measure_row_forces(&r, r.u, row_force, error));
+    if (report->outcome == RELAXATION_CONVERGED && gives_frames(&r)) {
+        (void)give_frame(&r, error);
+    } else {
+        r.failure = measure_row_forces(&r, r.u, row_force, error);
     }
+    TRY(r.failure);
     if (r.u != u) {
         memcpy(u, relaxation_parameters(&r, r.u), (size_t)r.size * sizeof *u);
-    }
-    if (report->outcome == RELAXATION_CONVERGED && options->frame != NULL && options->frames > 0) {
-        options->frame(options->context, options->frames, 1.0, u);
     }
 done:
     relaxation_release(&r);

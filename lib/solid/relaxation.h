@@ -20,8 +20,10 @@ struct relaxation_options {
     double time_step_margin; /* share of the critical step, e.g. .9 */
     int64_t ramp_steps;      /* steps over which the load is applied; 0: chosen by the largest displacement */
     int64_t most_steps;      /* 0: 1e6 */
-    int64_t frames;          /* states to give, evenly over the ramp; the last one is the result */
-    frame_function *frame;   /* NULL: none */
+    int64_t frames; /* states of equilibrium to give, evenly over the ramp: there the load is held until
+                       the error is below the tolerance; the last one is the result */
+    frame_function *frame; /* NULL: none. Frame 0 is u as it comes. When called, the system's last evaluation
+                              is at the frame's u, and the caller's row_force holds the forces there */
     progress_function *progress;
     void *context;                            /* of frame and progress */
     const volatile sig_atomic_t *interrupted; /* unless NULL: progress is called at the end of the step in
@@ -53,10 +55,10 @@ struct relaxation_report {
     double least_jacobian;
 };
 
-/* Relax from u (usually zeros) to equilibrium at the full load. row_force[system->rows.count],
- * unless NULL, receives the forces of the conditions at the end, N (2D: N/m). STATUS_VERDICT for constraints
- * that depend on each other (the message names the node); an outcome other than converged is no error status:
- * see the report. */
+/* Relax from u (usually zeros) to equilibrium at the full load. row_force[system->rows.count], zeros,
+ * unless NULL, receives the forces of the conditions at each frame and at the end, N (2D: N/m).
+ * STATUS_VERDICT for constraints that depend on each other (the message names the node); an outcome other
+ * than converged is no error status: see the report. */
 MUST_CHECK enum status relaxation_run(struct solid_system *system, const struct relaxation_options *options,
                                       double *u, double *row_force, struct relaxation_report *report,
                                       struct error *error);

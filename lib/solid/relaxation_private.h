@@ -21,7 +21,8 @@ struct relaxation {
     struct relaxation_report *report;
     struct inertia inertia;
     int64_t size;
-    double *u; /* the unknowns: nodal parameters where there is a basis */
+    double *caller_u, *row_force; /* the caller's; row_force may be NULL */
+    double *u;                    /* the unknowns: nodal parameters where there is a basis */
     struct nodal_basis basis;
     struct constraint_rows rows; /* on these; */
     struct constraint_rows on_u; /* the system's own meanwhile */
@@ -34,10 +35,10 @@ struct relaxation {
     double *acceleration;
     double time_step, damping, frequency; /* current; frequency: largest */
     double low2;                          /* current estimate of the lowest frequency, squared */
-    double spectrum2; /* what it may not be above: found at the full load; before, INFINITY */
+    double spectrum2; /* what it may not be above: found at the load that is held; before, INFINITY */
     double window[WINDOWS];
     int64_t checks;
-    double best_error; /* at the full load, since best_step: not yet half of it */
+    double best_error; /* at the load that is held, since best_step: not yet half of it */
     int64_t best_step;
     double spacing;                           /* mean, of the nodes, m */
     double body_size;                         /* diagonal of the nodes' box, m */
@@ -58,10 +59,11 @@ struct relaxation {
     double caution;              /* on the time step: 1 until an inversion */
     int64_t retreats;
     struct kept_state newer, older;
-    int64_t frames;       /* given so far */
-    int64_t at_full_load; /* steps since the full load was reached */
-    int64_t settled;      /* checks in a row with a small error */
-    double mass_change;   /* of the stiffness since the mass was set: 1 where it is set anew */
+    int64_t frames; /* given so far, but for the first, 0 */
+    int64_t
+        at_full_load;   /* steps since the load that is held, that of a frame or the full one, was reached */
+    int64_t settled;    /* checks in a row with a small error */
+    double mass_change; /* of the stiffness since the mass was set: 1 where it is set anew */
     int64_t last_mass_check, next_mass_check; /* checks: when that was looked at, and is again */
 };
 
@@ -141,6 +143,10 @@ MUST_CHECK enum status relaxation_allocate(struct relaxation *r, struct error *e
  * parameters u; and let it work in u again. */
 MUST_CHECK enum status relaxation_enter_basis(struct relaxation *r, double *u, struct error *error);
 void relaxation_leave_basis(struct relaxation *r);
+
+/* Put the parameters of the state into the caller's u and give it as frame `number`, the system working in
+ * these for that time. */
+void relaxation_show(struct relaxation *r, int64_t number, double time);
 
 /* The parameters of the state v. */
 const double *relaxation_parameters(struct relaxation *r, const double *v);

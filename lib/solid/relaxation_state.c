@@ -4,6 +4,7 @@
 #include "base/memory.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 enum status relaxation_enter_basis(struct relaxation *r, double *u, struct error *error)
 {
@@ -50,6 +51,22 @@ void relaxation_leave_basis(struct relaxation *r)
     free(system->basis_u);
     free(system->basis_force);
     system->basis_u = system->basis_force = r->shown = NULL;
+}
+
+void relaxation_show(struct relaxation *r, int64_t number, double time)
+{
+    struct solid_system *system = r->system;
+    const struct nodal_basis *basis = system->basis;
+    if (basis != NULL) {
+        memcpy(r->caller_u, relaxation_parameters(r, r->u), (size_t)r->size * sizeof *r->caller_u);
+        system->basis = NULL;
+        system->rows = r->on_u;
+    }
+    r->options->frame(r->options->context, number, time, r->caller_u);
+    if (basis != NULL) {
+        system->basis = basis;
+        system->rows = r->rows;
+    }
 }
 
 const double *relaxation_parameters(struct relaxation *r, const double *v)

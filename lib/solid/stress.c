@@ -138,3 +138,14 @@ void body_gradient(struct body *body, double *gradient)
 {
     body_visit(body, 0, body->block_count, put_gradient, gradient);
 }
+
+static void put_volume_ratio(const struct body *body, int64_t q, const double F[9], double J, void *ratio)
+{
+    (void)F;
+    ((double *)ratio)[body->order[q]] = J;
+}
+
+void body_volume_ratio(struct body *body, double *ratio)
+{
+    body_visit(body, 0, body->block_count, put_volume_ratio, ratio);
+}

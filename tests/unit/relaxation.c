@@ -446,19 +446,23 @@ static void column_under_gravity(void **state)
     lattice_free(&l);
 }
 
-/* Frames by number and load, and the state of the last one. */
+/* Frames by number and load: displacement of the last node, and the force that holds it. */
 struct album {
     int64_t count;
-    double time[16], last;
+    double time[16], last[16], force[16];
     const struct lattice *lattice;
+    const double *row_force;
 };
 
 static void collect(void *context, int64_t number, double time, const double *u)
 {
     struct album *album = context;
-    assert_int_equal(number, album->count + 1);
-    album->time[album->count++] = time;
-    album->last = lattice_field(album->lattice, u, album->lattice->system.node_count - 1, 1);
+    int64_t rows = album->lattice->system.rows.count;
+    assert_int_equal(number, album->count);
+    album->time[number] = time;
+    album->last[number] = lattice_field(album->lattice, u, album->lattice->system.node_count - 1, 1);
+    album->force[number] = album->row_force[rows - 1];
+    album->count++;
 }
 
 static bool stop_at_once(void *context, const struct progress *progress)
@@ -473,20 +477,38 @@ static void frames_and_outcomes(void **state)
     (void)state;
     struct lattice l;
     clamp(&l, 5, -0.01, 0, true);
-    struct album album = {.lattice = &l};
-    double *u = lattice_vector(&l);
+    double *u = lattice_vector(&l), *row_force = lattice_vector(&l);
+    assert_true(l.system.rows.count <= 2 * l.system.node_count);
+    struct album album = {.lattice = &l, .row_force = row_force};
     struct relaxation_options options = to(1e-5);
     options.frames = 7;
     options.frame = collect;
     options.context = &album;
-    struct relaxation_report report = relax(&l, &options, u, NULL);
+    struct relaxation_report report = relax(&l, &options, u, row_force);
     assert_int_equal(report.outcome, RELAXATION_CONVERGED);
-    assert_int_equal(album.count, 7);
-    for (int k = 0; k < 7; k++) {
-        NEAR_TO(album.time[k], (k + 1) / 7.0, 1.0 / (double)report.ramp_steps);
+    assert_int_equal(album.count, 8);
+    for (int k = 0; k <= 7; k++) {
+        NEAR_TO(album.time[k], k / 7.0, 1e-15);
     }
-    NEAR_TO(album.time[6], 1, 0);
-    NEAR_TO(album.last, lattice_field(&l, u, l.system.node_count - 1, 1), 0);
+    NEAR_TO(album.last[0], 0, 0);
+    NEAR_TO(album.force[0], 0, 0);
+    NEAR_TO(album.last[7], lattice_field(&l, u, l.system.node_count - 1, 1), 0);
+    /* Each is what a run to that load alone comes to. */
+    for (int k = 1; k <= 7; k++) {
+        struct lattice alone;
+        double s = k / 7.0, factor = s * s * s * (10 - 15 * s + 6 * s * s);
+        clamp(&alone, 5, -0.01 * factor, 0, true);
+        memset(u, 0, (size_t)l.system.node_count * 2 * sizeof *u);
+        options = to(1e-5);
+        report = relax(&alone, &options, u, row_force);
+        assert_int_equal(report.outcome, RELAXATION_CONVERGED);
+        NEAR_TO(album.last[k], lattice_field(&alone, u, alone.system.node_count - 1, 1),
+                1e-5 * 0.01 * factor);
+        NEAR_TO(album.force[k], row_force[alone.system.rows.count - 1], 1e-4 * fabs(album.force[k]));
+        assert_true(fabs(album.force[k]) > fabs(album.force[k - 1]));
+        lattice_free(&alone);
+    }
+    free(row_force);
     memset(u, 0, (size_t)l.system.node_count * 2 * sizeof *u);
     options = to(1e-12);
     options.most_steps = 230;

@@ -54,6 +54,16 @@ void run_dynamic(struct run *run);
 /* A frame_function; the context is the struct run: adds the section u.frame.NUMBER. */
 void run_put_frame(void *context, int64_t number, double time, const double *u);
 
+/* The same of a state of equilibrium, run->u, at which the system was evaluated last, with all that the scene
+ * asks for: sections X.frame.NUMBER, and a row more in reactions.frames and energy.frames. */
+void run_put_equilibrium(void *context, int64_t number, double time, const double *u);
+
+/* Does a section of this name belong to the frames? */
+bool run_is_of_frames(const char *name);
+
+/* Remove all sections of frames. */
+void run_drop_frames(struct stream *stream);
+
 /* Zeros; exits when there is no memory. */
 double *run_new_values(const struct run *run, int64_t count);
 
@@ -64,8 +74,19 @@ void run_report_cost(const struct run *run);
 void run_put(const struct run *run, const char *name, int64_t rows, int64_t cols, const char *attributes,
              double *values);
 
-/* Add the sections reactions and moments, if asked for, of the system's last evaluation, at u. */
-void run_put_forces(struct run *run);
+/* The state that sections are of: the final one (FRAME_NONE), or a frame. */
+struct moment {
+    int64_t frame;
+    double time;
+};
+
+/* Add a row, the time and values[count], to section `name`, a table over the frames. */
+void run_append_row(const struct run *run, const char *name, double time, const double *values, int64_t count,
+                    const char *attributes);
+
+/* Add the sections reactions and moments, if asked for, of the system's last evaluation, at u: a row for each
+ * condition; of a frame, a row of reactions.frames and moments.frames. */
+void run_put_forces(struct run *run, const struct moment *moment);
 
 /* Add u at the nodes and the optional outputs of the final state: stress, strain, reactions, gaps, and
  * in a quasi-static run its energy. */

@@ -5,13 +5,6 @@
 #include <string.h>
 #include <unistd.h>
 
-static const char frame_prefix[] = "u.frame.";
-
-static bool is_frame(const struct section *section)
-{
-    return strncmp(section->name, frame_prefix, sizeof frame_prefix - 1) == 0;
-}
-
 /* Put a section of another stream, which outlives this one. */
 static void share(const struct run *run, struct stream *stream, const struct section *section)
 {
@@ -28,8 +21,7 @@ static void take_frames(struct run *run)
     const struct stream *restored = &run->checkpoint.restored;
     for (int64_t i = 0; i < restored->section_count; i++) {
         const struct section *section = &restored->sections[i];
-        if (is_frame(section) && section->type == TYPE_F8 && section->rows == run->model->system.node_count &&
-            section->cols == run->scene->dim) {
+        if (run_is_of_frames(section->name) && section->type == TYPE_F8) {
             share(run, run->stream, section);
         }
     }
@@ -87,7 +79,7 @@ static void put_view(struct run *run, const struct progress *progress, struct st
         }
     }
     for (int64_t i = 0; i < run->stream->section_count; i++) {
-        if (is_frame(&run->stream->sections[i])) {
+        if (run_is_of_frames(run->stream->sections[i].name)) {
             share(run, stream, &run->stream->sections[i]);
         }
     }

@@ -101,6 +101,9 @@ void run_dynamic(struct run *run)
         velocity = run_new_values(run, run->model->system.node_count * run->scene->dim);
         tool_check(run->tool, model_initial(&run->model->input, run->u, velocity, &error), &error);
     }
+    if (options.frame_interval > 0.0 && options.restored == NULL) {
+        run_put_frame(run, 0, 0.0, run->u);
+    }
     double started = clock_seconds();
     enum status status = dynamics_run(&run->model->system, &options, run->u, velocity, run->model->row_force,
                                       output->energy ? &log : NULL, &report, &error);

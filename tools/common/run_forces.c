@@ -1,6 +1,8 @@
 /* Forces and moments of the conditions and contacts of a scene. */
+#include "frames.h"
 #include "run.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -90,33 +92,63 @@ static const char *name_of_row(const struct scene *scene, int64_t r)
                                          : scene->contacts[r - scene->displacement_count].label.name;
 }
 
-/* HEAD and " rows=bottom,top", allocated. */
-static char *attributes_of_rows(const struct run *run, const char *head, int64_t rows)
+/* Attributes of a table of vectors, allocated. "unit=N ... rows=bottom,top", a row for each condition; or in
+ * one row, behind the time: "unit=1,N,N,N,N ... cols=time,bottom.x,bottom.y,top.x,top.y". `more` is put in
+ * between, `components` are their letters. */
+static char *attributes_of_rows(const struct run *run, const char *unit, const char *more,
+                                const char *components, int64_t rows, bool in_one_row)
 {
-    struct error error;
     const struct scene *scene = run->scene;
-    size_t at = strlen(head), size = at + 32;
-    char *attributes;
-    for (int64_t r = 0; r < rows; r++) {
-        size += strlen(name_of_row(scene, r)) + 1;
+    int64_t each = (int64_t)strlen(components);
+    char *attributes = NULL;
+    size_t size;
+    FILE *text = open_memstream(&attributes, &size);
+    if (text != NULL) {
+        fprintf(text, "unit=%s", in_one_row ? "1" : unit);
+        for (int64_t i = 0; in_one_row && i < rows * each; i++) {
+            fprintf(text, ",%s", unit);
+        }
+        fprintf(text, "%s%s", more, in_one_row ? " cols=time" : " rows=");
+        for (int64_t r = 0; r < rows; r++) {
+            for (int64_t a = 0; in_one_row && a < each; a++) {
+                fprintf(text, ",%s.%c", name_of_row(scene, r), components[a]);
+            }
+            if (!in_one_row) {
+                fprintf(text, "%s%s", r > 0 ? "," : "", name_of_row(scene, r));
+            }
+        }
     }
-    tool_check(run->tool, NEW_ARRAY(&attributes, (int64_t)size, &error), &error);
-    memcpy(attributes, head, at + 1);
-    at += (size_t)snprintf(attributes + at, size - at, " rows=");
-    for (int64_t r = 0; r < rows; r++) {
-        at += (size_t)snprintf(attributes + at, size - at, "%s%s", r > 0 ? "," : "", name_of_row(scene, r));
+    if (text == NULL || fclose(text) != 0) {
+        tool_fail(run->tool, STATUS_SYSTEM, "out of memory");
     }
     return attributes;
 }
 
-void run_put_forces(struct run *run)
+/* Section `name`, or a row of `name_of_frames`; takes values[rows * components]. */
+static void put_vectors(const struct run *run, const struct moment *moment, const char *name,
+                        const char *name_of_frames, const char *unit, const char *more,
+                        const char *components, int64_t rows, double *values)
+{
+    bool in_one_row = moment->frame != FRAME_NONE;
+    int64_t each = (int64_t)strlen(components);
+    char *attributes = attributes_of_rows(run, unit, more, components, rows, in_one_row);
+    if (in_one_row) {
+        run_append_row(run, name_of_frames, moment->time, values, rows * each, attributes);
+        free(values);
+    } else {
+        run_put(run, name, rows, each, attributes, values);
+    }
+    free(attributes);
+}
+
+void run_put_forces(struct run *run, const struct moment *moment)
 {
     const struct scene *scene = run->scene;
     const struct scene_output *output = &scene->output;
+    bool is_plane = scene->dim == 2;
     int64_t rows = scene->displacement_count + scene->contact_count;
-    struct totals totals = {
-        .dim = scene->dim, .moment_count = scene->dim == 3 ? 3 : 1, .about = output->about};
-    char head[128];
+    struct totals totals = {.dim = scene->dim, .moment_count = is_plane ? 1 : 3, .about = output->about};
+    char more[128];
     if (!output->reactions && !output->moments) {
         return;
     }
@@ -125,23 +157,21 @@ void run_put_forces(struct run *run)
     add_conditions(run, &totals);
     add_contacts(run, &totals);
     if (output->reactions) {
-        char *attributes = attributes_of_rows(run, scene->dim == 2 ? "unit=N/m" : "unit=N", rows);
-        run_put(run, "reactions", rows, totals.dim, attributes, totals.force);
-        free(attributes);
+        put_vectors(run, moment, "reactions", "reactions.frames", is_plane ? "N/m" : "N", "",
+                    is_plane ? "xy" : "xyz", rows, totals.force);
     } else {
         free(totals.force);
     }
     if (output->moments) {
-        if (scene->dim == 2) {
-            snprintf(head, sizeof head, "unit=N about=%.12g,%.12g cols=z", output->about[0],
-                     output->about[1]);
+        int at = snprintf(more, sizeof more, " about=%.12g,%.12g", output->about[0], output->about[1]);
+        if (is_plane) {
+            snprintf(more + at, sizeof more - (size_t)at, "%s", moment->frame == FRAME_NONE ? " cols=z" : "");
         } else {
-            snprintf(head, sizeof head, "unit=N*m about=%.12g,%.12g,%.12g cols=x,y,z", output->about[0],
-                     output->about[1], output->about[2]);
+            snprintf(more + at, sizeof more - (size_t)at, ",%.12g%s", output->about[2],
+                     moment->frame == FRAME_NONE ? " cols=x,y,z" : "");
         }
-        char *attributes = attributes_of_rows(run, head, rows);
-        run_put(run, "moments", rows, totals.moment_count, attributes, totals.moment);
-        free(attributes);
+        put_vectors(run, moment, "moments", "moments.frames", is_plane ? "N" : "N*m", more,
+                    is_plane ? "z" : "xyz", rows, totals.moment);
     } else {
         free(totals.moment);
     }

@@ -6,7 +6,10 @@
 static void judge(struct run *run, const struct relaxation_report *report)
 {
     const struct scene *scene = run->scene;
-    char place[96] = "";
+    char place[96] = "", load[48] = "";
+    if (report->load < 1.0) {
+        snprintf(load, sizeof load, " (at %.3g of the load)", report->load);
+    }
     if (report->outcome == RELAXATION_CONVERGED) {
         if (report->error > scene->solver.tolerance) {
             tool_note(run->tool, "%s: estimated error %.2g, not %.2g: round-off admits no less", scene->path,
@@ -18,9 +21,9 @@ static void judge(struct run *run, const struct relaxation_report *report)
     if (report->outcome == RELAXATION_STALLED) {
         run_fail(
             run, STATUS_VERDICT,
-            "%s: step %lld: the estimated error stays at %.2g of the displacement: a larger tolerance, a "
+            "%s: step %lld%s: the estimated error stays at %.2g of the displacement: a larger tolerance, a "
             "finer cloud at the contacts, or supports against rigid motion may help",
-            scene->path, (long long)report->steps, report->error);
+            scene->path, (long long)report->steps, load, report->error);
     }
     if (report->outcome == RELAXATION_STOPPED) {
         run_checkpoint_stop(run, report->steps);
@@ -35,11 +38,11 @@ static void judge(struct run *run, const struct relaxation_report *report)
                  scene->path, (long long)report->steps, (long long)report->inverted_point, place,
                  report->least_jacobian, (long long)report->ramp_steps);
     }
-    run_fail(
-        run, STATUS_VERDICT,
-        "%s: not converged after %lld steps: estimated remaining error %.2g of the displacement: allow more "
-        "(max_steps), or hold the body against rigid motion",
-        scene->path, (long long)report->steps, report->error);
+    run_fail(run, STATUS_VERDICT,
+             "%s: not converged after %lld steps%s: estimated remaining error %.2g of the displacement: "
+             "allow more "
+             "(max_steps), or hold the body against rigid motion",
+             scene->path, (long long)report->steps, load, report->error);
 }
 
 void run_quasi_static(struct run *run)
@@ -51,7 +54,7 @@ void run_quasi_static(struct run *run)
                                          .ramp_steps = solver->ramp_steps,
                                          .most_steps = solver->max_steps,
                                          .frames = run->scene->output.frames,
-                                         .frame = run_put_frame,
+                                         .frame = run_put_equilibrium,
                                          .progress = run_tell,
                                          .context = run,
                                          .interrupted = run->checkpoint.interrupted,

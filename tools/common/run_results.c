@@ -1,74 +1,150 @@
 /* The sections that a run adds to its stream. */
+#include "frames.h"
 #include "run.h"
 
 #include "solid/energy.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+
+/* Add section `name` of a state. */
+static void put(const struct run *run, const struct moment *moment, const char *name, int64_t rows,
+                int64_t cols, const char *attributes, double *values)
+{
+    char full[64], timed[192];
+    if (moment->frame == FRAME_NONE) {
+        run_put(run, name, rows, cols, attributes, values);
+        return;
+    }
+    snprintf(full, sizeof full, "%s.frame.%lld", name, (long long)moment->frame);
+    snprintf(timed, sizeof timed, "%s time=%.12g", attributes, moment->time);
+    run_put(run, full, rows, cols, timed, values);
+}
 
 void run_put_frame(void *context, int64_t number, double time, const double *u)
 {
     struct run *run = context;
     int dim = run->scene->dim;
-    int64_t nodes = run->model->system.node_count;
-    char name[40], vector[64], attributes[128];
-    double *field = run_new_values(run, nodes * dim);
+    char vector[64];
+    double *field = run_new_values(run, run->model->system.node_count * dim);
     model_nodal_field(&run->model->input, u, field);
-    snprintf(name, sizeof name, "u.frame.%lld", (long long)number);
-    snprintf(attributes, sizeof attributes, "%s time=%.12g", vector_attributes(dim, "m", vector), time);
-    run_put(run, name, nodes, dim, attributes, field);
+    put(run, &(struct moment){number, time}, "u", run->model->system.node_count, dim,
+        vector_attributes(dim, "m", vector), field);
     run_folds_look(run, u, time, true);
 }
 
-/* Components of a symmetric tensor in output order. */
-static const int tensor_2d[4] = {0, 4, 8, 1}, tensor_3d[6] = {0, 4, 8, 1, 2, 5};
-
-/* Cauchy stress P F^T / J, or Green-Lagrange strain, per integration point, with the points' places. */
-static void put_tensors(struct run *run)
+bool run_is_of_frames(const char *name)
 {
-    struct body *body = &run->model->system.body;
-    const struct scene *scene = run->scene;
-    int count = scene->dim == 2 ? 4 : 6;
-    const int *order = scene->dim == 2 ? tensor_2d : tensor_3d;
-    const char *names = scene->dim == 2 ? "cols=xx,yy,zz,xy" : "cols=xx,yy,zz,xy,xz,yz";
-    char attributes[64];
-    int64_t points = body->point_count;
-    double *F = run_new_values(run, points * 9), *P = run_new_values(run, points * 9);
-    double *stress = run_new_values(run, points * count), *strain = run_new_values(run, points * count);
-    body_gradient(body, F);
-    body_stress(body, P);
-    for (int64_t q = 0; q < points; q++) {
-        const double *f = F + 9 * q, *p = P + 9 * q;
-        double J = determinant(f);
-        for (int k = 0; k < count; k++) {
-            int i = order[k] / 3, j = order[k] % 3;
-            double s = 0.0, e = i == j ? -1.0 : 0.0;
-            for (int a = 0; a < 3; a++) {
-                s += p[3 * i + a] * f[3 * j + a] / J;
-                e += f[3 * a + i] * f[3 * a + j];
-            }
-            stress[q * count + k] = s;
-            strain[q * count + k] = 0.5 * e;
+    size_t length;
+    return frame_of(name, &length) != FRAME_NONE || strcmp(name, "reactions.frames") == 0 ||
+           strcmp(name, "moments.frames") == 0 || strcmp(name, "energy.frames") == 0;
+}
+
+void run_drop_frames(struct stream *stream)
+{
+    for (int64_t i = stream->section_count - 1; i >= 0; i--) {
+        if (run_is_of_frames(stream->sections[i].name)) {
+            stream_remove(stream, stream->sections[i].name);
         }
-    }
-    free(F);
-    free(P);
-    if (scene->output.stress) {
-        snprintf(attributes, sizeof attributes, "unit=Pa measure=cauchy %s", names);
-        run_put(run, "stress", points, count, attributes, stress);
-    } else {
-        free(stress);
-    }
-    if (scene->output.strain) {
-        snprintf(attributes, sizeof attributes, "unit=1 measure=green-lagrange %s", names);
-        run_put(run, "strain", points, count, attributes, strain);
-    } else {
-        free(strain);
     }
 }
 
+/* P F^T / J */
+static void cauchy_stress(const double F[9], const double P[9], double stress[9])
+{
+    double J = determinant(F);
+    for (int k = 0; k < 9; k++) {
+        const double *p = P + k / 3 * 3, *f = F + k % 3 * 3;
+        stress[k] = (p[0] * f[0] + p[1] * f[1] + p[2] * f[2]) / J;
+    }
+}
+
+/* (F^T F - 1) / 2 */
+static void green_lagrange_strain(const double F[9], double strain[9])
+{
+    for (int k = 0; k < 9; k++) {
+        int i = k / 3, j = k % 3;
+        strain[k] = 0.5 * (F[i] * F[j] + F[3 + i] * F[3 + j] + F[6 + i] * F[6 + j] - (i == j));
+    }
+}
+
+/* tensors[points * 9]: their symmetric components, as section `name`. */
+static void put_tensors(const struct run *run, const struct moment *moment, const char *name,
+                        const char *kind, const double *tensors)
+{
+    static const int order[2][6] = {{0, 4, 8, 1}, {0, 4, 8, 1, 2, 5}};
+    static const char *const cols[2] = {"xx,yy,zz,xy", "xx,yy,zz,xy,xz,yz"};
+    int dim = run->scene->dim, count = dim == 2 ? 4 : 6;
+    int64_t points = run->model->system.body.point_count;
+    char attributes[96];
+    double *values = run_new_values(run, points * count);
+    for (int64_t i = 0; i < points * count; i++) {
+        values[i] = tensors[9 * (i / count) + order[dim - 2][i % count]];
+    }
+    snprintf(attributes, sizeof attributes, "%s cols=%s", kind, cols[dim - 2]);
+    put(run, moment, name, points, count, attributes, values);
+}
+
+/* What the scene asks for at the integration points: Cauchy stress, Green-Lagrange strain, pressure, volume
+ * ratio. */
+static void put_point_fields(struct run *run, const struct moment *moment)
+{
+    struct body *body = &run->model->system.body;
+    const struct scene_output *output = &run->scene->output;
+    int64_t points = body->point_count;
+    if (output->volume_ratio) {
+        double *ratio = run_new_values(run, points);
+        body_volume_ratio(body, ratio);
+        put(run, moment, "volume_ratio", points, 1, "unit=1", ratio);
+    }
+    if (!output->stress && !output->strain && !output->pressure) {
+        return;
+    }
+    double *F = run_new_values(run, points * 9), *P = run_new_values(run, points * 9);
+    double *pressure = run_new_values(run, points);
+    body_gradient(body, F);
+    body_stress(body, P);
+    for (int64_t q = 0; q < points; q++) {
+        double *f = F + 9 * q, *p = P + 9 * q, stress[9], strain[9];
+        cauchy_stress(f, p, stress);
+        green_lagrange_strain(f, strain);
+        memcpy(f, strain, sizeof strain);
+        memcpy(p, stress, sizeof stress);
+        pressure[q] = (0.0 - stress[0] - stress[4] - stress[8]) / 3.0;
+    }
+    if (output->stress) {
+        put_tensors(run, moment, "stress", "unit=Pa measure=cauchy", P);
+    }
+    if (output->strain) {
+        put_tensors(run, moment, "strain", "unit=1 measure=green-lagrange", F);
+    }
+    free(F);
+    free(P);
+    if (output->pressure) {
+        put(run, moment, "pressure", points, 1, "unit=Pa", pressure);
+    } else {
+        free(pressure);
+    }
+}
+
+void run_append_row(const struct run *run, const char *name, double time, const double *values, int64_t count,
+                    const char *attributes)
+{
+    const struct section *before = stream_find(run->stream, name);
+    bool fits = before != NULL && before->type == TYPE_F8 && before->cols == count + 1;
+    int64_t rows = fits ? before->rows : 0;
+    double *table = run_new_values(run, (rows + 1) * (count + 1)), *row = table + rows * (count + 1);
+    if (fits) {
+        memcpy(table, before->data, (size_t)(rows * (count + 1)) * sizeof *table);
+    }
+    row[0] = time;
+    memcpy(row + 1, values, (size_t)count * sizeof *row);
+    run_put(run, name, rows + 1, count + 1, attributes, table);
+}
+
 /* Gap, pressure and place of every hat of every contact. */
-static void put_gaps(struct run *run)
+static void put_gaps(const struct run *run, const struct moment *moment)
 {
     const struct solid_system *system = &run->model->system;
     int dim = run->scene->dim, cols = dim + 2;
@@ -85,26 +161,51 @@ static void put_gaps(struct run *run)
             values[at * cols + dim + 1] = contact->pressure[a];
         }
     }
-    run_put(run, "gaps", rows, cols,
-            dim == 2 ? "unit=m,m,m,Pa cols=x,y,gap,pressure" : "unit=m,m,m,m,Pa cols=x,y,z,gap,pressure",
-            values);
+    put(run, moment, "gaps", rows, cols,
+        dim == 2 ? "unit=m,m,m,Pa cols=x,y,gap,pressure" : "unit=m,m,m,m,Pa cols=x,y,z,gap,pressure", values);
 }
 
 /* Of the state of rest. What the loads did on the way there means nothing: relaxation is no motion. */
-static void put_energy(struct run *run)
+static void put_energy(struct run *run, const struct moment *moment)
 {
     struct solid_system *system = &run->model->system;
-    double *values = run_new_values(run, 2);
-    values[0] = energy_internal(system, run->u);
-    values[1] = energy_contact(system);
+    bool is_plane = run->scene->dim == 2;
+    double values[2] = {energy_internal(system, run->u), energy_contact(system)};
+    if (moment->frame != FRAME_NONE) {
+        run_append_row(run, "energy.frames", moment->time, values, 2,
+                       is_plane ? "unit=1,J/m,J/m cols=time,internal,contact"
+                                : "unit=1,J,J cols=time,internal,contact");
+        return;
+    }
+    double *row = run_new_values(run, 2);
+    memcpy(row, values, sizeof values);
     run_put(run, "energy", 1, 2,
-            run->scene->dim == 2 ? "unit=J/m,J/m cols=internal,contact" : "unit=J,J cols=internal,contact",
-            values);
+            is_plane ? "unit=J/m,J/m cols=internal,contact" : "unit=J,J cols=internal,contact", row);
+}
+
+/* What the scene asks for besides u, of the state run->u at which the system was evaluated last. */
+static void put_state(struct run *run, const struct moment *moment)
+{
+    const struct scene_output *output = &run->scene->output;
+    put_point_fields(run, moment);
+    run_put_forces(run, moment);
+    if (output->energy && run->scene->analysis == SCENE_QUASI_STATIC) {
+        put_energy(run, moment);
+    }
+    if (output->gaps && run->model->system.contact_count > 0) {
+        put_gaps(run, moment);
+    }
+}
+
+void run_put_equilibrium(void *context, int64_t number, double time, const double *u)
+{
+    struct run *run = context;
+    run_put_frame(run, number, time, u);
+    put_state(run, &(struct moment){number, time});
 }
 
 void run_put_results(struct run *run)
 {
-    const struct scene_output *output = &run->scene->output;
     struct model *model = run->model;
     char attributes[64];
     int dim = run->scene->dim;
@@ -114,16 +215,7 @@ void run_put_results(struct run *run)
     (void)system_residual(&model->system, run->u, scratch);
     system_measure_contacts(&model->system, run->u, true);
     free(scratch);
-    if (output->stress || output->strain) {
-        put_tensors(run);
-    }
-    run_put_forces(run);
-    if (output->energy && run->scene->analysis == SCENE_QUASI_STATIC) {
-        put_energy(run);
-    }
-    if (output->gaps && model->system.contact_count > 0) {
-        put_gaps(run);
-    }
+    put_state(run, &(struct moment){.frame = FRAME_NONE});
     model_nodal_field(&model->input, run->u, field);
     run_put(run, "u", nodes, dim, vector_attributes(dim, "m", attributes), field);
 }

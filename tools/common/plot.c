@@ -1,0 +1,218 @@
+#include "plot.h"
+
+#include "base/memory.h"
+#include "base/options.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+struct plot_label {
+    char text[128];
+};
+
+static bool begins_with(const char *text, const char *prefix)
+{
+    return strncmp(text, prefix, strlen(prefix)) == 0;
+}
+
+static bool ends_with(const char *text, const char *suffix)
+{
+    size_t length = strlen(text);
+    size_t tail = strlen(suffix);
+    return length >= tail && strcmp(text + length - tail, suffix) == 0;
+}
+
+/* Does a section of this name (X of X.frame.K) describe the reference state, the same in all frames? */
+static bool is_static(const char *name)
+{
+    return begins_with(name, "cells.") || begins_with(name, "nodes.") || begins_with(name, "support.") ||
+           begins_with(name, "facets.") || begins_with(name, "set.") || strcmp(name, "points.weight") == 0;
+}
+
+/* Is X, the part of a name in front of its first dot, one of these? NULL ends them. */
+static bool is_one_of(const char *name, const char *const *list)
+{
+    size_t length = strcspn(name, ".");
+    for (; *list != NULL; list++) {
+        if (length == strlen(*list) && strncmp(name, *list, length) == 0) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/* Lists, geometry and what belongs to neither nodes nor cells, whatever its number of rows. */
+static bool is_structure(const char *name)
+{
+    static const char *const exact[] = {"nodes.x", "cells", "points.x", "points.cell"};
+    static const char *const first[] = {"facets",    "faces",  "facepoints", "sets",
+                                        "reactions", "energy", "gaps",       NULL};
+    for (size_t i = 0; i < sizeof exact / sizeof exact[0]; i++) {
+        if (strcmp(name, exact[i]) == 0) {
+            return true;
+        }
+    }
+    return is_one_of(name, first) || ends_with(name, ".ptr") || ends_with(name, ".idx");
+}
+
+/* Does a section of this name have a row for each integration point or cell? */
+static bool is_of_points(const char *name)
+{
+    static const char *const first[] = {"cells",    "points",       "stress", "strain",
+                                        "pressure", "volume_ratio", "J",      NULL};
+    return is_one_of(name, first);
+}
+
+/* Is the section a field on nodes or cells? */
+static bool is_field(const struct vtk_mesh *mesh, const struct section *section, bool *of_cells)
+{
+    bool fits_cells = mesh->node != NULL && section->rows == mesh->cell_count;
+    bool fits_nodes = section->rows == mesh->node_count;
+    *of_cells = fits_cells && (is_of_points(section->name) || !fits_nodes);
+    return (fits_cells || fits_nodes) && section->cols > 0;
+}
+
+static void choose_field(struct plot *plot, const struct section *section, int64_t frame)
+{
+    struct vtk_field field = {.section = section};
+    size_t length;
+    int64_t of = frame_of(section->name, &length);
+    bool is_wanted = of == frame || (of == FRAME_NONE && is_static(section->name));
+    if (is_wanted && is_field(&plot->mesh, section, &field.of_cells)) {
+        field.is_static = of == FRAME_NONE && is_static(section->name);
+        field.name = section->name;
+        if (of != FRAME_NONE) {
+            struct plot_label *label = &plot->labels[plot->field_count];
+            snprintf(label->text, sizeof label->text, "%.*s", (int)length, section->name);
+            field.name = label->text;
+        }
+        plot->fields[plot->field_count++] = field;
+    }
+}
+
+void plot_choose_fields(struct plot *plot, int64_t frame)
+{
+    plot->field_count = 0;
+    for (int64_t s = 0; s < plot->stream.section_count; s++) {
+        if (!is_structure(plot->stream.sections[s].name)) {
+            choose_field(plot, &plot->stream.sections[s], frame);
+        }
+    }
+    for (int64_t d = 0; d < plot->derived.count; d++) {
+        choose_field(plot, &plot->derived.items[d], frame);
+    }
+}
+
+static int compare_frames(const void *a, const void *b)
+{
+    int64_t left = *(const int64_t *)a;
+    int64_t right = *(const int64_t *)b;
+    return (left > right) - (left < right);
+}
+
+static enum status find_frames(struct plot *plot, struct error *error)
+{
+    enum status status = STATUS_OK;
+    int64_t count = 0;
+    TRY(NEW_ARRAY(&plot->frames, plot->stream.section_count, error));
+    for (int64_t s = 0; s < plot->stream.section_count; s++) {
+        size_t length;
+        int64_t frame = frame_of(plot->stream.sections[s].name, &length);
+        if (frame != FRAME_NONE) {
+            plot->frames[count++] = frame;
+        }
+    }
+    qsort(plot->frames, (size_t)count, sizeof *plot->frames, compare_frames);
+    for (int64_t i = 0; i < count; i++) {
+        if (i == 0 || plot->frames[i] != plot->frames[i - 1]) {
+            plot->frames[plot->frame_count++] = plot->frames[i];
+        }
+    }
+done:
+    return status;
+}
+
+enum status plot_time(const struct plot *plot, int64_t frame, double *time, struct error *error)
+{
+    *time = frame == FRAME_NONE ? 0.0 : (double)frame;
+    for (int64_t s = 0; s < plot->stream.section_count; s++) {
+        const struct section *section = &plot->stream.sections[s];
+        size_t length;
+        char text[64];
+        if (frame != FRAME_NONE && frame_of(section->name, &length) == frame &&
+            section_attribute(section, "time", text, sizeof text)) {
+            return parse_double(text, section->name, -1e300, 1e300, time, error);
+        }
+    }
+    return STATUS_OK;
+}
+
+static enum status find_mesh(struct plot *plot, struct error *error)
+{
+    const struct section *region = stream_find(&plot->stream, "cells.region");
+    struct cells cells;
+    enum status status = STATUS_OK;
+    struct vtk_mesh *mesh = &plot->mesh;
+    TRY(stream_nodes(&plot->stream, &mesh->dim, &mesh->node_count, &mesh->x, error));
+    TRY(stream_cells(&plot->stream, false, &cells, error));
+    mesh->cell_count = cells.count;
+    mesh->node = cells.count > 0 ? cells.node : NULL;
+    mesh->region_names = plot->names;
+    if (mesh->node != NULL && region != NULL) {
+        TRY(stream_need(&plot->stream, "cells.region", TYPE_I4, 1, "nodes", &region, error));
+        if (region->rows != cells.count) {
+            TRY(fail(error, STATUS_INPUT, "cells.region: has %lld rows, cells %lld", (long long)region->rows,
+                     (long long)cells.count));
+        }
+        mesh->region = region->data;
+        section_attribute(region, "names", plot->names, sizeof plot->names);
+    }
+done:
+    return status;
+}
+
+/* Fields: those of the stream, what follows from them and, where wanted, the groups. */
+static enum status find_fields(struct plot *plot, bool with_groups, struct error *error)
+{
+    enum status status;
+    int64_t most;
+    TRY(derived_add_invariants(&plot->stream, &plot->derived, error));
+    if (with_groups) {
+        TRY(derived_add_groups(&plot->stream, plot->mesh.dim, plot->mesh.node_count, &plot->derived, error));
+    }
+    most = plot->stream.section_count + plot->derived.count;
+    TRY(NEW_ARRAY(&plot->fields, most, error));
+    TRY(NEW_ARRAY(&plot->labels, most, error));
+done:
+    return status;
+}
+
+int64_t plot_frame(const struct plot *plot, int64_t i)
+{
+    return plot->frame_count > 0 ? plot->frames[i] : FRAME_NONE;
+}
+
+int64_t plot_state_count(const struct plot *plot)
+{
+    return plot->frame_count > 0 ? plot->frame_count : 1;
+}
+
+enum status plot_find(struct plot *plot, bool with_groups, struct error *error)
+{
+    enum status status;
+    TRY(find_mesh(plot, error));
+    TRY(find_frames(plot, error));
+    TRY(find_fields(plot, with_groups, error));
+done:
+    return status;
+}
+
+void plot_free(struct plot *plot)
+{
+    stream_free(&plot->stream);
+    derived_free(&plot->derived);
+    free(plot->fields);
+    free(plot->labels);
+    free(plot->frames);
+}

@@ -1,0 +1,42 @@
+/* What tovtk writes of a stream: a mesh, fields and frames. */
+#ifndef TOOLS_PLOT_H
+#define TOOLS_PLOT_H
+
+#include "derived.h"
+#include "frames.h"
+#include "io/vtk.h"
+
+struct plot_label;
+
+struct plot {
+    struct stream stream;
+    struct derived derived; /* fields that follow from the stream's */
+    struct vtk_mesh mesh;
+    struct vtk_field *fields;  /* of the frame chosen last; room for every section */
+    struct plot_label *labels; /* the names of those of frames */
+    int64_t field_count;
+    int64_t *frames; /* the numbers of the frames, ascending */
+    int64_t frame_count;
+    char names[1 << 16]; /* of the regions */
+};
+
+/* Find mesh, fields and frames of plot->stream, the rest of *plot being zero; fields of the groups only if
+ * wanted. plot_free also on failure. */
+MUST_CHECK enum status plot_find(struct plot *plot, bool with_groups, struct error *error);
+
+/* Release all of it, the stream too. */
+void plot_free(struct plot *plot);
+
+/* States to write: the frames, or the final state when there are none. */
+int64_t plot_state_count(const struct plot *plot);
+
+/* Number i of the frames; FRAME_NONE, the final state, when there are none. */
+int64_t plot_frame(const struct plot *plot, int64_t i);
+
+/* Choose the fields of a frame, or of the final state for FRAME_NONE. */
+void plot_choose_fields(struct plot *plot, int64_t frame);
+
+/* Attribute time= of the first section of the frame that has one, else its number; 0 for the final state. */
+MUST_CHECK enum status plot_time(const struct plot *plot, int64_t frame, double *time, struct error *error);
+
+#endif
