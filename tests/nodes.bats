@@ -423,12 +423,14 @@ END
     nodes -u m -t body.msh 2> /dev/null | rows cells | wc -l | cmp - cells
     sed '/Physical/d' cube.geo > bare.geo # with groups gmsh writes these only
     gmsh -v 1 -2 bare.geo -o body.stl
-    refused 2 "an STL surface: see nodes -h on how to fill it" nodes -u m body.stl
+    refused 2 "an STL surface: nodes -h tells how to fill it" nodes -u m body.stl
+    gmsh -v 1 -2 bare.geo -bin -o binary.stl
+    refused 2 "an STL surface: nodes -h tells how to fill it" nodes -u m binary.stl
     printf 'Merge "body.stl";\nSurface Loop(1) = {1};\nVolume(1) = {1};\n' > fill.geo
     gmsh -v 1 -3 fill.geo -o filled.msh
     nodes -u m -t filled.msh 2> /dev/null | volumes /dev/stdin | grep -qx '1 1'
     printf '<?xml version="1.0"?>\n<VTKFile type="UnstructuredGrid">\n' > body.vtu
-    refused 2 "meshio convert --output-format gmsh22 FILE body.msh" nodes -u m body.vtu
+    refused 2 "python3 -c 'import meshio as m; m.write" nodes -u m body.vtu
     printf '*HEADING\n*NODE\n1, 0, 0, 0\n' > body.inp
     refused 2 "an Abaqus deck" nodes -u m body.inp
 }

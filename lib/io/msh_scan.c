@@ -28,28 +28,37 @@ bool msh_is_mesh(const char *bytes, size_t size)
 
 const char *msh_foreign_hint(const char *bytes, size_t size)
 {
+#define BY_MESHIO                                                                                            \
+    "python3 -c 'import meshio as m; m.write(\"body.msh\", m.read(\"FILE\"), file_format=\"gmsh22\")' "      \
+    "makes a "                                                                                               \
+    "mesh of it (python3-meshio)"
+#define BY_GMSH(name) "gmsh " name " -save -o body.msh makes a mesh of it"
+    static const char stl_hint[] = ": an STL surface: nodes -h tells how to fill it";
     static const struct {
         const char *begin, *hint;
     } formats[] = {
-        {"# vtk DataFile", ": a VTK file: gmsh FILE.vtk -save -o body.msh makes a mesh of it"},
-        {"<?xml",
-         ": an XML file: if it is a VTU file, meshio convert --output-format gmsh22 FILE body.msh makes "
-         "a mesh of it (python3-meshio)"},
-        {"<VTKFile", ": a VTU file: meshio convert --output-format gmsh22 FILE body.msh makes a mesh of it "
-                     "(python3-meshio)"},
-        {"solid", ": an STL surface: see nodes -h on how to fill it"},
-        {"MeshVersionFormatted", ": a MEDIT mesh: gmsh FILE.mesh -save -o body.msh makes a mesh of it"},
-        {"*", ": an Abaqus deck: gmsh FILE.inp -save -o body.msh makes a mesh of it"},
-        {"OFF", ": an OFF surface: gmsh reads it once it is STL (meshio convert FILE body.stl)"},
-        {"ply", ": a PLY surface: gmsh FILE.ply -save -o body.stl, then see nodes -h on how to fill it"},
-        {"CDF", ": an Exodus file: meshio convert --output-format gmsh22 FILE body.msh makes a mesh of it"},
-        {"\x89HDF",
-         ": an HDF5 file: meshio convert --output-format gmsh22 FILE body.msh if it is MED or XDMF"},
+        {"# vtk DataFile", ": a VTK file: " BY_GMSH("FILE.vtk")},
+        {"<?xml", ": an XML file: if it is VTU, " BY_MESHIO},
+        {"<VTKFile", ": a VTU file: " BY_MESHIO},
+        {"solid", stl_hint},
+        {"MeshVersionFormatted", ": a MEDIT mesh: " BY_GMSH("FILE.mesh")},
+        {"*", ": an Abaqus deck: " BY_GMSH("FILE.inp")},
+        {"ply",
+         ": a PLY surface: make it STL (gmsh FILE.ply -save -o body.stl); nodes -h tells how to fill that"},
+        {"CDF", ": an Exodus file: " BY_MESHIO},
+        {"\x89HDF", ": an HDF5 file: if it is MED, " BY_MESHIO},
     };
     for (size_t i = 0; i < sizeof formats / sizeof *formats; i++) {
         size_t length = strlen(formats[i].begin);
         if (size >= length && memcmp(bytes, formats[i].begin, length) == 0) {
             return formats[i].hint;
+        }
+    }
+    if (size >= 84) { /* binary STL: 80 bytes of anything, a count, and 50 bytes for each triangle */
+        uint32_t count;
+        memcpy(&count, bytes + 80, sizeof count);
+        if (count > 0 && size - 84 == 50 * (size_t)count) {
+            return stl_hint;
         }
     }
     return "";
