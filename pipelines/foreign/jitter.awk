@@ -1,4 +1,4 @@
-# Move nodes of a mesh of tetrahedra (MSH 2.2, ASCII) at random, inside and on the boundary alike, as long as no cell at them
+# Move nodes of a mesh of tetrahedra (MSH 2.2, ASCII) at random, those on the boundary a little, as long as no cell at them
 # gets worse than a radius ratio of .002: awk -v seed=N -f jitter.awk in.msh > out.msh
 
 function length3(a, b) { return sqrt((x[a] - x[b]) ^ 2 + (y[a] - y[b]) ^ 2 + (z[a] - z[b]) ^ 2) }
@@ -38,6 +38,7 @@ function worst(node,  i, q, least) {
 { line[NR] = $0 }
 $1 ~ /^\$/ { section = $1 }
 section == "$Nodes" && NF == 4 { x[$1] = $2; y[$1] = $3; z[$1] = $4; place[$1] = NR; order[++nodes] = $1 }
+section == "$Elements" && $2 == 2 { for (k = NF - 2; k <= NF; k++) on_boundary[$k] = 1 }
 section == "$Elements" && $2 == 4 {
     cells++
     for (k = 1; k <= 4; k++) {
@@ -56,11 +57,12 @@ END {
     for (i = 1; i <= 3 * nodes; i++) {
         n = order[(i - 1) % nodes + 1]
         if (!cells_at[n]) continue
+        if (i <= nodes) { x0[n] = x[n]; y0[n] = y[n]; z0[n] = z[n] }
         size = length3(corner[cell_at[n, 1], 1], corner[cell_at[n, 1], 2])
         px = x[n]; py = y[n]; pz = z[n]
         for (try = 0; try < 6; try++) {
-            reach = .9 * size * (1 - try / 8)
-            x[n] = px + reach * (2 * rand() - 1); y[n] = py + reach * (2 * rand() - 1); z[n] = pz + reach * (2 * rand() - 1)
+            reach = (n in on_boundary ? .2 : .9) * size * (1 - try / 8)
+            x[n] = x0[n] + reach * (2 * rand() - 1); y[n] = y0[n] + reach * (2 * rand() - 1); z[n] = z0[n] + reach * (2 * rand() - 1)
             if (worst(n) >= .002) break
             x[n] = px; y[n] = py; z[n] = pz
         }

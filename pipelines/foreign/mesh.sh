@@ -155,7 +155,7 @@ jittered-*)
     geo << 'END'
 Sphere(1) = {0, 0, 0, 20};
 Dilate {{0, 0, 0}, {2, 1, .8}} { Volume{1}; }
-Mesh.MeshSizeMax = 8;
+Mesh.MeshSizeMax = 6;
 END
     awk -v seed="${name##*-}" -f "$here/jitter.awk" body.msh > jittered.msh
     mv jittered.msh body.msh

@@ -10,7 +10,7 @@ name=$1 mesh=$2 seconds=${3:-200}
 status=0
 
 # told PATTERN FILE: what stands behind the tab of a line of a report.
-told() { awk -F '\t' -v name="$1" '$1 == name { value = $2 } END { print (value == "" ? "-" : value) }' "$2" 2> /dev/null; }
+told() { [ -s "$2" ] || { echo -; return; }; awk -F '\t' -v name="$1" '$1 == name { value = $2 } END { print (value == "" ? "-" : value) }' "$2"; }
 
 fail() {
     printf '%s\t%s\t%s\t%s\t%s\t%s\t%.1f\t%s\t%s\n' "$name" "${nodes:--}" "${cells:--}" "${quality:--}" "$status" \
