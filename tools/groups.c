@@ -97,12 +97,13 @@ static void check(const struct request *request, enum status status, const struc
 /* The part of the value before its '=', allocated; *behind receives what follows. */
 static char *take_name(const struct request *request, const char **behind)
 {
-    const char *equals = strchr(request->use->value, '=');
-    if (equals == NULL) {
+    const char *value = request->use->value;
+    size_t length = strcspn(value, "=");
+    if (value[length] == '\0') {
         refuse(request, STATUS_INPUT, "lacks its '=': see -h");
     }
-    *behind = equals + 1;
-    char *name = strndup(request->use->value, (size_t)(equals - request->use->value));
+    *behind = value + length + 1;
+    char *name = strndup(value, length);
     if (name == NULL) {
         refuse(request, STATUS_SYSTEM, "out of memory");
     }

@@ -126,7 +126,7 @@ static enum status find_facets(struct group_body *body, const struct named_facet
     }
     qsort(keyed, (size_t)boundary->count, sizeof *keyed, compare_keys);
     for (int64_t i = 0; i < named->count; i++) {
-        struct keyed wanted;
+        struct keyed wanted = {0};
         face_key(dim, &named->facet[i * dim], wanted.key);
         const struct keyed *found =
             bsearch(&wanted, keyed, (size_t)boundary->count, sizeof *keyed, compare_keys);
