@@ -75,39 +75,24 @@ enum { FACETS, NODES, REGION, RENAME, DELETE, REPLACE, UNIT, VERBOSE, TEXT, OUTP
 
 /* One use of an option: "--facets held=low:long,12%" */
 struct request {
-    const struct tool *tool;
     struct group_body *body;
     const struct option_use *use;
     double unit;
     bool replace;
 };
 
-static _Noreturn void refuse(const struct request *request, enum status status, const char *text)
-{
-    tool_fail(request->tool, status, "--%s %.80s: %s", request->use->name, request->use->value, text);
-}
-
-static void check(const struct request *request, enum status status, const struct error *error)
-{
-    if (status != STATUS_OK) {
-        refuse(request, status, error->text);
-    }
-}
-
 /* The part of the value before its '=', allocated; *behind receives what follows. */
-static char *take_name(const struct request *request, const char **behind)
+static enum status take_name(const struct request *request, char **name, const char **behind,
+                             struct error *error)
 {
     const char *value = request->use->value;
     size_t length = strcspn(value, "=");
     if (value[length] == '\0') {
-        refuse(request, STATUS_INPUT, "lacks its '=': see -h");
+        return fail(error, STATUS_INPUT, "lacks its '=': see -h");
     }
     *behind = value + length + 1;
-    char *name = strndup(value, length);
-    if (name == NULL) {
-        refuse(request, STATUS_SYSTEM, "out of memory");
-    }
-    return name;
+    *name = strndup(value, length);
+    return *name != NULL ? STATUS_OK : fail_memory(error, "a name");
 }
 
 static const char *plural(enum group_kind kind)
@@ -128,116 +113,121 @@ static const char *describe_box(const struct box *box, char text[128])
     return text;
 }
 
-static void make_group(const struct request *request, enum group_kind kind)
+static enum status make_group(const struct request *request, enum group_kind kind, struct error *error)
 {
+    enum status status;
     struct group_body *body = request->body;
-    struct error error;
-    const char *expression;
-    char *name = take_name(request, &expression);
     const struct items *items = &body->items[kind];
-    bool *chosen = array_new(items->count, sizeof *chosen);
+    const char *expression = NULL;
+    char *name = NULL;
+    bool *chosen = NULL;
     int64_t count = 0;
-    if (chosen == NULL) {
-        refuse(request, STATUS_SYSTEM, "out of memory");
-    }
-    check(request, group_check_name(name, &error), &error);
+    TRY(take_name(request, &name, &expression, error));
+    TRY(group_check_name(name, error));
     if (body->cells.count == 0 && kind != GROUP_NODES) {
-        refuse(request, STATUS_INPUT, "the stream has no cells, only nodes can be grouped (-n)");
+        status = fail(error, STATUS_INPUT, "the stream has no cells, only nodes can be grouped (-n)");
+        goto done;
     }
     if (group_find(&body->groups[kind], name) >= 0 && !request->replace) {
-        refuse(request, STATUS_INPUT, "there is one of that name already: --replace replaces it");
+        status = fail(error, STATUS_INPUT, "there is one of that name already: --replace replaces it");
+        goto done;
     }
-    check(request, group_select(body, kind, expression, request->unit, chosen, &error), &error);
+    TRY(NEW_ARRAY(&chosen, items->count, error));
+    TRY(group_select(body, kind, expression, request->unit, chosen, error));
     for (int64_t i = 0; i < items->count; i++) {
         count += chosen[i];
     }
     if (count == 0) {
         struct box box = box_of(body->cells.dim, body->cells.node_count, body->cells.x);
         char place[128];
-        fail(&error, STATUS_INPUT, "chooses none of %lld %s; the body's box is %s", (long long)items->count,
-             plural(kind), describe_box(&box, place));
-        refuse(request, STATUS_INPUT, error.text);
+        status = fail(error, STATUS_INPUT, "chooses none of %lld %s; the body's box is %s",
+                      (long long)items->count, plural(kind), describe_box(&box, place));
+        goto done;
     }
-    check(request, group_put(body, kind, name, chosen, request->use->value, &error), &error);
+    TRY(group_put(body, kind, name, chosen, request->use->value, error));
+done:
     free(chosen);
     free(name);
+    return status;
 }
 
-/* The one group that "NAME" or "KIND:NAME" means; *kind receives its kind. */
-static int64_t find_any(const struct request *request, const char *name, enum group_kind *kind)
+/* The one group that "NAME" or "KIND:NAME" means: its kind and place. */
+static enum status find_any(const struct request *request, const char *name, enum group_kind *kind,
+                            int64_t *place, struct error *error)
 {
-    struct error error;
-    int64_t found = -1;
+    *place = -1;
     for (int k = 0; k < GROUP_KINDS; k++) {
         size_t length = strlen(group_kind_names[k]);
         bool prefixed = strncmp(name, group_kind_names[k], length) == 0 && name[length] == ':';
-        int64_t place = group_find(&request->body->groups[k], prefixed ? name + length + 1 : name);
-        if (place >= 0 && found >= 0) {
-            fail(&error, STATUS_INPUT, "both %s and %s have that name: write %s:%s or %s:%s",
-                 group_kind_names[*kind], group_kind_names[k], group_kind_names[*kind], name,
-                 group_kind_names[k], name);
-            refuse(request, STATUS_INPUT, error.text);
+        int64_t found = group_find(&request->body->groups[k], prefixed ? name + length + 1 : name);
+        if (found >= 0 && *place >= 0) {
+            return fail(error, STATUS_INPUT, "both %s and %s have that name: write %s:%s or %s:%s",
+                        group_kind_names[*kind], group_kind_names[k], group_kind_names[*kind], name,
+                        group_kind_names[k], name);
         }
-        if (place >= 0) {
-            found = place;
+        if (found >= 0) {
+            *place = found;
             *kind = (enum group_kind)k;
         }
     }
-    if (found < 0) {
-        refuse(request, STATUS_INPUT, "no group of that name: -v lists them");
-    }
-    return found;
+    return *place >= 0 ? STATUS_OK : fail(error, STATUS_INPUT, "no group of that name: -v lists them");
 }
 
-static void rename_group(const struct request *request)
+static enum status rename_group(const struct request *request, struct error *error)
 {
-    struct error error;
+    enum status status;
     enum group_kind kind = GROUP_FACETS;
-    const char *after;
-    char *before = take_name(request, &after);
-    int64_t place = find_any(request, before, &kind);
+    int64_t place;
+    const char *after = NULL;
+    char *before = NULL;
+    char *name = NULL;
+    TRY(take_name(request, &before, &after, error));
+    TRY(find_any(request, before, &kind, &place, error));
+    TRY(group_check_name(after, error));
     struct group_list *list = &request->body->groups[kind];
-    check(request, group_check_name(after, &error), &error);
     if (group_find(list, after) >= 0) {
-        refuse(request, STATUS_INPUT, "there is one of the new name already");
+        status = fail(error, STATUS_INPUT, "there is one of the new name already");
+        goto done;
+    }
+    name = strdup(after);
+    if (name == NULL) {
+        status = fail_memory(error, "a name");
+        goto done;
     }
     free(list->group[place].name);
-    list->group[place].name = strdup(after);
-    if (list->group[place].name == NULL) {
-        refuse(request, STATUS_SYSTEM, "out of memory");
-    }
+    list->group[place].name = name;
     list->changed = true;
+done:
     free(before);
+    return status;
 }
 
-static void delete_group(const struct request *request)
+static enum status delete_group(const struct request *request, struct error *error)
 {
     enum group_kind kind = GROUP_FACETS;
-    int64_t place = find_any(request, request->use->value, &kind);
-    if (kind == GROUP_REGION) {
-        refuse(request, STATUS_INPUT, "its cells would belong to nobody: give them another region by -r");
+    int64_t place;
+    enum status status = find_any(request, request->use->value, &kind, &place, error);
+    if (status == STATUS_OK && kind == GROUP_REGION) {
+        return fail(error, STATUS_INPUT, "its cells would belong to nobody: give them another region by -r");
     }
-    group_remove(&request->body->groups[kind], place);
+    if (status == STATUS_OK) {
+        group_remove(&request->body->groups[kind], place);
+    }
+    return status;
 }
 
-static void carry_out(const struct request *request)
+static enum status carry_out(const struct request *request, struct error *error)
 {
     switch (request->use->name[0]) {
     case 'f':
-        make_group(request, GROUP_FACETS);
-        break;
+        return make_group(request, GROUP_FACETS, error);
     case 'n':
-        make_group(request, GROUP_NODES);
-        break;
+        return make_group(request, GROUP_NODES, error);
     case 'd':
-        delete_group(request);
-        break;
+        return delete_group(request, error);
     default:
-        if (strcmp(request->use->name, "region") == 0) {
-            make_group(request, GROUP_REGION);
-        } else {
-            rename_group(request);
-        }
+        return strcmp(request->use->name, "region") == 0 ? make_group(request, GROUP_REGION, error)
+                                                         : rename_group(request, error);
     }
 }
 
@@ -407,8 +397,11 @@ int main(int argc, char *argv[])
     tool_read(&tool, tool.operands[0], &stream);
     tool_check(&tool, group_body_read(&stream, &body, &error), &error);
     for (int i = 0; i < uses.count; i++) {
-        struct request request = {&tool, &body, &uses.use[i], unit, options[REPLACE].given};
-        carry_out(&request);
+        struct request request = {&body, &uses.use[i], unit, options[REPLACE].given};
+        enum status status = carry_out(&request, &error);
+        if (status != STATUS_OK) {
+            tool_fail(&tool, status, "--%s %.80s: %s", request.use->name, request.use->value, error.text);
+        }
     }
     finish(&tool, &body, &stream, options[VERBOSE].given);
     tool_write(&tool, &stream, options[TEXT].given);
