@@ -19,6 +19,11 @@ install-programs: all
 	install -m 644 $(filter %.1,$(MAN_PAGES)) $(INTO)/share/man/man1
 	install -m 644 $(filter %.5,$(MAN_PAGES)) $(INTO)/share/man/man5
 	install -m 644 $(COMPLETIONS) $(INTO)/share/bash-completion/completions
+	# The system has a program groups already.
+	mv $(INTO)/bin/groups $(INTO)/bin/mtled-groups
+	mv $(INTO)/share/man/man1/groups.1 $(INTO)/share/man/man1/mtled-groups.1
+	sed 's/\bgroups$$/mtled-groups/' $(INTO)/share/bash-completion/completions/groups > $(INTO)/share/bash-completion/completions/mtled-groups
+	rm $(INTO)/share/bash-completion/completions/groups
 
 install-library: $(LIBRARY)
 	install -d $(INTO)/lib/pkgconfig $(sort $(dir $(HEADERS:lib/%=$(INTO)/include/mtled/%)))

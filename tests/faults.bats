@@ -259,6 +259,7 @@ commands() {
 nodes -u mm square.msh
 nodes -l square.msh
 cloud -d 2 -k regular -n 5 --box 0,1,0,1
+groups -n tip=side:1,30 -r lump=ball:0,0,0.05 --replace -f xmin=plane:0,0,1,0 cloud.mts
 ipoints cloud.mts
 support points.mts
 shapefn lists.mts

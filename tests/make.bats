@@ -148,6 +148,10 @@ few_solutions=(CONVERGENCE_CASES=block20 SPEED_ERROR_CASES=cube square.sizes=0.0
     done
 }
 
+@test "foreign: a mesh that is not made is no row" {
+    fails gmsh foreign FOREIGN_MESHES=cylinder -- foreign/cylinder.msh foreign/cylinder.row foreign/foreign.tsv
+}
+
 @test "bench: whichever kernel fails" {
     kernels=()
     for file in "$top"/pipelines/bench/*.c; do

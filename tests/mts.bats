@@ -226,3 +226,40 @@ violates() {
     [ "${lines[0]}" = "mts - list, print, convert, check and thin out streams" ]
     [ "$stderr" = "" ]
 }
+
+@test "check lists poor cells, the poorest first, and counts bodies, without a verdict; a face of three cells is one" {
+    cat > poor.mts << 'END'
+# mts 1
+# nodes.x f8 8 2 enc=text unit=m cols=x,y
+0 0
+1 0
+0.5 1e-4
+0.5 -2e-5
+5 0
+6 0
+5 1
+5.0001 0.5
+
+
+# cells i4 4 3 enc=text
+0 1 2
+1 0 3
+4 5 6
+4 6 7
+
+
+# end 2
+END
+    run -1 mts check poor.mts
+    [[ "${lines[0]}" == "cells: row 3: no positive volume" ]]
+    [ ${#lines[@]} -eq 1 ]
+    sed 's/^4 6 7$/5 7 6/; s/^5.0001 0.5/6 1/' poor.mts > good.mts
+    run -0 mts check good.mts
+    [[ "${lines[0]}" == "cells: row 1: poor: quality "*" at 0.5 -6.667e-06 m" ]]
+    [[ "${lines[1]}" == "cells: row 0: poor: quality "*" at 0.5 3.333e-05 m" ]]
+    [ "${lines[2]}" = "cells: 2 connected bodies" ]
+    [ ${#lines[@]} -eq 3 ]
+    sed 's/^5 7 6$/0 1 6/' good.mts > three.mts
+    run -1 mts check three.mts
+    [[ "$output" == *"a face is shared by more than two cells"* ]]
+}

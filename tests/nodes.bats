@@ -158,7 +158,9 @@ limit_memory() {
 @test "usage errors" {
     square > square.msh
     refused 2 "unit of the mesh is missing: give -u m, cm, mm or um" nodes square.msh
-    refused 2 "-u: 'inch' is none of m, cm, mm, um" nodes -u inch square.msh
+    refused 2 "-u: 'inch' is none of m, cm, mm, um, nor a number of metres" nodes -u inch square.msh
+    refused 2 "-u: '-1' is none of" nodes -u -1 square.msh
+    refused 2 "--midside: 'keep' is none of drop, use" nodes -u mm --midside keep square.msh
     refused 2 "give one of -b and -t" nodes -u mm -b -t square.msh
     refused 2 "unexpected operand" nodes -u mm square.msh square.msh
     refused 2 "unknown option" nodes -u mm -x square.msh
@@ -256,7 +258,12 @@ limit_memory() {
     run -0 --separate-stderr nodes -u mm -t void.msh
     [[ "$stderr" == *"group 'void' of dimension 2 is empty: left out"* ]]
     square | sed 's/"body"/"the body"/' > blank.msh
-    refused 2 "physical group 4 of dimension 2: 'the body': no blanks" nodes -u mm blank.msh
+    run -0 --separate-stderr nodes -u mm -t blank.msh
+    [[ "$stderr" == *"group 'the body' is named 'the_body' here"* ]]
+    [[ "$output" == *"names=the_body"* ]]
+    nodes -l blank.msh | grep -q '^the_body'
+    square | sed 's/"diagonal"/"a b"/; s/"bottom"/"a,b"/' > same.msh
+    refused 2 "groups 2 and 3 of dimension 1 are both named 'a_b'" nodes -u mm same.msh
     square | sed 's/"diagonal"/"bottom"/' > twice.msh
     refused 2 "groups 2 and 3 of dimension 1 are both named 'bottom'" nodes -u mm twice.msh
     square | sed '/^\$PhysicalNames/,/^\$EndPhysicalNames/d' > unnamed.msh
@@ -267,7 +274,7 @@ limit_memory() {
     square | sed 's/^99 5 5 0/99 1 1 0/' > orphan.msh
     nodes -u mm orphan.msh > /dev/null
     sed 's/^5 2 2 4 1 10 30 7/5 2 2 4 1 10 99 7/' orphan.msh > twin.msh
-    refused 2 "nodes 30 and 99 are at the same place" nodes -u mm twin.msh
+    refused 2 "nodes 30 and 99 are at the same place, in one body" nodes -u mm twin.msh
     square | sed 's/^99 5/30 5/' > twice.msh
     refused 2 "node tag 30 stands twice" nodes -u mm twice.msh
 }
@@ -278,12 +285,15 @@ limit_memory() {
     square | sed 's/^7 0 1 0/7 0.9 0.2 0/' > folded.msh
     refused 2 "elements 4 and 5 overlap: one is inverted" nodes -u mm folded.msh
     square | sed 's/^5 2 2 4 1 10 30 7/5 2 2 4 1 10 30 20/' > double.msh
-    refused 2 "elements 4 and 5 overlap" nodes -u mm double.msh
+    nodes -u mm -t double.msh > double.mts 2> notes
+    grep -q "cells that stand twice, as for a second physical group, taken once, as the first: 1" notes
+    [ "$(volumes double.mts)" = "5e-07 1" ]
     square | sed 's/^5 2 2 4 1 10 30 7/5 2 2 8 1 10 30 20/' > groups.msh
-    refused 2 "elements 4 ('body') and 5 ('group_8') overlap" nodes -u mm groups.msh
+    nodes -u mm -t groups.msh 2> notes | grep -q '^# cells.region i4 1 1 .* names=body$'
+    grep -q "cells that stand twice" notes
     square | sed 's/^7 0 1 0/7 0 1 0.5/' > surface.msh
     refused 2 "a surface in space" nodes -u mm surface.msh
-    cube tet -order 2
+    cube tet -order 3
     refused 2 "mesh with order 1" nodes -u mm cube.msh
 }
 
@@ -301,4 +311,126 @@ limit_memory() {
     run -0 --separate-stderr bash -c 'set +o pipefail; nodes -u mm -t cube.msh | head -n 1'
     [ "$output" = "# mts 1" ]
     [ -z "$stderr" ]
+}
+
+@test "any unit, a body of an implausible size, and a report" {
+    square > square.msh
+    nodes -u 0.0254 -t square.msh 2> said > inch.mts
+    [ "$(rows nodes.x inch.mts | tail -n 1)" = "0 0.025399999999999999" ]
+    nodes -u 20 square.msh 2>&1 > /dev/null | grep -q "nodes: the body is 28.3 m across: is the unit of -u right?"
+    nodes -u um square.msh 2>&1 > /dev/null | grep -q "nodes: the body is 1.41e-06 m across"
+    run ! grep -q across said
+    nodes -u m -v square.msh 2> said > /dev/null
+    grep -q "nodes: 4 nodes, 2 cells, box 0 0 to 1 1 m, area 1 m2, 1 connected body" said
+    grep -q "nodes: quality of the cells: least 0.83, median 0.83" said
+    grep -q "nodes: cell 0: quality 0.83 at 0.6667 0.3333 m" said
+}
+
+@test "no physical groups: the region is body, and how to come by names is told" {
+    cube tet
+    sed -i '/Physical/d' cube.geo
+    gmsh -v 1 -3 cube.geo -o bare.msh
+    nodes -u m -t bare.msh 2> said > bare.mts
+    grep -q "^# cells.region .* names=body$" bare.mts
+    grep -q "nodes: no part of the boundary has a name: the program groups makes names" said
+    nodes -l bare.msh 2>&1 | grep -q "the program groups makes names"
+    [ "$(nodes -u m -r body bare.msh 2> /dev/null | mts list | grep -c cells)" -eq 2 ]
+    refused 2 "no cells in a region 'skin': there are body" nodes -u m -r skin bare.msh
+}
+
+@test "MSH 1 is MSH 2 without names; second-order cells are cut or split; partitions vanish" {
+    cube tet -format msh22
+    nodes -u m -t cube.msh > plain.mts
+    cube tet -format msh1
+    head -n 1 cube.msh | grep -q '^.NOD$'
+    nodes -u m -t cube.msh > old.mts
+    for section in nodes.x cells facets; do
+        cmp <(rows $section plain.mts) <(rows $section old.mts)
+    done
+    local size
+    size=$(stat -c %s cube.msh)
+    for ((at = 0; at < size - 1; at += size / 12)); do
+        head -c "$at" cube.msh > cut.msh
+        refused 2 "cut.msh: " nodes -u mm cut.msh
+    done
+    sed 's/^\([0-9]* 4 1 1\) 4 /\1 5 /' cube.msh > lying.msh
+    refused 2 "number of nodes: 5 is not within [4, 4]" nodes -u mm lying.msh
+
+    for order in "" "-setnumber Mesh.SecondOrderIncomplete 1"; do
+        cube tet -order 2 $order
+        nodes -u m -t cube.msh 2> said > cut.mts
+        grep -q "second-order cells: [0-9]* midside nodes left out (--midside use keeps them)" said
+        for section in nodes.x cells facets sets.idx; do
+            cmp <(rows $section plain.mts) <(rows $section cut.mts)
+        done
+    done
+    nodes -u m -t --midside use cube.msh 2> said > split.mts
+    grep -q "second-order cells: split at [0-9]* midside nodes" said
+    mts check split.mts
+    [ "$(volumes split.mts)" = "1 1" ]
+    [ "$(rows cells split.mts | wc -l)" -eq $((8 * $(rows cells plain.mts | wc -l))) ]
+    [ "$(rows facets split.mts | wc -l)" -eq $((4 * $(rows facets plain.mts | wc -l))) ]
+    cube hex -order 2
+    nodes -u m -t --midside use cube.msh 2> said > split.mts
+    mts check split.mts
+    [ "$(volumes split.mts)" = "1 1" ]
+    [ "$(rows nodes.x split.mts | wc -l)" -eq 343 ]
+    cube hex -order 2 -setnumber Mesh.SecondOrderIncomplete 1
+    refused 2 "a hexahedron of 20 nodes, cannot be split at its midside nodes" nodes -u m --midside use cube.msh
+    nodes -u m -t cube.msh 2> said | volumes /dev/stdin | grep -qx '1 1'
+
+    for format in "msh22" "msh22 -bin" "msh40" "msh41" "msh41 -bin"; do
+        cube tet -part 3 -format $format
+        nodes -u m -t cube.msh > parts.mts
+        [ "$(volumes parts.mts)" = "1 1" ]
+        [ "$(rows nodes.x parts.mts | wc -l)" -eq "$(rows nodes.x plain.mts | wc -l)" ]
+        [ "$(rows facets parts.mts | wc -l)" -eq 36 ]
+        grep -q '^# facets.set .* names=top,bottom$' parts.mts
+        grep -q '^# cells.region .* names=body$' parts.mts
+        size=$(stat -c %s cube.msh)
+        for ((at = size / 30; at < size - 1; at += size / 7)); do
+            head -c "$at" cube.msh > cut.msh
+            refused 2 "cut.msh: " nodes -u mm cut.msh
+        done
+    done
+}
+
+@test "bodies that touch stay two, cells in two groups are of the first, and both are told" {
+    cat > touching.geo << 'END'
+SetFactory("OpenCASCADE");
+Box(1) = {0, 0, 0, 1, 1, 1};
+Box(2) = {1, 0, 0, 1, 1, 1};
+Physical Volume("left") = {1};
+Physical Volume("all") = {1, 2};
+Mesh.MeshSizeMin = 1;
+END
+    gmsh -v 1 -3 touching.geo -o touching.msh
+    nodes -u m -v -t touching.msh 2> said > touching.mts
+    mts check touching.mts | grep -qx 'cells: 2 connected bodies'
+    grep -q "nodes at the same place, of different bodies: [0-9]* pairs: the bodies are not joined there" said
+    grep -q "2 connected bodies" said
+    grep -q "cells in two physical groups, taken for the one of the lower tag: [0-9]" said
+    grep -q '^# cells.region .* names=left,all$' touching.mts
+    [ "$(volumes touching.mts)" = "2 1" ]
+}
+
+@test "files of other programs are refused with the command that converts them; VTK and STL come in by gmsh" {
+    cube tet
+    nodes -u m -t cube.msh 2> /dev/null | rows cells | wc -l > cells
+    gmsh -v 1 -3 cube.geo -o cube.vtk
+    refused 2 "a VTK file: gmsh FILE.vtk -save -o body.msh makes a mesh of it" nodes -u m cube.vtk
+    gmsh -v 1 cube.vtk -save -o body.msh
+    nodes -u m -t body.msh 2> /dev/null | rows cells | wc -l | cmp - cells
+    sed '/Physical/d' cube.geo > bare.geo # with groups gmsh writes these only
+    gmsh -v 1 -2 bare.geo -o body.stl
+    refused 2 "an STL surface: nodes -h tells how to fill it" nodes -u m body.stl
+    gmsh -v 1 -2 bare.geo -bin -o binary.stl
+    refused 2 "an STL surface: nodes -h tells how to fill it" nodes -u m binary.stl
+    printf 'Merge "body.stl";\nSurface Loop(1) = {1};\nVolume(1) = {1};\n' > fill.geo
+    gmsh -v 1 -3 fill.geo -o filled.msh
+    nodes -u m -t filled.msh 2> /dev/null | volumes /dev/stdin | grep -qx '1 1'
+    printf '<?xml version="1.0"?>\n<VTKFile type="UnstructuredGrid">\n' > body.vtu
+    refused 2 "python3 -c 'import meshio as m; m.write" nodes -u m body.vtu
+    printf '*HEADING\n*NODE\n1, 0, 0, 0\n' > body.inp
+    refused 2 "an Abaqus deck" nodes -u m body.inp
 }

@@ -312,3 +312,36 @@ for row in read('u.dat')['$name'].tolist(): print(*row)" > rows
     mts binary u.dat > binary
     run -1 read_stream "import stream; stream.read('binary')"
 }
+
+@test "foreign: meshes are as poor as they are meant to be; a row for each, whatever comes of it" {
+    for name in delaunay-2 jittered-1 voxels-hex coincident; do bash "$pipelines/foreign/mesh.sh" $name $name.msh; done
+    # between LEAST MOST MESH: its least quality
+    between() {
+        nodes -v -u mm "$3.msh" 2> "$3.said" > "$3.mts"
+        sed -nE 's/^nodes: quality of the cells: least ([^,]*),.*/\1/p' "$3.said" | awk -v low="$1" -v high="$2" '
+            { n++; bad = !($1 >= low && $1 <= high) } END { exit bad || n != 1 }'
+    }
+    between 1e-9 1e-3 delaunay-2
+    between 0.001 0.02 jittered-1
+    between 0.5 1 voxels-hex
+    between 0.2 1 coincident
+    mts check delaunay-2.mts | grep -q '^cells: row [0-9]*: poor: quality'
+    mts check coincident.mts | grep -qx 'cells: 2 connected bodies'
+    run -2 bash "$pipelines/foreign/mesh.sh" none none.msh
+
+    cat > fake << 'END'
+#!/bin/bash
+printf 'steps\t40\nleast J\t0.5\n' >&2
+echo 'mtled: folded' >&2
+exit 1
+END
+    chmod +x fake
+    mkdir bin
+    mv fake bin/mtled
+    PATH=$PWD/bin:$PATH bash "$pipelines/foreign/push.sh" jittered-1 jittered-1.msh > row
+    awk -F '\t' '{ exit !(NF == 9 && $1 == "jittered-1" && $2 > 100 && $3 > 300 && $4 < 0.02 && $5 == 1 && $6 == 40 &&
+        $8 == 0.5 && $9 == "mtled: folded") }' row
+    head -c 900 voxels-hex.msh > cut.msh
+    bash "$pipelines/foreign/push.sh" cut cut.msh > row
+    awk -F '\t' '{ exit !(NF == 9 && $2 == "-" && $5 == 2 && $9 ~ /^nodes: .*cut.msh: /) }' row
+}

@@ -20,7 +20,7 @@ static const char usage[] =
     "  -f, --field FIELD,...  the fields (default: every section of type f8 with one row per node)\n"
     "  -p, --points POINTS    the nodes.x of this stream or, with -u, the rows of this table of\n"
     "                         coordinates (blanks or tabs between them, # begins a comment)\n"
-    "  -u, --unit UNIT        POINTS is a table in m, cm, mm or um\n"
+    "  -u, --unit UNIT        POINTS is a table in m, cm, mm, um or so many metres\n"
     "  -k, --factor FACTOR    support radius = FACTOR times the local node spacing (default 1.8,\n"
     "                         in 3D 1.9)\n"
     "  -R, --radius RADIUS    constant radius: a length with its unit, e.g. 8mm (without one: m)\n"

@@ -19,7 +19,9 @@ static const char usage[] =
     "  check         whether sections of known names are what they should be: shapes that agree, indices\n"
     "                in range, cells of positive volume, numbers finite, weights positive, neighbour lists\n"
     "                ascending, shape functions that sum to 1 within 1e-9; a line on standard output for\n"
-    "                each violation, and status 1 if there is one\n"
+    "                each violation, and status 1 if there is one. Told without a verdict: cells of quality\n"
+    "                (radius of the inscribed to that of the circumscribed sphere, 1 for the regular one)\n"
+    "                below 1e-3, the poorest first, and how many connected bodies, if several\n"
     "  recover       the whole sections of a stream that was stopped, cut short or damaged, as a stream;\n"
     "                what is wrong with it on standard error\n"
     "  keep, drop    the stream with only, or without, the sections that match a PATTERN, in which * and ?\n"
@@ -37,7 +39,9 @@ static const char usage[] =
 
 #include "tool.h"
 
+#include "cell_report.h"
 #include "io/invariants.h"
+#include "views.h"
 
 #include <fnmatch.h>
 #include <inttypes.h>
@@ -117,12 +121,43 @@ static void print_violation(void *context, const char *text)
     puts(text);
 }
 
+/* What is worth knowing of cells that are right in themselves; returns how many violations that showed. */
+static int tell_cells(const struct tool *tool, const struct stream *stream)
+{
+    struct cells cells;
+    struct cell_report report;
+    struct error error;
+    char text[128];
+    if (stream_find(stream, "nodes.x") == NULL || stream_find(stream, "cells") == NULL ||
+        stream_cells(stream, true, &cells, &error) != STATUS_OK) {
+        return 0; /* what is wrong has been told */
+    }
+    enum status status = cell_report_make(&cells, POOR_QUALITY, &report, &error);
+    if (status == STATUS_INPUT) { /* a face of three cells */
+        puts(error.text);
+        return 1;
+    }
+    tool_check(tool, status, &error);
+    for (int i = 0; i < report.listed; i++) {
+        printf("cells: row %" PRId64 ": poor: %s\n", report.poorest[i].cell,
+               cell_report_describe(&cells, &report.poorest[i], text));
+    }
+    if (report.poor > report.listed) {
+        printf("cells: %" PRId64 " more of quality below %g\n", report.poor - report.listed, POOR_QUALITY);
+    }
+    if (report.bodies > 1) {
+        printf("cells: %d connected bodies\n", report.bodies);
+    }
+    return 0;
+}
+
 static int check(struct tool *tool, const struct option options[])
 {
     (void)options;
     struct stream stream;
     tool_read(tool, tool->operands[1], &stream);
     int64_t count = stream_check(&stream, print_violation, NULL);
+    count += tell_cells(tool, &stream);
     stream_free(&stream);
     int status = tool_end(tool);
     return count > 0 ? (int)STATUS_VERDICT : status;

@@ -1,27 +1,41 @@
 static const char usage[] =
     "nodes - gmsh mesh to node cloud, background cells, facets and node sets\n"
     "\n"
-    "usage: nodes -u UNIT [-r REGION,...] [-b | -t] [-o FILE] [MESH]\n"
+    "usage: nodes -u UNIT [-r REGION,...] [--midside drop|use] [-v] [-b | -t] [-o FILE] [MESH]\n"
     "       nodes -l [MESH]\n"
     "\n"
-    "Reads a mesh of gmsh (MSH 2 or 4, ASCII or binary; first-order triangles and quadrangles in a plane\n"
-    "z = const, or tetrahedra, hexahedra, prisms and pyramids) from MESH or standard input, and writes\n"
-    "nodes.x (m), the nodes of its cells in the order of the file; cells, split into triangles or\n"
+    "Reads a mesh of gmsh (MSH 1, 2 or 4, ASCII or binary, partitioned or not; triangles and quadrangles\n"
+    "in a plane z = const, or tetrahedra, hexahedra, prisms and pyramids) from MESH or standard input, and\n"
+    "writes nodes.x (m), the nodes of its cells in the order of the file; cells, split into triangles or\n"
     "tetrahedra and positively oriented, with the physical group of each as cells.region; facets, the\n"
     "physical groups on the boundary, oriented outward, and facets.set; and as node sets, sets.ptr and\n"
     "sets.idx, the physical groups of lower dimension and those between two cells. Groups keep their\n"
-    "names; one without a name is group_TAG, cells in no group are the region 'unnamed'.\n"
+    "names, with _ for blanks and commas; one without a name is group_TAG, cells in no group are the\n"
+    "region 'body' if all are, else 'unnamed'. More parts of the boundary get names by groups.\n"
     "\n"
     "What is no part of the body is left out, with a note: nodes of no cell, facets of no cell, empty\n"
-    "groups. Cells without volume, folded or in two groups, nodes at the same place, and files that are\n"
-    "truncated or inconsistent are errors. Sections of the file other than its groups, nodes and elements\n"
-    "are not looked at, and nothing in the file is run.\n"
+    "groups, midside nodes of second-order cells, the second of two equal cells. A cell in two groups is\n"
+    "of that with the lower tag. Bodies that touch but share no nodes stay two bodies, with a note.\n"
+    "Cells without volume or folded, nodes of one body at the same place, and files that are truncated or\n"
+    "inconsistent are errors. Sections of the file other than its groups, nodes and elements are not\n"
+    "looked at, and nothing in the file is run.\n"
+    "\n"
+    "Meshes of other programs: 'gmsh body.vtk -save -o body.msh' (MEDIT, Abaqus and others, too). VTU, by\n"
+    "python3-meshio: python3 -c 'import meshio as m; m.write(\"body.msh\", m.read(\"body.vtu\"),\n"
+    "file_format=\"gmsh22\")'. A closed surface in STL is filled by a file fill.geo of the lines\n"
+    "Merge \"body.stl\";  Surface Loop(1) = {1};  Volume(1) = {1};  and 'gmsh -3 fill.geo -o body.msh'.\n"
     "\n"
     "Options:\n"
-    "  -u, --unit UNIT         unit of the mesh's coordinates: m, cm, mm or um (required)\n"
+    "  -u, --unit UNIT         unit of the mesh's coordinates: m, cm, mm, um, or a number of metres such as\n"
+    "                          0.0254 (required)\n"
     "  -r, --regions NAME,...  keep these regions only, with their nodes and facets\n"
     "  -l, --list              instead: list the physical groups of the mesh, with dimension, tag and\n"
     "                          number of elements, and stop\n"
+    "      --midside drop|use  nodes amid the edges of second-order cells: drop them (default), or use them\n"
+    "                          as nodes and split the cells there\n"
+    "  -v, --verbose           report on standard error: box, volume, connected bodies, poorest cells by\n"
+    "                          quality (radius of the inscribed to that of the circumscribed sphere,\n"
+    "                          1 for a regular cell)\n"
     "  -b, --binary            write binary (default)\n"
     "  -t, --text              write text\n"
     "  -o, --output FILE       write to FILE, which appears only when whole\n"
@@ -31,14 +45,18 @@ static const char usage[] =
     "  nodes -l body.msh\n"
     "  nodes -u mm -r parenchyma,tumour < body.msh > body.mts\n";
 
+#include "cell_report.h"
 #include "io/msh.h"
 #include "tool.h"
 
+#include "base/box.h"
+
+#include <math.h>
 #include <signal.h>
 #include <string.h>
 #include <unistd.h>
 
-enum { UNIT, REGIONS, LIST, BINARY, TEXT, OUTPUT, OPTION_COUNT };
+enum { UNIT, REGIONS, MIDSIDE, VERBOSE, LIST, BINARY, TEXT, OUTPUT, OPTION_COUNT };
 
 /* libgmsh is C++ and trusts that it gets memory: where it does not, some of its parts report something else,
  * others crash. These end the program with the right status and one line. */
@@ -81,12 +99,72 @@ static void read_mesh(const struct tool *tool, struct msh *msh)
     }
 }
 
-static void list_groups(const struct msh *msh)
+static void list_groups(const struct tool *tool, const struct msh *msh)
 {
+    int dim = 0;
+    bool named = false;
+    for (int64_t e = 0; e < msh->element_count; e++) {
+        int of_element = msh_type(msh->element_type[e]).dim;
+        dim = of_element > dim ? of_element : dim;
+    }
     puts("name\tdim\ttag\telements");
     for (int32_t i = 0; i < msh->group_count; i++) {
         const struct msh_group *group = &msh->groups[i];
         printf("%s\t%d\t%d\t%lld\n", group->name, group->dim, group->tag, (long long)group->element_count);
+        named = named || (group->dim == dim - 1 && group->element_count > 0);
+    }
+    if (!named) {
+        tool_note(tool, "no part of the boundary has a name: the program groups makes names (groups -h)");
+    }
+}
+
+/* Second-order elements become first-order ones. */
+static void make_linear(const struct tool *tool, struct msh *msh, bool use)
+{
+    struct error error;
+    int64_t midside;
+    tool_check(tool, msh_make_linear(msh, use, &midside, &error), &error);
+    if (midside > 0) {
+        tool_note(tool,
+                  use ? "second-order cells: split at %lld midside nodes"
+                      : "second-order cells: %lld midside nodes left out (--midside use keeps them)",
+                  (long long)midside);
+    }
+}
+
+/* Bodies so large or small are likely read in a wrong unit, m. */
+#define LARGEST_DIAGONAL 10.0
+#define SMALLEST_DIAGONAL 1e-3
+
+static void report(const struct tool *tool, const struct mesh *mesh, bool verbose)
+{
+    struct box box = box_of(mesh->dim, mesh->node_count, mesh->x);
+    double diagonal = box_diagonal(&box);
+    struct cells cells = {mesh->dim, mesh->node_count, mesh->x, mesh->cell_count, mesh->cells};
+    struct cell_report cell_report;
+    struct error error;
+    char text[128];
+    if (diagonal > LARGEST_DIAGONAL || diagonal < SMALLEST_DIAGONAL) {
+        tool_note(tool, "the body is %.3g m across: is the unit of -u right?", diagonal);
+    }
+    if (!verbose) {
+        return;
+    }
+    tool_check(tool, cell_report_make(&cells, INFINITY, &cell_report, &error), &error);
+    int length = 0;
+    for (int k = 0; k < 2 * mesh->dim; k++) {
+        length += snprintf(text + length, sizeof text - (size_t)length, "%s%.4g ",
+                           k == mesh->dim ? "to " : "", k < mesh->dim ? box.low[k] : box.high[k - mesh->dim]);
+    }
+    tool_note(tool, "%lld nodes, %lld cells, box %sm, %s %.4g %s, %d connected bod%s",
+              (long long)mesh->node_count, (long long)mesh->cell_count, text,
+              mesh->dim == 2 ? "area" : "volume", cell_report.volume, mesh->dim == 2 ? "m2" : "m3",
+              cell_report.bodies, cell_report.bodies == 1 ? "y" : "ies");
+    tool_note(tool, "quality of the cells: least %.2g, median %.2g", cell_report.least_median[0],
+              cell_report.least_median[1]);
+    for (int i = 0; i < cell_report.listed && i < 3; i++) {
+        tool_note(tool, "cell %lld: %s", (long long)cell_report.poorest[i].cell,
+                  cell_report_describe(&cells, &cell_report.poorest[i], text));
     }
 }
 
@@ -94,6 +172,12 @@ static double parse(const struct tool *tool, const struct option options[])
 {
     struct error error;
     double unit = 1;
+    int choice;
+    static const char *const choices[] = {"drop", "use"};
+    if (options[MIDSIDE].given) {
+        tool_check(tool, parse_choice(options[MIDSIDE].value, "--midside", choices, 2, &choice, &error),
+                   &error);
+    }
     if (options[BINARY].given && options[TEXT].given) {
         tool_fail(tool, STATUS_INPUT, "give one of -b and -t");
     }
@@ -104,7 +188,8 @@ static double parse(const struct tool *tool, const struct option options[])
             }
         }
     } else if (!options[UNIT].given) {
-        tool_fail(tool, STATUS_INPUT, "the unit of the mesh is missing: give -u m, cm, mm or um");
+        tool_fail(tool, STATUS_INPUT,
+                  "the unit of the mesh is missing: give -u m, cm, mm or um, or a number");
     } else {
         tool_check(tool, parse_length_unit(options[UNIT].value, "-u", &unit, &error), &error);
     }
@@ -121,6 +206,8 @@ int main(int argc, char *argv[])
     struct option options[OPTION_COUNT] = {
         [UNIT] = {.letter = 'u', .name = "unit", .takes_value = true},
         [REGIONS] = {.letter = 'r', .name = "regions", .takes_value = true},
+        [MIDSIDE] = {.name = "midside", .takes_value = true},
+        [VERBOSE] = {.letter = 'v', .name = "verbose"},
         [LIST] = {.letter = 'l', .name = "list"},
         [BINARY] = {.letter = 'b', .name = "binary"},
         [TEXT] = {.letter = 't', .name = "text"},
@@ -130,15 +217,20 @@ int main(int argc, char *argv[])
     double unit = parse(&tool, options);
     read_mesh(&tool, &msh);
     if (options[LIST].given) {
-        list_groups(&msh);
+        list_groups(&tool, &msh);
         msh_free(&msh);
         return tool_end(&tool);
     }
+    make_linear(&tool, &msh, options[MIDSIDE].given && strcmp(options[MIDSIDE].value, "use") == 0);
     tool_check(&tool, mesh_build(&mesh, &msh, unit, options[REGIONS].value, &error), &error);
     msh_free(&msh);
     for (int32_t i = 0; i < mesh.notes.count; i++) {
         tool_note(&tool, "%s", mesh.notes.name[i]);
     }
+    if (mesh.facet_sets.count == 0) {
+        tool_note(&tool, "no part of the boundary has a name: the program groups makes names");
+    }
+    report(&tool, &mesh, options[VERBOSE].given);
     stream_init(&stream);
     tool_check(&tool, mesh_put(&mesh, &stream, &error), &error);
     tool_write(&tool, &stream, options[TEXT].given);

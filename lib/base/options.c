@@ -29,10 +29,23 @@ static struct option *find_name(struct option options[], int count, const char *
 
 static enum status mark_given(struct option *option, const char *shown, struct error *error)
 {
-    if (option->given) {
+    if (option->given && option->uses == NULL) {
         return fail(error, STATUS_INPUT, "option %s given twice", shown);
     }
     option->given = true;
+    return STATUS_OK;
+}
+
+static enum status take_value(struct option *option, const char *value, struct error *error)
+{
+    option->value = value;
+    if (option->uses != NULL) {
+        if (option->uses->count == OPTION_MOST_USES) {
+            return fail(error, STATUS_INPUT, "more than %d options --%s and the like: run it twice",
+                        OPTION_MOST_USES, option->name);
+        }
+        option->uses->use[option->uses->count++] = (struct option_use){option->name, value};
+    }
     return STATUS_OK;
 }
 
@@ -56,14 +69,12 @@ static enum status parse_long(struct option options[], int count, int argc, char
         return equals == NULL ? STATUS_OK : fail(error, STATUS_INPUT, "option %s takes no value", shown);
     }
     if (equals != NULL) {
-        option->value = equals + 1;
-        return STATUS_OK;
+        return take_value(option, equals + 1, error);
     }
     if (*at + 1 >= argc) {
         return fail(error, STATUS_INPUT, "option %s lacks its value", shown);
     }
-    option->value = argv[++*at];
-    return STATUS_OK;
+    return take_value(option, argv[++*at], error);
 }
 
 /* -abc (flags joined), -kVALUE or -k VALUE at argv[*at]. */
@@ -83,14 +94,10 @@ static enum status parse_short(struct option options[], int count, int argc, cha
         if (!option->takes_value) {
             continue;
         }
-        if (letter[1] != '\0') {
-            option->value = letter + 1;
-        } else if (*at + 1 < argc) {
-            option->value = argv[++*at];
-        } else {
+        if (letter[1] == '\0' && *at + 1 >= argc) {
             return fail(error, STATUS_INPUT, "option %s lacks its value", shown);
         }
-        return STATUS_OK;
+        return take_value(option, letter[1] != '\0' ? letter + 1 : argv[++*at], error);
     }
     return STATUS_OK;
 }
@@ -187,10 +194,17 @@ enum status parse_length_unit(const char *text, const char *what, double *metres
 {
     static const char *const units[] = {"m", "cm", "mm", "um"};
     static const double sizes[] = {1.0, 1e-2, 1e-3, 1e-6};
-    int index;
+    int index = 0;
+    struct error why;
+    if (looks_decimal(text) && parse_double(text, what, 1e-12, 1e12, metres, &why) == STATUS_OK) {
+        return STATUS_OK;
+    }
     enum status status = parse_choice(text, what, units, 4, &index, error);
     if (status == STATUS_OK) {
         *metres = sizes[index];
+    } else {
+        snprintf(why.text, sizeof why.text, "%.400s", error->text);
+        return fail(error, status, "%s, nor a number of metres", why.text);
     }
     return status;
 }

@@ -7,14 +7,26 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+/* The uses of options that may be given more than once, in the order of the command line. */
+#define OPTION_MOST_USES 256
+struct option_uses {
+    int count;
+    struct option_use {
+        const char *name; /* of the option */
+        const char *value;
+    } use[OPTION_MOST_USES];
+};
+
 /* One option of a tool. `letter` may be 0 (long form only) and `name` NULL (short form only). */
 struct option {
-    char letter;       /* 'k' for -k */
-    const char *name;  /* "tolerance" for --tolerance */
-    bool takes_value;  /* -k VALUE, -kVALUE, --tolerance VALUE, --tolerance=VALUE */
-    bool silent;       /* with a value that changes nothing in the result: no provenance */
-    const char *value; /* set by options_parse: the value, NULL when not given */
-    bool given;        /* set by options_parse */
+    char letter;              /* 'k' for -k */
+    const char *name;         /* "tolerance" for --tolerance */
+    bool takes_value;         /* -k VALUE, -kVALUE, --tolerance VALUE, --tolerance=VALUE */
+    bool silent;              /* with a value that changes nothing in the result: no provenance */
+    struct option_uses *uses; /* with a value and a name: may be repeated; each use is appended here, where
+                                 several options may share a list */
+    const char *value;        /* set by options_parse: the (last) value, NULL when not given */
+    bool given;               /* set by options_parse */
 };
 
 /* Parse argv[1..]; options may stand before and after operands, "--" ends them, "-" is an operand.
@@ -33,7 +45,7 @@ MUST_CHECK enum status parse_integer(const char *text, const char *what, int64_t
 MUST_CHECK enum status parse_double_list(const char *text, const char *what, double least, double largest,
                                          int most, double values[], int *count, struct error *error);
 
-/* Parse a unit of length (m, cm, mm, um) into its size in metres. */
+/* Parse a unit of length into its size in metres: m, cm, mm, um, or a positive number of metres (0.0254). */
 MUST_CHECK enum status parse_length_unit(const char *text, const char *what, double *metres,
                                          struct error *error);
 

@@ -1,4 +1,4 @@
-/* Meshes of gmsh (MSH 2 and 4, ASCII and binary): reading a file, and making of it the mesh that the other
+/* Meshes of gmsh (MSH 1, 2 and 4, ASCII and binary): reading a file, and making of it the mesh that the other
  * tools work on. Two steps: msh_read takes the file in as it is; mesh_build picks cells, facets and sets out
  * of it.
  *
@@ -18,9 +18,10 @@ struct msh_group {
     int tag;               /* as in the file; positive */
     char *name;            /* "group_TAG" where the file gives none; unique within its dimension */
     int64_t element_count; /* 0 for a group that is named and has nothing in it */
+    char *written;         /* as in the file, where `name` differs: blanks, commas and quotes became '_' */
 };
 
-/* A mesh file as it is: first-order elements of all dimensions, in the order of the file. */
+/* A mesh file as it is: elements of all dimensions, in the order of the file. */
 struct msh {
     int64_t node_count;
     double *x;         /* node_count x 3, in the unit of the file; finite */
@@ -38,12 +39,15 @@ struct msh {
 
 /* What is known of a type of element. */
 struct msh_type {
-    const char *name; /* "triangle", or NULL: not a first-order element */
+    const char *name; /* "triangle", or NULL: not an element of first or second order */
     int dim;
     int node_count;
+    int linear; /* the number of the first-order type on its corners, which come first; its own: first order
+                 */
 };
 
-/* The type that gmsh numbers so; a type with name NULL for numbers that are no first-order element. */
+/* The type that gmsh numbers so; a type with name NULL for numbers that are no element of first or second
+ * order. */
 struct msh_type msh_type(int64_t number);
 
 /* Read a mesh from an open descriptor (a regular file, a pipe), which stays open. `name` begins the messages.
@@ -51,6 +55,12 @@ struct msh_type msh_type(int64_t number);
  * No more memory is asked for than a small multiple of the file's size. On failure *msh is empty. */
 MUST_CHECK enum status msh_read(struct msh *msh, int descriptor, const char *name, struct error *error);
 void msh_free(struct msh *msh);
+
+/* Make all elements first-order ones: their midside nodes are dropped, or, with `use`, they stay and the
+ * elements are split at them (*midside receives how many there are). Dropping renumbers the nodes, splitting
+ * the elements, whose pieces keep the tag. STATUS_INPUT for elements that cannot be split: those without a
+ * node in the middle of each quadrangular face, and prisms and pyramids. On failure *msh is to be freed. */
+MUST_CHECK enum status msh_make_linear(struct msh *msh, bool use, int64_t *midside, struct error *error);
 
 /* Names of regions, facet sets or node sets. */
 struct mesh_names {
@@ -81,9 +91,10 @@ struct mesh {
  * simplices so that neighbours conform (every quadrangular face along the diagonal through its lowest node:
  * Dompierre et al., How to subdivide pyramids, prisms and hexahedra into tetrahedra, 1999). `wanted` is a
  * comma-separated list of regions to keep, or NULL: all. Nodes keep their order; those that belong to no kept
- * cell are dropped. STATUS_INPUT: no cells, a surface in space, cells without volume, folded or in two
- * groups, coincident nodes, a name that is no name of a region, names with blanks or commas. On failure *mesh
- * is empty. */
+ * cell are dropped. All elements are of first order. A cell in two groups is of the one with the lowest tag,
+ * a cell that stands twice is taken once; cells in no group are the region 'body' if there is no other, else
+ * 'unnamed'. STATUS_INPUT: no cells, a surface in space, cells without volume or folded, coincident nodes of
+ * one body, a name that is no name of a region, names with blanks or commas. On failure *mesh is empty. */
 MUST_CHECK enum status mesh_build(struct mesh *mesh, const struct msh *msh, double unit, const char *wanted,
                                   struct error *error);
 void mesh_free(struct mesh *mesh);

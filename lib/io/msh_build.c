@@ -81,8 +81,8 @@ enum status mesh_build(struct mesh *mesh, const struct msh *msh, double unit, co
     TRY(NEW_ARRAY(&region_of, msh->element_count, error));
     TRY(mesh_pick_regions(&draft, wanted, region_of));
     TRY(mesh_build_nodes(&draft, region_of, unit));
-    TRY(mesh_check_coincident(&draft));
     TRY(mesh_build_cells(&draft, region_of));
+    TRY(mesh_check_coincident(&draft));
     TRY(mesh_build_facets(&draft));
 done:
     free(region_of);

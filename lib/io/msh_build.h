@@ -46,7 +46,8 @@ MUST_CHECK enum status mesh_build_nodes(struct mesh_draft *draft, const int32_t 
 /* Split the cells that are kept into simplices, turn these to be positive. */
 MUST_CHECK enum status mesh_build_cells(struct mesh_draft *draft, const int32_t region_of[]);
 
-/* Two nodes of the mesh within 1e-12 of its extent are an error. */
+/* Two nodes of the mesh within 1e-12 of its extent are an error if cells connect them, else a note: two
+ * bodies that touch. */
 MUST_CHECK enum status mesh_check_coincident(struct mesh_draft *draft);
 
 /* Facets and node sets from the elements of lower dimension. */

@@ -29,8 +29,36 @@ static enum status fail_coincident(const struct mesh_draft *draft, int32_t a, in
         }
     }
     return fail(draft->error, STATUS_INPUT,
-                "nodes %lld and %lld are at the same place: merge them (Coherence Mesh)", (long long)tags[0],
-                (long long)tags[1]);
+                "nodes %lld and %lld are at the same place, in one body: merge them (Coherence Mesh)",
+                (long long)tags[0], (long long)tags[1]);
+}
+
+static int32_t root_of(int32_t parent[], int32_t node)
+{
+    while (parent[node] != node) {
+        parent[node] = parent[parent[node]];
+        node = parent[node];
+    }
+    return node;
+}
+
+/* body[node_count]: the same for nodes that cells connect. */
+static void find_bodies(const struct mesh *mesh, int32_t body[])
+{
+    for (int64_t n = 0; n < mesh->node_count; n++) {
+        body[n] = (int32_t)n;
+    }
+    for (int64_t c = 0; c < mesh->cell_count; c++) {
+        const int32_t *cell = &mesh->cells[c * (mesh->dim + 1)];
+        for (int k = 1; k <= mesh->dim; k++) {
+            int32_t a = root_of(body, cell[0]);
+            int32_t b = root_of(body, cell[k]);
+            body[a > b ? a : b] = a > b ? b : a;
+        }
+    }
+    for (int64_t n = 0; n < mesh->node_count; n++) {
+        body[n] = root_of(body, (int32_t)n);
+    }
 }
 
 /* Nodes at one place fall together in any projection: sort them along a direction that no lattice is aligned
@@ -43,6 +71,10 @@ enum status mesh_check_coincident(struct mesh_draft *draft)
     struct box box = box_of(mesh->dim, mesh->node_count, mesh->x);
     double tolerance = COINCIDENT * box_side(&box);
     struct projection *order = NULL;
+    int32_t *body = NULL;
+    int64_t touching = 0;
+    TRY(NEW_ARRAY(&body, mesh->node_count, draft->error));
+    find_bodies(mesh, body);
     TRY(NEW_ARRAY(&order, mesh->node_count, draft->error));
     for (int64_t n = 0; n < mesh->node_count; n++) {
         order[n].node = (int32_t)n;
@@ -58,13 +90,23 @@ enum status mesh_check_coincident(struct mesh_draft *draft)
                 farthest = fmax(farthest, fabs(mesh->x[order[i].node * mesh->dim + k] -
                                                mesh->x[order[j].node * mesh->dim + k]));
             }
-            if (farthest <= tolerance) {
+            if (farthest <= tolerance && body[order[i].node] != body[order[j].node]) {
+                touching++;
+            } else if (farthest <= tolerance) {
                 status = fail_coincident(draft, order[i].node, order[j].node);
                 goto done;
             }
         }
     }
+    if (touching > 0) {
+        TRY(mesh_add_note(
+            draft,
+            "nodes at the same place, of different bodies: %lld pairs: the bodies are not joined "
+            "there (Coherence Mesh in gmsh joins them)",
+            (long long)touching));
+    }
 done:
+    free(body);
     free(order);
     return status;
 }

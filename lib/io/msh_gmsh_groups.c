@@ -25,6 +25,20 @@ static int32_t find_group(const struct msh *msh, int dim, int64_t tag)
     return group == NULL ? -1 : (int32_t)(group - msh->groups);
 }
 
+/* A copy in which blanks, commas and the like, which cannot stand in lists of names, are underscores; or
+ * NULL.
+ */
+static char *plain_name(const char *name)
+{
+    char *copy = strdup(name);
+    for (char *c = copy; c != NULL && *c != '\0'; c++) {
+        if ((unsigned char)*c <= ' ' || *c == 127 || strchr(",\"=:", *c) != NULL) {
+            *c = '_';
+        }
+    }
+    return copy;
+}
+
 /* Names as in the file, "group_TAG" for groups without; two of one name and dimension are an error. */
 static enum status name_groups(struct msh *msh, const struct msh_scan *scan, struct error *error)
 {
@@ -34,9 +48,15 @@ static enum status name_groups(struct msh *msh, const struct msh_scan *scan, str
             return fail(error, STATUS_INPUT, "$PhysicalNames: group %d of dimension %d is named twice",
                         group->tag, group->dim);
         }
-        group->name = strdup(scan->names[i].name);
+        group->name = plain_name(scan->names[i].name);
         if (group->name == NULL) {
             return fail_memory(error, "the name of a group");
+        }
+        if (strcmp(group->name, scan->names[i].name) != 0) {
+            group->written = strdup(scan->names[i].name);
+            if (group->written == NULL) {
+                return fail_memory(error, "the name of a group");
+            }
         }
     }
     for (int32_t i = 0; i < msh->group_count; i++) {

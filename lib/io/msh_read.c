@@ -112,10 +112,12 @@ static enum status load_checked(struct msh *msh, const struct msh_scan *scan, co
         return fail_read(error);
     }
     for (int part = 0; part < MSH_PART_COUNT; part++) {
-        size_t from = scan->part[part].from;
-        size_t to = scan->part[part].to;
-        if (to > from) {
-            TRY(write_all(copy, bytes->data + from, to - from, error));
+        const struct msh_rewritten *rewritten = &scan->rewritten[part];
+        bool other = rewritten->text != NULL;
+        const char *data = other ? rewritten->text : bytes->data + scan->part[part].from;
+        size_t size = other ? rewritten->size : scan->part[part].to - scan->part[part].from;
+        if (size > 0) {
+            TRY(write_all(copy, data, size, error));
             TRY(write_all(copy, "\n", 1, error));
         }
     }
@@ -159,6 +161,7 @@ void msh_free(struct msh *msh)
     free(msh->member_idx);
     for (int32_t i = 0; i < msh->group_count; i++) {
         free(msh->groups[i].name);
+        free(msh->groups[i].written);
     }
     free(msh->groups);
     *msh = (struct msh){0};

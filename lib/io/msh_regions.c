@@ -9,7 +9,11 @@
 /* Points of a plane mesh may leave the plane by this part of its extent. */
 #define FLATNESS 1e-9
 
-static const char unnamed[] = "unnamed";
+/* The region of cells in no group: beside others, and where there is none at all. */
+static const char *rest_name(bool alone)
+{
+    return alone ? "body" : "unnamed";
+}
 
 int mesh_element_dim(const struct msh *msh, int64_t element)
 {
@@ -54,7 +58,7 @@ enum status mesh_check_plane(const struct mesh_draft *draft)
 }
 
 /* The names of all regions of the file, "a, b, c", for a message. */
-static void list_regions(const struct mesh_draft *draft, bool some_unnamed, char list[], size_t size)
+static void list_regions(const struct mesh_draft *draft, const char *unnamed, char list[], size_t size)
 {
     size_t used = 0;
     list[0] = '\0';
@@ -64,7 +68,7 @@ static void list_regions(const struct mesh_draft *draft, bool some_unnamed, char
             used += (size_t)snprintf(list + used, size - used, "%s%s", used > 0 ? ", " : "", group->name);
         }
     }
-    if (some_unnamed && used + 1 < size) {
+    if (unnamed != NULL && used + 1 < size) {
         snprintf(list + used, size - used, "%s%s", used > 0 ? ", " : "", unnamed);
     }
 }
@@ -83,16 +87,16 @@ static bool is_listed(const char *list, const char *name)
 }
 
 /* Every item of the list must be a region that is there. */
-static enum status check_wanted(const struct mesh_draft *draft, const char *wanted, bool some_unnamed)
+static enum status check_wanted(const struct mesh_draft *draft, const char *wanted, const char *unnamed)
 {
     const struct msh *msh = draft->msh;
     char present[256];
-    list_regions(draft, some_unnamed, present, sizeof present);
+    list_regions(draft, unnamed, present, sizeof present);
     for (const char *at = wanted; at != NULL; at = strchr(at, ',')) {
         at += *at == ',';
         int length = (int)strcspn(at, ",");
         bool found =
-            some_unnamed && length == (int)strlen(unnamed) && strncmp(at, unnamed, (size_t)length) == 0;
+            unnamed != NULL && length == (int)strlen(unnamed) && strncmp(at, unnamed, (size_t)length) == 0;
         for (int32_t g = 0; g < msh->group_count && !found; g++) {
             found = msh->groups[g].dim == draft->mesh->dim && msh->groups[g].element_count > 0 &&
                     strlen(msh->groups[g].name) == (size_t)length &&
@@ -106,20 +110,100 @@ static enum status check_wanted(const struct mesh_draft *draft, const char *want
     return STATUS_OK;
 }
 
-/* The one group of a cell, or -1 for none. */
-static enum status cell_group(const struct mesh_draft *draft, int64_t element, int32_t *group)
+/* The group of a cell, of several the first; -1 for none. */
+static int32_t cell_group(const struct msh *msh, int64_t element)
 {
-    const struct msh *msh = draft->msh;
     int64_t first = msh->member_ptr[element];
-    int64_t count = msh->member_ptr[element + 1] - first;
-    if (count > 1) {
-        return fail(draft->error, STATUS_INPUT,
-                    "element %lld is in two physical groups, '%s' and '%s': keep it in one",
-                    (long long)msh->element_tag[element], msh->groups[msh->member_idx[first]].name,
-                    msh->groups[msh->member_idx[first + 1]].name);
+    return msh->member_ptr[element + 1] > first ? msh->member_idx[first] : -1;
+}
+
+/* ---- cells that stand twice: in MSH 2 that is how they are in two groups ---- */
+
+#define MOST_NODES 8
+
+struct keyed_cell {
+    int64_t element;
+    int32_t node[MOST_NODES]; /* ascending, -1 fills up */
+};
+
+static int compare_cells(const void *left, const void *right)
+{
+    const struct keyed_cell *a = left;
+    const struct keyed_cell *b = right;
+    for (int k = 0; k < MOST_NODES; k++) {
+        if (a->node[k] != b->node[k]) {
+            return a->node[k] < b->node[k] ? -1 : 1;
+        }
     }
-    *group = count == 1 ? msh->member_idx[first] : -1;
-    return STATUS_OK;
+    return (a->element > b->element) - (a->element < b->element);
+}
+
+static void key_cell(const struct msh *msh, int64_t element, struct keyed_cell *key)
+{
+    int count = 0;
+    key->element = element;
+    memset(key->node, 0xff, sizeof key->node);
+    for (int64_t k = msh->node_ptr[element]; k < msh->node_ptr[element + 1]; k++, count++) {
+        int at = count;
+        for (; at > 0 && key->node[at - 1] > msh->node_idx[k]; at--) {
+            key->node[at] = key->node[at - 1];
+        }
+        key->node[at] = msh->node_idx[k];
+    }
+}
+
+/* is_cell[element]: it is of the mesh's dimension, and the first of those with its nodes. The rest is told,
+ * and so are cells in two groups. */
+static enum status find_cells(struct mesh_draft *draft, bool is_cell[])
+{
+    enum status status;
+    const struct msh *msh = draft->msh;
+    struct keyed_cell *keys = NULL;
+    int64_t count = 0;
+    int64_t again = 0;
+    int64_t twice = 0;
+    TRY(NEW_ARRAY(&keys, msh->element_count, draft->error));
+    for (int64_t e = 0; e < msh->element_count; e++) {
+        is_cell[e] = mesh_element_dim(msh, e) == draft->mesh->dim;
+        if (is_cell[e]) {
+            key_cell(msh, e, &keys[count++]);
+            twice += msh->member_ptr[e + 1] - msh->member_ptr[e] > 1;
+        }
+    }
+    qsort(keys, (size_t)count, sizeof *keys, compare_cells);
+    for (int64_t i = 1; i < count; i++) {
+        if (memcmp(keys[i].node, keys[i - 1].node, sizeof keys[i].node) == 0) {
+            again += is_cell[keys[i].element];
+            is_cell[keys[i].element] = false;
+        }
+    }
+    if (twice > 0) {
+        TRY(mesh_add_note(draft, "cells in two physical groups, taken for the one of the lower tag: %lld",
+                          (long long)twice));
+    }
+    if (again > 0) {
+        TRY(mesh_add_note(draft,
+                          "cells that stand twice, as for a second physical group, taken once, as the first: "
+                          "%lld",
+                          (long long)again));
+    }
+done:
+    free(keys);
+    return status;
+}
+
+/* A note on each name that is not as in the file. */
+static enum status note_names(struct mesh_draft *draft)
+{
+    enum status status = STATUS_OK;
+    for (int32_t g = 0; g < draft->msh->group_count; g++) {
+        const struct msh_group *group = &draft->msh->groups[g];
+        if (group->written != NULL) {
+            TRY(mesh_add_note(draft, "group '%s' is named '%s' here", group->written, group->name));
+        }
+    }
+done:
+    return status;
 }
 
 enum status mesh_pick_regions(struct mesh_draft *draft, const char *wanted, int32_t region_of[])
@@ -128,18 +212,26 @@ enum status mesh_pick_regions(struct mesh_draft *draft, const char *wanted, int3
     const struct msh *msh = draft->msh;
     struct mesh_names *regions = &draft->mesh->regions;
     int32_t *region_of_group = NULL; /* the last is for cells without a group */
-    int64_t without = 0;
+    int64_t *cells_of = NULL;        /* the same: how many cells */
+    bool *is_cell = NULL;
+    int64_t cells = 0;
     TRY(NEW_ARRAY(&region_of_group, msh->group_count + 1, draft->error));
+    TRY(NEW_ARRAY(&cells_of, msh->group_count + 1, draft->error));
+    TRY(NEW_ARRAY(&is_cell, msh->element_count, draft->error));
+    TRY(note_names(draft));
+    TRY(find_cells(draft, is_cell));
     for (int64_t e = 0; e < msh->element_count; e++) {
-        without +=
-            mesh_element_dim(msh, e) == draft->mesh->dim && msh->member_ptr[e + 1] == msh->member_ptr[e];
+        int32_t group = cell_group(msh, e);
+        cells += is_cell[e];
+        cells_of[group >= 0 ? group : msh->group_count] += is_cell[e];
     }
-    TRY(wanted == NULL ? STATUS_OK : check_wanted(draft, wanted, without > 0));
+    int64_t without = cells_of[msh->group_count];
+    const char *unnamed = rest_name(without == cells);
+    TRY(wanted == NULL ? STATUS_OK : check_wanted(draft, wanted, without > 0 ? unnamed : NULL));
     for (int32_t g = 0; g < msh->group_count; g++) {
         const struct msh_group *group = &msh->groups[g];
         region_of_group[g] = -1;
-        if (group->dim == draft->mesh->dim && group->element_count > 0 &&
-            (wanted == NULL || is_listed(wanted, group->name))) {
+        if (cells_of[g] > 0 && (wanted == NULL || is_listed(wanted, group->name))) {
             region_of_group[g] = regions->count;
             TRY(mesh_add_group(regions, group, draft->error));
         }
@@ -155,14 +247,12 @@ enum status mesh_pick_regions(struct mesh_draft *draft, const char *wanted, int3
                           (long long)without));
     }
     for (int64_t e = 0; e < msh->element_count; e++) {
-        int32_t group = -1;
-        region_of[e] = -1;
-        if (mesh_element_dim(msh, e) == draft->mesh->dim) {
-            TRY(cell_group(draft, e, &group));
-            region_of[e] = region_of_group[group >= 0 ? group : msh->group_count];
-        }
+        int32_t group = cell_group(msh, e);
+        region_of[e] = is_cell[e] ? region_of_group[group >= 0 ? group : msh->group_count] : -1;
     }
 done:
     free(region_of_group);
+    free(cells_of);
+    free(is_cell);
     return status;
 }

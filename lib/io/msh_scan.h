@@ -1,4 +1,4 @@
-/* The check of a mesh file that comes before libgmsh sees it: the whole grammar of MSH 2.x, 4.0 and 4.1 is
+/* The check of a mesh file that comes before libgmsh sees it: the whole grammar of MSH 1, 2.x, 4.0 and 4.1 is
  * followed, number by number, so that what libgmsh reads is known to be whole and consistent. (libgmsh 4.8
  * runs as a script what does not begin with $MeshFormat, trusts counts and tags, and takes truncated files
  * for good.) */
@@ -21,12 +21,23 @@ struct msh_name {
 };
 
 struct msh_scan {
-    int version; /* 20..22, 40 or 41: ten times the version of the file */
+    int version; /* 10, 20..22, 40 or 41: ten times the version of the file */
     bool binary;
+    bool partitioned; /* MSH 2: elements name partitions */
     struct {
         size_t from,
             to; /* bytes of the file from "$Name" to the end of "$EndName"; to = 0: not in the file */
     } part[MSH_PART_COUNT];
+    /* What libgmsh is given in place of a part, where text is not NULL: MSH 1 becomes MSH 2.2, and partitions
+     * disappear. */
+    struct msh_rewritten {
+        char *text;
+        size_t size, room;
+    } rewritten[MSH_PART_COUNT];
+    struct {
+        size_t from, to; /* bytes of the file: the entities of each dimension in $Entities */
+    } entities[4];
+    int64_t entity_count[4];
     int64_t node_count;
     int64_t *node_tag; /* node_count, in the order of the file */
     struct msh_index nodes;
@@ -38,6 +49,9 @@ struct msh_scan {
     int64_t name_count;
     struct msh_name *names; /* $PhysicalNames, in the order of the file */
 };
+
+/* How to make a mesh of a file that is none, from its first bytes: ": a VTK file: ...", or "". */
+const char *msh_foreign_hint(const char *bytes, size_t size);
 
 /* Do these first bytes of a file begin a mesh? Call with at least MSH_MAGIC_SIZE bytes, or all there are. */
 #define MSH_MAGIC_SIZE 12

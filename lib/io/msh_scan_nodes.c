@@ -119,8 +119,16 @@ done:
 
 enum status msh_scan_nodes(struct msh_scan *scan, struct msh_cursor *cursor)
 {
+    const char *from = cursor->at;
     cursor->kind = "node";
     enum status status = scan->version < 40 ? scan_nodes2(scan, cursor) : scan_nodes4(scan, cursor);
-    return status == STATUS_OK ? msh_index_make(&scan->nodes, scan->node_count, scan->node_tag, cursor)
-                               : status;
+    if (status == STATUS_OK && scan->version == 10) {
+        TRY(msh_rewrite_text(scan, MSH_NODES, "$Nodes\n", cursor->error));
+        TRY(msh_rewrite(scan, MSH_NODES, from, (size_t)(cursor->at - from), cursor->error));
+        TRY(msh_rewrite_text(scan, MSH_NODES, "\n$EndNodes", cursor->error));
+    }
+    TRY(status);
+    TRY(msh_index_make(&scan->nodes, scan->node_count, scan->node_tag, cursor));
+done:
+    return status;
 }

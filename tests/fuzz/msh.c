@@ -6,12 +6,19 @@
 
 #include <string.h>
 
-static void require_parts(const struct msh_scan *scan, const char *bytes, size_t size)
+static void require_parts(const struct msh_scan *scan, const char *file, size_t file_size)
 {
     static const char *const names[MSH_PART_COUNT] = {"MeshFormat", "PhysicalNames", "Entities", "Nodes",
                                                       "Elements"};
     for (int part = 0; part < MSH_PART_COUNT; part++) {
+        const char *bytes = file;
+        size_t size = file_size;
         size_t from = scan->part[part].from, to = scan->part[part].to, length = strlen(names[part]);
+        if (scan->rewritten[part].text != NULL) {
+            bytes = scan->rewritten[part].text;
+            from = 0;
+            to = size = scan->rewritten[part].size;
+        }
         if (to == 0) {
             continue;
         }

@@ -60,7 +60,7 @@ static int32_t add_node(struct sketch *s, double x, double y, double z)
 /* Groups are to be added in the order of (dim, tag). */
 static int32_t add_group(struct sketch *s, int dim, int tag, const char *name)
 {
-    s->groups[s->msh.group_count] = (struct msh_group){dim, tag, (char *)(uintptr_t)name, 0};
+    s->groups[s->msh.group_count] = (struct msh_group){dim, tag, (char *)(uintptr_t)name, 0, NULL};
     return s->msh.group_count++;
 }
 
@@ -273,7 +273,7 @@ static void mixed_cells_conform(void **state)
         assert_true(fabs(total_volume(&mesh) - (8 + 8 + 8.0 / 3 + 10.0 / 6)) < 1e-12);
         assert_int_equal(boundary_count(&mesh), 2 * 5 + 2 * 2 + 4 + (4 - 1) + 3);
         assert_int_equal(mesh.regions.count, 1);
-        assert_string_equal(mesh.regions.name[0], "unnamed");
+        assert_string_equal(mesh.regions.name[0], "body");
         mesh_free(&mesh);
         free(s);
     }
@@ -450,7 +450,18 @@ static void nodes_at_the_same_place(void **state)
     int32_t twin = add_node(s, 1, 1 + 1e-13, 0);
     s->node_idx[5] = 3;
     ADD(s, TRIANGLE, 0, 3, twin, 0);
-    expect_failure(s, NULL, "nodes 102 and 104 are at the same place");
+    expect_failure(s, NULL, "nodes 102 and 104 are at the same place, in one body");
+    s = square(); /* another triangle on the same side, with nodes of its own: two bodies */
+    int32_t a = add_node(s, 0, 0, 0);
+    int32_t b = add_node(s, 1, 0, 0);
+    int32_t c = add_node(s, 0.5, -1, 0);
+    ADD(s, TRIANGLE, 0, a, b, c);
+    struct mesh two = build(s, NULL);
+    assert_int_equal(two.cell_count, 3);
+    assert_int_equal(two.notes.count, 1);
+    assert_non_null(strstr(two.notes.name[0], "of different bodies: 2 pairs"));
+    mesh_free(&two);
+    free(s);
     s = square();
     add_node(s, 1, 1, 0); /* a twin of no cell is no harm */
     struct mesh mesh = build(s, NULL);
@@ -470,16 +481,13 @@ static void cells_that_are_none(void **state)
     ADD(s, TRIANGLE, 0, 0, 0, 1);
     expect_failure(s, NULL, "element 1002 has no area");
     s = square();
-    ADD(s, TRIANGLE, 0, 2, 0, 1);
-    expect_failure(s, NULL, "elements 1000 and 1002 overlap");
-    s = square();
     s->x[3 * 3] =
         2; /* the fourth corner goes beyond the diagonal: the second triangle folds onto the first */
     s->x[3 * 3 + 1] = 0.5;
     expect_failure(s, NULL, "elements 1000 and 1001 overlap: one is inverted");
     s = square();
     int32_t other = add_group(s, 2, 2, "other");
-    ADD(s, TRIANGLE, other, 0, 1, 2);
+    ADD(s, TRIANGLE, other, 0, 1, add_node(s, 0.9, 0.1, 0));
     expect_failure(s, NULL, "elements 1000 ('body') and 1002 ('other') overlap");
     s = sketch_new();
     for (int i = 0; i < 4; i++) {
@@ -496,7 +504,32 @@ static void cells_in_two_groups(void **state)
     int32_t other = add_group(s, 2, 2, "other");
     s->member_idx[s->member_ptr[2]++] = other;
     s->groups[other].element_count++;
-    expect_failure(s, NULL, "element 1001 is in two physical groups, 'body' and 'other'");
+    struct mesh mesh = build(s, NULL);
+    assert_int_equal(mesh.regions.count, 1);
+    assert_int_equal(mesh.cell_count, 2);
+    assert_int_equal(mesh.notes.count, 1);
+    assert_non_null(
+        strstr(mesh.notes.name[0], "cells in two physical groups, taken for the one of the lower"));
+    mesh_free(&mesh);
+    free(s);
+}
+
+/* In MSH 2 a cell of two groups stands twice. */
+static void cells_that_stand_twice(void **state)
+{
+    (void)state;
+    struct sketch *s = square();
+    int32_t other = add_group(s, 2, 2, "other");
+    ADD(s, TRIANGLE, other, 2, 0, 1);
+    ADD(s, TRIANGLE, 0, 1, 2, 0);
+    struct mesh mesh = build(s, NULL);
+    assert_int_equal(mesh.regions.count, 1);
+    assert_int_equal(mesh.cell_count, 2);
+    assert_int_equal(mesh.notes.count, 1);
+    assert_non_null(strstr(mesh.notes.name[0], "cells that stand twice"));
+    assert_non_null(strstr(mesh.notes.name[0], "as the first: 2"));
+    mesh_free(&mesh);
+    free(s);
 }
 
 static void names_that_are_none(void **state)
@@ -524,6 +557,7 @@ int main(void)
         cmocka_unit_test(nodes_at_the_same_place),
         cmocka_unit_test(cells_that_are_none),
         cmocka_unit_test(cells_in_two_groups),
+        cmocka_unit_test(cells_that_stand_twice),
         cmocka_unit_test(names_that_are_none),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -44,8 +44,10 @@ static enum status try_build(struct error *error)
     static int64_t member_ptr[6] = {0, 1, 1, 2, 3, 4};
     static int32_t member_idx[4] = {3, 1, 2, 0};
     static char names[4][8] = {"corner", "side", "between", "body"};
-    struct msh_group groups[4] = {
-        {0, 1, names[0], 1}, {1, 1, names[1], 1}, {1, 2, names[2], 1}, {2, 1, names[3], 1}};
+    struct msh_group groups[4] = {{0, 1, names[0], 1, NULL},
+                                  {1, 1, names[1], 1, NULL},
+                                  {1, 2, names[2], 1, NULL},
+                                  {2, 1, names[3], 1, NULL}};
     struct msh msh = {7,        x,        node_tag,   5,          element_tag, type,
                       node_ptr, node_idx, member_ptr, member_idx, 4,           groups};
     struct mesh mesh;

@@ -1,0 +1,269 @@
+#include "approx/parts.h"
+
+#include "base/memory.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* ---- sets that are joined: each item points to an earlier one of its set, or to itself ---- */
+
+static int32_t root_of(int32_t parent[], int32_t item)
+{
+    while (parent[item] != item) {
+        parent[item] = parent[parent[item]];
+        item = parent[item];
+    }
+    return item;
+}
+
+static void join(int32_t parent[], int32_t a, int32_t b)
+{
+    a = root_of(parent, a);
+    b = root_of(parent, b);
+    parent[a > b ? a : b] = a > b ? b : a;
+}
+
+struct part {
+    double size;
+    int32_t root;
+};
+
+static int compare_parts(const void *left, const void *right)
+{
+    const struct part *a = left;
+    const struct part *b = right;
+    return a->size != b->size ? (a->size < b->size) - (a->size > b->size)
+                              : (a->root > b->root) - (a->root < b->root);
+}
+
+/* Number the sets by falling size: part[item] from parent[item]. */
+static enum status number_parts(int64_t items, int32_t parent[], const double size[], int32_t *part,
+                                int32_t *count, struct error *error)
+{
+    enum status status = STATUS_OK;
+    struct part *parts = NULL;
+    int32_t *place = NULL; /* of a root: its place among the parts, then its number */
+    *count = 0;
+    TRY(NEW_ARRAY(&parts, items, error));
+    TRY(NEW_ARRAY(&place, items, error));
+    for (int64_t i = 0; i < items; i++) {
+        int32_t root = root_of(parent, (int32_t)i);
+        if (root == i) {
+            place[i] = *count;
+            parts[(*count)++].root = root;
+        }
+        parts[place[root]].size += size[i];
+    }
+    qsort(parts, (size_t)*count, sizeof *parts, compare_parts);
+    for (int32_t p = 0; p < *count; p++) {
+        place[parts[p].root] = p;
+    }
+    for (int64_t i = 0; i < items; i++) {
+        part[i] = place[root_of(parent, (int32_t)i)];
+    }
+done:
+    free(parts);
+    free(place);
+    return status;
+}
+
+static enum status parts_begin(int64_t items, int32_t **parent, double **size, struct error *error)
+{
+    enum status status;
+    TRY(NEW_ARRAY(parent, items, error));
+    TRY(NEW_ARRAY(size, items, error));
+    for (int64_t i = 0; i < items; i++) {
+        (*parent)[i] = (int32_t)i;
+    }
+done:
+    return status;
+}
+
+enum status cells_parts(const struct cells *cells, int32_t *part, int32_t *count, struct error *error)
+{
+    enum status status;
+    struct faces faces = {0};
+    int32_t *parent = NULL;
+    double *volume = NULL;
+    TRY(parts_begin(cells->count, &parent, &volume, error));
+    TRY(faces_build(cells, false, &faces, error));
+    for (int64_t f = 0; f < faces.count; f++) {
+        if (faces.cell[2 * f + 1] >= 0) {
+            join(parent, faces.cell[2 * f], faces.cell[2 * f + 1]);
+        }
+    }
+    for (int64_t c = 0; c < cells->count; c++) {
+        volume[c] = cell_volume(cells, c);
+    }
+    TRY(number_parts(cells->count, parent, volume, part, count, error));
+done:
+    faces_free(&faces);
+    free(parent);
+    free(volume);
+    return status;
+}
+
+/* ---- sides ---- */
+
+/* An edge of a facet (in 2D a node of it, the second is -1). */
+struct edge {
+    int32_t node[2];
+    int32_t facet;
+};
+
+static int compare_edges(const void *left, const void *right)
+{
+    const struct edge *a = left;
+    const struct edge *b = right;
+    for (int k = 0; k < 2; k++) {
+        if (a->node[k] != b->node[k]) {
+            return a->node[k] < b->node[k] ? -1 : 1;
+        }
+    }
+    return (a->facet > b->facet) - (a->facet < b->facet);
+}
+
+static bool same_edge(const struct edge *a, const struct edge *b)
+{
+    return a->node[0] == b->node[0] && a->node[1] == b->node[1];
+}
+
+static void list_edges(const struct faces *boundary, struct edge *edges)
+{
+    int dim = boundary->dim;
+    for (int64_t i = 0; i < boundary->count * dim; i++) {
+        int64_t facet = i / dim;
+        int32_t a = boundary->node[i];
+        int32_t b = dim == 2 ? -1 : boundary->node[facet * dim + (i + 1) % dim];
+        bool swap = dim == 3 && a > b;
+        edges[i] = (struct edge){{swap ? b : a, swap ? a : b}, (int32_t)facet};
+    }
+    qsort(edges, (size_t)(boundary->count * dim), sizeof *edges, compare_edges);
+}
+
+static double cosine(int dim, const double *a, const double *b)
+{
+    double ab = 0;
+    double aa = 0;
+    double bb = 0;
+    for (int k = 0; k < dim; k++) {
+        ab += a[k] * b[k];
+        aa += a[k] * a[k];
+        bb += b[k] * b[k];
+    }
+    return ab / sqrt(aa * bb);
+}
+
+enum status boundary_sides(const double *x, const struct faces *boundary, double degrees, int32_t *part,
+                           int32_t *count, struct error *error)
+{
+    enum status status;
+    int dim = boundary->dim;
+    int64_t edge_count = boundary->count * dim;
+    double least = cos(degrees * acos(-1) / 180) - 1e-12;
+    struct edge *edges = NULL;
+    int32_t *parent = NULL;
+    double *area = NULL;
+    double *normal = NULL;
+    TRY(parts_begin(boundary->count, &parent, &area, error));
+    TRY(NEW_ARRAY(&normal, boundary->count * dim, error));
+    TRY(NEW_ARRAY(&edges, edge_count, error));
+    for (int64_t f = 0; f < boundary->count; f++) {
+        double square = 0;
+        face_area_vector(dim, x, &boundary->node[f * dim], &normal[f * dim]);
+        for (int k = 0; k < dim; k++) {
+            square += normal[f * dim + k] * normal[f * dim + k];
+        }
+        area[f] = sqrt(square);
+    }
+    list_edges(boundary, edges);
+    for (int64_t first = 0, end; first < edge_count; first = end) {
+        for (end = first + 1; end < edge_count && same_edge(&edges[end], &edges[first]); end++) {
+        }
+        int32_t a = edges[first].facet;
+        int32_t b = edges[end - 1].facet;
+        if (end - first == 2 && cosine(dim, &normal[(int64_t)a * dim], &normal[(int64_t)b * dim]) >= least) {
+            join(parent, a, b);
+        }
+    }
+    TRY(number_parts(boundary->count, parent, area, part, count, error));
+done:
+    free(parent);
+    free(area);
+    free(normal);
+    free(edges);
+    return status;
+}
+
+/* ---- rings ---- */
+
+/* node_chosen[] = the nodes of chosen items. */
+static void mark_nodes(int64_t count, int corners, const int32_t *item, const bool *chosen, bool *node_chosen)
+{
+    for (int64_t i = 0; i < count; i++) {
+        for (int k = 0; k < corners && chosen[i]; k++) {
+            node_chosen[item[i * corners + k]] = true;
+        }
+    }
+}
+
+/* chosen[] = items with a chosen node. */
+static void mark_items(int64_t count, int corners, const int32_t *item, const bool *node_chosen, bool *chosen)
+{
+    for (int64_t i = 0; i < count; i++) {
+        for (int k = 0; k < corners; k++) {
+            chosen[i] = chosen[i] || node_chosen[item[i * corners + k]];
+        }
+    }
+}
+
+/* Shrinking a choice is growing what is not chosen. */
+static void invert(int64_t count, bool *chosen)
+{
+    for (int64_t i = 0; i < count; i++) {
+        chosen[i] = !chosen[i];
+    }
+}
+
+enum status items_grow(int64_t count, int corners, const int32_t *item, int64_t node_count, int rings,
+                       bool *chosen, struct error *error)
+{
+    enum status status;
+    bool *node_chosen = NULL;
+    TRY(NEW_ARRAY(&node_chosen, node_count, error));
+    if (rings < 0) {
+        invert(count, chosen);
+    }
+    for (int ring = 0; ring < abs(rings); ring++) {
+        mark_nodes(count, corners, item, chosen, node_chosen);
+        mark_items(count, corners, item, node_chosen, chosen);
+    }
+    if (rings < 0) {
+        invert(count, chosen);
+    }
+done:
+    free(node_chosen);
+    return status;
+}
+
+enum status nodes_grow(int64_t count, int corners, const int32_t *item, int64_t node_count, int rings,
+                       bool *chosen, struct error *error)
+{
+    enum status status;
+    bool *item_chosen = NULL;
+    TRY(NEW_ARRAY(&item_chosen, count, error));
+    if (rings < 0) {
+        invert(node_count, chosen);
+    }
+    for (int ring = 0; ring < abs(rings); ring++) {
+        mark_items(count, corners, item, chosen, item_chosen);
+        mark_nodes(count, corners, item, item_chosen, chosen);
+    }
+    if (rings < 0) {
+        invert(node_count, chosen);
+    }
+done:
+    free(item_chosen);
+    return status;
+}

@@ -1,0 +1,29 @@
+/* Connected parts of a body and of its boundary, and rings around a choice of facets, cells or nodes. */
+#ifndef APPROX_PARTS_H
+#define APPROX_PARTS_H
+
+#include "approx/cells.h"
+
+/* part[cells->count]: the connected body of each cell; cells with a common face are of one body, cells that
+ * share no more than an edge or a node are not. Bodies are numbered from 0 by falling volume. */
+MUST_CHECK enum status cells_parts(const struct cells *cells, int32_t *part, int32_t *count,
+                                   struct error *error);
+
+/* part[boundary->count]: the side of each facet of the boundary. Facets with a common edge (2D: node) are of
+ * one side if the outward normals differ by at most `degrees` there; at 180 sides are the connected surfaces.
+ * Facets that meet at an edge of more than two facets are not joined there. Sides are numbered from 0 by
+ * falling area. */
+MUST_CHECK enum status boundary_sides(const double *x, const struct faces *boundary, double degrees,
+                                      int32_t *part, int32_t *count, struct error *error);
+
+/* Grow a choice of items of `corners` nodes each by the items that share a node with a chosen one, `rings`
+ * times; or, with `rings` negative, shrink it by the items that share a node with one that is not chosen.
+ * item[count * corners] indexes node_count nodes. */
+MUST_CHECK enum status items_grow(int64_t count, int corners, const int32_t *item, int64_t node_count,
+                                  int rings, bool *chosen, struct error *error);
+
+/* The same for a choice of nodes, chosen[node_count]: nodes that share an item. */
+MUST_CHECK enum status nodes_grow(int64_t count, int corners, const int32_t *item, int64_t node_count,
+                                  int rings, bool *chosen, struct error *error);
+
+#endif

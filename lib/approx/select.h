@@ -1,0 +1,56 @@
+/* Choosing nodes, facets and cells by where they are. */
+#ifndef APPROX_SELECT_H
+#define APPROX_SELECT_H
+
+#include "base/status.h"
+
+#include <stdbool.h>
+#include <stdint.h>
+
+/* Nodes (corners = 1), facets or cells: item[count * corners] indexes x[... * dim]. */
+struct items {
+    int dim;
+    int64_t count;
+    int corners;
+    const int32_t *item;
+    const double *x;
+};
+
+/* Parts of space; all contain their boundary. */
+struct shape {
+    enum shape_kind {
+        SHAPE_BOX,  /* a: low corner, b: high corner */
+        SHAPE_BALL, /* a: centre, size: radius */
+        SHAPE_HALF, /* the side of the plane through a to which b points */
+        SHAPE_PLANE /* within `size` of the plane through a with the normal b, on either side */
+    } kind;
+    double a[3], b[3];
+    double size;
+    double slack; /* how far beyond its boundary a point may lie, for round-off, m */
+};
+
+/* Mean of the corners of an item. */
+void item_centre(const struct items *items, int64_t item, double *centre);
+
+/* chosen[items->count]: those whose centre lies in the shape; for SHAPE_PLANE those with all corners in it.
+ */
+void items_in_shape(const struct items *items, const struct shape *shape, bool *chosen);
+
+/* chosen[items->count]: facets (corners = dim) whose outward normal is within `degrees` of a direction. */
+void items_facing(const struct items *items, const double *direction, double degrees, bool *chosen);
+
+/* Pieces to be near to: points (corners = 1), segments (2) or triangles (3) in dim dimensions. */
+struct pieces {
+    int dim, corners;
+    int64_t count;
+    const double *x; /* count * corners * dim, m */
+};
+
+/* chosen[items->count]: those whose centre is within `reach` (positive, m) of a piece. */
+MUST_CHECK enum status items_near(const struct items *items, const struct pieces *pieces, double reach,
+                                  bool *chosen, struct error *error);
+
+/* Distance of a point to a piece, m. */
+double piece_distance(const struct pieces *pieces, int64_t piece, const double *point);
+
+#endif

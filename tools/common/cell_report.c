@@ -1,0 +1,53 @@
+#include "cell_report.h"
+
+#include "approx/parts.h"
+#include "base/memory.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+
+static int compare_values(const void *left, const void *right)
+{
+    double a = *(const double *)left;
+    double b = *(const double *)right;
+    return (a > b) - (a < b);
+}
+
+enum status cell_report_make(const struct cells *cells, double bound, struct cell_report *report,
+                             struct error *error)
+{
+    enum status status;
+    int32_t *part = NULL;
+    double *quality = NULL;
+    *report = (struct cell_report){0};
+    TRY(NEW_ARRAY(&part, cells->count, error));
+    TRY(cells_parts(cells, part, &report->bodies, error));
+    free(part);
+    part = NULL;
+    TRY(NEW_ARRAY(&quality, cells->count, error));
+    for (int64_t c = 0; c < cells->count; c++) {
+        quality[c] = cell_quality(cells, c);
+        report->volume += cell_volume(cells, c);
+    }
+    qsort(quality, (size_t)cells->count, sizeof *quality, compare_values);
+    report->least_median[0] = cells->count > 0 ? quality[0] : 0;
+    report->least_median[1] = cells->count > 0 ? quality[cells->count / 2] : 0;
+    report->poor = cells_poorest(cells, bound, CELL_REPORT_MOST, report->poorest);
+    report->listed = report->poor < CELL_REPORT_MOST ? (int)report->poor : CELL_REPORT_MOST;
+done:
+    free(part);
+    free(quality);
+    return status;
+}
+
+const char *cell_report_describe(const struct cells *cells, const struct poor_cell *poor, char text[128])
+{
+    double centre[3];
+    cell_centroid(cells, poor->cell, centre);
+    int length = snprintf(text, 128, "quality %.2g at", poor->quality);
+    for (int k = 0; k < cells->dim; k++) {
+        length += snprintf(text + length, (size_t)(128 - length), " %.4g", centre[k]);
+    }
+    snprintf(text + length, (size_t)(128 - length), " m");
+    return text;
+}

@@ -1,0 +1,27 @@
+/* What is told of the background cells of a body: connected bodies and poor cells. */
+#ifndef TOOLS_CELL_REPORT_H
+#define TOOLS_CELL_REPORT_H
+
+#include "approx/cells.h"
+#include "approx/quality.h"
+
+/* The most cells that are told one by one. */
+#define CELL_REPORT_MOST 10
+
+struct cell_report {
+    int32_t bodies;         /* connected bodies, see cells_parts */
+    double volume;          /* m3; in 2D area, m2 */
+    double least_median[2]; /* least and median quality */
+    int64_t poor;           /* cells below the bound; the poorest of them: */
+    int listed;
+    struct poor_cell poorest[CELL_REPORT_MOST];
+};
+
+/* Cells of quality below `bound` are listed. */
+MUST_CHECK enum status cell_report_make(const struct cells *cells, double bound, struct cell_report *report,
+                                        struct error *error);
+
+/* "quality 3.1e-05 at 0.01 0.02 0.03 m" of a poor cell. */
+const char *cell_report_describe(const struct cells *cells, const struct poor_cell *poor, char text[128]);
+
+#endif

@@ -1,0 +1,449 @@
+#include "group_body.h"
+
+#include "names.h"
+#include "views.h"
+
+#include "base/box.h"
+#include "base/memory.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+const char *const group_kind_names[GROUP_KINDS] = {"facets", "nodes", "region"};
+
+/* ---- lists ---- */
+
+int64_t group_find(const struct group_list *list, const char *name)
+{
+    for (int64_t g = 0; g < list->count; g++) {
+        if (strcmp(list->group[g].name, name) == 0) {
+            return g;
+        }
+    }
+    return -1;
+}
+
+void group_remove(struct group_list *list, int64_t index)
+{
+    free(list->group[index].name);
+    free(list->group[index].item);
+    list->count--;
+    memmove(&list->group[index], &list->group[index + 1],
+            (size_t)(list->count - index) * sizeof *list->group);
+    list->changed = true;
+}
+
+/* Append an empty group. */
+static enum status add_group(struct group_list *list, const char *name, size_t length, struct error *error)
+{
+    struct group *grown = array_grow(list->group, list->count + 1, sizeof *grown);
+    if (grown == NULL) {
+        return fail_memory(error, "groups");
+    }
+    list->group = grown;
+    grown[list->count] = (struct group){.name = strndup(name, length)};
+    if (grown[list->count].name == NULL) {
+        return fail_memory(error, "groups");
+    }
+    list->count++;
+    return STATUS_OK;
+}
+
+/* The groups that a section names, all empty. */
+static enum status add_named(struct group_list *list, const struct section *section, struct error *error)
+{
+    enum status status;
+    char *names = NULL;
+    TRY(names_of_section(section, &names, error));
+    for (const char *at = names; *at != '\0';) {
+        size_t length = strcspn(at, ",");
+        TRY(add_group(list, at, length, error));
+        at += length + (at[length] == ',');
+    }
+done:
+    free(names);
+    return status;
+}
+
+/* Sort items by the group that of_group[] names: those of group g in the order of the section. */
+static enum status sort_items(struct group_list *list, const struct section *section, const int32_t *item,
+                              struct error *error)
+{
+    enum status status = STATUS_OK;
+    const int32_t *of_group = section->data;
+    for (int64_t i = 0; i < section->rows; i++) {
+        if (of_group[i] < 0 || of_group[i] >= list->count) {
+            return fail(error, STATUS_INPUT, "%s: row %lld: no name %d in names=", section->name,
+                        (long long)i, of_group[i]);
+        }
+        list->group[of_group[i]].count++;
+    }
+    for (int64_t g = 0; g < list->count; g++) {
+        TRY(NEW_ARRAY(&list->group[g].item, list->group[g].count, error));
+        list->group[g].count = 0;
+    }
+    for (int64_t i = 0; i < section->rows; i++) {
+        struct group *group = &list->group[of_group[i]];
+        group->item[group->count++] = item != NULL ? item[i] : (int32_t)i;
+    }
+done:
+    return status;
+}
+
+/* ---- reading ---- */
+
+struct keyed {
+    int32_t key[3];
+    int32_t facet;
+};
+
+static int compare_keys(const void *left, const void *right)
+{
+    const struct keyed *a = left;
+    const struct keyed *b = right;
+    for (int k = 0; k < 3; k++) {
+        if (a->key[k] != b->key[k]) {
+            return a->key[k] < b->key[k] ? -1 : 1;
+        }
+    }
+    return 0;
+}
+
+/* facet[rows]: the boundary's facet that each row of `facets` is; the boundary takes over its order of nodes,
+ * so that unchanged groups are written as they were. */
+static enum status find_facets(struct group_body *body, const struct named_facets *named, int32_t *facet,
+                               struct error *error)
+{
+    enum status status;
+    struct faces *boundary = &body->boundary;
+    int dim = boundary->dim;
+    struct keyed *keyed = NULL;
+    TRY(NEW_ARRAY(&keyed, boundary->count, error));
+    for (int64_t f = 0; f < boundary->count; f++) {
+        face_key(dim, &boundary->node[f * dim], keyed[f].key);
+        keyed[f].facet = (int32_t)f;
+    }
+    qsort(keyed, (size_t)boundary->count, sizeof *keyed, compare_keys);
+    for (int64_t i = 0; i < named->count; i++) {
+        struct keyed wanted = {0};
+        face_key(dim, &named->facet[i * dim], wanted.key);
+        const struct keyed *found =
+            bsearch(&wanted, keyed, (size_t)boundary->count, sizeof *keyed, compare_keys);
+        if (found == NULL) {
+            status = fail(error, STATUS_INPUT,
+                          "facets: row %lld: no face of exactly one cell: run nodes again", (long long)i);
+            goto done;
+        }
+        facet[i] = found->facet;
+        memcpy(&boundary->node[(int64_t)found->facet * dim], &named->facet[i * dim],
+               (size_t)dim * sizeof *named->facet);
+    }
+done:
+    free(keyed);
+    return status;
+}
+
+static enum status read_facets(const struct stream *stream, struct group_body *body, struct error *error)
+{
+    enum status status;
+    struct named_facets named;
+    int32_t *facet = NULL;
+    TRY(stream_facets(stream, false, body->cells.dim, &named, error));
+    if (named.count == 0) {
+        return STATUS_OK;
+    }
+    TRY(NEW_ARRAY(&facet, named.count, error));
+    TRY(find_facets(body, &named, facet, error));
+    TRY(add_named(&body->groups[GROUP_FACETS], stream_find(stream, "facets.set"), error));
+    TRY(sort_items(&body->groups[GROUP_FACETS], stream_find(stream, "facets.set"), facet, error));
+done:
+    free(facet);
+    return status;
+}
+
+static enum status read_sets(const struct stream *stream, struct group_body *body, struct error *error)
+{
+    enum status status;
+    struct group_list *list = &body->groups[GROUP_NODES];
+    struct neighbours sets;
+    const struct section *ptr = stream_find(stream, "sets.ptr");
+    if (ptr == NULL) {
+        return STATUS_OK;
+    }
+    TRY(add_named(list, ptr, error));
+    TRY(stream_neighbours(stream, "sets", list->count, body->cells.node_count, &sets, error));
+    for (int64_t g = 0; g < list->count; g++) {
+        struct group *group = &list->group[g];
+        TRY(NEW_ARRAY(&group->item, sets.ptr[g + 1] - sets.ptr[g], error));
+        for (int64_t i = sets.ptr[g]; i < sets.ptr[g + 1]; i++) {
+            group->item[group->count++] = sets.idx[i];
+        }
+    }
+done:
+    return status;
+}
+
+static enum status read_regions(const struct stream *stream, struct group_body *body, struct error *error)
+{
+    enum status status = STATUS_OK;
+    const struct section *section = stream_find(stream, "cells.region");
+    if (section == NULL || body->cells.count == 0) {
+        return STATUS_OK;
+    }
+    TRY(stream_need(stream, "cells.region", TYPE_I4, 1, "nodes", &section, error));
+    if (section->rows != body->cells.count) {
+        return fail(error, STATUS_INPUT, "cells.region: not one row per cell");
+    }
+    TRY(add_named(&body->groups[GROUP_REGION], section, error));
+    TRY(sort_items(&body->groups[GROUP_REGION], section, NULL, error));
+done:
+    return status;
+}
+
+enum status group_body_read(const struct stream *stream, struct group_body *body, struct error *error)
+{
+    enum status status;
+    *body = (struct group_body){0};
+    struct cells *cells = &body->cells;
+    TRY(stream_cells(stream, false, cells, error));
+    TRY(NEW_ARRAY(&body->node, cells->node_count, error));
+    for (int64_t n = 0; n < cells->node_count; n++) {
+        body->node[n] = (int32_t)n;
+    }
+    struct box box = box_of(cells->dim, cells->node_count, cells->x);
+    body->diagonal = box_diagonal(&box);
+    body->items[GROUP_NODES] = (struct items){cells->dim, cells->node_count, 1, body->node, cells->x};
+    if (cells->count > 0) {
+        TRY(faces_build(cells, true, &body->boundary, error));
+        TRY(read_facets(stream, body, error));
+        TRY(read_regions(stream, body, error));
+    }
+    TRY(read_sets(stream, body, error));
+    body->items[GROUP_FACETS] =
+        (struct items){cells->dim, body->boundary.count, cells->dim, body->boundary.node, cells->x};
+    body->items[GROUP_REGION] =
+        (struct items){cells->dim, cells->count, cells->dim + 1, cells->node, cells->x};
+done:
+    return status;
+}
+
+void group_body_free(struct group_body *body)
+{
+    faces_free(&body->boundary);
+    free(body->node);
+    for (int kind = 0; kind < GROUP_KINDS; kind++) {
+        struct group_list *list = &body->groups[kind];
+        while (list->count > 0) {
+            group_remove(list, list->count - 1);
+        }
+        free(list->group);
+    }
+    *body = (struct group_body){0};
+}
+
+/* ---- changing ---- */
+
+enum status group_check_name(const char *name, struct error *error)
+{
+    static const char *const words[] = {"all", "boundary", "and", "or", "without"};
+    if (name[0] == '\0') {
+        return fail(error, STATUS_INPUT, "the name is empty");
+    }
+    for (const char *c = name; *c != '\0'; c++) {
+        if ((unsigned char)*c <= ' ' || *c == 127 || strchr(",\"=:", *c) != NULL) {
+            return fail(error, STATUS_INPUT, "'%.60s': no blanks, commas, quotes, colons in names", name);
+        }
+    }
+    for (size_t i = 0; i < sizeof words / sizeof *words; i++) {
+        if (strcmp(name, words[i]) == 0) {
+            return fail(error, STATUS_INPUT, "'%s' is a word of the expressions: take another name", name);
+        }
+    }
+    return STATUS_OK;
+}
+
+/* Cells of a new region leave the one they were in. */
+static void take_cells(struct group_list *regions, const bool *chosen)
+{
+    for (int64_t g = 0; g < regions->count; g++) {
+        struct group *group = &regions->group[g];
+        int64_t kept = 0;
+        for (int64_t i = 0; i < group->count; i++) {
+            if (!chosen[group->item[i]]) {
+                group->item[kept++] = group->item[i];
+            }
+        }
+        group->count = kept;
+    }
+}
+
+enum status group_put(struct group_body *body, enum group_kind kind, const char *name, const bool *chosen,
+                      const char *expression, struct error *error)
+{
+    enum status status = STATUS_OK;
+    struct group_list *list = &body->groups[kind];
+    int64_t place = group_find(list, name);
+    int64_t count = 0;
+    int32_t *item = NULL;
+    for (int64_t i = 0; i < body->items[kind].count; i++) {
+        count += chosen[i];
+    }
+    TRY(NEW_ARRAY(&item, count, error));
+    count = 0;
+    for (int64_t i = 0; i < body->items[kind].count; i++) {
+        if (chosen[i]) {
+            item[count++] = (int32_t)i;
+        }
+    }
+    if (place < 0) {
+        place = list->count;
+        TRY(add_group(list, name, strlen(name), error));
+    }
+    if (kind == GROUP_REGION) {
+        take_cells(list, chosen);
+    }
+    struct group *group = &list->group[place];
+    free(group->item);
+    group->item = item;
+    group->count = count;
+    group->expression = expression;
+    list->changed = true;
+    item = NULL;
+done:
+    free(item);
+    return status;
+}
+
+/* ---- writing ---- */
+
+/* "names=a,b" of the groups, allocated. */
+static enum status names_attribute(const struct group_list *list, char **text, struct error *error)
+{
+    size_t size = sizeof "names=";
+    for (int64_t g = 0; g < list->count; g++) {
+        size += strlen(list->group[g].name) + 1;
+    }
+    enum status status = NEW_ARRAY(text, (int64_t)size, error);
+    char *at = status == STATUS_OK ? stpcpy(*text, "names=") : NULL;
+    for (int64_t g = 0; g < list->count && at != NULL; g++) {
+        at = stpcpy(stpcpy(at, g > 0 ? "," : ""), list->group[g].name);
+    }
+    return status;
+}
+
+static int64_t item_count(const struct group_list *list)
+{
+    int64_t sum = 0;
+    for (int64_t g = 0; g < list->count; g++) {
+        sum += list->group[g].count;
+    }
+    return sum;
+}
+
+static enum status write_facets(const struct group_body *body, struct stream *stream, struct error *error)
+{
+    enum status status = STATUS_OK;
+    const struct group_list *list = &body->groups[GROUP_FACETS];
+    int dim = body->boundary.dim;
+    int64_t count = item_count(list);
+    int64_t at = 0;
+    int32_t *node = NULL;
+    int32_t *set = NULL;
+    char *names = NULL;
+    if (count == 0) {
+        stream_remove(stream, "facets");
+        stream_remove(stream, "facets.set");
+        return STATUS_OK;
+    }
+    TRY(NEW_ARRAY(&node, count * dim, error));
+    TRY(NEW_ARRAY(&set, count, error));
+    TRY(names_attribute(list, &names, error));
+    for (int64_t g = 0; g < list->count; g++) {
+        for (int64_t i = 0; i < list->group[g].count; i++, at++) {
+            memcpy(&node[at * dim], &body->boundary.node[(int64_t)list->group[g].item[i] * dim],
+                   (size_t)dim * sizeof *node);
+            set[at] = (int32_t)g;
+        }
+    }
+    status = stream_put(stream, "facets", TYPE_I4, count, dim, "", node, true, error);
+    node = NULL;
+    TRY(status);
+    status = stream_put(stream, "facets.set", TYPE_I4, count, 1, names, set, true, error);
+    set = NULL;
+done:
+    free(node);
+    free(set);
+    free(names);
+    return status;
+}
+
+static enum status write_sets(const struct group_body *body, struct stream *stream, struct error *error)
+{
+    enum status status = STATUS_OK;
+    const struct group_list *list = &body->groups[GROUP_NODES];
+    int64_t count = item_count(list);
+    int64_t *ptr = NULL;
+    int32_t *idx = NULL;
+    char *names = NULL;
+    if (list->count == 0) {
+        stream_remove(stream, "sets.ptr");
+        stream_remove(stream, "sets.idx");
+        return STATUS_OK;
+    }
+    TRY(NEW_ARRAY(&ptr, list->count + 1, error));
+    TRY(NEW_ARRAY(&idx, count, error));
+    TRY(names_attribute(list, &names, error));
+    for (int64_t g = 0; g < list->count; g++) {
+        ptr[g + 1] = ptr[g] + list->group[g].count;
+        memcpy(&idx[ptr[g]], list->group[g].item, (size_t)list->group[g].count * sizeof *idx);
+    }
+    status = stream_put(stream, "sets.ptr", TYPE_I8, list->count + 1, 1, names, ptr, true, error);
+    ptr = NULL;
+    TRY(status);
+    status = stream_put(stream, "sets.idx", TYPE_I4, count, 1, "", idx, true, error);
+    idx = NULL;
+done:
+    free(ptr);
+    free(idx);
+    free(names);
+    return status;
+}
+
+static enum status write_regions(const struct group_body *body, struct stream *stream, struct error *error)
+{
+    enum status status = STATUS_OK;
+    const struct group_list *list = &body->groups[GROUP_REGION];
+    int64_t lacking = body->cells.count - item_count(list);
+    int32_t *region = NULL;
+    char *names = NULL;
+    if (lacking > 0) {
+        return fail(error, STATUS_INPUT,
+                    "%lld of %lld cells belong to no region: give the rest a name, too (-r "
+                    "'NAME=all without region:...')",
+                    (long long)lacking, (long long)body->cells.count);
+    }
+    TRY(NEW_ARRAY(&region, body->cells.count, error));
+    TRY(names_attribute(list, &names, error));
+    for (int64_t g = 0; g < list->count; g++) {
+        for (int64_t i = 0; i < list->group[g].count; i++) {
+            region[list->group[g].item[i]] = (int32_t)g;
+        }
+    }
+    status = stream_put(stream, "cells.region", TYPE_I4, body->cells.count, 1, names, region, true, error);
+    region = NULL;
+done:
+    free(region);
+    free(names);
+    return status;
+}
+
+enum status group_body_write(const struct group_body *body, struct stream *stream, struct error *error)
+{
+    enum status status = STATUS_OK;
+    TRY(body->groups[GROUP_FACETS].changed ? write_facets(body, stream, error) : STATUS_OK);
+    TRY(body->groups[GROUP_NODES].changed ? write_sets(body, stream, error) : STATUS_OK);
+    TRY(body->groups[GROUP_REGION].changed ? write_regions(body, stream, error) : STATUS_OK);
+done:
+    return status;
+}

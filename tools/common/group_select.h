@@ -1,0 +1,13 @@
+/* Expressions that choose facets, nodes or cells, as the program groups takes them (its usage text has the
+ * grammar). */
+#ifndef TOOLS_GROUP_SELECT_H
+#define TOOLS_GROUP_SELECT_H
+
+#include "group_body.h"
+
+/* Evaluate an expression for a kind of items: chosen[body->items[kind].count]. Lengths in it are in `unit`
+ * metres. The message of an error begins with the term that is wrong. */
+MUST_CHECK enum status group_select(const struct group_body *body, enum group_kind kind,
+                                    const char *expression, double unit, bool *chosen, struct error *error);
+
+#endif

@@ -1,0 +1,411 @@
+static const char usage[] =
+    "groups - names for parts of the boundary, node sets and regions\n"
+    "\n"
+    "usage: groups [-u UNIT] [-f NAME=EXPRESSION]... [-n NAME=EXPRESSION]... [-r NAME=EXPRESSION]...\n"
+    "              [-m OLD=NEW]... [-d NAME]... [--replace] [-v] [-t] [-o FILE] [FILE]\n"
+    "\n"
+    "Reads a stream with nodes.x and cells (see nodes) and adds named groups, chosen by place:\n"
+    "facets of the boundary, which the conditions of a scene name; sets of nodes; and regions, which have\n"
+    "materials. The boundary is found from the cells: the mesh needs no names. Options are carried out in\n"
+    "their order: a later one may use the names that an earlier one has made.\n"
+    "\n"
+    "An EXPRESSION is a row of terms with 'or', 'and', 'without' between them, taken from left to right;\n"
+    "behind a term, 'grown:N' or 'shrunk:N' grows or shrinks what is chosen so far by N rings. What would\n"
+    "need brackets gets a name of its own first, which -d deletes in the end.\n"
+    "\n"
+    "Terms, in 3D (in 2D points and directions are of two numbers):\n"
+    "  all                     the whole boundary, all nodes, all cells\n"
+    "  boundary                the boundary; for -n the nodes on it\n"
+    "  box:X0,Y0,Z0,X1,Y1,Z1   in the box with these low and high corners\n"
+    "  ball:X,Y,Z,RADIUS       in the ball\n"
+    "  half:X,Y,Z,NX,NY,NZ     beyond the plane through a point, on the side that the direction points to\n"
+    "  plane:X,Y,Z,NX,NY,NZ[,DISTANCE]  in that plane, all corners within a distance of it (default 1e-6\n"
+    "                          of the body's diagonal)\n"
+    "  low:AXIS,PART%          within that part of the body's box from its low end along x, y or z, or\n"
+    "  high:AXIS,PART%         from its high end; the axis 'long' is that of the longest side\n"
+    "  near:DISTANCE,FILE      within a distance of the points of a table (rows of coordinates)\n"
+    "  along:DISTANCE,FILE     within a distance of a surface: STL, or a table of triangles (rows of nine\n"
+    "                          numbers); in 2D curves (rows of points, blank lines between)\n"
+    "  normal:NX,NY,NZ,DEGREES facets whose outward normal is within that angle of a direction\n"
+    "  side:K,DEGREES          a side of the boundary, which ends at edges where it turns by more than the\n"
+    "                          angle: the K-th largest (from 1), or, with\n"
+    "  side:X,Y,Z,DEGREES      that nearest to a point; at 180 degrees sides are connected surfaces\n"
+    "  body:K or body:X,Y,Z    a connected body (of cells with common faces), chosen in the same way\n"
+    "  NAME                    the group of that name and of the same kind, or with its kind before it:\n"
+    "  facets:NAME, nodes:NAME, region:NAME   so groups of one kind are made of those of another\n"
+    "A facet or cell lies where its centre lies. Facets and nodes of a region or body are those of its\n"
+    "cells; facets and cells of a set have all nodes in it.\n"
+    "\n"
+    "A selection of nothing and a name that exists already are errors; a new group that overlaps another\n"
+    "that it was not made of is noted. A new region takes its cells from the others; one without cells\n"
+    "loses its name. When facets change, the sections of support and shapefn are left out.\n"
+    "\n"
+    "Options:\n"
+    "  -f, --facets NAME=EXPRESSION  a group of facets of the boundary\n"
+    "  -n, --nodes NAME=EXPRESSION   a set of nodes\n"
+    "  -r, --region NAME=EXPRESSION  a region of cells\n"
+    "  -m, --rename OLD=NEW    rename a group, if need be facets:OLD=NEW, ...\n"
+    "  -d, --delete NAME       delete a group of facets or nodes\n"
+    "      --replace           -f, -n and -r replace groups that exist\n"
+    "  -u, --unit UNIT         unit of lengths in expressions and their files: m (default), cm, mm, um,\n"
+    "                          or a number of metres\n"
+    "  -v, --verbose           report each group on standard error: count, area, box, mean normal\n"
+    "  -t, --text              write text instead of binary\n"
+    "  -o, --output FILE       write to FILE, which appears only when whole\n"
+    "\n"
+    "Examples:\n"
+    "  nodes -u mm liver.msh | groups -f held=low:long,12% -f pushed=high:long,12% -v > liver.mts\n"
+    "  groups -u mm -f 'probe=ball:10,0,42,5 and normal:0,0,1,60' -f 'free=all without probe' < body.mts\n"
+    "  groups -f 'cavity=side:2,180' -r 'tumour=ball:0.01,0,0.03,0.008' -n 'tip=plane:0,0,0.1,0,0,1'\n";
+
+#include "group_body.h"
+#include "group_select.h"
+#include "tool.h"
+
+#include "base/box.h"
+#include "base/memory.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { FACETS, NODES, REGION, RENAME, DELETE, REPLACE, UNIT, VERBOSE, TEXT, OUTPUT, OPTION_COUNT };
+
+/* ---- what the options ask for ---- */
+
+/* One use of an option: "--facets held=low:long,12%" */
+struct request {
+    struct group_body *body;
+    const struct option_use *use;
+    double unit;
+    bool replace;
+};
+
+/* The part of the value before its '=', allocated; *behind receives what follows. */
+static enum status take_name(const struct request *request, char **name, const char **behind,
+                             struct error *error)
+{
+    const char *value = request->use->value;
+    size_t length = strcspn(value, "=");
+    if (value[length] == '\0') {
+        return fail(error, STATUS_INPUT, "lacks its '=': see -h");
+    }
+    *behind = value + length + 1;
+    *name = strndup(value, length);
+    return *name != NULL ? STATUS_OK : fail_memory(error, "a name");
+}
+
+static const char *plural(enum group_kind kind)
+{
+    static const char *const plurals[] = {"facets", "nodes", "cells"};
+    return plurals[kind];
+}
+
+/* "0 0 0 to 0.1 0.1 0.2 m" */
+static const char *describe_box(const struct box *box, char text[128])
+{
+    int length = 0;
+    for (int k = 0; k < 2 * box->dim; k++) {
+        length += snprintf(text + length, (size_t)(128 - length), "%s%.4g ", k == box->dim ? "to " : "",
+                           k < box->dim ? box->low[k] : box->high[k - box->dim]);
+    }
+    snprintf(text + length, (size_t)(128 - length), "m");
+    return text;
+}
+
+static enum status make_group(const struct request *request, enum group_kind kind, struct error *error)
+{
+    enum status status;
+    struct group_body *body = request->body;
+    const struct items *items = &body->items[kind];
+    const char *expression = NULL;
+    char *name = NULL;
+    bool *chosen = NULL;
+    int64_t count = 0;
+    TRY(take_name(request, &name, &expression, error));
+    TRY(group_check_name(name, error));
+    if (body->cells.count == 0 && kind != GROUP_NODES) {
+        status = fail(error, STATUS_INPUT, "the stream has no cells, only nodes can be grouped (-n)");
+        goto done;
+    }
+    if (group_find(&body->groups[kind], name) >= 0 && !request->replace) {
+        status = fail(error, STATUS_INPUT, "there is one of that name already: --replace replaces it");
+        goto done;
+    }
+    TRY(NEW_ARRAY(&chosen, items->count, error));
+    TRY(group_select(body, kind, expression, request->unit, chosen, error));
+    for (int64_t i = 0; i < items->count; i++) {
+        count += chosen[i];
+    }
+    if (count == 0) {
+        struct box box = box_of(body->cells.dim, body->cells.node_count, body->cells.x);
+        char place[128];
+        status = fail(error, STATUS_INPUT, "chooses none of %lld %s; the body's box is %s",
+                      (long long)items->count, plural(kind), describe_box(&box, place));
+        goto done;
+    }
+    TRY(group_put(body, kind, name, chosen, request->use->value, error));
+done:
+    free(chosen);
+    free(name);
+    return status;
+}
+
+/* The one group that "NAME" or "KIND:NAME" means: its kind and place. */
+static enum status find_any(const struct request *request, const char *name, enum group_kind *kind,
+                            int64_t *place, struct error *error)
+{
+    *place = -1;
+    for (int k = 0; k < GROUP_KINDS; k++) {
+        size_t length = strlen(group_kind_names[k]);
+        bool prefixed = strncmp(name, group_kind_names[k], length) == 0 && name[length] == ':';
+        int64_t found = group_find(&request->body->groups[k], prefixed ? name + length + 1 : name);
+        if (found >= 0 && *place >= 0) {
+            return fail(error, STATUS_INPUT, "both %s and %s have that name: write %s:%s or %s:%s",
+                        group_kind_names[*kind], group_kind_names[k], group_kind_names[*kind], name,
+                        group_kind_names[k], name);
+        }
+        if (found >= 0) {
+            *place = found;
+            *kind = (enum group_kind)k;
+        }
+    }
+    return *place >= 0 ? STATUS_OK : fail(error, STATUS_INPUT, "no group of that name: -v lists them");
+}
+
+static enum status rename_group(const struct request *request, struct error *error)
+{
+    enum status status;
+    enum group_kind kind = GROUP_FACETS;
+    int64_t place;
+    const char *after = NULL;
+    char *before = NULL;
+    char *name = NULL;
+    TRY(take_name(request, &before, &after, error));
+    TRY(find_any(request, before, &kind, &place, error));
+    TRY(group_check_name(after, error));
+    struct group_list *list = &request->body->groups[kind];
+    if (group_find(list, after) >= 0) {
+        status = fail(error, STATUS_INPUT, "there is one of the new name already");
+        goto done;
+    }
+    name = strdup(after);
+    if (name == NULL) {
+        status = fail_memory(error, "a name");
+        goto done;
+    }
+    free(list->group[place].name);
+    list->group[place].name = name;
+    list->changed = true;
+done:
+    free(before);
+    return status;
+}
+
+static enum status delete_group(const struct request *request, struct error *error)
+{
+    enum group_kind kind = GROUP_FACETS;
+    int64_t place;
+    enum status status = find_any(request, request->use->value, &kind, &place, error);
+    if (status == STATUS_OK && kind == GROUP_REGION) {
+        return fail(error, STATUS_INPUT, "its cells would belong to nobody: give them another region by -r");
+    }
+    if (status == STATUS_OK) {
+        group_remove(&request->body->groups[kind], place);
+    }
+    return status;
+}
+
+static enum status carry_out(const struct request *request, struct error *error)
+{
+    switch (request->use->name[0]) {
+    case 'f':
+        return make_group(request, GROUP_FACETS, error);
+    case 'n':
+        return make_group(request, GROUP_NODES, error);
+    case 'd':
+        return delete_group(request, error);
+    default:
+        return strcmp(request->use->name, "region") == 0 ? make_group(request, GROUP_REGION, error)
+                                                         : rename_group(request, error);
+    }
+}
+
+/* ---- what came of it ---- */
+
+static void drop_empty_regions(const struct tool *tool, struct group_list *regions)
+{
+    for (int64_t g = regions->count - 1; g >= 0; g--) {
+        if (regions->group[g].count == 0 && regions->changed) {
+            tool_note(tool, "region '%s' has no cells left: its name is dropped", regions->group[g].name);
+            group_remove(regions, g);
+        }
+    }
+}
+
+/* How many facets of a group are marked. */
+static int64_t count_marked(const struct group *group, const bool *marked)
+{
+    int64_t count = 0;
+    for (int64_t i = 0; i < group->count; i++) {
+        count += marked[group->item[i]];
+    }
+    return count;
+}
+
+/* Note which groups have facets in common with a new one that neither was made of the other. */
+static enum status note_overlaps(const struct tool *tool, const struct group_body *body, struct error *error)
+{
+    enum status status;
+    const struct group_list *list = &body->groups[GROUP_FACETS];
+    bool *marked = NULL;
+    TRY(NEW_ARRAY(&marked, body->boundary.count, error));
+    for (int64_t g = 0; g < list->count; g++) {
+        const struct group *fresh = &list->group[g];
+        char others[256] = "";
+        size_t length = 0;
+        for (int64_t i = 0; i < fresh->count && fresh->expression != NULL; i++) {
+            marked[fresh->item[i]] = true;
+        }
+        for (int64_t h = 0; h < list->count && fresh->expression != NULL; h++) {
+            const struct group *other = &list->group[h];
+            bool related =
+                h == g || strstr(fresh->expression, other->name) != NULL ||
+                (other->expression != NULL && (h > g || strstr(other->expression, fresh->name) != NULL));
+            int64_t common = related ? 0 : count_marked(other, marked);
+            if (common > 0 && length < sizeof others - 1) {
+                snprintf(others + length, sizeof others - length, "%s%s (%lld)", length > 0 ? ", " : "",
+                         other->name, (long long)common);
+                length = strlen(others);
+            }
+        }
+        if (length > 0) {
+            tool_note(tool, "facets %s overlap %s: conditions on both would meet twice there", fresh->name,
+                      others);
+        }
+        memset(marked, false, (size_t)body->boundary.count * sizeof *marked);
+    }
+done:
+    free(marked);
+    return status;
+}
+
+/* "facets held: 34, area 0.00012 m2, box 0 0 0 to 0.1 0.1 0 m, mean normal 0 0 -1" */
+static void report(const struct tool *tool, const struct group_body *body, enum group_kind kind,
+                   const struct group *group)
+{
+    static const char *const of_dim[2][2] = {{"length", "area"}, {"area", "volume"}};
+    const struct items *items = &body->items[kind];
+    int dim = items->dim;
+    struct box box = box_of(dim, 0, NULL);
+    double sum[3] = {0};
+    double size = 0;
+    char place[128];
+    char text[512] = "";
+    for (int64_t i = 0; i < group->count; i++) {
+        int32_t item = group->item[i];
+        double normal[3];
+        double square = 0;
+        for (int k = 0; k < items->corners; k++) {
+            box_add(&box, 1, items->x + (int64_t)items->item[item * items->corners + k] * dim);
+        }
+        if (kind == GROUP_REGION) {
+            size += cell_volume(&body->cells, item);
+        } else if (kind == GROUP_FACETS) {
+            face_area_vector(dim, items->x, items->item + (int64_t)item * dim, normal);
+            for (int k = 0; k < dim; k++) {
+                sum[k] += normal[k];
+                square += normal[k] * normal[k];
+            }
+            size += sqrt(square);
+        }
+    }
+    char *at = text;
+    char *end = text + sizeof text;
+    at += snprintf(at, sizeof text, "%lld", (long long)group->count);
+    if (kind != GROUP_NODES) {
+        bool region = kind == GROUP_REGION;
+        int power = dim - !region;
+        at += snprintf(at, (size_t)(end - at), ", %s %.4g m%.0d", of_dim[region][dim - 2], size,
+                       power == 1 ? 0 : power);
+    }
+    at += snprintf(at, (size_t)(end - at), ", box %s%s", describe_box(&box, place),
+                   kind == GROUP_FACETS ? ", mean normal" : "");
+    for (int k = 0; k < dim && kind == GROUP_FACETS; k++) {
+        double share = size > 0 ? sum[k] / size : 0;
+        at += snprintf(at, (size_t)(end - at), " %.3g", fabs(share) < 1e-9 ? 0 : share);
+    }
+    tool_note(tool, "%s %s: %s", group_kind_names[kind], group->name, text);
+}
+
+/* Sections whose making heeds the groups of facets. */
+static void drop_stale(const struct tool *tool, struct stream *stream)
+{
+    static const char *const prefixes[] = {"nbr.", "face.", "node.", "support.radius", "shape."};
+    int64_t before = stream->section_count;
+    for (size_t i = 0; i < sizeof prefixes / sizeof *prefixes; i++) {
+        stream_remove_prefix(stream, prefixes[i]);
+    }
+    if (stream->section_count < before) {
+        tool_note(tool, "facets have changed: the sections of support and shapefn are left out");
+    }
+}
+
+static void finish(const struct tool *tool, struct group_body *body, struct stream *stream, bool verbose)
+{
+    struct error error;
+    drop_empty_regions(tool, &body->groups[GROUP_REGION]);
+    tool_check(tool, note_overlaps(tool, body, &error), &error);
+    for (int kind = 0; kind < GROUP_KINDS && verbose; kind++) {
+        for (int64_t g = 0; g < body->groups[kind].count; g++) {
+            report(tool, body, (enum group_kind)kind, &body->groups[kind].group[g]);
+        }
+    }
+    tool_check(tool, group_body_write(body, stream, &error), &error);
+    if (body->groups[GROUP_FACETS].changed) {
+        drop_stale(tool, stream);
+    }
+}
+
+int main(int argc, char *argv[])
+{
+    static struct option_uses uses; /* of -f, -n, -r, -m and -d, in their order */
+    struct tool tool;
+    struct stream stream;
+    struct group_body body;
+    struct error error;
+    double unit = 1;
+    struct option options[OPTION_COUNT] = {
+        [FACETS] = {.letter = 'f', .name = "facets", .takes_value = true, .uses = &uses},
+        [NODES] = {.letter = 'n', .name = "nodes", .takes_value = true, .uses = &uses},
+        [REGION] = {.letter = 'r', .name = "region", .takes_value = true, .uses = &uses},
+        [RENAME] = {.letter = 'm', .name = "rename", .takes_value = true, .uses = &uses},
+        [DELETE] = {.letter = 'd', .name = "delete", .takes_value = true, .uses = &uses},
+        [REPLACE] = {.name = "replace"},
+        [UNIT] = {.letter = 'u', .name = "unit", .takes_value = true},
+        [VERBOSE] = {.letter = 'v', .name = "verbose"},
+        [TEXT] = {.letter = 't', .name = "text"},
+        [OUTPUT] = {.letter = 'o', .name = "output", .takes_value = true},
+    };
+    tool_begin(&tool, usage, options, OPTION_COUNT, 0, 1, argc, argv);
+    if (uses.count == 0 && !options[VERBOSE].given) {
+        tool_fail(&tool, STATUS_INPUT, "nothing to do: give -f, -n, -r, -m, -d or -v (see -h)");
+    }
+    if (options[UNIT].given) {
+        tool_check(&tool, parse_length_unit(options[UNIT].value, "-u", &unit, &error), &error);
+    }
+    tool_read(&tool, tool.operands[0], &stream);
+    tool_check(&tool, group_body_read(&stream, &body, &error), &error);
+    for (int i = 0; i < uses.count; i++) {
+        struct request request = {&body, &uses.use[i], unit, options[REPLACE].given};
+        enum status status = carry_out(&request, &error);
+        if (status != STATUS_OK) {
+            tool_fail(&tool, status, "--%s %.80s: %s", request.use->name, request.use->value, error.text);
+        }
+    }
+    finish(&tool, &body, &stream, options[VERBOSE].given);
+    tool_write(&tool, &stream, options[TEXT].given);
+    group_body_free(&body);
+    stream_free(&stream);
+    return tool_end(&tool);
+}
