@@ -5,7 +5,7 @@
 #include <string.h>
 
 /* Penalty of the constraints between their averages, by the shear modulus and per size of a cell, as in
- * Nitsche's method. Results do not depend on it from .0001 to 100. */
+ * Nitsche's method. From .0001 to 100 the forces on clamped blocks change by .2 %. */
 static const double spring_factor = 10.0;
 
 /* A spring of about the stiffness of a layer of cells, times the area of its point of the facets. */
