@@ -15,6 +15,9 @@ setup() {
 # make GOALS, of the build under test.
 build() { make -C "$top" BUILD="$(realpath --relative-to "$top" "$BUILD")" "$@" > log 2>&1 || { tail log; return 1; }; }
 
+# The name that a program is installed by: the system has a program groups already.
+installed() { echo "${1/#groups/mtled-groups}"; }
+
 # Flags that a program needs to be linked with the library as it was built.
 compile_flags=(-std=c11 -Wall -Werror)
 case $BUILD in
@@ -25,9 +28,10 @@ esac
 @test "install: every program, its page and its completion, below DESTDIR and PREFIX" {
     build install DESTDIR="$PWD/tree" PREFIX=/opt/mtled
     for tool in "${tools[@]}"; do
-        [ "$(tree/opt/mtled/bin/$tool --version)" = "$($tool --version)" ]
-        grep -q "^.TH ${tool^^} 1" "tree/opt/mtled/share/man/man1/$tool.1"
-        bash -n "tree/opt/mtled/share/bash-completion/completions/$tool"
+        name=$(installed $tool)
+        [ "$(tree/opt/mtled/bin/$name --version)" = "$($tool --version)" ]
+        grep -q "^.TH ${tool^^} 1" "tree/opt/mtled/share/man/man1/$name.1"
+        bash -n "tree/opt/mtled/share/bash-completion/completions/$name"
     done
     [ "$(ls tree/opt/mtled/share/man/man5 | xargs)" = "mtled-scene.5 mts.5" ]
     [ "$(ls tree)" = opt ]
@@ -104,8 +108,10 @@ complete_words() {
     build deb DEB="$PWD/mtled.deb"
     dpkg-deb -x mtled.deb root
     for tool in "${tools[@]}"; do
-        [ -s "root/usr/share/man/man1/$tool.1.gz" ]
-        [ -s "root/usr/share/bash-completion/completions/$tool" ]
+        name=$(installed $tool)
+        [ -x "root/usr/bin/$name" ]
+        [ -s "root/usr/share/man/man1/$name.1.gz" ]
+        grep -q " $name$" "root/usr/share/bash-completion/completions/$name"
     done
     block quasi-static > block.scene
     { held_below; printf '[displacement top]\nfacets = ymax\ncomponents = 0, -0.005\n'; } >> block.scene

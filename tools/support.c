@@ -22,7 +22,7 @@ static const char usage[] =
     "\n"
     "Options:\n"
     "  -k, --factor FACTOR    radius = FACTOR times the local node spacing (default 1.8, in 3D\n"
-    "                         2.2)\n"
+    "                         2)\n"
     "  -R, --radius RADIUS    constant radius: a length with its unit, e.g. 8mm (without one: m)\n"
     "  -m, --least LEAST      widen until at least so many neighbours\n"
     "  -n, --most MOST        keep only the MOST nearest neighbours (ties: the lower index)\n"

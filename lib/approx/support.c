@@ -17,7 +17,7 @@ static const int64_t fewest_to_bound = 3;
 struct support_options support_defaults(int dim)
 {
     return (struct support_options){
-        .factor = dim == 2 ? 1.8 : 2.2, .widen = true, .gradient_bound = 6.0, .mls = mls_default(dim)};
+        .factor = dim == 2 ? 1.8 : 2.0, .widen = true, .gradient_bound = 6.0, .mls = mls_default(dim)};
 }
 
 void point_text(int dim, const double *x, char text[96])

@@ -16,7 +16,7 @@ struct support_options {
     struct mls mls;        /* what the lists are for */
 };
 
-/* Factor 1.8 of the local spacing, in 3D 2.2; widening on, the default MLS. */
+/* Factor 1.8 of the local spacing, in 3D 2; widening on, the default MLS. */
 struct support_options support_defaults(int dim);
 
 /* Neighbour lists of `count` points (CSR). */

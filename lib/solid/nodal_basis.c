@@ -292,6 +292,15 @@ done:
     return status;
 }
 
+double nodal_basis_magnification(const struct nodal_basis *basis)
+{
+    double sum = 0.0;
+    for (int64_t i = 0; i < basis->ptr[basis->node_count]; i++) {
+        sum += fabs(basis->value[i]);
+    }
+    return sum / (double)basis->node_count;
+}
+
 void nodal_basis_free(struct nodal_basis *basis)
 {
     void *arrays[] = {basis->ptr,

@@ -33,6 +33,10 @@ struct nodal_basis {
 MUST_CHECK enum status nodal_basis_build(int dim, int64_t node_count, const double *X, const int64_t *ptr,
                                          const int32_t *idx, const double *phi, struct nodal_basis *basis,
                                          struct error *error);
+/* Mean over the nodes of sum_j |q_ij|: how much Q magnifies parameters. About 1 where the field nearly
+ * interpolates; large where P is near to singular throughout, and then Q is no good inverse. */
+double nodal_basis_magnification(const struct nodal_basis *basis);
+
 void nodal_basis_free(struct nodal_basis *basis);
 
 /* u = Q v, and v = Q^T f; vectors of node_count * dim, not the same. */
