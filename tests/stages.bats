@@ -272,12 +272,6 @@ END
     done
 }
 
-@test "supports: groups of facets out of range are refused" {
-    mts text square.mts | awk '/^# facets i4/ { at = NR + 1 } NR == at { $1 = 49 } 1' > bad.mts
-    run -2 --separate-stderr support bad.mts
-    [[ "$stderr" == *"facets: row 0: "* ]]
-}
-
 @test "integration points fill the body" {
     for rule in "-c" "-g 1" "-g 3" "-g 4" "-g 6" "-g 7" "-g 12"; do
         ipoints $rule square.mts | mts print points.weight | awk '{ s += $1 } END { exit !(s > 0.00999999999 && s < 0.01000000001) }'

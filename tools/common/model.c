@@ -204,11 +204,12 @@ done:
     return status;
 }
 
-double model_largest_shear(const struct solid_system *system)
+double model_penalty_modulus(const struct solid_system *system, double factor)
 {
     double modulus = 0.0;
     for (int64_t m = 0; m < system->body.material_count; m++) {
-        modulus = fmax(modulus, system->body.materials[m].shear_modulus);
+        const struct material *material = &system->body.materials[m];
+        modulus = fmax(modulus, fmin(factor * material->shear_modulus, material_wave_modulus(material)));
     }
     return modulus;
 }

@@ -78,9 +78,9 @@ MUST_CHECK enum status model_add_curve(const struct model_input *input, const st
                                        const struct scene_curve *curve, struct solid_system *system,
                                        int32_t *index, struct error *error);
 
-/* The largest shear modulus of the body's materials, Pa: penalties are multiples of it, so that they do not
- * grow with the bulk modulus. */
-double model_largest_shear(const struct solid_system *system);
+/* The modulus of penalties, Pa: that of pressure waves, but at most `factor` times the shear modulus, so that
+ * it does not grow with the bulk modulus; the largest of the body's materials. */
+double model_penalty_modulus(const struct solid_system *system, double factor);
 
 /* held[faces.count]: whether all nodes of that face are those of facets that one displacement section names;
  * the caller's to free. */

@@ -155,7 +155,7 @@ static enum status add_springs(struct prescription *p, const struct facet_set *s
     area /= (double)set->count;
     p->springs = true;
     p->layer = p->input->cells.dim == 2 ? area : sqrt(2.0 * area);
-    p->modulus = spring_factor * model_largest_shear(p->system);
+    p->modulus = model_penalty_modulus(p->system, spring_factor);
     for (int64_t a = 0; a < points.count; a++) {
         TRY(add_average(p, &points, a, error));
     }

@@ -38,7 +38,7 @@ static const double penalty_factor = 50.0;
 static double default_stiffness(const struct model_input *input, const struct solid_system *system,
                                 const struct boundary_averages *averages)
 {
-    double modulus = penalty_factor * model_largest_shear(system), area = 0.0;
+    double modulus = model_penalty_modulus(system, penalty_factor), area = 0.0;
     for (int64_t a = 0; a < averages->count; a++) {
         area += averages->area[a];
     }
