@@ -124,6 +124,10 @@ count() {
 }
 
 # reported FILE NAME: a number of mtled's report.
+# told CASE QUANTITY OUT: the run said that the body folds.
+told() {
+    at_least "$1" "$2: told that it folds" "$(grep -c 'the body folds from' "$3.log")" 1
+}
 reported() {
     awk -F '\t' -v name="$2" '$1 == name { print $2 }' "$1.log"
 }
