@@ -144,7 +144,11 @@ static enum status midside_nodes(struct msh *msh, bool drop, int64_t *midside, s
         int corners = msh_type(msh_type(msh->element_type[e]).linear).node_count;
         for (int64_t k = msh->node_ptr[e]; k < msh->node_ptr[e + 1]; k++) {
             int8_t *of_node = &role[msh->node_idx[k]];
-            *of_node = k < msh->node_ptr[e] + corners ? CORNER : *of_node == FREE ? MIDSIDE : *of_node;
+            if (k < msh->node_ptr[e] + corners) {
+                *of_node = CORNER;
+            } else if (*of_node == FREE) {
+                *of_node = MIDSIDE;
+            }
         }
     }
     for (int64_t n = 0; n < msh->node_count; n++) {

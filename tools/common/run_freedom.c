@@ -112,7 +112,7 @@ static void moves_text(int dim, double size, const struct rigid_moves *moves, ch
                                at > 0 ? ", " : "", what);
     }
     if (moves->turns == (dim == 2 ? 1 : 3) && moves->translations == dim) {
-        at += (size_t)snprintf(text + at, at < room ? room - at : 0, " and turn about any axis");
+        (void)snprintf(text + at, at < room ? room - at : 0, " and turn about any axis");
         return;
     }
     for (int k = 0; k < moves->turns; k++) {
