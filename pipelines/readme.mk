@@ -2,7 +2,7 @@
 # pictures of the studies (`make brain2d table1 readme` for all of it). Pictures are made small by ImageMagick, and left
 # as they are where there is none.
 
-README_PICTURES := brain2d/section brain2d/difference table1/surface convergence/convergence speed-error/speed-error brain3d/brain3d
+README_PICTURES := brain2d/section brain2d/difference table1/surface speed-error/speed-error brain3d/brain3d
 
 .PHONY: readme
 readme: export PATH := $(abspath $(BUILD))/bin:$(PATH)
