@@ -17,16 +17,16 @@ enum status body_make_bounds(struct body *body, struct error *error)
 }
 
 /* Along the gradient g of a shape function the energy of a point has the second derivative g A g, and that of
- * its tie. */
+ * the stabilisation of its smoothing, bounded by twice its stiffness. */
 struct bound {
-    double A[9], tie;
+    double A[9], smoothing;
 };
 
 static struct bound bound_at(const struct body *body, int64_t q, const double *F)
 {
     static const double at_rest[9] = {1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0};
     const struct material *material = &body->materials[body->material[q]];
-    struct bound bound = {.tie = 0.0};
+    struct bound bound = {.smoothing = 0.0};
     double C[9], I1 = 0.0;
     double J = determinant(F);
     if (!(J > 0.0 && isfinite(J))) { /* as at rest: its bounds stay positive until the run is told */
@@ -46,7 +46,7 @@ static struct bound bound_at(const struct body *body, int64_t q, const double *F
             along * (C[a] * C[b] + C[3 + a] * C[3 + b] + C[6 + a] * C[6 + b]) - (a == b ? shear / 3.0 : 0.0);
     }
     if (body->conforming) {
-        bound.tie = 2.0 * body->weight[q] * SMOOTHING_STIFFNESS(body->dim) * material->shear_modulus;
+        bound.smoothing = 2.0 * body->weight[q] * SMOOTHING_STIFFNESS(body->dim) * material->shear_modulus;
     }
     return bound;
 }
@@ -59,7 +59,7 @@ static void add_point(const struct body *body, int64_t q, const double F[9], dou
     int64_t row = body->order[q], end = body->ptr[row + 1];
     for (int64_t i = body->ptr[row]; i < end; i += 64) {
         int64_t count = end - i < 64 ? end - i : 64;
-        body->kernels->bounds(body->dphi + i * body->dim, count, bound.A, bound.tie, sum);
+        body->kernels->bounds(body->dphi + i * body->dim, count, bound.A, bound.smoothing, sum);
         for (int64_t k = 0; k < count; k++) {
             of_node[body->idx[i + k]] += sum[k];
         }
@@ -80,7 +80,7 @@ static void add_cell(const struct body *body, int64_t q, const double F[9], doub
             gradient[b] -= gradient[k * dim + b];
         }
     }
-    body->kernels->bounds(gradient, dim + 1, bound.A, bound.tie, sum);
+    body->kernels->bounds(gradient, dim + 1, bound.A, bound.smoothing, sum);
     for (int k = 0; k <= dim; k++) {
         of_node[body->cells.cell_node[body->order[q] * (dim + 1) + k]] += sum[k];
     }

@@ -57,9 +57,9 @@
         kernel_neo_hookean(body, &body->blocks[b], state, dim, P);                                           \
     }                                                                                                        \
     attribute static void bounds_##set##_##dim(const double *g, int64_t count, const double A[9],            \
-                                               double tie, double *sum)                                      \
+                                               double smoothing, double *sum)                                \
     {                                                                                                        \
-        kernel_bounds(g, count, dim, A, tie, sum);                                                           \
+        kernel_bounds(g, count, dim, A, smoothing, sum);                                                     \
     }                                                                                                        \
     static const struct force_kernels kernels_##set##_##dim = {                                              \
         .name = #set,                                                                                        \

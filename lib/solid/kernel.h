@@ -36,8 +36,9 @@ struct force_kernels {
     void (*scatter_means)(struct means *means, int64_t block, double *scratch);
     /* Weighted stresses of a block of neo-Hookean points. */
     void (*neo_hookean)(const struct body *body, int64_t block, struct block_view state, block_rows P);
-    /* What gradients g[count * dim] add to bounds of the stiffness: g A g, if positive, and tie |g|^2. */
-    void (*bounds)(const double *g, int64_t count, const double A[9], double tie, double *sum);
+    /* What gradients g[count * dim] add to bounds of the stiffness: g A g, if positive, and smoothing |g|^2.
+     */
+    void (*bounds)(const double *g, int64_t count, const double A[9], double smoothing, double *sum);
     /* F, F_h and J of conforming cells from the means; weighted stresses P on F and T on F_h of a block of
      * neo-Hookean cells; and what the corners then put on the means. */
     void (*cell_gradients)(struct body *body, int64_t block);

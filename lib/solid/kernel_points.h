@@ -170,7 +170,7 @@ KERNEL_INLINE void kernel_neo_hookean(const struct body *body, const struct bloc
 }
 
 KERNEL_INLINE void kernel_bounds(const double *restrict g, int64_t count, int dim, const double A[9],
-                                 double tie, double *restrict sum)
+                                 double smoothing, double *restrict sum)
 {
     double xy = 2.0 * A[1], xz = 2.0 * A[2], yz = 2.0 * A[5];
     for (int64_t i = 0; i < count; i++) {
@@ -180,7 +180,7 @@ KERNEL_INLINE void kernel_bounds(const double *restrict g, int64_t count, int di
             bound += (A[8] * z + xz * x + yz * y) * z;
             square += z * z;
         }
-        sum[i] = (bound > 0.0 ? bound : 0.0) + tie * square;
+        sum[i] = (bound > 0.0 ? bound : 0.0) + smoothing * square;
     }
 }
 

@@ -266,12 +266,8 @@ enum status nodal_basis_build(int dim, int64_t node_count, const double *X, cons
     struct error errors[CHUNKS_MOST];
     enum status of_chunk[CHUNKS_MOST];
     int64_t entries = ptr[node_count];
-    *basis = (struct nodal_basis){.dim = dim, .node_count = node_count};
-    TRY(NEW_ARRAY(&basis->ptr, node_count + 1, error));
-    TRY(NEW_ARRAY(&basis->idx, entries, error));
+    *basis = (struct nodal_basis){.dim = dim, .node_count = node_count, .ptr = ptr, .idx = idx};
     TRY(NEW_ARRAY(&basis->value, entries, error));
-    memcpy(basis->ptr, ptr, (size_t)(node_count + 1) * sizeof *ptr);
-    memcpy(basis->idx, idx, (size_t)entries * sizeof *idx);
 #pragma omp parallel for schedule(dynamic) num_threads(chunks.threads)
     for (int64_t c = 0; c < chunks.count; c++) {
         of_chunk[c] = make_rows(&table, chunks_begin(&chunks, c), chunks_begin(&chunks, c + 1), basis->value,
@@ -303,12 +299,7 @@ double nodal_basis_magnification(const struct nodal_basis *basis)
 
 void nodal_basis_free(struct nodal_basis *basis)
 {
-    void *arrays[] = {basis->ptr,
-                      basis->idx,
-                      basis->value,
-                      basis->transposed_ptr,
-                      basis->transposed_idx,
-                      basis->transposed_value};
+    void *arrays[] = {basis->value, basis->transposed_ptr, basis->transposed_idx, basis->transposed_value};
     for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) {
         free(arrays[i]);
     }

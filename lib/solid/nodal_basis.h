@@ -20,8 +20,8 @@
 struct nodal_basis {
     int dim;
     int64_t node_count;
-    int64_t *ptr; /* node_count + 1 */
-    int32_t *idx; /* ptr[node_count]: columns */
+    const int64_t *ptr; /* node_count + 1; the caller's, as idx */
+    const int32_t *idx; /* ptr[node_count]: columns */
     double *value;
     int64_t *transposed_ptr; /* the transpose, likewise */
     int32_t *transposed_idx;
@@ -29,7 +29,7 @@ struct nodal_basis {
 };
 
 /* From the values of the shape functions at the nodes, in CSR: ptr[node_count + 1], idx and phi;
- * X[node_count * dim], m. */
+ * X[node_count * dim], m. ptr and idx must outlive the basis. */
 MUST_CHECK enum status nodal_basis_build(int dim, int64_t node_count, const double *X, const int64_t *ptr,
                                          const int32_t *idx, const double *phi, struct nodal_basis *basis,
                                          struct error *error);

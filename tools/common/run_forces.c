@@ -71,16 +71,17 @@ static void add_conditions(const struct run *run, struct totals *totals)
 static void add_contacts(const struct run *run, struct totals *totals)
 {
     const struct solid_system *system = &run->model->system;
-    int dim = totals->dim;
     for (int64_t c = 0; c < system->contact_count; c++) {
         const struct contact *contact = &system->contacts[c];
-        for (int64_t h = 0; h < contact->count; h++) {
-            double force[3];
-            struct average average = average_of_boundary(contact->averages, h);
-            for (int a = 0; a < dim; a++) {
-                force[a] = contact->pressure[h] * contact->averages->area[h] * contact->normal[h * dim + a];
-            }
-            add_force(run, &average, force, run->scene->displacement_count + contact->section, totals);
+        int64_t row = run->scene->displacement_count + contact->section;
+        double force[3], moment[3];
+        contact_total(contact, force);
+        contact_moment(contact, totals->about, moment);
+        for (int a = 0; a < totals->dim; a++) {
+            totals->force[row * totals->dim + a] += force[a];
+        }
+        for (int a = 0; a < totals->moment_count; a++) { /* in 2D the last of the three */
+            totals->moment[row * totals->moment_count + a] += moment[3 - totals->moment_count + a];
         }
     }
 }
