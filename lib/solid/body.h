@@ -76,6 +76,7 @@ struct body {
     int32_t *node_place;        /* node_count: the body's index of each of the caller's nodes */
     double *weight;             /* point_count */
     struct material *materials; /* material_count */
+    double *bulk_modulus;       /* material_count: theirs without a limit, Pa */
     int64_t material_count;
     int32_t *material; /* point_count */
     int64_t block_count;
@@ -110,6 +111,9 @@ struct deformation {
  * N, in 2D N/m. With an inverted point the forces mean nothing. */
 struct deformation body_force(struct body *body, const double *u, double *force);
 
+/* Let no material be stiffer against changes of volume than so many shear moduli; INFINITY: as they are. */
+void body_limit_bulk(struct body *body, double most);
+
 /* Volume at rest, the sum of the weights of the points, m3 (2D: m2). */
 double body_volume(const struct body *body);
 
@@ -129,8 +133,9 @@ void body_volume_ratio(struct body *body, double *ratio);
 /* stiffness[node_count], N/m (2D: N/m2): bounds the diagonal of the stiffness at the last evaluation's F (of
  * conforming cells about, far strained ones may exceed it), as sum_q w W''(y (x) grad phi), the second
  * derivative of the energy along the rank-one change of F that is stiffest, y = F^-T grad phi; at rest sum_q
- * w (lambda + 2 mu) |grad phi|^2. The neo-Hookean formula serves all materials. */
-void body_diagonal(struct body *body, double *stiffness);
+ * w (lambda + 2 mu) |grad phi|^2. The neo-Hookean formula serves all materials. `without_volumes`: of the
+ * bulk modulus only what acts on the J of single points, see nodal_volume.h. */
+void body_diagonal(struct body *body, bool without_volumes, double *stiffness);
 
 /* The same of conforming cells for parameters that are about the values at the nodes (nodal_basis.h): with
  * the hat functions of the cells for phi. */

@@ -123,6 +123,19 @@ static double least_eigenvalue(int n, const double *diagonal, const double *besi
     return high;
 }
 
+/* Its largest one. */
+static double largest_eigenvalue(int n, double *diagonal, const double *beside)
+{
+    for (int i = 0; i < n; i++) {
+        diagonal[i] = -diagonal[i];
+    }
+    double largest = -least_eigenvalue(n, diagonal, beside);
+    for (int i = 0; i < n; i++) {
+        diagonal[i] = -diagonal[i];
+    }
+    return largest;
+}
+
 /* product = M^-1 K move, from the change of the residual from u along the move. */
 static void apply(struct solid_system *system, struct inertia *inertia, const double *u,
                   const double *residual, double spacing, const double *move, double *displaced,
@@ -142,9 +155,9 @@ static bool enough(int count, double largest, double least)
     return count >= least_share * sqrt(largest / fmax(least, 1e-14 * largest));
 }
 
-enum status system_lowest_eigenvalue(struct solid_system *system, struct inertia *inertia, const double *u,
-                                     const double *residual, int most_iterations, double *start,
-                                     double *scratch, double *value, int *iterations, struct error *error)
+enum status system_spectrum(struct solid_system *system, struct inertia *inertia, const double *u,
+                            const double *residual, int most_iterations, double *start, double *scratch,
+                            struct spectrum *spectrum, struct error *error)
 {
     enum status status;
     int64_t size = system->node_count * system->dim;
@@ -152,11 +165,13 @@ enum status system_lowest_eigenvalue(struct solid_system *system, struct inertia
     double *diagonal = NULL, *beside = NULL;
     double spacing = point_spacing(system), last = INFINITY;
     int next_check = first_check;
-    *iterations = 0;
-    *value = INFINITY;
+    *spectrum = (struct spectrum){.lowest = INFINITY};
     TRY(NEW_ARRAY(&diagonal, most_iterations, error));
     TRY(NEW_ARRAY(&beside, most_iterations, error));
     memset(before, 0, (size_t)size * sizeof *before);
+    if (largest_entry(vector, size) == 0.0) {
+        start_mode(vector, size);
+    }
     constraint_project(&inertia->constraint, NULL, vector);
     double norm = sqrt(inertia_product(inertia, vector, vector)), coupling = 0.0, largest = 0.0;
     for (int k = 0; k < most_iterations && norm > 1e-12 * largest; k++) {
@@ -172,14 +187,16 @@ enum status system_lowest_eigenvalue(struct solid_system *system, struct inertia
         largest = fmax(largest, diagonal[k]);
         memcpy(before, vector, (size_t)size * sizeof *before);
         memcpy(vector, product, (size_t)size * sizeof *vector);
-        *iterations = k + 1;
+        spectrum->iterations = k + 1;
         if (k + 1 == next_check || k + 1 == most_iterations || !(norm > 1e-12 * largest)) {
-            *value = least_eigenvalue(k + 1, diagonal, beside);
-            bool is_settled = enough(k + 1, largest, *value) && last - *value < settled_change * *value;
-            if (is_settled || *value < least_told * largest) {
+            double value = least_eigenvalue(k + 1, diagonal, beside);
+            bool is_settled = enough(k + 1, largest, value) && last - value < settled_change * value;
+            spectrum->lowest = value;
+            spectrum->largest = largest_eigenvalue(k + 1, diagonal, beside);
+            if (is_settled || value < least_told * largest) {
                 break;
             }
-            last = *value;
+            last = value;
             next_check = (int)ceil(next_check * check_growth);
         }
     }

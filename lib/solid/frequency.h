@@ -13,16 +13,20 @@
 double system_largest_frequency(struct solid_system *system, struct inertia *inertia, const double *u,
                                 const double *residual, int iterations, double *mode, double *scratch);
 
-/* Least eigenvalue w^2 of M^-1 K at u among the moves that the conditions admit, by Lanczos iteration in the
- * product of the mass from `start` (node_count * dim; best a smooth move, such as the last velocity;
+/* Eigenvalues w^2 of M^-1 K among the moves that the conditions admit. */
+struct spectrum {
+    double lowest, largest; /* estimates, from above and from below */
+    int iterations;         /* evaluations that they cost */
+};
+
+/* The spectrum at u by Lanczos iteration in the product of the mass from `start` (node_count * dim; best a
+ * smooth move, such as the last velocity; a start of zeros is replaced by a fixed pseudo-random one;
  * overwritten). K is the difference of residuals, one evaluation an iteration; residual must hold the
- * residual at u. The estimate falls toward the eigenvalue from above; it ends when a third more iterations
- * changed it by less than 5 %, when it is negative, or after most_iterations. *value <= 0: no minimum of the
- * energy, or a contact that opens or closes there. *iterations receives how many there were. scratch: 3 *
- * node_count * dim. */
-MUST_CHECK enum status system_lowest_eigenvalue(struct solid_system *system, struct inertia *inertia,
-                                                const double *u, const double *residual, int most_iterations,
-                                                double *start, double *scratch, double *value,
-                                                int *iterations, struct error *error);
+ * residual at u. It ends when a third more iterations changed the lowest eigenvalue by less than 5 %, when
+ * that is negative, or after most_iterations. Lowest <= 0: no minimum of the energy, or a contact that opens
+ * or closes there. scratch: 3 * node_count * dim. */
+MUST_CHECK enum status system_spectrum(struct solid_system *system, struct inertia *inertia, const double *u,
+                                       const double *residual, int most_iterations, double *start,
+                                       double *scratch, struct spectrum *spectrum, struct error *error);
 
 #endif

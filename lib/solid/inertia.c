@@ -3,6 +3,7 @@
 #include "base/memory.h"
 #include "solid/freedom.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -14,6 +15,20 @@ static int64_t centre_count(const struct solid_system *system)
 {
     int64_t count = system->node_count / (nodes_per_field * (system->dim + 1));
     return count < FIELDS_MOST_CENTRES ? count : FIELDS_MOST_CENTRES;
+}
+
+static bool nearly_incompressible(const struct body *body)
+{
+    double most = 0.0;
+    for (int64_t m = 0; m < body->material_count; m++) {
+        most = fmax(most, body->bulk_modulus[m] / body->materials[m].shear_modulus);
+    }
+    return most > 500.0;
+}
+
+bool inertia_takes_volumes(const struct solid_system *system)
+{
+    return system->dim == 2 && system->basis == NULL && volume_rows_exist(&system->body) && nearly_incompressible(&system->body);
 }
 
 enum status inertia_build(const struct solid_system *system, bool coarse, struct inertia *inertia,
@@ -36,7 +51,11 @@ enum status inertia_build(const struct solid_system *system, bool coarse, struct
     TRY(NEW_ARRAY(&inertia->body, cells, error));
     TRY(NEW_ARRAY(&inertia->weight, cells, error));
     TRY(NEW_ARRAY(&inertia->free_weight, cells, error));
-    TRY(NEW_ARRAY(&inertia->held, system->rows.count * inertia->size, error));
+    if (inertia_takes_volumes(system)) {
+        TRY(volume_rows_build(&system->body, &inertia->volumes, error));
+    }
+    TRY(NEW_ARRAY(&inertia->seen, system->rows.count + inertia->volumes.count, error));
+    TRY(NEW_ARRAY(&inertia->held, (system->rows.count + inertia->volumes.count) * inertia->size, error));
     TRY(NEW_ARRAY(&inertia->inverse, cells, error));
     TRY(NEW_ARRAY(&inertia->beside, cells, error));
     TRY(NEW_ARRAY(&inertia->amount, 2 * inertia->size, error));
@@ -50,6 +69,9 @@ done:
 void inertia_free(struct inertia *inertia)
 {
     constraint_free(&inertia->constraint);
+    volume_rows_free(&inertia->volumes);
+    sparse_free(&inertia->coupled);
+    free(inertia->seen);
     fields_free(&inertia->fields);
     free(inertia->mass);
     free(inertia->body);
@@ -82,8 +104,7 @@ static void multiply(int64_t n, const double *matrix, const double *x, double *r
 
 void inertia_collect_force(struct inertia *inertia, const double *force, double *acceleration, double *amount)
 {
-    const struct constraint_rows *rows = inertia->constraint.rows;
-    double *seen = inertia->constraint.multiplier;
+    double *seen = inertia->seen;
     for (int64_t n = 0; n < inertia->node_count; n++) {
         double inverse = 1.0 / inertia->mass[n];
         for (int64_t i = n * inertia->dim; i < (n + 1) * inertia->dim; i++) {
@@ -93,11 +114,11 @@ void inertia_collect_force(struct inertia *inertia, const double *force, double 
     if (inertia->size > 0) {
         fields_collect(&inertia->fields, NULL, force, amount);
     }
-    if (rows == NULL) {
+    if (inertia->constraint.rows == NULL) {
         return;
     }
-    constraint_rows_values(rows, acceleration, seen);
-    for (int64_t r = 0; r < rows->count; r++) {
+    inertia_rows_see(inertia, acceleration, seen);
+    for (int64_t r = 0; r < inertia_row_count(inertia); r++) {
         const double *held = inertia->held + r * inertia->size;
         for (int64_t k = 0; k < inertia->size && seen[r] != 0.0; k++) {
             amount[k] -= held[k] * seen[r];
@@ -107,27 +128,26 @@ void inertia_collect_force(struct inertia *inertia, const double *force, double 
 
 void inertia_accelerate(struct inertia *inertia, const double *force, double *acceleration)
 {
-    struct constraint *constraint = &inertia->constraint;
-    const struct constraint_rows *rows = constraint->rows;
-    double *multiplier = constraint->multiplier, *solved = inertia->amount + inertia->size;
+    double *amount = inertia->seen, *solved = inertia->amount + inertia->size;
     inertia_collect_force(inertia, force, acceleration, inertia->amount);
     if (inertia->size > 0) {
         multiply(inertia->size, inertia->inverse, inertia->amount, solved);
         fields_add(&inertia->fields, solved, acceleration);
     }
-    if (rows == NULL || rows->count == 0) {
+    int64_t rows = inertia_row_count(inertia);
+    if (rows == 0) {
         return;
     }
-    envelope_solve(&constraint->factor, multiplier);
-    for (int64_t r = 0; r < rows->count; r++) {
+    inertia_rows_solve(inertia, amount);
+    for (int64_t r = 0; r < rows; r++) {
         const double *held = inertia->held + r * inertia->size;
-        double sum = multiplier[r];
+        double sum = amount[r];
         for (int64_t k = 0; k < inertia->size; k++) {
             sum += held[k] * solved[k];
         }
-        multiplier[r] = -sum;
+        amount[r] = -sum;
     }
-    constraint_rows_spread(rows, multiplier, inertia->mass, acceleration);
+    inertia_rows_spread(inertia, amount, acceleration);
 }
 
 double inertia_product_alone(const struct inertia *inertia, const double *x, const double *y)
@@ -144,10 +164,13 @@ double inertia_product_alone(const struct inertia *inertia, const double *x, con
     return sum;
 }
 
-double inertia_product(const struct inertia *inertia, const double *x, const double *y)
+double inertia_product(struct inertia *inertia, const double *x, const double *y)
 {
     double *amount = inertia->amount, *solved = inertia->amount + inertia->size;
     double sum = inertia_product_alone(inertia, x, y);
+    if (inertia->volumes.count > 0) {
+        sum += volume_rows_product(&inertia->volumes, x, y);
+    }
     if (inertia->size > 0) {
         inertia_collect(inertia, x, amount);
         multiply(inertia->size, inertia->beside, amount, solved);
@@ -169,6 +192,7 @@ enum status inertia_state(struct inertia *inertia, const struct state *state, st
         {"measured", STATE_NUMBERS, &inertia->measured_mass, 1},
         {"touching", STATE_FLAGS, inertia->touching, inertia->hat_count},
         {"normal", STATE_NUMBERS, inertia->normal, inertia->hat_count * inertia->dim},
+        {"volumes", STATE_NUMBERS, inertia->volumes.change.value, volume_rows_size(&inertia->volumes)},
     };
     return state_visit(state, "inertia", values, sizeof values / sizeof *values, error);
 }

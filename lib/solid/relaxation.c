@@ -8,7 +8,25 @@
 
 static const int64_t keep_interval = 200;     /* steps between states to go back to */
 static const double penetration_share = 1e-4; /* of the body's size: what a contact may penetrate */
+static const double usual_rise = 1.5, usual_fall = 0.8; /* of the residual's squared norm in a step */
+static const double unstable_rise = 6.0;                /* over what is usual: a mode is unstable */
+static const int64_t calm_steps = 20;                   /* after that was mended, before the next look */
 static const int iterations = 1;              /* at every check: the mode is kept, so that it sharpens */
+
+/* The residual by its norm r . M^-1 r, the acceleration being in r->scratch: of a stable run it follows the
+ * load. A mode whose frequency is beyond the critical step makes it grow by a steady factor from step to step,
+ * for many steps before points invert. `usual_residual2` follows the norm by less than that. */
+static bool residual_grows(struct relaxation *r)
+{
+    double now2 = 0.0, usual2 = r->usual_residual2;
+    for (int64_t i = 0; i < r->size; i++) {
+        now2 += r->residual[i] * r->scratch[i];
+    }
+    bool grows = usual2 > 0.0 && now2 > unstable_rise * usual2 && r->report->steps > r->calmed_step + calm_steps;
+    r->usual_residual2 = usual2 > 0.0 ? fmin(now2, usual_rise * usual2) : now2;
+    r->usual_residual2 = fmax(r->usual_residual2, usual_fall * usual2);
+    return grows;
+}
 
 /* One step; with `measure` the acceleration of the projected residual at the old u is kept. */
 static bool step(struct relaxation *r, double *u, bool measure)
@@ -30,13 +48,14 @@ static bool step(struct relaxation *r, double *u, bool measure)
         relaxation_note_new_mass(r);
     }
     inertia_accelerate(&r->inertia, r->residual, r->scratch);
+    r->unstable = residual_grows(r);
     double *move = r->velocity, push = 2.0 * dt / grow;
     for (int64_t i = 0; i < r->size; i++) {
         move[i] = dt * (keep * r->velocity[i] + push * r->scratch[i]);
     }
     /* The move is projected, not u: round-off relative to u would keep the residual from vanishing. */
     double started = clock_seconds();
-    constraint_project(&r->inertia.constraint, r->factor_change, move);
+    inertia_project(&r->inertia, r->factor_change, move);
     system->cost.constraints += clock_seconds() - started;
     for (int64_t i = 0; i < r->size; i++) {
         u[i] += move[i];
@@ -125,6 +144,7 @@ static void let_go(struct relaxation *r)
     r->spectrum_known = false;
     r->augmentations = r->fruitless = 0;
     r->least_penetration = INFINITY;
+    relaxation_limit_bulk(r);
 }
 
 /* Set the load factors, and by how much they change. */
@@ -147,7 +167,7 @@ static bool follow(struct relaxation *r, struct error *error)
     relaxation_estimate(r);
     relaxation_pace(r);
     if (r->at_full_load <= CHECK_INTERVAL) { /* take out what round-off has left */
-        constraint_project(&r->inertia.constraint, r->system->factor, u);
+        inertia_project(&r->inertia, r->system->factor, u);
     }
     if (r->report->steps % keep_interval == 0) {
         relaxation_keep_state(r, u);
@@ -157,6 +177,9 @@ static bool follow(struct relaxation *r, struct error *error)
         return false;
     }
     relaxation_update_time_step(r, r->residual_at, iterations);
+    if (!relaxation_update_volumes(r, error)) {
+        return false;
+    }
     relaxation_follow_contacts(r);
     return relaxation_update_inertia(r, error);
 }
@@ -165,7 +188,8 @@ static bool follow(struct relaxation *r, struct error *error)
 static bool ends(struct relaxation *r, enum relaxation_outcome *outcome, struct error *error)
 {
     const double *error_now = &r->report->error, tolerance = r->options->tolerance;
-    bool small = r->at_full_load > 2 * CHECK_INTERVAL && *error_now <= tolerance;
+    bool whole = r->at_full_load > 2 * CHECK_INTERVAL && !isfinite(r->bulk_limit);
+    bool small = whole && *error_now <= tolerance;
     r->settled = small ? r->settled + 1 : 0;
     *outcome = RELAXATION_STOPPED;
     if (r->settled >= 2 && !r->spectrum_known && !relaxation_find_lowest_mode(r, r->residual_at, error)) {
@@ -179,7 +203,7 @@ static bool ends(struct relaxation *r, enum relaxation_outcome *outcome, struct 
         r->settled = 0;
     }
     relaxation_note_best(r);
-    if (*error_now <= relaxation_round_off(r) && relaxation_stays(r, 2.0, 200) &&
+    if (whole && *error_now <= relaxation_round_off(r) && relaxation_stays(r, 2.0, 200) &&
         relaxation_contacts_hold(r)) {
         return true;
     }
@@ -204,11 +228,15 @@ static enum relaxation_outcome iterate(struct relaxation *r, struct error *error
         r->at_full_load = r->load < hold ? 0 : r->at_full_load + 1;
         r->report->loading_steps += r->at_full_load == 0;
         change_load(r, r->load / ramp);
+        relaxation_raise_bulk(r);
         if (!step(r, r->u, measure)) {
             measure = false;
             if (!relaxation_step_back(r, r->u, error)) {
                 return RELAXATION_INVERTED;
             }
+        }
+        if (r->unstable && !relaxation_calm(r, error)) {
+            return RELAXATION_STOPPED;
         }
         if (measure && !follow(r, error)) {
             return RELAXATION_STOPPED;
@@ -235,24 +263,24 @@ static enum status begin(struct relaxation *r, struct error *error)
     enum status status;
     struct solid_system *system = r->system;
     size_t bytes = (size_t)r->size * sizeof *r->u;
+    relaxation_limit_bulk(r);
     system_load_factors(system, 0.0);
     (void)system_residual(system, r->u, r->residual);
     if (gives_frames(r)) {
         relaxation_show(r, 0, 0.0);
     }
-    system_relaxation_mass(system, r->scratch);
+    system_relaxation_mass(system, r->inertia.volumes.count > 0, r->scratch);
     TRY(inertia_set_mass(&r->inertia, system, r->scratch, error));
-    constraint_project(&r->inertia.constraint, system->factor, r->u);
+    inertia_project(&r->inertia, system->factor, r->u);
     r->residual_at = r->u;
+    r->low2 = INFINITY;
+    for (int i = 0; i < WINDOWS; i++) {
+        r->window[i] = INFINITY;
+    }
     TRY(relaxation_measure_inertia(r, error));
     memcpy(r->newer.u, r->u, bytes);
     memcpy(r->older.u, r->u, bytes);
     r->report->ramp_steps = r->options->ramp_steps > 0 ? r->options->ramp_steps : relaxation_choose_ramp(r);
-    r->low2 = r->frequency * r->frequency * 1e-4;
-    r->damping = 2.0 * sqrt(r->low2);
-    for (int i = 0; i < WINDOWS; i++) {
-        r->window[i] = r->low2;
-    }
 done:
     return status;
 }
@@ -262,6 +290,7 @@ static enum status resume(struct relaxation *r, struct error *error)
 {
     enum status status;
     TRY(relaxation_visit(r, r->options->restored, error));
+    body_limit_bulk(&r->system->body, r->bulk_limit);
     TRY(inertia_restore(&r->inertia, r->system, error));
 done:
     return status;
@@ -291,6 +320,7 @@ enum status relaxation_run(struct solid_system *system, const struct relaxation_
     r.penetration_allowed = penetration_share * r.body_size;
     TRY(options->restored != NULL ? resume(&r, error) : begin(&r, error));
     report->outcome = iterate(&r, error);
+    body_limit_bulk(&system->body, INFINITY);
     TRY(r.failure);
     report->largest_frequency = r.frequency;
     if (report->outcome == RELAXATION_INVERTED) {

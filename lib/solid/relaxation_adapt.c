@@ -1,6 +1,6 @@
 /* Load, mass, time step and contacts that follow a relaxation. */
 #include "base/box.h"
-#include "solid/frequency.h"
+#include "base/memory.h"
 #include "solid/relaxation_private.h"
 
 #include <math.h>
@@ -16,8 +16,10 @@ static const double most_moved = 1.4, most_raised = 1.25;
 /* The load waits when something moves by more than this part of the body's size in a step, a little more than
  * a ramp makes. */
 static const double most_paced = 1.0 / 320.0;
+static const double least_low2 = 1e-4; /* first guess of the lowest eigenvalue by the largest, if it is negative */
 static const int64_t most_retreats = 8;                          /* from inverted points */
 static const double most_stiffening = 1.1, most_softening = 0.5; /* of a node since its mass was set */
+static const double most_stiffening_apart = 1.5; /* where volumes have rows, which are factored anew then */
 static const double most_mass_checks = 5.0;                      /* from one look at that to the next */
 static const int64_t most_augmentations = 20;                    /* of the contacts' multipliers, */
 static const int64_t most_fruitless = 3;                         /* of those in a row that change little */
@@ -72,12 +74,13 @@ static bool note_mass_change(struct relaxation *r, double change)
 bool relaxation_update_mass(struct relaxation *r, struct error *error)
 {
     double *mass = r->scratch, highest = 1.0, lowest = 1.0;
-    system_relaxation_mass(r->system, mass);
+    system_relaxation_mass(r->system, r->inertia.volumes.count > 0, mass);
     for (int64_t n = 0; n < r->system->node_count; n++) {
         highest = fmax(highest, mass[n] / r->inertia.mass[n]);
         lowest = fmin(lowest, mass[n] / r->inertia.mass[n]);
     }
-    if (!note_mass_change(r, fmax(log(highest) / log(most_stiffening), log(lowest) / log(most_softening)))) {
+    double stiffening = r->inertia.volumes.count > 0 ? most_stiffening_apart : most_stiffening;
+    if (!note_mass_change(r, fmax(log(highest) / log(stiffening), log(lowest) / log(most_softening)))) {
         return true;
     }
     r->failure = inertia_set_mass(&r->inertia, r->system, mass, error);
@@ -105,15 +108,22 @@ void relaxation_note_new_mass(struct relaxation *r)
 
 enum status relaxation_measure_inertia(struct relaxation *r, struct error *error)
 {
+    struct spectrum spectrum;
     r->report->force_evaluations += r->inertia.size + 1;
     enum status status = inertia_measure(&r->inertia, r->system, r->residual_at, error);
     (void)system_residual(r->system, r->residual_at, r->residual); /* the body's last evaluation again */
     (void)inertia_follow(&r->inertia, r->system, true);
     relaxation_note_new_mass(r);
-    r->frequency = 0.0;
-    relaxation_update_time_step(r, r->residual_at, FIRST_ITERATIONS);
-    r->measured_frequency = r->frequency;
+    TRY(status);
+    if (!relaxation_find_spectrum(r, r->residual_at, FIRST_ITERATIONS, &spectrum, error)) {
+        return r->failure;
+    }
+    r->frequency = sqrt(fmax(spectrum.largest, 0.0));
+    r->time_step = r->caution * r->options->time_step_margin * 2.0 / r->frequency;
+    relaxation_damp_at_most(r, spectrum.lowest > 0.0 ? spectrum.lowest : least_low2 * spectrum.largest);
+    r->measured_frequency = r->fresh_frequency = r->frequency;
     r->measured_move = r->largest_move;
+done:
     return status;
 }
 
@@ -146,7 +156,7 @@ bool relaxation_step_back(struct relaxation *r, double *u, struct error *error)
     if (!(system_residual(r->system, u, r->residual).least_jacobian > 0.0)) {
         return false;
     }
-    system_relaxation_mass(r->system, r->scratch);
+    system_relaxation_mass(r->system, r->inertia.volumes.count > 0, r->scratch);
     r->mass_change = 0.0;
     r->last_mass_check = r->next_mass_check = r->checks;
     r->failure = inertia_set_mass(&r->inertia, r->system, r->scratch, error);

@@ -82,30 +82,40 @@ void relaxation_estimate(struct relaxation *r)
     r->mass_changed = false;
 }
 
-bool relaxation_find_lowest_mode(struct relaxation *r, const double *u, struct error *error)
+bool relaxation_find_spectrum(struct relaxation *r, const double *u, int most_iterations,
+                              struct spectrum *spectrum, struct error *error)
 {
-    double *work = NULL, value = 0.0;
-    int iterations = 0;
+    double *work = NULL;
     r->failure = NEW_ARRAY(&work, 4 * r->size, error);
     if (r->failure == STATUS_OK) {
         memcpy(work, r->velocity, (size_t)r->size * sizeof *work);
-        r->failure =
-            system_lowest_eigenvalue(r->system, &r->inertia, u, r->residual, most_spectrum_iterations, work,
-                                     work + r->size, &value, &iterations, error);
+        r->failure = system_spectrum(r->system, &r->inertia, u, r->residual, most_iterations, work,
+                                     work + r->size, spectrum, error);
+        r->report->force_evaluations += spectrum->iterations;
     }
     free(work);
-    if (r->failure != STATUS_OK) {
+    return r->failure == STATUS_OK;
+}
+
+void relaxation_damp_at_most(struct relaxation *r, double low2)
+{
+    r->low2 = fmin(r->low2, low2);
+    r->damping = 2.0 * sqrt(r->low2);
+    for (int i = 0; i < WINDOWS; i++) {
+        r->window[i] = fmin(r->window[i], r->low2);
+    }
+}
+
+bool relaxation_find_lowest_mode(struct relaxation *r, const double *u, struct error *error)
+{
+    struct spectrum spectrum;
+    if (!relaxation_find_spectrum(r, u, most_spectrum_iterations, &spectrum, error)) {
         return false;
     }
-    r->report->force_evaluations += iterations;
     r->spectrum2 = INFINITY;
-    if (value > 0.0 && isfinite(value)) {
-        r->spectrum2 = spectrum_share * value;
-        r->low2 = fmin(r->low2, r->spectrum2);
-        r->damping = 2.0 * sqrt(r->low2);
-        for (int i = 0; i < WINDOWS; i++) {
-            r->window[i] = fmin(r->window[i], r->low2);
-        }
+    if (spectrum.lowest > 0.0 && isfinite(spectrum.lowest)) {
+        r->spectrum2 = spectrum_share * spectrum.lowest;
+        relaxation_damp_at_most(r, r->spectrum2);
         double least2 = least_of_window(r);
         r->report->error *= r->report->lowest_frequency * r->report->lowest_frequency / least2;
         r->report->lowest_frequency = sqrt(least2);

@@ -2,11 +2,12 @@
 #ifndef SOLID_RELAXATION_PRIVATE_H
 #define SOLID_RELAXATION_PRIVATE_H
 
+#include "solid/frequency.h"
 #include "solid/inertia.h"
 #include "solid/relaxation.h"
 
 enum { CHECK_INTERVAL = 10 };   /* steps between estimates */
-enum { FIRST_ITERATIONS = 40 }; /* of the power iteration, at rest */
+enum { FIRST_ITERATIONS = 30 }; /* of Lanczos, where the inertia was measured */
 enum { WINDOWS = 8 };           /* recent Rayleigh quotients that the error estimate looks at */
 
 /* A state to go back to. */
@@ -44,6 +45,13 @@ struct relaxation {
     double body_size;                         /* diagonal of the nodes' box, m */
     double thickness;                         /* mean, across that, m */
     double measured_frequency, measured_move; /* the largest ones, when the inertia was measured */
+    double fresh_frequency;                   /* the largest, when the rows of volumes were set */
+    double bulk_limit;      /* of the bulk moduli now, by the shear moduli; INFINITY: none */
+    double rows_limit;      /* the same in the rows of volumes, at least that */
+    bool bulk_rises;        /* the limit goes up to the moduli themselves */
+    double usual_residual2; /* what the residual's norm, squared, is compared with */
+    bool unstable;          /* it grew far above that in the last step */
+    int64_t calmed_step;    /* the last step at which that was mended */
     double penetration_allowed;               /* m */
     int64_t augmentations, fruitless;         /* of the contacts so far; those in a row that changed little */
     double least_penetration;                 /* m, before an augmentation */
@@ -76,6 +84,13 @@ void relaxation_estimate(struct relaxation *r);
 /* Find the lowest mode at u, where the residual is known: while fast modes die out a slow one does not show
  * in the increments. Takes the damping from it. False on failure. */
 bool relaxation_find_lowest_mode(struct relaxation *r, const double *u, struct error *error);
+
+/* The spectrum at u, where the residual is known, by at most so many evaluations. False on failure. */
+bool relaxation_find_spectrum(struct relaxation *r, const double *u, int most_iterations,
+                              struct spectrum *spectrum, struct error *error);
+
+/* The lowest eigenvalue is at most this. */
+void relaxation_damp_at_most(struct relaxation *r, double low2);
 
 /* Whether the error has not halved for so many periods of the lowest mode and steps. At the full load only.
  */
@@ -134,6 +149,22 @@ void relaxation_follow_contacts(struct relaxation *r);
 
 /* Whether a converged state may stand; contacts that penetrate too deep are augmented and relaxed again. */
 bool relaxation_contacts_hold(struct relaxation *r);
+
+/* ---- relaxation_volumes.c: rows of nodal volumes, bulk moduli that rise, unstable modes ---- */
+
+/* On the way to an equilibrium: bulk moduli limited, where volumes have rows. */
+void relaxation_limit_bulk(struct relaxation *r);
+
+/* At each step: the limit goes up once it began to. */
+void relaxation_raise_bulk(struct relaxation *r);
+
+/* At a check: set the rows of volumes anew where the largest frequency has risen since that was done, as the
+ * body has moved so far, or where the limit overtakes them. False on failure. */
+bool relaxation_update_volumes(struct relaxation *r, struct error *error);
+
+/* A mode is unstable, the acceleration in r->scratch: go on from u at rest, with the time step of that mode
+ * and, where volumes have rows, with these set anew. False on failure. */
+bool relaxation_calm(struct relaxation *r, struct error *error);
 
 /* ---- relaxation_state.c: memory, and what a checkpoint holds ---- */
 

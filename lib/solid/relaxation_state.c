@@ -16,7 +16,7 @@ enum status relaxation_enter_basis(struct relaxation *r, double *u, struct error
     struct solid_system *system = r->system;
     const struct neighbours *lists = system->node_lists;
     r->u = u;
-    if (lists == NULL || !system->body.conforming) {
+    if (lists == NULL || !system->body.conforming || system->dim == 2) {
         return STATUS_OK;
     }
     TRY(nodal_basis_build(system->dim, system->node_count, system->X, lists->ptr, lists->idx,
@@ -139,6 +139,12 @@ enum status relaxation_visit(void *run, const struct state *state, struct error 
         {"time_step", STATE_NUMBERS, &r->time_step, 1},
         {"damping", STATE_NUMBERS, &r->damping, 1},
         {"frequency", STATE_NUMBERS, &r->frequency, 1},
+        {"bulk_limit", STATE_NUMBERS, &r->bulk_limit, 1},
+        {"rows_limit", STATE_NUMBERS, &r->rows_limit, 1},
+        {"bulk_rises", STATE_FLAGS, &r->bulk_rises, 1},
+        {"usual_residual2", STATE_NUMBERS, &r->usual_residual2, 1},
+        {"calmed_step", STATE_COUNTS, &r->calmed_step, 1},
+        {"fresh_frequency", STATE_NUMBERS, &r->fresh_frequency, 1},
         {"measured_frequency", STATE_NUMBERS, &r->measured_frequency, 1},
         {"measured_move", STATE_NUMBERS, &r->measured_move, 1},
         {"low2", STATE_NUMBERS, &r->low2, 1},

@@ -1,0 +1,94 @@
+/* What the rows of nodal volumes in the inertia ask of a relaxation: to be set anew as the body deforms, and
+ * that bulk moduli rise to their values only when the load is on. */
+#include "solid/relaxation_private.h"
+
+#include <math.h>
+#include <string.h>
+
+/* Rise of the largest frequency at which the rows are set anew. */
+static const double most_stale = 1.1;
+/* Of the power iteration afterwards, and where a mode was unstable. */
+static const int fresh_iterations = 10, calm_iterations = 5;
+/* While the load grows no bulk modulus is more than so many shear moduli: rows that are a little stale leave
+ * stiffness in proportion to it. */
+static const double first_bulk = 50.0;
+/* The limit rises from when the error is below this, by this factor a step; the rows are ahead of it by up to
+ * that factor. */
+static const double rise_error = 1e-2, bulk_rise = 1.1, most_ahead = 10.0;
+
+static double largest_bulk(const struct body *body)
+{
+    double largest = 0.0;
+    for (int64_t m = 0; m < body->material_count; m++) {
+        largest = fmax(largest, body->bulk_modulus[m] / body->materials[m].shear_modulus);
+    }
+    return largest;
+}
+
+/* A limit that limits nothing is none. */
+static double effective(const struct relaxation *r, double limit)
+{
+    return limit < largest_bulk(&r->system->body) ? limit : INFINITY;
+}
+
+void relaxation_limit_bulk(struct relaxation *r)
+{
+    r->bulk_limit = r->inertia.volumes.count > 0 ? effective(r, first_bulk) : INFINITY;
+    r->rows_limit = r->bulk_limit;
+    r->bulk_rises = false;
+    r->fresh_frequency = 0.0;
+    body_limit_bulk(&r->system->body, r->bulk_limit);
+}
+
+void relaxation_raise_bulk(struct relaxation *r)
+{
+    if (r->bulk_rises && isfinite(r->bulk_limit)) {
+        r->bulk_limit = effective(r, bulk_rise * r->bulk_limit);
+        body_limit_bulk(&r->system->body, r->bulk_limit);
+    }
+}
+
+/* Mass and rows of volumes at the state r->residual_at. False on failure. */
+static bool set_rows(struct relaxation *r, struct error *error)
+{
+    (void)system_residual(r->system, r->residual_at, r->residual);
+    r->report->force_evaluations++;
+    system_relaxation_mass(r->system, true, r->scratch);
+    body_limit_bulk(&r->system->body, r->rows_limit);
+    r->failure = inertia_set_mass(&r->inertia, r->system, r->scratch, error);
+    body_limit_bulk(&r->system->body, r->bulk_limit);
+    relaxation_note_new_mass(r);
+    r->frequency = 0.0;
+    relaxation_update_time_step(r, r->residual_at, fresh_iterations);
+    r->fresh_frequency = r->frequency;
+    return r->failure == STATUS_OK;
+}
+
+bool relaxation_update_volumes(struct relaxation *r, struct error *error)
+{
+    if (r->inertia.volumes.count == 0) {
+        return true;
+    }
+    r->bulk_rises = r->bulk_rises || (r->at_full_load > 0 && r->report->error < rise_error);
+    bool overtaken = r->bulk_rises && r->rows_limit < r->bulk_limit * pow(bulk_rise, CHECK_INTERVAL);
+    if (overtaken) {
+        r->rows_limit = effective(r, most_ahead * r->rows_limit);
+    }
+    return overtaken || r->frequency >= most_stale * r->fresh_frequency ? set_rows(r, error) : true;
+}
+
+bool relaxation_calm(struct relaxation *r, struct error *error)
+{
+    memcpy(r->mode, r->scratch, (size_t)r->size * sizeof *r->mode);
+    memset(r->velocity, 0, (size_t)r->size * sizeof *r->velocity);
+    r->residual_at = r->u;
+    r->calmed_step = r->report->steps;
+    r->usual_residual2 = 0.0;
+    if (r->inertia.volumes.count > 0) {
+        return set_rows(r, error);
+    }
+    (void)system_residual(r->system, r->residual_at, r->residual);
+    r->report->force_evaluations++;
+    relaxation_update_time_step(r, r->residual_at, calm_iterations);
+    return true;
+}
