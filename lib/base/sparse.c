@@ -47,8 +47,8 @@ void sparse_free(struct sparse_factor *factor)
 static cholmod_sparse *upper_triangle(int64_t n, const int64_t *ptr, const int64_t *column,
                                       const double *value, cholmod_common *common)
 {
-    cholmod_sparse *A = cholmod_l_allocate_sparse((size_t)n, (size_t)n, (size_t)ptr[n], false, true, 1,
-                                                  CHOLMOD_REAL, common);
+    cholmod_sparse *A =
+        cholmod_l_allocate_sparse((size_t)n, (size_t)n, (size_t)ptr[n], false, true, 1, CHOLMOD_REAL, common);
     if (A == NULL) {
         return NULL;
     }

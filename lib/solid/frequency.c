@@ -11,6 +11,8 @@ static const int first_check = 16;
 static const double check_growth = 4.0 / 3.0, settled_change = 0.05;
 static const double least_share =
     0.6; /* of the ratio of the largest frequency to the lowest: iterations at least */
+/* A start of which the conditions leave no more than this has nothing to move. */
+static const double least_free = 1e-4;
 static const double strain =
     1e-6; /* about that much is a cell strained by the move that K is measured with */
 
@@ -172,8 +174,13 @@ enum status system_spectrum(struct solid_system *system, struct inertia *inertia
     if (largest_entry(vector, size) == 0.0) {
         start_mode(vector, size);
     }
+    double norm = sqrt(inertia_product_alone(inertia, vector, vector)), coupling = 0.0, largest = 0.0;
     constraint_project(&inertia->constraint, NULL, vector);
-    double norm = sqrt(inertia_product(inertia, vector, vector)), coupling = 0.0, largest = 0.0;
+    if (!(sqrt(inertia_product_alone(inertia, vector, vector)) > least_free * norm)) {
+        spectrum->lowest = spectrum->largest = 1.0;
+        goto done;
+    }
+    norm = sqrt(inertia_product(inertia, vector, vector));
     for (int k = 0; k < most_iterations && norm > 1e-12 * largest; k++) {
         for (int64_t i = 0; i < size; i++) {
             vector[i] /= norm;

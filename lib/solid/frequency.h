@@ -24,7 +24,8 @@ struct spectrum {
  * overwritten). K is the difference of residuals, one evaluation an iteration; residual must hold the
  * residual at u. It ends when a third more iterations changed the lowest eigenvalue by less than 5 %, when
  * that is negative, or after most_iterations. Lowest <= 0: no minimum of the energy, or a contact that opens
- * or closes there. scratch: 3 * node_count * dim. */
+ * or closes there. Both 1, about what D makes them, where the conditions leave nothing free. scratch: 3 *
+ * node_count * dim. */
 MUST_CHECK enum status system_spectrum(struct solid_system *system, struct inertia *inertia, const double *u,
                                        const double *residual, int most_iterations, double *start,
                                        double *scratch, struct spectrum *spectrum, struct error *error);

@@ -47,10 +47,10 @@ struct inertia {
     int64_t hat_count;
     double *weight;      /* Z^T D Z */
     double *free_weight; /* Z^T D P Z */
-    double *held; /* rows of H * size: S^-1 H Z, what they put against each field */
-    double *inverse; /* A^-1 */
-    double *beside;  /* (A + Z^T D P Z)^-1 */
-    double *amount;  /* 2 * size: scratch */
+    double *held;        /* rows of H * size: S^-1 H Z, what they put against each field */
+    double *inverse;     /* A^-1 */
+    double *beside;      /* (A + Z^T D P Z)^-1 */
+    double *amount;      /* 2 * size: scratch */
 };
 
 /* Whether the inertia has rows for nodal volumes, so that D leaves them out: in two dimensions, where S is

@@ -4,7 +4,8 @@
 
 #include "solid/inertia.h"
 
-/* amount[size] = Z^T P^T force, and acceleration = D^-1 force, whose values by the rows H are left in `seen`. */
+/* amount[size] = Z^T P^T force, and acceleration = D^-1 force, whose values by the rows H are left in `seen`.
+ */
 void inertia_collect_force(struct inertia *inertia, const double *force, double *acceleration,
                            double *amount);
 

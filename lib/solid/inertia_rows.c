@@ -278,8 +278,8 @@ static enum status multiply(const struct inertia *inertia, const struct row_list
     TRY(NEW_ARRAY(&S->ptr, count + 1, error));
     for (int64_t r = 0; r < count; r++) {
         int64_t at = S->ptr[r];
-        int64_t length = multiply_row(inertia, list, r, node_ptr, node_row, node_place, is_touched, touched,
-                                      sum);
+        int64_t length =
+            multiply_row(inertia, list, r, node_ptr, node_row, node_place, is_touched, touched, sum);
         if (at + length + 1 > capacity) {
             capacity = 2 * (at + length + 1) + 1024;
             int64_t *columns = array_grow(S->column, capacity, sizeof *columns);

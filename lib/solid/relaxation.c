@@ -6,23 +6,24 @@
 #include <math.h>
 #include <string.h>
 
-static const int64_t keep_interval = 200;     /* steps between states to go back to */
-static const double penetration_share = 1e-4; /* of the body's size: what a contact may penetrate */
+static const int64_t keep_interval = 200;               /* steps between states to go back to */
+static const double penetration_share = 1e-4;           /* of the body's size: what a contact may penetrate */
 static const double usual_rise = 1.5, usual_fall = 0.8; /* of the residual's squared norm in a step */
 static const double unstable_rise = 6.0;                /* over what is usual: a mode is unstable */
 static const int64_t calm_steps = 20;                   /* after that was mended, before the next look */
-static const int iterations = 1;              /* at every check: the mode is kept, so that it sharpens */
+static const int iterations = 1; /* at every check: the mode is kept, so that it sharpens */
 
 /* The residual by its norm r . M^-1 r, the acceleration being in r->scratch: of a stable run it follows the
- * load. A mode whose frequency is beyond the critical step makes it grow by a steady factor from step to step,
- * for many steps before points invert. `usual_residual2` follows the norm by less than that. */
+ * load. A mode whose frequency is beyond the critical step makes it grow by a steady factor from step to
+ * step, for many steps before points invert. `usual_residual2` follows the norm by less than that. */
 static bool residual_grows(struct relaxation *r)
 {
     double now2 = 0.0, usual2 = r->usual_residual2;
     for (int64_t i = 0; i < r->size; i++) {
         now2 += r->residual[i] * r->scratch[i];
     }
-    bool grows = usual2 > 0.0 && now2 > unstable_rise * usual2 && r->report->steps > r->calmed_step + calm_steps;
+    bool grows =
+        usual2 > 0.0 && now2 > unstable_rise * usual2 && r->report->steps > r->calmed_step + calm_steps;
     r->usual_residual2 = usual2 > 0.0 ? fmin(now2, usual_rise * usual2) : now2;
     r->usual_residual2 = fmax(r->usual_residual2, usual_fall * usual2);
     return grows;
@@ -170,8 +171,9 @@ static bool follow(struct relaxation *r, struct error *error)
         inertia_project(&r->inertia, r->system->factor, u);
     }
     if (r->report->steps % keep_interval == 0) {
-        relaxation_keep_state(r, u);
+        relaxation_keep_state(r);
     }
+    relaxation_keep_check(r);
     r->residual_at = r->before;
     if (r->checks >= r->next_mass_check && !relaxation_update_mass(r, error)) {
         return false;
@@ -231,7 +233,7 @@ static enum relaxation_outcome iterate(struct relaxation *r, struct error *error
         relaxation_raise_bulk(r);
         if (!step(r, r->u, measure)) {
             measure = false;
-            if (!relaxation_step_back(r, r->u, error)) {
+            if (!relaxation_step_back(r, error)) {
                 return RELAXATION_INVERTED;
             }
         }
@@ -262,7 +264,6 @@ static enum status begin(struct relaxation *r, struct error *error)
 {
     enum status status;
     struct solid_system *system = r->system;
-    size_t bytes = (size_t)r->size * sizeof *r->u;
     relaxation_limit_bulk(r);
     system_load_factors(system, 0.0);
     (void)system_residual(system, r->u, r->residual);
@@ -278,8 +279,10 @@ static enum status begin(struct relaxation *r, struct error *error)
         r->window[i] = INFINITY;
     }
     TRY(relaxation_measure_inertia(r, error));
-    memcpy(r->newer.u, r->u, bytes);
-    memcpy(r->older.u, r->u, bytes);
+    for (int i = 0; i < 2; i++) {
+        relaxation_keep_state(r);
+        relaxation_keep_check(r);
+    }
     r->report->ramp_steps = r->options->ramp_steps > 0 ? r->options->ramp_steps : relaxation_choose_ramp(r);
 done:
     return status;

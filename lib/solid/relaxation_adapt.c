@@ -16,13 +16,14 @@ static const double most_moved = 1.4, most_raised = 1.25;
 /* The load waits when something moves by more than this part of the body's size in a step, a little more than
  * a ramp makes. */
 static const double most_paced = 1.0 / 320.0;
-static const double least_low2 = 1e-4; /* first guess of the lowest eigenvalue by the largest, if it is negative */
+static const double least_low2 =
+    1e-4; /* first guess of the lowest eigenvalue by the largest, if it is negative */
 static const int64_t most_retreats = 8;                          /* from inverted points */
 static const double most_stiffening = 1.1, most_softening = 0.5; /* of a node since its mass was set */
 static const double most_stiffening_apart = 1.5; /* where volumes have rows, which are factored anew then */
-static const double most_mass_checks = 5.0;                      /* from one look at that to the next */
-static const int64_t most_augmentations = 20;                    /* of the contacts' multipliers, */
-static const int64_t most_fruitless = 3;                         /* of those in a row that change little */
+static const double most_mass_checks = 5.0;      /* from one look at that to the next */
+static const int64_t most_augmentations = 20;    /* of the contacts' multipliers, */
+static const int64_t most_fruitless = 3;         /* of those in a row that change little */
 
 double relaxation_body_size(const struct solid_system *system)
 {
@@ -49,6 +50,12 @@ void relaxation_pace(struct relaxation *r)
     r->load_rate = fmin(r->top_rate, fmin(factor, 1.2) * r->load_rate);
 }
 
+static double relaxation_share(const struct relaxation *r)
+{
+    bool rises = r->bulk_rises && isfinite(r->bulk_limit);
+    return r->caution * r->options->time_step_margin * (rises ? 0.5 : 1.0);
+}
+
 void relaxation_update_time_step(struct relaxation *r, const double *u, int iterations)
 {
     double frequency =
@@ -56,7 +63,7 @@ void relaxation_update_time_step(struct relaxation *r, const double *u, int iter
     r->report->force_evaluations += iterations;
     /* The estimate is from below and wanders: follow rises at once, falls slowly. */
     r->frequency = frequency > r->frequency ? frequency : 0.98 * r->frequency + 0.02 * frequency;
-    r->time_step = r->caution * r->options->time_step_margin * 2.0 / r->frequency;
+    r->time_step = relaxation_share(r) * 2.0 / r->frequency;
 }
 
 /* Whether the mass is to be set anew. The next look is when the stiffness, changing on as it did, would have
@@ -119,7 +126,7 @@ enum status relaxation_measure_inertia(struct relaxation *r, struct error *error
         return r->failure;
     }
     r->frequency = sqrt(fmax(spectrum.largest, 0.0));
-    r->time_step = r->caution * r->options->time_step_margin * 2.0 / r->frequency;
+    r->time_step = relaxation_share(r) * 2.0 / r->frequency;
     relaxation_damp_at_most(r, spectrum.lowest > 0.0 ? spectrum.lowest : least_low2 * spectrum.largest);
     r->measured_frequency = r->fresh_frequency = r->frequency;
     r->measured_move = r->largest_move;
@@ -127,16 +134,38 @@ done:
     return status;
 }
 
-void relaxation_keep_state(struct relaxation *r, const double *u)
+/* *older becomes what *newer was, and that the state now. */
+static void keep(const struct relaxation *r, struct kept_state *newer, struct kept_state *older)
 {
-    double *spare = r->older.u;
-    r->older = r->newer;
-    r->newer.u = spare;
-    r->newer.load = r->load;
-    memcpy(r->newer.u, u, (size_t)r->size * sizeof *u);
+    double *spare = older->u;
+    *older = *newer;
+    newer->u = spare;
+    newer->load = r->load;
+    newer->bulk_limit = r->bulk_limit;
+    memcpy(newer->u, r->u, (size_t)r->size * sizeof *r->u);
 }
 
-bool relaxation_step_back(struct relaxation *r, double *u, struct error *error)
+void relaxation_keep_state(struct relaxation *r)
+{
+    keep(r, &r->newer, &r->older);
+}
+
+void relaxation_keep_check(struct relaxation *r)
+{
+    keep(r, &r->check_now, &r->check_before);
+}
+
+void relaxation_go_back(struct relaxation *r, const struct kept_state *kept)
+{
+    r->load = kept->load;
+    r->bulk_limit = kept->bulk_limit;
+    body_limit_bulk(&r->system->body, r->bulk_limit);
+    memcpy(r->u, kept->u, (size_t)r->size * sizeof *r->u);
+    memset(r->velocity, 0, (size_t)r->size * sizeof *r->velocity);
+    system_load_factors(r->system, fmin(1.0, r->load / (double)r->report->ramp_steps));
+}
+
+bool relaxation_step_back(struct relaxation *r, struct error *error)
 {
     if (r->retreats == most_retreats) {
         return false;
@@ -145,15 +174,13 @@ bool relaxation_step_back(struct relaxation *r, double *u, struct error *error)
     r->caution *= 0.8;
     r->top_rate *= 0.5;
     r->load_rate = r->top_rate;
-    r->load = r->older.load;
-    memcpy(u, r->older.u, (size_t)r->size * sizeof *u);
-    memcpy(r->newer.u, r->older.u, (size_t)r->size * sizeof *u);
-    r->newer.load = r->older.load;
-    memset(r->velocity, 0, (size_t)r->size * sizeof *r->velocity);
+    relaxation_go_back(r, &r->older);
+    relaxation_keep_state(r);
+    relaxation_keep_check(r);
+    relaxation_keep_check(r);
     memset(r->mode, 0, (size_t)r->size * sizeof *r->mode);
-    system_load_factors(r->system, fmin(1.0, r->load / (double)r->report->ramp_steps));
-    r->residual_at = u;
-    if (!(system_residual(r->system, u, r->residual).least_jacobian > 0.0)) {
+    r->residual_at = r->u;
+    if (!(system_residual(r->system, r->u, r->residual).least_jacobian > 0.0)) {
         return false;
     }
     system_relaxation_mass(r->system, r->inertia.volumes.count > 0, r->scratch);

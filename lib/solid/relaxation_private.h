@@ -14,6 +14,7 @@ enum { WINDOWS = 8 };           /* recent Rayleigh quotients that the error esti
 struct kept_state {
     double *u;
     double load;
+    double bulk_limit; /* see struct relaxation */
 };
 
 struct relaxation {
@@ -46,17 +47,18 @@ struct relaxation {
     double thickness;                         /* mean, across that, m */
     double measured_frequency, measured_move; /* the largest ones, when the inertia was measured */
     double fresh_frequency;                   /* the largest, when the rows of volumes were set */
-    double bulk_limit;      /* of the bulk moduli now, by the shear moduli; INFINITY: none */
-    double rows_limit;      /* the same in the rows of volumes, at least that */
-    bool bulk_rises;        /* the limit goes up to the moduli themselves */
-    double usual_residual2; /* what the residual's norm, squared, is compared with */
-    bool unstable;          /* it grew far above that in the last step */
-    int64_t calmed_step;    /* the last step at which that was mended */
-    double penetration_allowed;               /* m */
-    int64_t augmentations, fruitless;         /* of the contacts so far; those in a row that changed little */
-    double least_penetration;                 /* m, before an augmentation */
-    int64_t augmented_step;                   /* of the last one while the load grew */
-    bool mass_changed; /* since the last check: increments of the acceleration mean nothing */
+    double bulk_limit;                /* of the bulk moduli now, by the shear moduli; INFINITY: none */
+    double rows_limit;                /* the same in the rows of volumes, at least that */
+    bool bulk_rises;                  /* the limit goes up to the moduli themselves, */
+    bool bulk_waits;                  /* but not now, as the body moves too fast */
+    double usual_residual2;           /* what the residual's norm, squared, is compared with */
+    bool unstable;                    /* it grew far above that in the last step */
+    int64_t calmed_step;              /* the last step at which that was mended */
+    double penetration_allowed;       /* m */
+    int64_t augmentations, fruitless; /* of the contacts so far; those in a row that changed little */
+    double least_penetration;         /* m, before an augmentation */
+    int64_t augmented_step;           /* of the last one while the load grew */
+    bool mass_changed;                /* since the last check: increments of the acceleration mean nothing */
     enum status failure;
     double load, load_rate;      /* steps of the ramp applied so far, and per step, at most top_rate */
     double top_rate;             /* 1 until an inversion */
@@ -66,8 +68,9 @@ struct relaxation {
     bool spectrum_known;         /* spectrum2 is of the mass and the load as they are */
     double caution;              /* on the time step: 1 until an inversion */
     int64_t retreats;
-    struct kept_state newer, older;
-    int64_t frames; /* given so far, but for the first, 0 */
+    struct kept_state newer, older;            /* every so often, */
+    struct kept_state check_now, check_before; /* at the last two checks */
+    int64_t frames;                            /* given so far, but for the first, 0 */
     int64_t
         at_full_load;   /* steps since the load that is held, that of a frame or the full one, was reached */
     int64_t settled;    /* checks in a row with a small error */
@@ -136,12 +139,18 @@ bool relaxation_update_inertia(struct relaxation *r, struct error *error);
  * the time step from it. */
 MUST_CHECK enum status relaxation_measure_inertia(struct relaxation *r, struct error *error);
 
+/* Go back to a state that was kept, at rest. */
+void relaxation_go_back(struct relaxation *r, const struct kept_state *kept);
+
+/* At a check: keep the state. */
+void relaxation_keep_check(struct relaxation *r);
+
 /* Keep the state every so often; the older of two is safely before any instability that shows. */
-void relaxation_keep_state(struct relaxation *r, const double *u);
+void relaxation_keep_state(struct relaxation *r);
 
 /* An inverted point: go back to a state before it, at rest, and go on with smaller steps and a slower load.
  * False when that has been tried often enough - the deformation itself inverts - and on failure. */
-bool relaxation_step_back(struct relaxation *r, double *u, struct error *error);
+bool relaxation_step_back(struct relaxation *r, struct error *error);
 
 /* While the load grows, after a check: augment contacts that penetrate too deep. Left to the end, their
  * pressures would double at once. */
@@ -162,8 +171,8 @@ void relaxation_raise_bulk(struct relaxation *r);
  * body has moved so far, or where the limit overtakes them. False on failure. */
 bool relaxation_update_volumes(struct relaxation *r, struct error *error);
 
-/* A mode is unstable, the acceleration in r->scratch: go on from u at rest, with the time step of that mode
- * and, where volumes have rows, with these set anew. False on failure. */
+/* A mode is unstable, the acceleration in r->scratch: go on from the check before the last, at rest, with the
+ * time step of that mode and, where volumes have rows, with these set anew. False on failure. */
 bool relaxation_calm(struct relaxation *r, struct error *error);
 
 /* ---- relaxation_state.c: memory, and what a checkpoint holds ---- */

@@ -6,7 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Nodal parameters are worth their while up to this magnification: 1 to 21 on the clouds where they save
+/* In two dimensions P is far from singular, and nodal parameters save no steps. In three they are worth their
+ * while up to this magnification: 1 to 21 on the clouds where they save
  * steps, 44 and more where they cost some (a coarse brain of poor tetrahedra, 74 neighbours to a node). */
 static const double most_magnification = 30.0;
 
@@ -101,6 +102,8 @@ enum status relaxation_allocate(struct relaxation *r, struct error *error)
     TRY(NEW_ARRAY(&r->acceleration, r->size, error));
     TRY(NEW_ARRAY(&r->newer.u, r->size, error));
     TRY(NEW_ARRAY(&r->older.u, r->size, error));
+    TRY(NEW_ARRAY(&r->check_now.u, r->size, error));
+    TRY(NEW_ARRAY(&r->check_before.u, r->size, error));
 done:
     return status;
 }
@@ -118,6 +121,8 @@ void relaxation_release(struct relaxation *r)
     free(r->acceleration);
     free(r->newer.u);
     free(r->older.u);
+    free(r->check_now.u);
+    free(r->check_before.u);
     inertia_free(&r->inertia);
 }
 
@@ -133,8 +138,16 @@ enum status relaxation_visit(void *run, const struct state *state, struct error 
         {"last_acceleration", STATE_NUMBERS, r->last_acceleration, r->size},
         {"newer.u", STATE_NUMBERS, r->newer.u, r->size},
         {"newer.load", STATE_NUMBERS, &r->newer.load, 1},
+        {"newer.bulk_limit", STATE_NUMBERS, &r->newer.bulk_limit, 1},
         {"older.u", STATE_NUMBERS, r->older.u, r->size},
         {"older.load", STATE_NUMBERS, &r->older.load, 1},
+        {"older.bulk_limit", STATE_NUMBERS, &r->older.bulk_limit, 1},
+        {"check_now.u", STATE_NUMBERS, r->check_now.u, r->size},
+        {"check_now.load", STATE_NUMBERS, &r->check_now.load, 1},
+        {"check_now.bulk_limit", STATE_NUMBERS, &r->check_now.bulk_limit, 1},
+        {"check_before.u", STATE_NUMBERS, r->check_before.u, r->size},
+        {"check_before.load", STATE_NUMBERS, &r->check_before.load, 1},
+        {"check_before.bulk_limit", STATE_NUMBERS, &r->check_before.bulk_limit, 1},
         {"steps", STATE_COUNTS, &report->steps, 1},
         {"time_step", STATE_NUMBERS, &r->time_step, 1},
         {"damping", STATE_NUMBERS, &r->damping, 1},
@@ -142,6 +155,7 @@ enum status relaxation_visit(void *run, const struct state *state, struct error 
         {"bulk_limit", STATE_NUMBERS, &r->bulk_limit, 1},
         {"rows_limit", STATE_NUMBERS, &r->rows_limit, 1},
         {"bulk_rises", STATE_FLAGS, &r->bulk_rises, 1},
+        {"bulk_waits", STATE_FLAGS, &r->bulk_waits, 1},
         {"usual_residual2", STATE_NUMBERS, &r->usual_residual2, 1},
         {"calmed_step", STATE_COUNTS, &r->calmed_step, 1},
         {"fresh_frequency", STATE_NUMBERS, &r->fresh_frequency, 1},

@@ -14,15 +14,6 @@ static double averaged_modulus(const struct body *body, int64_t q)
     return material_bulk(material) - nodal_volume_modulus(material);
 }
 
-bool volume_rows_exist(const struct body *body)
-{
-    bool exist = false;
-    for (int64_t q = 0; q < body->point_count && body->conforming && body->averaged; q++) {
-        exist = exist || averaged_modulus(body, q) > 0.0;
-    }
-    return exist;
-}
-
 static void free_matrix(struct volume_matrix *matrix)
 {
     free(matrix->ptr);
@@ -169,8 +160,8 @@ done:
 enum status volume_rows_build(const struct body *body, struct volume_rows *rows, struct error *error)
 {
     enum status status;
-    *rows = (struct volume_rows){
-        .dim = body->dim, .count = body->volumes.count, .node_count = body->node_count};
+    *rows =
+        (struct volume_rows){.dim = body->dim, .count = body->volumes.count, .node_count = body->node_count};
     TRY(list_means(body, &body->cells.faces.pairs, &rows->faces, error));
     TRY(list_means(body, &body->cells.nodes.pairs, &rows->nodes, error));
     TRY(lay_out_change(body, rows, error));
@@ -188,7 +179,8 @@ int64_t volume_rows_size(const struct volume_rows *rows)
     return rows->count > 0 ? rows->change.ptr[rows->count] * rows->dim : 0;
 }
 
-/* T with T : X = d/dH (cof H : D) : X; symmetric in H and D. In plane strain H and D have H33 = 1, D33 = 0. */
+/* T with T : X = d/dH (cof H : D) : X; symmetric in H and D. In plane strain H and D have H33 = 1, D33 = 0.
+ */
 static void cofactor_along(const double H[9], const double D[9], double T[9])
 {
     for (int i = 0; i < 3; i++) {

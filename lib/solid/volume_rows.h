@@ -31,10 +31,7 @@ struct volume_rows {
     double *theta;                     /* 2 * count: scratch */
 };
 
-/* Whether a body has such a part: conforming cells, averaged, and a material with kappa > s. */
-bool volume_rows_exist(const struct body *body);
-
-/* Lay out the rows of such a body; C and K are not set. */
+/* Lay out the rows of a body of averaged conforming cells; C and K are not set. */
 MUST_CHECK enum status volume_rows_build(const struct body *body, struct volume_rows *rows,
                                          struct error *error);
 void volume_rows_free(struct volume_rows *rows);
@@ -43,7 +40,8 @@ void volume_rows_free(struct volume_rows *rows);
 int64_t volume_rows_size(const struct volume_rows *rows);
 
 /* Set C and K at the body's last evaluation. */
-MUST_CHECK enum status volume_rows_set(const struct body *body, struct volume_rows *rows, struct error *error);
+MUST_CHECK enum status volume_rows_set(const struct body *body, struct volume_rows *rows,
+                                       struct error *error);
 
 /* force[count] = K C x */
 void volume_rows_force(const struct volume_rows *rows, const double *x, double *force);

@@ -161,6 +161,21 @@ static inline void lattice_body(struct lattice *l)
                                .material_count = 1,
                                .hat_node = options->nodal_volume ? hat_node : NULL,
                                .hat_value = options->nodal_volume ? hat_value : NULL};
+    struct quadrature_rule face_rule = quadrature_face_rule(dim);
+    struct conforming_input conforming = {.x = l->cells.x,
+                                          .cell_node = l->cells.node,
+                                          .face_count = l->faces.count,
+                                          .face_node = l->faces.node,
+                                          .face_cell = l->faces.cell,
+                                          .per_face = l->per_face,
+                                          .face_weight = face_rule.weight,
+                                          .face_ptr = l->face_lists.ptr,
+                                          .face_idx = l->face_lists.idx,
+                                          .face_phi = l->face_phi,
+                                          .node_ptr = l->node_lists.ptr,
+                                          .node_idx = l->node_lists.idx,
+                                          .node_phi = l->node_phi};
+    input.conforming = options->gauss_points == 0 ? &conforming : NULL;
     GOOD(body_build(&input, &l->system.body, &error));
     free(material);
     free(hat_node);
