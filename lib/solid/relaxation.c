@@ -10,6 +10,7 @@ static const int64_t keep_interval = 200;               /* steps between states 
 static const double penetration_share = 1e-4;           /* of the body's size: what a contact may penetrate */
 static const double usual_rise = 1.5, usual_fall = 0.8; /* of the residual's squared norm in a step */
 static const double unstable_rise = 6.0;                /* over what is usual: a mode is unstable */
+static const int64_t hover_steps = 50;                  /* without half the error: is a mode unstable? */
 static const int64_t calm_steps = 20;                   /* after that was mended, before the next look */
 static const int iterations = 1; /* at every check: the mode is kept, so that it sharpens */
 
@@ -161,6 +162,14 @@ static void change_load(struct relaxation *r, double s)
     }
 }
 
+/* The load is held, and the error has not halved for long: at a contact that opens and closes a mode beyond
+ * the critical step does not grow, but stays. */
+static bool hovers(const struct relaxation *r)
+{
+    int64_t since = r->best_step > r->calmed_step ? r->best_step : r->calmed_step;
+    return r->at_full_load > hover_steps && r->report->steps - since > hover_steps;
+}
+
 /* After a measured step: the error, and what follows the state: mass, time step. False on failure. */
 static bool follow(struct relaxation *r, struct error *error)
 {
@@ -179,6 +188,9 @@ static bool follow(struct relaxation *r, struct error *error)
         return false;
     }
     relaxation_update_time_step(r, r->residual_at, iterations);
+    if (hovers(r) && !relaxation_calm(r, r->acceleration, error)) {
+        return false;
+    }
     if (!relaxation_update_volumes(r, error)) {
         return false;
     }
@@ -237,7 +249,7 @@ static enum relaxation_outcome iterate(struct relaxation *r, struct error *error
                 return RELAXATION_INVERTED;
             }
         }
-        if (r->unstable && !relaxation_calm(r, error)) {
+        if (r->unstable && !relaxation_calm(r, r->scratch, error)) {
             return RELAXATION_STOPPED;
         }
         if (measure && !follow(r, error)) {

@@ -171,9 +171,9 @@ void relaxation_raise_bulk(struct relaxation *r);
  * body has moved so far, or where the limit overtakes them. False on failure. */
 bool relaxation_update_volumes(struct relaxation *r, struct error *error);
 
-/* A mode is unstable, the acceleration in r->scratch: go on from the check before the last, at rest, with the
+/* A mode may be unstable, which the acceleration shows. If it is: go on from the check before the last, at rest, with the
  * time step of that mode and, where volumes have rows, with these set anew. False on failure. */
-bool relaxation_calm(struct relaxation *r, struct error *error);
+bool relaxation_calm(struct relaxation *r, const double *acceleration, struct error *error);
 
 /* ---- relaxation_state.c: memory, and what a checkpoint holds ---- */
 

@@ -103,9 +103,9 @@ bool relaxation_update_volumes(struct relaxation *r, struct error *error)
 }
 
 /* Whether the mode that the acceleration shows is beyond the critical step. */
-static bool is_unstable(struct relaxation *r)
+static bool is_unstable(struct relaxation *r, const double *acceleration)
 {
-    memcpy(r->mode, r->scratch, (size_t)r->size * sizeof *r->mode);
+    memcpy(r->mode, acceleration, (size_t)r->size * sizeof *r->mode);
     (void)system_residual(r->system, r->u, r->residual);
     double frequency = system_largest_frequency(r->system, &r->inertia, r->u, r->residual, calm_iterations,
                                                 r->mode, r->scratch);
@@ -113,11 +113,11 @@ static bool is_unstable(struct relaxation *r)
     return !(frequency * r->time_step < 2.0);
 }
 
-bool relaxation_calm(struct relaxation *r, struct error *error)
+bool relaxation_calm(struct relaxation *r, const double *acceleration, struct error *error)
 {
     r->calmed_step = r->report->steps;
     r->usual_residual2 = 0.0;
-    if (!is_unstable(r)) {
+    if (!is_unstable(r, acceleration)) {
         return true;
     }
     relaxation_go_back(r, &r->check_before);
