@@ -1,8 +1,6 @@
 /* Meshes of gmsh (MSH 1, 2 and 4, ASCII and binary): reading a file, and making of it the mesh that the other
  * tools work on. Two steps: msh_read takes the file in as it is; mesh_build picks cells, facets and sets out
- * of it.
- *
- * Only msh_read uses libgmsh, and hands it a file only after its own scan (msh_scan.h). */
+ * of it. */
 #ifndef IO_MSH_H
 #define IO_MSH_H
 
@@ -15,7 +13,7 @@
 /* A physical group. */
 struct msh_group {
     int dim;               /* 0 points, 1 curves, 2 surfaces, 3 volumes */
-    int tag;               /* as in the file; positive */
+    int tag;               /* as in the file; not negative */
     char *name;            /* "group_TAG" where the file gives none; unique within its dimension */
     int64_t element_count; /* 0 for a group that is named and has nothing in it */
     char *written;         /* as in the file, where `name` differs: blanks, commas and quotes became '_' */
@@ -50,9 +48,14 @@ struct msh_type {
  * order. */
 struct msh_type msh_type(int64_t number);
 
+/* Read a mesh from its bytes. STATUS_INPUT for whatever is not a whole, sound mesh file, with a message that
+ * names section and record; a file of another program is told with the command that converts it.
+ * STATUS_SYSTEM where memory is short. Time and memory are in proportion to the size, whatever the file says
+ * of its own. On failure *msh is empty. */
+MUST_CHECK enum status msh_parse(struct msh *msh, const char *bytes, size_t size, struct error *error);
+
 /* Read a mesh from an open descriptor (a regular file, a pipe), which stays open. `name` begins the messages.
- * STATUS_INPUT for whatever is not a whole, sound mesh file; STATUS_SYSTEM for read failures and memory.
- * No more memory is asked for than a small multiple of the file's size. On failure *msh is empty. */
+ * Errors as for msh_parse; STATUS_SYSTEM also for read failures. */
 MUST_CHECK enum status msh_read(struct msh *msh, int descriptor, const char *name, struct error *error);
 void msh_free(struct msh *msh);
 
