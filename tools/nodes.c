@@ -21,7 +21,8 @@ static const char usage[] =
     "looked at, and nothing in the file is run.\n"
     "\n"
     "Geometries are meshed by 'gmsh -3 body.geo -o body.msh' (STEP, too; -2 in the plane). Meshes of other\n"
-    "programs become one of gmsh by 'gmsh body.vtk -save -o body.msh' (MEDIT, Abaqus and others, too). VTU, by\n"
+    "programs become one of gmsh by 'gmsh body.vtk -save -o body.msh' (MEDIT, Abaqus and others, too). VTU, "
+    "by\n"
     "python3-meshio: python3 -c 'import meshio as m; m.write(\"body.msh\", m.read(\"body.vtu\"),\n"
     "file_format=\"gmsh22\")'. A closed surface in STL is filled by a file fill.geo of the lines\n"
     "Merge \"body.stl\";  Surface Loop(1) = {1};  Volume(1) = {1};  and 'gmsh -3 fill.geo -o body.msh'.\n"
@@ -85,20 +86,6 @@ static void list_groups(const struct tool *tool, const struct msh *msh)
     }
     if (!named) {
         tool_note(tool, "no part of the boundary has a name: the program groups makes names (groups -h)");
-    }
-}
-
-/* Second-order elements become first-order ones. */
-static void make_linear(const struct tool *tool, struct msh *msh, bool use)
-{
-    struct error error;
-    int64_t midside;
-    tool_check(tool, msh_make_linear(msh, use, &midside, &error), &error);
-    if (midside > 0) {
-        tool_note(tool,
-                  use ? "second-order cells: split at %lld midside nodes"
-                      : "second-order cells: %lld midside nodes left out (--midside use keeps them)",
-                  (long long)midside);
     }
 }
 
@@ -184,15 +171,16 @@ int main(int argc, char *argv[])
         [OUTPUT] = {.letter = 'o', .name = "output", .takes_value = true},
     };
     tool_begin(&tool, usage, options, OPTION_COUNT, 0, 1, argc, argv);
-    double unit = parse(&tool, options);
+    struct mesh_options wanted = {.unit = parse(&tool, options)};
     read_mesh(&tool, &msh);
     if (options[LIST].given) {
         list_groups(&tool, &msh);
         msh_free(&msh);
         return tool_end(&tool);
     }
-    make_linear(&tool, &msh, options[MIDSIDE].given && strcmp(options[MIDSIDE].value, "use") == 0);
-    tool_check(&tool, mesh_build(&mesh, &msh, unit, options[REGIONS].value, &error), &error);
+    wanted.regions = options[REGIONS].value;
+    wanted.midside = options[MIDSIDE].given && strcmp(options[MIDSIDE].value, "use") == 0;
+    tool_check(&tool, mesh_build(&mesh, &msh, &wanted, &error), &error);
     msh_free(&msh);
     for (int32_t i = 0; i < mesh.notes.count; i++) {
         tool_note(&tool, "%s", mesh.notes.name[i]);

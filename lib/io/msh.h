@@ -59,12 +59,6 @@ MUST_CHECK enum status msh_parse(struct msh *msh, const char *bytes, size_t size
 MUST_CHECK enum status msh_read(struct msh *msh, int descriptor, const char *name, struct error *error);
 void msh_free(struct msh *msh);
 
-/* Make all elements first-order ones: their midside nodes are dropped, or, with `use`, they stay and the
- * elements are split at them (*midside receives how many there are). Dropping renumbers the nodes, splitting
- * the elements, whose pieces keep the tag. STATUS_INPUT for elements that cannot be split: those without a
- * node in the middle of each quadrangular face, and prisms and pyramids. On failure *msh is to be freed. */
-MUST_CHECK enum status msh_make_linear(struct msh *msh, bool use, int64_t *midside, struct error *error);
-
 /* Names of regions, facet sets or node sets. */
 struct mesh_names {
     int32_t count;
@@ -88,18 +82,27 @@ struct mesh {
     struct mesh_names notes; /* what was left out, one line each (these may hold blanks) */
 };
 
-/* Make the mesh of `msh`, whose lengths are in `unit` metres.
+/* What of a file is made a mesh. */
+struct mesh_options {
+    double unit;         /* of the file's lengths, m */
+    const char *regions; /* comma-separated list of regions to keep, or NULL: all */
+    bool midside; /* nodes amid the edges of second-order elements stay, and the elements are split there;
+                     else they are dropped */
+};
+
+/* Make the mesh of `msh`.
  * The dimension is 3 if there are tetrahedra, hexahedra, prisms or pyramids, else 2 if there are triangles or
  * quadrangles in a plane z = const. Quadrangles and the cells of more than four nodes are split into
  * simplices so that neighbours conform (every quadrangular face along the diagonal through its lowest node:
- * Dompierre et al., How to subdivide pyramids, prisms and hexahedra into tetrahedra, 1999). `wanted` is a
- * comma-separated list of regions to keep, or NULL: all. Nodes keep their order; those that belong to no kept
- * cell are dropped. All elements are of first order. A cell in two groups is of the one with the lowest tag,
- * a cell that stands twice is taken once; cells in no group are the region 'body' if there is no other, else
- * 'unnamed'. STATUS_INPUT: no cells, a surface in space, cells without volume or folded, coincident nodes of
- * one body, a name that is no name of a region, names with blanks or commas. On failure *mesh is empty. */
-MUST_CHECK enum status mesh_build(struct mesh *mesh, const struct msh *msh, double unit, const char *wanted,
-                                  struct error *error);
+ * Dompierre et al., How to subdivide pyramids, prisms and hexahedra into tetrahedra, 1999). Nodes keep their
+ * order; those that belong to no kept cell are dropped. A cell in two groups is of the one with the lowest
+ * tag, a cell that stands twice is taken once; cells in no group are the region 'body' if there is no other,
+ * else 'unnamed'. STATUS_INPUT: no cells, a surface in space, cells without volume or folded, coincident
+ * nodes of one body, a name that is no name of a region, names with blanks or commas, elements that cannot be
+ * split at their midside nodes (those without a node in the middle of each quadrangular face, and prisms and
+ * pyramids). On failure *mesh is empty. */
+MUST_CHECK enum status mesh_build(struct mesh *mesh, const struct msh *msh,
+                                  const struct mesh_options *options, struct error *error);
 void mesh_free(struct mesh *mesh);
 
 /* Put the mesh's sections into a stream: nodes.x, cells and cells.region if there are cells, facets and

@@ -1,7 +1,6 @@
 #include "base/memory.h"
 #include "io/msh_build.h"
 #include "io/msh_faces.h"
-#include "io/msh_split.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -164,14 +163,8 @@ static enum status gather_facets(struct gathering *g, int32_t group)
     struct mesh *mesh = g->draft->mesh;
     struct tally tally = {0, 0, 0};
     for (int64_t i = g->group_ptr[group]; i < g->group_ptr[group + 1]; i++) {
-        int64_t e = g->group_idx[i];
-        int32_t node[4] = {-1, -1, -1, -1};
-        int32_t pieces[MSH_MOST_SIMPLICES][4];
-        int64_t first = msh->node_ptr[e];
-        for (int64_t k = first; k < msh->node_ptr[e + 1]; k++) {
-            node[k - first] = g->draft->node_of[msh->node_idx[k]];
-        }
-        int count = msh_split(msh->element_type[e], node, false, pieces);
+        int32_t pieces[MESH_MOST_SIMPLICES][4];
+        int count = mesh_simplices(g->draft, g->group_idx[i], pieces);
         for (int p = 0; p < count; p++) {
             TRY(add_face(g, group, pieces[p], &tally));
         }
@@ -193,8 +186,9 @@ static enum status gather_nodes(struct gathering *g, int32_t group)
     int64_t lost = 0;
     for (int64_t i = g->group_ptr[group]; i < g->group_ptr[group + 1]; i++) {
         int64_t e = g->group_idx[i];
-        for (int64_t k = msh->node_ptr[e]; k < msh->node_ptr[e + 1]; k++) {
-            int32_t node = g->draft->node_of[msh->node_idx[k]];
+        int used = mesh_used_nodes(g->draft, e);
+        for (int k = 0; k < used; k++) {
+            int32_t node = g->draft->node_of[msh->node_idx[msh->node_ptr[e] + k]];
             lost += node < 0;
             TRY(add_set_node(g, group, node));
         }
@@ -227,16 +221,14 @@ done:
     return status;
 }
 
-/* Room for all facets that there can be: each element of dimension dim - 1 gives at most two to each of its
- * groups. */
+/* Room for all facets that there can be: a triangle of second order gives four, a quadrangle eight. */
 static int64_t most_facets(const struct mesh_draft *draft)
 {
     int64_t most = 0;
     for (int32_t i = 0; i < draft->msh->group_count; i++) {
-        most +=
-            draft->msh->groups[i].dim == draft->mesh->dim - 1 ? 2 * draft->msh->groups[i].element_count : 0;
+        most += draft->msh->groups[i].dim == draft->mesh->dim - 1 ? draft->msh->groups[i].element_count : 0;
     }
-    return most;
+    return most * (draft->options->midside ? 8 : 2);
 }
 
 enum status mesh_build_facets(struct mesh_draft *draft)

@@ -40,20 +40,17 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     struct msh msh;
     struct mesh mesh;
     struct error error = {""};
-    for (int use = 0; use < 2; use++) {
-        int64_t midside;
-        if (!is_accepted(msh_parse(&msh, (const char *)data, size, &error), &error)) {
-            REQUIRE(msh.x == NULL && msh.node_idx == NULL && msh.groups == NULL);
-            return 0;
-        }
-        require_sound(&msh, size);
-        if (is_accepted(msh_make_linear(&msh, use, &midside, &error), &error)) {
-            require_sound(&msh, 64 * size);
-            if (is_accepted(mesh_build(&mesh, &msh, 1, NULL, &error), &error)) {
-                mesh_free(&mesh);
-            }
-        }
-        msh_free(&msh);
+    if (!is_accepted(msh_parse(&msh, (const char *)data, size, &error), &error)) {
+        REQUIRE(msh.x == NULL && msh.node_idx == NULL && msh.groups == NULL);
+        return 0;
     }
+    require_sound(&msh, size);
+    for (int use = 0; use < 2; use++) {
+        struct mesh_options options = {.unit = 1, .midside = use};
+        if (is_accepted(mesh_build(&mesh, &msh, &options, &error), &error)) {
+            mesh_free(&mesh);
+        }
+    }
+    msh_free(&msh);
     return 0;
 }

@@ -86,7 +86,8 @@ static struct mesh build(const struct sketch *s, const char *wanted)
 {
     struct mesh mesh;
     struct error error = {""};
-    enum status status = mesh_build(&mesh, &s->msh, 1, wanted, &error);
+    enum status status =
+        mesh_build(&mesh, &s->msh, &(struct mesh_options){.unit = 1, .regions = wanted}, &error);
     assert_string_equal(error.text, "");
     assert_int_equal(status, STATUS_OK);
     return mesh;
@@ -96,7 +97,8 @@ static void expect_failure(struct sketch *s, const char *wanted, const char *mes
 {
     struct mesh mesh;
     struct error error = {""};
-    assert_int_equal(mesh_build(&mesh, &s->msh, 1, wanted, &error), STATUS_INPUT);
+    assert_int_equal(mesh_build(&mesh, &s->msh, &(struct mesh_options){.unit = 1, .regions = wanted}, &error),
+                     STATUS_INPUT);
     if (strstr(error.text, message) == NULL) {
         fail_msg("'%s' does not say '%s'", error.text, message);
     }
@@ -415,7 +417,7 @@ static void lengths_are_scaled(void **state)
     struct sketch *s = square();
     struct mesh mesh;
     struct error error;
-    assert_int_equal(mesh_build(&mesh, &s->msh, 1e-6, NULL, &error), STATUS_OK);
+    assert_int_equal(mesh_build(&mesh, &s->msh, &(struct mesh_options){.unit = 1e-6}, &error), STATUS_OK);
     assert_true(mesh.x[4] == 1e-6);
     assert_true(fabs(total_volume(&mesh) / 1e-12 - 1) < 1e-14);
     mesh_free(&mesh);

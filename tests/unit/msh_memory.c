@@ -53,7 +53,7 @@ static enum status try_build(struct error *error)
     struct mesh mesh;
     struct stream stream;
     stream_init(&stream);
-    enum status status = mesh_build(&mesh, &msh, 1e-3, NULL, error);
+    enum status status = mesh_build(&mesh, &msh, &(struct mesh_options){.unit = 1e-3}, error);
     if (status == STATUS_OK) {
         status = mesh_put(&mesh, &stream, error);
     }

@@ -41,14 +41,10 @@ static void require_sense(const char *bytes, size_t size)
     struct msh msh;
     struct mesh mesh;
     struct error error = {""};
-    int64_t midside;
     enum status status = parse_copy(&msh, bytes, size, &error);
     if (status == STATUS_OK) {
         assert_true(msh.node_count <= (int64_t)size && msh.element_count <= (int64_t)size);
-        status = msh_make_linear(&msh, false, &midside, &error);
-    }
-    if (status == STATUS_OK) {
-        status = mesh_build(&mesh, &msh, 1, NULL, &error);
+        status = mesh_build(&mesh, &msh, &(struct mesh_options){.unit = 1}, &error);
         msh_free(&msh);
         mesh_free(&mesh);
     }
@@ -73,7 +69,7 @@ static void every_form_gives_the_same_mesh(void **state)
         assert_int_equal(msh.group_count, 3);
         assert_string_equal(msh.groups[0].name, "corner");
         assert_int_equal(msh.groups[2].element_count, 2);
-        assert_int_equal(mesh_build(&mesh, &msh, 1e-3, NULL, &error), STATUS_OK);
+        assert_int_equal(mesh_build(&mesh, &msh, &(struct mesh_options){.unit = 1e-3}, &error), STATUS_OK);
         assert_int_equal(mesh.dim, 2);
         assert_int_equal(mesh.node_count, 4);
         for (int n = 0; n < 4; n++) {
@@ -104,7 +100,7 @@ static void groups_of_elements_not_of_entities(void **state)
     struct error error = {""};
     assert_true(fixture_replace(&f, "14 2 2 2 1", "14 2 2 8 1"));
     assert_int_equal(read_bytes(&msh, f.bytes, f.size, &error), STATUS_OK);
-    assert_int_equal(mesh_build(&mesh, &msh, 1, NULL, &error), STATUS_OK);
+    assert_int_equal(mesh_build(&mesh, &msh, &(struct mesh_options){.unit = 1}, &error), STATUS_OK);
     assert_int_equal(mesh.regions.count, 2);
     assert_string_equal(mesh.regions.name[1], "group_8");
     assert_int_equal(mesh.cell_region[0], 0);
