@@ -92,8 +92,6 @@ complete_words() {
         [ -s offered ]
         cmp explained offered
     done
-    [ "$(complete_words tovtk -f '')" = "vtu gmsh" ]
-    [ "$(complete_words tovtk --format g)" = gmsh ]
     [ "$(complete_words tovtk -o '')" = "" ]
     [ "$(complete_words tovtk --te)" = --text ]
     [ "$(complete_words cloud -k '')" = "regular jittered halton graded" ]
