@@ -12,9 +12,10 @@
 
 /* A physical group. */
 struct msh_group {
-    int dim;               /* 0 points, 1 curves, 2 surfaces, 3 volumes */
-    int tag;               /* as in the file; not negative */
-    char *name;            /* "group_TAG" where the file gives none; unique within its dimension */
+    int dim;    /* 0 points, 1 curves, 2 surfaces, 3 volumes */
+    int tag;    /* as in the file; not negative */
+    char *name; /* without blanks, commas and quotes; "group_TAG" where the file gives none; unique within its
+                   dimension */
     int64_t element_count; /* 0 for a group that is named and has nothing in it */
     char *written;         /* as in the file, where `name` differs: blanks, commas and quotes became '_' */
 };
@@ -98,7 +99,7 @@ struct mesh_options {
  * order; those that belong to no kept cell are dropped. A cell in two groups is of the one with the lowest
  * tag, a cell that stands twice is taken once; cells in no group are the region 'body' if there is no other,
  * else 'unnamed'. STATUS_INPUT: no cells, a surface in space, cells without volume or folded, coincident
- * nodes of one body, a name that is no name of a region, names with blanks or commas, elements that cannot be
+ * nodes of one body, a name that is no name of a region, two node sets of one name, elements that cannot be
  * split at their midside nodes (those without a node in the middle of each quadrangular face, and prisms and
  * pyramids). On failure *mesh is empty. */
 MUST_CHECK enum status mesh_build(struct mesh *mesh, const struct msh *msh,

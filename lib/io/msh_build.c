@@ -42,24 +42,6 @@ int32_t mesh_find_name(const struct mesh_names *names, const char *name, size_t 
     return -1;
 }
 
-enum status mesh_add_group(struct mesh_names *names, const struct msh_group *group, struct error *error)
-{
-    for (const char *c = group->name; *c != '\0'; c++) {
-        if ((unsigned char)*c <= ' ' || *c == ',' || *c == '"' || *c == 127) {
-            return fail(
-                error, STATUS_INPUT,
-                "physical group %d of dimension %d: '%s': no blanks, commas and quotes in names: rename it",
-                group->tag, group->dim, group->name);
-        }
-    }
-    if (mesh_find_name(names, group->name, strlen(group->name)) >= 0) {
-        return fail(error, STATUS_INPUT,
-                    "physical group %d of dimension %d: another one is named '%s': rename one", group->tag,
-                    group->dim, group->name);
-    }
-    return mesh_add_name(names, group->name, error);
-}
-
 void mesh_names_free(struct mesh_names *names)
 {
     for (int32_t i = 0; i < names->count; i++) {

@@ -29,10 +29,6 @@ void mesh_names_free(struct mesh_names *names);
 /* Index of the name of that length, or -1. */
 int32_t mesh_find_name(const struct mesh_names *names, const char *name, size_t length);
 
-/* The name of a group as one of `names`: an error for blanks, commas, and a name that is there already. */
-MUST_CHECK enum status mesh_add_group(struct mesh_names *names, const struct msh_group *group,
-                                      struct error *error);
-
 /* Dimension of an element's type, and how many of its nodes count: its corners or all. */
 int mesh_element_dim(const struct mesh_draft *draft, int64_t element);
 int mesh_used_nodes(const struct mesh_draft *draft, int64_t element);

@@ -96,7 +96,7 @@ static enum status close_set(struct gathering *g, int32_t group)
         return STATUS_OK;
     }
     qsort(&mesh->set_idx[first], (size_t)count, sizeof *mesh->set_idx, compare_nodes);
-    enum status status = mesh_add_group(&mesh->node_sets, &g->draft->msh->groups[group], g->draft->error);
+    enum status status = mesh_add_name(&mesh->node_sets, g->draft->msh->groups[group].name, g->draft->error);
     if (status == STATUS_OK) {
         mesh->set_ptr[mesh->node_sets.count + 1] = mesh->set_ptr[mesh->node_sets.count];
     }
@@ -170,7 +170,7 @@ static enum status gather_facets(struct gathering *g, int32_t group)
         }
     }
     if (tally.boundary > 0) {
-        TRY(mesh_add_group(&mesh->facet_sets, &msh->groups[group], g->draft->error));
+        TRY(mesh_add_name(&mesh->facet_sets, msh->groups[group].name, g->draft->error));
     }
     TRY(close_set(g, group));
     TRY(note_tally(g, &msh->groups[group], &tally));
@@ -221,6 +221,34 @@ done:
     return status;
 }
 
+static int compare_names(const void *left, const void *right)
+{
+    return strcmp(*(char *const *)left, *(char *const *)right);
+}
+
+/* Names differ within a dimension, but node sets come from several. */
+static enum status check_set_names(const struct mesh_draft *draft)
+{
+    enum status status = STATUS_OK;
+    const struct mesh_names *sets = &draft->mesh->node_sets;
+    char **order = NULL;
+    TRY(NEW_ARRAY(&order, sets->count, draft->error));
+    for (int32_t i = 0; i < sets->count; i++) {
+        order[i] = sets->name[i];
+    }
+    qsort(order, (size_t)sets->count, sizeof *order, compare_names);
+    for (int32_t i = 1; i < sets->count && status == STATUS_OK; i++) {
+        if (strcmp(order[i], order[i - 1]) == 0) {
+            status = fail(draft->error, STATUS_INPUT,
+                          "physical groups of two dimensions are named '%s', both sets of nodes: rename one",
+                          order[i]);
+        }
+    }
+done:
+    free(order);
+    return status;
+}
+
 /* Room for all facets that there can be: a triangle of second order gives four, a quadrangle eight. */
 static int64_t most_facets(const struct mesh_draft *draft)
 {
@@ -250,6 +278,7 @@ enum status mesh_build_facets(struct mesh_draft *draft)
     TRY(NEW_ARRAY(&mesh->facet_set, most_facets(draft), draft->error));
     TRY(NEW_ARRAY(&mesh->set_ptr, draft->msh->group_count + 2, draft->error));
     TRY(gather_groups(&g));
+    TRY(check_set_names(draft));
 done:
     msh_faces_free(&g.faces);
     free(g.group_ptr);

@@ -7,6 +7,9 @@
 
 #define LONGEST_NAME 127
 
+/* Of an entity. */
+#define MOST_GROUPS 64
+
 static const char *const entity_kinds[] = {"point", "curve", "surface", "volume"};
 
 /* ---- $PhysicalNames ---- */
@@ -77,6 +80,9 @@ static void skip_tags(struct msh_reader *r, const char *what)
 static void read_physicals(struct msh_reader *r, int dim, struct msh_entity *entity)
 {
     int64_t count = msh_count(r, "physical groups", 2, 4);
+    if (count > MOST_GROUPS) {
+        msh_fail(r, "%lld physical groups are more than %d", (long long)count, MOST_GROUPS);
+    }
     entity->first = r->physical_count;
     for (int64_t i = 0; r->status == STATUS_OK && i < count; i++) {
         int64_t tag = msh_int(r, "physical groups", -MSH_LARGEST_TAG, MSH_LARGEST_TAG);
@@ -155,16 +161,25 @@ static int compare_keys(const void *left, const void *right) /* also of structs 
     return (*a > *b) - (*a < *b);
 }
 
+static int key_dim(int64_t key)
+{
+    return (int)((key + MSH_LARGEST_TAG) >> 32) - 1;
+}
+
+static int key_tag(int64_t key)
+{
+    return (int)(key - msh_key(key_dim(key), 0));
+}
+
 static int64_t group_key(const struct msh_group *group)
 {
     return msh_key(group->dim, group->tag);
 }
 
-static int compare_groups(const void *left, const void *right)
+static int compare_group(const void *key, const void *group)
 {
-    int64_t a = group_key(left);
-    int64_t b = group_key(right);
-    return (a > b) - (a < b);
+    int64_t of_group = group_key(group);
+    return compare_keys(key, &of_group);
 }
 
 /* By dimension and name, then tag. */
@@ -172,16 +187,15 @@ static int compare_names(const void *left, const void *right)
 {
     const struct msh_group *a = *(const struct msh_group *const *)left;
     const struct msh_group *b = *(const struct msh_group *const *)right;
-    int names = a->dim == b->dim ? strcmp(a->name, b->name) : (a->dim > b->dim) - (a->dim < b->dim);
-    return names != 0 ? names : compare_groups(a, b);
+    int names = a->dim == b->dim ? strcmp(a->name, b->name) : 0;
+    int64_t key = group_key(a);
+    return names != 0 ? names : compare_group(&key, b);
 }
 
+/* The group, which is there. */
 static struct msh_group *find_group(const struct msh *msh, int64_t key)
 {
-    struct msh_group wanted = {.dim = (int)(key >> 32) - 1, .tag = (int)(key & UINT32_MAX)};
-    return msh->group_count == 0
-               ? NULL
-               : bsearch(&wanted, msh->groups, (size_t)msh->group_count, sizeof wanted, compare_groups);
+    return bsearch(&key, msh->groups, (size_t)msh->group_count, sizeof *msh->groups, compare_group);
 }
 
 /* Sort keys, each once; returns how many are left. */
@@ -223,7 +237,7 @@ static void collect_groups(struct msh_reader *r)
     MSH_NEW(r, &msh->groups, count);
     for (int64_t i = 0; r->status == STATUS_OK && i < count; i++) {
         msh->groups[msh->group_count++] =
-            (struct msh_group){.dim = (int)(keys[i] >> 32) - 1, .tag = (int)(keys[i] & UINT32_MAX)};
+            (struct msh_group){.dim = key_dim(keys[i]), .tag = key_tag(keys[i])};
     }
     free(keys);
 }
@@ -314,7 +328,8 @@ static void sort_entities(struct msh_reader *r)
         struct msh_entity *entity = &r->entities[i];
         int64_t *list = &r->physicals[entity->first];
         if (i > 0 && entity->key == entity[-1].key) {
-            r->status = fail(r->error, STATUS_INPUT, "$Entities: an entity stands twice");
+            r->status = fail(r->error, STATUS_INPUT, "$Entities: %s %d stands twice",
+                             entity_kinds[key_dim(entity->key)], key_tag(entity->key));
             return;
         }
         entity->count = sort_keys(list, entity->count);
@@ -336,10 +351,9 @@ static const struct msh_entity *entity_of(struct msh_reader *r, int64_t e, const
         r->entity_count == 0 ? NULL
                              : bsearch(key, r->entities, (size_t)r->entity_count, sizeof none, compare_keys);
     if (found == NULL && r->version >= 40 && r->entity_count > 0) {
-        int dim = msh_type(r->msh->element_type[e]).dim;
         r->status =
-            fail(r->error, STATUS_INPUT, "$Elements: element %lld is on %s %lld, which is not in $Entities",
-                 (long long)r->msh->element_tag[e], entity_kinds[dim], (long long)(*key - msh_key(dim, 0)));
+            fail(r->error, STATUS_INPUT, "$Elements: element %lld is on %s %d, which is not in $Entities",
+                 (long long)r->msh->element_tag[e], entity_kinds[key_dim(*key)], key_tag(*key));
     }
     return found != NULL ? found : &none;
 }

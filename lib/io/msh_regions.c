@@ -212,8 +212,7 @@ static enum status name_regions(struct mesh_draft *draft, const int64_t cells_of
         int32_t same = named ? -1 : mesh_find_name(regions, name, strlen(name));
         region_of_group[g] = same >= 0 ? same : regions->count;
         if (same < 0) {
-            TRY(named ? mesh_add_group(regions, &msh->groups[g], draft->error)
-                      : mesh_add_name(regions, name, draft->error));
+            TRY(mesh_add_name(regions, name, draft->error));
         }
     }
     TRY(check_wanted(draft, &present));

@@ -534,15 +534,21 @@ static void cells_that_stand_twice(void **state)
     free(s);
 }
 
-static void names_that_are_none(void **state)
+static void two_sets_of_one_name(void **state)
 {
     (void)state;
-    static const char *const names[] = {"my body", "a,b", "tab\there", "quo\"te"};
-    for (int i = 0; i < 4; i++) {
-        struct sketch *s = square();
-        s->groups[0].name = (char *)(uintptr_t)names[i];
-        expect_failure(s, NULL, "physical group 1 of dimension 2: '");
+    struct sketch *s = square();
+    s->groups[2] = s->groups[0];
+    s->groups[0] = s->groups[1] = (struct msh_group){0, 1, (char *)(uintptr_t) "here", 1, NULL};
+    s->groups[1].dim = 1; /* a line between the cells */
+    s->msh.group_count = 3;
+    for (int64_t e = 0; e < s->member_ptr[2]; e++) {
+        s->member_idx[e] = 2;
     }
+    ADD(s, POINT, 0, 1);
+    ADD(s, LINE, 1, 0, 2);
+    s->groups[0].element_count = s->groups[1].element_count = 1;
+    expect_failure(s, NULL, "physical groups of two dimensions are named 'here', both sets of nodes");
 }
 
 int main(void)
@@ -560,7 +566,7 @@ int main(void)
         cmocka_unit_test(cells_that_are_none),
         cmocka_unit_test(cells_in_two_groups),
         cmocka_unit_test(cells_that_stand_twice),
-        cmocka_unit_test(names_that_are_none),
+        cmocka_unit_test(two_sets_of_one_name),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

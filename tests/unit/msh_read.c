@@ -156,6 +156,18 @@ static void groups_of_entities(void **state)
     msh_free(&msh);
 }
 
+static void an_entity_stands_once(void **state)
+{
+    (void)state;
+    struct fixture f = fixture_make(ASCII_41);
+    struct msh msh;
+    struct error error = {""};
+    assert_true(fixture_replace(&f, "\n1 1 1 0\n", "\n1 1 2 0\n"));
+    assert_true(fixture_replace(&f, " 1 2 1 1\n", " 1 2 1 1\n1 0 0 0 2 2 0 0 1 1\n"));
+    assert_int_equal(parse_copy(&msh, f.bytes, f.size, &error), STATUS_INPUT);
+    assert_string_equal(error.text, "$Entities: surface 1 stands twice");
+}
+
 /* MSH 4 without $Entities, as meshio writes it: no groups. */
 static void entities_may_be_absent(void **state)
 {
@@ -306,6 +318,7 @@ static void each_fault_has_its_message(void **state)
         {ASCII_41, "2 1 2 2\n13", "2 4 2 2\n13", "element 13 is on surface 4, which is not in $Entities"},
         {ASCII_41, "1 1 1 0\n", "15 15 15 15\n", "60 entities cannot be in what is left of the file"},
         {ASCII_41, " 1 3 0\n", " 1 3 100000000000\n", "cannot be in"},
+        {ASCII_41, " 1 3 0\n", " 70 3 0\n", "$Entities: curve 1: 70 physical groups are more than 64"},
         {ASCII_22, "1 3 \"bottom\"\n2 2", "1 3 \"bottom\"\n1 3", "group 3 of dimension 1 is named twice"},
         {ASCII_22, "2 2 \"body\"", "1 2 \"bottom\"", "groups 2 and 3 of dimension 1 are both named 'bottom'"},
         {ASCII_22, "$MeshFormat\n", "SystemCall \"true\";\n",
@@ -380,6 +393,7 @@ int main(void)
         cmocka_unit_test(every_form_gives_the_same_mesh),
         cmocka_unit_test(groups_of_elements_not_of_entities),
         cmocka_unit_test(groups_of_entities),
+        cmocka_unit_test(an_entity_stands_once),
         cmocka_unit_test(entities_may_be_absent),
         cmocka_unit_test(tags_in_any_order),
         cmocka_unit_test(truncation_at_every_byte_is_found),
