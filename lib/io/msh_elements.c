@@ -134,7 +134,7 @@ void msh_read_elements(struct msh_reader *r)
     bool blocked = r->version >= 40;
     int64_t found = 0;
     r->kind = "element";
-    if (!r->has_nodes) {
+    if (!r->has[MSH_NODES]) {
         msh_fail(r, "stands before $Nodes");
     }
     int64_t blocks = blocked ? msh_count(r, "number of blocks", 8, 20) : INT64_MAX;

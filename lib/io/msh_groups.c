@@ -119,22 +119,10 @@ static void read_entity(struct msh_reader *r, int dim, bool partitioned, struct 
     }
 }
 
-void msh_read_entities(struct msh_reader *r, bool partitioned)
+static void read_entities(struct msh_reader *r, bool partitioned)
 {
     int64_t counts[4];
     int64_t total = 0;
-    if (partitioned && (r->version < 40 || !r->has_entities || r->has_partitions)) {
-        msh_fail(r, "stands in MSH 4 only, once, behind $Entities");
-    } else if (r->version < 40) {
-        msh_fail(r, "has no place in MSH 2");
-    }
-    if (partitioned) {
-        (void)msh_size(r, "number of partitions", 0, MSH_LARGEST_TAG);
-        int64_t ghosts = msh_count(r, "number of ghosts", 4, 8);
-        for (int64_t i = 0; r->status == STATUS_OK && i < 2 * ghosts; i++) {
-            (void)msh_int(r, "ghost", -MSH_LARGEST_TAG, MSH_LARGEST_TAG);
-        }
-    }
     for (int dim = 0; dim < 4; dim++) {
         counts[dim] = msh_count(r, "number of entities", 10, 36);
         total += counts[dim];
@@ -150,6 +138,27 @@ void msh_read_entities(struct msh_reader *r, bool partitioned)
             read_entity(r, dim, partitioned, &r->entities[r->entity_count++]);
         }
     }
+}
+
+void msh_read_entities(struct msh_reader *r)
+{
+    if (r->version < 40) {
+        msh_fail(r, "has no place in MSH 2");
+    }
+    read_entities(r, false);
+}
+
+void msh_read_partitions(struct msh_reader *r)
+{
+    if (r->version < 40 || !r->has[MSH_ENTITIES]) {
+        msh_fail(r, "stands in MSH 4 only, behind $Entities");
+    }
+    (void)msh_size(r, "number of partitions", 0, MSH_LARGEST_TAG);
+    int64_t ghosts = msh_count(r, "number of ghosts", 4, 8);
+    for (int64_t i = 0; r->status == STATUS_OK && i < 2 * ghosts; i++) {
+        (void)msh_int(r, "ghost", -MSH_LARGEST_TAG, MSH_LARGEST_TAG);
+    }
+    read_entities(r, true);
 }
 
 /* ---- joining them ---- */

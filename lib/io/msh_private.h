@@ -46,6 +46,17 @@ struct msh_entity {
     int64_t first, count; /* its groups: of reader->physicals */
 };
 
+/* The sections that are read; others are stepped over. */
+enum msh_section {
+    MSH_FORMAT,
+    MSH_NAMES,
+    MSH_ENTITIES,
+    MSH_PARTITIONS,
+    MSH_NODES,
+    MSH_ELEMENTS,
+    MSH_SECTIONS
+};
+
 struct msh_reader {
     const char *at, *end; /* what is left of the file */
     int version;          /* ten times that of the file: 10, 20, 21, 22, 40, 41 */
@@ -58,12 +69,11 @@ struct msh_reader {
 
     struct msh *msh;
     struct msh_index nodes;
-    bool has_nodes, has_elements;
+    bool has[MSH_SECTIONS]; /* read to its end */
     int64_t node_idx_room;
     int64_t *element_key; /* msh->element_count: key of the entity, in MSH 1 and 2 of the group; 0: none */
     int64_t name_count;
     struct msh_name *names;
-    bool has_names, has_entities, has_partitions;
     int64_t entity_count, entity_room;
     struct msh_entity *entities;
     int64_t physical_count, physical_room;
@@ -106,11 +116,12 @@ void *msh_grow(struct msh_reader *reader, void *array, int64_t *room, int64_t ne
 
 /* ---- the sections, from the line behind "$Name" to where "$EndName" should be ---- */
 
-void msh_read_format(struct msh_reader *reader);   /* msh_read.c */
+void msh_read_format(struct msh_reader *reader); /* msh_read.c */
+void msh_read_names(struct msh_reader *reader);  /* msh_groups.c */
+void msh_read_entities(struct msh_reader *reader);
+void msh_read_partitions(struct msh_reader *reader);
 void msh_read_nodes(struct msh_reader *reader);    /* msh_nodes.c */
 void msh_read_elements(struct msh_reader *reader); /* msh_elements.c */
-void msh_read_names(struct msh_reader *reader);    /* msh_groups.c */
-void msh_read_entities(struct msh_reader *reader, bool partitioned);
 
 /* ---- msh_groups.c: entities and groups ---- */
 

@@ -160,41 +160,29 @@ static void skip_section(struct msh_reader *r)
 /* The content of a section: of those that are needed, each once. */
 static void read_content(struct msh_reader *r)
 {
-    bool old = r->version == 10;
-    bool format = r->version != 0;
-    bool *seen = NULL;
-    if (strcmp(r->section, "$MeshFormat") == 0 && !old) {
-        seen = &format;
-    } else if (strcmp(r->section, "$PhysicalNames") == 0 && !old) {
-        seen = &r->has_names;
-    } else if (strcmp(r->section, "$Entities") == 0 && !old) {
-        seen = &r->has_entities;
-    } else if (strcmp(r->section, "$PartitionedEntities") == 0) {
-        seen = &r->has_partitions;
-    } else if (strcmp(r->section, old ? "$NOD" : "$Nodes") == 0) {
-        seen = &r->has_nodes;
-    } else if (strcmp(r->section, old ? "$ELM" : "$Elements") == 0) {
-        seen = &r->has_elements;
-    } else {
-        skip_section(r);
-        return;
+    static const struct {
+        const char *name, *in_mesh1;
+        void (*read)(struct msh_reader *reader);
+    } needed[MSH_SECTIONS] = {
+        [MSH_FORMAT] = {"$MeshFormat", "", msh_read_format},
+        [MSH_NAMES] = {"$PhysicalNames", "", msh_read_names},
+        [MSH_ENTITIES] = {"$Entities", "", msh_read_entities},
+        [MSH_PARTITIONS] = {"$PartitionedEntities", "", msh_read_partitions},
+        [MSH_NODES] = {"$Nodes", "$NOD", msh_read_nodes},
+        [MSH_ELEMENTS] = {"$Elements", "$ELM", msh_read_elements},
+    };
+    for (int i = 0; i < MSH_SECTIONS; i++) {
+        if (strcmp(r->section, r->version == 10 ? needed[i].in_mesh1 : needed[i].name) == 0) {
+            if (r->has[i]) {
+                msh_fail(r, "stands twice in the file");
+            }
+            msh_skip_line(r);
+            needed[i].read(r);
+            r->has[i] = true;
+            return;
+        }
     }
-    if (seen != &r->has_partitions && *seen) {
-        msh_fail(r, "stands twice in the file");
-    }
-    msh_skip_line(r);
-    if (seen == &format) {
-        msh_read_format(r);
-    } else if (seen == &r->has_names) {
-        msh_read_names(r);
-    } else if (seen == &r->has_nodes) {
-        msh_read_nodes(r);
-    } else if (seen == &r->has_elements) {
-        msh_read_elements(r);
-    } else {
-        msh_read_entities(r, seen == &r->has_partitions);
-    }
-    *seen = true;
+    skip_section(r);
 }
 
 static void read_sections(struct msh_reader *r)
@@ -211,9 +199,9 @@ static void read_sections(struct msh_reader *r)
             memcpy(last, name, sizeof last);
         }
     }
-    if (r->status == STATUS_OK && !r->has_elements) {
+    if (r->status == STATUS_OK && !r->has[MSH_ELEMENTS]) {
         r->status = fail(r->error, STATUS_INPUT, "no section %s: the file is truncated, or no mesh was made",
-                         r->has_nodes ? "$Elements" : "$Nodes");
+                         r->has[MSH_NODES] ? "$Elements" : "$Nodes");
     }
 }
 
