@@ -24,8 +24,8 @@ static void read_name(struct msh_reader *r, struct msh_name *name)
         return;
     }
     const char *text = r->at + 1;
-    int length = 0;
-    while (text + length < r->end && text[length] != '"' && text[length] != '\n' && length <= LONGEST_NAME) {
+    int length = 0; /* a NUL ends it, too */
+    while (text + length < r->end && strchr("\"\n", text[length]) == NULL && length <= LONGEST_NAME) {
         length++;
     }
     if (text + length == r->end || text[length] != '"' || length == 0) {
