@@ -57,7 +57,7 @@ enum status mesh_build(struct mesh *mesh, const struct msh *msh, const struct me
     enum status status = STATUS_OK;
     struct mesh_draft draft = {.mesh = mesh, .msh = msh, .options = options, .error = error};
     *mesh = (struct mesh){0};
-    TRY(mesh_find_midside(&draft));
+    TRY(mesh_find_roles(&draft));
     TRY(mesh_find_dim(&draft));
     TRY(mesh_pick_regions(&draft));
     TRY(mesh_build_nodes(&draft));
@@ -65,7 +65,7 @@ enum status mesh_build(struct mesh *mesh, const struct msh *msh, const struct me
     TRY(mesh_check_coincident(&draft));
     TRY(mesh_build_facets(&draft));
 done:
-    free(draft.is_midside);
+    free(draft.role);
     free(draft.region_of);
     free(draft.node_of);
     free(draft.origin);

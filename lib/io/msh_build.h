@@ -8,11 +8,13 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+enum mesh_role { MESH_UNUSED, MESH_MIDSIDE, MESH_CORNER }; /* a corner of any element is a corner */
+
 struct mesh_draft {
     struct mesh *mesh;
     const struct msh *msh;
     const struct mesh_options *options;
-    int8_t *is_midside; /* msh->node_count: the node is midside of an element and corner of none */
+    int8_t *role;       /* msh->node_count: what each node is to the elements, an enum mesh_role */
     int32_t *region_of; /* msh->element_count: the region of each cell that is kept, -1 for all else */
     int32_t *node_of;   /* msh->node_count: node of the mesh, or -1 */
     int64_t *origin;    /* mesh->cell_count: the element that each cell is made of */
@@ -39,8 +41,8 @@ int mesh_used_nodes(const struct mesh_draft *draft, int64_t element);
 int mesh_simplices(const struct mesh_draft *draft, int64_t element,
                    int32_t simplices[MESH_MOST_SIMPLICES][4]);
 
-/* Fill draft->is_midside; an error for elements that the options want split and that cannot be. */
-MUST_CHECK enum status mesh_find_midside(struct mesh_draft *draft);
+/* Fill draft->role; an error for elements that the options want split and that cannot be. */
+MUST_CHECK enum status mesh_find_roles(struct mesh_draft *draft);
 
 /* Choose the dimension, that of the highest elements, at least 2, where they lie in a plane z = const; name
  * the regions; fill draft->region_of. */

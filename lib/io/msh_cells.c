@@ -8,14 +8,13 @@
 /* A cell's volume over the cube (or its area over the square) of its longest edge must be above this. */
 #define LEAST_VOLUME 1e-12
 
-enum status mesh_find_midside(struct mesh_draft *draft)
+enum status mesh_find_roles(struct mesh_draft *draft)
 {
     enum status status = STATUS_OK;
-    enum { NONE, MIDSIDE, CORNER };
     const struct msh *msh = draft->msh;
     bool split = draft->options->midside;
     int64_t count = 0;
-    TRY(NEW_ARRAY(&draft->is_midside, msh->node_count, draft->error));
+    TRY(NEW_ARRAY(&draft->role, msh->node_count, draft->error));
     for (int64_t e = 0; e < msh->element_count; e++) {
         struct msh_type type = msh_type(msh->element_type[e]);
         int64_t corners = msh->node_ptr[e] + msh_type(type.linear).node_count;
@@ -26,13 +25,16 @@ enum status mesh_find_midside(struct mesh_draft *draft)
             goto done;
         }
         for (int64_t k = msh->node_ptr[e]; k < msh->node_ptr[e + 1]; k++) {
-            int8_t *role = &draft->is_midside[msh->node_idx[k]];
-            *role = k < corners ? CORNER : *role == NONE ? MIDSIDE : *role;
+            int8_t *role = &draft->role[msh->node_idx[k]];
+            if (k < corners) {
+                *role = MESH_CORNER;
+            } else if (*role == MESH_UNUSED) {
+                *role = MESH_MIDSIDE;
+            }
         }
     }
     for (int64_t n = 0; n < msh->node_count; n++) {
-        draft->is_midside[n] = draft->is_midside[n] == MIDSIDE;
-        count += draft->is_midside[n];
+        count += draft->role[n] == MESH_MIDSIDE;
     }
     if (count > 0) {
         TRY(mesh_add_note(draft,
@@ -64,7 +66,7 @@ enum status mesh_build_nodes(struct mesh_draft *draft)
         }
     }
     for (int64_t n = 0; n < msh->node_count; n++) {
-        lost += draft->node_of[n] == LOST && (draft->options->midside || !draft->is_midside[n]);
+        lost += draft->node_of[n] == LOST && (draft->options->midside || draft->role[n] != MESH_MIDSIDE);
         draft->node_of[n] = draft->node_of[n] == KEPT ? (int32_t)mesh->node_count++ : -1;
     }
     if (lost > 0) {
