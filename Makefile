@@ -64,18 +64,13 @@ $(LIBRARY): $(LIBRARY_OBJECTS)
 	@rm -f $@
 	ar rcs $@ $^
 
-# Only the reader of meshes needs gmsh, a large library that is slow to load.
-GMSH_PROGRAMS := nodes
-$(GMSH_PROGRAMS:%=$(BUILD)/bin/%): LDLIBS += -lgmsh -lstdc++
-
 $(BUILD)/bin/%: $(BUILD)/tools/%.o $(COMMON_OBJECTS) $(LIBRARY)
 	@mkdir -p $(@D)
 	$(CC) $(LDFLAGS) -o $@ $^ $(LDLIBS)
 
-# libgmsh keeps memory of its own for the life of the process: only its leaks are not ours to judge.
 $(BUILD)/tests/%: $(BUILD)/tests/unit/%.o $(LIBRARY)
 	@mkdir -p $(@D)
-	$(CC) $(LDFLAGS) -o $@ $^ $(LDLIBS) -lcmocka $(if $(shell grep -l gmsh $(<:$(BUILD)/%.o=%.c) 2>/dev/null),-lgmsh)
+	$(CC) $(LDFLAGS) -o $@ $^ $(LDLIBS) -lcmocka
 
 $(BUILD)/tests/helper/damage: $(BUILD)/tests/helper/damage.o $(LIBRARY)
 	$(CC) $(LDFLAGS) -o $@ $^ $(LDLIBS)

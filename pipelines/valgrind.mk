@@ -1,4 +1,4 @@
-# Not a study: the pipe of the brain section under valgrind, stage by stage: no error, and nothing lost. What gmsh and libgomp keep
+# Not a study: the pipe of the brain section under valgrind, stage by stage: no error, and nothing lost. What libgomp keeps
 # for the life of a process is not looked at.
 
 VALGRIND := OMP_NUM_THREADS=1 OMP_WAIT_POLICY=passive valgrind -q --error-exitcode=99 --leak-check=full --show-leak-kinds=definite --errors-for-leak-kinds=definite

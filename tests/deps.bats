@@ -38,7 +38,7 @@ fake() {
 @test "elsewhere: says what to install" {
     for program in bash awk; do ln -s "$(command -v $program)" bin; done
     PATH=$PWD/bin run -1 bash "$deps"
-    [[ $output == *"not Debian"*calculix-ccx*libgmsh-dev* ]]
+    [[ $output == *"not Debian"*calculix-ccx*libgsl-dev* ]]
     [ ${#lines[@]} -eq 1 ]
 }
 

@@ -433,4 +433,5 @@ END
     refused 2 "python3 -c 'import meshio as m; m.write" nodes -u m body.vtu
     printf '*HEADING\n*NODE\n1, 0, 0, 0\n' > body.inp
     refused 2 "an Abaqus deck" nodes -u m body.inp
+    refused 2 "a geometry of gmsh: gmsh -3 FILE.geo -o body.msh" nodes -u m cube.geo
 }

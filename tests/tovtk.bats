@@ -1,4 +1,4 @@
-# tovtk: what ParaView and gmsh are given is what the stream holds.
+# tovtk: what ParaView is given is what the stream holds.
 
 bats_require_minimum_version 1.5.0
 
@@ -220,16 +220,9 @@ END
 
 @test "the ending of a name says what is written" {
     two_triangles > stream
-    tovtk -f gmsh stream > expected.msh
-    tovtk -o named.msh stream
-    cmp named.msh expected.msh
-    tovtk -f gmsh -o named.pos stream # any other ending, with -f
-    cmp named.pos expected.msh
-    refused 2 "x.vtk: legacy VTK files are not written: name it .vtu" tovtk -o x.vtk stream
-    refused 2 "x.vtk: legacy VTK files are not written: name it .vtu" tovtk -f vtu -o x.vtk stream
-    refused 2 "folder.d/x.stl: unknown ending: name it .vtu or .pvd (ParaView), .msh (gmsh), or give -f" tovtk -o folder.d/x.stl stream
-    refused 2 "x.msh: a .msh file is not for -f vtu" tovtk -f vtu -o x.msh stream
-    refused 2 "x.vtu: a .vtu file is not for -f gmsh" tovtk -f gmsh -o x.vtu stream
+    for name in x.vtk folder.d/x.stl x.msh; do
+        refused 2 "$name: .${name##*.} files are not written: name it .vtu or .pvd" tovtk -o $name stream
+    done
     mkdir folder.d
     tovtk -o folder.d/plain stream 2> note # no ending: the default
     well_formed folder.d/plain
@@ -301,34 +294,9 @@ END
     [ "$(array out.vtu u | wc -l)" -eq 5 ]
 }
 
-@test "gmsh reads back the same nodes and cells" {
-    cloud -d 3 -k jittered -n 4 --box 0,1,0,1,0,1 --jitter 0.1 --field linear -t -o cloud.mts
-    tovtk -f gmsh cloud.mts > body.msh
-    nodes -u m -t body.msh > back.mts
-    for name in nodes.x cells cells.region; do
-        for file in cloud back; do
-            awk -v name="$name" '/^# / { inside = $2 == name; next } inside' $file.mts > $file.part
-        done
-        [ -s cloud.part ]
-        cmp cloud.part back.part
-    done
-}
-
-@test "gmsh views: all frames in one view, a vector for the displacement" {
-    two_triangles | tovtk -f gmsh -o views.msh
-    [ "$(grep -c '^"u"$' views.msh)" -eq 2 ]
-    [ "$(grep -c '^"cells.region"$' views.msh)" -eq 1 ]
-    # string tags, real tags (time), integer tags (step, components, rows), rows
-    expected=$'1\n"u"\n1\n0.5\n3\n0\n3\n4\n1 0 0 0\n2 0 0 0\n3 0 0.125 0\n4 0 -0.050000000000000003 0'
-    [ "$(awk '/^\$NodeData/ { if (seen++) exit; inside = 1; next } /^\$/ { inside = 0 } inside' views.msh)" = "$expected" ]
-    grep -q "^2 1 \"grey<&'matter\"$" views.msh
-    two_triangles | awk '/^# / { cut = /u\.frame/; sub("end 8", "end 6") } !cut' | tovtk -f gmsh > final.msh
-    [ "$(grep -c '^"stress xx"$\|^"stress yy"$\|^"stress xy"$' final.msh)" -eq 3 ]
-}
-
 @test "the same bytes from a file, from standard input, to a file, to standard output" {
     two_triangles > stream
-    for options in "-f vtu" "-t" "-f gmsh"; do
+    for options in "" "-t"; do
         tovtk $options stream 2> note > from_file
         tovtk $options < stream 2> note > from_stdin
         tovtk $options -o to_file stream 2> note
@@ -351,16 +319,14 @@ END
 
 @test "a full device is reported" {
     two_triangles > stream
-    for options in "-f vtu" "-f gmsh"; do
-        run --separate-stderr bash -c "tovtk $options stream 2> err > /dev/full; echo \$?; tail -1 err"
-        [ "${lines[0]}" = 3 ]
-        [[ ${lines[1]} == "tovtk: standard output: "* ]]
-    done
+    run --separate-stderr bash -c "tovtk stream 2> err > /dev/full; echo \$?; tail -1 err"
+    [ "${lines[0]}" = 3 ]
+    [[ ${lines[1]} == "tovtk: standard output: "* ]]
 }
 
 @test "wrong use: one line and status 2" {
     two_triangles > stream
-    for options in "-f vtk" "-f gmsh -t" "-f gmsh -o x.pvd" "-x" "-t -t" "stream stream" "missing"; do
+    for options in "-f vtu" "-x" "-t -t" "stream stream" "missing"; do
         run --separate-stderr tovtk $options
         [ "$status" -eq 2 ]
         [ -z "$output" ]

@@ -1,7 +1,7 @@
 # The usage text of a tool (TOOL -h) to bash completion for it: awk -f completion.awk
 #
 # Completed are the options of the block "Options:", the commands of usage lines "TOOL COMMAND ...", and the values of
-# options that are a choice: "[-f vtu|gmsh]" in the usage line, or "a, b or c" where the option is explained. All else is
+# options that are a choice: "[--midside drop|use]" in the usage line, or "a, b or c" where the option is explained. All else is
 # left to bash: names of files.
 
 # The words of a choice in an explanation, with blanks between; "" when there is none.

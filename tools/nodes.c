@@ -20,9 +20,10 @@ static const char usage[] =
     "inconsistent are errors. Sections of the file other than its groups, nodes and elements are not\n"
     "looked at, and nothing in the file is run.\n"
     "\n"
-    "Meshes of other programs: 'gmsh body.vtk -save -o body.msh' (MEDIT, Abaqus and others, too). VTU, by\n"
-    "python3-meshio: python3 -c 'import meshio as m; m.write(\"body.msh\", m.read(\"body.vtu\"),\n"
-    "file_format=\"gmsh22\")'. A closed surface in STL is filled by a file fill.geo of the lines\n"
+    "Geometries are meshed by 'gmsh -3 body.geo -o body.msh' (STEP, too; -2 in the plane). Meshes of other\n"
+    "programs: 'gmsh body.vtk -save -o body.msh' (MEDIT, Abaqus and others, too). VTU, by python3-meshio:\n"
+    "python3 -c 'import meshio as m; m.write(\"body.msh\", m.read(\"body.vtu\"), file_format=\"gmsh22\")'.\n"
+    "A closed surface in STL is filled by a file fill.geo of the lines\n"
     "Merge \"body.stl\";  Surface Loop(1) = {1};  Volume(1) = {1};  and 'gmsh -3 fill.geo -o body.msh'.\n"
     "\n"
     "Options:\n"
@@ -52,48 +53,17 @@ static const char usage[] =
 #include "base/box.h"
 
 #include <math.h>
-#include <signal.h>
 #include <string.h>
 #include <unistd.h>
 
 enum { UNIT, REGIONS, MIDSIDE, VERBOSE, LIST, BINARY, TEXT, OUTPUT, OPTION_COUNT };
 
-/* libgmsh is C++ and trusts that it gets memory: where it does not, some of its parts report something else,
- * others crash. These end the program with the right status and one line. */
-typedef void new_handler(void);
-new_handler *set_new_handler(new_handler *handler) __asm__("_ZSt15set_new_handlerPFvvE");
-
-static void leave(const char *message)
-{
-    if (write(STDERR_FILENO, message, strlen(message)) < 0) {
-        _exit((int)STATUS_SYSTEM);
-    }
-    _exit((int)STATUS_SYSTEM);
-}
-
-static void on_no_memory(void)
-{
-    leave("nodes: out of memory\n");
-}
-
-static void on_crash(int number)
-{
-    (void)number;
-    leave("nodes: libgmsh crashed: out of memory? if not, please report this mesh\n");
-}
-
 static void read_mesh(const struct tool *tool, struct msh *msh)
 {
     struct error error;
-    struct sigaction before;
     const char *name;
     int descriptor = tool_open(tool, tool->operands[0], &name);
-    (void)set_new_handler(on_no_memory);
-    if (sigaction(SIGSEGV, NULL, &before) == 0 && before.sa_handler == SIG_DFL) { /* no sanitizer's */
-        signal(SIGSEGV, on_crash);
-    }
     tool_check(tool, msh_read(msh, descriptor, name, &error), &error);
-    sigaction(SIGSEGV, &before, NULL);
     if (descriptor != STDIN_FILENO) {
         close(descriptor);
     }
@@ -115,20 +85,6 @@ static void list_groups(const struct tool *tool, const struct msh *msh)
     }
     if (!named) {
         tool_note(tool, "no part of the boundary has a name: the program groups makes names (groups -h)");
-    }
-}
-
-/* Second-order elements become first-order ones. */
-static void make_linear(const struct tool *tool, struct msh *msh, bool use)
-{
-    struct error error;
-    int64_t midside;
-    tool_check(tool, msh_make_linear(msh, use, &midside, &error), &error);
-    if (midside > 0) {
-        tool_note(tool,
-                  use ? "second-order cells: split at %lld midside nodes"
-                      : "second-order cells: %lld midside nodes left out (--midside use keeps them)",
-                  (long long)midside);
     }
 }
 
@@ -214,15 +170,16 @@ int main(int argc, char *argv[])
         [OUTPUT] = {.letter = 'o', .name = "output", .takes_value = true},
     };
     tool_begin(&tool, usage, options, OPTION_COUNT, 0, 1, argc, argv);
-    double unit = parse(&tool, options);
+    struct mesh_options wanted = {.unit = parse(&tool, options)};
     read_mesh(&tool, &msh);
     if (options[LIST].given) {
         list_groups(&tool, &msh);
         msh_free(&msh);
         return tool_end(&tool);
     }
-    make_linear(&tool, &msh, options[MIDSIDE].given && strcmp(options[MIDSIDE].value, "use") == 0);
-    tool_check(&tool, mesh_build(&mesh, &msh, unit, options[REGIONS].value, &error), &error);
+    wanted.regions = options[REGIONS].value;
+    wanted.midside = options[MIDSIDE].given && strcmp(options[MIDSIDE].value, "use") == 0;
+    tool_check(&tool, mesh_build(&mesh, &msh, &wanted, &error), &error);
     msh_free(&msh);
     for (int32_t i = 0; i < mesh.notes.count; i++) {
         tool_note(&tool, "%s", mesh.notes.name[i]);

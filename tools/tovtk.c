@@ -1,7 +1,7 @@
 static const char usage[] =
-    "tovtk - write a stream for ParaView or gmsh\n"
+    "tovtk - write a stream for ParaView\n"
     "\n"
-    "usage: tovtk [-t] [-f vtu|gmsh] [-o FILE] [FILE]\n"
+    "usage: tovtk [-t] [-o FILE] [FILE]\n"
     "\n"
     "Reads a stream with nodes.x, the background cells if there are any, and fields:\n"
     "every section with one row for each node or each cell, and names other than\n"
@@ -28,21 +28,18 @@ static const char usage[] =
     "sections X.frame.K. Name a .pvd file to write them all: NAME.pvd lists\n"
     "NAME-0000.vtu, NAME-0001.vtu, ... with their times, each with the fields of its\n"
     "frame and those that nodes, support and ipoints made. Other files hold the final\n"
-    "state only. With -f gmsh, views hold all frames as their time steps.\n"
+    "state only.\n"
     "\n"
-    "The name's ending says what is written: .vtu, .pvd, or .msh as with -f gmsh. A name\n"
-    "without ending, and standard output, are vtu unless -f says otherwise. Other\n"
-    "endings need -f; legacy files, .vtk, are not written.\n"
+    "The name's ending says what is written: .vtu, VTK XML unstructured grid, or .pvd. A\n"
+    "name without ending, and standard output, are vtu. Other endings are refused.\n"
     "\n"
     "Options:\n"
-    "  -f, --format FORMAT  vtu: VTK XML unstructured grid, for ParaView (default);\n"
-    "                       gmsh: mesh (MSH 2.2) with post-processing views\n"
-    "  -t, --text           write numbers as text in a vtu file, not as base64\n"
-    "  -o, --output FILE    write to FILE, which appears only when whole\n"
+    "  -t, --text         write numbers as text, not as base64\n"
+    "  -o, --output FILE  write to FILE, which appears only when whole\n"
     "\n"
     "Examples:\n"
     "  mtled brain2d.scene < table.mts | tovtk -o brain2d.pvd\n"
-    "  tovtk -o u.msh u.dat && gmsh u.msh\n";
+    "  tovtk -o u.vtu u.dat && paraview u.vtu\n";
 
 #include "output.h"
 #include "plot.h"
@@ -53,33 +50,12 @@ static const char usage[] =
 #include <string.h>
 #include <unistd.h>
 
-enum { FORMAT, TEXT, OUTPUT, OPTION_COUNT };
+enum { TEXT, OUTPUT, OPTION_COUNT };
 
 static bool is_named(const char *path, const char *ending)
 {
     size_t length = strlen(path), tail = strlen(ending);
     return length >= tail && strcmp(path + length - tail, ending) == 0;
-}
-
-/* The mesh and all frames. */
-static enum status write_gmsh(struct plot *plot, FILE *file, struct error *error)
-{
-    enum status status = STATUS_OK;
-    TRY(gmsh_write_mesh(file, &plot->mesh, error));
-    for (int64_t i = 0; i < plot_state_count(plot); i++) {
-        int64_t frame = plot_frame(plot, i);
-        double time;
-        TRY(plot_time(plot, frame, &time, error));
-        plot_choose_fields(plot, frame);
-        for (int64_t f = 0; f < plot->field_count; f++) {
-            const struct vtk_field *field = &plot->fields[f];
-            if (i == 0 || !field->is_static) { /* the reference state once */
-                TRY(gmsh_write_field(file, &plot->mesh, field, i, time, error));
-            }
-        }
-    }
-done:
-    return status;
 }
 
 /* One frame as a vtu file. */
@@ -167,39 +143,14 @@ static void write_series(const struct tool *tool, struct plot *plot, bool text)
     free(times);
 }
 
-enum format { FORMAT_VTU, FORMAT_GMSH };
-
-/* The format that -f (NULL: not given) and the ending of the output's name say; exits where they disagree. */
-static enum format choose_format(const struct tool *tool, const char *given)
+/* Exits where the ending of the output's name is not one of ours. */
+static void check_ending(const struct tool *tool)
 {
-    static const char *const formats[] = {"vtu", "gmsh"};
-    static const struct {
-        const char *ending;
-        enum format format;
-    } endings[] = {{".vtu", FORMAT_VTU}, {".pvd", FORMAT_VTU}, {".msh", FORMAT_GMSH}};
-    struct error error;
-    int format = FORMAT_VTU;
     const char *path = tool->output != NULL ? tool->output : "", *slash = strrchr(path, '/');
     const char *ending = strrchr(slash != NULL ? slash + 1 : path, '.');
-    if (given != NULL) {
-        tool_check(tool, parse_choice(given, "-f", formats, 2, &format, &error), &error);
+    if (ending != NULL && strcmp(ending, ".vtu") != 0 && strcmp(ending, ".pvd") != 0) {
+        tool_fail(tool, STATUS_INPUT, "%s: %s files are not written: name it .vtu or .pvd", path, ending);
     }
-    for (size_t i = 0; ending != NULL && i < sizeof endings / sizeof *endings; i++) {
-        if (strcmp(ending, endings[i].ending) == 0) {
-            if (given != NULL && endings[i].format != (enum format)format) {
-                tool_fail(tool, STATUS_INPUT, "%s: a %s file is not for -f %s", path, ending, given);
-            }
-            return endings[i].format;
-        }
-    }
-    if (ending != NULL && strcmp(ending, ".vtk") == 0) {
-        tool_fail(tool, STATUS_INPUT, "%s: legacy VTK files are not written: name it .vtu", path);
-    }
-    if (ending != NULL && given == NULL) {
-        tool_fail(tool, STATUS_INPUT,
-                  "%s: unknown ending: name it .vtu or .pvd (ParaView), .msh (gmsh), or give -f", path);
-    }
-    return (enum format)format;
 }
 
 int main(int argc, char *argv[])
@@ -207,31 +158,25 @@ int main(int argc, char *argv[])
     struct tool tool;
     struct error error;
     struct option options[OPTION_COUNT] = {
-        [FORMAT] = {.letter = 'f', .name = "format", .takes_value = true},
         [TEXT] = {.letter = 't', .name = "text"},
         [OUTPUT] = {.letter = 'o', .name = "output", .takes_value = true},
     };
     struct plot plot = {0};
     struct target target;
     tool_begin(&tool, usage, options, OPTION_COUNT, 0, 1, argc, argv);
-    bool is_gmsh = choose_format(&tool, options[FORMAT].given ? options[FORMAT].value : NULL) == FORMAT_GMSH;
+    check_ending(&tool);
     bool is_series = tool.output != NULL && is_named(tool.output, ".pvd");
-    if (is_gmsh && options[TEXT].given) {
-        tool_fail(&tool, STATUS_INPUT, "-t is for vtu files");
-    }
     tool_read(&tool, tool.operands[0], &plot.stream);
-    tool_check(&tool, plot_find(&plot, !is_gmsh, &error), &error);
+    tool_check(&tool, plot_find(&plot, &error), &error);
     if (is_series) {
         write_series(&tool, &plot, options[TEXT].given);
     } else {
-        if (plot.frame_count > 0 && !is_gmsh) {
+        if (plot.frame_count > 0) {
             tool_note(&tool, "only the final state is written: name a .pvd file for all %lld frames",
                       (long long)plot.frame_count);
         }
         target_open(&tool, &target, tool.output);
-        target_close(&tool, &target,
-                     is_gmsh ? write_gmsh(&plot, target.file, &error)
-                             : write_vtu(&plot, FRAME_NONE, options[TEXT].given, target.file, &error),
+        target_close(&tool, &target, write_vtu(&plot, FRAME_NONE, options[TEXT].given, target.file, &error),
                      &error);
     }
     plot_free(&plot);

@@ -1,8 +1,6 @@
 /* Meshes of gmsh (MSH 1, 2 and 4, ASCII and binary): reading a file, and making of it the mesh that the other
  * tools work on. Two steps: msh_read takes the file in as it is; mesh_build picks cells, facets and sets out
- * of it.
- *
- * Only msh_read uses libgmsh, and hands it a file only after its own scan (msh_scan.h). */
+ * of it. */
 #ifndef IO_MSH_H
 #define IO_MSH_H
 
@@ -14,9 +12,10 @@
 
 /* A physical group. */
 struct msh_group {
-    int dim;               /* 0 points, 1 curves, 2 surfaces, 3 volumes */
-    int tag;               /* as in the file; positive */
-    char *name;            /* "group_TAG" where the file gives none; unique within its dimension */
+    int dim;    /* 0 points, 1 curves, 2 surfaces, 3 volumes */
+    int tag;    /* as in the file; not negative */
+    char *name; /* without blanks, commas and quotes; "group_TAG" where the file gives none; unique within its
+                   dimension */
     int64_t element_count; /* 0 for a group that is named and has nothing in it */
     char *written;         /* as in the file, where `name` differs: blanks, commas and quotes became '_' */
 };
@@ -50,17 +49,16 @@ struct msh_type {
  * order. */
 struct msh_type msh_type(int64_t number);
 
+/* Read a mesh from its bytes. STATUS_INPUT for whatever is not a whole, sound mesh file, with a message that
+ * names section and record; a file of another program is told with the command that converts it.
+ * STATUS_SYSTEM where memory is short. Time and memory are in proportion to the size, whatever the file says
+ * of its own. On failure *msh is empty. */
+MUST_CHECK enum status msh_parse(struct msh *msh, const char *bytes, size_t size, struct error *error);
+
 /* Read a mesh from an open descriptor (a regular file, a pipe), which stays open. `name` begins the messages.
- * STATUS_INPUT for whatever is not a whole, sound mesh file; STATUS_SYSTEM for read failures and memory.
- * No more memory is asked for than a small multiple of the file's size. On failure *msh is empty. */
+ * Errors as for msh_parse; STATUS_SYSTEM also for read failures. */
 MUST_CHECK enum status msh_read(struct msh *msh, int descriptor, const char *name, struct error *error);
 void msh_free(struct msh *msh);
-
-/* Make all elements first-order ones: their midside nodes are dropped, or, with `use`, they stay and the
- * elements are split at them (*midside receives how many there are). Dropping renumbers the nodes, splitting
- * the elements, whose pieces keep the tag. STATUS_INPUT for elements that cannot be split: those without a
- * node in the middle of each quadrangular face, and prisms and pyramids. On failure *msh is to be freed. */
-MUST_CHECK enum status msh_make_linear(struct msh *msh, bool use, int64_t *midside, struct error *error);
 
 /* Names of regions, facet sets or node sets. */
 struct mesh_names {
@@ -85,18 +83,27 @@ struct mesh {
     struct mesh_names notes; /* what was left out, one line each (these may hold blanks) */
 };
 
-/* Make the mesh of `msh`, whose lengths are in `unit` metres.
+/* What of a file is made a mesh. */
+struct mesh_options {
+    double unit;         /* of the file's lengths, m */
+    const char *regions; /* comma-separated list of regions to keep, or NULL: all */
+    bool midside; /* nodes amid the edges of second-order elements stay, and the elements are split there;
+                     else they are dropped */
+};
+
+/* Make the mesh of `msh`.
  * The dimension is 3 if there are tetrahedra, hexahedra, prisms or pyramids, else 2 if there are triangles or
  * quadrangles in a plane z = const. Quadrangles and the cells of more than four nodes are split into
  * simplices so that neighbours conform (every quadrangular face along the diagonal through its lowest node:
- * Dompierre et al., How to subdivide pyramids, prisms and hexahedra into tetrahedra, 1999). `wanted` is a
- * comma-separated list of regions to keep, or NULL: all. Nodes keep their order; those that belong to no kept
- * cell are dropped. All elements are of first order. A cell in two groups is of the one with the lowest tag,
- * a cell that stands twice is taken once; cells in no group are the region 'body' if there is no other, else
- * 'unnamed'. STATUS_INPUT: no cells, a surface in space, cells without volume or folded, coincident nodes of
- * one body, a name that is no name of a region, names with blanks or commas. On failure *mesh is empty. */
-MUST_CHECK enum status mesh_build(struct mesh *mesh, const struct msh *msh, double unit, const char *wanted,
-                                  struct error *error);
+ * Dompierre et al., How to subdivide pyramids, prisms and hexahedra into tetrahedra, 1999). Nodes keep their
+ * order; those that belong to no kept cell are dropped. A cell in two groups is of the one with the lowest
+ * tag, a cell that stands twice is taken once; cells in no group are the region 'body' if there is no other,
+ * else 'unnamed'. STATUS_INPUT: no cells, a surface in space, cells without volume or folded, coincident
+ * nodes of one body, a name that is no name of a region, two node sets of one name, elements that cannot be
+ * split at their midside nodes (those without a node in the middle of each quadrangular face, and prisms and
+ * pyramids). On failure *mesh is empty. */
+MUST_CHECK enum status mesh_build(struct mesh *mesh, const struct msh *msh,
+                                  const struct mesh_options *options, struct error *error);
 void mesh_free(struct mesh *mesh);
 
 /* Put the mesh's sections into a stream: nodes.x, cells and cells.region if there are cells, facets and

@@ -32,35 +32,17 @@ enum status mesh_add_note(struct mesh_draft *draft, const char *format, ...)
     return mesh_add_name(&draft->mesh->notes, note, draft->error);
 }
 
-int32_t mesh_find_name(const struct mesh_names *names, const char *name)
+int32_t mesh_find_name(const struct mesh_names *names, const char *name, size_t length)
 {
     for (int32_t i = 0; i < names->count; i++) {
-        if (strcmp(names->name[i], name) == 0) {
+        if (strncmp(names->name[i], name, length) == 0 && names->name[i][length] == '\0') {
             return i;
         }
     }
     return -1;
 }
 
-enum status mesh_add_group(struct mesh_names *names, const struct msh_group *group, struct error *error)
-{
-    for (const char *c = group->name; *c != '\0'; c++) {
-        if ((unsigned char)*c <= ' ' || *c == ',' || *c == '"' || *c == 127) {
-            return fail(
-                error, STATUS_INPUT,
-                "physical group %d of dimension %d: '%s': no blanks, commas and quotes in names: rename it",
-                group->tag, group->dim, group->name);
-        }
-    }
-    if (mesh_find_name(names, group->name) >= 0) {
-        return fail(error, STATUS_INPUT,
-                    "physical group %d of dimension %d: another one is named '%s': rename one", group->tag,
-                    group->dim, group->name);
-    }
-    return mesh_add_name(names, group->name, error);
-}
-
-static void names_free(struct mesh_names *names)
+void mesh_names_free(struct mesh_names *names)
 {
     for (int32_t i = 0; i < names->count; i++) {
         free(names->name[i]);
@@ -69,23 +51,22 @@ static void names_free(struct mesh_names *names)
     *names = (struct mesh_names){0};
 }
 
-enum status mesh_build(struct mesh *mesh, const struct msh *msh, double unit, const char *wanted,
+enum status mesh_build(struct mesh *mesh, const struct msh *msh, const struct mesh_options *options,
                        struct error *error)
 {
     enum status status = STATUS_OK;
-    struct mesh_draft draft = {.mesh = mesh, .msh = msh, .error = error};
-    int32_t *region_of = NULL;
+    struct mesh_draft draft = {.mesh = mesh, .msh = msh, .options = options, .error = error};
     *mesh = (struct mesh){0};
+    TRY(mesh_find_roles(&draft));
     TRY(mesh_find_dim(&draft));
-    TRY(mesh->dim == 2 ? mesh_check_plane(&draft) : STATUS_OK);
-    TRY(NEW_ARRAY(&region_of, msh->element_count, error));
-    TRY(mesh_pick_regions(&draft, wanted, region_of));
-    TRY(mesh_build_nodes(&draft, region_of, unit));
-    TRY(mesh_build_cells(&draft, region_of));
+    TRY(mesh_pick_regions(&draft));
+    TRY(mesh_build_nodes(&draft));
+    TRY(mesh_build_cells(&draft));
     TRY(mesh_check_coincident(&draft));
     TRY(mesh_build_facets(&draft));
 done:
-    free(region_of);
+    free(draft.role);
+    free(draft.region_of);
     free(draft.node_of);
     free(draft.origin);
     if (status != STATUS_OK) {
@@ -103,9 +84,64 @@ void mesh_free(struct mesh *mesh)
     free(mesh->facet_set);
     free(mesh->set_ptr);
     free(mesh->set_idx);
-    names_free(&mesh->regions);
-    names_free(&mesh->facet_sets);
-    names_free(&mesh->node_sets);
-    names_free(&mesh->notes);
+    mesh_names_free(&mesh->regions);
+    mesh_names_free(&mesh->facet_sets);
+    mesh_names_free(&mesh->node_sets);
+    mesh_names_free(&mesh->notes);
     *mesh = (struct mesh){0};
+}
+
+/* ---- into a stream ---- */
+
+/* "names=a,b,c" (allocated), or NULL. */
+static char *names_attribute(const struct mesh_names *names)
+{
+    size_t size = sizeof "names=";
+    for (int32_t i = 0; i < names->count; i++) {
+        size += strlen(names->name[i]) + 1;
+    }
+    char *text = malloc(size);
+    char *at = text != NULL ? stpcpy(text, "names=") : NULL;
+    for (int32_t i = 0; i < names->count && text != NULL; i++) {
+        at = stpcpy(stpcpy(at, i > 0 ? "," : ""), names->name[i]);
+    }
+    return text;
+}
+
+/* A section whose header lists names. */
+static enum status put_named(struct stream *stream, const char *section, enum element_type type, int64_t rows,
+                             const struct mesh_names *names, void *data, struct error *error)
+{
+    char *attributes = names_attribute(names);
+    if (attributes == NULL) {
+        return fail_memory(error, "names");
+    }
+    enum status status = stream_put(stream, section, type, rows, 1, attributes, data, false, error);
+    free(attributes);
+    return status;
+}
+
+enum status mesh_put(const struct mesh *mesh, struct stream *stream, struct error *error)
+{
+    enum status status = STATUS_OK;
+    int dim = mesh->dim;
+    int32_t sets = mesh->node_sets.count;
+    TRY(stream_put(stream, "nodes.x", TYPE_F8, mesh->node_count, dim,
+                   dim == 2 ? "unit=m cols=x,y" : "unit=m cols=x,y,z", mesh->x, false, error));
+    if (mesh->cell_count > 0) {
+        TRY(stream_put(stream, "cells", TYPE_I4, mesh->cell_count, dim + 1, "", mesh->cells, false, error));
+        TRY(put_named(stream, "cells.region", TYPE_I4, mesh->cell_count, &mesh->regions, mesh->cell_region,
+                      error));
+    }
+    if (mesh->facet_count > 0) {
+        TRY(stream_put(stream, "facets", TYPE_I4, mesh->facet_count, dim, "", mesh->facets, false, error));
+        TRY(put_named(stream, "facets.set", TYPE_I4, mesh->facet_count, &mesh->facet_sets, mesh->facet_set,
+                      error));
+    }
+    if (sets > 0) {
+        TRY(put_named(stream, "sets.ptr", TYPE_I8, sets + 1, &mesh->node_sets, mesh->set_ptr, error));
+        TRY(stream_put(stream, "sets.idx", TYPE_I4, mesh->set_ptr[sets], 1, "", mesh->set_idx, false, error));
+    }
+done:
+    return status;
 }

@@ -8,7 +8,46 @@
 /* A cell's volume over the cube (or its area over the square) of its longest edge must be above this. */
 #define LEAST_VOLUME 1e-12
 
-enum status mesh_build_nodes(struct mesh_draft *draft, const int32_t region_of[], double unit)
+enum status mesh_find_roles(struct mesh_draft *draft)
+{
+    enum status status = STATUS_OK;
+    const struct msh *msh = draft->msh;
+    bool split = draft->options->midside;
+    int64_t count = 0;
+    TRY(NEW_ARRAY(&draft->role, msh->node_count, draft->error));
+    for (int64_t e = 0; e < msh->element_count; e++) {
+        struct msh_type type = msh_type(msh->element_type[e]);
+        int64_t corners = msh->node_ptr[e] + msh_type(type.linear).node_count;
+        if (msh_pieces(msh->element_type[e], split)->count == 0) {
+            status = fail(draft->error, STATUS_INPUT,
+                          "element %lld, a %s, cannot be split at its midside nodes: leave --midside away",
+                          (long long)msh->element_tag[e], type.name);
+            goto done;
+        }
+        for (int64_t k = msh->node_ptr[e]; k < msh->node_ptr[e + 1]; k++) {
+            int8_t *role = &draft->role[msh->node_idx[k]];
+            if (k < corners) {
+                *role = MESH_CORNER;
+            } else if (*role == MESH_UNUSED) {
+                *role = MESH_MIDSIDE;
+            }
+        }
+    }
+    for (int64_t n = 0; n < msh->node_count; n++) {
+        count += draft->role[n] == MESH_MIDSIDE;
+    }
+    if (count > 0) {
+        TRY(mesh_add_note(draft,
+                          split
+                              ? "second-order cells: split at %lld midside nodes"
+                              : "second-order cells: %lld midside nodes left out (--midside use keeps them)",
+                          (long long)count));
+    }
+done:
+    return status;
+}
+
+enum status mesh_build_nodes(struct mesh_draft *draft)
 {
     enum status status = STATUS_OK;
     enum { LOST = -1, IN_CELL = -2, KEPT = -3 };
@@ -20,14 +59,14 @@ enum status mesh_build_nodes(struct mesh_draft *draft, const int32_t region_of[]
         draft->node_of[n] = LOST;
     }
     for (int64_t e = 0; e < msh->element_count; e++) {
-        for (int64_t k = msh->node_ptr[e]; mesh_element_dim(msh, e) == mesh->dim && k < msh->node_ptr[e + 1];
-             k++) {
-            int32_t *node = &draft->node_of[msh->node_idx[k]];
-            *node = region_of[e] >= 0 || *node == KEPT ? KEPT : IN_CELL;
+        int used = mesh_element_dim(draft, e) == mesh->dim ? mesh_used_nodes(draft, e) : 0;
+        for (int k = 0; k < used; k++) {
+            int32_t *node = &draft->node_of[msh->node_idx[msh->node_ptr[e] + k]];
+            *node = draft->region_of[e] >= 0 || *node == KEPT ? KEPT : IN_CELL;
         }
     }
     for (int64_t n = 0; n < msh->node_count; n++) {
-        lost += draft->node_of[n] == LOST;
+        lost += draft->node_of[n] == LOST && (draft->options->midside || draft->role[n] != MESH_MIDSIDE);
         draft->node_of[n] = draft->node_of[n] == KEPT ? (int32_t)mesh->node_count++ : -1;
     }
     if (lost > 0) {
@@ -36,7 +75,7 @@ enum status mesh_build_nodes(struct mesh_draft *draft, const int32_t region_of[]
     TRY(NEW_ARRAY(&mesh->x, mesh->node_count * mesh->dim, draft->error));
     for (int64_t n = 0; n < msh->node_count; n++) {
         for (int i = 0; i < mesh->dim && draft->node_of[n] >= 0; i++) {
-            mesh->x[draft->node_of[n] * mesh->dim + i] = unit * msh->x[3 * n + i];
+            mesh->x[draft->node_of[n] * mesh->dim + i] = draft->options->unit * msh->x[3 * n + i];
         }
     }
 done:
@@ -79,20 +118,26 @@ static double relative_volume(const struct mesh *mesh, const int32_t cell[])
            edge[0][2] * (edge[1][0] * edge[2][1] - edge[1][1] * edge[2][0]);
 }
 
-/* The simplices of an element of the mesh's own dimension. */
-static int split_element(const struct mesh_draft *draft, int64_t element,
-                         int32_t simplices[MSH_MOST_SIMPLICES][4])
+int mesh_simplices(const struct mesh_draft *draft, int64_t element, int32_t simplices[MESH_MOST_SIMPLICES][4])
 {
     const struct msh *msh = draft->msh;
-    int32_t node[8] = {0};
-    for (int64_t k = msh->node_ptr[element]; k < msh->node_ptr[element + 1]; k++) {
-        node[k - msh->node_ptr[element]] = draft->node_of[msh->node_idx[k]];
-    }
-    int count = msh_split(msh->element_type[element], node, false, simplices);
-    if (draft->mesh->dim == 2 && count == 2 &&
-        relative_volume(draft->mesh, simplices[0]) * relative_volume(draft->mesh, simplices[1]) <= 0) {
-        count =
-            msh_split(msh->element_type[element], node, true, simplices); /* not convex: the other diagonal */
+    const int32_t *whole = &msh->node_idx[msh->node_ptr[element]];
+    const struct msh_pieces *pieces = msh_pieces(msh->element_type[element], draft->options->midside);
+    bool in_plane = draft->mesh->dim == 2;
+    int corners = msh_type(pieces->type).node_count;
+    int count = 0;
+    for (int p = 0; p < pieces->count; p++) {
+        int32_t node[8];
+        for (int k = 0; k < corners; k++) {
+            node[k] = draft->node_of[whole[pieces->node[p][k]]];
+        }
+        int32_t(*to)[4] = simplices + count;
+        int added = msh_split(pieces->type, node, false, to);
+        if (in_plane && added == 2 &&
+            relative_volume(draft->mesh, to[0]) * relative_volume(draft->mesh, to[1]) <= 0) {
+            added = msh_split(pieces->type, node, true, to); /* not convex: the other diagonal */
+        }
+        count += added;
     }
     return count;
 }
@@ -120,15 +165,15 @@ static enum status add_cell(struct mesh_draft *draft, int64_t element, int32_t r
     return STATUS_OK;
 }
 
-enum status mesh_build_cells(struct mesh_draft *draft, const int32_t region_of[])
+enum status mesh_build_cells(struct mesh_draft *draft)
 {
     enum status status = STATUS_OK;
     const struct msh *msh = draft->msh;
     struct mesh *mesh = draft->mesh;
-    int32_t simplices[MSH_MOST_SIMPLICES][4];
+    int32_t simplices[MESH_MOST_SIMPLICES][4];
     int64_t count = 0;
     for (int64_t e = 0; e < msh->element_count; e++) {
-        count += region_of[e] >= 0 ? split_element(draft, e, simplices) : 0;
+        count += draft->region_of[e] >= 0 ? mesh_simplices(draft, e, simplices) : 0;
     }
     if (count > INT32_MAX) {
         status = fail(draft->error, STATUS_INPUT, "%lld cells are more than %d", (long long)count, INT32_MAX);
@@ -138,9 +183,9 @@ enum status mesh_build_cells(struct mesh_draft *draft, const int32_t region_of[]
     TRY(NEW_ARRAY(&mesh->cell_region, count, draft->error));
     TRY(NEW_ARRAY(&draft->origin, count, draft->error));
     for (int64_t e = 0; e < msh->element_count; e++) {
-        int pieces = region_of[e] >= 0 ? split_element(draft, e, simplices) : 0;
+        int pieces = draft->region_of[e] >= 0 ? mesh_simplices(draft, e, simplices) : 0;
         for (int i = 0; i < pieces; i++) {
-            TRY(add_cell(draft, e, region_of[e], simplices[i]));
+            TRY(add_cell(draft, e, draft->region_of[e], simplices[i]));
         }
     }
 done:

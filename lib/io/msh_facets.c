@@ -1,7 +1,6 @@
 #include "base/memory.h"
 #include "io/msh_build.h"
 #include "io/msh_faces.h"
-#include "io/msh_split.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -97,7 +96,7 @@ static enum status close_set(struct gathering *g, int32_t group)
         return STATUS_OK;
     }
     qsort(&mesh->set_idx[first], (size_t)count, sizeof *mesh->set_idx, compare_nodes);
-    enum status status = mesh_add_group(&mesh->node_sets, &g->draft->msh->groups[group], g->draft->error);
+    enum status status = mesh_add_name(&mesh->node_sets, g->draft->msh->groups[group].name, g->draft->error);
     if (status == STATUS_OK) {
         mesh->set_ptr[mesh->node_sets.count + 1] = mesh->set_ptr[mesh->node_sets.count];
     }
@@ -164,20 +163,14 @@ static enum status gather_facets(struct gathering *g, int32_t group)
     struct mesh *mesh = g->draft->mesh;
     struct tally tally = {0, 0, 0};
     for (int64_t i = g->group_ptr[group]; i < g->group_ptr[group + 1]; i++) {
-        int64_t e = g->group_idx[i];
-        int32_t node[4] = {-1, -1, -1, -1};
-        int32_t pieces[MSH_MOST_SIMPLICES][4];
-        int64_t first = msh->node_ptr[e];
-        for (int64_t k = first; k < msh->node_ptr[e + 1]; k++) {
-            node[k - first] = g->draft->node_of[msh->node_idx[k]];
-        }
-        int count = msh_split(msh->element_type[e], node, false, pieces);
+        int32_t pieces[MESH_MOST_SIMPLICES][4];
+        int count = mesh_simplices(g->draft, g->group_idx[i], pieces);
         for (int p = 0; p < count; p++) {
             TRY(add_face(g, group, pieces[p], &tally));
         }
     }
     if (tally.boundary > 0) {
-        TRY(mesh_add_group(&mesh->facet_sets, &msh->groups[group], g->draft->error));
+        TRY(mesh_add_name(&mesh->facet_sets, msh->groups[group].name, g->draft->error));
     }
     TRY(close_set(g, group));
     TRY(note_tally(g, &msh->groups[group], &tally));
@@ -193,8 +186,9 @@ static enum status gather_nodes(struct gathering *g, int32_t group)
     int64_t lost = 0;
     for (int64_t i = g->group_ptr[group]; i < g->group_ptr[group + 1]; i++) {
         int64_t e = g->group_idx[i];
-        for (int64_t k = msh->node_ptr[e]; k < msh->node_ptr[e + 1]; k++) {
-            int32_t node = g->draft->node_of[msh->node_idx[k]];
+        int used = mesh_used_nodes(g->draft, e);
+        for (int k = 0; k < used; k++) {
+            int32_t node = g->draft->node_of[msh->node_idx[msh->node_ptr[e] + k]];
             lost += node < 0;
             TRY(add_set_node(g, group, node));
         }
@@ -227,16 +221,42 @@ done:
     return status;
 }
 
-/* Room for all facets that there can be: each element of dimension dim - 1 gives at most two to each of its
- * groups. */
+static int compare_names(const void *left, const void *right)
+{
+    return strcmp(*(char *const *)left, *(char *const *)right);
+}
+
+/* Names differ within a dimension, but node sets come from several. */
+static enum status check_set_names(const struct mesh_draft *draft)
+{
+    enum status status = STATUS_OK;
+    const struct mesh_names *sets = &draft->mesh->node_sets;
+    char **order = NULL;
+    TRY(NEW_ARRAY(&order, sets->count, draft->error));
+    for (int32_t i = 0; i < sets->count; i++) {
+        order[i] = sets->name[i];
+    }
+    qsort(order, (size_t)sets->count, sizeof *order, compare_names);
+    for (int32_t i = 1; i < sets->count && status == STATUS_OK; i++) {
+        if (strcmp(order[i], order[i - 1]) == 0) {
+            status = fail(draft->error, STATUS_INPUT,
+                          "physical groups of two dimensions are named '%s', both sets of nodes: rename one",
+                          order[i]);
+        }
+    }
+done:
+    free(order);
+    return status;
+}
+
+/* Room for all facets that there can be: a triangle of second order gives four, a quadrangle eight. */
 static int64_t most_facets(const struct mesh_draft *draft)
 {
     int64_t most = 0;
     for (int32_t i = 0; i < draft->msh->group_count; i++) {
-        most +=
-            draft->msh->groups[i].dim == draft->mesh->dim - 1 ? 2 * draft->msh->groups[i].element_count : 0;
+        most += draft->msh->groups[i].dim == draft->mesh->dim - 1 ? draft->msh->groups[i].element_count : 0;
     }
-    return most;
+    return most * (draft->options->midside ? 8 : 2);
 }
 
 enum status mesh_build_facets(struct mesh_draft *draft)
@@ -258,6 +278,7 @@ enum status mesh_build_facets(struct mesh_draft *draft)
     TRY(NEW_ARRAY(&mesh->facet_set, most_facets(draft), draft->error));
     TRY(NEW_ARRAY(&mesh->set_ptr, draft->msh->group_count + 2, draft->error));
     TRY(gather_groups(&g));
+    TRY(check_set_names(draft));
 done:
     msh_faces_free(&g.faces);
     free(g.group_ptr);

@@ -1,15 +1,234 @@
 #include "base/memory.h"
-#include "io/msh.h"
-#include "io/msh_gmsh.h"
-#include "io/msh_scan.h"
+#include "io/msh_private.h"
 
 #include <errno.h>
-#include <stdio.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/mman.h>
 #include <sys/stat.h>
 #include <unistd.h>
+
+/* So many bytes tell whether a file is a mesh. */
+#define MAGIC_SIZE 12
+
+/* ---- what the file is ---- */
+
+static bool is_end_of_line(char c)
+{
+    return c == '\n' || c == '\r';
+}
+
+/* MSH 1 has no $MeshFormat. */
+static bool is_mesh1(const char *bytes, size_t size)
+{
+    return size >= MAGIC_SIZE && memcmp(bytes, "$NOD", 4) == 0 && is_end_of_line(bytes[4]);
+}
+
+static bool is_mesh(const char *bytes, size_t size)
+{
+    return is_mesh1(bytes, size) ||
+           (size >= MAGIC_SIZE && memcmp(bytes, "$MeshFormat", 11) == 0 && is_end_of_line(bytes[11]));
+}
+
+/* How to make a mesh of a file of another program, by its first bytes: ": a VTK file: ...", or "". */
+static const char *foreign_hint(const char *bytes, size_t size)
+{
+#define BY_MESHIO                                                                                            \
+    "python3 -c 'import meshio as m; m.write(\"body.msh\", m.read(\"FILE\"), file_format=\"gmsh22\")' "      \
+    "makes a mesh of it (python3-meshio)"
+#define BY_GMSH(name) "gmsh " name " -save -o body.msh makes a mesh of it"
+    static const char stl_hint[] = ": an STL surface: nodes -h tells how to fill it";
+    static const char geo_hint[] =
+        ": a geometry of gmsh: gmsh -3 FILE.geo -o body.msh (in the plane -2) makes a mesh of it";
+    static const struct {
+        const char *begin, *hint;
+    } formats[] = {
+        {"# vtk DataFile", ": a VTK file: " BY_GMSH("FILE.vtk")},
+        {"<?xml", ": an XML file: if it is VTU, " BY_MESHIO},
+        {"<VTKFile", ": a VTU file: " BY_MESHIO},
+        {"solid", stl_hint},
+        {"MeshVersionFormatted", ": a MEDIT mesh: " BY_GMSH("FILE.mesh")},
+        {"*", ": an Abaqus deck: " BY_GMSH("FILE.inp")},
+        {"ply",
+         ": a PLY surface: make it STL (gmsh FILE.ply -save -o body.stl); nodes -h tells how to fill that"},
+        {"ISO-10303-21", ": a STEP geometry: gmsh -3 FILE.step -o body.msh makes a mesh of it"},
+        {"SetFactory", geo_hint},
+        {"Point", geo_hint},
+        {"//", geo_hint},
+        {"/*", geo_hint},
+        {"CDF", ": an Exodus file: " BY_MESHIO},
+        {"\x89HDF", ": an HDF5 file: if it is MED, " BY_MESHIO},
+    };
+    for (size_t i = 0; i < sizeof formats / sizeof *formats; i++) {
+        size_t length = strlen(formats[i].begin);
+        if (size >= length && memcmp(bytes, formats[i].begin, length) == 0) {
+            return formats[i].hint;
+        }
+    }
+    if (size >= 84) { /* binary STL: 80 bytes of anything, a count, and 50 bytes for each triangle */
+        uint32_t count;
+        memcpy(&count, bytes + 80, sizeof count);
+        if (count > 0 && size - 84 == 50 * (size_t)count) {
+            return stl_hint;
+        }
+    }
+    return "";
+}
+
+/* ---- sections ---- */
+
+void msh_read_format(struct msh_reader *r)
+{
+    static const double versions[] = {2.0, 2.1, 2.2, 4.0, 4.1};
+    double version = msh_real(r, "version");
+    bool binary = msh_int(r, "file type", 0, 1) == 1;
+    (void)msh_int(r, "size of a real number", 8, 8);
+    for (size_t i = 0; i < sizeof versions / sizeof *versions; i++) {
+        r->version = version == versions[i] ? (int)lround(10 * version) : r->version;
+    }
+    if (r->version == 0) {
+        msh_fail(r, "version %g is not read: save as MSH 4.1 or 2.2", version);
+    }
+    if (r->version == 40 && binary) { /* gmsh does not read it either */
+        msh_fail(r, "version 4.0 is read as ASCII only: save as MSH 4.1");
+    }
+    msh_skip_line(r);
+    r->binary = binary;
+    if (binary && msh_int(r, "byte order", INT32_MIN, INT32_MAX) != 1) {
+        msh_fail(r, "the file is of another byte order: save it as ASCII");
+    }
+}
+
+/* "$Name", stepped over, into name[size]. */
+static void read_heading(struct msh_reader *r, char name[], size_t size)
+{
+    size_t length = 0;
+    const char *at = r->at;
+    while (at + length < r->end && length + 1 < size &&
+           (length == 0 ? at[0] == '$' : at[length] > ' ' && at[length] < 127)) {
+        name[length] = at[length];
+        length++;
+    }
+    name[length] = '\0';
+    if (length < 2) {
+        msh_fail(r, "followed by something that is not a section");
+    } else if (at + length == r->end) {
+        msh_fail(r, "followed by an unfinished section: the file is truncated");
+    }
+    r->at += length;
+}
+
+/* "$EndName" on a line of its own, or at the end of the file; in MSH 1 "$ENDNAM". */
+static void read_ending(struct msh_reader *r)
+{
+    const char *name = r->section + 1;
+    bool old = strcmp(name, "NOD") == 0 || strcmp(name, "ELM") == 0;
+    const char *begin = old ? "$END" : "$End";
+    size_t length = strlen(name);
+    if (r->status != STATUS_OK) {
+        return;
+    }
+    r->record = 0;
+    msh_skip_space(r);
+    if ((size_t)(r->end - r->at) < 4 + length) {
+        msh_fail(r, "no %s%s: the file is truncated", begin, name);
+    } else if (memcmp(r->at, begin, 4) != 0 || memcmp(r->at + 4, name, length) != 0 ||
+               (r->at + 4 + length < r->end && r->at[4 + length] > ' ')) {
+        msh_fail(r, "more in the section than its head says: no %s%s where it should be", begin, name);
+    } else {
+        r->at += 4 + length;
+        if (memchr(r->at, '\n', (size_t)(r->end - r->at)) != NULL) {
+            msh_skip_line(r);
+        }
+    }
+}
+
+/* Step over a section that is not needed. */
+static void skip_section(struct msh_reader *r)
+{
+    char ending[80] = "$End";
+    strncat(ending, r->section + 1, sizeof ending - 5);
+    const char *found = memmem(r->at, (size_t)(r->end - r->at), ending, strlen(ending));
+    if (found == NULL) {
+        msh_fail(r, "no %s: the file is truncated", ending);
+    } else {
+        r->at = found;
+    }
+}
+
+/* The content of a section: of those that are needed, each once. */
+static void read_content(struct msh_reader *r)
+{
+    static const struct {
+        const char *name, *in_mesh1;
+        void (*read)(struct msh_reader *reader);
+    } needed[MSH_SECTIONS] = {
+        [MSH_FORMAT] = {"$MeshFormat", "", msh_read_format},
+        [MSH_NAMES] = {"$PhysicalNames", "", msh_read_names},
+        [MSH_ENTITIES] = {"$Entities", "", msh_read_entities},
+        [MSH_PARTITIONS] = {"$PartitionedEntities", "", msh_read_partitions},
+        [MSH_NODES] = {"$Nodes", "$NOD", msh_read_nodes},
+        [MSH_ELEMENTS] = {"$Elements", "$ELM", msh_read_elements},
+    };
+    for (int i = 0; i < MSH_SECTIONS; i++) {
+        if (strcmp(r->section, r->version == 10 ? needed[i].in_mesh1 : needed[i].name) == 0) {
+            if (r->has[i]) {
+                msh_fail(r, "stands twice in the file");
+            }
+            msh_skip_line(r);
+            needed[i].read(r);
+            r->has[i] = true;
+            return;
+        }
+    }
+    skip_section(r);
+}
+
+static void read_sections(struct msh_reader *r)
+{
+    char name[64], last[64] = "$MeshFormat";
+    while (r->status == STATUS_OK && r->at < r->end) {
+        r->section = last;
+        read_heading(r, name, sizeof name);
+        if (r->status == STATUS_OK) {
+            r->section = name;
+            read_content(r);
+            read_ending(r);
+            msh_skip_space(r);
+            memcpy(last, name, sizeof last);
+        }
+    }
+    if (r->status == STATUS_OK && !r->has[MSH_ELEMENTS]) {
+        r->status = fail(r->error, STATUS_INPUT, "no section %s: the file is truncated, or no mesh was made",
+                         r->has[MSH_NODES] ? "$Elements" : "$Nodes");
+    }
+}
+
+enum status msh_parse(struct msh *msh, const char *bytes, size_t size, struct error *error)
+{
+    struct msh_reader reader = {.at = bytes, .end = bytes + size, .error = error, .msh = msh};
+    *msh = (struct msh){0};
+    if (!is_mesh(bytes, size)) {
+        return fail(error, STATUS_INPUT, "%s%s",
+                    size == 0 ? "empty" : "not a gmsh mesh: the first line is not $MeshFormat",
+                    foreign_hint(bytes, size));
+    }
+    reader.version = is_mesh1(bytes, size) ? 10 : 0;
+    read_sections(&reader);
+    msh_join_groups(&reader);
+    msh_index_free(&reader.nodes);
+    free(reader.element_key);
+    free(reader.names);
+    free(reader.entities);
+    free(reader.physicals);
+    if (reader.status != STATUS_OK) {
+        msh_free(msh);
+    }
+    return reader.status;
+}
+
+/* ---- bytes ---- */
 
 /* A file's bytes in memory. */
 struct bytes {
@@ -17,16 +236,6 @@ struct bytes {
     size_t size;
     bool mapped;
 };
-
-static void bytes_free(struct bytes *bytes)
-{
-    if (bytes->mapped) {
-        munmap(bytes->data, bytes->size);
-    } else {
-        free(bytes->data);
-    }
-    *bytes = (struct bytes){0};
-}
 
 static enum status fail_read(struct error *error)
 {
@@ -36,34 +245,28 @@ static enum status fail_read(struct error *error)
 /* Read to the end; but no further than the first bytes where those do not begin a mesh. */
 static enum status read_all(struct bytes *bytes, int descriptor, struct error *error)
 {
-    enum status status = STATUS_OK;
     int64_t capacity = 0;
     for (;;) {
         if ((int64_t)bytes->size == capacity) {
             capacity = capacity == 0 ? 65536 : 2 * capacity;
             char *grown = array_grow(bytes->data, capacity, 1);
             if (grown == NULL) {
-                status = fail_memory(error, "the mesh");
-                break;
+                return fail_memory(error, "the mesh");
             }
             bytes->data = grown;
         }
         ssize_t got = read(descriptor, bytes->data + bytes->size, (size_t)capacity - bytes->size);
-        if (got < 0 && errno == EINTR) {
-            continue;
+        if (got < 0 && errno != EINTR) {
+            return fail_read(error);
         }
-        if (got < 0) {
-            status = fail_read(error);
-            break;
-        }
-        bytes->size += (size_t)got;
-        if (got == 0 || (bytes->size >= MSH_MAGIC_SIZE && !msh_is_mesh(bytes->data, bytes->size))) {
-            break;
+        bytes->size += got > 0 ? (size_t)got : 0;
+        if (got == 0 || (bytes->size >= MAGIC_SIZE && !is_mesh(bytes->data, bytes->size))) {
+            return STATUS_OK;
         }
     }
-    return status;
 }
 
+/* Regular files are mapped, others read. */
 static enum status take_in(struct bytes *bytes, int descriptor, struct error *error)
 {
     struct stat info;
@@ -84,69 +287,20 @@ static enum status take_in(struct bytes *bytes, int descriptor, struct error *er
     return STATUS_OK;
 }
 
-static enum status write_all(int descriptor, const char *data, size_t size, struct error *error)
-{
-    while (size > 0) {
-        ssize_t put = write(descriptor, data, size);
-        if (put < 0 && errno == EINTR) {
-            continue;
-        }
-        if (put < 0) {
-            return fail_read(error);
-        }
-        data += put;
-        size -= (size_t)put;
-    }
-    return STATUS_OK;
-}
-
-/* libgmsh takes a file by its name, and runs NAME.opt beside it: give it one in memory that has neither name
- * nor neighbours, and only those sections that were checked. */
-static enum status load_checked(struct msh *msh, const struct msh_scan *scan, const struct bytes *bytes,
-                                struct error *error)
-{
-    enum status status = STATUS_OK;
-    char path[64];
-    int copy = memfd_create("mesh", MFD_CLOEXEC);
-    if (copy < 0) {
-        return fail_read(error);
-    }
-    for (int part = 0; part < MSH_PART_COUNT; part++) {
-        const struct msh_rewritten *rewritten = &scan->rewritten[part];
-        bool other = rewritten->text != NULL;
-        const char *data = other ? rewritten->text : bytes->data + scan->part[part].from;
-        size_t size = other ? rewritten->size : scan->part[part].to - scan->part[part].from;
-        if (size > 0) {
-            TRY(write_all(copy, data, size, error));
-            TRY(write_all(copy, "\n", 1, error));
-        }
-    }
-    snprintf(path, sizeof path, "/proc/self/fd/%d", copy);
-    TRY(msh_load(msh, scan, path, error));
-done:
-    if (close(copy) != 0 && status == STATUS_OK) {
-        status = fail_read(error);
-    }
-    return status;
-}
-
 enum status msh_read(struct msh *msh, int descriptor, const char *name, struct error *error)
 {
-    enum status status = STATUS_OK;
     struct bytes bytes = {0};
-    struct msh_scan scan = {0};
     *msh = (struct msh){0};
-    TRY(take_in(&bytes, descriptor, error));
-    TRY(msh_scan(&scan, bytes.data, bytes.size, error));
-    TRY(load_checked(msh, &scan, &bytes, error));
-done:
-    msh_scan_free(&scan);
-    bytes_free(&bytes);
-    if (status != STATUS_OK) {
-        msh_free(msh);
-        fail_in(error, status, "%s", name);
+    enum status status = take_in(&bytes, descriptor, error);
+    if (status == STATUS_OK) {
+        status = msh_parse(msh, bytes.data, bytes.size, error);
     }
-    return status;
+    if (bytes.mapped) {
+        munmap(bytes.data, bytes.size);
+    } else {
+        free(bytes.data);
+    }
+    return status == STATUS_OK ? status : fail_in(error, status, "%s", name);
 }
 
 void msh_free(struct msh *msh)

@@ -4,6 +4,71 @@
 
 #include <string.h>
 
+/* ---- second order: pieces at the midside nodes ---- */
+
+/* The types of elements of second order that have a node in the middle of each quadrangular face, and of
+ * hexahedra: the places of the pieces' nodes in the list of the whole, in gmsh's order. */
+struct pattern {
+    int type;
+    struct msh_pieces pieces;
+};
+
+static const struct pattern patterns[] = {
+    {8, {1, 2, {{0, 2}, {2, 1}}}},
+    {9, {2, 4, {{0, 3, 5}, {3, 1, 4}, {5, 4, 2}, {3, 4, 5}}}},
+    {16, {2, 6, {{0, 4, 7}, {4, 1, 5}, {5, 2, 6}, {6, 3, 7}, {4, 5, 6}, {4, 6, 7}}}},
+    {10, {3, 4, {{0, 4, 8, 7}, {4, 1, 5, 8}, {8, 5, 2, 6}, {7, 8, 6, 3}}}},
+    {11,
+     {4,
+      8,
+      {{0, 4, 6, 7},
+       {4, 1, 5, 9},
+       {6, 5, 2, 8},
+       {7, 9, 8, 3},
+       {4, 8, 5, 6},
+       {4, 8, 6, 7},
+       {4, 8, 7, 9},
+       {4, 8, 9, 5}}}},
+    {12,
+     {5,
+      8,
+      {{0, 8, 20, 9, 10, 21, 26, 22},
+       {8, 1, 11, 20, 21, 12, 23, 26},
+       {20, 11, 2, 13, 26, 23, 14, 24},
+       {9, 20, 13, 3, 22, 26, 24, 15},
+       {10, 21, 26, 22, 4, 16, 25, 17},
+       {21, 12, 23, 26, 16, 5, 18, 25},
+       {26, 23, 14, 24, 25, 18, 6, 19},
+       {22, 26, 24, 15, 17, 25, 19, 7}}}},
+};
+
+const struct msh_pieces *msh_pieces(int type, bool midside)
+{
+    /* Those of a whole element, by the type of first order. */
+    static const struct msh_pieces none = {0},
+                                   whole[] =
+                                       {
+                                           {0, 0, {{0}}},
+                                           {1, 1, {{0, 1}}},
+                                           {2, 1, {{0, 1, 2}}},
+                                           {3, 1, {{0, 1, 2, 3}}},
+                                           {4, 1, {{0, 1, 2, 3}}},
+                                           {5, 1, {{0, 1, 2, 3, 4, 5, 6, 7}}},
+                                           {6, 1, {{0, 1, 2, 3, 4, 5}}},
+                                           {7, 1, {{0, 1, 2, 3, 4}}},
+                                       },
+                                   point = {15, 1, {{0}}};
+    int linear = msh_type(type).linear;
+    for (size_t i = 0; midside && i < sizeof patterns / sizeof *patterns; i++) {
+        if (patterns[i].type == type) {
+            return &patterns[i].pieces;
+        }
+    }
+    return midside && linear != type ? &none : linear == point.type ? &point : &whole[linear];
+}
+
+/* ---- simplices ---- */
+
 enum { TRIANGLE = 2, QUADRANGLE = 3, HEXAHEDRON = 5, PRISM = 6, PYRAMID = 7 };
 
 /* The faces of an element, 3 or 4 nodes each in a ring; -1 fills up. */

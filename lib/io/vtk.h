@@ -1,4 +1,4 @@
-/* Writing node clouds with cells and fields for ParaView (VTK XML) and gmsh. */
+/* Writing node clouds with cells and fields for ParaView (VTK XML). */
 #ifndef IO_VTK_H
 #define IO_VTK_H
 
@@ -24,7 +24,6 @@ struct vtk_mesh {
 struct vtk_field {
     const char *name;
     bool of_cells;
-    bool is_static;                /* the same in all states */
     const struct section *section; /* one row for each node or cell; attribute cols= names the components */
 };
 
@@ -43,15 +42,5 @@ MUST_CHECK enum status vtu_write(FILE *file, const struct vtk_mesh *mesh, const 
 /* Write a ParaView collection: `count` files (relative to it) with their times. */
 MUST_CHECK enum status pvd_write(FILE *file, int64_t count, char *const names[], const double *times,
                                  struct error *error);
-
-/* Write a mesh in MSH 2.2 with regions as physical groups, to be followed by fields. */
-MUST_CHECK enum status gmsh_write_mesh(FILE *file, const struct vtk_mesh *mesh, struct error *error);
-
-/* Append a field as a post-processing view at a time; the same name again, at step + 1, is the view's next
- * step. Scalars, vectors of 3D and 2D meshes (padded) and fields of 9 columns (tensors) are one view; other
- * fields become a scalar view for each column. */
-MUST_CHECK enum status gmsh_write_field(FILE *file, const struct vtk_mesh *mesh,
-                                        const struct vtk_field *field, int64_t step, double time,
-                                        struct error *error);
 
 #endif

@@ -40,6 +40,7 @@ Architecture: $(dpkg --print-architecture)
 Maintainer: mtled <mtled@localhost>
 Installed-Size: $(du -sk "$root/usr" | cut -f 1)
 Depends: $depends
+Recommends: gmsh
 Section: science
 Priority: optional
 Description: meshless simulation of soft tissue by small programs in a pipe

@@ -1,6 +1,6 @@
 /* What a reader allocates is a small multiple of its input, whatever the input says about its size: measured
  * on dense inputs, and on headers that announce what is not there. */
-#include "io/msh_scan.h"
+#include "io/msh.h"
 #include "io/scene.h"
 #include "io/stream.h"
 #include "io/table.h"
@@ -167,7 +167,7 @@ static void scenes(void **state)
 static void meshes(void **state)
 {
     (void)state;
-    struct msh_scan scan;
+    struct msh msh;
     struct error error;
     char line[96];
     append("$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n160000\n");
@@ -182,12 +182,12 @@ static void meshes(void **state)
     }
     append("$EndElements\n");
     begin();
-    assert_int_equal(msh_scan(&scan, text, length, &error), STATUS_OK);
-    msh_scan_free(&scan);
+    assert_int_equal(msh_parse(&msh, text, length, &error), STATUS_OK);
+    msh_free(&msh);
     end("mesh of points", 6.0);
     append("$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n100000000000\n1 0 0 0\n");
     begin();
-    assert_int_equal(msh_scan(&scan, text, length, &error), STATUS_INPUT);
+    assert_int_equal(msh_parse(&msh, text, length, &error), STATUS_INPUT);
     end("mesh that announces nodes", 1.0);
 }
 

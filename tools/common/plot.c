@@ -80,7 +80,6 @@ static void choose_field(struct plot *plot, const struct section *section, int64
     int64_t of = frame_of(section->name, &length);
     bool is_wanted = of == frame || (of == FRAME_NONE && is_static(section->name));
     if (is_wanted && is_field(&plot->mesh, section, &field.of_cells)) {
-        field.is_static = of == FRAME_NONE && is_static(section->name);
         field.name = section->name;
         if (of != FRAME_NONE) {
             struct plot_label *label = &plot->labels[plot->field_count];
@@ -172,15 +171,13 @@ done:
     return status;
 }
 
-/* Fields: those of the stream, what follows from them and, where wanted, the groups. */
-static enum status find_fields(struct plot *plot, bool with_groups, struct error *error)
+/* Fields: those of the stream, what follows from them, and the groups. */
+static enum status find_fields(struct plot *plot, struct error *error)
 {
     enum status status;
     int64_t most;
     TRY(derived_add_invariants(&plot->stream, &plot->derived, error));
-    if (with_groups) {
-        TRY(derived_add_groups(&plot->stream, plot->mesh.dim, plot->mesh.node_count, &plot->derived, error));
-    }
+    TRY(derived_add_groups(&plot->stream, plot->mesh.dim, plot->mesh.node_count, &plot->derived, error));
     most = plot->stream.section_count + plot->derived.count;
     TRY(NEW_ARRAY(&plot->fields, most, error));
     TRY(NEW_ARRAY(&plot->labels, most, error));
@@ -198,12 +195,12 @@ int64_t plot_state_count(const struct plot *plot)
     return plot->frame_count > 0 ? plot->frame_count : 1;
 }
 
-enum status plot_find(struct plot *plot, bool with_groups, struct error *error)
+enum status plot_find(struct plot *plot, struct error *error)
 {
     enum status status;
     TRY(find_mesh(plot, error));
     TRY(find_frames(plot, error));
-    TRY(find_fields(plot, with_groups, error));
+    TRY(find_fields(plot, error));
 done:
     return status;
 }

@@ -20,9 +20,9 @@ struct plot {
     char names[1 << 16]; /* of the regions */
 };
 
-/* Find mesh, fields and frames of plot->stream, the rest of *plot being zero; fields of the groups only if
- * wanted. plot_free also on failure. */
-MUST_CHECK enum status plot_find(struct plot *plot, bool with_groups, struct error *error);
+/* Find mesh, fields, those of the groups too, and frames of plot->stream, the rest of *plot being zero.
+ * plot_free also on failure. */
+MUST_CHECK enum status plot_find(struct plot *plot, struct error *error);
 
 /* Release all of it, the stream too. */
 void plot_free(struct plot *plot);
