@@ -399,13 +399,3 @@ END
     run bash -c 'mtled block.scene table.mts 2> note | head -n 1'
     [ "$output" = "# mts 1" ]
 }
-
-@test "tables in single precision: the same field to 1e-5, both integrations" {
-    ipoints -g 3 square.mts > gauss.mts
-    for stream in square.mts gauss.mts; do
-        mtled block.scene "$stream" > double.dat
-        mtled --float block.scene "$stream" > single.dat
-        fieldcmp --tol-max 5e-8 double.dat single.dat
-        ! cmp -s double.dat single.dat
-    done
-}

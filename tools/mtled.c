@@ -1,7 +1,7 @@
 static const char usage[] =
     "mtled - total Lagrangian explicit dynamics of a scene, meshless\n"
     "\n"
-    "usage: mtled [-v] [-q] [-b] [-f] [-c FILE [-e SECONDS]] [-o FILE] SCENE [FILE]\n"
+    "usage: mtled [-v] [-q] [-b] [-c FILE [-e SECONDS]] [-o FILE] SCENE [FILE]\n"
     "\n"
     "Reads a stream with a table of shape functions (see shapefn) and computes the scene, an\n"
     "INI file that names materials, prescribed displacements, contacts and loads on the groups\n"
@@ -48,8 +48,6 @@ static const char usage[] =
     "  -v, --verbose        end with a report on standard error: steps, error, cost of each part\n"
     "  -q, --quiet          no progress\n"
     "  -b, --binary         write binary instead of text\n"
-    "  -f, --float          keep the table of shape functions in single precision: half the memory,\n"
-    "                       fields the same to 1e-5 of the largest displacement\n"
     "  -c, --checkpoint FILE\n"
     "                       keep the state of the run in FILE, and go on from what is there\n"
     "  -e, --every SECONDS  with -c: how often (default 60)\n"
@@ -72,7 +70,7 @@ static const char usage[] =
 #include <stdlib.h>
 #include <unistd.h>
 
-enum { VERBOSE, QUIET, BINARY, FLOAT, OUTPUT, CHECKPOINT, EVERY, OPTION_COUNT };
+enum { VERBOSE, QUIET, BINARY, OUTPUT, CHECKPOINT, EVERY, OPTION_COUNT };
 
 /* Seconds between checkpoints. */
 static double parse_every(const struct tool *tool, const struct option *options)
@@ -110,7 +108,6 @@ int main(int argc, char *argv[])
         [VERBOSE] = {.letter = 'v', .name = "verbose"},
         [QUIET] = {.letter = 'q', .name = "quiet"},
         [BINARY] = {.letter = 'b', .name = "binary"},
-        [FLOAT] = {.letter = 'f', .name = "float"},
         [OUTPUT] = {.letter = 'o', .name = "output", .takes_value = true},
         [CHECKPOINT] = {.letter = 'c', .name = "checkpoint", .takes_value = true, .silent = true},
         [EVERY] = {.letter = 'e', .name = "every", .takes_value = true, .silent = true},
@@ -131,12 +128,10 @@ int main(int argc, char *argv[])
         .stream = &stream,
         .verbose = options[VERBOSE].given,
         .text = !options[BINARY].given,
-        .checkpoint = {.file = options[CHECKPOINT].value,
-                       .interval = every,
-                       .identity = {.single = options[FLOAT].given}},
+        .checkpoint = {.file = options[CHECKPOINT].value, .interval = every},
         .read_seconds = read,
         .display = {.shown = !options[QUIET].given && isatty(STDERR_FILENO), .started = clock_seconds()}};
-    tool_check(&tool, model_build(&stream, &scene, options[FLOAT].given, &model, &error), &error);
+    tool_check(&tool, model_build(&stream, &scene, &model, &error), &error);
     if (model.note.text[0] != '\0') {
         tool_note(&tool, "%s", model.note.text);
     }

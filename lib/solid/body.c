@@ -176,8 +176,7 @@ enum status body_build(const struct body_input *input, struct body *body, struct
     struct pairs_input pairs = {.dim = input->dim,
                                 .width = input->dim,
                                 .value = input->dphi,
-                                .passes = input->hat_node != NULL ? 2 : 1,
-                                .single = input->single};
+                                .passes = input->hat_node != NULL ? 2 : 1};
     int64_t *first_row = NULL;
     *body = (struct body){.dim = input->dim,
                           .node_count = input->node_count,
@@ -187,7 +186,6 @@ enum status body_build(const struct body_input *input, struct body *body, struct
                           .idx = input->idx,
                           .dphi = input->dphi,
                           .conforming = input->conforming != NULL,
-                          .single = input->single,
                           .kernels = force_kernels_select(NULL, input->dim),
                           .averaged = input->hat_node != NULL};
     if (body->point_count < 1 || body->point_count > INT32_MAX / (body->dim + 1)) {

@@ -33,7 +33,6 @@ struct body_input {
     const double *hat_value; /* point_count * (dim + 1): their hat functions at the point, sum 1 */
     const struct conforming_input
         *conforming; /* the points are cells, dphi smoothed over them; NULL: any points */
-    bool single;     /* keep the table in single precision; sums are double always */
 };
 
 /* Points are worked on so many at a time; weight, material, J and F have as many entries more, which are
@@ -80,7 +79,7 @@ struct body {
     int32_t *material; /* point_count */
     int64_t block_count;
     struct block *blocks;
-    bool conforming, single;
+    bool conforming;
     struct pairs gradients;  /* of the shape functions at the points, in the same blocks; or */
     struct conforming cells; /* instead */
     double *u;               /* node_count * stride: displacements in the body's order */

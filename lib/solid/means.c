@@ -99,8 +99,7 @@ enum status means_build(const struct means_input *input, struct means *means, st
                                 .width = 1,
                                 .value = input->phi,
                                 .place = input->place,
-                                .passes = 2,
-                                .single = input->single};
+                                .passes = 2};
     TRY(pairs_build(&pairs, &means->pairs, error));
     TRY(NEW_ARRAY(&means->value, means->pairs.group_count * PAIRS_GROUP * PAIRS_STRIDE(input->dim), error));
     TRY(NEW_ARRAY(&means->corner_force, (input->corner_count + 1) * PAIRS_STRIDE(input->dim), error));

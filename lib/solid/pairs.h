@@ -62,11 +62,10 @@ struct pairs {
     int passes;                /* over the table in an evaluation, see pairs_input */
     bool large;                /* does not stay in the second cache from one evaluation to the next */
     struct pair_group *groups; /* group_count, and one more where the entries end */
-    uint16_t *offset;    /* where the displacement of a node begins in those of the block: one for a shared
-                            entry, PAIRS_GROUP for another */
-    double *value;       /* entry_count * width * PAIRS_GROUP: first values of an entry's rows, then their
-                            second ..; or NULL and */
-    float *single_value; /* the same in single precision */
+    uint16_t *offset; /* where the displacement of a node begins in those of the block: one for a shared
+                         entry, PAIRS_GROUP for another */
+    double *value;    /* entry_count * width * PAIRS_GROUP: first values of an entry's rows, then their
+                         second .. */
     int64_t block_count;
     struct pair_block *blocks;
     int64_t block_node_count;
@@ -96,7 +95,6 @@ struct pairs_input {
     const double *value;  /* the caller's values */
     const int32_t *place; /* node_count: the number by which each of the caller's nodes goes here */
     int passes;           /* 1: a block is scattered as soon as it is gathered; 2: all blocks later */
-    bool single;          /* keep the values in single precision */
 };
 
 /* Order the rows of each block so that those of a group share most of their nodes, and groups so that those
