@@ -399,3 +399,13 @@ END
     run bash -c 'mtled block.scene table.mts 2> note | head -n 1'
     [ "$output" = "# mts 1" ]
 }
+
+@test "small stacks of threads: the same bytes" {
+    cloud -d 3 -k jittered -n 12 --box 0,0.1,0,0.1,0,0.1 --jitter 0.1 | shapefn > cube.mts 2> note
+    printf '[scene]\ndim = 3\nanalysis = quasi-static\n[material body]\nregion = body\nE = 3000\nnu = 0.49\nrho = 1000\n%s%s' \
+        $'[displacement low]\nfacets = zmin\ncomponents = 0, 0, 0\n' \
+        $'[displacement high]\nfacets = zmax\ncomponents = 0, 0, 0.005\n' > pull.scene
+    OMP_NUM_THREADS=1 mtled -q pull.scene cube.mts > one.dat
+    OMP_NUM_THREADS=2 OMP_STACKSIZE=256k mtled -q pull.scene cube.mts > two.dat
+    cmp one.dat two.dat
+}

@@ -23,12 +23,12 @@ static const char usage[] =
     "end that it is not whole; mts recover makes it one. With -o FILE it is FILE.part.\n"
     "\n"
     "Sections on request, of the final state: stress (Cauchy), strain (Green-Lagrange), pressure\n"
-    "and volume_ratio of each integration point; reactions and moments, the force of each\n"
-    "displacement and contact on the body and its moment about moments_about, at the deformed\n"
-    "places where it acts; gaps and pressures of contacts; energy, J (2D: J/m): in a dynamic scene\n"
-    "about 200 rows of time (s), kinetic, internal and contact energy, work of loads and\n"
-    "prescribed motion, dissipated, and error of the balance relative to the largest\n"
-    "energy; in a quasi-static scene one row, internal and contact.\n"
+    "and volume_ratio of each integration point; reactions and moments of each displacement and\n"
+    "contact, the moments about moments_about, at the deformed places where they act; gaps and\n"
+    "pressures of contacts; energy, J (2D: J/m): in a dynamic scene about 200 rows of time (s),\n"
+    "kinetic, internal and contact energy, work of loads and prescribed motion, dissipated, and\n"
+    "error of the balance relative to the largest energy; in a quasi-static scene one row,\n"
+    "internal and contact.\n"
     "\n"
     "And of frames, states on the way: u.frame.K, the field u at time=, K = 0, the state at the\n"
     "begin, 1, 2, ..., evenly up to the final state. In a quasi-static scene time goes from 0 to\n"
@@ -60,12 +60,15 @@ static const char usage[] =
     "  3        input, output or memory failed\n"
     "  128 + n  ended by signal n after a whole step\n"
     "\n"
+    "Environment:\n"
+    "  OMP_WAIT_POLICY=passive  for cores that other programs use: waiting threads sleep, else they\n"
+    "                           spin, and a run takes up to four times as long\n"
+    "\n"
     "Examples:\n"
     "  nodes -u mm body.msh | shapefn | mtled brain2d.scene > u.dat\n"
     "  nodes -u mm body.msh | ipoints -g 4 | support -k 2 | shapefn | mtled -v brain2d.scene > u.dat\n";
 
 #include "run.h"
-#include "threads.h"
 
 #include <stdlib.h>
 #include <unistd.h>
@@ -112,7 +115,6 @@ int main(int argc, char *argv[])
         [CHECKPOINT] = {.letter = 'c', .name = "checkpoint", .takes_value = true, .silent = true},
         [EVERY] = {.letter = 'e', .name = "every", .takes_value = true, .silent = true},
     };
-    threads_settle_waiting(argv);
     tool_begin(&tool, usage, options, OPTION_COUNT, 1, 2, argc, argv);
     double every = parse_every(&tool, options), started = clock_seconds();
     tool_check(&tool, scene_read(tool.operands[0], &scene, &error), &error);

@@ -209,6 +209,10 @@ enum status body_build(const struct body_input *input, struct body *body, struct
         TRY(pairs_build(&pairs, &body->gradients, error));
     } else {
         TRY(conforming_build(input->conforming, body, &body->cells, error));
+    }
+    int threads = body->bound_parts.threads;
+    TRY(body_make_scratch(body, threads > body->threads ? threads : body->threads, error));
+    if (body->conforming) {
         TRY(check_smoothing(body, error));
     }
 done:
@@ -226,7 +230,7 @@ void body_free(struct body *body)
     nodal_volumes_free(&body->volumes);
     void *arrays[] = {body->order,  body->weight,     body->materials,  body->material,
                       body->blocks, body->node_order, body->node_place, body->u,
-                      body->F,      body->bound,      body->J};
+                      body->F,      body->bound,      body->J,          body->scratch};
     for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) {
         free(arrays[i]);
     }

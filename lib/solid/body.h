@@ -90,8 +90,10 @@ struct body {
     struct nodal_volumes volumes;
     const struct force_kernels *kernels; /* for this processor */
     int threads;                         /* worth using for so many pairs */
-    struct chunks bound_parts;           /* of the blocks, by each of which body_diagonal sums; */
-    double *bound;                       /* node_count for each but the first: scratch */
+    double *scratch;                     /* of each thread so many doubles */
+    int64_t scratch_size;
+    struct chunks bound_parts; /* of the blocks, by each of which body_diagonal sums; */
+    double *bound;             /* node_count for each but the first: scratch */
 };
 
 /* Lay out a body; but for the table the input arrays are copied. STATUS_INPUT for a point without neighbours

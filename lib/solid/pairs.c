@@ -177,6 +177,15 @@ void pairs_clear_forces(struct pairs *pairs, const struct pair_patch *patch)
            (size_t)(patch->force_count * stride) * sizeof *pairs->patch_force);
 }
 
+int64_t pairs_scratch(const struct pairs *pairs)
+{
+    int64_t most = 0;
+    for (int64_t b = 0; b < pairs->block_count; b++) {
+        most = pairs->blocks[b].node_count > most ? pairs->blocks[b].node_count : most;
+    }
+    return most * PAIRS_LANES(pairs->dim);
+}
+
 int64_t pairs_bytes(const struct pairs *pairs)
 {
     return pairs->entry_count * pairs->width * PAIRS_GROUP * (int64_t)sizeof *pairs->value +

@@ -32,10 +32,8 @@
 /* The most rows of a block. */
 #define PAIRS_MAX_ROWS 128
 
-/* The most nodes a block may hold, and the doubles that a thread needs on its stack for them: their
- * displacements, or their forces in each lane and behind them. */
+/* The most nodes a block may hold. */
 #define PAIRS_MAX_NODES 8192
-#define PAIRS_SCRATCH (PAIRS_MAX_NODES * PAIRS_LANES(3))
 
 struct pair_block {
     int64_t first_row, row_count;
@@ -109,6 +107,10 @@ void pairs_free(struct pairs *pairs);
 
 /* Before the blocks of a patch scatter: no forces yet. */
 void pairs_clear_forces(struct pairs *pairs, const struct pair_patch *patch);
+
+/* Doubles that a thread needs for a block: its nodes' displacements, or their forces in each lane and behind
+ * them. */
+int64_t pairs_scratch(const struct pairs *pairs);
 
 /* Bytes of the table, which a pass reads. */
 int64_t pairs_bytes(const struct pairs *pairs);
