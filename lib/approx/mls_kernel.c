@@ -104,20 +104,10 @@ KERNEL_INLINE void weigh(enum weight_function function, double widen, int dim, b
     for (int64_t j = 0; j < point->padded; j++) {
         ratio[j] = relative_scale / ratio[j];
     }
-    switch (function) {
-    case WEIGHT_CUBIC:
-        WEIGHT_LOOP(weight_cubic)
-        break;
-    case WEIGHT_WENDLAND:
-        WEIGHT_LOOP(weight_wendland)
-        break;
-    case WEIGHT_REGULARISED:
+    if (function == WEIGHT_REGULARISED) {
         WEIGHT_LOOP(weight_regularised)
-        break;
-    case WEIGHT_QUARTIC:
-    case WEIGHT_COUNT:
+    } else {
         WEIGHT_LOOP(weight_quartic)
-        break;
     }
 }
 
