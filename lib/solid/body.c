@@ -117,7 +117,6 @@ static enum status order_rows(const struct body_input *input, struct body *body,
                                 .block_count = body->block_count,
                                 .first_row = *first_row,
                                 .least_sharing = input->dim};
-    status = pairs_order(rows, NULL, error);
 done:
     return status;
 }

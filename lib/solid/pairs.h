@@ -95,12 +95,6 @@ struct pairs_input {
     int passes;           /* 1: a block is scattered as soon as it is gathered; 2: all blocks later */
 };
 
-/* Order the rows of each block so that those of a group share most of their nodes, and groups so that those
- * of as many entries, and before that of as many corners (means.h; of each of the caller's rows, else NULL),
- * follow each other: loops that go the same way many times in a row are predicted. */
-MUST_CHECK enum status pairs_order(const struct pairs_rows *rows, const int32_t *corners,
-                                   struct error *error);
-
 /* Lay out a table; the arrays are copied. STATUS_INPUT when a block has too many nodes. */
 MUST_CHECK enum status pairs_build(const struct pairs_input *input, struct pairs *pairs, struct error *error);
 void pairs_free(struct pairs *pairs);
