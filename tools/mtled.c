@@ -70,6 +70,8 @@ static const char usage[] =
 
 #include "run.h"
 
+#include "io/sections.h"
+
 #include <stdlib.h>
 #include <unistd.h>
 
@@ -92,11 +94,7 @@ static double parse_every(const struct tool *tool, const struct option *options)
 /* The results of an earlier run on the same stream. */
 static void drop_results(struct stream *stream)
 {
-    static const char *const names[] = {"u",         "stress",  "strain", "pressure", "volume_ratio",
-                                        "reactions", "moments", "gaps",   "energy"};
-    for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
-        stream_remove(stream, names[i]);
-    }
+    sections_remove(stream, MADE_WITH_RESULTS, MADE_WITH_RESULTS);
     run_drop_frames(stream);
 }
 
