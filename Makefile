@@ -10,6 +10,9 @@
 #   bench  estimate             speed of the kernels; what the error estimate is worth
 # make install PREFIX=/usr/local    make deb    make clean    (pipelines/install.mk)
 
+# Waiting threads sleep, so that other programs on the same cores do not slow tests and studies down.
+export OMP_WAIT_POLICY ?= passive
+
 SHELL := /bin/bash
 .SHELLFLAGS := -eu -o pipefail -c
 .DELETE_ON_ERROR:

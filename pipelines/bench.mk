@@ -10,12 +10,12 @@ BENCH := $(OUT)/bench
 BENCH_SECONDS := 1
 BENCH_SHARED := bench problem
 BENCH_KERNELS := $(filter-out $(BENCH_SHARED),$(notdir $(basename $(wildcard pipelines/bench/*.c))))
-BENCH_COLUMNS := kernel size threads precision ns_per_pair bytes_per_pair read_ns_per_pair ratio p10 p50 p90 rate \
+BENCH_COLUMNS := kernel size threads ns_per_pair bytes_per_pair read_ns_per_pair ratio p10 p50 p90 rate \
     rate_unit bytes_per_node repeats clock cpu flags
 
 .PHONY: bench
 bench: $(BENCH)/bench.tsv
-	@awk -F '\t' '{ printf "%-18s %-44s %2s %-7s %9s %6s %8s %8s %12s %s\n", $$1, $$2, $$3, $$4, $$5, $$6, $$7, $$8, $$12, $$13 }' $<
+	@awk -F '\t' '{ printf "%-18s %-44s %2s %9s %6s %8s %8s %12s %s\n", $$1, $$2, $$3, $$4, $$5, $$6, $$7, $$11, $$12 }' $<
 
 $(BUILD)/pipelines/bench/%.o: CFLAGS += -DBENCH_FLAGS='"$(notdir $(CC)) $(OPTIMISE)"'
 

@@ -12,7 +12,7 @@ points() { mts print points.x | wc -l; }
 
 @test "wrong command lines are refused with status 2, before the input is read" {
     for arguments in "-a" "-a 0" "-a -1" "-a nan" "-a 0.1 -c" "-a 0.1 --lattice 3,3" "-a 0.1 --levels 11" "-a 0.1 --levels -1" \
-        "--levels 3" "-k 2" "-R 8mm" "-b mls1" "--mu 1" "-g 3 -w cubic" "-a 0.1 -k 2 -R 8mm" "-a 0.1 -b mls3" "-a 0.1 -k 0"; do
+        "--levels 3" "-k 2" "-R 8mm" "-b mls1" "--mu 1" "-g 3 -w regularised" "-a 0.1 -k 2 -R 8mm" "-a 0.1 -b mls3" "-a 0.1 -k 0"; do
         run -2 --separate-stderr ipoints $arguments < /dev/null
         [[ "$stderr" == "ipoints: "* ]]
         [[ "$stderr" != *"standard input"* ]]
@@ -41,8 +41,8 @@ points() { mts print points.x | wc -l; }
 }
 
 @test "the shape functions are those recorded in the stream, or those asked for" {
-    ipoints -g 3 square.mts | support -k 2.4 -b mls1 -w cubic > lists.mts
-    ipoints -a 0.1 -k 2.4 -b mls1 -w cubic square.mts | mts print points.x > asked
+    ipoints -g 3 square.mts | support -k 2.4 -b mls1 -w regularised > lists.mts
+    ipoints -a 0.1 -k 2.4 -b mls1 -w regularised square.mts | mts print points.x > asked
     ipoints -a 0.1 lists.mts | mts print points.x | cmp - asked
     run ! cmp -s asked <(ipoints -a 0.1 -k 2.4 square.mts | mts print points.x)
     ipoints -a 0.1 -b mmls2 -w quartic -k 2.4 lists.mts | mts print points.x |

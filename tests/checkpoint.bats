@@ -91,7 +91,6 @@ SCENE
     refused 2 "run.ckpt: checkpoint of another cloud or table" mtled -c run.ckpt run.scene other.mts
     mts text run.ckpt | sed '/^# checkpoint/s/version=[0-9.]*/version=0.0.9/' | mts binary > old.ckpt
     refused 2 "old.ckpt: checkpoint of version 0.0.9, this is" mtled -c old.ckpt run.scene table.mts
-    refused 2 "run with tables in double precision: run it so" mtled -f -c run.ckpt run.scene table.mts
     refused 2 "table.mts: a stream, but not a checkpoint" mtled -c table.mts run.scene table.mts
     mts drop state.inertia.mass run.ckpt > less.ckpt
     run -2 --separate-stderr mtled -c less.ckpt run.scene table.mts

@@ -4,7 +4,7 @@ set -u -o pipefail
 cd "$(dirname "$0")/.." || exit 3
 : "${BUILD:=$PWD/build}"
 export BUILD PATH="$BUILD/bin:$PATH" CMOCKA_MESSAGE_OUTPUT=TAP
-export ASAN_OPTIONS=${ASAN_OPTIONS:-detect_leaks=1} OMP_NUM_THREADS=${OMP_NUM_THREADS:-2}
+export ASAN_OPTIONS=${ASAN_OPTIONS:-detect_leaks=1} OMP_NUM_THREADS=${OMP_NUM_THREADS:-2} OMP_WAIT_POLICY=${OMP_WAIT_POLICY:-passive}
 log=$BUILD/check.log
 mkdir -p "$BUILD"
 rm -f "$BUILD/check.result"

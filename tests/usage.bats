@@ -100,13 +100,10 @@ setup() {
     [ "$(grep -c '<DataSet' frames.pvd)" -ge 10 ]
 }
 
-@test "no program can start another one: they take execv, for themselves, and nothing else of the kind" {
+@test "no program can start another one" {
     for tool in "${tools[@]}"; do
         nm -D "$BUILD/bin/$tool" > imports
         grep -q ' U ' imports
-        run -1 grep -E ' U (system|popen|exec(l|le|lp|ve|vp|vpe)|fork|vfork|posix_spawnp?|wordexp)(@|$)' imports
+        run -1 grep -E ' U (system|popen|f?exec(l|le|lp|v|ve|vp|vpe)|execveat|fork|vfork|posix_spawnp?|wordexp)(@|$)' imports
     done
-    run -0 grep -rn 'exec[a-z]*(' "$top/lib" "$top/tools" --include=*.c
-    [ "${#lines[@]}" -eq 1 ]
-    [[ $output == *'execv("/proc/self/exe", argv);'* ]]
 }

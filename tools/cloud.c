@@ -45,7 +45,6 @@ static const char usage[] =
 #include "io/msh.h"
 #include "tool.h"
 
-#include <gsl/gsl_errno.h>
 #include <stdlib.h>
 
 enum { DIM, KIND, COUNT, BOX, JITTER, SEED, RATIO, FIELD, TEXT, OUTPUT, OPTION_COUNT };
@@ -189,7 +188,6 @@ int main(int argc, char *argv[])
         [TEXT] = {.letter = 't', .name = "text"},
         [OUTPUT] = {.letter = 'o', .name = "output", .takes_value = true},
     };
-    gsl_set_error_handler_off();
     tool_begin(&tool, usage, options, OPTION_COUNT, 0, 0, argc, argv);
     struct cloud_options wanted = parse(&tool, options);
     if (options[FIELD].given) {

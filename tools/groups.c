@@ -64,6 +64,7 @@ static const char usage[] =
 
 #include "base/box.h"
 #include "base/memory.h"
+#include "io/sections.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -341,11 +342,8 @@ static void report(const struct tool *tool, const struct group_body *body, enum 
 /* Sections whose making heeds the groups of facets. */
 static void drop_stale(const struct tool *tool, struct stream *stream)
 {
-    static const char *const prefixes[] = {"nbr.", "face.", "node.", "support.radius", "shape."};
     int64_t before = stream->section_count;
-    for (size_t i = 0; i < sizeof prefixes / sizeof *prefixes; i++) {
-        stream_remove_prefix(stream, prefixes[i]);
-    }
+    sections_remove(stream, MADE_WITH_SUPPORT, MADE_WITH_SHAPES);
     if (stream->section_count < before) {
         tool_note(tool, "facets have changed: the sections of support and shapefn are left out");
     }

@@ -25,7 +25,7 @@ static const char usage[] =
     "                         in 3D 1.9)\n"
     "  -R, --radius RADIUS    constant radius: a length with its unit, e.g. 8mm (without one: m)\n"
     "  -b, --basis BASIS      mls1, mls2 or mmls2 (default), see shapefn\n"
-    "  -w, --weight WEIGHT    quartic (default), cubic, wendland or regularised\n"
+    "  -w, --weight WEIGHT    quartic (default) or regularised\n"
     "      --mu MU[,MU...]    regularisation of mmls2, see shapefn\n"
     "      --mu-unit UNIT     MU is absolute, in coordinates of that unit\n"
     "      --deformed         add x.deformed: the points, m, moved by the displacement field u\n"
@@ -40,6 +40,7 @@ static const char usage[] =
 #include "stages.h"
 
 #include "approx/field.h"
+#include "io/sections.h"
 #include "io/table.h"
 
 #include <stdlib.h>
@@ -195,12 +196,8 @@ done:
 /* Whether a section is a field at the nodes: not one of those that describe the discretisation. */
 static bool is_field(const struct section *section, int64_t node_count)
 {
-    static const char *const others[] = {"nodes.", "points.", "facepoints.", "support.", "nbr.",
-                                         "face.",  "node.",   "shape.",      "cells",    "facets"};
-    for (size_t i = 0; i < sizeof others / sizeof *others; i++) {
-        if (strncmp(section->name, others[i], strlen(others[i])) == 0) {
-            return false;
-        }
+    if (section_stage(section->name) < MADE_WITH_RESULTS) {
+        return false;
     }
     return section->type == TYPE_F8 && section->rows == node_count;
 }

@@ -30,7 +30,7 @@ static const char usage[] =
     "                          in 3D 1.9)\n"
     "  -R, --radius RADIUS     constant support radius: a length with its unit, e.g. 8mm (without: m)\n"
     "  -b, --basis BASIS       mls1, mls2 or mmls2 (default), see shapefn\n"
-    "  -w, --weight WEIGHT     quartic (default), cubic, wendland or regularised\n"
+    "  -w, --weight WEIGHT     quartic (default) or regularised\n"
     "      --mu MU[,MU...]     regularisation of mmls2, see shapefn\n"
     "      --mu-unit UNIT      MU is absolute, in coordinates of that unit\n"
     "      --lattice N[,N[,N]] instead: a regular lattice of evaluation points over the box of the\n"

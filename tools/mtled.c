@@ -1,7 +1,7 @@
 static const char usage[] =
     "mtled - total Lagrangian explicit dynamics of a scene, meshless\n"
     "\n"
-    "usage: mtled [-v] [-q] [-b] [-f] [-c FILE [-e SECONDS]] [-o FILE] SCENE [FILE]\n"
+    "usage: mtled [-v] [-q] [-b] [-c FILE [-e SECONDS]] [-o FILE] SCENE [FILE]\n"
     "\n"
     "Reads a stream with a table of shape functions (see shapefn) and computes the scene, an\n"
     "INI file that names materials, prescribed displacements, contacts and loads on the groups\n"
@@ -23,12 +23,12 @@ static const char usage[] =
     "end that it is not whole; mts recover makes it one. With -o FILE it is FILE.part.\n"
     "\n"
     "Sections on request, of the final state: stress (Cauchy), strain (Green-Lagrange), pressure\n"
-    "and volume_ratio of each integration point; reactions and moments, the force of each\n"
-    "displacement and contact on the body and its moment about moments_about, at the deformed\n"
-    "places where it acts; gaps and pressures of contacts; energy, J (2D: J/m): in a dynamic scene\n"
-    "about 200 rows of time (s), kinetic, internal and contact energy, work of loads and\n"
-    "prescribed motion, dissipated, and error of the balance relative to the largest\n"
-    "energy; in a quasi-static scene one row, internal and contact.\n"
+    "and volume_ratio of each integration point; reactions and moments of each displacement and\n"
+    "contact, the moments about moments_about, at the deformed places where they act; gaps and\n"
+    "pressures of contacts; energy, J (2D: J/m): in a dynamic scene about 200 rows of time (s),\n"
+    "kinetic, internal and contact energy, work of loads and prescribed motion, dissipated, and\n"
+    "error of the balance relative to the largest energy; in a quasi-static scene one row,\n"
+    "internal and contact.\n"
     "\n"
     "And of frames, states on the way: u.frame.K, the field u at time=, K = 0, the state at the\n"
     "begin, 1, 2, ..., evenly up to the final state. In a quasi-static scene time goes from 0 to\n"
@@ -48,8 +48,6 @@ static const char usage[] =
     "  -v, --verbose        end with a report on standard error: steps, error, cost of each part\n"
     "  -q, --quiet          no progress\n"
     "  -b, --binary         write binary instead of text\n"
-    "  -f, --float          keep the table of shape functions in single precision: half the memory,\n"
-    "                       fields the same to 1e-5 of the largest displacement\n"
     "  -c, --checkpoint FILE\n"
     "                       keep the state of the run in FILE, and go on from what is there\n"
     "  -e, --every SECONDS  with -c: how often (default 60)\n"
@@ -62,17 +60,22 @@ static const char usage[] =
     "  3        input, output or memory failed\n"
     "  128 + n  ended by signal n after a whole step\n"
     "\n"
+    "Environment:\n"
+    "  OMP_WAIT_POLICY=passive  for cores that other programs use: waiting threads sleep, else they\n"
+    "                           spin, and a run takes up to four times as long\n"
+    "\n"
     "Examples:\n"
     "  nodes -u mm body.msh | shapefn | mtled brain2d.scene > u.dat\n"
     "  nodes -u mm body.msh | ipoints -g 4 | support -k 2 | shapefn | mtled -v brain2d.scene > u.dat\n";
 
 #include "run.h"
-#include "threads.h"
+
+#include "io/sections.h"
 
 #include <stdlib.h>
 #include <unistd.h>
 
-enum { VERBOSE, QUIET, BINARY, FLOAT, OUTPUT, CHECKPOINT, EVERY, OPTION_COUNT };
+enum { VERBOSE, QUIET, BINARY, OUTPUT, CHECKPOINT, EVERY, OPTION_COUNT };
 
 /* Seconds between checkpoints. */
 static double parse_every(const struct tool *tool, const struct option *options)
@@ -91,11 +94,7 @@ static double parse_every(const struct tool *tool, const struct option *options)
 /* The results of an earlier run on the same stream. */
 static void drop_results(struct stream *stream)
 {
-    static const char *const names[] = {"u",         "stress",  "strain", "pressure", "volume_ratio",
-                                        "reactions", "moments", "gaps",   "energy"};
-    for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
-        stream_remove(stream, names[i]);
-    }
+    sections_remove(stream, MADE_WITH_RESULTS, MADE_WITH_RESULTS);
     run_drop_frames(stream);
 }
 
@@ -110,12 +109,10 @@ int main(int argc, char *argv[])
         [VERBOSE] = {.letter = 'v', .name = "verbose"},
         [QUIET] = {.letter = 'q', .name = "quiet"},
         [BINARY] = {.letter = 'b', .name = "binary"},
-        [FLOAT] = {.letter = 'f', .name = "float"},
         [OUTPUT] = {.letter = 'o', .name = "output", .takes_value = true},
         [CHECKPOINT] = {.letter = 'c', .name = "checkpoint", .takes_value = true, .silent = true},
         [EVERY] = {.letter = 'e', .name = "every", .takes_value = true, .silent = true},
     };
-    threads_settle_waiting(argv);
     tool_begin(&tool, usage, options, OPTION_COUNT, 1, 2, argc, argv);
     double every = parse_every(&tool, options), started = clock_seconds();
     tool_check(&tool, scene_read(tool.operands[0], &scene, &error), &error);
@@ -131,12 +128,10 @@ int main(int argc, char *argv[])
         .stream = &stream,
         .verbose = options[VERBOSE].given,
         .text = !options[BINARY].given,
-        .checkpoint = {.file = options[CHECKPOINT].value,
-                       .interval = every,
-                       .identity = {.single = options[FLOAT].given}},
+        .checkpoint = {.file = options[CHECKPOINT].value, .interval = every},
         .read_seconds = read,
         .display = {.shown = !options[QUIET].given && isatty(STDERR_FILENO), .started = clock_seconds()}};
-    tool_check(&tool, model_build(&stream, &scene, options[FLOAT].given, &model, &error), &error);
+    tool_check(&tool, model_build(&stream, &scene, &model, &error), &error);
     if (model.note.text[0] != '\0') {
         tool_note(&tool, "%s", model.note.text);
     }

@@ -31,7 +31,7 @@ static const char usage[] =
     "      --reach RULE       cells (default where there are cells), or distance: also across gaps\n"
     "  -b, --basis BASIS      mls1, mls2 or mmls2 (default): what the lists are for; shapefn follows\n"
     "                         it\n"
-    "  -w, --weight WEIGHT    quartic (default), cubic, wendland or regularised; shapefn follows it\n"
+    "  -w, --weight WEIGHT    quartic (default) or regularised; shapefn follows it\n"
     "      --mu MU[,MU...]    regularisation of mmls2, see shapefn\n"
     "      --mu-unit UNIT     MU is absolute, in coordinates of that unit\n"
     "  -v, --verbose          report on standard error how many points were widened, and for each\n"

@@ -92,9 +92,9 @@ static enum status evaluate(const struct mls *mls, const struct mls_support *sup
         return STATUS_OK;
     }
     double *phi = result->phi != NULL ? result->phi : scratch + ROW_OF_VALUES * stride;
-    double *dphi = result->steepest != NULL ? scratch + (ROW_OF_VALUES + 1) * stride : result->dphi;
+    double *dphi = result->largest != NULL ? scratch + (ROW_OF_VALUES + 1) * stride : result->dphi;
     *verdict = mls_careful(mls, support, scratch, stride, phi, dphi);
-    if (result->steepest != NULL) {
+    if (result->largest != NULL) {
         double most = 0.0;
         for (int64_t j = 0; j < support->count; j++) {
             double sum = 0.0;
@@ -103,7 +103,7 @@ static enum status evaluate(const struct mls *mls, const struct mls_support *sup
             }
             most = fmax(most, sum);
         }
-        *result->steepest = sqrt(most);
+        *result->largest = sqrt(most);
     }
     return STATUS_OK;
 }
@@ -115,9 +115,10 @@ enum status mls_evaluate(const struct mls *mls, const struct mls_support *suppor
     return evaluate(mls, support, work, &result, verdict, error);
 }
 
-enum status mls_steepest(const struct mls *mls, const struct mls_support *support, struct mls_work *work,
-                         double *steepest, enum mls_verdict *verdict, struct error *error)
+enum status mls_largest_gradient(const struct mls *mls, const struct mls_support *support,
+                                 struct mls_work *work, double *largest, enum mls_verdict *verdict,
+                                 struct error *error)
 {
-    struct mls_result result = {.steepest = steepest};
+    struct mls_result result = {.largest = largest};
     return evaluate(mls, support, work, &result, verdict, error);
 }

@@ -78,10 +78,10 @@ MUST_CHECK enum status mls_evaluate(const struct mls *mls, const struct mls_supp
                                     struct mls_work *work, double *phi, double *dphi,
                                     enum mls_verdict *verdict, struct error *error);
 
-/* *steepest: the largest |grad phi_j| (per unit of x) at a point, where the verdict is MLS_GOOD; the same
+/* *largest: the largest |grad phi_j| (per unit of x) at a point, where the verdict is MLS_GOOD; the same
  * verdict as mls_evaluate with gradients. */
-MUST_CHECK enum status mls_steepest(const struct mls *mls, const struct mls_support *support,
-                                    struct mls_work *work, double *steepest, enum mls_verdict *verdict,
-                                    struct error *error);
+MUST_CHECK enum status mls_largest_gradient(const struct mls *mls, const struct mls_support *support,
+                                            struct mls_work *work, double *largest, enum mls_verdict *verdict,
+                                            struct error *error);
 
 #endif

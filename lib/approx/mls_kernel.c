@@ -104,20 +104,10 @@ KERNEL_INLINE void weigh(enum weight_function function, double widen, int dim, b
     for (int64_t j = 0; j < point->padded; j++) {
         ratio[j] = relative_scale / ratio[j];
     }
-    switch (function) {
-    case WEIGHT_CUBIC:
-        WEIGHT_LOOP(weight_cubic)
-        break;
-    case WEIGHT_WENDLAND:
-        WEIGHT_LOOP(weight_wendland)
-        break;
-    case WEIGHT_REGULARISED:
+    if (function == WEIGHT_REGULARISED) {
         WEIGHT_LOOP(weight_regularised)
-        break;
-    case WEIGHT_QUARTIC:
-    case WEIGHT_COUNT:
+    } else {
         WEIGHT_LOOP(weight_quartic)
-        break;
     }
 }
 
@@ -223,9 +213,9 @@ KERNEL_INLINE double values(int dim, int m, const double *c, bool gradients, boo
 }
 
 /* s d_a phi_j = w_j p_j.g_a - slope_j xi_a p_j.c (the image for xi_a) into ROW_GRADIENT + a. Returns the
- * largest defect of sum grad phi p = grad p(0), p linear; *steepest2: the largest squared gradient. */
+ * largest defect of sum grad phi p = grad p(0), p linear; *largest2: the largest squared gradient. */
 KERNEL_INLINE double gradients(int dim, int m, const lanes *coefficient, bool images,
-                               const struct mls_point *point, double *steepest2)
+                               const struct mls_point *point, double *largest2)
 {
     double g[3][MLS_MAX_BASIS], worst = 0.0;
     lanes defect[3][4], most = {0.0, 0.0, 0.0, 0.0};
@@ -254,7 +244,7 @@ KERNEL_INLINE double gradients(int dim, int m, const lanes *coefficient, bool im
         }
         larger(&most, &square);
     }
-    *steepest2 = fmax(fmax(most[0], most[1]), fmax(most[2], most[3]));
+    *largest2 = fmax(fmax(most[0], most[1]), fmax(most[2], most[3]));
     for (int a = 0; a < dim; a++) {
         for (int k = 0; k <= dim; k++) {
             worst = larger_defect(worst, lane_sum(&defect[a][k]) - (k == 1 + a ? 1.0 : 0.0));
@@ -284,13 +274,13 @@ KERNEL_INLINE bool kernel_evaluate(const struct mls *mls, const struct mls_suppo
     /* With H a pivot may be smaller, but not too small for the normal equations. */
     static const double least_pivot = 1e-9;
     static const double most_defect = 1e-13;
-    bool with_gradients = result->dphi != NULL || result->steepest != NULL;
+    bool with_gradients = result->dphi != NULL || result->largest != NULL;
     struct mls_point point = {.count = support->count,
                               .padded = (support->count + LANES - 1) / LANES * LANES,
                               .stride = stride,
                               .row = scratch};
     struct mls_system system;
-    double steepest2 = 0.0, c[MLS_MAX_BASIS];
+    double largest2 = 0.0, c[MLS_MAX_BASIS];
     lanes right[MLS_MAX_BASIS];
     gather(support, dim, &point);
     if (images) {
@@ -308,7 +298,7 @@ KERNEL_INLINE bool kernel_evaluate(const struct mls *mls, const struct mls_suppo
     }
     if (with_gradients) {
         substitute(m, &system, right);
-        if (!(gradients(dim, m, right, images, &point, &steepest2) <= most_defect)) {
+        if (!(gradients(dim, m, right, images, &point, &largest2) <= most_defect)) {
             return false;
         }
     }
@@ -318,8 +308,8 @@ KERNEL_INLINE bool kernel_evaluate(const struct mls *mls, const struct mls_suppo
     if (result->dphi != NULL) {
         put_gradients(dim, &point, result->dphi);
     }
-    if (result->steepest != NULL) {
-        *result->steepest = sqrt(steepest2) / point.scale;
+    if (result->largest != NULL) {
+        *result->largest = sqrt(largest2) / point.scale;
     }
     return true;
 }

@@ -23,9 +23,9 @@ enum mls_row {
 
 /* What is asked for, where not NULL. */
 struct mls_result {
-    double *phi;      /* count */
-    double *dphi;     /* count * dim, per unit of x */
-    double *steepest; /* the largest |grad phi|, per unit of x */
+    double *phi;     /* count */
+    double *dphi;    /* count * dim, per unit of x */
+    double *largest; /* the largest |grad phi|, per unit of x */
 };
 
 /* Evaluate at one point; false when that is left to mls_careful(). scratch[MLS_KERNEL_ROWS * stride]. */

@@ -1,6 +1,5 @@
 #include "approx/reach_private.h"
 
-#include "base/box.h"
 #include "base/memory.h"
 
 #include <math.h>
@@ -9,20 +8,19 @@
 
 const char *const reach_names[REACH_RULE_COUNT] = {"cells", "distance"};
 
-/* passes[]: which of the facets that oppose a node may be between it and the points of a ball: those that not
- * all of these are beyond, and whose ball a segment from there to the node may meet. All from the node, in
- * floats. Returns whether there are any. */
-static bool find_near(const struct reach *reach, int32_t node, const double *middle, double radius,
-                      int32_t *passes)
+/* passes[]: which of the facets that oppose a node may lie between it and x: those that x is not beyond, and
+ * whose ball the segment from x to the node may meet. Coordinates are relative to the node, in floats, with
+ * an allowance for their round-off. Returns whether there are any. */
+static bool find_near(const struct reach *reach, int32_t node, const double *from, int32_t *passes)
 {
     int dim = reach->cells.dim;
     int64_t first = reach->opposing_ptr[node], count = reach->opposing_ptr[node + 1] - first;
     const double *own = reach->cells.x + (int64_t)node * dim;
-    float rounded = (float)(1e-4 * reach->grid->radius[node]), within = (float)radius + rounded;
-    float x = (float)(middle[0] - own[0]), y = (float)(middle[1] - own[1]), z = 0.0F;
+    float within = (float)(1e-4 * reach->grid->radius[node]);
+    float x = (float)(from[0] - own[0]), y = (float)(from[1] - own[1]), z = 0.0F;
     int32_t any = 0;
     if (dim == 3) {
-        z = (float)(middle[2] - own[2]);
+        z = (float)(from[2] - own[2]);
     }
     float length2 = x * x + y * y + z * z, inverse = length2 > 0.0F ? 1.0F / length2 : 0.0F;
     float *const *view = reach->opposing_view;
@@ -40,28 +38,17 @@ static bool find_near(const struct reach *reach, int32_t node, const double *mid
     return any != 0;
 }
 
-enum status reach_group(const struct reach *reach, int64_t points, const double *x, const int32_t *index,
-                        int64_t count, struct reach_work *work, struct error *error)
+enum status reach_list_facets(const struct reach *reach, const double *x, const int32_t *index, int64_t count,
+                              struct reach_work *work, struct error *error)
 {
-    enum status status = reach_work_reserve(reach, work, error);
-    int dim = reach->cells.dim;
-    struct box box = box_of(dim, points, x);
-    double middle[3], radius = 0.0;
-    if (status != STATUS_OK) {
-        return status;
-    }
-    for (int a = 0; a < dim; a++) {
-        middle[a] = 0.5 * (box.low[a] + box.high[a]);
-    }
-    for (int64_t p = 0; p < points; p++) {
-        radius = fmax(radius, reach_distance(dim, middle, x + p * dim));
-    }
+    enum status status;
+    TRY(reach_work_reserve(reach, work, error));
     work->near.count = 0;
     for (int64_t i = 0; i < count; i++) {
         int32_t node = index[i];
         int64_t first = reach->opposing_ptr[node], opposing = reach->opposing_ptr[node + 1] - first;
         work->near_begin[node] = (int32_t)work->near.count;
-        if (opposing > 0 && find_near(reach, node, middle, radius, work->passes)) {
+        if (opposing > 0 && find_near(reach, node, x, work->passes)) {
             TRY(index_list_reserve(&work->near, opposing, error));
             for (int64_t k = 0; k < opposing; k++) {
                 work->near.index[work->near.count] = reach->opposing[first + k];

@@ -77,7 +77,7 @@ struct reach_work {
     uint32_t *passed;               /* node_count: the last pass that put down a length and a node before */
     double *length;                 /* node_count: of the shortest path, infinite: none yet */
     int32_t *before;                /* node_count: the node before on that path, -1: the point itself */
-    int32_t *near_begin, *near_end; /* node_count: for the candidates of the group, the facets that may be
+    int32_t *near_begin, *near_end; /* node_count: for the candidates, the facets that may lie
                                        between, in `near` */
     struct index_list near;
     int32_t *passes; /* scratch */
@@ -89,15 +89,14 @@ struct reach_work {
 };
 void reach_work_free(struct reach_work *work);
 
-/* The points to be looked from next are among x[points * dim], and their candidates within their radii among
- * index[count]: puts aside the facets that can be between none of them. */
-MUST_CHECK enum status reach_group(const struct reach *reach, int64_t points, const double *x,
-                                   const int32_t *index, int64_t count, struct reach_work *work,
-                                   struct error *error);
-
-/* Look from point p of x[][dim], one of the group. */
+/* The point to evaluate next: point p of x[][dim]. */
 MUST_CHECK enum status reach_begin(const struct reach *reach, const struct reach_places *places, int64_t p,
                                    const double *x, struct reach_work *work, struct error *error);
+
+/* List the facets that may lie between a point x and each of its candidates index[count]: nodes that are
+ * nearer than their radius. Call before the first reach_filter() of a point. */
+MUST_CHECK enum status reach_list_facets(const struct reach *reach, const double *x, const int32_t *index,
+                                         int64_t count, struct reach_work *work, struct error *error);
 
 /* Of the candidates index[*count], nodes that are nearer than `widen` times their radius, keep those whose
  * shortest path is as well. Where work->around > 0, work->image[*count * dim] holds the offset to each of

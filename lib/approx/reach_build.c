@@ -321,7 +321,7 @@ static enum status file_views(struct reach *reach, struct reach_work *work, stru
         near.count = 0;
         if (reach->corner[n]) {
             TRY(point_grid_query(reach->grid, x, 1.0, &near, error));
-            TRY(reach_group(reach, 1, x, near.index, near.count, work, error));
+            TRY(reach_list_facets(reach, x, near.index, near.count, work, error));
         }
         for (int64_t i = 0; i < near.count; i++) {
             bool seen;

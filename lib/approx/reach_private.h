@@ -13,7 +13,7 @@ MUST_CHECK enum status reach_walk(const struct reach *reach, const double *x, co
                                   int64_t cell_count, int32_t node, struct reach_work *work, bool *arrives,
                                   struct error *error);
 
-/* The same for a candidate of the group, without a walk where the facets tell. */
+/* The same for a candidate, without a walk where the facets tell. */
 MUST_CHECK enum status reach_sees(const struct reach *reach, const double *x, const int32_t *cell,
                                   int64_t cell_count, int32_t node, struct reach_work *work, bool *arrives,
                                   struct error *error);

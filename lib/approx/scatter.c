@@ -20,29 +20,89 @@ struct nearest {
     double distance[MOST_NEIGHBOURS]; /* ascending, in the table's unit */
 };
 
-/* The nearest points by one pass; ties go to the earlier row. */
-static void find_nearest(const struct scatter *scatter, const double *x, struct nearest *nearest)
+enum status scatter_build(struct scatter *scatter, struct error *error)
 {
-    int64_t most = scatter->dim == 2 ? 12 : MOST_NEIGHBOURS;
-    nearest->count = 0;
+    enum status status;
+    int dim = scatter->dim;
+    double extent = 0.0;
+    TRY(NEW_ARRAY(&scatter->x, scatter->count * dim, error));
+    TRY(NEW_ARRAY(&scatter->radius, scatter->count, error));
     for (int64_t i = 0; i < scatter->count; i++) {
+        for (int a = 0; a < dim; a++) {
+            scatter->x[i * dim + a] = scatter->row[i * scatter->row_size + a];
+            extent = fmax(extent, fabs(scatter->x[i * dim + a] - scatter->x[a]));
+        }
+    }
+    /* A start only: the search widens it. */
+    double radius = extent > 0.0 ? 2.0 * extent / pow((double)scatter->count, 1.0 / dim) : 1.0;
+    if (!(radius < 1e150)) {
+        TRY(fail(error, STATUS_INPUT, "interpolation of a table: its points are too far apart"));
+    }
+    for (int64_t i = 0; i < scatter->count; i++) {
+        scatter->radius[i] = radius;
+    }
+    TRY(point_grid_build(&scatter->grid, dim, scatter->count, scatter->x, scatter->radius, error));
+done:
+    if (status != STATUS_OK) {
+        scatter_free(scatter);
+    }
+    return status;
+}
+
+void scatter_free(struct scatter *scatter)
+{
+    free(scatter->x);
+    free(scatter->radius);
+    point_grid_free(&scatter->grid);
+    scatter->x = scatter->radius = NULL;
+}
+
+/* Insert a point among the nearest; of equally near ones the earlier row comes first. */
+static void insert(struct nearest *nearest, int64_t most, int64_t row, double distance)
+{
+    if (nearest->count == most && distance >= nearest->distance[most - 1]) {
+        return;
+    }
+    int64_t at = nearest->count < most ? nearest->count++ : most - 1;
+    for (; at > 0 && nearest->distance[at - 1] > distance; at--) {
+        nearest->distance[at] = nearest->distance[at - 1];
+        nearest->row[at] = nearest->row[at - 1];
+    }
+    nearest->distance[at] = distance;
+    nearest->row[at] = row;
+}
+
+/* The nearest points: those within a radius, doubled until there are enough. */
+static enum status find_nearest(const struct scatter *scatter, const double *x, struct nearest *nearest,
+                                struct error *error)
+{
+    enum status status = STATUS_OK;
+    int dim = scatter->dim;
+    int64_t most = dim == 2 ? 12 : MOST_NEIGHBOURS, wanted = scatter->count < most ? scatter->count : most;
+    double at[3] = {0.0, 0.0, 0.0};
+    struct index_list near = {0};
+    for (int a = 0; a < dim; a++) {
+        at[a] = x[a] / scatter->unit;
+    }
+    for (double factor = 1.0; near.count < wanted && factor < 0x1p500; factor *= 2.0) {
+        near.count = 0;
+        TRY(point_grid_query(&scatter->grid, at, factor, &near, error));
+    }
+    nearest->count = 0;
+    for (int64_t k = 0; k < near.count; k++) { /* rows ascend */
         double sum = 0.0;
-        for (int a = 0; a < scatter->dim; a++) {
-            double difference = scatter->row[i * scatter->row_size + a] - x[a] / scatter->unit;
+        for (int a = 0; a < dim; a++) {
+            double difference = scatter->x[near.index[k] * dim + a] - at[a];
             sum += difference * difference;
         }
-        double distance = sqrt(sum);
-        if (nearest->count == most && distance >= nearest->distance[most - 1]) {
-            continue;
-        }
-        int64_t at = nearest->count < most ? nearest->count++ : most - 1;
-        for (; at > 0 && nearest->distance[at - 1] > distance; at--) {
-            nearest->distance[at] = nearest->distance[at - 1];
-            nearest->row[at] = nearest->row[at - 1];
-        }
-        nearest->distance[at] = distance;
-        nearest->row[at] = i;
+        insert(nearest, most, near.index[k], sqrt(sum));
     }
+    if (nearest->count < wanted) {
+        status = fail(error, STATUS_INPUT, "interpolation of a table: a point is too far from it");
+    }
+done:
+    free(near.index);
+    return status;
 }
 
 static void monomials(int dim, const double *xi, double *p)
@@ -185,7 +245,6 @@ static enum status weights_of(const struct scatter *scatter, const double *x, co
     struct part linear = {0}, quadratic = {0};
     double root[MOST_NEIGHBOURS], value[MOST_NEIGHBOURS] = {0.0}, at_x[MOST_MONOMIALS];
     double beyond[MOST_MONOMIALS] = {0.0}, moment[MOST_NEIGHBOURS * MOST_MONOMIALS];
-    gsl_error_handler_t *handler = gsl_set_error_handler_off();
     TRY(part_allocate(&linear, rows, linear_columns, error));
     TRY(part_allocate(&quadratic, rows, quadratic_columns, error));
     fill_columns(scatter, x, nearest, root, linear.U, quadratic.U, at_x);
@@ -212,7 +271,6 @@ static enum status weights_of(const struct scatter *scatter, const double *x, co
 done:
     part_free(&linear);
     part_free(&quadratic);
-    gsl_set_error_handler(handler);
     return status;
 }
 
@@ -221,12 +279,15 @@ enum status scatter_evaluate(const struct scatter *scatter, const double *x, dou
 {
     struct nearest nearest = {0};
     double phi[MOST_NEIGHBOURS] = {1.0};
-    find_nearest(scatter, x, &nearest);
+    enum status status = find_nearest(scatter, x, &nearest, error);
+    if (status != STATUS_OK) {
+        return status;
+    }
     int64_t last = nearest.count - 1;
     *distance = nearest.distance[0] * scatter->unit;
     *spacing = 2.0 * nearest.distance[last] / (double)nearest.count * scatter->unit;
     if (nearest.count > 1 && nearest.distance[last] > 0.0) {
-        enum status status = weights_of(scatter, x, &nearest, phi, error);
+        status = weights_of(scatter, x, &nearest, phi, error);
         if (status != STATUS_OK) {
             return status;
         }

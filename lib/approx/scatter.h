@@ -7,7 +7,7 @@
 #ifndef APPROX_SCATTER_H
 #define APPROX_SCATTER_H
 
-#include "base/status.h"
+#include "approx/point_grid.h"
 
 #include <stdint.h>
 
@@ -15,11 +15,18 @@
 struct scatter {
     int dim;
     int value_count;
-    int64_t count;     /* >= 1 */
-    int64_t row_size;  /* doubles per row, >= dim + value_count */
-    const double *row; /* count * row_size; coordinates in units of `unit` */
-    double unit;       /* m; scales coordinates and values */
+    int64_t count;      /* >= 1 */
+    int64_t row_size;   /* doubles per row, >= dim + value_count */
+    const double *row;  /* count * row_size; coordinates in units of `unit` */
+    double unit;        /* m; scales coordinates and values */
+    double *x, *radius; /* what scatter_build() makes: the points, count * dim, in a grid */
+    struct point_grid grid;
 };
+
+/* Sort the points into a grid: the other members are set. STATUS_INPUT for coordinates that are not finite
+ * or too far apart for a grid. */
+MUST_CHECK enum status scatter_build(struct scatter *scatter, struct error *error);
+void scatter_free(struct scatter *scatter);
 
 /* values[value_count] at x[dim] (m). *distance receives the distance to the nearest point and *spacing the
  * mean spacing of the points used (m; 0 for a single one), so that a caller can refuse to extrapolate far. */

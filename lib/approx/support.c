@@ -9,10 +9,6 @@
 
 /* Points of one unit of work: fixed, so that the result cannot depend on the number of threads. */
 static const int64_t chunk_points = 512;
-/* A group of points shares its search, in a box of that share of the radius. */
-static const double extent_of_group = 0.8;
-/* Fewer than that are sooner judged one by one than bounded together. */
-static const int64_t fewest_to_bound = 3;
 
 struct support_options support_defaults(int dim)
 {
@@ -35,10 +31,8 @@ static void worker_free(struct worker *worker)
     free(worker->around_pair);
     free(worker->around_offset);
     reach_work_free(&worker->reach);
-    candidates_free(&worker->candidates);
     free(worker->order);
     mls_work_free(&worker->work);
-    steep_work_free(&worker->steep);
 }
 
 static bool is_finite(int dim, const double *x)
@@ -49,70 +43,6 @@ static bool is_finite(int dim, const double *x)
         }
     }
     return true;
-}
-
-/* What the `count` points x in the box low .. high share: the search for candidates, and bounds on their
- * gradients where those will be asked for. */
-static enum status study_group(const struct search *search, const double *x, int64_t count, const double *low,
-                               const double *high, struct worker *worker, struct error *error)
-{
-    enum status status = STATUS_OK;
-    const struct support_options *options = search->options;
-    for (int64_t p = 0; p < count; p++) {
-        worker->bounds[p] = INFINITY;
-    }
-    if (count > 1) {
-        TRY(candidates_find(&worker->candidates, search->grid, low, high, 1.0, error));
-        if (search->reach != NULL) {
-            TRY(reach_group(search->reach, count, x, worker->candidates.list.index,
-                            worker->candidates.list.count, &worker->reach, error));
-        }
-        if (options->widen && options->most <= 0 && count >= fewest_to_bound) {
-            TRY(steep_bounds(&options->mls, &worker->candidates, count, x, &worker->steep, worker->bounds,
-                             error));
-        }
-    }
-done:
-    return status;
-}
-
-/* Study the points that follow `first` within a box of edges up to `extent`; returns the end of that group.
- * The first point is finite. */
-static enum status begin_group(const struct search *search, int64_t first, int64_t last, double extent,
-                               struct worker *worker, int64_t *end, struct error *error)
-{
-    double low[3], high[3];
-    int dim = search->grid->dim;
-    const double *x = search->x;
-    memcpy(low, x + first * dim, (size_t)dim * sizeof *low);
-    memcpy(high, x + first * dim, (size_t)dim * sizeof *high);
-    last = first + MOST_OF_GROUP < last ? first + MOST_OF_GROUP : last;
-    for (*end = first + 1; *end < last && is_finite(dim, x + *end * dim); ++*end) {
-        const double *point = x + *end * dim;
-        double new_low[3], new_high[3], edge = 0.0;
-        for (int a = 0; a < dim; a++) {
-            new_low[a] = point[a] < low[a] ? point[a] : low[a];
-            new_high[a] = point[a] > high[a] ? point[a] : high[a];
-            edge = new_high[a] - new_low[a] > edge ? new_high[a] - new_low[a] : edge;
-        }
-        if (edge > extent) {
-            break;
-        }
-        memcpy(low, new_low, (size_t)dim * sizeof *low);
-        memcpy(high, new_high, (size_t)dim * sizeof *high);
-    }
-    return study_group(search, x + first * dim, *end - first, low, high, worker, error);
-}
-
-/* How far apart the points of a group may be where these are the neighbours of one: candidates are found once
- * for all, and judged for each. */
-static double extent_there(const struct point_grid *grid, const int32_t *index, int64_t count)
-{
-    double least = count > 0 ? INFINITY : 0.0;
-    for (int64_t i = 0; i < count; i++) {
-        least = grid->radius[index[i]] < least ? grid->radius[index[i]] : least;
-    }
-    return extent_of_group * least;
 }
 
 /* The message for a point without a good support; a stray node shows by its radius. */
@@ -144,8 +74,6 @@ static enum status build_chunk(const struct search *search, int64_t first, int64
     enum status status = STATUS_OK;
     const struct point_grid *grid = search->grid;
     int dim = grid->dim;
-    double extent = 0.0;
-    int64_t group = first, end_of_group = first;
     worker->list.count = worker->around_count = 0;
     for (int64_t p = first; p < last; p++) {
         bool serves;
@@ -153,22 +81,14 @@ static enum status build_chunk(const struct search *search, int64_t first, int64
             return fail(error, STATUS_INPUT, "%s: row %lld: not a finite coordinate", search->what,
                         (long long)p);
         }
-        if (p == end_of_group) {
-            group = p;
-            TRY(begin_group(search, p, last, extent, worker, &end_of_group, error));
-        }
         int64_t before = worker->list.count;
-        TRY(support_find(search, p, end_of_group > group + 1, worker->bounds[p - group], worker,
-                         &lists->widen[p], &serves, error));
+        TRY(support_find(search, p, worker, &lists->widen[p], &serves, error));
         const int32_t *index = worker->list.index + before;
         int64_t count = worker->list.count - before;
         if (!serves) {
             return fail_support(search, p, index, count, error);
         }
         lists->ptr[p + 1] = count;
-        if (p + 1 == end_of_group) {
-            extent = extent_there(grid, index, count);
-        }
     }
 done:
     return status;

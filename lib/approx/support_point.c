@@ -92,11 +92,10 @@ static double spacing_within(const struct support_options *options, const struct
     return reach * pow(unit_ball / (double)count, 1.0 / grid->dim);
 }
 
-/* Whether a support serves: enough nodes, a good moment matrix, bounded gradients. They need not be looked at
- * where `bound`, known of them, says enough. */
+/* Whether a support serves: enough nodes, a well-conditioned moment matrix, bounded gradients. */
 static enum status judge(const struct search *search, const double *x, double widen, const int32_t *index,
-                         const double *image, int64_t count, double bound, struct worker *worker,
-                         bool *serves, struct error *error)
+                         const double *image, int64_t count, struct worker *worker, bool *serves,
+                         struct error *error)
 {
     const struct support_options *options = search->options;
     const struct point_grid *grid = search->grid;
@@ -108,19 +107,16 @@ static enum status judge(const struct search *search, const double *x, double wi
                                   .neighbours = index,
                                   .count = count,
                                   .image = image};
-    double steepest;
+    double largest;
     *serves = false;
     if (count < options->least) {
         return STATUS_OK;
     }
     double spacing = spacing_within(options, grid, x, index, image, count, widen);
-    if (bound * spacing <= options->gradient_bound) {
-        *serves = true;
-        return STATUS_OK;
-    }
-    enum status status = mls_steepest(&options->mls, &support, &worker->work, &steepest, &verdict, error);
+    enum status status =
+        mls_largest_gradient(&options->mls, &support, &worker->work, &largest, &verdict, error);
     if (status == STATUS_OK && verdict == MLS_GOOD) {
-        *serves = steepest * spacing <= options->gradient_bound;
+        *serves = largest * spacing <= options->gradient_bound;
     }
     return status;
 }
@@ -157,8 +153,8 @@ static enum status note_around(const struct point_grid *grid, const double *x, c
     return STATUS_OK;
 }
 
-enum status support_find(const struct search *search, int64_t p, bool grouped, double bound,
-                         struct worker *worker, double *widen, bool *serves, struct error *error)
+enum status support_find(const struct search *search, int64_t p, struct worker *worker, double *widen,
+                         bool *serves, struct error *error)
 {
     enum status status = STATUS_OK;
     const struct support_options *options = search->options;
@@ -170,29 +166,22 @@ enum status support_find(const struct search *search, int64_t p, bool grouped, d
     }
     for (*widen = 1.0; *widen <= SUPPORT_WIDEN_LIMIT; *widen *= widen_step) {
         worker->list.count = first;
-        if (*widen > 1.0 || !grouped) {
-            TRY(point_grid_query(grid, x, *widen, &worker->list, error));
-        } else {
-            TRY(candidates_within(&worker->candidates, x, &worker->list, error));
-        }
+        TRY(point_grid_query(grid, x, *widen, &worker->list, error));
         int64_t count = worker->list.count - first;
         int32_t *index = worker->list.index + first;
         double *image = NULL;
-        bool as_bound = *widen == 1.0;
         if (search->reach != NULL) {
-            if (*widen == 1.0 && !grouped) {
-                TRY(reach_group(search->reach, 1, x, index, count, &worker->reach, error));
+            if (*widen == 1.0) {
+                TRY(reach_list_facets(search->reach, x, index, count, &worker->reach, error));
             }
             TRY(reach_filter(search->reach, *widen, index, &count, &worker->reach, error));
             image = worker->reach.around > 0 ? worker->reach.image : NULL;
-            as_bound = as_bound && worker->reach.changed == 0;
         }
         TRY(keep_nearest(grid, x, options->most, index, image, &count, worker, error));
         worker->list.count = first + count;
         *serves = true;
         if (options->widen) {
-            TRY(judge(search, x, *widen, index, image, count, as_bound ? bound : INFINITY, worker, serves,
-                      error));
+            TRY(judge(search, x, *widen, index, image, count, worker, serves, error));
         }
         if (*serves) {
             return image != NULL ? note_around(grid, x, image, first, worker, error) : STATUS_OK;

@@ -2,14 +2,9 @@
 #ifndef APPROX_SUPPORT_PRIVATE_H
 #define APPROX_SUPPORT_PRIVATE_H
 
-#include "approx/candidates.h"
-#include "approx/steep_bound.h"
 #include "approx/support.h"
 
 #define SUPPORT_WIDEN_LIMIT 8.0
-
-/* A group of points shares its search: at most so many of them. */
-enum { MOST_OF_GROUP = 32 };
 
 /* What lists are made of. */
 struct search {
@@ -28,17 +23,14 @@ struct worker {
     int64_t *around_pair;                  /* places in the list */
     double *around_offset;
     struct reach_work reach;
-    struct candidates candidates;
-    double bounds[MOST_OF_GROUP]; /* on the gradients at each point of the group, see steep_bounds */
     struct mls_work work;
-    struct steep_work steep;
     double *order;
     int64_t capacity;
 };
 
-/* Append the neighbours of point p to the worker's list, widened as it takes; *serves: whether they do. A
- * grouped point has its candidates found, and a bound on its gradients. */
-MUST_CHECK enum status support_find(const struct search *search, int64_t p, bool grouped, double bound,
-                                    struct worker *worker, double *widen, bool *serves, struct error *error);
+/* Append the neighbours of point p to the worker's list. The radii are widened until the support serves, at
+ * most by SUPPORT_WIDEN_LIMIT; *serves: whether it does. */
+MUST_CHECK enum status support_find(const struct search *search, int64_t p, struct worker *worker,
+                                    double *widen, bool *serves, struct error *error);
 
 #endif

@@ -4,8 +4,6 @@
 
 enum weight_function {
     WEIGHT_QUARTIC,     /* 1 - 6 r^2 + 8 r^3 - 3 r^4 */
-    WEIGHT_CUBIC,       /* cubic B-spline, normalised to w(0) = 1 */
-    WEIGHT_WENDLAND,    /* (1 - r)^4 (4 r + 1), Wendland's C2 function */
     WEIGHT_REGULARISED, /* Most and Bucher 2005, e = 1e-5: almost interpolates */
     WEIGHT_COUNT
 };

@@ -16,23 +16,6 @@ WEIGHT_FORMULA weight_quartic(double r2, double *value, double *slope_over_r)
     *slope_over_r = -12.0 * s * s;
 }
 
-WEIGHT_FORMULA weight_cubic(double r2, double *value, double *slope_over_r)
-{
-    double r = sqrt(r2);
-    double s = 1.0 - r;
-    double outer = -6.0 * s * s / (r < 0.5 ? 0.5 : r);
-    *value = r < 0.5 ? 1.0 - 6.0 * r2 * s : 2.0 * s * s * s;
-    *slope_over_r = r < 0.5 ? -12.0 + 18.0 * r : outer;
-}
-
-WEIGHT_FORMULA weight_wendland(double r2, double *value, double *slope_over_r)
-{
-    double r = sqrt(r2);
-    double s = 1.0 - r;
-    *value = s * s * s * s * (4.0 * r + 1.0);
-    *slope_over_r = -20.0 * s * s * s;
-}
-
 WEIGHT_FORMULA weight_regularised(double r2, double *value, double *slope_over_r)
 {
     const double e = 1e-5;

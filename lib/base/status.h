@@ -1,5 +1,9 @@
 /* Status codes and error messages: every function of lib/ that can fail returns a status and
- * describes the failure in a struct error; only the tools print it. */
+ * describes the failure in a struct error; only the tools print it.
+ *
+ * GSL by default ends the process when one of its functions fails. The library does not change that, as it
+ * holds for the whole process: a program calls gsl_set_error_handler_off() first, and then memory that GSL
+ * lacks (load curves, tables of displacements, random clouds) is a status as well. */
 #ifndef BASE_STATUS_H
 #define BASE_STATUS_H
 

@@ -74,11 +74,6 @@ struct state checkpoint_state(const struct stream *stream)
     return (struct state){.visit = restore, .context = (void *)(uintptr_t)stream};
 }
 
-static const char *precision_of(const struct checkpoint_identity *identity)
-{
-    return identity->single ? "single" : "double";
-}
-
 enum status checkpoint_fill(struct stream *stream, const struct checkpoint_identity *identity, int64_t step,
                             state_function *function, void *owner, struct error *error)
 {
@@ -89,8 +84,8 @@ enum status checkpoint_fill(struct stream *stream, const struct checkpoint_ident
     TRY(NEW_ARRAY(&value, 1, error));
     *value = step;
     snprintf(attributes, sizeof attributes,
-             "version=" MTS_VERSION " scene=%08" PRIx32 " input=%08" PRIx32 " precision=%s cols=step",
-             identity->scene, identity->input, precision_of(identity));
+             "version=" MTS_VERSION " scene=%08" PRIx32 " input=%08" PRIx32 " cols=step", identity->scene,
+             identity->input);
     TRY(stream_put(stream, "checkpoint", TYPE_I8, 1, 1, attributes, value, true, error));
     TRY(function(owner, &state, error));
 done:
@@ -109,7 +104,7 @@ static enum status check_identity(const struct stream *stream, const char *name,
                                   const struct checkpoint_identity *identity, int64_t *step,
                                   struct error *error)
 {
-    char version[32] = "", precision[16] = "";
+    char version[32] = "";
     const struct section *section = stream_find(stream, "checkpoint");
     if (section == NULL || section->type != TYPE_I8 || section->rows != 1 || section->cols != 1) {
         return fail(error, STATUS_INPUT, "%s: a stream, but not a checkpoint: name another file", name);
@@ -129,13 +124,6 @@ static enum status check_identity(const struct stream *stream, const char *name,
         return fail(error, STATUS_INPUT,
                     "%s: checkpoint of another cloud or table of shape functions: remove it to begin anew",
                     name);
-    }
-    if (!section_attribute(section, "precision", precision, sizeof precision) ||
-        strcmp(precision, precision_of(identity)) != 0) {
-        return fail(error, STATUS_INPUT,
-                    "%s: checkpoint of a run with tables in %s precision: run it so, or remove it to begin "
-                    "anew",
-                    name, precision);
     }
     *step = *(const int64_t *)section->data;
     return STATUS_OK;

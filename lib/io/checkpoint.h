@@ -16,7 +16,6 @@
 struct checkpoint_identity {
     uint32_t scene; /* of the scene's bytes, and of those of the files that it names */
     uint32_t input; /* of the stream's sections */
-    bool single;    /* no checksum: the caller's tables are in single precision */
 };
 
 /* Fills in the checksums. STATUS_SYSTEM when a file that the scene names cannot be read again. */

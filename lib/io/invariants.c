@@ -1,5 +1,7 @@
 #include "io/invariants.h"
 
+#include "io/sections.h"
+
 #include <inttypes.h>
 #include <math.h>
 #include <stdarg.h>
@@ -7,51 +9,6 @@
 #include <string.h>
 
 static const double unity_tolerance = 1e-9;
-
-/* What the values of a section must be. */
-enum content { ANY, FINITE, POSITIVE, AT_LEAST_ONE, INDEX, INDEX_OR_NONE };
-
-/* The columns of a section: a number, or one of these. */
-enum { DIM = -1, DIM_PLUS_1 = -2 };
-
-struct rule {
-    const char *name;
-    enum element_type type;
-    int cols;
-    const char *rows_of; /* a section with equally many rows, or NULL */
-    enum content content;
-    const char *index_of; /* the section whose rows the indices count; "names": the list in the attributes */
-};
-
-static const struct rule rules[] = {
-    {"nodes.x", TYPE_F8, DIM, NULL, FINITE, NULL},
-    {"cells", TYPE_I4, DIM_PLUS_1, NULL, INDEX, "nodes.x"},
-    {"cells.region", TYPE_I4, 1, "cells", INDEX, "names"},
-    {"facets", TYPE_I4, DIM, NULL, INDEX, "nodes.x"},
-    {"facets.set", TYPE_I4, 1, "facets", INDEX, "names"},
-    {"sets.idx", TYPE_I4, 1, NULL, INDEX, "nodes.x"},
-    {"points.x", TYPE_F8, DIM, NULL, FINITE, NULL},
-    {"points.weight", TYPE_F8, 1, "points.x", POSITIVE, NULL},
-    {"points.cell", TYPE_I4, 1, "points.x", INDEX_OR_NONE, "cells"},
-    {"faces", TYPE_I4, DIM, NULL, INDEX, "nodes.x"},
-    {"faces.cell", TYPE_I4, 2, "faces", INDEX_OR_NONE, "cells"},
-    {"facepoints.x", TYPE_F8, DIM, NULL, FINITE, NULL},
-    {"facepoints.weight", TYPE_F8, 1, "facepoints.x", POSITIVE, NULL},
-    {"support.radius", TYPE_F8, 1, "nodes.x", POSITIVE, NULL},
-    {"nbr.idx", TYPE_I4, 1, NULL, INDEX, "nodes.x"},
-    {"nbr.widen", TYPE_F8, 1, "points.x", AT_LEAST_ONE, NULL},
-    {"face.idx", TYPE_I4, 1, NULL, INDEX, "nodes.x"},
-    {"face.widen", TYPE_F8, 1, "facepoints.x", AT_LEAST_ONE, NULL},
-    {"node.idx", TYPE_I4, 1, NULL, INDEX, "nodes.x"},
-    {"node.widen", TYPE_F8, 1, "nodes.x", AT_LEAST_ONE, NULL},
-    {"nbr.image", TYPE_F8, DIM, "nbr.around", FINITE, NULL},
-    {"face.image", TYPE_F8, DIM, "face.around", FINITE, NULL},
-    {"node.image", TYPE_F8, DIM, "node.around", FINITE, NULL},
-    {"shape.phi", TYPE_F8, 1, "nbr.idx", FINITE, NULL},
-    {"shape.dphi", TYPE_F8, DIM, "nbr.idx", FINITE, NULL},
-    {"face.phi", TYPE_F8, 1, "face.idx", FINITE, NULL},
-    {"node.phi", TYPE_F8, 1, "node.idx", FINITE, NULL},
-};
 
 /* Compressed lists: PTR holds the beginnings of the lists in IDX, one list for each row of ROWS_OF; PHI sums
  * to 1 over each; AROUND holds rows of IDX, ascending. */
@@ -116,9 +73,12 @@ static int64_t rows_of(const struct check *check, const struct section *section,
     return found != NULL ? found->rows : -1;
 }
 
-static bool shape_is_right(struct check *check, const struct section *section, const struct rule *rule)
+static bool shape_is_right(struct check *check, const struct section *section,
+                           const struct section_kind *rule)
 {
-    int cols = rule->cols == DIM ? check->dim : rule->cols == DIM_PLUS_1 ? check->dim + 1 : rule->cols;
+    int cols = rule->cols == COLS_DIM          ? check->dim
+               : rule->cols == COLS_DIM_PLUS_1 ? check->dim + 1
+                                               : rule->cols;
     if (section->type != rule->type) {
         violation(check, section, "type %s instead of %s", element_type_name(section->type),
                   element_type_name(rule->type));
@@ -149,7 +109,7 @@ static bool value_is_right(double value, enum content content)
     }
 }
 
-static void check_values(struct check *check, const struct section *section, const struct rule *rule)
+static void check_values(struct check *check, const struct section *section, const struct section_kind *rule)
 {
     static const char *const required[] = {
         [FINITE] = "finite", [POSITIVE] = "finite and positive", [AT_LEAST_ONE] = "finite and at least 1"};
@@ -163,7 +123,7 @@ static void check_values(struct check *check, const struct section *section, con
     }
 }
 
-static void check_indices(struct check *check, const struct section *section, const struct rule *rule)
+static void check_indices(struct check *check, const struct section *section, const struct section_kind *rule)
 {
     const int32_t *values = section->data;
     int64_t bound = rows_of(check, section, rule->index_of);
@@ -339,7 +299,8 @@ static void check_facepoints(struct check *check)
 /* A field at the nodes, of any number of components. */
 static void check_field(struct check *check, const struct section *section)
 {
-    const struct rule rule = {"u", TYPE_F8, (int)section->cols, "nodes.x", FINITE, NULL};
+    const struct section_kind rule = {"u",    TYPE_F8, (int)section->cols, "nodes.x",
+                                      FINITE, NULL,    MADE_WITH_RESULTS};
     if (shape_is_right(check, section, &rule)) {
         check_values(check, section, &rule);
     }
@@ -365,11 +326,12 @@ int64_t stream_check(const struct stream *stream, violation_function *tell, void
 {
     struct check check = {.stream = stream, .tell = tell, .context = context};
     check.dim = find_dimension(&check);
-    for (size_t i = 0; i < sizeof rules / sizeof *rules; i++) {
-        const struct rule *rule = &rules[i];
+    for (int i = 0; i < SECTION_KINDS; i++) {
+        const struct section_kind *rule = &section_kinds[i];
         const struct section *section = stream_find(stream, rule->name);
         int64_t before = check.count;
-        if (section == NULL || (rule->cols < 0 && check.dim == 0) || !shape_is_right(&check, section, rule)) {
+        if (section == NULL || rule->content == ANY || (rule->cols < 0 && check.dim == 0) ||
+            !shape_is_right(&check, section, rule)) {
             continue;
         }
         if (rule->type == TYPE_I4) {

@@ -276,15 +276,6 @@ void stream_remove(struct stream *stream, const char *name)
     }
 }
 
-void stream_remove_prefix(struct stream *stream, const char *prefix)
-{
-    for (int64_t i = stream->section_count - 1; i >= 0; i--) {
-        if (strncmp(stream->sections[i].name, prefix, strlen(prefix)) == 0) {
-            remove_at(stream, i);
-        }
-    }
-}
-
 bool section_attribute(const struct section *section, const char *key, char *value, size_t size)
 {
     size_t length;

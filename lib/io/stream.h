@@ -83,9 +83,6 @@ MUST_CHECK enum status stream_put(struct stream *stream, const char *name, enum 
 /* Remove a section, if it exists. */
 void stream_remove(struct stream *stream, const char *name);
 
-/* Remove all sections whose names begin with `prefix`. */
-void stream_remove_prefix(struct stream *stream, const char *prefix);
-
 /* Append the provenance line "TOOL VERSION ARGV..." (arguments quoted for a shell where they need it). */
 MUST_CHECK enum status stream_add_provenance(struct stream *stream, int argc, char *const argv[],
                                              struct error *error);

@@ -94,20 +94,14 @@ MUST_CHECK enum status payload_read_binary(struct input *input, struct section *
 /* stream_payload.c: the error of an input that ends in that row. */
 enum status fail_short(const struct section *section, int64_t row, struct error *error);
 
-/* stream_power.c: the 128 leading bits of 10^power, POWER_LEAST <= power <= POWER_MOST, as a number of two
- * words: 10^power = (number + d) * 2^power_exponent(power) with 0 <= d < POWER_ERROR, the number >= 2^127. */
-enum { POWER_LEAST = -364, POWER_MOST = 363, POWER_ERROR = 4 };
-void power_of_ten(int power, uint64_t *high, uint64_t *low);
-int power_exponent(int power);
-
-/* stream_parse.c: parse one number that ends at a blank, a line end or `end`. They return the byte behind
+/* stream_number.c: parse one number that ends at a blank, a line end or `end`. They return the byte behind
  * it, or NULL when this is no number of that type (out of range included). Both work in the C locale only. */
 const char *number_parse_integer(const char *at, const char *end, int64_t least, int64_t most,
                                  int64_t *value);
 const char *number_parse_double(const char *at, const char *end, double *value);
 const char *number_parse_float(const char *at, const char *end, float *value);
 
-/* stream_format.c: write a number without a terminating zero; returns its length, at most NUMBER_TEXT_LIMIT.
+/* The converse: write a number without a terminating zero; returns its length, at most NUMBER_TEXT_LIMIT.
  */
 enum { NUMBER_TEXT_LIMIT = 32 };
 size_t number_format_integer(char *text, int64_t value);

@@ -121,7 +121,6 @@ static enum status order_rows(const struct body_input *input, struct body *body,
                                 .block_count = body->block_count,
                                 .first_row = *first_row,
                                 .least_sharing = input->dim};
-    status = pairs_order(rows, NULL, error);
 done:
     return status;
 }
@@ -180,8 +179,7 @@ enum status body_build(const struct body_input *input, struct body *body, struct
     struct pairs_input pairs = {.dim = input->dim,
                                 .width = input->dim,
                                 .value = input->dphi,
-                                .passes = input->hat_node != NULL ? 2 : 1,
-                                .single = input->single};
+                                .passes = input->hat_node != NULL ? 2 : 1};
     int64_t *first_row = NULL;
     *body = (struct body){.dim = input->dim,
                           .node_count = input->node_count,
@@ -191,7 +189,6 @@ enum status body_build(const struct body_input *input, struct body *body, struct
                           .idx = input->idx,
                           .dphi = input->dphi,
                           .conforming = input->conforming != NULL,
-                          .single = input->single,
                           .kernels = force_kernels_select(NULL, input->dim),
                           .averaged = input->hat_node != NULL};
     if (body->point_count < 1 || body->point_count > INT32_MAX / (body->dim + 1)) {
@@ -215,6 +212,10 @@ enum status body_build(const struct body_input *input, struct body *body, struct
         TRY(pairs_build(&pairs, &body->gradients, error));
     } else {
         TRY(conforming_build(input->conforming, body, &body->cells, error));
+    }
+    int threads = body->bound_parts.threads;
+    TRY(body_make_scratch(body, threads > body->threads ? threads : body->threads, error));
+    if (body->conforming) {
         TRY(check_smoothing(body, error));
     }
 done:
@@ -238,9 +239,9 @@ void body_free(struct body *body)
     pairs_free(&body->gradients);
     conforming_free(&body->cells);
     nodal_volumes_free(&body->volumes);
-    void *arrays[] = {body->order,  body->weight,       body->materials,  body->material,
-                      body->blocks, body->node_order,   body->node_place, body->u,
-                      body->F,      body->bulk_modulus, body->bound,      body->J};
+    void *arrays[] = {body->order,      body->weight,     body->materials,   body->material, body->blocks,
+                      body->node_order, body->node_place, body->u,           body->F,        body->bound,
+                      body->J,          body->scratch,    body->bulk_modulus};
     for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) {
         free(arrays[i]);
     }

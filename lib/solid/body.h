@@ -33,7 +33,6 @@ struct body_input {
     const double *hat_value; /* point_count * (dim + 1): their hat functions at the point, sum 1 */
     const struct conforming_input
         *conforming; /* the points are cells, dphi smoothed over them; NULL: any points */
-    bool single;     /* keep the table in single precision; sums are double always */
 };
 
 /* Points are worked on so many at a time; weight, material, J and F have as many entries more, which are
@@ -81,7 +80,7 @@ struct body {
     int32_t *material; /* point_count */
     int64_t block_count;
     struct block *blocks;
-    bool conforming, single;
+    bool conforming;
     struct pairs gradients;  /* of the shape functions at the points, in the same blocks; or */
     struct conforming cells; /* instead */
     double *u;               /* node_count * stride: displacements in the body's order */
@@ -92,8 +91,10 @@ struct body {
     struct nodal_volumes volumes;
     const struct force_kernels *kernels; /* for this processor */
     int threads;                         /* worth using for so many pairs */
-    struct chunks bound_parts;           /* of the blocks, by each of which body_diagonal sums; */
-    double *bound;                       /* node_count for each but the first: scratch */
+    double *scratch;                     /* of each thread so many doubles */
+    int64_t scratch_size;
+    struct chunks bound_parts; /* of the blocks, by each of which body_diagonal sums; */
+    double *bound;             /* node_count for each but the first: scratch */
 };
 
 /* Lay out a body; but for the table the input arrays are copied. STATUS_INPUT for a point without neighbours

@@ -197,8 +197,7 @@ static enum status build_nodes(const struct conforming_input *input, const struc
                                 .phi = input->node_phi,
                                 .place = body->node_place,
                                 .corner_count = body->point_count * corners,
-                                .row_of_corner = node_of_corner,
-                                .single = body->single};
+                                .row_of_corner = node_of_corner};
     status = means_build(&nodes, means, error);
 done:
     free(node_of_corner);
@@ -229,8 +228,7 @@ static enum status build_faces(const struct conforming_input *input, const struc
                                 .phi = rows.phi,
                                 .place = body->node_place,
                                 .corner_count = cell_count * (dim + 1),
-                                .row_of_corner = face_of_corner,
-                                .single = body->single};
+                                .row_of_corner = face_of_corner};
     status = means_build(&faces, means, error);
 done:
     free(rows.ptr);

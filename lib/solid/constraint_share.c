@@ -1,9 +1,8 @@
 /* The forces of conditions that depend on each other. */
+#include "base/dense.h"
 #include "base/memory.h"
 #include "solid/constraint.h"
 
-#include <gsl/gsl_errno.h>
-#include <gsl/gsl_linalg.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -52,48 +51,40 @@ enum status constraint_share_out(const struct constraint *constraint, double *fo
 {
     enum status status = STATUS_OK;
     int64_t dropped = constraint->factor.dropped, count = dropped > 0 ? constraint->rows->count : 0;
-    double *null = NULL, *scale = NULL;
-    gsl_matrix *gram = NULL;
-    gsl_vector *amount = NULL;
+    double *null = NULL, *scale = NULL, *gram = NULL, *amount = NULL;
     if (dropped == 0) {
         return STATUS_OK;
     }
-    gsl_error_handler_t *handler = gsl_set_error_handler_off();
     TRY(NEW_ARRAY(&null, count * dropped, error));
     TRY(NEW_ARRAY(&scale, count, error));
     TRY(null_rows(constraint, null, error));
     diagonal(constraint, scale);
-    gram = gsl_matrix_calloc((size_t)dropped, (size_t)dropped);
-    amount = gsl_vector_calloc((size_t)dropped);
-    if (gram == NULL || amount == NULL) {
-        status = fail_memory(error, "constraints");
-        goto done;
-    }
+    TRY(NEW_ARRAY(&gram, dropped * dropped, error));
+    TRY(NEW_ARRAY(&amount, dropped, error));
     for (int64_t i = 0; i < dropped; i++) {
         for (int64_t r = 0; r < count; r++) {
             double part = scale[r] * null[i * count + r];
-            *gsl_vector_ptr(amount, (size_t)i) += part * force[r];
+            amount[i] += part * force[r];
             for (int64_t k = 0; k <= i && fpclassify(part) != FP_ZERO; k++) {
-                *gsl_matrix_ptr(gram, (size_t)i, (size_t)k) += part * null[k * count + r];
+                gram[i * dropped + k] += part * null[k * count + r];
             }
         }
     }
     /* Each combination has a row of its own: positive definite. */
-    if (gsl_linalg_cholesky_decomp1(gram) != GSL_SUCCESS ||
-        gsl_linalg_cholesky_svx(gram, amount) != GSL_SUCCESS) {
+    if (!dense_factorise(dropped, gram)) {
         status = fail(error, STATUS_VERDICT, "constraints: the shares of dependent conditions are singular");
         goto done;
     }
+    dense_solve(dropped, gram, amount);
     for (int64_t i = 0; i < dropped; i++) {
         for (int64_t r = 0; r < count; r++) {
-            force[r] -= gsl_vector_get(amount, (size_t)i) * null[i * count + r];
+            force[r] -= amount[i] * null[i * count + r];
         }
     }
 done:
-    gsl_set_error_handler(handler);
     free(null);
     free(scale);
-    gsl_matrix_free(gram);
-    gsl_vector_free(amount);
+    free(gram);
+    free(amount);
     return status;
 }

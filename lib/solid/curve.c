@@ -2,7 +2,6 @@
 
 #include "base/memory.h"
 
-#include <gsl/gsl_errno.h>
 #include <math.h>
 #include <stdlib.h>
 
@@ -39,18 +38,16 @@ static enum status check_points(int64_t count, const double *points, double end,
     return STATUS_OK;
 }
 
-/* The caller has checked the points, so only memory can fail. GSL would abort the program on that. */
+/* The caller has checked the points, so only memory can fail: with GSL's default error handler that
+ * ends the program, see base/status.h. */
 static gsl_interp *make_spline(const struct load_curve *curve)
 {
     const gsl_interp_type *type = curve->count > 2 ? gsl_interp_steffen : gsl_interp_linear;
-    gsl_error_handler_t *handler = gsl_set_error_handler_off();
     gsl_interp *spline = gsl_interp_alloc(type, (size_t)curve->count);
-    if (spline != NULL &&
-        gsl_interp_init(spline, curve->time, curve->factor, (size_t)curve->count) != GSL_SUCCESS) {
+    if (spline != NULL && gsl_interp_init(spline, curve->time, curve->factor, (size_t)curve->count) != 0) {
         gsl_interp_free(spline);
         spline = NULL;
     }
-    gsl_set_error_handler(handler);
     return spline;
 }
 

@@ -1,8 +1,11 @@
 /* The force loop: deformation gradients by gathering, stresses, forces by scattering; see body.h. */
+#include "base/memory.h"
 #include "solid/nodal_volume.h"
 #include "solid/stress.h"
 
 #include <math.h>
+#include <omp.h>
+#include <stdlib.h>
 #include <string.h>
 
 /* A law of ln J knows no volume ratio below zero: where it is the cell's own, such a cell counts as inverted.
@@ -70,9 +73,26 @@ static struct block_view state_of(struct body *body, int64_t b, struct block_sta
     return (struct block_view){state->F[0], state->J, PAIRS_MAX_ROWS};
 }
 
+/* The calling thread's part of the work arrays. */
+static double *scratch_of_thread(const struct body *body)
+{
+    return body->scratch + omp_get_thread_num() * body->scratch_size;
+}
+
+enum status body_make_scratch(struct body *body, int threads, struct error *error)
+{
+    int64_t own = pairs_scratch(&body->gradients), faces = pairs_scratch(&body->cells.faces.pairs),
+            nodes = pairs_scratch(&body->cells.nodes.pairs);
+    free(body->scratch);
+    own = own > faces ? own : faces;
+    own = own > nodes ? own : nodes;
+    body->scratch_size = (own + 7) / 8 * 8; /* whole cache lines */
+    return NEW_ARRAY(&body->scratch, threads * body->scratch_size, error);
+}
+
 void body_visit(struct body *body, int64_t first, int64_t last, body_visitor *visit, void *context)
 {
-    double scratch[PAIRS_SCRATCH] __attribute__((aligned(64))), F[9];
+    double *scratch = scratch_of_thread(body), F[9];
     struct block_state state;
     for (int64_t b = first; b < last; b++) {
         struct block_view view = state_of(body, b, &state, scratch);
@@ -192,7 +212,7 @@ static void evaluate(struct body *body, const double *u, double *force)
 {
 #pragma omp parallel num_threads(body->threads)
     {
-        double scratch[PAIRS_SCRATCH] __attribute__((aligned(64)));
+        double *scratch = scratch_of_thread(body);
         set_state(body, u, scratch);
         if (body->conforming) {
             force_cells(body);
@@ -247,7 +267,7 @@ double body_energy(struct body *body, const double *u)
     double energy = 0.0;
 #pragma omp parallel num_threads(body->threads)
     {
-        double scratch[PAIRS_SCRATCH] __attribute__((aligned(64)));
+        double *scratch = scratch_of_thread(body);
         set_state(body, u, scratch);
     }
 #pragma omp parallel for schedule(static) num_threads(body->threads)

@@ -1,9 +1,9 @@
 /* The stiffness along the fields: the body's, measured, and the contacts', followed. */
 #include "solid/inertia_private.h"
 
+#include "base/dense.h"
 #include "base/memory.h"
 
-#include <gsl/gsl_linalg.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -23,11 +23,10 @@ static const double strain = 1e-6;       /* of the differences that stiffness is
 /* matrix[n * n] := its inverse; false when it is not positive definite. */
 static bool invert(int64_t n, double *matrix)
 {
-    gsl_matrix_view view = gsl_matrix_view_array(matrix, (size_t)n, (size_t)n);
-    gsl_error_handler_t *handler = gsl_set_error_handler_off();
-    bool good = gsl_linalg_cholesky_decomp1(&view.matrix) == GSL_SUCCESS &&
-                gsl_linalg_cholesky_invert(&view.matrix) == GSL_SUCCESS;
-    gsl_set_error_handler(handler);
+    bool good = dense_factorise(n, matrix);
+    if (good) {
+        dense_invert(n, matrix);
+    }
     return good;
 }
 

@@ -20,7 +20,7 @@ struct block_view {
     int64_t apart;
 };
 
-/* Each works on the block of that number. scratch: PAIRS_SCRATCH. */
+/* Each works on the block of that number. scratch: pairs_scratch(). */
 struct force_kernels {
     const char *name;
     /* For nodes first .. last - 1: displacements into the body's order; and force, in the caller's, as the
@@ -48,6 +48,9 @@ struct force_kernels {
 
 /* Sets by name, plain, avx2, avx512: NULL where the processor lacks it; the best one for NULL. */
 const struct force_kernels *force_kernels_select(const char *name, int dim);
+
+/* Work arrays for so many threads; body_build() makes those for the threads it chooses. */
+MUST_CHECK enum status body_make_scratch(struct body *body, int threads, struct error *error);
 
 /* What body_diagonal needs. */
 MUST_CHECK enum status body_make_bounds(struct body *body, struct error *error);

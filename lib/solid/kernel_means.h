@@ -58,25 +58,16 @@ KERNEL_INLINE void scatter_means(struct means *means, int64_t b, struct reading 
     sum_lanes(&means->pairs, b, how.dim, lane_forces);
 }
 
-/* Each for the table's precision. */
 KERNEL_INLINE void kernel_gather_means(struct means *means, int64_t b, int dim, const double *u,
                                        double *scratch)
 {
     localise(&means->pairs, b, dim, u, scratch);
-    if (means->pairs.value != NULL) {
-        gather_means(means, b, (struct reading){dim, 1, false}, scratch);
-    } else {
-        gather_means(means, b, (struct reading){dim, 1, true}, scratch);
-    }
+    gather_means(means, b, (struct reading){dim, 1}, scratch);
 }
 
 KERNEL_INLINE void kernel_scatter_means(struct means *means, int64_t b, int dim, double *scratch)
 {
-    if (means->pairs.value != NULL) {
-        scatter_means(means, b, (struct reading){dim, 1, false}, scratch);
-    } else {
-        scatter_means(means, b, (struct reading){dim, 1, true}, scratch);
-    }
+    scatter_means(means, b, (struct reading){dim, 1}, scratch);
 }
 
 #endif

@@ -1,8 +1,7 @@
 /* Kernels over pairs of row and node; private to lib/solid.
  *
  * For each entry of a group they load a displacement or the forces on a node, or four, and the values of four
- * rows, and multiply: the tables decide the speed. Each is compiled for tables in double and in single
- * precision; sums are double always. */
+ * rows, and multiply: the tables decide the speed. */
 #ifndef SOLID_KERNEL_PAIRS_H
 #define SOLID_KERNEL_PAIRS_H
 
@@ -12,14 +11,12 @@
 /* How a table is read: constants for the compiler. */
 struct reading {
     int dim, width;
-    bool single; /* its precision */
 };
 
 /* Where a kernel is in a table. */
 struct cursor {
     const uint16_t *offset;
     const double *value;
-    const float *single_value;
     bool prefetches;
     const char *ahead; /* to prefetch now */
     int64_t step;      /* bytes of it at each entry */
@@ -28,7 +25,7 @@ struct cursor {
 /* Bytes of an entry. */
 KERNEL_INLINE int64_t entry_bytes(struct reading how)
 {
-    return how.width * PAIRS_GROUP * (how.single ? 4 : 8);
+    return how.width * PAIRS_GROUP * (int64_t)sizeof(double);
 }
 
 /* At the beginning of a block. Of a table that does not stay in cache, what the next block has is prefetched
@@ -42,15 +39,10 @@ KERNEL_INLINE struct cursor start_block(const struct pairs *pairs, int64_t b, st
     int64_t at = first->first_entry * how.width * PAIRS_GROUP;
     int64_t share = (next->first_entry - first->first_entry) * entry_bytes(how) * 3 / 4;
     struct cursor cursor = {.offset = pairs->offset + first->first_offset,
+                            .value = pairs->value + at,
                             .prefetches = pairs->large,
+                            .ahead = (const char *)pairs->value,
                             .step = entry_bytes(how) * 3 / 4 / (pairs->passes == 1 ? 2 : 1)};
-    if (how.single) {
-        cursor.single_value = pairs->single_value + at;
-        cursor.ahead = (const char *)pairs->single_value;
-    } else {
-        cursor.value = pairs->value + at;
-        cursor.ahead = (const char *)pairs->value;
-    }
     cursor.ahead += next->first_entry * entry_bytes(how) + share / 3;
     if (scatters && pairs->passes == 1) {
         cursor.ahead += share / 2;
@@ -58,27 +50,11 @@ KERNEL_INLINE struct cursor start_block(const struct pairs *pairs, int64_t b, st
     return cursor;
 }
 
-/* Value k of the rows of an entry. The conversion is spelt out: gcc 12 makes one instruction of it, more of
- * __builtin_convertvector. */
-KERNEL_INLINE void read_value(const struct cursor *cursor, struct reading how, int k, quad4 *value)
-{
-    if (how.single) {
-        const float *v = cursor->single_value + k * PAIRS_GROUP;
-        *value = (quad4){(double)v[0], (double)v[1], (double)v[2], (double)v[3]};
-    } else {
-        LOAD(*value, cursor->value + k * PAIRS_GROUP);
-    }
-}
-
 /* Go to the next entry, this one having so many offsets. */
 KERNEL_INLINE void advance(struct cursor *cursor, struct reading how, int offsets)
 {
     cursor->offset += offsets;
-    if (how.single) {
-        cursor->single_value += how.width * PAIRS_GROUP;
-    } else {
-        cursor->value += how.width * PAIRS_GROUP;
-    }
+    cursor->value += how.width * PAIRS_GROUP;
     if (cursor->prefetches) {
         prefetch(cursor->ahead, entry_bytes(how) * 3 / 4);
         cursor->ahead += cursor->step;
@@ -92,7 +68,7 @@ KERNEL_INLINE void add_shared(struct cursor *cursor, struct reading how, const d
     const double *v = u + cursor->offset[0];
     for (int k = 0; k < how.width; k++) {
         quad4 value;
-        read_value(cursor, how, k, &value);
+        LOAD(value, cursor->value + k * PAIRS_GROUP);
         for (int a = 0; a < how.dim; a++) {
             sum[a * how.width + k] += v[a] * value;
         }
@@ -109,7 +85,7 @@ KERNEL_INLINE void add_own(struct cursor *cursor, struct reading how, const doub
     load_components(from, how.dim, x);
     for (int k = 0; k < how.width; k++) {
         quad4 value;
-        read_value(cursor, how, k, &value);
+        LOAD(value, cursor->value + k * PAIRS_GROUP);
         for (int a = 0; a < how.dim; a++) {
             sum[a * how.width + k] += x[a] * value;
         }
@@ -146,7 +122,7 @@ KERNEL_INLINE void multiply(const struct cursor *cursor, struct reading how, con
 {
     for (int k = 0; k < how.width; k++) {
         quad4 value;
-        read_value(cursor, how, k, &value);
+        LOAD(value, cursor->value + k * PAIRS_GROUP);
         for (int a = 0; a < how.dim; a++) {
             x[a] += factor[a * how.width + k] * value;
         }
@@ -302,26 +278,17 @@ KERNEL_INLINE void scatter_gradients(struct pairs *pairs, int64_t b, struct read
     sum_lanes(pairs, b, how.dim, lane_forces);
 }
 
-/* Each for the table's precision. */
 KERNEL_INLINE void kernel_gather(const struct pairs *pairs, int64_t b, int dim, const double *u, block_rows F,
                                  double *scratch)
 {
     localise(pairs, b, dim, u, scratch);
-    if (pairs->value != NULL) {
-        gather_gradients(pairs, b, (struct reading){dim, dim, false}, scratch, F);
-    } else {
-        gather_gradients(pairs, b, (struct reading){dim, dim, true}, scratch, F);
-    }
+    gather_gradients(pairs, b, (struct reading){dim, dim}, scratch, F);
 }
 
 KERNEL_INLINE void kernel_scatter(struct pairs *pairs, int64_t b, int dim, const block_rows P,
                                   double *scratch)
 {
-    if (pairs->value != NULL) {
-        scatter_gradients(pairs, b, (struct reading){dim, dim, false}, P, scratch);
-    } else {
-        scatter_gradients(pairs, b, (struct reading){dim, dim, true}, P, scratch);
-    }
+    scatter_gradients(pairs, b, (struct reading){dim, dim}, P, scratch);
 }
 
 /* Displacements in the body's order. */

@@ -20,7 +20,7 @@ static void order_free(struct mean_order *order)
     free(order->first_row);
 }
 
-/* Blocks of means, in groups that share most of their nodes. All groups but the last are full. */
+/* Blocks of means. All groups but the last are full. */
 static enum status order_means(const struct means_input *input, struct mean_order *order, struct error *error)
 {
     enum status status;
@@ -44,7 +44,6 @@ static enum status order_means(const struct means_input *input, struct mean_orde
                                       .block_count = blocks,
                                       .first_row = order->first_row,
                                       .least_sharing = 2};
-    status = pairs_order(&order->rows, order->corners, error);
 done:
     return status;
 }
@@ -99,8 +98,7 @@ enum status means_build(const struct means_input *input, struct means *means, st
                                 .width = 1,
                                 .value = input->phi,
                                 .place = input->place,
-                                .passes = 2,
-                                .single = input->single};
+                                .passes = 2};
     TRY(pairs_build(&pairs, &means->pairs, error));
     TRY(NEW_ARRAY(&means->value, means->pairs.group_count * PAIRS_GROUP * PAIRS_STRIDE(input->dim), error));
     TRY(NEW_ARRAY(&means->corner_force, (input->corner_count + 1) * PAIRS_STRIDE(input->dim), error));

@@ -27,7 +27,6 @@ struct means_input {
     const int32_t *place; /* node_count: the number by which each of the caller's nodes goes in the body */
     int64_t corner_count;
     const int32_t *row_of_corner; /* corner_count: the caller's row that each corner looks at */
-    bool single;                  /* keep the table in single precision */
 };
 
 /* Lay out a table; the arrays are copied. */

@@ -63,11 +63,7 @@ static void fill_values(const struct pairs_input *input, struct pairs *pairs, in
             for (int r = 0; r < PAIRS_GROUP; r++, at++) {
                 int64_t pair = entries->entry[e].pair[r];
                 double value = pair < 0 ? 0.0 : input->value[pair * input->width + k];
-                if (input->single) {
-                    pairs->single_value[at] = (float)value;
-                } else {
-                    pairs->value[at] = value;
-                }
+                pairs->value[at] = value;
             }
         }
     }
@@ -130,11 +126,7 @@ static enum status fill(const struct pairs_input *input, struct pairs *pairs, st
     int64_t values = pairs->entry_count * input->width * PAIRS_GROUP;
     TRY(NEW_ARRAY(&numbering.local_of, pairs->node_count, error));
     TRY(NEW_ARRAY(&pairs->offset, pairs->offset_count, error));
-    if (input->single) {
-        TRY(NEW_ARRAY(&pairs->single_value, values, error));
-    } else {
-        TRY(NEW_ARRAY(&pairs->value, values, error));
-    }
+    TRY(NEW_ARRAY(&pairs->value, values, error));
     memset(numbering.local_of, -1, (size_t)pairs->node_count * sizeof *numbering.local_of);
     for (int64_t b = 0; b < pairs->block_count; b++) {
         struct pair_block *block = &pairs->blocks[b];
@@ -185,18 +177,26 @@ void pairs_clear_forces(struct pairs *pairs, const struct pair_patch *patch)
            (size_t)(patch->force_count * stride) * sizeof *pairs->patch_force);
 }
 
+int64_t pairs_scratch(const struct pairs *pairs)
+{
+    int64_t most = 0;
+    for (int64_t b = 0; b < pairs->block_count; b++) {
+        most = pairs->blocks[b].node_count > most ? pairs->blocks[b].node_count : most;
+    }
+    return most * PAIRS_LANES(pairs->dim);
+}
+
 int64_t pairs_bytes(const struct pairs *pairs)
 {
-    int64_t value = pairs->value == NULL ? sizeof *pairs->single_value : sizeof *pairs->value;
-    return pairs->entry_count * pairs->width * PAIRS_GROUP * value +
+    return pairs->entry_count * pairs->width * PAIRS_GROUP * (int64_t)sizeof *pairs->value +
            pairs->offset_count * (int64_t)sizeof *pairs->offset;
 }
 
 void pairs_free(struct pairs *pairs)
 {
-    void *arrays[] = {pairs->groups,      pairs->offset,     pairs->value,   pairs->single_value,
-                      pairs->blocks,      pairs->block_node, pairs->patches, pairs->patch_force,
-                      pairs->block_place, pairs->sum,        pairs->sum_ptr};
+    void *arrays[] = {pairs->groups,     pairs->offset,  pairs->value,       pairs->blocks,
+                      pairs->block_node, pairs->patches, pairs->patch_force, pairs->block_place,
+                      pairs->sum,        pairs->sum_ptr};
     for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) {
         free(arrays[i]);
     }

@@ -32,10 +32,8 @@
 /* The most rows of a block. */
 #define PAIRS_MAX_ROWS 128
 
-/* The most nodes a block may hold, and the doubles that a thread needs on its stack for them: their
- * displacements, or their forces in each lane and behind them. */
+/* The most nodes a block may hold. */
 #define PAIRS_MAX_NODES 8192
-#define PAIRS_SCRATCH (PAIRS_MAX_NODES * PAIRS_LANES(3))
 
 struct pair_block {
     int64_t first_row, row_count;
@@ -62,11 +60,10 @@ struct pairs {
     int passes;                /* over the table in an evaluation, see pairs_input */
     bool large;                /* does not stay in the second cache from one evaluation to the next */
     struct pair_group *groups; /* group_count, and one more where the entries end */
-    uint16_t *offset;    /* where the displacement of a node begins in those of the block: one for a shared
-                            entry, PAIRS_GROUP for another */
-    double *value;       /* entry_count * width * PAIRS_GROUP: first values of an entry's rows, then their
-                            second ..; or NULL and */
-    float *single_value; /* the same in single precision */
+    uint16_t *offset; /* where the displacement of a node begins in those of the block: one for a shared
+                         entry, PAIRS_GROUP for another */
+    double *value;    /* entry_count * width * PAIRS_GROUP: first values of an entry's rows, then their
+                         second .. */
     int64_t block_count;
     struct pair_block *blocks;
     int64_t block_node_count;
@@ -96,14 +93,7 @@ struct pairs_input {
     const double *value;  /* the caller's values */
     const int32_t *place; /* node_count: the number by which each of the caller's nodes goes here */
     int passes;           /* 1: a block is scattered as soon as it is gathered; 2: all blocks later */
-    bool single;          /* keep the values in single precision */
 };
-
-/* Order the rows of each block so that those of a group share most of their nodes, and groups so that those
- * of as many entries, and before that of as many corners (means.h; of each of the caller's rows, else NULL),
- * follow each other: loops that go the same way many times in a row are predicted. */
-MUST_CHECK enum status pairs_order(const struct pairs_rows *rows, const int32_t *corners,
-                                   struct error *error);
 
 /* Lay out a table; the arrays are copied. STATUS_INPUT when a block has too many nodes. */
 MUST_CHECK enum status pairs_build(const struct pairs_input *input, struct pairs *pairs, struct error *error);
@@ -111,6 +101,10 @@ void pairs_free(struct pairs *pairs);
 
 /* Before the blocks of a patch scatter: no forces yet. */
 void pairs_clear_forces(struct pairs *pairs, const struct pair_patch *patch);
+
+/* Doubles that a thread needs for a block: its nodes' displacements, or their forces in each lane and behind
+ * them. */
+int64_t pairs_scratch(const struct pairs *pairs);
 
 /* Bytes of the table, which a pass reads. */
 int64_t pairs_bytes(const struct pairs *pairs);

@@ -5,7 +5,7 @@
 #include "solid/kernel.h"
 
 /* Visit the points of blocks first .. last - 1 with F and J at the last evaluation. Where these are not kept
- * they are gathered anew, into the thread's stack; a block's least determinant is noted again, as it was. */
+ * they are gathered anew; a block's least determinant is noted again, as it was. */
 typedef void body_visitor(const struct body *body, int64_t point, const double F[9], double J, void *context);
 void body_visit(struct body *body, int64_t first, int64_t last, body_visitor *visit, void *context);
 

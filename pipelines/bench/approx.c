@@ -33,7 +33,6 @@ static void bench(struct problem *problem, const char *kernel, enum status (*run
     struct bench_row row = {.kernel = kernel,
                             .size = size,
                             .threads = threads,
-                            .precision = "double",
                             .pairs = pairs,
                             .bytes = pairs * (4.0 + 8.0 * reals),
                             .rate = (double)problem->point_count,

@@ -127,9 +127,9 @@ void bench_print(const struct bench_row *row, const struct bench_times *times)
     double units = row->pairs > 0.0 ? row->pairs : row->bytes, least = times->seconds[0];
     double read = bench_plain_read(times->clock, row->bytes, row->threads);
     cpu_model(cpu, sizeof cpu);
-    printf("%s\t%s\t%d\t%s\t%.4g\t%.4g\t%.4g\t%.3f\t%.4g\t%.4g\t%.4g\t%.4g\t%s\t", row->kernel, row->size,
-           row->threads, row->precision, 1e9 * least / units, row->bytes / units, 1e9 * read / units,
-           least / read, 1e9 * bench_percentile(times, 10) / units, 1e9 * bench_percentile(times, 50) / units,
+    printf("%s\t%s\t%d\t%.4g\t%.4g\t%.4g\t%.3f\t%.4g\t%.4g\t%.4g\t%.4g\t%s\t", row->kernel, row->size,
+           row->threads, 1e9 * least / units, row->bytes / units, 1e9 * read / units, least / read,
+           1e9 * bench_percentile(times, 10) / units, 1e9 * bench_percentile(times, 50) / units,
            1e9 * bench_percentile(times, 90) / units, row->rate / least, row->unit);
     if (row->memory_per_node > 0.0) {
         printf("%.0f", row->memory_per_node);

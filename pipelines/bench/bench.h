@@ -24,7 +24,6 @@ struct bench_times {
 struct bench_row {
     const char *kernel, *size;
     int threads;
-    const char *precision;  /* "double", "float", "-" */
     double pairs;           /* of one repeat; 0: the kernel has none, and the figures are per byte */
     double bytes;           /* read and written by one repeat */
     double rate;            /* of one repeat: points, or bytes / 1e6 */

@@ -108,7 +108,7 @@ enum status problem_make(struct problem *problem, int dim, int64_t per_axis, dou
                                     problem->cloud.cell_count, problem->cloud.cells};
     problem->options.radius = factor * 0.1 / (double)(per_axis - 1);
     TRY(NEW_ARRAY(&problem->radius, problem->cells.node_count, error));
-    TRY(support_radii(&problem->options, problem->cells.node_count, NULL, NULL, problem->radius, error));
+    TRY(support_radii(&problem->options, problem->cells.node_count, NULL, problem->radius, error));
 done:
     return status;
 }

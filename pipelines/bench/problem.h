@@ -51,8 +51,8 @@ MUST_CHECK enum status problem_nodes(struct problem *problem, struct error *erro
 typedef void bench_function(struct problem *problem, double seconds);
 void problem_sweep(bench_function *points, bench_function *cells, bench_function *growth, double seconds);
 
-/* The cube with a million points in cells: its table leaves caches of hundreds of megabytes in single
- * precision, too. */
+/* The cube with a million points in cells: its table does not fit caches of hundreds of
+ * megabytes. */
 void problem_large(bench_function *points, double seconds);
 
 #endif

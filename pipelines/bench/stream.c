@@ -111,7 +111,6 @@ static void bench(const char *kernel, bool text, bool write, bool pipe, int64_t 
     struct bench_row row = {.kernel = kernel,
                             .size = size,
                             .threads = 1,
-                            .precision = "double",
                             .pairs = (double)rows,
                             .bytes = (double)bytes,
                             .rate = (double)bytes / 1e6,

@@ -1,5 +1,5 @@
 /* How the force loop computes: the same bits from any number of threads, the same forces whatever the
- * instructions, tables in single precision, hats, the bound of the stiffness, and inversion told where it is.
+ * instructions, hats, the bound of the stiffness, and inversion told where it is.
  */
 #include "body_setup.h"
 
@@ -20,6 +20,8 @@ static void check_threads(const struct sample *sample, const struct setup *setup
         omp_set_num_threads(threads);
         struct body body = make_body(sample, setup);
         double *force = sample_array(count, sizeof *force);
+        struct error error;
+        GOOD(body_make_scratch(&body, threads, &error));
         body.threads = threads; /* also where so many would not pay */
         for (int call = 0; call < 2; call++) {
             (void)body_force(&body, u, force);
@@ -76,36 +78,6 @@ static void instructions(void **state)
 {
     (void)state;
     for_all(check_instructions);
-}
-
-/* Tables in single precision: forces as in double to 1e-5. */
-static void check_single(const struct sample *sample, const struct setup *setup, struct random *random)
-{
-    int64_t count = sample->cloud.node_count * sample->dim;
-    struct setup narrow = *setup;
-    narrow.single = true;
-    struct body body = make_body(sample, setup), narrowed = make_body(sample, &narrow);
-    double *force = sample_array(count, sizeof *force), *expected = sample_array(count, sizeof *expected);
-    double *u = deformed_field(sample, &body, expected, random), most = 0.0;
-    (void)body_force(&body, u, expected);
-    (void)body_force(&narrowed, u, force);
-    for (int64_t k = 0; k < count; k++) {
-        NEAR_TO(force[k], expected[k], 1e-5 * largest(expected, count));
-        most = fmax(most, fabs(force[k] - expected[k]));
-    }
-    assert_true(most > 0.0); /* it is another table */
-    NEAR_TO(body_energy(&narrowed, u), body_energy(&body, u), 1e-5 * body_energy(&body, u));
-    free(u);
-    free(force);
-    free(expected);
-    body_free(&body);
-    body_free(&narrowed);
-}
-
-static void single_precision(void **state)
-{
-    (void)state;
-    for_all(check_single);
 }
 
 /* Averaging changes nothing where the bulk modulus is at most twice the shear modulus and U is a square. */
@@ -310,9 +282,9 @@ static void inversion(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(threads),          cmocka_unit_test(instructions),  cmocka_unit_test(compressible),
-        cmocka_unit_test(single_precision), cmocka_unit_test(nodal_volumes), cmocka_unit_test(diagonal),
-        cmocka_unit_test(inversion),        cmocka_unit_test(empty_volumes),
+        cmocka_unit_test(threads),       cmocka_unit_test(instructions), cmocka_unit_test(compressible),
+        cmocka_unit_test(nodal_volumes), cmocka_unit_test(diagonal),     cmocka_unit_test(inversion),
+        cmocka_unit_test(empty_volumes),
     };
     return cmocka_run_group_tests(tests, make_samples, free_samples);
 }

@@ -14,8 +14,7 @@ enum { MATERIALS = 3 };
 /* How a body is made from a sample. */
 struct setup {
     bool averaged;
-    bool faces; /* conforming cells: by means over faces, not by the table of gradients */
-    bool single;
+    bool faces;      /* conforming cells: by means over faces, not by the table of gradients */
     int model_count; /* points take the models in turn, by their place */
     struct material material[MATERIALS];
 };
@@ -63,7 +62,6 @@ static inline struct body make_body(const struct sample *sample, const struct se
                                .point_count = sample->point_count,
                                .node_x = sample->cloud.x,
                                .conforming = setup->faces ? &conforming : NULL,
-                               .single = setup->single,
                                .x = sample->x,
                                .weight = sample->weight,
                                .ptr = sample->ptr,

@@ -327,7 +327,7 @@ static void instruction_sets(void **state)
                                                   .count = table.lists.ptr[p + 1] - table.lists.ptr[p]};
                     size_t values = (size_t)support.count * sizeof(double), gradients = values * (size_t)dim;
                     bool served[4];
-                    double steepest[4];
+                    double largest[4];
                     assert_true(support.count <= MOST);
                     for (int s = 0; s < 3; s++) {
                         const struct mls_kernels *kernels = mls_kernels_named(sets[s]);
@@ -337,14 +337,14 @@ static void instruction_sets(void **state)
                         mls_kernel *kernel =
                             (b == BASIS_LINEAR ? kernels->linear : kernels->quadratic)[dim - 2];
                         struct mls_result both = {.phi = phi[s], .dphi = dphi[s]};
-                        struct mls_result judged = {.steepest = &steepest[s]};
+                        struct mls_result judged = {.largest = &largest[s]};
                         served[s] = kernel(&options.mls, &support, scratch, STRIDE, &both);
                         assert_int_equal(kernel(&options.mls, &support, scratch, STRIDE, &judged), served[s]);
                         assert_int_equal(served[s], served[0]);
                         if (served[s]) {
                             assert_memory_equal(phi[s], phi[0], values);
                             assert_memory_equal(dphi[s], dphi[0], gradients);
-                            assert_true(steepest[s] == steepest[0]);
+                            assert_true(largest[s] == largest[0]);
                         }
                     }
                     decided += served[0];
@@ -367,7 +367,7 @@ static void instruction_sets(void **state)
                         longest = fmax(longest, sqrt(sum));
                     }
                     if (served[0]) {
-                        at_most(fabs(steepest[0] / longest - 1.0), 1e-10, "steepest gradient");
+                        at_most(fabs(largest[0] / longest - 1.0), 1e-10, "largest gradient");
                     }
                 }
                 table_free(&table);

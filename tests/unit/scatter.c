@@ -22,8 +22,11 @@ static struct scatter table(double *row, int64_t count, double (*field)(const do
             row[4 * i + 2 + v] = field(row + 4 * i, v);
         }
     }
-    return (struct scatter){
+    struct scatter scatter = {
         .dim = 2, .value_count = 2, .count = count, .row_size = 4, .row = row, .unit = 1e-3};
+    struct error error;
+    GOOD(scatter_build(&scatter, &error));
+    return scatter;
 }
 
 static double worst(const struct scatter *scatter, double (*field)(const double *x, int v))
@@ -48,6 +51,7 @@ static void few_points_give_linear_fields(void **state)
     for (int64_t count = 3; count <= 6; count++) {
         struct scatter scatter = table(row, count, linear);
         AT_MOST(worst(&scatter, linear), 1e-12);
+        scatter_free(&scatter);
     }
 }
 
@@ -61,6 +65,7 @@ static void enough_points_give_quadratic_fields(void **state)
     }
     struct scatter scatter = table(row, 25, quadratic);
     AT_MOST(worst(&scatter, quadratic), 1e-11);
+    scatter_free(&scatter);
 }
 
 /* On a line nothing is known of what changes across it. */
@@ -77,6 +82,7 @@ static void a_line_is_extended_across(void **state)
     GOOD(scatter_evaluate(&scatter, x, value, &distance, &spacing, &error));
     AT_MOST(fabs(value[0] * 1e3 - quadratic(on, 0)), 1e-12);
     AT_MOST(fabs(value[1] * 1e3 - quadratic(on, 1)), 1e-12);
+    scatter_free(&scatter);
 }
 
 static void one_point_is_a_constant(void **state)
@@ -88,6 +94,31 @@ static void one_point_is_a_constant(void **state)
     double x[2] = {1e-3, 0}, value[2], distance, spacing;
     GOOD(scatter_evaluate(&scatter, x, value, &distance, &spacing, &error));
     AT_MOST(fabs(value[0] * 1e3 - linear(row, 0)), 1e-15);
+    scatter_free(&scatter);
+}
+
+/* The nearest of many points, by the grid as by looking at all; far from the points as well. */
+static void nearest_by_the_grid(void **state)
+{
+    (void)state;
+    enum { COUNT = 400 };
+    double row[COUNT * 4];
+    for (int i = 0; i < COUNT; i++) {
+        row[4 * i] = 10.0 * fabs(sin(1.7 * i));
+        row[4 * i + 1] = row[4 * i] * fabs(cos(2.3 * i)); /* unevenly */
+    }
+    struct scatter scatter = table(row, COUNT, linear);
+    struct error error;
+    for (int k = 0; k < 40; k++) {
+        double mm[2] = {(k % 4 == 0 ? 1e4 : 12.0) * sin(k), 7.0 * cos(3.0 * k)}, nearest = INFINITY;
+        double x[2] = {1e-3 * mm[0], 1e-3 * mm[1]}, value[2], distance, spacing;
+        for (int i = 0; i < COUNT; i++) {
+            nearest = fmin(nearest, hypot(row[4 * i] - mm[0], row[4 * i + 1] - mm[1]));
+        }
+        GOOD(scatter_evaluate(&scatter, x, value, &distance, &spacing, &error));
+        AT_MOST(fabs(distance * 1e3 / nearest - 1.0), 1e-12);
+    }
+    scatter_free(&scatter);
 }
 
 int main(void)
@@ -97,6 +128,7 @@ int main(void)
         cmocka_unit_test(enough_points_give_quadratic_fields),
         cmocka_unit_test(a_line_is_extended_across),
         cmocka_unit_test(one_point_is_a_constant),
+        cmocka_unit_test(nearest_by_the_grid),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -37,9 +37,9 @@ MUST_CHECK enum status model_input_read(const struct stream *stream, const struc
                                         struct model_input *input, struct error *error);
 void model_input_free(struct model_input *input);
 
-/* Build the whole system, its tables in double or in single precision; the stream and the scene must outlive
+/* Build the whole system; the stream and the scene must outlive
  * the model. */
-MUST_CHECK enum status model_build(const struct stream *stream, const struct scene *scene, bool single,
+MUST_CHECK enum status model_build(const struct stream *stream, const struct scene *scene,
                                    struct model *model, struct error *error);
 void model_free(struct model *model);
 

@@ -57,7 +57,7 @@ static bool has_conforming_cells(const struct model_input *input)
            input->points->rows == input->cells.count;
 }
 
-static enum status build_body(const struct model_input *input, bool single, struct solid_system *system,
+static enum status build_body(const struct model_input *input, struct solid_system *system,
                               struct error *error)
 {
     enum status status;
@@ -99,8 +99,7 @@ static enum status build_body(const struct model_input *input, bool single, stru
                               .group = materials.section,
                               .hat_node = hat_node,
                               .hat_value = hat_value,
-                              .conforming = has_conforming_cells(input) ? &conforming : NULL,
-                              .single = single};
+                              .conforming = has_conforming_cells(input) ? &conforming : NULL};
     TRY(body_build(&body, &system->body, error));
 done:
     material_list_free(&materials);
@@ -151,8 +150,8 @@ static enum status check_moments(const struct model_input *input, struct error *
     return STATUS_OK;
 }
 
-enum status model_build(const struct stream *stream, const struct scene *scene, bool single,
-                        struct model *model, struct error *error)
+enum status model_build(const struct stream *stream, const struct scene *scene, struct model *model,
+                        struct error *error)
 {
     enum status status;
     struct solid_system *system = &model->system;
@@ -164,7 +163,7 @@ enum status model_build(const struct stream *stream, const struct scene *scene, 
     system->X = model->input.cells.x;
     constraint_rows_init(&system->rows, scene->dim);
     constraint_rows_init(&system->springs, scene->dim);
-    TRY(build_body(&model->input, single, system, error));
+    TRY(build_body(&model->input, system, error));
     system->node_lists = &model->input.node_lists;
     system->node_phi = model->input.node_phi;
     TRY(lump_mass(&model->input, system, error));

@@ -277,6 +277,13 @@ static enum status add_section(struct prescription *p, struct error *error)
     TRY(model_add_curve(p->input, &section->label, &section->curve, p->system, &p->curve, error));
     if (section->kind == SCENE_TABLE) {
         TRY(table_read(section->table, 2 * dim, 2 * dim, &p->table, error));
+        p->scatter = (struct scatter){.dim = dim,
+                                      .value_count = dim,
+                                      .count = p->table.rows,
+                                      .row_size = p->table.cols,
+                                      .row = p->table.values,
+                                      .unit = section->table_unit};
+        TRY(scatter_build(&p->scatter, error));
     }
     if (section->facets.count > 0) {
         TRY(model_facets(p->input, &section->label, &section->facets, &set, &owned, error));
@@ -290,6 +297,7 @@ static enum status add_section(struct prescription *p, struct error *error)
 done:
     free(owned);
     table_free(&p->table);
+    scatter_free(&p->scatter);
     return status;
 }
 

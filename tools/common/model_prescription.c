@@ -1,25 +1,16 @@
 #include "model_prescription.h"
 
-#include "approx/scatter.h"
-
 #include <math.h>
 #include <string.h>
 
 enum status prescription_value(const struct prescription *p, const double *x, double *value,
                                struct error *error)
 {
-    int dim = p->input->cells.dim;
     double distance, spacing;
-    struct scatter scatter = {.dim = dim,
-                              .value_count = dim,
-                              .count = p->table.rows,
-                              .row_size = p->table.cols,
-                              .row = p->table.values,
-                              .unit = p->section->table_unit};
-    enum status status = scatter_evaluate(&scatter, x, value, &distance, &spacing, error);
+    enum status status = scatter_evaluate(&p->scatter, x, value, &distance, &spacing, error);
     if (status == STATUS_OK && p->table.rows > 1 && !(distance <= fmin(8.0 * spacing, p->input->extent))) {
         char place[96];
-        point_text(dim, x, place);
+        point_text(p->input->cells.dim, x, place);
         return scene_fail(
             error, STATUS_INPUT, p->input->scene, &p->section->label,
             "table %s: its nearest point is %.3g m from the boundary at %s, its points are %.3g m "

@@ -5,6 +5,7 @@
 #include "model_claims.h"
 #include "model_held.h"
 
+#include "approx/scatter.h"
 #include "io/table.h"
 
 /* What one displacement section prescribes, and where it goes. */
@@ -15,10 +16,11 @@ struct prescription {
     struct claims *claims;        /* of all sections */
     struct held_directions *held; /* by the sections before */
     bool *shared; /* group_count * dim: sections before hold that component at some of the group's nodes */
-    int32_t number, curve; /* of the section; of its load curve */
-    struct table table;    /* SCENE_TABLE */
-    bool springs;          /* adding springs, not exact rows */
-    double modulus, layer; /* of the springs: Pa, and the size of the cells there, m */
+    int32_t number, curve;  /* of the section; of its load curve */
+    struct table table;     /* SCENE_TABLE */
+    struct scatter scatter; /* of the table */
+    bool springs;           /* adding springs, not exact rows */
+    double modulus, layer;  /* of the springs: Pa, and the size of the cells there, m */
 };
 
 /* What a section asks of one average: the displacement, or its component along the normal. */

@@ -1,5 +1,7 @@
 #include "run.h"
 
+#include "io/sections.h"
+
 #include <stdarg.h>
 
 static void show_progress(struct display *display, const struct progress *progress)
@@ -34,11 +36,7 @@ void run_clear_progress(const struct display *display)
 
 void run_drop_tables(struct stream *stream)
 {
-    static const char *const prefixes[] = {"points.", "faces", "facepoints.", "nbr.",
-                                           "face.",   "node.", "shape.",      "support.radius"};
-    for (size_t i = 0; i < sizeof prefixes / sizeof *prefixes; i++) {
-        stream_remove_prefix(stream, prefixes[i]);
-    }
+    sections_remove(stream, MADE_WITH_POINTS, MADE_WITH_SHAPES);
 }
 
 /* The number behind that of the last frame. */

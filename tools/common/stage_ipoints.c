@@ -2,6 +2,7 @@
 
 #include "approx/quadrature.h"
 #include "base/box.h"
+#include "io/sections.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -199,9 +200,6 @@ enum status stage_ipoints(struct stream *stream, const struct ipoints_options *o
     struct cells cells;
     double *radius = NULL;
     char rule[32];
-    /* What was made from other points is void. */
-    static const char *const void_prefixes[] = {"points.", "facepoints.", "faces",          "nbr.",
-                                                "face.",   "node.",       "support.radius", "shape."};
     *unresolved = 0;
     if (options->lattice[0] == 0) {
         TRY(stream_cells(stream, true, &cells, error));
@@ -210,9 +208,8 @@ enum status stage_ipoints(struct stream *stream, const struct ipoints_options *o
         TRY(NEW_ARRAY(&radius, cells.node_count, error));
         TRY(adaptive_radii(stream, options, &cells, radius, error));
     }
-    for (size_t i = 0; i < sizeof void_prefixes / sizeof *void_prefixes; i++) {
-        stream_remove_prefix(stream, void_prefixes[i]);
-    }
+    /* What was made from other points is void. */
+    sections_remove(stream, MADE_WITH_POINTS, MADE_WITH_SHAPES);
     if (options->lattice[0] > 0) {
         return put_lattice(stream, options->lattice, error);
     }

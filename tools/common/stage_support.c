@@ -2,6 +2,8 @@
 
 #include "mls_options.h"
 
+#include "io/sections.h"
+
 #include <stdlib.h>
 
 /* Radii by the local spacing: from the cells where there are any, else from the nearest nodes. */
@@ -156,11 +158,8 @@ enum status stage_support(struct stream *stream, const struct support_options *o
     struct reach reach = {0};
     struct cells cells;
     struct listed listed;
-    static const char *const void_prefixes[] = {"nbr.", "face.", "node.", "support.radius", "shape."};
     *report = (struct support_report){0};
-    for (size_t i = 0; i < sizeof void_prefixes / sizeof *void_prefixes; i++) {
-        stream_remove_prefix(stream, void_prefixes[i]);
-    }
+    sections_remove(stream, MADE_WITH_SUPPORT, MADE_WITH_SHAPES);
     TRY(stream_nodes(stream, &dim, &node_count, &x, error));
     TRY(stream_need(stream, "points.x", TYPE_F8, dim, "ipoints", &points, error));
     TRY(stream_cells(stream, false, &cells, error));

@@ -5,6 +5,7 @@
 #include <assert.h>
 #include <errno.h>
 #include <fcntl.h>
+#include <gsl/gsl_errno.h>
 #include <signal.h>
 #include <stdarg.h>
 #include <stdlib.h>
@@ -145,6 +146,7 @@ void tool_begin(struct tool *tool, const char *usage, struct option options[], i
                           .argc = argc,
                           .argv = argv};
     fill_descriptors();
+    gsl_set_error_handler_off(); /* its functions return what failed */
     /* A reader that has seen enough (head) ends us quietly, whatever our parent has set. */
     signal(SIGPIPE, SIG_DFL);
     signal(SIGXFSZ, SIG_IGN); /* writing beyond a limit fails instead, with a message */

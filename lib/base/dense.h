@@ -1,0 +1,18 @@
+/* Small dense symmetric systems by Cholesky factors (Golub and Van Loan, Matrix Computations, 4.2). */
+#ifndef BASE_DENSE_H
+#define BASE_DENSE_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+/* A = L L^T of the symmetric matrix[n * n], row-major, of which the lower triangle is read: it becomes L, the
+ * rest stays. False when A is not positive definite; the matrix is spoilt then. */
+bool dense_factorise(int64_t n, double *matrix);
+
+/* x[n] := A^-1 x from the factor. */
+void dense_solve(int64_t n, const double *factor, double *x);
+
+/* The factor becomes A^-1, both triangles. */
+void dense_invert(int64_t n, double *factor);
+
+#endif
