@@ -184,3 +184,31 @@ END
     run -2 --separate-stderr shapefn bad.dat
     [[ "$stderr" == "shapefn: face.image: row 0"* ]]
 }
+
+@test "tables of displacements act neither across a gap nor across a slit" {
+    blocks 0.5
+    printf '[scene]\ndim = 2\nanalysis = quasi-static\n[material body]\nregion = body\nE = 3000\nnu = 0.49\nrho = 1000\n' > head
+    { cat head; printf '[displacement all]\nfacets = bottom, top\ntable = both.tsv\nunit = mm\n[output]\nreactions = yes\n[solver]\ntolerance = 1e-8\n'; } > both.scene
+    # Few points, so that the nearest to each place are those of both blocks.
+    awk 'BEGIN { for (x = 0; x <= 20; x += 10) { print x, 0, 0, 0; print x, 10, 0, 0; print x, 10.5, 0.3, 0.5; print x, 20.5, 0.3, 0.5 } }' > both.tsv
+    shapefn blocks.mts 2> notes > table.mts
+    mtled both.scene table.mts > u.dat
+    paste <(mts print nodes.x u.dat) <(mts print u u.dat) | awk '
+        { up = $2 > 0.0102; n[up]++; if (!(($3 - up * 0.3e-3) ^ 2 + ($4 - up * 0.5e-3) ^ 2 < 1e-9 ^ 2)) bad++ }
+        END { exit !(n[0] > 40 && n[1] > 40 && bad + 0 == 0) }'
+    # Points of the other block alone.
+    awk '$2 <= 10' both.tsv > lower.tsv
+    sed 's/both.tsv/lower.tsv/; s/bottom, top/top/' both.scene > lower.scene
+    run -2 --separate-stderr mtled lower.scene table.mts
+    [[ "$stderr" == *"[displacement all]: table lower.tsv: at ("*"none of its points is within reach through the cells"* ]]
+    # The arms of a slit: the upper one's end is lifted, the lower one's was measured as well.
+    gmsh -2 -v 0 -setnumber h 2 "$top/examples/hard/slit.geo" -o slit.msh > /dev/null
+    nodes -u mm slit.msh | shapefn 2> notes > slit.mts
+    awk 'BEGIN { for (x = 36; x <= 40; x += 2) { print x, 0, 0, 0; print x, 9.7, 0, 0; print x, 10.3, 0, 3; print x, 20, 0, 3 } }' > arms.tsv
+    { cat head; printf '[displacement held]\nfacets = held\ncomponents = 0, 0\n[displacement lifted]\nfacets = lifted\n'; } > slit.scene
+    { cat slit.scene; printf 'components = 0, 3e-3\n'; } > constant.scene
+    { cat slit.scene; printf 'table = arms.tsv\nunit = mm\n'; } > arms.scene
+    mtled constant.scene slit.mts > constant.dat
+    mtled arms.scene slit.mts > arms.dat
+    fieldcmp --tol-max 1e-8 constant.dat arms.dat > /dev/null
+}

@@ -51,6 +51,8 @@ struct reach {
 /* Errors: STATUS_INPUT for cells that share a face with more than one other; STATUS_SYSTEM (memory). */
 MUST_CHECK enum status reach_build(const struct cells *cells, const struct point_grid *grid,
                                    struct reach *reach, struct error *error);
+/* Only `across` and the stars: what ways from node to node take. Errors as above. */
+MUST_CHECK enum status reach_build_cells(const struct cells *cells, struct reach *reach, struct error *error);
 void reach_free(struct reach *reach);
 
 /* The cells that points lie in. Zeros: unknown, to be found. A point outside of all cells sees what the

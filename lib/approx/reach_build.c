@@ -339,17 +339,29 @@ done:
     return status;
 }
 
+enum status reach_build_cells(const struct cells *cells, struct reach *reach, struct error *error)
+{
+    enum status status;
+    *reach = (struct reach){.cells = *cells};
+    TRY(NEW_ARRAY(&reach->across, cells->count * (cells->dim + 1), error));
+    TRY(cells_across(cells, reach->across, error));
+    TRY(file_stars(reach, error));
+done:
+    if (status != STATUS_OK) {
+        reach_free(reach);
+    }
+    return status;
+}
+
 enum status reach_build(const struct cells *cells, const struct point_grid *grid, struct reach *reach,
                         struct error *error)
 {
     enum status status;
     struct faces faces = {0};
     struct reach_work work = {0};
-    *reach = (struct reach){.cells = *cells, .grid = grid};
-    TRY(NEW_ARRAY(&reach->across, cells->count * (cells->dim + 1), error));
-    TRY(cells_across(cells, reach->across, error));
+    TRY(reach_build_cells(cells, reach, error));
+    reach->grid = grid;
     TRY(faces_build(cells, true, &faces, error));
-    TRY(file_stars(reach, error));
     TRY(set_facets(&faces, reach, error));
     TRY(file_opposing(reach, error));
     TRY(find_corners(reach, &work, error));

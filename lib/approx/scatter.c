@@ -72,7 +72,23 @@ static void insert(struct nearest *nearest, int64_t most, int64_t row, double di
     nearest->row[at] = row;
 }
 
-/* The nearest points: those within a radius, doubled until there are enough. */
+/* Whether a point is not known to be out of reach. */
+static bool usable(const struct scatter *scatter, int64_t row)
+{
+    return scatter->ways == NULL || scatter->ways->verdict[row] != WAY_NONE;
+}
+
+static int64_t count_usable(const struct scatter *scatter, const struct index_list *rows)
+{
+    int64_t count = 0;
+    for (int64_t k = 0; k < rows->count; k++) {
+        count += usable(scatter, rows->index[k]);
+    }
+    return count;
+}
+
+/* The nearest points that are not known to be out of reach: those within a radius, doubled until there are
+ * enough. */
 static enum status find_nearest(const struct scatter *scatter, const double *x, struct nearest *nearest,
                                 struct error *error)
 {
@@ -84,7 +100,9 @@ static enum status find_nearest(const struct scatter *scatter, const double *x, 
     for (int a = 0; a < dim; a++) {
         at[a] = x[a] / scatter->unit;
     }
-    for (double factor = 1.0; near.count < wanted && factor < 0x1p500; factor *= 2.0) {
+    for (double factor = 1.0;
+         count_usable(scatter, &near) < wanted && near.count < scatter->count && factor < 0x1p500;
+         factor *= 2.0) {
         near.count = 0;
         TRY(point_grid_query(&scatter->grid, at, factor, &near, error));
     }
@@ -95,13 +113,39 @@ static enum status find_nearest(const struct scatter *scatter, const double *x, 
             double difference = scatter->x[near.index[k] * dim + a] - at[a];
             sum += difference * difference;
         }
-        insert(nearest, most, near.index[k], sqrt(sum));
+        if (usable(scatter, near.index[k])) {
+            insert(nearest, most, near.index[k], sqrt(sum));
+        }
     }
-    if (nearest->count < wanted) {
+    if (near.count < wanted) {
         status = fail(error, STATUS_INPUT, "interpolation of a table: a point is too far from it");
     }
 done:
     free(near.index);
+    return status;
+}
+
+/* The nearest points within reach: looks at the ways to the nearest, until all of them are. */
+static enum status find_reached(const struct scatter *scatter, int32_t from, const double *x,
+                                struct nearest *nearest, struct error *error)
+{
+    enum status status = STATUS_OK;
+    if (scatter->ways != NULL) {
+        ways_begin(scatter->ways, from);
+    }
+    for (bool settled = false; !settled;) {
+        settled = true;
+        TRY(find_nearest(scatter, x, nearest, error));
+        for (int64_t i = 0; scatter->ways != NULL && i < nearest->count; i++) {
+            bool reached;
+            TRY(ways_reach(scatter->ways, nearest->row[i], &reached, error));
+            settled = settled && reached;
+        }
+    }
+    if (nearest->count == 0) {
+        status = fail(error, STATUS_INPUT, "none of its points is within reach through the cells");
+    }
+done:
     return status;
 }
 
@@ -274,12 +318,12 @@ done:
     return status;
 }
 
-enum status scatter_evaluate(const struct scatter *scatter, const double *x, double *values, double *distance,
-                             double *spacing, struct error *error)
+enum status scatter_evaluate(const struct scatter *scatter, int32_t from, const double *x, double *values,
+                             double *distance, double *spacing, struct error *error)
 {
     struct nearest nearest = {0};
     double phi[MOST_NEIGHBOURS] = {1.0};
-    enum status status = find_nearest(scatter, x, &nearest, error);
+    enum status status = find_reached(scatter, from, x, &nearest, error);
     if (status != STATUS_OK) {
         return status;
     }

@@ -8,6 +8,7 @@
 #define APPROX_SCATTER_H
 
 #include "approx/point_grid.h"
+#include "approx/ways.h"
 
 #include <stdint.h>
 
@@ -19,6 +20,7 @@ struct scatter {
     int64_t row_size;   /* doubles per row, >= dim + value_count */
     const double *row;  /* count * row_size; coordinates in units of `unit` */
     double unit;        /* m; scales coordinates and values */
+    struct ways *ways;  /* NULL; or which rows are within reach of a node, see scatter_evaluate() */
     double *x, *radius; /* what scatter_build() makes: the points, count * dim, in a grid */
     struct point_grid grid;
 };
@@ -28,9 +30,12 @@ struct scatter {
 MUST_CHECK enum status scatter_build(struct scatter *scatter, struct error *error);
 void scatter_free(struct scatter *scatter);
 
-/* values[value_count] at x[dim] (m). *distance receives the distance to the nearest point and *spacing the
- * mean spacing of the points used (m; 0 for a single one), so that a caller can refuse to extrapolate far. */
-MUST_CHECK enum status scatter_evaluate(const struct scatter *scatter, const double *x, double *values,
-                                        double *distance, double *spacing, struct error *error);
+/* values[value_count] at x[dim] (m), which is beside node `from`: where there are ways, only of rows within
+ * reach of it (STATUS_INPUT: there are none). *distance receives the distance to the nearest point and
+ * *spacing the mean spacing of the points used (m; 0 for a single one), so that a caller can refuse to
+ * extrapolate far. */
+MUST_CHECK enum status scatter_evaluate(const struct scatter *scatter, int32_t from, const double *x,
+                                        double *values, double *distance, double *spacing,
+                                        struct error *error);
 
 #endif

@@ -4,6 +4,7 @@
 #include "approx/cloud.h"
 #include "approx/field_compare.h"
 #include "approx/quadrature.h"
+#include "approx/ways.h"
 #include "base/memory.h"
 
 #include <errno.h>
@@ -78,8 +79,10 @@ static enum status try_reach(struct error *error)
     struct reach reach = {0};
     struct support_lists lists = {0};
     struct reach_places places = {0}; /* to be found */
+    struct ways ways = {0};
     double radius[49], *phi = NULL;
     int64_t kept = 0;
+    bool reached;
     TRY(cloud_make(&wanted, &cloud, error));
     for (int64_t c = 0; c < cloud.cell_count; c++) {
         double middle[2];
@@ -100,8 +103,14 @@ static enum status try_reach(struct error *error)
     TRY(NEW_ARRAY(&phi, lists.ptr[lists.count], error));
     struct neighbours view = support_view(&lists);
     TRY(shape_table(&options.mls, cloud.x, radius, &view, cloud.x, "nodes", phi, NULL, error));
+    TRY(ways_build(&cells, cells.node_count, 2, cloud.x, 1.0, &ways, error));
+    ways_begin(&ways, 0);
+    for (int32_t n = 0; n < cells.node_count; n++) {
+        TRY(ways_reach(&ways, n, &reached, error));
+    }
     status = lists.around_count > 0 ? STATUS_OK : STATUS_INPUT;
 done:
+    ways_free(&ways);
     support_free(&lists);
     reach_free(&reach);
     point_grid_free(&grid);

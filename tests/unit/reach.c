@@ -1,6 +1,8 @@
 /* What supports reach through the cells: convex bodies, gaps, touching bodies, corners and fissures. */
 #include "approx_fixture.h"
 
+#include "approx/ways.h"
+
 /* A body of unit squares or cubes, each of 2 triangles or 6 tetrahedra. Nodes of the same place and sheet are
  * one. */
 enum { MOST_NODES = 4000, MOST_CELLS = 16000 };
@@ -482,12 +484,61 @@ static void gradients(void **state)
     }
 }
 
+static bool reaches(struct ways *ways, int32_t from, int64_t place)
+{
+    struct error error;
+    bool reached;
+    ways_begin(ways, from);
+    good(ways_reach(ways, place, &reached, &error), &error);
+    return reached;
+}
+
+/* Places, here the nodes themselves, are within reach round a corner and a fissure's end, not across a gap or
+ * from one lip to the other. */
+static void ways(void **state)
+{
+    struct error error;
+    struct ways ways;
+    (void)state;
+    for (int dim = 2; dim <= 3; dim++) {
+        build(dim, (int[3]){8, 8, 4}, of_l, one_sheet);
+        good(ways_build(&body.cells, body.node_count, dim, body.x, 1.0, &ways, &error), &error);
+        for (int32_t n = 0; n < body.node_count; n += 5) {
+            for (int64_t p = 0; p < body.node_count; p++) {
+                assert_true(reaches(&ways, n, p));
+            }
+        }
+        ways_free(&ways);
+        second_from = 5;
+        build(dim, (int[3]){9, 5, 3}, but_gap, sheet_of_side);
+        good(ways_build(&body.cells, body.node_count, dim, body.x, 1.0, &ways, &error), &error);
+        for (int32_t n = 0; n < body.node_count; n += 5) {
+            for (int64_t p = 0; p < body.node_count; p++) {
+                assert_int_equal(reaches(&ways, n, p), body.key[n][3] == body.key[p][3]);
+            }
+        }
+        ways_free(&ways);
+        build(dim, (int[3]){10, 10, 10}, of_ball, sheet_of_fissure);
+        good(ways_build(&body.cells, body.node_count, dim, body.x, 1.0, &ways, &error), &error);
+        int other = dim == 3 ? 5 : 0;
+        int32_t low_left = node_at(4, dim == 3 ? other : 6, dim == 3 ? 6 : 0, 0);
+        int32_t low_right = node_at(6, dim == 3 ? other : 6, dim == 3 ? 6 : 0, 0);
+        int32_t high_left = node_at(4, dim == 3 ? other : 8, dim == 3 ? 8 : 0, 0);
+        int32_t high_right = node_at(6, dim == 3 ? other : 8, dim == 3 ? 8 : 0, 0);
+        assert_true(reaches(&ways, low_left, low_right));
+        assert_true(reaches(&ways, low_left, high_left));
+        assert_false(reaches(&ways, high_left, high_right));
+        assert_false(reaches(&ways, high_right, high_left));
+        ways_free(&ways);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(convex),    cmocka_unit_test(located),       cmocka_unit_test(apart),
         cmocka_unit_test(lobes),     cmocka_unit_test(around_corner), cmocka_unit_test(fissure),
-        cmocka_unit_test(gradients),
+        cmocka_unit_test(gradients), cmocka_unit_test(ways),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

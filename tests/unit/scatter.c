@@ -36,7 +36,7 @@ static double worst(const struct scatter *scatter, double (*field)(const double 
     for (int k = 0; k < 50; k++) {
         double mm[2] = {0.1 + 0.8 * fabs(sin(3.0 * k)), 0.1 + 0.8 * fabs(cos(5.0 * k))};
         double x[2] = {1e-3 * mm[0], 1e-3 * mm[1]}, value[2], distance, spacing;
-        GOOD(scatter_evaluate(scatter, x, value, &distance, &spacing, &error));
+        GOOD(scatter_evaluate(scatter, 0, x, value, &distance, &spacing, &error));
         for (int v = 0; v < 2; v++) {
             largest = fmax(largest, fabs(value[v] * 1e3 - field(mm, v)));
         }
@@ -79,7 +79,7 @@ static void a_line_is_extended_across(void **state)
     struct scatter scatter = table(row, 9, quadratic);
     struct error error;
     double x[2] = {0.4e-3, 0.05e-3}, on[2] = {0.4, 0.0}, value[2], distance, spacing;
-    GOOD(scatter_evaluate(&scatter, x, value, &distance, &spacing, &error));
+    GOOD(scatter_evaluate(&scatter, 0, x, value, &distance, &spacing, &error));
     AT_MOST(fabs(value[0] * 1e3 - quadratic(on, 0)), 1e-12);
     AT_MOST(fabs(value[1] * 1e3 - quadratic(on, 1)), 1e-12);
     scatter_free(&scatter);
@@ -92,7 +92,7 @@ static void one_point_is_a_constant(void **state)
     struct scatter scatter = table(row, 1, linear);
     struct error error;
     double x[2] = {1e-3, 0}, value[2], distance, spacing;
-    GOOD(scatter_evaluate(&scatter, x, value, &distance, &spacing, &error));
+    GOOD(scatter_evaluate(&scatter, 0, x, value, &distance, &spacing, &error));
     AT_MOST(fabs(value[0] * 1e3 - linear(row, 0)), 1e-15);
     scatter_free(&scatter);
 }
@@ -115,7 +115,7 @@ static void nearest_by_the_grid(void **state)
         for (int i = 0; i < COUNT; i++) {
             nearest = fmin(nearest, hypot(row[4 * i] - mm[0], row[4 * i + 1] - mm[1]));
         }
-        GOOD(scatter_evaluate(&scatter, x, value, &distance, &spacing, &error));
+        GOOD(scatter_evaluate(&scatter, 0, x, value, &distance, &spacing, &error));
         AT_MOST(fabs(distance * 1e3 / nearest - 1.0), 1e-12);
     }
     scatter_free(&scatter);

@@ -120,7 +120,7 @@ static enum status add_claims(const struct prescription *p, const struct boundar
     }
     enum status status = STATUS_OK;
     if (section->kind == SCENE_TABLE) {
-        TRY(prescription_value(p, p->input->cells.x + (int64_t)claim.node * dim, value, error));
+        TRY(prescription_value(p, claim.node, p->input->cells.x + (int64_t)claim.node * dim, value, error));
     }
     for (int i = 0; i < dim; i++) {
         if (prescription_is_free(section, i)) {
@@ -273,16 +273,20 @@ static enum status add_section(struct prescription *p, struct error *error)
     int dim = p->input->cells.dim;
     const struct scene_displacement *section = p->section;
     struct facet_set set = {0};
+    struct ways ways = {0};
     int32_t *owned = NULL;
     TRY(model_add_curve(p->input, &section->label, &section->curve, p->system, &p->curve, error));
     if (section->kind == SCENE_TABLE) {
         TRY(table_read(section->table, 2 * dim, 2 * dim, &p->table, error));
+        TRY(ways_build(&p->input->cells, p->table.rows, p->table.cols, p->table.values, section->table_unit,
+                       &ways, error));
         p->scatter = (struct scatter){.dim = dim,
                                       .value_count = dim,
                                       .count = p->table.rows,
                                       .row_size = p->table.cols,
                                       .row = p->table.values,
-                                      .unit = section->table_unit};
+                                      .unit = section->table_unit,
+                                      .ways = &ways};
         TRY(scatter_build(&p->scatter, error));
     }
     if (section->facets.count > 0) {
@@ -296,6 +300,7 @@ static enum status add_section(struct prescription *p, struct error *error)
     }
 done:
     free(owned);
+    ways_free(&ways);
     table_free(&p->table);
     scatter_free(&p->scatter);
     return status;

@@ -3,13 +3,19 @@
 #include <math.h>
 #include <string.h>
 
-enum status prescription_value(const struct prescription *p, const double *x, double *value,
+enum status prescription_value(const struct prescription *p, int32_t node, const double *x, double *value,
                                struct error *error)
 {
     double distance, spacing;
-    enum status status = scatter_evaluate(&p->scatter, x, value, &distance, &spacing, error);
-    if (status == STATUS_OK && p->table.rows > 1 && !(distance <= fmin(8.0 * spacing, p->input->extent))) {
-        char place[96];
+    struct error why;
+    char place[96];
+    enum status status = scatter_evaluate(&p->scatter, node, x, value, &distance, &spacing, &why);
+    if (status != STATUS_OK) {
+        point_text(p->input->cells.dim, x, place);
+        return scene_fail(error, status, p->input->scene, &p->section->label, "table %s: at %s: %s",
+                          p->section->table, place, why.text);
+    }
+    if (p->table.rows > 1 && !(distance <= fmin(8.0 * spacing, p->input->extent))) {
         point_text(p->input->cells.dim, x, place);
         return scene_fail(
             error, STATUS_INPUT, p->input->scene, &p->section->label,
@@ -17,7 +23,7 @@ enum status prescription_value(const struct prescription *p, const double *x, do
             "apart: wrong unit or wrong place",
             p->section->table, distance, place, spacing);
     }
-    return status;
+    return STATUS_OK;
 }
 
 /* Mean of the table over the samples of one average. */
@@ -30,7 +36,8 @@ static enum status average_of_table(const struct prescription *p, const struct b
     }
     for (int64_t s = averages->sample_ptr[a]; s < averages->sample_ptr[a + 1]; s++) {
         double value[3];
-        enum status status = prescription_value(p, averages->sample_x + s * dim, value, error);
+        enum status status =
+            prescription_value(p, averages->node[a], averages->sample_x + s * dim, value, error);
         if (status != STATUS_OK) {
             return status;
         }

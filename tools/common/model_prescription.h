@@ -6,6 +6,7 @@
 #include "model_held.h"
 
 #include "approx/scatter.h"
+#include "approx/ways.h"
 #include "io/table.h"
 
 /* What one displacement section prescribes, and where it goes. */
@@ -18,7 +19,7 @@ struct prescription {
     bool *shared; /* group_count * dim: sections before hold that component at some of the group's nodes */
     int32_t number, curve;  /* of the section; of its load curve */
     struct table table;     /* SCENE_TABLE */
-    struct scatter scatter; /* of the table */
+    struct scatter scatter; /* of the table, with the ways to its points */
     bool springs;           /* adding springs, not exact rows */
     double modulus, layer;  /* of the springs: Pa, and the size of the cells there, m */
 };
@@ -37,9 +38,9 @@ bool prescription_is_free(const struct scene_displacement *section, int i);
 int prescription_directions(const struct prescription *p);
 bool prescription_is_full(const struct prescription *p);
 
-/* value[dim] = the displacement of the section's table at x, m. */
-MUST_CHECK enum status prescription_value(const struct prescription *p, const double *x, double *value,
-                                          struct error *error);
+/* value[dim] = the displacement of the section's table at x, beside that node, m. */
+MUST_CHECK enum status prescription_value(const struct prescription *p, int32_t node, const double *x,
+                                          double *value, struct error *error);
 
 /* What the section asks of average a. */
 MUST_CHECK enum status prescription_demand(const struct prescription *p,

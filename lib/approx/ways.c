@@ -1,0 +1,169 @@
+#include "approx/ways.h"
+
+#include "approx/reach_private.h"
+#include "base/memory.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* A way may be so many times as long as the straight one. */
+static const double most_detour = 2.0;
+
+struct way_end {
+    double length;
+    int32_t node;
+};
+
+static void assign_nodes(struct ways *ways, int64_t stride, const double *place, double unit)
+{
+    const struct cells *cells = &ways->reach.cells;
+    for (int64_t p = 0; p < ways->place_count; p++) {
+        double nearest2 = INFINITY;
+        ways->node[p] = -1;
+        for (int32_t n = 0; n < cells->node_count; n++) {
+            double distance2 = 0.0;
+            for (int a = 0; a < cells->dim; a++) {
+                double difference = place[p * stride + a] * unit - cells->x[(int64_t)n * cells->dim + a];
+                distance2 += difference * difference;
+            }
+            if (distance2 < nearest2 && ways->reach.star_ptr[n] < ways->reach.star_ptr[n + 1]) {
+                nearest2 = distance2;
+                ways->node[p] = n;
+            }
+        }
+    }
+}
+
+enum status ways_build(const struct cells *cells, int64_t place_count, int64_t stride, const double *place,
+                       double unit, struct ways *ways, struct error *error)
+{
+    enum status status;
+    *ways = (struct ways){.place_count = place_count, .from = -1, .searched = -1.0};
+    TRY(reach_build_cells(cells, &ways->reach, error));
+    TRY(NEW_ARRAY(&ways->node, place_count, error));
+    TRY(NEW_ARRAY(&ways->verdict, place_count, error));
+    TRY(NEW_ARRAY(&ways->length, cells->node_count, error));
+    assign_nodes(ways, stride, place, unit);
+done:
+    if (status != STATUS_OK) {
+        ways_free(ways);
+    }
+    return status;
+}
+
+void ways_free(struct ways *ways)
+{
+    reach_free(&ways->reach);
+    reach_work_free(&ways->work);
+    free(ways->node);
+    free(ways->verdict);
+    free(ways->length);
+    free(ways->queue);
+    *ways = (struct ways){0};
+}
+
+void ways_begin(struct ways *ways, int32_t from)
+{
+    if (from != ways->from) {
+        memset(ways->verdict, WAY_UNKNOWN, (size_t)ways->place_count);
+        ways->from = from;
+        ways->searched = -1.0;
+    }
+}
+
+/* Whether the first of two comes earlier: of equal lengths, the lower node. */
+static bool is_shorter(const struct way_end *a, const struct way_end *b)
+{
+    return a->length < b->length || (a->length == b->length && a->node < b->node);
+}
+
+static enum status push(struct ways *ways, double length, int32_t node, struct error *error)
+{
+    if (ways->queued == ways->capacity) {
+        int64_t capacity = 2 * ways->capacity + 256;
+        struct way_end *grown = array_grow(ways->queue, capacity, sizeof *grown);
+        if (grown == NULL) {
+            return fail_memory(error, "ways through the cells");
+        }
+        ways->queue = grown;
+        ways->capacity = capacity;
+    }
+    struct way_end end = {.length = length, .node = node};
+    int64_t at = ways->queued++;
+    for (; at > 0 && is_shorter(&end, &ways->queue[(at - 1) / 2]); at = (at - 1) / 2) {
+        ways->queue[at] = ways->queue[(at - 1) / 2];
+    }
+    ways->queue[at] = end;
+    return STATUS_OK;
+}
+
+static struct way_end pop(struct ways *ways)
+{
+    struct way_end first = ways->queue[0], last = ways->queue[--ways->queued];
+    int64_t at = 0;
+    for (int64_t child = 1; child < ways->queued; child = 2 * at + 1) {
+        child += child + 1 < ways->queued && is_shorter(&ways->queue[child + 1], &ways->queue[child]);
+        if (!is_shorter(&ways->queue[child], &last)) {
+            break;
+        }
+        ways->queue[at] = ways->queue[child];
+        at = child;
+    }
+    ways->queue[at] = last;
+    return first;
+}
+
+/* Shortest ways along edges from ways->from, up to that length (Dijkstra 1959). */
+static enum status search(struct ways *ways, double limit, struct error *error)
+{
+    enum status status = STATUS_OK;
+    const struct reach *reach = &ways->reach;
+    int dim = reach->cells.dim;
+    for (int64_t n = 0; n < reach->cells.node_count; n++) {
+        ways->length[n] = INFINITY;
+    }
+    ways->searched = limit;
+    ways->queued = 0;
+    ways->length[ways->from] = 0.0;
+    TRY(push(ways, 0.0, ways->from, error));
+    while (ways->queued > 0) {
+        struct way_end end = pop(ways);
+        for (int64_t s = reach->star_ptr[end.node];
+             end.length <= ways->length[end.node] && s < reach->star_ptr[end.node + 1]; s++) {
+            for (int k = 0; k <= dim; k++) {
+                int32_t next = reach->cells.node[(int64_t)reach->star[s] * (dim + 1) + k];
+                double length = end.length + reach_distance(dim, reach->cells.x + (int64_t)end.node * dim,
+                                                            reach->cells.x + (int64_t)next * dim);
+                if (length < ways->length[next] && length <= limit) {
+                    ways->length[next] = length;
+                    TRY(push(ways, length, next, error));
+                }
+            }
+        }
+    }
+done:
+    return status;
+}
+
+enum status ways_reach(struct ways *ways, int64_t place, bool *reached, struct error *error)
+{
+    enum status status = STATUS_OK;
+    const struct reach *reach = &ways->reach;
+    int dim = reach->cells.dim;
+    int32_t from = ways->from, node = ways->node[place];
+    if (ways->verdict[place] == WAY_UNKNOWN && node >= 0) {
+        const double *x = reach->cells.x + (int64_t)from * dim;
+        bool sees;
+        TRY(reach_walk(reach, x, reach->star + reach->star_ptr[from],
+                       reach->star_ptr[from + 1] - reach->star_ptr[from], node, &ways->work, &sees, error));
+        double limit = most_detour * reach_distance(dim, x, reach->cells.x + (int64_t)node * dim);
+        if (!sees && ways->searched < limit) {
+            TRY(search(ways, 1.5 * limit, error)); /* for the places that are asked for next, too */
+        }
+        ways->verdict[place] = sees || ways->length[node] <= limit ? WAY_GOOD : WAY_NONE;
+    }
+    *reached = ways->verdict[place] != WAY_NONE;
+done:
+    return status;
+}
