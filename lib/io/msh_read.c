@@ -37,6 +37,7 @@ static const char *foreign_hint(const char *bytes, size_t size)
 #define BY_MESHIO                                                                                            \
     "python3 -c 'import meshio as m; m.write(\"body.msh\", m.read(\"FILE\"), file_format=\"gmsh22\")' "      \
     "makes a mesh of it (python3-meshio)"
+#define WITH_REGIONS "; nodes -h tells how to keep an array of regions"
 #define BY_GMSH(name) "gmsh " name " -save -o body.msh makes a mesh of it"
     static const char stl_hint[] = ": an STL surface: nodes -h tells how to fill it";
     static const char geo_hint[] =
@@ -44,9 +45,9 @@ static const char *foreign_hint(const char *bytes, size_t size)
     static const struct {
         const char *begin, *hint;
     } formats[] = {
-        {"# vtk DataFile", ": a VTK file: " BY_GMSH("FILE.vtk")},
-        {"<?xml", ": an XML file: if it is VTU, " BY_MESHIO},
-        {"<VTKFile", ": a VTU file: " BY_MESHIO},
+        {"# vtk DataFile", ": a VTK file: " BY_MESHIO WITH_REGIONS},
+        {"<?xml", ": an XML file: if it is VTU, " BY_MESHIO WITH_REGIONS},
+        {"<VTKFile", ": a VTU file: " BY_MESHIO WITH_REGIONS},
         {"solid", stl_hint},
         {"MeshVersionFormatted", ": a MEDIT mesh: " BY_GMSH("FILE.mesh")},
         {"*", ": an Abaqus deck: " BY_GMSH("FILE.inp")},
