@@ -1,5 +1,5 @@
-# make gallery: examples that others can judge, each with a picture: a liver (make liver), a bar of silicone whose bending was measured
-# (make phantom), and a probe pressed into tissue against Hertz (make indentation).
+# make gallery: examples that others can judge, each with a picture: a liver (make liver), and a bar of silicone whose bending was
+# measured (make phantom).
 
 GALLERY := $(OUT)/gallery
 LIVER := examples/liver
@@ -37,7 +37,7 @@ $(GALLERY)/liver.png: $(GALLERY)/liver.dat pipelines/stream.awk pipelines/plot/b
 	$(GALLERY_BODY3D) -v field=$< -v view=0.3,-1,0.25 -v most=30 > $(@:.png=.whole)
 	$(GALLERY_BODY3D) -v field=$< -v view=0.3,-1,0.25 -v most=30 -v cut=0,-1,0,-85 > $(@:.png=.part)
 	gnuplot -e "whole='$(@:.png=.whole)'; part='$(@:.png=.part)'; most=30; out='$@'; \
-	    title='A liver, its left lobe lifted by 32 mm; blue: the outline at rest'; second='the same, cut'" pipelines/plot/body3d.gp
+	    title='Left lobe lifted by 32 mm; blue: outline before'; second='the same, cut'" pipelines/plot/body3d.gp
 
 # ---- phantom ---------------------------------------------------------------------------------------------------------
 

@@ -21,7 +21,7 @@ set label 1 "50 mm" at STATS_min_x + 25, STATS_min_y - 14 center front
 unset colorbox
 set lmargin at screen 0.01
 set rmargin at screen 0.46
-set title title font ",16"
+set title title font ",15"
 plot whole index 1 using 1:2:3 with polygons fillcolor rgb variable fillstyle solid, \
      "" index 0 using 1:2:3:4 with vectors nohead linewidth 1.6 linecolor rgb "#2874a6", \
      NaN with points palette
@@ -29,7 +29,7 @@ set lmargin at screen 0.47
 set rmargin at screen 0.91
 unset arrow 1
 unset label 1
-set title second font ",16"
+set title second font ",15"
 set colorbox user origin 0.925, 0.15 size 0.014, 0.6
 plot part index 1 using 1:2:3 with polygons fillcolor rgb variable fillstyle solid, \
      "" index 0 using 1:2:3:4 with vectors nohead linewidth 1.6 linecolor rgb "#2874a6", \
