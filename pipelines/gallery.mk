@@ -1,5 +1,5 @@
-# make gallery: examples that others can judge, each with a picture: a liver (make liver), and a bar of silicone whose bending was
-# measured (make phantom).
+# make gallery: examples that others can judge, each with a picture: a liver (make liver), a bar of silicone whose bending was
+# measured (make phantom), and a probe pressed into tissue beside Hertz (make indentation).
 
 GALLERY := $(OUT)/gallery
 LIVER := examples/liver
@@ -8,8 +8,8 @@ PHANTOM_SIZES := 3.5 2.5 1.8
 GALLERY_PROGRAMS := $(addprefix $(BUILD)/bin/,nodes groups ipoints support shapefn mtled mts)
 GALLERY_LOG = 2> $(@:.dat=.log) || { cat $(@:.dat=.log) >&2; false; }
 
-.PHONY: gallery liver phantom
-gallery: liver phantom
+.PHONY: gallery liver phantom indentation
+gallery: liver phantom indentation
 
 $(GALLERY)/%: export PATH := $(abspath $(BUILD))/bin:$(PATH)
 
@@ -58,3 +58,20 @@ $(GALLERY)/phantom.tsv: $(PHANTOM_SIZES:%=$(GALLERY)/phantom-%.rows) pipelines/g
 $(GALLERY)/phantom.png: $(GALLERY)/phantom-2.5.dat pipelines/gallery/phantom.gp
 	paste <(mts print nodes.x $<) <(mts print u $<) > $(@:.png=.plot)
 	gnuplot -e "data='$(@:.png=.plot)'; out='$@'" pipelines/gallery/phantom.gp
+
+# ---- indentation -----------------------------------------------------------------------------------------------------
+
+indentation: $(GALLERY)/indentation.tsv $(GALLERY)/indentation.png
+	@cat $<
+
+$(GALLERY)/indentation.dat: examples/indentation/tissue.geo examples/indentation/indentation.scene examples/indentation/probe.tsv $(GALLERY_PROGRAMS)
+	@mkdir -p $(@D)
+	gmsh -3 -nt 1 -v 2 $< -o $(@:.dat=.msh)
+	(nodes -u mm $(@:.dat=.msh) | groups -f 'probed=ball:0,0,0,0.0045 and normal:0,0,1,10' | shapefn | \
+	    mtled -v examples/indentation/indentation.scene) > $@ $(GALLERY_LOG)
+
+$(GALLERY)/indentation.tsv: $(GALLERY)/indentation.dat pipelines/gallery/hertz.awk
+	mts print reactions.frames $< | awk -f pipelines/gallery/hertz.awk > $@
+
+$(GALLERY)/indentation.png: $(GALLERY)/indentation.tsv pipelines/gallery/indentation.gp
+	gnuplot -e "data='$<'; out='$@'" pipelines/gallery/indentation.gp
