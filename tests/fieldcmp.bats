@@ -160,11 +160,11 @@ square() {
     cloud -d 2 -k regular -n 9 --box 0,2,0,1 --field linear > a.mts
     cloud -d 2 -k regular -n 9 --box 0,1,0,1 --field linear > b.mts
     run -2 --separate-stderr fieldcmp a.mts b.mts
-    [[ "$stderr" == *"27 nodes of A lie outside of B's cloud, the first is row 6 at (1.5, 0)"*"--skip-outside"* ]]
+    [[ "$stderr" == *"36 nodes of A lie outside of B's cloud, the first is row 5 at (1.25, 0)"*"--skip-outside"* ]]
     [ -z "$output" ]
     run -0 --separate-stderr fieldcmp --skip-outside --tol-max 1e-9 a.mts b.mts
-    [ "$(value outside)" = 27 ]
-    [ "$(value n)" = 54 ]
+    [ "$(value outside)" = 36 ]
+    [ "$(value n)" = 45 ]
     cloud -d 2 -k regular -n 9 --box 7,8,0,1 --field linear > far.mts
     run -2 --separate-stderr fieldcmp --skip-outside far.mts b.mts
     [[ "$stderr" == *"no node of A to compare"* ]]

@@ -3,7 +3,8 @@ static const char usage[] =
     "\n"
     "usage: interp [-f FIELD[,FIELD...]] [--deformed] [-t] [-o FILE] [FILE]\n"
     "       interp -p POINTS [-u UNIT] [-k FACTOR | -R RADIUS] [-b BASIS] [-w WEIGHT] [--mu MU]\n"
-    "              [--mu-unit UNIT] [-f FIELD[,FIELD...]] [--deformed] [-t] [-o FILE] [FILE]\n"
+    "              [--mu-unit UNIT] [-f FIELD[,FIELD...]] [--deformed] [--skip-outside] [-t] [-o FILE]\n"
+    "              [FILE]\n"
     "\n"
     "Reads a stream with nodes.x (m) and fields at the nodes, and writes one with nodes.x = the\n"
     "points (m) and the fields there. By default the points are the stream's own points.x, through\n"
@@ -13,8 +14,9 @@ static const char usage[] =
     "\n"
     "The values of a field are taken as the parameters of the approximation, u_h = sum phi_j u_j: a\n"
     "fit by moving least squares that reproduces linear fields (quadratic ones with mls2, and nearly\n"
-    "so with mmls2) and smooths others. A point farther than two node spacings from every node is an\n"
-    "error.\n"
+    "so with mmls2) and smooths others. A point farther from the cells than the spacing of their nodes\n"
+    "is an error (without cells: farther than two spacings from every node), unless --skip-outside\n"
+    "leaves it out; nearer ones are extrapolated.\n"
     "\n"
     "Options:\n"
     "  -f, --field FIELD,...  the fields (default: every section of type f8 with one row per node)\n"
@@ -29,12 +31,15 @@ static const char usage[] =
     "      --mu MU[,MU...]    regularisation of mmls2, see shapefn\n"
     "      --mu-unit UNIT     MU is absolute, in coordinates of that unit\n"
     "      --deformed         add x.deformed: the points, m, moved by the displacement field u\n"
+    "      --skip-outside     leave out the points that lie in no cell, as of a grid that covers the\n"
+    "                         body; a section points.row then tells the rows of POINTS that are there\n"
     "  -t, --text             write text instead of binary\n"
     "  -o, --output FILE      write to FILE, which appears only when whole\n"
     "\n"
     "Examples:\n"
     "  interp -f u -p landmarks.tsv -u mm --deformed -t u.dat\n"
-    "  interp -p fine.mts coarse.dat | fieldcmp - fine.dat\n";
+    "  interp -p fine.mts coarse.dat | fieldcmp - fine.dat\n"
+    "  interp -f u -p grid.tsv -u mm --skip-outside -t u.dat\n";
 
 #include "mls_options.h"
 #include "stages.h"
@@ -56,6 +61,7 @@ enum {
     BASIS,
     LAST_OF_MLS = BASIS + MLS_OPTION_COUNT - 1,
     DEFORMED,
+    SKIP_OUTSIDE,
     TEXT,
     OUTPUT,
     OPTION_COUNT
@@ -64,7 +70,8 @@ enum {
 /* Points with the neighbours and the values of the shape functions at each. */
 struct points {
     int64_t count;
-    double *x; /* count * dim, m; owned */
+    double *x;    /* count * dim, m; owned */
+    int64_t *row; /* count: of the file, with --skip-outside; owned */
     const int64_t *ptr;
     const int32_t *idx;
     const double *phi;
@@ -82,6 +89,9 @@ static struct support_options parse(const struct tool *tool, const struct option
         }
     }
     tool_check(tool, radius_apply_options(&options[FACTOR], &options[RADIUS], &support, &error), &error);
+    if (options[SKIP_OUTSIDE].given && !options[POINTS].given) {
+        tool_fail(tool, STATUS_INPUT, "--skip-outside needs -p (the stream's own points are in cells)");
+    }
     if (options[UNIT].given) {
         double unit;
         tool_check(tool, parse_length_unit(options[UNIT].value, "-u", &unit, &error), &error);
@@ -136,35 +146,61 @@ static void read_nodes(const struct tool *tool, const char *file, int dim, struc
     stream_free(&other);
 }
 
+/* Leave out the points that lie outside, and tell how many; or fail on the first that lies farther out. */
+static enum status drop_outside(const struct tool *tool, const struct cells *cells, const double *spacing,
+                                bool skip, const char *file, struct points *points, struct error *error)
+{
+    enum status status;
+    int dim = cells->dim;
+    bool *outside = NULL;
+    int64_t kept = 0;
+    TRY(NEW_ARRAY(&outside, points->count, error));
+    TRY(NEW_ARRAY(&points->row, points->count, error));
+    TRY(field_outside(cells, spacing, skip ? 0.0 : FIELD_MARGIN, points->count, points->x, outside, error));
+    for (int64_t i = 0; i < points->count; i++) {
+        if (outside[i] && !skip) {
+            char place[96];
+            point_text(dim, points->x + i * dim, place);
+            status = fail(error, STATUS_INPUT,
+                          "%s: row %lld at %s: farther from the body than the spacing of its nodes: is the "
+                          "unit right? --skip-outside leaves such points out",
+                          file, (long long)i, place);
+            goto done;
+        }
+        if (!outside[i]) {
+            memmove(points->x + kept * dim, points->x + i * dim, (size_t)dim * sizeof *points->x);
+            points->row[kept++] = i;
+        }
+    }
+    if (kept == 0 && points->count > 0) {
+        status = fail(error, STATUS_INPUT, "%s: no point lies in the body: is the unit right?", file);
+    } else if (kept < points->count) {
+        tool_note(tool, "%s: %lld of %lld points lie outside of the body: left out", file,
+                  (long long)(points->count - kept), (long long)points->count);
+    }
+    points->count = kept;
+done:
+    free(outside);
+    return status;
+}
+
 /* Supports and shape functions at points of the user's. */
-static enum status make_table(const struct support_options *support, const struct stream *stream,
-                              const char *file, struct points *points, struct error *error)
+static enum status make_table(const struct tool *tool, const struct support_options *support,
+                              const struct stream *stream, bool skip, const char *file, struct points *points,
+                              struct error *error)
 {
     enum status status;
     struct cells cells;
-    struct point_grid grid = {0};
     double *spacing = NULL;
-    int64_t outside;
     TRY(stream_cells(stream, false, &cells, error));
     TRY(NEW_ARRAY(&spacing, cells.node_count, error));
     TRY(field_spacing(&cells, spacing, error));
-    TRY(point_grid_build(&grid, cells.dim, cells.node_count, cells.x, spacing, error));
-    TRY(field_first_outside(&grid, 0, points->count, points->x, &outside, error));
-    if (outside < points->count) {
-        char place[96];
-        point_text(cells.dim, points->x + outside * cells.dim, place);
-        status =
-            fail(error, STATUS_INPUT,
-                 "%s: row %lld at %s: farther than two node spacings from every node: is the unit right?",
-                 file, (long long)outside, place);
-        goto done;
-    }
+    TRY(drop_outside(tool, &cells, spacing, skip, file, points, error));
     TRY(field_table_build(support, &cells, spacing, points->count, points->x, file, &points->own, error));
     points->ptr = points->own.lists.ptr;
     points->idx = points->own.lists.idx;
     points->phi = points->own.phi;
 done:
-    point_grid_free(&grid);
     free(spacing);
     return status;
 }
@@ -291,7 +327,8 @@ static void find_points(const struct tool *tool, const struct option *options, s
     } else {
         read_nodes(tool, file, dim, points);
     }
-    tool_check(tool, make_table(&support, stream, file, points, &error), &error);
+    tool_check(tool, make_table(tool, &support, stream, options[SKIP_OUTSIDE].given, file, points, &error),
+               &error);
 }
 
 /* A stream of the same descent that holds the points; it takes points->x. */
@@ -325,6 +362,7 @@ int main(int argc, char *argv[])
         [RADIUS] = {.letter = 'R', .name = "radius", .takes_value = true},
         [BASIS] = MLS_OPTIONS,
         [DEFORMED] = {.name = "deformed"},
+        [SKIP_OUTSIDE] = {.name = "skip-outside"},
         [TEXT] = {.letter = 't', .name = "text"},
         [OUTPUT] = {.letter = 'o', .name = "output", .takes_value = true},
     };
@@ -345,9 +383,15 @@ int main(int argc, char *argv[])
     if (options[DEFORMED].given) {
         put_deformed(&tool, &stream, dim, node_count, &points, &output);
     }
+    if (options[SKIP_OUTSIDE].given) {
+        tool_check(&tool,
+                   stream_put(&output, "points.row", TYPE_I8, points.count, 1, "", points.row, false, &error),
+                   &error);
+    }
     tool_write(&tool, &output, options[TEXT].given);
     field_table_free(&points.own);
     stream_free(&output);
+    free(points.row);
     stream_free(&stream);
     return tool_end(&tool);
 }

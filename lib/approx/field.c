@@ -29,23 +29,6 @@ done:
     return status;
 }
 
-enum status field_first_outside(const struct point_grid *grid, int64_t from, int64_t count, const double *x,
-                                int64_t *row, struct error *error)
-{
-    enum status status = STATUS_OK;
-    struct index_list list = {0};
-    for (*row = from; *row < count; ++*row) {
-        list.count = 0;
-        TRY(point_grid_query(grid, x + *row * grid->dim, 2.0, &list, error));
-        if (list.count == 0) {
-            break;
-        }
-    }
-done:
-    free(list.index);
-    return status;
-}
-
 enum status field_table_build(const struct support_options *options, const struct cells *cells,
                               const double *spacing, int64_t count, const double *x, const char *what,
                               struct field_table *table, struct error *error)

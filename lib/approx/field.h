@@ -12,11 +12,15 @@
  * nodes of no cell. */
 MUST_CHECK enum status field_spacing(const struct cells *cells, double *spacing, struct error *error);
 
-/* *row: the first of x[count * dim], from row `from` on, that is farther from every node than twice that
- * node's spacing (there an interpolation would be an invention); count when there is none. `grid` was built
- * on the nodes with the spacings as radii. */
-MUST_CHECK enum status field_first_outside(const struct point_grid *grid, int64_t from, int64_t count,
-                                           const double *x, int64_t *row, struct error *error);
+/* outside[count]: whether a point of x[count * dim] is farther from every cell than `within` times the
+ * spacing of that cell's nodes (0: lies in no cell); where there are no cells, farther from every node than
+ * twice that node's spacing. There an interpolation would be an invention. */
+MUST_CHECK enum status field_outside(const struct cells *cells, const double *spacing, double within,
+                                     int64_t count, const double *x, bool *outside, struct error *error);
+
+/* How far from the cells, in spacings, values are still given: landmarks and nodes of another mesh lie a
+ * little beyond a boundary that is curved. */
+#define FIELD_MARGIN 1.0
 
 /* Lists and values of shape functions at points. */
 struct field_table {

@@ -150,22 +150,23 @@ double field_percentile(const struct field_statistics *statistics, double percen
                                  : NAN;
 }
 
-/* Drop the chosen nodes outside of B's cloud, or fail on the first. */
+/* Drop the chosen nodes outside of B's body, or fail on the first; points: those that are kept. */
 static enum status drop_outside(const struct nodal_field *a, const struct nodal_field *b,
                                 const double *spacing, bool skip, struct field_comparison *comparison,
                                 double *points, struct error *error)
 {
     enum status status;
-    struct point_grid grid = {0};
+    bool *outside = NULL;
     int dim = a->cells.dim;
     int64_t kept = 0, first = -1;
-    TRY(point_grid_build(&grid, dim, b->cells.node_count, b->cells.x, spacing, error));
     for (int64_t i = 0; i < comparison->count; i++) {
-        const double *x = a->cells.x + comparison->node[i] * dim;
-        int64_t outside;
-        TRY(field_first_outside(&grid, 0, 1, x, &outside, error));
-        if (outside == 1) {
-            memcpy(points + kept * dim, x, (size_t)dim * sizeof *x);
+        memcpy(points + i * dim, a->cells.x + comparison->node[i] * dim, (size_t)dim * sizeof *points);
+    }
+    TRY(NEW_ARRAY(&outside, comparison->count, error));
+    TRY(field_outside(&b->cells, spacing, FIELD_MARGIN, comparison->count, points, outside, error));
+    for (int64_t i = 0; i < comparison->count; i++) {
+        if (!outside[i]) {
+            memmove(points + kept * dim, points + i * dim, (size_t)dim * sizeof *points);
             comparison->node[kept++] = comparison->node[i];
         } else if (first < 0) {
             first = comparison->node[i];
@@ -181,7 +182,7 @@ static enum status drop_outside(const struct nodal_field *a, const struct nodal_
                  (long long)comparison->outside, (long long)first, place);
     }
 done:
-    point_grid_free(&grid);
+    free(outside);
     return status;
 }
 

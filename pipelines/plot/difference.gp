@@ -1,6 +1,6 @@
 # Maps of the difference from the reference, side by side on one scale:
 # gnuplot -e "data='FILE...'; titles='TITLE|...'; most=MM; out='FILE.png'" difference.gp
-# data are what difference.awk writes; differences beyond `most` mm have the last colour.
+# data are what difference.awk writes; differences beyond `most` mm are green.
 
 count = words(data)
 cut(text, bar) = bar == 0 ? text : text[1:bar - 1]
@@ -13,9 +13,13 @@ set output out
 left = 110.0 / (count * width + 240)
 step = width * 1.0 / (count * width + 240)
 
-set palette defined (0 "#fcfdbf", 1 "#fec488", 2 "#fb8761", 3 "#e55064", 4 "#b5367a", 5 "#812581", 6 "#4f127b", 7 "#1c1044", 8 "#000004")
+# The last tenth of the scale is one colour, for all that exceeds it.
+set palette maxcolors 200 defined (0 "#fcfdbf", 1 "#fec488", 2 "#fb8761", 3 "#e55064", 4 "#b5367a", 5 "#812581", 6 "#4f127b", 7 "#1c1044", \
+    7.001 "#1e9e5a", 7.7 "#1e9e5a")
 set pm3d map corners2color mean interpolate 6,6 border retrace
-set cbrange [0:most]
+set cbrange [0:1.1 * most]
+set cbtics 0, most / 6
+set cbtics add ("more" 1.05 * most)
 set cblabel "difference from the reference, mm" offset 1,0
 set size ratio -1
 set xrange [-72:74]

@@ -1,7 +1,8 @@
 # Data for section.gp: awk -f pipelines/stream.awk -f section.awk -v mesh=STREAM [-v field=STREAM] > FILE
 #
 # mesh: what `nodes -t` writes; field: a text stream with u, the body is drawn where it comes to lie. Lengths in mm. Blocks:
-# "region NAME" (closed triangles) for each region, then "outline undeformed" and "outline deformed" (facets).
+# "region NAME" (closed triangles) for each region, then "outline undeformed" and "outline deformed" (facets), then "inner undeformed"
+# and "inner deformed", the edges between two regions.
 
 BEGIN {
     read_stream(mesh, "")
@@ -29,6 +30,21 @@ BEGIN {
     outline(rest)
     print "\n# outline deformed"
     outline(moved)
+    print "\n# inner undeformed"
+    inner(rest)
+    print "\n# inner deformed"
+    inner(moved)
+}
+
+function inner(at,    c, k, a, b, region, region_of) {
+    for (c = 0; c < rows["cells"]; c++)
+        for (k = 0; k < 3; k++) {
+            a = value["cells", c, k] + 0
+            b = value["cells", c, (k + 1) % 3] + 0
+            region = value["cells.region", c, 0]
+            if ((b, a) in region_of && region_of[b, a] != region) { point(at, a); point(at, b); print "" }
+            region_of[a, b] = region
+        }
 }
 
 function point(at, i) {

@@ -74,22 +74,48 @@ static void spacing_with_and_without_cells(void **state)
     assert_true(spacing[4] == nearest[4]);
 }
 
-static void outside(void **state)
+/* A cloud of nodes alone: within twice a node's spacing. */
+static void outside_of_nodes(void **state)
 {
     (void)state;
     static const double x[] = {0, 0, 1, 0, 0, 1}, spacing[] = {1, 1, 1};
     static const double points[] = {0.5, 0.5, 2.9, 0, 0, -1.9, 3.1, 0, 0, -2.1, 0, 0};
-    struct point_grid grid;
+    static const bool expected[] = {false, false, false, true, true, false};
+    struct cells cells = {2, 3, x, 0, NULL};
+    bool got[6];
     struct error error;
-    int64_t row;
-    good(point_grid_build(&grid, 2, 3, x, spacing, &error), &error);
-    good(field_first_outside(&grid, 0, 6, points, &row, &error), &error);
-    assert_int_equal(row, 3);
-    good(field_first_outside(&grid, 4, 6, points, &row, &error), &error);
-    assert_int_equal(row, 4);
-    good(field_first_outside(&grid, 5, 6, points, &row, &error), &error);
-    assert_int_equal(row, 6);
-    point_grid_free(&grid);
+    good(field_outside(&cells, spacing, FIELD_MARGIN, 6, points, got, &error), &error);
+    assert_memory_equal(got, expected, sizeof got);
+}
+
+/* Beyond a side, beyond a corner (an edge, in 3D), in a notch between cells; within 0 and within a margin. */
+static void outside_of_cells(void **state)
+{
+    (void)state;
+    static const double x2[] = {0, 0, 1, 0, 1, 1, 0, 1, 2, 0, 2, 1}, spacing[] = {1, 1, 1, 1, 1, 1};
+    static const int32_t triangle[] = {0, 1, 2, 0, 2, 3, 1, 4, 5};
+    static const double points2[] = {0.5, 0.5,   1,   0.5,  1.2,  0.6,  -0.19,
+                                     0.5, -0.21, 0.5, 2.14, 1.14, 2.15, 1.15};
+    static const bool in2[] = {false, false, true, true, true, true, true};
+    static const bool near2[] = {false, false, false, false, true, false, true};
+    static const double x3[] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1};
+    static const int32_t tetrahedron[] = {0, 1, 2, 3};
+    static const double points3[] = {0.2,   0.2,   0.2,   0.5,  0.5,   0,     0.5,   0.2,   -0.19,
+                                     0.5,   -0.14, -0.14, 0.5,  -0.15, -0.15, -0.11, -0.11, -0.11,
+                                     -0.12, -0.12, -0.12, 0.44, 0.44,  0.44,  0.46,  0.46,  0.46};
+    static const bool in3[] = {false, false, true, true, true, true, true, true, true};
+    static const bool near3[] = {false, false, false, false, true, false, true, false, true};
+    struct cells cells2 = {2, 6, x2, 3, triangle}, cells3 = {3, 4, x3, 1, tetrahedron};
+    bool got[9];
+    struct error error;
+    good(field_outside(&cells2, spacing, 0.0, 7, points2, got, &error), &error);
+    assert_memory_equal(got, in2, sizeof in2);
+    good(field_outside(&cells2, spacing, 0.2, 7, points2, got, &error), &error);
+    assert_memory_equal(got, near2, sizeof near2);
+    good(field_outside(&cells3, spacing, 0.0, 9, points3, got, &error), &error);
+    assert_memory_equal(got, in3, sizeof in3);
+    good(field_outside(&cells3, spacing, 0.2, 9, points3, got, &error), &error);
+    assert_memory_equal(got, near3, sizeof near3);
 }
 
 /* In order, in another order, with two nodes at one place, and moved by more than round-off. */
@@ -237,7 +263,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(linear_fields_are_exact),
         cmocka_unit_test(spacing_with_and_without_cells),
-        cmocka_unit_test(outside),
+        cmocka_unit_test(outside_of_nodes),
+        cmocka_unit_test(outside_of_cells),
         cmocka_unit_test(matching),
         cmocka_unit_test(statistics_of_differences),
         cmocka_unit_test(comparisons),

@@ -1,0 +1,9 @@
+// A block of 2 x 1 x 1 in 8 n x 4 n x 4 n bricks (n = 1: 225 nodes).
+DefineConstant[ n = 1 ];
+Point(1) = {-1, -0.5, 0};
+line() = Extrude {0, 1, 0} { Point{1}; Layers{4 * n}; Recombine; };
+face() = Extrude {0, 0, 1} { Line{line(1)}; Layers{4 * n}; Recombine; };
+body() = Extrude {2, 0, 0} { Surface{face(1)}; Layers{8 * n}; Recombine; };
+Physical Volume("body") = {body(1)};
+Physical Surface("left") = {face(1)};
+Physical Surface("right") = {body(0)};

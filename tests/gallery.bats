@@ -1,0 +1,49 @@
+# The examples that others can judge, coarsely: a liver, a bar of silicone that was measured.
+
+bats_require_minimum_version 1.5.0
+
+setup() {
+    cd "$BATS_TEST_TMPDIR"
+    set -o pipefail
+    top=$BATS_TEST_DIRNAME/..
+}
+
+@test "liver: a surface from an image, named by groups, its lobe lifted; forces balance, the volume stays" {
+    gzip -dc "$top/examples/liver/liver_surface.stl.gz" > liver_surface.stl
+    cp "$top/examples/liver/liver.geo" .
+    gmsh -3 -nt 1 -v 1 liver.geo -setnumber lc 25 -o liver.msh
+    { cat "$top/examples/liver/liver.scene" && printf 'volume_ratio = yes\n[solver]\ntolerance = 1e-3\n'; } > liver.scene
+    nodes -u mm liver.msh 2> said | groups -f 'held=normal:0,1,0,50 and box:0,0,0.11,0.17,1,0.18' -f 'tip=high:x,6%' 2>> said |
+        shapefn 2>> said > table.mts
+    mtled liver.scene table.mts > u.dat
+    mts print reactions u.dat | awk '
+        { for (i = 1; i <= 3; i++) { sum[i] += $i; if (NR == 2) force += $i^2 } }
+        END { print force, sum[1], sum[2], sum[3]; exit !(NR == 2 && force > 0.1 && force < 0.6 && sum[1]^2 + sum[2]^2 + sum[3]^2 < 1e-6 * force) }'
+    # Tissue of nu = 0.49 keeps its volume on average.
+    paste <(mts print volume_ratio u.dat) <(mts print points.weight table.mts) |
+        awk '{ v += $2; w += $1 * $2 } END { print w / v; exit !(w / v > 0.99 && w / v < 1.01 && NR > 500) }'
+    # Pictures: whole and cut, the cut leaves out what lies in front of it.
+    awk -f "$top/pipelines/stream.awk" -f "$top/pipelines/plot/body3d.awk" -v field=u.dat -v view=0.3,-1,0.25 -v most=30 > whole
+    awk -f "$top/pipelines/stream.awk" -f "$top/pipelines/plot/body3d.awk" -v field=u.dat -v view=0.3,-1,0.25 -v most=30 -v cut=0,-1,0,-85 > part
+    awk 'FNR == 1 { file++ } NF == 3 { n[file]++ } NF == 4 { outline[file]++ }
+        END { exit !(n[1] > 500 && n[2] > 300 && outline[1] > 20 && outline[1] == outline[2]) }' whole part
+}
+
+@test "phantom: the tip of a bar of silicone under its weight is within 2 % of its length of where it was measured" {
+    gmsh -3 -nt 1 -v 1 "$top/examples/phantom/beam.geo" -setnumber h 4 -o beam.msh
+    { cat "$top/examples/phantom/beam.scene" && printf '[solver]\ntolerance = 1e-3\n'; } > beam.scene
+    nodes -u mm beam.msh | shapefn 2> said | mtled beam.scene > u.dat
+    awk -f "$top/pipelines/stream.awk" -f "$top/pipelines/gallery/tip.awk" -v field=u.dat | tee rows
+    awk -F '\t' '$1 ~ /^distance/ { exit !($5 < 1) }' rows
+    awk -F '\t' '$1 ~ /measured|thin/ { n++; if (!($5 > 0.97 && $5 < 1.03)) bad = 1 } END { exit bad || n != 4 }' rows
+    mts print reactions u.dat | awk '{ w = 965 * 9.81 * 3.14159265 * 0.00425^2 * 0.182; exit !($2 / w > 0.999 && $2 / w < 1.001) }'
+}
+
+@test "indentation: the force on a ball that is pressed in is that of Hertz, the body held at 120 mm" {
+    gmsh -3 -nt 1 -v 1 "$top/examples/indentation/tissue.geo" -o tissue.msh
+    cp "$top/examples/indentation/probe.tsv" .
+    sed 's/^frames = .*/frames = 1/; s/^tolerance = .*/tolerance = 1e-2/' "$top/examples/indentation/indentation.scene" > a.scene
+    nodes -u mm tissue.msh | groups -f 'probed=ball:0,0,0,0.0045 and normal:0,0,1,10' 2> said | shapefn 2> said | mtled a.scene > u.dat
+    mts print reactions.frames u.dat | awk -f "$top/pipelines/gallery/hertz.awk" | tee rows
+    awk 'NR == 2 { ok = $5 > 0.98 && $5 < 1.02 && $1 == 0.6 } END { exit !(ok && NR == 2) }' rows
+}
