@@ -142,38 +142,139 @@ static bool enough(int count, double largest, double least)
     return count >= least_share * sqrt(largest / fmax(least, 1e-14 * largest));
 }
 
+/* y[n]: the eigenvector of that matrix to its least eigenvalue, by inverse iteration from just below it. */
+static void least_eigenvector(int n, const double *diagonal, const double *beside, double least,
+                              double *pivot, double *y)
+{
+    double shift = least - 1e-3 * fabs(least);
+    for (int i = 0; i < n; i++) {
+        pivot[i] = diagonal[i] - shift - (i > 0 ? beside[i - 1] * beside[i - 1] / pivot[i - 1] : 0.0);
+        y[i] = 1.0;
+    }
+    for (int turn = 0; turn < 4; turn++) {
+        for (int i = 1; i < n; i++) {
+            y[i] -= beside[i - 1] / pivot[i - 1] * y[i - 1];
+        }
+        for (int i = n - 1; i >= 0; i--) {
+            y[i] = (y[i] - (i + 1 < n ? beside[i] * y[i + 1] : 0.0)) / pivot[i];
+        }
+        double scale = 1.0 / largest_entry(y, n);
+        for (int i = 0; i < n; i++) {
+            y[i] *= scale;
+        }
+    }
+}
+
+/* The node that moves most in a vector of the nodes. */
+static int32_t most_moved(int dim, int64_t node_count, const double *vector)
+{
+    double most = -1.0;
+    int32_t node = 0;
+    for (int64_t n = 0; n < node_count; n++) {
+        double sum = 0.0;
+        for (int a = 0; a < dim; a++) {
+            sum += vector[n * dim + a] * vector[n * dim + a];
+        }
+        if (sum > most) {
+            most = sum;
+            node = (int32_t)n;
+        }
+    }
+    return node;
+}
+
+/* A Lanczos iteration at a state. */
+struct lanczos {
+    struct solid_system *system;
+    struct inertia *inertia;
+    const double *u, *residual;
+    double spacing;
+    double *vector, *before, *product, *displaced; /* system->node_count * dim */
+    double norm;                                   /* of vector, in the product of the mass */
+};
+
+static void lanczos_begin(struct lanczos *l)
+{
+    constraint_project(&l->inertia->constraint, NULL, l->vector);
+    memset(l->before, 0, (size_t)(l->system->node_count * l->system->dim) * sizeof *l->before);
+    l->norm = sqrt(inertia_product(l->inertia, l->vector, l->vector));
+}
+
+/* Entries k of the diagonal and beside it; before: the k-th vector, of norm 1. */
+static void lanczos_step(struct lanczos *l, int k, double *diagonal, double *beside)
+{
+    int64_t size = l->system->node_count * l->system->dim;
+    double coupling = k > 0 ? l->norm : 0.0, *product = l->product;
+    for (int64_t i = 0; i < size; i++) {
+        l->vector[i] /= l->norm;
+    }
+    apply(l->system, l->inertia, l->u, l->residual, l->spacing, l->vector, l->displaced, product);
+    diagonal[k] = inertia_product(l->inertia, l->vector, product);
+    for (int64_t i = 0; i < size; i++) {
+        product[i] -= diagonal[k] * l->vector[i] + coupling * l->before[i];
+    }
+    l->norm = beside[k] = sqrt(inertia_product(l->inertia, product, product));
+    memcpy(l->before, l->vector, (size_t)size * sizeof *l->before);
+    memcpy(l->vector, product, (size_t)size * sizeof *l->vector);
+}
+
+/* The node that the mode of the least eigenvalue moves most, by the same `count` iterations once more from
+ * `start`, which becomes the mode. */
+static enum status find_node_of_mode(struct lanczos *l, int count, double *diagonal, double *beside,
+                                     double value, double *start, int32_t *node, struct error *error)
+{
+    enum status status;
+    int64_t size = l->system->node_count * l->system->dim;
+    double *share = NULL, *pivot = NULL;
+    TRY(NEW_ARRAY(&share, count, error));
+    TRY(NEW_ARRAY(&pivot, count, error));
+    least_eigenvector(count, diagonal, beside, value, pivot, share);
+    memcpy(l->vector, start, (size_t)size * sizeof *start);
+    memset(start, 0, (size_t)size * sizeof *start);
+    lanczos_begin(l);
+    for (int k = 0; k < count; k++) {
+        lanczos_step(l, k, diagonal, beside);
+        for (int64_t i = 0; i < size; i++) {
+            start[i] += share[k] * l->before[i];
+        }
+    }
+    *node = most_moved(l->system->dim, l->system->node_count, start);
+done:
+    free(share);
+    free(pivot);
+    return status;
+}
+
 enum status system_lowest_eigenvalue(struct solid_system *system, struct inertia *inertia, const double *u,
                                      const double *residual, int most_iterations, double *start,
                                      double *scratch, double *value, int *iterations, struct error *error)
 {
     enum status status;
     int64_t size = system->node_count * system->dim;
-    double *vector = start, *before = scratch, *product = scratch + size, *displaced = scratch + 2 * size;
-    double *diagonal = NULL, *beside = NULL;
-    double spacing = point_spacing(system), last = INFINITY;
+    double *diagonal = NULL, *beside = NULL, *vector = NULL, last = INFINITY, largest = 0.0;
     int next_check = first_check;
     *iterations = 0;
     *value = INFINITY;
+    system->spectrum = (struct spectrum){0};
     TRY(NEW_ARRAY(&diagonal, most_iterations, error));
     TRY(NEW_ARRAY(&beside, most_iterations, error));
-    memset(before, 0, (size_t)size * sizeof *before);
-    constraint_project(&inertia->constraint, NULL, vector);
-    double norm = sqrt(inertia_product(inertia, vector, vector)), coupling = 0.0, largest = 0.0;
-    for (int k = 0; k < most_iterations && norm > 1e-12 * largest; k++) {
-        for (int64_t i = 0; i < size; i++) {
-            vector[i] /= norm;
-        }
-        apply(system, inertia, u, residual, spacing, vector, displaced, product);
-        diagonal[k] = inertia_product(inertia, vector, product);
-        for (int64_t i = 0; i < size; i++) {
-            product[i] -= diagonal[k] * vector[i] + coupling * before[i];
-        }
-        norm = coupling = beside[k] = sqrt(inertia_product(inertia, product, product));
+    TRY(NEW_ARRAY(&vector, size, error));
+    memcpy(vector, start, (size_t)size * sizeof *start);
+    struct lanczos l = {.system = system,
+                        .inertia = inertia,
+                        .u = u,
+                        .residual = residual,
+                        .spacing = point_spacing(system),
+                        .vector = vector,
+                        .before = scratch,
+                        .product = scratch + size,
+                        .displaced = scratch + 2 * size};
+    lanczos_begin(&l);
+    for (int k = 0; k < most_iterations && l.norm > 1e-12 * largest; k++) {
+        lanczos_step(&l, k, diagonal, beside);
         largest = fmax(largest, diagonal[k]);
-        memcpy(before, vector, (size_t)size * sizeof *before);
-        memcpy(vector, product, (size_t)size * sizeof *vector);
         *iterations = k + 1;
-        if (k + 1 == next_check || k + 1 == most_iterations || !(norm > 1e-12 * largest)) {
+        if (k + 1 == next_check || k + 1 == most_iterations || !(l.norm > 1e-12 * largest)) {
             *value = least_eigenvalue(k + 1, diagonal, beside);
             bool is_settled = enough(k + 1, largest, *value) && last - *value < settled_change * *value;
             if (is_settled || *value < least_told * largest) {
@@ -183,8 +284,16 @@ enum status system_lowest_eigenvalue(struct solid_system *system, struct inertia
             next_check = (int)ceil(next_check * check_growth);
         }
     }
+    if (isfinite(*value)) {
+        system->spectrum.least = *value / largest;
+    }
+    if (*value < least_told * largest) {
+        TRY(find_node_of_mode(&l, *iterations, diagonal, beside, *value, start, &system->spectrum.node,
+                              error));
+    }
 done:
     free(diagonal);
     free(beside);
+    free(vector);
     return status;
 }

@@ -18,8 +18,8 @@ double system_largest_frequency(struct solid_system *system, struct inertia *ine
  * overwritten). K is the difference of residuals, one evaluation an iteration; residual must hold the
  * residual at u. The estimate falls toward the eigenvalue from above; it ends when a third more iterations
  * changed it by less than 5 %, when it is negative, or after most_iterations. *value <= 0: no minimum of the
- * energy, or a contact that opens or closes there. *iterations receives how many there were. scratch: 3 *
- * node_count * dim. */
+ * energy, or a contact that opens or closes there; which system->spectrum keeps, with the place. *iterations
+ * receives how many there were. scratch: 3 * node_count * dim. */
 MUST_CHECK enum status system_lowest_eigenvalue(struct solid_system *system, struct inertia *inertia,
                                                 const double *u, const double *residual, int most_iterations,
                                                 double *start, double *scratch, double *value,

@@ -35,6 +35,12 @@ struct cost {
     double force, loads, contact, constraints;
 };
 
+/* The least eigenvalue of M^-1 K at the state where it was looked for last, see solid/frequency.h. */
+struct spectrum {
+    double least; /* by the largest; negative: the state is not stable. 0: not looked for */
+    int32_t node; /* negative: where its mode moves most */
+};
+
 struct solid_system {
     int dim;
     int64_t node_count;
@@ -65,6 +71,7 @@ struct solid_system {
     int64_t curve_count;
     double *lumped_mass; /* node_count, kg (2D: kg/m), positive: each cell shares its mass among its nodes */
     double *factor;      /* curve_count: scratch, values of the curves */
+    struct spectrum spectrum;
     struct cost cost;
 };
 
