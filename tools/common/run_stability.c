@@ -9,8 +9,10 @@
  * error has become `growth` times as large. */
 static const double near_error = 0.1, growth = 10.0;
 
-/* Looks until the estimate of the error follows what has been changed. */
+/* The estimate follows what has been changed after so many looks. One that rises by more than this in a look
+ * is itself corrected: a slower mode was found. */
 static const int64_t first_looks = 2;
+static const double jump = 4.0;
 
 /* Augmenting a contact changes its problem. */
 static double multipliers(const struct run *run)
@@ -36,7 +38,7 @@ void run_stability_begin(struct run *run)
     struct error error;
     struct run_stability *stability = &run->stability;
     const struct state *restored = run_checkpoint_state(run);
-    *stability = (struct run_stability){.error = INFINITY};
+    *stability = (struct run_stability){.error = INFINITY, .last = INFINITY};
     stability->near = run_new_values(run, parameter_count(run));
     if (restored != NULL) {
         tool_check(run->tool, run_stability_state(run, restored, &error), &error);
@@ -55,7 +57,9 @@ void run_stability_follow(struct run *run, const struct progress *progress)
     if (stability->left || run->scene->analysis == SCENE_DYNAMIC) {
         return;
     }
-    if (progress->time != stability->load || sum != stability->multipliers) {
+    bool corrected = progress->error > jump * stability->last;
+    stability->last = progress->error;
+    if (progress->time != stability->load || sum != stability->multipliers || corrected) {
         stability->load = progress->time;
         stability->multipliers = sum;
         stability->error = INFINITY;
@@ -87,12 +91,16 @@ void run_stability_look(struct run *run, double load)
 enum status run_stability_state(struct run *run, const struct state *state, struct error *error)
 {
     struct run_stability *s = &run->stability;
-    const struct state_value values[] = {
-        {"load", STATE_NUMBERS, &s->load, 1},       {"multipliers", STATE_NUMBERS, &s->multipliers, 1},
-        {"error", STATE_NUMBERS, &s->error, 1},     {"near", STATE_NUMBERS, s->near, parameter_count(run)},
-        {"looks", STATE_COUNTS, &s->looks, 1},      {"left", STATE_FLAGS, &s->left, 1},
-        {"negative", STATE_FLAGS, &s->negative, 1}, {"since", STATE_NUMBERS, &s->since, 1},
-        {"node", STATE_COUNTS, &s->node, 1}};
+    const struct state_value values[] = {{"load", STATE_NUMBERS, &s->load, 1},
+                                         {"multipliers", STATE_NUMBERS, &s->multipliers, 1},
+                                         {"error", STATE_NUMBERS, &s->error, 1},
+                                         {"last", STATE_NUMBERS, &s->last, 1},
+                                         {"near", STATE_NUMBERS, s->near, parameter_count(run)},
+                                         {"looks", STATE_COUNTS, &s->looks, 1},
+                                         {"left", STATE_FLAGS, &s->left, 1},
+                                         {"negative", STATE_FLAGS, &s->negative, 1},
+                                         {"since", STATE_NUMBERS, &s->since, 1},
+                                         {"node", STATE_COUNTS, &s->node, 1}};
     return state_visit(state, "stability", values, sizeof values / sizeof *values, error);
 }
 

@@ -13,7 +13,7 @@ struct run_stability {
     /* The state nearest to equilibrium since the load is held and the contacts' multipliers are the same. */
     double load;        /* that is held */
     double multipliers; /* their sum, Pa */
-    double error;       /* estimated there, by the displacement */
+    double error, last; /* estimated there, and at the last look, by the displacement */
     double *near;       /* its parameters, node_count * dim */
     int64_t looks;      /* since then */
     /* What was seen first. */
