@@ -218,10 +218,11 @@ static void lanczos_step(struct lanczos *l, int k, double *diagonal, double *bes
     memcpy(l->vector, product, (size_t)size * sizeof *l->vector);
 }
 
-/* The node that the mode of the least eigenvalue moves most, by the same `count` iterations once more from
- * `start`, which becomes the mode. */
-static enum status find_node_of_mode(struct lanczos *l, int count, double *diagonal, double *beside,
-                                     double value, double *start, int32_t *node, struct error *error)
+/* The mode of a negative eigenvalue, by the same `count` iterations once more from `start`, which becomes the
+ * mode. spectrum->least is its Rayleigh quotient, by `largest`, which no round-off of the iteration makes
+ * negative. */
+static enum status find_mode(struct lanczos *l, int count, double *diagonal, double *beside, double value,
+                             double largest, double *start, struct spectrum *spectrum, struct error *error)
 {
     enum status status;
     int64_t size = l->system->node_count * l->system->dim;
@@ -238,7 +239,11 @@ static enum status find_node_of_mode(struct lanczos *l, int count, double *diago
             start[i] += share[k] * l->before[i];
         }
     }
-    *node = most_moved(l->system->dim, l->system->node_count, start);
+    memcpy(l->vector, start, (size_t)size * sizeof *start);
+    lanczos_begin(l);
+    lanczos_step(l, 0, diagonal, beside);
+    spectrum->least = diagonal[0] < least_told * largest ? diagonal[0] / largest : 0.0;
+    spectrum->node = most_moved(l->system->dim, l->system->node_count, start);
 done:
     free(share);
     free(pivot);
@@ -284,12 +289,10 @@ enum status system_lowest_eigenvalue(struct solid_system *system, struct inertia
             next_check = (int)ceil(next_check * check_growth);
         }
     }
-    if (isfinite(*value)) {
-        system->spectrum.least = *value / largest;
-    }
     if (*value < least_told * largest) {
-        TRY(find_node_of_mode(&l, *iterations, diagonal, beside, *value, start, &system->spectrum.node,
-                              error));
+        TRY(find_mode(&l, *iterations, diagonal, beside, *value, largest, start, &system->spectrum, error));
+    } else if (isfinite(*value)) {
+        system->spectrum.least = *value / largest;
     }
 done:
     free(diagonal);

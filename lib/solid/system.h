@@ -37,7 +37,8 @@ struct cost {
 
 /* The least eigenvalue of M^-1 K at the state where it was looked for last, see solid/frequency.h. */
 struct spectrum {
-    double least; /* by the largest; negative: the state is not stable. 0: not looked for */
+    double least; /* by the largest; negative: the state is not stable. 0: not looked for, or lost in
+                     round-off */
     int32_t node; /* negative: where its mode moves most */
 };
 

@@ -14,20 +14,6 @@ static const double near_error = 0.1, growth = 10.0;
 static const int64_t first_looks = 2;
 static const double jump = 4.0;
 
-/* Augmenting a contact changes its problem. */
-static double multipliers(const struct run *run)
-{
-    const struct solid_system *system = &run->model->system;
-    double sum = 0.0;
-    for (int64_t c = 0; c < system->contact_count; c++) {
-        const struct contact *contact = &system->contacts[c];
-        for (int64_t a = 0; a < contact->count && !contact->penalty_only; a++) {
-            sum += contact->multiplier[a];
-        }
-    }
-    return sum;
-}
-
 static int64_t parameter_count(const struct run *run)
 {
     return run->model->system.node_count * run->model->system.dim;
@@ -53,15 +39,13 @@ void run_stability_free(struct run *run)
 void run_stability_follow(struct run *run, const struct progress *progress)
 {
     struct run_stability *stability = &run->stability;
-    double sum = multipliers(run);
-    if (stability->left || run->scene->analysis == SCENE_DYNAMIC) {
+    if (stability->left || run->scene->analysis == SCENE_DYNAMIC || run->model->system.contact_count > 0) {
         return;
     }
     bool corrected = progress->error > jump * stability->last;
     stability->last = progress->error;
-    if (progress->time != stability->load || sum != stability->multipliers || corrected) {
+    if (progress->time != stability->load || corrected) {
         stability->load = progress->time;
-        stability->multipliers = sum;
         stability->error = INFINITY;
         stability->looks = 0;
     }
@@ -91,16 +75,12 @@ void run_stability_look(struct run *run, double load)
 enum status run_stability_state(struct run *run, const struct state *state, struct error *error)
 {
     struct run_stability *s = &run->stability;
-    const struct state_value values[] = {{"load", STATE_NUMBERS, &s->load, 1},
-                                         {"multipliers", STATE_NUMBERS, &s->multipliers, 1},
-                                         {"error", STATE_NUMBERS, &s->error, 1},
-                                         {"last", STATE_NUMBERS, &s->last, 1},
-                                         {"near", STATE_NUMBERS, s->near, parameter_count(run)},
-                                         {"looks", STATE_COUNTS, &s->looks, 1},
-                                         {"left", STATE_FLAGS, &s->left, 1},
-                                         {"negative", STATE_FLAGS, &s->negative, 1},
-                                         {"since", STATE_NUMBERS, &s->since, 1},
-                                         {"node", STATE_COUNTS, &s->node, 1}};
+    const struct state_value values[] = {
+        {"load", STATE_NUMBERS, &s->load, 1},       {"error", STATE_NUMBERS, &s->error, 1},
+        {"last", STATE_NUMBERS, &s->last, 1},       {"near", STATE_NUMBERS, s->near, parameter_count(run)},
+        {"looks", STATE_COUNTS, &s->looks, 1},      {"left", STATE_FLAGS, &s->left, 1},
+        {"negative", STATE_FLAGS, &s->negative, 1}, {"since", STATE_NUMBERS, &s->since, 1},
+        {"node", STATE_COUNTS, &s->node, 1}};
     return state_visit(state, "stability", values, sizeof values / sizeof *values, error);
 }
 

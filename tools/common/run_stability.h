@@ -10,9 +10,9 @@
 struct run;
 
 struct run_stability {
-    /* The state nearest to equilibrium since the load is held and the contacts' multipliers are the same. */
+    /* The state nearest to equilibrium since the load is held; of bodies without contacts, where each
+     * augmentation begins another problem. */
     double load;        /* that is held */
-    double multipliers; /* their sum, Pa */
     double error, last; /* estimated there, and at the last look, by the displacement */
     double *near;       /* its parameters, node_count * dim */
     int64_t looks;      /* since then */
