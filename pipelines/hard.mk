@@ -1,6 +1,7 @@
 # make hard: cases with known answers, each through the tools, with its error and verdict.
 #
-# Each script of pipelines/hard prints rows of the table, and also runs alone with build/bin on PATH. A row that misses
+# Each script of pipelines/hard prints rows of the table, and also runs alone with build/bin on PATH; limits, each with its reason,
+# stand in pipelines/hard/tolerances.tsv. tests/hard.bats runs the cases that take seconds. A row that misses
 # its tolerance reads FAIL and makes the study fail, after the table is printed.
 
 HARD := $(OUT)/hard
@@ -14,7 +15,7 @@ hard: $(HARD)/hard.tsv
 
 $(HARD)/%: export PATH := $(abspath $(BUILD))/bin:$(PATH)
 
-$(HARD_CASES:%=$(HARD)/%.rows): $(HARD)/%.rows: pipelines/hard/%.sh pipelines/hard/common.sh $(HARD_TOOLS) $(wildcard examples/hard/*)
+$(HARD_CASES:%=$(HARD)/%.rows): $(HARD)/%.rows: pipelines/hard/%.sh pipelines/hard/common.sh pipelines/hard/tolerances.tsv $(HARD_TOOLS) $(wildcard examples/hard/*)
 	@mkdir -p $(@D)
 	bash $< > $@
 

@@ -115,6 +115,52 @@ crushed() {
     refused 2 "folds: 'maybe' is none of refused, allowed" mtled bad.scene fine.mts
 }
 
+# A cube of N nodes a side between sliding ends, pressed to a stretch of STRETCH; LINES of [output]: buckled N STRETCH TOLERANCE LINES
+buckled() {
+    cloud -d 3 -k jittered -n "$1" --jitter 0.15 --seed 7 --box 0,0.1,0,0.1,0,0.1 | shapefn > cube.mts 2> note
+    { block quasi-static | sed 's/0.45/0.49/; s/dim = 2/dim = 3/'
+        printf '[displacement planes]\nfacets = xmin, ymin, zmin\nnormal = 0\n[displacement top]\nfacets = zmax\nnormal = %s\n' \
+            "$(awk "BEGIN { print ($2 - 1) * 0.1 }")"
+        printf '[output]\n%b\n[solver]\ntolerance = %s\n' "$4" "$3"; } > buckled.scene
+}
+
+@test "a body that buckles is told, with its place, be it before or after; one that is stable is not" {
+    # Homogeneous states are exact. The free edges become unstable between stretches of .55 and .5.
+    buckled 5 0.5 1e-5 ''
+    refused 1 'buckled.scene: the body folds at the whole load: its equilibrium is not stable' mtled buckled.scene cube.mts
+    [[ $stderr == *"most of all at (0.1, 0.1, "*": press less, hold it there, or allow it ([output] folds = allowed)" ]]
+    buckled 5 0.5 1e-8 ''
+    refused 1 'buckled.scene: the body folds at the whole load: it buckles or wrinkles' mtled buckled.scene cube.mts
+    [[ $stderr == *"most of all, by 0.00"*" m, at (0.1, 0.1, "* ]]
+    buckled 5 0.5 1e-8 'folds = allowed'
+    run --separate-stderr mtled -o u.dat buckled.scene cube.mts
+    [ "$status" -eq 0 ]
+    [[ $stderr == "mtled: buckled.scene: the body folds at the whole load: it buckles"* && $(wc -l <<< "$stderr") -eq 1 ]]
+    buckled 5 0.5 1e-5 'frames = 10'
+    run --separate-stderr mtled -o u.dat buckled.scene cube.mts
+    [ "$status" -eq 1 ]
+    [[ $stderr == *"the body folds "* ]]
+    for tolerance in 1e-5 1e-8; do
+        buckled 5 0.6 $tolerance ''
+        mtled buckled.scene cube.mts > u.dat 2> said
+        [ ! -s said ]
+    done
+}
+
+@test "what was seen of a body that buckles outlasts an interruption" {
+    buckled 5 0.5 1e-8 'folds = allowed'
+    mtled buckled.scene cube.mts > whole.dat 2> said
+    for try in 1 2 3 4 5 6 7 8; do
+        status=0
+        timeout -s INT 0.3 mtled -c run.ckpt -e 0.01 -o u.dat buckled.scene cube.mts 2> note || status=$?
+        [ "$status" -ne 0 ] || break
+    done
+    [ "$status" -eq 0 ] || mtled -c run.ckpt -o u.dat buckled.scene cube.mts 2> note
+    [ "$try" -gt 1 ]
+    cmp <(bare whole.dat) <(bare u.dat)
+    grep -qFx -f said note
+}
+
 @test "no frame of a run that folds is lost" {
     cloud -d 2 -k regular -n 17 --box 0,0.1,0,0.1 | shapefn > fine.mts 2> note
     crushed 'frames = 5' > fold.scene

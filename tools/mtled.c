@@ -139,6 +139,7 @@ int main(int argc, char *argv[])
     run.prepare_seconds = clock_seconds() - run.display.started;
     run_checkpoint_begin(&run);
     run_folds_begin(&run);
+    run_stability_begin(&run);
     if (scene.analysis == SCENE_DYNAMIC) {
         run_dynamic(&run);
     } else {
@@ -155,6 +156,7 @@ int main(int argc, char *argv[])
         run_report_cost(&run);
     }
     run_folds_free(&run);
+    run_stability_free(&run);
     model_free(&model);
     free(run.u);
     scene_free(&scene);

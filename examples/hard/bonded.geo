@@ -1,12 +1,13 @@
 // An eighth of a cylinder bonded to plates, radius 0.05 m, height 0.1 m, cut at its planes of symmetry:
-// gmsh -3 -setnumber h 0.009 bonded.geo; a fifth of h at the rim of the plate, where the stress is singular.
+// gmsh -3 -setnumber h 0.009 bonded.geo; a share of h at the rim of the plate, where the stress is singular: -setnumber rim 0.2.
 If (!Exists(h)) h = 0.009; EndIf
+If (!Exists(rim)) rim = 0.2; EndIf
 Point(1) = {0, 0, 0, h};
 Point(2) = {0.05, 0, 0, h};
 Point(3) = {0, 0.05, 0, h};
 Point(4) = {0, 0, 0.05, h};
-Point(5) = {0.05, 0, 0.05, h / 5};
-Point(6) = {0, 0.05, 0.05, h / 5};
+Point(5) = {0.05, 0, 0.05, rim * h};
+Point(6) = {0, 0.05, 0.05, rim * h};
 Line(1) = {1, 2};
 Circle(2) = {2, 1, 3};
 Line(3) = {3, 1};

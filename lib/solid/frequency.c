@@ -157,45 +157,126 @@ static bool enough(int count, double largest, double least)
     return count >= least_share * sqrt(largest / fmax(least, 1e-14 * largest));
 }
 
+/* y[n]: the eigenvector of that matrix to its least eigenvalue, by inverse iteration from just below it. */
+static void least_eigenvector(int n, const double *diagonal, const double *beside, double least,
+                              double *pivot, double *y)
+{
+    double shift = least - 1e-3 * fabs(least);
+    for (int i = 0; i < n; i++) {
+        pivot[i] = diagonal[i] - shift - (i > 0 ? beside[i - 1] * beside[i - 1] / pivot[i - 1] : 0.0);
+        y[i] = 1.0;
+    }
+    for (int turn = 0; turn < 4; turn++) {
+        for (int i = 1; i < n; i++) {
+            y[i] -= beside[i - 1] / pivot[i - 1] * y[i - 1];
+        }
+        for (int i = n - 1; i >= 0; i--) {
+            y[i] = (y[i] - (i + 1 < n ? beside[i] * y[i + 1] : 0.0)) / pivot[i];
+        }
+        double scale = 1.0 / largest_entry(y, n);
+        for (int i = 0; i < n; i++) {
+            y[i] *= scale;
+        }
+    }
+}
+
+/* The node that moves most in a vector of the nodes. */
+static int32_t most_moved(int dim, int64_t node_count, const double *vector)
+{
+    double most = -1.0;
+    int32_t node = 0;
+    for (int64_t n = 0; n < node_count; n++) {
+        double sum = 0.0;
+        for (int a = 0; a < dim; a++) {
+            sum += vector[n * dim + a] * vector[n * dim + a];
+        }
+        if (sum > most) {
+            most = sum;
+            node = (int32_t)n;
+        }
+    }
+    return node;
+}
+
+/* A Lanczos iteration at a state. */
+struct lanczos {
+    struct solid_system *system;
+    struct inertia *inertia;
+    const double *u, *residual;
+    double spacing;
+    double *vector, *before, *product, *displaced; /* system->node_count * dim */
+    double norm;                                   /* of vector, in the product of the mass */
+};
+
+/* From l->vector; false when the conditions leave next to nothing of it. */
+static bool lanczos_begin(struct lanczos *l)
+{
+    double whole = inertia_product_alone(l->inertia, l->vector, l->vector);
+    constraint_project(&l->inertia->constraint, NULL, l->vector);
+    memset(l->before, 0, (size_t)(l->system->node_count * l->system->dim) * sizeof *l->before);
+    l->norm = sqrt(inertia_product(l->inertia, l->vector, l->vector));
+    return inertia_product_alone(l->inertia, l->vector, l->vector) > least_free * least_free * whole;
+}
+
+/* Vectors in scratch[4 * node_count * dim]; l->vector is a copy of `start`, or pseudo-random for zeros. */
+static struct lanczos lanczos_at(struct solid_system *system, struct inertia *inertia, const double *u,
+                                 const double *residual, const double *start, double *scratch)
+{
+    int64_t size = system->node_count * system->dim;
+    struct lanczos l = {.system = system,
+                        .inertia = inertia,
+                        .u = u,
+                        .residual = residual,
+                        .spacing = point_spacing(system),
+                        .vector = scratch,
+                        .before = scratch + size,
+                        .product = scratch + 2 * size,
+                        .displaced = scratch + 3 * size};
+    memcpy(l.vector, start, (size_t)size * sizeof *start);
+    if (largest_entry(start, size) == 0.0) {
+        start_mode(l.vector, size);
+    }
+    return l;
+}
+
+/* Entries k of the diagonal and beside it; before: the k-th vector, of norm 1. */
+static void lanczos_step(struct lanczos *l, int k, double *diagonal, double *beside)
+{
+    int64_t size = l->system->node_count * l->system->dim;
+    double coupling = k > 0 ? l->norm : 0.0, *product = l->product;
+    for (int64_t i = 0; i < size; i++) {
+        l->vector[i] /= l->norm;
+    }
+    apply(l->system, l->inertia, l->u, l->residual, l->spacing, l->vector, l->displaced, product);
+    diagonal[k] = inertia_product(l->inertia, l->vector, product);
+    for (int64_t i = 0; i < size; i++) {
+        product[i] -= diagonal[k] * l->vector[i] + coupling * l->before[i];
+    }
+    l->norm = beside[k] = sqrt(inertia_product(l->inertia, product, product));
+    memcpy(l->before, l->vector, (size_t)size * sizeof *l->before);
+    memcpy(l->vector, product, (size_t)size * sizeof *l->vector);
+}
+
 enum status system_spectrum(struct solid_system *system, struct inertia *inertia, const double *u,
-                            const double *residual, int most_iterations, double *start, double *scratch,
+                            const double *residual, int most_iterations, const double *start, double *scratch,
                             struct spectrum *spectrum, struct error *error)
 {
     enum status status;
-    int64_t size = system->node_count * system->dim;
-    double *vector = start, *before = scratch, *product = scratch + size, *displaced = scratch + 2 * size;
-    double *diagonal = NULL, *beside = NULL;
-    double spacing = point_spacing(system), last = INFINITY;
+    double *diagonal = NULL, *beside = NULL, last = INFINITY, largest = 0.0;
     int next_check = first_check;
     *spectrum = (struct spectrum){.lowest = INFINITY};
     TRY(NEW_ARRAY(&diagonal, most_iterations, error));
     TRY(NEW_ARRAY(&beside, most_iterations, error));
-    memset(before, 0, (size_t)size * sizeof *before);
-    if (largest_entry(vector, size) == 0.0) {
-        start_mode(vector, size);
-    }
-    double norm = sqrt(inertia_product_alone(inertia, vector, vector)), coupling = 0.0, largest = 0.0;
-    constraint_project(&inertia->constraint, NULL, vector);
-    if (!(sqrt(inertia_product_alone(inertia, vector, vector)) > least_free * norm)) {
+    struct lanczos l = lanczos_at(system, inertia, u, residual, start, scratch);
+    if (!lanczos_begin(&l)) {
         spectrum->lowest = spectrum->largest = 1.0;
         goto done;
     }
-    norm = sqrt(inertia_product(inertia, vector, vector));
-    for (int k = 0; k < most_iterations && norm > 1e-12 * largest; k++) {
-        for (int64_t i = 0; i < size; i++) {
-            vector[i] /= norm;
-        }
-        apply(system, inertia, u, residual, spacing, vector, displaced, product);
-        diagonal[k] = inertia_product(inertia, vector, product);
-        for (int64_t i = 0; i < size; i++) {
-            product[i] -= diagonal[k] * vector[i] + coupling * before[i];
-        }
-        norm = coupling = beside[k] = sqrt(inertia_product(inertia, product, product));
+    for (int k = 0; k < most_iterations && l.norm > 1e-12 * largest; k++) {
+        lanczos_step(&l, k, diagonal, beside);
         largest = fmax(largest, diagonal[k]);
-        memcpy(before, vector, (size_t)size * sizeof *before);
-        memcpy(vector, product, (size_t)size * sizeof *vector);
         spectrum->iterations = k + 1;
-        if (k + 1 == next_check || k + 1 == most_iterations || !(norm > 1e-12 * largest)) {
+        if (k + 1 == next_check || k + 1 == most_iterations || !(l.norm > 1e-12 * largest)) {
             double value = least_eigenvalue(k + 1, diagonal, beside);
             bool is_settled = enough(k + 1, largest, value) && last - value < settled_change * value;
             spectrum->lowest = value;
@@ -210,5 +291,50 @@ enum status system_spectrum(struct solid_system *system, struct inertia *inertia
 done:
     free(diagonal);
     free(beside);
+    return status;
+}
+
+enum status system_unstable_mode(struct solid_system *system, struct inertia *inertia, const double *u,
+                                 const double *residual, const struct spectrum *spectrum, const double *start,
+                                 double *scratch, struct stability *stability, struct error *error)
+{
+    enum status status;
+    int count = spectrum->iterations;
+    int64_t size = system->node_count * system->dim;
+    double *diagonal = NULL, *beside = NULL, *share = NULL, *pivot = NULL, *mode = NULL;
+    *stability = (struct stability){spectrum->lowest / spectrum->largest, 0};
+    if (!(spectrum->lowest < least_told * spectrum->largest)) {
+        return STATUS_OK;
+    }
+    TRY(NEW_ARRAY(&diagonal, count, error));
+    TRY(NEW_ARRAY(&beside, count, error));
+    TRY(NEW_ARRAY(&share, count, error));
+    TRY(NEW_ARRAY(&pivot, count, error));
+    TRY(NEW_ARRAY(&mode, size, error));
+    struct lanczos l = lanczos_at(system, inertia, u, residual, start, scratch);
+    (void)lanczos_begin(&l);
+    for (int k = 0; k < count; k++) { /* the matrix first, */
+        lanczos_step(&l, k, diagonal, beside);
+    }
+    least_eigenvector(count, diagonal, beside, spectrum->lowest, pivot, share);
+    l = lanczos_at(system, inertia, u, residual, start, scratch);
+    (void)lanczos_begin(&l);
+    for (int k = 0; k < count; k++) { /* then its vectors, of which the mode is a sum */
+        lanczos_step(&l, k, diagonal, beside);
+        for (int64_t i = 0; i < size; i++) {
+            mode[i] += share[k] * l.before[i];
+        }
+    }
+    l = lanczos_at(system, inertia, u, residual, mode, scratch);
+    (void)lanczos_begin(&l);
+    lanczos_step(&l, 0, diagonal, beside);
+    stability->least = diagonal[0] < least_told * spectrum->largest ? diagonal[0] / spectrum->largest : 0.0;
+    stability->node = most_moved(system->dim, system->node_count, mode);
+done:
+    free(diagonal);
+    free(beside);
+    free(share);
+    free(pivot);
+    free(mode);
     return status;
 }

@@ -20,14 +20,22 @@ struct spectrum {
 };
 
 /* The spectrum at u by Lanczos iteration in the product of the mass from `start` (node_count * dim; best a
- * smooth move, such as the last velocity; a start of zeros is replaced by a fixed pseudo-random one;
- * overwritten). K is the difference of residuals, one evaluation an iteration; residual must hold the
- * residual at u. It ends when a third more iterations changed the lowest eigenvalue by less than 5 %, when
- * that is negative, or after most_iterations. Lowest <= 0: no minimum of the energy, or a contact that opens
- * or closes there. Both 1, about what D makes them, where the conditions leave nothing free. scratch: 3 *
- * node_count * dim. */
+ * smooth move, such as the last velocity; for zeros a fixed pseudo-random one). K is the difference of
+ * residuals, one evaluation an iteration; residual must hold the residual at u. It ends when a third more
+ * iterations changed the lowest eigenvalue by less than 5 %, when that is negative, or after most_iterations.
+ * Lowest <= 0: no minimum of the energy, or a contact that opens or closes there. Both 1, about what D makes
+ * them, where the conditions leave nothing free. scratch: 4 * node_count * dim. */
 MUST_CHECK enum status system_spectrum(struct solid_system *system, struct inertia *inertia, const double *u,
-                                       const double *residual, int most_iterations, double *start,
+                                       const double *residual, int most_iterations, const double *start,
                                        double *scratch, struct spectrum *spectrum, struct error *error);
+
+/* Whether u is stable, by a spectrum that was found from this start. A negative eigenvalue is certain only by
+ * its mode, which costs the same iterations twice more: `least` is then the Rayleigh quotient of the mode,
+ * which no round-off of the iteration makes negative. scratch as before. */
+MUST_CHECK enum status system_unstable_mode(struct solid_system *system, struct inertia *inertia,
+                                            const double *u, const double *residual,
+                                            const struct spectrum *spectrum, const double *start,
+                                            double *scratch, struct stability *stability,
+                                            struct error *error);
 
 #endif

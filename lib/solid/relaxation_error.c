@@ -85,15 +85,14 @@ void relaxation_estimate(struct relaxation *r)
 bool relaxation_find_spectrum(struct relaxation *r, const double *u, int most_iterations,
                               struct spectrum *spectrum, struct error *error)
 {
-    double *work = NULL;
-    r->failure = NEW_ARRAY(&work, 4 * r->size, error);
+    double *scratch = NULL;
+    r->failure = NEW_ARRAY(&scratch, 4 * r->size, error);
     if (r->failure == STATUS_OK) {
-        memcpy(work, r->velocity, (size_t)r->size * sizeof *work);
-        r->failure = system_spectrum(r->system, &r->inertia, u, r->residual, most_iterations, work,
-                                     work + r->size, spectrum, error);
+        r->failure = system_spectrum(r->system, &r->inertia, u, r->residual, most_iterations, r->velocity,
+                                     scratch, spectrum, error);
         r->report->force_evaluations += spectrum->iterations;
     }
-    free(work);
+    free(scratch);
     return r->failure == STATUS_OK;
 }
 
@@ -106,10 +105,25 @@ void relaxation_damp_at_most(struct relaxation *r, double low2)
     }
 }
 
+/* Whether the state u, of which that is the spectrum, is stable. False on failure. */
+static bool note_stability(struct relaxation *r, const double *u, const struct spectrum *spectrum,
+                           struct error *error)
+{
+    double *scratch = NULL;
+    r->failure = NEW_ARRAY(&scratch, 4 * r->size, error);
+    if (r->failure == STATUS_OK) {
+        r->failure = system_unstable_mode(r->system, &r->inertia, u, r->residual, spectrum, r->velocity,
+                                          scratch, &r->system->stability, error);
+    }
+    free(scratch);
+    return r->failure == STATUS_OK;
+}
+
 bool relaxation_find_lowest_mode(struct relaxation *r, const double *u, struct error *error)
 {
     struct spectrum spectrum;
-    if (!relaxation_find_spectrum(r, u, most_spectrum_iterations, &spectrum, error)) {
+    if (!relaxation_find_spectrum(r, u, most_spectrum_iterations, &spectrum, error) ||
+        !note_stability(r, u, &spectrum, error)) {
         return false;
     }
     r->spectrum2 = INFINITY;

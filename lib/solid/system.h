@@ -35,6 +35,13 @@ struct cost {
     double force, loads, contact, constraints;
 };
 
+/* The least eigenvalue of M^-1 K at the last equilibrium, see solid/frequency.h. */
+struct stability {
+    double least; /* by the largest; negative: the state is not stable. 0: not looked for, or lost in
+                     round-off */
+    int32_t node; /* negative: where its mode moves most */
+};
+
 struct solid_system {
     int dim;
     int64_t node_count;
@@ -65,6 +72,7 @@ struct solid_system {
     int64_t curve_count;
     double *lumped_mass; /* node_count, kg (2D: kg/m), positive: each cell shares its mass among its nodes */
     double *factor;      /* curve_count: scratch, values of the curves */
+    struct stability stability;
     struct cost cost;
 };
 

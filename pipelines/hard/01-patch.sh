@@ -9,7 +9,7 @@
 linear_2d='0.011 * $1 + 0.021 * $2, 0.032 * $1 - 0.019 * $2'
 linear_3d='0.011 * $1 + 0.021 * $2 - 0.014 * $3, 0.032 * $1 - 0.019 * $2 + 0.007 * $3, 0.005 * $1 - 0.027 * $2 + 0.013 * $3'
 
-# patch DIM ARGUMENTS_OF_IPOINTS QUANTITY TOLERANCE VOLUME
+# patch DIM ARGUMENTS_OF_IPOINTS QUANTITY LIMIT VOLUME
 patch() {
     local dim=$1 sides=xmin,xmax,ymin,ymax linear=$linear_2d
     [ "$dim" -eq 2 ] || { sides+=,zmin,zmax linear=$linear_3d; }
@@ -44,10 +44,10 @@ END
 cloud -d 2 -k jittered -n 13 --jitter 0.25 --seed 3 --box 0,0.1,0,0.1 -o "$work/cloud2.mts"
 cloud -d 3 -k jittered -n 9 --jitter 0.15 --seed 3 --box 0,0.1,0,0.1,0,0.1 -o "$work/cloud3.mts"
 for dim in 2 3; do
-    patch $dim -c "patch test ${dim}D, conforming cells" 1e-9 nodal
+    patch $dim -c "patch test ${dim}D, conforming cells" patch-cells nodal
     # The others are not exact, here or elsewhere: this records by how much.
     for points in $([ $dim -eq 2 ] && echo 1 3 4 6 7 12 || echo 1 4); do
-        patch $dim "-g $points" "patch test ${dim}D, $points point$([ "$points" -eq 1 ] || echo s) per cell" 0.1 pointwise
+        patch $dim "-g $points" "patch test ${dim}D, $points point$([ "$points" -eq 1 ] || echo s) per cell" patch-points pointwise
     done
 done
 
@@ -104,7 +104,7 @@ consistency() {
                 }
             }
             print worse(worse(unity, zero), worse(position, gradient))
-        }')" 0 1e-12
+        }')" 0 consistency
 }
 
 for scheme in 'conforming cells:-c' '4 points per cell:-g 4'; do

@@ -32,9 +32,9 @@ $symmetry
 END
         relax "$work/a.scene" "$work/table$n.mts" "$work/a$n.dat"
     done
-    row 8 "thick cylinder, nu $nu: u(a), m" "$(calc "$(radial "$work/a16.dat") * 1000")" "$reference" 0.005
+    row 8 "thick cylinder, nu $nu: u(a), m" "$(calc "$(radial "$work/a16.dat") * 1000")" "$reference" cylinder
     at_least 8 "thick cylinder, nu $nu: order of convergence" \
-        "$(order_of "$(radial "$work/a8.dat")" "$(radial "$work/a16.dat")" "$(calc "$reference / 1000")" 2)" 1
+        "$(order_of "$(radial "$work/a8.dat")" "$(radial "$work/a16.dat")" "$(calc "$reference / 1000")" 2)" order
 done
 
 # Row 9: p/mu that inflates it to a, near the incompressible limit; by displacement, and by that pressure.
@@ -50,7 +50,7 @@ reactions = yes
 $symmetry
 END
     relax "$work/b.scene" "$work/table16.mts" "$work/b.dat"
-    row 9 "inflation to a = $a: p/mu from the force" "$(calc "$(reaction "$work/b.dat" inside 1) / $a / $mu")" "$reference" 0.005
+    row 9 "inflation to a = $a: p/mu from the force" "$(calc "$(reaction "$work/b.dat" inside 1) / $a / $mu")" "$reference" cylinder
     dim=2 nu=0.499 scene "$work/c.scene" <<END
 [pressure inside]
 facets = inner
@@ -58,5 +58,5 @@ value = $(calc "$reference * $mu")
 $symmetry
 END
     relax "$work/c.scene" "$work/table16.mts" "$work/c.dat"
-    row 9 "inflation by p/mu = $reference: a" "$(calc "1 + $(radial "$work/c.dat")")" "$a" 0.005
+    row 9 "inflation by p/mu = $reference: a" "$(calc "1 + $(radial "$work/c.dat")")" "$a" cylinder
 done

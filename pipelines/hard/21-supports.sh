@@ -77,7 +77,7 @@ caught() {
         shapefn -o "$work/table.mts" "$work/support.mts" 2> "$work/message" || status=$?
     fi
     if [ $status -eq 0 ] && [ "$2" != error ]; then
-        row 21 "$1: linear reproduction" "$(reproduction "$work/table.mts")" 0 1e-10
+        row 21 "$1: linear reproduction" "$(reproduction "$work/table.mts")" 0 reproduction
     elif [ $status -eq 1 ] && [ "$2" != table ] && [ "$(wc -l < "$work/message")" -eq 1 ] &&
         grep -qE '(row|node|point) [0-9]+.* at \(' "$work/message"; then
         printf '21\t%s: clear error\t1\t1\t0\t0\tpass\n' "$1"

@@ -32,13 +32,13 @@ gaps = yes
 tolerance = 1e-7
 END
 relax "$work/press.scene" "$work/cube.mts" "$work/press.dat"
-row 22 'pressed on a flat and dragged: P, Pa' "$(calc "$(reaction "$work/press.dat" flat 3) / 0.01")" 763.26922 0.005
+row 22 'pressed on a flat and dragged: P, Pa' "$(calc "$(reaction "$work/press.dat" flat 3) / 0.01")" 763.26922 pressed
 row 22 'tangential force of the flat / normal force' \
-    "$(calc "$(reaction "$work/press.dat" flat 1) / $(reaction "$work/press.dat" flat 3)")" 0 1e-9
+    "$(calc "$(reaction "$work/press.dat" flat 1) / $(reaction "$work/press.dat" flat 3)")" 0 frictionless
 row 22 'force that drags / normal force' \
-    "$(calc "$(reaction "$work/press.dat" side 1) / $(reaction "$work/press.dat" flat 3)")" 0 1e-4
+    "$(calc "$(reaction "$work/press.dat" side 1) / $(reaction "$work/press.dat" flat 3)")" 0 dragged
 row 22 'deepest penetration / size' "$([ ! -s "$work/press.dat" ] && echo nan || mts print gaps "$work/press.dat" |
-    awk '$4 < -most { most = -$4 } END { print most / 0.1 }')" 0 1e-3
+    awk '$4 < -most { most = -$4 } END { print most / 0.1 }')" 0 penetration
 
 # ---- 23: 2D, pushed up by three tenths of its size against a disc of radius .05 ----
 cloud -d 2 -k regular -n 21 --box 0,0.1,0,0.1 | shapefn -o "$work/block.mts" 2> /dev/null
@@ -65,7 +65,7 @@ END
     relax "$work/disc.scene" "$work/block.mts" "$work/${curve%.tsv}.dat"
 done
 row 23 'pushed 30 % into a disc: deepest penetration / size' "$([ ! -s "$work/smooth.dat" ] && echo nan ||
-    mts print gaps "$work/smooth.dat" | awk '$3 < -most { most = -$3 } END { print most / 0.1 }')" 0 1e-3
-row 23 'balance of bottom and disc' "$(calc "1 + $(reaction "$work/smooth.dat" bottom 2) / $(reaction "$work/smooth.dat" disc 2)")" 0 1e-4
+    mts print gaps "$work/smooth.dat" | awk '$3 < -most { most = -$3 } END { print most / 0.1 }')" 0 penetration
+row 23 'balance of bottom and disc' "$(calc "1 + $(reaction "$work/smooth.dat" bottom 2) / $(reaction "$work/smooth.dat" disc 2)")" 0 balance-contact
 row 23 'drawn back: largest displacement / size' "$([ ! -s "$work/release.dat" ] && echo nan ||
-    mts print u "$work/release.dat" | awk '{ d = sqrt($1 ^ 2 + $2 ^ 2); if (d > most) most = d } END { print most / 0.1 }')" 0 1e-6
+    mts print u "$work/release.dat" | awk '{ d = sqrt($1 ^ 2 + $2 ^ 2); if (d > most) most = d } END { print most / 0.1 }')" 0 returned

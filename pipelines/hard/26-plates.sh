@@ -72,31 +72,39 @@ pushing3() {
 
 for part in '50 0.025' '70 0.035'; do
     read -r percent push <<< "$part"
-    for mesh in coarse fine graded; do
+    for mesh in coarse fine; do
         press 2 $mesh $mesh "$push"
     done
     row 26 "block, $percent %, plates: work / stored energy ($(count coarse) nodes)" \
-        "$(calc "$(work pushing2 "$push") / $(stored "$work/coarse.dat")")" 1 0.01
+        "$(calc "$(work pushing2 "$push") / $(stored "$work/coarse.dat")")" 1 work
     row 26 "block, $percent %, plates: force, N/m, $(count fine) nodes against $(count coarse)" \
-        "$(force 2 fine)" "$(force 2 coarse)" 0.02
-    row 26 "block, $percent %, plates: force, N/m, $(count graded) graded against $(count fine)" \
-        "$(force 2 graded)" "$(force 2 fine)" 0.02
+        "$(force 2 fine)" "$(force 2 coarse)" plates-refined
     row 26 "block, $percent %, plates: balance of the forces" \
-        "$(calc "$(reaction "$work/fine.dat" middle 2) / ($(force 2 fine)) - 1")" 0 0.001
+        "$(calc "$(reaction "$work/fine.dat" middle 2) / ($(force 2 fine)) - 1")" 0 balance-plates
 done
+# On a mesh that is graded to the rim the side that is rolled up on the plate creases beside it, at 69 %: it would touch itself.
+for part in '50 0.025' '60 0.03'; do
+    read -r percent push <<< "$part"
+    press 2 fine fine "$push"
+    press 2 graded graded "$push"
+    row 26 "block, $percent %, plates: force, N/m, $(count graded) graded against $(count fine)" \
+        "$(force 2 graded)" "$(force 2 fine)" plates-refined
+done
+press 2 graded graded 0.035
+told 26 "block, 70 %, plates, $(count graded) graded" "$work/graded.dat"
 for part in '50 0.025' '70 0.035'; do
     read -r percent push <<< "$part"
     press 3 cube cube "$push"
     row 26 "cube, $percent %, plates: work / stored energy ($(count cube) nodes)" \
-        "$(calc "$(work pushing3 "$push") / $(stored "$work/cube.dat")")" 1 0.01
+        "$(calc "$(work pushing3 "$push") / $(stored "$work/cube.dat")")" 1 work
     press 3 finer finer "$push"
     row 26 "cube, $percent %, plates: balance of the forces ($(count finer) nodes)" \
-        "$(calc "$(reaction "$work/finer.dat" middle 3) / ($(force 3 finer)) - 1")" 0 0.001
+        "$(calc "$(reaction "$work/finer.dat" middle 3) / ($(force 3 finer)) - 1")" 0 balance-plates
 done
 
 # Without plates the run says where and from which load on.
 plates=no press 2 fine alone 0.035 2> "$work/said"
-row 26 'block, 70 %, without plates: told that it folds' "$(grep -c 'the body folds from 0\.[0-9]* of the load on' "$work/said")" 1 0
+row 26 'block, 70 %, without plates: told that it folds' "$(grep -c 'the body folds from 0\.[0-9]* of the load on' "$work/said")" 1 none
 
 # A plate over a block that is held at its bottom, tilted by 5 degrees as it comes down by 15 %: the force is along its normal.
 cloud -d 2 -k regular -n 13 --box 0,0.1,0,0.1 | shapefn -o "$work/tilted.mts" 2> /dev/null
@@ -122,6 +130,6 @@ tolerance = 1e-7
 END
 relax "$work/a.scene" "$work/tilted.mts" "$work/tilted.dat"
 row 26 'tilted plate: deepest penetration / size' "$([ ! -s "$work/tilted.dat" ] && echo nan ||
-    mts print gaps "$work/tilted.dat" | awk '$3 < -most { most = -$3 } END { print most / 0.1 }')" 0 1e-3
+    mts print gaps "$work/tilted.dat" | awk '$3 < -most { most = -$3 } END { print most / 0.1 }')" 0 penetration
 row 26 'tilted plate: direction of its force, degrees' \
-    "$(calc "atan2($(reaction "$work/tilted.dat" lid 1), -($(reaction "$work/tilted.dat" lid 2))) * 180 / pi")" 5 1e-6
+    "$(calc "atan2($(reaction "$work/tilted.dat" lid 1), -($(reaction "$work/tilted.dat" lid 2))) * 180 / pi")" 5 normal

@@ -33,8 +33,8 @@ END
 
 energy() { mts print energy "$work/u.dat" | awk '{ print $1 }'; }
 
-for case in '0.025 0.1' '0.0125 0.04'; do
-    read -r h tolerance <<< "$case"
+for case in '0.025 reaction-coarse' '0.0125 reaction-fine'; do
+    read -r h limit <<< "$case"
     gmsh -3 -v 1 -setnumber h "$h" "$geometry" -o "$work/body.msh" > /dev/null
     nodes -u m "$work/body.msh" 2> /dev/null | shapefn -o "$work/table.mts" 2> /dev/null
     widened 0.00505
@@ -45,6 +45,6 @@ for case in '0.025 0.1' '0.0125 0.04'; do
     for i in 1 2 3; do
         row 27 "hollow ball widened by a table, spacing $h m: force along axis $i, N" \
             "$(mts print reactions "$work/u.dat" | awk -v i=$i 'NR == 1 { print $i }')" \
-            "$(calc "($more - $less) / 1e-4 / 2")" "$tolerance"
+            "$(calc "($more - $less) / 1e-4 / 2")" "$limit"
     done
 done

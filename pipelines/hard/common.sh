@@ -11,9 +11,17 @@ export OMP_NUM_THREADS=1
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
-# row CASE QUANTITY VALUE REFERENCE TOLERANCE
+# tolerance NAME: the limit of that name in tolerances.tsv, which says why it is that. Ends the script where there is none.
+tolerance() {
+    awk -F '\t' -v name="$1" '$1 == name { print $2; found = 1 } END { exit !found }' "$(dirname "${BASH_SOURCE[0]}")/tolerances.tsv" ||
+        { echo "tolerances.tsv has no limit '$1'" >&2; return 1; }
+}
+
+# row CASE QUANTITY VALUE REFERENCE LIMIT: LIMIT as in tolerances.tsv.
 row() {
-    awk -v OFS='\t' -v name="$1" -v quantity="$2" -v value="$3" -v reference="$4" -v tolerance="$5" '
+    local tolerance
+    tolerance=$(tolerance "$5")
+    awk -v OFS='\t' -v name="$1" -v quantity="$2" -v value="$3" -v reference="$4" -v tolerance="$tolerance" '
         function is_number(text) { return text ~ /^[-+]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][-+]?[0-9]+)?$/ }
         BEGIN {
             if (!is_number(value)) { # also nan and inf
@@ -28,7 +36,7 @@ row() {
         }'
 }
 
-# at_least CASE QUANTITY VALUE LEAST, at_most CASE QUANTITY VALUE MOST: the error is how far it is beyond.
+# at_least CASE QUANTITY VALUE LIMIT, at_most CASE QUANTITY VALUE LIMIT: the error is how far it is beyond that.
 at_least() {
     one_sided "$1" "$2" "$3" "$4" '>='
 }
@@ -36,7 +44,9 @@ at_most() {
     one_sided "$1" "$2" "$3" "$4" '<='
 }
 one_sided() {
-    awk -v name="$1" -v quantity="$2" -v value="$3" -v bound="$4" -v relation="$5" '
+    local bound
+    bound=$(tolerance "$4")
+    awk -v name="$1" -v quantity="$2" -v value="$3" -v bound="$bound" -v relation="$5" '
         BEGIN {
             head = name "\t" quantity
             if (value !~ /^[-+]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][-+]?[0-9]+)?$/) {
@@ -123,11 +133,12 @@ count() {
     mts print nodes.x "$work/$1.mts" | wc -l
 }
 
-# reported FILE NAME: a number of mtled's report.
 # told CASE QUANTITY OUT: the run said that the body folds.
 told() {
-    at_least "$1" "$2: told that it folds" "$(grep -c 'the body folds from' "$3.log")" 1
+    at_least "$1" "$2: told that it folds" "$(grep -c 'the body folds' "$3.log")" told
 }
+
+# reported FILE NAME: a number of mtled's report.
 reported() {
     awk -F '\t' -v name="$2" '$1 == name { print $2 }' "$1.log"
 }

@@ -97,8 +97,58 @@ static void agrees_with_all_eigenvalues(void **state)
     }
 }
 
+/* A block in plane strain between sliding ends, compressed along the first axis, its free side along it: a
+ * half-space wrinkles at a stretch of .544 (Biot 1963). */
+static void a_block_compressed_beyond_biots_limit_is_not_stable(void **state)
+{
+    (void)state;
+    const double stretch[] = {0.8, 0.5}, across[] = {1.2379, 1.9123}; /* lateral: of no stress there */
+    for (int k = 0; k < 2; k++) {
+        struct lattice l;
+        struct inertia inertia;
+        struct error error;
+        struct lattice_options options = lattice_defaults(2, 9);
+        struct spectrum spectrum;
+        struct stability stability;
+        double *mass, *scratch;
+        options.jitter = 0.15;
+        lattice_build(&l, &options);
+        lattice_slide(&l, 1u << 0 | 1u << 1 | 1u << 2, lattice_curve(&l, curve_of_kind(CURVE_SMOOTH)));
+        int64_t size = l.system.node_count * 2;
+        double *u = lattice_vector(&l), *residual = lattice_vector(&l), *start = lattice_vector(&l);
+        ARRAY(mass, l.system.node_count);
+        ARRAY(scratch, 4 * size);
+        for (int64_t i = 0; i < size; i++) {
+            u[i] = ((i % 2 == 0 ? stretch[k] : across[k]) - 1.0) * l.system.X[i];
+            start[i] = sin(1.0 + (double)(i * i % 97));
+        }
+        (void)system_residual(&l.system, u, residual);
+        system_relaxation_mass(&l.system, false, mass);
+        GOOD(inertia_build(&l.system, false, &inertia, &error));
+        GOOD(inertia_set_mass(&inertia, &l.system, mass, &error));
+        GOOD(system_spectrum(&l.system, &inertia, u, residual, 1000, start, scratch, &spectrum, &error));
+        GOOD(system_unstable_mode(&l.system, &inertia, u, residual, &spectrum, start, scratch, &stability,
+                                  &error));
+        print_message("stretch %g: %g of the largest\n", stretch[k], stability.least);
+        if (k == 0) {
+            assert_true(spectrum.lowest > 0.0 && stability.least > 0.0);
+        } else {
+            assert_true(spectrum.lowest < 0.0 && stability.least < 0.0);
+            AT_MOST(0.1 - l.system.X[stability.node * 2 + 1], 1e-9); /* on the free side */
+        }
+        inertia_free(&inertia);
+        free(mass);
+        free(scratch);
+        free(u);
+        free(residual);
+        free(start);
+        lattice_free(&l);
+    }
+}
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(agrees_with_all_eigenvalues)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(agrees_with_all_eigenvalues),
+                                       cmocka_unit_test(a_block_compressed_beyond_biots_limit_is_not_stable)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

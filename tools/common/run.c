@@ -24,6 +24,7 @@ bool run_tell(void *context, const struct progress *progress)
     struct run *run = context;
     show_progress(&run->display, progress);
     run_folds_look(run, progress->u, progress->time, false);
+    run_stability_follow(run, progress);
     return run_checkpoint_tell(run, progress);
 }
 

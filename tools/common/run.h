@@ -5,6 +5,7 @@
 #include "model.h"
 #include "run_checkpoint.h"
 #include "run_folds.h"
+#include "run_stability.h"
 #include "base/clock.h"
 #include "solid/progress.h"
 
@@ -22,6 +23,7 @@ struct run {
     struct display display;
     struct run_checkpoint checkpoint;
     struct run_folds folds;
+    struct run_stability stability;
     bool verbose;
     bool text;        /* the form of what is written */
     double *u;        /* parameters, node_count * dim, m */

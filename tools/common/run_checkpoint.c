@@ -101,6 +101,7 @@ static enum status visit_whole(void *owner, const struct state *state, struct er
     enum status status;
     TRY(whole->progress->state(whole->progress->run, state, error));
     TRY(run_folds_state(whole->run, state, error));
+    TRY(run_stability_state(whole->run, state, error));
 done:
     return status;
 }

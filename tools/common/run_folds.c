@@ -246,12 +246,16 @@ void run_folds_judge(struct run *run)
 {
     char text[400];
     run_folds_describe(run, FOLDED, text, sizeof text);
+    const char *remedy = "press less, refine there";
+    if (text[0] == '\0') {
+        run_stability_describe(run, text, sizeof text);
+        remedy = "press less, hold it there";
+    }
     if (text[0] != '\0' && !run->scene->output.folds_allowed) {
         run->folds.told = true;
         run->last_good = -1.0; /* the frames are all there */
-        run_fail(run, STATUS_VERDICT,
-                 "%s: %s: press less, refine there, or allow it ([output] folds = allowed)", run->scene->path,
-                 text);
+        run_fail(run, STATUS_VERDICT, "%s: %s: %s, or allow it ([output] folds = allowed)", run->scene->path,
+                 text, remedy);
     }
     if (text[0] == '\0') {
         run_folds_describe(run, NOTED, text, sizeof text);

@@ -70,6 +70,7 @@ void run_quasi_static(struct run *run)
     tool_check(run->tool, status, &error);
     run->last_good = report.load;
     run_folds_look(run, run->u, report.load, true);
+    run_stability_look(run, report.load);
     judge(run, &report);
     if (run->verbose) {
         fprintf(stderr,

@@ -201,6 +201,7 @@ void run_put_equilibrium(void *context, int64_t number, double time, const doubl
 {
     struct run *run = context;
     run_put_frame(run, number, time, u);
+    run_stability_look(run, time);
     put_state(run, &(struct moment){number, time});
 }
 

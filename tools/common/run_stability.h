@@ -1,0 +1,42 @@
+/* Whether the equilibria of a quasi-static run are stable: a body that is compressed far enough buckles,
+ * wrinkles or creases, and then either the state that was found is one that no body stays in, or the body has
+ * gone over to another. Looked at while the run lasts, told at its end. */
+#ifndef TOOLS_RUN_STABILITY_H
+#define TOOLS_RUN_STABILITY_H
+
+#include "base/state.h"
+#include "solid/progress.h"
+
+struct run;
+
+struct run_stability {
+    /* The state nearest to equilibrium since the load is held; of bodies without contacts, where each
+     * augmentation begins another problem. */
+    double load;        /* that is held */
+    double error, last; /* estimated there, and at the last look, by the displacement */
+    double *near;       /* its parameters, node_count * dim */
+    int64_t looks;      /* since then */
+    /* What was seen first. */
+    bool left;     /* the body has left `near`, which is kept, */
+    bool negative; /* or: the stiffness has a negative eigenvalue */
+    double since;  /* load */
+    int64_t node;  /* negative: where its mode moves most */
+};
+
+/* Before the first step; with a checkpoint: what was seen before it. */
+void run_stability_begin(struct run *run);
+void run_stability_free(struct run *run);
+
+/* Look at a state on the way. */
+void run_stability_follow(struct run *run, const struct progress *progress);
+
+/* Look at a state of equilibrium. */
+void run_stability_look(struct run *run, double load);
+
+/* What was seen, as state of the run. */
+MUST_CHECK enum status run_stability_state(struct run *run, const struct state *state, struct error *error);
+
+/* What was seen up to the final state run->u, into text[size]; empty when all is stable. */
+void run_stability_describe(const struct run *run, char *text, size_t size);
+
+#endif
