@@ -1,5 +1,5 @@
-# convergence.tsv of make brain2d-convergence: awk -f brain2d-convergence.awk SIZE-SHARE.errors ..., what fieldcmp prints, by size; beside each
-# .even, the same against the other reference, and .dat with the nodes. Lengths in mm; of the meshes of a size all means, their
+# convergence.tsv of make brain2d-convergence: awk -f brain2d-convergence.awk SIZE-SHARE.errors ..., what fieldcmp prints, by size;
+# beside each .even, the same against the other reference, and .dat with the nodes. Lengths in mm; of the meshes of a size all means, their
 # median, the largest difference, and the median against the other reference.
 
 function median(values, n,    i, k, swap) {
@@ -11,8 +11,8 @@ function median(values, n,    i, k, swap) {
 
 function put() {
     if (!n) return
-    print size, substr(nodes, 2), substr(means, 2), sprintf("%.4f", median(mean, n)), sprintf("%.4f", most), sprintf("%.4f", median(even, n)),
-        sprintf("%.2f", last ? log(last / median(mean, n)) / log(last_size / size) : 0)
+    print size, substr(nodes, 2), substr(means, 2), sprintf("%.4f", median(mean, n)), sprintf("%.4f", most),
+        sprintf("%.4f", median(even, n)), sprintf("%.2f", last ? log(last / median(mean, n)) / log(last_size / size) : 0)
     last = median(mean, n)
     last_size = size
     n = most = 0
