@@ -73,6 +73,16 @@ fails() {
     fails tovtk brain2d -- brain2d/u.vtu
 }
 
+@test "brain2d-convergence: whichever program fails" {
+    few='BRAIN2D_CONVERGENCE_SIZES=14.6'
+    at=brain2d-convergence
+    for tool in nodes ipoints support shapefn mtled; do
+        fails $tool brain2d-convergence $few -- $at/14.6-1.00.dat $at/14.6-1.00.errors $at/convergence.tsv
+    done
+    fails gmsh brain2d-convergence $few -- $at/14.6-1.00.msh $at/14.6-1.00.dat
+    fails fieldcmp brain2d-convergence $few -- $at/14.6-1.00.errors $at/14.6-1.00.even $at/convergence.tsv
+}
+
 @test "brain3d: whichever program fails" {
     for tool in nodes ipoints support shapefn mtled; do
         fails $tool brain3d -- brain3d/small.dat brain3d/large-free.dat brain3d/mls1-at-nodes.dat brain3d/compare.tsv
