@@ -81,6 +81,7 @@ static bool tell(struct relaxation *r)
     int64_t at = r->report->steps;
     struct progress progress = {.step = at,
                                 .u = relaxation_parameters(r, r->u),
+                                .move = isfinite(r->bulk_limit) ? INFINITY : r->moved,
                                 .error = r->report->error,
                                 .remaining = -1.0,
                                 .state = relaxation_visit,

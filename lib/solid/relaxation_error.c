@@ -105,7 +105,8 @@ void relaxation_damp_at_most(struct relaxation *r, double low2)
     }
 }
 
-/* Whether the state u, of which that is the spectrum, is stable. False on failure. */
+/* Whether the state u, of which that is the spectrum, is stable. Stiffness is known to about the error of the
+ * state, by the largest; and at a contact that opens or closes it means nothing. False on failure. */
 static bool note_stability(struct relaxation *r, const double *u, const struct spectrum *spectrum,
                            struct error *error)
 {
@@ -114,6 +115,10 @@ static bool note_stability(struct relaxation *r, const double *u, const struct s
     if (r->failure == STATUS_OK) {
         r->failure = system_unstable_mode(r->system, &r->inertia, u, r->residual, spectrum, r->velocity,
                                           scratch, &r->system->stability, error);
+    }
+    struct stability *stability = &r->system->stability;
+    if (stability->least > -r->report->error || r->system->contact_count > 0) {
+        stability->least = fmax(stability->least, 0.0);
     }
     free(scratch);
     return r->failure == STATUS_OK;

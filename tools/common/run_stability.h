@@ -9,13 +9,17 @@
 
 struct run;
 
+/* Looks whose largest move counts: one alone may catch a node that turns back. */
+enum { RUN_STABILITY_LOOKS = 4 };
+
 struct run_stability {
     /* The state nearest to equilibrium since the load is held; of bodies without contacts, where each
      * augmentation begins another problem. */
-    double load;        /* that is held */
-    double error, last; /* estimated there, and at the last look, by the displacement */
-    double *near;       /* its parameters, node_count * dim */
-    int64_t looks;      /* since then */
+    double load;                      /* that is held */
+    double move[RUN_STABILITY_LOOKS]; /* of the last looks, m: in turn */
+    int64_t looks;                    /* since then */
+    double least;                     /* least of the largest of so many moves, m; when it was, */
+    double *near;                     /* the parameters, node_count * dim */
     /* What was seen first. */
     bool left;     /* the body has left `near`, which is kept, */
     bool negative; /* or: the stiffness has a negative eigenvalue */
