@@ -179,19 +179,6 @@ int64_t volume_rows_size(const struct volume_rows *rows)
     return rows->count > 0 ? rows->change.ptr[rows->count] * rows->dim : 0;
 }
 
-/* T with T : X = d/dH (cof H : D) : X; symmetric in H and D. In plane strain H and D have H33 = 1, D33 = 0.
- */
-static void cofactor_along(const double H[9], const double D[9], double T[9])
-{
-    for (int i = 0; i < 3; i++) {
-        for (int j = 0; j < 3; j++) {
-            int r = 3 * ((i + 1) % 3), s = 3 * ((i + 2) % 3), k = (j + 1) % 3, l = (j + 2) % 3;
-            T[3 * i + j] =
-                H[r + k] * D[s + l] + D[r + k] * H[s + l] - H[r + l] * D[s + k] - D[r + l] * H[s + k];
-        }
-    }
-}
-
 /* dJ of cell q: along the mean on the face opposite each corner, and along the value at the corner. */
 struct cell_change {
     double face[4][3], node[4][3];
