@@ -16,7 +16,7 @@ struct sparse_factor {
 
 /* Factorise the matrix given in CSR, of which only the lower triangle is read: column[ptr[n]], value[ptr[n]].
  * A factor that holds one already is replaced; the order of elimination is kept where n and ptr[n] are the
- * same. STATUS_VERDICT when the matrix is not positive definite, STATUS_IO for memory. */
+ * same. STATUS_VERDICT when the matrix is not positive definite, STATUS_SYSTEM for memory. */
 MUST_CHECK enum status sparse_factorise(int64_t n, const int64_t *ptr, const int64_t *column,
                                         const double *value, struct sparse_factor *factor,
                                         struct error *error);

@@ -226,6 +226,15 @@ done:
     return status;
 }
 
+double body_largest_bulk(const struct body *body)
+{
+    double largest = 0.0;
+    for (int64_t m = 0; m < body->material_count; m++) {
+        largest = fmax(largest, body->bulk_modulus[m] / body->materials[m].shear_modulus);
+    }
+    return largest;
+}
+
 void body_limit_bulk(struct body *body, double most)
 {
     for (int64_t m = 0; m < body->material_count; m++) {

@@ -112,6 +112,9 @@ struct deformation {
  * N, in 2D N/m. With an inverted point the forces mean nothing. */
 struct deformation body_force(struct body *body, const double *u, double *force);
 
+/* Largest bulk modulus by shear modulus of the materials, without a limit. */
+double body_largest_bulk(const struct body *body);
+
 /* Let no material be stiffer against changes of volume than so many shear moduli; INFINITY: as they are. */
 void body_limit_bulk(struct body *body, double most);
 

@@ -151,6 +151,15 @@ double constraint_rows_value(const struct constraint_rows *rows, int64_t r, cons
     return along(rows, r, mean);
 }
 
+void constraint_rows_missing(const struct constraint_rows *rows, const double *factor, const double *u,
+                             double *missing)
+{
+    constraint_rows_values(rows, u, missing);
+    for (int64_t r = 0; r < rows->count; r++) {
+        missing[r] = (factor != NULL ? rows->target[r] * factor[rows->curve[r]] : 0.0) - missing[r];
+    }
+}
+
 void constraint_rows_spread(const struct constraint_rows *rows, const double *amount, const double *mass,
                             double *u)
 {
@@ -288,10 +297,7 @@ void constraint_project(struct constraint *constraint, const double *factor, dou
         return;
     }
     double *multiplier = constraint->multiplier;
-    constraint_rows_values(rows, u, multiplier);
-    for (int64_t r = 0; r < rows->count; r++) {
-        multiplier[r] = (factor != NULL ? rows->target[r] * factor[rows->curve[r]] : 0.0) - multiplier[r];
-    }
+    constraint_rows_missing(rows, factor, u, multiplier);
     envelope_solve(&constraint->factor, multiplier);
     constraint_rows_spread(rows, multiplier, constraint->mass, u);
 }

@@ -47,6 +47,10 @@ struct average constraint_rows_average(const struct constraint_rows *rows, int64
 void constraint_rows_values(const struct constraint_rows *rows, const double *u, double *value);
 double constraint_rows_value(const struct constraint_rows *rows, int64_t r, const double *u);
 
+/* missing[count]: target * factor[curve] less the value of each row; factor NULL: targets of zero. */
+void constraint_rows_missing(const struct constraint_rows *rows, const double *factor, const double *u,
+                             double *missing);
+
 /* The transpose: u_j += amount_r phi_j direction_r, divided by mass[node] unless mass is NULL. */
 void constraint_rows_spread(const struct constraint_rows *rows, const double *amount, const double *mass,
                             double *u);

@@ -26,12 +26,8 @@ static const int64_t most_volumes = 2000;
 bool inertia_takes_volumes(const struct solid_system *system)
 {
     const struct body *body = &system->body;
-    double most = 0.0;
-    for (int64_t m = 0; m < body->material_count; m++) {
-        most = fmax(most, body->bulk_modulus[m] / body->materials[m].shear_modulus);
-    }
     return system->dim == 2 && body->conforming && body->averaged && system->basis == NULL &&
-           most > least_bulk && body->volumes.count <= most_volumes;
+           body_largest_bulk(body) > least_bulk && body->volumes.count <= most_volumes;
 }
 
 enum status inertia_build(const struct solid_system *system, bool coarse, struct inertia *inertia,

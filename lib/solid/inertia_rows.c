@@ -62,44 +62,19 @@ void inertia_project(struct inertia *inertia, const double *factor, double *move
         return;
     }
     double *amount = inertia->seen;
-    constraint_rows_values(rows, move, amount);
-    for (int64_t r = 0; r < rows->count; r++) {
-        amount[r] = (factor != NULL ? rows->target[r] * factor[rows->curve[r]] : 0.0) - amount[r];
-    }
+    constraint_rows_missing(rows, factor, move, amount);
     memset(amount + rows->count, 0, (size_t)inertia->volumes.count * sizeof *amount);
     inertia_rows_solve(inertia, amount);
     inertia_rows_spread(inertia, amount, move);
-}
-
-/* A row as a list of nodes, each with a vector. */
-struct row_list {
-    int64_t *ptr;
-    int32_t *idx;
-    double *value;
-};
-
-static void free_list(struct row_list *list)
-{
-    free(list->ptr);
-    free(list->idx);
-    free(list->value);
 }
 
 /* Nodes of K C's row a that `seen` does not have yet, listed in idx from `count` on. */
 static int64_t pressure_columns(const struct volume_rows *volumes, int64_t a, int64_t *seen, int64_t row,
                                 int64_t count, int32_t *idx)
 {
-    const struct volume_matrix *K = &volumes->stiffness, *C = &volumes->change;
+    const struct volume_matrix *K = &volumes->stiffness;
     for (int64_t i = K->ptr[a]; i < K->ptr[a + 1]; i++) {
-        for (int64_t k = C->ptr[K->idx[i]]; k < C->ptr[K->idx[i] + 1]; k++) {
-            if (seen[C->idx[k]] != row) {
-                seen[C->idx[k]] = row;
-                if (idx != NULL) {
-                    idx[count] = C->idx[k];
-                }
-                count++;
-            }
-        }
+        count = volume_matrix_note_columns(&volumes->change, K->idx[i], row, seen, count, idx);
     }
     return count;
 }
@@ -107,7 +82,7 @@ static int64_t pressure_columns(const struct volume_rows *volumes, int64_t a, in
 /* Lengths of the rows, and where there is room for them the nodes. Rows of conditions that were dropped are
  * empty. */
 static void list_nodes(const struct inertia *inertia, const bool *dropped, int64_t *seen,
-                       struct row_list *list)
+                       struct volume_matrix *list)
 {
     const struct constraint_rows *rows = inertia->constraint.rows;
     memset(seen, -1, (size_t)inertia->node_count * sizeof *seen);
@@ -125,7 +100,7 @@ static void list_nodes(const struct inertia *inertia, const bool *dropped, int64
     }
 }
 
-static void fill_condition(const struct inertia *inertia, int64_t r, struct row_list *list)
+static void fill_condition(const struct inertia *inertia, int64_t r, struct volume_matrix *list)
 {
     const struct constraint_rows *rows = inertia->constraint.rows;
     struct average average = constraint_rows_average(rows, r);
@@ -137,7 +112,8 @@ static void fill_condition(const struct inertia *inertia, int64_t r, struct row_
     }
 }
 
-static void fill_pressure(const struct inertia *inertia, int64_t a, int64_t *place, struct row_list *list)
+static void fill_pressure(const struct inertia *inertia, int64_t a, int64_t *place,
+                          struct volume_matrix *list)
 {
     const struct volume_matrix *K = &inertia->volumes.stiffness, *C = &inertia->volumes.change;
     int64_t r = inertia->constraint.rows->count + a;
@@ -154,7 +130,7 @@ static void fill_pressure(const struct inertia *inertia, int64_t a, int64_t *pla
     }
 }
 
-static enum status list_rows(const struct inertia *inertia, struct row_list *list, struct error *error)
+static enum status list_rows(const struct inertia *inertia, struct volume_matrix *list, struct error *error)
 {
     enum status status;
     const struct constraint_rows *rows = inertia->constraint.rows;
@@ -186,8 +162,8 @@ done:
 }
 
 /* For each node the places in the list that name it. */
-static enum status list_by_node(const struct inertia *inertia, const struct row_list *list, int64_t **ptr,
-                                int64_t **row, int64_t **place, struct error *error)
+static enum status list_by_node(const struct inertia *inertia, const struct volume_matrix *list,
+                                int64_t **ptr, int64_t **row, int64_t **place, struct error *error)
 {
     enum status status;
     int64_t count = inertia_row_count(inertia), entries = list->ptr[count];
@@ -225,7 +201,7 @@ static void free_square(struct square *square)
 }
 
 /* What row r has with each row up to itself that shares a node with it, in sum[row]; the rows in touched. */
-static int64_t multiply_row(const struct inertia *inertia, const struct row_list *list, int64_t r,
+static int64_t multiply_row(const struct inertia *inertia, const struct volume_matrix *list, int64_t r,
                             const int64_t *node_ptr, const int64_t *node_row, const int64_t *node_place,
                             bool *is_touched, int64_t *touched, double *sum)
 {
@@ -263,7 +239,7 @@ static void add_stiffness(const struct inertia *inertia, int64_t r, double *sum)
     }
 }
 
-static enum status multiply(const struct inertia *inertia, const struct row_list *list, struct square *S,
+static enum status multiply(const struct inertia *inertia, const struct volume_matrix *list, struct square *S,
                             struct error *error)
 {
     enum status status;
@@ -318,7 +294,7 @@ done:
 enum status inertia_couple(struct inertia *inertia, struct error *error)
 {
     enum status status = STATUS_OK;
-    struct row_list list = {0};
+    struct volume_matrix list = {0};
     struct square S = {0};
     if (inertia->volumes.count == 0) {
         return STATUS_OK;
@@ -327,7 +303,7 @@ enum status inertia_couple(struct inertia *inertia, struct error *error)
     TRY(multiply(inertia, &list, &S, error));
     TRY(sparse_factorise(inertia_row_count(inertia), S.ptr, S.column, S.value, &inertia->coupled, error));
 done:
-    free_list(&list);
+    volume_matrix_free(&list);
     free_square(&S);
     return status;
 }

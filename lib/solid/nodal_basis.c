@@ -1,6 +1,7 @@
 #include "solid/nodal_basis.h"
 
 #include "base/chunks.h"
+#include "base/dense.h"
 #include "base/memory.h"
 
 #include <math.h>
@@ -120,40 +121,6 @@ static void make_equations(const struct table *table, int64_t i, struct work *wo
     }
 }
 
-/* matrix[n * n] = L L^T in its lower part; false when it is not positive definite. */
-static bool factorise(int64_t n, double *matrix)
-{
-    for (int64_t k = 0; k < n; k++) {
-        for (int64_t l = 0; l <= k; l++) {
-            double sum = matrix[k * n + l];
-            for (int64_t c = 0; c < l; c++) {
-                sum -= matrix[k * n + c] * matrix[l * n + c];
-            }
-            if (k == l && !(sum > 0.0)) {
-                return false;
-            }
-            matrix[k * n + l] = k == l ? sqrt(sum) : sum / matrix[l * n + l];
-        }
-    }
-    return true;
-}
-
-static void solve(int64_t n, const double *factor, double *x)
-{
-    for (int64_t k = 0; k < n; k++) {
-        for (int64_t c = 0; c < k; c++) {
-            x[k] -= factor[k * n + c] * x[c];
-        }
-        x[k] /= factor[k * n + k];
-    }
-    for (int64_t k = n; k-- > 0;) {
-        for (int64_t c = k + 1; c < n; c++) {
-            x[k] -= factor[c * n + k] * x[c];
-        }
-        x[k] /= factor[k * n + k];
-    }
-}
-
 /* q = y - sum_c z_c m_c, with gram y = A e_i, gram z_c = C_c, such that C q = (1, 0): false where the nodes
  * do not span the space. */
 static bool keep_linear_fields(int dim, int64_t n, const double *gram, double *sides, double *q)
@@ -164,9 +131,9 @@ static bool keep_linear_fields(int dim, int64_t n, const double *gram, double *s
         return false;
     }
     memcpy(z, sides + n, (size_t)(count * n) * sizeof *z);
-    solve(n, gram, sides);
+    dense_solve(n, gram, sides);
     for (int c = 0; c < count; c++) {
-        solve(n, gram, z + c * n);
+        dense_solve(n, gram, z + c * n);
     }
     for (int c = 0; c < count; c++) {
         const double *C = sides + (1 + c) * n;
@@ -181,10 +148,10 @@ static bool keep_linear_fields(int dim, int64_t n, const double *gram, double *s
             }
         }
     }
-    if (!factorise(count, condition)) {
+    if (!dense_factorise(count, condition)) {
         return false;
     }
-    solve(count, condition, multiplier);
+    dense_solve(count, condition, multiplier);
     for (int64_t k = 0; k < n; k++) {
         q[k] = sides[k];
         for (int c = 0; c < count; c++) {
@@ -202,7 +169,7 @@ static enum status make_row(const struct table *table, int64_t i, struct work *w
     int64_t first = table->ptr[i], n = table->ptr[i + 1] - first;
     TRY(gather_rows(table, i, work, error));
     make_equations(table, i, work);
-    if (!factorise(n, work->gram) || !keep_linear_fields(table->dim, n, work->gram, work->sides, q)) {
+    if (!dense_factorise(n, work->gram) || !keep_linear_fields(table->dim, n, work->gram, work->sides, q)) {
         for (int64_t k = 0; k < n; k++) {
             q[k] = table->idx[first + k] == i ? 1.0 : 0.0;
         }

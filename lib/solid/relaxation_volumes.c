@@ -19,19 +19,10 @@ static const double rise_error = 1e-2, bulk_rise = 1.1;
  * more than so many shear moduli: bulk modulus times strain squared. */
 static const double most_left = 5.0;
 
-static double largest_bulk(const struct body *body)
-{
-    double largest = 0.0;
-    for (int64_t m = 0; m < body->material_count; m++) {
-        largest = fmax(largest, body->bulk_modulus[m] / body->materials[m].shear_modulus);
-    }
-    return largest;
-}
-
 /* A limit that limits nothing is none. */
 static double effective(const struct relaxation *r, double limit)
 {
-    return limit < largest_bulk(&r->system->body) ? limit : INFINITY;
+    return limit < body_largest_bulk(&r->system->body) ? limit : INFINITY;
 }
 
 void relaxation_limit_bulk(struct relaxation *r)

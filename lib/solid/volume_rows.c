@@ -14,7 +14,7 @@ static double averaged_modulus(const struct body *body, int64_t q)
     return material_bulk(material) - nodal_volume_modulus(material);
 }
 
-static void free_matrix(struct volume_matrix *matrix)
+void volume_matrix_free(struct volume_matrix *matrix)
 {
     free(matrix->ptr);
     free(matrix->idx);
@@ -24,10 +24,10 @@ static void free_matrix(struct volume_matrix *matrix)
 
 void volume_rows_free(struct volume_rows *rows)
 {
-    free_matrix(&rows->faces);
-    free_matrix(&rows->nodes);
-    free_matrix(&rows->change);
-    free_matrix(&rows->stiffness);
+    volume_matrix_free(&rows->faces);
+    volume_matrix_free(&rows->nodes);
+    volume_matrix_free(&rows->change);
+    volume_matrix_free(&rows->stiffness);
     free(rows->theta);
     *rows = (struct volume_rows){0};
 }
@@ -70,9 +70,8 @@ static int64_t row_of_corner(const struct means *means, int64_t corner, int dim)
     return means->of_corner[corner] / PAIRS_STRIDE(dim);
 }
 
-/* Count the columns of row `r` of a table that the current row does not have yet, and list them in idx. */
-static int64_t note_columns(const struct volume_matrix *table, int64_t r, int64_t row, int64_t *seen,
-                            int64_t count, int32_t *idx)
+int64_t volume_matrix_note_columns(const struct volume_matrix *table, int64_t r, int64_t row, int64_t *seen,
+                                   int64_t count, int32_t *idx)
 {
     for (int64_t i = table->ptr[r]; i < table->ptr[r + 1]; i++) {
         if (seen[table->idx[i]] != row) {
@@ -95,10 +94,10 @@ static int64_t change_columns(const struct body *body, const struct volume_rows 
     for (int64_t i = volumes->ptr[a]; i < volumes->ptr[a + 1]; i++) {
         int64_t first = volumes->slot[i] / corners * corners;
         for (int64_t corner = first; corner < first + corners; corner++) {
-            count = note_columns(&rows->faces, row_of_corner(&body->cells.faces, corner, body->dim), a, seen,
-                                 count, idx);
-            count = note_columns(&rows->nodes, row_of_corner(&body->cells.nodes, corner, body->dim), a, seen,
-                                 count, idx);
+            count = volume_matrix_note_columns(
+                &rows->faces, row_of_corner(&body->cells.faces, corner, body->dim), a, seen, count, idx);
+            count = volume_matrix_note_columns(
+                &rows->nodes, row_of_corner(&body->cells.nodes, corner, body->dim), a, seen, count, idx);
         }
     }
     return count;

@@ -21,6 +21,13 @@ struct volume_matrix {
     double *value;
 };
 
+void volume_matrix_free(struct volume_matrix *matrix);
+
+/* List the columns of row r that seen[column] does not have as `row` yet in idx, from `count` on, and mark
+ * them; idx NULL: count only. Returns the count then. */
+int64_t volume_matrix_note_columns(const struct volume_matrix *matrix, int64_t r, int64_t row, int64_t *seen,
+                                   int64_t count, int32_t *idx);
+
 struct volume_rows {
     int dim;
     int64_t count; /* nodal volumes; 0: none, and nothing else is set */
