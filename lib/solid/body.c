@@ -64,10 +64,6 @@ static enum status copy_points(const struct body_input *input, struct body *body
     }
     TRY(NEW_ARRAY(&body->materials, input->material_count, error));
     memcpy(body->materials, input->materials, (size_t)input->material_count * sizeof *body->materials);
-    TRY(NEW_ARRAY(&body->bulk_modulus, input->material_count, error));
-    for (int64_t m = 0; m < input->material_count; m++) {
-        body->bulk_modulus[m] = input->materials[m].bulk_modulus;
-    }
     for (int64_t q = 0; q < points; q++) {
         int64_t from = body->order[q];
         if (input->ptr[from + 1] <= input->ptr[from] || !(input->weight[from] > 0.0)) {
@@ -226,23 +222,6 @@ done:
     return status;
 }
 
-double body_largest_bulk(const struct body *body)
-{
-    double largest = 0.0;
-    for (int64_t m = 0; m < body->material_count; m++) {
-        largest = fmax(largest, body->bulk_modulus[m] / body->materials[m].shear_modulus);
-    }
-    return largest;
-}
-
-void body_limit_bulk(struct body *body, double most)
-{
-    for (int64_t m = 0; m < body->material_count; m++) {
-        struct material *material = &body->materials[m];
-        material->bulk_modulus = fmin(body->bulk_modulus[m], most * material->shear_modulus);
-    }
-}
-
 void body_free(struct body *body)
 {
     pairs_free(&body->gradients);
@@ -250,7 +229,7 @@ void body_free(struct body *body)
     nodal_volumes_free(&body->volumes);
     void *arrays[] = {body->order,      body->weight,     body->materials,   body->material, body->blocks,
                       body->node_order, body->node_place, body->u,           body->F,        body->bound,
-                      body->J,          body->scratch,    body->bulk_modulus};
+                      body->J,          body->scratch};
     for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) {
         free(arrays[i]);
     }

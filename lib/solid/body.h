@@ -47,18 +47,31 @@ struct block {
     double energy; /* at the last call of body_energy, J (2D: J/m) */
 };
 
-/* Nodal volumes, over which volume ratios and pressures are averaged: see nodal_volume.h. */
+/* The matrix A of the nodal pressures, and how A^-1 is applied: see nodal_pressure.c. */
+#define NODAL_PRESSURE_ROWS 8
+struct nodal_pressures {
+    int64_t slices;  /* of so many rows; slice s has the entries ptr[s] to ptr[s + 1] of each of its rows, */
+    int64_t *ptr;    /* slices + 1 */
+    int32_t *idx;    /* those of entry k at k * NODAL_PRESSURE_ROWS: columns, */
+    double *value;   /* and A there, m3/Pa (2D: m2/Pa) */
+    double *inverse; /* of all rows: S^-1; 0 where nothing carries pressure */
+    double *scratch; /* 3 times as many */
+    int iterations;
+    double centre, half, scale; /* of the interval of eigenvalues of S^-1 A; of the sum */
+};
+
+/* Nodal volumes, whose pressures resist changes of volume: see nodal_volume.h. */
 struct nodal_volumes {
     int64_t count;
     int32_t *of_point; /* point_count * (dim + 1): the nodal volume at each vertex of a point's cell */
-    double *share;     /* point_count * (dim + 1): its part of the point's volume, N_a(q) w_q, m3 (2D: m2) */
-    int64_t *ptr;      /* count + 1 */
-    int32_t *slot;     /* ptr[count]: the places of a nodal volume in these two, ascending */
-    double *volume;    /* count: V_a, m3 (2D: m2) */
-    double *ratio;     /* count: theta_a - 1 at the last evaluation */
-    double *pressure;  /* count: pi_a, Pa */
-    double *mean;      /* point_count: Jbar */
-    double *carried;   /* point_count: what is averaged to pi_a, Pa */
+    double *share;   /* point_count * (dim + 1): its part of the point's volume, N_a(q) w_q, m3 (2D: m2); 0 of
+                        points whose material is too compressible for nodal pressures */
+    int64_t *ptr;    /* count + 1 */
+    int32_t *slot;   /* ptr[count]: the places of a nodal volume in these two, ascending */
+    double *strain;  /* point_count: y at the last evaluation */
+    double *content; /* rows of the slices: b, m3 (2D: m2) */
+    double *pressure; /* likewise: pi, Pa */
+    struct nodal_pressures pressures;
 };
 
 struct force_kernels;
@@ -75,7 +88,6 @@ struct body {
     int32_t *node_place;        /* node_count: the body's index of each of the caller's nodes */
     double *weight;             /* point_count */
     struct material *materials; /* material_count */
-    double *bulk_modulus;       /* material_count: theirs without a limit, Pa */
     int64_t material_count;
     int32_t *material; /* point_count */
     int64_t block_count;
@@ -112,12 +124,6 @@ struct deformation {
  * N, in 2D N/m. With an inverted point the forces mean nothing. */
 struct deformation body_force(struct body *body, const double *u, double *force);
 
-/* Largest bulk modulus by shear modulus of the materials, without a limit. */
-double body_largest_bulk(const struct body *body);
-
-/* Let no material be stiffer against changes of volume than so many shear moduli; INFINITY: as they are. */
-void body_limit_bulk(struct body *body, double most);
-
 /* Volume at rest, the sum of the weights of the points, m3 (2D: m2). */
 double body_volume(const struct body *body);
 
@@ -137,9 +143,9 @@ void body_volume_ratio(struct body *body, double *ratio);
 /* stiffness[node_count], N/m (2D: N/m2): bounds the diagonal of the stiffness at the last evaluation's F (of
  * conforming cells about, far strained ones may exceed it), as sum_q w W''(y (x) grad phi), the second
  * derivative of the energy along the rank-one change of F that is stiffest, y = F^-T grad phi; at rest sum_q
- * w (lambda + 2 mu) |grad phi|^2. The neo-Hookean formula serves all materials. `without_volumes`: of the
- * bulk modulus only what acts on the J of single points, see nodal_volume.h. */
-void body_diagonal(struct body *body, bool without_volumes, double *stiffness);
+ * w (lambda + 2 mu) |grad phi|^2. The neo-Hookean formula serves all materials. Where volumes are
+ * averaged, lambda is that of volume changes which vary from node to node (nodal_volume.h). */
+void body_diagonal(struct body *body, double *stiffness);
 
 /* The same of conforming cells for parameters that are about the values at the nodes (nodal_basis.h): with
  * the hat functions of the cells for phi. */

@@ -23,7 +23,7 @@ struct bound {
     double A[9], smoothing;
 };
 
-static struct bound bound_at(const struct body *body, int64_t q, const double *F, bool without_volumes)
+static struct bound bound_at(const struct body *body, int64_t q, const double *F)
 {
     static const double at_rest[9] = {1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0};
     const struct material *material = &body->materials[body->material[q]];
@@ -39,7 +39,7 @@ static struct bound bound_at(const struct body *body, int64_t q, const double *F
         I1 += F[k] * F[k];
     }
     double shear = body->weight[q] * material->shear_modulus / cbrt(J * J);
-    double bulk = without_volumes ? nodal_volume_modulus(material) : material->bulk_modulus;
+    double bulk = body->averaged ? nodal_volume_rough_modulus(material, body->dim) : material->bulk_modulus;
     double along = body->weight[q] * bulk + 5.0 / 9.0 * I1 * shear / (J * J);
     /* along |J F^-T g|^2 - shear |g|^2 / 3 = g A g */
     for (int k = 0; k < 9; k++) {
@@ -49,31 +49,25 @@ static struct bound bound_at(const struct body *body, int64_t q, const double *F
     }
     if (body->conforming) {
         bound.smoothing = 2.0 * body->weight[q] * SMOOTHING_STIFFNESS(body->dim) * material->shear_modulus;
-        if (without_volumes) {
+        if (body->averaged) {
             bound.smoothing += body->weight[q] * fabs(nodal_volume_pressure(body, q));
         }
     }
     return bound;
 }
 
-/* Where the bounds are summed. */
-struct bound_sum {
-    double *of_node;
-    bool without_volumes;
-};
-
 static void add_point(const struct body *body, int64_t q, const double F[9], double J, void *context)
 {
     (void)J; /* of cells not det F */
-    const struct bound_sum *to = context;
-    struct bound bound = bound_at(body, q, F, to->without_volumes);
+    double *of_node = context;
+    struct bound bound = bound_at(body, q, F);
     double sum[64];
     int64_t row = body->order[q], end = body->ptr[row + 1];
     for (int64_t i = body->ptr[row]; i < end; i += 64) {
         int64_t count = end - i < 64 ? end - i : 64;
         body->kernels->bounds(body->dphi + i * body->dim, count, bound.A, bound.smoothing, sum);
         for (int64_t k = 0; k < count; k++) {
-            to->of_node[body->idx[i + k]] += sum[k];
+            of_node[body->idx[i + k]] += sum[k];
         }
     }
 }
@@ -83,8 +77,8 @@ static void add_point(const struct body *body, int64_t q, const double F[9], dou
 static void add_cell(const struct body *body, int64_t q, const double F[9], double J, void *context)
 {
     (void)J;
-    const struct bound_sum *to = context;
-    struct bound bound = bound_at(body, q, F, to->without_volumes);
+    double *of_node = context;
+    struct bound bound = bound_at(body, q, F);
     double gradient[12] = {0.0}, sum[4];
     int dim = body->dim;
     for (int k = 1; k <= dim; k++) {
@@ -95,11 +89,11 @@ static void add_cell(const struct body *body, int64_t q, const double F[9], doub
     }
     body->kernels->bounds(gradient, dim + 1, bound.A, bound.smoothing, sum);
     for (int k = 0; k <= dim; k++) {
-        to->of_node[body->cells.cell_node[body->order[q] * (dim + 1) + k]] += sum[k];
+        of_node[body->cells.cell_node[body->order[q] * (dim + 1) + k]] += sum[k];
     }
 }
 
-static void sum_bounds(struct body *body, body_visitor *add, bool without_volumes, double *stiffness)
+static void sum_bounds(struct body *body, body_visitor *add, double *stiffness)
 {
     const struct chunks *parts = &body->bound_parts;
 #pragma omp parallel num_threads(parts->threads)
@@ -108,8 +102,7 @@ static void sum_bounds(struct body *body, body_visitor *add, bool without_volume
         for (int64_t p = 0; p < parts->count; p++) {
             double *sum = p == 0 ? stiffness : body->bound + (p - 1) * body->node_count;
             memset(sum, 0, (size_t)body->node_count * sizeof *sum);
-            struct bound_sum to = {sum, without_volumes};
-            body_visit(body, chunks_begin(parts, p), chunks_begin(parts, p + 1), add, &to);
+            body_visit(body, chunks_begin(parts, p), chunks_begin(parts, p + 1), add, sum);
         }
 #pragma omp for schedule(static)
         for (int64_t n = 0; n < body->node_count; n++) {
@@ -120,12 +113,12 @@ static void sum_bounds(struct body *body, body_visitor *add, bool without_volume
     }
 }
 
-void body_diagonal(struct body *body, bool without_volumes, double *stiffness)
+void body_diagonal(struct body *body, double *stiffness)
 {
-    sum_bounds(body, add_point, without_volumes, stiffness);
+    sum_bounds(body, add_point, stiffness);
 }
 
 void body_nodal_diagonal(struct body *body, double *stiffness)
 {
-    sum_bounds(body, add_cell, false, stiffness);
+    sum_bounds(body, add_cell, stiffness);
 }

@@ -3,7 +3,6 @@
 #include "base/memory.h"
 #include "solid/freedom.h"
 
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -15,19 +14,6 @@ static int64_t centre_count(const struct solid_system *system)
 {
     int64_t count = system->node_count / (nodes_per_field * (system->dim + 1));
     return count < FIELDS_MOST_CENTRES ? count : FIELDS_MOST_CENTRES;
-}
-
-/* Bulk modulus by shear modulus from which, and nodal volumes up to which, rows for volumes take less time
- * than more steps do: at 500 a block of 234 nodes takes as long with them as without, at 5 000 half as long;
- * one of 789 nodes at 5 000 as long, one of 3 020 nodes 1.5 times as long. */
-static const double least_bulk = 500.0;
-static const int64_t most_volumes = 2000;
-
-bool inertia_takes_volumes(const struct solid_system *system)
-{
-    const struct body *body = &system->body;
-    return system->dim == 2 && body->conforming && body->averaged && system->basis == NULL &&
-           body_largest_bulk(body) > least_bulk && body->volumes.count <= most_volumes;
 }
 
 enum status inertia_build(const struct solid_system *system, bool coarse, struct inertia *inertia,
@@ -50,11 +36,7 @@ enum status inertia_build(const struct solid_system *system, bool coarse, struct
     TRY(NEW_ARRAY(&inertia->body, cells, error));
     TRY(NEW_ARRAY(&inertia->weight, cells, error));
     TRY(NEW_ARRAY(&inertia->free_weight, cells, error));
-    if (inertia_takes_volumes(system)) {
-        TRY(volume_rows_build(&system->body, &inertia->volumes, error));
-    }
-    TRY(NEW_ARRAY(&inertia->seen, system->rows.count + inertia->volumes.count, error));
-    TRY(NEW_ARRAY(&inertia->held, (system->rows.count + inertia->volumes.count) * inertia->size, error));
+    TRY(NEW_ARRAY(&inertia->held, system->rows.count * inertia->size, error));
     TRY(NEW_ARRAY(&inertia->inverse, cells, error));
     TRY(NEW_ARRAY(&inertia->beside, cells, error));
     TRY(NEW_ARRAY(&inertia->amount, 2 * inertia->size, error));
@@ -68,9 +50,6 @@ done:
 void inertia_free(struct inertia *inertia)
 {
     constraint_free(&inertia->constraint);
-    volume_rows_free(&inertia->volumes);
-    sparse_free(&inertia->coupled);
-    free(inertia->seen);
     fields_free(&inertia->fields);
     free(inertia->mass);
     free(inertia->body);
@@ -103,7 +82,8 @@ static void multiply(int64_t n, const double *matrix, const double *x, double *r
 
 void inertia_collect_force(struct inertia *inertia, const double *force, double *acceleration, double *amount)
 {
-    double *seen = inertia->seen;
+    const struct constraint_rows *rows = inertia->constraint.rows;
+    double *seen = inertia->constraint.multiplier;
     for (int64_t n = 0; n < inertia->node_count; n++) {
         double inverse = 1.0 / inertia->mass[n];
         for (int64_t i = n * inertia->dim; i < (n + 1) * inertia->dim; i++) {
@@ -113,11 +93,11 @@ void inertia_collect_force(struct inertia *inertia, const double *force, double 
     if (inertia->size > 0) {
         fields_collect(&inertia->fields, NULL, force, amount);
     }
-    if (inertia->constraint.rows == NULL) {
+    if (rows == NULL) {
         return;
     }
-    inertia_rows_see(inertia, acceleration, seen);
-    for (int64_t r = 0; r < inertia_row_count(inertia); r++) {
+    constraint_rows_values(rows, acceleration, seen);
+    for (int64_t r = 0; r < rows->count; r++) {
         const double *held = inertia->held + r * inertia->size;
         for (int64_t k = 0; k < inertia->size && seen[r] != 0.0; k++) {
             amount[k] -= held[k] * seen[r];
@@ -127,26 +107,27 @@ void inertia_collect_force(struct inertia *inertia, const double *force, double 
 
 void inertia_accelerate(struct inertia *inertia, const double *force, double *acceleration)
 {
-    double *amount = inertia->seen, *solved = inertia->amount + inertia->size;
+    struct constraint *constraint = &inertia->constraint;
+    const struct constraint_rows *rows = constraint->rows;
+    double *multiplier = constraint->multiplier, *solved = inertia->amount + inertia->size;
     inertia_collect_force(inertia, force, acceleration, inertia->amount);
     if (inertia->size > 0) {
         multiply(inertia->size, inertia->inverse, inertia->amount, solved);
         fields_add(&inertia->fields, solved, acceleration);
     }
-    int64_t rows = inertia_row_count(inertia);
-    if (rows == 0) {
+    if (rows == NULL || rows->count == 0) {
         return;
     }
-    inertia_rows_solve(inertia, amount);
-    for (int64_t r = 0; r < rows; r++) {
+    envelope_solve(&constraint->factor, multiplier);
+    for (int64_t r = 0; r < rows->count; r++) {
         const double *held = inertia->held + r * inertia->size;
-        double sum = amount[r];
+        double sum = multiplier[r];
         for (int64_t k = 0; k < inertia->size; k++) {
             sum += held[k] * solved[k];
         }
-        amount[r] = -sum;
+        multiplier[r] = -sum;
     }
-    inertia_rows_spread(inertia, amount, acceleration);
+    constraint_rows_spread(rows, multiplier, inertia->mass, acceleration);
 }
 
 double inertia_product_alone(const struct inertia *inertia, const double *x, const double *y)
@@ -163,13 +144,10 @@ double inertia_product_alone(const struct inertia *inertia, const double *x, con
     return sum;
 }
 
-double inertia_product(struct inertia *inertia, const double *x, const double *y)
+double inertia_product(const struct inertia *inertia, const double *x, const double *y)
 {
     double *amount = inertia->amount, *solved = inertia->amount + inertia->size;
     double sum = inertia_product_alone(inertia, x, y);
-    if (inertia->volumes.count > 0) {
-        sum += volume_rows_product(&inertia->volumes, x, y);
-    }
     if (inertia->size > 0) {
         inertia_collect(inertia, x, amount);
         multiply(inertia->size, inertia->beside, amount, solved);
@@ -191,7 +169,6 @@ enum status inertia_state(struct inertia *inertia, const struct state *state, st
         {"measured", STATE_NUMBERS, &inertia->measured_mass, 1},
         {"touching", STATE_FLAGS, inertia->touching, inertia->hat_count},
         {"normal", STATE_NUMBERS, inertia->normal, inertia->hat_count * inertia->dim},
-        {"volumes", STATE_NUMBERS, inertia->volumes.change.value, volume_rows_size(&inertia->volumes)},
     };
     return state_visit(state, "inertia", values, sizeof values / sizeof *values, error);
 }

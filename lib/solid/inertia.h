@@ -1,42 +1,31 @@
 /* The fictitious mass of a relaxation: free to choose, because a state at rest does not depend on it.
  *
  * With a diagonal mass D that bounds the stiffness of each node, a load spreads by about one support in a
- * step, and modes as large as the body decide how many steps are needed; and where kappa is far above mu the
- * stiffness of volumes bounds the step, but shear has to settle. So M has three parts. With rows H and
+ * step, and modes as large as the body decide how many steps are needed. On a few smooth fields Z (fields.h)
+ * the mass is therefore the stiffness itself: with the projection P onto moves that the conditions admit, and
+ * A near P^T K P along the fields,
  *
- *   S = H D^-1 H^T + E,    P = I - D^-1 H^T S^-1 H,    M^-1 = P D^-1 + P Z A^-1 Z^T P^T,
+ *   M^-1 = P (D^-1 + Z A^-1 Z^T) P^T
+ * where, with the conditions' rows G and S = G D^-1 G^T, P^T f = f - G^T S^-1 G D^-1 f; so one look at G D^-1
+ * f tells both the fields' amounts and the conditions' forces. Also
  *
- * - conditions: rows G of H, with E = 0: no move violates them;
- * - nodal volumes, in two dimensions: rows K C of H, with E = K (volume_rows.h). On moves that the conditions
- *   admit P D^-1 is then B^-1, B = D + C^T K C; D leaves out what K has of the stiffness;
- * - a few smooth fields Z (fields.h), on which the mass is the stiffness itself: A is near P^T K P along
- *   them, and P Z hardly changes volumes.
- *
- * One look at H D^-1 f tells both the fields' amounts and the rows' forces. Also
- *
- *   x . M y = x . B y - (Z^T D x) . (A + Z^T D P Z)^-1 (Z^T D y)   for moves x, y that the conditions admit,
+ *   x . M y = x . D y - (Z^T D x) . (A + Z^T D P Z)^-1 (Z^T D y)   for moves x, y that the conditions admit,
  *
  * so that the slowest modes left are those that the fields do not resolve. In the terms of linear systems, a
- * two-level additive preconditioner with deflated constraints (Woodbury). Any positive definite A is sound;
- * what it has of the contacts must follow them, because a mode that suddenly becomes stiff would be unstable.
- */
+ * two-level additive preconditioner with deflated constraints. Any positive definite A is sound; what it has
+ * of the contacts must follow them, because a mode that suddenly becomes stiff would be unstable. */
 #ifndef SOLID_INERTIA_H
 #define SOLID_INERTIA_H
 
-#include "base/sparse.h"
 #include "base/state.h"
 #include "solid/fields.h"
 #include "solid/system.h"
-#include "solid/volume_rows.h"
 
 struct inertia {
     int dim;
     int64_t node_count;
     double *mass;                 /* node_count: D, N/m (2D: N/m2) */
     struct constraint constraint; /* with D */
-    struct volume_rows volumes;   /* count 0: none */
-    struct sparse_factor coupled; /* with volumes: S */
-    double *seen;                 /* rows of H: scratch */
     struct fields fields;         /* count 0: none, M = D */
     int64_t size;                 /* fields.count * dim: rows and columns of the matrices */
     double *body;         /* stiffness of body and springs along the fields, P Z e_k, N/m (2D: N/m2) */
@@ -47,15 +36,11 @@ struct inertia {
     int64_t hat_count;
     double *weight;      /* Z^T D Z */
     double *free_weight; /* Z^T D P Z */
-    double *held;        /* rows of H * size: S^-1 H Z, what they put against each field */
-    double *inverse;     /* A^-1 */
-    double *beside;      /* (A + Z^T D P Z)^-1 */
-    double *amount;      /* 2 * size: scratch */
+    double *held; /* rows of the conditions * size: (G D^-1 G^T)^-1 G Z, what they put against each field */
+    double *inverse; /* A^-1 */
+    double *beside;  /* (A + Z^T D P Z)^-1 */
+    double *amount;  /* 2 * size: scratch */
 };
-
-/* Whether the inertia has rows for nodal volumes, so that D leaves them out: in two dimensions, where S is
- * sparse. */
-bool inertia_takes_volumes(const struct solid_system *system);
 
 /* Memory and fields for a system; `coarse` false: no fields. */
 MUST_CHECK enum status inertia_build(const struct solid_system *system, bool coarse, struct inertia *inertia,
@@ -84,11 +69,8 @@ void inertia_accelerate(struct inertia *inertia, const double *force, double *ac
 /* x . D y */
 double inertia_product_alone(const struct inertia *inertia, const double *x, const double *y);
 
-/* move += what it takes to meet the conditions at `factor` (NULL: targets of zero) with least x . B x. */
-void inertia_project(struct inertia *inertia, const double *factor, double *move);
-
 /* x . M y of moves that the conditions admit. */
-double inertia_product(struct inertia *inertia, const double *x, const double *y);
+double inertia_product(const struct inertia *inertia, const double *x, const double *y);
 
 /* What another run needs to go on: see base/state.h. Afterwards, in a run that was restored, inertia_restore.
  */

@@ -47,55 +47,44 @@ void inertia_add_row(const struct inertia *inertia, const struct average *averag
     }
 }
 
-/* free_weight = Z^T D P Z = Z^T D Z - (H Z)^T S^-1 H Z: without what the rows hold. */
-static enum status weigh_rows(struct inertia *inertia, struct error *error)
+/* free_weight = Z^T D P Z = Z^T D Z - (G Z)^T (G D^-1 G^T)^-1 G Z: without what the conditions forbid. */
+static enum status weigh_conditions(struct inertia *inertia, struct error *error)
 {
     enum status status;
-    int64_t size = inertia->size, rows = inertia_row_count(inertia);
-    double *seen = NULL, *solved = NULL, *field = NULL; /* the first two by fields */
+    const struct constraint_rows *rows = inertia->constraint.rows;
+    int64_t size = inertia->size;
+    double *conditions = NULL, *solved = NULL;
     memcpy(inertia->free_weight, inertia->weight, (size_t)(size * size) * sizeof *inertia->weight);
-    TRY(NEW_ARRAY(&seen, rows * size, error));
-    TRY(NEW_ARRAY(&solved, rows * size, error));
-    TRY(NEW_ARRAY(&field, inertia->node_count * inertia->dim, error));
-    for (int64_t k = 0; k < size; k++) {
-        memset(inertia->amount, 0, (size_t)size * sizeof *inertia->amount);
-        memset(field, 0, (size_t)(inertia->node_count * inertia->dim) * sizeof *field);
-        inertia->amount[k] = 1.0;
-        fields_add(&inertia->fields, inertia->amount, field);
-        inertia_rows_see(inertia, field, seen + k * rows);
+    TRY(NEW_ARRAY(&conditions, rows->count * size, error));
+    TRY(NEW_ARRAY(&solved, rows->count, error));
+    for (int64_t r = 0; r < rows->count; r++) {
+        struct average average = constraint_rows_average(rows, r);
+        inertia_add_row(inertia, &average, rows->direction + r * inertia->dim, conditions + r * size);
     }
-    memcpy(solved, seen, (size_t)(rows * size) * sizeof *seen);
-    TRY(inertia_rows_solve_many(inertia, size, solved, error));
     for (int64_t k = 0; k < size; k++) {
-        for (int64_t i = 0; i < size; i++) {
-            double sum = 0.0;
-            for (int64_t r = 0; r < rows; r++) {
-                sum += solved[k * rows + r] * seen[i * rows + r];
-            }
-            inertia->free_weight[k * size + i] -= sum; /* or column: symmetric */
+        double *column = inertia->free_weight + k * size; /* or row: symmetric */
+        for (int64_t r = 0; r < rows->count; r++) {
+            solved[r] = conditions[r * size + k];
         }
-        for (int64_t r = 0; r < rows; r++) {
-            inertia->held[r * size + k] = solved[k * rows + r];
+        envelope_solve(&inertia->constraint.factor, solved);
+        for (int64_t r = 0; r < rows->count; r++) {
+            inertia->held[r * size + k] = solved[r];
+            for (int64_t i = 0; i < size && solved[r] != 0.0; i++) {
+                column[i] -= solved[r] * conditions[r * size + i];
+            }
         }
     }
 done:
-    free(seen);
+    free(conditions);
     free(solved);
-    free(field);
     return status;
 }
 
 enum status inertia_set_mass(struct inertia *inertia, const struct solid_system *system, const double *mass,
                              struct error *error)
 {
-    enum status status;
     memcpy(inertia->mass, mass, (size_t)inertia->node_count * sizeof *mass);
-    if (inertia->volumes.count > 0) {
-        TRY(volume_rows_set(&system->body, &inertia->volumes, error));
-    }
-    TRY(inertia_restore(inertia, system, error));
-done:
-    return status;
+    return inertia_restore(inertia, system, error);
 }
 
 enum status inertia_restore(struct inertia *inertia, const struct solid_system *system, struct error *error)
@@ -103,10 +92,9 @@ enum status inertia_restore(struct inertia *inertia, const struct solid_system *
     enum status status;
     constraint_free(&inertia->constraint);
     TRY(system_constrain(system, inertia->mass, &inertia->constraint, error));
-    TRY(inertia_couple(inertia, error));
     if (inertia->size > 0) {
         weigh_fields(inertia);
-        TRY(weigh_rows(inertia, error));
+        TRY(weigh_conditions(inertia, error));
         inertia_invert(inertia, system);
     }
 done:

@@ -97,10 +97,7 @@ static void set_field(struct inertia *inertia, int64_t k, double *field)
     memset(field, 0, (size_t)(inertia->node_count * inertia->dim) * sizeof *field);
     inertia->amount[k] = 1.0;
     fields_add(&inertia->fields, inertia->amount, field);
-    for (int64_t r = 0; r < inertia_row_count(inertia); r++) {
-        inertia->seen[r] = -inertia->held[r * inertia->size + k];
-    }
-    inertia_rows_spread(inertia, inertia->seen, field);
+    constraint_project(&inertia->constraint, NULL, field);
 }
 
 static void make_symmetric(int64_t n, double *matrix)

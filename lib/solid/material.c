@@ -208,38 +208,25 @@ double material_shape_energy(const struct material *material, const double F[9])
     return 0.5 * mu * (I1 / cbrt(J * J) - 3.0);
 }
 
+double material_volume_strain(const struct material *material, double J)
+{
+    return material->model == MATERIAL_NEO_HOOKEAN_LOG ? log(J) : J - 1.0;
+}
+
+double material_volume_slope(const struct material *material, double J)
+{
+    return material->model == MATERIAL_NEO_HOOKEAN_LOG ? 1.0 / J : 1.0;
+}
+
 double material_volume_energy(const struct material *material, double J)
 {
-    double logarithm;
-    switch (material->model) {
-    case MATERIAL_NEO_HOOKEAN_LOG:
-        logarithm = log(J);
-        return 0.5 * lame_lambda(material) * logarithm * logarithm;
-    case MATERIAL_ST_VENANT_KIRCHHOFF:
-        return 0.0;
-    case MATERIAL_NEO_HOOKEAN:
-    case MATERIAL_MOONEY_RIVLIN:
-    case MATERIAL_OGDEN:
-    case MATERIAL_MODEL_COUNT:
-        break;
-    }
-    return 0.5 * material->bulk_modulus * (J - 1.0) * (J - 1.0);
+    double strain = material_volume_strain(material, J);
+    return 0.5 * material_bulk(material) * strain * strain;
 }
 
 double material_pressure(const struct material *material, double J)
 {
-    switch (material->model) {
-    case MATERIAL_NEO_HOOKEAN_LOG:
-        return lame_lambda(material) * log(J) / J;
-    case MATERIAL_ST_VENANT_KIRCHHOFF:
-        return 0.0;
-    case MATERIAL_NEO_HOOKEAN:
-    case MATERIAL_MOONEY_RIVLIN:
-    case MATERIAL_OGDEN:
-    case MATERIAL_MODEL_COUNT:
-        break;
-    }
-    return material->bulk_modulus * (J - 1.0);
+    return material_bulk(material) * material_volume_strain(material, J) * material_volume_slope(material, J);
 }
 
 double material_bulk(const struct material *material)

@@ -1,7 +1,8 @@
 /* Hyperelastic materials: energy per reference volume, first Piola stress, and their volumetric part.
  *
- * W(F) = W_shape(F) + U(J). Only U is averaged over nodal volumes; St. Venant-Kirchhoff has no such split (U
- * = 0). F is 3 x 3 row-major; plane strain has F33 = 1. Units Pa.
+ * W(F) = W_shape(F) + U(J), U = kappa/2 y(J)^2 with y = J - 1, or ln J and lambda for kappa. Only U is
+ * averaged over nodal volumes; St. Venant-Kirchhoff has no such split (U = 0). F is 3 x 3 row-major; plane
+ * strain has F33 = 1. Units Pa.
  *
  *   neo-Hookean            mu/2 (I1' - 3) + kappa/2 (J - 1)^2
  *   neo-Hookean (log)      mu/2 (I1 - 3) - mu ln J + lambda/2 (ln J)^2
@@ -47,6 +48,10 @@ double material_shape_energy(const struct material *material, const double F[9])
 
 /* P = dW_shape/dF. */
 void material_shape_stress(const struct material *material, const double F[9], double P[9]);
+
+/* y(J) and dy/dJ. */
+double material_volume_strain(const struct material *material, double J);
+double material_volume_slope(const struct material *material, double J);
 
 /* U(J) and dU/dJ. */
 double material_volume_energy(const struct material *material, double J);

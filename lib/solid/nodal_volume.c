@@ -5,6 +5,11 @@
 #include <math.h>
 #include <stdlib.h>
 
+/* s by the shear modulus. */
+static const double points_part = 2.0;
+/* epsilon */
+static const double stabilisation = 0.25;
+
 /* A nodal volume for each pair of background node and group of materials. */
 struct key {
     int32_t node, group;
@@ -53,23 +58,18 @@ enum status nodal_volumes_build(const struct body_input *input, struct body *bod
     TRY(NEW_ARRAY(&volumes->of_point, slots, error));
     TRY(NEW_ARRAY(&volumes->share, slots, error));
     TRY(NEW_ARRAY(&volumes->slot, slots, error));
-    TRY(NEW_ARRAY(&volumes->mean, body->point_count, error));
-    TRY(NEW_ARRAY(&volumes->carried, body->point_count, error));
+    TRY(NEW_ARRAY(&volumes->strain, body->point_count, error));
     for (int64_t s = 0; s < slots; s++) {
-        int64_t from = body->order[s / vertices] * vertices + s % vertices;
-        int32_t material = body->material[s / vertices];
+        int64_t q = s / vertices, from = body->order[q] * vertices + s % vertices;
+        int32_t material = body->material[q];
+        bool carries = nodal_pressure_modulus(&body->materials[material]) > 0.0;
         keys[s] = (struct key){input->hat_node[from], input->group ? input->group[material] : material, s};
-        volumes->share[s] = input->hat_value[from] * body->weight[s / vertices];
+        volumes->share[s] = carries ? input->hat_value[from] * body->weight[q] : 0.0;
     }
     TRY(number_volumes(volumes, keys, slots, error));
-    TRY(NEW_ARRAY(&volumes->volume, volumes->count, error));
-    TRY(NEW_ARRAY(&volumes->ratio, volumes->count, error));
-    TRY(NEW_ARRAY(&volumes->pressure, volumes->count, error));
-    for (int64_t a = 0; a < volumes->count; a++) {
-        for (int64_t i = volumes->ptr[a]; i < volumes->ptr[a + 1]; i++) {
-            volumes->volume[a] += volumes->share[volumes->slot[i]];
-        }
-    }
+    TRY(nodal_pressures_build(body, error));
+    TRY(NEW_ARRAY(&volumes->content, volumes->pressures.slices * NODAL_PRESSURE_ROWS, error));
+    TRY(NEW_ARRAY(&volumes->pressure, volumes->pressures.slices * NODAL_PRESSURE_ROWS, error));
 done:
     free(keys);
     return status;
@@ -77,95 +77,85 @@ done:
 
 double nodal_volume_modulus(const struct material *material)
 {
-    return fmin(material_bulk(material), 2.0 * material->shear_modulus);
+    return fmin(material_bulk(material), points_part * material->shear_modulus);
 }
 
-/* Mean over nodal volume a of the values at points; 0 where it has no volume, as all its hat values are 0. */
-static inline __attribute__((always_inline)) double
-to_volume(const struct nodal_volumes *volumes, int64_t a, int vertices, const double *value, double subtract)
+double nodal_pressure_modulus(const struct material *material)
 {
-    double sum = 0.0;
-    for (int64_t i = volumes->ptr[a]; i < volumes->ptr[a + 1]; i++) {
-        int32_t slot = volumes->slot[i];
-        sum += volumes->share[slot] * (value[slot / vertices] - subtract);
-    }
-    return volumes->volume[a] > 0.0 ? sum / volumes->volume[a] : 0.0;
+    return material_bulk(material) - nodal_volume_modulus(material);
 }
 
-/* sum_a N_a(q) value_a w_q */
-static inline __attribute__((always_inline)) double to_point(const struct nodal_volumes *volumes, int64_t q,
-                                                             int vertices, const double *value)
+double nodal_pressure_compliance(const struct material *material)
 {
-    double sum = 0.0;
-    for (int64_t k = q * vertices; k < (q + 1) * vertices; k++) {
-        sum += volumes->share[k] * value[volumes->of_point[k]];
-    }
-    return sum;
+    return stabilisation / material->shear_modulus;
 }
 
-static void average_ratios(struct nodal_volumes *volumes, int vertices, const double *J)
+double nodal_volume_rough_modulus(const struct material *material, int dim)
 {
-#pragma omp for schedule(static)
-    for (int64_t a = 0; a < volumes->count; a++) { /* of J - 1, which is small */
-        volumes->ratio[a] = to_volume(volumes, a, vertices, J, 1.0);
-    }
+    double rest = nodal_pressure_modulus(material), compliance = nodal_pressure_compliance(material);
+    return nodal_volume_modulus(material) + (rest > 0.0 ? 1.0 / (1.0 / rest + compliance / (dim + 2)) : 0.0);
 }
 
-/* Jbar, and what the nodal volumes carry: U'(Jbar) - s (Jbar - 1). */
-static void press_points(struct body *body, int vertices)
+/* y of the points, and b. */
+static inline __attribute__((always_inline)) void sum_content(struct body *body, int vertices)
 {
     struct nodal_volumes *volumes = &body->volumes;
 #pragma omp for schedule(static)
     for (int64_t q = 0; q < body->point_count; q++) {
-        const struct material *material = &body->materials[body->material[q]];
-        double mean = 1.0 + to_point(volumes, q, vertices, volumes->ratio) / body->weight[q];
-        volumes->mean[q] = mean;
-        volumes->carried[q] =
-            material_pressure(material, mean) - nodal_volume_modulus(material) * (mean - 1.0);
+        volumes->strain[q] = material_volume_strain(&body->materials[body->material[q]], body->J[q]);
     }
-}
-
-static void average_pressures(struct nodal_volumes *volumes, int vertices)
-{
 #pragma omp for schedule(static)
     for (int64_t a = 0; a < volumes->count; a++) {
-        volumes->pressure[a] = to_volume(volumes, a, vertices, volumes->carried, 0.0);
+        double sum = 0.0;
+        for (int64_t i = volumes->ptr[a]; i < volumes->ptr[a + 1]; i++) {
+            int32_t slot = volumes->slot[i];
+            sum += volumes->share[slot] * volumes->strain[slot / vertices];
+        }
+        volumes->content[a] = sum;
     }
 }
 
 void nodal_volumes_evaluate(struct body *body)
 {
     if (body->dim == 2) {
-        average_ratios(&body->volumes, 3, body->J);
-        press_points(body, 3);
-        average_pressures(&body->volumes, 3);
+        sum_content(body, 3);
     } else {
-        average_ratios(&body->volumes, 4, body->J);
-        press_points(body, 4);
-        average_pressures(&body->volumes, 4);
+        sum_content(body, 4);
     }
+    nodal_pressures_solve(&body->volumes.pressures, body->volumes.content, body->volumes.pressure);
+}
+
+/* sum_a N_a(q) pi_a */
+static double carried(const struct body *body, int64_t point)
+{
+    const struct nodal_volumes *volumes = &body->volumes;
+    int vertices = body->dim + 1;
+    double sum = 0.0;
+    for (int64_t k = point * vertices; k < (point + 1) * vertices; k++) {
+        sum += volumes->share[k] * volumes->pressure[volumes->of_point[k]];
+    }
+    return sum / body->weight[point];
 }
 
 double nodal_volume_pressure(const struct body *body, int64_t point)
 {
-    const struct nodal_volumes *volumes = &body->volumes;
     const struct material *material = &body->materials[body->material[point]];
-    return to_point(volumes, point, body->dim + 1, volumes->pressure) / body->weight[point] +
-           nodal_volume_modulus(material) * (body->J[point] - 1.0);
+    return (carried(body, point) + nodal_volume_modulus(material) * body->volumes.strain[point]) *
+           material_volume_slope(material, body->J[point]);
 }
 
 double nodal_volume_energy(const struct body *body, int64_t point)
 {
     const struct material *material = &body->materials[body->material[point]];
-    double mean = body->volumes.mean[point], J = body->J[point];
-    return material_volume_energy(material, mean) +
-           0.5 * nodal_volume_modulus(material) * (J - mean) * (J + mean - 2.0);
+    double strain = body->volumes.strain[point];
+    return 0.5 * (carried(body, point) + nodal_volume_modulus(material) * strain) * strain;
 }
 
 void nodal_volumes_free(struct nodal_volumes *volumes)
 {
-    void *arrays[] = {volumes->of_point, volumes->share, volumes->ptr,      volumes->slot,   volumes->volume,
-                      volumes->mean,     volumes->ratio, volumes->pressure, volumes->carried};
+    void *arrays[] = {volumes->of_point, volumes->share,   volumes->ptr,     volumes->slot,
+                      volumes->strain,   volumes->content, volumes->pressure};
+    nodal_pressures_free(&volumes->pressures);
     for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) {
         free(arrays[i]);
     }

@@ -1,24 +1,27 @@
-/* Volume ratios averaged over nodal volumes; private to lib/solid.
+/* Volume changes of nodal volumes, and the pressures that these carry; private to lib/solid.
  *
  * A background node a owns the nodal volume V_a = sum_q N_a(q) w_q, where N_a is its linear hat function and
- * w_q the volume of point q (average nodal pressure: Bonet and Burton 1998). The volume ratios J of the
- * points are averaged to the nodal volumes and back to the points:
+ * w_q the volume of point q (average nodal pressure: Bonet and Burton 1998). The volumetric energy of a
+ * material is U(J) = kappa / 2 y(J)^2 (material.h). Of kappa a part s, of the order of mu, acts on the y of
+ * the points; the rest, k = kappa - s, on nodal pressures pi, by the mixed energy
  *
- *   theta_a = (1 / V_a) sum_q N_a(q) w_q J_q,        Jbar_q = sum_a N_a(q) theta_a,
+ *   sum_q w_q s_q / 2 y_q^2  +  max_pi ( b . pi - pi . A pi / 2 ),        b_a = sum_q N_a(q) w_q y_q,
+ *   A_ab = sum_q w_q ( delta_ab N_a(q) / k_q + epsilon / mu_q C_ab ),
+ *   C_ab = (1 + delta_ab) / ((d + 1)(d + 2)) - 1 / (d + 1)^2   for the vertices a, b of the cell of point q,
  *
- * in short Jbar = T J. T keeps constants, and w T is symmetric. Of the bulk modulus, a part s acts on J and
- * the rest on the averages. The volumetric energy is
+ * so that pi = A^-1 b. C is the mean over a cell of (N_a - mean of N_a)(N_b - mean of N_b): the pressure
+ * projection of Dohrmann and Bochev 2004. A pressure that is smooth meets k; one that varies from node to
+ * node meets a modulus of the order of mu / epsilon, as C grows up to I / ((d + 1)(d + 2)). Without C,
+ * patterns of pressure that no displacement answers would lock the body; with it the error is of the order of
+ * the spacing squared (Bochev, Dohrmann and Gunzburger 2006). A body with kappa <= s does not lock: it has no
+ * nodal pressures.
  *
- *   sum_q w_q ( U(Jbar_q) - s_q / 2 (Jbar_q - 1)^2 + s_q / 2 (J_q - 1)^2 ),      s = min(kappa, 2 mu).
+ * A mode of wave number k has about the stiffness k^2 / (1 / kappa + epsilon k^2 h^2 / (20 mu)): never more
+ * than a number times mu / h^2. Therefore the critical step in terms of mu does not depend on kappa.
  *
- * Where J is smooth that is U(J). Of J that varies from cell to cell, the averages hold only what they
- * resolve: the body does not lock. The part s, of the order of mu, holds the rest, so that single cells do
- * not collapse (pressure projection: Dohrmann and Bochev 2004; stabilisation with limited moduli: Puso, Chen,
- * Zywicz and Elmer 2008). A body with kappa <= 2 mu does not lock, and has the pointwise law. The pressure
- * that acts at point q follows from the derivative of the energy:
+ * The pressure at point q, the derivative of the energy by J_q per volume, is
  *
- *   p_q = sum_a N_a(q) pi_a + s_q (J_q - 1),
- *   pi_a = (1 / V_a) sum_q N_a(q) w_q ( U'(Jbar_q) - s_q (Jbar_q - 1) ).
+ *   p_q = ( sum_a N_a(q) pi_a + s_q y_q ) y'(J_q).
  *
  * Groups of materials do not share nodal volumes, since the pressure jumps between them. */
 #ifndef SOLID_NODAL_VOLUME_H
@@ -37,10 +40,27 @@ void nodal_volumes_evaluate(struct body *body);
 /* The part s of the bulk modulus, Pa. */
 double nodal_volume_modulus(const struct material *material);
 
+/* The modulus that volume changes meet which vary from node to node, Pa: s + (1 / k + epsilon / ((d + 2)
+ * mu))^-1. */
+double nodal_volume_rough_modulus(const struct material *material, int dim);
+
 /* Pressure p_q at the last evaluation, Pa; negative in compression. */
 double nodal_volume_pressure(const struct body *body, int64_t point);
 
 /* Volumetric energy of a point per volume at the last evaluation, Pa. */
 double nodal_volume_energy(const struct body *body, int64_t point);
+
+/* ---- nodal_pressure.c: the solution of A pi = b ---- */
+
+/* A of nodal volumes whose points and shares are set. */
+MUST_CHECK enum status nodal_pressures_build(struct body *body, struct error *error);
+void nodal_pressures_free(struct nodal_pressures *pressures);
+
+/* value[count] = A^-1 content[count], by all threads of a parallel region together. */
+void nodal_pressures_solve(const struct nodal_pressures *pressures, const double *content, double *value);
+
+/* The part k of the bulk modulus, Pa, and epsilon / mu, 1/Pa. */
+double nodal_pressure_modulus(const struct material *material);
+double nodal_pressure_compliance(const struct material *material);
 
 #endif

@@ -57,7 +57,7 @@ static bool step(struct relaxation *r, double *u, bool measure)
     }
     /* The move is projected, not u: round-off relative to u would keep the residual from vanishing. */
     double started = clock_seconds();
-    inertia_project(&r->inertia, r->factor_change, move);
+    constraint_project(&r->inertia.constraint, r->factor_change, move);
     system->cost.constraints += clock_seconds() - started;
     for (int64_t i = 0; i < r->size; i++) {
         u[i] += move[i];
@@ -81,7 +81,7 @@ static bool tell(struct relaxation *r)
     int64_t at = r->report->steps;
     struct progress progress = {.step = at,
                                 .u = relaxation_parameters(r, r->u),
-                                .move = isfinite(r->bulk_limit) ? INFINITY : r->moved,
+                                .move = r->moved,
                                 .error = r->report->error,
                                 .remaining = -1.0,
                                 .state = relaxation_visit,
@@ -147,7 +147,6 @@ static void let_go(struct relaxation *r)
     r->spectrum_known = false;
     r->augmentations = r->fruitless = 0;
     r->least_penetration = INFINITY;
-    relaxation_limit_bulk(r);
 }
 
 /* Set the load factors, and by how much they change. */
@@ -178,7 +177,7 @@ static bool follow(struct relaxation *r, struct error *error)
     relaxation_estimate(r);
     relaxation_pace(r);
     if (r->at_full_load <= CHECK_INTERVAL) { /* take out what round-off has left */
-        inertia_project(&r->inertia, r->system->factor, u);
+        constraint_project(&r->inertia.constraint, r->system->factor, u);
     }
     if (r->report->steps % keep_interval == 0) {
         relaxation_keep_state(r);
@@ -189,11 +188,8 @@ static bool follow(struct relaxation *r, struct error *error)
         return false;
     }
     relaxation_update_time_step(r, r->residual_at, iterations);
-    if (hovers(r) && !relaxation_calm(r, r->acceleration, error)) {
-        return false;
-    }
-    if (!relaxation_update_volumes(r, error)) {
-        return false;
+    if (hovers(r)) {
+        relaxation_calm(r, r->acceleration);
     }
     relaxation_follow_contacts(r);
     return relaxation_update_inertia(r, error);
@@ -203,7 +199,7 @@ static bool follow(struct relaxation *r, struct error *error)
 static bool ends(struct relaxation *r, enum relaxation_outcome *outcome, struct error *error)
 {
     const double *error_now = &r->report->error, tolerance = r->options->tolerance;
-    bool whole = r->at_full_load > 2 * CHECK_INTERVAL && !isfinite(r->bulk_limit);
+    bool whole = r->at_full_load > 2 * CHECK_INTERVAL;
     bool small = whole && *error_now <= tolerance;
     r->settled = small ? r->settled + 1 : 0;
     *outcome = RELAXATION_STOPPED;
@@ -243,15 +239,14 @@ static enum relaxation_outcome iterate(struct relaxation *r, struct error *error
         r->at_full_load = r->load < hold ? 0 : r->at_full_load + 1;
         r->report->loading_steps += r->at_full_load == 0;
         change_load(r, r->load / ramp);
-        relaxation_raise_bulk(r);
         if (!step(r, r->u, measure)) {
             measure = false;
             if (!relaxation_step_back(r, error)) {
                 return RELAXATION_INVERTED;
             }
         }
-        if (r->unstable && !relaxation_calm(r, r->scratch, error)) {
-            return RELAXATION_STOPPED;
+        if (r->unstable) {
+            relaxation_calm(r, r->scratch);
         }
         if (measure && !follow(r, error)) {
             return RELAXATION_STOPPED;
@@ -277,15 +272,14 @@ static enum status begin(struct relaxation *r, struct error *error)
 {
     enum status status;
     struct solid_system *system = r->system;
-    relaxation_limit_bulk(r);
     system_load_factors(system, 0.0);
     (void)system_residual(system, r->u, r->residual);
     if (gives_frames(r)) {
         relaxation_show(r, 0, 0.0);
     }
-    system_relaxation_mass(system, r->inertia.volumes.count > 0, r->scratch);
+    system_relaxation_mass(system, r->scratch);
     TRY(inertia_set_mass(&r->inertia, system, r->scratch, error));
-    inertia_project(&r->inertia, system->factor, r->u);
+    constraint_project(&r->inertia.constraint, system->factor, r->u);
     r->residual_at = r->u;
     r->low2 = INFINITY;
     for (int i = 0; i < WINDOWS; i++) {
@@ -306,7 +300,6 @@ static enum status resume(struct relaxation *r, struct error *error)
 {
     enum status status;
     TRY(relaxation_visit(r, r->options->restored, error));
-    body_limit_bulk(&r->system->body, r->bulk_limit);
     TRY(inertia_restore(&r->inertia, r->system, error));
 done:
     return status;
@@ -336,7 +329,6 @@ enum status relaxation_run(struct solid_system *system, const struct relaxation_
     r.penetration_allowed = penetration_share * r.body_size;
     TRY(options->restored != NULL ? resume(&r, error) : begin(&r, error));
     report->outcome = iterate(&r, error);
-    body_limit_bulk(&system->body, INFINITY);
     TRY(r.failure);
     report->largest_frequency = r.frequency;
     if (report->outcome == RELAXATION_INVERTED) {

@@ -22,10 +22,10 @@ static const double least_low2 =
     1e-4; /* first guess of the lowest eigenvalue by the largest, if it is negative */
 static const int64_t most_retreats = 8;                          /* from inverted points */
 static const double most_stiffening = 1.1, most_softening = 0.5; /* of a node since its mass was set */
-static const double most_stiffening_apart = 1.5; /* where volumes have rows, which are factored anew then */
-static const double most_mass_checks = 5.0;      /* from one look at that to the next */
-static const int64_t most_augmentations = 20;    /* of the contacts' multipliers, */
-static const int64_t most_fruitless = 3;         /* of those in a row that change little */
+static const int calm_iterations = 5;         /* of the power iteration on a mode that may be unstable */
+static const double most_mass_checks = 5.0;   /* from one look at that to the next */
+static const int64_t most_augmentations = 20; /* of the contacts' multipliers, */
+static const int64_t most_fruitless = 3;      /* of those in a row that change little */
 
 double relaxation_body_size(const struct solid_system *system)
 {
@@ -54,8 +54,7 @@ void relaxation_pace(struct relaxation *r)
 
 static double relaxation_share(const struct relaxation *r)
 {
-    bool rises = r->bulk_rises && isfinite(r->bulk_limit);
-    return r->caution * r->options->time_step_margin * (rises ? 0.5 : 1.0);
+    return r->caution * r->options->time_step_margin;
 }
 
 void relaxation_update_time_step(struct relaxation *r, const double *u, int iterations)
@@ -83,13 +82,12 @@ static bool note_mass_change(struct relaxation *r, double change)
 bool relaxation_update_mass(struct relaxation *r, struct error *error)
 {
     double *mass = r->scratch, highest = 1.0, lowest = 1.0;
-    system_relaxation_mass(r->system, r->inertia.volumes.count > 0, mass);
+    system_relaxation_mass(r->system, mass);
     for (int64_t n = 0; n < r->system->node_count; n++) {
         highest = fmax(highest, mass[n] / r->inertia.mass[n]);
         lowest = fmin(lowest, mass[n] / r->inertia.mass[n]);
     }
-    double stiffening = r->inertia.volumes.count > 0 ? most_stiffening_apart : most_stiffening;
-    if (!note_mass_change(r, fmax(log(highest) / log(stiffening), log(lowest) / log(most_softening)))) {
+    if (!note_mass_change(r, fmax(log(highest) / log(most_stiffening), log(lowest) / log(most_softening)))) {
         return true;
     }
     r->failure = inertia_set_mass(&r->inertia, r->system, mass, error);
@@ -131,7 +129,7 @@ enum status relaxation_measure_inertia(struct relaxation *r, struct error *error
     r->time_step = relaxation_share(r) * 2.0 / r->frequency;
     relaxation_damp_at_most(r, spectrum.lowest > 0.0 ? first_low2 * spectrum.lowest
                                                      : least_low2 * spectrum.largest);
-    r->measured_frequency = r->fresh_frequency = r->frequency;
+    r->measured_frequency = r->frequency;
     r->measured_move = r->largest_move;
 done:
     return status;
@@ -144,8 +142,8 @@ static void keep(const struct relaxation *r, struct kept_state *newer, struct ke
     *older = *newer;
     newer->u = spare;
     newer->load = r->load;
-    newer->bulk_limit = r->bulk_limit;
     memcpy(newer->u, r->u, (size_t)r->size * sizeof *r->u);
+    memcpy(newer->u + r->size, r->velocity, (size_t)r->size * sizeof *r->velocity);
 }
 
 void relaxation_keep_state(struct relaxation *r)
@@ -161,10 +159,8 @@ void relaxation_keep_check(struct relaxation *r)
 void relaxation_go_back(struct relaxation *r, const struct kept_state *kept)
 {
     r->load = kept->load;
-    r->bulk_limit = kept->bulk_limit;
-    body_limit_bulk(&r->system->body, r->bulk_limit);
     memcpy(r->u, kept->u, (size_t)r->size * sizeof *r->u);
-    memset(r->velocity, 0, (size_t)r->size * sizeof *r->velocity);
+    memcpy(r->velocity, kept->u + r->size, (size_t)r->size * sizeof *r->velocity);
     system_load_factors(r->system, fmin(1.0, r->load / (double)r->report->ramp_steps));
 }
 
@@ -178,6 +174,7 @@ bool relaxation_step_back(struct relaxation *r, struct error *error)
     r->top_rate *= 0.5;
     r->load_rate = r->top_rate;
     relaxation_go_back(r, &r->older);
+    memset(r->velocity, 0, (size_t)r->size * sizeof *r->velocity);
     relaxation_keep_state(r);
     relaxation_keep_check(r);
     relaxation_keep_check(r);
@@ -186,7 +183,7 @@ bool relaxation_step_back(struct relaxation *r, struct error *error)
     if (!(system_residual(r->system, r->u, r->residual).least_jacobian > 0.0)) {
         return false;
     }
-    system_relaxation_mass(r->system, r->inertia.volumes.count > 0, r->scratch);
+    system_relaxation_mass(r->system, r->scratch);
     r->mass_change = 0.0;
     r->last_mass_check = r->next_mass_check = r->checks;
     r->failure = inertia_set_mass(&r->inertia, r->system, r->scratch, error);
@@ -194,6 +191,32 @@ bool relaxation_step_back(struct relaxation *r, struct error *error)
         r->failure = relaxation_measure_inertia(r, error);
     }
     return r->failure == STATUS_OK;
+}
+
+/* Whether the mode that the acceleration shows is beyond the critical step. */
+static bool is_unstable(struct relaxation *r, const double *acceleration)
+{
+    memcpy(r->mode, acceleration, (size_t)r->size * sizeof *r->mode);
+    (void)system_residual(r->system, r->u, r->residual);
+    double frequency = system_largest_frequency(r->system, &r->inertia, r->u, r->residual, calm_iterations,
+                                                r->mode, r->scratch);
+    r->report->force_evaluations += calm_iterations + 1;
+    return !(frequency * r->time_step < 2.0);
+}
+
+void relaxation_calm(struct relaxation *r, const double *acceleration)
+{
+    r->calmed_step = r->report->steps;
+    r->usual_residual2 = 0.0;
+    if (!is_unstable(r, acceleration)) {
+        return;
+    }
+    relaxation_go_back(r, &r->check_before);
+    relaxation_keep_check(r);
+    r->residual_at = r->u;
+    (void)system_residual(r->system, r->residual_at, r->residual);
+    r->report->force_evaluations++;
+    relaxation_update_time_step(r, r->residual_at, calm_iterations);
 }
 
 /* How contacts that can be augmented stand at the last evaluation. */

@@ -12,9 +12,8 @@ enum { WINDOWS = 8 };           /* recent Rayleigh quotients that the error esti
 
 /* A state to go back to. */
 struct kept_state {
-    double *u;
+    double *u; /* and behind it the velocity */
     double load;
-    double bulk_limit; /* see struct relaxation */
 };
 
 struct relaxation {
@@ -46,19 +45,14 @@ struct relaxation {
     double body_size;                         /* diagonal of the nodes' box, m */
     double thickness;                         /* mean, across that, m */
     double measured_frequency, measured_move; /* the largest ones, when the inertia was measured */
-    double fresh_frequency;                   /* the largest, when the rows of volumes were set */
-    double bulk_limit;                /* of the bulk moduli now, by the shear moduli; INFINITY: none */
-    double rows_limit;                /* the same in the rows of volumes, at least that */
-    bool bulk_rises;                  /* the limit goes up to the moduli themselves, */
-    bool bulk_waits;                  /* but not now, as the body moves too fast */
-    double usual_residual2;           /* what the residual's norm, squared, is compared with */
-    bool unstable;                    /* it grew far above that in the last step */
-    int64_t calmed_step;              /* the last step at which that was mended */
-    double penetration_allowed;       /* m */
-    int64_t augmentations, fruitless; /* of the contacts so far; those in a row that changed little */
-    double least_penetration;         /* m, before an augmentation */
-    int64_t augmented_step;           /* of the last one while the load grew */
-    bool mass_changed;                /* since the last check: increments of the acceleration mean nothing */
+    double usual_residual2;                   /* what the residual's norm, squared, is compared with */
+    bool unstable;                            /* it grew far above that in the last step */
+    int64_t calmed_step;                      /* the last step at which that was mended */
+    double penetration_allowed;               /* m */
+    int64_t augmentations, fruitless;         /* of the contacts so far; those in a row that changed little */
+    double least_penetration;                 /* m, before an augmentation */
+    int64_t augmented_step;                   /* of the last one while the load grew */
+    bool mass_changed; /* since the last check: increments of the acceleration mean nothing */
     enum status failure;
     double load, load_rate;      /* steps of the ramp applied so far, and per step, at most top_rate */
     double top_rate;             /* 1 until an inversion */
@@ -159,21 +153,9 @@ void relaxation_follow_contacts(struct relaxation *r);
 /* Whether a converged state may stand; contacts that penetrate too deep are augmented and relaxed again. */
 bool relaxation_contacts_hold(struct relaxation *r);
 
-/* ---- relaxation_volumes.c: rows of nodal volumes, bulk moduli that rise, unstable modes ---- */
-
-/* On the way to an equilibrium: bulk moduli limited, where volumes have rows. */
-void relaxation_limit_bulk(struct relaxation *r);
-
-/* At each step: the limit goes up once it began to. */
-void relaxation_raise_bulk(struct relaxation *r);
-
-/* At a check: set the rows of volumes anew where the largest frequency has risen since that was done, as the
- * body has moved so far, or where the limit overtakes them. False on failure. */
-bool relaxation_update_volumes(struct relaxation *r, struct error *error);
-
-/* A mode may be unstable, which the acceleration shows. If it is: go on from the check before the last, at rest, with the
- * time step of that mode and, where volumes have rows, with these set anew. False on failure. */
-bool relaxation_calm(struct relaxation *r, const double *acceleration, struct error *error);
+/* A mode may be unstable, which the acceleration shows. If it is: go on from the check before the last, at
+ * rest, with the time step of that mode. */
+void relaxation_calm(struct relaxation *r, const double *acceleration);
 
 /* ---- relaxation_state.c: memory, and what a checkpoint holds ---- */
 

@@ -100,10 +100,10 @@ enum status relaxation_allocate(struct relaxation *r, struct error *error)
     TRY(NEW_ARRAY(&r->last_u, r->size, error));
     TRY(NEW_ARRAY(&r->last_acceleration, r->size, error));
     TRY(NEW_ARRAY(&r->acceleration, r->size, error));
-    TRY(NEW_ARRAY(&r->newer.u, r->size, error));
-    TRY(NEW_ARRAY(&r->older.u, r->size, error));
-    TRY(NEW_ARRAY(&r->check_now.u, r->size, error));
-    TRY(NEW_ARRAY(&r->check_before.u, r->size, error));
+    TRY(NEW_ARRAY(&r->newer.u, 2 * r->size, error));
+    TRY(NEW_ARRAY(&r->older.u, 2 * r->size, error));
+    TRY(NEW_ARRAY(&r->check_now.u, 2 * r->size, error));
+    TRY(NEW_ARRAY(&r->check_before.u, 2 * r->size, error));
 done:
     return status;
 }
@@ -136,29 +136,20 @@ enum status relaxation_visit(void *run, const struct state *state, struct error 
         {"mode", STATE_NUMBERS, r->mode, r->size},
         {"last_u", STATE_NUMBERS, r->last_u, r->size},
         {"last_acceleration", STATE_NUMBERS, r->last_acceleration, r->size},
-        {"newer.u", STATE_NUMBERS, r->newer.u, r->size},
+        {"newer.u", STATE_NUMBERS, r->newer.u, 2 * r->size},
         {"newer.load", STATE_NUMBERS, &r->newer.load, 1},
-        {"newer.bulk_limit", STATE_NUMBERS, &r->newer.bulk_limit, 1},
-        {"older.u", STATE_NUMBERS, r->older.u, r->size},
+        {"older.u", STATE_NUMBERS, r->older.u, 2 * r->size},
         {"older.load", STATE_NUMBERS, &r->older.load, 1},
-        {"older.bulk_limit", STATE_NUMBERS, &r->older.bulk_limit, 1},
-        {"check_now.u", STATE_NUMBERS, r->check_now.u, r->size},
+        {"check_now.u", STATE_NUMBERS, r->check_now.u, 2 * r->size},
         {"check_now.load", STATE_NUMBERS, &r->check_now.load, 1},
-        {"check_now.bulk_limit", STATE_NUMBERS, &r->check_now.bulk_limit, 1},
-        {"check_before.u", STATE_NUMBERS, r->check_before.u, r->size},
+        {"check_before.u", STATE_NUMBERS, r->check_before.u, 2 * r->size},
         {"check_before.load", STATE_NUMBERS, &r->check_before.load, 1},
-        {"check_before.bulk_limit", STATE_NUMBERS, &r->check_before.bulk_limit, 1},
         {"steps", STATE_COUNTS, &report->steps, 1},
         {"time_step", STATE_NUMBERS, &r->time_step, 1},
         {"damping", STATE_NUMBERS, &r->damping, 1},
         {"frequency", STATE_NUMBERS, &r->frequency, 1},
-        {"bulk_limit", STATE_NUMBERS, &r->bulk_limit, 1},
-        {"rows_limit", STATE_NUMBERS, &r->rows_limit, 1},
-        {"bulk_rises", STATE_FLAGS, &r->bulk_rises, 1},
-        {"bulk_waits", STATE_FLAGS, &r->bulk_waits, 1},
         {"usual_residual2", STATE_NUMBERS, &r->usual_residual2, 1},
         {"calmed_step", STATE_COUNTS, &r->calmed_step, 1},
-        {"fresh_frequency", STATE_NUMBERS, &r->fresh_frequency, 1},
         {"measured_frequency", STATE_NUMBERS, &r->measured_frequency, 1},
         {"measured_move", STATE_NUMBERS, &r->measured_move, 1},
         {"low2", STATE_NUMBERS, &r->low2, 1},

@@ -355,13 +355,13 @@ static void add_to_bound(const struct solid_system *system, const struct average
     }
 }
 
-void system_relaxation_mass(struct solid_system *system, bool without_volumes, double *mass)
+void system_relaxation_mass(struct solid_system *system, double *mass)
 {
     double sum = 0.0;
     if (system->basis != NULL) {
         body_nodal_diagonal(&system->body, mass);
     } else {
-        body_diagonal(&system->body, without_volumes, mass);
+        body_diagonal(&system->body, mass);
     }
     for (int64_t c = 0; c < system->contact_count; c++) {
         const struct contact *contact = &system->contacts[c];

@@ -115,9 +115,8 @@ double system_spring_energy(const struct solid_system *system, const double *u);
 double system_spring_force(const struct solid_system *system, int64_t r, const double *u);
 
 /* Mass for relaxation: a bound of each node's stiffness, N/m, so that all parts of the body have about the
- * same critical step (1) however the cloud is graded; contact penalties included. mass[node_count] > 0.
- * `without_volumes`: see body_diagonal. */
-void system_relaxation_mass(struct solid_system *system, bool without_volumes, double *mass);
+ * same critical step (1) however the cloud is graded; contact penalties included. mass[node_count] > 0. */
+void system_relaxation_mass(struct solid_system *system, double *mass);
 
 /* Mean spacing of the nodes, m. */
 double system_node_spacing(const struct solid_system *system);

@@ -1,0 +1,204 @@
+/* Nodal pressures A pi = b by Chebyshev's iteration.
+ *
+ * Let S be diagonal with sum_q N_a(q) w_q (1 / k_q + epsilon / ((d + 2) mu_q)). Of each cell A is at most S,
+ * and at least rho S, rho = 1 / (1 + max_q epsilon k_q / ((d + 2) mu_q)): these bound the eigenvalues of S^-1
+ * A. So many iterations that the modulus of each mode is right to `accuracy` give a polynomial of A, fixed
+ * once for all, which is symmetric and positive definite as A^-1 is: the pressures derive from an energy,
+ * whatever the number of iterations. It is scaled to be right at rho, where the pressure is uniform. Saad
+ * 2003, algorithm 12.1. */
+#include "base/memory.h"
+#include "solid/nodal_volume.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* A bulk modulus that is off by a part x moves a body by about x mu / kappa of its strain, which is to be at
+ * most this part; and x at most that. */
+enum { ROWS = NODAL_PRESSURE_ROWS, SLICES_AT_ONCE = 32 };
+static const double effect = 2e-5, most_inaccurate = 0.02;
+
+/* How many volumes share points with volume a, itself included. */
+static int64_t count_neighbours(const struct nodal_volumes *volumes, int vertices, int64_t a, int64_t *seen)
+{
+    int64_t count = 0;
+    for (int64_t i = volumes->ptr[a]; i < volumes->ptr[a + 1]; i++) {
+        const int32_t *of = volumes->of_point + volumes->slot[i] / vertices * vertices;
+        for (int k = 0; k < vertices; k++) {
+            count += seen[of[k]] != a;
+            seen[of[k]] = a;
+        }
+    }
+    return count;
+}
+
+/* Add the parts of A and S that volume a has from the points around it; place[b]: where row a has b. */
+static void add_points(const struct body *body, int64_t a, const int64_t *place,
+                       struct nodal_pressures *pressures, double *bound)
+{
+    const struct nodal_volumes *volumes = &body->volumes;
+    int d = body->dim, vertices = d + 1;
+    for (int64_t i = volumes->ptr[a]; i < volumes->ptr[a + 1]; i++) {
+        int64_t slot = volumes->slot[i], q = slot / vertices;
+        const struct material *material = &body->materials[body->material[q]];
+        double rest = nodal_pressure_modulus(material), compliance = nodal_pressure_compliance(material);
+        if (!(rest > 0.0)) {
+            continue;
+        }
+        pressures->value[place[a]] += volumes->share[slot] / rest;
+        *bound += volumes->share[slot] / rest + body->weight[q] * compliance / ((d + 1) * (d + 2));
+        for (int k = 0; k < vertices; k++) {
+            int32_t b = volumes->of_point[q * vertices + k];
+            double projected = (a == b ? 2.0 : 1.0) / ((d + 1) * (d + 2)) - 1.0 / ((d + 1) * (d + 1));
+            pressures->value[place[b]] += body->weight[q] * compliance * projected;
+        }
+    }
+}
+
+/* Lay out the slices: each as wide as its longest row; what is beyond a row's end is 0 times itself. */
+static enum status lay_out(const struct body *body, struct nodal_pressures *pressures, int64_t *seen,
+                           struct error *error)
+{
+    enum status status;
+    const struct nodal_volumes *volumes = &body->volumes;
+    int vertices = body->dim + 1;
+    pressures->slices = (volumes->count + ROWS - 1) / ROWS;
+    TRY(NEW_ARRAY(&pressures->ptr, pressures->slices + 1, error));
+    for (int64_t slice = 0; slice < pressures->slices; slice++) {
+        int64_t widest = 0;
+        for (int64_t a = slice * ROWS; a < (slice + 1) * ROWS && a < volumes->count; a++) {
+            int64_t width = count_neighbours(volumes, vertices, a, seen);
+            widest = width > widest ? width : widest;
+        }
+        pressures->ptr[slice + 1] = pressures->ptr[slice] + widest;
+    }
+    TRY(NEW_ARRAY(&pressures->idx, pressures->ptr[pressures->slices] * ROWS, error));
+    TRY(NEW_ARRAY(&pressures->value, pressures->ptr[pressures->slices] * ROWS, error));
+done:
+    return status;
+}
+
+/* The iterations for eigenvalues from rho to 1. */
+static void choose_iterations(struct nodal_pressures *pressures, double largest, double accuracy)
+{
+    double rho = 1.0 / (1.0 + largest), rate = acosh((1.0 + rho) / fmax(1.0 - rho, 1e-3));
+    pressures->iterations = 1 + (int)(acosh(1.0 / accuracy) / rate);
+    pressures->centre = 0.5 * (1.0 + rho);
+    pressures->half = 0.5 * fmax(1.0 - rho, 1e-3);
+    pressures->scale = 1.0 / (1.0 - 1.0 / cosh(pressures->iterations * rate));
+}
+
+/* The rows of A, and S^-1; place, seen: scratch, the latter -1. */
+static void set_rows(const struct body *body, int64_t *place, int64_t *seen,
+                     struct nodal_pressures *pressures)
+{
+    const struct nodal_volumes *volumes = &body->volumes;
+    for (int64_t a = 0; a < volumes->count; a++) {
+        double bound = 0.0;
+        int64_t slice = a / ROWS, at = pressures->ptr[slice] * ROWS + a % ROWS;
+        int64_t end = pressures->ptr[slice + 1] * ROWS;
+        for (int64_t i = volumes->ptr[a]; i < volumes->ptr[a + 1]; i++) {
+            int64_t first = volumes->slot[i] / (body->dim + 1) * (body->dim + 1);
+            for (int64_t k = first; k < first + body->dim + 1; k++) {
+                int32_t b = volumes->of_point[k];
+                if (seen[b] != a) {
+                    seen[b] = a;
+                    place[b] = at;
+                    pressures->idx[at] = b;
+                    at += ROWS;
+                }
+            }
+        }
+        for (; at < end; at += ROWS) {
+            pressures->idx[at] = (int32_t)a;
+        }
+        add_points(body, a, place, pressures, &bound);
+        pressures->inverse[a] = bound > 0.0 ? 1.0 / bound : 0.0;
+    }
+}
+
+enum status nodal_pressures_build(struct body *body, struct error *error)
+{
+    enum status status;
+    struct nodal_pressures *pressures = &body->volumes.pressures;
+    int64_t count = body->volumes.count, *place = NULL, *seen = NULL;
+    double largest = 0.0, bulk = 0.0;
+    TRY(NEW_ARRAY(&place, count, error));
+    TRY(NEW_ARRAY(&seen, count, error));
+    memset(seen, -1, (size_t)count * sizeof *seen);
+    TRY(lay_out(body, pressures, seen, error));
+    TRY(NEW_ARRAY(&pressures->inverse, pressures->slices * ROWS, error));
+    TRY(NEW_ARRAY(&pressures->scratch, 3 * pressures->slices * ROWS, error));
+    memset(seen, -1, (size_t)count * sizeof *seen);
+    set_rows(body, place, seen, pressures);
+    for (int64_t m = 0; m < body->material_count; m++) {
+        const struct material *material = &body->materials[m];
+        double rest = nodal_pressure_modulus(material);
+        largest = fmax(largest, rest * nodal_pressure_compliance(material) / (body->dim + 2));
+        bulk = fmax(bulk, rest / material->shear_modulus);
+    }
+    choose_iterations(pressures, largest, fmin(most_inaccurate, effect * fmax(bulk, 1.0)));
+done:
+    free(place);
+    free(seen);
+    return status;
+}
+
+/* residual -= A move; next = keep move + add S^-1 residual; value += scale next; of some slices. */
+__attribute__((target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default"))) static void
+iterate(const struct nodal_pressures *pressures, int64_t first, int64_t end, double keep, double add,
+        const double *restrict move, double *restrict residual, double *restrict next, double *restrict value)
+{
+    for (int64_t slice = first; slice < end; slice++) {
+        const double *entry = pressures->value + pressures->ptr[slice] * ROWS;
+        const int32_t *column = pressures->idx + pressures->ptr[slice] * ROWS;
+        int64_t width = pressures->ptr[slice + 1] - pressures->ptr[slice], row = slice * ROWS;
+        double sum[ROWS] = {0.0};
+        for (int64_t k = 0; k < width * ROWS; k += ROWS) {
+            for (int i = 0; i < ROWS; i++) {
+                sum[i] += entry[k + i] * move[column[k + i]];
+            }
+        }
+        for (int64_t a = row; a < row + ROWS; a++) {
+            residual[a] -= sum[a - row];
+            next[a] = keep * move[a] + add * pressures->inverse[a] * residual[a];
+            value[a] += pressures->scale * next[a];
+        }
+    }
+}
+
+void nodal_pressures_solve(const struct nodal_pressures *pressures, const double *content, double *value)
+{
+    int64_t count = pressures->slices * ROWS;
+    double *residual = pressures->scratch, *move = residual + count, *next = move + count;
+    double centre = pressures->centre / pressures->half, last = 1.0 / centre;
+#pragma omp for schedule(static)
+    for (int64_t a = 0; a < count; a++) {
+        residual[a] = content[a];
+        move[a] = pressures->inverse[a] * content[a] / pressures->centre;
+        value[a] = pressures->scale * move[a];
+    }
+    for (int k = 1; k < pressures->iterations; k++) {
+        double now = 1.0 / (2.0 * centre - last), *swap = move;
+#pragma omp for schedule(static)
+        for (int64_t first = 0; first < pressures->slices; first += SLICES_AT_ONCE) {
+            int64_t end =
+                first + SLICES_AT_ONCE < pressures->slices ? first + SLICES_AT_ONCE : pressures->slices;
+            iterate(pressures, first, end, now * last, 2.0 * now / pressures->half, move, residual, next,
+                    value);
+        }
+        move = next;
+        next = swap;
+        last = now;
+    }
+}
+
+void nodal_pressures_free(struct nodal_pressures *pressures)
+{
+    void *arrays[] = {pressures->ptr, pressures->idx, pressures->value, pressures->inverse,
+                      pressures->scratch};
+    for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) {
+        free(arrays[i]);
+    }
+    *pressures = (struct nodal_pressures){0};
+}
