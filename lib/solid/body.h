@@ -143,8 +143,8 @@ void body_volume_ratio(struct body *body, double *ratio);
 /* stiffness[node_count], N/m (2D: N/m2): bounds the diagonal of the stiffness at the last evaluation's F (of
  * conforming cells about, far strained ones may exceed it), as sum_q w W''(y (x) grad phi), the second
  * derivative of the energy along the rank-one change of F that is stiffest, y = F^-T grad phi; at rest sum_q
- * w (lambda + 2 mu) |grad phi|^2. The neo-Hookean formula serves all materials. Where volumes are
- * averaged, lambda is that of volume changes which vary from node to node (nodal_volume.h). */
+ * w (lambda + 2 mu) |grad phi|^2. The neo-Hookean formula serves all materials. With nodal
+ * volumes kappa counts up to 50 mu. */
 void body_diagonal(struct body *body, double *stiffness);
 
 /* The same of conforming cells for parameters that are about the values at the nodes (nodal_basis.h): with

@@ -1,6 +1,5 @@
 /* The bound of the diagonal of the stiffness: body_diagonal. */
 #include "base/memory.h"
-#include "solid/nodal_volume.h"
 #include "solid/stress.h"
 
 #include <math.h>
@@ -16,6 +15,9 @@ enum status body_make_bounds(struct body *body, struct error *error)
     body->bound_parts = chunks_of(body->block_count, least > LEAST_BLOCKS ? least : LEAST_BLOCKS);
     return NEW_ARRAY(&body->bound, (body->bound_parts.count - 1) * body->node_count, error);
 }
+
+/* By the shear modulus: of nodal pressures no change of volume feels more, see nodal_volume.h. */
+static const double most_bulk = 50.0;
 
 /* Along the gradient g of a shape function the energy of a point has the second derivative g A g, and that of
  * the stabilisation of its smoothing, bounded by twice its stiffness. */
@@ -39,7 +41,10 @@ static struct bound bound_at(const struct body *body, int64_t q, const double *F
         I1 += F[k] * F[k];
     }
     double shear = body->weight[q] * material->shear_modulus / cbrt(J * J);
-    double bulk = body->averaged ? nodal_volume_rough_modulus(material, body->dim) : material->bulk_modulus;
+    double bulk = material->bulk_modulus;
+    if (body->averaged) {
+        bulk = fmin(bulk, most_bulk * material->shear_modulus);
+    }
     double along = body->weight[q] * bulk + 5.0 / 9.0 * I1 * shear / (J * J);
     /* along |J F^-T g|^2 - shear |g|^2 / 3 = g A g */
     for (int k = 0; k < 9; k++) {
@@ -49,9 +54,6 @@ static struct bound bound_at(const struct body *body, int64_t q, const double *F
     }
     if (body->conforming) {
         bound.smoothing = 2.0 * body->weight[q] * SMOOTHING_STIFFNESS(body->dim) * material->shear_modulus;
-        if (body->averaged) {
-            bound.smoothing += body->weight[q] * fabs(nodal_volume_pressure(body, q));
-        }
     }
     return bound;
 }

@@ -1,10 +1,10 @@
 /* Nodal pressures A pi = b by Chebyshev's iteration.
  *
- * Let S be diagonal with sum_q N_a(q) w_q (1 / k_q + epsilon / ((d + 2) mu_q)). Of each cell A is at most S,
+ * Let S be diagonal with sum_q N_a(q) w_q (1 / k_q + epsilon / ((d + 2) mu_q)). Of each point A is at most S,
  * and at least rho S, rho = 1 / (1 + max_q epsilon k_q / ((d + 2) mu_q)): these bound the eigenvalues of S^-1
  * A. So many iterations that the modulus of each mode is right to `accuracy` give a polynomial of A, fixed
  * once for all, which is symmetric and positive definite as A^-1 is: the pressures derive from an energy,
- * whatever the number of iterations. It is scaled to be right at rho, where the pressure is uniform. Saad
+ * whatever the number of iterations. It is scaled to be right at rho, where pressures are uniform. Saad
  * 2003, algorithm 12.1. */
 #include "base/memory.h"
 #include "solid/nodal_volume.h"
@@ -37,7 +37,7 @@ static void add_points(const struct body *body, int64_t a, const int64_t *place,
                        struct nodal_pressures *pressures, double *bound)
 {
     const struct nodal_volumes *volumes = &body->volumes;
-    int d = body->dim, vertices = d + 1;
+    int vertices = body->dim + 1;
     for (int64_t i = volumes->ptr[a]; i < volumes->ptr[a + 1]; i++) {
         int64_t slot = volumes->slot[i], q = slot / vertices;
         const struct material *material = &body->materials[body->material[q]];
@@ -45,12 +45,14 @@ static void add_points(const struct body *body, int64_t a, const int64_t *place,
         if (!(rest > 0.0)) {
             continue;
         }
-        pressures->value[place[a]] += volumes->share[slot] / rest;
-        *bound += volumes->share[slot] / rest + body->weight[q] * compliance / ((d + 1) * (d + 2));
+        double share = volumes->share[slot];
+        compliance /= body->dim + 2;
+        pressures->value[place[a]] += share * (1.0 / rest + compliance);
+        *bound += share * (1.0 / rest + compliance);
         for (int k = 0; k < vertices; k++) {
-            int32_t b = volumes->of_point[q * vertices + k];
-            double projected = (a == b ? 2.0 : 1.0) / ((d + 1) * (d + 2)) - 1.0 / ((d + 1) * (d + 1));
-            pressures->value[place[b]] += body->weight[q] * compliance * projected;
+            int64_t other = q * vertices + k;
+            pressures->value[place[volumes->of_point[other]]] -=
+                compliance * share * volumes->share[other] / body->weight[q];
         }
     }
 }

@@ -90,12 +90,6 @@ double nodal_pressure_compliance(const struct material *material)
     return stabilisation / material->shear_modulus;
 }
 
-double nodal_volume_rough_modulus(const struct material *material, int dim)
-{
-    double rest = nodal_pressure_modulus(material), compliance = nodal_pressure_compliance(material);
-    return nodal_volume_modulus(material) + (rest > 0.0 ? 1.0 / (1.0 / rest + compliance / (dim + 2)) : 0.0);
-}
-
 /* y of the points, and b. */
 static inline __attribute__((always_inline)) void sum_content(struct body *body, int vertices)
 {

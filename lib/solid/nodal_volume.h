@@ -7,17 +7,20 @@
  *
  *   sum_q w_q s_q / 2 y_q^2  +  max_pi ( b . pi - pi . A pi / 2 ),        b_a = sum_q N_a(q) w_q y_q,
  *   A_ab = sum_q w_q ( delta_ab N_a(q) / k_q + epsilon / mu_q C_ab ),
- *   C_ab = (1 + delta_ab) / ((d + 1)(d + 2)) - 1 / (d + 1)^2   for the vertices a, b of the cell of point q,
+ *   C_ab = ( delta_ab N_a(q) - N_a(q) N_b(q) ) / (d + 2),
  *
- * so that pi = A^-1 b. C is the mean over a cell of (N_a - mean of N_a)(N_b - mean of N_b): the pressure
- * projection of Dohrmann and Bochev 2004. A pressure that is smooth meets k; one that varies from node to
- * node meets a modulus of the order of mu / epsilon, as C grows up to I / ((d + 1)(d + 2)). Without C,
- * patterns of pressure that no displacement answers would lock the body; with it the error is of the order of
- * the spacing squared (Bochev, Dohrmann and Gunzburger 2006). A body with kappa <= s does not lock: it has no
- * nodal pressures.
+ * so that pi = A^-1 b. With one point in the middle of a cell C is the mean over the cell of (N_a - mean of
+ * N_a) (N_b - mean of N_b): the pressure projection of Dohrmann and Bochev 2004. A pressure that is smooth
+ * meets k; one that varies from node to node meets a modulus of the order of mu / epsilon, as C grows up to N
+ * / (d + 2). Without C, patterns of pressure that no displacement answers would lock the body; with it the
+ * error is of the order of the spacing squared (Bochev, Dohrmann and Gunzburger 2006). A body with kappa <= s
+ * does not lock: it has no nodal pressures.
  *
- * A mode of wave number k has about the stiffness k^2 / (1 / kappa + epsilon k^2 h^2 / (20 mu)): never more
- * than a number times mu / h^2. Therefore the critical step in terms of mu does not depend on kappa.
+ * A change of volume of wave number k on nodes at distance h has about the stiffness
+ *
+ *   k^2 / (1 / kappa + epsilon k^2 h^2 / (20 mu))  <  20 / epsilon  mu / h^2:
+ *
+ * a critical step by mu and h stays stable whatever kappa is.
  *
  * The pressure at point q, the derivative of the energy by J_q per volume, is
  *
@@ -39,10 +42,6 @@ void nodal_volumes_evaluate(struct body *body);
 
 /* The part s of the bulk modulus, Pa. */
 double nodal_volume_modulus(const struct material *material);
-
-/* The modulus that volume changes meet which vary from node to node, Pa: s + (1 / k + epsilon / ((d + 2)
- * mu))^-1. */
-double nodal_volume_rough_modulus(const struct material *material, int dim);
 
 /* Pressure p_q at the last evaluation, Pa; negative in compression. */
 double nodal_volume_pressure(const struct body *body, int64_t point);

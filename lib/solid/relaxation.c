@@ -12,7 +12,8 @@ static const double usual_rise = 1.5, usual_fall = 0.8; /* of the residual's squ
 static const double unstable_rise = 6.0;                /* over what is usual: a mode is unstable */
 static const int64_t hover_steps = 50;                  /* without half the error: is a mode unstable? */
 static const int64_t calm_steps = 20;                   /* after that was mended, before the next look */
-static const int iterations = 1; /* at every check: the mode is kept, so that it sharpens */
+/* At every check: the mode is kept, so that it sharpens; while the load grows another may overtake it. */
+static const int iterations = 1, iterations_loading = 2;
 
 /* The residual by its norm r . M^-1 r, the acceleration being in r->scratch: of a stable run it follows the
  * load. A mode whose frequency is beyond the critical step makes it grow by a steady factor from step to
@@ -187,7 +188,7 @@ static bool follow(struct relaxation *r, struct error *error)
     if (r->checks >= r->next_mass_check && !relaxation_update_mass(r, error)) {
         return false;
     }
-    relaxation_update_time_step(r, r->residual_at, iterations);
+    relaxation_update_time_step(r, r->residual_at, r->at_full_load == 0 ? iterations_loading : iterations);
     if (hovers(r)) {
         relaxation_calm(r, r->acceleration);
     }

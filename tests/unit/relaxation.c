@@ -511,10 +511,10 @@ static void frames_and_outcomes(void **state)
     free(row_force);
     memset(u, 0, (size_t)l.system.node_count * 2 * sizeof *u);
     options = to(1e-12);
-    options.most_steps = 230;
+    options.most_steps = 150;
     report = relax(&l, &options, u, NULL);
     assert_int_equal(report.outcome, RELAXATION_TOO_MANY_STEPS);
-    assert_int_equal(report.steps, 230);
+    assert_int_equal(report.steps, 150);
     options.progress = stop_at_once;
     report = relax(&l, &options, u, NULL);
     assert_int_equal(report.outcome, RELAXATION_STOPPED);
