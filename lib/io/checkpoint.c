@@ -265,8 +265,8 @@ enum status checkpoint_read(const char *file, const struct checkpoint_identity *
             goto done;
         }
         if (older != STATUS_OK) {
-            status = fail(error, STATUS_INPUT, "%s; remove it and %s to begin anew",
-                          exists ? error->text : later.text, old);
+            struct error why = exists ? *error : later;
+            status = fail(error, STATUS_INPUT, "%s; remove it and %s to begin anew", why.text, old);
             goto done;
         }
     }

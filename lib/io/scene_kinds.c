@@ -313,7 +313,7 @@ static enum status read_solver(const struct place *place, struct scene *scene)
     solver->constraint_points = (enum scene_constraint_points)point;
     solver->volume = (enum scene_volume)volume;
     if (scene->analysis == SCENE_DYNAMIC) { /* steps are to be accurate, not stable only */
-        solver->time_step_margin = 0.8;
+        solver->time_step_margin = 0.75;
     }
     TRY(place_number(place, "time_step_margin", range_open_share, &solver->time_step_margin));
     TRY(place_count(place, "max_steps", most_steps, &solver->max_steps));

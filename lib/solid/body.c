@@ -227,9 +227,9 @@ void body_free(struct body *body)
     pairs_free(&body->gradients);
     conforming_free(&body->cells);
     nodal_volumes_free(&body->volumes);
-    void *arrays[] = {body->order,      body->weight,     body->materials,   body->material, body->blocks,
-                      body->node_order, body->node_place, body->u,           body->F,        body->bound,
-                      body->J,          body->scratch};
+    void *arrays[] = {body->order,  body->weight,     body->materials,  body->material,
+                      body->blocks, body->node_order, body->node_place, body->u,
+                      body->F,      body->bound,      body->J,          body->scratch};
     for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) {
         free(arrays[i]);
     }

@@ -47,17 +47,22 @@ struct block {
     double energy; /* at the last call of body_energy, J (2D: J/m) */
 };
 
-/* The matrix A of the nodal pressures, and how A^-1 is applied: see nodal_pressure.c. */
+/* The matrix A of the nodal pressures by slices of rows, and how A^-1 is applied: see nodal_pressure.c. */
 #define NODAL_PRESSURE_ROWS 8
 struct nodal_pressures {
-    int64_t slices;  /* of so many rows; slice s has the entries ptr[s] to ptr[s + 1] of each of its rows, */
-    int64_t *ptr;    /* slices + 1 */
-    int32_t *idx;    /* those of entry k at k * NODAL_PRESSURE_ROWS: columns, */
+    int64_t slices;
+    int64_t *ptr;    /* slices + 1: the rows of slice s have the entries ptr[s] to ptr[s + 1], */
+    int32_t *idx;    /* entry k of the row i of a slice at k * NODAL_PRESSURE_ROWS + i: its column, */
     double *value;   /* and A there, m3/Pa (2D: m2/Pa) */
-    double *inverse; /* of all rows: S^-1; 0 where nothing carries pressure */
-    double *scratch; /* 3 times as many */
+    double *inverse; /* of each row: S^-1; 0 where nothing carries pressure; */
+    double *held;    /* pressure held since an augmentation, Pa; */
+    double *weight;  /* by which it counts, m3/Pa (2D: m2/Pa): 0 without a limit */
+    bool limited;    /* some weights are not 0 */
+    int64_t *place;  /* scratch, as */
+    double *scratch; /* 3 of each row */
     int iterations;
     double centre, half, scale; /* of the interval of eigenvalues of S^-1 A; of the sum */
+    double most;                /* bulk modulus by shear modulus */
 };
 
 /* Nodal volumes, whose pressures resist changes of volume: see nodal_volume.h. */
@@ -124,6 +129,15 @@ struct deformation {
  * N, in 2D N/m. With an inverted point the forces mean nothing. */
 struct deformation body_force(struct body *body, const double *u, double *force);
 
+/* Let changes of volume meet no modulus above `most` shear moduli; INFINITY: as the materials have it. What
+ * the limit leaves out the pressures make up for by augmentations, from none (augmented Lagrangian: Simo and
+ * Taylor 1991). Without nodal volumes: nothing. */
+void body_limit_bulk(struct body *body, double most);
+bool body_is_limited(const struct body *body);
+
+/* Hold the nodal pressures of the last evaluation from here on. */
+void body_augment(struct body *body);
+
 /* Volume at rest, the sum of the weights of the points, m3 (2D: m2). */
 double body_volume(const struct body *body);
 
@@ -143,8 +157,8 @@ void body_volume_ratio(struct body *body, double *ratio);
 /* stiffness[node_count], N/m (2D: N/m2): bounds the diagonal of the stiffness at the last evaluation's F (of
  * conforming cells about, far strained ones may exceed it), as sum_q w W''(y (x) grad phi), the second
  * derivative of the energy along the rank-one change of F that is stiffest, y = F^-T grad phi; at rest sum_q
- * w (lambda + 2 mu) |grad phi|^2. The neo-Hookean formula serves all materials. With nodal
- * volumes kappa counts up to 50 mu. */
+ * w (lambda + 2 mu) |grad phi|^2. The neo-Hookean formula serves all materials. A
+ * limit of the bulk modulus (body_limit_bulk) counts. */
 void body_diagonal(struct body *body, double *stiffness);
 
 /* The same of conforming cells for parameters that are about the values at the nodes (nodal_basis.h): with

@@ -16,9 +16,6 @@ enum status body_make_bounds(struct body *body, struct error *error)
     return NEW_ARRAY(&body->bound, (body->bound_parts.count - 1) * body->node_count, error);
 }
 
-/* By the shear modulus: of nodal pressures no change of volume feels more, see nodal_volume.h. */
-static const double most_bulk = 50.0;
-
 /* Along the gradient g of a shape function the energy of a point has the second derivative g A g, and that of
  * the stabilisation of its smoothing, bounded by twice its stiffness. */
 struct bound {
@@ -43,7 +40,7 @@ static struct bound bound_at(const struct body *body, int64_t q, const double *F
     double shear = body->weight[q] * material->shear_modulus / cbrt(J * J);
     double bulk = material->bulk_modulus;
     if (body->averaged) {
-        bulk = fmin(bulk, most_bulk * material->shear_modulus);
+        bulk = fmin(bulk, body->volumes.pressures.most * material->shear_modulus);
     }
     double along = body->weight[q] * bulk + 5.0 / 9.0 * I1 * shear / (J * J);
     /* along |J F^-T g|^2 - shear |g|^2 / 3 = g A g */

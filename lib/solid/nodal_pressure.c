@@ -17,6 +17,8 @@
  * most this part; and x at most that. */
 enum { ROWS = NODAL_PRESSURE_ROWS, SLICES_AT_ONCE = 32 };
 static const double effect = 2e-5, most_inaccurate = 0.02;
+/* With augmentations what is missing of A^-1 counts by limited by whole bulk modulus; at most this. */
+static const double augmented_accuracy = 0.01;
 
 /* How many volumes share points with volume a, itself included. */
 static int64_t count_neighbours(const struct nodal_volumes *volumes, int vertices, int64_t a, int64_t *seen)
@@ -32,9 +34,9 @@ static int64_t count_neighbours(const struct nodal_volumes *volumes, int vertice
     return count;
 }
 
-/* Add the parts of A and S that volume a has from the points around it; place[b]: where row a has b. */
-static void add_points(const struct body *body, int64_t a, const int64_t *place,
-                       struct nodal_pressures *pressures, double *bound)
+/* Add the parts of A and S that volume a has from the points around it; pressures->place[b]: where row a has
+ * b. */
+static void add_points(const struct body *body, int64_t a, struct nodal_pressures *pressures, double *bound)
 {
     const struct nodal_volumes *volumes = &body->volumes;
     int vertices = body->dim + 1;
@@ -46,12 +48,14 @@ static void add_points(const struct body *body, int64_t a, const int64_t *place,
             continue;
         }
         double share = volumes->share[slot];
+        double limited = fmin(rest, pressures->most * material->shear_modulus);
         compliance /= body->dim + 2;
-        pressures->value[place[a]] += share * (1.0 / rest + compliance);
-        *bound += share * (1.0 / rest + compliance);
+        pressures->weight[a] += share * (1.0 / limited - 1.0 / rest);
+        pressures->value[pressures->place[a]] += share * (1.0 / limited + compliance);
+        *bound += share * (1.0 / limited + compliance);
         for (int k = 0; k < vertices; k++) {
             int64_t other = q * vertices + k;
-            pressures->value[place[volumes->of_point[other]]] -=
+            pressures->value[pressures->place[volumes->of_point[other]]] -=
                 compliance * share * volumes->share[other] / body->weight[q];
         }
     }
@@ -90,22 +94,19 @@ static void choose_iterations(struct nodal_pressures *pressures, double largest,
     pressures->scale = 1.0 / (1.0 - 1.0 / cosh(pressures->iterations * rate));
 }
 
-/* The rows of A, and S^-1; place, seen: scratch, the latter -1. */
-static void set_rows(const struct body *body, int64_t *place, int64_t *seen,
-                     struct nodal_pressures *pressures)
+/* The columns of the rows. */
+static void set_columns(const struct body *body, int64_t *seen, struct nodal_pressures *pressures)
 {
     const struct nodal_volumes *volumes = &body->volumes;
+    int vertices = body->dim + 1;
     for (int64_t a = 0; a < volumes->count; a++) {
-        double bound = 0.0;
-        int64_t slice = a / ROWS, at = pressures->ptr[slice] * ROWS + a % ROWS;
-        int64_t end = pressures->ptr[slice + 1] * ROWS;
+        int64_t at = pressures->ptr[a / ROWS] * ROWS + a % ROWS, end = pressures->ptr[a / ROWS + 1] * ROWS;
         for (int64_t i = volumes->ptr[a]; i < volumes->ptr[a + 1]; i++) {
-            int64_t first = volumes->slot[i] / (body->dim + 1) * (body->dim + 1);
-            for (int64_t k = first; k < first + body->dim + 1; k++) {
+            int64_t first = volumes->slot[i] / vertices * vertices;
+            for (int64_t k = first; k < first + vertices; k++) {
                 int32_t b = volumes->of_point[k];
                 if (seen[b] != a) {
                     seen[b] = a;
-                    place[b] = at;
                     pressures->idx[at] = b;
                     at += ROWS;
                 }
@@ -114,8 +115,6 @@ static void set_rows(const struct body *body, int64_t *place, int64_t *seen,
         for (; at < end; at += ROWS) {
             pressures->idx[at] = (int32_t)a;
         }
-        add_points(body, a, place, pressures, &bound);
-        pressures->inverse[a] = bound > 0.0 ? 1.0 / bound : 0.0;
     }
 }
 
@@ -123,27 +122,75 @@ enum status nodal_pressures_build(struct body *body, struct error *error)
 {
     enum status status;
     struct nodal_pressures *pressures = &body->volumes.pressures;
-    int64_t count = body->volumes.count, *place = NULL, *seen = NULL;
-    double largest = 0.0, bulk = 0.0;
-    TRY(NEW_ARRAY(&place, count, error));
+    int64_t count = body->volumes.count, *seen = NULL, rows;
     TRY(NEW_ARRAY(&seen, count, error));
     memset(seen, -1, (size_t)count * sizeof *seen);
     TRY(lay_out(body, pressures, seen, error));
-    TRY(NEW_ARRAY(&pressures->inverse, pressures->slices * ROWS, error));
-    TRY(NEW_ARRAY(&pressures->scratch, 3 * pressures->slices * ROWS, error));
+    rows = pressures->slices * ROWS;
+    TRY(NEW_ARRAY(&pressures->inverse, rows, error));
+    TRY(NEW_ARRAY(&pressures->held, rows, error));
+    TRY(NEW_ARRAY(&pressures->weight, rows, error));
+    TRY(NEW_ARRAY(&pressures->scratch, 3 * rows, error));
+    TRY(NEW_ARRAY(&pressures->place, count, error));
     memset(seen, -1, (size_t)count * sizeof *seen);
-    set_rows(body, place, seen, pressures);
-    for (int64_t m = 0; m < body->material_count; m++) {
-        const struct material *material = &body->materials[m];
-        double rest = nodal_pressure_modulus(material);
-        largest = fmax(largest, rest * nodal_pressure_compliance(material) / (body->dim + 2));
-        bulk = fmax(bulk, rest / material->shear_modulus);
-    }
-    choose_iterations(pressures, largest, fmin(most_inaccurate, effect * fmax(bulk, 1.0)));
+    set_columns(body, seen, pressures);
+    body_limit_bulk(body, INFINITY);
 done:
-    free(place);
     free(seen);
     return status;
+}
+
+/* The values of A, with S^-1 and the weights. */
+static void set_values(struct body *body, struct nodal_pressures *pressures)
+{
+    int64_t rows = pressures->slices * ROWS;
+    memset(pressures->value, 0, (size_t)(pressures->ptr[pressures->slices] * ROWS) * sizeof(double));
+    memset(pressures->weight, 0, (size_t)rows * sizeof *pressures->weight);
+    for (int64_t a = 0; a < body->volumes.count; a++) {
+        double bound = 0.0;
+        int64_t first = pressures->ptr[a / ROWS] * ROWS, end = pressures->ptr[a / ROWS + 1] * ROWS;
+        /* From the end, as what is beyond a row's end has the column of its own. */
+        for (int64_t at = end - ROWS + a % ROWS; at >= first; at -= ROWS) {
+            pressures->place[pressures->idx[at]] = at;
+        }
+        add_points(body, a, pressures, &bound);
+        pressures->inverse[a] = bound > 0.0 ? 1.0 / bound : 0.0;
+    }
+}
+
+void body_limit_bulk(struct body *body, double most)
+{
+    struct nodal_pressures *pressures = &body->volumes.pressures;
+    double largest = 0.0, bulk = 0.0, limited_bulk = 0.0;
+    if (!body->averaged) {
+        return;
+    }
+    pressures->most = most;
+    for (int64_t m = 0; m < body->material_count; m++) {
+        const struct material *material = &body->materials[m];
+        double rest = nodal_pressure_modulus(material), limited = fmin(rest, most * material->shear_modulus);
+        largest = fmax(largest, limited * nodal_pressure_compliance(material) / (body->dim + 2));
+        bulk = fmax(bulk, rest / material->shear_modulus);
+        limited_bulk = fmax(limited_bulk, limited / material->shear_modulus);
+    }
+    pressures->limited = bulk > limited_bulk;
+    choose_iterations(pressures, largest,
+                      pressures->limited ? augmented_accuracy * limited_bulk / bulk
+                                         : fmin(most_inaccurate, effect * fmax(bulk, 1.0)));
+    set_values(body, pressures);
+    memset(pressures->held, 0, (size_t)(pressures->slices * ROWS) * sizeof *pressures->held);
+}
+
+bool body_is_limited(const struct body *body)
+{
+    return body->averaged && body->volumes.pressures.limited;
+}
+
+void body_augment(struct body *body)
+{
+    struct nodal_pressures *pressures = &body->volumes.pressures;
+    memcpy(pressures->held, body->volumes.pressure,
+           (size_t)(pressures->slices * ROWS) * sizeof *pressures->held);
 }
 
 /* residual -= A move; next = keep move + add S^-1 residual; value += scale next; of some slices. */
@@ -176,8 +223,8 @@ void nodal_pressures_solve(const struct nodal_pressures *pressures, const double
     double centre = pressures->centre / pressures->half, last = 1.0 / centre;
 #pragma omp for schedule(static)
     for (int64_t a = 0; a < count; a++) {
-        residual[a] = content[a];
-        move[a] = pressures->inverse[a] * content[a] / pressures->centre;
+        residual[a] = content[a] + pressures->weight[a] * pressures->held[a];
+        move[a] = pressures->inverse[a] * residual[a] / pressures->centre;
         value[a] = pressures->scale * move[a];
     }
     for (int k = 1; k < pressures->iterations; k++) {
@@ -197,8 +244,8 @@ void nodal_pressures_solve(const struct nodal_pressures *pressures, const double
 
 void nodal_pressures_free(struct nodal_pressures *pressures)
 {
-    void *arrays[] = {pressures->ptr, pressures->idx, pressures->value, pressures->inverse,
-                      pressures->scratch};
+    void *arrays[] = {pressures->ptr,  pressures->idx,    pressures->value, pressures->inverse,
+                      pressures->held, pressures->weight, pressures->place, pressures->scratch};
     for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) {
         free(arrays[i]);
     }

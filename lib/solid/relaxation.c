@@ -11,7 +11,9 @@ static const double penetration_share = 1e-4;           /* of the body's size: w
 static const double usual_rise = 1.5, usual_fall = 0.8; /* of the residual's squared norm in a step */
 static const double unstable_rise = 6.0;                /* over what is usual: a mode is unstable */
 static const int64_t hover_steps = 50;                  /* without half the error: is a mode unstable? */
-static const int64_t calm_steps = 20;                   /* after that was mended, before the next look */
+/* Bulk modulus by shear modulus that volume changes meet: so few steps as at Poisson's ratio .49. */
+static const double bulk_limit = 50.0;
+static const int64_t calm_steps = 20; /* after that was mended, before the next look */
 /* At every check: the mode is kept, so that it sharpens; while the load grows another may overtake it. */
 static const int iterations = 1, iterations_loading = 2;
 
@@ -202,7 +204,11 @@ static bool ends(struct relaxation *r, enum relaxation_outcome *outcome, struct 
     const double *error_now = &r->report->error, tolerance = r->options->tolerance;
     bool whole = r->at_full_load > 2 * CHECK_INTERVAL;
     bool small = whole && *error_now <= tolerance;
-    r->settled = small ? r->settled + 1 : 0;
+    if (!small) {
+        r->settled = 0;
+    } else if (r->augmented || !body_is_limited(&r->system->body)) {
+        r->settled++; /* the error counts what the pressures have yet to make up for */
+    }
     *outcome = RELAXATION_STOPPED;
     if (r->settled >= 2 && !r->spectrum_known && !relaxation_find_lowest_mode(r, r->residual_at, error)) {
         return true;
@@ -223,6 +229,21 @@ static bool ends(struct relaxation *r, enum relaxation_outcome *outcome, struct 
     return relaxation_stays(r, 20.0, 5000);
 }
 
+/* At a check, before its evaluation: hold the pressures. An augmentation every T makes the pressures held the
+ * integral of what the bulk modulus is limited by, over T; see relaxation_follow_contacts on how long T is.
+ */
+static bool augment_pressures(struct relaxation *r)
+{
+    double pause = (double)(r->report->steps - r->held_step) * r->time_step;
+    if (!body_is_limited(&r->system->body) || r->damping * pause < RELAXATION_PAUSE) {
+        return false;
+    }
+    body_augment(&r->system->body);
+    r->held_step = r->report->steps;
+    r->usual_residual2 = 0.0;
+    return true;
+}
+
 static bool is_interrupted(const struct relaxation *r)
 {
     return r->options->interrupted != NULL && *r->options->interrupted != 0;
@@ -240,6 +261,7 @@ static enum relaxation_outcome iterate(struct relaxation *r, struct error *error
         r->at_full_load = r->load < hold ? 0 : r->at_full_load + 1;
         r->report->loading_steps += r->at_full_load == 0;
         change_load(r, r->load / ramp);
+        r->augmented = measure && augment_pressures(r);
         if (!step(r, r->u, measure)) {
             measure = false;
             if (!relaxation_step_back(r, error)) {
@@ -273,6 +295,7 @@ static enum status begin(struct relaxation *r, struct error *error)
 {
     enum status status;
     struct solid_system *system = r->system;
+    body_limit_bulk(&system->body, bulk_limit);
     system_load_factors(system, 0.0);
     (void)system_residual(system, r->u, r->residual);
     if (gives_frames(r)) {
@@ -300,6 +323,7 @@ done:
 static enum status resume(struct relaxation *r, struct error *error)
 {
     enum status status;
+    body_limit_bulk(&r->system->body, bulk_limit);
     TRY(relaxation_visit(r, r->options->restored, error));
     TRY(inertia_restore(&r->inertia, r->system, error));
 done:

@@ -251,13 +251,12 @@ static void augment(struct relaxation *r)
 }
 
 /* An augmentation every T makes the multipliers the integral of the gaps, over T. With a damping c that is
- * stable where c T > k / (k + stiffness of the body), so at c T = 1 and above; this is c T. */
-static const double least_pause = 2.0;
+ * stable where c T > k / (k + stiffness of the body), so at c T = 1 and above; RELAXATION_PAUSE is c T. */
 
 void relaxation_follow_contacts(struct relaxation *r)
 {
     double pause = (double)(r->report->steps - r->augmented_step) * r->time_step;
-    if (r->system->contact_count == 0 || r->at_full_load > 0 || r->damping * pause < least_pause) {
+    if (r->system->contact_count == 0 || r->at_full_load > 0 || r->damping * pause < RELAXATION_PAUSE) {
         return;
     }
     system_measure_contacts(r->system, r->residual_at, false);

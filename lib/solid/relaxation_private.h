@@ -10,6 +10,9 @@ enum { CHECK_INTERVAL = 10 };   /* steps between estimates */
 enum { FIRST_ITERATIONS = 30 }; /* of Lanczos, where the inertia was measured */
 enum { WINDOWS = 8 };           /* recent Rayleigh quotients that the error estimate looks at */
 
+/* Between augmentations, of contacts or of nodal pressures: damping times time. */
+#define RELAXATION_PAUSE 2.0
+
 /* A state to go back to. */
 struct kept_state {
     double *u; /* and behind it the velocity */
@@ -53,6 +56,8 @@ struct relaxation {
     double least_penetration;                 /* m, before an augmentation */
     int64_t augmented_step;                   /* of the last one while the load grew */
     bool mass_changed; /* since the last check: increments of the acceleration mean nothing */
+    int64_t held_step; /* when the nodal pressures were held last */
+    bool augmented;    /* in this step */
     enum status failure;
     double load, load_rate;      /* steps of the ramp applied so far, and per step, at most top_rate */
     double top_rate;             /* 1 until an inversion */

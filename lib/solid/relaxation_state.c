@@ -130,6 +130,7 @@ enum status relaxation_visit(void *run, const struct state *state, struct error 
 {
     struct relaxation *r = run;
     struct relaxation_report *report = r->report;
+    struct nodal_pressures *pressures = &r->system->body.volumes.pressures;
     const struct state_value values[] = {
         {"u", STATE_NUMBERS, r->u, r->size},
         {"velocity", STATE_NUMBERS, r->velocity, r->size},
@@ -144,6 +145,8 @@ enum status relaxation_visit(void *run, const struct state *state, struct error 
         {"check_now.load", STATE_NUMBERS, &r->check_now.load, 1},
         {"check_before.u", STATE_NUMBERS, r->check_before.u, 2 * r->size},
         {"check_before.load", STATE_NUMBERS, &r->check_before.load, 1},
+        {"held", STATE_NUMBERS, pressures->held, pressures->slices * NODAL_PRESSURE_ROWS},
+        {"held_step", STATE_COUNTS, &r->held_step, 1},
         {"steps", STATE_COUNTS, &report->steps, 1},
         {"time_step", STATE_NUMBERS, &r->time_step, 1},
         {"damping", STATE_NUMBERS, &r->damping, 1},

@@ -47,12 +47,10 @@ enum status system_state(struct solid_system *system, const struct state *state,
 {
     enum status status;
     const struct state_value factor = {"factor", STATE_NUMBERS, system->factor, system->curve_count};
-    int64_t node = system->stability.node;
     const struct state_value stability[] = {{"least", STATE_NUMBERS, &system->stability.least, 1},
-                                            {"node", STATE_COUNTS, &node, 1}};
+                                            {"node", STATE_COUNTS, &system->stability.node, 1}};
     TRY(state_visit(state, "loads", &factor, 1, error));
     TRY(state_visit(state, "stability", stability, 2, error));
-    system->stability.node = (int32_t)node;
     for (int64_t c = 0; c < system->contact_count; c++) {
         char prefix[32];
         snprintf(prefix, sizeof prefix, "contact.%lld", (long long)c);

@@ -39,7 +39,7 @@ struct cost {
 struct stability {
     double least; /* by the largest; negative: the state is not stable. 0: not looked for, or lost in
                      round-off */
-    int32_t node; /* negative: where its mode moves most */
+    int64_t node; /* negative: where its mode moves most */
 };
 
 struct solid_system {

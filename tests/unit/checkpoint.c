@@ -25,6 +25,7 @@ static void build(struct lattice *l)
     static const double corners[4] = {-1, -0.004, 1, -0.004};
     struct lattice_options options = lattice_defaults(2, 5);
     options.jitter = 0.2;
+    options.poisson_ratio = 0.495; /* so that pressures are held */
     lattice_build(l, &options);
     int32_t curve = lattice_curve(l, curve_of_kind(CURVE_SMOOTH));
     lattice_slide(l, 1u << 0, curve);
@@ -161,7 +162,7 @@ static void same_bits(bool is_dynamic, int64_t first, int64_t second)
 static void relaxation_goes_on(void **state)
 {
     (void)state;
-    static const int64_t at[][2] = {{1, 2}, {19, 20}, {21, 200}, {399, 400}, {555, 777}};
+    static const int64_t at[][2] = {{1, 2}, {19, 20}, {21, 200}, {399, 400}, {444, 555}};
     for (size_t i = 0; i < sizeof at / sizeof *at; i++) {
         same_bits(false, at[i][0], at[i][1]);
     }

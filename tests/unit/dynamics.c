@@ -200,7 +200,7 @@ static void release(void **state)
         }
     }
     struct dynamics_options dynamics = over(0.4);
-    dynamics.time_step_margin = 0.8; /* the default of scenes */
+    dynamics.time_step_margin = 0.75; /* the default of scenes */
     struct dynamics_report report = run(&l, &dynamics, u, NULL, &log);
     assert_int_equal(report.outcome, DYNAMICS_DONE);
     NEAR_TO(log.rows[0].internal, 70.051447e-3, 1e-8);

@@ -394,6 +394,41 @@ static void any_number_of_threads(void **state)
     free(first);
 }
 
+/* Augmentations reach the pressures that the bulk modulus itself makes of the volumes: the same forces
+ * without a limit, for which a strain of 1e-9 counts by 500 000 shear moduli. */
+static void pressures_are_augmented(void **state)
+{
+    (void)state;
+    for (int dim = 2; dim <= 3; dim++) {
+        struct lattice l;
+        struct lattice_options options = lattice_defaults(dim, 5);
+        static const double axes[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+        options.jitter = 0.2;
+        options.poisson_ratio = 0.499999;
+        lattice_build(&l, &options);
+        int32_t curve = lattice_curve(&l, curve_of_kind(CURVE_SMOOTH));
+        for (int a = 0; a < dim; a++) {
+            lattice_prescribe(&l, 1u << 2, axes[a], NULL, NULL, curve);
+        }
+        lattice_push(&l, 3, -0.01, curve);
+        double *u = relaxed(&l, 1e-9, NULL), *force = lattice_vector(&l), *expected = lattice_vector(&l);
+        int64_t size = l.system.node_count * dim;
+        assert_true(body_is_limited(&l.system.body));
+        (void)body_force(&l.system.body, u, force);
+        body_limit_bulk(&l.system.body, INFINITY);
+        (void)body_force(&l.system.body, u, expected);
+        double most = 0.0;
+        for (int64_t i = 0; i < size; i++) {
+            most = fmax(most, fabs(expected[i]));
+        }
+        AT_MOST(largest_difference(force, expected, size), 0.01 * most);
+        free(u);
+        free(force);
+        free(expected);
+        lattice_free(&l);
+    }
+}
+
 /* A condition stated twice changes nothing; one that disagrees is a verdict that names a node. */
 static void conditions_twice(void **state)
 {
@@ -540,8 +575,8 @@ int main(void)
         cmocka_unit_test(unconfined_extension),   cmocka_unit_test(confined_compression),
         cmocka_unit_test(reaction_does_the_work), cmocka_unit_test(estimate_is_a_bound),
         cmocka_unit_test(ramp_does_not_matter),   cmocka_unit_test(any_number_of_threads),
-        cmocka_unit_test(conditions_twice),       cmocka_unit_test(column_under_gravity),
-        cmocka_unit_test(frames_and_outcomes),
+        cmocka_unit_test(conditions_twice),       cmocka_unit_test(pressures_are_augmented),
+        cmocka_unit_test(column_under_gravity),   cmocka_unit_test(frames_and_outcomes),
     };
     omp_set_num_threads(1); /* small bodies, and a machine that may be busy */
     return cmocka_run_group_tests(tests, NULL, NULL);
