@@ -146,6 +146,8 @@ enum status relaxation_visit(void *run, const struct state *state, struct error 
         {"check_before.u", STATE_NUMBERS, r->check_before.u, 2 * r->size},
         {"check_before.load", STATE_NUMBERS, &r->check_before.load, 1},
         {"held", STATE_NUMBERS, pressures->held, pressures->slices * NODAL_PRESSURE_ROWS},
+        {"pressure", STATE_NUMBERS, r->system->body.volumes.pressure,
+         pressures->slices * NODAL_PRESSURE_ROWS},
         {"held_step", STATE_COUNTS, &r->held_step, 1},
         {"steps", STATE_COUNTS, &report->steps, 1},
         {"time_step", STATE_NUMBERS, &r->time_step, 1},
