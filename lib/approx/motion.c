@@ -58,6 +58,7 @@ static enum status find_gradients(const struct cells *cells, const double *u, do
     struct reach reach = {0};
     double *spacing = NULL, *radius = NULL, *phi = NULL, *dphi = NULL;
     enum status status = STATUS_OK;
+    options.mls.basis = BASIS_QUADRATIC;
     TRY(NEW_ARRAY(&spacing, nodes, error));
     TRY(NEW_ARRAY(&radius, nodes, error));
     TRY(field_spacing(cells, spacing, error));

@@ -1,9 +1,10 @@
 /* The motion of a body that nodal displacements describe, between the nodes too, and its inverse.
  *
  * In a cell the displacement is u(X) = sum_a N_a(X) (u_a + G_a (X - X_a) / 2), with the linear N_a of the
- * cell's nodes and the gradients G_a of the moving least squares fit there. It takes the nodal values at the
- * nodes, is continuous across faces, and reproduces quadratic fields where the gradients are theirs: half the
- * gradient term makes up for the error of linear interpolation, sum_a N_a u_a = u + sum_a N_a (X - X_a) H (X
+ * cell's nodes and the gradients G_a of the quadratic moving least squares fit there. It takes the nodal
+ * values at the nodes, is continuous across faces, and reproduces quadratic fields where the gradients are
+ * theirs: half the gradient term makes up for the error of linear interpolation, sum_a N_a u_a = u + sum_a
+ * N_a (X - X_a) H (X
  * - X_a) / 2. */
 #ifndef APPROX_MOTION_H
 #define APPROX_MOTION_H
