@@ -3,6 +3,7 @@
 nifti.py smooth FILE [WAY]     the test image of smooth waves around a cube of 60 mm, 76 x 76 x 76 voxels of 1 mm; WAY: oblique
                                (anisotropic, turned, left-handed), swapped (axes in another order and direction), coarse
 nifti.py ball FILE             labels: a ball of 20 mm radius, 2, and within 14 mm 5, in that cube; the axes turned
+nifti.py step FILE LOW HIGH    a slice around a square of 100 mm: LOW where x < 50 mm, else HIGH
 nifti.py same A B TOLERANCE    fails unless the values agree to TOLERANCE and type, size and places are equal
 nifti.py reordered A B         fails unless A and B, stored in other orders, hold the same at the same places
 nifti.py moved SCAN RESULT     rms error of the moved test image, and that of the interpolation alone, inside the cube
@@ -92,6 +93,14 @@ def ball(path):
     image = cube_image("turned")
     radius = np.linalg.norm(places(image) - SIDE / 2, axis=-1)
     make(path, (2 * (radius < 0.02) + 3 * (radius < 0.014)).astype(np.int16), image.affine)
+
+
+def step(path, low, high):
+    affine = np.eye(4)
+    affine[:3, 3] = -5.5, -5.5, 7
+    values = np.full((111, 111, 1), float(low), np.float32)
+    values[56:] = float(high)
+    make(path, values, affine)
 
 
 def same(first, second, tolerance):
@@ -214,5 +223,5 @@ def value(path, i, j, k):
 
 
 if __name__ == "__main__":
-    {"smooth": smooth, "ball": ball, "same": same, "reordered": reordered, "moved": moved, "fields": fields,
+    {"smooth": smooth, "ball": ball, "step": step, "same": same, "reordered": reordered, "moved": moved, "fields": fields,
      "volumes": volumes, "change": change, "value": value}[sys.argv[1]](*sys.argv[2:])
