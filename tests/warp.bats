@@ -190,6 +190,11 @@ setup_file() {
     scan=$BATS_FILE_TMPDIR/scan.nii.gz
     nifti change "$scan" far.nii far
     refused 2 "no voxel of the image (x 492 to 567, y 492 to 567, z 492 to 567 mm) lies in the body (x 0 to 60, " warp far.nii u.dat
+    # x to the left in one of the two
+    cloud -d 3 -k regular -n 4 --box -0.06,0,0,0.06,0,0.06 > left.mts
+    with_u left.mts 'print 0, 0, 0' > left.dat
+    run -0 --separate-stderr warp -o out.nii "$scan" left.dat
+    [[ $stderr == *"48 of 64 nodes of the body lie more than half a voxel outside of the image"* ]]
     cloud -d 3 -k regular -n 4 --box 0,60,0,60,0,60 > large.mts
     with_u large.mts 'print 0, 0, 0' > large.dat
     refused 2 "more than 100 times larger than the image" warp "$scan" large.dat

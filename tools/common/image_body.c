@@ -56,32 +56,38 @@ double least_step(const struct image *image, int dim)
     return least;
 }
 
-/* Which cell the centre of each voxel lies in, the nodes being at x. */
+/* place[node_count * dim]: the nodes in voxels of the grid. */
+static double *nodes_in_voxels(const struct tool *tool, const struct image *grid, const struct cells *cells,
+                               const double *x)
+{
+    struct error error;
+    int dim = cells->dim;
+    double inverse[3][4], *place;
+    image_to_voxel(grid, inverse);
+    tool_check(tool, NEW_ARRAY(&place, cells->node_count * dim, &error), &error);
+    for (int64_t n = 0; n < cells->node_count; n++) {
+        double world[3] = {0, 0, grid->to_world[2][3]};
+        memcpy(world, x + n * dim, (size_t)dim * sizeof *x);
+        for (int i = 0; i < dim; i++) {
+            place[n * dim + i] = inverse[i][0] * world[0] + inverse[i][1] * world[1] +
+                                 inverse[i][2] * world[2] + inverse[i][3];
+        }
+    }
+    return place;
+}
+
 int32_t *find_owners(const struct tool *tool, const struct image *grid, const struct cells *cells,
                      const double *x, int64_t *doubly)
 {
     struct error error;
     struct cells placed = *cells;
-    int dim = cells->dim;
-    double inverse[3][4], *place;
     int32_t *owner;
     const int64_t size[3] = {(int64_t)grid->size[0], (int64_t)grid->size[1], (int64_t)grid->size[2]};
-    image_to_voxel(grid, inverse);
-    tool_check(tool, NEW_ARRAY(&place, cells->node_count * dim, &error), &error);
+    double *place = nodes_in_voxels(tool, grid, cells, x);
+    int sign = determinant(grid, cells->dim) < 0 ? -1 : 1;
     tool_check(tool, NEW_ARRAY(&owner, size[0] * size[1] * size[2], &error), &error);
-    for (int64_t n = 0; n < cells->node_count; n++) {
-        double world[3] = {0, 0, grid->to_world[2][3]};
-        memcpy(world, x + n * dim, (size_t)dim * sizeof *x);
-        for (int i = 0; i < dim; i++) {
-            place[n * dim + i] = inverse[i][3];
-            for (int j = 0; j < 3; j++) {
-                place[n * dim + i] += inverse[i][j] * world[j];
-            }
-        }
-    }
     placed.x = place;
-    tool_check(tool, raster_cells(&placed, determinant(grid, dim) < 0 ? -1 : 1, size, owner, doubly, &error),
-               &error);
+    tool_check(tool, raster_cells(&placed, sign, size, owner, doubly, &error), &error);
     free(place);
     return owner;
 }
@@ -127,6 +133,23 @@ void check_image_overlap(const struct tool *tool, const struct image *grid, cons
         tool_fail(tool, STATUS_INPUT,
                   "no voxel of the image (%s) lies in the body (%s): another space, or unit?",
                   box_text(&box, grid_text), box_text(&body, body_text));
+    }
+    double *place = nodes_in_voxels(tool, grid, cells, x);
+    int64_t outside = 0;
+    for (int64_t n = 0; n < cells->node_count; n++) {
+        bool within = true;
+        for (int i = 0; i < cells->dim; i++) {
+            double at = place[n * cells->dim + i];
+            within = within && at >= -1 && at <= (double)grid->size[i];
+        }
+        outside += within ? 0 : 1;
+    }
+    free(place);
+    if (outside > 0) {
+        tool_note(tool,
+                  "%lld of %lld nodes of the body lie more than half a voxel outside of the image: is an "
+                  "axis turned?",
+                  (long long)outside, (long long)cells->node_count);
     }
 }
 
