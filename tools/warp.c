@@ -204,9 +204,10 @@ static void do_row(const struct job *job, int64_t row, struct report *report)
 {
     struct image *result = job->result;
     int64_t width = (int64_t)result->size[0], height = (int64_t)result->size[1];
+    int64_t j = row % height, k = row / height;
     for (int64_t i = 0; i < width; i++) {
         int64_t v = row * width + i;
-        const double voxel[3] = {(double)i, (double)(row % height), (double)(row / height)};
+        const double voxel[3] = {(double)i, (double)j, (double)k};
         double x[3], place[3];
         image_world(result, voxel, x);
         find_place(job, v, x, place, report);
