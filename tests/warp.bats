@@ -255,3 +255,28 @@ setup_file() {
     [ "$(cat kept.nii.gz)" = precious ]
     run -0 bash -c "warp $scan u.dat | head -c 10 > ten"
 }
+
+@test "the result of mtled: a cube pressed by a tenth leaves the upper tenth" {
+    cat > cube.scene << 'END'
+[scene]
+dim = 3
+analysis = quasi-static
+[material body]
+region = body
+E = 3000
+nu = 0.45
+rho = 1000
+[displacement bottom]
+facets = zmin
+components = 0, 0, 0
+[displacement top]
+facets = zmax
+components = 0, 0, -0.006
+END
+    cloud -d 3 -k jittered -n 7 --box 0,0.06,0,0.06,0,0.06 --jitter 0.12 | shapefn 2> note | mtled -q cube.scene > pressed.dat
+    warp -v --vacated -8 "$BATS_FILE_TMPDIR/scan.nii.gz" pressed.dat 2> said > moved.nii.gz
+    [ "$(nifti value moved.nii.gz 38 38 65)" = -8 ] # at 57 mm
+    [ "$(nifti value moved.nii.gz 38 38 59)" != -8 ]
+    awk '/displacement at most/ { split($0, part, "at most "); d = part[2] + 0; exit !(d > 5.9 && d < 8) }' said
+    grep -q ' in 0 voxels, without a place ' said
+}

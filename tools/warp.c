@@ -297,7 +297,7 @@ static void new_result(const struct tool *tool, const struct image *source, cons
     }
     memcpy(result->size, grid->size, sizeof result->size);
     memcpy(result->to_world, grid->to_world, sizeof result->to_world);
-    result->unit = grid->unit;
+    result->unit = source != NULL ? grid->unit : 1e-3; /* the vectors are in mm, and ITK reads mm */
     result->space = grid->space;
     result->version = grid->version;
 }

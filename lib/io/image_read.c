@@ -1,4 +1,6 @@
-/* Reading NIfTI files: the header is checked before anything is believed, and memory grows with the data. */
+/* Reading NIfTI files: the header is checked before anything is believed, and memory grows with the data. Not
+ * by libnifti: version 3.0.1 takes a compressed file that lacks its checksum, and a header that tells fewer
+ * voxels than there are, and it reads no pipe; checks of our own need the header decoded anyway. */
 #include "io/image_private.h"
 
 #include "base/memory.h"
