@@ -175,14 +175,23 @@ setup_file() {
     warp "$BATS_FILE_TMPDIR/scan.nii.gz" u.dat | cmp - frame.nii.gz
 }
 
-@test "2D: a slice in the plane of x and y" {
+@test "2D: a slice across any axis of the world" {
     cloud -d 2 -k jittered -n 13 --box 0,0.06,0,0.06 --jitter 0.2 > square.mts
     with_u square.mts 'print .004, .003' > u2.dat
-    nifti change "$BATS_FILE_TMPDIR/scan.nii.gz" slice.nii slice
-    warp -o moved.nii slice.nii u2.dat
-    [ "$(nifti value moved.nii 40 41 0)" = "$(nifti value slice.nii 36 38 0)" ]
-    [ "$(nifti value moved.nii 2 2 0)" = "$(nifti value slice.nii 2 2 0)" ]
-    refused 2 "the body is in 2D: it moves an image of one slice in the plane of x and y, not one of 76 slices" \
+    for what in slice coronal; do
+        nifti change "$BATS_FILE_TMPDIR/scan.nii.gz" $what.nii $what
+        warp -o moved.nii $what.nii u2.dat
+        [ "$(nifti value moved.nii 40 41 0)" = "$(nifti value $what.nii 36 38 0)" ]
+        [ "$(nifti value moved.nii 2 2 0)" = "$(nifti value $what.nii 2 2 0)" ]
+    done
+    nifti change "$BATS_FILE_TMPDIR/scan.nii.gz" sagittal.nii sagittal
+    warp -o moved.nii sagittal.nii u2.dat
+    [ "$(nifti value moved.nii 0 40 41)" = "$(nifti value sagittal.nii 0 36 38)" ]
+    warp --field -o field.nii sagittal.nii u2.dat # to the left, to the back, up
+    nifti value field.nii 0 40 41 | awk '{ exit !($1 == 0 && ($2 - 4)^2 < 1e-8 && ($3 + 3)^2 < 1e-8) }'
+    nifti value field.nii 0 1 1 | grep -qx -- '-\?0 -\?0 -\?0'
+    refused 2 "lies in another plane than" warp --like coronal.nii sagittal.nii u2.dat
+    refused 2 "an image of one slice across a world axis, not one of several slices" \
         warp "$BATS_FILE_TMPDIR/scan.nii.gz" u2.dat
 }
 

@@ -194,6 +194,10 @@ def change(source, path, what):
         image = nib.Nifti1Image(values.astype(np.float32), a.affine)
     elif what == "slice":
         image = nib.Nifti1Image(values[:, :, 38:39].astype(np.float32), a.affine)
+    elif what == "sagittal":
+        image = nib.Nifti1Image(values[38:39].astype(np.float32), a.affine)
+    elif what == "coronal":
+        image = nib.Nifti1Image(values[:, 38, :, None].astype(np.float32), a.affine[:, [0, 2, 1, 3]])
     elif what in ("m", "um"):
         scale = {"m": 1e-3, "um": 1e3}[what]
         image = nib.Nifti1Image(values.astype(np.float32), np.diag([scale, scale, scale, 1]) @ a.affine)
@@ -219,7 +223,8 @@ def change(source, path, what):
 def value(path, i, j, k):
     image = nib.load(path)
     values = image.get_fdata()
-    print("%.9g" % values.reshape(values.shape + (1,) * (3 - values.ndim))[int(i), int(j), int(k)])
+    value = values.reshape(values.shape + (1,) * (3 - values.ndim))[int(i), int(j), int(k)]
+    print(*["%.9g" % v for v in np.atleast_1d(value).ravel()])
 
 
 if __name__ == "__main__":

@@ -11,23 +11,58 @@ static const double most_ratio = 100; /* body to image */
 
 enum { LABELS_MOST = 256 };
 
-/* An image that a body in 2D can move: one slice, in the plane of x and y. */
-void check_image_plane(const struct tool *tool, const struct image *image, int dim)
+/* The world axis that voxel axes a and b are square to, -1 for none. */
+static int axis_across(const struct image *image, int a, int b)
 {
+    for (int w = 0; w < 3; w++) {
+        bool across = true;
+        for (int c = a; c <= b; c += b - a) {
+            double length = hypot(hypot(image->to_world[0][c], image->to_world[1][c]), image->to_world[2][c]);
+            across = across && fabs(image->to_world[w][c]) <= 1e-4 * length;
+        }
+        if (across) {
+            return w;
+        }
+    }
+    return -1;
+}
+
+/* The same image with its world axes and voxel axes in the order of the body's, or back. A voxel axis of one
+ * slice may move behind the others without moving values. */
+static void reorder(struct image *image, const struct image_axes *axes, bool back)
+{
+    struct image before = *image;
+    for (int r = 0; r < 3; r++) {
+        image->size[back ? axes->voxel[r] : r] = before.size[back ? r : axes->voxel[r]];
+        for (int c = 0; c < 3; c++) {
+            int world = axes->world[r], voxel = axes->voxel[c];
+            image->to_world[back ? world : r][back ? voxel : c] =
+                before.to_world[back ? r : world][back ? c : voxel];
+        }
+        image->to_world[back ? axes->world[r] : r][3] = before.to_world[back ? r : axes->world[r]][3];
+    }
+}
+
+void image_to_body(const struct tool *tool, struct image *image, int dim, struct image_axes *axes)
+{
+    *axes = (struct image_axes){{0, 1, 2}, {0, 1, 2}};
     if (dim == 3) {
         return;
     }
-    double slope = 0, step = 0;
-    for (int c = 0; c < 2; c++) {
-        slope = fmax(slope, fabs(image->to_world[2][c]));
-        step = fmax(step, hypot(image->to_world[0][c], image->to_world[1][c]));
-    }
-    if (image->size[2] != 1 || !(slope <= 1e-4 * step)) {
+    int flat = image->size[2] == 1 ? 2 : image->size[1] == 1 ? 1 : 0;
+    int a = flat == 0 ? 1 : 0, b = flat == 2 ? 1 : 2, across = axis_across(image, a, b);
+    if (image->size[flat] > 1 || across < 0) {
         tool_fail(tool, STATUS_INPUT,
-                  "the body is in 2D: it moves an image of one slice in the plane of x and y, not one of %zu "
-                  "slices%s",
-                  image->size[2], image->size[2] == 1 ? " in another plane" : "");
+                  "the body is in 2D: it goes with an image of one slice across a world axis, not %s",
+                  image->size[flat] == 1 ? "an oblique one" : "one of several slices");
     }
+    *axes = (struct image_axes){{across == 0 ? 1 : 0, across == 2 ? 1 : 2, across}, {a, b, flat}};
+    reorder(image, axes, false);
+}
+
+void image_from_body(struct image *image, const struct image_axes *axes)
+{
+    reorder(image, axes, true);
 }
 
 /* Determinant of the axes of a grid in dim dimensions, from the world to voxels. */
