@@ -1,0 +1,94 @@
+/* Images on regular grids: NIfTI-1 and NIfTI-2 files (.nii), plain or compressed by gzip, of either byte
+ * order. */
+#ifndef IO_IMAGE_H
+#define IO_IMAGE_H
+
+#include "base/status.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+
+/* NIfTI's codes of the types of values that are read and written. */
+enum image_datatype {
+    IMAGE_UINT8 = 2,
+    IMAGE_INT16 = 4,
+    IMAGE_INT32 = 8,
+    IMAGE_FLOAT32 = 16,
+    IMAGE_FLOAT64 = 64,
+    IMAGE_RGB24 = 128, /* 3 components of 8 bits */
+    IMAGE_INT8 = 256,
+    IMAGE_UINT16 = 512,
+    IMAGE_UINT32 = 768,
+    IMAGE_INT64 = 1024,
+    IMAGE_UINT64 = 1280,
+    IMAGE_RGBA32 = 2304 /* 4 components of 8 bits */
+};
+
+/* Codes of `intent`. */
+enum { IMAGE_INTENT_LABEL = 1002, IMAGE_INTENT_DISPLACEMENT = 1006, IMAGE_INTENT_VECTOR = 1007 };
+
+/* What the world axes are aligned to, NIfTI's codes of sform and qform. */
+enum {
+    IMAGE_SPACE_UNKNOWN,
+    IMAGE_SPACE_SCANNER,
+    IMAGE_SPACE_ALIGNED,
+    IMAGE_SPACE_TALAIRACH,
+    IMAGE_SPACE_MNI
+};
+
+/* An image on a regular grid, as a NIfTI file holds it. Lengths in metres, world axes RAS+ (x to the right, y
+ * to the front, z up). */
+struct image {
+    size_t size[3];        /* voxels along i, j, k, each >= 1; a slice has size[2] == 1 */
+    size_t components;     /* values at a voxel: 1, 3 for RGB (4 with opacity), or those of a vector image */
+    double to_world[3][4]; /* voxel index (i, j, k, 1), voxel centres, to world, m; invertible */
+    int datatype;          /* enum image_datatype, of the file's values: a writer keeps it */
+    double *values;        /* size[2] * size[1] * size[0] * components:
+                              values[((k * size[1] + j) * size[0] + i) * components + c], after slope and inter */
+    double slope, inter;   /* value = slope * stored + inter; slope 1, inter 0: none; ignored for RGB */
+    double unit;           /* metres in a unit of length of the file: 1, 1e-3 or 1e-6 */
+    int space;   /* IMAGE_SPACE_...: what to_world leads to; UNKNOWN: the file tells voxel sizes only */
+    int version; /* of NIfTI: 1 or 2; a writer takes 2 where 1 cannot hold the size */
+    int intent;  /* NIfTI's code of what the values mean, 0: none */
+    char intent_name[17];
+    char description[81];
+    char note[256]; /* what was assumed in reading, in one line, "" for nothing: tools tell it */
+};
+
+/* An image of a size, all values zero: of type float32, in mm, of unknown space and with voxels of 1 mm.
+ * STATUS_SYSTEM where memory is short. */
+MUST_CHECK enum status image_new(struct image *image, const size_t size[3], size_t components,
+                                 struct error *error);
+
+/* Read a NIfTI file (path "-": standard input), compressed or not.
+ * Space: sform where the file has one, else qform, else its voxel sizes along axes of unknown direction,
+ * which is noted. Without a unit of length, mm are taken, which is noted. An image of one slice needs no size
+ * across. Errors, as `PATH: ...`: STATUS_INPUT for a file that cannot be opened or is no NIfTI file of one
+ * volume (other formats by name, with the remedy), for types other than enum image_datatype, for a truncated
+ * or damaged file, and for a header that contradicts itself or the length of the data; STATUS_SYSTEM for read
+ * failures and memory. Time and memory are in proportion to the data that the file holds, whatever its header
+ * says. On failure the image is empty. */
+MUST_CHECK enum status image_read(struct image *image, const char *path, struct error *error);
+
+/* The same from an open descriptor, which stays open; `name` begins the messages. */
+MUST_CHECK enum status image_read_from(struct image *image, int descriptor, const char *name,
+                                       struct error *error);
+
+/* Write an image to an open descriptor, little-endian. Values are rounded to what the type can hold, NaN is 0
+ * in integers. The same image gives the same bytes. Errors: STATUS_INPUT for sizes that do not fit the type
+ * of the components; STATUS_SYSTEM for write errors, with errno's text, and memory. */
+MUST_CHECK enum status image_write(const struct image *image, int descriptor, bool gzip, struct error *error);
+
+/* Release the values; the image becomes empty. */
+void image_free(struct image *image);
+
+/* Voxels: the product of the sizes. */
+size_t image_voxels(const struct image *image);
+
+/* inverse: world, m, to voxel index. */
+void image_to_voxel(const struct image *image, double inverse[3][4]);
+
+/* The place of a voxel index, which need not be whole, m. */
+void image_world(const struct image *image, const double voxel[3], double world[3]);
+
+#endif

@@ -1,0 +1,55 @@
+/* Inside of lib/io: the header of a NIfTI file, decoded. */
+#ifndef IO_IMAGE_PRIVATE_H
+#define IO_IMAGE_PRIVATE_H
+
+#include "io/image.h"
+
+#include <stdint.h>
+
+enum { NIFTI1_HEADER = 348, NIFTI2_HEADER = 540 };
+
+/* The fields that matter, in the file's units. */
+struct nifti {
+    int version;
+    bool swapped;
+    double dim[8];
+    int datatype, bits, intent;
+    double pixdim[8], offset, slope, inter;
+    int qform, sform, units;
+    double quatern[3], qoffset[3], srow[3][4];
+};
+
+/* How the values of a type are stored. */
+struct nifti_type {
+    int code;
+    const char *name;
+    int bytes;          /* of one component */
+    int components;     /* that the type itself has */
+    double least, most; /* of an integer; 0, 0: floating */
+};
+
+/* NULL for a type that is not read. */
+const struct nifti_type *nifti_type(int code);
+
+/* The header's version and byte order by its first 4 bytes; 0 when they are no header's. */
+int nifti_version(const unsigned char *bytes, bool *swapped);
+
+/* Decode a whole header of that version. */
+void nifti_decode(const unsigned char *bytes, int version, bool swapped, struct nifti *header,
+                  struct image *image);
+
+/* Encode an image's header, little-endian, with the 4 bytes that follow it; returns the offset of the data.
+ */
+size_t nifti_encode(const struct image *image, unsigned char bytes[NIFTI2_HEADER + 4]);
+
+/* image->to_world, unit and space from a header; notes what is assumed. */
+MUST_CHECK enum status nifti_space(const struct nifti *header, struct image *image, struct error *error);
+
+/* The quaternion (b, c, d), the sizes and qfac that give the first three columns of a matrix; false when its
+ * columns are not orthogonal. */
+bool nifti_quaternion(double matrix[3][4], double quatern[3], double pixdim[4]);
+
+/* Add a sentence to image->note. */
+void nifti_note(struct image *image, const char *text);
+
+#endif
