@@ -191,7 +191,8 @@ void labels_box(const struct labels *labels, double low[], double high[])
     for (int corner = 0; corner < 8 && most[0] >= 0; corner++) {
         double v[3];
         for (int d = 0; d < 3; d++) {
-            v[d] = (corner >> d & 1 ? (double)most[d] + 0.5 : (double)least[d] - 0.5) - labels->to_voxel[d][3];
+            v[d] =
+                (corner >> d & 1 ? (double)most[d] + 0.5 : (double)least[d] - 0.5) - labels->to_voxel[d][3];
         }
         for (int d = 0; d < labels->dim; d++) {
             const double *row = inverse[labels->dim == 3 ? d : labels->axis[d]];

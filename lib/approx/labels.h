@@ -8,7 +8,8 @@
 #include <stdint.h>
 
 /* The grid. Label 0 is the outside, also beyond the grid; along an axis with one voxel it extends without
- * end. Points have `dim` world coordinates, m: in 2D along the world axes `axis`, at `across` on the third. */
+ * end. Points have `dim` world coordinates, m: in 2D along the world axes `axis`, at `across` on the third.
+ */
 struct labels {
     int64_t size[3];
     const uint16_t *label; /* size[2] * size[1] * size[0], first index fastest; less than `count` */
@@ -40,8 +41,8 @@ int32_t labels_at(const struct labels *labels, const double x[]);
 double labels_difference(const struct labels *labels, const double x[], int32_t a, int32_t b,
                          double gradient[]);
 
-/* The labelled world box: of the voxels, faces included, whose label is not 0; low > high when there are none.
- * dim coordinates, m. */
+/* The labelled world box: of the voxels, faces included, whose label is not 0; low > high when there are
+ * none. dim coordinates, m. */
 void labels_box(const struct labels *labels, double low[], double high[]);
 
 /* Least extent of a voxel along an axis of the grid with more than one voxel, m. */

@@ -22,7 +22,8 @@ static double dot(int dim, const double *a, const double *b)
     return sum;
 }
 
-/* Cosines between inward normals of faces: the angle between two faces is 180 degrees less that of the normals. */
+/* Cosines between inward normals of faces: the angle between two faces is 180 degrees less that of the
+ * normals. */
 void simplex_angles(int dim, const double *const x[], double angles[2])
 {
     double edge[3][3] = {{0}}, normal[4][3] = {{0}};
@@ -82,11 +83,11 @@ enum status stuffing_make(const struct labels *labels, const struct stuffing_opt
     status = lattice_cells(&lattice, stuffing, error);
     lattice_free(&lattice);
     TRY(status);
-    TRY(stuffing_keep(labels, options->keep, stuffing, error));
+    TRY(stuffing_keep(options, stuffing, error));
     if (stuffing->cell_count == 0) {
-        TRY(fail(error, STATUS_INPUT, "spacing %g m: no lattice point lies in a label: smaller?", options->spacing));
+        TRY(fail(error, STATUS_INPUT, "spacing %g m: no lattice point lies in a label: smaller?",
+                 options->spacing));
     }
-    if (getenv("NOIMPROVE") == NULL)
     TRY(stuffing_improve(labels, options, stuffing, error));
 done:
     if (status != STATUS_OK) {

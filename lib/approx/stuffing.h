@@ -2,11 +2,11 @@
  *
  * A body-centred cubic lattice (2D: one of equilateral triangles) is laid over the labels. An edge between
  * points of different labels is cut where their shares (approx/labels.h) are equal. A point that a cut lies
- * near is moved onto it; the other cuts bisect their edges, in an order that neighbouring cells agree on. For two
- * labels these are the stencils of Labelle and Shewchuk, Isosurface stuffing: fast tetrahedral meshes with good
- * dihedral angles, ACM Trans. Graph. 26 (2007), 57, whose angles lie between 10.7 and 164.8 degrees. Where three
- * labels meet, nodes are moved onto their common line and cells are improved by moving nodes; the bounds of
- * struct stuffing tell what holds. */
+ * near is moved onto it; the other cuts bisect their edges, in an order that neighbouring cells agree on. For
+ * two labels these are the stencils of Labelle and Shewchuk, Isosurface stuffing: fast tetrahedral meshes
+ * with good dihedral angles, ACM Trans. Graph. 26 (2007), 57, whose angles lie between 10.7 and 164.8
+ * degrees. Where three labels meet, nodes are moved onto their common line and cells are improved by moving
+ * nodes; the bounds of struct stuffing tell what holds. */
 #ifndef APPROX_STUFFING_H
 #define APPROX_STUFFING_H
 
@@ -19,6 +19,7 @@
 struct stuffing_options {
     double spacing;   /* of the lattice, m: edge of its cubes (2D: of its triangles) */
     const bool *keep; /* labels->count: cells of this label are wanted; never of label 0 */
+    bool largest;     /* of several connected bodies only the largest */
 };
 
 struct stuffing {
@@ -29,20 +30,20 @@ struct stuffing {
     int32_t *cell;  /* cell_count * (dim + 1), positively oriented */
     int32_t *label; /* cell_count */
     int64_t facet_count;
-    int32_t *facet; /* facet_count * dim: the boundary, oriented outward */
-    int32_t *side;  /* facet_count * 2: the label within, and the one beyond that is not kept */
+    int32_t *facet;        /* facet_count * dim: the boundary, oriented outward */
+    int32_t *side;         /* facet_count * 2: the label within, and the one beyond that is not kept */
     int64_t pinched;       /* cells left out because they hung on the rest by a node or an edge alone */
     double pinched_volume; /* of them, m3 */
 };
 
-/* Make the cells. STATUS_INPUT: no voxel of a label that is kept, a spacing for which the lattice has more than
- * 2^28 points, or no cell at that spacing. */
+/* Make the cells. STATUS_INPUT: no voxel of a label that is kept, a spacing for which the lattice has more
+ * than 2^28 points, or no cell at that spacing. */
 MUST_CHECK enum status stuffing_make(const struct labels *labels, const struct stuffing_options *options,
                                      struct stuffing *stuffing, struct error *error);
 void stuffing_free(struct stuffing *stuffing);
 
-/* Least and largest dihedral angle (2D: angle) of a simplex with corners x[dim + 1], degrees; 0 and 180 for one
- * without volume or inverted. */
+/* Least and largest dihedral angle (2D: angle) of a simplex with corners x[dim + 1], degrees; 0 and 180 for
+ * one without volume or inverted. */
 void simplex_angles(int dim, const double *const x[], double angles[2]);
 
 #endif

@@ -39,11 +39,13 @@ static double signed_size(const struct cutting *cutting, const int32_t *node)
     if (dim == 2) {
         return e[0][0] * e[1][1] - e[0][1] * e[1][0];
     }
-    return e[0][0] * (e[1][1] * e[2][2] - e[1][2] * e[2][1]) - e[0][1] * (e[1][0] * e[2][2] - e[1][2] * e[2][0]) +
+    return e[0][0] * (e[1][1] * e[2][2] - e[1][2] * e[2][1]) -
+           e[0][1] * (e[1][0] * e[2][2] - e[1][2] * e[2][0]) +
            e[0][2] * (e[1][0] * e[2][1] - e[1][1] * e[2][0]);
 }
 
-/* The label of a piece: that of its points off the interfaces, or where there are none the one at its middle. */
+/* The label of a piece: that of its points off the interfaces, or where there are none the one at its middle.
+ */
 static int32_t label_of(const struct cutting *cutting, const int32_t *node)
 {
     int dim = cutting->lattice->dim;
@@ -94,7 +96,8 @@ static double order_in_plane(const struct cutting *cutting, const struct bisecti
     for (int k = 0; k < 3; k++) {
         if (node[k] != bisection->end[0] && node[k] != bisection->end[1]) {
             for (int d = 0; d < 2; d++) {
-                double step = cutting->x[2 * (int64_t)node[k] + d] - cutting->x[2 * (int64_t)bisection->node + d];
+                double step =
+                    cutting->x[2 * (int64_t)node[k] + d] - cutting->x[2 * (int64_t)bisection->node + d];
                 length += step * step;
             }
         }
@@ -115,7 +118,8 @@ static int find_bisections(const struct cutting *cutting, const int32_t *node, s
             if (lattice->cut_node[edge] < 0) {
                 continue;
             }
-            struct bisection fresh = {{node[k], node[l]}, (int32_t)lattice->points + lattice->cut_node[edge], order};
+            struct bisection fresh = {
+                {node[k], node[l]}, (int32_t)lattice->points + lattice->cut_node[edge], order};
             if (lattice->dim == 2) {
                 fresh.order = order_in_plane(cutting, &fresh, node);
             }
@@ -229,7 +233,9 @@ static void set_nodes(struct cutting *cutting)
     for (int64_t p = 0; p < lattice->points; p++) {
         struct lattice_index index = lattice_index(lattice, p);
         for (int n = 0; n < (dim == 2 ? 3 : index.centre ? 3 : 11); n++) {
-            int64_t edge = dim == 2 ? 3 * p + n : index.centre ? 11 * lattice->corners + 3 * (p - lattice->corners) + n : 11 * p + n;
+            int64_t edge = dim == 2       ? 3 * p + n
+                           : index.centre ? 11 * lattice->corners + 3 * (p - lattice->corners) + n
+                                          : 11 * p + n;
             struct lattice_index next = index;
             if (lattice->cut_node[edge] < 0) {
                 continue;
@@ -267,7 +273,8 @@ static enum status compact(struct cutting *cutting, int64_t count, struct error 
     }
     for (int64_t n = 0; n < count; n++) {
         if (number[n] != 0) {
-            memmove(cutting->x + stuffing->node_count * dim, cutting->x + n * dim, (size_t)dim * sizeof(double));
+            memmove(cutting->x + stuffing->node_count * dim, cutting->x + n * dim,
+                    (size_t)dim * sizeof(double));
             number[n] = (int32_t)stuffing->node_count++;
         }
     }
@@ -288,7 +295,8 @@ enum status lattice_cells(const struct lattice *lattice, struct stuffing *stuffi
     int64_t count = lattice->points + lattice->cuts;
     *stuffing = (struct stuffing){.dim = lattice->dim};
     if (count > INT32_MAX) {
-        return fail(error, STATUS_INPUT, "spacing %g m: more than 2147483647 nodes: larger?", lattice->spacing);
+        return fail(error, STATUS_INPUT, "spacing %g m: more than 2147483647 nodes: larger?",
+                    lattice->spacing);
     }
     TRY(NEW_ARRAY(&cutting.x, count * lattice->dim, error));
     set_nodes(&cutting);

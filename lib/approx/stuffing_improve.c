@@ -37,7 +37,8 @@ double star_score(const struct stuffing *stuffing, const struct stuffing_star *s
 }
 
 /* Move a node towards `target` as far as its cells allow. */
-static void move(struct stuffing *stuffing, const struct stuffing_star *star, int64_t node, const double target[])
+static void move(struct stuffing *stuffing, const struct stuffing_star *star, int64_t node,
+                 const double target[])
 {
     int dim = stuffing->dim;
     double *x = stuffing->x + node * dim, before[3] = {0};
@@ -167,7 +168,8 @@ static void volume_gradient(const struct stuffing *stuffing, int64_t cell, int k
     }
     for (int d = 0; d < 3; d++) {
         int e = (d + 1) % 3, f = (d + 2) % 3;
-        gradient[d] = -((x[1][e] - x[0][e]) * (x[2][f] - x[0][f]) - (x[1][f] - x[0][f]) * (x[2][e] - x[0][e])) / 6;
+        gradient[d] =
+            -((x[1][e] - x[0][e]) * (x[2][f] - x[0][f]) - (x[1][f] - x[0][f]) * (x[2][e] - x[0][e])) / 6;
     }
 }
 
@@ -218,8 +220,9 @@ static double node_weight(int dim, double G[STUFFING_MOST_LABELS][3])
     return most > 0 ? 1 / most : 0;
 }
 
-/* The least moves of the nodes on interfaces, each weighted by its area, that correct the volumes to first order are sums
- * of the volumes' gradients: find the factors of these. False when there is nothing to correct. */
+/* The least moves of the nodes on interfaces, each weighted by its area, that correct the volumes to first
+ * order are sums of the volumes' gradients: find the factors of these. False when there is nothing to
+ * correct. */
 static bool find_pressures(struct volumes *volumes)
 {
     int32_t count = volumes->labels->count;
@@ -259,7 +262,8 @@ static bool find_pressures(struct volumes *volumes)
     for (int32_t l = 0; l < count; l++) {
         volumes->matrix[l * count + l] += 1e-9 * trace;
     }
-    return worst > 0 && dense_factorise(count, volumes->matrix) && (dense_solve(count, volumes->matrix, volumes->pressure), true);
+    return worst > 0 && dense_factorise(count, volumes->matrix) &&
+           (dense_solve(count, volumes->matrix, volumes->pressure), true);
 }
 
 static void correct_volumes(struct volumes *volumes)

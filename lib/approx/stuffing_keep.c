@@ -2,6 +2,7 @@
 #include "approx/stuffing_private.h"
 #include "base/memory.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -71,7 +72,8 @@ struct keeping {
     int32_t *stack;
 };
 
-/* Give the cells at a node that hang together by faces there one number; returns how many groups there are. */
+/* Give the cells at a node that hang together by faces there one number; returns how many groups there are.
+ */
 static int32_t find_groups(struct keeping *keeping, const struct stuffing_star *star, int64_t node)
 {
     int corners = keeping->cells.dim + 1;
@@ -186,7 +188,8 @@ static enum status drop(struct keeping *keeping, struct error *error)
     TRY(NEW_ARRAY(&number, stuffing->node_count, error));
     for (int64_t c = 0; c < stuffing->cell_count; c++) {
         if (keeping->wanted[c]) {
-            memmove(stuffing->cell + cells * corners, stuffing->cell + c * corners, (size_t)corners * sizeof *number);
+            memmove(stuffing->cell + cells * corners, stuffing->cell + c * corners,
+                    (size_t)corners * sizeof *number);
             stuffing->label[cells++] = stuffing->label[c];
         }
     }
@@ -213,27 +216,67 @@ done:
     return status;
 }
 
-enum status stuffing_keep(const struct labels *labels, const bool *keep, struct stuffing *stuffing,
+/* Of the connected bodies of the wanted cells keep the largest. */
+static void keep_largest(struct keeping *keeping)
+{
+    int corners = keeping->cells.dim + 1;
+    int32_t count = 0, largest = -1;
+    double most = 0;
+    for (int64_t c = 0; c < keeping->cells.count; c++) {
+        double volume = 0;
+        int64_t depth = 0;
+        if (!keeping->wanted[c] || keeping->group[c] >= 0) {
+            continue;
+        }
+        keeping->stack[depth++] = (int32_t)c;
+        keeping->group[c] = count;
+        while (depth > 0) {
+            int64_t cell = keeping->stack[--depth];
+            volume += cell_volume(&keeping->cells, cell);
+            for (int k = 0; k < corners; k++) {
+                int32_t next = keeping->across[cell * corners + k];
+                if (next >= 0 && keeping->wanted[next] && keeping->group[next] < 0) {
+                    keeping->group[next] = count;
+                    keeping->stack[depth++] = next;
+                }
+            }
+        }
+        largest = volume > most ? count : largest;
+        most = fmax(most, volume);
+        count++;
+    }
+    for (int64_t c = 0; c < keeping->cells.count; c++) {
+        keeping->wanted[c] = keeping->wanted[c] && keeping->group[c] == largest;
+    }
+}
+
+enum status stuffing_keep(const struct stuffing_options *options, struct stuffing *stuffing,
                           struct error *error)
 {
     enum status status;
+    int dim = stuffing->dim;
     struct stuffing_star star = {0};
     struct keeping keeping = {
-        stuffing, {labels->dim, stuffing->node_count, stuffing->x, stuffing->cell_count, stuffing->cell}, NULL, NULL, NULL, NULL};
+        stuffing, {dim, stuffing->node_count, stuffing->x, stuffing->cell_count, stuffing->cell},
+        NULL,     NULL,
+        NULL,     NULL};
     int64_t count = stuffing->cell_count;
-    TRY(NEW_ARRAY(&keeping.across, count * (labels->dim + 1), error));
+    TRY(NEW_ARRAY(&keeping.across, count * (dim + 1), error));
     TRY(NEW_ARRAY(&keeping.wanted, count, error));
     TRY(NEW_ARRAY(&keeping.group, count, error));
     TRY(NEW_ARRAY(&keeping.stack, count + 1, error));
     TRY(cells_across(&keeping.cells, keeping.across, error));
     TRY(star_make(stuffing, &star, error));
     for (int64_t c = 0; c < count; c++) {
-        keeping.wanted[c] = keep[stuffing->label[c]];
+        keeping.wanted[c] = options->keep[stuffing->label[c]];
         keeping.group[c] = -1;
     }
     unpinch(&keeping, &star);
+    if (options->largest) {
+        keep_largest(&keeping);
+    }
     stuffing->facet_count = find_facets(&keeping, NULL, NULL);
-    TRY(NEW_ARRAY(&stuffing->facet, stuffing->facet_count * labels->dim, error));
+    TRY(NEW_ARRAY(&stuffing->facet, stuffing->facet_count * dim, error));
     TRY(NEW_ARRAY(&stuffing->side, stuffing->facet_count * 2, error));
     find_facets(&keeping, stuffing->facet, stuffing->side);
     TRY(drop(&keeping, error));

@@ -107,16 +107,18 @@ static enum status size_lattice(struct lattice *lattice, struct error *error)
     }
     for (int d = 0; d < dim; d++) {
         double step = dim == 2 && d == 1 ? lattice->spacing * sqrt(0.75) : lattice->spacing;
-        /* The lattice stands fast in the world: two points along each axis beyond the labels and their smoothing. */
+        /* The lattice stands fast in the world: two points along each axis beyond the labels and their
+         * smoothing. */
         double first = floor(lattice->low[d] / step) - 2, last = ceil(high[d] / step) + 3;
         if (dim == 2 && d == 1 && fmod(first, 2) != 0) {
             first -= 1;
         }
         points *= last - first + 1;
         if (!(points < (double)most_points)) {
-            return fail(error, STATUS_INPUT,
-                        "spacing %g m: more than %lld lattice points over the labels: larger, or another unit?",
-                        lattice->spacing, (long long)most_points);
+            return fail(
+                error, STATUS_INPUT,
+                "spacing %g m: more than %lld lattice points over the labels: larger, or another unit?",
+                lattice->spacing, (long long)most_points);
         }
         lattice->low[d] = first * step;
         lattice->count[d] = (int64_t)(last - first) + 1;
@@ -186,7 +188,8 @@ static void set_cuts(struct lattice *lattice)
             int64_t edge = lattice_edge(lattice, p, q, &first, &order);
             if (first == p) {
                 const double *from = lattice->x + p * dim, *to = lattice->x + q * dim;
-                lattice->cut[edge] = (change(lattice, from, to, a, b, true) + change(lattice, from, to, a, b, false)) / 2;
+                lattice->cut[edge] =
+                    (change(lattice, from, to, a, b, true) + change(lattice, from, to, a, b, false)) / 2;
             }
         }
     }

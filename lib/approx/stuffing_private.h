@@ -5,8 +5,8 @@
 #include "approx/stuffing.h"
 
 /* Points of a lattice, its edges and where they are cut.
- * 3D: corners of cubes, (i, j, k) first index fastest, then their centres in the same order. 2D: rows of points, odd
- * ones shifted by half a spacing. */
+ * 3D: corners of cubes, (i, j, k) first index fastest, then their centres in the same order. 2D: rows of
+ * points, odd ones shifted by half a spacing. */
 struct lattice {
     const struct labels *labels;
     int dim;
@@ -38,17 +38,17 @@ struct lattice_index {
 struct lattice_index lattice_index(const struct lattice *lattice, int64_t point);
 int64_t lattice_point(const struct lattice *lattice, const struct lattice_index *index);
 
-/* The edge between two neighbours; *first receives the end that its fraction counts from, *order the place of its
- * cut among those of a cell: lower ones bisect first. */
+/* The edge between two neighbours; *first receives the end that its fraction counts from, *order the place of
+ * its cut among those of a cell: lower ones bisect first. */
 int64_t lattice_edge(const struct lattice *lattice, int64_t p, int64_t q, int64_t *first, int *order);
 
 /* Cut the lattice's cells into cells of one label each; label 0 is left out. */
 MUST_CHECK enum status lattice_cells(const struct lattice *lattice, struct stuffing *stuffing,
                                      struct error *error);
 
-/* Keep the cells of labels that are wanted, without those that hang on the rest by a node or an edge only, and find the
- * boundary. */
-MUST_CHECK enum status stuffing_keep(const struct labels *labels, const bool *keep, struct stuffing *stuffing,
+/* Keep the cells of labels that are wanted, without those that hang on the rest by a node or an edge only,
+ * and find the boundary. */
+MUST_CHECK enum status stuffing_keep(const struct stuffing_options *options, struct stuffing *stuffing,
                                      struct error *error);
 
 /* Cells at each node and the labels that meet there. */
@@ -63,7 +63,8 @@ MUST_CHECK enum status star_make(const struct stuffing *stuffing, struct stuffin
                                  struct error *error);
 void star_free(struct stuffing_star *star);
 
-/* The poorest score of the cells at a node: the score of a cell is 1 where its angles just keep within the bounds. */
+/* The poorest score of the cells at a node: the score of a cell is 1 where its angles just keep within the
+ * bounds. */
 double star_score(const struct stuffing *stuffing, const struct stuffing_star *star, int64_t node);
 double stuffing_score(const struct stuffing *stuffing, int64_t cell);
 
