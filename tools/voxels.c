@@ -199,7 +199,7 @@ int main(int argc, char *argv[])
     wanted.table = options[LABELS].value;
     wanted.slice = options[SLICE].value;
     label_image_read(&tool, tool.operands[0], &wanted, &image);
-    struct stuffing_options stuffing_options = {spacing, image.keep, options[LARGEST].given};
+    struct stuffing_options stuffing_options = {.spacing = spacing, .keep = image.keep, .largest = options[LARGEST].given};
     tool_check(&tool, stuffing_make(&image.labels, &stuffing_options, &stuffing, &error), &error);
     report(&tool, &image, &stuffing, spacing, options[VERBOSE].given);
     tool_check(&tool, label_mesh_make(&image, &stuffing, &mesh, &error), &error);

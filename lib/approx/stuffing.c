@@ -78,9 +78,11 @@ enum status stuffing_make(const struct labels *labels, const struct stuffing_opt
     struct lattice lattice;
     enum status status;
     *stuffing = (struct stuffing){.dim = labels->dim};
-    TRY(lattice_make(labels, options->spacing, &lattice, error));
-    lattice_snap(&lattice);
-    status = lattice_cells(&lattice, stuffing, error);
+    TRY(lattice_make(labels, options, &lattice, error));
+    status = lattice_cut(&lattice, error);
+    if (status == STATUS_OK) {
+        status = lattice_cells(&lattice, stuffing, error);
+    }
     lattice_free(&lattice);
     TRY(status);
     TRY(stuffing_keep(options, stuffing, error));

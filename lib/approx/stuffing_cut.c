@@ -11,37 +11,21 @@ enum { PIECES_MOST = 64 };
 struct cutting {
     const struct lattice *lattice;
     struct stuffing *stuffing;
-    int64_t room; /* cells allocated */
-    double *x;    /* points + cuts: coordinates, m */
+    int64_t room;      /* cells allocated */
+    double *x;         /* nodes of the lattice and of cuts: coordinates, m */
+    int32_t *cut_node; /* lattice->edge_count */
 };
 
-/* An edge of a cell that is cut. */
+/* An edge of a cell that is cut, and what sets the place of its cut among the others: it comes after edges of larger
+ * order[0], then of lower order[1], then before those of higher number. */
 struct bisection {
     int32_t end[2], node;
-    double order;
+    double order[2];
 };
 
 static bool on_interface(const struct cutting *cutting, int32_t node)
 {
-    return node >= cutting->lattice->points || cutting->lattice->on[node];
-}
-
-/* Six times the volume (2D: twice the area) of a simplex. */
-static double signed_size(const struct cutting *cutting, const int32_t *node)
-{
-    int dim = cutting->lattice->dim;
-    double e[3][3] = {{0}};
-    for (int k = 0; k < dim; k++) {
-        for (int d = 0; d < dim; d++) {
-            e[k][d] = cutting->x[(int64_t)node[k + 1] * dim + d] - cutting->x[(int64_t)node[0] * dim + d];
-        }
-    }
-    if (dim == 2) {
-        return e[0][0] * e[1][1] - e[0][1] * e[1][0];
-    }
-    return e[0][0] * (e[1][1] * e[2][2] - e[1][2] * e[2][1]) -
-           e[0][1] * (e[1][0] * e[2][2] - e[1][2] * e[2][0]) +
-           e[0][2] * (e[1][0] * e[2][1] - e[1][1] * e[2][0]);
+    return node >= cutting->lattice->node_count || cutting->lattice->on[node];
 }
 
 /* The label of a piece: that of its points off the interfaces, or where there are none the one at its middle.
@@ -88,21 +72,37 @@ static enum status append(struct cutting *cutting, const int32_t *node, struct e
     return STATUS_OK;
 }
 
-/* In the plane no neighbour depends on the order: the shorter diagonal goes first. */
-static double order_in_plane(const struct cutting *cutting, const struct bisection *bisection,
-                             const int32_t *node)
+/* Neighbours must agree on the order of the edges of a common face. Long edges go first, and of equal diagonals of cubes,
+ * two of which meet in a face, the one whose ends stand at an even place: the parity rule of Labelle and Shewchuk 2007,
+ * section 3. In the plane faces are edges: there the shorter diagonal goes first. */
+static void set_order(const struct cutting *cutting, const int32_t *node, struct bisection *bisection)
 {
-    double length = 0;
-    for (int k = 0; k < 3; k++) {
-        if (node[k] != bisection->end[0] && node[k] != bisection->end[1]) {
-            for (int d = 0; d < 2; d++) {
-                double step =
-                    cutting->x[2 * (int64_t)node[k] + d] - cutting->x[2 * (int64_t)bisection->node + d];
-                length += step * step;
+    const struct lattice *lattice = cutting->lattice;
+    if (lattice->dim == 2) {
+        for (int k = 0; k < 3; k++) {
+            const double *x = cutting->x + 2 * (int64_t)node[k], *cut = cutting->x + 2 * (int64_t)bisection->node;
+            if (node[k] != bisection->end[0] && node[k] != bisection->end[1]) {
+                bisection->order[0] = -hypot(x[0] - cut[0], x[1] - cut[1]);
             }
         }
+        return;
     }
-    return length;
+    const int32_t *p = lattice->place + 3 * (int64_t)bisection->end[0];
+    const int32_t *q = lattice->place + 3 * (int64_t)bisection->end[1];
+    int32_t size = abs(p[0] - q[0]), sum = 0;
+    for (int d = 0; d < 3; d++) {
+        bisection->order[0] += (double)(p[d] - q[d]) * (p[d] - q[d]);
+        sum += size > 0 ? p[d] / (2 * size) + q[d] / (2 * size) : 0;
+    }
+    bisection->order[1] = sum % 2;
+}
+
+static bool comes_before(const struct bisection *a, const struct bisection *b)
+{
+    if (a->order[0] != b->order[0]) {
+        return a->order[0] > b->order[0];
+    }
+    return a->order[1] != b->order[1] ? a->order[1] < b->order[1] : a->node < b->node;
 }
 
 /* The cuts of a cell in their order. */
@@ -112,19 +112,15 @@ static int find_bisections(const struct cutting *cutting, const int32_t *node, s
     int count = 0;
     for (int k = 0; k <= lattice->dim; k++) {
         for (int l = k + 1; l <= lattice->dim; l++) {
-            int64_t first;
-            int order;
-            int64_t edge = lattice_edge(lattice, node[k], node[l], &first, &order);
-            if (lattice->cut_node[edge] < 0) {
+            int64_t edge =
+                lattice->label[node[k]] != lattice->label[node[l]] ? lattice_edge(lattice, node[k], node[l]) : -1;
+            if (edge < 0) {
                 continue;
             }
-            struct bisection fresh = {
-                {node[k], node[l]}, (int32_t)lattice->points + lattice->cut_node[edge], order};
-            if (lattice->dim == 2) {
-                fresh.order = order_in_plane(cutting, &fresh, node);
-            }
+            struct bisection fresh = {.end = {node[k], node[l]}, .node = cutting->cut_node[edge]};
+            set_order(cutting, node, &fresh);
             int at = count++;
-            for (; at > 0 && bisections[at - 1].order > fresh.order; at--) {
+            for (; at > 0 && comes_before(&fresh, &bisections[at - 1]); at--) {
                 bisections[at] = bisections[at - 1];
             }
             bisections[at] = fresh;
@@ -134,26 +130,13 @@ static int find_bisections(const struct cutting *cutting, const int32_t *node, s
 }
 
 /* Cut one cell of the lattice, and append its pieces. */
-static enum status cut_cell(struct cutting *cutting, int32_t node[4], struct error *error)
+static enum status cut_cell(struct cutting *cutting, const int32_t *node, struct error *error)
 {
     const struct lattice *lattice = cutting->lattice;
     int corners = lattice->dim + 1, count = 1;
     int32_t piece[PIECES_MOST][4];
     struct bisection bisections[6];
-    bool outside = true, all_on = true;
-    for (int k = 0; k < corners; k++) {
-        bool on = lattice->on[node[k]];
-        all_on = all_on && on;
-        outside = outside && (on || lattice->label[node[k]] == 0);
-    }
-    if (outside && !all_on) {
-        return STATUS_OK;
-    }
-    memcpy(piece[0], node, sizeof piece[0]);
-    if (signed_size(cutting, node) < 0) {
-        piece[0][0] = node[1];
-        piece[0][1] = node[0];
-    }
+    memcpy(piece[0], node, (size_t)corners * sizeof *node);
     int bisection_count = find_bisections(cutting, node, bisections);
     for (int b = 0; b < bisection_count; b++) {
         int before = count;
@@ -179,85 +162,31 @@ static enum status cut_cell(struct cutting *cutting, int32_t node[4], struct err
     return STATUS_OK;
 }
 
-/* Tetrahedra about the edges of cubes: each with an edge between two centres. */
-static enum status cut_at_corner(struct cutting *cutting, int64_t corner, struct error *error)
+/* Number the cuts behind the nodes of the lattice; how many nodes there are then. */
+static enum status set_nodes(struct cutting *cutting, int64_t *count, struct error *error)
 {
     const struct lattice *lattice = cutting->lattice;
-    static const int ring[5][2] = {{-1, -1}, {0, -1}, {0, 0}, {-1, 0}, {-1, -1}};
-    struct lattice_index index = lattice_index(lattice, corner);
-    for (int d = 0; d < 3; d++) {
-        if (index.at[d] < 1 || index.at[d] > lattice->count[d] - 2) {
-            return STATUS_OK;
-        }
-    }
-    for (int d = 0; d < 3; d++) {
-        struct lattice_index next = index;
-        next.at[d]++;
-        for (int r = 0; r < 4; r++) {
-            int32_t node[4] = {(int32_t)corner, (int32_t)lattice_point(lattice, &next)};
-            for (int m = 0; m < 2; m++) {
-                struct lattice_index centre = index;
-                centre.centre = true;
-                centre.at[(d + 1) % 3] += ring[r + m][0];
-                centre.at[(d + 2) % 3] += ring[r + m][1];
-                node[2 + m] = (int32_t)lattice_point(lattice, &centre);
-            }
-            enum status status = cut_cell(cutting, node, error);
-            if (status != STATUS_OK) {
-                return status;
-            }
-        }
-    }
-    return STATUS_OK;
-}
-
-/* The triangle above the edge from a point to the next in its row, and the one above the next point. */
-static enum status cut_above(struct cutting *cutting, int64_t point, struct error *error)
-{
-    const struct lattice *lattice = cutting->lattice;
-    struct lattice_index index = lattice_index(lattice, point);
-    if (index.at[0] + 2 >= lattice->count[0] || index.at[1] + 1 >= lattice->count[1]) {
-        return STATUS_OK;
-    }
-    int32_t p = (int32_t)point, above = (int32_t)(point + lattice->count[0] + (index.at[1] & 1));
-    int32_t up[4] = {p, p + 1, above}, down[4] = {p + 1, above + 1, above};
-    enum status status = cut_cell(cutting, up, error);
-    return status == STATUS_OK ? cut_cell(cutting, down, error) : status;
-}
-
-static void set_nodes(struct cutting *cutting)
-{
-    const struct lattice *lattice = cutting->lattice;
+    enum status status;
     int dim = lattice->dim;
-    memcpy(cutting->x, lattice->x, (size_t)(lattice->points * dim) * sizeof *cutting->x);
-    for (int64_t p = 0; p < lattice->points; p++) {
-        struct lattice_index index = lattice_index(lattice, p);
-        for (int n = 0; n < (dim == 2 ? 3 : index.centre ? 3 : 11); n++) {
-            int64_t edge = dim == 2       ? 3 * p + n
-                           : index.centre ? 11 * lattice->corners + 3 * (p - lattice->corners) + n
-                                          : 11 * p + n;
-            struct lattice_index next = index;
-            if (lattice->cut_node[edge] < 0) {
-                continue;
-            }
-            if (dim == 2) {
-                next.at[0] += n == 0 ? 1 : (index.at[1] & 1) - (n == 2);
-                next.at[1] += n > 0;
-            } else if (n < 3) {
-                next.at[n]++;
-            } else {
-                next.centre = true;
-                for (int d = 0; d < 3; d++) {
-                    next.at[d] += ((n - 3) >> d & 1) - 1;
-                }
-            }
-            const double *from = lattice->x + p * dim, *to = lattice->x + lattice_point(lattice, &next) * dim;
-            double *x = cutting->x + (lattice->points + lattice->cut_node[edge]) * dim;
-            for (int d = 0; d < dim; d++) {
-                x[d] = from[d] + lattice->cut[edge] * (to[d] - from[d]);
-            }
+    *count = lattice->node_count;
+    TRY(NEW_ARRAY(&cutting->cut_node, lattice->edge_count, error));
+    for (int64_t e = 0; e < lattice->edge_count; e++) {
+        cutting->cut_node[e] = lattice->cut[e] > 0 ? (int32_t)(*count)++ : -1;
+    }
+    if (*count > INT32_MAX) {
+        TRY(fail(error, STATUS_INPUT, "more than 2147483647 nodes: a larger spacing?"));
+    }
+    TRY(NEW_ARRAY(&cutting->x, *count * dim, error));
+    memcpy(cutting->x, lattice->x, (size_t)(lattice->node_count * dim) * sizeof *cutting->x);
+    for (int64_t e = 0; e < lattice->edge_count; e++) {
+        const double *from = lattice->x + (int64_t)lattice->end[2 * e] * dim;
+        const double *to = lattice->x + (int64_t)lattice->end[2 * e + 1] * dim;
+        for (int d = 0; d < dim && lattice->cut[e] > 0; d++) {
+            cutting->x[(int64_t)cutting->cut_node[e] * dim + d] = from[d] + lattice->cut[e] * (to[d] - from[d]);
         }
     }
+done:
+    return status;
 }
 
 /* Number the nodes of cells anew, without those of no cell; x is replaced. */
@@ -292,20 +221,16 @@ enum status lattice_cells(const struct lattice *lattice, struct stuffing *stuffi
 {
     struct cutting cutting = {.lattice = lattice, .stuffing = stuffing};
     enum status status;
-    int64_t count = lattice->points + lattice->cuts;
+    int64_t count;
     *stuffing = (struct stuffing){.dim = lattice->dim};
-    if (count > INT32_MAX) {
-        return fail(error, STATUS_INPUT, "spacing %g m: more than 2147483647 nodes: larger?",
-                    lattice->spacing);
-    }
-    TRY(NEW_ARRAY(&cutting.x, count * lattice->dim, error));
-    set_nodes(&cutting);
-    for (int64_t p = 0; p < lattice->corners; p++) {
-        TRY(lattice->dim == 3 ? cut_at_corner(&cutting, p, error) : cut_above(&cutting, p, error));
+    TRY(set_nodes(&cutting, &count, error));
+    for (int64_t c = 0; c < lattice->cell_count; c++) {
+        TRY(cut_cell(&cutting, lattice->cell + c * (lattice->dim + 1), error));
     }
     TRY(compact(&cutting, count, error));
 done:
     free(cutting.x);
+    free(cutting.cut_node);
     if (status != STATUS_OK) {
         stuffing_free(stuffing);
     }

@@ -5,210 +5,265 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Edges that a point owns: 3D: along the axes, and of corners those to the centres of eight cubes. */
-enum { OWN_AXES = 3, OWN_CORNER = 11, NEIGHBOURS_MOST = 14 };
-/* A cut within so much of an edge's length moves the point: Labelle and Shewchuk 2007, section 3. */
-static const double near_long = 0.24999, near_short = 0.41189;
-static const double near_plane = 0.35;
-static const int64_t most_points = (int64_t)1 << 28;
+static const int64_t most_points = (int64_t)1 << 26;
 
-struct lattice_index lattice_index(const struct lattice *lattice, int64_t point)
+/* All points that a lattice may have: corners of the finest cubes, first index fastest, then their centres; in 2D rows of
+ * points, odd ones shifted by half a spacing. */
+struct points {
+    struct lattice *lattice;
+    int levels;
+    double spacing, low[3]; /* of the finest level */
+    int64_t count[3], corners, total;
+    uint16_t *label; /* total */
+    int32_t *node;   /* total: number of the node, -1: not used */
+    int64_t room;    /* cells allocated */
+    struct error *error;
+};
+
+/* Place of a point in halves of the finest edge. */
+static void place_of(const struct points *points, int64_t point, int32_t place[3])
 {
-    struct lattice_index index = {.centre = point >= lattice->corners};
-    point -= index.centre ? lattice->corners : 0;
-    index.at[0] = point % lattice->count[0];
-    index.at[1] = point / lattice->count[0] % lattice->count[1];
-    index.at[2] = point / lattice->count[0] / lattice->count[1];
-    return index;
+    bool centre = point >= points->corners;
+    int64_t at = point - (centre ? points->corners : 0);
+    place[0] = (int32_t)(2 * (at % points->count[0]) + centre);
+    place[1] = (int32_t)(2 * (at / points->count[0] % points->count[1]) + centre);
+    place[2] = (int32_t)(2 * (at / points->count[0] / points->count[1]) + centre);
 }
 
-int64_t lattice_point(const struct lattice *lattice, const struct lattice_index *index)
+static int64_t point_at(const struct points *points, const int32_t place[3])
 {
-    return (index->at[2] * lattice->count[1] + index->at[1]) * lattice->count[0] + index->at[0] +
-           (index->centre ? lattice->corners : 0);
+    return ((int64_t)(place[2] / 2) * points->count[1] + place[1] / 2) * points->count[0] + place[0] / 2 +
+           (place[0] & 1 ? points->corners : 0);
 }
 
-int64_t lattice_edge(const struct lattice *lattice, int64_t p, int64_t q, int64_t *first, int *order)
+static void coordinates(const struct points *points, int64_t point, double x[])
 {
-    struct lattice_index a = lattice_index(lattice, p), b = lattice_index(lattice, q);
-    if (lattice->dim == 2) {
-        int64_t low = p < q ? p : q;
-        const struct lattice_index *lower = p < q ? &a : &b, *upper = p < q ? &b : &a;
-        *first = low;
-        *order = 0;
-        if (a.at[1] == b.at[1]) {
-            return OWN_AXES * low;
-        }
-        bool right = upper->at[0] == lower->at[0] + (lower->at[1] & 1);
-        return OWN_AXES * low + (right ? 1 : 2);
+    int32_t place[3];
+    place_of(points, point, place);
+    if (points->lattice->dim == 2) {
+        x[0] = points->low[0] + points->spacing * (place[0] / 2 + (place[1] / 2 % 2) * 0.5);
+        x[1] = points->low[1] + points->spacing * sqrt(0.75) * (place[1] / 2);
+        return;
     }
-    if (a.centre == b.centre) {
-        int64_t low = p < q ? p : q;
-        int axis = a.at[0] != b.at[0] ? 0 : a.at[1] != b.at[1] ? 1 : 2;
-        *first = low;
-        *order = 0;
-        return (a.centre ? lattice->corners * OWN_CORNER + (low - lattice->corners) * OWN_AXES
-                         : low * OWN_CORNER) +
-               axis;
-    }
-    const struct lattice_index *corner = a.centre ? &b : &a, *centre = a.centre ? &a : &b;
-    int64_t octant = 0, sum = 0;
     for (int d = 0; d < 3; d++) {
-        octant += (centre->at[d] - corner->at[d] + 1) << d;
-        sum += centre->at[d] + corner->at[d];
+        x[d] = points->low[d] + points->spacing * 0.5 * place[d];
     }
-    *first = a.centre ? q : p;
-    *order = 1 + (int)(sum & 1);
-    return *first * OWN_CORNER + OWN_AXES + octant;
 }
 
-/* Neighbours of a point within the lattice. */
-static int neighbours(const struct lattice *lattice, int64_t p, int64_t neighbour[NEIGHBOURS_MOST])
+/* The lattice stands fast in the world, its coarsest cubes at multiples of their edge, with two beyond the labels and their
+ * smoothing on each side. */
+static enum status size_points(struct points *points, struct error *error)
 {
-    struct lattice_index index = lattice_index(lattice, p);
-    int count = 0;
-    for (int n = 0; n < (lattice->dim == 2 ? 6 : NEIGHBOURS_MOST); n++) {
-        struct lattice_index next = index;
-        bool within = true;
-        if (lattice->dim == 2) {
-            int64_t shift = index.at[1] & 1;
-            next.at[0] += n < 2 ? 2 * n - 1 : n % 2 - 1 + shift;
-            next.at[1] += n < 2 ? 0 : n < 4 ? 1 : -1;
-        } else if (n < 6) {
-            next.at[n / 2] += n % 2 ? 1 : -1;
-        } else {
-            next.centre = !index.centre;
-            for (int d = 0; d < 3; d++) {
-                next.at[d] += (n - 6) >> d & 1 ? (index.centre ? 1 : -1) : 0;
-            }
-        }
-        for (int d = 0; d < lattice->dim; d++) {
-            within = within && next.at[d] >= 0 && next.at[d] < lattice->count[d];
-        }
-        if (within) {
-            neighbour[count++] = lattice_point(lattice, &next);
-        }
-    }
-    return count;
-}
-
-/* ---- the points ---- */
-
-static enum status size_lattice(struct lattice *lattice, struct error *error)
-{
-    int dim = lattice->dim;
-    double high[3], points = dim == 3 ? 2 : 1;
-    labels_box(lattice->labels, lattice->low, high);
-    if (!(lattice->low[0] <= high[0])) {
+    const struct labels *labels = points->lattice->labels;
+    int dim = labels->dim;
+    int64_t coarse = (int64_t)1 << (points->levels - 1);
+    double high[3], total = dim == 3 ? 2 : 1;
+    labels_box(labels, points->low, high);
+    if (!(points->low[0] <= high[0])) {
         return fail(error, STATUS_INPUT, "no voxel has a label: all is outside");
     }
-    for (int d = 0; d < 3; d++) {
-        lattice->count[d] = 1;
-    }
+    points->count[2] = 1;
     for (int d = 0; d < dim; d++) {
-        double step = dim == 2 && d == 1 ? lattice->spacing * sqrt(0.75) : lattice->spacing;
-        /* The lattice stands fast in the world: two points along each axis beyond the labels and their
-         * smoothing. */
-        double first = floor(lattice->low[d] / step) - 2, last = ceil(high[d] / step) + 3;
-        if (dim == 2 && d == 1 && fmod(first, 2) != 0) {
-            first -= 1;
+        double step = points->spacing * (double)coarse * (dim == 2 && d == 1 ? sqrt(0.75) : 1);
+        double first = floor(points->low[d] / step) - 2, last = ceil(high[d] / step) + 2;
+        first -= dim == 2 && fmod(first, 2) != 0 ? 1 : 0;
+        total *= (last - first) * (double)coarse + 1;
+        if (!(total < (double)most_points)) {
+            return fail(error, STATUS_INPUT,
+                        "spacing %g m: more than %lld lattice points over the labels: larger, or another unit?",
+                        points->spacing, (long long)most_points);
         }
-        points *= last - first + 1;
-        if (!(points < (double)most_points)) {
-            return fail(
-                error, STATUS_INPUT,
-                "spacing %g m: more than %lld lattice points over the labels: larger, or another unit?",
-                lattice->spacing, (long long)most_points);
-        }
-        lattice->low[d] = first * step;
-        lattice->count[d] = (int64_t)(last - first) + 1;
+        points->low[d] = first * step;
+        points->count[d] = (int64_t)(last - first) * coarse + 1;
     }
-    lattice->corners = lattice->count[0] * lattice->count[1] * lattice->count[2];
-    lattice->points = dim == 3 ? 2 * lattice->corners : lattice->corners;
-    lattice->edges = lattice->corners * (dim == 3 ? OWN_CORNER + OWN_AXES : OWN_AXES);
+    points->corners = points->count[0] * points->count[1] * points->count[2];
+    points->total = dim == 3 ? 2 * points->corners : points->corners;
     return STATUS_OK;
 }
 
-static void set_points(struct lattice *lattice)
-{
-    int dim = lattice->dim;
-#pragma omp parallel for schedule(static)
-    for (int64_t p = 0; p < lattice->points; p++) {
-        struct lattice_index index = lattice_index(lattice, p);
-        double *x = lattice->x + p * dim;
-        for (int d = 0; d < dim; d++) {
-            double step = dim == 2 && d == 1 ? lattice->spacing * sqrt(0.75) : lattice->spacing;
-            double shift = index.centre || (dim == 2 && d == 0 && (index.at[1] & 1)) ? 0.5 : 0;
-            x[d] = lattice->low[d] + step * ((double)index.at[d] + shift);
-        }
-        lattice->label[p] = (uint16_t)labels_at(lattice->labels, x);
-    }
-}
-
-/* ---- the cuts ---- */
-
-/* The fraction, from p to q, at which `sign` times (the share of p's label less that of q's) ceases to be
- * positive on the way from `from` to the other end. */
-static double change(const struct lattice *lattice, const double *p, const double *q, int32_t a, int32_t b,
-                     bool from_p)
-{
-    double low = 0, high = 1;
-    for (int step = 0; step < 16; step++) {
-        double t = (low + high) / 2, x[3];
-        struct label_mix mix;
-        for (int d = 0; d < lattice->dim; d++) {
-            x[d] = p[d] + t * (q[d] - p[d]);
-        }
-        labels_mix(lattice->labels, x, &mix);
-        double difference = label_share(&mix, a) - label_share(&mix, b);
-        if (from_p ? difference > 0 : difference >= 0) {
-            low = t;
-        } else {
-            high = t;
-        }
-    }
-    return (low + high) / 2;
-}
-
-/* Where a third label lies between the two, their shares are equal, 0, over a stretch: its middle. */
-static void set_cuts(struct lattice *lattice)
-{
-    int dim = lattice->dim;
-#pragma omp parallel for schedule(dynamic, 256)
-    for (int64_t p = 0; p < lattice->points; p++) {
-        int64_t neighbour[NEIGHBOURS_MOST];
-        int count = neighbours(lattice, p, neighbour);
-        for (int n = 0; n < count; n++) {
-            int64_t q = neighbour[n], first;
-            int32_t a = lattice->label[p], b = lattice->label[q];
-            int order;
-            if (a == b) {
-                continue;
-            }
-            int64_t edge = lattice_edge(lattice, p, q, &first, &order);
-            if (first == p) {
-                const double *from = lattice->x + p * dim, *to = lattice->x + q * dim;
-                lattice->cut[edge] =
-                    (change(lattice, from, to, a, b, true) + change(lattice, from, to, a, b, false)) / 2;
-            }
-        }
-    }
-}
-
-enum status lattice_make(const struct labels *labels, double spacing, struct lattice *lattice,
-                         struct error *error)
+static enum status label_points(struct points *points, struct error *error)
 {
     enum status status;
-    *lattice = (struct lattice){.labels = labels, .dim = labels->dim, .spacing = spacing};
-    TRY(size_lattice(lattice, error));
-    TRY(NEW_ARRAY(&lattice->x, lattice->points * lattice->dim, error));
-    TRY(NEW_ARRAY(&lattice->label, lattice->points, error));
-    TRY(NEW_ARRAY(&lattice->on, lattice->points, error));
-    TRY(NEW_ARRAY(&lattice->cut, lattice->edges, error));
-    TRY(NEW_ARRAY(&lattice->cut_node, lattice->edges, error));
-    set_points(lattice);
-    set_cuts(lattice);
+    TRY(NEW_ARRAY(&points->label, points->total, error));
+    TRY(NEW_ARRAY(&points->node, points->total, error));
+#pragma omp parallel for schedule(static)
+    for (int64_t p = 0; p < points->total; p++) {
+        double x[3];
+        coordinates(points, p, x);
+        points->label[p] = (uint16_t)labels_at(points->lattice->labels, x);
+        points->node[p] = -1;
+    }
 done:
+    return status;
+}
+
+/* ---- cells ---- */
+
+/* Append a cell of these points, unless all of them are outside. */
+static enum status add_cell(struct points *points, int64_t corner[4])
+{
+    struct lattice *lattice = points->lattice;
+    int corners = lattice->dim + 1;
+    bool outside = true;
+    for (int k = 0; k < corners; k++) {
+        outside = outside && points->label[corner[k]] == 0;
+    }
+    if (outside) {
+        return STATUS_OK;
+    }
+    if (lattice->cell_count == points->room) {
+        int64_t room = points->room + points->room / 2 + 1024;
+        int32_t *cell = array_grow(lattice->cell, room * corners, sizeof *cell);
+        if (cell == NULL) {
+            return fail_memory(points->error, "cells of the lattice");
+        }
+        lattice->cell = cell;
+        points->room = room;
+    }
+    for (int k = 0; k < corners; k++) {
+        lattice->cell[lattice->cell_count * corners + k] = (int32_t)corner[k];
+        points->node[corner[k]] = 0;
+    }
+    lattice->cell_count++;
+    return STATUS_OK;
+}
+
+static enum status add_tetrahedron(void *context, const int32_t corner[4][3])
+{
+    struct points *points = context;
+    int64_t point[4], edge[3][3];
+    for (int k = 0; k < 4; k++) {
+        point[k] = point_at(points, corner[k]);
+        for (int d = 0; d < 3 && k > 0; d++) {
+            edge[k - 1][d] = corner[k][d] - corner[0][d];
+        }
+    }
+    int64_t volume = edge[0][0] * (edge[1][1] * edge[2][2] - edge[1][2] * edge[2][1]) -
+                     edge[0][1] * (edge[1][0] * edge[2][2] - edge[1][2] * edge[2][0]) +
+                     edge[0][2] * (edge[1][0] * edge[2][1] - edge[1][1] * edge[2][0]);
+    if (volume < 0) {
+        int64_t swap = point[0];
+        point[0] = point[1];
+        point[1] = swap;
+    }
+    return add_cell(points, point);
+}
+
+/* The two triangles above the edge from each point to the next in its row. */
+static enum status add_triangles(struct points *points)
+{
+    for (int64_t p = 0; p < points->total; p++) {
+        int64_t i = p % points->count[0], j = p / points->count[0];
+        int64_t above = p + points->count[0] + (j & 1);
+        int64_t up[4] = {p, p + 1, above}, down[4] = {p + 1, above + 1, above};
+        if (i + 2 >= points->count[0] || j + 1 >= points->count[1]) {
+            continue;
+        }
+        enum status status = add_cell(points, up);
+        if (status == STATUS_OK) {
+            status = add_cell(points, down);
+        }
+        if (status != STATUS_OK) {
+            return status;
+        }
+    }
+    return STATUS_OK;
+}
+
+/* The finest cubes that an interface of a label of fine[] (NULL: of any) passes. */
+static void find_wanted(const struct points *points, const bool *fine, const int64_t cubes[3], bool *wanted)
+{
+#pragma omp parallel for schedule(static)
+    for (int64_t c = 0; c < cubes[0] * cubes[1] * cubes[2]; c++) {
+        const int32_t at[3] = {(int32_t)(c % cubes[0]), (int32_t)(c / cubes[0] % cubes[1]),
+                               (int32_t)(c / cubes[0] / cubes[1])};
+        bool mixed = false, named = fine == NULL;
+        const int32_t centre[3] = {2 * at[0] + 1, 2 * at[1] + 1, 2 * at[2] + 1};
+        uint16_t first = points->label[point_at(points, centre)];
+        named = named || fine[first];
+        for (int k = 0; k < 8; k++) {
+            const int32_t corner[3] = {2 * (at[0] + (k & 1)), 2 * (at[1] + (k >> 1 & 1)), 2 * (at[2] + (k >> 2))};
+            uint16_t label = points->label[point_at(points, corner)];
+            mixed = mixed || label != first;
+            named = named || fine[label];
+        }
+        wanted[c] = mixed && named;
+    }
+}
+
+static enum status add_tetrahedra(struct points *points, const bool *fine)
+{
+    enum status status;
+    bool *wanted = NULL;
+    struct octree octree = {0};
+    const int64_t cubes[3] = {points->count[0] - 1, points->count[1] - 1, points->count[2] - 1};
+    TRY(NEW_ARRAY(&wanted, cubes[0] * cubes[1] * cubes[2], points->error));
+    if (points->levels > 1) {
+        find_wanted(points, fine, cubes, wanted);
+    }
+    TRY(octree_make(points->levels, cubes, wanted, &octree, points->error));
+    TRY(octree_cells(&octree, add_tetrahedron, points));
+done:
+    octree_free(&octree);
+    free(wanted);
+    return status;
+}
+
+/* Number the points of cells. */
+static enum status make_nodes(struct points *points, struct error *error)
+{
+    struct lattice *lattice = points->lattice;
+    enum status status;
+    int dim = lattice->dim;
+    for (int64_t p = 0; p < points->total; p++) {
+        if (points->node[p] >= 0) {
+            points->node[p] = (int32_t)lattice->node_count++;
+        }
+    }
+    TRY(NEW_ARRAY(&lattice->x, lattice->node_count * dim, error));
+    TRY(NEW_ARRAY(&lattice->label, lattice->node_count, error));
+    TRY(NEW_ARRAY(&lattice->place, lattice->node_count * 3, error));
+    for (int64_t p = 0; p < points->total; p++) {
+        int64_t n = points->node[p];
+        if (n >= 0) {
+            coordinates(points, p, lattice->x + n * dim);
+            lattice->label[n] = points->label[p];
+            if (dim == 3) {
+                place_of(points, p, lattice->place + 3 * n);
+            }
+        }
+    }
+    for (int64_t i = 0; i < lattice->cell_count * (dim + 1); i++) {
+        lattice->cell[i] = points->node[lattice->cell[i]];
+    }
+done:
+    return status;
+}
+
+enum status lattice_make(const struct labels *labels, const struct stuffing_options *options,
+                         struct lattice *lattice, struct error *error)
+{
+    enum status status;
+    struct points points = {.lattice = lattice, .levels = 1, .spacing = options->spacing, .error = error};
+    *lattice = (struct lattice){.labels = labels, .dim = labels->dim};
+    if (options->finest > 0 && labels->dim == 2) {
+        TRY(fail(error, STATUS_INPUT, "finer interfaces are for bodies in space, not for slices"));
+    }
+    while (options->finest > 0 && points.spacing > options->finest * (1 + 1e-9)) {
+        if (points.levels == OCTREE_MOST_LEVELS) {
+            TRY(fail(error, STATUS_INPUT, "spacing %g m at interfaces: at least 1/%d of the spacing inside, %g m",
+                     options->finest, 1 << (OCTREE_MOST_LEVELS - 1), options->spacing));
+        }
+        points.spacing /= 2;
+        points.levels++;
+    }
+    TRY(size_points(&points, error));
+    TRY(label_points(&points, error));
+    TRY(labels->dim == 3 ? add_tetrahedra(&points, options->fine) : add_triangles(&points));
+    TRY(make_nodes(&points, error));
+done:
+    free(points.label);
+    free(points.node);
     if (status != STATUS_OK) {
         lattice_free(lattice);
     }
@@ -219,49 +274,12 @@ void lattice_free(struct lattice *lattice)
 {
     free(lattice->x);
     free(lattice->label);
-    free(lattice->on);
+    free(lattice->place);
+    free(lattice->cell);
+    free(lattice->end);
     free(lattice->cut);
-    free(lattice->cut_node);
+    free(lattice->edge_ptr);
+    free(lattice->edge_idx);
+    free(lattice->on);
     *lattice = (struct lattice){0};
-}
-
-/* Move a point onto the nearest of the cuts that lie near it; the edges there are cut no more. */
-static void snap(struct lattice *lattice, int64_t p)
-{
-    int dim = lattice->dim;
-    int64_t neighbour[NEIGHBOURS_MOST], edges[NEIGHBOURS_MOST], first;
-    int count = neighbours(lattice, p, neighbour), order, best = -1;
-    double least = INFINITY, fraction = 0;
-    for (int n = 0; n < count; n++) {
-        edges[n] = lattice_edge(lattice, p, neighbour[n], &first, &order);
-        double cut = lattice->cut[edges[n]];
-        double near = dim == 2 ? near_plane : order == 0 ? near_long : near_short;
-        double length = dim == 3 && order > 0 ? sqrt(0.75) : 1;
-        double t = first == p ? cut : 1 - cut;
-        if (cut > 0 && t < near && t * length < least) {
-            least = t * length;
-            fraction = t;
-            best = n;
-        }
-    }
-    if (best >= 0) {
-        lattice->on[p] = true;
-        for (int d = 0; d < dim; d++) {
-            double *x = &lattice->x[p * dim + d];
-            *x += fraction * (lattice->x[neighbour[best] * dim + d] - *x);
-        }
-        for (int n = 0; n < count; n++) {
-            lattice->cut[edges[n]] = 0;
-        }
-    }
-}
-
-void lattice_snap(struct lattice *lattice)
-{
-    for (int64_t p = 0; p < lattice->points; p++) {
-        snap(lattice, p);
-    }
-    for (int64_t e = 0; e < lattice->edges; e++) {
-        lattice->cut_node[e] = lattice->cut[e] > 0 ? (int32_t)lattice->cuts++ : -1;
-    }
 }

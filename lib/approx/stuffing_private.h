@@ -4,50 +4,64 @@
 
 #include "approx/stuffing.h"
 
-/* Points of a lattice, its edges and where they are cut.
- * 3D: corners of cubes, (i, j, k) first index fastest, then their centres in the same order. 2D: rows of
- * points, odd ones shifted by half a spacing. */
+/* The lattice whose cells are cut. 3D: corners and centres of cubes, which are leaves of an octree; 2D: equilateral
+ * triangles. Cells whose points are all outside are left out. */
 struct lattice {
     const struct labels *labels;
     int dim;
-    double spacing, low[3];
-    int64_t count[3]; /* points along each axis */
-    int64_t corners, points;
-    double *x;       /* points * dim, m; after lattice_snap some are moved onto interfaces */
-    uint16_t *label; /* points */
-    bool *on;        /* points: moved onto an interface */
-    int64_t edges;
-    double *cut;       /* edges: where it is cut, as a fraction from its first end; 0: it is not */
-    int32_t *cut_node; /* edges: number of the cut's node, counted from `points`; -1: none */
-    int64_t cuts;
+    int64_t node_count;
+    double *x;       /* node_count * dim, m; lattice_cut moves some onto interfaces */
+    uint16_t *label; /* node_count */
+    int32_t *place;  /* node_count * 3: in halves of the finest cube's edge; 2D: zero */
+    int64_t cell_count;
+    int32_t *cell; /* cell_count * (dim + 1), positively oriented */
+    /* Edges between points of different labels: */
+    int64_t edge_count;
+    int32_t *end;      /* edge_count * 2, the lower node first; ascending */
+    double *cut;       /* edge_count: where it is cut, as a fraction from its first end; 0: it is not, as an end is */
+    int64_t *edge_ptr; /* node_count + 1: the edges at each node, */
+    int32_t *edge_idx;
+    bool *on; /* node_count: moved onto an interface */
 };
 
-/* Lay the lattice over the labels, find the label of each point and where edges are cut. */
-MUST_CHECK enum status lattice_make(const struct labels *labels, double spacing, struct lattice *lattice,
-                                    struct error *error);
+/* Lay the lattice over the labels and find the label of each point. */
+MUST_CHECK enum status lattice_make(const struct labels *labels, const struct stuffing_options *options,
+                                    struct lattice *lattice, struct error *error);
 void lattice_free(struct lattice *lattice);
 
-/* Move points onto cuts that lie near them, and number the cuts that are left. */
-void lattice_snap(struct lattice *lattice);
+/* Find where edges are cut, and move points that lie near a cut onto it. */
+MUST_CHECK enum status lattice_cut(struct lattice *lattice, struct error *error);
 
-/* Index of a point on the lattice: i, j, k, and whether it is the centre of a cube. */
-struct lattice_index {
-    int64_t at[3];
-    bool centre;
-};
-struct lattice_index lattice_index(const struct lattice *lattice, int64_t point);
-int64_t lattice_point(const struct lattice *lattice, const struct lattice_index *index);
-
-/* The edge between two neighbours; *first receives the end that its fraction counts from, *order the place of
- * its cut among those of a cell: lower ones bisect first. */
-int64_t lattice_edge(const struct lattice *lattice, int64_t p, int64_t q, int64_t *first, int *order);
+/* The edge between two nodes, -1 when it is not cut. */
+int64_t lattice_edge(const struct lattice *lattice, int32_t p, int32_t q);
 
 /* Cut the lattice's cells into cells of one label each; label 0 is left out. */
 MUST_CHECK enum status lattice_cells(const struct lattice *lattice, struct stuffing *stuffing,
                                      struct error *error);
 
-/* Keep the cells of labels that are wanted, without those that hang on the rest by a node or an edge only,
- * and find the boundary. */
+/* Leaves of the octree over count[3] cubes of the finest level. */
+enum { OCTREE_MOST_LEVELS = 8 };
+struct octree {
+    int levels;                              /* level 0 is the coarsest, levels - 1 the finest */
+    int64_t count[OCTREE_MOST_LEVELS][3];    /* cubes of each level along each axis */
+    bool *split[OCTREE_MOST_LEVELS];         /* of each cube: whether it, or the one that it would be in, is split;
+                                                NULL for the finest */
+};
+
+/* Split the cubes of an octree so that cubes for which wanted[] holds are of the finest level, with all that touch
+ * them, and cubes that touch differ by one level at most. count[] are multiples of 2^(levels - 1); wanted[] is
+ * changed. */
+MUST_CHECK enum status octree_make(int levels, const int64_t count[3], bool *wanted, struct octree *octree,
+                                   struct error *error);
+void octree_free(struct octree *octree);
+
+/* Call tell(context, corner) for each tetrahedron between the leaves: four points, each x, y, z in halves of the
+ * finest cube's edge. Stops when tell fails. */
+typedef enum status octree_tell(void *context, const int32_t corner[4][3]);
+MUST_CHECK enum status octree_cells(const struct octree *octree, octree_tell *tell, void *context);
+
+/* Keep the cells of labels that are wanted, without those that hang on the rest by a node or an edge only, and
+ * find the boundary. */
 MUST_CHECK enum status stuffing_keep(const struct stuffing_options *options, struct stuffing *stuffing,
                                      struct error *error);
 
