@@ -148,10 +148,14 @@ static void report(const struct tool *tool, const struct label_image *image, con
 {
     struct cells cells = {stuffing->dim, stuffing->node_count, stuffing->x, stuffing->cell_count,
                           stuffing->cell};
-    if (stuffing->pinched > 0) {
-        tool_note(tool, "%lld cells, %.3g %s, hung on the rest by a node or an edge alone: left out",
-                  (long long)stuffing->pinched, shown(cells.dim, stuffing->pinched_volume),
+    if (stuffing->specks > 0) {
+        tool_note(tool, "%lld bodies no larger than the spacing, %.3g %s in all, are left out",
+                  (long long)stuffing->specks, shown(cells.dim, stuffing->speck_volume),
                   cells.dim == 3 ? "ml" : "cm2");
+    }
+    if (stuffing->pinched > 0) {
+        tool_note(tool, "parts that hung together by a node or an edge alone are cut apart at %lld nodes",
+                  (long long)stuffing->pinched);
     }
     report_labels(tool, image, &cells, stuffing->label, verbose);
     report_bodies(tool, &cells, verbose);
@@ -199,7 +203,8 @@ int main(int argc, char *argv[])
     wanted.table = options[LABELS].value;
     wanted.slice = options[SLICE].value;
     label_image_read(&tool, tool.operands[0], &wanted, &image);
-    struct stuffing_options stuffing_options = {.spacing = spacing, .keep = image.keep, .largest = options[LARGEST].given};
+    struct stuffing_options stuffing_options = {
+        .spacing = spacing, .keep = image.keep, .largest = options[LARGEST].given};
     tool_check(&tool, stuffing_make(&image.labels, &stuffing_options, &stuffing, &error), &error);
     report(&tool, &image, &stuffing, spacing, options[VERBOSE].given);
     tool_check(&tool, label_mesh_make(&image, &stuffing, &mesh, &error), &error);

@@ -76,6 +76,7 @@ enum status stuffing_make(const struct labels *labels, const struct stuffing_opt
                           struct stuffing *stuffing, struct error *error)
 {
     struct lattice lattice;
+    bool *apart = NULL;
     enum status status;
     *stuffing = (struct stuffing){.dim = labels->dim};
     TRY(lattice_make(labels, options, &lattice, error));
@@ -85,13 +86,14 @@ enum status stuffing_make(const struct labels *labels, const struct stuffing_opt
     }
     lattice_free(&lattice);
     TRY(status);
-    TRY(stuffing_keep(options, stuffing, error));
+    TRY(stuffing_keep(options, stuffing, &apart, error));
     if (stuffing->cell_count == 0) {
         TRY(fail(error, STATUS_INPUT, "spacing %g m: no lattice point lies in a label: smaller?",
                  options->spacing));
     }
-    TRY(stuffing_improve(labels, options, stuffing, error));
+    TRY(stuffing_improve(labels, options, apart, stuffing, error));
 done:
+    free(apart);
     if (status != STATUS_OK) {
         stuffing_free(stuffing);
     }

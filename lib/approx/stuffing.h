@@ -17,13 +17,17 @@
 #include <stdint.h>
 
 struct stuffing_options {
-    double spacing;   /* of the lattice, m: edge of its cubes (2D: of its triangles) */
-    double finest;    /* 3D: edge of the cubes at interfaces, m: the spacing is halved until it is no larger; 0: as
-                         elsewhere */
+    double spacing; /* of the lattice, m: edge of its cubes (2D: of its triangles) */
+    double finest;  /* 3D: edge of the cubes at interfaces, m: the spacing is halved until it is no larger; 0:
+                       as  elsewhere */
     const bool *fine; /* labels->count: at interfaces of these labels; NULL: at all */
     const bool *keep; /* labels->count: cells of this label are wanted; never of label 0 */
     bool largest;     /* of several connected bodies only the largest */
 };
+
+/* Voxels that the nodes of interfaces may be off their interface: where labels leave less room than the
+ * lattice needs, some are farther. */
+#define STUFFING_MOST_ASTRAY 0.6
 
 struct stuffing {
     int dim;
@@ -33,10 +37,13 @@ struct stuffing {
     int32_t *cell;  /* cell_count * (dim + 1), positively oriented */
     int32_t *label; /* cell_count */
     int64_t facet_count;
-    int32_t *facet;        /* facet_count * dim: the boundary, oriented outward */
-    int32_t *side;         /* facet_count * 2: the label within, and the one beyond that is not kept */
-    int64_t pinched;       /* cells left out because they hung on the rest by a node or an edge alone */
-    double pinched_volume; /* of them, m3 */
+    int32_t *facet;  /* facet_count * dim: the boundary, oriented outward */
+    int32_t *side;   /* facet_count * 2: the label within, and the one beyond that is not kept */
+    int64_t pinched; /* nodes at which parts hung together by a node or an edge alone: they are cut apart */
+    int64_t specks;  /* bodies about a single point of the lattice: they are left out, */
+    double speck_volume; /* m3 */
+    int64_t astray;  /* nodes of interfaces farther than STUFFING_MOST_ASTRAY voxels from where labels meet */
+    double farthest; /* largest of these distances of all nodes, m */
 };
 
 /* Make the cells. STATUS_INPUT: no voxel of a label that is kept, a spacing for which the lattice has more

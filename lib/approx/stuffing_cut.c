@@ -16,8 +16,8 @@ struct cutting {
     int32_t *cut_node; /* lattice->edge_count */
 };
 
-/* An edge of a cell that is cut, and what sets the place of its cut among the others: it comes after edges of larger
- * order[0], then of lower order[1], then before those of higher number. */
+/* An edge of a cell that is cut, and what sets the place of its cut among the others: it comes after edges of
+ * larger order[0], then of lower order[1], then before those of higher number. */
 struct bisection {
     int32_t end[2], node;
     double order[2];
@@ -72,15 +72,17 @@ static enum status append(struct cutting *cutting, const int32_t *node, struct e
     return STATUS_OK;
 }
 
-/* Neighbours must agree on the order of the edges of a common face. Long edges go first, and of equal diagonals of cubes,
- * two of which meet in a face, the one whose ends stand at an even place: the parity rule of Labelle and Shewchuk 2007,
- * section 3. In the plane faces are edges: there the shorter diagonal goes first. */
+/* Neighbours must agree on the order of the edges of a common face. Long edges go first, and of equal
+ * diagonals of cubes, two of which meet in a face, the one whose ends stand at an even place: the parity rule
+ * of Labelle and Shewchuk 2007, section 3. In the plane faces are edges: there the shorter diagonal goes
+ * first. */
 static void set_order(const struct cutting *cutting, const int32_t *node, struct bisection *bisection)
 {
     const struct lattice *lattice = cutting->lattice;
     if (lattice->dim == 2) {
         for (int k = 0; k < 3; k++) {
-            const double *x = cutting->x + 2 * (int64_t)node[k], *cut = cutting->x + 2 * (int64_t)bisection->node;
+            const double *x = cutting->x + 2 * (int64_t)node[k],
+                         *cut = cutting->x + 2 * (int64_t)bisection->node;
             if (node[k] != bisection->end[0] && node[k] != bisection->end[1]) {
                 bisection->order[0] = -hypot(x[0] - cut[0], x[1] - cut[1]);
             }
@@ -112,8 +114,9 @@ static int find_bisections(const struct cutting *cutting, const int32_t *node, s
     int count = 0;
     for (int k = 0; k <= lattice->dim; k++) {
         for (int l = k + 1; l <= lattice->dim; l++) {
-            int64_t edge =
-                lattice->label[node[k]] != lattice->label[node[l]] ? lattice_edge(lattice, node[k], node[l]) : -1;
+            int64_t edge = lattice->label[node[k]] != lattice->label[node[l]]
+                               ? lattice_edge(lattice, node[k], node[l])
+                               : -1;
             if (edge < 0) {
                 continue;
             }
@@ -182,7 +185,8 @@ static enum status set_nodes(struct cutting *cutting, int64_t *count, struct err
         const double *from = lattice->x + (int64_t)lattice->end[2 * e] * dim;
         const double *to = lattice->x + (int64_t)lattice->end[2 * e + 1] * dim;
         for (int d = 0; d < dim && lattice->cut[e] > 0; d++) {
-            cutting->x[(int64_t)cutting->cut_node[e] * dim + d] = from[d] + lattice->cut[e] * (to[d] - from[d]);
+            cutting->x[(int64_t)cutting->cut_node[e] * dim + d] =
+                from[d] + lattice->cut[e] * (to[d] - from[d]);
         }
     }
 done:

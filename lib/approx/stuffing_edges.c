@@ -5,9 +5,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* A cut within so much of an edge's length moves the point. Edges along the axes and diagonals of cubes: Labelle and
- * Shewchuk 2007, section 3, for the best bound of the angles; diagonals of sides, where leaves of two sizes meet, and
- * triangles: between these. */
+/* A cut within so much of an edge's length moves the point. Edges along the axes and diagonals of cubes:
+ * Labelle and Shewchuk 2007, section 3, for the best bound of the angles; diagonals of sides, where leaves of
+ * two sizes meet, and triangles: between these. */
 static const double near_axis = 0.24999, near_cube = 0.41189, near_side = 0.3, near_plane = 0.35;
 
 static int compare_keys(const void *left, const void *right)
@@ -86,12 +86,14 @@ int64_t lattice_edge(const struct lattice *lattice, int32_t p, int32_t q)
     return -1;
 }
 
-/* The fraction of an edge, from its first end, at which the share of the first end's label ceases to be the larger one
+/* The fraction of an edge, from its first end, at which the share of the first end's label ceases to be the
+ * larger one
  * (`strictly`), or begins to be the smaller one. */
 static double change(const struct lattice *lattice, int64_t edge, bool strictly)
 {
     const int32_t *end = lattice->end + 2 * edge;
-    const double *p = lattice->x + (int64_t)end[0] * lattice->dim, *q = lattice->x + (int64_t)end[1] * lattice->dim;
+    const double *p = lattice->x + (int64_t)end[0] * lattice->dim,
+                 *q = lattice->x + (int64_t)end[1] * lattice->dim;
     int32_t a = lattice->label[end[0]], b = lattice->label[end[1]];
     double low = 0, high = 1;
     for (int step = 0; step < 16; step++) {
@@ -124,7 +126,8 @@ static double length_of(const struct lattice *lattice, int64_t edge)
     const int32_t *end = lattice->end + 2 * edge;
     double square = 0;
     for (int d = 0; d < lattice->dim; d++) {
-        double step = lattice->x[(int64_t)end[1] * lattice->dim + d] - lattice->x[(int64_t)end[0] * lattice->dim + d];
+        double step =
+            lattice->x[(int64_t)end[1] * lattice->dim + d] - lattice->x[(int64_t)end[0] * lattice->dim + d];
         square += step * step;
     }
     return sqrt(square);

@@ -69,6 +69,7 @@ struct keeping {
     int32_t *across;
     bool *wanted;
     int32_t *group; /* cell_count: -1 */
+    bool *apart;    /* nodes: whether there are others at the same place */
     int32_t *stack;
 };
 
@@ -101,46 +102,59 @@ static int32_t find_groups(struct keeping *keeping, const struct stuffing_star *
     return count;
 }
 
-/* Leave out all groups at a node but the largest. */
-static void leave_out(struct keeping *keeping, const struct stuffing_star *star, int64_t node, int32_t count)
+/* Give the cells of each group at a node but the first a node of their own, at the same place. */
+static void cut_apart(struct keeping *keeping, const struct stuffing_star *star, int64_t node, int32_t count)
 {
-    int32_t largest = 0;
-    double most = -1;
-    for (int32_t g = 0; g < count; g++) {
-        double volume = 0;
-        for (int64_t i = star->ptr[node]; i < star->ptr[node + 1]; i++) {
-            volume += keeping->group[star->cell[i]] == g ? cell_volume(&keeping->cells, star->cell[i]) : 0;
-        }
-        if (volume > most) {
-            most = volume;
-            largest = g;
-        }
-    }
+    struct stuffing *stuffing = keeping->stuffing;
+    int dim = stuffing->dim, corners = dim + 1;
     for (int64_t i = star->ptr[node]; i < star->ptr[node + 1]; i++) {
-        int32_t cell = star->cell[i];
-        if (keeping->group[cell] >= 0 && keeping->group[cell] != largest) {
-            keeping->wanted[cell] = false;
-            keeping->stuffing->pinched++;
-            keeping->stuffing->pinched_volume += cell_volume(&keeping->cells, cell);
+        int64_t cell = star->cell[i];
+        for (int k = 0; k < corners && keeping->group[cell] > 0; k++) {
+            if (stuffing->cell[cell * corners + k] == node) {
+                stuffing->cell[cell * corners + k] = (int32_t)stuffing->node_count + keeping->group[cell] - 1;
+            }
         }
     }
+    keeping->apart[node] = true;
+    for (int32_t g = 1; g < count; g++) {
+        memcpy(stuffing->x + stuffing->node_count * dim, stuffing->x + node * dim,
+               (size_t)dim * sizeof(double));
+        keeping->apart[stuffing->node_count++] = true;
+    }
+    stuffing->pinched++;
 }
 
-static void unpinch(struct keeping *keeping, const struct stuffing_star *star)
+/* Cut the body where its parts hang together by nodes or edges alone. Nodes of several groups are counted
+ * first. */
+static enum status unpinch(struct keeping *keeping, const struct stuffing_star *star, struct error *error)
 {
-    int64_t before = -1;
-    while (before != keeping->stuffing->pinched) {
-        before = keeping->stuffing->pinched;
-        for (int64_t n = 0; n < keeping->cells.node_count; n++) {
+    struct stuffing *stuffing = keeping->stuffing;
+    enum status status;
+    int64_t nodes = stuffing->node_count, fresh = 0;
+    double *x = NULL;
+    for (int cutting = 0; cutting < 2; cutting++) {
+        for (int64_t n = 0; n < nodes; n++) {
             int32_t count = find_groups(keeping, star, n);
-            if (count > 1) {
-                leave_out(keeping, star, n, count);
+            fresh += cutting == 0 && count > 1 ? count - 1 : 0;
+            if (cutting == 1 && count > 1) {
+                cut_apart(keeping, star, n, count);
             }
             for (int64_t i = star->ptr[n]; i < star->ptr[n + 1]; i++) {
                 keeping->group[star->cell[i]] = -1;
             }
         }
+        if (cutting == 0) {
+            TRY(NEW_ARRAY(&keeping->apart, nodes + fresh, error));
+            TRY(NEW_ARRAY(&x, (nodes + fresh) * stuffing->dim, error));
+            memcpy(x, stuffing->x, (size_t)(nodes * stuffing->dim) * sizeof *x);
+            free(stuffing->x);
+            stuffing->x = x;
+        }
     }
+    keeping->cells.node_count = stuffing->node_count;
+    keeping->cells.x = stuffing->x;
+done:
+    return status;
 }
 
 /* ---- the boundary ---- */
@@ -201,6 +215,7 @@ static enum status drop(struct keeping *keeping, struct error *error)
         if (number[n] != 0) {
             memmove(stuffing->x + nodes * stuffing->dim, stuffing->x + n * stuffing->dim,
                     (size_t)stuffing->dim * sizeof *stuffing->x);
+            keeping->apart[nodes] = keeping->apart[n];
             number[n] = (int32_t)nodes++;
         }
     }
@@ -216,51 +231,71 @@ done:
     return status;
 }
 
-/* Of the connected bodies of the wanted cells keep the largest. */
-static void keep_largest(struct keeping *keeping)
+/* The connected body of wanted cells that holds a cell: its volume and how many cells it has. Gives these the
+ * number. */
+static double fill_body(struct keeping *keeping, int64_t first, int32_t number, int64_t *count)
 {
     int corners = keeping->cells.dim + 1;
-    int32_t count = 0, largest = -1;
+    int64_t depth = 0;
+    double volume = 0;
+    *count = 0;
+    keeping->stack[depth++] = (int32_t)first;
+    keeping->group[first] = number;
+    while (depth > 0) {
+        int64_t cell = keeping->stack[--depth];
+        volume += cell_volume(&keeping->cells, cell);
+        ++*count;
+        for (int k = 0; k < corners; k++) {
+            int32_t next = keeping->across[cell * corners + k];
+            if (next >= 0 && keeping->wanted[next] && keeping->group[next] < 0) {
+                keeping->group[next] = number;
+                keeping->stack[depth++] = next;
+            }
+        }
+    }
+    return volume;
+}
+
+/* Of the connected bodies leave out those about a single point of the lattice, which has no more cells about
+ * it than that, or all but the largest. */
+static void keep_bodies(struct keeping *keeping, bool largest_only)
+{
+    struct stuffing *stuffing = keeping->stuffing;
+    int32_t number = 0, largest = -1;
     double most = 0;
     for (int64_t c = 0; c < keeping->cells.count; c++) {
-        double volume = 0;
-        int64_t depth = 0;
+        int64_t count;
         if (!keeping->wanted[c] || keeping->group[c] >= 0) {
             continue;
         }
-        keeping->stack[depth++] = (int32_t)c;
-        keeping->group[c] = count;
-        while (depth > 0) {
-            int64_t cell = keeping->stack[--depth];
-            volume += cell_volume(&keeping->cells, cell);
-            for (int k = 0; k < corners; k++) {
-                int32_t next = keeping->across[cell * corners + k];
-                if (next >= 0 && keeping->wanted[next] && keeping->group[next] < 0) {
-                    keeping->group[next] = count;
-                    keeping->stack[depth++] = next;
-                }
-            }
+        double volume = fill_body(keeping, c, number, &count);
+        if (volume > most) {
+            most = volume;
+            largest = number;
         }
-        largest = volume > most ? count : largest;
-        most = fmax(most, volume);
-        count++;
+        bool speck = count <= (keeping->cells.dim == 3 ? 24 : 6);
+        stuffing->specks += speck;
+        stuffing->speck_volume += speck ? volume : 0;
+        for (int64_t d = c; d < keeping->cells.count && speck; d++) {
+            keeping->wanted[d] = keeping->wanted[d] && keeping->group[d] != number;
+        }
+        number++;
     }
-    for (int64_t c = 0; c < keeping->cells.count; c++) {
+    for (int64_t c = 0; c < keeping->cells.count && largest_only; c++) {
         keeping->wanted[c] = keeping->wanted[c] && keeping->group[c] == largest;
     }
 }
 
-enum status stuffing_keep(const struct stuffing_options *options, struct stuffing *stuffing,
+enum status stuffing_keep(const struct stuffing_options *options, struct stuffing *stuffing, bool **apart,
                           struct error *error)
 {
     enum status status;
     int dim = stuffing->dim;
-    struct stuffing_star star = {0};
-    struct keeping keeping = {
-        stuffing, {dim, stuffing->node_count, stuffing->x, stuffing->cell_count, stuffing->cell},
-        NULL,     NULL,
-        NULL,     NULL};
     int64_t count = stuffing->cell_count;
+    struct stuffing_star star = {0};
+    struct keeping keeping = {.stuffing = stuffing,
+                              .cells = {dim, stuffing->node_count, stuffing->x, count, stuffing->cell}};
+    *apart = NULL;
     TRY(NEW_ARRAY(&keeping.across, count * (dim + 1), error));
     TRY(NEW_ARRAY(&keeping.wanted, count, error));
     TRY(NEW_ARRAY(&keeping.group, count, error));
@@ -271,20 +306,24 @@ enum status stuffing_keep(const struct stuffing_options *options, struct stuffin
         keeping.wanted[c] = options->keep[stuffing->label[c]];
         keeping.group[c] = -1;
     }
-    unpinch(&keeping, &star);
-    if (options->largest) {
-        keep_largest(&keeping);
+    keep_bodies(&keeping, options->largest);
+    for (int64_t c = 0; c < count; c++) {
+        keeping.group[c] = -1;
     }
+    TRY(unpinch(&keeping, &star, error));
     stuffing->facet_count = find_facets(&keeping, NULL, NULL);
     TRY(NEW_ARRAY(&stuffing->facet, stuffing->facet_count * dim, error));
     TRY(NEW_ARRAY(&stuffing->side, stuffing->facet_count * 2, error));
     find_facets(&keeping, stuffing->facet, stuffing->side);
     TRY(drop(&keeping, error));
+    *apart = keeping.apart;
+    keeping.apart = NULL;
 done:
     star_free(&star);
     free(keeping.across);
     free(keeping.wanted);
     free(keeping.group);
     free(keeping.stack);
+    free(keeping.apart);
     return status;
 }

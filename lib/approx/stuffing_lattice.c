@@ -7,8 +7,8 @@
 
 static const int64_t most_points = (int64_t)1 << 26;
 
-/* All points that a lattice may have: corners of the finest cubes, first index fastest, then their centres; in 2D rows of
- * points, odd ones shifted by half a spacing. */
+/* All points that a lattice may have: corners of the finest cubes, first index fastest, then their centres;
+ * in 2D rows of points, odd ones shifted by half a spacing. */
 struct points {
     struct lattice *lattice;
     int levels;
@@ -50,8 +50,8 @@ static void coordinates(const struct points *points, int64_t point, double x[])
     }
 }
 
-/* The lattice stands fast in the world, its coarsest cubes at multiples of their edge, with two beyond the labels and their
- * smoothing on each side. */
+/* The lattice stands fast in the world, its coarsest cubes at multiples of their edge, with two beyond the
+ * labels and their smoothing on each side. */
 static enum status size_points(struct points *points, struct error *error)
 {
     const struct labels *labels = points->lattice->labels;
@@ -69,9 +69,10 @@ static enum status size_points(struct points *points, struct error *error)
         first -= dim == 2 && fmod(first, 2) != 0 ? 1 : 0;
         total *= (last - first) * (double)coarse + 1;
         if (!(total < (double)most_points)) {
-            return fail(error, STATUS_INPUT,
-                        "spacing %g m: more than %lld lattice points over the labels: larger, or another unit?",
-                        points->spacing, (long long)most_points);
+            return fail(
+                error, STATUS_INPUT,
+                "spacing %g m: more than %lld lattice points over the labels: larger, or another unit?",
+                points->spacing, (long long)most_points);
         }
         points->low[d] = first * step;
         points->count[d] = (int64_t)(last - first) * coarse + 1;
@@ -182,7 +183,8 @@ static void find_wanted(const struct points *points, const bool *fine, const int
         uint16_t first = points->label[point_at(points, centre)];
         named = named || fine[first];
         for (int k = 0; k < 8; k++) {
-            const int32_t corner[3] = {2 * (at[0] + (k & 1)), 2 * (at[1] + (k >> 1 & 1)), 2 * (at[2] + (k >> 2))};
+            const int32_t corner[3] = {2 * (at[0] + (k & 1)), 2 * (at[1] + (k >> 1 & 1)),
+                                       2 * (at[2] + (k >> 2))};
             uint16_t label = points->label[point_at(points, corner)];
             mixed = mixed || label != first;
             named = named || fine[label];
@@ -251,8 +253,9 @@ enum status lattice_make(const struct labels *labels, const struct stuffing_opti
     }
     while (options->finest > 0 && points.spacing > options->finest * (1 + 1e-9)) {
         if (points.levels == OCTREE_MOST_LEVELS) {
-            TRY(fail(error, STATUS_INPUT, "spacing %g m at interfaces: at least 1/%d of the spacing inside, %g m",
-                     options->finest, 1 << (OCTREE_MOST_LEVELS - 1), options->spacing));
+            TRY(fail(error, STATUS_INPUT,
+                     "spacing %g m at interfaces: at least 1/%d of the spacing inside, %g m", options->finest,
+                     1 << (OCTREE_MOST_LEVELS - 1), options->spacing));
         }
         points.spacing /= 2;
         points.levels++;

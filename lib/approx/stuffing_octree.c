@@ -29,7 +29,8 @@ static enum status dilate(const int64_t count[3], bool *marked, struct error *er
         memcpy(before, marked, (size_t)total * sizeof *marked);
         for (int64_t i = 0; i < total; i++) {
             int64_t at = i / stride % count[d];
-            marked[i] = before[i] || (at > 0 && before[i - stride]) || (at + 1 < count[d] && before[i + stride]);
+            marked[i] =
+                before[i] || (at > 0 && before[i - stride]) || (at + 1 < count[d] && before[i + stride]);
         }
         stride *= count[d];
     }
@@ -49,7 +50,8 @@ enum status octree_make(int levels, const int64_t count[3], bool *wanted, struct
         }
     }
     for (int l = levels - 1; l > 0; l--) {
-        /* Cubes that touch one that is split, or wanted, are of this level at least: their parents are split. */
+        /* Cubes that touch one that is split, or wanted, are of this level at least: their parents are split.
+         */
         const int64_t *fine = octree->count[l], *coarse = octree->count[l - 1];
         if (l < levels - 1) {
             TRY(NEW_ARRAY(&fresh, cubes(fine), error));
@@ -124,8 +126,8 @@ static void corner_of(const struct side *side, int corner, int32_t point[3])
     point[f] = (int32_t)(2 * (side->at[f] + around[corner][1])) * side->size;
 }
 
-/* Two leaves of one size: a tetrahedron for each edge of the side between them, or two where the edge is halved by smaller
- * leaves at it. */
+/* Two leaves of one size: a tetrahedron for each edge of the side between them, or two where the edge is
+ * halved by smaller leaves at it. */
 static enum status between_equals(const struct side *side, const int64_t beyond[3])
 {
     static const int outward[4][2] = {{0, -1}, {1, 0}, {0, 1}, {-1, 0}};
@@ -165,8 +167,8 @@ static enum status between_equals(const struct side *side, const int64_t beyond[
     return STATUS_OK;
 }
 
-/* A leaf beside a larger one: its side is cut along the diagonal from the middle of the larger side; a tetrahedron of
- * each triangle with each of the two centres. */
+/* A leaf beside a larger one: its side is cut along the diagonal from the middle of the larger side; a
+ * tetrahedron of each triangle with each of the two centres. */
 static enum status beside_larger(const struct side *side, const int64_t beyond[3])
 {
     const int64_t larger[3] = {beyond[0] / 2, beyond[1] / 2, beyond[2] / 2};
