@@ -1,0 +1,44 @@
+/* The motion of a body that nodal displacements describe, between the nodes too, and its inverse.
+ *
+ * In a cell the displacement is u(X) = sum_a N_a(X) (u_a + G_a (X - X_a) / 2), with the linear N_a of the
+ * cell's nodes and the gradients G_a of the quadratic moving least squares fit there. It takes the nodal
+ * values at the nodes, is continuous across faces, and reproduces quadratic fields where the gradients are
+ * theirs: half the gradient term makes up for the error of linear interpolation, sum_a N_a u_a = u + sum_a
+ * N_a (X - X_a) H (X
+ * - X_a) / 2. */
+#ifndef APPROX_MOTION_H
+#define APPROX_MOTION_H
+
+#include "approx/cells.h"
+
+struct motion {
+    struct cells cells;
+    const double *u;  /* node_count * dim, m; the caller's */
+    double *gradient; /* node_count * dim * dim: du_i/dx_j, or NULL: linear in each cell */
+    double *shape;    /* count * dim * dim: rows grad N_1 .. grad N_dim of each cell, 1/m */
+    int32_t *across;  /* cells_across */
+    double *moved;    /* node_count * dim: x + u */
+};
+
+/* The cells and u must outlive it. linear: no gradients, the displacement is piecewise linear. STATUS_VERDICT
+ * where the cloud is too poor for a fit at some node, which `linear` does without; STATUS_INPUT as
+ * cells_across. */
+MUST_CHECK enum status motion_build(const struct cells *cells, const double *u, bool linear,
+                                    struct motion *motion, struct error *error);
+void motion_free(struct motion *motion);
+
+/* Cells whose moved nodes span no positive volume; *first receives the lowest of them. */
+int64_t motion_folded(const struct motion *motion, int64_t *first);
+
+/* moved[dim]: the place that X[dim] in this cell moves to. */
+void motion_place(const struct motion *motion, int64_t cell, const double *X, double *moved);
+
+/* X[dim]: the place that moves to x, found by Newton's method from the inverse of the cell that holds x when
+ * its moved nodes span it, and through faces on to other cells where X lies in these. Returns whether
+ * |place(X) - x|
+ * <= tolerance was reached; if not, X is the place by linear interpolation in this cell. *residual: |place(X)
+ * - x| at the end, m. */
+bool motion_inverse(const struct motion *motion, int64_t cell, const double *x, double tolerance, double *X,
+                    double *residual);
+
+#endif

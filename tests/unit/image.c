@@ -1,0 +1,514 @@
+/* Images: every type, version and byte order is read as the standard says, written files are read back the
+ * same, and files that are not what they say are refused in one line. */
+#include "image_fixture.h"
+
+#include "io/image.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include <fcntl.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/mman.h>
+#include <unistd.h>
+#include <zlib.h>
+
+static struct nifti_file file;
+static struct image image;
+static struct error error;
+
+static void assert_near(double value, double expected, double tolerance)
+{
+    if (!(fabs(value - expected) <= tolerance)) {
+        fail_msg("%.17g instead of %.17g", value, expected);
+    }
+}
+
+/* Read bytes as a file. */
+static enum status read_bytes(const void *bytes, size_t size)
+{
+    int descriptor = memfd_create("image", 0);
+    assert_true(descriptor >= 0);
+    assert_int_equal(write(descriptor, bytes, size), size);
+    assert_int_equal(lseek(descriptor, 0, SEEK_SET), 0);
+    enum status status = image_read_from(&image, descriptor, "file", &error);
+    close(descriptor);
+    if (status != STATUS_OK) {
+        assert_null(image.values);
+        assert_int_equal(strncmp(error.text, "file: ", 6), 0);
+    }
+    return status;
+}
+
+static void refused(const char *text)
+{
+    assert_int_equal(read_bytes(file.bytes, file.size), STATUS_INPUT);
+    if (strstr(error.text, text) == NULL) {
+        fail_msg("'%s' instead of '%s'", error.text, text);
+    }
+}
+
+static void accepted(void)
+{
+    if (read_bytes(file.bytes, file.size) != STATUS_OK) {
+        fail_msg("%s", error.text);
+    }
+}
+
+/* A file of bytes compressed by zlib. */
+static size_t compress_bytes(const unsigned char *bytes, size_t size, unsigned char *to, size_t room)
+{
+    z_stream stream = {0};
+    assert_int_equal(deflateInit2(&stream, 9, Z_DEFLATED, 15 + 16, 8, Z_DEFAULT_STRATEGY), Z_OK);
+    stream.next_in = (unsigned char *)(uintptr_t)bytes;
+    stream.avail_in = (unsigned)size;
+    stream.next_out = to;
+    stream.avail_out = (unsigned)room;
+    assert_int_equal(deflate(&stream, Z_FINISH), Z_STREAM_END);
+    deflateEnd(&stream);
+    return room - stream.avail_out;
+}
+
+/* Six values as each type stores them, and what they are. */
+static const struct kind {
+    int code, bytes;
+    uint64_t stored[6];
+    double value[6];
+} kinds[] = {
+    {2, 1, {0, 1, 2, 127, 128, 255}, {0, 1, 2, 127, 128, 255}},
+    {256, 1, {0, 1, 0xff, 0x7f, 0x80, 3}, {0, 1, -1, 127, -128, 3}},
+    {4, 2, {0, 1, 0xffff, 0x7fff, 0x8000, 300}, {0, 1, -1, 32767, -32768, 300}},
+    {512, 2, {0, 1, 0xffff, 0x7fff, 0x8000, 300}, {0, 1, 65535, 32767, 32768, 300}},
+    {8, 4, {0, 1, 0xffffffff, 0x7fffffff, 0x80000000, 70000}, {0, 1, -1, 2147483647, -2147483648.0, 70000}},
+    {768,
+     4,
+     {0, 1, 0xffffffff, 0x7fffffff, 0x80000000, 7},
+     {0, 1, 4294967295.0, 2147483647, 2147483648.0, 7}},
+    {1024,
+     8,
+     {0, 1, ~(uint64_t)0, 1u << 31, (uint64_t)1 << 53, 7},
+     {0, 1, -1, 2147483648.0, 9007199254740992.0, 7}},
+    {1280, 8, {0, 1, 2, 1u << 31, (uint64_t)1 << 53, 7}, {0, 1, 2, 2147483648.0, 9007199254740992.0, 7}},
+    {16,
+     4,
+     {0, 0x3f800000, 0xbf000000, 0x42f6e979, 1, 0x7f7fffff},
+     {0, 1, -0.5, 123.45600128173828, 1.401298464324817e-45, 3.4028234663852886e38}},
+    {64,
+     8,
+     {0, 0x3ff0000000000000, 0xbfe0000000000000, 0x3fb999999999999a, 1, 0x7fefffffffffffff},
+     {0, 1, -0.5, 0.1, 5e-324, 1.7976931348623157e308}},
+};
+
+static void make_kind(const struct kind *kind, int version, bool big)
+{
+    begin_nifti(&file, version, big, 3, 2, 1, kind->code, 8 * kind->bytes);
+    for (int i = 0; i < 6; i++) {
+        append_value(&file, kind->bytes, kind->stored[i]);
+    }
+}
+
+static void types(void **state)
+{
+    (void)state;
+    for (size_t k = 0; k < sizeof kinds / sizeof *kinds; k++) {
+        for (int way = 0; way < 8; way++) {
+            unsigned char packed[4096];
+            make_kind(&kinds[k], 1 + (way & 1), way & 2);
+            size_t size = compress_bytes(file.bytes, file.size, packed, sizeof packed);
+            assert_int_equal(way & 4 ? read_bytes(packed, size) : read_bytes(file.bytes, file.size),
+                             STATUS_OK);
+            assert_int_equal(image.size[0], 3);
+            assert_int_equal(image.size[1], 2);
+            assert_int_equal(image.size[2], 1);
+            assert_int_equal(image.components, 1);
+            assert_int_equal(image.datatype, kinds[k].code);
+            assert_int_equal(image.version, 1 + (way & 1));
+            assert_memory_equal(image.values, kinds[k].value, sizeof kinds[k].value);
+            image_free(&image);
+        }
+    }
+}
+
+static void whole_numbers_beyond_doubles(void **state)
+{
+    (void)state;
+    make_kind(&kinds[6], 1, false);
+    put_number(&file, 352, 8, ((uint64_t)1 << 60) + 1);
+    refused("beyond 2^53");
+}
+
+static void scaling(void **state)
+{
+    (void)state;
+    make_kind(&kinds[0], 1, true);
+    put_scale(&file, 0.5, -10);
+    accepted();
+    assert_near(image.values[3], 53.5, 0);
+    image_free(&image);
+    put_scale(&file, 0, 7); /* a slope of 0: no scaling */
+    accepted();
+    assert_near(image.values[3], 127, 0);
+    image_free(&image);
+    put_scale(&file, NAN, NAN);
+    accepted();
+    assert_near(image.values[3], 127, 0);
+    image_free(&image);
+    put_scale(&file, INFINITY, 0);
+    refused("scaling");
+}
+
+static void same_space(double expected[3][4])
+{
+    for (int r = 0; r < 3; r++) {
+        for (int c = 0; c < 4; c++) {
+            assert_near(image.to_world[r][c], expected[r][c], 1e-8);
+        }
+    }
+}
+
+/* sform before qform before voxel sizes, and the units. */
+static void spaces(void **state)
+{
+    (void)state;
+    double sform[3][4] = {{0, -2, 0, 10}, {0, 0, 3, 20}, {-1, 0, 0, 30}};
+    double in_metres[3][4], turned[3][4] = {{0, -2e-3, 0, 4e-3}, {1e-3, 0, 0, 5e-3}, {0, 0, -3e-3, 6e-3}};
+    double sizes[3][4] = {{1e-3, 0, 0, 0}, {0, 2e-3, 0, 0}, {0, 0, 3e-3, 0}};
+    static const double offset[3] = {4, 5, 6};
+    static const double unit[4] = {1e-3, 1, 1e-3, 1e-6};
+    for (int version = 1; version <= 2; version++) {
+        begin_nifti(&file, version, version == 2, 2, 2, 2, 2, 8);
+        file.size += 8;
+        put_pixdim(&file, 2, 2);
+        put_pixdim(&file, 3, 3);
+        accepted();
+        assert_int_equal(image.space, IMAGE_SPACE_UNKNOWN);
+        assert_non_null(strstr(image.note, "neither sform nor qform"));
+        same_space(sizes);
+        image_free(&image);
+        put_pixdim(&file, 0, -1); /* a quarter turn about z, the third axis mirrored */
+        put_qform(&file, 1, 0, 0, sqrt(0.5), offset);
+        accepted();
+        assert_int_equal(image.space, IMAGE_SPACE_SCANNER);
+        assert_string_equal(image.note, "");
+        same_space(turned);
+        image_free(&image);
+        put_sform(&file, 4, sform);
+        for (int units = 0; units < 4; units++) {
+            put_units(&file, units);
+            accepted();
+            assert_int_equal(image.space, IMAGE_SPACE_MNI);
+            assert_near(image.unit, unit[units], 0);
+            assert_int_equal(strstr(image.note, "no unit") != NULL, units == 0);
+            assert_non_null(strstr(image.note, "sform and qform differ"));
+            for (int i = 0; i < 12; i++) {
+                in_metres[i / 4][i % 4] = unit[units] * sform[i / 4][i % 4];
+            }
+            same_space(in_metres);
+            image_free(&image);
+        }
+    }
+    double back[3][4], world[3];
+    accepted();
+    image_to_voxel(&image, back);
+    image_world(&image, (double[3]){0.25, 1, 0.5}, world);
+    for (int r = 0; r < 3; r++) {
+        double place = back[r][0] * world[0] + back[r][1] * world[1] + back[r][2] * world[2] + back[r][3];
+        assert_near(place, ((double[3]){0.25, 1, 0.5})[r], 1e-10);
+    }
+    image_free(&image);
+}
+
+static void spaces_that_are_none(void **state)
+{
+    (void)state;
+    double flat[3][4] = {{1, 0, 0, 0}, {0, 1, 0, 0}, {1, 1, 0, 0}},
+           far[3][4] = {{1, 0, 0, NAN}, {0, 1, 0, 0}, {0, 0, 1, 0}};
+    begin_nifti(&file, 1, false, 2, 2, 2, 2, 8);
+    file.size += 8;
+    put_sform(&file, 1, flat);
+    refused("sform gives the voxels no place");
+    put_sform(&file, 1, far);
+    refused("sform gives the voxels no place");
+    put_sform(&file, 0, flat);
+    put_qform(&file, 1, INFINITY, 0, 0, (double[3]){0, 0, 0});
+    refused("qform gives the voxels no place");
+    put_qform(&file, 0, 0, 0, 0, (double[3]){0, 0, 0});
+    put_pixdim(&file, 2, 0);
+    refused("voxel sizes");
+    put_pixdim(&file, 2, 1);
+    put_units(&file, 5);
+    refused("unknown unit");
+    /* One slice needs no size across. */
+    begin_nifti(&file, 1, false, 2, 2, 1, 2, 8);
+    file.size += 4;
+    put_sform(&file, 1, flat);
+    accepted();
+    for (int r = 0; r < 3; r++) { /* the normal, as long as the step along the first axis */
+        assert_near(image.to_world[r][2], (r < 2 ? -1e-3 : 1e-3) * sqrt(2.0 / 3), 1e-12);
+    }
+    image_free(&image);
+}
+
+static void colours_and_vectors(void **state)
+{
+    (void)state;
+    begin_nifti(&file, 1, false, 2, 2, 1, 128, 24);
+    for (int i = 0; i < 12; i++) {
+        append_value(&file, 1, (uint64_t)(10 + i));
+    }
+    put_scale(&file, 2, 5); /* not for colours */
+    accepted();
+    assert_int_equal(image.components, 3);
+    assert_near(image.values[3 * 2 + 1], 17, 0);
+    image_free(&image);
+    begin_nifti(&file, 2, true, 2, 2, 1, 4, 16);
+    put_dim(&file, 0, 5);
+    put_dim(&file, 5, 3);
+    for (int i = 0; i < 12; i++) {
+        append_value(&file, 2, (uint64_t)(10 + i));
+    }
+    accepted();
+    assert_int_equal(image.components, 3);
+    assert_near(image.values[3 * 2 + 1], 10 + 4 * 1 + 2, 0);
+    image_free(&image);
+}
+
+static void headers_that_lie(void **state)
+{
+    (void)state;
+    make_kind(&kinds[2], 1, false);
+    file.size--;
+    refused("cut short: data of 11 bytes, the header says 12");
+    file.size += 2;
+    refused("more data than 12 bytes");
+    make_kind(&kinds[2], 1, false);
+    put_type(&file, 4, 8);
+    refused("8 bits a voxel, but int16 has 16");
+    put_type(&file, 32, 64);
+    refused("values of type 32");
+    make_kind(&kinds[2], 1, false);
+    put_dim(&file, 1, -3);
+    refused("size -3 along dimension 1");
+    put_dim(&file, 1, 0);
+    refused("size 0 along dimension 1");
+    put_dim(&file, 1, 3);
+    put_dim(&file, 0, 8);
+    refused("8 dimensions");
+    put_dim(&file, 0, 1);
+    refused("1 dimensions");
+    put_dim(&file, 0, 4);
+    put_dim(&file, 4, 20);
+    refused("holds 20 volumes");
+    make_kind(&kinds[2], 1, false);
+    put_offset(&file, 100);
+    refused("data from byte 100");
+    put_offset(&file, 1 << 20);
+    refused("cut short: 364 bytes, the header says that data begin at byte 1048576");
+    make_kind(&kinds[2], 2, false);
+    for (int i = 1; i <= 3; i++) {
+        put_dim(&file, i, INT32_MAX);
+    }
+    refused("more than any memory");
+    put_dim(&file, 3, 16); /* 2^66 bytes no, 2^67 values no: 2^66 values / 2 ... fits, and is not there */
+    put_dim(&file, 2, 1 << 20);
+    refused("cut short");
+    put_dim(&file, 1, (int64_t)1 << 40);
+    refused("along dimension 1");
+}
+
+static void other_files(void **state)
+{
+    (void)state;
+    file.size = 0;
+    refused("is empty");
+    static const char *const texts[][2] = {
+        {"NRRD0004\n", "NRRD"},      {"# mts 1\n", "mts stream"},    {"ObjectType = Image\n", "MetaImage"},
+        {"$MeshFormat\n", "a mesh"}, {"\x5c\x01", "no NIfTI image"}, {"hello, world", "no NIfTI image"}};
+    for (size_t t = 0; t < sizeof texts / sizeof *texts; t++) {
+        file.size = strlen(texts[t][0]);
+        memcpy(file.bytes, texts[t][0], file.size);
+        refused(texts[t][1]);
+    }
+    memset(file.bytes, 0, 200);
+    memcpy(file.bytes + 128, "DICM", 4);
+    file.size = 200;
+    refused("DICOM");
+    make_kind(&kinds[0], 1, false);
+    memcpy(file.bytes + 344, "ni1", 4);
+    refused("data are in a file of their own");
+    memset(file.bytes + 344, 0, 4);
+    refused("ANALYZE");
+    make_kind(&kinds[0], 2, false);
+    file.bytes[5] = 'x';
+    refused("no mark of NIfTI-2");
+    assert_int_equal(image_read(&image, "/nonexistent.nii", &error), STATUS_INPUT);
+    assert_non_null(strstr(error.text, "/nonexistent.nii: No such file"));
+    assert_int_equal(image_read(&image, "/", &error), STATUS_INPUT);
+}
+
+/* No part of a file passes for the whole, compressed or not; no bit of compressed data can be turned unseen.
+ */
+static void cut_and_damaged(void **state)
+{
+    (void)state;
+    unsigned char packed[4096];
+    int silent = 0;
+    make_kind(&kinds[9], 1, false);
+    for (int i = 0; i < 48; i++) { /* not to be compressed well */
+        file.bytes[352 + i] = (unsigned char)(i * 37 + i * i * 11);
+    }
+    size_t whole = file.size, size = compress_bytes(file.bytes, whole, packed, sizeof packed);
+    for (size_t at = 0; at < whole; at++) {
+        assert_int_equal(read_bytes(file.bytes, at), STATUS_INPUT);
+    }
+    for (size_t at = 0; at < size; at++) {
+        assert_int_equal(read_bytes(packed, at), STATUS_INPUT);
+    }
+    for (size_t bit = 80; bit < 8 * size; bit++) { /* behind gzip's own header */
+        packed[bit / 8] ^= (unsigned char)(1 << bit % 8);
+        if (read_bytes(packed, size) == STATUS_OK) { /* a bit that says nothing, between data and checksum */
+            assert_memory_equal(image.values, file.bytes + 352, 48);
+            image_free(&image);
+            silent++;
+        }
+        packed[bit / 8] ^= (unsigned char)(1 << bit % 8);
+    }
+    assert_true(silent < 8);
+    assert_int_equal(read_bytes(packed, size), STATUS_OK);
+    image_free(&image);
+}
+
+/* Write an image and read it back. */
+static void write_and_read(const struct image *written, bool gzip)
+{
+    int descriptor = memfd_create("image", 0);
+    assert_true(descriptor >= 0);
+    assert_int_equal(image_write(written, descriptor, gzip, &error), STATUS_OK);
+    assert_int_equal(lseek(descriptor, 0, SEEK_SET), 0);
+    assert_int_equal(image_read_from(&image, descriptor, "written", &error), STATUS_OK);
+    close(descriptor);
+}
+
+static void assert_same(const struct image *a, const struct image *b)
+{
+    assert_memory_equal(a->size, b->size, sizeof a->size);
+    assert_int_equal(a->components, b->components);
+    assert_int_equal(a->datatype, b->datatype);
+    assert_int_equal(a->space, b->space);
+    assert_int_equal(a->intent, b->intent);
+    assert_string_equal(a->intent_name, b->intent_name);
+    assert_string_equal(a->description, b->description);
+    assert_near(a->unit, b->unit, 0);
+    assert_memory_equal(a->values, b->values, image_voxels(a) * a->components * sizeof(double));
+    for (int i = 0; i < 12; i++) {
+        assert_near(a->to_world[i / 4][i % 4], b->to_world[i / 4][i % 4], 1e-7 * a->unit);
+    }
+}
+
+static void round_trips(void **state)
+{
+    (void)state;
+    double oblique[3][4] = {{-0.6, 0.8, 0, 1}, {0.8, 0.6, 0, 2}, {0, 0, 2, -3}};
+    for (size_t k = 0; k < sizeof kinds / sizeof *kinds; k++) {
+        for (int version = 1; version <= 2; version++) {
+            make_kind(&kinds[k], version, version == 1);
+            put_sform(&file, 2, oblique);
+            accepted();
+            struct image first = image;
+            strcpy(first.description, "made by hand");
+            strcpy(first.intent_name, "what");
+            first.intent = IMAGE_INTENT_LABEL;
+            for (int gzip = 0; gzip < 2; gzip++) {
+                write_and_read(&first, gzip);
+                assert_same(&first, &image);
+                assert_int_equal(image.version, version);
+                assert_string_equal(image.note, ""); /* the quaternion tells the same as the matrix */
+                image_free(&image);
+            }
+            image_free(&first);
+        }
+    }
+}
+
+/* What a type cannot hold becomes the nearest that it can. */
+static void rounding(void **state)
+{
+    (void)state;
+    struct image written;
+    const size_t size[3] = {6, 1, 1};
+    static const double values[6] = {-5, 1e9, 1.5001, NAN, 254.4, INFINITY};
+    static const double expected[6] = {0, 255, 2, 0, 254, 255};
+    assert_int_equal(image_new(&written, size, 1, &error), STATUS_OK);
+    written.datatype = IMAGE_UINT8;
+    memcpy(written.values, values, sizeof values);
+    write_and_read(&written, false);
+    assert_memory_equal(image.values, expected, sizeof expected);
+    image_free(&image);
+    written.slope = 2; /* stored = (value - 3) / 2 */
+    written.inter = 3;
+    written.values[4] = 13;
+    write_and_read(&written, false);
+    assert_near(image.values[4], 13, 0);
+    image_free(&image);
+    image_free(&written);
+}
+
+/* More than fits the first version, several blocks of compression, and components. */
+static void large(void **state)
+{
+    (void)state;
+    struct image written;
+    const size_t size[3] = {40000, 31, 1};
+    assert_int_equal(image_new(&written, size, 3, &error), STATUS_OK);
+    written.space = IMAGE_SPACE_SCANNER;
+    for (size_t i = 0; i < 3 * image_voxels(&written); i++) {
+        written.values[i] = (float)sin((double)i);
+    }
+    write_and_read(&written, true);
+    assert_int_equal(image.version, 2);
+    assert_int_equal(image.intent, IMAGE_INTENT_VECTOR);
+    assert_same(&written, &image);
+    image_free(&image);
+    written.datatype = IMAGE_RGBA32;
+    assert_int_equal(image_write(&written, 1, false, &error), STATUS_INPUT);
+    image_free(&written);
+}
+
+static void full_device(void **state)
+{
+    (void)state;
+    struct image written;
+    const size_t size[3] = {10, 10, 10};
+    int full = open("/dev/full", O_WRONLY);
+    assert_int_equal(image_new(&written, size, 1, &error), STATUS_OK);
+    assert_int_equal(image_write(&written, full, true, &error), STATUS_SYSTEM);
+    assert_string_equal(error.text, "No space left on device");
+    image_free(&written);
+    close(full);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(types),
+        cmocka_unit_test(whole_numbers_beyond_doubles),
+        cmocka_unit_test(scaling),
+        cmocka_unit_test(spaces),
+        cmocka_unit_test(spaces_that_are_none),
+        cmocka_unit_test(colours_and_vectors),
+        cmocka_unit_test(headers_that_lie),
+        cmocka_unit_test(other_files),
+        cmocka_unit_test(cut_and_damaged),
+        cmocka_unit_test(round_trips),
+        cmocka_unit_test(rounding),
+        cmocka_unit_test(large),
+        cmocka_unit_test(full_device),
+    };
+    return cmocka_run_group_tests_name("image", tests, NULL, NULL);
+}

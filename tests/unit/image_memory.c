@@ -1,0 +1,113 @@
+/* Fault 25 for images and the motion of bodies: whichever allocation fails, it is reported and nothing is
+ * left allocated. */
+#include "approx/cloud.h"
+#include "approx/motion.h"
+#include "approx/raster.h"
+#include "image_fixture.h"
+#include "io/image.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include <errno.h>
+#include <omp.h>
+#include <sys/mman.h>
+#include <unistd.h>
+
+#include "failing_allocator.h"
+
+#ifdef FAILING_ALLOCATOR
+
+/* What OpenMP allocates its teams by: counted, never denied. */
+void *memalign(size_t alignment, size_t size)
+{
+    return counted(__libc_memalign(alignment, size));
+}
+
+int posix_memalign(void **memory, size_t alignment, size_t size)
+{
+    *memory = counted(__libc_memalign(alignment, size));
+    return *memory == NULL ? ENOMEM : 0;
+}
+
+static struct nifti_file file;
+
+/* A vector image is read and written, compressed. */
+static enum status read_and_write(struct error *error)
+{
+    struct image image;
+    int in = memfd_create("in", 0), out = memfd_create("out", 0);
+    assert_int_equal(write(in, file.bytes, file.size), file.size);
+    assert_int_equal(lseek(in, 0, SEEK_SET), 0);
+    enum status status = image_read_from(&image, in, "file", error);
+    if (status == STATUS_OK) {
+        status = image_write(&image, out, true, error);
+    }
+    image_free(&image);
+    close(in);
+    close(out);
+    return status;
+}
+
+static void images(void **state)
+{
+    (void)state;
+    struct error error;
+    begin_nifti(&file, 1, false, 4, 3, 2, 16, 32);
+    put_dim(&file, 0, 5);
+    put_dim(&file, 5, 3);
+    file.size += 4 * 3 * 2 * 3 * 4;
+    assert_int_equal(read_and_write(&error), STATUS_OK); /* OpenMP has its teams then */
+    fail_each(read_and_write, 6);
+}
+
+static struct cells cells;
+static double *u;
+
+static enum status move(struct error *error)
+{
+    struct motion motion = {0};
+    int32_t owner[64];
+    int64_t doubly;
+    static const int64_t size[3] = {4, 4, 4};
+    enum status status = motion_build(&cells, u, false, &motion, error);
+    if (status == STATUS_OK) {
+        status = raster_cells(&cells, 1, size, owner, &doubly, error);
+    }
+    motion_free(&motion);
+    return status;
+}
+
+static void motions(void **state)
+{
+    (void)state;
+    struct error error;
+    struct cloud_options options = {.kind = CLOUD_REGULAR, .dim = 3, .count = {4, 4, 4}, .high = {3, 3, 3}};
+    struct cloud cloud;
+    static double none[4 * 4 * 4 * 3];
+    assert_int_equal(cloud_make(&options, &cloud, &error), STATUS_OK);
+    cells = (struct cells){3, cloud.node_count, cloud.x, cloud.cell_count, cloud.cells};
+    u = none;
+    assert_int_equal(move(&error), STATUS_OK);
+    fail_each(move, 10);
+    cloud_free(&cloud);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {cmocka_unit_test(images), cmocka_unit_test(motions)};
+    omp_set_num_threads(1);
+    return cmocka_run_group_tests_name("image_memory", tests, NULL, NULL);
+}
+
+#else
+
+int main(void)
+{
+    return 0;
+}
+
+#endif

@@ -1,0 +1,114 @@
+/* Values between voxels: exact for what each method reproduces, and none outside. */
+#include "io/image_sample.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include <math.h>
+
+static struct image image;
+
+/* Two components: one of degree 1 along each axis, one of degree 2. */
+static void polynomials(const double x[3], double value[2])
+{
+    value[0] = 1 + 2 * x[0] - 3 * x[1] + x[2] + 0.5 * x[0] * x[1] * x[2];
+    value[1] = x[0] * x[0] - x[1] * x[1] * x[2] + 2 * x[2] * x[2] * x[0];
+}
+
+static int make(void **state)
+{
+    struct error error;
+    (void)state;
+    const size_t size[3] = {7, 6, 5};
+    if (image_new(&image, size, 2, &error) != STATUS_OK) {
+        return 1;
+    }
+    for (size_t v = 0; v < image_voxels(&image); v++) {
+        const double x[3] = {(double)(v % 7), (double)(v / 7 % 6), (double)(v / 42)};
+        polynomials(x, image.values + 2 * v);
+    }
+    return 0;
+}
+
+static int drop(void **state)
+{
+    (void)state;
+    image_free(&image);
+    return 0;
+}
+
+/* A place away from the border, which cubics look beyond. */
+static void place(int i, double x[3])
+{
+    x[0] = 1 + fmod(0.3711 * i, 4);
+    x[1] = 1 + fmod(0.7123 * i, 3);
+    x[2] = 1 + fmod(0.2317 * i, 2);
+}
+
+static void reproduction(void **state)
+{
+    (void)state;
+    double x[3], value[2], expected[2];
+    for (int i = 0; i < 200; i++) {
+        place(i, x);
+        polynomials(x, expected);
+        assert_true(image_sample(&image, IMAGE_LINEAR, x, value));
+        assert_true(fabs(value[0] - expected[0]) <= 1e-12);
+        assert_true(image_sample(&image, IMAGE_CUBIC, x, value));
+        assert_true(fabs(value[0] - expected[0]) <= 1e-12);
+        assert_true(fabs(value[1] - expected[1]) <= 1e-12);
+        assert_true(image_sample(&image, IMAGE_NEAREST, x, value));
+        for (int d = 0; d < 3; d++) {
+            x[d] = floor(x[d] + 0.5);
+        }
+        polynomials(x, expected);
+        assert_true(value[0] == expected[0] && value[1] == expected[1]);
+    }
+}
+
+static void borders(void **state)
+{
+    (void)state;
+    static const double within[][3] = {{-0.5, 0, 0}, {6.5, 5, 4}, {3, -0.4, 4.5}, {0, 5.5, 0}};
+    static const double outside[][3] = {{-0.51, 0, 0}, {6.51, 5, 4}, {3, 3, 4.6},
+                                        {0, -7, 0},    {NAN, 1, 1},  {1, INFINITY, 1}};
+    for (int method = 0; method < IMAGE_METHOD_COUNT; method++) {
+        double value[2] = {-1, -1}, corner[2];
+        for (size_t i = 0; i < sizeof within / sizeof *within; i++) {
+            assert_true(image_sample(&image, (enum image_method)method, within[i], value));
+        }
+        for (size_t i = 0; i < sizeof outside / sizeof *outside; i++) {
+            assert_false(image_sample(&image, (enum image_method)method, outside[i], value));
+        }
+        /* The outermost value goes on to the border. */
+        assert_true(image_sample(&image, (enum image_method)method, (double[3]){-0.4, -0.4, -0.4}, value));
+        polynomials((double[3]){0, 0, 0}, corner);
+        assert_true(method == IMAGE_CUBIC || fabs(value[0] - corner[0]) <= 1e-12);
+    }
+}
+
+/* What is not a number spreads to what is interpolated from it, and no farther. */
+static void not_a_number(void **state)
+{
+    (void)state;
+    double value[2], before = image.values[2 * (3 + 7 * (2 + 6 * 2))];
+    image.values[2 * (3 + 7 * (2 + 6 * 2))] = NAN;
+    assert_true(image_sample(&image, IMAGE_LINEAR, (double[3]){2, 2, 2}, value));
+    assert_true(isfinite(value[0]));
+    assert_true(image_sample(&image, IMAGE_LINEAR, (double[3]){2.5, 2, 2}, value));
+    assert_true(isnan(value[0]) && isfinite(value[1]));
+    image.values[2 * (3 + 7 * (2 + 6 * 2))] = before;
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(reproduction),
+        cmocka_unit_test(borders),
+        cmocka_unit_test(not_a_number),
+    };
+    return cmocka_run_group_tests_name("image_sample", tests, make, drop);
+}

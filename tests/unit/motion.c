@@ -1,0 +1,304 @@
+/* The motion between the nodes, its inverse, and which cell each point of a grid lies in. */
+#include "approx/cloud.h"
+#include "approx/motion.h"
+#include "approx/raster.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include <math.h>
+#include <omp.h>
+#include <stdlib.h>
+#include <string.h>
+
+static struct error error;
+
+/* A jittered cloud in the unit square or cube, and a field on it. */
+struct body {
+    struct cloud cloud;
+    struct cells cells;
+    double *u;
+};
+
+typedef void (*field_function)(int dim, const double *x, double *u);
+
+static void linear_field(int dim, const double *x, double *u)
+{
+    for (int i = 0; i < dim; i++) {
+        u[i] = 0.05 * (i + 1) + 0.3 * x[(i + 1) % dim] - 0.1 * x[i];
+    }
+}
+
+static void quadratic_field(int dim, const double *x, double *u)
+{
+    for (int i = 0; i < dim; i++) {
+        u[i] = 0.1 * x[i] * x[(i + 1) % dim] - 0.08 * x[i] * x[i] + 0.05 * x[(i + 1) % dim];
+    }
+}
+
+static void smooth_field(int dim, const double *x, double *u)
+{
+    for (int i = 0; i < dim; i++) {
+        u[i] = 0.06 * sin(3 * x[(i + 1) % dim] + i) * cos(2 * x[i]);
+    }
+}
+
+static void make_body(int dim, int64_t along, field_function field, struct body *body)
+{
+    struct cloud_options options = {.kind = CLOUD_JITTERED,
+                                    .dim = dim,
+                                    .count = {along, along, along},
+                                    .high = {1, 1, 1},
+                                    .jitter = dim == 2 ? 0.3 : 0.12,
+                                    .seed = 7};
+    assert_int_equal(cloud_make(&options, &body->cloud, &error), STATUS_OK);
+    body->cells =
+        (struct cells){dim, body->cloud.node_count, body->cloud.x, body->cloud.cell_count, body->cloud.cells};
+    assert_true(body->cells.count > 0);
+    body->u = calloc((size_t)(body->cells.node_count * dim), sizeof *body->u);
+    assert_non_null(body->u);
+    for (int64_t n = 0; n < body->cells.node_count; n++) {
+        field(dim, body->cells.x + n * dim, body->u + n * dim);
+    }
+}
+
+static void drop_body(struct body *body)
+{
+    cloud_free(&body->cloud);
+    free(body->u);
+}
+
+static double distance(int dim, const double *a, const double *b)
+{
+    double square = 0;
+    for (int i = 0; i < dim; i++) {
+        square += (a[i] - b[i]) * (a[i] - b[i]);
+    }
+    return sqrt(square);
+}
+
+/* Barycentric coordinates of sample s of a cell: inside, on faces, at corners. */
+static void sample_place(const struct cells *cells, int64_t cell, int s, double *X)
+{
+    static const double weights[6][4] = {{1, 1, 1, 1}, {5, 1, 2, 3}, {1, 0, 0, 0},
+                                         {0, 2, 1, 0}, {1, 7, 0, 2}, {1, 2, 0, 9}};
+    double sum = 0;
+    for (int i = 0; i < cells->dim; i++) {
+        X[i] = 0;
+    }
+    for (int a = 0; a <= cells->dim; a++) {
+        sum += weights[s][a];
+    }
+    for (int a = 0; a <= cells->dim; a++) {
+        const double *node = cells->x + cells->node[cell * (cells->dim + 1) + a] * cells->dim;
+        for (int i = 0; i < cells->dim; i++) {
+            X[i] += weights[s][a] / sum * node[i];
+        }
+    }
+}
+
+/* Largest distance of the moved places from those of the field; and of the inverses, found in the same cell,
+ * from X. */
+static double largest_error(const struct motion *motion, field_function field, double *inverse_error)
+{
+    int dim = motion->cells.dim;
+    double most = 0;
+    *inverse_error = 0;
+    for (int64_t c = 0; c < motion->cells.count; c++) {
+        for (int s = 0; s < 6; s++) {
+            double X[3], u[3], moved[3], exact[3], back[3], residual;
+            sample_place(&motion->cells, c, s, X);
+            field(dim, X, u);
+            motion_place(motion, c, X, moved);
+            for (int i = 0; i < dim; i++) {
+                exact[i] = X[i] + u[i];
+            }
+            most = fmax(most, distance(dim, moved, exact));
+            assert_true(motion_inverse(motion, c, moved, 1e-12, back, &residual));
+            assert_true(residual <= 1e-12);
+            *inverse_error = fmax(*inverse_error, distance(dim, back, X));
+        }
+    }
+    return most;
+}
+
+static void polynomials_are_exact(void **state)
+{
+    (void)state;
+    for (int dim = 2; dim <= 3; dim++) {
+        for (int linear = 0; linear < 2; linear++) {
+            struct body body;
+            struct motion motion;
+            double inverse_error;
+            make_body(dim, dim == 2 ? 9 : 6, linear_field, &body);
+            assert_int_equal(motion_build(&body.cells, body.u, linear, &motion, &error), STATUS_OK);
+            assert_true(largest_error(&motion, linear_field, &inverse_error) <= 1e-11);
+            assert_true(inverse_error <= 1e-10);
+            motion_free(&motion);
+            drop_body(&body);
+        }
+        struct body body;
+        struct motion motion;
+        double inverse_error;
+        make_body(dim, dim == 2 ? 9 : 6, quadratic_field, &body);
+        assert_int_equal(motion_build(&body.cells, body.u, false, &motion, &error), STATUS_OK);
+        /* To the regularisation of the modified basis. */
+        assert_true(largest_error(&motion, quadratic_field, &inverse_error) <= 1e-7);
+        assert_true(inverse_error <= 1e-10);
+        motion_free(&motion);
+        drop_body(&body);
+    }
+}
+
+/* Half the spacing: an eighth of the error, a quarter without gradients. */
+static void orders(void **state)
+{
+    (void)state;
+    for (int linear = 0; linear < 2; linear++) {
+        double errors[2], ignored;
+        for (int fine = 0; fine < 2; fine++) {
+            struct body body;
+            struct motion motion;
+            make_body(2, fine ? 41 : 21, smooth_field, &body);
+            assert_int_equal(motion_build(&body.cells, body.u, linear, &motion, &error), STATUS_OK);
+            errors[fine] = largest_error(&motion, smooth_field, &ignored);
+            motion_free(&motion);
+            drop_body(&body);
+        }
+        double order = log2(errors[0] / errors[1]);
+        print_message("%s: %.2e %.2e order %.2f\n", linear ? "linear" : "quadratic", errors[0], errors[1],
+                      order);
+        assert_true(linear ? order > 1.7 : order > 2.7);
+        assert_true(linear ? errors[1] < 3e-4 : errors[1] < 1e-5);
+    }
+}
+
+/* Places beside the cell that the search begins in are found through its faces. */
+static void walks(void **state)
+{
+    (void)state;
+    struct body body;
+    struct motion motion;
+    make_body(3, 6, smooth_field, &body);
+    assert_int_equal(motion_build(&body.cells, body.u, false, &motion, &error), STATUS_OK);
+    for (int64_t c = 0; c < body.cells.count; c++) {
+        for (int a = 0; a <= 3; a++) {
+            int64_t start = motion.across[4 * c + a];
+            double X[3], moved[3], back[3], residual;
+            if (start >= 0) {
+                sample_place(&body.cells, c, 0, X);
+                motion_place(&motion, c, X, moved);
+                assert_true(motion_inverse(&motion, start, moved, 1e-12, back, &residual));
+                assert_true(distance(3, back, X) <= 1e-10);
+            }
+        }
+    }
+    motion_free(&motion);
+    drop_body(&body);
+}
+
+/* A body turned inside out: told, and nothing is found that is none. */
+static void folds(void **state)
+{
+    (void)state;
+    static const double x[] = {0, 0, 1, 0, 1, 1, 0, 1}, u[] = {0, 0, 0, 0, -1.5, 0, 0, 0};
+    static const int32_t node[] = {0, 1, 2, 0, 2, 3};
+    struct cells cells = {2, 4, x, 2, node};
+    struct motion motion;
+    int64_t first = -1;
+    assert_int_equal(motion_build(&cells, u, true, &motion, &error), STATUS_OK);
+    assert_int_equal(motion_folded(&motion, &first), 1);
+    assert_int_equal(first, 1);
+    motion_free(&motion);
+}
+
+/* Whether grid point y lies in a cell, by its corners' half-planes. */
+static bool holds(const struct cells *cells, int64_t cell, const double *y)
+{
+    int dim = cells->dim;
+    for (int a = 0; a <= dim; a++) {
+        double x[12];
+        int32_t node[4] = {0, 1, 2, 3};
+        for (int b = 0; b <= dim; b++) {
+            const double *from = b == a ? y : cells->x + cells->node[cell * (dim + 1) + b] * dim;
+            memcpy(x + b * dim, from, (size_t)dim * sizeof *x);
+        }
+        struct cells one = {dim, dim + 1, x, 1, node};
+        if (cell_volume(&one, 0) < -1e-9) {
+            return false;
+        }
+    }
+    return true;
+}
+
+static void owners(void **state)
+{
+    (void)state;
+    static const int64_t sizes[2][3] = {{37, 29, 1}, {13, 11, 17}};
+    for (int dim = 2; dim <= 3; dim++) {
+        struct body body;
+        make_body(dim, 5, linear_field, &body);
+        const int64_t *size = sizes[dim - 2];
+        int64_t count = size[0] * size[1] * size[2], doubly, found = 0;
+        int32_t *owner = calloc((size_t)count, sizeof *owner), *again = calloc((size_t)count, sizeof *again);
+        for (int64_t i = 0; i < body.cells.node_count * dim; i++) {
+            /* Beyond the grid on two sides; nodes at the corners of the lattice fall on grid points. */
+            body.cloud.x[i] = body.cloud.x[i] * 12 - 2;
+        }
+        omp_set_num_threads(1);
+        assert_int_equal(raster_cells(&body.cells, 1, size, owner, &doubly, &error), STATUS_OK);
+        assert_int_equal(doubly, 0);
+        omp_set_num_threads(3);
+        assert_int_equal(raster_cells(&body.cells, 1, size, again, &doubly, &error), STATUS_OK);
+        assert_memory_equal(owner, again, (size_t)count * sizeof *owner);
+        for (int64_t v = 0; v < count; v++) {
+            const double y[3] = {(double)(v % size[0]), (double)(v / size[0] % size[1]),
+                                 (double)(v / size[0] / size[1])};
+            int64_t lowest = 0;
+            while (lowest < body.cells.count && !holds(&body.cells, lowest, y)) {
+                lowest++;
+            }
+            assert_int_equal(owner[v], lowest < body.cells.count ? lowest : -1);
+            found += owner[v] >= 0;
+        }
+        assert_true(found > (dim == 2 ? 100 : 1000));
+        /* Seen in a mirror all cells are turned over. */
+        assert_int_equal(raster_cells(&body.cells, -1, size, owner, &doubly, &error), STATUS_OK);
+        for (int64_t v = 0; v < count; v++) {
+            assert_int_equal(owner[v], -1);
+        }
+        free(owner);
+        free(again);
+        drop_body(&body);
+    }
+}
+
+static void two_parts_at_one_place(void **state)
+{
+    (void)state;
+    static const double x[] = {0, 0, 10, 0, 0, 10, 1.5, 1.5, 8.5, 1.5, 1.5, 8.5};
+    static const int32_t node[] = {0, 1, 2, 3, 4, 5};
+    static const int64_t size[3] = {12, 12, 1};
+    struct cells cells = {2, 6, x, 2, node};
+    int32_t owner[144];
+    int64_t doubly;
+    assert_int_equal(raster_cells(&cells, 1, size, owner, &doubly, &error), STATUS_OK);
+    assert_int_equal(owner[2 + 12 * 2], 0);
+    assert_int_equal(doubly, 6 + 5 + 4 + 3 + 2 + 1);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(polynomials_are_exact),
+        cmocka_unit_test(orders),
+        cmocka_unit_test(walks),
+        cmocka_unit_test(folds),
+        cmocka_unit_test(owners),
+        cmocka_unit_test(two_parts_at_one_place),
+    };
+    return cmocka_run_group_tests_name("motion", tests, NULL, NULL);
+}

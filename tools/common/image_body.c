@@ -1,0 +1,183 @@
+#include "image_body.h"
+
+#include "approx/raster.h"
+#include "base/box.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const double most_ratio = 100; /* body to image */
+
+enum { LABELS_MOST = 256 };
+
+/* An image that a body in 2D can move: one slice, in the plane of x and y. */
+void check_image_plane(const struct tool *tool, const struct image *image, int dim)
+{
+    if (dim == 3) {
+        return;
+    }
+    double slope = 0, step = 0;
+    for (int c = 0; c < 2; c++) {
+        slope = fmax(slope, fabs(image->to_world[2][c]));
+        step = fmax(step, hypot(image->to_world[0][c], image->to_world[1][c]));
+    }
+    if (image->size[2] != 1 || !(slope <= 1e-4 * step)) {
+        tool_fail(tool, STATUS_INPUT,
+                  "the body is in 2D: it moves an image of one slice in the plane of x and y, not one of %zu "
+                  "slices%s",
+                  image->size[2], image->size[2] == 1 ? " in another plane" : "");
+    }
+}
+
+/* Determinant of the axes of a grid in dim dimensions, from the world to voxels. */
+static double determinant(const struct image *grid, int dim)
+{
+    double m[3][4];
+    image_to_voxel(grid, m);
+    double plane = m[0][0] * m[1][1] - m[0][1] * m[1][0];
+    double space = m[2][0] * (m[0][1] * m[1][2] - m[0][2] * m[1][1]) +
+                   m[2][1] * (m[0][2] * m[1][0] - m[0][0] * m[1][2]) + m[2][2] * plane;
+    return dim == 2 ? plane : space;
+}
+
+double voxel_volume(const struct image *image, int dim)
+{
+    return 1 / fabs(determinant(image, dim));
+}
+
+double least_step(const struct image *image, int dim)
+{
+    double least = INFINITY;
+    for (int i = 0; i < dim; i++) {
+        least =
+            fmin(least, hypot(hypot(image->to_world[0][i], image->to_world[1][i]), image->to_world[2][i]));
+    }
+    return least;
+}
+
+/* Which cell the centre of each voxel lies in, the nodes being at x. */
+int32_t *find_owners(const struct tool *tool, const struct image *grid, const struct cells *cells,
+                     const double *x, int64_t *doubly)
+{
+    struct error error;
+    struct cells placed = *cells;
+    int dim = cells->dim;
+    double inverse[3][4], *place;
+    int32_t *owner;
+    const int64_t size[3] = {(int64_t)grid->size[0], (int64_t)grid->size[1], (int64_t)grid->size[2]};
+    image_to_voxel(grid, inverse);
+    tool_check(tool, NEW_ARRAY(&place, cells->node_count * dim, &error), &error);
+    tool_check(tool, NEW_ARRAY(&owner, size[0] * size[1] * size[2], &error), &error);
+    for (int64_t n = 0; n < cells->node_count; n++) {
+        double world[3] = {0, 0, grid->to_world[2][3]};
+        memcpy(world, x + n * dim, (size_t)dim * sizeof *x);
+        for (int i = 0; i < dim; i++) {
+            place[n * dim + i] = inverse[i][3];
+            for (int j = 0; j < 3; j++) {
+                place[n * dim + i] += inverse[i][j] * world[j];
+            }
+        }
+    }
+    placed.x = place;
+    tool_check(tool, raster_cells(&placed, determinant(grid, dim) < 0 ? -1 : 1, size, owner, doubly, &error),
+               &error);
+    free(place);
+    return owner;
+}
+
+/* The box of the voxels' centres, m. */
+static struct box image_box(const struct image *image)
+{
+    double corner[8][3];
+    for (int c = 0; c < 8; c++) {
+        double voxel[3];
+        for (int i = 0; i < 3; i++) {
+            voxel[i] = c >> i & 1 ? (double)image->size[i] - 1 : 0;
+        }
+        image_world(image, voxel, corner[c]);
+    }
+    return box_of(3, 8, corner[0]);
+}
+
+static const char *box_text(const struct box *box, char text[160])
+{
+    int length = 0;
+    for (int i = 0; i < box->dim; i++) {
+        length += snprintf(text + length, 160 - (size_t)length, "%s%c %.4g to %.4g", i > 0 ? ", " : "",
+                           "xyz"[i], 1e3 * box -> low[i], 1e3 * box -> high[i]);
+    }
+    snprintf(text + length, 160 - (size_t)length, " mm");
+    return text;
+}
+
+/* Units and spaces that cannot be. */
+void check_image_overlap(const struct tool *tool, const struct image *grid, const struct cells *cells,
+                         const double *x, int64_t inside)
+{
+    char body_text[160], grid_text[160];
+    struct box body = box_of(cells->dim, cells->node_count, x), box = image_box(grid);
+    box.dim = cells->dim;
+    if (box_diagonal(&body) > most_ratio * box_diagonal(&box)) {
+        tool_fail(tool, STATUS_INPUT,
+                  "the body (%s) is more than %.0f times larger than the image (%s): is its unit right?",
+                  box_text(&body, body_text), most_ratio, box_text(&box, grid_text));
+    }
+    if (inside == 0) {
+        tool_fail(tool, STATUS_INPUT,
+                  "no voxel of the image (%s) lies in the body (%s): another space, or unit?",
+                  box_text(&box, grid_text), box_text(&body, body_text));
+    }
+}
+
+/* A label and how many voxels have it, before and after. */
+struct label {
+    double value;
+    int64_t voxels[2];
+};
+
+/* Count the voxels of each label of an image; false where the values are no labels. */
+static bool count_labels(const struct image *image, int which, struct label *labels, int *count)
+{
+    int l = 0; /* most often as that of the voxel before */
+    for (size_t v = 0; v < image_voxels(image); v++) {
+        double value = image->values[v];
+        if (l >= *count || labels[l].value != value) {
+            for (l = 0; l < *count && labels[l].value != value; l++) {
+            }
+        }
+        if (l == *count) {
+            if (!(value == rint(value)) || *count == LABELS_MOST) {
+                return false;
+            }
+            labels[(*count)++] = (struct label){.value = value};
+        }
+        labels[l].voxels[which]++;
+    }
+    return true;
+}
+
+static int by_value(const void *a, const void *b)
+{
+    double first = ((const struct label *)a)->value, second = ((const struct label *)b)->value;
+    return (first > second) - (first < second);
+}
+
+void tell_label_volumes(const struct tool *tool, const struct image *before, const struct image *after,
+                        int dim)
+{
+    struct label labels[LABELS_MOST];
+    const char *unit = dim == 3 ? "ml" : "cm2";
+    double in_unit = dim == 3 ? 1e6 : 1e4;
+    int count = 0;
+    if (before->components > 1 || !count_labels(before, 0, labels, &count) ||
+        !count_labels(after, 1, labels, &count)) {
+        return;
+    }
+    qsort(labels, (size_t)count, sizeof *labels, by_value);
+    for (int l = 0; l < count; l++) {
+        tool_note(tool, "label %.0f: %.6g %s before, %.6g %s after", labels[l].value,
+                  in_unit * voxel_volume(before, dim) * (double)labels[l].voxels[0], unit,
+                  in_unit * voxel_volume(after, dim) * (double)labels[l].voxels[1], unit);
+    }
+}

@@ -1,0 +1,69 @@
+#include "images.h"
+
+#include "output.h"
+
+#include <math.h>
+#include <string.h>
+#include <unistd.h>
+
+static bool ends_in(const char *name, const char *ending)
+{
+    size_t length = strlen(name), tail = strlen(ending);
+    return length > tail && strcmp(name + length - tail, ending) == 0;
+}
+
+void tool_read_image(const struct tool *tool, const char *file, struct image *image)
+{
+    struct error error;
+    const char *name;
+    int descriptor = tool_open(tool, file, &name);
+    tool_check(tool, image_read_from(image, descriptor, name, &error), &error);
+    if (descriptor != STDIN_FILENO) {
+        close(descriptor);
+    }
+    if (image->note[0] != '\0') {
+        tool_note(tool, "%s: %s", name, image->note);
+    }
+}
+
+void tool_check_image_output(const struct tool *tool)
+{
+    if (tool->output == NULL && isatty(STDOUT_FILENO)) {
+        tool_fail(tool, STATUS_INPUT, "no image to a terminal: redirect it, or name a file with -o");
+    }
+    if (tool->output != NULL && !ends_in(tool->output, ".nii") && !ends_in(tool->output, ".nii.gz") &&
+        strchr(tool->output, '.') != NULL && strncmp(tool->output, "/dev/", 5) != 0) {
+        tool_fail(tool, STATUS_INPUT, "-o %s: images are written as .nii or .nii.gz", tool->output);
+    }
+}
+
+void tool_write_image(const struct tool *tool, const struct image *image)
+{
+    struct error error;
+    struct output output;
+    if (tool->output == NULL) {
+        enum status status = image_write(image, STDOUT_FILENO, true, &error);
+        if (status != STATUS_OK) {
+            tool_fail(tool, status, "standard output: %s", error.text);
+        }
+        return;
+    }
+    tool_check(tool, output_open(&output, tool->output, &error), &error);
+    enum status status = image_write(image, output.descriptor, !ends_in(tool->output, ".nii"), &error);
+    if (status != STATUS_OK) {
+        output_abandon(&output);
+        tool_fail(tool, status, "%s: %s", tool->output, error.text);
+    }
+    tool_check(tool, output_commit(&output, &error), &error);
+}
+
+const char *image_text(const struct image *image, char text[128])
+{
+    double size[3];
+    for (int i = 0; i < 3; i++) {
+        size[i] = 1e3 * hypot(hypot(image->to_world[0][i], image->to_world[1][i]), image->to_world[2][i]);
+    }
+    snprintf(text, 128, "%zu x %zu x %zu voxels of %.4g x %.4g x %.4g mm", image->size[0], image->size[1],
+             image->size[2], size[0], size[1], size[2]);
+    return text;
+}

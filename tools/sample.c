@@ -1,0 +1,425 @@
+static const char usage[] =
+    "sample - values of an image at points\n"
+    "\n"
+    "usage: sample [-i METHOD] [-a SECTION] [-r REGION,...] [-u UNIT] [--outside V] [-o FILE] IMAGE [FILE]\n"
+    "       sample --section NAME [-i METHOD] [-a SECTION] [--outside V] [-t] [-o FILE] IMAGE [FILE]\n"
+    "       sample -p POINTS [-u UNIT] [-i METHOD] [--outside V] [-o FILE] IMAGE\n"
+    "       sample --material TABLE [...] IMAGE [FILE]\n"
+    "       sample --tissue E,NU [--tissue E,NU ...] [...] IMAGE... [FILE]\n"
+    "\n"
+    "Reads an image (NIfTI-1 or -2, .nii or .nii.gz, - for standard input) and prints a table with a row\n"
+    "for each point: its coordinates and the image's values there (three for colours). The points are\n"
+    "the nodes of a stream, its integration points or other points in it, or the rows of a table. The\n"
+    "world axes of the image are those of the points: x to the right, y to the front, z up. Points in 2D\n"
+    "go with an image of one slice in the plane of x and y.\n"
+    "\n"
+    "With --material the values are turned into stiffness, by a table with rows of a value, E (Pa) and nu,\n"
+    "ascending: linear between the rows, constant beyond. With --tissue each image is the probability of a\n"
+    "tissue, and E and nu are the means of the tissues' weighted by it. The rows are then coordinates, E\n"
+    "and nu at the integration points (ipoints is run with its defaults where it was not), as a scene's\n"
+    "[material] takes them: table = FILE, unit = m. Leave to -r the regions of that material.\n"
+    "\n"
+    "A point outside of the image, or where it is not finite, is an error, unless --outside gives it a\n"
+    "value. Then such points are counted.\n"
+    "\n"
+    "Options:\n"
+    "  -i, --interpolation METHOD\n"
+    "                        nearest (for labels), linear (default) or cubic (Keys 1981)\n"
+    "  -a, --at SECTION      the points: a section of coordinates, m (default nodes.x; points.x with\n"
+    "                        --material and --tissue)\n"
+    "  -r, --region REGION,...\n"
+    "                        only the integration points in cells of these regions; needs points.x\n"
+    "  -p, --points POINTS   the points: this table of coordinates\n"
+    "  -u, --unit UNIT       of the coordinates read with -p and printed: m (default), cm, mm, um or so\n"
+    "                        many metres\n"
+    "      --outside V       the image's value at points outside of it\n"
+    "      --section NAME    write the stream with a section of this name that holds the values\n"
+    "      --material TABLE  stiffness from the values of an image\n"
+    "      --tissue E,NU     stiffness from probabilities: E, Pa, and nu of an image's tissue\n"
+    "  -t, --text            write the stream as text instead of binary\n"
+    "  -o, --output FILE     write to FILE, which appears only when whole\n"
+    "\n"
+    "Examples:\n"
+    "  sample -i nearest labels.nii.gz body.mts > label_at_nodes.tsv\n"
+    "  sample -p landmarks.tsv -u mm T1.nii.gz\n"
+    "  sample --tissue 3000,0.49 --tissue 9000,0.49 white.nii.gz tumour.nii.gz table.mts > stiffness.tsv\n";
+
+#include "image_body.h"
+#include "images.h"
+#include "names.h"
+#include "output.h"
+#include "stages.h"
+#include "tissue.h"
+#include "views.h"
+
+#include "io/image_sample.h"
+
+#include <errno.h>
+#include <float.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+enum { METHOD, AT, REGION, POINTS, UNIT, OUTSIDE, SECTION, MATERIAL, TISSUE, TEXT, OUTPUT, OPTION_COUNT };
+
+/* What was asked for. */
+struct request {
+    enum image_method method;
+    const char *at, *region, *points, *section; /* NULL: not given */
+    double unit, outside;
+    bool has_outside, stiffness, text;
+    struct tissue tissue;
+    int image_count;
+};
+
+/* The points, and what comes of them. */
+struct rows {
+    const char *what; /* the points in messages */
+    int dim;
+    int64_t count;
+    double *x;     /* count * dim, m; owned */
+    int64_t cols;  /* values at a point */
+    double *value; /* count * cols; owned */
+};
+
+static void parse(const struct tool *tool, const struct option *options, struct request *request)
+{
+    struct error error;
+    int method = IMAGE_LINEAR;
+    *request = (struct request){.at = options[AT].value,
+                                .region = options[REGION].value,
+                                .points = options[POINTS].value,
+                                .section = options[SECTION].value,
+                                .unit = 1,
+                                .has_outside = options[OUTSIDE].given,
+                                .stiffness = options[MATERIAL].given || options[TISSUE].given,
+                                .text = options[TEXT].given,
+                                .image_count = options[TISSUE].given ? options[TISSUE].uses->count : 1};
+    static const int exclusive[][2] = {{MATERIAL, TISSUE}, {POINTS, AT},      {POINTS, REGION},
+                                       {POINTS, SECTION},  {SECTION, REGION}, {SECTION, UNIT}};
+    for (size_t e = 0; e < sizeof exclusive / sizeof *exclusive; e++) {
+        if (options[exclusive[e][0]].given && options[exclusive[e][1]].given) {
+            tool_fail(tool, STATUS_INPUT, "--%s does not go with --%s", options[exclusive[e][1]].name,
+                      options[exclusive[e][0]].name);
+        }
+    }
+    if (request->text && request->section == NULL) {
+        tool_fail(tool, STATUS_INPUT, "-t is for streams: it needs --section (a table is text)");
+    }
+    if (request->at == NULL) {
+        request->at = request->stiffness || request->region != NULL ? "points.x" : "nodes.x";
+    }
+    if (request->region != NULL && strcmp(request->at, "points.x") != 0) {
+        tool_fail(tool, STATUS_INPUT, "--region is for integration points (points.x), not for %s",
+                  request->at);
+    }
+    if (options[METHOD].given) {
+        tool_check(tool,
+                   parse_choice(options[METHOD].value, "-i", image_method_names, IMAGE_METHOD_COUNT, &method,
+                                &error),
+                   &error);
+    }
+    request->method = (enum image_method)method;
+    if (options[UNIT].given) {
+        tool_check(tool, parse_length_unit(options[UNIT].value, "-u", &request->unit, &error), &error);
+    }
+    if (request->has_outside) {
+        tool_check(
+            tool,
+            parse_double(options[OUTSIDE].value, "--outside", -DBL_MAX, DBL_MAX, &request->outside, &error),
+            &error);
+    }
+    if (options[MATERIAL].given) {
+        tool_check(tool, tissue_read(options[MATERIAL].value, &request->tissue, &error), &error);
+    } else if (options[TISSUE].given) {
+        tool_check(tool, tissue_parse(options[TISSUE].uses, &request->tissue, &error), &error);
+    }
+}
+
+/* The rows of a table of coordinates. */
+static void read_table(const struct tool *tool, const struct request *request, struct rows *rows)
+{
+    struct table table;
+    struct error error;
+    tool_check(tool, table_read(request->points, 2, 3, &table, &error), &error);
+    *rows = (struct rows){
+        .what = request->points, .dim = (int)table.cols, .count = table.rows, .x = table.values};
+    table.values = NULL;
+    table_free(&table);
+    for (int64_t i = 0; i < rows->count * rows->dim; i++) {
+        rows->x[i] *= request->unit;
+    }
+}
+
+/* wanted[...]: for each region whether the list names it; allocated. */
+static bool *find_regions(const struct tool *tool, const struct section *region, const char *list,
+                          size_t *most)
+{
+    struct error error;
+    char *names, *copy = strdup(list), *name;
+    bool *wanted;
+    tool_check(tool, copy == NULL ? fail_memory(&error, "-r") : STATUS_OK, &error);
+    tool_check(tool, names_of_section(region, &names, &error), &error);
+    *most = strlen(names) + 1;
+    tool_check(tool, NEW_ARRAY(&wanted, (int64_t)*most, &error), &error);
+    for (char *rest = copy; (name = strsep(&rest, ",")) != NULL;) {
+        int64_t index = names_index(names, name);
+        if (index < 0) {
+            tool_fail(tool, STATUS_INPUT, "-r: no region '%s': there are %s", name, names);
+        }
+        wanted[index] = true;
+    }
+    free(copy);
+    free(names);
+    return wanted;
+}
+
+/* Keep the points in cells of the chosen regions. */
+static void choose_regions(const struct tool *tool, const struct stream *stream, const char *list,
+                           struct rows *rows)
+{
+    struct error error;
+    const struct section *cell, *region;
+    int64_t kept = 0;
+    size_t most;
+    tool_check(tool, stream_need(stream, "points.cell", TYPE_I4, 1, "ipoints", &cell, &error), &error);
+    tool_check(tool, stream_need(stream, "cells.region", TYPE_I4, 1, "nodes", &region, &error), &error);
+    if (cell->rows != rows->count) {
+        tool_fail(tool, STATUS_INPUT, "points.cell: not one row per point: run ipoints again");
+    }
+    bool *wanted = find_regions(tool, region, list, &most);
+    for (int64_t q = 0; q < rows->count; q++) {
+        int64_t c = ((const int32_t *)cell->data)[q];
+        int64_t r = c >= 0 && c < region->rows ? ((const int32_t *)region->data)[c] : -1;
+        if (r < 0 || (size_t)r >= most) {
+            tool_fail(tool, STATUS_INPUT, "points.cell: row %lld: no cell of a region", (long long)q);
+        }
+        if (wanted[r]) {
+            memmove(rows->x + kept++ * rows->dim, rows->x + q * rows->dim,
+                    (size_t)rows->dim * sizeof *rows->x);
+        }
+    }
+    rows->count = kept;
+    free(wanted);
+}
+
+/* The points of a section. */
+static void read_section(const struct tool *tool, const struct request *request, const char *file,
+                         struct stream *stream, struct rows *rows)
+{
+    struct error error;
+    const struct section *at;
+    tool_read(tool, file, stream);
+    if (strcmp(request->at, "points.x") == 0) {
+        stage_fill(tool, stream, "ipoints");
+    }
+    tool_check(tool, stream_need(stream, request->at, TYPE_F8, 0, "nodes", &at, &error), &error);
+    if (at->cols < 2 || at->cols > 3) {
+        tool_fail(tool, STATUS_INPUT, "%s: %lld columns: points have 2 or 3 coordinates", request->at,
+                  (long long)at->cols);
+    }
+    *rows = (struct rows){.what = request->at, .dim = (int)at->cols, .count = at->rows};
+    tool_check(tool, NEW_ARRAY(&rows->x, at->rows * at->cols, &error), &error);
+    memcpy(rows->x, at->data, (size_t)(at->rows * at->cols) * sizeof *rows->x);
+    if (request->region != NULL) {
+        choose_regions(tool, stream, request->region, rows);
+    }
+}
+
+/* Whether all are finite. */
+static bool are_finite(const double *values, size_t count)
+{
+    for (size_t i = 0; i < count; i++) {
+        if (!isfinite(values[i])) {
+            return false;
+        }
+    }
+    return true;
+}
+
+/* One image's values at all points, into columns `first` and on. */
+static void sample_image(const struct tool *tool, const struct request *request, const struct image *image,
+                         const char *name, struct rows *rows, int64_t first)
+{
+    double inverse[3][4];
+    int64_t outside = 0, first_outside = -1;
+    image_to_voxel(image, inverse);
+    for (int64_t p = 0; p < rows->count; p++) {
+        double place[3] = {0, 0, image->to_world[2][3]}, voxel[3];
+        double *value = rows->value + p * rows->cols + first;
+        memcpy(place, rows->x + p * rows->dim, (size_t)rows->dim * sizeof *place);
+        for (int i = 0; i < 3; i++) {
+            voxel[i] = inverse[i][0] * place[0] + inverse[i][1] * place[1] + inverse[i][2] * place[2] +
+                       inverse[i][3];
+        }
+        if (!image_sample(image, request->method, voxel, value) || !are_finite(value, image->components)) {
+            first_outside = outside++ == 0 ? p : first_outside;
+            for (size_t c = 0; c < image->components; c++) {
+                value[c] = request->outside;
+            }
+        }
+    }
+    if (outside == 0) {
+        return;
+    }
+    char place[96];
+    point_text(rows->dim, rows->x + first_outside * rows->dim, place);
+    if (!request->has_outside) {
+        tool_fail(tool, STATUS_INPUT,
+                  "%s: row %lld at %s m, one of %lld of %lld: outside of %s, or not finite there: is the "
+                  "unit right? "
+                  "--outside V gives such points a value",
+                  rows->what, (long long)first_outside, place, (long long)outside, (long long)rows->count,
+                  name);
+    }
+    tool_note(tool, "%s: %lld of %lld points are outside of %s, or it is not finite there: %g taken",
+              rows->what, (long long)outside, (long long)rows->count, name, request->outside);
+}
+
+/* The values of all images. The first one says how many there are at a point. */
+static void sample_images(const struct tool *tool, const struct request *request, struct rows *rows)
+{
+    struct error error;
+    for (int i = 0; i < request->image_count; i++) {
+        struct image image;
+        tool_read_image(tool, tool->operands[i], &image);
+        check_image_plane(tool, &image, rows->dim);
+        if (request->stiffness && image.components != 1) {
+            tool_fail(tool, STATUS_INPUT, "%s: %zu values at a voxel: stiffness comes from one",
+                      tool->operands[i], image.components);
+        }
+        if (i == 0) {
+            rows->cols = request->stiffness ? request->image_count : (int64_t)image.components;
+            tool_check(tool, NEW_ARRAY(&rows->value, rows->count * rows->cols, &error), &error);
+        }
+        sample_image(tool, request, &image, tool->operands[i], rows, i);
+        image_free(&image);
+    }
+}
+
+/* E and nu in place of the images' values. */
+static void find_moduli(const struct tool *tool, const struct tissue *tissue, struct rows *rows)
+{
+    struct error error;
+    double(*moduli)[2];
+    int64_t beyond = 0;
+    tool_check(tool, NEW_ARRAY(&moduli, rows->count, &error), &error);
+    for (int64_t p = 0; p < rows->count; p++) {
+        if (!tissue_moduli(tissue, rows->value + p * rows->cols, moduli[p], &beyond)) {
+            char place[96];
+            point_text(rows->dim, rows->x + p * rows->dim, place);
+            tool_fail(tool, STATUS_INPUT,
+                      "%s: row %lld at %s m: no tissue has a probability above 0 there (--outside 1 gives "
+                      "points outside "
+                      "of the images the mean of all)",
+                      rows->what, (long long)p, place);
+        }
+    }
+    if (beyond > 0) {
+        tool_note(tool, "%lld of %lld values lie beyond the table of --material: its first or last row taken",
+                  (long long)beyond, (long long)rows->count);
+    }
+    free(rows->value);
+    rows->value = *moduli;
+    rows->cols = 2;
+}
+
+static void print_rows(FILE *file, const struct request *request, const struct rows *rows)
+{
+    fprintf(file, "# x y%s", rows->dim == 3 ? " z" : "");
+    for (int64_t c = 0; c < rows->cols; c++) {
+        fprintf(file, " %s", request->stiffness ? c == 0 ? "E" : "nu" : "value");
+    }
+    fprintf(file, "\n");
+    for (int64_t p = 0; p < rows->count; p++) {
+        for (int i = 0; i < rows->dim; i++) {
+            fprintf(file, "%s%.17g", i > 0 ? " " : "", rows->x[p * rows->dim + i] / request->unit);
+        }
+        for (int64_t c = 0; c < rows->cols; c++) {
+            fprintf(file, " %.17g", rows->value[p * rows->cols + c]);
+        }
+        fprintf(file, "\n");
+    }
+}
+
+/* To the output file, or standard output. */
+static void write_table(const struct tool *tool, const struct request *request, const struct rows *rows)
+{
+    struct error error;
+    struct output output;
+    if (tool->output == NULL) {
+        print_rows(stdout, request, rows);
+        return;
+    }
+    tool_check(tool, output_open(&output, tool->output, &error), &error);
+    int descriptor = dup(output.descriptor);
+    FILE *file = descriptor < 0 ? NULL : fdopen(descriptor, "w");
+    if (file != NULL) {
+        print_rows(file, request, rows);
+    }
+    bool failed = file == NULL || ferror(file) != 0;
+    if ((file != NULL && fclose(file) != 0) || failed) {
+        int number = errno;
+        output_abandon(&output);
+        tool_fail(tool, STATUS_SYSTEM, "%s: %s", tool->output, strerror(number));
+    }
+    tool_check(tool, output_commit(&output, &error), &error);
+}
+
+int main(int argc, char *argv[])
+{
+    struct tool tool;
+    struct stream stream;
+    struct request request;
+    struct rows rows;
+    struct error error;
+    static struct option_uses uses; /* of --tissue */
+    struct option options[OPTION_COUNT] = {
+        [METHOD] = {.letter = 'i', .name = "interpolation", .takes_value = true},
+        [AT] = {.letter = 'a', .name = "at", .takes_value = true},
+        [REGION] = {.letter = 'r', .name = "region", .takes_value = true},
+        [POINTS] = {.letter = 'p', .name = "points", .takes_value = true},
+        [UNIT] = {.letter = 'u', .name = "unit", .takes_value = true},
+        [OUTSIDE] = {.name = "outside", .takes_value = true},
+        [SECTION] = {.name = "section", .takes_value = true},
+        [MATERIAL] = {.name = "material", .takes_value = true},
+        [TISSUE] = {.name = "tissue", .takes_value = true, .uses = &uses},
+        [TEXT] = {.letter = 't', .name = "text"},
+        [OUTPUT] = {.letter = 'o', .name = "output", .takes_value = true},
+    };
+    tool_begin(&tool, usage, options, OPTION_COUNT, 1, OPTION_MOST_USES + 1, argc, argv);
+    parse(&tool, options, &request);
+    int most = request.image_count + (request.points == NULL ? 1 : 0);
+    if (tool.operand_count < request.image_count || tool.operand_count > most) {
+        tool_fail(&tool, STATUS_INPUT, "%d operands: %d image%s%s (see -h)", tool.operand_count,
+                  request.image_count, request.image_count > 1 ? "s, one for each --tissue," : "",
+                  request.points == NULL ? " and a stream, if not on standard input, are expected"
+                                         : " expected");
+    }
+    stream_init(&stream);
+    if (request.points != NULL) {
+        read_table(&tool, &request, &rows);
+    } else {
+        read_section(&tool, &request, tool.operands[request.image_count], &stream, &rows);
+    }
+    sample_images(&tool, &request, &rows);
+    if (request.stiffness) {
+        find_moduli(&tool, &request.tissue, &rows);
+    }
+    if (request.section != NULL) {
+        tool_check(&tool,
+                   stream_put(&stream, request.section, TYPE_F8, rows.count, rows.cols,
+                              request.stiffness ? "cols=E,nu" : "", rows.value, true, &error),
+                   &error);
+        rows.value = NULL;
+        tool_write(&tool, &stream, request.text);
+    } else {
+        write_table(&tool, &request, &rows);
+    }
+    free(rows.x);
+    free(rows.value);
+    tissue_free(&request.tissue);
+    stream_free(&stream);
+    return tool_end(&tool);
+}

@@ -1,0 +1,391 @@
+static const char usage[] =
+    "warp - move an image by a displacement field, or write the field as an image\n"
+    "\n"
+    "usage: warp [-i METHOD] [--like GRID] [--fill V] [--vacated V] [--inverse] [--frame K] [-v]\n"
+    "            [-o FILE] IMAGE [FILE]\n"
+    "       warp --field [--inverse] [--frame K] [-v] [-o FILE] GRID [FILE]\n"
+    "\n"
+    "Reads an image (NIfTI-1 or -2, .nii or .nii.gz, - for standard input) and a stream with nodes.x (m),\n"
+    "cells and the displacement u (m), and writes the image moved: at each voxel x the value of IMAGE at\n"
+    "the place X that moves to x, X + u(X) = x. The world axes of the image are those of the nodes: x to\n"
+    "the right, y to the front, z up. A body in 2D moves an image of one slice in the plane of x and y.\n"
+    "Scans, colours (RGB) and labels are taken, of any type, size of voxels, order and direction of axes;\n"
+    "values keep their type and scaling.\n"
+    "\n"
+    "Between the nodes the displacement is quadratic in each cell, continuous, with the gradients of a\n"
+    "moving least squares fit at the nodes. Places are found by Newton's method to 1e-4 of a voxel, from\n"
+    "the moved cell that the voxel lies in. Voxels outside of the moved body stay as they are: so does\n"
+    "what the body uncovers, unless --vacated or --fill gives it a value. Where X lies outside of IMAGE the\n"
+    "value is that of --fill, or 0, and the voxels are counted.\n"
+    "\n"
+    "With --field the displacement field is written on the grid of an image instead: a vector image of\n"
+    "5 dimensions (intent 1007, float32) as programs based on ITK take it (3D Slicer, ANTs, plastimatch).\n"
+    "It maps places of the result back to places of the image, X - x at x, in mm, along ITK's axes: to the\n"
+    "left, to the back, up (LPS). It is 0 outside of the moved body.\n"
+    "\n"
+    "The image written is compressed unless FILE ends in .nii. A body of which no voxel is inside, or that\n"
+    "is a hundred times larger than the image, is refused; folded cells are told and left out.\n"
+    "\n"
+    "Options:\n"
+    "  -i, --interpolation METHOD\n"
+    "                     nearest (for labels), linear (default) or cubic (Keys 1981)\n"
+    "      --like GRID    write on the grid of this image, not that of IMAGE\n"
+    "      --fill V       the value of all voxels outside of the moved body\n"
+    "      --vacated V    the value of voxels where the body was and is no more\n"
+    "      --field        write the displacement field\n"
+    "      --inverse      the other way: at X the value of IMAGE, which shows the moved body, at X + u(X);\n"
+    "                     with --field that displacement, u at X, along the same axes\n"
+    "      --frame K      take u.frame.K in place of u\n"
+    "  -v, --verbose      tell what was moved, how far, and how well place and inverse agree; with\n"
+    "                     -i nearest the volumes of labels before and after\n"
+    "  -o, --output FILE  write to FILE (.nii or .nii.gz), which appears only when whole\n"
+    "\n"
+    "Examples:\n"
+    "  warp -i linear T1.nii.gz u.dat > predicted.nii.gz\n"
+    "  warp -i nearest --vacated 0 -o moved.nii.gz labels.nii.gz u.dat\n"
+    "  warp --field T1.nii.gz u.dat > field.nii.gz\n"
+    "  plastimatch warp --input T1.nii.gz --xf field.nii.gz --output-img predicted.nii.gz\n";
+
+#include "image_body.h"
+#include "images.h"
+#include "views.h"
+
+#include "approx/motion.h"
+#include "io/image_sample.h"
+
+#include <float.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { METHOD, LIKE, FILL, VACATED, FIELD, INVERSE, FRAME, VERBOSE, OUTPUT, OPTION_COUNT };
+
+static const double tolerance = 1e-4; /* of the places, in voxels */
+
+/* What was asked for. */
+struct request {
+    enum image_method method;
+    bool fills, marks_vacated, field, inverse, verbose;
+    double fill, vacated;
+    char section[32]; /* u, u.frame.K */
+};
+
+/* What has come of it. */
+struct report {
+    int64_t moved, vacated,
+        beyond;              /* voxels: in the moved body; uncovered; whose place is outside of the image */
+    int64_t doubly, inexact; /* in two cells; whose place was not found */
+    double farthest;         /* displacement, m */
+    double inconsistency;    /* |place(X) - x|, m */
+};
+
+static void parse(const struct tool *tool, const struct option *options, struct request *request)
+{
+    struct error error;
+    int method = IMAGE_LINEAR;
+    int64_t frame = 0;
+    *request = (struct request){.fills = options[FILL].given,
+                                .marks_vacated = options[VACATED].given,
+                                .field = options[FIELD].given,
+                                .inverse = options[INVERSE].given,
+                                .verbose = options[VERBOSE].given,
+                                .section = "u"};
+    for (int i = METHOD; i <= VACATED; i++) {
+        if (request->field && options[i].given) {
+            tool_fail(tool, STATUS_INPUT, "--%s is for images, not for --field", options[i].name);
+        }
+    }
+    if (options[METHOD].given) {
+        tool_check(tool,
+                   parse_choice(options[METHOD].value, "-i", image_method_names, IMAGE_METHOD_COUNT, &method,
+                                &error),
+                   &error);
+    }
+    request->method = (enum image_method)method;
+    if (request->fills) {
+        tool_check(tool,
+                   parse_double(options[FILL].value, "--fill", -DBL_MAX, DBL_MAX, &request->fill, &error),
+                   &error);
+    }
+    if (request->marks_vacated) {
+        tool_check(
+            tool,
+            parse_double(options[VACATED].value, "--vacated", -DBL_MAX, DBL_MAX, &request->vacated, &error),
+            &error);
+    }
+    if (options[FRAME].given) {
+        tool_check(tool, parse_integer(options[FRAME].value, "--frame", 0, INT32_MAX, &frame, &error),
+                   &error);
+        snprintf(request->section, sizeof request->section, "u.frame.%lld", (long long)frame);
+    }
+    tool_check_image_output(tool);
+}
+
+/* The body and its displacement. */
+static const double *find_field(const struct tool *tool, const struct stream *stream, const char *name,
+                                struct cells *cells)
+{
+    struct error error;
+    const struct section *u;
+    tool_check(tool, stream_cells(stream, true, cells, &error), &error);
+    tool_check(tool, cells_check(cells, &error), &error);
+    tool_check(tool, stream_need(stream, name, TYPE_F8, cells->dim, "mtled", &u, &error), &error);
+    if (u->rows != cells->node_count) {
+        tool_fail(tool, STATUS_INPUT, "%s: %lld rows for %lld nodes", name, (long long)u->rows,
+                  (long long)cells->node_count);
+    }
+    const double *values = u->data;
+    for (int64_t i = 0; i < u->rows * u->cols; i++) {
+        if (!(fabs(values[i]) <= 1e100)) {
+            tool_fail(tool, STATUS_INPUT, "%s: row %lld: is not finite", name, (long long)(i / u->cols));
+        }
+    }
+    return values;
+}
+
+/* Everything that the loop over voxels looks at. */
+struct job {
+    const struct request *request;
+    const struct image *source; /* NULL: the field is written */
+    double source_voxel[3][4];
+    const struct motion *motion;
+    const int32_t *owner, *other; /* the body where the voxels see it; and in its other state, or NULL */
+    double tolerance;             /* m */
+    struct image *result;
+};
+
+/* The place in the other state that is seen at x: for places outside of the body x itself. */
+static void find_place(const struct job *job, int64_t v, const double x[3], double place[3],
+                       struct report *report)
+{
+    int dim = job->motion->cells.dim;
+    double residual = 0, square = 0;
+    memcpy(place, x, 3 * sizeof *x);
+    if (job->owner[v] < 0) {
+        return;
+    }
+    if (job->request->inverse) {
+        motion_place(job->motion, job->owner[v], x, place);
+    } else if (!motion_inverse(job->motion, job->owner[v], x, job->tolerance, place, &residual)) {
+        report->inexact++;
+    }
+    for (int i = 0; i < dim; i++) {
+        square += (place[i] - x[i]) * (place[i] - x[i]);
+    }
+    report->moved++;
+    report->farthest = fmax(report->farthest, sqrt(square));
+    report->inconsistency = fmax(report->inconsistency, residual);
+}
+
+/* The value of the moved image at voxel v, which shows `place`. */
+static void put_value(const struct job *job, int64_t v, const double place[3], struct report *report)
+{
+    const struct request *request = job->request;
+    size_t components = job->result->components;
+    double voxel[3], *value = job->result->values + (size_t)v * components;
+    bool outside = job->owner[v] < 0, vacated = outside && job->other != NULL && job->other[v] >= 0;
+    report->vacated += vacated;
+    for (int i = 0; i < 3; i++) {
+        const double *row = job->source_voxel[i];
+        voxel[i] = row[0] * place[0] + row[1] * place[1] + row[2] * place[2] + row[3];
+    }
+    bool known = !(vacated && request->marks_vacated) && !(outside && request->fills);
+    if (known && image_sample(job->source, request->method, voxel, value)) {
+        return;
+    }
+    report->beyond += known;
+    for (size_t c = 0; c < components; c++) {
+        value[c] = vacated && request->marks_vacated ? request->vacated : request->fills ? request->fill : 0;
+    }
+}
+
+/* One row of voxels. */
+static void do_row(const struct job *job, int64_t row, struct report *report)
+{
+    struct image *result = job->result;
+    int64_t width = (int64_t)result->size[0], height = (int64_t)result->size[1];
+    for (int64_t i = 0; i < width; i++) {
+        int64_t v = row * width + i;
+        const double voxel[3] = {(double)i, (double)(row % height), (double)(row / height)};
+        double x[3], place[3];
+        image_world(result, voxel, x);
+        find_place(job, v, x, place, report);
+        if (job->source != NULL) {
+            put_value(job, v, place, report);
+            continue;
+        }
+        for (int c = 0; c < 3; c++) { /* to ITK's axes and unit */
+            result->values[3 * v + c] = (c < 2 ? -1e3 : 1e3) * (place[c] - x[c]);
+        }
+    }
+}
+
+static void do_all(const struct job *job, struct report *report)
+{
+    int64_t rows = (int64_t)(job->result->size[1] * job->result->size[2]);
+    int64_t moved = 0, vacated = 0, beyond = 0, inexact = 0;
+    double farthest = 0, inconsistency = 0;
+#pragma omp parallel for schedule(dynamic, 16) reduction(+ : moved, vacated, beyond, inexact)                \
+    reduction(max : farthest, inconsistency)
+    for (int64_t row = 0; row < rows; row++) {
+        struct report own = {0};
+        do_row(job, row, &own);
+        moved += own.moved, vacated += own.vacated, beyond += own.beyond, inexact += own.inexact;
+        farthest = fmax(farthest, own.farthest);
+        inconsistency = fmax(inconsistency, own.inconsistency);
+    }
+    report->moved = moved, report->vacated = vacated, report->beyond = beyond, report->inexact = inexact;
+    report->farthest = farthest, report->inconsistency = inconsistency;
+}
+
+static void tell(const struct tool *tool, const struct request *request, const struct motion *motion,
+                 const struct image *grid, const struct report *report)
+{
+    char text[128];
+    int dim = motion->cells.dim;
+    int64_t first = 0, folded = motion_folded(motion, &first);
+    if (folded > 0) {
+        tool_note(tool,
+                  "%lld of %lld cells are folded (the first: row %lld of cells), and left out: what lies "
+                  "there shows "
+                  "their neighbours or stays",
+                  (long long)folded, (long long)motion->cells.count, (long long)first);
+    }
+    if (report->beyond > 0) {
+        tool_note(tool, "%lld voxels show places outside of the image: %s there", (long long)report->beyond,
+                  request->fills ? "the value of --fill" : "0");
+    }
+    if (!request->verbose) {
+        return;
+    }
+    tool_note(tool, "%s", image_text(grid, text));
+    tool_note(tool,
+              dim == 3 ? "%lld voxels in the %sbody, %.6g ml; displacement at most %.4g mm"
+                       : "%lld voxels in the %sbody, %.6g cm2; displacement at most %.4g mm",
+              (long long)report->moved, request->inverse ? "" : "moved ",
+              (dim == 3 ? 1e6 : 1e4) * (double)report->moved * voxel_volume(grid, dim),
+              1e3 * report->farthest);
+    if (report->doubly > 0) {
+        tool_note(tool, "%lld voxels lie in two parts of the moved body", (long long)report->doubly);
+    }
+    if (request->marks_vacated) {
+        tool_note(tool, "%lld voxels were left by the body", (long long)report->vacated);
+    }
+    if (!request->inverse) {
+        tool_note(
+            tool,
+            "place and inverse agree to %.2g voxels; in %lld voxels, without a place to %.0e, by linear "
+            "interpolation",
+            report->inconsistency / least_step(grid, dim), (long long)report->inexact, tolerance);
+    }
+}
+
+/* The result, all zero: an image like the source on the grid of another, or the field there. */
+static void new_result(const struct tool *tool, const struct image *source, const struct image *grid,
+                       struct image *result)
+{
+    struct error error;
+    size_t components = source != NULL ? source->components : 3;
+    tool_check(tool, image_new(result, grid->size, components, &error), &error);
+    double *values = result->values;
+    if (source != NULL) {
+        *result = *source;
+        result->values = values;
+    } else {
+        strcpy(result->description, "displacement, mm, LPS, from result to image");
+    }
+    memcpy(result->size, grid->size, sizeof result->size);
+    memcpy(result->to_world, grid->to_world, sizeof result->to_world);
+    result->unit = grid->unit;
+    result->space = grid->space;
+    result->version = grid->version;
+}
+
+static void tell_not_finite(const struct tool *tool, const struct image *image, const char *name)
+{
+    size_t count = 0;
+    for (size_t i = 0; i < image_voxels(image) * image->components; i++) {
+        count += isfinite(image->values[i]) ? 0 : 1;
+    }
+    if (count > 0) {
+        tool_note(tool, "%s: %zu values are not finite: neither is what is interpolated beside them", name,
+                  count);
+    }
+}
+
+static void build_motion(const struct tool *tool, const struct cells *cells, const double *u,
+                         struct motion *motion)
+{
+    struct error error;
+    enum status status = motion_build(cells, u, false, motion, &error);
+    if (status == STATUS_VERDICT) {
+        tool_note(tool, "displacement taken as linear in each cell: %s", error.text);
+        status = motion_build(cells, u, true, motion, &error);
+    }
+    tool_check(tool, status, &error);
+}
+
+int main(int argc, char *argv[])
+{
+    struct tool tool;
+    struct stream stream;
+    struct request request;
+    struct report report = {0};
+    struct image image, like = {0}, result;
+    struct cells cells;
+    struct motion motion;
+    struct option options[OPTION_COUNT] = {
+        [METHOD] = {.letter = 'i', .name = "interpolation", .takes_value = true},
+        [LIKE] = {.name = "like", .takes_value = true},
+        [FILL] = {.name = "fill", .takes_value = true},
+        [VACATED] = {.name = "vacated", .takes_value = true},
+        [FIELD] = {.name = "field"},
+        [INVERSE] = {.name = "inverse"},
+        [FRAME] = {.name = "frame", .takes_value = true},
+        [VERBOSE] = {.letter = 'v', .name = "verbose"},
+        [OUTPUT] = {.letter = 'o', .name = "output", .takes_value = true},
+    };
+    tool_begin(&tool, usage, options, OPTION_COUNT, 1, 2, argc, argv);
+    parse(&tool, options, &request);
+    tool_read_image(&tool, tool.operands[0], &image);
+    if (options[LIKE].given) {
+        tool_read_image(&tool, options[LIKE].value, &like);
+    }
+    tool_read(&tool, tool.operands[1], &stream);
+    const double *u = find_field(&tool, &stream, request.section, &cells);
+    const struct image *grid = options[LIKE].given ? &like : &image;
+    check_image_plane(&tool, &image, cells.dim);
+    check_image_plane(&tool, grid, cells.dim);
+    build_motion(&tool, &cells, u, &motion);
+    const double *seen = request.inverse ? cells.x : motion.moved;
+    int32_t *owner = find_owners(&tool, grid, &cells, seen, &report.doubly), *other = NULL;
+    int64_t inside = 0, ignored;
+    for (size_t v = 0; v < image_voxels(grid); v++) {
+        inside += owner[v] >= 0;
+    }
+    check_image_overlap(&tool, grid, &cells, seen, inside);
+    if (request.marks_vacated) {
+        other = find_owners(&tool, grid, &cells, request.inverse ? motion.moved : cells.x, &ignored);
+    }
+    if (!request.field) {
+        tell_not_finite(&tool, &image, tool.operands[0]);
+    }
+    new_result(&tool, request.field ? NULL : &image, grid, &result);
+    struct job job = {&request, request.field ? NULL : &image,           {{0}},  &motion, owner,
+                      other,    tolerance * least_step(grid, cells.dim), &result};
+    image_to_voxel(&image, job.source_voxel);
+    do_all(&job, &report);
+    tell(&tool, &request, &motion, grid, &report);
+    if (request.verbose && !request.field && request.method == IMAGE_NEAREST) {
+        tell_label_volumes(&tool, &image, &result, cells.dim);
+    }
+    tool_write_image(&tool, &result);
+    free(owner);
+    free(other);
+    motion_free(&motion);
+    image_free(&image);
+    image_free(&like);
+    image_free(&result);
+    stream_free(&stream);
+    return tool_end(&tool);
+}
