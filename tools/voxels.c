@@ -1,8 +1,8 @@
 static const char usage[] =
     "voxels - label image to node cloud, background cells, facets and node sets\n"
     "\n"
-    "usage: voxels -h LENGTH [-l TABLE] [-s AXIS=PLACE] [--largest] [-u UNIT] [-v] [-b | -t] [-o FILE]\n"
-    "              [IMAGE]\n"
+    "usage: voxels -h LENGTH [--fine LENGTH[:NAME,...]] [-l TABLE] [-s AXIS=PLACE] [--largest]\n"
+    "              [-u UNIT] [-v] [-b | -t] [-o FILE] [IMAGE]\n"
     "\n"
     "Reads a label image (NIfTI-1 or -2, plain or gzip; - or nothing: standard input) and writes what\n"
     "nodes writes of a mesh: nodes.x (world coordinates, m; x to the right, y to the front, z up), cells,\n"
@@ -15,9 +15,10 @@ static const char usage[] =
     "labels, each smoothed by cubic B-splines, have equal shares. Nodes of interfaces are moved by at most\n"
     ".4 voxels to keep the volume of each label. Angles of cells are between 8 and 165 degrees.\n"
     "\n"
-    "Parts of a label that are thinner than LENGTH may be lost, which is told. Cells that hang on the rest\n"
-    "by a node or an edge alone are left out, which is told. Parts of groups get names by groups: 'groups\n"
-    "-f opening=\"ball:0.03,0.02,0.08,0.04 and parenchyma|outside\"'.\n"
+    "Parts of a label that are thinner than LENGTH may be lost, and bodies about a single lattice point are\n"
+    "left out; both is told with their volume: --fine keeps more. Where parts of the body hang together by\n"
+    "a node or an edge alone they are cut apart. Parts of the boundary get names by the program groups:\n"
+    "'groups -u mm -f opening=\"ball:30,20,80,40 and parenchyma|outside\"'.\n"
     "\n"
     "A slice, which is an image of one slice or one chosen by -s, makes a body in the plane: x and y of\n"
     "the stream are then the two world axes in the slice, in their order.\n"
@@ -30,6 +31,9 @@ static const char usage[] =
     "Options:\n"
     "  -h, --spacing LENGTH    of the lattice, with a unit: 6mm; without one in m (required; -h at the end\n"
     "                          of the line prints this text)\n"
+    "      --fine LENGTH[:NAME,...]  spacing at interfaces, at all or at those of the labels NAME: that of "
+    "-h\n"
+    "                          is halved until it is no larger\n"
     "  -l, --labels TABLE      names of labels\n"
     "  -s, --slice AXIS=PLACE  the slice nearest to PLACE on the axis x, y or z, as z=12mm\n"
     "      --largest           the largest connected body only\n"
@@ -56,7 +60,7 @@ static const char usage[] =
 #include <stdlib.h>
 #include <string.h>
 
-enum { SPACING, LABELS, SLICE, LARGEST, UNIT, VERBOSE, BINARY, TEXT, OUTPUT, OPTION_COUNT };
+enum { SPACING, FINE, LABELS, SLICE, LARGEST, UNIT, VERBOSE, BINARY, TEXT, OUTPUT, OPTION_COUNT };
 
 /* Volumes are told where they are off by more than this share. */
 static const double told_share = 0.01;
@@ -75,32 +79,46 @@ static double shown(int dim, double volume)
     return volume * (dim == 3 ? 1e6 : 1e4);
 }
 
-static void report_labels(const struct tool *tool, const struct label_image *image, const struct cells *cells,
-                          const int32_t *label, bool verbose)
+static void report_labels(const struct tool *tool, const struct label_image *image,
+                          const struct stuffing *stuffing, bool verbose)
 {
+    struct cells cells = {stuffing->dim, stuffing->node_count, stuffing->x, stuffing->cell_count,
+                          stuffing->cell};
     struct error error;
     double *volume = NULL;
-    int dim = cells->dim;
+    int64_t *lost = NULL;
+    int dim = stuffing->dim;
     const char *unit = dim == 3 ? "ml" : "cm2";
     tool_check(tool, NEW_ARRAY(&volume, image->labels.count, &error), &error);
-    cell_volumes(cells, label, volume);
+    tool_check(tool, NEW_ARRAY(&lost, image->labels.count, &error), &error);
+    tool_check(tool, stuffing_lost(&image->labels, stuffing, lost, &error), &error);
+    cell_volumes(&cells, stuffing->label, volume);
     for (int32_t l = 1; l < image->labels.count; l++) {
         double before = shown(dim, image->volume[l]), after = shown(dim, volume[l]);
+        double missing = shown(dim, (double)lost[l] * image->voxel_volume);
         const char *name = label_image_name(image, l);
         if (!image->keep[l]) {
             if (verbose) {
                 tool_note(tool, "%s: %.4g %s of voxels, left out", name, before, unit);
             }
-        } else if (after == 0) {
-            tool_note(tool, "%s: all %.4g %s are lost: it is thinner than the spacing everywhere", name,
+            continue;
+        }
+        if (after == 0) {
+            tool_note(tool, "%s: all %.4g %s are lost: no part of it is as thick as the spacing", name,
                       before, unit);
         } else if (verbose || fabs(after - before) > told_share * before) {
-            tool_note(tool, "%s: %.4g %s of voxels, %.4g %s of cells (%+.2f %%)%s", name, before, unit, after,
-                      unit, 100 * (after / before - 1),
-                      after < (1 - told_share) * before ? ": parts thinner than the spacing are lost" : "");
+            tool_note(tool, "%s: %.4g %s of voxels, %.4g %s of cells (%+.2f %%)", name, before, unit, after,
+                      unit, 100 * (after / before - 1));
+        }
+        if (after > 0 && missing > told_share * before) {
+            tool_note(
+                tool,
+                "%s: %.3g %s are lost in parts thinner than the spacing, and at sharp edges: see --fine",
+                name, missing, unit);
         }
     }
     free(volume);
+    free(lost);
 }
 
 /* How many connected bodies there are, when more than one. */
@@ -125,7 +143,7 @@ static void report_bodies(const struct tool *tool, const struct cells *cells, bo
     free(part);
 }
 
-static void report_cells(const struct tool *tool, const struct cells *cells, double spacing)
+static void report_cells(const struct tool *tool, const struct cells *cells, double spacing, bool verbose)
 {
     double least = 180, most = 0;
     for (int64_t c = 0; c < cells->count; c++) {
@@ -137,6 +155,13 @@ static void report_cells(const struct tool *tool, const struct cells *cells, dou
         simplex_angles(cells->dim, x, angles);
         least = fmin(least, angles[0]);
         most = fmax(most, angles[1]);
+    }
+    if (least < STUFFING_LEAST_ANGLE || most > STUFFING_MOST_ANGLE) {
+        tool_note(tool, "angles from %.1f to %.1f degrees, beyond %g to %g: another spacing may avoid them",
+                  least, most, STUFFING_LEAST_ANGLE, STUFFING_MOST_ANGLE);
+    }
+    if (!verbose) {
+        return;
     }
     tool_note(tool, "spacing %g m: %lld nodes, %lld cells, %s from %.1f to %.1f degrees", spacing,
               (long long)cells->node_count, (long long)cells->count,
@@ -157,11 +182,44 @@ static void report(const struct tool *tool, const struct label_image *image, con
         tool_note(tool, "parts that hung together by a node or an edge alone are cut apart at %lld nodes",
                   (long long)stuffing->pinched);
     }
-    report_labels(tool, image, &cells, stuffing->label, verbose);
+    report_labels(tool, image, stuffing, verbose);
     report_bodies(tool, &cells, verbose);
+    report_cells(tool, &cells, spacing, verbose);
     if (verbose) {
-        report_cells(tool, &cells, spacing);
+        tool_note(tool, "nodes of interfaces: farthest %.2g voxels off, %lld of them more than %g",
+                  stuffing->farthest / labels_voxel(&image->labels), (long long)stuffing->astray,
+                  STUFFING_MOST_ASTRAY);
     }
+}
+
+/* "3mm" or "3mm:ventricles,tumour"; the array of labels, NULL: of all, is to be freed. */
+static bool *parse_fine(const struct tool *tool, const struct label_image *image, const char *text,
+                        double spacing, double *finest)
+{
+    struct error error;
+    bool *fine = NULL;
+    char *copy = strdup(text), *names = copy;
+    if (copy == NULL) {
+        tool_fail(tool, STATUS_SYSTEM, "out of memory");
+    }
+    const char *length = strsep(&names, ":");
+    tool_check(tool, parse_length(length, "--fine", finest, &error), &error);
+    if (*finest >= spacing) {
+        tool_fail(tool, STATUS_INPUT, "--fine: %s is not less than the spacing of -h", length);
+    }
+    if (names != NULL) {
+        tool_check(tool, NEW_ARRAY(&fine, image->labels.count, &error), &error);
+    }
+    while (names != NULL) {
+        const char *name = strsep(&names, ",");
+        int32_t label = label_image_find(image, name);
+        if (label < 0) {
+            tool_fail(tool, STATUS_INPUT, "--fine: no label '%.60s'", name);
+        }
+        fine[label] = true;
+    }
+    free(copy);
+    return fine;
 }
 
 int main(int argc, char *argv[])
@@ -177,6 +235,7 @@ int main(int argc, char *argv[])
     struct label_image_options wanted = {NULL, 0, NULL};
     struct option options[OPTION_COUNT] = {
         [SPACING] = {.letter = 'h', .name = "spacing", .takes_value = true},
+        [FINE] = {.name = "fine", .takes_value = true},
         [LABELS] = {.letter = 'l', .name = "labels", .takes_value = true},
         [SLICE] = {.letter = 's', .name = "slice", .takes_value = true},
         [LARGEST] = {.name = "largest"},
@@ -205,6 +264,11 @@ int main(int argc, char *argv[])
     label_image_read(&tool, tool.operands[0], &wanted, &image);
     struct stuffing_options stuffing_options = {
         .spacing = spacing, .keep = image.keep, .largest = options[LARGEST].given};
+    bool *fine = NULL;
+    if (options[FINE].given) {
+        fine = parse_fine(&tool, &image, options[FINE].value, spacing, &stuffing_options.finest);
+        stuffing_options.fine = fine;
+    }
     tool_check(&tool, stuffing_make(&image.labels, &stuffing_options, &stuffing, &error), &error);
     report(&tool, &image, &stuffing, spacing, options[VERBOSE].given);
     tool_check(&tool, label_mesh_make(&image, &stuffing, &mesh, &error), &error);
@@ -214,6 +278,7 @@ int main(int argc, char *argv[])
     stream_free(&stream);
     label_mesh_free(&mesh);
     stuffing_free(&stuffing);
+    free(fine);
     label_image_free(&image);
     return tool_end(&tool);
 }

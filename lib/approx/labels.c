@@ -23,13 +23,22 @@ static void place(const struct labels *labels, const double x[], double world[3]
     world[labels->axis[1]] = x[1];
 }
 
-static void stencil_at(const struct labels *labels, const double x[], struct stencil *stencil)
+void labels_to_voxel(const struct labels *labels, const double x[], double voxel[3])
 {
     double world[3];
     place(labels, x, world);
     for (int d = 0; d < 3; d++) {
         const double *row = labels->to_voxel[d];
-        double v = row[0] * world[0] + row[1] * world[1] + row[2] * world[2] + row[3];
+        voxel[d] = row[0] * world[0] + row[1] * world[1] + row[2] * world[2] + row[3];
+    }
+}
+
+static void stencil_at(const struct labels *labels, const double x[], struct stencil *stencil)
+{
+    double voxel[3];
+    labels_to_voxel(labels, x, voxel);
+    for (int d = 0; d < 3; d++) {
+        double v = voxel[d];
         double *w = stencil->weight[d], *s = stencil->slope[d];
         if (labels->size[d] == 1) {
             *w = 1;

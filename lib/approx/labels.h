@@ -28,6 +28,9 @@ struct label_mix {
     double share[LABELS_MOST_MIXED];
 };
 
+/* Voxel index of a point: voxel centres are whole numbers. */
+void labels_to_voxel(const struct labels *labels, const double x[], double voxel[3]);
+
 /* The shares at a point. */
 void labels_mix(const struct labels *labels, const double x[], struct label_mix *mix);
 

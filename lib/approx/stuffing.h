@@ -25,6 +25,10 @@ struct stuffing_options {
     bool largest;     /* of several connected bodies only the largest */
 };
 
+/* Angles of cells, degrees: stuffing_make keeps within them where it can. */
+#define STUFFING_LEAST_ANGLE 8.0
+#define STUFFING_MOST_ANGLE 165.0
+
 /* Voxels that the nodes of interfaces may be off their interface: where labels leave less room than the
  * lattice needs, some are farther. */
 #define STUFFING_MOST_ASTRAY 0.6
@@ -51,6 +55,11 @@ struct stuffing {
 MUST_CHECK enum status stuffing_make(const struct labels *labels, const struct stuffing_options *options,
                                      struct stuffing *stuffing, struct error *error);
 void stuffing_free(struct stuffing *stuffing);
+
+/* lost[labels->count]: voxels of each label that neither lie in a cell of it nor touch one that does: parts
+ * too thin for the lattice, and sharp edges. */
+MUST_CHECK enum status stuffing_lost(const struct labels *labels, const struct stuffing *stuffing,
+                                     int64_t *lost, struct error *error);
 
 /* Least and largest dihedral angle (2D: angle) of a simplex with corners x[dim + 1], degrees; 0 and 180 for
  * one without volume or inverted. */

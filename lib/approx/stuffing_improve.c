@@ -9,8 +9,6 @@
 
 /* Nodes of interfaces are moved as long as the cells at them score at least this, or as before. */
 static const double goal = 1.3;
-/* The angles that score 1, degrees. */
-static const double least_angle = 8, most_angle = 165;
 /* Nodes that are cut apart move so much of the way to the middle of their own cells, by at most so many
  * voxels. */
 static const double separation = 0.25, most_separation = 0.5;
@@ -26,7 +24,7 @@ double stuffing_score(const struct stuffing *stuffing, int64_t cell)
     }
     simplex_angles(dim, x, angles);
     if (angles[0] > 0) {
-        return fmin(angles[0] / least_angle, (180 - angles[1]) / (180 - most_angle));
+        return fmin(angles[0] / STUFFING_LEAST_ANGLE, (180 - angles[1]) / (180 - STUFFING_MOST_ANGLE));
     }
     /* Inverted: its volume, of the product of its edges at one corner. */
     struct cells cells = {dim, stuffing->node_count, stuffing->x, stuffing->cell_count, stuffing->cell};
@@ -218,8 +216,32 @@ static void separate(const struct labels *labels, struct stuffing *stuffing, con
     }
 }
 
-/* How far a node of interfaces is from where the label there gives way to one that meets at it, m; infinity
- * where none of them is near. */
+/* The least distance, in steps of a tenth of a voxel, at which the label is another one in some direction;
+ * infinity where it is the same within three voxels. */
+static double search_change(const struct labels *labels, const double x[], int32_t label)
+{
+    int dim = labels->dim, directions = dim == 2 ? 9 : 27;
+    double voxel = labels_voxel(labels);
+    for (int step = 1; step <= 30; step++) {
+        for (int direction = 0; direction < directions; direction++) {
+            static const int power[3] = {1, 3, 9};
+            double square = 0, place[3] = {0};
+            for (int d = 0; d < dim; d++) {
+                place[d] = direction / power[d] % 3 - 1;
+                square += place[d] * place[d];
+            }
+            for (int d = 0; d < dim; d++) {
+                place[d] = x[d] + (square > 0 ? 0.1 * step * voxel * place[d] / sqrt(square) : 0);
+            }
+            if (labels_at(labels, place) != label) {
+                return 0.1 * step * voxel;
+            }
+        }
+    }
+    return INFINITY;
+}
+
+/* How far a node of interfaces is from where the label there gives way to one that meets at it, m. */
 static double distance(const struct labels *labels, const struct stuffing *stuffing,
                        const struct stuffing_star *star, int64_t node)
 {
@@ -239,7 +261,7 @@ static double distance(const struct labels *labels, const struct stuffing *stuff
         }
         least = fmin(least, sqrt(square));
     }
-    return least;
+    return least < INFINITY ? least : search_change(labels, x, pair[0]);
 }
 
 static void measure(const struct labels *labels, struct stuffing *stuffing, const struct stuffing_star *star)

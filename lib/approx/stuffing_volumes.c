@@ -8,8 +8,8 @@
 #include <string.h>
 
 /* Interfaces are moved off their place by at most so much of a voxel for the sake of the labels' volumes. */
-static const double most_offset = 0.4;
-enum { SWEEPS = 8 };
+static const double most_offset = 0.55;
+enum { SWEEPS = 12 };
 
 /* Gradient of a cell's volume with respect to the place of its corner k. */
 static void volume_gradient(const struct stuffing *stuffing, int64_t cell, int k, double gradient[3])

@@ -1,6 +1,7 @@
 #include "label_image.h"
 
 #include "base/box.h"
+#include "images.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -9,6 +10,16 @@
 /* Labels of an image without a table. */
 enum { MOST_UNNAMED = 256, MOST_VALUES = 32767 };
 static const double largest_diagonal = 10, smallest_diagonal = 1e-3;
+
+int32_t label_image_find(const struct label_image *image, const char *name)
+{
+    for (int32_t l = 1; l < image->labels.count; l++) {
+        if (strcmp(label_image_name(image, l), name) == 0) {
+            return l;
+        }
+    }
+    return -1;
+}
 
 const char *label_image_name(const struct label_image *image, int32_t label)
 {
@@ -301,10 +312,7 @@ void label_image_read(const struct tool *tool, const char *file, const struct la
     if (options->table != NULL) {
         tool_check(tool, label_table_read(options->table, &image->table, &error), &error);
     }
-    tool_check(tool, image_read(&source, file == NULL ? "-" : file, &error), &error);
-    if (source.note[0] != '\0') {
-        tool_note(tool, "%s", source.note);
-    }
+    tool_read_image(tool, file == NULL ? "-" : file, &source);
     if (source.components > 1) {
         tool_fail(tool, STATUS_INPUT, "%zu values at each voxel: not a label image", source.components);
     }

@@ -33,4 +33,7 @@ void label_image_free(struct label_image *image);
 /* The name of a label; "outside" for 0. */
 const char *label_image_name(const struct label_image *image, int32_t label);
 
+/* The label of that name; -1: none. */
+int32_t label_image_find(const struct label_image *image, const char *name);
+
 #endif
