@@ -72,8 +72,19 @@ void simplex_angles(int dim, const double *const x[], double angles[2])
     }
 }
 
-enum status stuffing_make(const struct labels *labels, const struct stuffing_options *options,
-                          struct stuffing *stuffing, struct error *error)
+/* Whether a cell is inverted or of no volume. */
+static bool is_spoilt(const struct stuffing *stuffing)
+{
+    for (int64_t c = 0; c < stuffing->cell_count; c++) {
+        if (!(stuffing_score(stuffing, c) > 0)) {
+            return true;
+        }
+    }
+    return false;
+}
+
+static enum status make(const struct labels *labels, const struct stuffing_options *options,
+                        struct stuffing *stuffing, struct error *error)
 {
     struct lattice lattice;
     bool *apart = NULL;
@@ -96,6 +107,20 @@ done:
     free(apart);
     if (status != STATUS_OK) {
         stuffing_free(stuffing);
+    }
+    return status;
+}
+
+enum status stuffing_make(const struct labels *labels, const struct stuffing_options *options,
+                          struct stuffing *stuffing, struct error *error)
+{
+    struct stuffing_options all = *options;
+    enum status status = make(labels, options, stuffing, error);
+    all.fine = NULL;
+    /* Cells are sound where no interface passes leaves of two sizes. */
+    if (status == STATUS_OK && options->fine != NULL && is_spoilt(stuffing)) {
+        stuffing_free(stuffing);
+        status = make(labels, &all, stuffing, error);
     }
     return status;
 }

@@ -9,6 +9,9 @@
 
 /* Nodes of interfaces are moved as long as the cells at them score at least this, or as before. */
 static const double goal = 1.3;
+/* Cells that score less are improved; in the end cells beyond the bounds, by nodes up to so many voxels off.
+ */
+static const double least_score = 1.25, last_score = 1.02, last_slack = 0.55;
 /* Nodes that are cut apart move so much of the way to the middle of their own cells, by at most so many
  * voxels. */
 static const double separation = 0.25, most_separation = 0.5;
@@ -281,10 +284,11 @@ enum status stuffing_improve(const struct labels *labels, const struct stuffing_
     TRY(star_make(stuffing, &star, error));
     for (int sweep = 0; sweep < FIT_SWEEPS; sweep++) {
         fit(labels, stuffing, &star);
-        stuffing_repair(labels, stuffing, &star);
+        stuffing_repair(labels, least_score, 0, stuffing, &star);
     }
     separate(labels, stuffing, &star, apart);
     TRY(stuffing_volumes(labels, options->keep, apart, &star, stuffing, error));
+    stuffing_repair(labels, last_score, last_slack * labels_voxel(labels), stuffing, &star);
     measure(labels, stuffing, &star);
 done:
     star_free(&star);

@@ -86,9 +86,9 @@ double stuffing_score(const struct stuffing *stuffing, int64_t cell);
 /* Move x onto the interface of the labels, at most four; false where there is none near. */
 bool interface_project(const struct labels *labels, int count, const uint16_t label[], double x[]);
 
-/* Move the nodes of poor cells, those of interfaces within these, until their angles keep within the bounds.
- */
-void stuffing_repair(const struct labels *labels, struct stuffing *stuffing,
+/* Move the nodes of cells that score less than `least`, those of interfaces within these or at most `slack`,
+ * m, off, until they score more. */
+void stuffing_repair(const struct labels *labels, double least, double slack, struct stuffing *stuffing,
                      const struct stuffing_star *star);
 
 /* Move nodes: where labels meet onto their interfaces, those apart[] away from the others at the same place,

@@ -4,8 +4,6 @@
 #include <math.h>
 #include <string.h>
 
-/* Cells that score less are improved. */
-static const double poor = 1.25;
 enum { SWEEPS = 10, STEPS = 5 };
 
 /* Mean length of the edges of the cells at a node that end there. */
@@ -29,10 +27,31 @@ static double edge_length(const struct stuffing *stuffing, const struct stuffing
     return sum / (double)count;
 }
 
+/* Put a place onto the interface of a node, or leave it where it is no farther from there than the slack, m.
+ * False where there is no interface near. */
+static bool keep_to_interface(const struct labels *labels, const struct stuffing_star *star, int64_t node,
+                              double slack, double place[3])
+{
+    double projected[3] = {place[0], place[1], place[2]}, square = 0;
+    if (star->labels[node] < 2) {
+        return true;
+    }
+    if (!interface_project(labels, star->labels[node], star->label[node], projected)) {
+        return false;
+    }
+    for (int d = 0; d < labels->dim; d++) {
+        square += (projected[d] - place[d]) * (projected[d] - place[d]);
+    }
+    if (!(sqrt(square) <= slack)) {
+        memcpy(place, projected, (size_t)labels->dim * sizeof *place);
+    }
+    return true;
+}
+
 /* Try steps in all directions, along the axes and between them, of falling length; nodes of interfaces stay
- * there. Takes the best of each length that improves the poorest cell at the node. */
-static bool search(const struct labels *labels, struct stuffing *stuffing, const struct stuffing_star *star,
-                   int64_t node)
+ * there, but for the slack. Takes the best of each length that improves the poorest cell at the node. */
+static bool search(const struct labels *labels, double slack, struct stuffing *stuffing,
+                   const struct stuffing_star *star, int64_t node)
 {
     int dim = stuffing->dim, directions = dim == 2 ? 9 : 27;
     double *x = stuffing->x + node * dim, length = 0.25 * edge_length(stuffing, star, node);
@@ -51,8 +70,7 @@ static bool search(const struct labels *labels, struct stuffing *stuffing, const
             for (int d = 0; d < dim; d++) {
                 place[d] = here[d] + (norm > 0 ? length / sqrt(norm) * place[d] : 0);
             }
-            if (star->labels[node] > 1 &&
-                !interface_project(labels, star->labels[node], star->label[node], place)) {
+            if (!keep_to_interface(labels, star, node, slack, place)) {
                 continue;
             }
             memcpy(x, place, (size_t)dim * sizeof *x);
@@ -69,15 +87,16 @@ static bool search(const struct labels *labels, struct stuffing *stuffing, const
     return improved;
 }
 
-void stuffing_repair(const struct labels *labels, struct stuffing *stuffing, const struct stuffing_star *star)
+void stuffing_repair(const struct labels *labels, double least, double slack, struct stuffing *stuffing,
+                     const struct stuffing_star *star)
 {
     bool improved = true;
     for (int sweep = 0; sweep < SWEEPS && improved; sweep++) {
         improved = false;
         for (int64_t c = 0; c < stuffing->cell_count; c++) {
-            for (int k = 0; k <= stuffing->dim && stuffing_score(stuffing, c) < poor; k++) {
-                improved =
-                    search(labels, stuffing, star, stuffing->cell[c * (stuffing->dim + 1) + k]) || improved;
+            for (int k = 0; k <= stuffing->dim && stuffing_score(stuffing, c) < least; k++) {
+                int64_t node = stuffing->cell[c * (stuffing->dim + 1) + k];
+                improved = search(labels, slack, stuffing, star, node) || improved;
             }
         }
     }
