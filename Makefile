@@ -5,7 +5,7 @@
 # make STUDY      run a study of pipelines/: tables and pictures into build/out/STUDY; minutes each:
 #   table1  brain2d  brain3d    as in the papers: approximation, a brain section, the whole brain
 #   hard                        cases with known answers
-#   foreign                     meshes as others make them
+#   foreign  voxels             meshes as others make them, label images
 #   gallery  liver  phantom     examples that others can judge, with pictures
 #   convergence  speed-error    error against mesh size, and against time, beside mixed elements and CalculiX
 #   bench  estimate             speed of the kernels; what the error estimate is worth

@@ -2,7 +2,7 @@
 #
 # A row for each image: nodes, cells, whether mts check finds fault, least and largest dihedral angle, the volume of the label that is
 # farthest off, what is lost in thin parts, how far the nodes of interfaces are from them, seconds of the processor; then the
-# compression's status, steps and least J.
+# compression's status, steps and least J, and what is told of crevices that it closes (folds are allowed).
 VOXELS := $(OUT)/voxels
 VOXELS_SHAPES ?= sphere torus two four thin layer boxes atlas aniso flipped colin27 $(VOXELS_SEEDS:%=blobs-%)
 VOXELS_SEEDS ?= 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19 20
