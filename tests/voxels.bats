@@ -177,6 +177,68 @@ END
     [ "$(mts print facets.set opened.mts | sort | uniq -c | wc -l)" -eq 2 ]
 }
 
+# volume FILE: that within the triangles of a table, ml
+volume() {
+    awk '{
+        v = $1 * ($5 * $9 - $6 * $8) - $2 * ($4 * $9 - $6 * $7) + $3 * ($4 * $8 - $5 * $7)
+        sum += v / 6e-6
+    } END { printf "%.5g", sum }' "$1"
+}
+
+@test "the surface of a label as a table for contact, at a gap" {
+    phantom two > two.nii.gz
+    voxels -h 5mm --surface label_1 two.nii.gz > one.tsv
+    voxels -h 5mm --surface label_1 -v two.nii.gz 2> said > again.tsv
+    cmp one.tsv again.tsv
+    read -r before after < <(said label_1)
+    near "$(volume one.tsv)" "$before" 0.01
+    voxels -h 5mm --surface 'label_1|outside' two.nii.gz > skin.tsv
+    voxels -h 5mm --surface 'label_1|label_2' -o inner.tsv two.nii.gz
+    cmp <(sort one.tsv) <(sort skin.tsv inner.tsv)
+    phantom sphere > sphere.nii.gz
+    voxels -h 4mm --surface 'label_1|outside' --gap 2mm sphere.nii.gz > gap.tsv
+    near "$(volume gap.tsv)" 73.6 0.02 # of a sphere of 26 mm
+    voxels -h 4mm --surface 'label_1|outside' sphere.nii.gz > touching.tsv
+    paste gap.tsv touching.tsv | awk '{
+        for (k = 1; k < 9; k += 3) {
+            d = sqrt(($k - $(k + 9)) ^ 2 + ($(k + 1) - $(k + 10)) ^ 2 + ($(k + 2) - $(k + 11)) ^ 2)
+            if (!(d > 1.99e-3 && d < 2.2e-3)) exit 1
+        }
+    }'
+    phantom two@slice > slice.nii.gz
+    voxels -h 4mm --surface label_2 slice.nii.gz > curve.tsv
+    [ "$(head -n 1 curve.tsv)" = "$(tail -n 1 curve.tsv)" ]
+    voxels -h 4mm --surface 'label_2|label_1' slice.nii.gz | awk 'NF == 0 { exit 1 }' # one curve, in one piece
+    refused 2 "no label 'skull'" voxels -h 5mm --surface skull two.nii.gz
+    refused 2 "no label 'skull'" voxels -h 5mm --surface 'label_1|skull' two.nii.gz
+    refused 2 "these labels do not touch" voxels -h 5mm --surface 'label_1|label_1' two.nii.gz
+    refused 2 "--gap goes with --surface" voxels -h 5mm --gap 1mm two.nii.gz
+    refused 2 "--surface goes without -b and -t" voxels -h 5mm -t --surface label_1 two.nii.gz
+
+    # A body within the surface moves freely up to the gap.
+    voxels -h 6mm sphere.nii.gz | groups -f held=low:z,20% > body.mts 2> said
+    cat > slide.scene << 'END'
+[scene]
+dim = 3
+analysis = quasi-static
+[material body]
+region = label_1
+E = 3000
+nu = 0.45
+rho = 1000
+[displacement held]
+facets = held
+components = 0, 0, 0.001
+[contact skull]
+facets = label_1|outside
+rigid = gap.tsv
+unit = m
+side = back
+END
+    shapefn body.mts 2> said.shapefn | mtled slide.scene > u.dat
+    mts print u u.dat | awk '{ if (!($3 > 0.0005 && $3 < 0.0015)) exit 1 }'
+}
+
 @test "images that are none of labels, impossible sizes, and tables: one clear line" {
     phantom sphere@scan > scan.nii.gz
     refused 2 "labels are whole numbers from 0: is it a scan" voxels -h 6mm scan.nii.gz

@@ -3,6 +3,8 @@ static const char usage[] =
     "\n"
     "usage: voxels -h LENGTH [--fine LENGTH[:NAME,...]] [-l TABLE] [-s AXIS=PLACE] [--largest]\n"
     "              [-u UNIT] [-v] [-b | -t] [-o FILE] [IMAGE]\n"
+    "       voxels -h LENGTH --surface NAME[|NAME] [--gap LENGTH] [--fine LENGTH[:NAME,...]] [-l TABLE]\n"
+    "              [-s AXIS=PLACE] [--largest] [-u UNIT] [-v] [-o FILE] [IMAGE]\n"
     "\n"
     "Reads a label image (NIfTI-1 or -2, plain or gzip; - or nothing: standard input) and writes what\n"
     "nodes writes of a mesh: nodes.x (world coordinates, m; x to the right, y to the front, z up), cells,\n"
@@ -28,12 +30,19 @@ static const char usage[] =
     "cells out, and NAME stands in the names of the walls around. Text behind # is a comment. Without a\n"
     "table all labels but 0 are regions label_1, label_2, ...\n"
     "\n"
+    "With --surface the program writes a table for [contact] of a scene instead (unit = m): the triangles\n"
+    "of the surface of a label (2D: curves, the label on their left). Normals point out of the label, so a\n"
+    "body within has side = back (2D: left).\n"
+    "\n"
     "Options:\n"
     "  -h, --spacing LENGTH    of the lattice, with a unit: 6mm; without one in m (required; -h at the end\n"
     "                          of the line prints this text)\n"
     "      --fine LENGTH[:NAME,...]  spacing at interfaces, at all or at those of the labels NAME: that of "
     "-h\n"
     "                          is halved until it is no larger\n"
+    "      --surface NAME[|NAME]  write the surface of the first label, all or where the second (outside is\n"
+    "                          one) lies beyond it\n"
+    "      --gap LENGTH        move that surface outward by LENGTH\n"
     "  -l, --labels TABLE      names of labels\n"
     "  -s, --slice AXIS=PLACE  the slice nearest to PLACE on the axis x, y or z, as z=12mm\n"
     "      --largest           the largest connected body only\n"
@@ -49,9 +58,11 @@ static const char usage[] =
     "  voxels labels.nii.gz -h 6mm | shapefn | mtled craniotomy.scene > u.dat\n"
     "  printf '1 parenchyma\\n2 ventricles -\\n3,10-12 tumour\\n* -\\n' > names\n"
     "  voxels -l names -h 4mm -v < labels.nii.gz > body.mts\n"
+    "  voxels -h 4mm -l names --surface 'parenchyma|outside' --gap 1mm labels.nii.gz > skull.tsv\n"
     "  voxels -s z=40mm -h 3mm labels.nii.gz | mts list\n";
 
 #include "label_mesh.h"
+#include "label_surface.h"
 
 #include "approx/cells.h"
 #include "approx/parts.h"
@@ -60,7 +71,21 @@ static const char usage[] =
 #include <stdlib.h>
 #include <string.h>
 
-enum { SPACING, FINE, LABELS, SLICE, LARGEST, UNIT, VERBOSE, BINARY, TEXT, OUTPUT, OPTION_COUNT };
+enum {
+    SPACING,
+    FINE,
+    SURFACE,
+    GAP,
+    LABELS,
+    SLICE,
+    LARGEST,
+    UNIT,
+    VERBOSE,
+    BINARY,
+    TEXT,
+    OUTPUT,
+    OPTION_COUNT
+};
 
 /* Volumes are told where they are off by more than this share. */
 static const double told_share = 0.01;
@@ -222,20 +247,50 @@ static bool *parse_fine(const struct tool *tool, const struct label_image *image
     return fine;
 }
 
+static void write_stream(const struct tool *tool, const struct label_image *image,
+                         const struct stuffing *stuffing, bool text)
+{
+    struct mesh mesh;
+    struct stream stream;
+    struct error error;
+    tool_check(tool, label_mesh_make(image, stuffing, &mesh, &error), &error);
+    stream_init(&stream);
+    tool_check(tool, mesh_put(&mesh, &stream, &error), &error);
+    tool_write(tool, &stream, text);
+    stream_free(&stream);
+    label_mesh_free(&mesh);
+}
+
+static void check_options(const struct tool *tool, const struct option options[])
+{
+    if (!options[SPACING].given) {
+        tool_fail(tool, STATUS_INPUT, "the spacing is missing: give -h LENGTH, as -h 6mm");
+    }
+    if (options[BINARY].given && options[TEXT].given) {
+        tool_fail(tool, STATUS_INPUT, "give one of -b and -t");
+    }
+    if (options[SURFACE].given && (options[BINARY].given || options[TEXT].given)) {
+        tool_fail(tool, STATUS_INPUT, "--surface goes without -b and -t: it writes a table");
+    }
+    if (options[GAP].given && !options[SURFACE].given) {
+        tool_fail(tool, STATUS_INPUT, "--gap goes with --surface");
+    }
+}
+
 int main(int argc, char *argv[])
 {
     static char help[] = "--help";
     struct tool tool;
     struct label_image image;
     struct stuffing stuffing;
-    struct mesh mesh;
-    struct stream stream;
     struct error error;
     double spacing;
     struct label_image_options wanted = {NULL, 0, NULL};
     struct option options[OPTION_COUNT] = {
         [SPACING] = {.letter = 'h', .name = "spacing", .takes_value = true},
         [FINE] = {.name = "fine", .takes_value = true},
+        [SURFACE] = {.name = "surface", .takes_value = true},
+        [GAP] = {.name = "gap", .takes_value = true},
         [LABELS] = {.letter = 'l', .name = "labels", .takes_value = true},
         [SLICE] = {.letter = 's', .name = "slice", .takes_value = true},
         [LARGEST] = {.name = "largest"},
@@ -249,12 +304,7 @@ int main(int argc, char *argv[])
         argv[argc - 1] = help;
     }
     tool_begin(&tool, usage, options, OPTION_COUNT, 0, 1, argc, argv);
-    if (!options[SPACING].given) {
-        tool_fail(&tool, STATUS_INPUT, "the spacing is missing: give -h LENGTH, as -h 6mm");
-    }
-    if (options[BINARY].given && options[TEXT].given) {
-        tool_fail(&tool, STATUS_INPUT, "give one of -b and -t");
-    }
+    check_options(&tool, options);
     tool_check(&tool, parse_length(options[SPACING].value, "-h", &spacing, &error), &error);
     if (options[UNIT].given) {
         tool_check(&tool, parse_length_unit(options[UNIT].value, "-u", &wanted.unit, &error), &error);
@@ -262,6 +312,16 @@ int main(int argc, char *argv[])
     wanted.table = options[LABELS].value;
     wanted.slice = options[SLICE].value;
     label_image_read(&tool, tool.operands[0], &wanted, &image);
+    struct label_surface_options surface = {.gap = 0};
+    if (options[GAP].given) {
+        tool_check(&tool, parse_length(options[GAP].value, "--gap", &surface.gap, &error), &error);
+    }
+    if (options[SURFACE].given) {
+        label_surface_parse(&tool, &image, options[SURFACE].value, &surface);
+        for (int32_t l = 0; l < image.labels.count; l++) {
+            image.keep[l] = l == surface.inner;
+        }
+    }
     struct stuffing_options stuffing_options = {
         .spacing = spacing, .keep = image.keep, .largest = options[LARGEST].given};
     bool *fine = NULL;
@@ -271,12 +331,11 @@ int main(int argc, char *argv[])
     }
     tool_check(&tool, stuffing_make(&image.labels, &stuffing_options, &stuffing, &error), &error);
     report(&tool, &image, &stuffing, spacing, options[VERBOSE].given);
-    tool_check(&tool, label_mesh_make(&image, &stuffing, &mesh, &error), &error);
-    stream_init(&stream);
-    tool_check(&tool, mesh_put(&mesh, &stream, &error), &error);
-    tool_write(&tool, &stream, options[TEXT].given);
-    stream_free(&stream);
-    label_mesh_free(&mesh);
+    if (options[SURFACE].given) {
+        label_surface_write(&tool, &stuffing, &surface);
+    } else {
+        write_stream(&tool, &image, &stuffing, options[TEXT].given);
+    }
     stuffing_free(&stuffing);
     free(fine);
     label_image_free(&image);
