@@ -114,13 +114,14 @@ done:
 enum status stuffing_make(const struct labels *labels, const struct stuffing_options *options,
                           struct stuffing *stuffing, struct error *error)
 {
-    struct stuffing_options all = *options;
+    struct stuffing_options everywhere = *options;
     enum status status = make(labels, options, stuffing, error);
-    all.fine = NULL;
+    everywhere.fine = NULL;
     /* Cells are sound where no interface passes leaves of two sizes. */
     if (status == STATUS_OK && options->fine != NULL && is_spoilt(stuffing)) {
-        stuffing_free(stuffing);
-        status = make(labels, &all, stuffing, error);
+        struct stuffing spoilt = *stuffing;
+        status = make(labels, &everywhere, stuffing, error);
+        stuffing_free(&spoilt);
     }
     return status;
 }

@@ -162,10 +162,11 @@ static void set_labels(const struct tool *tool, const struct image *source, stru
 
 /* ---- space ---- */
 
-/* The axis of the grid that runs along a world axis, the two others across it; -1: there is none. */
-static int grid_axis(const struct image *image, int world)
+/* The axis of the grid that runs along a world axis, the two others across it. Exits when there is none. */
+static int grid_axis(const struct tool *tool, const struct image *image, int world)
 {
-    int found = -1;
+    int found = 3;
+    bool oblique = false;
     for (int e = 0; e < 3; e++) {
         double length = sqrt(image->to_world[0][e] * image->to_world[0][e] +
                              image->to_world[1][e] * image->to_world[1][e] +
@@ -173,9 +174,12 @@ static int grid_axis(const struct image *image, int world)
         double along = fabs(image->to_world[world][e]) / length;
         if (along > 1 - 1e-6) {
             found = e;
-        } else if (along > 1e-3) {
-            return -1;
         }
+        oblique = oblique || (along > 1e-3 && along <= 1 - 1e-6);
+    }
+    if (oblique || found == 3) {
+        tool_fail(tool, STATUS_INPUT, "-s: the image's slices are oblique to the axis %c: resample it first",
+                  'x' + world);
     }
     return found;
 }
@@ -220,12 +224,7 @@ static void choose_slice(const struct tool *tool, struct image *image, const cha
     int world;
     double place;
     parse_slice(tool, slice, &world, &place);
-    int axis = grid_axis(image, world);
-    if (axis < 0) {
-        tool_fail(tool, STATUS_INPUT,
-                  "-s %s: the image's slices are oblique to the axis %c: resample it first", slice,
-                  'x' + world);
-    }
+    int axis = grid_axis(tool, image, world);
     double index = (place - image->to_world[world][3]) / image->to_world[world][axis];
     if (!(index > -0.5 && index < (double)image->size[axis] - 0.5)) {
         double first = image->to_world[world][3];

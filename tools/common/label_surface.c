@@ -178,14 +178,15 @@ void label_surface_write(const struct tool *tool, const struct stuffing *stuffin
     }
     tool_check(tool, output_open(&output, tool->output, &error), &error);
     int descriptor = dup(output.descriptor);
-    FILE *file = descriptor < 0 ? NULL : fdopen(descriptor, "w");
-    if (file == NULL) {
-        tool_fail(tool, STATUS_SYSTEM, "%s: cannot be written", tool->output);
+    FILE *file = descriptor >= 0 ? fdopen(descriptor, "w") : NULL;
+    bool written = false;
+    if (file != NULL) {
+        print_surface(tool, file, stuffing, options);
+        written = ferror(file) == 0;
+        written = fclose(file) == 0 && written;
     }
-    print_surface(tool, file, stuffing, options);
-    bool failed = ferror(file) != 0;
-    if (fclose(file) != 0 || failed) {
-        tool_fail(tool, STATUS_SYSTEM, "%s: write error", tool->output);
+    if (!written) {
+        tool_fail(tool, STATUS_SYSTEM, "%s: cannot be written", tool->output);
     }
     tool_check(tool, output_commit(&output, &error), &error);
 }
