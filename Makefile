@@ -5,7 +5,7 @@
 # make STUDY      run a study of pipelines/: tables and pictures into build/out/STUDY; minutes each:
 #   table1  brain2d  brain3d    as in the papers: approximation, a brain section, the whole brain
 #   hard                        cases with known answers
-#   foreign                     meshes as others make them
+#   foreign  voxels             meshes as others make them, label images
 #   gallery  liver  phantom     examples that others can judge, with pictures
 #   convergence  speed-error    error against mesh size, and against time, beside mixed elements and CalculiX
 #   bench  estimate             speed of the kernels; what the error estimate is worth
@@ -45,7 +45,7 @@ UNIT_TESTS := $(patsubst tests/unit/%.c,$(BUILD)/tests/%,$(wildcard tests/unit/*
 FUZZ_TARGETS := $(patsubst tests/fuzz/%.c,$(BUILD)/fuzz/%,$(filter-out %/replay.c,$(wildcard tests/fuzz/*.c)))
 MAN_PAGES := $(TOOLS:%=$(BUILD)/man/man1/%.1) $(patsubst tools/%,$(BUILD)/man/man5/%,$(wildcard tools/*.5))
 # Programs that the command-line tests use.
-TEST_HELPERS := $(BUILD)/tests/helper/damage $(BUILD)/tests/helper/deny.so
+TEST_HELPERS := $(BUILD)/tests/helper/damage $(BUILD)/tests/helper/phantom $(BUILD)/tests/helper/deny.so
 
 .PHONY: all lib man deps check clean always
 all: $(PROGRAMS) $(MAN_PAGES)
@@ -76,7 +76,7 @@ $(BUILD)/tests/%: $(BUILD)/tests/unit/%.o $(LIBRARY)
 	@mkdir -p $(@D)
 	$(CC) $(LDFLAGS) -o $@ $^ $(LDLIBS) -lcmocka
 
-$(BUILD)/tests/helper/damage: $(BUILD)/tests/helper/damage.o $(LIBRARY)
+$(BUILD)/tests/helper/damage $(BUILD)/tests/helper/phantom: $(BUILD)/tests/helper/%: $(BUILD)/tests/helper/%.o $(LIBRARY)
 	$(CC) $(LDFLAGS) -o $@ $^ $(LDLIBS)
 
 $(BUILD)/tests/helper/%.so: tests/helper/%.c

@@ -87,7 +87,7 @@ complete_words() {
         [ "$(complete -p $tool)" = "complete -o default -F _mtled_$tool $tool" ]
         # What the text explains is what is offered.
         $tool -h | awk '/^Options:/ { on = 1; next } /^$/ { on = 0 } on && /^ ? ? ? ? ? ?-/' |
-            sed 's/^ *//; s/   *.*//' | grep -oE '(^|[ ,])--?[A-Za-z][-a-z]*' | tr -d ' ,' | sort > explained
+            sed 's/^ *//; s/   *.*//' | grep -oE '(^|[ ,])--?[A-Za-z][-a-z]*' | tr -d ' ,' | grep -vx -e -h | sort > explained # voxels has a -h of its own
         complete_words $tool - | tr ' ' '\n' | grep -vxE -e '-h|--help|--version' | sort > offered
         [ -s offered ]
         cmp explained offered

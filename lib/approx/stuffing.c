@@ -1,0 +1,137 @@
+#include "approx/stuffing.h"
+
+#include "approx/stuffing_private.h"
+#include "base/memory.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+static void cross(const double a[3], const double b[3], double c[3])
+{
+    c[0] = a[1] * b[2] - a[2] * b[1];
+    c[1] = a[2] * b[0] - a[0] * b[2];
+    c[2] = a[0] * b[1] - a[1] * b[0];
+}
+
+static double dot(int dim, const double *a, const double *b)
+{
+    double sum = 0;
+    for (int d = 0; d < dim; d++) {
+        sum += a[d] * b[d];
+    }
+    return sum;
+}
+
+/* Cosines between inward normals of faces: the angle between two faces is 180 degrees less that of the
+ * normals. */
+void simplex_angles(int dim, const double *const x[], double angles[2])
+{
+    double edge[3][3] = {{0}}, normal[4][3] = {{0}};
+    double least = 2, most = -2, size;
+    for (int k = 0; k < dim; k++) {
+        for (int d = 0; d < dim; d++) {
+            edge[k][d] = x[k + 1][d] - x[0][d];
+        }
+    }
+    if (dim == 2) {
+        size = edge[0][0] * edge[1][1] - edge[0][1] * edge[1][0];
+        normal[1][0] = edge[1][1];
+        normal[1][1] = -edge[1][0];
+        normal[2][0] = -edge[0][1];
+        normal[2][1] = edge[0][0];
+    } else {
+        cross(edge[1], edge[2], normal[1]);
+        cross(edge[2], edge[0], normal[2]);
+        cross(edge[0], edge[1], normal[3]);
+        size = dot(3, edge[0], normal[1]);
+    }
+    angles[0] = 0;
+    angles[1] = 180;
+    if (!(size > 0)) {
+        return;
+    }
+    for (int k = 1; k <= dim; k++) {
+        for (int d = 0; d < dim; d++) {
+            normal[0][d] -= normal[k][d];
+        }
+    }
+    double length[4];
+    for (int k = 0; k <= dim; k++) {
+        length[k] = sqrt(dot(dim, normal[k], normal[k]));
+    }
+    for (int k = 0; k <= dim; k++) {
+        for (int l = k + 1; l <= dim; l++) {
+            double cosine = -dot(dim, normal[k], normal[l]) / (length[k] * length[l]);
+            least = fmin(least, cosine);
+            most = fmax(most, cosine);
+        }
+    }
+    if (least >= -1 && most <= 1) {
+        angles[0] = acos(most) * 180 / M_PI;
+        angles[1] = acos(least) * 180 / M_PI;
+    }
+}
+
+/* Whether a cell is inverted or of no volume. */
+static bool is_spoilt(const struct stuffing *stuffing)
+{
+    for (int64_t c = 0; c < stuffing->cell_count; c++) {
+        if (!(stuffing_score(stuffing, c) > 0)) {
+            return true;
+        }
+    }
+    return false;
+}
+
+static enum status make(const struct labels *labels, const struct stuffing_options *options,
+                        struct stuffing *stuffing, struct error *error)
+{
+    struct lattice lattice;
+    bool *apart = NULL;
+    enum status status;
+    *stuffing = (struct stuffing){.dim = labels->dim};
+    TRY(lattice_make(labels, options, &lattice, error));
+    status = lattice_cut(&lattice, error);
+    if (status == STATUS_OK) {
+        status = lattice_cells(&lattice, stuffing, error);
+    }
+    lattice_free(&lattice);
+    TRY(status);
+    TRY(stuffing_keep(options, stuffing, &apart, error));
+    if (stuffing->cell_count == 0) {
+        TRY(fail(error, STATUS_INPUT, "spacing %g m: no lattice point lies in a label: smaller?",
+                 options->spacing));
+    }
+    TRY(stuffing_improve(labels, options, apart, stuffing, error));
+done:
+    free(apart);
+    if (status != STATUS_OK) {
+        stuffing_free(stuffing);
+    }
+    return status;
+}
+
+enum status stuffing_make(const struct labels *labels, const struct stuffing_options *options,
+                          struct stuffing *stuffing, struct error *error)
+{
+    struct stuffing_options everywhere = *options;
+    enum status status = make(labels, options, stuffing, error);
+    everywhere.fine = NULL;
+    /* Cells are sound where no interface passes leaves of two sizes. */
+    if (status == STATUS_OK && options->fine != NULL && is_spoilt(stuffing)) {
+        struct stuffing spoilt = *stuffing;
+        status = make(labels, &everywhere, stuffing, error);
+        stuffing_free(&spoilt);
+    }
+    return status;
+}
+
+void stuffing_free(struct stuffing *stuffing)
+{
+    free(stuffing->x);
+    free(stuffing->cell);
+    free(stuffing->label);
+    free(stuffing->facet);
+    free(stuffing->side);
+    *stuffing = (struct stuffing){0};
+}

@@ -1,0 +1,68 @@
+/* Background cells from labels on a grid: isosurface stuffing of several labels.
+ *
+ * A body-centred cubic lattice (2D: one of equilateral triangles) is laid over the labels. An edge between
+ * points of different labels is cut where their shares (approx/labels.h) are equal. A point that a cut lies
+ * near is moved onto it; the other cuts bisect their edges, in an order that neighbouring cells agree on. For
+ * two labels these are the stencils of Labelle and Shewchuk, Isosurface stuffing: fast tetrahedral meshes
+ * with good dihedral angles, ACM Trans. Graph. 26 (2007), 57, whose angles lie between 10.7 and 164.8
+ * degrees. Where three labels meet, nodes are moved onto their common line and cells are improved by moving
+ * nodes; the bounds of struct stuffing tell what holds. */
+#ifndef APPROX_STUFFING_H
+#define APPROX_STUFFING_H
+
+#include "approx/labels.h"
+#include "base/status.h"
+
+#include <stdbool.h>
+#include <stdint.h>
+
+struct stuffing_options {
+    double spacing; /* of the lattice, m: edge of its cubes (2D: of its triangles) */
+    double finest;  /* 3D: edge of the cubes at interfaces, m: the spacing is halved until it is no larger; 0:
+                       as  elsewhere */
+    const bool *fine; /* labels->count: at interfaces of these labels; NULL: at all */
+    const bool *keep; /* labels->count: cells of this label are wanted; never of label 0 */
+    bool largest;     /* of several connected bodies only the largest */
+};
+
+/* Angles of cells, degrees: stuffing_make keeps within them where it can. */
+#define STUFFING_LEAST_ANGLE 8.0
+#define STUFFING_MOST_ANGLE 165.0
+
+/* Voxels that the nodes of interfaces may be off their interface: where labels leave less room than the
+ * lattice needs, some are farther. */
+#define STUFFING_MOST_ASTRAY 0.6
+
+struct stuffing {
+    int dim;
+    int64_t node_count;
+    double *x; /* node_count * dim, m; every node belongs to a cell */
+    int64_t cell_count;
+    int32_t *cell;  /* cell_count * (dim + 1), positively oriented */
+    int32_t *label; /* cell_count */
+    int64_t facet_count;
+    int32_t *facet;  /* facet_count * dim: the boundary, oriented outward */
+    int32_t *side;   /* facet_count * 2: the label within, and the one beyond that is not kept */
+    int64_t pinched; /* nodes at which parts hung together by a node or an edge alone: they are cut apart */
+    int64_t specks;  /* bodies about a single point of the lattice: they are left out, */
+    double speck_volume; /* m3 */
+    int64_t astray;  /* nodes of interfaces farther than STUFFING_MOST_ASTRAY voxels from where labels meet */
+    double farthest; /* largest of these distances of all nodes, m */
+};
+
+/* Make the cells. STATUS_INPUT: no voxel of a label that is kept, a spacing for which the lattice has more
+ * than 2^28 points, or no cell at that spacing. */
+MUST_CHECK enum status stuffing_make(const struct labels *labels, const struct stuffing_options *options,
+                                     struct stuffing *stuffing, struct error *error);
+void stuffing_free(struct stuffing *stuffing);
+
+/* lost[labels->count]: voxels of each label that neither lie in a cell of it nor touch one that does: parts
+ * too thin for the lattice, and sharp edges. */
+MUST_CHECK enum status stuffing_lost(const struct labels *labels, const struct stuffing *stuffing,
+                                     int64_t *lost, struct error *error);
+
+/* Least and largest dihedral angle (2D: angle) of a simplex with corners x[dim + 1], degrees; 0 and 180 for
+ * one without volume or inverted. */
+void simplex_angles(int dim, const double *const x[], double angles[2]);
+
+#endif

@@ -1,0 +1,242 @@
+#include "approx/stuffing_private.h"
+#include "base/memory.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Pieces of one cell of the lattice: each of its six edges doubles them at most. */
+enum { PIECES_MOST = 64 };
+
+struct cutting {
+    const struct lattice *lattice;
+    struct stuffing *stuffing;
+    int64_t room;      /* cells allocated */
+    double *x;         /* nodes of the lattice and of cuts: coordinates, m */
+    int32_t *cut_node; /* lattice->edge_count */
+};
+
+/* An edge of a cell that is cut, and what sets the place of its cut among the others: it comes after edges of
+ * larger order[0], then of lower order[1], then before those of higher number. */
+struct bisection {
+    int32_t end[2], node;
+    double order[2];
+};
+
+static bool on_interface(const struct cutting *cutting, int32_t node)
+{
+    return node >= cutting->lattice->node_count || cutting->lattice->on[node];
+}
+
+/* The label of a piece: that of its points off the interfaces, or where there are none the one at its middle.
+ */
+static int32_t label_of(const struct cutting *cutting, const int32_t *node)
+{
+    int dim = cutting->lattice->dim;
+    double middle[3] = {0};
+    for (int k = 0; k <= dim; k++) {
+        if (!on_interface(cutting, node[k])) {
+            return cutting->lattice->label[node[k]];
+        }
+        for (int d = 0; d < dim; d++) {
+            middle[d] += cutting->x[(int64_t)node[k] * dim + d] / (dim + 1);
+        }
+    }
+    return labels_at(cutting->lattice->labels, middle);
+}
+
+static enum status append(struct cutting *cutting, const int32_t *node, struct error *error)
+{
+    struct stuffing *stuffing = cutting->stuffing;
+    int32_t label = label_of(cutting, node);
+    int corners = stuffing->dim + 1;
+    if (label == 0) {
+        return STATUS_OK;
+    }
+    if (stuffing->cell_count == cutting->room) {
+        int64_t room = cutting->room + cutting->room / 2 + 1024;
+        int32_t *cell = array_grow(stuffing->cell, room * corners, sizeof *cell);
+        if (cell == NULL) {
+            return fail_memory(error, "cells");
+        }
+        stuffing->cell = cell;
+        int32_t *labels = array_grow(stuffing->label, room, sizeof *labels);
+        if (labels == NULL) {
+            return fail_memory(error, "labels of cells");
+        }
+        stuffing->label = labels;
+        cutting->room = room;
+    }
+    memcpy(stuffing->cell + stuffing->cell_count * corners, node, (size_t)corners * sizeof *node);
+    stuffing->label[stuffing->cell_count++] = label;
+    return STATUS_OK;
+}
+
+/* Neighbours must agree on the order of the edges of a common face. Long edges go first, and of equal
+ * diagonals of cubes, two of which meet in a face, the one whose ends stand at an even place: the parity rule
+ * of Labelle and Shewchuk 2007, section 3. In the plane faces are edges: there the shorter diagonal goes
+ * first. */
+static void set_order(const struct cutting *cutting, const int32_t *node, struct bisection *bisection)
+{
+    const struct lattice *lattice = cutting->lattice;
+    if (lattice->dim == 2) {
+        for (int k = 0; k < 3; k++) {
+            const double *x = cutting->x + 2 * (int64_t)node[k],
+                         *cut = cutting->x + 2 * (int64_t)bisection->node;
+            if (node[k] != bisection->end[0] && node[k] != bisection->end[1]) {
+                bisection->order[0] = -hypot(x[0] - cut[0], x[1] - cut[1]);
+            }
+        }
+        return;
+    }
+    const int32_t *p = lattice->place + 3 * (int64_t)bisection->end[0];
+    const int32_t *q = lattice->place + 3 * (int64_t)bisection->end[1];
+    int32_t size = abs(p[0] - q[0]), sum = 0;
+    for (int d = 0; d < 3; d++) {
+        bisection->order[0] += (double)(p[d] - q[d]) * (p[d] - q[d]);
+        sum += size > 0 ? p[d] / (2 * size) + q[d] / (2 * size) : 0;
+    }
+    bisection->order[1] = sum % 2;
+}
+
+static bool comes_before(const struct bisection *a, const struct bisection *b)
+{
+    if (a->order[0] != b->order[0]) {
+        return a->order[0] > b->order[0];
+    }
+    return a->order[1] != b->order[1] ? a->order[1] < b->order[1] : a->node < b->node;
+}
+
+/* The cuts of a cell in their order. */
+static int find_bisections(const struct cutting *cutting, const int32_t *node, struct bisection bisections[6])
+{
+    const struct lattice *lattice = cutting->lattice;
+    int count = 0;
+    for (int k = 0; k <= lattice->dim; k++) {
+        for (int l = k + 1; l <= lattice->dim; l++) {
+            int64_t edge = lattice->label[node[k]] != lattice->label[node[l]]
+                               ? lattice_edge(lattice, node[k], node[l])
+                               : -1;
+            if (edge < 0) {
+                continue;
+            }
+            struct bisection fresh = {.end = {node[k], node[l]}, .node = cutting->cut_node[edge]};
+            set_order(cutting, node, &fresh);
+            int at = count++;
+            for (; at > 0 && comes_before(&fresh, &bisections[at - 1]); at--) {
+                bisections[at] = bisections[at - 1];
+            }
+            bisections[at] = fresh;
+        }
+    }
+    return count;
+}
+
+/* Cut one cell of the lattice, and append its pieces. */
+static enum status cut_cell(struct cutting *cutting, const int32_t *node, struct error *error)
+{
+    const struct lattice *lattice = cutting->lattice;
+    int corners = lattice->dim + 1, count = 1;
+    int32_t piece[PIECES_MOST][4];
+    struct bisection bisections[6];
+    memcpy(piece[0], node, (size_t)corners * sizeof *node);
+    int bisection_count = find_bisections(cutting, node, bisections);
+    for (int b = 0; b < bisection_count; b++) {
+        int before = count;
+        for (int i = 0; i < before; i++) {
+            int first = -1, second = -1;
+            for (int k = 0; k < corners; k++) {
+                first = piece[i][k] == bisections[b].end[0] ? k : first;
+                second = piece[i][k] == bisections[b].end[1] ? k : second;
+            }
+            if (first >= 0 && second >= 0) {
+                memcpy(piece[count], piece[i], sizeof piece[count]);
+                piece[i][first] = bisections[b].node;
+                piece[count++][second] = bisections[b].node;
+            }
+        }
+    }
+    for (int i = 0; i < count; i++) {
+        enum status status = append(cutting, piece[i], error);
+        if (status != STATUS_OK) {
+            return status;
+        }
+    }
+    return STATUS_OK;
+}
+
+/* Number the cuts behind the nodes of the lattice; how many nodes there are then. */
+static enum status set_nodes(struct cutting *cutting, int64_t *count, struct error *error)
+{
+    const struct lattice *lattice = cutting->lattice;
+    enum status status;
+    int dim = lattice->dim;
+    *count = lattice->node_count;
+    TRY(NEW_ARRAY(&cutting->cut_node, lattice->edge_count, error));
+    for (int64_t e = 0; e < lattice->edge_count; e++) {
+        cutting->cut_node[e] = lattice->cut[e] > 0 ? (int32_t)(*count)++ : -1;
+    }
+    if (*count > INT32_MAX) {
+        TRY(fail(error, STATUS_INPUT, "more than 2147483647 nodes: a larger spacing?"));
+    }
+    TRY(NEW_ARRAY(&cutting->x, *count * dim, error));
+    memcpy(cutting->x, lattice->x, (size_t)(lattice->node_count * dim) * sizeof *cutting->x);
+    for (int64_t e = 0; e < lattice->edge_count; e++) {
+        const double *from = lattice->x + (int64_t)lattice->end[2 * e] * dim;
+        const double *to = lattice->x + (int64_t)lattice->end[2 * e + 1] * dim;
+        for (int d = 0; d < dim && lattice->cut[e] > 0; d++) {
+            cutting->x[(int64_t)cutting->cut_node[e] * dim + d] =
+                from[d] + lattice->cut[e] * (to[d] - from[d]);
+        }
+    }
+done:
+    return status;
+}
+
+/* Number the nodes of cells anew, without those of no cell; x is replaced. */
+static enum status compact(struct cutting *cutting, int64_t count, struct error *error)
+{
+    struct stuffing *stuffing = cutting->stuffing;
+    int dim = stuffing->dim;
+    int32_t *number = NULL;
+    enum status status;
+    TRY(NEW_ARRAY(&number, count, error));
+    for (int64_t i = 0; i < stuffing->cell_count * (dim + 1); i++) {
+        number[stuffing->cell[i]] = 1;
+    }
+    for (int64_t n = 0; n < count; n++) {
+        if (number[n] != 0) {
+            memmove(cutting->x + stuffing->node_count * dim, cutting->x + n * dim,
+                    (size_t)dim * sizeof(double));
+            number[n] = (int32_t)stuffing->node_count++;
+        }
+    }
+    for (int64_t i = 0; i < stuffing->cell_count * (dim + 1); i++) {
+        stuffing->cell[i] = number[stuffing->cell[i]];
+    }
+    stuffing->x = cutting->x;
+    cutting->x = NULL;
+done:
+    free(number);
+    return status;
+}
+
+enum status lattice_cells(const struct lattice *lattice, struct stuffing *stuffing, struct error *error)
+{
+    struct cutting cutting = {.lattice = lattice, .stuffing = stuffing};
+    enum status status;
+    int64_t count;
+    *stuffing = (struct stuffing){.dim = lattice->dim};
+    TRY(set_nodes(&cutting, &count, error));
+    for (int64_t c = 0; c < lattice->cell_count; c++) {
+        TRY(cut_cell(&cutting, lattice->cell + c * (lattice->dim + 1), error));
+    }
+    TRY(compact(&cutting, count, error));
+done:
+    free(cutting.x);
+    free(cutting.cut_node);
+    if (status != STATUS_OK) {
+        stuffing_free(stuffing);
+    }
+    return status;
+}

@@ -1,0 +1,180 @@
+#include "approx/stuffing_private.h"
+#include "base/memory.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* A cut within so much of an edge's length moves the point. Edges along the axes and diagonals of cubes:
+ * Labelle and Shewchuk 2007, section 3, for the best bound of the angles; diagonals of sides, where leaves of
+ * two sizes meet, and triangles: between these. */
+static const double near_axis = 0.24999, near_cube = 0.41189, near_side = 0.3, near_plane = 0.35;
+
+static int compare_keys(const void *left, const void *right)
+{
+    uint64_t a = *(const uint64_t *)left, b = *(const uint64_t *)right;
+    return (a > b) - (a < b);
+}
+
+/* Edges of cells between points of different labels, counted or, where there is room, stored. */
+static int64_t collect(const struct lattice *lattice, uint64_t *key)
+{
+    int corners = lattice->dim + 1;
+    int64_t count = 0;
+    for (int64_t c = 0; c < lattice->cell_count; c++) {
+        const int32_t *node = lattice->cell + c * corners;
+        for (int k = 0; k < corners; k++) {
+            for (int l = k + 1; l < corners; l++) {
+                uint64_t a = (uint64_t)node[k], b = (uint64_t)node[l];
+                if (lattice->label[a] == lattice->label[b]) {
+                    continue;
+                }
+                if (key != NULL) {
+                    key[count] = a < b ? a << 32 | b : b << 32 | a;
+                }
+                count++;
+            }
+        }
+    }
+    return count;
+}
+
+static enum status find_edges(struct lattice *lattice, struct error *error)
+{
+    enum status status;
+    uint64_t *key = NULL;
+    int64_t count = collect(lattice, NULL);
+    TRY(NEW_ARRAY(&key, count, error));
+    collect(lattice, key);
+    qsort(key, (size_t)count, sizeof *key, compare_keys);
+    for (int64_t i = 0; i < count; i++) {
+        if (i == 0 || key[i] != key[i - 1]) {
+            key[lattice->edge_count++] = key[i];
+        }
+    }
+    TRY(NEW_ARRAY(&lattice->end, 2 * lattice->edge_count, error));
+    TRY(NEW_ARRAY(&lattice->cut, lattice->edge_count, error));
+    TRY(NEW_ARRAY(&lattice->edge_ptr, lattice->node_count + 2, error));
+    TRY(NEW_ARRAY(&lattice->edge_idx, 2 * lattice->edge_count, error));
+    TRY(NEW_ARRAY(&lattice->on, lattice->node_count, error));
+    int64_t *ptr = lattice->edge_ptr;
+    for (int64_t e = 0; e < lattice->edge_count; e++) {
+        lattice->end[2 * e] = (int32_t)(key[e] >> 32);
+        lattice->end[2 * e + 1] = (int32_t)(key[e] & UINT32_MAX);
+        ptr[lattice->end[2 * e] + 2]++;
+        ptr[lattice->end[2 * e + 1] + 2]++;
+    }
+    for (int64_t n = 0; n < lattice->node_count; n++) {
+        ptr[n + 2] += ptr[n + 1];
+    }
+    for (int64_t i = 0; i < 2 * lattice->edge_count; i++) {
+        lattice->edge_idx[ptr[lattice->end[i] + 1]++] = (int32_t)(i / 2);
+    }
+done:
+    free(key);
+    return status;
+}
+
+int64_t lattice_edge(const struct lattice *lattice, int32_t p, int32_t q)
+{
+    for (int64_t i = lattice->edge_ptr[p]; i < lattice->edge_ptr[p + 1]; i++) {
+        int64_t edge = lattice->edge_idx[i];
+        if (lattice->cut[edge] > 0 && (lattice->end[2 * edge] == q || lattice->end[2 * edge + 1] == q)) {
+            return edge;
+        }
+    }
+    return -1;
+}
+
+/* The fraction of an edge, from its first end, at which the share of the first end's label ceases to be the
+ * larger one
+ * (`strictly`), or begins to be the smaller one. */
+static double change(const struct lattice *lattice, int64_t edge, bool strictly)
+{
+    const int32_t *end = lattice->end + 2 * edge;
+    const double *p = lattice->x + (int64_t)end[0] * lattice->dim,
+                 *q = lattice->x + (int64_t)end[1] * lattice->dim;
+    int32_t a = lattice->label[end[0]], b = lattice->label[end[1]];
+    double low = 0, high = 1;
+    for (int step = 0; step < 16; step++) {
+        double t = (low + high) / 2, x[3];
+        struct label_mix mix;
+        for (int d = 0; d < lattice->dim; d++) {
+            x[d] = p[d] + t * (q[d] - p[d]);
+        }
+        labels_mix(lattice->labels, x, &mix);
+        double difference = label_share(&mix, a) - label_share(&mix, b);
+        if (strictly ? difference > 0 : difference >= 0) {
+            low = t;
+        } else {
+            high = t;
+        }
+    }
+    return (low + high) / 2;
+}
+
+static double near_end(const struct lattice *lattice, int64_t edge)
+{
+    const int32_t *p = lattice->place + 3 * (int64_t)lattice->end[2 * edge];
+    const int32_t *q = lattice->place + 3 * (int64_t)lattice->end[2 * edge + 1];
+    int along = (p[0] != q[0]) + (p[1] != q[1]) + (p[2] != q[2]);
+    return lattice->dim == 2 ? near_plane : along == 1 ? near_axis : along == 2 ? near_side : near_cube;
+}
+
+static double length_of(const struct lattice *lattice, int64_t edge)
+{
+    const int32_t *end = lattice->end + 2 * edge;
+    double square = 0;
+    for (int d = 0; d < lattice->dim; d++) {
+        double step =
+            lattice->x[(int64_t)end[1] * lattice->dim + d] - lattice->x[(int64_t)end[0] * lattice->dim + d];
+        square += step * step;
+    }
+    return sqrt(square);
+}
+
+/* Move a point onto the nearest of the cuts that lie near it; the edges there are cut no more. */
+static void snap(struct lattice *lattice, int64_t node)
+{
+    int dim = lattice->dim;
+    int64_t best = -1;
+    double least = INFINITY, fraction = 0;
+    for (int64_t i = lattice->edge_ptr[node]; i < lattice->edge_ptr[node + 1]; i++) {
+        int64_t edge = lattice->edge_idx[i];
+        double cut = lattice->cut[edge], t = lattice->end[2 * edge] == node ? cut : 1 - cut;
+        if (cut > 0 && t < near_end(lattice, edge) && t * length_of(lattice, edge) < least) {
+            least = t * length_of(lattice, edge);
+            fraction = t;
+            best = edge;
+        }
+    }
+    if (best < 0) {
+        return;
+    }
+    const int32_t *end = lattice->end + 2 * best;
+    const double *other = lattice->x + (int64_t)(end[0] == node ? end[1] : end[0]) * dim;
+    lattice->on[node] = true;
+    for (int d = 0; d < dim; d++) {
+        lattice->x[node * dim + d] += fraction * (other[d] - lattice->x[node * dim + d]);
+    }
+    for (int64_t i = lattice->edge_ptr[node]; i < lattice->edge_ptr[node + 1]; i++) {
+        lattice->cut[lattice->edge_idx[i]] = 0;
+    }
+}
+
+enum status lattice_cut(struct lattice *lattice, struct error *error)
+{
+    enum status status = find_edges(lattice, error);
+    if (status != STATUS_OK) {
+        return status;
+    }
+    /* Where a third label lies between the two, their shares are equal, 0, over a stretch: its middle. */
+#pragma omp parallel for schedule(dynamic, 256)
+    for (int64_t e = 0; e < lattice->edge_count; e++) {
+        lattice->cut[e] = (change(lattice, e, true) + change(lattice, e, false)) / 2;
+    }
+    for (int64_t n = 0; n < lattice->node_count; n++) {
+        snap(lattice, n);
+    }
+    return STATUS_OK;
+}

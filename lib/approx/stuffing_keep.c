@@ -1,0 +1,329 @@
+#include "approx/cells.h"
+#include "approx/stuffing_private.h"
+#include "base/memory.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* ---- stars ---- */
+
+static void add_label(struct stuffing_star *star, int64_t node, int32_t label)
+{
+    int count = star->labels[node];
+    for (int i = 0; i < count; i++) {
+        if (star->label[node][i] == label) {
+            return;
+        }
+    }
+    if (count < STUFFING_MOST_LABELS) {
+        star->label[node][count] = (uint16_t)label;
+        star->labels[node]++;
+    }
+}
+
+enum status star_make(const struct stuffing *stuffing, struct stuffing_star *star, struct error *error)
+{
+    enum status status;
+    int corners = stuffing->dim + 1;
+    *star = (struct stuffing_star){0};
+    TRY(NEW_ARRAY(&star->ptr, stuffing->node_count + 2, error));
+    TRY(NEW_ARRAY(&star->cell, stuffing->cell_count * corners, error));
+    TRY(NEW_ARRAY(&star->label, stuffing->node_count, error));
+    TRY(NEW_ARRAY(&star->labels, stuffing->node_count, error));
+    for (int64_t i = 0; i < stuffing->cell_count * corners; i++) {
+        star->ptr[stuffing->cell[i] + 2]++;
+        add_label(star, stuffing->cell[i], stuffing->label[i / corners]);
+    }
+    for (int64_t n = 0; n < stuffing->node_count; n++) {
+        star->ptr[n + 2] += star->ptr[n + 1];
+    }
+    for (int64_t i = 0; i < stuffing->cell_count * corners; i++) {
+        star->cell[star->ptr[stuffing->cell[i] + 1]++] = (int32_t)(i / corners);
+    }
+    for (int64_t i = 0; i < stuffing->facet_count * stuffing->dim; i++) {
+        add_label(star, stuffing->facet[i], stuffing->side[2 * (i / stuffing->dim) + 1]);
+    }
+done:
+    if (status != STATUS_OK) {
+        star_free(star);
+    }
+    return status;
+}
+
+void star_free(struct stuffing_star *star)
+{
+    free(star->ptr);
+    free(star->cell);
+    free(star->label);
+    free(star->labels);
+    *star = (struct stuffing_star){0};
+}
+
+/* ---- what hangs by a node or an edge ---- */
+
+/* Cells to keep, and scratch for their groups at a node. */
+struct keeping {
+    struct stuffing *stuffing;
+    struct cells cells;
+    int32_t *across;
+    bool *wanted;
+    int32_t *group; /* cell_count: -1 */
+    bool *apart;    /* nodes: whether there are others at the same place */
+    int32_t *stack;
+};
+
+/* Give the cells at a node that hang together by faces there one number; returns how many groups there are.
+ */
+static int32_t find_groups(struct keeping *keeping, const struct stuffing_star *star, int64_t node)
+{
+    int corners = keeping->cells.dim + 1;
+    int32_t count = 0;
+    for (int64_t i = star->ptr[node]; i < star->ptr[node + 1]; i++) {
+        int64_t depth = 0;
+        if (!keeping->wanted[star->cell[i]] || keeping->group[star->cell[i]] >= 0) {
+            continue;
+        }
+        keeping->stack[depth++] = star->cell[i];
+        keeping->group[star->cell[i]] = count;
+        while (depth > 0) {
+            int64_t cell = keeping->stack[--depth];
+            for (int k = 0; k < corners; k++) {
+                int32_t next = keeping->across[cell * corners + k];
+                bool at_node = keeping->cells.node[cell * corners + k] != node;
+                if (at_node && next >= 0 && keeping->wanted[next] && keeping->group[next] < 0) {
+                    keeping->group[next] = count;
+                    keeping->stack[depth++] = next;
+                }
+            }
+        }
+        count++;
+    }
+    return count;
+}
+
+/* Give the cells of each group at a node but the first a node of their own, at the same place. */
+static void cut_apart(struct keeping *keeping, const struct stuffing_star *star, int64_t node, int32_t count)
+{
+    struct stuffing *stuffing = keeping->stuffing;
+    int dim = stuffing->dim, corners = dim + 1;
+    for (int64_t i = star->ptr[node]; i < star->ptr[node + 1]; i++) {
+        int64_t cell = star->cell[i];
+        for (int k = 0; k < corners && keeping->group[cell] > 0; k++) {
+            if (stuffing->cell[cell * corners + k] == node) {
+                stuffing->cell[cell * corners + k] = (int32_t)stuffing->node_count + keeping->group[cell] - 1;
+            }
+        }
+    }
+    keeping->apart[node] = true;
+    for (int32_t g = 1; g < count; g++) {
+        memcpy(stuffing->x + stuffing->node_count * dim, stuffing->x + node * dim,
+               (size_t)dim * sizeof(double));
+        keeping->apart[stuffing->node_count++] = true;
+    }
+    stuffing->pinched++;
+}
+
+/* Cut the body where its parts hang together by nodes or edges alone. Nodes of several groups are counted
+ * first. */
+static enum status unpinch(struct keeping *keeping, const struct stuffing_star *star, struct error *error)
+{
+    struct stuffing *stuffing = keeping->stuffing;
+    enum status status;
+    int64_t nodes = stuffing->node_count, fresh = 0;
+    double *x = NULL;
+    for (int cutting = 0; cutting < 2; cutting++) {
+        for (int64_t n = 0; n < nodes; n++) {
+            int32_t count = find_groups(keeping, star, n);
+            fresh += cutting == 0 && count > 1 ? count - 1 : 0;
+            if (cutting == 1 && count > 1) {
+                cut_apart(keeping, star, n, count);
+            }
+            for (int64_t i = star->ptr[n]; i < star->ptr[n + 1]; i++) {
+                keeping->group[star->cell[i]] = -1;
+            }
+        }
+        if (cutting == 0) {
+            TRY(NEW_ARRAY(&keeping->apart, nodes + fresh, error));
+            TRY(NEW_ARRAY(&x, (nodes + fresh) * stuffing->dim, error));
+            memcpy(x, stuffing->x, (size_t)(nodes * stuffing->dim) * sizeof *x);
+            free(stuffing->x);
+            stuffing->x = x;
+        }
+    }
+    keeping->cells.node_count = stuffing->node_count;
+    keeping->cells.x = stuffing->x;
+done:
+    return status;
+}
+
+/* ---- the boundary ---- */
+
+/* The face opposite a corner, oriented outward of a positively oriented cell. */
+static void face_of(int dim, const int32_t *node, int opposite, int32_t *face)
+{
+    static const int of_triangle[3][2] = {{1, 2}, {2, 0}, {0, 1}};
+    static const int of_tetrahedron[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};
+    for (int k = 0; k < dim; k++) {
+        face[k] = node[dim == 2 ? of_triangle[opposite][k] : of_tetrahedron[opposite][k]];
+    }
+}
+
+/* The boundary of the wanted cells, counted or, where there is room, stored. */
+static int64_t find_facets(const struct keeping *keeping, int32_t *facet, int32_t *side)
+{
+    int dim = keeping->cells.dim;
+    int64_t count = 0;
+    for (int64_t c = 0; c < keeping->cells.count; c++) {
+        for (int k = 0; k <= dim && keeping->wanted[c]; k++) {
+            int32_t next = keeping->across[c * (dim + 1) + k];
+            if (next >= 0 && keeping->wanted[next]) {
+                continue;
+            }
+            if (facet != NULL) {
+                face_of(dim, keeping->cells.node + c * (dim + 1), k, facet + count * dim);
+                side[2 * count] = keeping->stuffing->label[c];
+                side[2 * count + 1] = next >= 0 ? keeping->stuffing->label[next] : 0;
+            }
+            count++;
+        }
+    }
+    return count;
+}
+
+/* Drop the cells that are not wanted, and the nodes of none; all arrays are numbered anew. */
+static enum status drop(struct keeping *keeping, struct error *error)
+{
+    struct stuffing *stuffing = keeping->stuffing;
+    enum status status;
+    int corners = stuffing->dim + 1;
+    int64_t cells = 0, nodes = 0;
+    int32_t *number = NULL;
+    TRY(NEW_ARRAY(&number, stuffing->node_count, error));
+    for (int64_t c = 0; c < stuffing->cell_count; c++) {
+        if (keeping->wanted[c]) {
+            memmove(stuffing->cell + cells * corners, stuffing->cell + c * corners,
+                    (size_t)corners * sizeof *number);
+            stuffing->label[cells++] = stuffing->label[c];
+        }
+    }
+    stuffing->cell_count = cells;
+    for (int64_t i = 0; i < cells * corners; i++) {
+        number[stuffing->cell[i]] = 1;
+    }
+    for (int64_t n = 0; n < stuffing->node_count; n++) {
+        if (number[n] != 0) {
+            memmove(stuffing->x + nodes * stuffing->dim, stuffing->x + n * stuffing->dim,
+                    (size_t)stuffing->dim * sizeof *stuffing->x);
+            keeping->apart[nodes] = keeping->apart[n];
+            number[n] = (int32_t)nodes++;
+        }
+    }
+    stuffing->node_count = nodes;
+    for (int64_t i = 0; i < cells * corners; i++) {
+        stuffing->cell[i] = number[stuffing->cell[i]];
+    }
+    for (int64_t i = 0; i < stuffing->facet_count * stuffing->dim; i++) {
+        stuffing->facet[i] = number[stuffing->facet[i]];
+    }
+done:
+    free(number);
+    return status;
+}
+
+/* The connected body of wanted cells that holds a cell: its volume and how many cells it has. Gives these the
+ * number. */
+static double fill_body(struct keeping *keeping, int64_t first, int32_t number, int64_t *count)
+{
+    int corners = keeping->cells.dim + 1;
+    int64_t depth = 0;
+    double volume = 0;
+    *count = 0;
+    keeping->stack[depth++] = (int32_t)first;
+    keeping->group[first] = number;
+    while (depth > 0) {
+        int64_t cell = keeping->stack[--depth];
+        volume += cell_volume(&keeping->cells, cell);
+        ++*count;
+        for (int k = 0; k < corners; k++) {
+            int32_t next = keeping->across[cell * corners + k];
+            if (next >= 0 && keeping->wanted[next] && keeping->group[next] < 0) {
+                keeping->group[next] = number;
+                keeping->stack[depth++] = next;
+            }
+        }
+    }
+    return volume;
+}
+
+/* Of the connected bodies leave out those about a single point of the lattice, which has no more cells about
+ * it than that, or all but the largest. */
+static void keep_bodies(struct keeping *keeping, bool largest_only)
+{
+    struct stuffing *stuffing = keeping->stuffing;
+    int32_t number = 0, largest = -1;
+    double most = 0;
+    for (int64_t c = 0; c < keeping->cells.count; c++) {
+        int64_t count;
+        if (!keeping->wanted[c] || keeping->group[c] >= 0) {
+            continue;
+        }
+        double volume = fill_body(keeping, c, number, &count);
+        if (volume > most) {
+            most = volume;
+            largest = number;
+        }
+        bool speck = count <= (keeping->cells.dim == 3 ? 24 : 6);
+        stuffing->specks += speck;
+        stuffing->speck_volume += speck ? volume : 0;
+        for (int64_t d = c; d < keeping->cells.count && speck; d++) {
+            keeping->wanted[d] = keeping->wanted[d] && keeping->group[d] != number;
+        }
+        number++;
+    }
+    for (int64_t c = 0; c < keeping->cells.count && largest_only; c++) {
+        keeping->wanted[c] = keeping->wanted[c] && keeping->group[c] == largest;
+    }
+}
+
+enum status stuffing_keep(const struct stuffing_options *options, struct stuffing *stuffing, bool **apart,
+                          struct error *error)
+{
+    enum status status;
+    int dim = stuffing->dim;
+    int64_t count = stuffing->cell_count;
+    struct stuffing_star star = {0};
+    struct keeping keeping = {.stuffing = stuffing,
+                              .cells = {dim, stuffing->node_count, stuffing->x, count, stuffing->cell}};
+    *apart = NULL;
+    TRY(NEW_ARRAY(&keeping.across, count * (dim + 1), error));
+    TRY(NEW_ARRAY(&keeping.wanted, count, error));
+    TRY(NEW_ARRAY(&keeping.group, count, error));
+    TRY(NEW_ARRAY(&keeping.stack, count + 1, error));
+    TRY(cells_across(&keeping.cells, keeping.across, error));
+    TRY(star_make(stuffing, &star, error));
+    for (int64_t c = 0; c < count; c++) {
+        keeping.wanted[c] = options->keep[stuffing->label[c]];
+        keeping.group[c] = -1;
+    }
+    keep_bodies(&keeping, options->largest);
+    for (int64_t c = 0; c < count; c++) {
+        keeping.group[c] = -1;
+    }
+    TRY(unpinch(&keeping, &star, error));
+    stuffing->facet_count = find_facets(&keeping, NULL, NULL);
+    TRY(NEW_ARRAY(&stuffing->facet, stuffing->facet_count * dim, error));
+    TRY(NEW_ARRAY(&stuffing->side, stuffing->facet_count * 2, error));
+    find_facets(&keeping, stuffing->facet, stuffing->side);
+    TRY(drop(&keeping, error));
+    *apart = keeping.apart;
+    keeping.apart = NULL;
+done:
+    star_free(&star);
+    free(keeping.across);
+    free(keeping.wanted);
+    free(keeping.group);
+    free(keeping.stack);
+    free(keeping.apart);
+    return status;
+}

@@ -1,0 +1,103 @@
+#include "approx/stuffing_private.h"
+#include "base/memory.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { SWEEPS = 10, STEPS = 5 };
+
+/* Mean length of the edges of the cells at a node that end there. */
+static double edge_length(const struct stuffing *stuffing, const struct stuffing_star *star, int64_t node)
+{
+    int dim = stuffing->dim;
+    double sum = 0;
+    int64_t count = 0;
+    for (int64_t i = star->ptr[node]; i < star->ptr[node + 1]; i++) {
+        for (int k = 0; k <= dim; k++) {
+            int64_t other = stuffing->cell[(int64_t)star->cell[i] * (dim + 1) + k];
+            double square = 0;
+            for (int d = 0; d < dim; d++) {
+                double step = stuffing->x[other * dim + d] - stuffing->x[node * dim + d];
+                square += step * step;
+            }
+            sum += sqrt(square);
+            count += other != node;
+        }
+    }
+    return sum / (double)count;
+}
+
+/* Put a place onto the interface of a node, or leave it where it is no farther from there than the slack, m.
+ * False where there is no interface near. */
+static bool keep_to_interface(const struct labels *labels, const struct stuffing_star *star, int64_t node,
+                              double slack, double place[3])
+{
+    double projected[3] = {place[0], place[1], place[2]}, square = 0;
+    if (star->labels[node] < 2) {
+        return true;
+    }
+    if (!interface_project(labels, star->labels[node], star->label[node], projected)) {
+        return false;
+    }
+    for (int d = 0; d < labels->dim; d++) {
+        square += (projected[d] - place[d]) * (projected[d] - place[d]);
+    }
+    if (!(sqrt(square) <= slack)) {
+        memcpy(place, projected, (size_t)labels->dim * sizeof *place);
+    }
+    return true;
+}
+
+/* Try steps in all directions, along the axes and between them, of falling length; nodes of interfaces stay
+ * there, but for the slack. Takes the best of each length that improves the poorest cell at the node. */
+static bool search(const struct labels *labels, double slack, struct stuffing *stuffing,
+                   const struct stuffing_star *star, int64_t node)
+{
+    int dim = stuffing->dim, directions = dim == 2 ? 9 : 27;
+    double *x = stuffing->x + node * dim, length = 0.25 * edge_length(stuffing, star, node);
+    double score = star_score(stuffing, star, node);
+    bool improved = false;
+    for (int step = 0; step < STEPS; step++, length /= 2) {
+        double here[3] = {0}, best[3] = {0}, best_score = score;
+        memcpy(here, x, (size_t)dim * sizeof *x);
+        for (int direction = 0; direction < directions; direction++) {
+            static const int power[3] = {1, 3, 9};
+            double norm = 0, place[3] = {0};
+            for (int d = 0; d < dim; d++) {
+                place[d] = direction / power[d] % 3 - 1;
+                norm += place[d] * place[d];
+            }
+            for (int d = 0; d < dim; d++) {
+                place[d] = here[d] + (norm > 0 ? length / sqrt(norm) * place[d] : 0);
+            }
+            if (!keep_to_interface(labels, star, node, slack, place)) {
+                continue;
+            }
+            memcpy(x, place, (size_t)dim * sizeof *x);
+            double fresh = star_score(stuffing, star, node);
+            if (fresh > best_score) {
+                best_score = fresh;
+                memcpy(best, place, sizeof best);
+            }
+        }
+        improved = improved || best_score > score;
+        memcpy(x, best_score > score ? best : here, (size_t)dim * sizeof *x);
+        score = best_score;
+    }
+    return improved;
+}
+
+void stuffing_repair(const struct labels *labels, double least, double slack, struct stuffing *stuffing,
+                     const struct stuffing_star *star)
+{
+    bool improved = true;
+    for (int sweep = 0; sweep < SWEEPS && improved; sweep++) {
+        improved = false;
+        for (int64_t c = 0; c < stuffing->cell_count; c++) {
+            for (int k = 0; k <= stuffing->dim && stuffing_score(stuffing, c) < least; k++) {
+                int64_t node = stuffing->cell[c * (stuffing->dim + 1) + k];
+                improved = search(labels, slack, stuffing, star, node) || improved;
+            }
+        }
+    }
+}

@@ -1,0 +1,198 @@
+#include "approx/cells.h"
+#include "approx/stuffing_private.h"
+#include "base/dense.h"
+#include "base/memory.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Interfaces are moved off their place by at most so much of a voxel for the sake of the labels' volumes. */
+static const double most_offset = 0.55;
+enum { SWEEPS = 12 };
+
+/* Gradient of a cell's volume with respect to the place of its corner k. */
+static void volume_gradient(const struct stuffing *stuffing, int64_t cell, int k, double gradient[3])
+{
+    int dim = stuffing->dim;
+    static const int of_triangle[3][2] = {{1, 2}, {2, 0}, {0, 1}};
+    static const int of_tetrahedron[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};
+    const double *x[3];
+    for (int i = 0; i < dim; i++) {
+        int corner = dim == 2 ? of_triangle[k][i] : of_tetrahedron[k][i];
+        x[i] = stuffing->x + (int64_t)stuffing->cell[cell * (dim + 1) + corner] * dim;
+    }
+    if (dim == 2) {
+        gradient[0] = -(x[1][1] - x[0][1]) / 2;
+        gradient[1] = (x[1][0] - x[0][0]) / 2;
+        return;
+    }
+    for (int d = 0; d < 3; d++) {
+        int e = (d + 1) % 3, f = (d + 2) % 3;
+        gradient[d] =
+            -((x[1][e] - x[0][e]) * (x[2][f] - x[0][f]) - (x[1][f] - x[0][f]) * (x[2][e] - x[0][e])) / 6;
+    }
+}
+
+struct volumes {
+    const struct labels *labels;
+    struct stuffing *stuffing;
+    const struct stuffing_star *star;
+    const bool *apart; /* nodes that stay */
+    double *wanted;    /* labels->count: of the voxels, m3; 0: not to be kept */
+    double *pressure;  /* labels->count */
+    double *matrix;    /* labels->count squared */
+    double *place;     /* nodes: before the first move */
+};
+
+/* Gradients of the volumes of the labels at a node: one row for each label of its star. */
+static void node_gradients(const struct volumes *volumes, int64_t node, double G[STUFFING_MOST_LABELS][3])
+{
+    const struct stuffing_star *star = volumes->star;
+    int corners = volumes->stuffing->dim + 1;
+    memset(G, 0, STUFFING_MOST_LABELS * sizeof *G);
+    for (int64_t i = star->ptr[node]; i < star->ptr[node + 1]; i++) {
+        double gradient[3];
+        int64_t cell = star->cell[i];
+        int k = 0, row = 0;
+        while (k < corners - 1 && volumes->stuffing->cell[cell * corners + k] != node) {
+            k++;
+        }
+        while (row < star->labels[node] && star->label[node][row] != volumes->stuffing->label[cell]) {
+            row++;
+        }
+        volume_gradient(volumes->stuffing, cell, k, gradient);
+        for (int d = 0; d < corners - 1 && row < star->labels[node]; d++) {
+            G[row][d] += gradient[d];
+        }
+    }
+}
+
+/* One over the area of the interfaces at a node: steps are equal where pressures are. */
+static double node_weight(int dim, double G[STUFFING_MOST_LABELS][3])
+{
+    double most = 0;
+    for (int i = 0; i < STUFFING_MOST_LABELS; i++) {
+        double square = 0;
+        for (int d = 0; d < dim; d++) {
+            square += G[i][d] * G[i][d];
+        }
+        most = fmax(most, sqrt(square));
+    }
+    return most > 0 ? 1 / most : 0;
+}
+
+/* The least moves of the nodes on interfaces, each weighted by its area, that correct the volumes to first
+ * order are sums of the volumes' gradients: find the factors of these. False when there is nothing to
+ * correct. */
+static bool find_pressures(struct volumes *volumes)
+{
+    int32_t count = volumes->labels->count;
+    const struct stuffing *stuffing = volumes->stuffing;
+    int dim = stuffing->dim;
+    struct cells cells = {dim, stuffing->node_count, stuffing->x, stuffing->cell_count, stuffing->cell};
+    double worst = 0, trace = 0;
+    memcpy(volumes->pressure, volumes->wanted, (size_t)count * sizeof(double));
+    memset(volumes->matrix, 0, (size_t)count * (size_t)count * sizeof(double));
+    for (int64_t c = 0; c < cells.count; c++) {
+        volumes->pressure[stuffing->label[c]] -= cell_volume(&cells, c);
+    }
+    for (int32_t l = 0; l < count; l++) {
+        volumes->pressure[l] = volumes->wanted[l] > 0 ? volumes->pressure[l] : 0;
+        worst = fmax(worst, fabs(volumes->pressure[l]) - 1e-4 * volumes->wanted[l]);
+    }
+    for (int64_t n = 0; n < stuffing->node_count; n++) {
+        double G[STUFFING_MOST_LABELS][3];
+        const uint16_t *label = volumes->star->label[n];
+        if (volumes->star->labels[n] < 2 || volumes->apart[n]) {
+            continue;
+        }
+        node_gradients(volumes, n, G);
+        double weight = node_weight(dim, G);
+        for (int i = 0; i < volumes->star->labels[n]; i++) {
+            for (int j = 0; j < volumes->star->labels[n]; j++) {
+                double *entry = &volumes->matrix[label[i] * count + label[j]];
+                for (int d = 0; d < dim; d++) {
+                    *entry += weight * G[i][d] * G[j][d];
+                }
+            }
+        }
+    }
+    for (int32_t l = 0; l < count; l++) {
+        trace += volumes->matrix[l * count + l];
+    }
+    for (int32_t l = 0; l < count; l++) {
+        volumes->matrix[l * count + l] += 1e-9 * trace;
+    }
+    return worst > 0 && dense_factorise(count, volumes->matrix) &&
+           (dense_solve(count, volumes->matrix, volumes->pressure), true);
+}
+
+static void correct_volumes(struct volumes *volumes)
+{
+    struct stuffing *stuffing = volumes->stuffing;
+    int dim = stuffing->dim;
+    double most = most_offset * labels_voxel(volumes->labels);
+    for (int64_t n = 0; n < stuffing->node_count; n++) {
+        double G[STUFFING_MOST_LABELS][3], target[3] = {0}, length = 0;
+        const double *place = volumes->place + n * dim;
+        if (volumes->star->labels[n] < 2 || volumes->apart[n]) {
+            continue;
+        }
+        node_gradients(volumes, n, G);
+        double weight = node_weight(dim, G);
+        for (int d = 0; d < dim; d++) {
+            target[d] = stuffing->x[n * dim + d];
+            for (int i = 0; i < volumes->star->labels[n]; i++) {
+                target[d] += weight * volumes->pressure[volumes->star->label[n][i]] * G[i][d];
+            }
+            length += (target[d] - place[d]) * (target[d] - place[d]);
+        }
+        length = sqrt(length);
+        for (int d = 0; d < dim && length > most; d++) {
+            target[d] = place[d] + (target[d] - place[d]) * most / length;
+        }
+        star_move(stuffing, volumes->star, n, target);
+    }
+}
+
+/* Volumes of the labels by their voxels. */
+static void voxel_volumes(const struct labels *labels, const bool *keep, double *volume)
+{
+    const double(*m)[4] = labels->to_voxel;
+    double det = 0, across = 1;
+    for (int d = 0; d < 3; d++) {
+        if (labels->dim == 2 && labels->size[d] == 1) { /* areas: a slice's thickness is no matter */
+            across = sqrt(m[d][0] * m[d][0] + m[d][1] * m[d][1] + m[d][2] * m[d][2]);
+        }
+        det += m[0][d] * (m[1][(d + 1) % 3] * m[2][(d + 2) % 3] - m[1][(d + 2) % 3] * m[2][(d + 1) % 3]);
+    }
+    for (int64_t i = 0; i < labels->size[0] * labels->size[1] * labels->size[2]; i++) {
+        volume[labels->label[i]] += keep[labels->label[i]] ? 1 : 0;
+    }
+    for (int32_t l = 0; l < labels->count; l++) {
+        volume[l] *= across / fabs(det);
+    }
+}
+
+enum status stuffing_volumes(const struct labels *labels, const bool *keep, const bool *apart,
+                             const struct stuffing_star *star, struct stuffing *stuffing, struct error *error)
+{
+    enum status status;
+    struct volumes volumes = {.labels = labels, .stuffing = stuffing, .star = star, .apart = apart};
+    TRY(NEW_ARRAY(&volumes.wanted, labels->count, error));
+    TRY(NEW_ARRAY(&volumes.pressure, labels->count, error));
+    TRY(NEW_ARRAY(&volumes.matrix, (int64_t)labels->count * labels->count, error));
+    TRY(NEW_ARRAY(&volumes.place, stuffing->node_count * stuffing->dim, error));
+    memcpy(volumes.place, stuffing->x, (size_t)(stuffing->node_count * stuffing->dim) * sizeof(double));
+    voxel_volumes(labels, keep, volumes.wanted);
+    for (int sweep = 0; sweep < SWEEPS && find_pressures(&volumes); sweep++) {
+        correct_volumes(&volumes);
+    }
+done:
+    free(volumes.wanted);
+    free(volumes.pressure);
+    free(volumes.matrix);
+    free(volumes.place);
+    return status;
+}

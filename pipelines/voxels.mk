@@ -1,0 +1,48 @@
+# make voxels: label images of known shapes, random blobs, an atlas and a head through voxels, and the compression of each body by a tenth
+#
+# A row for each image: nodes, cells, whether mts check finds fault, least and largest dihedral angle, the volume of the label that is
+# farthest off, what is lost in thin parts, how far the nodes of interfaces are from them, seconds of the processor; then the
+# compression's status, steps and least J, and what is told of crevices that it closes (folds are allowed).
+VOXELS := $(OUT)/voxels
+VOXELS_SHAPES ?= sphere torus two four thin layer boxes atlas aniso flipped colin27 $(VOXELS_SEEDS:%=blobs-%)
+VOXELS_SEEDS ?= 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19 20
+VOXELS_PHANTOM := $(BUILD)/tests/helper/phantom
+VOXELS_TOOLS := $(addprefix $(BUILD)/bin/,voxels groups shapefn mtled mts)
+
+# What voxels is told, where it is not a spacing of 5 mm.
+voxels.options = -h 5mm
+thin.options = -h 6mm --fine 1.5mm:label_2
+layer.options = -h 2mm
+atlas.options = -h 4mm -l pipelines/voxels/atlas.txt
+colin27.options = -h 8mm --fine 4mm:label_2
+
+.PHONY: voxels
+voxels: $(VOXELS)/voxels.tsv
+	@awk -F '\t' '{ printf "%-9s %6s %7s %5s %6s %6s %7s %7s %6s %4s %6s %6s %5s %7s  %s\n", $$1, $$2, $$3, $$4, $$5, $$6, $$7, $$8, $$9, $$10, $$11, $$12, $$13, $$14, $$15 }' $<
+	@awk -F '\t' 'NR > 1 { n++; good += $$4 == "yes" && $$5 >= 8 && $$6 <= 165; near += $$7 < 1 && $$7 > -1; ran += $$12 == 0 } \
+	    END { printf "\nof %d: valid, angles within 8 to 165 degrees: %d; volumes within 1 %%: %d; compressed: %d\n", n, good, near, ran }' $<
+
+$(VOXELS)/%: export PATH := $(abspath $(BUILD))/bin:$(PATH)
+
+$(VOXELS)/colin27.nii.gz: examples/neurosurgery/colin27_labels.nii.gz
+	@mkdir -p $(@D)
+	cp $< $@
+$(VOXELS)/blobs-%.nii.gz: $(VOXELS_PHANTOM)
+	@mkdir -p $(@D)
+	$< blobs $* > $@
+$(VOXELS)/aniso.nii.gz: $(VOXELS_PHANTOM)
+	@mkdir -p $(@D)
+	$< two 1 1,1.5,3 > $@
+$(VOXELS)/flipped.nii.gz: $(VOXELS_PHANTOM)
+	@mkdir -p $(@D)
+	$< four@flipped 1 1,1,2 > $@
+$(VOXELS)/%.nii.gz: $(VOXELS_PHANTOM)
+	@mkdir -p $(@D)
+	$< $* > $@
+
+$(VOXELS_SHAPES:%=$(VOXELS)/%.row): $(VOXELS)/%.row: $(VOXELS)/%.nii.gz pipelines/voxels/row.sh pipelines/voxels/atlas.txt $(VOXELS_TOOLS)
+	bash pipelines/voxels/row.sh $* $< $(or $($*.options),$(voxels.options)) > $@
+
+$(VOXELS)/voxels.tsv: $(VOXELS_SHAPES:%=$(VOXELS)/%.row) pipelines/voxels.mk
+	(printf 'image\tnodes\tcells\tvalid\tleast_angle\tlargest_angle\tvolume_error_percent\tlost_ml\tfarthest_voxels\tastray\tseconds\tstatus\tsteps\tleast_J\tmessage\n'; \
+	    cat $(filter %.row,$^)) > $@

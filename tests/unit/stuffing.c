@@ -1,0 +1,556 @@
+/* Cells from labels: what must hold for any shape. */
+#include "approx/cells.h"
+#include "approx/parts.h"
+#include "approx/stuffing.h"
+
+#include "label_shapes.h"
+
+#include <omp.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <cmocka.h>
+
+static const double millimetre[3] = {1, 1, 1};
+static const bool all_kept[64] = {
+    false, true, true, true, true, true, true, true, true, true, true, true, true, true, true, true,
+    true,  true, true, true, true, true, true, true, true, true, true, true, true, true, true, true,
+    true,  true, true, true, true, true, true, true, true, true, true, true, true, true, true, true,
+    true,  true, true, true, true, true, true, true, true, true, true, true, true, true, true, true};
+
+static struct labels labels_of(const struct label_shape *shape)
+{
+    struct labels labels = {.label = shape->label, .count = shape->count, .dim = 3};
+    for (int d = 0; d < 3; d++) {
+        labels.size[d] = shape->size[d];
+        labels.to_voxel[d][d] = 1e3 / shape->voxel[d];
+        labels.to_voxel[d][3] = -shape->first[d] / shape->voxel[d];
+    }
+    return labels;
+}
+
+static struct stuffing make(const struct labels *labels, const struct stuffing_options *options)
+{
+    struct stuffing stuffing;
+    struct error error = {""};
+    enum status status = stuffing_make(labels, options, &stuffing, &error);
+    assert_string_equal(error.text, "");
+    assert_int_equal(status, STATUS_OK);
+    return stuffing;
+}
+
+static struct cells cells_of(const struct stuffing *stuffing)
+{
+    return (struct cells){stuffing->dim, stuffing->node_count, stuffing->x, stuffing->cell_count,
+                          stuffing->cell};
+}
+
+/* Positive, conforming, within the bounds of the angles; the facets are the boundary and look outward: the
+ * flux of x through them is dim times the volume. */
+static void check_cells(const struct stuffing *stuffing)
+{
+    struct cells cells = cells_of(stuffing);
+    struct faces faces;
+    struct error error = {""};
+    int dim = stuffing->dim;
+    double volume = 0, flux = 0;
+    assert_true(stuffing->cell_count > 0);
+    assert_int_equal(cells_check(&cells, &error), STATUS_OK);
+    for (int64_t c = 0; c < cells.count; c++) {
+        const double *x[4];
+        double angles[2];
+        for (int k = 0; k <= dim; k++) {
+            x[k] = cells.x + (int64_t)cells.node[c * (dim + 1) + k] * dim;
+        }
+        simplex_angles(dim, x, angles);
+        assert_true(angles[0] >= 8 && angles[1] <= 165);
+        volume += cell_volume(&cells, c);
+    }
+    assert_int_equal(faces_build(&cells, true, &faces, &error), STATUS_OK);
+    assert_int_equal(faces.count, stuffing->facet_count);
+    faces_free(&faces);
+    for (int64_t f = 0; f < stuffing->facet_count; f++) {
+        const int32_t *node = stuffing->facet + f * dim;
+        double normal[3];
+        face_area_vector(dim, stuffing->x, node, normal);
+        for (int d = 0; d < dim; d++) {
+            for (int k = 0; k < dim; k++) {
+                flux += normal[d] * stuffing->x[(int64_t)node[k] * dim + d] / dim;
+            }
+        }
+    }
+    assert_true(fabs(flux / dim / volume - 1) < 1e-9);
+}
+
+/* The volume of each label within a share of that of its voxels. */
+static void check_volumes(const struct labels *labels, const struct label_shape *shape,
+                          const struct stuffing *stuffing, double tolerance)
+{
+    double wanted[64] = {0}, found[64] = {0};
+    struct cells cells = cells_of(stuffing);
+    for (int64_t v = 0; v < labels->size[0] * labels->size[1] * labels->size[2]; v++) {
+        wanted[labels->label[v]] += shape->voxel[0] * shape->voxel[1] * shape->voxel[2] * 1e-9;
+    }
+    for (int64_t c = 0; c < cells.count; c++) {
+        found[stuffing->label[c]] += cell_volume(&cells, c);
+    }
+    for (int l = 1; l < labels->count; l++) {
+        assert_true(fabs(found[l] - wanted[l]) <= tolerance * wanted[l]);
+    }
+}
+
+/* Whether the label is another one within a distance of a place, m, in one of 98 directions. */
+static bool changes_within(const struct labels *labels, const double x[3], double reach)
+{
+    int32_t label = labels_at(labels, x);
+    for (int step = 1; step <= 12; step++) {
+        for (int i = 0; i < 125; i++) {
+            double u[3] = {i % 5 - 2, i / 5 % 5 - 2, i / 25 - 2}, place[3];
+            double norm = sqrt(u[0] * u[0] + u[1] * u[1] + u[2] * u[2]);
+            for (int d = 0; d < 3 && norm > 0; d++) {
+                place[d] = x[d] + reach * step / 12 * u[d] / norm;
+            }
+            if (norm > 0 && labels_at(labels, place) != label) {
+                return true;
+            }
+        }
+    }
+    return false;
+}
+
+/* How many nodes of facets, and of faces between two labels, are farther than .6 voxels from where the label
+ * changes. */
+static int64_t count_astray(const struct labels *labels, const struct stuffing *stuffing)
+{
+    struct cells cells = cells_of(stuffing);
+    struct faces faces;
+    struct error error;
+    int64_t count = 0;
+    bool *seen = calloc((size_t)stuffing->node_count, sizeof *seen);
+    assert_non_null(seen);
+    assert_int_equal(faces_build(&cells, false, &faces, &error), STATUS_OK);
+    for (int64_t f = 0; f < faces.count; f++) {
+        const int32_t *cell = faces.cell + 2 * f;
+        for (int k = 0; k < 3 && (cell[1] < 0 || stuffing->label[cell[0]] != stuffing->label[cell[1]]); k++) {
+            int32_t node = faces.node[3 * f + k];
+            count += !seen[node] &&
+                     !changes_within(labels, stuffing->x + 3 * (int64_t)node, 0.6 * labels_voxel(labels));
+            seen[node] = true;
+        }
+    }
+    faces_free(&faces);
+    free(seen);
+    return count;
+}
+
+static void smooth_shapes(void **state)
+{
+    static const struct {
+        const char *name;
+        double spacing;
+    } cases[] = {{"sphere", 3}, {"sphere", 6},     {"sphere", 12}, {"torus", 4}, {"two", 5},
+                 {"four", 5},   {"four", 0.8 * 5}, {"thin", 2},    {"layer", 2}, {"layer", 1.5}};
+    (void)state;
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        struct label_shape shape;
+        assert_true(label_shape_make(cases[i].name, 1, millimetre, &shape));
+        struct labels labels = labels_of(&shape);
+        struct stuffing_options options = {.spacing = 1e-3 * cases[i].spacing, .keep = all_kept};
+        struct stuffing stuffing = make(&labels, &options);
+        check_cells(&stuffing);
+        check_volumes(&labels, &shape, &stuffing, 0.01);
+        assert_int_equal(count_astray(&labels, &stuffing), 0);
+        stuffing_free(&stuffing);
+        free(shape.label);
+    }
+}
+
+/* Where gaps and necks are narrower than the spacing a few nodes are off. */
+static void random_blobs(void **state)
+{
+    (void)state;
+    for (uint64_t seed = 1; seed <= 20; seed++) {
+        for (int h = 3; h <= 5; h += 2) {
+            struct label_shape shape;
+            assert_true(label_shape_make("blobs", seed, millimetre, &shape));
+            struct labels labels = labels_of(&shape);
+            struct stuffing_options options = {.spacing = 1e-3 * h, .keep = all_kept};
+            struct stuffing stuffing = make(&labels, &options);
+            check_cells(&stuffing);
+            check_volumes(&labels, &shape, &stuffing, 0.01);
+            int64_t astray = count_astray(&labels, &stuffing);
+            assert_true((double)astray <= 0.01 * (double)stuffing.node_count);
+            stuffing_free(&stuffing);
+            free(shape.label);
+        }
+    }
+}
+
+/* The same body from voxels in another order, mirrored along an axis: the same cells. */
+static void orders_of_voxels(void **state)
+{
+    const double voxel[3] = {1, 1.25, 2};
+    struct label_shape shape;
+    (void)state;
+    assert_true(label_shape_make("two", 1, voxel, &shape));
+    struct labels labels = labels_of(&shape), turned = labels;
+    uint16_t *label = calloc((size_t)(shape.size[0] * shape.size[1] * shape.size[2]), sizeof *label);
+    assert_non_null(label);
+    for (int d = 0; d < 3; d++) { /* axes k, i, j, the first one backwards */
+        turned.size[d] = shape.size[(d + 2) % 3];
+        for (int e = 0; e < 4; e++) {
+            turned.to_voxel[d][e] = labels.to_voxel[(d + 2) % 3][e] * (d == 0 ? -1 : 1);
+        }
+    }
+    turned.to_voxel[0][3] += (double)(turned.size[0] - 1);
+    for (int64_t v = 0; v < shape.size[0] * shape.size[1] * shape.size[2]; v++) {
+        int64_t i = v % shape.size[0], j = v / shape.size[0] % shape.size[1],
+                k = v / shape.size[0] / shape.size[1];
+        label[(j * turned.size[1] + i) * turned.size[0] + turned.size[0] - 1 - k] = shape.label[v];
+    }
+    turned.label = label;
+    struct stuffing_options options = {.spacing = 5e-3, .keep = all_kept};
+    struct stuffing a = make(&labels, &options), b = make(&turned, &options);
+    check_cells(&a);
+    check_volumes(&labels, &shape, &a, 0.01);
+    assert_int_equal(count_astray(&labels, &a), 0);
+    assert_int_equal(a.node_count, b.node_count);
+    assert_int_equal(a.cell_count, b.cell_count);
+    for (int64_t i = 0; i < 3 * a.node_count; i++) {
+        assert_true(fabs(a.x[i] - b.x[i]) < 1e-9);
+    }
+    stuffing_free(&a);
+    stuffing_free(&b);
+    free(label);
+    free(shape.label);
+}
+
+/* Longest edge of the cells of a label, or 0, that touch its boundary, or do not. */
+static double longest_edge(const struct stuffing *stuffing, int32_t label, bool at_boundary)
+{
+    double longest = 0;
+    bool *on = calloc((size_t)stuffing->node_count, sizeof *on);
+    assert_non_null(on);
+    for (int64_t i = 0; i < 3 * stuffing->facet_count; i++) {
+        on[stuffing->facet[i]] = true;
+    }
+    for (int64_t c = 0; c < stuffing->cell_count; c++) {
+        const int32_t *node = stuffing->cell + 4 * c;
+        bool touches = on[node[0]] || on[node[1]] || on[node[2]] || on[node[3]];
+        for (int k = 0; k < 6 && stuffing->label[c] == label && touches == at_boundary; k++) {
+            static const int pair[6][2] = {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}};
+            const double *a = stuffing->x + 3 * (int64_t)node[pair[k][0]];
+            const double *b = stuffing->x + 3 * (int64_t)node[pair[k][1]];
+            longest = fmax(longest, sqrt(shape_square(a, b)));
+        }
+    }
+    free(on);
+    return longest;
+}
+
+static void finer_at_interfaces(void **state)
+{
+    struct label_shape shape;
+    bool fine[64] = {false, false, true};
+    (void)state;
+    assert_true(label_shape_make("sphere", 1, millimetre, &shape));
+    struct labels labels = labels_of(&shape);
+    struct stuffing_options options = {.spacing = 6e-3, .finest = 1.5e-3, .keep = all_kept};
+    struct stuffing stuffing = make(&labels, &options);
+    check_cells(&stuffing);
+    check_volumes(&labels, &shape, &stuffing, 1e-3);
+    assert_int_equal(count_astray(&labels, &stuffing), 0);
+    assert_true(longest_edge(&stuffing, 1, true) < 1.6 * 1.5e-3);
+    assert_true(longest_edge(&stuffing, 1, false) > 5.9e-3);
+    stuffing_free(&stuffing);
+    free(shape.label);
+
+    /* At a thin layer only: it is kept, while the outside is coarse. */
+    assert_true(label_shape_make("thin", 1, millimetre, &shape));
+    labels = labels_of(&shape);
+    options = (struct stuffing_options){.spacing = 6e-3, .finest = 1.5e-3, .fine = fine, .keep = all_kept};
+    stuffing = make(&labels, &options);
+    check_cells(&stuffing);
+    check_volumes(&labels, &shape, &stuffing, 0.01);
+    assert_int_equal(count_astray(&labels, &stuffing), 0);
+    assert_true(longest_edge(&stuffing, 1, true) > 5.9e-3);
+    stuffing_free(&stuffing);
+    free(shape.label);
+
+    for (uint64_t seed = 1; seed <= 10; seed++) {
+        assert_true(label_shape_make("blobs", seed, millimetre, &shape));
+        labels = labels_of(&shape);
+        options =
+            (struct stuffing_options){.spacing = 6e-3, .finest = 1.5e-3, .fine = fine, .keep = all_kept};
+        stuffing = make(&labels, &options);
+        check_cells(&stuffing);
+        stuffing_free(&stuffing);
+        free(shape.label);
+    }
+}
+
+static int32_t count_bodies(const struct stuffing *stuffing)
+{
+    struct cells cells = cells_of(stuffing);
+    struct error error;
+    int32_t count = 0, *part = calloc((size_t)cells.count, sizeof *part);
+    assert_non_null(part);
+    assert_int_equal(cells_parts(&cells, part, &count, &error), STATUS_OK);
+    free(part);
+    return count;
+}
+
+/* No node is shared by cells of two connected bodies. */
+static void check_apart(const struct stuffing *stuffing)
+{
+    struct cells cells = cells_of(stuffing);
+    struct error error;
+    int32_t count = 0, *part = calloc((size_t)cells.count, sizeof *part);
+    int32_t *of_node = calloc((size_t)cells.node_count, sizeof *of_node);
+    assert_true(part != NULL && of_node != NULL);
+    assert_int_equal(cells_parts(&cells, part, &count, &error), STATUS_OK);
+    for (int64_t i = 0; i < 4 * cells.count; i++) {
+        int32_t *body = &of_node[cells.node[i]];
+        assert_true(*body == 0 || *body == part[i / 4] + 1);
+        *body = part[i / 4] + 1;
+    }
+    free(part);
+    free(of_node);
+}
+
+static void parts_that_hang_by_an_edge(void **state)
+{
+    struct label_shape shape;
+    int64_t cut = 0;
+    (void)state;
+    assert_true(label_shape_make("boxes", 1, millimetre, &shape));
+    struct labels labels = labels_of(&shape);
+    for (int h = 2; h <= 6; h++) {
+        struct stuffing_options options = {.spacing = 1e-3 * h, .keep = all_kept};
+        struct stuffing stuffing = make(&labels, &options);
+        check_cells(&stuffing);
+        check_apart(&stuffing);
+        cut += stuffing.pinched;
+        stuffing_free(&stuffing);
+    }
+    assert_true(cut > 0);
+    for (uint64_t seed = 1; seed <= 20; seed++) {
+        struct label_shape blobs;
+        assert_true(label_shape_make("blobs", seed, millimetre, &blobs));
+        struct labels of_blobs = labels_of(&blobs);
+        struct stuffing_options options = {.spacing = 5e-3, .keep = all_kept};
+        struct stuffing stuffing = make(&of_blobs, &options);
+        check_apart(&stuffing);
+        stuffing_free(&stuffing);
+        free(blobs.label);
+    }
+    free(shape.label);
+}
+
+static void specks_and_the_largest_body(void **state)
+{
+    struct label_shape shape;
+    (void)state;
+    assert_true(label_shape_make("sphere", 1, millimetre, &shape));
+    struct labels labels = labels_of(&shape);
+    /* A cube of 5 voxels about a point of the lattice, and one of 10. */
+    for (int64_t v = 0; v < shape.size[0] * shape.size[1] * shape.size[2]; v++) {
+        double x[3] = {shape.first[0] + (double)(v % shape.size[0]),
+                       shape.first[1] + (double)(v / shape.size[0] % shape.size[1]),
+                       shape.first[2] + (double)(v / shape.size[0] / shape.size[1])};
+        bool speck = fabs(x[0] + 24) < 2.5 && fabs(x[1] + 24) < 2.5 && fabs(x[2] + 24) < 2.5;
+        bool cube = fabs(x[0] - 24) < 5 && fabs(x[1] - 24) < 5 && fabs(x[2] - 24) < 5;
+        shape.label[v] = speck || cube ? 1 : shape.label[v];
+    }
+    struct stuffing_options options = {.spacing = 6e-3, .keep = all_kept};
+    struct stuffing stuffing = make(&labels, &options);
+    check_cells(&stuffing);
+    assert_int_equal(stuffing.specks, 1);
+    assert_true(stuffing.speck_volume > 20e-9 && stuffing.speck_volume < 200e-9);
+    assert_int_equal(count_bodies(&stuffing), 2);
+    stuffing_free(&stuffing);
+    options.largest = true;
+    stuffing = make(&labels, &options);
+    assert_int_equal(count_bodies(&stuffing), 1);
+    stuffing_free(&stuffing);
+    free(shape.label);
+}
+
+/* A label that is left out leaves a cavity, whose wall knows it. */
+static void cavities(void **state)
+{
+    struct label_shape shape;
+    const bool keep[5] = {false, true, false, true, true};
+    int64_t walls = 0;
+    (void)state;
+    assert_true(label_shape_make("four", 1, millimetre, &shape));
+    struct labels labels = labels_of(&shape);
+    struct stuffing_options options = {.spacing = 5e-3, .keep = keep};
+    struct stuffing stuffing = make(&labels, &options);
+    check_cells(&stuffing);
+    for (int64_t f = 0; f < stuffing.facet_count; f++) {
+        assert_true(keep[stuffing.side[2 * f]] && !keep[stuffing.side[2 * f + 1]]);
+        walls += stuffing.side[2 * f + 1] == 2;
+    }
+    assert_true(walls > 50);
+    stuffing_free(&stuffing);
+    free(shape.label);
+}
+
+/* A slice: triangles. */
+static void slices(void **state)
+{
+    uint16_t label[64 * 64];
+    struct labels labels = {.size = {64, 1, 64}, .label = label, .count = 3, .dim = 2, .axis = {0, 2}};
+    const double area[3] = {0, 0.5 * M_PI * 400e-6, 0.5 * M_PI * 400e-6};
+    double found[3] = {0};
+    (void)state;
+    for (int v = 0; v < 64 * 64; v++) {
+        double x = v % 64 - 31.5, z = v / 64 - 31.5;
+        label[v] = hypot(x, z) < 20 ? (x < 0 ? 1 : 2) : 0;
+    }
+    for (int d = 0; d < 3; d++) {
+        labels.to_voxel[d][d] = 1e3;
+        labels.to_voxel[d][3] = d == 1 ? 0 : 31.5;
+    }
+    struct stuffing_options options = {.spacing = 4e-3, .keep = all_kept};
+    struct stuffing stuffing = make(&labels, &options);
+    check_cells(&stuffing);
+    struct cells cells = cells_of(&stuffing);
+    for (int64_t c = 0; c < cells.count; c++) {
+        found[stuffing.label[c]] += cell_volume(&cells, c);
+    }
+    for (int l = 1; l < 3; l++) {
+        assert_true(fabs(found[l] / area[l] - 1) < 0.01);
+    }
+    stuffing_free(&stuffing);
+    struct error error = {""};
+    options.finest = 1e-3;
+    assert_int_equal(stuffing_make(&labels, &options, &stuffing, &error), STATUS_INPUT);
+    assert_non_null(strstr(error.text, "not for slices"));
+}
+
+static void threads(void **state)
+{
+    struct label_shape shape;
+    struct stuffing stuffing[2];
+    (void)state;
+    assert_true(label_shape_make("blobs", 3, millimetre, &shape));
+    struct labels labels = labels_of(&shape);
+    struct stuffing_options options = {.spacing = 5e-3, .finest = 2.5e-3, .keep = all_kept};
+    int before = omp_get_max_threads();
+    for (int t = 0; t < 2; t++) {
+        omp_set_num_threads(t == 0 ? 1 : 3);
+        stuffing[t] = make(&labels, &options);
+    }
+    omp_set_num_threads(before);
+    assert_int_equal(stuffing[0].node_count, stuffing[1].node_count);
+    assert_int_equal(stuffing[0].cell_count, stuffing[1].cell_count);
+    assert_memory_equal(stuffing[0].x, stuffing[1].x, (size_t)stuffing[0].node_count * 3 * sizeof(double));
+    assert_memory_equal(stuffing[0].cell, stuffing[1].cell,
+                        (size_t)stuffing[0].cell_count * 4 * sizeof(int32_t));
+    stuffing_free(&stuffing[0]);
+    stuffing_free(&stuffing[1]);
+    free(shape.label);
+}
+
+/* The shares sum to 1, their difference has the gradient it says, and far from the grid all is outside. */
+static void shares(void **state)
+{
+    struct label_shape shape;
+    const double far[3] = {5, -3, 1e6}, step = 1e-6;
+    uint64_t seed = 7;
+    (void)state;
+    assert_true(label_shape_make("four", 1, millimetre, &shape));
+    struct labels labels = labels_of(&shape);
+    assert_int_equal(labels_at(&labels, far), 0);
+    for (int i = 0; i < 200; i++) {
+        struct label_mix mix;
+        double sum = 0, gradient[3], ignored[3];
+        double x[3] = {2.2e-3 * shape_random(&seed), 5e-3 * shape_random(&seed), 3e-3 * shape_random(&seed)};
+        labels_mix(&labels, x, &mix);
+        for (int l = 0; l < mix.count; l++) {
+            sum += mix.share[l];
+        }
+        assert_true(fabs(sum - 1) < 1e-12);
+        double value = labels_difference(&labels, x, 1, 2, gradient);
+        assert_true(fabs(value - (label_share(&mix, 1) - label_share(&mix, 2))) < 1e-12);
+        for (int d = 0; d < 3; d++) {
+            double low[3] = {x[0], x[1], x[2]}, high[3] = {x[0], x[1], x[2]};
+            low[d] -= step;
+            high[d] += step;
+            double slope = (labels_difference(&labels, high, 1, 2, ignored) -
+                            labels_difference(&labels, low, 1, 2, ignored)) /
+                           (2 * step);
+            assert_true(fabs(slope - gradient[d]) < 1e-3 * 1e3);
+        }
+    }
+    free(shape.label);
+}
+
+static void what_is_lost(void **state)
+{
+    struct label_shape shape;
+    int64_t lost[64], total = 0;
+    (void)state;
+    assert_true(label_shape_make("thin", 1, millimetre, &shape));
+    struct labels labels = labels_of(&shape);
+    for (int64_t v = 0; v < shape.size[0] * shape.size[1] * shape.size[2]; v++) {
+        total += shape.label[v] == 2;
+    }
+    struct error error;
+    struct stuffing_options options = {.spacing = 6e-3, .keep = all_kept};
+    struct stuffing stuffing = make(&labels, &options);
+    assert_int_equal(stuffing_lost(&labels, &stuffing, lost, &error), STATUS_OK);
+    assert_true((double)lost[2] > 0.7 * (double)total && lost[2] <= total);
+    stuffing_free(&stuffing);
+    options.spacing = 2e-3;
+    stuffing = make(&labels, &options);
+    assert_int_equal(stuffing_lost(&labels, &stuffing, lost, &error), STATUS_OK);
+    assert_int_equal(lost[2], 0);
+    stuffing_free(&stuffing);
+    free(shape.label);
+}
+
+static void refusals(void **state)
+{
+    struct label_shape shape;
+    struct stuffing stuffing;
+    struct error error;
+    (void)state;
+    assert_true(label_shape_make("layer", 1, millimetre, &shape));
+    struct labels labels = labels_of(&shape);
+    struct stuffing_options options = {.spacing = 1e-6, .keep = all_kept};
+    assert_int_equal(stuffing_make(&labels, &options, &stuffing, &error), STATUS_INPUT);
+    assert_non_null(strstr(error.text, "lattice points over the labels"));
+    options.spacing = 10;
+    assert_int_equal(stuffing_make(&labels, &options, &stuffing, &error), STATUS_INPUT);
+    assert_non_null(strstr(error.text, "no lattice point lies in a label: smaller?"));
+    options = (struct stuffing_options){.spacing = 1, .finest = 1e-3, .keep = all_kept};
+    assert_int_equal(stuffing_make(&labels, &options, &stuffing, &error), STATUS_INPUT);
+    assert_non_null(strstr(error.text, "1/128"));
+    memset(shape.label, 0, (size_t)(shape.size[0] * shape.size[1] * shape.size[2]) * sizeof *shape.label);
+    options = (struct stuffing_options){.spacing = 1e-3, .keep = all_kept};
+    assert_int_equal(stuffing_make(&labels, &options, &stuffing, &error), STATUS_INPUT);
+    assert_non_null(strstr(error.text, "all is outside"));
+    free(shape.label);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(shares),
+        cmocka_unit_test(smooth_shapes),
+        cmocka_unit_test(random_blobs),
+        cmocka_unit_test(orders_of_voxels),
+        cmocka_unit_test(finer_at_interfaces),
+        cmocka_unit_test(parts_that_hang_by_an_edge),
+        cmocka_unit_test(specks_and_the_largest_body),
+        cmocka_unit_test(cavities),
+        cmocka_unit_test(slices),
+        cmocka_unit_test(threads),
+        cmocka_unit_test(what_is_lost),
+        cmocka_unit_test(refusals),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,290 @@
+# voxels: from a label image to the stream that nodes writes.
+
+bats_require_minimum_version 1.5.0
+
+load common.bash
+
+setup() {
+    cd "$BATS_TEST_TMPDIR"
+}
+
+phantom() {
+    "$BUILD/tests/helper/phantom" "$@"
+}
+
+# names SECTION FILE: the names in its header, a line each
+names() {
+    mts list "$2" | awk -F '\t' -v name="$1" '$1 == name { sub(/.*names=/, "", $5); print $5 }' | tr , '\n'
+}
+
+# said LABEL: "BEFORE AFTER" in ml, of the report in `said`
+said() {
+    sed -nE "s/^voxels: $1: ([0-9.e+-]+) ml of voxels, ([0-9.e+-]+) ml of cells.*/\1 \2/p" said
+}
+
+# near A B SHARE
+near() {
+    awk -v a="$1" -v b="$2" -v share="$3" 'BEGIN { d = a / b - 1; exit !(d < share && -d < share) }'
+}
+
+# press BODY: held within 12 % of the low end of its longest side, pushed by a tenth of the length at the other end
+press() {
+    groups -f held=low:long,12% -f pushed=high:long,12% "$1" > named.mts 2> said.groups
+    local push
+    push=$(mts print nodes.x "$1" | awk '
+        { for (k = 1; k <= NF; k++) { if (NR == 1 || $k < low[k]) low[k] = $k; if (NR == 1 || $k > high[k]) high[k] = $k } }
+        END {
+            axis = 1
+            for (k = 2; k <= NF; k++) if (high[k] - low[k] > (high[axis] - low[axis]) * (1 + 1e-6)) axis = k
+            for (k = 1; k <= NF; k++) printf "%s%.9g", (k > 1 ? ", " : ""), (k == axis ? -.1 * (high[k] - low[k]) : 0)
+        }')
+    {
+        printf '[scene]\ndim = %s\nanalysis = quasi-static\n' "${2:-3}"
+        for region in $(names cells.region "$1"); do
+            printf '[material %s]\nregion = %s\nE = 3000\nnu = 0.49\nrho = 1000\n' "$region" "$region"
+        done
+        printf '[displacement held]\nfacets = held\ncomponents = %s\n' "$([ "${2:-3}" = 3 ] && echo 0, 0, 0 || echo 0, 0)"
+        printf '[displacement pushed]\nfacets = pushed\ncomponents = %s\n' "$push"
+    } > press.scene
+    shapefn named.mts 2> said.shapefn | mtled press.scene > u.dat
+    mts check u.dat
+}
+
+@test "a sphere: a valid stream, its volume, and the compression of it runs" {
+    phantom sphere > sphere.nii.gz
+    voxels -h 6mm -v sphere.nii.gz > body.mts 2> said
+    [ -z "$(mts check body.mts)" ]
+    [ "$(names cells.region body.mts)" = label_1 ]
+    [ "$(names facets.set body.mts)" = "label_1|outside" ]
+    read -r before after < <(said label_1)
+    near "$after" "$before" 0.01
+    near "$after" 57.9 0.01
+    grep -q "voxels: one connected body" said
+    grep -qE "voxels: spacing 0.006 m: [0-9]+ nodes, [0-9]+ cells, dihedral angles from [0-9.]+ to [0-9.]+ degrees" said
+    grep -q "0 of them more than 0.6" said
+    press body.mts
+}
+
+@test "every shape: valid, angles from 8 to 165 degrees" {
+    while read -r shape seed voxel spacing; do
+        phantom "$shape" "$seed" "$voxel" > image.nii.gz
+        voxels -h "$spacing" -v image.nii.gz > body.mts 2> said
+        [ -z "$(mts check body.mts | grep -v 'connected bodies$')" ]
+        awk '/degrees/ { if ($(NF - 3) >= 8 && $(NF - 1) <= 165) good = 1 } END { exit !good }' said
+        grep -E ' ml of voxels' said > volumes
+        awk '{ sub(/%.*/, ""); sub(/.*\(/, ""); x = $0 + 0; if (!(x < 1 && x > -1)) exit 1 }' volumes
+    done << 'END'
+torus 1 1 5mm
+two 1 1 5mm
+four 1 1 4mm
+thin 1 1 2mm
+layer 1 1 1.5mm
+boxes 1 1 4mm
+blobs 1 1 5mm
+blobs 2 1,1,2 4mm
+two 1 1,1.5,3 6mm
+END
+}
+
+@test "labels that touch and hang by an edge, thin ones: the compression of these runs, too" {
+    while read -r shape spacing; do
+        phantom "$shape" > image.nii.gz
+        voxels --largest -h "$spacing" image.nii.gz > body.mts 2> said
+        press body.mts
+    done << 'END'
+four 8mm
+boxes 6mm
+blobs 7mm
+layer 3mm
+END
+}
+
+@test "the voxels' order does not matter, nor the number of threads, nor whether a file or a pipe is read" {
+    phantom blobs 5 1,1,2 > image.nii.gz
+    phantom blobs@flipped 5 1,1,2 > flipped.nii.gz
+    voxels -h 5mm image.nii.gz > body.mts 2> said
+    voxels -h 5mm flipped.nii.gz > turned.mts 2> said
+    [ "$(mts list body.mts)" = "$(mts list turned.mts)" ]
+    cmp <(mts print cells body.mts) <(mts print cells turned.mts)
+    paste <(mts print nodes.x body.mts) <(mts print nodes.x turned.mts) |
+        awk '{ for (k = 1; k < 4; k++) { d = $k - $(k + 3); if (!(d < 1e-9 && d > -1e-9)) exit 1 } }'
+    for threads in 1 2 3; do
+        OMP_NUM_THREADS=$threads voxels -h 5mm --fine 2.5mm:label_1 image.nii.gz 2> said | mts print nodes.x > "$threads"
+    done
+    cmp 1 2
+    cmp 1 3
+    voxels -h 5mm < image.nii.gz 2> said | cmp <(mts print cells body.mts) <(mts print cells)
+    gunzip -c image.nii.gz | voxels - -h 5mm 2> said | cmp <(mts print cells body.mts) <(mts print cells)
+}
+
+@test "an atlas of 50 labels merged to 5 by a table; labels dropped, cavities named" {
+    phantom atlas > atlas.nii.gz
+    printf '# regions\n1-10 a\n11,12-20 b # all of them\n21-30 c\n31-40\td\n* e\n' > five
+    voxels -h 4mm -v -l five atlas.nii.gz > body.mts 2> said
+    [ -z "$(mts check body.mts)" ]
+    [ "$(names cells.region body.mts | tr '\n' ' ')" = "a b c d e " ]
+    names sets.ptr body.mts | grep -qx 'a|b'
+    for name in a b c d e; do
+        read -r before after < <(said $name)
+        near "$after" "$before" 0.01
+    done
+    printf '1-25 near\n26-49 hole -\n50 -\n' > cavity
+    voxels -h 4mm -v -l cavity atlas.nii.gz > body.mts 2> said
+    [ "$(names cells.region body.mts)" = near ]
+    [ "$(names facets.set body.mts | tr '\n' ' ')" = "near|outside near|hole " ]
+    grep -q "voxels: hole: .* ml of voxels, left out" said
+    voxels -h 5mm atlas.nii.gz 2> said > body.mts
+    [ "$(names cells.region body.mts | wc -l)" -eq 50 ]
+}
+
+@test "thin parts are told, and kept by a finer lattice at their interfaces" {
+    phantom thin > thin.nii.gz
+    voxels -h 6mm thin.nii.gz 2> said > coarse.mts
+    grep -qE "voxels: label_2: 3.04[0-9]* ml of voxels, 0[.0-9]* ml of cells \(-[89]" said
+    grep -qE "voxels: label_2: 2\.[0-9]+ ml are lost in parts thinner than the spacing" said
+    voxels -h 6mm --fine 1.5mm:label_2 -v thin.nii.gz 2> said > fine.mts
+    read -r before after < <(said label_2)
+    near "$after" "$before" 0.01
+    run -1 grep -q "are lost" said
+    [ "$(mts list fine.mts | awk '$1 == "nodes.x" { print $3 }')" -gt \
+      "$(($(mts list coarse.mts | awk '$1 == "nodes.x" { print $3 }') * 3))" ]
+    refused 2 "no label 'skull'" voxels -h 6mm --fine 3mm:skull thin.nii.gz
+    refused 2 "is not less than the spacing" voxels -h 6mm --fine 6mm thin.nii.gz
+}
+
+@test "a slice, its own or chosen from a body" {
+    phantom two@slice > slice.nii.gz
+    voxels -h 4mm -v slice.nii.gz > flat.mts 2> said
+    mts list flat.mts | grep -q 'cols=x,y$'
+    [ -z "$(mts check flat.mts)" ]
+    press flat.mts 2
+    phantom two > body.nii.gz
+    voxels -h 4mm -s z=0.3mm body.nii.gz 2> said | cmp <(mts print nodes.x) <(mts print nodes.x flat.mts)
+    voxels -h 4mm -s x=-0.005 body.nii.gz > sagittal.mts 2> said
+    [ -z "$(mts check sagittal.mts)" ]
+    [ "$(names cells.region sagittal.mts)" = label_1 ]
+    refused 2 "the slices lie from" voxels -h 4mm -s y=80mm body.nii.gz
+    refused 2 "not a place on an axis" voxels -h 4mm -s w=8mm body.nii.gz
+    refused 2 "not a place on an axis" voxels -h 4mm -s 8mm body.nii.gz
+    refused 2 "for bodies in space" voxels -h 4mm --fine 2mm slice.nii.gz
+}
+
+@test "parts of a group by place: groups" {
+    phantom sphere > sphere.nii.gz
+    voxels -h 6mm sphere.nii.gz 2> said |
+        groups -u mm -f 'opening=ball:0,0,24,12 and label_1|outside' > opened.mts 2> said
+    names facets.set opened.mts | grep -qx opening
+    [ "$(mts print facets.set opened.mts | sort | uniq -c | wc -l)" -eq 2 ]
+}
+
+# volume FILE: that within the triangles of a table, ml
+volume() {
+    awk '{
+        v = $1 * ($5 * $9 - $6 * $8) - $2 * ($4 * $9 - $6 * $7) + $3 * ($4 * $8 - $5 * $7)
+        sum += v / 6e-6
+    } END { printf "%.5g", sum }' "$1"
+}
+
+@test "the surface of a label as a table for contact, at a gap" {
+    phantom two > two.nii.gz
+    voxels -h 5mm --surface label_1 two.nii.gz > one.tsv
+    voxels -h 5mm --surface label_1 -v two.nii.gz 2> said > again.tsv
+    cmp one.tsv again.tsv
+    read -r before after < <(said label_1)
+    near "$(volume one.tsv)" "$before" 0.01
+    voxels -h 5mm --surface 'label_1|outside' two.nii.gz > skin.tsv
+    voxels -h 5mm --surface 'label_1|label_2' -o inner.tsv two.nii.gz
+    cmp <(sort one.tsv) <(sort skin.tsv inner.tsv)
+    phantom sphere > sphere.nii.gz
+    voxels -h 4mm --surface 'label_1|outside' --gap 2mm sphere.nii.gz > gap.tsv
+    near "$(volume gap.tsv)" 73.6 0.02 # of a sphere of 26 mm
+    voxels -h 4mm --surface 'label_1|outside' sphere.nii.gz > touching.tsv
+    paste gap.tsv touching.tsv | awk '{
+        for (k = 1; k < 9; k += 3) {
+            d = sqrt(($k - $(k + 9)) ^ 2 + ($(k + 1) - $(k + 10)) ^ 2 + ($(k + 2) - $(k + 11)) ^ 2)
+            if (!(d > 1.99e-3 && d < 2.2e-3)) exit 1
+        }
+    }'
+    phantom two@slice > slice.nii.gz
+    voxels -h 4mm --surface label_2 slice.nii.gz > curve.tsv
+    [ "$(head -n 1 curve.tsv)" = "$(tail -n 1 curve.tsv)" ]
+    voxels -h 4mm --surface 'label_2|label_1' slice.nii.gz | awk 'NF == 0 { exit 1 }' # one curve, in one piece
+    refused 2 "no label 'skull'" voxels -h 5mm --surface skull two.nii.gz
+    refused 2 "no label 'skull'" voxels -h 5mm --surface 'label_1|skull' two.nii.gz
+    refused 2 "these labels do not touch" voxels -h 5mm --surface 'label_1|label_1' two.nii.gz
+    refused 2 "--gap goes with --surface" voxels -h 5mm --gap 1mm two.nii.gz
+    refused 2 "--surface goes without -b and -t" voxels -h 5mm -t --surface label_1 two.nii.gz
+
+    # A body within the surface moves freely up to the gap.
+    voxels -h 6mm sphere.nii.gz | groups -f held=low:z,20% > body.mts 2> said
+    cat > slide.scene << 'END'
+[scene]
+dim = 3
+analysis = quasi-static
+[material body]
+region = label_1
+E = 3000
+nu = 0.45
+rho = 1000
+[displacement held]
+facets = held
+components = 0, 0, 0.001
+[contact skull]
+facets = label_1|outside
+rigid = gap.tsv
+unit = m
+side = back
+END
+    shapefn body.mts 2> said.shapefn | mtled slide.scene > u.dat
+    mts print u u.dat | awk '{ if (!($3 > 0.0005 && $3 < 0.0015)) exit 1 }'
+}
+
+@test "images that are none of labels, impossible sizes, and tables: one clear line" {
+    phantom sphere@scan > scan.nii.gz
+    refused 2 "labels are whole numbers from 0: is it a scan" voxels -h 6mm scan.nii.gz
+    phantom sphere@rgb > rgb.nii.gz
+    refused 2 "3 values at each voxel: not a label image" voxels -h 6mm rgb.nii.gz
+    phantom sphere@empty > empty.nii.gz
+    refused 2 "all voxels are 0: no label" voxels -h 6mm empty.nii.gz
+    phantom sphere@metres > metres.nii.gz
+    refused 2 "the labels are 83.1 m across: give the unit of the file's lengths, as -u mm" voxels -h 6mm metres.nii.gz
+    phantom sphere > sphere.nii.gz
+    voxels -h 6mm -u mm metres.nii.gz 2> said | cmp <(mts print cells) <(voxels -h 6mm sphere.nii.gz | mts print cells)
+    refused 2 "the spacing is missing: give -h LENGTH" voxels sphere.nii.gz
+    refused 2 "-h: ' mm' is none of m, cm, mm, um" voxels -h '6 mm' sphere.nii.gz
+    refused 2 "lattice points over the labels: larger" voxels -h 6um sphere.nii.gz
+    refused 2 "no lattice point lies in a label: smaller" voxels -h 6m sphere.nii.gz
+    refused 2 "missing.nii.gz" voxels -h 6mm missing.nii.gz
+    head -c 2000 sphere.nii.gz > cut.nii.gz
+    refused 2 "cut.nii.gz: " voxels -h 6mm cut.nii.gz
+
+    table() { printf "$1" > table; }
+    table '2 other\n'
+    refused 2 "table: no row for label 1" voxels -h 6mm -l table sphere.nii.gz
+    table '1 body\n2 other\n'
+    refused 2 "'other' is empty: no voxel has a label of that name" voxels -h 6mm -l table sphere.nii.gz
+    table '1 -\n'
+    refused 2 "the table keeps no label" voxels -h 6mm -l table sphere.nii.gz
+    table '1 body\n1-3 other\n'
+    refused 2 "table:2: label 1 stands in another row already" voxels -h 6mm -l table sphere.nii.gz
+    table '1\n'
+    refused 2 "table:1: a row is LABELS NAME" voxels -h 6mm -l table sphere.nii.gz
+    table '1 body of water\n'
+    refused 2 "table:1: a row is LABELS NAME" voxels -h 6mm -l table sphere.nii.gz
+    table '1 outside\n'
+    refused 2 "table:1: 'outside' is what no label names" voxels -h 6mm -l table sphere.nii.gz
+    table '1 a|b\n'
+    refused 2 "table:1: 'a|b': no commas" voxels -h 6mm -l table sphere.nii.gz
+    table '3-1 body\n'
+    refused 2 "table:1: label: 1 is not within" voxels -h 6mm -l table sphere.nii.gz
+    table 'x body\n'
+    refused 2 "table:1: label: 'x'" voxels -h 6mm -l table sphere.nii.gz
+    table '1 body\n2 body -\n'
+    refused 2 "table:2: 'body' is kept in one row and left out in another" voxels -h 6mm -l table sphere.nii.gz
+    table '* body\n* other\n'
+    refused 2 "table:2: a second row for all other labels" voxels -h 6mm -l table sphere.nii.gz
+    table '# nothing\n'
+    refused 2 "table: names no label" voxels -h 6mm -l table sphere.nii.gz
+    table '1 body'
+    refused 2 "table:1: " voxels -h 6mm -l table sphere.nii.gz
+}

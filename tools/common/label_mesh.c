@@ -1,0 +1,198 @@
+#include "label_mesh.h"
+
+#include "approx/cells.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* An item, a facet or node, of the interface of two labels. */
+struct member {
+    int32_t inner, outer, item;
+};
+
+static int compare_members(const void *left, const void *right)
+{
+    const struct member *a = left, *b = right;
+    if (a->inner != b->inner) {
+        return a->inner < b->inner ? -1 : 1;
+    }
+    if (a->outer != b->outer) {
+        return a->outer < b->outer ? -1 : 1;
+    }
+    return (a->item > b->item) - (a->item < b->item);
+}
+
+static bool same_group(const struct member *a, const struct member *b)
+{
+    return a->inner == b->inner && a->outer == b->outer;
+}
+
+static enum status add_name(struct mesh_names *names, const char *first, const char *second,
+                            struct error *error)
+{
+    size_t length = strlen(first) + (second != NULL ? strlen(second) + 1 : 0);
+    char **grown = array_grow(names->name, names->count + 1, sizeof *grown);
+    if (grown == NULL) {
+        return fail_memory(error, "names");
+    }
+    names->name = grown;
+    grown[names->count] = array_new((int64_t)length + 1, 1);
+    if (grown[names->count] == NULL) {
+        return fail_memory(error, "a name");
+    }
+    snprintf(grown[names->count++], length + 1, "%s%s%s", first, second != NULL ? "|" : "",
+             second != NULL ? second : "");
+    return STATUS_OK;
+}
+
+static enum status make_regions(const struct label_image *image, const struct stuffing *stuffing,
+                                struct mesh *mesh, struct error *error)
+{
+    enum status status;
+    int32_t *region = NULL;
+    TRY(NEW_ARRAY(&region, image->labels.count, error));
+    TRY(NEW_ARRAY(&mesh->cell_region, stuffing->cell_count, error));
+    for (int64_t c = 0; c < stuffing->cell_count; c++) {
+        region[stuffing->label[c]] = 1;
+    }
+    for (int32_t l = 1; l < image->labels.count; l++) {
+        if (region[l] != 0) {
+            region[l] = mesh->regions.count;
+            TRY(add_name(&mesh->regions, label_image_name(image, l), NULL, error));
+        }
+    }
+    for (int64_t c = 0; c < stuffing->cell_count; c++) {
+        mesh->cell_region[c] = region[stuffing->label[c]];
+    }
+done:
+    free(region);
+    return status;
+}
+
+static enum status make_facets(const struct label_image *image, const struct stuffing *stuffing,
+                               struct mesh *mesh, struct error *error)
+{
+    enum status status;
+    int dim = stuffing->dim;
+    struct member *member = NULL;
+    TRY(NEW_ARRAY(&member, stuffing->facet_count, error));
+    TRY(NEW_ARRAY(&mesh->facets, stuffing->facet_count * dim, error));
+    TRY(NEW_ARRAY(&mesh->facet_set, stuffing->facet_count, error));
+    for (int32_t f = 0; f < (int32_t)stuffing->facet_count; f++) {
+        member[f] = (struct member){stuffing->side[2 * f], stuffing->side[2 * f + 1], f};
+    }
+    qsort(member, (size_t)stuffing->facet_count, sizeof *member, compare_members);
+    for (int64_t f = 0; f < stuffing->facet_count; f++) {
+        if (f == 0 || !same_group(&member[f], &member[f - 1])) {
+            TRY(add_name(&mesh->facet_sets, label_image_name(image, member[f].inner),
+                         label_image_name(image, member[f].outer), error));
+        }
+        mesh->facet_set[f] = mesh->facet_sets.count - 1;
+        memcpy(mesh->facets + f * dim, stuffing->facet + (int64_t)member[f].item * dim,
+               (size_t)dim * sizeof *mesh->facets);
+    }
+    mesh->facet_count = stuffing->facet_count;
+done:
+    free(member);
+    return status;
+}
+
+/* Nodes of faces between two regions, a face once for each of its nodes: counted or, where there is room,
+ * stored. */
+static int64_t find_interfaces(const struct cells *cells, const int32_t *label, const int32_t *across,
+                               struct member *member)
+{
+    int corners = cells->dim + 1;
+    int64_t count = 0;
+    for (int64_t i = 0; i < cells->count * corners; i++) {
+        int64_t c = i / corners;
+        if (across[i] < 0 || label[across[i]] <= label[c]) {
+            continue;
+        }
+        for (int k = 0; k < corners; k++) {
+            if (k == i % corners) {
+                continue;
+            }
+            if (member != NULL) {
+                member[count] = (struct member){label[c], label[across[i]], cells->node[c * corners + k]};
+            }
+            count++;
+        }
+    }
+    return count;
+}
+
+static enum status make_sets(const struct label_image *image, const struct stuffing *stuffing,
+                             struct mesh *mesh, struct error *error)
+{
+    enum status status;
+    struct cells cells = {stuffing->dim, stuffing->node_count, stuffing->x, stuffing->cell_count,
+                          stuffing->cell};
+    int32_t *across = NULL;
+    struct member *member = NULL;
+    int64_t kept = 0;
+    TRY(NEW_ARRAY(&across, cells.count * (cells.dim + 1), error));
+    TRY(cells_across(&cells, across, error));
+    int64_t count = find_interfaces(&cells, stuffing->label, across, NULL);
+    TRY(NEW_ARRAY(&member, count, error));
+    TRY(NEW_ARRAY(&mesh->set_idx, count, error));
+    TRY(NEW_ARRAY(&mesh->set_ptr, count + 1, error));
+    find_interfaces(&cells, stuffing->label, across, member);
+    qsort(member, (size_t)count, sizeof *member, compare_members);
+    for (int64_t i = 0; i < count; i++) {
+        if (i > 0 && compare_members(&member[i], &member[i - 1]) == 0) {
+            continue;
+        }
+        if (i == 0 || !same_group(&member[i], &member[i - 1])) {
+            mesh->set_ptr[mesh->node_sets.count] = kept;
+            TRY(add_name(&mesh->node_sets, label_image_name(image, member[i].inner),
+                         label_image_name(image, member[i].outer), error));
+        }
+        mesh->set_idx[kept++] = member[i].item;
+    }
+    mesh->set_ptr[mesh->node_sets.count] = kept;
+done:
+    free(across);
+    free(member);
+    return status;
+}
+
+enum status label_mesh_make(const struct label_image *image, const struct stuffing *stuffing,
+                            struct mesh *mesh, struct error *error)
+{
+    enum status status;
+    *mesh = (struct mesh){.dim = stuffing->dim,
+                          .node_count = stuffing->node_count,
+                          .x = stuffing->x,
+                          .cell_count = stuffing->cell_count,
+                          .cells = stuffing->cell};
+    TRY(make_regions(image, stuffing, mesh, error));
+    TRY(make_facets(image, stuffing, mesh, error));
+    TRY(make_sets(image, stuffing, mesh, error));
+done:
+    if (status != STATUS_OK) {
+        label_mesh_free(mesh);
+    }
+    return status;
+}
+
+static void free_names(struct mesh_names *names)
+{
+    for (int32_t i = 0; i < names->count; i++) {
+        free(names->name[i]);
+    }
+    free(names->name);
+}
+
+void label_mesh_free(struct mesh *mesh)
+{
+    free(mesh->cell_region);
+    free(mesh->facets);
+    free(mesh->facet_set);
+    free(mesh->set_ptr);
+    free(mesh->set_idx);
+    free_names(&mesh->regions);
+    free_names(&mesh->facet_sets);
+    free_names(&mesh->node_sets);
+    *mesh = (struct mesh){0};
+}

@@ -1,0 +1,17 @@
+/* Cells made of labels, as the mesh that goes into a stream. */
+#ifndef TOOLS_LABEL_MESH_H
+#define TOOLS_LABEL_MESH_H
+
+#include "label_image.h"
+
+#include "approx/stuffing.h"
+#include "io/msh.h"
+
+/* Regions are the labels that have cells; facets the boundary in groups A|B, A the label within and B the one
+ * beyond, oriented outward; node sets the interfaces A|B between two regions, A the lower label. The mesh
+ * borrows nodes and cells of *stuffing: release it by label_mesh_free. */
+MUST_CHECK enum status label_mesh_make(const struct label_image *image, const struct stuffing *stuffing,
+                                       struct mesh *mesh, struct error *error);
+void label_mesh_free(struct mesh *mesh);
+
+#endif

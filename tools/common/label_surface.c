@@ -1,0 +1,192 @@
+#include "label_surface.h"
+
+#include "approx/cells.h"
+#include "output.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+/* Where facets meet at an edge their nodes move farther than the gap: at most by this factor. */
+static const double most_stretch = 2;
+
+void label_surface_parse(const struct tool *tool, const struct label_image *image, const char *text,
+                         struct label_surface_options *options)
+{
+    char *copy = strdup(text);
+    if (copy == NULL) {
+        tool_fail(tool, STATUS_SYSTEM, "out of memory");
+    }
+    char *outer = copy;
+    const char *inner = strsep(&outer, "|");
+    options->inner = label_image_find(image, inner);
+    options->outer = outer == NULL ? -1 : strcmp(outer, "outside") == 0 ? 0 : label_image_find(image, outer);
+    if (options->inner < 0 || (outer != NULL && options->outer < 0)) {
+        tool_fail(tool, STATUS_INPUT, "--surface: no label '%.60s'", options->inner < 0 ? inner : outer);
+    }
+    free(copy);
+}
+
+static bool is_chosen(const struct stuffing *stuffing, const struct label_surface_options *options,
+                      int64_t facet)
+{
+    const int32_t *side = stuffing->side + 2 * facet;
+    return side[0] == options->inner && (options->outer < 0 || side[1] == options->outer);
+}
+
+/* Unit outward normal of a facet. */
+static void unit_normal(const struct stuffing *stuffing, int64_t facet, double normal[3])
+{
+    int dim = stuffing->dim;
+    double square = 0;
+    face_area_vector(dim, stuffing->x, stuffing->facet + facet * dim, normal);
+    for (int d = 0; d < dim; d++) {
+        square += normal[d] * normal[d];
+    }
+    for (int d = 0; d < dim; d++) {
+        normal[d] /= sqrt(square);
+    }
+}
+
+/* Nodes of the facets moved outward along the mean normal of the facets there, so far that each of these
+ * facets is off by the gap. place[node_count * dim]. */
+static void move_outward(const struct stuffing *stuffing, const struct label_surface_options *options,
+                         double *mean, double *least, double *place)
+{
+    int dim = stuffing->dim;
+    double normal[3];
+    for (int64_t i = 0; i < stuffing->facet_count * dim; i++) {
+        if (is_chosen(stuffing, options, i / dim)) {
+            unit_normal(stuffing, i / dim, normal);
+            for (int d = 0; d < dim; d++) {
+                mean[(int64_t)stuffing->facet[i] * dim + d] += normal[d];
+            }
+        }
+    }
+    for (int64_t n = 0; n < stuffing->node_count; n++) {
+        double square = 0;
+        for (int d = 0; d < dim; d++) {
+            square += mean[n * dim + d] * mean[n * dim + d];
+        }
+        for (int d = 0; d < dim && square > 0; d++) {
+            mean[n * dim + d] /= sqrt(square);
+        }
+        least[n] = 1;
+    }
+    for (int64_t i = 0; i < stuffing->facet_count * dim; i++) {
+        int64_t n = stuffing->facet[i];
+        double cosine = 0;
+        if (is_chosen(stuffing, options, i / dim)) {
+            unit_normal(stuffing, i / dim, normal);
+            for (int d = 0; d < dim; d++) {
+                cosine += normal[d] * mean[n * dim + d];
+            }
+            least[n] = fmax(fmin(least[n], cosine), 1 / most_stretch);
+        }
+    }
+    for (int64_t i = 0; i < stuffing->node_count * dim; i++) {
+        place[i] = stuffing->x[i] + options->gap / least[i / dim] * mean[i];
+    }
+}
+
+static void print_triangles(FILE *file, const struct stuffing *stuffing,
+                            const struct label_surface_options *options, const double *place)
+{
+    for (int64_t f = 0; f < stuffing->facet_count; f++) {
+        for (int k = 0; k < 9 && is_chosen(stuffing, options, f); k++) {
+            fprintf(file, "%.9g%c", place[3 * (int64_t)stuffing->facet[3 * f + k / 3] + k % 3],
+                    k < 8 ? ' ' : '\n');
+        }
+    }
+}
+
+/* Curves: from the first edge not yet walked on along next[], by the node that an edge begins at. */
+static void print_curves(FILE *file, const struct stuffing *stuffing,
+                         const struct label_surface_options *options, const double *place, int64_t *next)
+{
+    bool first = true;
+    for (int64_t n = 0; n < stuffing->node_count; n++) {
+        next[n] = -1;
+    }
+    for (int64_t f = 0; f < stuffing->facet_count; f++) {
+        if (is_chosen(stuffing, options, f)) {
+            next[stuffing->facet[2 * f]] = f;
+        }
+    }
+    /* Curves that end, between two junctions of three labels, are begun at their begin. */
+    for (int pass = 0; pass < 2; pass++) {
+        for (int64_t f = 0; f < stuffing->facet_count && pass == 0; f++) {
+            if (is_chosen(stuffing, options, f) && next[stuffing->facet[2 * f + 1]] >= 0) {
+                next[stuffing->facet[2 * f + 1]] += stuffing->facet_count; /* has one before it */
+            }
+        }
+        for (int64_t n = 0; n < stuffing->node_count; n++) {
+            if (next[n] < 0 || (pass == 0 && next[n] >= stuffing->facet_count)) {
+                continue;
+            }
+            fprintf(file, "%s%.9g %.9g\n", first ? "" : "\n", place[2 * n], place[2 * n + 1]);
+            first = false;
+            for (int64_t at = n; next[at] >= 0;) {
+                int64_t facet = next[at] % stuffing->facet_count;
+                next[at] = -1;
+                at = stuffing->facet[2 * facet + 1];
+                fprintf(file, "%.9g %.9g\n", place[2 * at], place[2 * at + 1]);
+            }
+        }
+    }
+}
+
+static void print_surface(const struct tool *tool, FILE *file, const struct stuffing *stuffing,
+                          const struct label_surface_options *options)
+{
+    struct error error;
+    int dim = stuffing->dim;
+    int64_t *next = NULL;
+    double *mean = NULL, *least = NULL, *place = NULL;
+    tool_check(tool, NEW_ARRAY(&mean, stuffing->node_count * dim, &error), &error);
+    tool_check(tool, NEW_ARRAY(&least, stuffing->node_count, &error), &error);
+    tool_check(tool, NEW_ARRAY(&place, stuffing->node_count * dim, &error), &error);
+    tool_check(tool, NEW_ARRAY(&next, stuffing->node_count, &error), &error);
+    move_outward(stuffing, options, mean, least, place);
+    if (dim == 3) {
+        print_triangles(file, stuffing, options, place);
+    } else {
+        print_curves(file, stuffing, options, place, next);
+    }
+    free(mean);
+    free(least);
+    free(place);
+    free(next);
+}
+
+void label_surface_write(const struct tool *tool, const struct stuffing *stuffing,
+                         const struct label_surface_options *options)
+{
+    struct output output;
+    struct error error;
+    int64_t count = 0;
+    for (int64_t f = 0; f < stuffing->facet_count; f++) {
+        count += is_chosen(stuffing, options, f);
+    }
+    if (count == 0) {
+        tool_fail(tool, STATUS_INPUT, "--surface: these labels do not touch");
+    }
+    if (tool->output == NULL) {
+        print_surface(tool, stdout, stuffing, options);
+        return;
+    }
+    tool_check(tool, output_open(&output, tool->output, &error), &error);
+    int descriptor = dup(output.descriptor);
+    FILE *file = descriptor >= 0 ? fdopen(descriptor, "w") : NULL;
+    bool written = false;
+    if (file != NULL) {
+        print_surface(tool, file, stuffing, options);
+        written = ferror(file) == 0;
+        written = fclose(file) == 0 && written;
+    }
+    if (!written) {
+        tool_fail(tool, STATUS_SYSTEM, "%s: cannot be written", tool->output);
+    }
+    tool_check(tool, output_commit(&output, &error), &error);
+}

@@ -1,0 +1,343 @@
+static const char usage[] =
+    "voxels - label image to node cloud, background cells, facets and node sets\n"
+    "\n"
+    "usage: voxels -h LENGTH [--fine LENGTH[:NAME,...]] [-l TABLE] [-s AXIS=PLACE] [--largest]\n"
+    "              [-u UNIT] [-v] [-b | -t] [-o FILE] [IMAGE]\n"
+    "       voxels -h LENGTH --surface NAME[|NAME] [--gap LENGTH] [--fine LENGTH[:NAME,...]] [-l TABLE]\n"
+    "              [-s AXIS=PLACE] [--largest] [-u UNIT] [-v] [-o FILE] [IMAGE]\n"
+    "\n"
+    "Reads a label image (NIfTI-1 or -2, plain or gzip; - or nothing: standard input) and writes what\n"
+    "nodes writes of a mesh: nodes.x (world coordinates, m; x to the right, y to the front, z up), cells,\n"
+    "cells.region with the labels' names, facets of the boundary in groups A|B of the region A and what\n"
+    "lies beyond, B: 'outside' or a label that is left out; and as node sets A|B the interfaces between\n"
+    "regions. Any shape will do: no surface is made first, and none has to be mended.\n"
+    "\n"
+    "A body-centred cubic lattice of cubes of LENGTH (2D: one of equilateral triangles) is cut where\n"
+    "labels meet (isosurface stuffing, Labelle and Shewchuk 2007). Interfaces are smooth: where two\n"
+    "labels, each smoothed by cubic B-splines, have equal shares. Nodes of interfaces are moved by at most\n"
+    ".4 voxels to keep the volume of each label. Angles of cells are between 8 and 165 degrees.\n"
+    "\n"
+    "Parts of a label that are thinner than LENGTH may be lost, and bodies about a single lattice point are\n"
+    "left out; both is told with their volume: --fine keeps more. Where parts of the body hang together by\n"
+    "a node or an edge alone they are cut apart. Parts of the boundary get names by the program groups:\n"
+    "'groups -u mm -f opening=\"ball:30,20,80,40 and parenchyma|outside\"'.\n"
+    "\n"
+    "A slice, which is an image of one slice or one chosen by -s, makes a body in the plane: x and y of\n"
+    "the stream are then the two world axes in the slice, in their order.\n"
+    "\n"
+    "The table has rows LABELS NAME: LABELS is a number, a range 3-5, a list 1,3-5, or * for all others but\n"
+    "0. Labels of one name are one region. A NAME - makes labels part of the outside; a third word - leaves\n"
+    "cells out, and NAME stands in the names of the walls around. Text behind # is a comment. Without a\n"
+    "table all labels but 0 are regions label_1, label_2, ...\n"
+    "\n"
+    "With --surface the program writes a table for [contact] of a scene instead (unit = m): the triangles\n"
+    "of the surface of a label (2D: curves, the label on their left). Normals point out of the label, so a\n"
+    "body within has side = back (2D: left).\n"
+    "\n"
+    "Options:\n"
+    "  -h, --spacing LENGTH    of the lattice, with a unit: 6mm; without one in m (required; -h at the end\n"
+    "                          of the line prints this text)\n"
+    "      --fine LENGTH[:NAME,...]  spacing at all interfaces, with names at those of these labels only:\n"
+    "                          that of -h is halved until it is no larger\n"
+    "      --surface NAME[|NAME]  write the surface of the first label; with a second name where that "
+    "label,\n"
+    "                          which may be outside, lies beyond it\n"
+    "      --gap LENGTH        move that surface outward by LENGTH\n"
+    "  -l, --labels TABLE      names of labels\n"
+    "  -s, --slice AXIS=PLACE  the slice nearest to PLACE on a world axis, as z=12mm\n"
+    "      --largest           the largest connected body only\n"
+    "  -u, --unit UNIT         unit of the file's lengths, instead of what it says: m, cm, mm, um, or a\n"
+    "                          number of metres\n"
+    "  -v, --verbose           report on standard error: volumes of labels in voxels and in cells, spacing,\n"
+    "                          nodes, cells, least and largest angle\n"
+    "  -b, --binary            write binary (default)\n"
+    "  -t, --text              write text\n"
+    "  -o, --output FILE       write to FILE, which appears only when whole\n"
+    "\n"
+    "Examples:\n"
+    "  voxels labels.nii.gz -h 6mm | shapefn | mtled craniotomy.scene > u.dat\n"
+    "  printf '1 parenchyma\\n2 ventricles -\\n3,10-12 tumour\\n* -\\n' > names\n"
+    "  voxels -l names -h 4mm -v < labels.nii.gz > body.mts\n"
+    "  voxels -h 4mm -l names --surface 'parenchyma|outside' --gap 1mm labels.nii.gz > skull.tsv\n"
+    "  voxels -s z=40mm -h 3mm labels.nii.gz | mts list\n";
+
+#include "label_mesh.h"
+#include "label_surface.h"
+
+#include "approx/cells.h"
+#include "approx/parts.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum {
+    SPACING,
+    FINE,
+    SURFACE,
+    GAP,
+    LABELS,
+    SLICE,
+    LARGEST,
+    UNIT,
+    VERBOSE,
+    BINARY,
+    TEXT,
+    OUTPUT,
+    OPTION_COUNT
+};
+
+/* Volumes are told where they are off by more than this share. */
+static const double told_share = 0.01;
+
+/* Volume of the cells of each label, m3 (2D: m2). */
+static void cell_volumes(const struct cells *cells, const int32_t *label, double *volume)
+{
+    for (int64_t c = 0; c < cells->count; c++) {
+        volume[label[c]] += cell_volume(cells, c);
+    }
+}
+
+/* Volumes in ml, areas in cm2. */
+static double shown(int dim, double volume)
+{
+    return volume * (dim == 3 ? 1e6 : 1e4);
+}
+
+static void report_labels(const struct tool *tool, const struct label_image *image,
+                          const struct stuffing *stuffing, bool verbose)
+{
+    struct cells cells = {stuffing->dim, stuffing->node_count, stuffing->x, stuffing->cell_count,
+                          stuffing->cell};
+    struct error error;
+    double *volume = NULL;
+    int64_t *lost = NULL;
+    int dim = stuffing->dim;
+    const char *unit = dim == 3 ? "ml" : "cm2";
+    tool_check(tool, NEW_ARRAY(&volume, image->labels.count, &error), &error);
+    tool_check(tool, NEW_ARRAY(&lost, image->labels.count, &error), &error);
+    tool_check(tool, stuffing_lost(&image->labels, stuffing, lost, &error), &error);
+    cell_volumes(&cells, stuffing->label, volume);
+    for (int32_t l = 1; l < image->labels.count; l++) {
+        double before = shown(dim, image->volume[l]), after = shown(dim, volume[l]);
+        double missing = shown(dim, (double)lost[l] * image->voxel_volume);
+        const char *name = label_image_name(image, l);
+        if (!image->keep[l]) {
+            if (verbose) {
+                tool_note(tool, "%s: %.4g %s of voxels, left out", name, before, unit);
+            }
+            continue;
+        }
+        if (after == 0) {
+            tool_note(tool, "%s: all %.4g %s are lost: no part of it is as thick as the spacing", name,
+                      before, unit);
+        } else if (verbose || fabs(after - before) > told_share * before) {
+            tool_note(tool, "%s: %.4g %s of voxels, %.4g %s of cells (%+.2f %%)", name, before, unit, after,
+                      unit, 100 * (after / before - 1));
+        }
+        if (after > 0 && missing > told_share * before) {
+            tool_note(
+                tool,
+                "%s: %.3g %s are lost in parts thinner than the spacing, and at sharp edges: see --fine",
+                name, missing, unit);
+        }
+    }
+    free(volume);
+    free(lost);
+}
+
+/* How many connected bodies there are, when more than one. */
+static void report_bodies(const struct tool *tool, const struct cells *cells, bool verbose)
+{
+    struct error error;
+    int32_t *part = NULL, count = 0;
+    double total = 0, first = 0;
+    tool_check(tool, NEW_ARRAY(&part, cells->count, &error), &error);
+    tool_check(tool, cells_parts(cells, part, &count, &error), &error);
+    for (int64_t c = 0; c < cells->count; c++) {
+        double volume = cell_volume(cells, c);
+        total += volume;
+        first += part[c] == 0 ? volume : 0;
+    }
+    if (count > 1) {
+        tool_note(tool, "%d connected bodies, %.3g %% of the %s in the largest: --largest keeps that one",
+                  count, 100 * first / total, cells->dim == 3 ? "volume" : "area");
+    } else if (verbose) {
+        tool_note(tool, "one connected body");
+    }
+    free(part);
+}
+
+static void report_cells(const struct tool *tool, const struct cells *cells, double spacing, bool verbose)
+{
+    double least = 180, most = 0;
+    for (int64_t c = 0; c < cells->count; c++) {
+        const double *x[4];
+        double angles[2];
+        for (int k = 0; k <= cells->dim; k++) {
+            x[k] = cells->x + (int64_t)cells->node[c * (cells->dim + 1) + k] * cells->dim;
+        }
+        simplex_angles(cells->dim, x, angles);
+        least = fmin(least, angles[0]);
+        most = fmax(most, angles[1]);
+    }
+    if (least < STUFFING_LEAST_ANGLE || most > STUFFING_MOST_ANGLE) {
+        tool_note(tool, "angles from %.1f to %.1f degrees, beyond %g to %g: another spacing may avoid them",
+                  least, most, STUFFING_LEAST_ANGLE, STUFFING_MOST_ANGLE);
+    }
+    if (!verbose) {
+        return;
+    }
+    tool_note(tool, "spacing %g m: %lld nodes, %lld cells, %s from %.1f to %.1f degrees", spacing,
+              (long long)cells->node_count, (long long)cells->count,
+              cells->dim == 3 ? "dihedral angles" : "angles", least, most);
+}
+
+static void report(const struct tool *tool, const struct label_image *image, const struct stuffing *stuffing,
+                   double spacing, bool verbose)
+{
+    struct cells cells = {stuffing->dim, stuffing->node_count, stuffing->x, stuffing->cell_count,
+                          stuffing->cell};
+    if (stuffing->specks > 0) {
+        tool_note(tool, "%lld bodies no larger than the spacing, %.3g %s in all, are left out",
+                  (long long)stuffing->specks, shown(cells.dim, stuffing->speck_volume),
+                  cells.dim == 3 ? "ml" : "cm2");
+    }
+    if (stuffing->pinched > 0) {
+        tool_note(tool, "parts that hung together by a node or an edge alone are cut apart at %lld nodes",
+                  (long long)stuffing->pinched);
+    }
+    report_labels(tool, image, stuffing, verbose);
+    report_bodies(tool, &cells, verbose);
+    report_cells(tool, &cells, spacing, verbose);
+    if (verbose) {
+        tool_note(tool, "nodes of interfaces: farthest %.2g voxels off, %lld of them more than %g",
+                  stuffing->farthest / labels_voxel(&image->labels), (long long)stuffing->astray,
+                  STUFFING_MOST_ASTRAY);
+    }
+}
+
+/* "3mm" or "3mm:ventricles,tumour"; the array of labels, NULL: of all, is to be freed. */
+static bool *parse_fine(const struct tool *tool, const struct label_image *image, const char *text,
+                        double spacing, double *finest)
+{
+    struct error error;
+    bool *fine = NULL;
+    char *copy = strdup(text), *names = copy;
+    if (copy == NULL) {
+        tool_fail(tool, STATUS_SYSTEM, "out of memory");
+    }
+    const char *length = strsep(&names, ":");
+    tool_check(tool, parse_length(length, "--fine", finest, &error), &error);
+    if (*finest >= spacing) {
+        tool_fail(tool, STATUS_INPUT, "--fine: %s is not less than the spacing of -h", length);
+    }
+    if (names != NULL) {
+        tool_check(tool, NEW_ARRAY(&fine, image->labels.count, &error), &error);
+    }
+    while (names != NULL) {
+        const char *name = strsep(&names, ",");
+        int32_t label = label_image_find(image, name);
+        if (label < 0) {
+            tool_fail(tool, STATUS_INPUT, "--fine: no label '%.60s'", name);
+        }
+        fine[label] = true;
+    }
+    free(copy);
+    return fine;
+}
+
+static void write_stream(const struct tool *tool, const struct label_image *image,
+                         const struct stuffing *stuffing, bool text)
+{
+    struct mesh mesh;
+    struct stream stream;
+    struct error error;
+    tool_check(tool, label_mesh_make(image, stuffing, &mesh, &error), &error);
+    stream_init(&stream);
+    tool_check(tool, mesh_put(&mesh, &stream, &error), &error);
+    tool_write(tool, &stream, text);
+    stream_free(&stream);
+    label_mesh_free(&mesh);
+}
+
+static void check_options(const struct tool *tool, const struct option options[])
+{
+    if (!options[SPACING].given) {
+        tool_fail(tool, STATUS_INPUT, "the spacing is missing: give -h LENGTH, as -h 6mm");
+    }
+    if (options[BINARY].given && options[TEXT].given) {
+        tool_fail(tool, STATUS_INPUT, "give one of -b and -t");
+    }
+    if (options[SURFACE].given && (options[BINARY].given || options[TEXT].given)) {
+        tool_fail(tool, STATUS_INPUT, "--surface goes without -b and -t: it writes a table");
+    }
+    if (options[GAP].given && !options[SURFACE].given) {
+        tool_fail(tool, STATUS_INPUT, "--gap goes with --surface");
+    }
+}
+
+int main(int argc, char *argv[])
+{
+    static char help[] = "--help";
+    struct tool tool;
+    struct label_image image;
+    struct stuffing stuffing;
+    struct error error;
+    double spacing;
+    struct label_image_options wanted = {NULL, 0, NULL};
+    struct option options[OPTION_COUNT] = {
+        [SPACING] = {.letter = 'h', .name = "spacing", .takes_value = true},
+        [FINE] = {.name = "fine", .takes_value = true},
+        [SURFACE] = {.name = "surface", .takes_value = true},
+        [GAP] = {.name = "gap", .takes_value = true},
+        [LABELS] = {.letter = 'l', .name = "labels", .takes_value = true},
+        [SLICE] = {.letter = 's', .name = "slice", .takes_value = true},
+        [LARGEST] = {.name = "largest"},
+        [UNIT] = {.letter = 'u', .name = "unit", .takes_value = true},
+        [VERBOSE] = {.letter = 'v', .name = "verbose"},
+        [BINARY] = {.letter = 'b', .name = "binary"},
+        [TEXT] = {.letter = 't', .name = "text"},
+        [OUTPUT] = {.letter = 'o', .name = "output", .takes_value = true},
+    };
+    if (argc > 1 && strcmp(argv[argc - 1], "-h") == 0) {
+        argv[argc - 1] = help;
+    }
+    tool_begin(&tool, usage, options, OPTION_COUNT, 0, 1, argc, argv);
+    check_options(&tool, options);
+    tool_check(&tool, parse_length(options[SPACING].value, "-h", &spacing, &error), &error);
+    if (options[UNIT].given) {
+        tool_check(&tool, parse_length_unit(options[UNIT].value, "-u", &wanted.unit, &error), &error);
+    }
+    wanted.table = options[LABELS].value;
+    wanted.slice = options[SLICE].value;
+    label_image_read(&tool, tool.operands[0], &wanted, &image);
+    struct label_surface_options surface = {.gap = 0};
+    if (options[GAP].given) {
+        tool_check(&tool, parse_length(options[GAP].value, "--gap", &surface.gap, &error), &error);
+    }
+    if (options[SURFACE].given) {
+        label_surface_parse(&tool, &image, options[SURFACE].value, &surface);
+        for (int32_t l = 0; l < image.labels.count; l++) {
+            image.keep[l] = l == surface.inner;
+        }
+    }
+    struct stuffing_options stuffing_options = {
+        .spacing = spacing, .keep = image.keep, .largest = options[LARGEST].given};
+    bool *fine = NULL;
+    if (options[FINE].given) {
+        fine = parse_fine(&tool, &image, options[FINE].value, spacing, &stuffing_options.finest);
+        stuffing_options.fine = fine;
+    }
+    tool_check(&tool, stuffing_make(&image.labels, &stuffing_options, &stuffing, &error), &error);
+    report(&tool, &image, &stuffing, spacing, options[VERBOSE].given);
+    if (options[SURFACE].given) {
+        label_surface_write(&tool, &stuffing, &surface);
+    } else {
+        write_stream(&tool, &image, &stuffing, options[TEXT].given);
+    }
+    stuffing_free(&stuffing);
+    free(fine);
+    label_image_free(&image);
+    return tool_end(&tool);
+}
