@@ -7,10 +7,11 @@ static const char usage[] =
     "              [FILE]\n"
     "\n"
     "Reads a stream with nodes.x (m) and fields at the nodes, and writes one with nodes.x = the\n"
-    "points (m) and the fields there. By default the points are the stream's own points.x, through\n"
-    "its table of shape functions; without earlier sections the defaults of ipoints, support and\n"
-    "shapefn are run first. With -p they are those of another file, and supports and shape functions\n"
-    "are made for them.\n"
+    "points (m) and the fields there. By default the points are the stream's own points.x: the\n"
+    "middles of conforming cells, or others (ipoints -g, --lattice), through the stream's table of\n"
+    "shape functions; without earlier sections the defaults of ipoints, support and shapefn are run\n"
+    "first. With -p they are those of another file. Where the stream has no table for the points,\n"
+    "supports and shape functions are made for them.\n"
     "\n"
     "The values of a field are taken as the parameters of the approximation, u_h = sum phi_j u_j: a\n"
     "fit by moving least squares that reproduces linear fields (quadratic ones with mls2, and nearly\n"
@@ -184,47 +185,64 @@ done:
     return status;
 }
 
-/* Supports and shape functions at points of the user's. */
+/* Supports and shape functions at the points: of the stream's own integration points, or, with a file, of the
+ * user's, which may lie outside. */
 static enum status make_table(const struct tool *tool, const struct support_options *support,
                               const struct stream *stream, bool skip, const char *file, struct points *points,
                               struct error *error)
 {
     enum status status;
     struct cells cells;
-    double *spacing = NULL;
+    double *spacing = NULL, *radius = NULL;
     TRY(stream_cells(stream, false, &cells, error));
     TRY(NEW_ARRAY(&spacing, cells.node_count, error));
+    TRY(NEW_ARRAY(&radius, cells.node_count, error));
     TRY(field_spacing(&cells, spacing, error));
-    TRY(drop_outside(tool, &cells, spacing, skip, file, points, error));
-    TRY(field_table_build(support, &cells, spacing, points->count, points->x, file, &points->own, error));
+    TRY(support_radii(support, cells.node_count, spacing, radius, error));
+    if (file != NULL) {
+        TRY(drop_outside(tool, &cells, spacing, skip, file, points, error));
+    }
+    TRY(field_table_build(support, &cells, radius, points->count, points->x, file != NULL ? file : "points.x",
+                          &points->own, error));
     points->ptr = points->own.lists.ptr;
     points->idx = points->own.lists.idx;
     points->phi = points->own.phi;
 done:
     free(spacing);
+    free(radius);
     return status;
 }
 
-/* The stream's own points and table. */
-static enum status view_table(const struct stream *stream, int dim, int64_t node_count, struct points *points,
+/* The stream's own points. */
+static enum status copy_points(const struct stream *stream, int dim, struct points *points,
+                               struct error *error)
+{
+    enum status status;
+    const struct section *x;
+    TRY(stream_need(stream, "points.x", TYPE_F8, dim, "ipoints", &x, error));
+    points->count = x->rows;
+    TRY(NEW_ARRAY(&points->x, x->rows * dim, error));
+    memcpy(points->x, x->data, (size_t)(x->rows * dim) * sizeof(double));
+done:
+    return status;
+}
+
+/* The stream's own table at its own points. */
+static enum status view_table(const struct stream *stream, int64_t node_count, struct points *points,
                               struct error *error)
 {
     enum status status;
-    const struct section *x, *phi;
+    const struct section *phi;
     struct neighbours lists;
-    TRY(stream_need(stream, "points.x", TYPE_F8, dim, "ipoints", &x, error));
     TRY(stream_need(stream, "shape.phi", TYPE_F8, 1, "shapefn", &phi, error));
-    TRY(stream_neighbours(stream, "nbr", x->rows, node_count, &lists, error));
-    if (phi->rows != lists.ptr[x->rows]) {
+    TRY(stream_neighbours(stream, "nbr", points->count, node_count, &lists, error));
+    if (phi->rows != lists.ptr[points->count]) {
         status = fail(error, STATUS_INPUT, "shape.phi: does not fit nbr.idx: run shapefn again");
         goto done;
     }
-    points->count = x->rows;
     points->ptr = lists.ptr;
     points->idx = lists.idx;
     points->phi = phi->data;
-    TRY(NEW_ARRAY(&points->x, x->rows * dim, error));
-    memcpy(points->x, x->data, (size_t)(x->rows * dim) * sizeof(double));
 done:
     return status;
 }
@@ -310,7 +328,8 @@ static void put_deformed(const struct tool *tool, const struct stream *stream, i
                &error);
 }
 
-/* The points wanted, with their table: the stream's own, or those of a file. */
+/* The points wanted, with their table: the stream's own, or those of a file. Conforming cells have no table
+ * at their points. */
 static void find_points(const struct tool *tool, const struct option *options, struct stream *stream, int dim,
                         int64_t node_count, struct points *points)
 {
@@ -318,11 +337,18 @@ static void find_points(const struct tool *tool, const struct option *options, s
     const char *file = options[POINTS].value;
     struct support_options support = parse(tool, options, dim);
     if (file == NULL) {
-        stage_fill(tool, stream, "shapefn");
-        tool_check(tool, view_table(stream, dim, node_count, points, &error), &error);
-        return;
-    }
-    if (options[UNIT].given) {
+        tool_check(tool, stage_recorded_mls(stream, dim, &support.mls, &error), &error);
+        stage_fill(tool, stream, "ipoints");
+        bool conforming = points_are_conforming(stream_find(stream, "points.x"));
+        if (!conforming) {
+            stage_fill(tool, stream, "shapefn");
+        }
+        tool_check(tool, copy_points(stream, dim, points, &error), &error);
+        if (!conforming) {
+            tool_check(tool, view_table(stream, node_count, points, &error), &error);
+            return;
+        }
+    } else if (options[UNIT].given) {
         read_table(tool, file, options[UNIT].value, dim, points);
     } else {
         read_nodes(tool, file, dim, points);

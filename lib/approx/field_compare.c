@@ -193,13 +193,15 @@ static enum status interpolate(const struct nodal_field *a, const struct nodal_f
     enum status status;
     struct support_options support = support_defaults(a->cells.dim);
     struct field_table table = {0};
-    double *spacing = NULL, *points = NULL, *values = NULL;
+    double *spacing = NULL, *radius = NULL, *points = NULL, *values = NULL;
     TRY(NEW_ARRAY(&spacing, b->cells.node_count, error));
     TRY(NEW_ARRAY(&points, a->cells.node_count * a->cells.dim, error));
     TRY(NEW_ARRAY(&values, a->cells.node_count * a->cols, error));
     TRY(field_spacing(&b->cells, spacing, error));
     TRY(drop_outside(a, b, spacing, skip, comparison, points, error));
-    TRY(field_table_build(&support, &b->cells, spacing, comparison->count, points, "nodes of A within B",
+    TRY(NEW_ARRAY(&radius, b->cells.node_count, error));
+    TRY(support_radii(&support, b->cells.node_count, spacing, radius, error));
+    TRY(field_table_build(&support, &b->cells, radius, comparison->count, points, "nodes of A within B",
                           &table, error));
     field_evaluate(comparison->count, table.lists.ptr, table.lists.idx, table.phi, b->cols, b->values,
                    values);
@@ -210,6 +212,7 @@ static enum status interpolate(const struct nodal_field *a, const struct nodal_f
 done:
     field_table_free(&table);
     free(spacing);
+    free(radius);
     free(points);
     free(values);
     return status == STATUS_VERDICT ? STATUS_INPUT : status; /* not comparable is not "differs" */

@@ -23,7 +23,7 @@ struct ipoints_options {
 };
 struct ipoints_options ipoints_defaults(void);
 
-/* Add the sections of ipoints: points.*, faces, faces.cell, facepoints.* (lib/README.md). *unresolved counts
+/* Add the sections of ipoints: points.*, faces, faces.cell, facepoints.x (lib/README.md). *unresolved counts
  * the cells that are too coarse even at the last level of adaptive integration. */
 MUST_CHECK enum status stage_ipoints(struct stream *stream, const struct ipoints_options *options,
                                      int64_t *unresolved, struct error *error);
@@ -45,11 +45,11 @@ struct support_report {
     } list[3];
 };
 
-/* Add the sections of support: support.radius, and the lists nbr, face and node. */
+/* Add the sections of support: support.radius, and the lists nbr, facepoint and node. */
 MUST_CHECK enum status stage_support(struct stream *stream, const struct support_options *options,
                                      struct support_report *report, struct error *error);
 
-/* Add the sections of shapefn: shape.phi, shape.dphi, face.phi, node.phi. */
+/* Add the sections of shapefn: face.*, or shape.phi and shape.dphi; boundary.*, node.phi (lib/README.md). */
 MUST_CHECK enum status stage_shapefn(struct stream *stream, const struct mls *mls, struct error *error);
 
 /* The MLS settings that support recorded in the stream; mls_default() where it recorded none. */
