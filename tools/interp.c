@@ -13,11 +13,13 @@ static const char usage[] =
     "first. With -p they are those of another file. Where the stream has no table for the points,\n"
     "supports and shape functions are made for them.\n"
     "\n"
-    "The values of a field are taken as the parameters of the approximation, u_h = sum phi_j u_j: a\n"
-    "fit by moving least squares that reproduces linear fields (quadratic ones with mls2, and nearly\n"
-    "so with mmls2) and smooths others. A point farther from the cells than the spacing of their nodes\n"
-    "is an error (without cells: farther than two spacings from every node), unless --skip-outside\n"
-    "leaves it out; nearer ones are extrapolated.\n"
+    "Of results of mtled, u and u.frame.K are the solver's own field: its parameters and supports are\n"
+    "in the stream, and at the nodes it is what u says. Options that choose other supports or shape\n"
+    "functions ask for a fit instead, as do other fields: their values are taken as the parameters,\n"
+    "u_h = sum phi_j u_j, moving least squares that reproduce linear fields (quadratic ones with mls2,\n"
+    "and nearly so with mmls2) and smooth others. A point farther from the cells than the spacing of\n"
+    "their nodes is an error (without cells: farther than two spacings from every node), unless\n"
+    "--skip-outside leaves it out; nearer ones are extrapolated.\n"
     "\n"
     "Options:\n"
     "  -f, --field FIELD,...  the fields (default: every section of type f8 with one row per node)\n"
@@ -43,7 +45,7 @@ static const char usage[] =
     "  interp -f u -p grid.tsv -u mm --skip-outside -t u.dat\n";
 
 #include "mls_options.h"
-#include "stages.h"
+#include "solved.h"
 
 #include "approx/field.h"
 #include "io/sections.h"
@@ -70,6 +72,7 @@ enum {
 
 /* Points with the neighbours and the values of the shape functions at each. */
 struct points {
+    struct solved solved; /* the field whose shape functions these are; none: others */
     int64_t count;
     double *x;    /* count * dim, m; owned */
     int64_t *row; /* count: of the file, with --skip-outside; owned */
@@ -194,16 +197,24 @@ static enum status make_table(const struct tool *tool, const struct support_opti
     enum status status;
     struct cells cells;
     double *spacing = NULL, *radius = NULL;
+    const struct solved *solved = &points->solved;
+    const struct mls *shapes = NULL;
     TRY(stream_cells(stream, false, &cells, error));
     TRY(NEW_ARRAY(&spacing, cells.node_count, error));
     TRY(NEW_ARRAY(&radius, cells.node_count, error));
     TRY(field_spacing(&cells, spacing, error));
-    TRY(support_radii(support, cells.node_count, spacing, radius, error));
+    if (solved->radius != NULL) {
+        support = &solved->recorded.support;
+        shapes = &solved->recorded.shapes;
+        memcpy(radius, solved->radius, (size_t)cells.node_count * sizeof *radius);
+    } else {
+        TRY(support_radii(support, cells.node_count, spacing, radius, error));
+    }
     if (file != NULL) {
         TRY(drop_outside(tool, &cells, spacing, skip, file, points, error));
     }
-    TRY(field_table_build(support, &cells, radius, points->count, points->x, file != NULL ? file : "points.x",
-                          &points->own, error));
+    TRY(field_table_build(support, shapes, &cells, radius, points->count, points->x,
+                          file != NULL ? file : "points.x", &points->own, error));
     points->ptr = points->own.lists.ptr;
     points->idx = points->own.lists.idx;
     points->phi = points->own.phi;
@@ -250,19 +261,20 @@ done:
 /* Whether a section is a field at the nodes: not one of those that describe the discretisation. */
 static bool is_field(const struct section *section, int64_t node_count)
 {
-    if (section_stage(section->name) < MADE_WITH_RESULTS) {
+    if (section_stage(section->name) < MADE_WITH_RESULTS || solved_is_parameters(section)) {
         return false;
     }
     return section->type == TYPE_F8 && section->rows == node_count;
 }
 
-static void put_values(const struct tool *tool, const struct section *field, const struct points *points,
-                       struct stream *output)
+static void put_values(const struct tool *tool, const struct stream *stream, const struct section *field,
+                       const struct points *points, struct stream *output)
 {
     struct error error;
     double *values;
+    const struct section *from = solved_parameters(stream, &points->solved, field);
     tool_check(tool, NEW_ARRAY(&values, points->count * field->cols, &error), &error);
-    field_evaluate(points->count, points->ptr, points->idx, points->phi, field->cols, field->data, values);
+    field_evaluate(points->count, points->ptr, points->idx, points->phi, from->cols, from->data, values);
     tool_check(tool,
                stream_put(output, field->name, TYPE_F8, points->count, field->cols, field->attributes, values,
                           true, &error),
@@ -274,7 +286,7 @@ static void put_all_fields(const struct tool *tool, const struct stream *stream,
 {
     for (int64_t s = 0; s < stream->section_count; s++) {
         if (is_field(&stream->sections[s], node_count)) {
-            put_values(tool, &stream->sections[s], points, output);
+            put_values(tool, stream, &stream->sections[s], points, output);
         }
     }
     if (output->section_count == 1) {
@@ -299,7 +311,7 @@ static void put_fields(const struct tool *tool, const struct stream *stream, int
         if (stream_find(output, name) != NULL) {
             tool_fail(tool, STATUS_INPUT, "-f: field '%s' given twice", name);
         }
-        put_values(tool, field, points, output);
+        put_values(tool, stream, field, points, output);
     }
     free(list);
 }
@@ -318,6 +330,7 @@ static void put_deformed(const struct tool *tool, const struct stream *stream, i
                   (long long)node_count);
     }
     tool_check(tool, NEW_ARRAY(&x, points->count * dim, &error), &error);
+    u = solved_parameters(stream, &points->solved, u);
     field_evaluate(points->count, points->ptr, points->idx, points->phi, dim, u->data, x);
     for (int64_t i = 0; i < points->count * dim; i++) {
         x[i] += points->x[i];
@@ -328,23 +341,40 @@ static void put_deformed(const struct tool *tool, const struct stream *stream, i
                &error);
 }
 
-/* The points wanted, with their table: the stream's own, or those of a file. Conforming cells have no table
- * at their points. */
+/* Whether the user asks for supports or shape functions. */
+static bool chooses_supports(const struct option *options)
+{
+    bool chooses = false;
+    for (int i = FACTOR; i <= LAST_OF_MLS; i++) {
+        chooses = chooses || options[i].given;
+    }
+    return chooses;
+}
+
+/* The points wanted: the stream's own, or those of a file; and their table: the stream's, where it has one at
+ * its own points and no field that was solved for. */
 static void find_points(const struct tool *tool, const struct option *options, struct stream *stream, int dim,
                         int64_t node_count, struct points *points)
 {
     struct error error;
     const char *file = options[POINTS].value;
     struct support_options support = parse(tool, options, dim);
+    if (!chooses_supports(options)) {
+        tool_check(tool, solved_read(stream, &points->solved, &error), &error);
+    }
     if (file == NULL) {
-        tool_check(tool, stage_recorded_mls(stream, dim, &support.mls, &error), &error);
+        struct recorded recorded;
+        tool_check(tool, stage_recorded(stream_find(stream, "support.radius"), dim, &recorded, &error),
+                   &error);
+        support = recorded.support;
         stage_fill(tool, stream, "ipoints");
-        bool conforming = points_are_conforming(stream_find(stream, "points.x"));
-        if (!conforming) {
+        bool has_table =
+            points->solved.radius == NULL && !points_are_conforming(stream_find(stream, "points.x"));
+        if (has_table) {
             stage_fill(tool, stream, "shapefn");
         }
         tool_check(tool, copy_points(stream, dim, points, &error), &error);
-        if (!conforming) {
+        if (has_table) {
             tool_check(tool, view_table(stream, node_count, points, &error), &error);
             return;
         }

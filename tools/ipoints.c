@@ -141,11 +141,11 @@ static struct ipoints_options parse_for(const struct tool *tool, const struct op
     int64_t node_count;
     const double *x;
     struct error error;
-    struct mls mls;
+    struct recorded recorded;
     tool_check(tool, stream_nodes(stream, &dim, &node_count, &x, &error), &error);
-    tool_check(tool, stage_recorded_mls(stream, dim, &mls, &error), &error);
-    struct ipoints_options ipoints = parse(tool, options, &mls);
-    tool_check(tool, stage_recorded_reach(stream, &ipoints.refinement.support.reach, &error), &error);
+    tool_check(tool, stage_recorded(stream_find(stream, "support.radius"), dim, &recorded, &error), &error);
+    struct ipoints_options ipoints = parse(tool, options, &recorded.support.mls);
+    ipoints.refinement.support.reach = recorded.support.reach;
     return ipoints;
 }
 

@@ -33,7 +33,20 @@ static const char usage[] =
 #include "mls_options.h"
 #include "stages.h"
 
+#include <string.h>
+
 enum { BASIS, LAST_OF_MLS = BASIS + MLS_OPTION_COUNT - 1, TEXT, OUTPUT, OPTION_COUNT };
+
+/* What the shape functions are, for whoever evaluates them elsewhere. */
+static void record(const struct tool *tool, struct stream *stream, const struct recorded *recorded)
+{
+    struct error error;
+    double *radius;
+    const struct section *section = stream_find(stream, "support.radius");
+    tool_check(tool, NEW_ARRAY(&radius, section->rows, &error), &error);
+    memcpy(radius, section->data, (size_t)section->rows * sizeof *radius);
+    tool_check(tool, stage_record(stream, recorded, section->rows, radius, &error), &error);
+}
 
 int main(int argc, char *argv[])
 {
@@ -49,14 +62,17 @@ int main(int argc, char *argv[])
     int64_t node_count;
     const double *x;
     struct mls mls = mls_default(0);
+    struct recorded recorded;
     tool_begin(&tool, usage, options, OPTION_COUNT, 0, 1, argc, argv);
     tool_check(&tool, mls_apply_options(options + BASIS, &mls, &error), &error);
     tool_read(&tool, tool.operands[0], &stream);
     tool_check(&tool, stream_nodes(&stream, &dim, &node_count, &x, &error), &error);
     stage_fill(&tool, &stream, "support");
-    tool_check(&tool, stage_recorded_mls(&stream, dim, &mls, &error), &error);
-    tool_check(&tool, mls_apply_options(options + BASIS, &mls, &error), &error);
-    tool_check(&tool, stage_shapefn(&stream, &mls, &error), &error);
+    tool_check(&tool, stage_recorded(stream_find(&stream, "support.radius"), dim, &recorded, &error), &error);
+    recorded.shapes = recorded.support.mls;
+    tool_check(&tool, mls_apply_options(options + BASIS, &recorded.shapes, &error), &error);
+    tool_check(&tool, stage_shapefn(&stream, &recorded.shapes, &error), &error);
+    record(&tool, &stream, &recorded);
     tool_write(&tool, &stream, options[TEXT].given);
     stream_free(&stream);
     return tool_end(&tool);

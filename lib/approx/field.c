@@ -29,9 +29,9 @@ done:
     return status;
 }
 
-enum status field_table_build(const struct support_options *options, const struct cells *cells,
-                              const double *radius, int64_t count, const double *x, const char *what,
-                              struct field_table *table, struct error *error)
+enum status field_table_build(const struct support_options *options, const struct mls *shapes,
+                              const struct cells *cells, const double *radius, int64_t count, const double *x,
+                              const char *what, struct field_table *table, struct error *error)
 {
     struct reach reach = {0};
     bool by_cells = options->reach == REACH_CELLS && cells->count > 0;
@@ -46,7 +46,8 @@ enum status field_table_build(const struct support_options *options, const struc
                              error));
     TRY(NEW_ARRAY(&table->phi, table->lists.ptr[count], error));
     struct neighbours lists = support_view(&table->lists);
-    TRY(shape_table(&options->mls, cells->x, radius, &lists, x, what, table->phi, NULL, error));
+    TRY(shape_table(shapes != NULL ? shapes : &options->mls, cells->x, radius, &lists, x, what, table->phi,
+                    NULL, error));
 done:
     reach_free(&reach);
     point_grid_free(&grid);

@@ -370,7 +370,8 @@ int64_t stream_check(const struct stream *stream, violation_function *tell, void
     check_faces(&check);
     for (int64_t i = 0; i < stream->section_count; i++) {
         const struct section *section = &stream->sections[i];
-        if (strcmp(section->name, "u") == 0 || strncmp(section->name, "u.frame.", 8) == 0) {
+        if (strcmp(section->name, "u") == 0 || strncmp(section->name, "u.frame.", 8) == 0 ||
+            strncmp(section->name, "parameters.frame.", 17) == 0) {
             check_field(&check, section);
         }
     }

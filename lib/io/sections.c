@@ -41,6 +41,8 @@ const struct section_kind section_kinds[SECTION_KINDS] = {
     {"nbr.around", TYPE_I8, 1, NULL, ANY, NULL, MADE_WITH_SUPPORT},
     {"facepoint.around", TYPE_I8, 1, NULL, ANY, NULL, MADE_WITH_SUPPORT},
     {"node.around", TYPE_I8, 1, NULL, ANY, NULL, MADE_WITH_SUPPORT},
+    {"parameters", TYPE_F8, COLS_DIM, "nodes.x", FINITE, NULL, MADE_WITH_RESULTS},
+    {"parameters.radius", TYPE_F8, 1, "nodes.x", POSITIVE, NULL, MADE_WITH_RESULTS},
     {"u", TYPE_F8, COLS_ANY, NULL, ANY, NULL, MADE_WITH_RESULTS},
     {"stress", TYPE_F8, COLS_ANY, NULL, ANY, NULL, MADE_WITH_RESULTS},
     {"strain", TYPE_F8, COLS_ANY, NULL, ANY, NULL, MADE_WITH_RESULTS},

@@ -7,52 +7,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum status stage_recorded_mls(const struct stream *stream, int dim, struct mls *mls, struct error *error)
-{
-    const struct section *radius = stream_find(stream, "support.radius");
-    char value[256];
-    int choice, count;
-    enum status status = STATUS_OK;
-    *mls = mls_default(dim);
-    if (radius == NULL) {
-        return STATUS_OK;
-    }
-    if (section_attribute(radius, "basis", value, sizeof value)) {
-        TRY(parse_choice(value, "support.radius: basis", basis_names, BASIS_COUNT, &choice, error));
-        mls->basis = (enum basis)choice;
-    }
-    if (section_attribute(radius, "weight", value, sizeof value)) {
-        TRY(parse_choice(value, "support.radius: weight", weight_names, WEIGHT_COUNT, &choice, error));
-        mls->weight = (enum weight_function)choice;
-    }
-    if (section_attribute(radius, "mu_absolute", value, sizeof value)) {
-        mls->mu_absolute = strcmp(value, "0") != 0;
-    }
-    if (section_attribute(radius, "mu", value, sizeof value)) {
-        TRY(parse_double_list(value, "support.radius: mu", 0.0, 1e300, MLS_MAX_SECOND, mls->mu, &count,
-                              error));
-        if (count != mls_second_order_count(dim)) {
-            status = fail(error, STATUS_INPUT, "support.radius: mu: %d values, not %d", count,
-                          mls_second_order_count(dim));
-        }
-    }
-done:
-    return status;
-}
-
-enum status stage_recorded_reach(const struct stream *stream, enum reach_rule *reach, struct error *error)
-{
-    const struct section *radius = stream_find(stream, "support.radius");
-    char value[64];
-    int choice = REACH_CELLS;
-    enum status status = STATUS_OK;
-    if (radius != NULL && section_attribute(radius, "reach", value, sizeof value)) {
-        status = parse_choice(value, "support.radius: reach", reach_names, REACH_RULE_COUNT, &choice, error);
-    }
-    *reach = (enum reach_rule)choice;
-    return status;
-}
-
 /* Sections may come from anywhere: finite coordinates, radii and factors that are finite and positive. */
 static enum status check_numbers(const struct section *section, bool positive, struct error *error)
 {

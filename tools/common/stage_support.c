@@ -5,6 +5,9 @@
 #include "io/sections.h"
 
 #include <stdlib.h>
+#include <string.h>
+
+enum { DESCRIPTION = 960 }; /* bytes of the attributes */
 
 /* Radii by the local spacing: from the cells where there are any, else from the nearest nodes. */
 static enum status local_radii(const struct stream *stream, const struct support_options *options,
@@ -33,20 +36,122 @@ enum status stage_radii(const struct stream *stream, const struct support_option
                                  : local_radii(stream, options, node_count, x, radius, error);
 }
 
+/* Attributes that record the settings; those that are seldom given only where they are. */
+static void describe(const struct recorded *recorded, char text[DESCRIPTION])
+{
+    const struct support_options *options = &recorded->support;
+    const struct support_options usual = support_defaults(options->mls.dim);
+    char mls[DESCRIPTION / 3], shapes[DESCRIPTION / 3], lists[DESCRIPTION / 6] = "";
+    mls_describe(&options->mls, "", mls, sizeof mls);
+    mls_describe(&recorded->shapes, "", shapes, sizeof shapes);
+    bool same = strcmp(mls, shapes) == 0;
+    mls_describe(&recorded->shapes, " shape_", shapes, sizeof shapes);
+    if (options->least != usual.least || options->most != usual.most || options->widen != usual.widen ||
+        options->gradient_bound != usual.gradient_bound) {
+        snprintf(lists, sizeof lists, " least=%lld most=%lld widen=%d bound=%.17g", (long long)options->least,
+                 (long long)options->most, options->widen, options->gradient_bound);
+    }
+    snprintf(text, DESCRIPTION, "unit=m reach=%s %s%s%s", reach_names[options->reach], mls, lists,
+             same ? "" : shapes);
+}
+
+/* The value of one attribute into a whole number, unless it is absent. */
+static enum status read_count(const struct section *section, const char *key, int64_t *count,
+                              struct error *error)
+{
+    char value[64], what[96];
+    snprintf(what, sizeof what, "%s: %s", section->name, key);
+    return section_attribute(section, key, value, sizeof value)
+               ? parse_integer(value, what, 0, 1000000, count, error)
+               : STATUS_OK;
+}
+
+/* The shape functions' settings, in attributes that begin with a prefix. */
+static enum status read_mls(const struct section *section, const char *prefix, struct mls *mls,
+                            struct error *error)
+{
+    enum status status = STATUS_OK;
+    char key[32], value[256], what[96];
+    int choice, count;
+    snprintf(key, sizeof key, "%sbasis", prefix);
+    snprintf(what, sizeof what, "%s: %s", section->name, key);
+    if (section_attribute(section, key, value, sizeof value)) {
+        TRY(parse_choice(value, what, basis_names, BASIS_COUNT, &choice, error));
+        mls->basis = (enum basis)choice;
+    }
+    snprintf(key, sizeof key, "%sweight", prefix);
+    snprintf(what, sizeof what, "%s: %s", section->name, key);
+    if (section_attribute(section, key, value, sizeof value)) {
+        TRY(parse_choice(value, what, weight_names, WEIGHT_COUNT, &choice, error));
+        mls->weight = (enum weight_function)choice;
+    }
+    snprintf(key, sizeof key, "%smu_absolute", prefix);
+    if (section_attribute(section, key, value, sizeof value)) {
+        mls->mu_absolute = strcmp(value, "0") != 0;
+    }
+    snprintf(key, sizeof key, "%smu", prefix);
+    snprintf(what, sizeof what, "%s: %s", section->name, key);
+    if (section_attribute(section, key, value, sizeof value)) {
+        TRY(parse_double_list(value, what, 0.0, 1e300, MLS_MAX_SECOND, mls->mu, &count, error));
+        if (count != mls_second_order_count(mls->dim)) {
+            status = fail(error, STATUS_INPUT, "%s: %d values, not %d", what, count,
+                          mls_second_order_count(mls->dim));
+        }
+    }
+done:
+    return status;
+}
+
+enum status stage_recorded(const struct section *radius, int dim, struct recorded *recorded,
+                           struct error *error)
+{
+    enum status status = STATUS_OK;
+    struct support_options *options = &recorded->support;
+    char value[64], what[96];
+    int choice = REACH_CELLS;
+    int64_t widen = 1;
+    *options = support_defaults(dim);
+    recorded->shapes = options->mls;
+    if (radius == NULL) {
+        return STATUS_OK;
+    }
+    TRY(read_mls(radius, "", &options->mls, error));
+    recorded->shapes = options->mls;
+    TRY(read_mls(radius, "shape_", &recorded->shapes, error));
+    snprintf(what, sizeof what, "%s: reach", radius->name);
+    if (section_attribute(radius, "reach", value, sizeof value)) {
+        TRY(parse_choice(value, what, reach_names, REACH_RULE_COUNT, &choice, error));
+        options->reach = (enum reach_rule)choice;
+    }
+    TRY(read_count(radius, "least", &options->least, error));
+    TRY(read_count(radius, "most", &options->most, error));
+    TRY(read_count(radius, "widen", &widen, error));
+    options->widen = widen != 0;
+    snprintf(what, sizeof what, "%s: bound", radius->name);
+    if (section_attribute(radius, "bound", value, sizeof value)) {
+        TRY(parse_double(value, what, 1.0, 1e6, &options->gradient_bound, error));
+    }
+done:
+    return status;
+}
+
+enum status stage_record(struct stream *stream, const struct recorded *recorded, int64_t node_count,
+                         double *radius, struct error *error)
+{
+    char described[DESCRIPTION];
+    describe(recorded, described);
+    return stream_put(stream, "support.radius", TYPE_F8, node_count, 1, described, radius, true, error);
+}
+
 /* Radii of the nodes, put into the stream with the settings they were made for. */
 static enum status put_radii(struct stream *stream, const struct support_options *options, int64_t node_count,
                              const double *x, struct error *error)
 {
     enum status status;
     double *radius = NULL;
-    char attributes[512];
     TRY(NEW_ARRAY(&radius, node_count, error));
     TRY(stage_radii(stream, options, node_count, x, radius, error));
-    mls_describe(&options->mls, attributes, sizeof attributes - 32);
-    char described[sizeof attributes + 32];
-    snprintf(described, sizeof described, "unit=m reach=%s %s", reach_names[options->reach], attributes);
-    status = stream_put(stream, "support.radius", TYPE_F8, node_count, 1, described, radius, true, error);
-    radius = NULL;
+    return stage_record(stream, &(struct recorded){*options, options->mls}, node_count, radius, error);
 done:
     free(radius);
     return status;
