@@ -133,7 +133,7 @@ at_nodes() {
     done
     sed 's/^\(# parameters.radius.*basis=\)[^ ]*/\1cubic/' u.dat > bad.dat
     run -2 --separate-stderr interp -p square.mts bad.dat
-    [[ "$stderr" == "interp: parameters.radius: basis"* ]]
+    [[ "$stderr" == "interp: parameters.radius: -b: "* ]]
     awk '/^# parameters.radius/ { $4--; print; getline; next } { print }' u.dat > bad.dat
     run -2 --separate-stderr interp -p square.mts bad.dat
     [[ "$stderr" == "interp: parameters.radius: 35 rows for 36 nodes" ]]

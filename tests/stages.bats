@@ -221,10 +221,10 @@ edit() {
     hostile 2 shapefn bad.txt "support.radius: row 4"
     edit facepoint.widen 4 nan lists.txt > bad.txt
     hostile 2 shapefn bad.txt "facepoint.widen: row 4"
-    sed 's/ mu=[^ ]*/ mu=1/' lists.txt > bad.txt
-    hostile 2 shapefn bad.txt "support.radius: mu"
+    sed 's/ mu=[^ ]*/ mu=1,2/' lists.txt > bad.txt
+    hostile 2 shapefn bad.txt "support.radius: --mu: 2 values; in 2D give one, or 3"
     sed 's/basis=[^ ]*/basis=cubic/' lists.txt > bad.txt
-    hostile 2 shapefn bad.txt "support.radius: basis"
+    hostile 2 shapefn bad.txt "support.radius: -b: "
     support -t gauss.txt > lists.txt
     edit nbr.idx 7 1000 lists.txt > bad.txt
     hostile 2 shapefn bad.txt "nbr.idx: row 7: no node 1000"

@@ -154,8 +154,8 @@ static enum status try_compare(struct error *error)
     wanted.kind = CLOUD_JITTERED;
     wanted.jitter = 0.2;
     TRY(cloud_make(&wanted, &second, error));
-    struct nodal_field a = {{2, 49, first.x, 0, NULL}, 1, values};
-    struct nodal_field b = {{2, 49, second.x, 0, NULL}, 1, values};
+    struct nodal_field a = {.cells = {2, 49, first.x, 0, NULL}, .cols = 1, .values = values};
+    struct nodal_field b = {.cells = {2, 49, second.x, 0, NULL}, .cols = 1, .values = values};
     TRY(field_compare(&a, &b, NULL, false, &comparison, error));
     TRY(field_statistics(comparison.count, comparison.node, comparison.difference, &statistics, error));
 done:

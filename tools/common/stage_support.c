@@ -66,40 +66,26 @@ static enum status read_count(const struct section *section, const char *key, in
                : STATUS_OK;
 }
 
-/* The shape functions' settings, in attributes that begin with a prefix. */
+/* The shape functions' settings, in attributes that begin with a prefix, as options of a command line say
+ * them. */
 static enum status read_mls(const struct section *section, const char *prefix, struct mls *mls,
                             struct error *error)
 {
-    enum status status = STATUS_OK;
-    char key[32], value[256], what[96];
-    int choice, count;
-    snprintf(key, sizeof key, "%sbasis", prefix);
-    snprintf(what, sizeof what, "%s: %s", section->name, key);
-    if (section_attribute(section, key, value, sizeof value)) {
-        TRY(parse_choice(value, what, basis_names, BASIS_COUNT, &choice, error));
-        mls->basis = (enum basis)choice;
+    static const char *const keys[] = {"basis", "weight", "mu", "mu_absolute"};
+    struct option options[MLS_OPTION_COUNT] = {0};
+    char value[4][256], key[32];
+    struct error own;
+    bool is_told[4];
+    for (int k = 0; k < 4; k++) {
+        snprintf(key, sizeof key, "%s%s", prefix, keys[k]);
+        is_told[k] = section_attribute(section, key, value[k], sizeof value[k]);
     }
-    snprintf(key, sizeof key, "%sweight", prefix);
-    snprintf(what, sizeof what, "%s: %s", section->name, key);
-    if (section_attribute(section, key, value, sizeof value)) {
-        TRY(parse_choice(value, what, weight_names, WEIGHT_COUNT, &choice, error));
-        mls->weight = (enum weight_function)choice;
+    for (int k = 0; k < 3; k++) {
+        options[k] = (struct option){.given = is_told[k], .value = value[k]};
     }
-    snprintf(key, sizeof key, "%smu_absolute", prefix);
-    if (section_attribute(section, key, value, sizeof value)) {
-        mls->mu_absolute = strcmp(value, "0") != 0;
-    }
-    snprintf(key, sizeof key, "%smu", prefix);
-    snprintf(what, sizeof what, "%s: %s", section->name, key);
-    if (section_attribute(section, key, value, sizeof value)) {
-        TRY(parse_double_list(value, what, 0.0, 1e300, MLS_MAX_SECOND, mls->mu, &count, error));
-        if (count != mls_second_order_count(mls->dim)) {
-            status = fail(error, STATUS_INPUT, "%s: %d values, not %d", what, count,
-                          mls_second_order_count(mls->dim));
-        }
-    }
-done:
-    return status;
+    enum status status = mls_apply_options(options, mls, &own);
+    mls->mu_absolute = is_told[3] ? strcmp(value[3], "0") != 0 : mls->mu_absolute;
+    return status == STATUS_OK ? status : fail(error, status, "%s: %s", section->name, own.text);
 }
 
 enum status stage_recorded(const struct section *radius, int dim, struct recorded *recorded,
