@@ -162,11 +162,11 @@ END
     groups -f held=low:z,12% -f 'more=low:z,30% without held' bare.mts 2> said > g.mts
     [ ! -s said ]
     shapefn bare.mts 2> /dev/null > table.mts
-    groups -n tip=high:z,10% table.mts 2> said | mts list | grep -q '^shape.phi'
+    groups -n tip=high:z,10% table.mts 2> said | mts list | grep -q '^face.phi'
     [ ! -s said ]
     groups -f tip=high:z,10% table.mts 2> said > stale.mts
     [ "$(cat said)" = "groups: facets have changed: the sections of support and shapefn are left out" ]
-    run -1 grep -qE '^(shape|nbr|face|node|support)\.' <(mts list stale.mts)
+    run -1 grep -qE '^(shape|nbr|face|facepoint|boundary|node|support)\.' <(mts list stale.mts)
     cat > push.scene << 'END'
 [scene]
 dim = 3

@@ -44,7 +44,7 @@ setup() {
     grep -q "^steps" report
     nodes -u mm body.msh 2> note | mtled block.scene 2> note | bare | cmp - spelled.dat
     [ "$(rows u u.dat | wc -l)" -eq "$(rows nodes.x u.dat | wc -l)" ]
-    run -1 grep -qE '^# (shape|nbr|face|points|support|facepoints)\.' u.dat
+    run -1 grep -qE '^# (shape|nbr|node|face|boundary|points|support|facepoints?)\.' u.dat
 }
 
 @test "any number of threads gives the same bytes, quasi-static and dynamic" {
@@ -93,9 +93,9 @@ setup() {
     done
     diff <(rows u.frame.3 full.dat) <(rows u full.dat)
     grep -q '^# u.frame.3 .*time=1$' full.dat
-    [ "$(mts list full.dat | grep -oE '^[^	]*\.frames?[^	]*' | xargs)" = "u.frame.0 stress.frame.0 strain.frame.0 \
-reactions.frames energy.frames u.frame.1 stress.frame.1 strain.frame.1 u.frame.2 stress.frame.2 strain.frame.2 u.frame.3 \
-stress.frame.3 strain.frame.3" ]
+    [ "$(mts list full.dat | grep -oE '^[^	]*\.frames?[^	]*' | xargs)" = "u.frame.0 parameters.frame.0 stress.frame.0 strain.frame.0 \
+reactions.frames energy.frames u.frame.1 parameters.frame.1 stress.frame.1 strain.frame.1 u.frame.2 parameters.frame.2 \
+stress.frame.2 strain.frame.2 u.frame.3 parameters.frame.3 stress.frame.3 strain.frame.3" ]
     for name in stress strain; do
         rows $name.frame.0 full.dat | awk '{ for (i = 1; i <= 4; i++) if ($i != 0) exit 1 } END { exit NR != 50 }'
         diff <(rows $name.frame.3 full.dat) <(rows $name full.dat)
@@ -378,11 +378,20 @@ END
         head -c $((size * part / 100)) table.mts > part.mts
         refused 2 "part.mts" mtled block.scene part.mts
     done
-    mts drop shape.dphi table.mts > none.mts
-    refused 2 "shape.dphi" mtled block.scene none.mts
+    for section in face.phi boundary.phi; do
+        mts drop $section table.mts > none.mts
+        refused 2 "no section $section: run shapefn" mtled block.scene none.mts
+    done
     refused 2 "" mtled block.scene /dev/null
-    for section in cells.region points.weight points.cell shape.dphi shape.phi faces.cell facets.set facepoints.x face.phi node.phi face.idx nbr.ptr; do
+    for section in cells.region points.weight points.cell faces.cell facets.set face.phi face.idx boundary.phi boundary.ptr node.phi node.ptr; do
         shortened $section table.mts > short.mts
+        refused 2 "fit" mtled block.scene short.mts
+    done
+    ipoints -g 3 square.mts | support | shapefn > gauss.mts
+    mts drop shape.dphi gauss.mts > none.mts
+    refused 2 "no section shape.dphi: run shapefn" mtled block.scene none.mts
+    for section in points.weight shape.dphi shape.phi nbr.ptr boundary.idx; do
+        shortened $section gauss.mts > short.mts
         refused 2 "fit" mtled block.scene short.mts
     done
     ipoints --lattice 5,5 square.mts | shapefn > lattice.mts 2> note

@@ -204,9 +204,20 @@ violates() {
     run -1 mts check damaged
     [ "${lines[0]}" = "nbr.ptr: 2 rows, but points.x has 2: need one more" ]
     square | sed '/^# u /,$d' > damaged
-    printf '# faces i4 2 2\n0 1\n1 2\n\n\n# facepoints.x f8 3 2\n0 0\n0 0\n0 0\n\n\n# end 18\n' >> damaged
+    printf '# faces.cell i4 2 2\n0 -1\n0 1\n\n\n# facepoints.x f8 3 2\n0 0\n0 0\n0 0\n\n\n# end 18\n' >> damaged
     run -1 mts check damaged
     [[ $output == *"facepoints.x: 3 points on 2 faces"* ]]
+    sed 's/^0 -1$/0 1 /;/^0 1$/s/1/-1/' damaged > swapped
+    run -1 mts check swapped
+    [[ $output == *"faces.cell: row 1: on the boundary, after faces between cells"* ]]
+    shapefn <(cloud -d 2 -k regular -n 3 --box 0,1,0,1) 2> note | mts text > whole
+    mts check whole
+    shortened boundary.ptr whole > damaged
+    run -1 mts check damaged
+    [[ $output == *"boundary.ptr: 15 points on 8 faces of the boundary"* ]]
+    shortened face.ptr whole > damaged
+    run -1 mts check damaged
+    [[ $output == *"face.ptr: 16 rows, but faces has 16: need one more"* ]]
     printf '# mts 1\n# nodes.x f8 1 1\n0\n\n\n# end 1\n' > damaged
     run -1 mts check damaged
     [ "${lines[0]}" = "nodes.x: 1 columns instead of 2 or 3" ]

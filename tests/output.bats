@@ -13,7 +13,7 @@ setup() {
     cp "$BATS_TEST_DIRNAME"/fuzz/corpus/msh/ascii22 body.msh
     /usr/bin/python3 "$BATS_TEST_DIRNAME/helper/nifti.py" step slice.nii 1 2
     writers=("nodes -u mm body.msh" "cloud -d 2 -k regular -n 9 --box 0,1,0,1" "ipoints square.mts" "support square.mts"
-        "shapefn table.mts" "mtled run.scene table.mts" "interp -f u u.dat" "mts text square.mts" "mts keep nodes.x square.mts"
+        "shapefn square.mts" "mtled run.scene table.mts" "interp -f u u.dat" "mts text square.mts" "mts keep nodes.x square.mts"
         "tovtk u.dat" "warp slice.nii u.dat" "sample slice.nii square.mts")
     printers=("fieldcmp u.dat u.dat" "mts list square.mts" "mts print nodes.x square.mts" "mtled -h" "cloud --version")
     for command in "${writers[@]}" "${printers[@]}"; do # they work, or the tests below mean nothing

@@ -174,15 +174,15 @@ END
 @test "sections of what is around corners that do not fit are refused" {
     gmsh -2 -v 0 -setnumber h 3 "$top/examples/hard/slit.geo" -o slit.msh > /dev/null
     nodes -u mm slit.msh | support -t > lists.dat 2> notes
-    rows=$(awk '$2 == "face.around" { print $4 }' lists.dat)
+    rows=$(awk '$2 == "facepoint.around" { print $4 }' lists.dat)
     [ "$rows" -gt 2 ]
-    awk '$2 == "face.around" { print; getline; print 1000000; next } { print }' lists.dat > bad.dat
+    awk '$2 == "facepoint.around" { print; getline; print 1000000; next } { print }' lists.dat > bad.dat
     run -2 --separate-stderr shapefn bad.dat
-    [[ "$stderr" == "shapefn: face.around: row "* ]]
+    [[ "$stderr" == "shapefn: facepoint.around: row "* ]]
     run -1 --separate-stderr mts check bad.dat
-    awk '$2 == "face.image" { print; getline; print "nan 0"; next } { print }' lists.dat > bad.dat
+    awk '$2 == "facepoint.image" { print; getline; print "nan 0"; next } { print }' lists.dat > bad.dat
     run -2 --separate-stderr shapefn bad.dat
-    [[ "$stderr" == "shapefn: face.image: row 0"* ]]
+    [[ "$stderr" == "shapefn: facepoint.image: row 0"* ]]
 }
 
 @test "tables of displacements act neither across a gap nor across a slit" {

@@ -152,10 +152,14 @@ setup() {
     sed 's/^# other/# nodes.x/' other.txt > bare.txt
     run -2 --separate-stderr ipoints bare.txt
     [[ "$stderr" == *"no section cells"*"run nodes"* ]]
-    shapefn square.mts 2> /dev/null | mts text > table.txt
-    mts drop facepoints.x table.txt -o dropped.mts
-    run -2 --separate-stderr shapefn dropped.mts
-    [[ "$stderr" == *"ipoints"* ]]
+    shapefn square.mts 2> /dev/null > table.mts # has taken up what lay at the points of faces
+    for tool in support shapefn; do
+        run -2 --separate-stderr "$tool" table.mts
+        [ "$stderr" = "$tool: no section facepoints.x: run ipoints" ]
+    done
+    ipoints square.mts | mts drop faces.cell | support > lists.mts
+    run -2 --separate-stderr shapefn lists.mts
+    [ "$stderr" = "shapefn: no section faces.cell: run ipoints" ]
 }
 
 # hostile STATUS TOOL STREAM WORDS: refused with that status and words, without output.
@@ -194,8 +198,8 @@ edit() {
     edit facepoints.x 2 "nan 0" points.txt > bad.txt
     hostile 2 support bad.txt "facepoints.x: row 2"
     for node in 49 -1; do
-        edit face.idx 7 "$node" lists.txt > bad.txt
-        hostile 2 shapefn bad.txt "face.idx: row 7: no node $node"
+        edit facepoint.idx 7 "$node" lists.txt > bad.txt
+        hostile 2 shapefn bad.txt "facepoint.idx: row 7: no node $node"
         edit node.idx 7 "$node" lists.txt > bad.txt
         hostile 2 shapefn bad.txt "node.idx: row 7: no node $node"
         edit faces 1 "$node 3" lists.txt > bad.txt
@@ -205,22 +209,22 @@ edit() {
         edit faces.cell 1 "$cell 3" lists.txt > bad.txt
         hostile 2 shapefn bad.txt "faces.cell: row 1"
     done
-    edit face.ptr 0 1 lists.txt > bad.txt
-    hostile 2 shapefn bad.txt "face.ptr"
-    edit face.ptr 4 0 lists.txt > bad.txt
-    hostile 2 shapefn bad.txt "face.ptr: row 4: decreases"
-    edit face.ptr 4 9223372036854775807 lists.txt > bad.txt
-    hostile 2 shapefn bad.txt "face.ptr: row 5: decreases"
+    edit facepoint.ptr 0 1 lists.txt > bad.txt
+    hostile 2 shapefn bad.txt "facepoint.ptr"
+    edit facepoint.ptr 4 0 lists.txt > bad.txt
+    hostile 2 shapefn bad.txt "facepoint.ptr: row 4: decreases"
+    edit facepoint.ptr 4 9223372036854775807 lists.txt > bad.txt
+    hostile 2 shapefn bad.txt "facepoint.ptr: row 5: decreases"
     edit support.radius 4 -1 lists.txt > bad.txt
     hostile 2 shapefn bad.txt "support.radius: row 4"
     edit support.radius 4 nan lists.txt > bad.txt
     hostile 2 shapefn bad.txt "support.radius: row 4"
-    edit face.widen 4 nan lists.txt > bad.txt
-    hostile 2 shapefn bad.txt "face.widen: row 4"
-    sed 's/ mu=[^ ]*/ mu=1/' lists.txt > bad.txt
-    hostile 2 shapefn bad.txt "support.radius: mu"
+    edit facepoint.widen 4 nan lists.txt > bad.txt
+    hostile 2 shapefn bad.txt "facepoint.widen: row 4"
+    sed 's/ mu=[^ ]*/ mu=1,2/' lists.txt > bad.txt
+    hostile 2 shapefn bad.txt "support.radius: --mu: 2 values; in 2D give one, or 3"
     sed 's/basis=[^ ]*/basis=cubic/' lists.txt > bad.txt
-    hostile 2 shapefn bad.txt "support.radius: basis"
+    hostile 2 shapefn bad.txt "support.radius: -b: "
     support -t gauss.txt > lists.txt
     edit nbr.idx 7 1000 lists.txt > bad.txt
     hostile 2 shapefn bad.txt "nbr.idx: row 7: no node 1000"
@@ -258,12 +262,12 @@ END
     support -R 0.03 points.mts | mts print support.radius | sort -u | cmp - mm
     support -R 3cm points.mts | mts print support.radius | sort -u | cmp - mm
     [ "$(cat mm)" = 0.029999999999999999 ]
-    support -R 50mm -n 8 -m 8 points.mts | mts print face.ptr > ptr
+    support -R 50mm -n 8 -m 8 points.mts | mts print facepoint.ptr > ptr
     awk 'NR > 1 && $1 - last != 8 { exit 1 } { last = $1 }' ptr
     run -0 --separate-stderr support -v -k 1.2 -o lists.mts points.mts
     [[ "${stderr_lines[0]}" =~ ^support:\ widened\ at\ [1-9][0-9]*\ points,\ at\ most\ 1\.[0-9]*\ times$ ]]
     [ "${#stderr_lines[@]}" -eq 3 ]
-    for list in "face:points on faces" "node:nodes"; do
+    for list in "facepoint:points on faces" "node:nodes"; do
         report=$(mts print "${list%%:*}.ptr" lists.mts | awk -v what="${list#*:}" '
             NR > 1 { n = $1 - last; sum += n; if (n > most) most = n; if (NR == 2 || n < fewest) fewest = n } { last = $1 }
             END { printf "support: %d %s: %d to %d neighbours, mean %.1f, widened at", NR - 1, what, fewest, most, sum / (NR - 1) }')

@@ -6,8 +6,9 @@ static const char usage[] =
     "\n"
     "Compares the field u (m) of stream A with that of stream B at the nodes of A; - is standard\n"
     "input. Where the two clouds of nodes coincide (within 1e-9 of their extent, in any order) the\n"
-    "values are compared as they are; otherwise B's field is interpolated to A's nodes by MMLS. A\n"
-    "node of A farther than two of B's node spacings from every node of B is an error.\n"
+    "values are compared as they are; otherwise B's field is evaluated at A's nodes: of results of\n"
+    "mtled the solver's own field, else a fit by MMLS. A node of A farther than two of B's node\n"
+    "spacings from every node of B is an error.\n"
     "\n"
     "Prints one quantity per line, name and value separated by a tab. The difference at a node is the\n"
     "Euclidean norm of the difference of the two vectors; with fields in m these are lengths in m:\n"
@@ -45,7 +46,7 @@ static const char usage[] =
     "  mtled brain2d.scene table.mts | fieldcmp -m difference.mts - reference.dat\n";
 
 #include "regions.h"
-#include "stages.h"
+#include "solved.h"
 
 #include "approx/field_compare.h"
 
@@ -70,6 +71,7 @@ struct side {
     struct stream stream;
     const struct section *section; /* of the field */
     struct nodal_field field;
+    struct solved solved;
 };
 
 /* A length, or a number of the field's own unit; 0 is allowed. */
@@ -109,7 +111,7 @@ static void read_side(const struct tool *tool, const char *file, const char *fie
 {
     struct error error;
     const struct section *section;
-    side->name = strcmp(file, "-") == 0 ? "standard input" : file;
+    *side = (struct side){.name = strcmp(file, "-") == 0 ? "standard input" : file};
     tool_read(tool, file, &side->stream);
     enum status status = stream_cells(&side->stream, false, &side->field.cells, &error);
     if (status == STATUS_OK) {
@@ -124,9 +126,20 @@ static void read_side(const struct tool *tool, const char *file, const char *fie
     if (status != STATUS_OK) {
         tool_fail(tool, status, "%s: %s", side->name, error.text);
     }
+    status = solved_read(&side->stream, &side->solved, &error);
+    if (status != STATUS_OK) {
+        tool_fail(tool, status, "%s: %s", side->name, error.text);
+    }
+    const struct section *parameters = solved_parameters(&side->stream, &side->solved, section);
     side->section = section;
     side->field.cols = section->cols;
     side->field.values = section->data;
+    if (parameters != section) {
+        side->field.parameters = parameters->data;
+        side->field.radius = side->solved.radius;
+        side->field.support = &side->solved.recorded.support;
+        side->field.shapes = &side->solved.recorded.shapes;
+    }
 }
 
 static void check_same_kind(const struct tool *tool, const struct nodal_field *a, const struct nodal_field *b,

@@ -7,16 +7,19 @@ static const char usage[] =
     "              [FILE]\n"
     "\n"
     "Reads a stream with nodes.x (m) and fields at the nodes, and writes one with nodes.x = the\n"
-    "points (m) and the fields there. By default the points are the stream's own points.x, through\n"
-    "its table of shape functions; without earlier sections the defaults of ipoints, support and\n"
-    "shapefn are run first. With -p they are those of another file, and supports and shape functions\n"
-    "are made for them.\n"
+    "points (m) and the fields there. By default the points are the stream's own points.x: the\n"
+    "middles of conforming cells, or others (ipoints -g, --lattice), through the stream's table of\n"
+    "shape functions; without earlier sections the defaults of ipoints, support and shapefn are run\n"
+    "first. With -p they are those of another file. Where the stream has no table for the points,\n"
+    "supports and shape functions are made for them.\n"
     "\n"
-    "The values of a field are taken as the parameters of the approximation, u_h = sum phi_j u_j: a\n"
-    "fit by moving least squares that reproduces linear fields (quadratic ones with mls2, and nearly\n"
-    "so with mmls2) and smooths others. A point farther from the cells than the spacing of their nodes\n"
-    "is an error (without cells: farther than two spacings from every node), unless --skip-outside\n"
-    "leaves it out; nearer ones are extrapolated.\n"
+    "Of results of mtled, u and u.frame.K are the solver's own field: its parameters and supports are\n"
+    "in the stream, and at the nodes it is what u says. Options that choose other supports or shape\n"
+    "functions ask for a fit instead, as do other fields: their values are taken as the parameters,\n"
+    "u_h = sum phi_j u_j, moving least squares that reproduce linear fields (quadratic ones with mls2,\n"
+    "and nearly so with mmls2) and smooth others. A point farther from the cells than the spacing of\n"
+    "their nodes is an error (without cells: farther than two spacings from every node), unless\n"
+    "--skip-outside leaves it out; nearer ones are extrapolated.\n"
     "\n"
     "Options:\n"
     "  -f, --field FIELD,...  the fields (default: every section of type f8 with one row per node)\n"
@@ -42,7 +45,7 @@ static const char usage[] =
     "  interp -f u -p grid.tsv -u mm --skip-outside -t u.dat\n";
 
 #include "mls_options.h"
-#include "stages.h"
+#include "solved.h"
 
 #include "approx/field.h"
 #include "io/sections.h"
@@ -69,6 +72,7 @@ enum {
 
 /* Points with the neighbours and the values of the shape functions at each. */
 struct points {
+    struct solved solved; /* the field whose shape functions these are; none: others */
     int64_t count;
     double *x;    /* count * dim, m; owned */
     int64_t *row; /* count: of the file, with --skip-outside; owned */
@@ -184,47 +188,72 @@ done:
     return status;
 }
 
-/* Supports and shape functions at points of the user's. */
+/* Supports and shape functions at the points: of the stream's own integration points, or, with a file, of the
+ * user's, which may lie outside. */
 static enum status make_table(const struct tool *tool, const struct support_options *support,
                               const struct stream *stream, bool skip, const char *file, struct points *points,
                               struct error *error)
 {
     enum status status;
     struct cells cells;
-    double *spacing = NULL;
+    double *spacing = NULL, *radius = NULL;
+    const struct solved *solved = &points->solved;
+    const struct mls *shapes = NULL;
     TRY(stream_cells(stream, false, &cells, error));
     TRY(NEW_ARRAY(&spacing, cells.node_count, error));
+    TRY(NEW_ARRAY(&radius, cells.node_count, error));
     TRY(field_spacing(&cells, spacing, error));
-    TRY(drop_outside(tool, &cells, spacing, skip, file, points, error));
-    TRY(field_table_build(support, &cells, spacing, points->count, points->x, file, &points->own, error));
+    if (solved->radius != NULL) {
+        support = &solved->recorded.support;
+        shapes = &solved->recorded.shapes;
+        memcpy(radius, solved->radius, (size_t)cells.node_count * sizeof *radius);
+    } else {
+        TRY(support_radii(support, cells.node_count, spacing, radius, error));
+    }
+    if (file != NULL) {
+        TRY(drop_outside(tool, &cells, spacing, skip, file, points, error));
+    }
+    TRY(field_table_build(support, shapes, &cells, radius, points->count, points->x,
+                          file != NULL ? file : "points.x", &points->own, error));
     points->ptr = points->own.lists.ptr;
     points->idx = points->own.lists.idx;
     points->phi = points->own.phi;
 done:
     free(spacing);
+    free(radius);
     return status;
 }
 
-/* The stream's own points and table. */
-static enum status view_table(const struct stream *stream, int dim, int64_t node_count, struct points *points,
+/* The stream's own points. */
+static enum status copy_points(const struct stream *stream, int dim, struct points *points,
+                               struct error *error)
+{
+    enum status status;
+    const struct section *x;
+    TRY(stream_need(stream, "points.x", TYPE_F8, dim, "ipoints", &x, error));
+    points->count = x->rows;
+    TRY(NEW_ARRAY(&points->x, x->rows * dim, error));
+    memcpy(points->x, x->data, (size_t)(x->rows * dim) * sizeof(double));
+done:
+    return status;
+}
+
+/* The stream's own table at its own points. */
+static enum status view_table(const struct stream *stream, int64_t node_count, struct points *points,
                               struct error *error)
 {
     enum status status;
-    const struct section *x, *phi;
+    const struct section *phi;
     struct neighbours lists;
-    TRY(stream_need(stream, "points.x", TYPE_F8, dim, "ipoints", &x, error));
     TRY(stream_need(stream, "shape.phi", TYPE_F8, 1, "shapefn", &phi, error));
-    TRY(stream_neighbours(stream, "nbr", x->rows, node_count, &lists, error));
-    if (phi->rows != lists.ptr[x->rows]) {
+    TRY(stream_neighbours(stream, "nbr", points->count, node_count, &lists, error));
+    if (phi->rows != lists.ptr[points->count]) {
         status = fail(error, STATUS_INPUT, "shape.phi: does not fit nbr.idx: run shapefn again");
         goto done;
     }
-    points->count = x->rows;
     points->ptr = lists.ptr;
     points->idx = lists.idx;
     points->phi = phi->data;
-    TRY(NEW_ARRAY(&points->x, x->rows * dim, error));
-    memcpy(points->x, x->data, (size_t)(x->rows * dim) * sizeof(double));
 done:
     return status;
 }
@@ -232,19 +261,20 @@ done:
 /* Whether a section is a field at the nodes: not one of those that describe the discretisation. */
 static bool is_field(const struct section *section, int64_t node_count)
 {
-    if (section_stage(section->name) < MADE_WITH_RESULTS) {
+    if (section_stage(section->name) < MADE_WITH_RESULTS || solved_is_parameters(section)) {
         return false;
     }
     return section->type == TYPE_F8 && section->rows == node_count;
 }
 
-static void put_values(const struct tool *tool, const struct section *field, const struct points *points,
-                       struct stream *output)
+static void put_values(const struct tool *tool, const struct stream *stream, const struct section *field,
+                       const struct points *points, struct stream *output)
 {
     struct error error;
     double *values;
+    const struct section *from = solved_parameters(stream, &points->solved, field);
     tool_check(tool, NEW_ARRAY(&values, points->count * field->cols, &error), &error);
-    field_evaluate(points->count, points->ptr, points->idx, points->phi, field->cols, field->data, values);
+    field_evaluate(points->count, points->ptr, points->idx, points->phi, from->cols, from->data, values);
     tool_check(tool,
                stream_put(output, field->name, TYPE_F8, points->count, field->cols, field->attributes, values,
                           true, &error),
@@ -256,7 +286,7 @@ static void put_all_fields(const struct tool *tool, const struct stream *stream,
 {
     for (int64_t s = 0; s < stream->section_count; s++) {
         if (is_field(&stream->sections[s], node_count)) {
-            put_values(tool, &stream->sections[s], points, output);
+            put_values(tool, stream, &stream->sections[s], points, output);
         }
     }
     if (output->section_count == 1) {
@@ -281,7 +311,7 @@ static void put_fields(const struct tool *tool, const struct stream *stream, int
         if (stream_find(output, name) != NULL) {
             tool_fail(tool, STATUS_INPUT, "-f: field '%s' given twice", name);
         }
-        put_values(tool, field, points, output);
+        put_values(tool, stream, field, points, output);
     }
     free(list);
 }
@@ -300,6 +330,7 @@ static void put_deformed(const struct tool *tool, const struct stream *stream, i
                   (long long)node_count);
     }
     tool_check(tool, NEW_ARRAY(&x, points->count * dim, &error), &error);
+    u = solved_parameters(stream, &points->solved, u);
     field_evaluate(points->count, points->ptr, points->idx, points->phi, dim, u->data, x);
     for (int64_t i = 0; i < points->count * dim; i++) {
         x[i] += points->x[i];
@@ -310,19 +341,44 @@ static void put_deformed(const struct tool *tool, const struct stream *stream, i
                &error);
 }
 
-/* The points wanted, with their table: the stream's own, or those of a file. */
+/* Whether the user asks for supports or shape functions. */
+static bool chooses_supports(const struct option *options)
+{
+    bool chooses = false;
+    for (int i = FACTOR; i <= LAST_OF_MLS; i++) {
+        chooses = chooses || options[i].given;
+    }
+    return chooses;
+}
+
+/* The points wanted: the stream's own, or those of a file; and their table: the stream's, where it has one at
+ * its own points and no field that was solved for. */
 static void find_points(const struct tool *tool, const struct option *options, struct stream *stream, int dim,
                         int64_t node_count, struct points *points)
 {
     struct error error;
     const char *file = options[POINTS].value;
     struct support_options support = parse(tool, options, dim);
-    if (file == NULL) {
-        stage_fill(tool, stream, "shapefn");
-        tool_check(tool, view_table(stream, dim, node_count, points, &error), &error);
-        return;
+    if (!chooses_supports(options)) {
+        tool_check(tool, solved_read(stream, &points->solved, &error), &error);
     }
-    if (options[UNIT].given) {
+    if (file == NULL) {
+        struct recorded recorded;
+        tool_check(tool, stage_recorded(stream_find(stream, "support.radius"), dim, &recorded, &error),
+                   &error);
+        support = recorded.support;
+        stage_fill(tool, stream, "ipoints");
+        bool has_table =
+            points->solved.radius == NULL && !points_are_conforming(stream_find(stream, "points.x"));
+        if (has_table) {
+            stage_fill(tool, stream, "shapefn");
+        }
+        tool_check(tool, copy_points(stream, dim, points, &error), &error);
+        if (has_table) {
+            tool_check(tool, view_table(stream, node_count, points, &error), &error);
+            return;
+        }
+    } else if (options[UNIT].given) {
         read_table(tool, file, options[UNIT].value, dim, points);
     } else {
         read_nodes(tool, file, dim, points);

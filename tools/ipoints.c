@@ -7,8 +7,7 @@ static const char usage[] =
     "\n"
     "Reads a stream with nodes.x (m) and cells (see nodes) and adds integration points: points.x (m),\n"
     "points.weight (m2 in 2D, m3 in 3D) and points.cell; and the faces of the cells with quadrature\n"
-    "points on them, facepoints.x (m) and facepoints.weight: all faces for conforming cells, else\n"
-    "those of the boundary.\n"
+    "points on them, facepoints.x (m): all faces for conforming cells, else those of the boundary.\n"
     "\n"
     "Adaptive integration (-a) halves the edges of each cell, or of parts of it, until the integral\n"
     "of the products of the shape functions' gradients over the cell (a matrix, in the Frobenius norm)\n"
@@ -142,11 +141,11 @@ static struct ipoints_options parse_for(const struct tool *tool, const struct op
     int64_t node_count;
     const double *x;
     struct error error;
-    struct mls mls;
+    struct recorded recorded;
     tool_check(tool, stream_nodes(stream, &dim, &node_count, &x, &error), &error);
-    tool_check(tool, stage_recorded_mls(stream, dim, &mls, &error), &error);
-    struct ipoints_options ipoints = parse(tool, options, &mls);
-    tool_check(tool, stage_recorded_reach(stream, &ipoints.refinement.support.reach, &error), &error);
+    tool_check(tool, stage_recorded(stream_find(stream, "support.radius"), dim, &recorded, &error), &error);
+    struct ipoints_options ipoints = parse(tool, options, &recorded.support.mls);
+    ipoints.refinement.support.reach = recorded.support.reach;
     return ipoints;
 }
 

@@ -6,9 +6,9 @@ static const char usage[] =
     "Reads a stream with a table of shape functions (see shapefn) and computes the scene, an\n"
     "INI file that names materials, prescribed displacements, contacts and loads on the groups\n"
     "of the mesh (see mtled-scene(5)). Writes the nodes, the cells and u (m), the displacement\n"
-    "field at the nodes, one row per node in the order of the mesh, as text; and what else the\n"
-    "scene's [output] asks for. Without earlier sections the defaults of ipoints, support and\n"
-    "shapefn are run first, with the same result.\n"
+    "field at the nodes, a row for each as in the mesh, as text; its parameters and supports, for\n"
+    "interp and fieldcmp; and what else the scene's [output] asks for. Without earlier sections the\n"
+    "defaults of ipoints, support and shapefn are run first, with the same result.\n"
     "\n"
     "Quasi-static scenes are relaxed until the estimated remaining error, relative to the\n"
     "displacement, is below the scene's tolerance. Dynamic scenes are stepped to their end time by\n"
@@ -30,8 +30,8 @@ static const char usage[] =
     "error of the balance relative to the largest energy; in a quasi-static scene one row,\n"
     "internal and contact.\n"
     "\n"
-    "And of frames, states on the way: u.frame.K, the field u at time=, K = 0, the state at the\n"
-    "begin, 1, 2, ..., evenly up to the final state. In a quasi-static scene time goes from 0 to\n"
+    "And of frames, states on the way: u.frame.K, the field u at time=, K = 0, the begin, 1, 2, ...,\n"
+    "evenly up to the final state. In a quasi-static scene time goes from 0 to\n"
     "1 over the load, which is held at each frame until the estimated error is below the\n"
     "tolerance. What else the scene asks for is there of each of these frames, too:\n"
     "stress.frame.K and so on, and tables with a row for each frame, time first, reactions.frames,\n"
@@ -41,8 +41,8 @@ static const char usage[] =
     "or SIGHUP end it. The same command then goes on where it was, and ends with the same bytes\n"
     "as if nothing had happened; with another scene, cloud or version it is refused. FILE is\n"
     "replaced as a whole, and the one before is FILE.old: one of them is whole whatever happens.\n"
-    "It is a stream (see mts list) with the last field as u.last and the frames so far; once the\n"
-    "results are written, both are removed.\n"
+    "It is a stream (see mts list) with the last field as u.last and the frames so far; when the\n"
+    "results are written, both go.\n"
     "\n"
     "Options:\n"
     "  -v, --verbose        end with a report on standard error: steps, error, cost of each part\n"
@@ -137,6 +137,7 @@ int main(int argc, char *argv[])
     }
     tool_check(&tool, NEW_ARRAY(&run.u, model.system.node_count * scene.dim, &error), &error);
     run.prepare_seconds = clock_seconds() - run.display.started;
+    run_put_supports(&run);
     run_checkpoint_begin(&run);
     run_folds_begin(&run);
     run_stability_begin(&run);

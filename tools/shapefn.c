@@ -1,14 +1,16 @@
 static const char usage[] =
-    "shapefn - shape functions of moving least squares, values and gradients\n"
+    "shapefn - shape functions of moving least squares\n"
     "\n"
     "usage: shapefn [-b BASIS] [-w WEIGHT] [--mu MU[,MU...]] [--mu-unit UNIT] [-t] [-o FILE] [FILE]\n"
     "\n"
-    "Reads a stream with points and neighbour lists (see support) and adds shape.phi and shape.dphi\n"
-    "(1/m) at the integration points, and the values face.phi and node.phi at the points on faces and\n"
-    "at the nodes. For conforming cells the rows of shape.dphi are gradients smoothed over the cell,\n"
-    "on lists that replace nbr.*. A support whose moment matrix is singular or ill-conditioned is an\n"
-    "error that names the point (status 1). Without earlier sections the defaults of ipoints and\n"
-    "support are run first.\n"
+    "Reads a stream with points and neighbour lists (see support) and adds what mtled computes with.\n"
+    "Conforming cells have averages of the shape functions over their faces, face.phi: their gradients\n"
+    "follow from these by the divergence theorem. Other integration points (ipoints -g, -a, --lattice)\n"
+    "have values and gradients, shape.phi and shape.dphi (1/m). Both have the values node.phi at the\n"
+    "nodes and boundary.phi at the quadrature points of faces on the boundary. What lies at the points\n"
+    "of faces has served and is left out: to run support or shapefn again, begin with ipoints. A\n"
+    "support whose moment matrix is singular or ill-conditioned is an error that names the point\n"
+    "(status 1). Without earlier sections the defaults of ipoints and support are run first.\n"
     "\n"
     "Options:\n"
     "  -b, --basis BASIS      mls1: linear MLS; mls2: quadratic MLS; mmls2: quadratic, with its\n"
@@ -31,7 +33,20 @@ static const char usage[] =
 #include "mls_options.h"
 #include "stages.h"
 
+#include <string.h>
+
 enum { BASIS, LAST_OF_MLS = BASIS + MLS_OPTION_COUNT - 1, TEXT, OUTPUT, OPTION_COUNT };
+
+/* What the shape functions are, for whoever evaluates them elsewhere. */
+static void record(const struct tool *tool, struct stream *stream, const struct recorded *recorded)
+{
+    struct error error;
+    double *radius;
+    const struct section *section = stream_find(stream, "support.radius");
+    tool_check(tool, NEW_ARRAY(&radius, section->rows, &error), &error);
+    memcpy(radius, section->data, (size_t)section->rows * sizeof *radius);
+    tool_check(tool, stage_record(stream, recorded, section->rows, radius, &error), &error);
+}
 
 int main(int argc, char *argv[])
 {
@@ -47,14 +62,17 @@ int main(int argc, char *argv[])
     int64_t node_count;
     const double *x;
     struct mls mls = mls_default(0);
+    struct recorded recorded;
     tool_begin(&tool, usage, options, OPTION_COUNT, 0, 1, argc, argv);
     tool_check(&tool, mls_apply_options(options + BASIS, &mls, &error), &error);
     tool_read(&tool, tool.operands[0], &stream);
     tool_check(&tool, stream_nodes(&stream, &dim, &node_count, &x, &error), &error);
     stage_fill(&tool, &stream, "support");
-    tool_check(&tool, stage_recorded_mls(&stream, dim, &mls, &error), &error);
-    tool_check(&tool, mls_apply_options(options + BASIS, &mls, &error), &error);
-    tool_check(&tool, stage_shapefn(&stream, &mls, &error), &error);
+    tool_check(&tool, stage_recorded(stream_find(&stream, "support.radius"), dim, &recorded, &error), &error);
+    recorded.shapes = recorded.support.mls;
+    tool_check(&tool, mls_apply_options(options + BASIS, &recorded.shapes, &error), &error);
+    tool_check(&tool, stage_shapefn(&stream, &recorded.shapes, &error), &error);
+    record(&tool, &stream, &recorded);
     tool_write(&tool, &stream, options[TEXT].given);
     stream_free(&stream);
     return tool_end(&tool);

@@ -174,6 +174,19 @@ done:
     return status;
 }
 
+/* Append the face at slot s of the cells, beyond which is that cell or none. */
+static void add_face(const struct cells *cells, int64_t s, int64_t beyond, struct faces *faces)
+{
+    int dim = cells->dim;
+    const int *local = local_face(dim, s % (dim + 1));
+    for (int i = 0; i < dim; i++) {
+        faces->node[faces->count * dim + i] = cells->node[s / (dim + 1) * (dim + 1) + local[i]];
+    }
+    faces->cell[faces->count * 2] = (int32_t)(s / (dim + 1));
+    faces->cell[faces->count * 2 + 1] = (int32_t)beyond;
+    faces->count++;
+}
+
 enum status faces_build(const struct cells *cells, bool boundary_only, struct faces *faces,
                         struct error *error)
 {
@@ -186,21 +199,20 @@ enum status faces_build(const struct cells *cells, bool boundary_only, struct fa
     TRY(match_faces(cells, partner, error));
     int64_t count = 0;
     for (int64_t s = 0; s < total; s++) {
+        faces->boundary_count += partner[s] < 0;
         count += partner[s] < 0 || (!boundary_only && partner[s] > s);
     }
     TRY(NEW_ARRAY(&faces->node, count * dim, error));
     TRY(NEW_ARRAY(&faces->cell, count * 2, error));
     for (int64_t s = 0; s < total; s++) {
-        if (!(partner[s] < 0 || (!boundary_only && partner[s] > s))) {
-            continue;
+        if (partner[s] < 0) {
+            add_face(cells, s, -1, faces);
         }
-        const int *local = local_face(dim, s % (dim + 1));
-        for (int i = 0; i < dim; i++) {
-            faces->node[faces->count * dim + i] = cells->node[s / (dim + 1) * (dim + 1) + local[i]];
+    }
+    for (int64_t s = 0; s < total && !boundary_only; s++) {
+        if (partner[s] > s) {
+            add_face(cells, s, partner[s] / (dim + 1), faces);
         }
-        faces->cell[faces->count * 2] = (int32_t)(s / (dim + 1));
-        faces->cell[faces->count * 2 + 1] = partner[s] < 0 ? -1 : (int32_t)(partner[s] / (dim + 1));
-        faces->count++;
     }
 done:
     free(partner);

@@ -20,7 +20,8 @@ struct cells {
 struct faces {
     int dim;
     int64_t count;
-    int32_t *node; /* count * dim, oriented outward from the first cell */
+    int64_t boundary_count; /* those on the boundary come first */
+    int32_t *node;          /* count * dim, oriented outward from the first cell */
     int32_t *cell; /* count * 2: the cell it is oriented by (the lower index), and the one beyond or -1 */
 };
 
@@ -40,7 +41,8 @@ void face_area_vector(int dim, const double *x, const int32_t *face, double *vec
  * turned. */
 void face_key(int dim, const int32_t *node, int32_t key[3]);
 
-/* All faces of the cells, each once, in the order of their first cell; or only those on the boundary.
+/* All faces of the cells, each once, those on the boundary before those between two cells, and else in the
+ * order of their first cell; or only those on the boundary.
  * STATUS_INPUT when a face belongs to more than two cells. */
 MUST_CHECK enum status faces_build(const struct cells *cells, bool boundary_only, struct faces *faces,
                                    struct error *error);

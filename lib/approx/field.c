@@ -29,18 +29,15 @@ done:
     return status;
 }
 
-enum status field_table_build(const struct support_options *options, const struct cells *cells,
-                              const double *spacing, int64_t count, const double *x, const char *what,
-                              struct field_table *table, struct error *error)
+enum status field_table_build(const struct support_options *options, const struct mls *shapes,
+                              const struct cells *cells, const double *radius, int64_t count, const double *x,
+                              const char *what, struct field_table *table, struct error *error)
 {
     struct reach reach = {0};
     bool by_cells = options->reach == REACH_CELLS && cells->count > 0;
     enum status status;
-    double *radius = NULL;
     struct point_grid grid = {0};
     *table = (struct field_table){0};
-    TRY(NEW_ARRAY(&radius, cells->node_count, error));
-    TRY(support_radii(options, cells->node_count, spacing, radius, error));
     TRY(point_grid_build(&grid, options->mls.dim, cells->node_count, cells->x, radius, error));
     if (by_cells) {
         TRY(reach_build(cells, &grid, &reach, error));
@@ -49,11 +46,11 @@ enum status field_table_build(const struct support_options *options, const struc
                              error));
     TRY(NEW_ARRAY(&table->phi, table->lists.ptr[count], error));
     struct neighbours lists = support_view(&table->lists);
-    TRY(shape_table(&options->mls, cells->x, radius, &lists, x, what, table->phi, NULL, error));
+    TRY(shape_table(shapes != NULL ? shapes : &options->mls, cells->x, radius, &lists, x, what, table->phi,
+                    NULL, error));
 done:
     reach_free(&reach);
     point_grid_free(&grid);
-    free(radius);
     if (status != STATUS_OK) {
         field_table_free(table);
     }

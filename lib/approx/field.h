@@ -28,13 +28,15 @@ struct field_table {
     double *phi; /* lists.ptr[lists.count] */
 };
 
-/* Supports and shape functions at x[count * dim] on a cloud with its spacing, within reach through the cells
- * where there are any. Moving least squares fit: the nodal values are taken as the parameters of the
- * approximation, u_h = sum_j phi_j u_j, as everywhere in this library; linear fields (quadratic ones with
- * mls2) are reproduced. `what` names the points in messages. */
-MUST_CHECK enum status field_table_build(const struct support_options *options, const struct cells *cells,
-                                         const double *spacing, int64_t count, const double *x,
-                                         const char *what, struct field_table *table, struct error *error);
+/* Supports and shape functions at x[count * dim] on a cloud with radius[node_count], m, within reach through
+ * the cells where there are any. Moving least squares fit: the nodal values are taken as the parameters of
+ * the approximation, u_h = sum_j phi_j u_j, as everywhere in this library; linear fields (quadratic ones with
+ * mls2) are reproduced. `what` names the points in messages. The shape
+ * functions are options->mls, or others (unless NULL) on the same supports. */
+MUST_CHECK enum status field_table_build(const struct support_options *options, const struct mls *shapes,
+                                         const struct cells *cells, const double *radius, int64_t count,
+                                         const double *x, const char *what, struct field_table *table,
+                                         struct error *error);
 void field_table_free(struct field_table *table);
 
 /* values[count * cols] = sum over the row's neighbours of phi_j field[j * cols ...]. */

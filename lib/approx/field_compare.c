@@ -186,23 +186,27 @@ done:
     return status;
 }
 
-/* B's field at the chosen nodes of A by MMLS on B's cloud. */
+/* B's field at the chosen nodes of A. */
 static enum status interpolate(const struct nodal_field *a, const struct nodal_field *b, bool skip,
                                struct field_comparison *comparison, double *reference, struct error *error)
 {
     enum status status;
-    struct support_options support = support_defaults(a->cells.dim);
+    const struct support_options usual = support_defaults(a->cells.dim);
+    const struct support_options *support = b->parameters != NULL ? b->support : &usual;
     struct field_table table = {0};
-    double *spacing = NULL, *points = NULL, *values = NULL;
+    double *spacing = NULL, *radius = NULL, *points = NULL, *values = NULL;
     TRY(NEW_ARRAY(&spacing, b->cells.node_count, error));
     TRY(NEW_ARRAY(&points, a->cells.node_count * a->cells.dim, error));
     TRY(NEW_ARRAY(&values, a->cells.node_count * a->cols, error));
     TRY(field_spacing(&b->cells, spacing, error));
     TRY(drop_outside(a, b, spacing, skip, comparison, points, error));
-    TRY(field_table_build(&support, &b->cells, spacing, comparison->count, points, "nodes of A within B",
-                          &table, error));
-    field_evaluate(comparison->count, table.lists.ptr, table.lists.idx, table.phi, b->cols, b->values,
-                   values);
+    TRY(NEW_ARRAY(&radius, b->cells.node_count, error));
+    TRY(support_radii(&usual, b->cells.node_count, spacing, radius, error));
+    TRY(field_table_build(support, b->parameters != NULL ? b->shapes : NULL, &b->cells,
+                          b->parameters != NULL ? b->radius : radius, comparison->count, points,
+                          "nodes of A within B", &table, error));
+    field_evaluate(comparison->count, table.lists.ptr, table.lists.idx, table.phi, b->cols,
+                   b->parameters != NULL ? b->parameters : b->values, values);
     for (int64_t i = 0; i < comparison->count; i++) {
         memcpy(reference + comparison->node[i] * b->cols, values + i * b->cols,
                (size_t)b->cols * sizeof *values);
@@ -210,6 +214,7 @@ static enum status interpolate(const struct nodal_field *a, const struct nodal_f
 done:
     field_table_free(&table);
     free(spacing);
+    free(radius);
     free(points);
     free(values);
     return status == STATUS_VERDICT ? STATUS_INPUT : status; /* not comparable is not "differs" */

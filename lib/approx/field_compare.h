@@ -37,6 +37,12 @@ struct nodal_field {
     struct cells cells;
     int64_t cols;
     const double *values;
+    /* Of a field u_h = sum phi_j d_j that was solved for, what it is made of; else NULL: the values are taken
+     * as the parameters of MMLS with the default supports. */
+    const double *parameters; /* d_j: cells.node_count * cols */
+    const double *radius;     /* supports of the nodes, m */
+    const struct support_options *support;
+    const struct mls *shapes;
 };
 
 /* The difference of field A from field B at the nodes of A. */
@@ -49,7 +55,7 @@ struct field_comparison {
 };
 
 /* Compare at the nodes of A with chosen[n] (NULL: all). B's values are taken as they are where the clouds
- * coincide, else interpolated on B's cloud by MMLS with the default supports. Nodes of A outside of B's cloud
+ * coincide, else B's field is evaluated there. Nodes of A outside of B's cloud
  * are left out if skip_outside, else STATUS_INPUT naming the first (and comparison->outside is their number).
  * Clouds that cannot be interpolated are STATUS_INPUT. Both fields have the same dimension and columns. The
  * comparison is to be freed also on failure. */

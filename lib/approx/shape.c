@@ -1,5 +1,6 @@
 #include "approx/shape.h"
 
+#include "approx/quadrature.h"
 #include "base/memory.h"
 
 #include <stdlib.h>
@@ -69,34 +70,43 @@ static int64_t first_around(const struct around *around, int64_t pair)
     return low;
 }
 
-static enum status chunk_of_table(const struct mls *mls, const double *nodes, const double *radius,
-                                  const struct neighbours *lists, int64_t first, int64_t last,
-                                  const double *x, const char *what, double *phi, double *dphi,
-                                  struct error *error)
+/* What a table is made of, and its points. */
+struct tabulation {
+    const struct mls *mls;
+    const double *nodes, *radius;
+    const struct neighbours *lists;
+    const double *x;
+    const char *what;
+};
+
+/* phi and, unless NULL, dphi of points [first, last), from the first pair of these on. */
+static enum status tabulate(const struct tabulation *table, int64_t first, int64_t last, double *phi,
+                            double *dphi, struct error *error)
 {
     enum status status = STATUS_OK;
+    const struct neighbours *lists = table->lists;
     struct mls_work work = {0};
     struct images images = {.next = first_around(&lists->around, lists->ptr[first])};
-    int dim = mls->dim;
+    int dim = table->mls->dim;
     for (int64_t p = first; p < last; p++) {
         enum mls_verdict verdict;
-        int64_t at = lists->ptr[p];
-        struct mls_support support = {.x = x + p * dim,
-                                      .nodes = nodes,
-                                      .radius = radius,
+        int64_t pair = lists->ptr[p], at = pair - lists->ptr[first];
+        struct mls_support support = {.x = table->x + p * dim,
+                                      .nodes = table->nodes,
+                                      .radius = table->radius,
                                       .widen = lists->widen[p],
-                                      .neighbours = lists->idx + at,
-                                      .count = lists->ptr[p + 1] - at};
-        TRY(find_images(dim, lists, at, lists->ptr[p + 1], &images, &support, error));
-        TRY(mls_evaluate(mls, &support, &work, phi + at, dphi != NULL ? dphi + at * dim : NULL, &verdict,
-                         error));
+                                      .neighbours = lists->idx + pair,
+                                      .count = lists->ptr[p + 1] - pair};
+        TRY(find_images(dim, lists, pair, lists->ptr[p + 1], &images, &support, error));
+        TRY(mls_evaluate(table->mls, &support, &work, phi + at, dphi != NULL ? dphi + at * dim : NULL,
+                         &verdict, error));
         if (verdict != MLS_GOOD) {
             char place[96];
             point_text(dim, support.x, place);
             status =
                 fail(error, STATUS_VERDICT, "%s: row %lld at %s: %s of %s on %lld nodes: widen the support",
-                     what, (long long)p, place, mls_verdict_text(verdict), basis_names[mls->basis],
-                     (long long)support.count);
+                     table->what, (long long)p, place, mls_verdict_text(verdict),
+                     basis_names[table->mls->basis], (long long)support.count);
             goto done;
         }
     }
@@ -106,28 +116,144 @@ done:
     return status;
 }
 
+/* The first failure of chunks that threads share, whichever thread meets it. */
+struct failure {
+    int64_t chunk;
+    enum status status;
+};
+
+static void note_failure(struct failure *first, int64_t chunk, enum status status, const struct error *own,
+                         struct error *error)
+{
+#pragma omp critical(shape_failure)
+    if (status != STATUS_OK && (first->status == STATUS_OK || chunk < first->chunk)) {
+        *first = (struct failure){chunk, status};
+        *error = *own;
+    }
+}
+
 enum status shape_table(const struct mls *mls, const double *nodes, const double *radius,
                         const struct neighbours *neighbours, const double *x, const char *what, double *phi,
                         double *dphi, struct error *error)
 {
-    int64_t chunk_count = (neighbours->count + chunk_points - 1) / chunk_points;
-    int64_t failed = chunk_count;
-    enum status failure = STATUS_OK;
+    const struct tabulation table = {mls, nodes, radius, neighbours, x, what};
+    struct failure failure = {0, STATUS_OK};
+    int64_t count = neighbours->count;
 #pragma omp parallel for schedule(dynamic, 1)
-    for (int64_t c = 0; c < chunk_count; c++) {
+    for (int64_t first = 0; first < count; first += chunk_points) {
         struct error own;
-        int64_t first = c * chunk_points;
-        int64_t last = first + chunk_points < neighbours->count ? first + chunk_points : neighbours->count;
-        enum status outcome =
-            chunk_of_table(mls, nodes, radius, neighbours, first, last, x, what, phi, dphi, &own);
-        if (outcome != STATUS_OK) {
-#pragma omp critical(shape_failure)
-            if (c < failed) {
-                failed = c;
-                failure = outcome;
-                *error = own;
+        int64_t last = first + chunk_points < count ? first + chunk_points : count;
+        int64_t pair = neighbours->ptr[first];
+        note_failure(
+            &failure, first,
+            tabulate(&table, first, last, phi + pair, dphi != NULL ? dphi + pair * mls->dim : NULL, &own),
+            &own, error);
+    }
+    return failure.status;
+}
+
+/* The most points of a face. */
+enum { MOST_ON_FACE = 3 };
+
+/* Merge the lists of the points of face f, ascending, into idx, and the values phi of its pairs, weighted,
+ * into mean; or, where idx is NULL, count only. Returns the length. */
+static int64_t merge_face(const struct neighbours *lists, const struct quadrature_rule *rule, int64_t f,
+                          const double *phi, int32_t *idx, double *mean)
+{
+    int64_t first = lists->ptr[f * rule->points], at[MOST_ON_FACE], count = 0;
+    const int64_t *end = lists->ptr + f * rule->points + 1;
+    for (int g = 0; g < rule->points; g++) {
+        at[g] = lists->ptr[f * rule->points + g];
+    }
+    for (;; count++) {
+        int32_t node = INT32_MAX;
+        double sum = 0.0;
+        for (int g = 0; g < rule->points; g++) {
+            node = at[g] < end[g] && lists->idx[at[g]] < node ? lists->idx[at[g]] : node;
+        }
+        if (node == INT32_MAX) {
+            return count;
+        }
+        for (int g = 0; g < rule->points; g++) {
+            if (at[g] < end[g] && lists->idx[at[g]] == node) {
+                sum += idx != NULL ? rule->weight[g] * phi[at[g] - first] : 0.0;
+                at[g]++;
             }
         }
+        if (idx != NULL) {
+            idx[count] = node;
+            mean[count] = sum;
+        }
     }
-    return failure;
+}
+
+/* Faces [first, last): their values into a scratch array, from there their averages, and a copy of what is
+ * on the boundary. */
+static enum status average_faces(const struct tabulation *table, const struct quadrature_rule *rule,
+                                 int64_t first, int64_t last, struct face_averages *averages,
+                                 struct error *error)
+{
+    enum status status;
+    const int64_t *ptr = table->lists->ptr;
+    int64_t point = first * rule->points, pair = ptr[point];
+    double *phi = NULL;
+    TRY(NEW_ARRAY(&phi, ptr[last * rule->points] - pair, error));
+    TRY(tabulate(table, point, last * rule->points, phi, NULL, error));
+    for (int64_t f = first; f < last; f++) {
+        int64_t at = averages->ptr[f];
+        (void)merge_face(table->lists, rule, f, phi + (ptr[f * rule->points] - pair), averages->idx + at,
+                         averages->phi + at);
+    }
+    int64_t end = last < averages->boundary_count ? last : averages->boundary_count;
+    if (first < end) {
+        memcpy(averages->boundary_phi + pair, phi, (size_t)(ptr[end * rule->points] - pair) * sizeof *phi);
+    }
+done:
+    free(phi);
+    return status;
+}
+
+enum status shape_average_faces(const struct mls *mls, const double *nodes, const double *radius,
+                                const struct neighbours *neighbours, const double *x, const char *what,
+                                const struct faces *faces, struct face_averages *averages,
+                                struct error *error)
+{
+    enum status status;
+    const struct tabulation table = {mls, nodes, radius, neighbours, x, what};
+    const struct quadrature_rule rule = quadrature_face_rule(faces->dim);
+    const int64_t chunk = chunk_points / rule.points;
+    struct failure failure = {0, STATUS_OK};
+    *averages = (struct face_averages){.count = faces->count, .boundary_count = faces->boundary_count};
+    TRY(NEW_ARRAY(&averages->ptr, faces->count + 1, error));
+#pragma omp parallel for schedule(static)
+    for (int64_t f = 0; f < faces->count; f++) {
+        averages->ptr[f + 1] = merge_face(neighbours, &rule, f, NULL, NULL, NULL);
+    }
+    for (int64_t f = 0; f < faces->count; f++) {
+        averages->ptr[f + 1] += averages->ptr[f];
+    }
+    TRY(NEW_ARRAY(&averages->idx, averages->ptr[faces->count], error));
+    TRY(NEW_ARRAY(&averages->phi, averages->ptr[faces->count], error));
+    TRY(NEW_ARRAY(&averages->boundary_phi, neighbours->ptr[faces->boundary_count * rule.points], error));
+#pragma omp parallel for schedule(dynamic, 1)
+    for (int64_t first = 0; first < faces->count; first += chunk) {
+        struct error own;
+        int64_t last = first + chunk < faces->count ? first + chunk : faces->count;
+        note_failure(&failure, first, average_faces(&table, &rule, first, last, averages, &own), &own, error);
+    }
+    status = failure.status;
+done:
+    if (status != STATUS_OK) {
+        face_averages_free(averages);
+    }
+    return status;
+}
+
+void face_averages_free(struct face_averages *averages)
+{
+    free(averages->ptr);
+    free(averages->idx);
+    free(averages->phi);
+    free(averages->boundary_phi);
+    *averages = (struct face_averages){0};
 }

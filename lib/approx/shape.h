@@ -1,4 +1,4 @@
-/* Tables of shape functions: values and gradients at points, and gradients smoothed over conforming cells. */
+/* Tables of shape functions: values and gradients at points, and averages over faces of cells. */
 #ifndef APPROX_SHAPE_H
 #define APPROX_SHAPE_H
 
@@ -32,22 +32,24 @@ MUST_CHECK enum status shape_table(const struct mls *mls, const double *nodes, c
                                    const struct neighbours *neighbours, const double *x, const char *what,
                                    double *phi, double *dphi, struct error *error);
 
-/* A table on lists of its own. */
-struct smoothed_table {
-    int64_t count;
-    int64_t *ptr;
-    int32_t *idx; /* union of the lists of the cell's face points, ascending */
-    double *phi;  /* mean over the faces: reproduces linear fields at the centroid */
-    double *dphi; /* (1/V) sum over faces of the outward normal times the face integral of phi; 1/m */
+/* Averages of the shape functions over faces of cells, on lists of their own. */
+struct face_averages {
+    int64_t count, boundary_count; /* of faces, and how many of them are on the boundary */
+    int64_t *ptr;                  /* count + 1 */
+    int32_t *idx;                  /* union of the lists of the face's points, ascending */
+    double *phi;                   /* means over the face, by its quadrature */
+    double *boundary_phi;          /* values at the points of faces on the boundary, following their lists */
 };
 
-/* Conforming cell smoothing: one row per cell from the values of phi at the quadrature points of its faces
- * (all faces of the cells, as faces_build gives them). The divergence theorem makes the sum of V dphi over
- * cells the integral over the boundary, so the linear patch test holds to round-off (Chen et al. 2001, on
- * background cells). Points of face f are rows f * per_face ... of the face lists. */
-MUST_CHECK enum status shape_smooth(const struct cells *cells, const struct faces *faces, int per_face,
-                                    const struct neighbours *face_neighbours, const double *face_phi,
-                                    struct smoothed_table *table, struct error *error);
-void smoothed_table_free(struct smoothed_table *table);
+/* Averages of the shape functions over faces, whose quadrature points x are, those of face f in rows f n ...
+ * (f + 1) n. By the divergence theorem the mean gradient over a cell is the sum over its faces of such an
+ * average times the outward normal, per volume: gradients that are smoothed over conforming cells, for which
+ * the linear patch test holds to round-off (Chen et al. 2001, on background cells). Errors and threads as
+ * shape_table. */
+MUST_CHECK enum status shape_average_faces(const struct mls *mls, const double *nodes, const double *radius,
+                                           const struct neighbours *neighbours, const double *x,
+                                           const char *what, const struct faces *faces,
+                                           struct face_averages *averages, struct error *error);
+void face_averages_free(struct face_averages *averages);
 
 #endif

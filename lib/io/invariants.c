@@ -14,12 +14,14 @@ static const double unity_tolerance = 1e-9;
  * to 1 over each; AROUND holds rows of IDX, ascending. */
 static const struct list_rule {
     const char *ptr, *idx;
-    const char *rows_of; /* a section, or "names": the list in the attributes of PTR */
+    const char *rows_of; /* a section, or "names": the list in the attributes of PTR; NULL: check_faces */
     const char *phi, *around;
 } list_rules[] = {
     {"sets.ptr", "sets.idx", "names", NULL, NULL},
     {"nbr.ptr", "nbr.idx", "points.x", "shape.phi", "nbr.around"},
-    {"face.ptr", "face.idx", "facepoints.x", "face.phi", "face.around"},
+    {"facepoint.ptr", "facepoint.idx", "facepoints.x", NULL, "facepoint.around"},
+    {"face.ptr", "face.idx", "faces", "face.phi", NULL},
+    {"boundary.ptr", "boundary.idx", NULL, "boundary.phi", NULL},
     {"node.ptr", "node.idx", "nodes.x", "node.phi", "node.around"},
 };
 
@@ -268,7 +270,7 @@ static void check_lists(struct check *check, const struct list_rule *rule)
                   element_type_name(ptr->type));
         return;
     }
-    int64_t rows = rows_of(check, ptr, rule->rows_of);
+    int64_t rows = rule->rows_of != NULL ? rows_of(check, ptr, rule->rows_of) : -1;
     if (rows >= 0 && ptr->rows != rows + 1) {
         violation(check, ptr, "%" PRId64 " rows, but %s has %" PRId64 ": need one more", ptr->rows,
                   rule->rows_of, rows);
@@ -285,15 +287,34 @@ static void check_lists(struct check *check, const struct list_rule *rule)
     }
 }
 
-/* facepoints.x has equally many points on each face. */
-static void check_facepoints(struct check *check)
+static void check_multiple(struct check *check, const struct section *points, int64_t count, int64_t faces,
+                           const char *which)
 {
-    const struct section *faces = stream_find(check->stream, "faces");
-    const struct section *points = stream_find(check->stream, "facepoints.x");
-    if (faces != NULL && points != NULL &&
-        (faces->rows == 0 ? points->rows != 0 : points->rows % faces->rows != 0)) {
-        violation(check, points, "%" PRId64 " points on %" PRId64 " faces", points->rows, faces->rows);
+    if (points != NULL && (faces == 0 ? count != 0 : count % faces != 0)) {
+        violation(check, points, "%" PRId64 " points on %" PRId64 " faces%s", count, faces, which);
     }
+}
+
+/* Faces on the boundary come first; facepoints.x has equally many points on each face, boundary.ptr on each
+ * of these. */
+static void check_faces(struct check *check)
+{
+    const struct section *faces = stream_find(check->stream, "faces.cell");
+    const struct section *points = stream_find(check->stream, "facepoints.x");
+    const struct section *boundary = stream_find(check->stream, "boundary.ptr");
+    int64_t outer = 0;
+    if (faces == NULL || faces->type != TYPE_I4 || faces->cols != 2) {
+        return;
+    }
+    const int32_t *cell = faces->data;
+    for (int64_t f = 0; f < faces->rows; f++) {
+        if (cell[2 * f + 1] < 0 && outer++ < f) {
+            violation(check, faces, "row %" PRId64 ": on the boundary, after faces between cells", f);
+            return;
+        }
+    }
+    check_multiple(check, points, points != NULL ? points->rows : 0, faces->rows, "");
+    check_multiple(check, boundary, boundary != NULL ? boundary->rows - 1 : 0, outer, " of the boundary");
 }
 
 /* A field at the nodes, of any number of components. */
@@ -346,10 +367,11 @@ int64_t stream_check(const struct stream *stream, violation_function *tell, void
     for (size_t i = 0; i < sizeof list_rules / sizeof *list_rules; i++) {
         check_lists(&check, &list_rules[i]);
     }
-    check_facepoints(&check);
+    check_faces(&check);
     for (int64_t i = 0; i < stream->section_count; i++) {
         const struct section *section = &stream->sections[i];
-        if (strcmp(section->name, "u") == 0 || strncmp(section->name, "u.frame.", 8) == 0) {
+        if (strcmp(section->name, "u") == 0 || strncmp(section->name, "u.frame.", 8) == 0 ||
+            strncmp(section->name, "parameters.frame.", 17) == 0) {
             check_field(&check, section);
         }
     }

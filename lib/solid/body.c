@@ -66,7 +66,8 @@ static enum status copy_points(const struct body_input *input, struct body *body
     memcpy(body->materials, input->materials, (size_t)input->material_count * sizeof *body->materials);
     for (int64_t q = 0; q < points; q++) {
         int64_t from = body->order[q];
-        if (input->ptr[from + 1] <= input->ptr[from] || !(input->weight[from] > 0.0)) {
+        bool alone = !body->conforming && input->ptr[from + 1] <= input->ptr[from];
+        if (alone || !(input->weight[from] > 0.0)) {
             status = fail(error, STATUS_INPUT, "points.weight: row %lld: no weight or no neighbours",
                           (long long)from);
             goto done;
@@ -121,50 +122,11 @@ done:
     return status;
 }
 
-/* Both tables of conforming cells must give the same gradients: tried on a field without pattern. */
-static enum status check_smoothing(struct body *body, struct error *error)
-{
-    enum status status;
-    int dim = body->dim;
-    int64_t size = body->node_count * dim;
-    double *u = NULL, *F = NULL;
-    uint64_t state = 1;
-    TRY(NEW_ARRAY(&u, size, error));
-    TRY(NEW_ARRAY(&F, body->point_count * 9, error));
-    for (int64_t i = 0; i < size; i++) {
-        state = state * 6364136223846793005u + 1442695040888963407u;
-        u[i] = (double)(state >> 11) * 0x1p-53;
-    }
-    (void)body_energy(body, u);
-    body_gradient(body, F);
-    for (int64_t q = 0; q < body->point_count; q++) {
-        for (int a = 0; a < dim; a++) {
-            for (int b = 0; b < dim; b++) {
-                double sum = a == b ? 1.0 : 0.0, size_of_terms = 1.0;
-                for (int64_t i = body->ptr[q]; i < body->ptr[q + 1]; i++) {
-                    double term = body->dphi[i * dim + b] * u[(int64_t)body->idx[i] * dim + a];
-                    sum += term;
-                    size_of_terms += fabs(term);
-                }
-                if (!(fabs(sum - F[9 * q + 3 * a + b]) <= 1e-5 * size_of_terms)) {
-                    status = fail(error, STATUS_INPUT,
-                                  "shape.dphi: row %lld: not smoothed from face.phi: run shapefn again",
-                                  (long long)q);
-                    goto done;
-                }
-            }
-        }
-    }
-done:
-    free(u);
-    free(F);
-    return status;
-}
-
-/* Waiting for each other costs threads some microseconds a step: each must have more to do than that. */
+/* Waiting for each other costs threads some microseconds a step: each must have more to do than that. A pair
+ * has a gradient, or in conforming cells one value. */
 static int worthwhile_threads(const struct body *body)
 {
-    int64_t by_work = 1 + body->pair_count / 30000;
+    int64_t by_work = 1 + body->pair_count / (body->conforming ? 30000 * body->dim : 30000);
     int64_t available = omp_get_max_threads();
     return (int)(by_work < available ? by_work : available);
 }
@@ -197,23 +159,21 @@ enum status body_build(const struct body_input *input, struct body *body, struct
         TRY(order_rows(input, body, &first_row, &pairs.rows, error));
     }
     TRY(copy_points(input, body, error));
-    body->pair_count = input->ptr[input->point_count];
-    body->threads = worthwhile_threads(body);
-    TRY(body_make_bounds(body, error));
     if (body->averaged) {
         TRY(nodal_volumes_build(input, body, error));
     }
     if (!body->conforming) {
         pairs.place = body->node_place;
         TRY(pairs_build(&pairs, &body->gradients, error));
+        body->pair_count = body->gradients.pair_count;
     } else {
         TRY(conforming_build(input->conforming, body, &body->cells, error));
+        body->pair_count = body->cells.faces.pairs.pair_count + body->cells.nodes.pairs.pair_count;
     }
+    body->threads = worthwhile_threads(body);
+    TRY(body_make_bounds(body, error));
     int threads = body->bound_parts.threads;
     TRY(body_make_scratch(body, threads > body->threads ? threads : body->threads, error));
-    if (body->conforming) {
-        TRY(check_smoothing(body, error));
-    }
 done:
     free(first_row);
     if (status != STATUS_OK) {
@@ -224,12 +184,13 @@ done:
 
 void body_free(struct body *body)
 {
+    body_free_bounds(body);
     pairs_free(&body->gradients);
     conforming_free(&body->cells);
     nodal_volumes_free(&body->volumes);
     void *arrays[] = {body->order,  body->weight,     body->materials,  body->material,
                       body->blocks, body->node_order, body->node_place, body->u,
-                      body->F,      body->bound,      body->J,          body->scratch};
+                      body->F,      body->J,          body->scratch};
     for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) {
         free(arrays[i]);
     }

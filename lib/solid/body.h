@@ -13,7 +13,8 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-/* What a body is made of, in the caller's arrays. Those of the table, ptr, idx, dphi, must outlive it. */
+/* What a body is made of, in the caller's arrays. Those of the table, ptr, idx, dphi, must outlive it; of
+ * conforming cells there is none. */
 struct body_input {
     int dim; /* 2 (plane strain) or 3 */
     int64_t node_count, point_count;
@@ -31,8 +32,7 @@ struct body_input {
     /* Nodal volumetric averaging; NULL: pointwise volume throughout. */
     const int32_t *hat_node; /* point_count * (dim + 1): vertices of the background cell of each point */
     const double *hat_value; /* point_count * (dim + 1): their hat functions at the point, sum 1 */
-    const struct conforming_input
-        *conforming; /* the points are cells, dphi smoothed over them; NULL: any points */
+    const struct conforming_input *conforming; /* the points are cells, in their order; NULL: any points */
 };
 
 /* Points are worked on so many at a time; weight, material, J and F have as many entries more, which are
@@ -84,8 +84,8 @@ struct force_kernels;
 struct body {
     int dim;
     int64_t node_count, point_count;
-    int64_t pair_count; /* of point and neighbour, in the caller's table */
-    const int64_t *ptr; /* the caller's table */
+    int64_t pair_count; /* of point and neighbour; of conforming cells, of face or node and neighbour */
+    const int64_t *ptr; /* the caller's table; NULL for conforming cells */
     const int32_t *idx;
     const double *dphi;
     int64_t *order;             /* point_count: the caller's index of each point */
@@ -110,12 +110,13 @@ struct body {
     int threads;                         /* worth using for so many pairs */
     double *scratch;                     /* of each thread so many doubles */
     int64_t scratch_size;
-    struct chunks bound_parts; /* of the blocks, by each of which body_diagonal sums; */
-    double *bound;             /* node_count for each but the first: scratch */
+    struct chunks bound_parts;         /* of the blocks, by each of which body_diagonal sums; */
+    double *bound;                     /* node_count for each but the first: scratch */
+    struct cell_functions *bound_work; /* for each part, of conforming cells */
 };
 
-/* Lay out a body; but for the table the input arrays are copied. STATUS_INPUT for a point without neighbours
- * or of no weight, and when the smoothed gradients are not those of the faces. */
+/* Lay out a body; but for the tables the input arrays are copied. STATUS_INPUT for a point without neighbours
+ * or of no weight, and see conforming_build. */
 MUST_CHECK enum status body_build(const struct body_input *input, struct body *body, struct error *error);
 void body_free(struct body *body);
 

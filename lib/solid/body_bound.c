@@ -3,6 +3,7 @@
 #include "solid/stress.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 /* Each part of the blocks has sums of its own, so that there are few, whatever the number of threads; fewer
@@ -11,9 +12,27 @@ enum { MOST_PARTS = 4, LEAST_BLOCKS = 50 };
 
 enum status body_make_bounds(struct body *body, struct error *error)
 {
+    enum status status;
     int64_t least = body->block_count / MOST_PARTS;
     body->bound_parts = chunks_of(body->block_count, least > LEAST_BLOCKS ? least : LEAST_BLOCKS);
-    return NEW_ARRAY(&body->bound, (body->bound_parts.count - 1) * body->node_count, error);
+    TRY(NEW_ARRAY(&body->bound, (body->bound_parts.count - 1) * body->node_count, error));
+    if (body->conforming) {
+        TRY(NEW_ARRAY(&body->bound_work, MOST_PARTS, error));
+        for (int64_t p = 0; p < body->bound_parts.count; p++) {
+            TRY(cell_functions_make(body, &body->bound_work[p], error));
+        }
+    }
+done:
+    return status;
+}
+
+void body_free_bounds(struct body *body)
+{
+    for (int p = 0; p < MOST_PARTS && body->bound_work != NULL; p++) {
+        cell_functions_free(&body->bound_work[p]);
+    }
+    free(body->bound_work);
+    free(body->bound);
 }
 
 /* Along the gradient g of a shape function the energy of a point has the second derivative g A g, and that of
@@ -55,19 +74,37 @@ static struct bound bound_at(const struct body *body, int64_t q, const double *F
     return bound;
 }
 
+/* Where the bounds are summed. */
+struct bound_sum {
+    double *of_node;
+    struct cell_functions *work; /* of conforming cells */
+};
+
+static void add_functions(const struct body *body, const struct bound *bound, int64_t count,
+                          const int32_t *node, const double *gradient, double *of_node)
+{
+    double sum[64];
+    for (int64_t i = 0; i < count; i += 64) {
+        int64_t some = count - i < 64 ? count - i : 64;
+        body->kernels->bounds(gradient + i * body->dim, some, bound->A, bound->smoothing, sum);
+        for (int64_t k = 0; k < some; k++) {
+            of_node[node[i + k]] += sum[k];
+        }
+    }
+}
+
 static void add_point(const struct body *body, int64_t q, const double F[9], double J, void *context)
 {
     (void)J; /* of cells not det F */
-    double *of_node = context;
+    const struct bound_sum *to = context;
     struct bound bound = bound_at(body, q, F);
-    double sum[64];
-    int64_t row = body->order[q], end = body->ptr[row + 1];
-    for (int64_t i = body->ptr[row]; i < end; i += 64) {
-        int64_t count = end - i < 64 ? end - i : 64;
-        body->kernels->bounds(body->dphi + i * body->dim, count, bound.A, bound.smoothing, sum);
-        for (int64_t k = 0; k < count; k++) {
-            of_node[body->idx[i + k]] += sum[k];
-        }
+    if (body->conforming) {
+        cell_functions_list(body, q, to->work);
+        add_functions(body, &bound, to->work->count, to->work->node, to->work->gradient, to->of_node);
+    } else {
+        int64_t row = body->order[q], at = body->ptr[row];
+        add_functions(body, &bound, body->ptr[row + 1] - at, body->idx + at, body->dphi + at * body->dim,
+                      to->of_node);
     }
 }
 
@@ -76,20 +113,13 @@ static void add_point(const struct body *body, int64_t q, const double F[9], dou
 static void add_cell(const struct body *body, int64_t q, const double F[9], double J, void *context)
 {
     (void)J;
-    double *of_node = context;
+    const struct bound_sum *to = context;
     struct bound bound = bound_at(body, q, F);
-    double gradient[12] = {0.0}, sum[4];
-    int dim = body->dim;
-    for (int k = 1; k <= dim; k++) {
-        for (int b = 0; b < dim; b++) {
-            gradient[k * dim + b] = body->cells.hat[((k - 1) * dim + b) * body->point_count + q];
-            gradient[b] -= gradient[k * dim + b];
-        }
-    }
-    body->kernels->bounds(gradient, dim + 1, bound.A, bound.smoothing, sum);
-    for (int k = 0; k <= dim; k++) {
-        of_node[body->cells.cell_node[body->order[q] * (dim + 1) + k]] += sum[k];
-    }
+    double gradient[12];
+    int corners = body->dim + 1;
+    conforming_hat_gradients(body, q, gradient);
+    add_functions(body, &bound, corners, body->cells.cell_node + body->order[q] * corners, gradient,
+                  to->of_node);
 }
 
 static void sum_bounds(struct body *body, body_visitor *add, double *stiffness)
@@ -101,7 +131,8 @@ static void sum_bounds(struct body *body, body_visitor *add, double *stiffness)
         for (int64_t p = 0; p < parts->count; p++) {
             double *sum = p == 0 ? stiffness : body->bound + (p - 1) * body->node_count;
             memset(sum, 0, (size_t)body->node_count * sizeof *sum);
-            body_visit(body, chunks_begin(parts, p), chunks_begin(parts, p + 1), add, sum);
+            struct bound_sum to = {sum, body->conforming ? &body->bound_work[p] : NULL};
+            body_visit(body, chunks_begin(parts, p), chunks_begin(parts, p + 1), add, &to);
         }
 #pragma omp for schedule(static)
         for (int64_t n = 0; n < body->node_count; n++) {

@@ -42,64 +42,6 @@ done:
     return status;
 }
 
-/* Lists of the faces, the union of those of their quadrature points, with the means. */
-struct face_means {
-    int64_t *ptr;
-    int32_t *idx;
-    double *phi;
-};
-
-static enum status average_faces(const struct conforming_input *input, int64_t node_count,
-                                 struct face_means *means, struct error *error)
-{
-    enum status status;
-    int64_t most = input->face_ptr[input->face_count * input->per_face];
-    int64_t *at = NULL; /* where each node stands in the lists */
-    TRY(NEW_ARRAY(&at, node_count, error));
-    TRY(NEW_ARRAY(&means->ptr, input->face_count + 1, error));
-    TRY(NEW_ARRAY(&means->idx, most, error));
-    TRY(NEW_ARRAY(&means->phi, most, error));
-    for (int64_t n = 0; n < node_count; n++) {
-        at[n] = -1;
-    }
-    for (int64_t f = 0; f < input->face_count; f++) {
-        int64_t first = means->ptr[f], end = first;
-        for (int64_t p = f * input->per_face; p < (f + 1) * input->per_face; p++) {
-            for (int64_t i = input->face_ptr[p]; i < input->face_ptr[p + 1]; i++) {
-                int32_t node = input->face_idx[i];
-                if (at[node] < first) {
-                    means->idx[end] = node;
-                    at[node] = end++;
-                }
-                means->phi[at[node]] += input->face_weight[p % input->per_face] * input->face_phi[i];
-            }
-        }
-        means->ptr[f + 1] = end;
-    }
-done:
-    free(at);
-    return status;
-}
-
-/* Faces in an order that keeps near ones near. */
-static enum status order_faces(const struct conforming_input *input, int dim, int64_t *order,
-                               struct error *error)
-{
-    enum status status;
-    double *x = NULL;
-    TRY(NEW_ARRAY(&x, input->face_count * dim, error));
-    for (int64_t f = 0; f < input->face_count; f++) {
-        for (int i = 0; i < dim * dim; i++) {
-            x[f * dim + i % dim] +=
-                input->x[(int64_t)input->face_node[f * dim + i / dim] * dim + i % dim] / dim;
-        }
-    }
-    TRY(renumber_morton(dim, input->face_count, x, NULL, order, error));
-done:
-    free(x);
-    return status;
-}
-
 /* Corner of a cell that is opposite a face: the one whose vertex the face has not. */
 static int opposite_corner(int dim, const int32_t *vertex, const int32_t *face)
 {
@@ -149,26 +91,35 @@ done:
     return status;
 }
 
-/* Values of the field at the nodes must be those of these nodes: they reproduce 1 and x. */
-static enum status check_nodes(const struct conforming_input *input, int dim, int64_t node_count,
+/* A table of shape functions that tools made from cloud and cells: its name, and the points of its rows. */
+struct told {
+    const char *section, *of;
+    const int64_t *ptr;
+    const int32_t *idx;
+    const double *phi, *x;
+};
+
+/* Values of the shape functions must be those at x, or their means with the centroid there: they reproduce 1
+ * and x. */
+static enum status check_table(const struct told *table, int64_t rows, int dim, const double *nodes,
                                struct error *error)
 {
-    for (int64_t n = 0; n < node_count; n++) {
+    for (int64_t r = 0; r < rows; r++) {
         double sum[4] = {-1.0}, size = 0.0, extent = 0.0;
-        for (int64_t i = input->node_ptr[n]; i < input->node_ptr[n + 1]; i++) {
-            sum[0] += input->node_phi[i];
-            size += fabs(input->node_phi[i]);
+        for (int64_t i = table->ptr[r]; i < table->ptr[r + 1]; i++) {
+            sum[0] += table->phi[i];
+            size += fabs(table->phi[i]);
             for (int a = 0; a < dim; a++) {
-                double offset = input->x[(int64_t)input->node_idx[i] * dim + a] - input->x[n * dim + a];
-                sum[1 + a] += input->node_phi[i] * offset;
+                double offset = nodes[(int64_t)table->idx[i] * dim + a] - table->x[r * dim + a];
+                sum[1 + a] += table->phi[i] * offset;
                 extent = fmax(extent, fabs(offset));
             }
         }
         for (int k = 0; k <= dim; k++) {
             if (!(fabs(sum[k]) <= 1e-5 * size * (k == 0 ? 1.0 : extent))) {
                 return fail(error, STATUS_INPUT,
-                            "node.phi: node %lld: not the shape functions at this node: run shapefn again",
-                            (long long)n);
+                            "%s: %s %lld: not the shape functions at this %s: run shapefn again",
+                            table->section, table->of, (long long)r, table->of);
             }
         }
     }
@@ -182,7 +133,9 @@ static enum status build_nodes(const struct conforming_input *input, const struc
     enum status status;
     int corners = body->dim + 1;
     int32_t *node_of_corner = NULL;
-    TRY(check_nodes(input, body->dim, body->node_count, error));
+    const struct told table = {"node.phi",      "node",          input->node_ptr,
+                               input->node_idx, input->node_phi, input->x};
+    TRY(check_table(&table, body->node_count, body->dim, input->x, error));
     TRY(NEW_ARRAY(&node_of_corner, body->point_count * corners, error));
     for (int64_t q = 0; q < body->point_count; q++) {
         memcpy(node_of_corner + q * corners, input->cell_node + body->order[q] * corners,
@@ -206,36 +159,39 @@ done:
 
 /* A row for each face; its corners are those opposite it. */
 static enum status build_faces(const struct conforming_input *input, const struct body *body,
-                               struct means *means, struct error *error)
+                               int32_t *face_of_corner, struct means *means, struct error *error)
 {
     enum status status;
     int dim = body->dim;
     int64_t cell_count = body->point_count;
-    struct face_means rows = {0};
-    int64_t *face_order = NULL;
-    int32_t *face_of_corner = NULL;
-    TRY(NEW_ARRAY(&face_order, input->face_count, error));
-    TRY(NEW_ARRAY(&face_of_corner, cell_count * (dim + 1), error));
+    int64_t *order = NULL;
+    double *x = NULL;
     TRY(match_corners(input, dim, cell_count, body->order, face_of_corner, error));
-    TRY(order_faces(input, dim, face_order, error));
-    TRY(average_faces(input, body->node_count, &rows, error));
+    TRY(NEW_ARRAY(&x, input->face_count * dim, error));
+    for (int64_t f = 0; f < input->face_count; f++) {
+        for (int i = 0; i < dim * dim; i++) {
+            x[f * dim + i % dim] +=
+                input->x[(int64_t)input->face_node[f * dim + i / dim] * dim + i % dim] / dim;
+        }
+    }
+    const struct told table = {"face.phi", "face", input->face_ptr, input->face_idx, input->face_phi, x};
+    TRY(check_table(&table, input->face_count, dim, input->x, error));
+    TRY(NEW_ARRAY(&order, input->face_count, error));
+    TRY(renumber_morton(dim, input->face_count, x, NULL, order, error));
     struct means_input faces = {.dim = dim,
                                 .node_count = body->node_count,
                                 .row_count = input->face_count,
-                                .order = face_order,
-                                .ptr = rows.ptr,
-                                .idx = rows.idx,
-                                .phi = rows.phi,
+                                .order = order,
+                                .ptr = input->face_ptr,
+                                .idx = input->face_idx,
+                                .phi = input->face_phi,
                                 .place = body->node_place,
                                 .corner_count = cell_count * (dim + 1),
                                 .row_of_corner = face_of_corner};
     status = means_build(&faces, means, error);
 done:
-    free(rows.ptr);
-    free(rows.idx);
-    free(rows.phi);
-    free(face_order);
-    free(face_of_corner);
+    free(order);
+    free(x);
     return status;
 }
 
@@ -244,10 +200,14 @@ enum status conforming_build(const struct conforming_input *input, const struct 
 {
     enum status status;
     int64_t entries = body->point_count * body->dim * body->dim + BODY_POINT_PADDING;
-    *conforming = (struct conforming){.cell_node = input->cell_node};
+    *conforming = (struct conforming){.cell_node = input->cell_node,
+                                      .face_ptr = input->face_ptr,
+                                      .face_idx = input->face_idx,
+                                      .face_phi = input->face_phi};
     TRY(set_hats(input, body->dim, body->point_count, body->order, conforming, error));
     TRY(NEW_ARRAY(&conforming->interpolant, entries, error));
-    TRY(build_faces(input, body, &conforming->faces, error));
+    TRY(NEW_ARRAY(&conforming->face_of_corner, body->point_count * (body->dim + 1), error));
+    TRY(build_faces(input, body, conforming->face_of_corner, &conforming->faces, error));
     TRY(build_nodes(input, body, &conforming->nodes, error));
 done:
     if (status != STATUS_OK) {
@@ -260,7 +220,78 @@ void conforming_free(struct conforming *conforming)
 {
     means_free(&conforming->faces);
     means_free(&conforming->nodes);
+    free(conforming->face_of_corner);
     free(conforming->interpolant);
     free(conforming->hat);
     *conforming = (struct conforming){0};
+}
+
+void conforming_hat_gradients(const struct body *body, int64_t q, double *gradient)
+{
+    int dim = body->dim;
+    memset(gradient, 0, (size_t)dim * sizeof *gradient);
+    for (int k = 1; k <= dim; k++) {
+        for (int b = 0; b < dim; b++) {
+            gradient[k * dim + b] = body->cells.hat[((k - 1) * dim + b) * body->point_count + q];
+            gradient[b] -= gradient[k * dim + b];
+        }
+    }
+}
+
+enum status cell_functions_make(const struct body *body, struct cell_functions *functions,
+                                struct error *error)
+{
+    enum status status;
+    const struct conforming *cells = &body->cells;
+    int64_t most = 0;
+    int corners = body->dim + 1;
+    *functions = (struct cell_functions){0};
+    for (int64_t q = 0; q < body->point_count; q++) {
+        int64_t sum = 0;
+        for (const int32_t *f = cells->face_of_corner + q * corners;
+             f < cells->face_of_corner + (q + 1) * corners; f++) {
+            sum += cells->face_ptr[*f + 1] - cells->face_ptr[*f];
+        }
+        most = sum > most ? sum : most;
+    }
+    TRY(NEW_ARRAY(&functions->place, body->node_count, error));
+    TRY(NEW_ARRAY(&functions->node, most, error));
+    TRY(NEW_ARRAY(&functions->gradient, most * body->dim, error));
+done:
+    if (status != STATUS_OK) {
+        cell_functions_free(functions);
+    }
+    return status;
+}
+
+void cell_functions_free(struct cell_functions *functions)
+{
+    free(functions->place);
+    free(functions->node);
+    free(functions->gradient);
+    *functions = (struct cell_functions){0};
+}
+
+/* A set by two arrays that need no clearing: Briggs and Torczon 1993. */
+void cell_functions_list(const struct body *body, int64_t q, struct cell_functions *functions)
+{
+    const struct conforming *cells = &body->cells;
+    int dim = body->dim;
+    double hat[12];
+    conforming_hat_gradients(body, q, hat);
+    functions->count = 0;
+    for (int k = 0; k <= dim; k++) {
+        int32_t face = cells->face_of_corner[q * (dim + 1) + k];
+        for (int64_t i = cells->face_ptr[face]; i < cells->face_ptr[face + 1]; i++) {
+            int32_t node = cells->face_idx[i], at = functions->place[node];
+            if (at >= functions->count || functions->node[at] != node) {
+                at = functions->place[node] = (int32_t)functions->count++;
+                functions->node[at] = node;
+                memset(functions->gradient + at * dim, 0, (size_t)dim * sizeof *functions->gradient);
+            }
+            for (int a = 0; a < dim; a++) {
+                functions->gradient[at * dim + a] -= dim * cells->face_phi[i] * hat[k * dim + a];
+            }
+        }
+    }
 }

@@ -45,17 +45,20 @@ struct conforming_input {
     int64_t face_count;
     const int32_t *face_node; /* face_count * dim */
     const int32_t *face_cell; /* face_count * 2, or -1 beyond the boundary */
-    int per_face;             /* quadrature points of each face, and their shares, sum 1 */
-    const double *face_weight;
-    const int64_t *face_ptr; /* the table of shape functions there: face_count * per_face + 1 */
+    const int64_t *face_ptr;  /* averages of the shape functions over the faces: face_count + 1; with face_idx
+                                 and face_phi to outlive the body */
     const int32_t *face_idx;
     const double *face_phi;
-    const int64_t *node_ptr; /* and at the nodes: node_count + 1 */
+    const int64_t *node_ptr; /* and their values at the nodes: node_count + 1 */
     const int32_t *node_idx;
     const double *node_phi;
 };
 
 struct conforming {
+    const int64_t *face_ptr; /* the caller's averages over faces */
+    const int32_t *face_idx;
+    const double *face_phi;
+    int32_t *face_of_corner;  /* (dim + 1) for each cell, in the body's order: the face opposite */
     struct means faces;       /* means of the field over the faces */
     struct means nodes;       /* values of the field at the vertices */
     const int32_t *cell_node; /* the caller's */
@@ -65,9 +68,28 @@ struct conforming {
                     vanish together, 1/m */
 };
 
-/* Lay out the cells of a body whose sizes and orders are known. STATUS_INPUT when a cell lacks a face. */
+/* Lay out the cells of a body whose sizes and orders are known. STATUS_INPUT when a cell lacks a face, or the
+ * values are not those at the faces and nodes. */
 MUST_CHECK enum status conforming_build(const struct conforming_input *input, const struct body *body,
                                         struct conforming *conforming, struct error *error);
 void conforming_free(struct conforming *conforming);
+
+/* Gradients of the hat functions of cell q, in the body's order: gradient[(dim + 1) * dim], 1/m. */
+void conforming_hat_gradients(const struct body *body, int64_t q, double *gradient);
+
+/* The shape functions that are not zero on a cell, and their mean gradients over it. */
+struct cell_functions {
+    int32_t
+        *place;    /* node_count: where a node stands in the list, if it is there; stale entries do no harm */
+    int32_t *node; /* the list, of as many as a cell of the body has at most */
+    double *gradient; /* dim for each of the list, 1/m */
+    int64_t count;
+};
+MUST_CHECK enum status cell_functions_make(const struct body *body, struct cell_functions *functions,
+                                           struct error *error);
+void cell_functions_free(struct cell_functions *functions);
+
+/* Those of cell q, in the body's order. */
+void cell_functions_list(const struct body *body, int64_t q, struct cell_functions *functions);
 
 #endif

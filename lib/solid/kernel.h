@@ -54,5 +54,6 @@ MUST_CHECK enum status body_make_scratch(struct body *body, int threads, struct 
 
 /* What body_diagonal needs. */
 MUST_CHECK enum status body_make_bounds(struct body *body, struct error *error);
+void body_free_bounds(struct body *body);
 
 #endif

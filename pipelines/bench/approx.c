@@ -62,9 +62,8 @@ static void bench_cells(struct problem *problem, double seconds)
 {
     struct error error;
     bench_check(problem_support(problem, &error), &error);
-    bench_check(problem_values(problem, &error), &error);
     for (int threads = 1; threads <= most_threads(); threads++) {
-        bench(problem, "shapefn-smooth", problem_smooth, 1, threads, seconds);
+        bench(problem, "shapefn-averages", problem_averages, 1, threads, seconds);
     }
 }
 

@@ -6,7 +6,6 @@
 #include "bench.h"
 #include "problem.h"
 
-#include "approx/quadrature.h"
 #include "base/memory.h"
 #include "solid/body.h"
 
@@ -82,8 +81,7 @@ static void free_ingredients(struct ingredients *made)
     free(made->material_of);
 }
 
-static struct conforming_input conforming_input(const struct problem *problem,
-                                                const struct quadrature_rule *rule)
+static struct conforming_input conforming_input(const struct problem *problem)
 {
     const struct cells *cells = &problem->cells;
     return (struct conforming_input){.x = cells->x,
@@ -91,11 +89,9 @@ static struct conforming_input conforming_input(const struct problem *problem,
                                      .face_count = problem->faces.count,
                                      .face_node = problem->faces.node,
                                      .face_cell = problem->faces.cell,
-                                     .per_face = rule->points,
-                                     .face_weight = rule->weight,
-                                     .face_ptr = problem->lists.ptr,
-                                     .face_idx = problem->lists.idx,
-                                     .face_phi = problem->phi,
+                                     .face_ptr = problem->averages.ptr,
+                                     .face_idx = problem->averages.idx,
+                                     .face_phi = problem->averages.phi,
                                      .node_ptr = problem->node_lists.ptr,
                                      .node_idx = problem->node_lists.idx,
                                      .node_phi = problem->node_phi};
@@ -106,8 +102,7 @@ static enum status build_body(const struct problem *problem, const struct varian
 {
     const struct cells *cells = &problem->cells;
     int dim = cells->dim;
-    struct quadrature_rule rule = quadrature_face_rule(dim);
-    struct conforming_input conforming = conforming_input(problem, &rule);
+    struct conforming_input conforming = conforming_input(problem);
     struct material material = {.model = MATERIAL_NEO_HOOKEAN, .density = 1000.0};
     material_set_moduli(&material, 3000.0, 0.49);
     struct body_input input = {.dim = dim,
@@ -117,9 +112,9 @@ static enum status build_body(const struct problem *problem, const struct varian
                                .point_count = made->count,
                                .x = made->centroids != NULL ? made->centroids : problem->points,
                                .weight = made->weight,
-                               .ptr = variant->conforming ? problem->smoothed.ptr : problem->lists.ptr,
-                               .idx = variant->conforming ? problem->smoothed.idx : problem->lists.idx,
-                               .dphi = variant->conforming ? problem->smoothed.dphi : problem->dphi,
+                               .ptr = problem->lists.ptr,
+                               .idx = problem->lists.idx,
+                               .dphi = problem->dphi,
                                .materials = &material,
                                .material = made->material_of,
                                .material_count = 1,
@@ -213,8 +208,7 @@ static void bench_cells(struct problem *problem, double seconds)
 {
     struct error error;
     bench_check(problem_support(problem, &error), &error);
-    bench_check(problem_values(problem, &error), &error);
-    bench_check(problem_smooth(problem, &error), &error);
+    bench_check(problem_averages(problem, &error), &error);
     bench_check(problem_nodes(problem, &error), &error);
     bench_all(problem, true, seconds);
 }

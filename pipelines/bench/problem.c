@@ -83,13 +83,13 @@ enum status problem_values(void *context, struct error *error)
     return run_shape(context, false, error);
 }
 
-enum status problem_smooth(void *context, struct error *error)
+enum status problem_averages(void *context, struct error *error)
 {
     struct problem *problem = context;
     struct neighbours lists = view_of(&problem->lists);
-    smoothed_table_free(&problem->smoothed);
-    return shape_smooth(&problem->cells, &problem->faces, quadrature_face_rule(problem->cells.dim).points,
-                        &lists, problem->phi, &problem->smoothed, error);
+    face_averages_free(&problem->averages);
+    return shape_average_faces(&problem->options.mls, problem->cloud.x, problem->radius, &lists,
+                               problem->points, "facepoints.x", &problem->faces, &problem->averages, error);
 }
 
 /* A cube (square) of that many nodes along each axis, support radius = factor times its spacing. */
@@ -157,7 +157,7 @@ void problem_free(struct problem *problem)
     faces_free(&problem->faces);
     support_free(&problem->lists);
     support_free(&problem->node_lists);
-    smoothed_table_free(&problem->smoothed);
+    face_averages_free(&problem->averages);
     free(problem->radius);
     free(problem->points);
     free(problem->phi);

@@ -12,7 +12,7 @@ struct problem {
     struct cloud cloud;
     struct cells cells;
     struct faces faces;
-    struct smoothed_table smoothed;
+    struct face_averages averages;
     double *radius, *points, *phi, *dphi;
     int64_t point_count;
     struct support_lists lists;      /* of the points, */
@@ -36,11 +36,11 @@ MUST_CHECK enum status problem_points_on_faces(struct problem *problem, struct e
 MUST_CHECK enum status problem_points_at_nodes(struct problem *problem, struct error *error);
 
 /* The stages; the context is the struct problem. Lists as the tool support makes them, tables of values with
- * gradients or without, allocated with the first run, and the table smoothed over the cells. */
+ * gradients or without, allocated with the first run, and averages over the faces. */
 MUST_CHECK enum status problem_support(void *context, struct error *error);
 MUST_CHECK enum status problem_gradients(void *context, struct error *error);
 MUST_CHECK enum status problem_values(void *context, struct error *error);
-MUST_CHECK enum status problem_smooth(void *context, struct error *error);
+MUST_CHECK enum status problem_averages(void *context, struct error *error);
 
 /* The lists and values of the field at the nodes. */
 MUST_CHECK enum status problem_nodes(struct problem *problem, struct error *error);

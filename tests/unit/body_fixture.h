@@ -3,6 +3,7 @@
 #ifndef TESTS_BODY_FIXTURE_H
 #define TESTS_BODY_FIXTURE_H
 
+#include "cell_table.h"
 #include "solid_fixture.h"
 
 #include "approx/boundary.h"
@@ -25,6 +26,7 @@ struct sample {
     double *face_x, *face_phi;
     struct support_lists face_lists;
     struct neighbours face_neighbours;
+    struct face_averages averages;
     /* Integration points. */
     int64_t point_count;
     double *x, *weight, *hat_value, *phi, *dphi;
@@ -63,6 +65,8 @@ static inline void sample_faces(struct sample *sample)
     sample->face_phi = sample_array(sample->face_lists.ptr[count], sizeof(double));
     GOOD(shape_table(&sample->options.mls, sample->cloud.x, sample->radius, &sample->face_neighbours,
                      sample->face_x, "faces", sample->face_phi, NULL, &error));
+    GOOD(shape_average_faces(&sample->options.mls, sample->cloud.x, sample->radius, &sample->face_neighbours,
+                             sample->face_x, "faces", &sample->faces, &sample->averages, &error));
 }
 
 /* One point for each cell, gradients smoothed over it; or the Gauss points of a rule of `per_cell` points. */
@@ -90,9 +94,7 @@ static inline void sample_points(struct sample *sample, int per_cell)
         }
     }
     if (sample->conforming) {
-        struct smoothed_table table;
-        GOOD(shape_smooth(&sample->cells, &sample->faces, sample->face_rule.points, &sample->face_neighbours,
-                          sample->face_phi, &table, &error));
+        struct cell_table table = cell_table_make(&sample->cells, &sample->faces, &sample->averages);
         sample->ptr = table.ptr;
         sample->idx = table.idx;
         sample->phi = table.phi;
@@ -131,11 +133,9 @@ static inline struct conforming_input sample_conforming(const struct sample *sam
                                      .face_count = sample->faces.count,
                                      .face_node = sample->faces.node,
                                      .face_cell = sample->faces.cell,
-                                     .per_face = sample->face_rule.points,
-                                     .face_weight = sample->face_rule.weight,
-                                     .face_ptr = sample->face_lists.ptr,
-                                     .face_idx = sample->face_lists.idx,
-                                     .face_phi = sample->face_phi,
+                                     .face_ptr = sample->averages.ptr,
+                                     .face_idx = sample->averages.idx,
+                                     .face_phi = sample->averages.phi,
                                      .node_ptr = sample->node_lists.ptr,
                                      .node_idx = sample->node_lists.idx,
                                      .node_phi = sample->node_phi};
@@ -180,6 +180,7 @@ static inline void sample_free(struct sample *sample)
     free(sample->radius);
     free(sample->face_x);
     free(sample->face_phi);
+    face_averages_free(&sample->averages);
     free(sample->x);
     free(sample->weight);
     free(sample->hat_node);

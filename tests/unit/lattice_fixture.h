@@ -3,6 +3,7 @@
 #ifndef TESTS_LATTICE_FIXTURE_H
 #define TESTS_LATTICE_FIXTURE_H
 
+#include "cell_table.h"
 #include "solid_fixture.h"
 
 #include "approx/cloud.h"
@@ -33,7 +34,8 @@ struct lattice {
     struct support_lists face_lists, node_lists, point_lists;
     struct neighbours face_neighbours, node_neighbours;
     double *face_phi, *node_phi, *point_phi, *point_dphi;
-    struct smoothed_table smoothed;
+    struct face_averages averages;
+    struct cell_table smoothed;
     struct face_table face_table;
     struct material material;
     struct solid_system system;
@@ -131,20 +133,13 @@ static inline void lattice_body(struct lattice *l)
             l->system.lumped_mass[vertex[k]] += options->density * volume / corners;
         }
     }
-    const int64_t *ptr;
-    const int32_t *idx;
-    const double *dphi;
     if (options->gauss_points > 0) {
         lattice_tabulate(l, count, l->point_x, &l->point_lists, &l->point_phi, &l->point_dphi);
-        ptr = l->point_lists.ptr;
-        idx = l->point_lists.idx;
-        dphi = l->point_dphi;
     } else {
-        GOOD(shape_smooth(&l->cells, &l->faces, l->per_face, &l->face_neighbours, l->face_phi, &l->smoothed,
-                          &error));
-        ptr = l->smoothed.ptr;
-        idx = l->smoothed.idx;
-        dphi = l->smoothed.dphi;
+        struct support_options support = support_defaults(dim);
+        GOOD(shape_average_faces(&support.mls, l->cells.x, l->radius, &l->face_neighbours, l->face_x, "faces",
+                                 &l->faces, &l->averages, &error));
+        l->smoothed = cell_table_make(&l->cells, &l->faces, &l->averages);
     }
     l->material = (struct material){.model = MATERIAL_NEO_HOOKEAN, .density = options->density};
     material_set_moduli(&l->material, options->youngs_modulus, options->poisson_ratio);
@@ -153,25 +148,22 @@ static inline void lattice_body(struct lattice *l)
                                .point_count = count,
                                .x = l->point_x,
                                .weight = l->weight,
-                               .ptr = ptr,
-                               .idx = idx,
-                               .dphi = dphi,
+                               .ptr = l->point_lists.ptr,
+                               .idx = l->point_lists.idx,
+                               .dphi = l->point_dphi,
                                .materials = &l->material,
                                .material = material,
                                .material_count = 1,
                                .hat_node = options->nodal_volume ? hat_node : NULL,
                                .hat_value = options->nodal_volume ? hat_value : NULL};
-    struct quadrature_rule face_rule = quadrature_face_rule(dim);
     struct conforming_input conforming = {.x = l->cells.x,
                                           .cell_node = l->cells.node,
                                           .face_count = l->faces.count,
                                           .face_node = l->faces.node,
                                           .face_cell = l->faces.cell,
-                                          .per_face = l->per_face,
-                                          .face_weight = face_rule.weight,
-                                          .face_ptr = l->face_lists.ptr,
-                                          .face_idx = l->face_lists.idx,
-                                          .face_phi = l->face_phi,
+                                          .face_ptr = l->averages.ptr,
+                                          .face_idx = l->averages.idx,
+                                          .face_phi = l->averages.phi,
                                           .node_ptr = l->node_lists.ptr,
                                           .node_idx = l->node_lists.idx,
                                           .node_phi = l->node_phi};
@@ -224,7 +216,8 @@ static inline void lattice_build(struct lattice *l, const struct lattice_options
 static inline void lattice_free(struct lattice *l)
 {
     system_free(&l->system);
-    smoothed_table_free(&l->smoothed);
+    face_averages_free(&l->averages);
+    cell_table_free(&l->smoothed);
     support_free(&l->face_lists);
     support_free(&l->node_lists);
     support_free(&l->point_lists);

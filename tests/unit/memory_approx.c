@@ -30,7 +30,7 @@ int posix_memalign(void **memory, size_t alignment, size_t size)
     return *memory == NULL ? ENOMEM : 0;
 }
 
-/* From a cloud to its smoothed table. */
+/* From a cloud to its averages over faces. */
 static enum status try_table(struct error *error)
 {
     enum status status;
@@ -42,7 +42,7 @@ static enum status try_table(struct error *error)
     struct faces faces = {0};
     struct point_grid grid = {0};
     struct support_lists lists = {0};
-    struct smoothed_table table = {0};
+    struct face_averages table = {0};
     double spacing[25], radius[25], points[400], *phi = NULL;
     TRY(cloud_make(&wanted, &cloud, error));
     struct cells cells = {2, cloud.node_count, cloud.x, cloud.cell_count, cloud.cells};
@@ -57,9 +57,9 @@ static enum status try_table(struct error *error)
     TRY(NEW_ARRAY(&phi, lists.ptr[lists.count], error));
     struct neighbours view = support_view(&lists);
     TRY(shape_table(&options.mls, cloud.x, radius, &view, points, "points", phi, NULL, error));
-    TRY(shape_smooth(&cells, &faces, 2, &view, phi, &table, error));
+    TRY(shape_average_faces(&options.mls, cloud.x, radius, &view, points, "points", &faces, &table, error));
 done:
-    smoothed_table_free(&table);
+    face_averages_free(&table);
     support_free(&lists);
     point_grid_free(&grid);
     faces_free(&faces);
@@ -154,8 +154,8 @@ static enum status try_compare(struct error *error)
     wanted.kind = CLOUD_JITTERED;
     wanted.jitter = 0.2;
     TRY(cloud_make(&wanted, &second, error));
-    struct nodal_field a = {{2, 49, first.x, 0, NULL}, 1, values};
-    struct nodal_field b = {{2, 49, second.x, 0, NULL}, 1, values};
+    struct nodal_field a = {.cells = {2, 49, first.x, 0, NULL}, .cols = 1, .values = values};
+    struct nodal_field b = {.cells = {2, 49, second.x, 0, NULL}, .cols = 1, .values = values};
     TRY(field_compare(&a, &b, NULL, false, &comparison, error));
     TRY(field_statistics(comparison.count, comparison.node, comparison.difference, &statistics, error));
 done:

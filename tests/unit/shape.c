@@ -1,5 +1,6 @@
 /* Quadrature, faces of cells, tables of shape functions and their smoothing over conforming cells. */
 #include "approx_fixture.h"
+#include "cell_table.h"
 
 #include "approx/cloud.h"
 #include "approx/quadrature.h"
@@ -203,7 +204,7 @@ static void wrong_cells(void **state)
     assert_non_null(strstr(error.text, "more than two cells"));
 }
 
-/* Values at the face points and the table smoothed over the cells. */
+/* Averages over the faces and the table smoothed over the cells that they make. */
 struct smoothed {
     struct cloud cloud;
     struct cells cells;
@@ -212,7 +213,8 @@ struct smoothed {
     double *points;
     struct table table;
     struct neighbours lists;
-    struct smoothed_table smooth;
+    struct face_averages averages;
+    struct cell_table smooth;
 };
 
 static void smoothed_build(struct smoothed *s, int dim, int64_t per_axis, enum basis basis, double offset)
@@ -233,13 +235,16 @@ static void smoothed_build(struct smoothed *s, int dim, int64_t per_axis, enum b
     }
     good(tabulate(&options, s->cells.node_count, s->cells.x, count, s->points, &s->table, &error), &error);
     s->lists = support_view(&s->table.lists);
-    good(shape_smooth(&s->cells, &s->faces, s->per_face, &s->lists, s->table.phi, &s->smooth, &error),
+    good(shape_average_faces(&options.mls, s->cells.x, s->table.radius, &s->lists, s->points, "points.x",
+                             &s->faces, &s->averages, &error),
          &error);
+    s->smooth = cell_table_make(&s->cells, &s->faces, &s->averages);
 }
 
 static void smoothed_free(struct smoothed *s)
 {
-    smoothed_table_free(&s->smooth);
+    face_averages_free(&s->averages);
+    cell_table_free(&s->smooth);
     table_free(&s->table);
     faces_free(&s->faces);
     cloud_free(&s->cloud);
@@ -267,7 +272,7 @@ static void smoothing_is_consistent(void **state)
                 struct table view = {
                     .phi = s.smooth.phi,
                     .dphi = s.smooth.dphi,
-                    .lists = {.count = s.smooth.count, .ptr = s.smooth.ptr, .idx = s.smooth.idx}};
+                    .lists = {.count = s.cells.count, .ptr = s.smooth.ptr, .idx = s.smooth.idx}};
                 struct defects worst =
                     table_defects(&view, dim, s.cells.x, centroids, 0.2 / (double)(per_axis - 1));
                 print_message("# %dD %s, offset %g m: %.1e %.1e %.1e %.1e\n", dim, basis_names[b], offset,
@@ -333,38 +338,58 @@ static void smoothing_threads(void **state)
         struct smoothed s;
         omp_set_num_threads(numbers[i]);
         smoothed_build(&s, 2, 20, BASIS_MODIFIED, 0.0);
-        size_t pairs = (size_t)s.smooth.ptr[s.cells.count];
-        assert_int_equal(s.smooth.ptr[s.cells.count], first.smooth.ptr[s.cells.count]);
-        assert_memory_equal(s.smooth.idx, first.smooth.idx, pairs * sizeof(int32_t));
-        assert_memory_equal(s.smooth.phi, first.smooth.phi, pairs * sizeof(double));
-        assert_memory_equal(s.smooth.dphi, first.smooth.dphi, pairs * 2 * sizeof(double));
+        size_t pairs = (size_t)s.averages.ptr[s.faces.count];
+        assert_int_equal(pairs, first.averages.ptr[s.faces.count]);
+        assert_memory_equal(s.averages.idx, first.averages.idx, pairs * sizeof(int32_t));
+        assert_memory_equal(s.averages.phi, first.averages.phi, pairs * sizeof(double));
         smoothed_free(&s);
     }
     omp_set_num_threads(before);
     smoothed_free(&first);
 }
 
-/* Faces that do not fit the cells are refused, not read beyond. */
-static void wrong_faces(void **state)
+/* Each average is the mean of the values at the points of its face, and those at points on the boundary,
+ * whose faces come first, are kept. */
+static void averages_of_values(void **state)
 {
     (void)state;
-    struct smoothed s;
-    struct error error;
-    struct smoothed_table table;
-    smoothed_build(&s, 2, 4, BASIS_LINEAR, 0.0);
-    int32_t kept = s.faces.cell[0];
-    static const int32_t wrong[] = {-1, -7, 1000000, INT32_MAX, INT32_MIN, 3};
-    for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
-        s.faces.cell[0] = wrong[i];
-        assert_int_equal(shape_smooth(&s.cells, &s.faces, s.per_face, &s.lists, s.table.phi, &table, &error),
-                         STATUS_INPUT);
-        assert_non_null(strstr(error.text, "faces.cell"));
+    for (int dim = 2; dim <= 3; dim++) {
+        struct smoothed s;
+        smoothed_build(&s, dim, dim == 2 ? 9 : 6, BASIS_MODIFIED, 0.0);
+        struct quadrature_rule rule = quadrature_face_rule(dim);
+        double *row = calloc((size_t)s.cells.node_count, sizeof *row);
+        int64_t outer = 0;
+        struct error error;
+        struct support_options options = options_for(dim, BASIS_MODIFIED, WEIGHT_QUARTIC);
+        assert_non_null(row);
+        good(shape_table(&options.mls, s.cells.x, s.table.radius, &s.lists, s.points, "points.x", s.table.phi,
+                         NULL, &error),
+             &error);
+        for (int64_t f = 0; f < s.faces.count; f++) {
+            outer += s.faces.cell[2 * f + 1] < 0;
+            assert_true(s.faces.cell[2 * f + 1] >= 0 || outer == f + 1);
+            for (int64_t p = f * s.per_face; p < (f + 1) * s.per_face; p++) {
+                for (int64_t i = s.lists.ptr[p]; i < s.lists.ptr[p + 1]; i++) {
+                    row[s.lists.idx[i]] += rule.weight[p % s.per_face] * s.table.phi[i];
+                }
+            }
+            for (int64_t i = s.averages.ptr[f]; i < s.averages.ptr[f + 1]; i++) {
+                assert_true(i == s.averages.ptr[f] || s.averages.idx[i] > s.averages.idx[i - 1]);
+                at_most(fabs(s.averages.phi[i] - row[s.averages.idx[i]]), 1e-15, "average");
+                row[s.averages.idx[i]] = 0.0;
+            }
+            for (int64_t p = f * s.per_face; p < (f + 1) * s.per_face; p++) {
+                for (int64_t i = s.lists.ptr[p]; i < s.lists.ptr[p + 1]; i++) {
+                    assert_true(row[s.lists.idx[i]] == 0.0); /* nobody is left out */
+                }
+            }
+        }
+        assert_int_equal(outer, s.averages.boundary_count);
+        assert_memory_equal(s.averages.boundary_phi, s.table.phi,
+                            (size_t)s.lists.ptr[outer * s.per_face] * sizeof(double));
+        free(row);
+        smoothed_free(&s);
     }
-    s.faces.cell[0] = kept;
-    s.faces.count--;
-    assert_int_equal(shape_smooth(&s.cells, &s.faces, s.per_face, &s.lists, s.table.phi, &table, &error),
-                     STATUS_INPUT);
-    smoothed_free(&s);
 }
 
 /* Spacing of nodes from their cells: edges of a unit square cut in two. */
@@ -388,7 +413,7 @@ int main(void)
         cmocka_unit_test(quadrature_degrees),   cmocka_unit_test(cells_and_faces),
         cmocka_unit_test(wrong_cells),          cmocka_unit_test(smoothing_is_consistent),
         cmocka_unit_test(smoothing_telescopes), cmocka_unit_test(smoothing_threads),
-        cmocka_unit_test(wrong_faces),          cmocka_unit_test(spacing_of_cells),
+        cmocka_unit_test(averages_of_values),   cmocka_unit_test(spacing_of_cells),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

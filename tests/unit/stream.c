@@ -298,9 +298,10 @@ static void write_errors(void **state)
 static void stages_of_sections(void **state)
 {
     (void)state;
-    static const char *const names[] = {"nodes.x", "cells.region", "points.x", "faces.cell", "support.radius",
-                                        "nbr.ptr", "face.idx",     "nbr.more", "node.phi",   "shape.dphi",
-                                        "u",       "energy",       "stranger", "u.mean",     "points"};
+    static const char *const names[] = {
+        "nodes.x", "cells.region",  "points.x", "faces.cell", "support.radius",
+        "nbr.ptr", "facepoint.idx", "nbr.more", "node.phi",   "shape.dphi",
+        "u",       "energy",        "stranger", "u.mean",     "points"};
     static const enum section_stage stages[] = {
         MADE_WITH_CLOUD,   MADE_WITH_CLOUD,   MADE_WITH_POINTS,  MADE_WITH_POINTS, MADE_WITH_SUPPORT,
         MADE_WITH_SUPPORT, MADE_WITH_SUPPORT, MADE_WITH_SUPPORT, MADE_WITH_SHAPES, MADE_WITH_SHAPES,

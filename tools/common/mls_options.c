@@ -73,10 +73,10 @@ enum status radius_apply_options(const struct option *factor, const struct optio
     return radius->given ? parse_length(radius->value, "-R", &support->radius, error) : STATUS_OK;
 }
 
-void mls_describe(const struct mls *mls, char *text, size_t size)
+void mls_describe(const struct mls *mls, const char *prefix, char *text, size_t size)
 {
-    snprintf(text, size, "basis=%s weight=%s mu_absolute=%d mu=", basis_names[mls->basis],
-             weight_names[mls->weight], mls->mu_absolute);
+    snprintf(text, size, "%sbasis=%s %sweight=%s %smu_absolute=%d %smu=", prefix, basis_names[mls->basis],
+             prefix, weight_names[mls->weight], prefix, mls->mu_absolute, prefix);
     for (int k = 0; k < mls_second_order_count(mls->dim); k++) {
         size_t length = strlen(text);
         snprintf(text + length, size - length, "%s%.17g", k > 0 ? "," : "", mls->mu[k]);

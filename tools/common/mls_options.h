@@ -25,8 +25,8 @@ MUST_CHECK enum status mls_apply_options(const struct option options[MLS_OPTION_
 MUST_CHECK enum status radius_apply_options(const struct option *factor, const struct option *radius,
                                             struct support_options *support, struct error *error);
 
-/* "basis=mmls2 weight=quartic mu=1e-07,1e-07,1e-07 mu_absolute=0" into text[size], for a section's
- * attributes. */
-void mls_describe(const struct mls *mls, char *text, size_t size);
+/* "basis=mmls2 weight=quartic mu_absolute=0 mu=1e-07,1e-07,1e-07", each key with the prefix before it, into
+ * text[size], for a section's attributes. */
+void mls_describe(const struct mls *mls, const char *prefix, char *text, size_t size);
 
 #endif

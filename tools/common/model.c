@@ -68,33 +68,29 @@ done:
     return status;
 }
 
-/* The table over the integration points. */
+/* The integration points. */
 static enum status read_points(struct model_input *input, struct error *error)
 {
     enum status status;
     const struct stream *stream = input->stream;
-    int dim = input->cells.dim;
-    TRY(stream_need(stream, "points.x", TYPE_F8, dim, "ipoints", &input->points, error));
+    TRY(stream_need(stream, "points.x", TYPE_F8, input->cells.dim, "ipoints", &input->points, error));
     TRY(stream_need(stream, "points.weight", TYPE_F8, 1, "ipoints", &input->weight, error));
     TRY(stream_need(stream, "points.cell", TYPE_I4, 1, "ipoints", &input->point_cell, error));
-    TRY(stream_need(stream, "shape.dphi", TYPE_F8, dim, "shapefn", &input->dphi, error));
-    TRY(stream_need(stream, "shape.phi", TYPE_F8, 1, "shapefn", &input->phi, error));
     int64_t count = input->points->rows;
-    TRY(stream_neighbours(stream, "nbr", count, input->cells.node_count, &input->point_lists, error));
+    input->conforming = points_are_conforming(input->points);
     if (input->weight->rows != count || input->point_cell->rows != count ||
-        input->dphi->rows != input->point_lists.ptr[count] || input->phi->rows != input->dphi->rows) {
-        status = fail(error, STATUS_INPUT,
-                      "points.weight, points.cell, shape.dphi: do not fit points.x and nbr.ptr: "
-                      "run the stages again");
+        (input->conforming && count != input->cells.count)) {
+        status =
+            fail(error, STATUS_INPUT, "points.x, points.weight, points.cell: do not fit: run ipoints again");
         goto done;
     }
+    const int32_t *cell = input->point_cell->data;
     for (int64_t q = 0; q < count; q++) {
-        int32_t cell = ((const int32_t *)input->point_cell->data)[q];
-        if (cell < 0 || cell >= input->cells.count) {
+        if (cell[q] < 0 || cell[q] >= input->cells.count) {
             status =
                 fail(error, STATUS_INPUT,
                      "points.cell: row %lld: no cell %d: an evaluation lattice cannot be integrated over",
-                     (long long)q, cell);
+                     (long long)q, cell[q]);
             goto done;
         }
     }
@@ -102,37 +98,49 @@ done:
     return status;
 }
 
-/* The tables over the faces and the nodes. */
-static enum status read_faces_and_nodes(struct model_input *input, struct error *error)
+/* A table of shapefn: sections PREFIX.ptr and .idx, and values or gradients on these lists. */
+static enum status read_table(const struct model_input *input, const char *prefix, const char *values,
+                              int cols, int64_t rows, struct neighbours *lists, const double **phi,
+                              struct error *error)
 {
     enum status status;
-    const struct stream *stream = input->stream;
-    const struct section *facepoints, *face_phi, *node_phi;
-    int dim = input->cells.dim, per_face = quadrature_face_rule(dim).points;
-    TRY(stream_faces(stream, &input->cells, &input->faces, error));
-    TRY(stream_need(stream, "facepoints.x", TYPE_F8, dim, "ipoints", &facepoints, error));
-    TRY(stream_need(stream, "face.phi", TYPE_F8, 1, "shapefn", &face_phi, error));
-    TRY(stream_need(stream, "node.phi", TYPE_F8, 1, "shapefn", &node_phi, error));
-    TRY(stream_neighbours(stream, "face", facepoints->rows, input->cells.node_count, &input->face_lists,
-                          error));
-    TRY(stream_neighbours(stream, "node", input->cells.node_count, input->cells.node_count,
-                          &input->node_lists, error));
-    if (facepoints->rows != input->faces.count * per_face ||
-        face_phi->rows != input->face_lists.ptr[facepoints->rows] ||
-        node_phi->rows != input->node_lists.ptr[input->cells.node_count]) {
-        status = fail(error, STATUS_INPUT,
-                      "faces, face.phi, node.phi: do not fit each other: run the stages again");
-        goto done;
+    const struct section *section;
+    TRY(stream_need(input->stream, values, TYPE_F8, cols, "shapefn", &section, error));
+    TRY(stream_neighbours(input->stream, prefix, rows, input->cells.node_count, lists, error));
+    if (section->rows != lists->ptr[rows]) {
+        status = fail(error, STATUS_INPUT, "%s: does not fit %s.idx: run shapefn again", values, prefix);
     }
-    input->face_phi = face_phi->data;
-    input->node_phi = node_phi->data;
+    *phi = section->data;
+done:
+    return status;
+}
+
+/* The tables over points or faces, over the boundary, and over the nodes. */
+static enum status read_tables(struct model_input *input, struct error *error)
+{
+    enum status status;
+    int dim = input->cells.dim, per_face = quadrature_face_rule(dim).points;
+    struct neighbours *lists = &input->lists;
+    TRY(stream_faces(input->stream, &input->cells, &input->faces, error));
+    if (input->conforming) {
+        TRY(read_table(input, "face", "face.phi", 1, input->faces.count, lists, &input->phi, error));
+    } else {
+        TRY(read_table(input, "nbr", "shape.phi", 1, input->points->rows, lists, &input->phi, error));
+        TRY(read_table(input, "nbr", "shape.dphi", dim, input->points->rows, lists, &input->dphi, error));
+    }
+    input->boundary = input->faces;
+    input->boundary.count = input->faces.boundary_count;
+    TRY(read_table(input, "boundary", "boundary.phi", 1, input->boundary.count * per_face,
+                   &input->boundary_lists, &input->boundary_phi, error));
+    TRY(read_table(input, "node", "node.phi", 1, input->cells.node_count, &input->node_lists,
+                   &input->node_phi, error));
     input->face_table = (struct face_table){.dim = dim,
                                             .node_count = input->cells.node_count,
                                             .x = input->cells.x,
-                                            .faces = &input->faces,
+                                            .faces = &input->boundary,
                                             .per_face = per_face,
-                                            .lists = &input->face_lists,
-                                            .phi = face_phi->data};
+                                            .lists = &input->boundary_lists,
+                                            .phi = input->boundary_phi};
 done:
     return status;
 }
@@ -152,7 +160,7 @@ enum status model_input_read(const struct stream *stream, const struct scene *sc
     input->extent = box_diagonal(&box);
     TRY(materials_of_cells(input, error));
     TRY(read_points(input, error));
-    TRY(read_faces_and_nodes(input, error));
+    TRY(read_tables(input, error));
 done:
     if (status != STATUS_OK) {
         model_input_free(input);

@@ -13,10 +13,13 @@ struct model_input {
     const struct stream *stream;
     const struct scene *scene;
     struct cells cells;
-    struct neighbours point_lists, face_lists, node_lists;
-    const struct section *points, *weight, *point_cell, *dphi, *phi;
-    const double *face_phi, *node_phi;
-    struct faces faces;
+    const struct section *points, *weight, *point_cell;
+    bool conforming;          /* the points are cells */
+    struct neighbours lists;  /* of the points; or, of conforming cells, of the faces */
+    const double *phi, *dphi; /* following these; dphi NULL: averages over faces */
+    struct neighbours boundary_lists, node_lists;
+    const double *boundary_phi, *node_phi;
+    struct faces faces, boundary; /* and the first of them, on the boundary */
     struct face_table face_table;
     int32_t *cell_material; /* material of each cell; owned */
     double extent;          /* diagonal of the box of the nodes, m */
@@ -82,8 +85,8 @@ MUST_CHECK enum status model_add_curve(const struct model_input *input, const st
  * it does not grow with the bulk modulus; the largest of the body's materials. */
 double model_penalty_modulus(const struct solid_system *system, double factor);
 
-/* held[faces.count]: whether all nodes of that face are those of facets that one displacement section names;
- * the caller's to free. */
+/* held[boundary.count]: whether all nodes of that face are those of facets that one displacement section
+ * names; the caller's to free. */
 MUST_CHECK enum status model_held_faces(const struct model_input *input, bool **held, struct error *error);
 
 /* u, v[node_count * dim]: the state at the begin that the scene's [initial] gives, m and m/s, as parameters.

@@ -1,6 +1,5 @@
 #include "model.h"
 
-#include "approx/quadrature.h"
 #include "base/box.h"
 
 #include <math.h>
@@ -49,14 +48,6 @@ done:
     return status;
 }
 
-/* One point per cell, in the order of the cells. */
-static bool has_conforming_cells(const struct model_input *input)
-{
-    char rule[32];
-    return section_attribute(input->points, "rule", rule, sizeof rule) && strcmp(rule, "conforming") == 0 &&
-           input->points->rows == input->cells.count;
-}
-
 static enum status build_body(const struct model_input *input, struct solid_system *system,
                               struct error *error)
 {
@@ -70,17 +61,14 @@ static enum status build_body(const struct model_input *input, struct solid_syst
     if (solver->volume == SCENE_NODAL_VOLUME) {
         TRY(list_hats(input, &hat_node, &hat_value, error));
     }
-    struct quadrature_rule rule = quadrature_face_rule(dim);
     struct conforming_input conforming = {.x = input->cells.x,
                                           .cell_node = input->cells.node,
                                           .face_count = input->faces.count,
                                           .face_node = input->faces.node,
                                           .face_cell = input->faces.cell,
-                                          .per_face = rule.points,
-                                          .face_weight = rule.weight,
-                                          .face_ptr = input->face_lists.ptr,
-                                          .face_idx = input->face_lists.idx,
-                                          .face_phi = input->face_phi,
+                                          .face_ptr = input->lists.ptr,
+                                          .face_idx = input->lists.idx,
+                                          .face_phi = input->phi,
                                           .node_ptr = input->node_lists.ptr,
                                           .node_idx = input->node_lists.idx,
                                           .node_phi = input->node_phi};
@@ -90,16 +78,16 @@ static enum status build_body(const struct model_input *input, struct solid_syst
                               .point_count = input->points->rows,
                               .x = input->points->data,
                               .weight = input->weight->data,
-                              .ptr = input->point_lists.ptr,
-                              .idx = input->point_lists.idx,
-                              .dphi = input->dphi->data,
+                              .ptr = input->conforming ? NULL : input->lists.ptr,
+                              .idx = input->conforming ? NULL : input->lists.idx,
+                              .dphi = input->dphi,
                               .materials = materials.items,
                               .material = materials.of_point,
                               .material_count = materials.count,
                               .group = materials.section,
                               .hat_node = hat_node,
                               .hat_value = hat_value,
-                              .conforming = has_conforming_cells(input) ? &conforming : NULL};
+                              .conforming = input->conforming ? &conforming : NULL};
     TRY(body_build(&body, &system->body, error));
 done:
     material_list_free(&materials);

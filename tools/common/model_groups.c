@@ -66,7 +66,7 @@ enum status model_held_faces(const struct model_input *input, bool **held, struc
     int dim = input->cells.dim;
     int64_t *stamp = NULL; /* of each node: the last section that names it, from 1 on */
     int32_t *owned = NULL;
-    TRY(NEW_ARRAY(held, input->faces.count, error));
+    TRY(NEW_ARRAY(held, input->boundary.count, error));
     TRY(NEW_ARRAY(&stamp, input->cells.node_count, error));
     for (int64_t i = 0; i < input->scene->displacement_count; i++) {
         const struct scene_displacement *section = &input->scene->displacements[i];
@@ -78,7 +78,7 @@ enum status model_held_faces(const struct model_input *input, bool **held, struc
         for (int64_t k = 0; k < set.count * dim; k++) {
             stamp[set.facet[k]] = i + 1;
         }
-        hold_faces(&input->faces, dim, stamp, i + 1, *held);
+        hold_faces(&input->boundary, dim, stamp, i + 1, *held);
         free(owned);
         owned = NULL;
     }

@@ -21,6 +21,28 @@ static enum status new_load(struct solid_system *system, int32_t curve, int32_t 
     return status;
 }
 
+/* The mass that each row of the table over points or faces stands for: of a face, its cells' in equal parts.
+ */
+static enum status share_mass(const struct model_input *input, double **mass, struct error *error)
+{
+    enum status status;
+    const int32_t *cell = input->point_cell->data;
+    const double *weight = input->weight->data;
+    TRY(NEW_ARRAY(mass, input->lists.count, error));
+    for (int64_t i = 0; i < input->lists.count && !input->conforming; i++) {
+        (*mass)[i] = weight[i] * input->scene->materials[input->cell_material[cell[i]]].density;
+    }
+    for (int64_t i = 0; i < 2 * input->lists.count && input->conforming; i++) {
+        int32_t q = input->faces.cell[i];
+        if (q >= 0) {
+            (*mass)[i / 2] +=
+                weight[q] * input->scene->materials[input->cell_material[q]].density / (input->cells.dim + 1);
+        }
+    }
+done:
+    return status;
+}
+
 static enum status add_gravity(const struct model_input *input, struct solid_system *system,
                                struct error *error)
 {
@@ -29,27 +51,26 @@ static enum status add_gravity(const struct model_input *input, struct solid_sys
     bool in_time = input->scene->analysis == SCENE_DYNAMIC;
     const struct scene_curve curve_of_load = {.kind = in_time ? SCENE_CURVE_STEP : SCENE_CURVE_SMOOTH};
     const struct scene_label label = {0};
-    const int32_t *cell = input->point_cell->data;
-    const double *weight = input->weight->data, *phi = input->phi->data;
     int dim = system->dim;
     int32_t curve;
-    double *force;
+    double *force, *mass = NULL;
     TRY(model_add_curve(input, &label, &curve_of_load, system, &curve, error));
     TRY(new_load(system, curve, -1, &force, error));
     /* In time by the lumped mass, so that a free body falls as one. */
     for (int64_t i = 0; in_time && i < system->node_count * dim; i++) {
         force[i] = system->lumped_mass[i / dim] * input->scene->gravity[i % dim];
     }
-    for (int64_t q = 0; !in_time && q < input->points->rows; q++) {
-        double mass = weight[q] * input->scene->materials[input->cell_material[cell[q]]].density;
-        for (int64_t i = input->point_lists.ptr[q]; i < input->point_lists.ptr[q + 1]; i++) {
+    TRY(share_mass(input, &mass, error));
+    for (int64_t r = 0; !in_time && r < input->lists.count; r++) {
+        for (int64_t i = input->lists.ptr[r]; i < input->lists.ptr[r + 1]; i++) {
             for (int a = 0; a < dim; a++) {
-                force[(int64_t)input->point_lists.idx[i] * dim + a] +=
-                    mass * phi[i] * input->scene->gravity[a];
+                force[(int64_t)input->lists.idx[i] * dim + a] +=
+                    mass[r] * input->phi[i] * input->scene->gravity[a];
             }
         }
     }
 done:
+    free(mass);
     return status;
 }
 

@@ -46,8 +46,8 @@ static bool is_one_of(const char *name, const char *const *list)
 static bool is_structure(const char *name)
 {
     static const char *const exact[] = {"nodes.x", "cells", "points.x", "points.cell"};
-    static const char *const first[] = {"facets",    "faces",  "facepoints", "sets",
-                                        "reactions", "energy", "gaps",       NULL};
+    static const char *const first[] = {"facets", "faces",     "facepoints", "facepoint", "face", "boundary",
+                                        "sets",   "reactions", "energy",     "gaps",      NULL};
     for (size_t i = 0; i < sizeof exact / sizeof exact[0]; i++) {
         if (strcmp(name, exact[i]) == 0) {
             return true;

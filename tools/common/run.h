@@ -53,7 +53,8 @@ void run_quasi_static(struct run *run);
 /* Dynamic: step to the end time. Exits with a verdict when it cannot; adds the section energy on request. */
 void run_dynamic(struct run *run);
 
-/* A frame_function; the context is the struct run: adds the section u.frame.NUMBER. */
+/* A frame_function; the context is the struct run: adds the sections u.frame.NUMBER and
+ * parameters.frame.NUMBER. */
 void run_put_frame(void *context, int64_t number, double time, const double *u);
 
 /* The same of a state of equilibrium, run->u, at which the system was evaluated last, with all that the scene
@@ -89,6 +90,9 @@ void run_append_row(const struct run *run, const char *name, double time, const 
 /* Add the sections reactions and moments, if asked for, of the system's last evaluation, at u: a row for each
  * condition; of a frame, a row of reactions.frames and moments.frames. */
 void run_put_forces(struct run *run, const struct moment *moment);
+
+/* Add parameters.radius: with it and the parameters of a field others evaluate the field (solved.h). */
+void run_put_supports(const struct run *run);
 
 /* Add u at the nodes and the optional outputs of the final state: stress, strain, reactions, gaps, and
  * in a quasi-static run its energy. */

@@ -8,29 +8,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The faces of the boundary. */
-static enum status list_boundary(const struct model_input *input, struct run_folds *folds, int64_t *count,
-                                 struct error *error)
-{
-    enum status status;
-    const struct faces *faces = &input->faces;
-    int dim = input->cells.dim;
-    bool *held = NULL;
-    *count = 0;
-    TRY(model_held_faces(input, &held, error));
-    TRY(NEW_ARRAY(&folds->facet, faces->count * dim, error));
-    TRY(NEW_ARRAY(&folds->held, faces->count, error));
-    for (int64_t f = 0; f < faces->count; f++) {
-        if (faces->cell[2 * f + 1] < 0) {
-            memcpy(folds->facet + *count * dim, faces->node + f * dim, (size_t)dim * sizeof *folds->facet);
-            folds->held[(*count)++] = held[f];
-        }
-    }
-done:
-    free(held);
-    return status;
-}
-
 static enum status build(const struct model_input *input, struct run_folds *folds, struct error *error)
 {
     enum status status;
@@ -39,9 +16,10 @@ static enum status build(const struct model_input *input, struct run_folds *fold
                               .node_count = cells->node_count,
                               .x = cells->x,
                               .cell_count = cells->count,
-                              .cell = cells->node};
-    TRY(list_boundary(input, folds, &body.facet_count, error));
-    body.facet = folds->facet;
+                              .cell = cells->node,
+                              .facet_count = input->boundary.count,
+                              .facet = input->boundary.node};
+    TRY(model_held_faces(input, &folds->held, error));
     body.held = folds->held;
     TRY(NEW_ARRAY(&folds->field, cells->node_count * cells->dim, error));
     TRY(NEW_ARRAY(&folds->stopped, cells->node_count, error));
@@ -63,7 +41,6 @@ void run_folds_begin(struct run *run)
 void run_folds_free(struct run *run)
 {
     folds_free(&run->folds.folds);
-    free(run->folds.facet);
     free(run->folds.held);
     free(run->folds.field);
     free(run->folds.stopped);
@@ -171,7 +148,7 @@ static void name_facet(const struct run *run, int64_t f, char *name, size_t size
     if (facets == NULL || set == NULL || names_of_section(set, &names, &error) != STATUS_OK) {
         return;
     }
-    face_key(dim, run->folds.facet + f * dim, key);
+    face_key(dim, run->folds.folds.input.facet + f * dim, key);
     for (int64_t i = 0; i < facets->rows && i < set->rows; i++) {
         face_key(dim, (const int32_t *)facets->data + i * dim, other);
         if (memcmp(key, other, sizeof key) == 0) {

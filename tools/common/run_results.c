@@ -22,15 +22,33 @@ static void put(const struct run *run, const struct moment *moment, const char *
     run_put(run, full, rows, cols, timed, values);
 }
 
+/* The field at the nodes, and its parameters. */
+static void put_field(const struct run *run, const struct moment *moment, const double *u)
+{
+    int dim = run->scene->dim;
+    int64_t nodes = run->model->system.node_count;
+    char vector[64];
+    double *field = run_new_values(run, nodes * dim), *parameters = run_new_values(run, nodes * dim);
+    model_nodal_field(&run->model->input, u, field);
+    memcpy(parameters, u, (size_t)(nodes * dim) * sizeof *u);
+    put(run, moment, "u", nodes, dim, vector_attributes(dim, "m", vector), field);
+    put(run, moment, "parameters", nodes, dim, vector, parameters);
+}
+
+void run_put_supports(const struct run *run)
+{
+    const struct section *radius = stream_find(run->stream, "support.radius");
+    if (radius != NULL && radius->rows == run->model->system.node_count) {
+        double *values = run_new_values(run, radius->rows);
+        memcpy(values, radius->data, (size_t)radius->rows * sizeof *values);
+        run_put(run, "parameters.radius", radius->rows, 1, radius->attributes, values);
+    }
+}
+
 void run_put_frame(void *context, int64_t number, double time, const double *u)
 {
     struct run *run = context;
-    int dim = run->scene->dim;
-    char vector[64];
-    double *field = run_new_values(run, run->model->system.node_count * dim);
-    model_nodal_field(&run->model->input, u, field);
-    put(run, &(struct moment){number, time}, "u", run->model->system.node_count, dim,
-        vector_attributes(dim, "m", vector), field);
+    put_field(run, &(struct moment){number, time}, u);
     run_folds_look(run, u, time, true);
 }
 
@@ -208,15 +226,11 @@ void run_put_equilibrium(void *context, int64_t number, double time, const doubl
 void run_put_results(struct run *run)
 {
     struct model *model = run->model;
-    char attributes[64];
-    int dim = run->scene->dim;
-    int64_t nodes = model->system.node_count;
-    double *field = run_new_values(run, nodes * dim), *scratch = run_new_values(run, nodes * dim);
+    double *scratch = run_new_values(run, model->system.node_count * run->scene->dim);
     /* Bring F, stresses and gaps to the final state. */
     (void)system_residual(&model->system, run->u, scratch);
     system_measure_contacts(&model->system, run->u, true);
     free(scratch);
     put_state(run, &(struct moment){.frame = FRAME_NONE});
-    model_nodal_field(&model->input, run->u, field);
-    run_put(run, "u", nodes, dim, vector_attributes(dim, "m", attributes), field);
+    put_field(run, &(struct moment){.frame = FRAME_NONE}, run->u);
 }

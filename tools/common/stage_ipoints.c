@@ -4,7 +4,6 @@
 #include "base/box.h"
 #include "io/sections.h"
 
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -55,46 +54,34 @@ done:
     return status;
 }
 
-/* Faces with their quadrature points. */
+/* Faces, and their quadrature points. */
 static enum status put_faces(struct stream *stream, const struct cells *cells, bool boundary_only,
                              struct error *error)
 {
     enum status status;
     int dim = cells->dim;
     struct faces faces = {0};
-    double *x = NULL, *weight = NULL;
-    char vector[64], attributes[96];
+    double *x = NULL;
+    char attributes[64];
     struct quadrature_rule rule = quadrature_face_rule(dim);
     TRY(faces_build(cells, boundary_only, &faces, error));
-    int64_t points = faces.count * rule.points;
-    TRY(NEW_ARRAY(&x, points * dim, error));
-    TRY(NEW_ARRAY(&weight, points, error));
-    for (int64_t f = 0; f < faces.count; f++) {
-        double area[3] = {0.0, 0.0, 0.0};
-        face_area_vector(dim, cells->x, faces.node + f * dim, area);
-        double size = sqrt(area[0] * area[0] + area[1] * area[1] + area[2] * area[2]);
+    int64_t count = faces.count;
+    TRY(NEW_ARRAY(&x, count * rule.points * dim, error));
+    for (int64_t f = 0; f < count; f++) {
         quadrature_positions(&rule, dim, cells->x, faces.node + f * dim, x + f * rule.points * dim);
-        for (int g = 0; g < rule.points; g++) {
-            weight[f * rule.points + g] = rule.weight[g] * size;
-        }
     }
-    int64_t face_count = faces.count;
-    int32_t *node = faces.node, *cell = faces.cell;
-    faces = (struct faces){0};
-    status = stream_put(stream, "faces", TYPE_I4, face_count, dim, "", node, true, error);
-    enum status next = stream_put(stream, "faces.cell", TYPE_I4, face_count, 2, "", cell, true, error);
-    TRY(status != STATUS_OK ? status : next);
-    snprintf(attributes, sizeof attributes, "%s per_face=%d", vector_attributes(dim, "m", vector),
-             rule.points);
-    status = stream_put(stream, "facepoints.x", TYPE_F8, points, dim, attributes, x, true, error);
-    next = stream_put(stream, "facepoints.weight", TYPE_F8, points, 1, dim == 2 ? "unit=m" : "unit=m2",
-                      weight, true, error);
-    x = weight = NULL;
-    TRY(status != STATUS_OK ? status : next);
+    status = stream_put(stream, "faces", TYPE_I4, count, dim, "", faces.node, true, error);
+    faces.node = NULL;
+    TRY(status);
+    status = stream_put(stream, "faces.cell", TYPE_I4, count, 2, "", faces.cell, true, error);
+    faces.cell = NULL;
+    TRY(status);
+    status = stream_put(stream, "facepoints.x", TYPE_F8, count * rule.points, dim,
+                        vector_attributes(dim, "m", attributes), x, true, error);
+    x = NULL;
 done:
     faces_free(&faces);
     free(x);
-    free(weight);
     return status;
 }
 

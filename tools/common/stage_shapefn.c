@@ -1,56 +1,11 @@
 #include "stages.h"
 
 #include "approx/quadrature.h"
+#include "io/sections.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-
-enum status stage_recorded_mls(const struct stream *stream, int dim, struct mls *mls, struct error *error)
-{
-    const struct section *radius = stream_find(stream, "support.radius");
-    char value[256];
-    int choice, count;
-    enum status status = STATUS_OK;
-    *mls = mls_default(dim);
-    if (radius == NULL) {
-        return STATUS_OK;
-    }
-    if (section_attribute(radius, "basis", value, sizeof value)) {
-        TRY(parse_choice(value, "support.radius: basis", basis_names, BASIS_COUNT, &choice, error));
-        mls->basis = (enum basis)choice;
-    }
-    if (section_attribute(radius, "weight", value, sizeof value)) {
-        TRY(parse_choice(value, "support.radius: weight", weight_names, WEIGHT_COUNT, &choice, error));
-        mls->weight = (enum weight_function)choice;
-    }
-    if (section_attribute(radius, "mu_absolute", value, sizeof value)) {
-        mls->mu_absolute = strcmp(value, "0") != 0;
-    }
-    if (section_attribute(radius, "mu", value, sizeof value)) {
-        TRY(parse_double_list(value, "support.radius: mu", 0.0, 1e300, MLS_MAX_SECOND, mls->mu, &count,
-                              error));
-        if (count != mls_second_order_count(dim)) {
-            status = fail(error, STATUS_INPUT, "support.radius: mu: %d values, not %d", count,
-                          mls_second_order_count(dim));
-        }
-    }
-done:
-    return status;
-}
-
-enum status stage_recorded_reach(const struct stream *stream, enum reach_rule *reach, struct error *error)
-{
-    const struct section *radius = stream_find(stream, "support.radius");
-    char value[64];
-    int choice = REACH_CELLS;
-    enum status status = STATUS_OK;
-    if (radius != NULL && section_attribute(radius, "reach", value, sizeof value)) {
-        status = parse_choice(value, "support.radius: reach", reach_names, REACH_RULE_COUNT, &choice, error);
-    }
-    *reach = (enum reach_rule)choice;
-    return status;
-}
 
 /* Sections may come from anywhere: finite coordinates, radii and factors that are finite and positive. */
 static enum status check_numbers(const struct section *section, bool positive, struct error *error)
@@ -66,46 +21,64 @@ static enum status check_numbers(const struct section *section, bool positive, s
     return STATUS_OK;
 }
 
-/* Tabulate phi (and gradients) at the points of one section on the lists of one prefix. */
-static enum status tabulate(struct stream *stream, const struct mls *mls, const char *section,
-                            const char *prefix, const char *phi_name, bool gradients, struct error *error)
+/* The points of one section, and their lists of one prefix. */
+struct tabulated {
+    int64_t node_count;
+    const double *nodes, *radius, *x;
+    const char *section;
+    struct neighbours lists;
+};
+
+static enum status view_points(const struct stream *stream, const char *section, const char *prefix,
+                               struct tabulated *of, struct error *error)
 {
     enum status status;
-    struct neighbours lists;
     int dim;
-    int64_t node_count;
-    const double *nodes;
     const struct section *points, *radius;
-    double *phi = NULL, *dphi = NULL;
-    char attributes[64];
-    TRY(stream_nodes(stream, &dim, &node_count, &nodes, error));
+    TRY(stream_nodes(stream, &dim, &of->node_count, &of->nodes, error));
     TRY(stream_need(stream, section, TYPE_F8, dim, "ipoints", &points, error));
     TRY(stream_need(stream, "support.radius", TYPE_F8, 1, "support", &radius, error));
-    TRY(stream_neighbours(stream, prefix, points->rows, node_count, &lists, error));
-    if (radius->rows != node_count || lists.widen == NULL) {
+    TRY(stream_neighbours(stream, prefix, points->rows, of->node_count, &of->lists, error));
+    if (radius->rows != of->node_count || of->lists.widen == NULL) {
         status = fail(error, STATUS_INPUT, "support.radius, %s.widen: do not fit: run support again", prefix);
         goto done;
     }
     TRY(check_numbers(points, false, error));
     TRY(check_numbers(radius, true, error));
     for (int64_t p = 0; p < points->rows; p++) {
-        if (!(lists.widen[p] >= 1.0) || !isfinite(lists.widen[p])) {
+        if (!(of->lists.widen[p] >= 1.0) || !isfinite(of->lists.widen[p])) {
             status = fail(error, STATUS_INPUT, "%s.widen: row %lld: %g is no factor", prefix, (long long)p,
-                          lists.widen[p]);
+                          of->lists.widen[p]);
             goto done;
         }
     }
-    int64_t pairs = lists.ptr[points->rows];
+    of->x = points->data;
+    of->radius = radius->data;
+    of->section = section;
+done:
+    return status;
+}
+
+/* Tabulate phi (and gradients) at the points of one section on the lists of one prefix. */
+static enum status tabulate(struct stream *stream, const struct mls *mls, const char *section,
+                            const char *prefix, const char *phi_name, bool gradients, struct error *error)
+{
+    enum status status;
+    struct tabulated of;
+    double *phi = NULL, *dphi = NULL;
+    char attributes[64];
+    TRY(view_points(stream, section, prefix, &of, error));
+    int64_t pairs = of.lists.ptr[of.lists.count];
     TRY(NEW_ARRAY(&phi, pairs, error));
     if (gradients) {
-        TRY(NEW_ARRAY(&dphi, pairs * dim, error));
+        TRY(NEW_ARRAY(&dphi, pairs * mls->dim, error));
     }
-    TRY(shape_table(mls, nodes, radius->data, &lists, points->data, section, phi, dphi, error));
+    TRY(shape_table(mls, of.nodes, of.radius, &of.lists, of.x, section, phi, dphi, error));
     status = stream_put(stream, phi_name, TYPE_F8, pairs, 1, "", phi, true, error);
     phi = NULL;
     if (status == STATUS_OK && gradients) {
-        status = stream_put(stream, "shape.dphi", TYPE_F8, pairs, dim,
-                            vector_attributes(dim, "1/m", attributes), dphi, true, error);
+        status = stream_put(stream, "shape.dphi", TYPE_F8, pairs, mls->dim,
+                            vector_attributes(mls->dim, "1/m", attributes), dphi, true, error);
         dphi = NULL;
     }
 done:
@@ -114,39 +87,69 @@ done:
     return status;
 }
 
-/* Replace the points' lists and table by those of the conforming cells. */
-static enum status put_smoothed(struct stream *stream, struct error *error)
+/* A table of `rows` rows as sections PREFIX.ptr, .idx and .phi; the stream takes the arrays. */
+static enum status put_table(struct stream *stream, const char *prefix, int64_t rows, int64_t *ptr,
+                             int32_t *idx, double *phi, struct error *error)
 {
-    enum status status, next;
+    char name[64];
+    int64_t pairs = ptr[rows];
+    snprintf(name, sizeof name, "%s.ptr", prefix);
+    enum status status = stream_put(stream, name, TYPE_I8, rows + 1, 1, "", ptr, true, error), next;
+    snprintf(name, sizeof name, "%s.idx", prefix);
+    next = stream_put(stream, name, TYPE_I4, pairs, 1, "", idx, true, error);
+    status = status != STATUS_OK ? status : next;
+    snprintf(name, sizeof name, "%s.phi", prefix);
+    next = stream_put(stream, name, TYPE_F8, pairs, 1, "", phi, true, error);
+    return status != STATUS_OK ? status : next;
+}
+
+/* The values at points on the boundary, and the averages over faces of conforming cells. What lies at the
+ * points of faces has served. */
+static enum status put_faces(struct stream *stream, const struct mls *mls, bool conforming,
+                             struct error *error)
+{
+    enum status status;
     struct cells cells;
-    struct smoothed_table table = {0};
-    struct neighbours lists;
     struct faces faces;
-    const struct section *phi, *points;
-    char attributes[64];
+    struct tabulated of;
+    struct face_averages averages = {0};
+    int64_t *ptr = NULL;
+    int32_t *idx = NULL;
+    int per_face = quadrature_face_rule(mls->dim).points;
     TRY(stream_cells(stream, true, &cells, error));
-    int per_face = quadrature_face_rule(cells.dim).points;
-    TRY(stream_faces(stream, &cells, &faces, error)); /* their cells: shape_smooth */
-    TRY(stream_need(stream, "face.phi", TYPE_F8, 1, "shapefn", &phi, error));
-    TRY(stream_need(stream, "points.x", TYPE_F8, cells.dim, "ipoints", &points, error));
-    TRY(stream_neighbours(stream, "face", faces.count * per_face, cells.node_count, &lists, error));
-    if (points->rows != cells.count || phi->rows != lists.ptr[lists.count]) {
-        status = fail(error, STATUS_INPUT, "points.x, face.phi: do not fit the cells: run ipoints again");
+    TRY(stream_faces(stream, &cells, &faces, error));
+    TRY(view_points(stream, "facepoints.x", "facepoint", &of, error));
+    if (of.lists.count != faces.count * per_face) {
+        status = fail(error, STATUS_INPUT, "facepoints.x: does not fit faces: run ipoints again");
         goto done;
     }
-    TRY(shape_smooth(&cells, &faces, per_face, &lists, phi->data, &table, error));
-    int64_t pairs = table.ptr[cells.count];
-    status = stream_put(stream, "nbr.ptr", TYPE_I8, cells.count + 1, 1, "", table.ptr, true, error);
-    next = stream_put(stream, "nbr.idx", TYPE_I4, pairs, 1, "", table.idx, true, error);
-    status = status != STATUS_OK ? status : next;
-    next = stream_put(stream, "shape.phi", TYPE_F8, pairs, 1, "", table.phi, true, error);
-    status = status != STATUS_OK ? status : next;
-    next = stream_put(stream, "shape.dphi", TYPE_F8, pairs, cells.dim,
-                      vector_attributes(cells.dim, "1/m", attributes), table.dphi, true, error);
-    status = status != STATUS_OK ? status : next;
-    table = (struct smoothed_table){0};
+    TRY(shape_average_faces(mls, of.nodes, of.radius, &of.lists, of.x, of.section, &faces, &averages, error));
+    if (conforming) {
+        status = put_table(stream, "face", faces.count, averages.ptr, averages.idx, averages.phi, error);
+        averages.ptr = NULL;
+        averages.idx = NULL;
+        averages.phi = NULL;
+        TRY(status);
+    }
+    int64_t rows = faces.boundary_count * per_face, pairs = of.lists.ptr[rows];
+    TRY(NEW_ARRAY(&ptr, rows + 1, error));
+    TRY(NEW_ARRAY(&idx, pairs, error));
+    memcpy(ptr, of.lists.ptr, (size_t)(rows + 1) * sizeof *ptr);
+    memcpy(idx, of.lists.idx, (size_t)pairs * sizeof *idx);
+    status = put_table(stream, "boundary", rows, ptr, idx, averages.boundary_phi, error);
+    ptr = NULL;
+    idx = NULL;
+    averages.boundary_phi = NULL;
+    TRY(status);
+    for (int64_t s = stream->section_count - 1; s >= 0; s--) {
+        if (strncmp(stream->sections[s].name, "facepoint", strlen("facepoint")) == 0) {
+            stream_remove(stream, stream->sections[s].name);
+        }
+    }
 done:
-    smoothed_table_free(&table);
+    face_averages_free(&averages);
+    free(ptr);
+    free(idx);
     return status;
 }
 
@@ -154,14 +157,13 @@ enum status stage_shapefn(struct stream *stream, const struct mls *mls, struct e
 {
     enum status status;
     const struct section *points;
+    sections_remove(stream, MADE_WITH_SHAPES, MADE_WITH_SHAPES);
     TRY(stream_need(stream, "points.x", TYPE_F8, mls->dim, "ipoints", &points, error));
     bool conforming = points_are_conforming(points);
-    if (conforming || stream_find(stream, "facepoints.x") != NULL) {
-        TRY(tabulate(stream, mls, "facepoints.x", "face", "face.phi", false, error));
+    if (stream_find(stream, "faces") != NULL || conforming) {
+        TRY(put_faces(stream, mls, conforming, error));
     }
-    if (conforming) {
-        TRY(put_smoothed(stream, error));
-    } else {
+    if (!conforming) {
         TRY(tabulate(stream, mls, "points.x", "nbr", "shape.phi", true, error));
     }
     TRY(tabulate(stream, mls, "nodes.x", "node", "node.phi", false, error));

@@ -5,6 +5,9 @@
 #include "io/sections.h"
 
 #include <stdlib.h>
+#include <string.h>
+
+enum { DESCRIPTION = 960 }; /* bytes of the attributes */
 
 /* Radii by the local spacing: from the cells where there are any, else from the nearest nodes. */
 static enum status local_radii(const struct stream *stream, const struct support_options *options,
@@ -33,20 +36,108 @@ enum status stage_radii(const struct stream *stream, const struct support_option
                                  : local_radii(stream, options, node_count, x, radius, error);
 }
 
+/* Attributes that record the settings; those that are seldom given only where they are. */
+static void describe(const struct recorded *recorded, char text[DESCRIPTION])
+{
+    const struct support_options *options = &recorded->support;
+    const struct support_options usual = support_defaults(options->mls.dim);
+    char mls[DESCRIPTION / 3], shapes[DESCRIPTION / 3], lists[DESCRIPTION / 6] = "";
+    mls_describe(&options->mls, "", mls, sizeof mls);
+    mls_describe(&recorded->shapes, "", shapes, sizeof shapes);
+    bool same = strcmp(mls, shapes) == 0;
+    mls_describe(&recorded->shapes, " shape_", shapes, sizeof shapes);
+    if (options->least != usual.least || options->most != usual.most || options->widen != usual.widen ||
+        options->gradient_bound != usual.gradient_bound) {
+        snprintf(lists, sizeof lists, " least=%lld most=%lld widen=%d bound=%.17g", (long long)options->least,
+                 (long long)options->most, options->widen, options->gradient_bound);
+    }
+    snprintf(text, DESCRIPTION, "unit=m reach=%s %s%s%s", reach_names[options->reach], mls, lists,
+             same ? "" : shapes);
+}
+
+/* The value of one attribute into a whole number, unless it is absent. */
+static enum status read_count(const struct section *section, const char *key, int64_t *count,
+                              struct error *error)
+{
+    char value[64], what[96];
+    snprintf(what, sizeof what, "%s: %s", section->name, key);
+    return section_attribute(section, key, value, sizeof value)
+               ? parse_integer(value, what, 0, 1000000, count, error)
+               : STATUS_OK;
+}
+
+/* The shape functions' settings, in attributes that begin with a prefix, as options of a command line say
+ * them. */
+static enum status read_mls(const struct section *section, const char *prefix, struct mls *mls,
+                            struct error *error)
+{
+    static const char *const keys[] = {"basis", "weight", "mu", "mu_absolute"};
+    struct option options[MLS_OPTION_COUNT] = {0};
+    char value[4][256], key[32];
+    struct error own;
+    bool is_told[4];
+    for (int k = 0; k < 4; k++) {
+        snprintf(key, sizeof key, "%s%s", prefix, keys[k]);
+        is_told[k] = section_attribute(section, key, value[k], sizeof value[k]);
+    }
+    for (int k = 0; k < 3; k++) {
+        options[k] = (struct option){.given = is_told[k], .value = value[k]};
+    }
+    enum status status = mls_apply_options(options, mls, &own);
+    mls->mu_absolute = is_told[3] ? strcmp(value[3], "0") != 0 : mls->mu_absolute;
+    return status == STATUS_OK ? status : fail(error, status, "%s: %s", section->name, own.text);
+}
+
+enum status stage_recorded(const struct section *radius, int dim, struct recorded *recorded,
+                           struct error *error)
+{
+    enum status status = STATUS_OK;
+    struct support_options *options = &recorded->support;
+    char value[64], what[96];
+    int choice = REACH_CELLS;
+    int64_t widen = 1;
+    *options = support_defaults(dim);
+    recorded->shapes = options->mls;
+    if (radius == NULL) {
+        return STATUS_OK;
+    }
+    TRY(read_mls(radius, "", &options->mls, error));
+    recorded->shapes = options->mls;
+    TRY(read_mls(radius, "shape_", &recorded->shapes, error));
+    snprintf(what, sizeof what, "%s: reach", radius->name);
+    if (section_attribute(radius, "reach", value, sizeof value)) {
+        TRY(parse_choice(value, what, reach_names, REACH_RULE_COUNT, &choice, error));
+        options->reach = (enum reach_rule)choice;
+    }
+    TRY(read_count(radius, "least", &options->least, error));
+    TRY(read_count(radius, "most", &options->most, error));
+    TRY(read_count(radius, "widen", &widen, error));
+    options->widen = widen != 0;
+    snprintf(what, sizeof what, "%s: bound", radius->name);
+    if (section_attribute(radius, "bound", value, sizeof value)) {
+        TRY(parse_double(value, what, 1.0, 1e6, &options->gradient_bound, error));
+    }
+done:
+    return status;
+}
+
+enum status stage_record(struct stream *stream, const struct recorded *recorded, int64_t node_count,
+                         double *radius, struct error *error)
+{
+    char described[DESCRIPTION];
+    describe(recorded, described);
+    return stream_put(stream, "support.radius", TYPE_F8, node_count, 1, described, radius, true, error);
+}
+
 /* Radii of the nodes, put into the stream with the settings they were made for. */
 static enum status put_radii(struct stream *stream, const struct support_options *options, int64_t node_count,
                              const double *x, struct error *error)
 {
     enum status status;
     double *radius = NULL;
-    char attributes[512];
     TRY(NEW_ARRAY(&radius, node_count, error));
     TRY(stage_radii(stream, options, node_count, x, radius, error));
-    mls_describe(&options->mls, attributes, sizeof attributes - 32);
-    char described[sizeof attributes + 32];
-    snprintf(described, sizeof described, "unit=m reach=%s %s", reach_names[options->reach], attributes);
-    status = stream_put(stream, "support.radius", TYPE_F8, node_count, 1, described, radius, true, error);
-    radius = NULL;
+    return stage_record(stream, &(struct recorded){*options, options->mls}, node_count, radius, error);
 done:
     free(radius);
     return status;
@@ -173,14 +264,15 @@ enum status stage_support(struct stream *stream, const struct support_options *o
         TRY(reach_build(&cells, &grid, &reach, error));
     }
     const struct reach *within = actual.reach == REACH_CELLS ? &reach : NULL;
-    if (!points_are_conforming(points)) { /* else shapefn makes their lists from those of the faces */
+    bool conforming = points_are_conforming(points); /* gradients come from the faces alone */
+    if (!conforming) {
         listed = (struct listed){.points = points, .prefix = "nbr", .called = "integration points"};
         TRY(places_of(stream, &cells, "points.cell", 1, points->rows, &listed.places, error));
         TRY(put_lists(stream, &actual, &grid, within, &listed, report, error));
     }
-    if (stream_find(stream, "facepoints.x") != NULL) {
+    if (stream_find(stream, "faces") != NULL || conforming) {
         TRY(stream_need(stream, "facepoints.x", TYPE_F8, dim, "ipoints", &facepoints, error));
-        listed = (struct listed){.points = facepoints, .prefix = "face", .called = "points on faces"};
+        listed = (struct listed){.points = facepoints, .prefix = "facepoint", .called = "points on faces"};
         TRY(places_of(stream, &cells, "faces.cell", 2, facepoints->rows, &listed.places, error));
         TRY(put_lists(stream, &actual, &grid, within, &listed, report, error));
     }

@@ -20,10 +20,10 @@ static void fill_one(const struct tool *tool, struct stream *stream, const char 
         struct support_report report;
         status = stage_support(stream, &options, &report, &error);
     } else {
-        struct mls mls;
-        status = stage_recorded_mls(stream, dim, &mls, &error);
+        struct recorded recorded;
+        status = stage_recorded(stream_find(stream, "support.radius"), dim, &recorded, &error);
         if (status == STATUS_OK) {
-            status = stage_shapefn(stream, &mls, &error);
+            status = stage_shapefn(stream, &recorded.support.mls, &error);
         }
     }
     tool_check(tool, status, &error);

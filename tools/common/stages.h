@@ -23,7 +23,7 @@ struct ipoints_options {
 };
 struct ipoints_options ipoints_defaults(void);
 
-/* Add the sections of ipoints: points.*, faces, faces.cell, facepoints.* (lib/README.md). *unresolved counts
+/* Add the sections of ipoints: points.*, faces, faces.cell, facepoints.x (lib/README.md). *unresolved counts
  * the cells that are too coarse even at the last level of adaptive integration. */
 MUST_CHECK enum status stage_ipoints(struct stream *stream, const struct ipoints_options *options,
                                      int64_t *unresolved, struct error *error);
@@ -45,20 +45,26 @@ struct support_report {
     } list[3];
 };
 
-/* Add the sections of support: support.radius, and the lists nbr, face and node. */
+/* Add the sections of support: support.radius, and the lists nbr, facepoint and node. */
 MUST_CHECK enum status stage_support(struct stream *stream, const struct support_options *options,
                                      struct support_report *report, struct error *error);
 
-/* Add the sections of shapefn: shape.phi, shape.dphi, face.phi, node.phi. */
+/* Add the sections of shapefn: face.*, or shape.phi and shape.dphi; boundary.*, node.phi (lib/README.md). */
 MUST_CHECK enum status stage_shapefn(struct stream *stream, const struct mls *mls, struct error *error);
 
-/* The MLS settings that support recorded in the stream; mls_default() where it recorded none. */
-MUST_CHECK enum status stage_recorded_mls(const struct stream *stream, int dim, struct mls *mls,
-                                          struct error *error);
+/* The settings recorded with the radii of supports. */
+struct recorded {
+    struct support_options support; /* what the lists are made with; radius and factor are the defaults' */
+    struct mls shapes;              /* what the shape functions are made with, if it is not support.mls */
+};
 
-/* The rule of reach that support recorded in the stream; by the cells where it recorded none. */
-MUST_CHECK enum status stage_recorded_reach(const struct stream *stream, enum reach_rule *reach,
-                                            struct error *error);
+/* As the section tells; support_defaults() where there is none (NULL), or for what it does not tell. */
+MUST_CHECK enum status stage_recorded(const struct section *radius, int dim, struct recorded *recorded,
+                                      struct error *error);
+
+/* Put radius[node_count], which the stream takes, as support.radius with the settings. */
+MUST_CHECK enum status stage_record(struct stream *stream, const struct recorded *recorded,
+                                    int64_t node_count, double *radius, struct error *error);
 
 /* Run the defaults of every stage up to shapefn whose sections are missing, saying so once on standard error
  * and adding the provenance of the stages run. `upto` is "ipoints", "support" or "shapefn". Exits on failure.

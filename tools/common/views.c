@@ -84,6 +84,19 @@ enum status stream_faces(const struct stream *stream, const struct cells *cells,
                         faces->node[i]);
         }
     }
+    for (int64_t f = 0; f < faces->count; f++) {
+        for (int k = 0; k < 2; k++) {
+            int32_t beside = faces->cell[2 * f + k];
+            if (beside < -k || beside >= cells->count) {
+                return fail(error, STATUS_INPUT, "faces.cell: row %lld: no cell %d", (long long)f, beside);
+            }
+        }
+        if (faces->cell[2 * f + 1] < 0 && faces->boundary_count++ < f) {
+            return fail(error, STATUS_INPUT,
+                        "faces.cell: row %lld: on the boundary, after faces between cells: run ipoints again",
+                        (long long)f);
+        }
+    }
 done:
     return status;
 }
@@ -166,6 +179,14 @@ enum status stream_neighbours(const struct stream *stream, const char *prefix, i
         if (lists->idx[i] < 0 || lists->idx[i] >= columns) {
             return fail(error, STATUS_INPUT, "%s.idx: row %lld: no node %d", prefix, (long long)i,
                         lists->idx[i]);
+        }
+    }
+    for (int64_t p = 0; p < rows; p++) {
+        for (int64_t i = lists->ptr[p] + 1; i < lists->ptr[p + 1]; i++) {
+            if (lists->idx[i] <= lists->idx[i - 1]) {
+                return fail(error, STATUS_INPUT, "%s.idx: row %lld: %d does not ascend to %d", prefix,
+                            (long long)i, lists->idx[i - 1], lists->idx[i]);
+            }
         }
     }
     return view_around(stream, prefix, idx->rows, &lists->around, error);

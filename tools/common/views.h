@@ -26,12 +26,12 @@ struct named_facets {
 MUST_CHECK enum status stream_facets(const struct stream *stream, bool needed, int dim,
                                      struct named_facets *facets, struct error *error);
 
-/* Faces of the cells, their nodes checked, the cells at them not. The view is not to be freed. */
+/* Faces of the cells, checked; those on the boundary come first. The view is not to be freed. */
 MUST_CHECK enum status stream_faces(const struct stream *stream, const struct cells *cells,
                                     struct faces *faces, struct error *error);
 
-/* A CSR list: PREFIX.ptr (rows + 1), PREFIX.idx (within [0, columns)), and PREFIX.widen, .around and .image
- * where there are any. */
+/* A CSR list: PREFIX.ptr (rows + 1), PREFIX.idx (within [0, columns), ascending in each row), and
+ * PREFIX.widen, .around and .image where there are any. */
 MUST_CHECK enum status stream_neighbours(const struct stream *stream, const char *prefix, int64_t rows,
                                          int64_t columns, struct neighbours *lists, struct error *error);
 

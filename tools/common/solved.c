@@ -1,0 +1,57 @@
+#include "solved.h"
+
+#include <math.h>
+#include <string.h>
+
+static const char prefix[] = "parameters";
+
+enum status solved_read(const struct stream *stream, struct solved *solved, struct error *error)
+{
+    enum status status = STATUS_OK;
+    int dim;
+    int64_t node_count;
+    const double *x;
+    const struct section *radius = stream_find(stream, "parameters.radius");
+    *solved = (struct solved){0};
+    if (radius == NULL) {
+        return STATUS_OK;
+    }
+    TRY(stream_nodes(stream, &dim, &node_count, &x, error));
+    TRY(stream_need(stream, radius->name, TYPE_F8, 1, "mtled", &radius, error));
+    TRY(stage_recorded(radius, dim, &solved->recorded, error));
+    if (radius->rows != node_count) {
+        return fail(error, STATUS_INPUT, "%s: %lld rows for %lld nodes", radius->name,
+                    (long long)radius->rows, (long long)node_count);
+    }
+    solved->radius = radius->data;
+    for (int64_t i = 0; i < node_count; i++) {
+        if (!(solved->radius[i] > 0.0) || !isfinite(solved->radius[i])) {
+            return fail(error, STATUS_INPUT, "%s: row %lld: %g is not a positive length", radius->name,
+                        (long long)i, solved->radius[i]);
+        }
+    }
+done:
+    return status;
+}
+
+const struct section *solved_parameters(const struct stream *stream, const struct solved *solved,
+                                        const struct section *field)
+{
+    char name[96];
+    if (solved->radius == NULL ||
+        (strcmp(field->name, "u") != 0 && strncmp(field->name, "u.frame.", 8) != 0)) {
+        return field;
+    }
+    snprintf(name, sizeof name, "%s%s", prefix, field->name + 1);
+    const struct section *found = stream_find(stream, name);
+    bool fits = found != NULL && found->type == field->type && found->rows == field->rows &&
+                found->cols == field->cols;
+    return fits ? found : field;
+}
+
+bool solved_is_parameters(const struct section *section)
+{
+    size_t length = strlen(prefix);
+    return strncmp(section->name, prefix, length) == 0 &&
+           (section->name[length] == '\0' || section->name[length] == '.');
+}
