@@ -1,24 +1,27 @@
-/* The fictitious mass of a relaxation: free to choose, because a state at rest does not depend on it.
+/* The fictitious mass of a relaxation: a preconditioner, since a state at rest does not depend on the mass
+ * (dynamic relaxation: Underwood 1983; equation (23) of lib/README.md).
  *
  * With a diagonal mass D that bounds the stiffness of each node, a load spreads by about one support in a
- * step, and modes as large as the body decide how many steps are needed; and where kappa is far above mu the
- * stiffness of volumes bounds the step, but shear has to settle. So M has three parts. With rows H and
+ * step, so that modes as large as the body decide how many steps are needed. Where kappa is far above mu, the
+ * volumetric stiffness bounds the step while the shear modes converge slowly. So M has three parts. With rows
+ * H and
  *
  *   S = H D^-1 H^T + E,    P = I - D^-1 H^T S^-1 H,    M^-1 = P D^-1 + P Z A^-1 Z^T P^T,
  *
- * - conditions: rows G of H, with E = 0: no move violates them;
+ * - conditions: rows G of H, with E = 0, so that no move violates them;
  * - nodal volumes, in two dimensions: rows K C of H, with E = K (volume_rows.h). On moves that the conditions
  *   admit P D^-1 is then B^-1, B = D + C^T K C; D leaves out what K has of the stiffness;
- * - a few smooth fields Z (fields.h), on which the mass is the stiffness itself: A is near P^T K P along
- *   them, and P Z hardly changes volumes.
+ * - a coarse space Z (fields.h), on which the mass is the stiffness itself: A is near Z^T P^T K P Z, and P Z
+ *   hardly changes volumes.
  *
- * One look at H D^-1 f tells both the fields' amounts and the rows' forces. Also
+ * H D^-1 f is computed once for both the coarse components and the forces of the rows. Also
  *
  *   x . M y = x . B y - (Z^T D x) . (A + Z^T D P Z)^-1 (Z^T D y)   for moves x, y that the conditions admit,
  *
- * so that the slowest modes left are those that the fields do not resolve. In the terms of linear systems, a
- * two-level additive preconditioner with deflated constraints (Woodbury). Any positive definite A is sound;
- * what it has of the contacts must follow them, because a mode that suddenly becomes stiff would be unstable.
+ * so that the slowest modes left are those that the coarse space does not resolve. In the terms of linear
+ * systems M is a two-level additive preconditioner with deflated constraints (Woodbury). Any positive
+ * definite A is admissible; its part of the contacts must follow the active set, because a mode that suddenly
+ * becomes stiff would be unstable.
  */
 #ifndef SOLID_INERTIA_H
 #define SOLID_INERTIA_H

@@ -6,14 +6,14 @@
  *
  *   theta_a = (1 / V_a) sum_q N_a(q) w_q J_q,        Jbar_q = sum_a N_a(q) theta_a,
  *
- * in short Jbar = T J. T keeps constants, and w T is symmetric. Of the bulk modulus, a part s acts on J and
- * the rest on the averages. The volumetric energy is
+ * in short Jbar = T J; equations (13) to (16) of lib/README.md. T keeps constants, and w T is symmetric. Of
+ * the bulk modulus, a part s acts on J and the rest on the averages. The volumetric energy is
  *
  *   sum_q w_q ( U(Jbar_q) - s_q / 2 (Jbar_q - 1)^2 + s_q / 2 (J_q - 1)^2 ),      s = min(kappa, 2 mu).
  *
- * Where J is smooth that is U(J). Of J that varies from cell to cell, the averages hold only what they
- * resolve: the body does not lock. The part s, of the order of mu, holds the rest, so that single cells do
- * not collapse (pressure projection: Dohrmann and Bochev 2004; stabilisation with limited moduli: Puso, Chen,
+ * Where J is smooth that is U(J). The averages resist only those variations of J that they resolve, so that
+ * the body does not lock. The part s, of the order of mu, resists the others, so that single cells do not
+ * collapse (pressure projection: Dohrmann and Bochev 2004; stabilisation with limited moduli: Puso, Chen,
  * Zywicz and Elmer 2008). A body with kappa <= 2 mu does not lock, and has the pointwise law. The pressure
  * that acts at point q follows from the derivative of the energy:
  *

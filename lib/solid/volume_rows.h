@@ -1,14 +1,15 @@
-/* How the volume ratios of nodal volumes change with the displacements: the stiffest part of a nearly
- * incompressible body, by itself.
+/* The derivative of the volume ratios of the nodal volumes by the displacements, and with it the volumetric
+ * stiffness of a nearly incompressible body, which the preconditioner contains (equation (23) of
+ * lib/README.md).
  *
  * With theta_a the mean ratio of nodal volume a (nodal_volume.h), the energy of the averages has about the
  * stiffness
  *
  *   C^T K C,    C = d theta / d u,    K_ab = sum_q w_q (kappa_q - s_q) N_a(q) N_b(q),
  *
- * at a state u, but for what the pressure adds as C changes, which is of the order of mu. C is exact: it
- * differentiates J = det F_h - cof F_h : (F_h - F) of conforming cells by the means over the faces and by the
- * values at the nodes. */
+ * at a state u, but for the geometric part, from the change of C under the pressure, which is of the order of
+ * mu. C is exact: it differentiates J = det F_h - cof F_h : (F_h - F) of conforming cells by the means over
+ * the faces and by the values at the nodes. */
 #ifndef SOLID_VOLUME_ROWS_H
 #define SOLID_VOLUME_ROWS_H
 
