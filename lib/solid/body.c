@@ -10,7 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The points of a block: its part of the table should leave room for others in the second cache. */
+/* Points of a block: its part of the operator should take a part of the second cache only. */
 static int64_t points_of_block(int dim)
 {
     return dim == 2 ? 64 : PAIRS_MAX_ROWS;
@@ -125,7 +125,7 @@ done:
     return status;
 }
 
-/* Both tables of conforming cells must give the same gradients: tried on a field without pattern. */
+/* The smoothed gradients must be those of the face averages: compared for a pseudo-random field. */
 static enum status check_smoothing(struct body *body, struct error *error)
 {
     enum status status;

@@ -1,4 +1,4 @@
-/* The diagonal mass, and what of it and of the conditions the fields feel. */
+/* The diagonal mass, and the mass matrices of the coarse space with and without the rows H. */
 #include "solid/inertia_private.h"
 
 #include "base/memory.h"
@@ -47,7 +47,7 @@ void inertia_add_row(const struct inertia *inertia, const struct average *averag
     }
 }
 
-/* free_weight = Z^T D P Z = Z^T D Z - (H Z)^T S^-1 H Z: without what the rows hold. */
+/* free_weight = Z^T D P Z = Z^T D Z - (H Z)^T S^-1 H Z. */
 static enum status weigh_rows(struct inertia *inertia, struct error *error)
 {
     enum status status;

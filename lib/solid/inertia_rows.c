@@ -1,5 +1,5 @@
-/* The rows H of the inertia: the conditions G, which hold exactly, and the pressures K C of nodal volumes,
- * which give way by their stiffness. S = H D^-1 H^T + diag(0, K) is factored once for many steps. */
+/* The rows H of the preconditioner: the conditions G, which hold exactly, and the pressures K C of nodal
+ * volumes, which have a compliance. S = H D^-1 H^T + diag(0, K) is factored once for many steps. */
 #include "solid/inertia_private.h"
 
 #include "base/memory.h"

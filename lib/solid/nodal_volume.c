@@ -111,7 +111,7 @@ static void average_ratios(struct nodal_volumes *volumes, int vertices, const do
     }
 }
 
-/* Jbar, and what the nodal volumes carry: U'(Jbar) - s (Jbar - 1). */
+/* Jbar, and U'(Jbar) - s (Jbar - 1), which is averaged to the pressures of the nodal volumes. */
 static void press_points(struct body *body, int vertices)
 {
     struct nodal_volumes *volumes = &body->volumes;
