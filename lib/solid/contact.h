@@ -51,10 +51,11 @@ struct contact {
 MUST_CHECK enum status contact_build(const struct boundary_averages *averages, const double *X, int dim,
                                      struct rigid_surface *surface, double stiffness, struct contact *contact,
                                      struct error *error);
-/* The same for the values at the quadrature points of the facets, which a contact of hats leaves free to vary
- * within a hat. Under a pressure of some ten shear moduli that grows; a penalty on the points alone, with a
- * multiple of the hats' stiffness, keeps it down and vanishes where the hats' contact is met. The points are
- * taken where they are, on the chords of a curved boundary, and there is no wrong side. */
+/* The same for the values at the quadrature points of the facets, whose variation within an average the
+ * averages do not constrain. Under a pressure of some ten shear moduli it grows; a penalty at the points
+ * alone, with a multiple of the stiffness of the averages, keeps it small and vanishes where the contact of
+ * the averages is met. The points are taken where they are, on the chords of a curved boundary, and there is
+ * no wrong side. */
 MUST_CHECK enum status contact_build_points(const struct boundary_averages *points, int dim,
                                             struct rigid_surface *surface, double stiffness,
                                             struct contact *contact, struct error *error);
