@@ -102,6 +102,15 @@ up_to_date() {
     done
 }
 
+@test "one coordinate goes from mesh to u through less than 15 files, all of which are there" {
+    sed -n '/^## One coordinate/,/^## Theory/p' "$top/lib/README.md" | grep -oE '`[a-z]+/[a-z0-9_/]+[.][ch]`' | tr -d '`' | sort -u > files
+    [ "$(wc -l < files)" -gt 8 ]
+    [ "$(wc -l < files)" -lt 15 ]
+    while IFS= read -r file; do
+        [ -s "$top/lib/$file" ] || [ -s "$top/$file" ] || { echo "lib/README.md: no $file"; false; }
+    done < files
+}
+
 @test "README.md has at most 250 lines" {
     [ "$(wc -l < "$top/README.md")" -le 250 ]
 }
