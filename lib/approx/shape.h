@@ -1,5 +1,4 @@
-/* Tables of shape functions: values and gradients at points (equations (3) and (4) of lib/README.md), and
- * gradients smoothed over cells (Chen et al. 2001; equation (7) of lib/README.md). */
+/* Tables of shape functions: values and gradients at points, and gradients smoothed over conforming cells. */
 #ifndef APPROX_SHAPE_H
 #define APPROX_SHAPE_H
 
@@ -7,11 +6,11 @@
 #include "approx/mls.h"
 #include "approx/support.h"
 
-/* The neighbours that are not visible from a point but reached around a re-entrant corner (see reach.h). */
+/* The neighbours that points see around corners (see reach.h). */
 struct around {
     int64_t count;
     const int64_t *pair;  /* count: places in idx, ascending */
-    const double *offset; /* count * dim: from the point along the first leg of the path, as long as it, m */
+    const double *offset; /* count * dim: from the point to where the neighbour seems to be, m */
 };
 
 /* Lists of neighbours in view (CSR), as support_build makes them. */

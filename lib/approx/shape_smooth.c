@@ -1,4 +1,4 @@
-/* Strain smoothing: gradients of cells from shape functions on their faces; equation (7) of lib/README.md. */
+/* Conforming cell smoothing: shape functions on faces to gradients in cells. */
 #include "approx/shape.h"
 
 #include "approx/quadrature.h"

@@ -125,7 +125,7 @@ done:
     return status;
 }
 
-/* The smoothed gradients must be those of the face averages: compared for a pseudo-random field. */
+/* Both tables of conforming cells must give the same gradients: tried on a field without pattern. */
 static enum status check_smoothing(struct body *body, struct error *error)
 {
     enum status status;

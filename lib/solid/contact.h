@@ -1,12 +1,12 @@
 /* Frictionless contact of boundary averages with a rigid surface, finite sliding, by an augmented Lagrangian:
  * equations (19) and (20) of lib/README.md.
  *
- * The gap of contact node a is that of its averaged position x_a = sum_j Phi_aj (X_j + u_j). On a curved
- * boundary that position lies below the node, by an offset that is computed at rest and added along the
- * normal. The pressure is p_a = max(0, lambda_a - k g_a): a penalty k, made exact by the multiplier lambda_a
- * (augmented Lagrangian), and the force on the parameters is Phi_aj p_a A_a n: transferred by the same
- * averages that measure the gap, so that the total force on the body is sum_a p_a A_a n. There is no
- * projection, so that contact nodes do not chatter.
+ * The gap of hat a is that of its averaged position x_a = sum_j Phi_aj (X_j + u_j), raised along its normal
+ * by what the mean of the undeformed facets lies beneath their node where the boundary is curved. Its
+ * pressure is p_a = max(0, lambda_a - k g_a): a penalty k, made exact by the multiplier lambda_a (augmented
+ * Lagrangian), and the force on the parameters is Phi_aj p_a A_a n: transferred by the same averages that
+ * measure the gap, so that the total force on the body is sum_a p_a A_a n. Smooth in time: no projection, no
+ * chatter.
  *
  * The surface may move: gaps are evaluated in the frame in which it rests, and all that is kept of a contact
  * node from one evaluation to the next is kept in that frame.
