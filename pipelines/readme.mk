@@ -1,15 +1,33 @@
-# Not a study: README.md afresh, with what the commands in it print now and, where they were made, the tables and
-# pictures of the studies (`make brain2d table1 readme` for all of it). Pictures are made small by ImageMagick, and left
-# as they are where there is none.
+# Not a study: the results of the studies that have been run go to pipelines/results, and README.md, examples/README.md and
+# pipelines/README.md are made afresh: with these figures, and with what the commands in them print now
+# (`make brain2d table1 readme`, for example). Pictures are made small by ImageMagick, and left as they are where there is none.
 
-README_PICTURES := brain2d/section brain2d/difference table1/surface speed-error/speed-error brain3d/brain3d
+README_TEXTS := README.md examples/README.md pipelines/README.md
+README_PICTURES := brain2d/section brain2d/difference table1/surface speed-error/speed-error brain3d/brain3d convergence/convergence
+RESULTS := pipelines/results
+# Tables of the studies, and what they are called there.
+RESULT_TABLES := brain2d/compare=brain2d brain3d/compare=brain3d table1/beside=table1 speed-error/speed-error=speed-error \
+    speed-error/reach=reach convergence/convergence=convergence hard/hard=hard hard/summary=hard-summary hard/misses=hard-misses \
+    estimate/estimate=estimate estimate/summary=estimate-summary foreign/foreign=foreign gallery/phantom=phantom \
+    gallery/indentation=indentation
 
-.PHONY: readme
-readme: export PATH := $(abspath $(BUILD))/bin:$(PATH)
-readme: all
-	KEEP=1 STUDIES=$(OUT) bash pipelines/readme.sh < README.md > $(BUILD)/README.md
-	for picture in $(README_PICTURES); do \
-	    made=$(OUT)/$$picture.png; \
-	    [ ! -f $$made ] || ! command -v convert > /dev/null || convert $$made -resize 70% -colors 64 -strip PNG8:examples/brain2d/pictures/$$(basename $$picture).png; \
+.PHONY: readme results
+# Only what is newer than the file that is kept.
+results:
+	@mkdir -p $(RESULTS)
+	@for table in $(RESULT_TABLES); do \
+	    made=$(OUT)/$${table%=*}.tsv; [ ! -f $$made ] || cp -u $$made $(RESULTS)/$${table#*=}.tsv; \
 	done
-	cp $(BUILD)/README.md README.md
+	printf 'program\tversion\ngmsh\t%s\n' "$$(gmsh --version 2>&1)" > $(RESULTS)/made_with.tsv
+
+readme: export PATH := $(abspath $(BUILD))/bin:$(PATH)
+readme: all results
+	for text in $(README_TEXTS); do \
+	    mkdir -p $(BUILD)/$$(dirname $$text); \
+	    KEEP=1 bash pipelines/readme.sh < $$text > $(BUILD)/$$text; \
+	    cp $(BUILD)/$$text $$text; \
+	done
+	for picture in $(README_PICTURES); do \
+	    made=$(OUT)/$$picture.png; kept=examples/brain2d/pictures/$$(basename $$picture).png; \
+	    [ ! $$made -nt $$kept ] || ! command -v convert > /dev/null || convert $$made -resize 70% -colors 64 -strip PNG8:$$kept; \
+	done

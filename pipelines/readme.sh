@@ -1,18 +1,21 @@
 #!/bin/bash
-# README.md afresh: bash pipelines/readme.sh < README.md > new. Needs the tools on PATH; see readme.mk and tests/readme.bats.
+# A text afresh: bash pipelines/readme.sh < README.md > new. Needs the tools on PATH; see readme.mk and tests/readme.bats.
+#
+# Figures come from the files of pipelines/results (RESULTS, if set), which make readme takes from the studies.
 #
 # - Blocks ```console: each "$ command" (continued in lines "> ...") is run, in one shell and in a folder of its own that
 #   sees examples/ and pipelines/; what it prints takes the place of what stands below it. A command that fails
 #   is an error.
 # - Between "<!-- tools -->" and "<!-- end -->": the tools and their one-line summaries, from their usage texts.
 # - Between "<!-- studies -->" and "<!-- end -->": the studies, from the first lines of pipelines/*.mk.
-# - Between "<!-- study FILE -->" and "<!-- end -->": the table of a study, STUDIES/FILE (build/out/FILE); left alone where that is not made.
+# - Between "<!-- study FILE [COLUMN...] -->" and "<!-- end -->": the table FILE, or these columns of it.
+# - "<!-- figure: FILE COLUMN ROW -->...<!-- end -->" within a line: one figure, see figures.awk.
 # - A picture that the commands make, build/NAME.png, replaces examples/*/pictures/NAME.png where KEEP=1 is set.
 set -uo pipefail
 
 source_root=$(cd "$(dirname "$0")/.." && pwd)
-studies=${STUDIES:-build/out}
-[[ $studies = /* ]] || studies=$source_root/$studies
+results=${RESULTS:-pipelines/results}
+[[ $results = /* ]] || results=$source_root/$results
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 ln -s "$source_root/examples" "$source_root/pipelines" "$work"
@@ -55,15 +58,26 @@ studies_table() {
     done
 }
 
-# study_table TSV: as a table of Markdown.
+# study_table FILE [COLUMN...]: as a table of Markdown.
 study_table() {
-    awk -F '\t' '{ row = "|"; for (i = 1; i <= NF; i++) row = row " " $i " |"; print row }
-        NR == 1 { rule = "|"; for (i = 1; i <= NF; i++) rule = rule (i == 1 ? "---|" : "--:|"); print rule }' "$1"
+    local file=$results/$1
+    shift
+    awk -F '\t' -v wanted="$*" '
+        NR == 1 {
+            n = split(wanted, name, " ")
+            for (i = 1; i <= NF; i++) at[$i] = i
+            for (i = 1; i <= n; i++) {
+                if (!(name[i] in at)) { print "readme: " FILENAME ": no column " name[i] > "/dev/stderr"; exit 1 }
+                pick[i] = at[name[i]]
+            }
+            if (n == 0) for (n = NF; i <= n; i++) pick[i] = i
+        }
+        { row = "|"; for (i = 1; i <= n; i++) row = row " " $pick[i] " |"; print row }
+        NR == 1 { rule = "|"; for (i = 1; i <= n; i++) rule = rule (i == 1 ? "---|" : "--:|"); print rule }' "$file"
 }
 
-# Print the lines up to the mark that ends the generated part, or drop them.
-pass_lines() { while IFS= read -r line && [ "$line" != "<!-- end -->" ]; do printf '%s\n' "$line"; done; }
-drop_lines() { pass_lines > /dev/null; }
+# Drop the lines up to the mark that ends the generated part.
+drop_lines() { while IFS= read -r line && [ "$line" != "<!-- end -->" ]; do :; done; }
 
 command=
 flush() {
@@ -72,6 +86,8 @@ flush() {
         command=
     fi
 }
+
+awk -f "$source_root/pipelines/figures.awk" -v results="$results" > "$work/.text" || exit 1
 
 console=
 while IFS= read -r line; do
@@ -90,12 +106,13 @@ while IFS= read -r line; do
     '<!-- studies -->') studies_table; drop_lines; printf '<!-- end -->\n' ;;
     '<!-- study '*)
         table=${line#'<!-- study '}
-        table=$studies/${table%' -->'}
-        if [ -f "$table" ]; then study_table "$table"; drop_lines; else pass_lines; fi
+        read -ra table <<< "${table%' -->'}"
+        study_table "${table[@]}" || failures=$((failures + 1))
+        drop_lines
         printf '<!-- end -->\n'
         ;;
     esac
-done
+done < "$work/.text"
 
 if [ "${KEEP:-}" = 1 ] && [ "$failures" -eq 0 ]; then
     for picture in "$source_root"/examples/*/pictures/*.png; do

@@ -1,21 +1,56 @@
-# README.md: what it says the commands print is what they print, and it names what is there.
+# The texts: what they say the commands print is what these print, their figures are those of the result files, and they name what is there.
 
 bats_require_minimum_version 1.5.0
 
 setup() {
     cd "$BATS_TEST_TMPDIR"
     top=$BATS_TEST_DIRNAME/..
+    texts="README.md examples/README.md pipelines/README.md"
 }
 
-same() { awk -v tolerance="${3:-0.25}" -f "$BATS_TEST_DIRNAME/same.awk" "$1" "$2"; }
+same() { awk -v tolerance=0.25 "${@:3}" -f "$BATS_TEST_DIRNAME/same.awk" "$1" "$2"; }
 
-# The tables of studies are left out: they take minutes, and tell of this machine.
-without_studies() { sed '/^<!-- stud/,/^<!-- end/d' "$1"; }
+# A text without what its commands print: that alone depends on the version of gmsh, which makes the meshes.
+without_output() { awk '/^```/ { inside = $0 == "```console" } !inside || /^[$>`]/' "$1"; }
 
-@test "commands and table of tools in README.md are up to date (else: make readme)" {
-    STUDIES=$PWD/none bash "$top/pipelines/readme.sh" < "$top/README.md" > new
-    [ "$(grep -c '^\$ ' new)" -ge 15 ]
-    same <(without_studies "$top/README.md") <(without_studies new)
+up_to_date() {
+    local text=$top/$1 digits=0
+    grep -qx "gmsh.$(gmsh --version 2>&1)" "$top/pipelines/results/made_with.tsv" && digits=1
+    bash "$top/pipelines/readme.sh" < "$text" > new
+    diff <(without_output "$text") <(without_output new)
+    same "$text" new -v digits=$digits
+}
+
+@test "figures, tables and commands in README.md are up to date (else: make readme)" { up_to_date README.md; }
+@test "the same of examples/README.md" {
+    [ "$(grep -c '^\$ ' "$top/examples/README.md")" -ge 15 ]
+    up_to_date examples/README.md
+}
+@test "the same of pipelines/README.md" {
+    [ "$(grep -c '^<!-- study ' "$top/pipelines/README.md")" -ge 4 ]
+    up_to_date pipelines/README.md
+}
+
+@test "no figure is typed by hand: fractions stand in code, tables made from files, and marked figures only" {
+    for text in README.md pipelines/README.md; do
+        sed -e '/^```/,/^```/d; /^<!-- stud/,/^<!-- end -->$/d; /^## References/,/^## /d; /^    /d' \
+            -e 's/<!-- figure: [^>]*-->[^<]*<!-- end -->//g; s/`[^`]*`//g; s/\]([^)]*)//g' "$top/$text" > prose
+        [ "$(wc -l < prose)" -gt 30 ]
+        run -1 grep -nE '[0-9]*[.][0-9]' prose
+    done
+}
+
+@test "a figure whose file, column or row is not there, or whose row is not the only one, is an error" {
+    mkdir results
+    printf 'case\tscheme\tmean\na\tdefault, fine\t0.25\na\tmixed\t0.5\n' > results/table.tsv
+    figures() { printf '%s\n' "$1" | RESULTS=$PWD/results bash "$top/pipelines/readme.sh"; }
+    [ "$(figures 'x <!-- figure: table.tsv mean default fine -->9<!-- end --> y')" = 'x <!-- figure: table.tsv mean default fine -->0.25<!-- end --> y' ]
+    for mark in 'table.tsv mean none' 'table.tsv mean a' 'table.tsv median mixed' 'tables.tsv mean mixed'; do
+        run -1 --separate-stderr figures "<!-- figure: $mark -->9<!-- end -->"
+        [[ $stderr == *figures:* ]]
+    done
+    run -1 --separate-stderr figures '<!-- figure: table.tsv mean mixed -->9'
+    run -1 --separate-stderr figures $'<!-- study table.tsv none -->\n<!-- end -->'
 }
 
 @test "a number, a word or a line that changed is noticed; another size of blanks is not" {
@@ -36,7 +71,17 @@ without_studies() { sed '/^<!-- stud/,/^<!-- end/d' "$1"; }
     run -1 same missing missing
 }
 
-@test "a command in README.md that fails is noticed" {
+@test "numbers that are to agree in all digits differ by one unit of the last at most" {
+    printf '702 nodes, 0.028 mm, 1.25e-3\n' > text
+    printf '703 nodes, 0.029 mm, 1.24e-3\n' > near
+    same text near -v digits=1
+    for far in '704 nodes, 0.028 mm, 1.25e-3' '702 nodes, 0.030 mm, 1.25e-3' '702 nodes, 0.028 mm, 1.27e-3' '702 nodes, 0.0281 mm, 1.25e-3'; do
+        printf '%s\n' "$far" > far
+        run -1 same text far -v digits=1
+    done
+}
+
+@test "a command in a text that fails is noticed" {
     printf '```console\n$ echo 1; false\n2\n```\n' > bad.md
     run -1 --separate-stderr bash "$top/pipelines/readme.sh" < bad.md
     [ "${lines[2]}" = 1 ]
@@ -44,13 +89,39 @@ without_studies() { sed '/^<!-- stud/,/^<!-- end/d' "$1"; }
 }
 
 @test "files that the texts point to exist" {
-    for text in README.md lib/README.md examples/brain2d/README.md; do
+    for text in $texts lib/README.md examples/brain2d/README.md; do
         grep -oE '\]\([^)#]+\)' "$top/$text" | sed 's/^](//; s/)$//' | grep -v '^http' > links || true
         while IFS= read -r link; do
             [ -s "$top/$(dirname "$text")/$link" ] || { echo "$text: no $link"; false; }
         done < links
     done
     grep -q section.png <(grep -o 'pictures/.*png' "$top/README.md")
+    cat "$top"/README.md "$top"/*/README.md "$top"/examples/*/README.md > all
+    for picture in "$top"/examples/*/pictures/*.png; do
+        grep -q "/$(basename "$picture"))" all
+    done
+}
+
+@test "one coordinate goes from mesh to u through less than 15 files, all of which are there" {
+    sed -n '/^## One coordinate/,/^## Theory/p' "$top/lib/README.md" | grep -oE '`[a-z]+/[a-z0-9_/]+[.][ch]`' | tr -d '`' | sort -u > files
+    [ "$(wc -l < files)" -gt 8 ]
+    [ "$(wc -l < files)" -lt 15 ]
+    while IFS= read -r file; do
+        [ -s "$top/lib/$file" ] || [ -s "$top/$file" ] || { echo "lib/README.md: no $file"; false; }
+    done < files
+}
+
+@test "README.md has at most 250 lines" {
+    [ "$(wc -l < "$top/README.md")" -le 250 ]
+}
+
+@test "equations that headers cite are those of lib/README.md" {
+    cat "$top"/lib/*/*.[ch] | tr -s ' *\n' ' ' | grep -oE 'equations? \([0-9]+\)( to \([0-9]+\))?( and \([0-9]+\))? of lib/README.md' |
+        grep -oE '\([0-9]+\)' | sort -u > cited
+    [ "$(wc -l < cited)" -ge 10 ]
+    while IFS= read -r number; do
+        grep -qE "^    .* [(]${number//[()]/}[)]\$" "$top/lib/README.md" || { echo "lib/README.md: no equation $number"; false; }
+    done < cited
 }
 
 @test "pictures are PNG files below 200 KB" {

@@ -1,5 +1,6 @@
 # Do two texts say the same? awk -v tolerance=0.1 -f same.awk A B: words must be equal, numbers agree to that share of
-# their size, blanks are as good as each other. Prints the first line that differs; status 1.
+# their size, or with digits=1 to one unit of the last digit shown; blanks are as good as each other. Prints the first line that differs;
+# status 1.
 
 # The line with its numbers taken out (into number[which, 1..]); what is left of it is returned.
 function skeleton(line, which,    rest, count) {
@@ -10,11 +11,19 @@ function skeleton(line, which,    rest, count) {
     count = 0
     while (match(line, /-?[0-9]+(\.[0-9]+)?([eE][-+]?[0-9]+)?/)) {
         number[which, ++count] = substr(line, RSTART, RLENGTH) + 0
+        unit[which, count] = last_digit(substr(line, RSTART, RLENGTH))
         rest = rest substr(line, 1, RSTART - 1) "#"
         line = substr(line, RSTART + RLENGTH)
     }
     numbers[which] = count
     return rest line
+}
+
+# What one unit of the last digit of a number is worth.
+function last_digit(text,    part, point) {
+    split(text, part, /[eE]/)
+    point = index(part[1], ".")
+    return 10 ^ (part[2] + 0) * (point ? 10 ^ (point - length(part[1])) : 1)
 }
 
 function size(a) { return a < 0 ? -a : a }
@@ -24,7 +33,8 @@ function differs(first, second,    i, a, b) {
     for (i = 1; i <= numbers[1]; i++) {
         a = number[1, i]
         b = number[2, i]
-        if (!(size(a - b) <= tolerance * (size(a) > size(b) ? size(a) : size(b)))) return 1
+        if (digits && (unit[1, i] != unit[2, i] || !(size(a - b) <= 1.001 * unit[1, i]))) return 1
+        if (!digits && !(size(a - b) <= tolerance * (size(a) > size(b) ? size(a) : size(b)))) return 1
     }
     return 0
 }

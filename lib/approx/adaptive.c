@@ -6,7 +6,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* What the subcells kept may add up to, as a share of the tolerance: room for what the split ones leave. */
+/* Share of the tolerance that the subcells kept may add up to; the rest is for those that are split. */
 static const double kept_share = 0.5;
 
 struct adaptive_options adaptive_defaults(int dim)

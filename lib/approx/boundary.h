@@ -1,9 +1,10 @@
-/* Averages of fields over boundary facets, weighted by hat functions: what constraints and contact act on.
+/* Boundary averages: means of a field over the facets around a boundary node, weighted by its linear hat
+ * function. Constraints and contact act on them.
  *
  * The average at a boundary node a is Phi_a u = integral(N_a u_h ds) / integral(N_a ds) over the facets of a
- * set. Where the boundary turns sharply at a node, its hat is split, one part for each side, so that the
- * multipliers can carry a traction that jumps there: with the cells' own face quadrature the linear patch
- * test then holds to round-off. */
+ * set, equation (17) of lib/README.md. Where the boundary turns sharply at a node there is one average for
+ * each side, so that the multipliers can carry a traction that jumps there: with the quadrature that smooths
+ * the cells the linear patch test then holds to round-off. */
 #ifndef APPROX_BOUNDARY_H
 #define APPROX_BOUNDARY_H
 

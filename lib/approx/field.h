@@ -14,7 +14,7 @@ MUST_CHECK enum status field_spacing(const struct cells *cells, double *spacing,
 
 /* outside[count]: whether a point of x[count * dim] is farther from every cell than `within` times the
  * spacing of that cell's nodes (0: lies in no cell); where there are no cells, farther from every node than
- * twice that node's spacing. There an interpolation would be an invention. */
+ * twice that node's spacing. Values there would be extrapolated. */
 MUST_CHECK enum status field_outside(const struct cells *cells, const double *spacing, double within,
                                      int64_t count, const double *x, bool *outside, struct error *error);
 

@@ -5,7 +5,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* What is nearer than this to a cell, of its size, is in it. */
+/* A point nearer to a cell than this share of its size counts as inside. */
 static const double in_cell = 1e-9;
 
 static double dot(int dim, const double *a, const double *b)

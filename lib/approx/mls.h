@@ -2,10 +2,10 @@
  * basis.
  *
  * u_h(x) = p(x)^T (P^T W P + H)^-1 P^T W u = sum_j phi_j(x) u_j, where H is zero but for mu on the diagonal
- * entries of the second-order monomials (the paper's eq. for MMLS). All work is done in local coordinates
- * xi = (x_j - x) / s, centred on the point and scaled by the largest support radius s, so that metres,
- * millimetres and a distant origin give the same numbers. An absolute mu (in the units of x) becomes the
- * dimensionless mu / s^4. */
+ * entries of the second-order monomials (Joldes et al. 2015; equations (2) to (4) of lib/README.md). All work
+ * is done in local coordinates xi = (x_j - x) / s, centred on the point and scaled by the largest support
+ * radius s, so that metres, millimetres and a distant origin give the same numbers. An absolute mu (in the
+ * units of x) becomes the dimensionless mu / s^4. */
 #ifndef APPROX_MLS_H
 #define APPROX_MLS_H
 
@@ -27,7 +27,7 @@ struct mls {
     int dim; /* 2 or 3 */
     enum basis basis;
     enum weight_function weight;
-    bool mu_absolute;          /* mu in 1 / length^4 of nothing but x's own unit: the paper's way */
+    bool mu_absolute;          /* mu belongs to the monomials of x, not of xi, as in the paper */
     double mu[MLS_MAX_SECOND]; /* one for each second-order monomial (3 in 2D, 6 in 3D); MMLS only */
 };
 
@@ -66,8 +66,9 @@ struct mls_support {
     double widen;         /* factor on the radii at this point */
     const int32_t *neighbours;
     int64_t count;
-    const double *image; /* count * dim, or NULL: offsets from x to where the neighbours seem to be, which
-                            their weights follow; NULL: to where they are (see reach.h) */
+    const double *image; /* count * dim, or NULL: for each neighbour the vector from x along the first leg of
+                            the shortest path, as long as the path; weights follow it (see reach.h). NULL: all
+                            neighbours are visible */
 };
 
 /* Values phi[count] and, unless dphi is NULL, full gradients dphi[count * dim] (per unit of x) at a point.

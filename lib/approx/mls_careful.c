@@ -1,5 +1,5 @@
-/* The careful way: the normal equations with refinement where they serve, else an orthogonal factorization,
- * after a look at the condition of the moment matrix. */
+/* MLS at points whose moment matrix may be ill-conditioned: the normal equations with refinement where the
+ * condition admits them, else an orthogonal (QR) factorisation. */
 #include "approx/mls_solve.h"
 
 #include "approx/weight.h"

@@ -58,7 +58,7 @@ KERNEL_INLINE void gather(const struct mls_support *support, int dim, struct mls
     point->scale = largest * support->widen;
 }
 
-/* Where the neighbours seem to be, which their weights follow, in the same way. */
+/* The same for the images of the neighbours (see mls_support), which their weights follow. */
 KERNEL_INLINE void gather_images(const struct mls_support *support, int dim, struct mls_point *point)
 {
     double *image = point->row + ROW_IMAGE * point->stride, inverse = 1.0 / point->scale;
@@ -269,7 +269,7 @@ KERNEL_INLINE bool kernel_evaluate(const struct mls *mls, const struct mls_suppo
                                    bool images, double *scratch, int64_t stride,
                                    const struct mls_result *result)
 {
-    /* Pivots above this need no further look: the condition cannot be bad in so small a matrix. */
+    /* With pivots above this the condition is good, as the matrix is small: no estimate is needed. */
     static const double safe_pivot = 1e-5;
     /* With H a pivot may be smaller, but not too small for the normal equations. */
     static const double least_pivot = 1e-9;

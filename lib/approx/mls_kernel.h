@@ -2,8 +2,9 @@
  * sets; private to lib/approx.
  *
  * Sums over the neighbours run in the same partial sums whatever the instruction set, and no multiplication
- * is fused with an addition (the Makefile says so for lib/approx): every processor gives the same bits. What
- * the normal equations cannot decide or do well enough is left to mls_careful(). */
+ * is fused with an addition (the Makefile says so for lib/approx): every processor gives the same bits. Where
+ * the normal equations lose digits, by a small pivot or a defect of the linear reproduction, the point is
+ * left to the orthogonal factorisation of mls_careful(). */
 #ifndef APPROX_MLS_KERNEL_H
 #define APPROX_MLS_KERNEL_H
 

@@ -5,7 +5,7 @@
 /* Reciprocal condition (1-norm, of the matrix scaled to unit diagonal) below which a support is refused. */
 static const double least_condition_linear = 1e-10;
 static const double least_condition_quadratic = 1e-10;
-/* Pivots above this need no further look: the condition cannot be bad in so small a matrix. */
+/* With pivots above this the condition is good, as the matrix is small: no estimate is needed. */
 static const double safe_pivot = 1e-5;
 /* Pivots below this (possible only with H) are left to the orthogonal factorization. */
 static const double least_normal_pivot = 1e-9;

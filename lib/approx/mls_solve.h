@@ -1,4 +1,5 @@
-/* The small symmetric systems behind a careful MLS evaluation; private to lib/approx. */
+/* The small symmetric systems of an MLS evaluation (equation (3) of lib/README.md), by the normal equations
+ * or, where the moment matrix is ill-conditioned, by orthogonal (QR) factorisation; private to lib/approx. */
 #ifndef APPROX_MLS_SOLVE_H
 #define APPROX_MLS_SOLVE_H
 
@@ -37,9 +38,9 @@ struct mls_factor {
 /* Point the arrays of `local` into scratch[MLS_ROWS * stride]. */
 void mls_local_layout(struct mls_local *local, double *scratch, int64_t count, int64_t stride);
 
-/* Factorise local->matrix and judge its condition: the linear block always, the whole matrix unless
- * `modified` (there H bounds it, and the reproduction is checked afterwards). May choose the orthogonal way
- * at once. */
+/* Factorise local->matrix and judge its condition: that of the linear block always, that of the whole matrix
+ * unless `modified` (there H bounds it, and the reproduction is checked afterwards). Chooses the orthogonal
+ * factorisation at once where a pivot is too small. */
 enum mls_verdict mls_factorise(int m, int dim, bool modified, struct mls_local *local,
                                struct mls_factor *factor);
 
@@ -50,18 +51,19 @@ void mls_orthogonalise(int m, struct mls_local *local, struct mls_factor *factor
 void mls_solve(int m, const struct mls_factor *factor, const struct mls_local *local, const double *right,
                double *solution);
 
-/* c = M^-1 e_1 and phi_j = w_j p_j . c without forming p_j . c from a large c. Sets local->projection. */
+/* c = M^-1 e_1 and phi_j = w_j p_j . c, from Q directly: products with a large c would cancel. Sets
+ * local->projection. */
 void mls_orthogonal_values(int m, const struct mls_factor *factor, struct mls_local *local, double *c,
                            double *phi);
 
 /* Correct values[j * value_stride] by w_j p_j . c over the linear monomials, where H is zero, so that
- * sum_j value_j p_k(xi_j) = target[k], k <= dim, to round-off: what is lost in solving with an
- * ill-conditioned quadratic part is not lost to the linear fields. */
+ * sum_j value_j p_k(xi_j) = target[k], k <= dim, to round-off: linear fields are reproduced also where the
+ * quadratic part is ill-conditioned. */
 void mls_restore_linear(int m, int dim, const struct mls_factor *factor, const struct mls_local *local,
                         const double *target, double *values, int value_stride);
 
-/* Values and, unless NULL, gradients with whatever it takes; scratch[MLS_ROWS * stride], stride at least
- * count + MLS_PADDING. */
+/* Values and, unless NULL, gradients by the factorisation that the condition asks for; scratch[MLS_ROWS *
+ * stride], stride at least count + MLS_PADDING. */
 enum mls_verdict mls_careful(const struct mls *mls, const struct mls_support *support, double *scratch,
                              int64_t stride, double *phi, double *dphi);
 

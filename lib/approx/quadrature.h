@@ -1,5 +1,5 @@
-/* Quadrature on background cells and on their faces. All weights are positive: the classical rules with a
- * negative weight are unfit for explicit dynamics. */
+/* Quadrature on background cells and on their faces. All weights are positive: a negative one makes negative
+ * masses, which explicit dynamics does not bear. */
 #ifndef APPROX_QUADRATURE_H
 #define APPROX_QUADRATURE_H
 

@@ -1,4 +1,4 @@
-/* What is known of a body before anything is looked at from a point. */
+/* Preparation of a body for queries of reach: facets, re-entrant corners, and which nodes see which. */
 #include "approx/reach_private.h"
 
 #include "base/memory.h"

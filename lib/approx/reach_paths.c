@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Bends of one path that are slid, and how often. */
+/* Bends of one path that are moved along their re-entrant edges, and sweeps over them. */
 enum { MOST_BENDS = 8, SWEEPS = 3 };
 /* Paths over nodes may be so much longer than a radius, in 3D, before their bends are slid. */
 static const double most_slack = 1.2;

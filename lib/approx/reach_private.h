@@ -4,7 +4,7 @@
 
 #include "approx/reach.h"
 
-/* Nearer than this to a plane, of the support radius, is on it. */
+/* A point nearer to a plane than this share of the support radius lies on it. */
 #define REACH_ON_PLANE 1e-9
 
 /* Whether the segment from x, in any of the cells, to a node stays within cells that follow each other by

@@ -1,5 +1,5 @@
-/* Orders that keep near things near: nodes and points in the order of a Morton curve, so that what a stretch
- * of the order works on lies close together in memory. */
+/* Locality: nodes and points in the order of a Morton (Z) curve, so that what a loop touches in succession
+ * lies close together in memory. */
 #ifndef APPROX_RENUMBER_H
 #define APPROX_RENUMBER_H
 

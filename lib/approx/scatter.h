@@ -1,9 +1,10 @@
-/* Moving least squares on measured points, however they lie: along a curve, on a surface, only a few of them.
+/* Scattered-data fit: moving least squares on measured points that may lie on a curve or a surface, or be
+ * few.
  *
  * At each x the nearest points, weighted by the quartic spline, are fitted by the linear basis in local
- * scaled coordinates, and what that leaves by the quadratic monomials; combinations of monomials that the
- * points do not determine (singular values below a cut) are left out, so that the field does not vary where
- * nothing was measured. Linear fields come out exactly, however few the points. */
+ * scaled coordinates, and the remainder by the quadratic monomials. Combinations of monomials that the points
+ * do not determine (singular values below a cut) are left out, so that the fit is constant along directions
+ * in which nothing was measured. Linear fields are reproduced, however few the points. */
 #ifndef APPROX_SCATTER_H
 #define APPROX_SCATTER_H
 

@@ -19,7 +19,7 @@ struct neighbours support_view(const struct support_lists *lists)
     };
 }
 
-/* Offsets from points to where their neighbours seem to be. */
+/* Images of the neighbours of points: see mls_support. */
 struct images {
     int64_t next; /* of struct around */
     int64_t capacity;

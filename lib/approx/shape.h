@@ -1,4 +1,5 @@
-/* Tables of shape functions: values and gradients at points, and averages over faces of cells. */
+/* Tables of shape functions: values and gradients at points (equations (3) and (4) of lib/README.md), and
+ * averages over faces of cells (equation (6) of lib/README.md). */
 #ifndef APPROX_SHAPE_H
 #define APPROX_SHAPE_H
 

@@ -45,7 +45,7 @@ static bool is_finite(int dim, const double *x)
     return true;
 }
 
-/* The message for a point without a good support; a stray node shows by its radius. */
+/* The message for a point without a good support; the radius in it reveals a stray node. */
 static enum status fail_support(const struct search *search, int64_t row, const int32_t *index, int64_t count,
                                 struct error *error)
 {

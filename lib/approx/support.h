@@ -1,4 +1,5 @@
-/* Support domains: the radius of each node, and the neighbour lists of points. */
+/* Support domains: the radius R_j of each node, and the neighbour lists of points, equation (1) of
+ * lib/README.md. */
 #ifndef APPROX_SUPPORT_H
 #define APPROX_SUPPORT_H
 

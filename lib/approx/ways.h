@@ -1,4 +1,4 @@
-/* Which places are within reach of a node: so that measured values do not act across gaps and slits.
+/* Which places are within reach of a node, so that measured values do not act across gaps and slits.
  *
  * A place belongs to the node nearest to it. It is within reach of another node when the straight segment
  * between the two nodes stays within the cells (see reach.h), or when a way along edges of the cells is at

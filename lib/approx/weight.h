@@ -1,4 +1,5 @@
-/* Weight functions of moving least squares, on the relative distance r = |x - x_j| / R_j within [0, 1). */
+/* Weight functions of moving least squares, on the relative distance r = |x - x_j| / R_j within [0, 1):
+ * equation (1) of lib/README.md. */
 #ifndef APPROX_WEIGHT_H
 #define APPROX_WEIGHT_H
 

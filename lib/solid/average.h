@@ -1,5 +1,5 @@
-/* One average of a nodal field, sum_j phi_j u_j over a list of nodes, and its transpose: conditions, springs,
- * contacts and following pressures act through such averages. */
+/* One average of a nodal field, sum_j phi_j u_j over a list of nodes (equation (17) of lib/README.md), and
+ * its transpose: conditions, springs, contacts and following pressures act through such averages. */
 #ifndef SOLID_AVERAGE_H
 #define SOLID_AVERAGE_H
 

@@ -10,7 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The points of a block: its part of the table should leave room for others in the second cache. */
+/* Points of a block: its part of the operator should take a part of the second cache only. */
 static int64_t points_of_block(int dim)
 {
     return dim == 2 ? 64 : PAIRS_MAX_ROWS;

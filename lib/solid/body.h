@@ -1,7 +1,8 @@
-/* A body laid out for the force loop: integration points in blocks of one law, in an order that keeps near
- * ones near, and the table that makes their deformation gradients from displacements: gradients of the shape
- * functions at the points, or where the points are conforming cells means over their faces (conforming.h).
- * Any number of threads gives the same bits (pairs.h). */
+/* A body laid out for the force loop, equation (12) of lib/README.md: integration points in blocks of one
+ * law, ordered along a Morton curve, and the sparse operator that makes their deformation gradients from
+ * parameters: gradients of the shape functions at the points or, for smoothed cells, averages over their
+ * faces (conforming.h). Total Lagrangian: all of it in the reference configuration (MTLED: Horton et al.
+ * 2010). Any number of threads gives the same bits (pairs.h). */
 #ifndef SOLID_BODY_H
 #define SOLID_BODY_H
 
@@ -29,7 +30,7 @@ struct body_input {
     int64_t material_count;
     const int32_t *group; /* material_count: volumes are averaged over the materials of a group, such as those
                              of a region with a table; NULL: each by itself */
-    /* Nodal volumetric averaging; NULL: pointwise volume throughout. */
+    /* For nodal volumes; NULL: the pointwise volumetric law throughout. */
     const int32_t *hat_node; /* point_count * (dim + 1): vertices of the background cell of each point */
     const double *hat_value; /* point_count * (dim + 1): their hat functions at the point, sum 1 */
     const struct conforming_input *conforming; /* the points are cells, in their order; NULL: any points */
@@ -98,8 +99,8 @@ struct body {
     int64_t block_count;
     struct block *blocks;
     bool conforming;
-    struct pairs gradients;  /* of the shape functions at the points, in the same blocks; or */
-    struct conforming cells; /* instead */
+    struct pairs gradients;  /* of the shape functions at the points, in the same blocks, */
+    struct conforming cells; /* or smoothed cells instead */
     double *u;               /* node_count * stride: displacements in the body's order */
     double *F;               /* dim * dim rows of point_count: deformation gradients of the last evaluation */
     double *J;     /* point_count: volume ratios, det F, or of cells that of conforming.h. Points with

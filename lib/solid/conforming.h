@@ -1,15 +1,16 @@
-/* Conforming cells: the gradient of a cell is the mean of the field's over the cell, by the divergence
- * theorem the sum over its faces of the field's mean on the face times the outward normal, per volume.
+/* Smoothed cells (strain smoothing: Chen et al. 2001; equations (6) to (10) of lib/README.md): the gradient
+ * of a cell is the mean of the field's over the cell, by the divergence theorem the sum over its faces of the
+ * field's mean on the face times the outward normal, per volume.
  *
  * For a simplex the normal of the face opposite vertex k, times its area, is -dim V grad N_k, N_k the hat
  * function of the vertex. So F = I - dim sum_k m_k (x) grad N_k, where m_k is the field's mean on the face: a
- * table of means over faces, one value for each pair of face and node, does the work of the table of
- * gradients, dim values for each pair of cell and node, and two cells share each face.
+ * sparse operator of face averages, one value for each pair of face and node, replaces a table of gradients
+ * of dim values for each pair of cell and node, and two cells share each face.
  *
- * Such means are gradients of no continuous piecewise linear map, so that sum V det F is not the volume that
- * the boundary encloses: under a pressure the field would buckle within the cells and let volume leak. With
- * F_h, the gradient of the linear interpolant of the field at the cell's vertices, the volume ratio of a cell
- * is therefore
+ * F is the gradient of no continuous piecewise linear map, so that sum V det F is not the volume within the
+ * boundary: under a pressure the field would buckle within the cells at no cost of volume. With F_h, the
+ * gradient of the linear interpolant of the field at the cell's vertices, the volume ratio of a cell is
+ * therefore
  *
  *   J = det F_h - cof F_h : (F_h - F).
  *
@@ -19,11 +20,11 @@
  * offsets, whatever the field is inside; and as J and det F differ by the square of F_h - F only, what is
  * exact for linear fields stays so.
  *
- * Smoothing loses the energy of what varies within a cell. The energy
+ * Smoothing loses the energy of what varies within a cell. The stabilisation energy
  *
  *   k |F_h - F|^2 / 2,      k = mu in two dimensions, 2 mu / 3 in three,
  *
- * gives it back (stabilised nodal integration: Puso, Chen, Zywicz and Elmer 2008). k is derived: for a
+ * restores it (stabilised nodal integration: Puso, Chen, Zywicz and Elmer 2008). k is derived: for a
  * quadratic field on a regular simplex, mu / 2 times the variance of the gradient within the cell equals this
  * energy, in 2D for each field with trace-free second derivatives, in 3D in the mean over all such fields. It
  * is of second order in the size of the cells, at any strain, and the same in all cells. What was tried:

@@ -6,8 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Rows closer to dependence than this are dropped: what they add to the others is no more than a
- * hundred-thousandth of how the nodes move. */
+/* Rows with a smaller relative pivot are taken for linearly dependent and dropped: the part of such a row
+ * that is independent of the others is at most a hundred-thousandth of it. */
 static const double least_pivot = 1e-10;
 
 void constraint_rows_init(struct constraint_rows *rows, int dim)

@@ -1,7 +1,7 @@
 /* Essential boundary conditions on fields whose shape functions do not interpolate (EBCIEM: Joldes,
  * Chowdhury, Wittek and Miller 2017): after the free explicit update u, the correction M^-1 G^T (G M^-1
  * G^T)^-1 (t - G u) makes the constrained averages G u meet their targets t exactly. Each row of G is one
- * average along one direction. */
+ * average along one direction. Equations (17) and (18) of lib/README.md. */
 #ifndef SOLID_CONSTRAINT_H
 #define SOLID_CONSTRAINT_H
 

@@ -1,4 +1,4 @@
-/* The forces of conditions that depend on each other. */
+/* Forces of linearly dependent conditions. */
 #include "base/dense.h"
 #include "base/memory.h"
 #include "solid/constraint.h"

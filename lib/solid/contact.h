@@ -1,16 +1,17 @@
-/* Frictionless contact of boundary averages with a rigid surface, finite sliding.
+/* Frictionless contact of boundary averages with a rigid surface, finite sliding, by an augmented Lagrangian:
+ * equations (19) and (20) of lib/README.md.
  *
- * The gap of hat a is that of its averaged position x_a = sum_j Phi_aj (X_j + u_j), raised along its normal
- * by what the mean of the undeformed facets lies beneath their node where the boundary is curved. Its
- * pressure is p_a = max(0, lambda_a - k g_a): a penalty k, made exact by the multiplier lambda_a (augmented
- * Lagrangian), and the force on the parameters is Phi_aj p_a A_a n: transferred by the same averages that
- * measure the gap, so that the total force on the body is sum_a p_a A_a n. Smooth in time: no projection, no
- * chatter.
+ * The gap of contact node a is that of its averaged position x_a = sum_j Phi_aj (X_j + u_j). On a curved
+ * boundary that position lies below the node, by an offset that is computed at rest and added along the
+ * normal. The pressure is p_a = max(0, lambda_a - k g_a): a penalty k, made exact by the multiplier lambda_a
+ * (augmented Lagrangian), and the force on the parameters is Phi_aj p_a A_a n: transferred by the same
+ * averages that measure the gap, so that the total force on the body is sum_a p_a A_a n. There is no
+ * projection, so that contact nodes do not chatter.
  *
- * The surface may move: hats are looked at in the frame in which it rests, where all that is remembered of
- * them is kept, so that nothing else depends on its motion.
+ * The surface may move: gaps are evaluated in the frame in which it rests, and all that is kept of a contact
+ * node from one evaluation to the next is kept in that frame.
  *
- * Contact begins where a hat goes through the surface. One that comes round an open rim to the back, deeper
+ * Contact begins where a node goes through the surface. One that comes round an open rim to the back, deeper
  * than half its own size, stays free until it is in front again. */
 #ifndef SOLID_CONTACT_H
 #define SOLID_CONTACT_H
@@ -50,10 +51,11 @@ struct contact {
 MUST_CHECK enum status contact_build(const struct boundary_averages *averages, const double *X, int dim,
                                      struct rigid_surface *surface, double stiffness, struct contact *contact,
                                      struct error *error);
-/* The same for the values at the quadrature points of the facets, which a contact of hats leaves free to vary
- * within a hat. Under a pressure of some ten shear moduli that grows; a penalty on the points alone, with a
- * multiple of the hats' stiffness, keeps it down and vanishes where the hats' contact is met. The points are
- * taken where they are, on the chords of a curved boundary, and there is no wrong side. */
+/* The same for the values at the quadrature points of the facets, whose variation within an average the
+ * averages do not constrain. Under a pressure of some ten shear moduli it grows; a penalty at the points
+ * alone, with a multiple of the stiffness of the averages, keeps it small and vanishes where the contact of
+ * the averages is met. The points are taken where they are, on the chords of a curved boundary, and there is
+ * no wrong side. */
 MUST_CHECK enum status contact_build_points(const struct boundary_averages *points, int dim,
                                             struct rigid_surface *surface, double stiffness,
                                             struct contact *contact, struct error *error);

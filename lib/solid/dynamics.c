@@ -10,8 +10,8 @@ static const int first_iterations = 40;   /* of the power iteration, at the begi
 static const int later_iterations = 1;    /* at every check: the mode is kept, so that it sharpens */
 static const double samples = 200.0;      /* of the energies, over the run */
 
-/* Factors of the load curves at a time; beyond the end they go on as they arrive there, so that the motion
- * ends without a jerk. */
+/* Factors of the load curves at a time; beyond the end they are extrapolated with their last rate, so that
+ * the prescribed velocity does not jump there. */
 static void factors_at(const struct dynamics *d, double time, double *factor)
 {
     double s = time / d->options->end_time;
@@ -21,7 +21,7 @@ static void factors_at(const struct dynamics *d, double time, double *factor)
     }
 }
 
-/* Frames between this step and the next one: the scheme moves on straight lines between them. */
+/* Frames between this step and the next one, by linear interpolation: the velocity is constant there. */
 static void give_frames(struct dynamics *d)
 {
     const struct dynamics_options *options = d->options;

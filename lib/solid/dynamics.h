@@ -1,6 +1,6 @@
-/* Explicit dynamics: central differences (leapfrog, velocities at half steps) with the lumped mass, which is
- * never scaled; the conditions are met exactly in each step by projection (see constraint.h), contacts act by
- * their penalty.
+/* Explicit dynamics: central differences (leapfrog, velocities at half steps; equations (21) and (22) of
+ * lib/README.md) with the lumped mass, which is never scaled; the conditions are met exactly in each step by
+ * projection (see constraint.h), contacts act by their penalty.
  *
  * The step is a share of the critical one, 2 / w, where w bounds the largest frequency of M^-1 K: a power
  * iteration at the begin, continued by one iteration every so many steps, and the contacts' stiffness on top,

@@ -5,7 +5,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* Energies below this share of shear modulus times volume are not to be told from round-off. */
+/* Energies below this share of shear modulus times volume are round-off. */
 static const double round_off = 1e-12;
 
 static enum status make_room(struct energy_log *log, int64_t capacity, struct error *error)

@@ -1,5 +1,5 @@
-/* Energies of a run and their balance: kinetic + internal + contact + dissipated = external work + what there
- * was at the begin. */
+/* Energies of a run and their balance: kinetic + internal + contact + dissipated = external work + energy at
+ * the begin. */
 #ifndef SOLID_ENERGY_H
 #define SOLID_ENERGY_H
 

@@ -8,7 +8,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Radius of a centre over the distance within which every node has one: 1.2 to 2.5 serve alike. */
+/* Radius of the shares, by the largest distance of a node from its nearest centre: 1.2 to 2.5 give as many
+ * steps. */
 static const double reach = 1.5;
 enum { NODES_FOR_THREAD = 10000 }; /* see chunks_of */
 

@@ -1,6 +1,7 @@
-/* A few smooth fields on a cloud, whose sums come near to any smooth field and hold every linear one exactly.
- * A few centres, nodes far from each other, share unity among them by their distances (Shepard); each share
- * is a field, and so is its product with each coordinate. They exist on any cloud, however thin. */
+/* The coarse space of the preconditioner, equation (25) of lib/README.md: a partition of unity times the
+ * linear polynomials. A few centres, nodes far from each other, have shares that sum to one (Shepard), by
+ * their distance; each share is a field, and so is its product with each coordinate. Linear fields are
+ * contained exactly. The construction works on any cloud, however thin. */
 #ifndef SOLID_FIELDS_H
 #define SOLID_FIELDS_H
 

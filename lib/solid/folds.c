@@ -1,4 +1,4 @@
-/* What looking for folds needs to know of the body at rest; see folds.h. */
+/* Preparation of the search for folds, on the body at rest; see folds.h. */
 #include "solid/folds.h"
 
 #include "base/box.h"
@@ -11,7 +11,8 @@
 /* Facets of one plane support: their normals make a product no less than 1 less this. */
 static const double plane_tolerance = 1e-6;
 
-/* A free facet goes on from the support unless it is turned back by this sine: that of 22.5 degrees. */
+/* A free facet continues its support unless it turns back from it by more than this sine: that of 22.5
+ * degrees. */
 static const double least_turn = 0.382683;
 
 /* A node (2D) or an edge (3D) of a facet. */

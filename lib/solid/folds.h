@@ -3,14 +3,14 @@
  *
  * It is when all cells keep their orientation and the boundary does not cross itself (Meisters and Olech,
  * Duke Math. J. 30, 1963); so both are looked at. Cells: the sign of the
- * volume of each, which is that of det F of the linear interpolant; it also turns where a facet of the
- * boundary is turned over against the cell behind it. Slivers turn over by what a field at the nodes is
- * uncertain by, so that it is told how far a cell has. Boundary: facets that share no node are crossed, or
- * pierced by edges; those that meet have passed through each other when the angles of the cells around the
- * place where they meet add up to more than a full turn.
+ * volume of each, which is that of det F of the linear interpolant; it also changes where a facet of the
+ * boundary is turned over against the cell behind it. Slivers turn over within the error of the field at the
+ * nodes, so that the depth is measured. Boundary: facets that share no node are crossed, or pierced by edges;
+ * those that meet have passed through each other when the angles of the cells around the place where they
+ * meet add up to more than a full turn.
  *
- * Beside that, something that a model may well do, but that a plate would not let it: a free facet that is
- * turned from the rim of a plane support through the plane of that support. */
+ * Besides folds: a free facet that has turned at the rim of a plane support through the plane of that
+ * support. The model admits it, a real plate would not. */
 #ifndef SOLID_FOLDS_H
 #define SOLID_FOLDS_H
 

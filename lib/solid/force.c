@@ -1,4 +1,5 @@
-/* The force loop: deformation gradients by gathering, stresses, forces by scattering; see body.h. */
+/* The force loop: deformation gradients from parameters (gather: apply the operator), stresses, and forces on
+ * the parameters (scatter: apply its transpose); equation (12) of lib/README.md. */
 #include "base/memory.h"
 #include "solid/nodal_volume.h"
 #include "solid/stress.h"
@@ -21,7 +22,7 @@ static void note_volumes(const struct body *body, struct block *block)
     }
 }
 
-/* Stresses of a block of cells, and what they put on the means. */
+/* Stresses of a block of cells, and their forces on the face averages and node values. */
 static void stress_cell_block(struct body *body, int64_t b)
 {
     block_rows P, T;
@@ -167,7 +168,7 @@ static void force_cells(struct body *body)
     }
 }
 
-/* Nodes are worked on in stretches of so many. */
+/* Nodes of one unit of work. */
 enum { NODES_AT_ONCE = 256 };
 
 static int64_t stretch_end(const struct body *body, int64_t first)

@@ -8,11 +8,10 @@
 #include <string.h>
 
 enum { MOST_MOVES = 6, SWEEPS = 30 };
-/* A move of which the conditions see no more than this part, squared, of what they see of the best seen move
- * is free. */
+/* A rigid mode is free when the squared norm of G times it is below this share of the largest one. */
 static const double least_seen = 1e-8;
 
-/* A body, and what the conditions see of its moves: sum over rows of value value^T. */
+/* A body, and the Gram matrix of the conditions on its rigid modes: sum over the rows of value value^T. */
 struct seen {
     struct box box;
     double matrix[MOST_MOVES][MOST_MOVES];
@@ -44,7 +43,7 @@ static void rigid_move(const struct box *box, int k, const double *X, double mov
     move[b] = (X[a] - middle(box, a)) / side;
 }
 
-/* Add what row r sees of each rigid move of a body; body NULL: of all nodes. */
+/* Add the values of row r on each rigid mode of a body; body NULL: of all nodes. */
 static void look(const struct solid_system *system, int64_t r, const int32_t *body, int32_t number,
                  struct seen *seen)
 {
@@ -111,7 +110,7 @@ static void diagonalise(int n, double matrix[][MOST_MOVES], double vector[][MOST
     }
 }
 
-/* free[count][MOST_MOVES]: an orthonormal basis of the moves that are not seen. */
+/* free[count][MOST_MOVES]: an orthonormal basis of the null space of the conditions. */
 static int free_moves(int dim, const struct seen *seen, double basis[][MOST_MOVES])
 {
     int n = move_count(dim), count = 0;

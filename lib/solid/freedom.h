@@ -1,4 +1,4 @@
-/* Rigid moves that the conditions of a system leave free. */
+/* Rigid-body modes that the conditions of a system leave free. */
 #ifndef SOLID_FREEDOM_H
 #define SOLID_FREEDOM_H
 

@@ -11,7 +11,7 @@ static const int first_check = 16;
 static const double check_growth = 4.0 / 3.0, settled_change = 0.05;
 static const double least_share =
     0.6; /* of the ratio of the largest frequency to the lowest: iterations at least */
-/* A start of which the conditions leave no more than this has nothing to move. */
+/* A start vector whose projection onto the admissible moves is below this share of it is taken for zero. */
 static const double least_free = 1e-4;
 static const double strain =
     1e-6; /* about that much is a cell strained by the move that K is measured with */
@@ -83,7 +83,8 @@ double system_largest_frequency(struct solid_system *system, struct inertia *ine
     return eigenvalue > 0.0 ? sqrt(eigenvalue) : 0.0;
 }
 
-/* Of the largest: an eigenvalue below that is negative by more than differences of residuals can tell. */
+/* Share of the largest: a negative eigenvalue above minus that is within the round-off of the differences of
+ * residuals. */
 static const double least_told = -1e-6;
 
 /* How many eigenvalues of the symmetric tridiagonal matrix (diagonal[n], beside[n - 1]) are below x: Sturm's
@@ -150,8 +151,8 @@ static void apply(struct solid_system *system, struct inertia *inertia, const do
     inertia_accelerate(inertia, displaced, product);
 }
 
-/* Whether `count` iterations can tell the least eigenvalue: fewer than a share of the ratio of the
- * frequencies stay on a plateau, at a higher mode. */
+/* Whether `count` iterations suffice for the least eigenvalue: with fewer than a share of the ratio of the
+ * frequencies the Ritz value stays on a plateau, at a higher mode. */
 static bool enough(int count, double largest, double least)
 {
     return count >= least_share * sqrt(largest / fmax(least, 1e-14 * largest));
@@ -208,7 +209,7 @@ struct lanczos {
     double norm;                                   /* of vector, in the product of the mass */
 };
 
-/* From l->vector; false when the conditions leave next to nothing of it. */
+/* From l->vector; false when its projection onto the admissible moves vanishes. */
 static bool lanczos_begin(struct lanczos *l)
 {
     double whole = inertia_product_alone(l->inertia, l->vector, l->vector);

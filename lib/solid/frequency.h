@@ -1,5 +1,6 @@
-/* The frequencies of a system at a state: the largest bounds the time step; by the lowest the error of a
- * relaxation decays, and it bounds that error. */
+/* The extreme frequencies of a system at a state. The largest bounds the time step, equation (22) of
+ * lib/README.md; the lowest is the rate at which a critically damped relaxation converges, and bounds its
+ * error, equation (27) of lib/README.md. */
 #ifndef SOLID_FREQUENCY_H
 #define SOLID_FREQUENCY_H
 
@@ -23,8 +24,8 @@ struct spectrum {
  * smooth move, such as the last velocity; for zeros a fixed pseudo-random one). K is the difference of
  * residuals, one evaluation an iteration; residual must hold the residual at u. It ends when a third more
  * iterations changed the lowest eigenvalue by less than 5 %, when that is negative, or after most_iterations.
- * Lowest <= 0: no minimum of the energy, or a contact that opens or closes there. Both 1, about what D makes
- * them, where the conditions leave nothing free. scratch: 4 * node_count * dim. */
+ * Lowest <= 0: no minimum of the energy, or a contact that opens or closes there. Both are 1, about what D
+ * makes them, where the conditions leave no degree of freedom. scratch: 4 * node_count * dim. */
 MUST_CHECK enum status system_spectrum(struct solid_system *system, struct inertia *inertia, const double *u,
                                        const double *residual, int most_iterations, const double *start,
                                        double *scratch, struct spectrum *spectrum, struct error *error);

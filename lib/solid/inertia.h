@@ -1,4 +1,5 @@
-/* The fictitious mass of a relaxation: free to choose, because a state at rest does not depend on it.
+/* The fictitious mass of a relaxation: a preconditioner, since a state at rest does not depend on the mass
+ * (dynamic relaxation: Underwood 1983; equation (23) of lib/README.md).
  *
  * With a diagonal mass D that bounds the stiffness of each node, a load spreads by about one support in a
  * step, and modes as large as the body decide how many steps are needed. On a few smooth fields Z (fields.h)

@@ -1,4 +1,5 @@
-/* The stiffness along the fields: the body's, measured, and the contacts', followed. */
+/* The stiffness of the coarse space: that of the body by differences, that of the active contacts in closed
+ * form. */
 #include "solid/inertia_private.h"
 
 #include "base/dense.h"
@@ -8,12 +9,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Eigenvalues of the fields over the largest, which is about 1: room for what stiffens before it is measured
- * again. */
+/* Eigenvalues of the coarse space by the largest, which is about 1: a margin for stiffening until the
+ * stiffness is measured again. */
 static const double share = 0.25;
-/* Part of D that the fields keep, so that a motion which nothing resists is not as light as round-off. */
+/* Part of D that is added to the stiffness of the coarse space, so that modes without stiffness have a mass.
+ */
 static const double kept = 1e-4;
-/* Conditions that leave no more than this part of the fields' mass free leave nothing to gain. */
+/* Share of the mass of the coarse space that the conditions must leave free for it to be used. */
 static const double least_free = 0.01;
 /* Hats nearer to a surface than this part of their length count as touching. */
 static const double near_share = 0.1;

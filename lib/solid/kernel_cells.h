@@ -1,5 +1,5 @@
-/* Kernels over conforming cells (conforming.h): gradients from the means, the neo-Hookean law, and what the
- * corners put on the means; private to lib/solid. */
+/* Kernels over smoothed cells (equations (7) to (12) of lib/README.md): gradients from face averages and node
+ * values, the neo-Hookean law, and the forces on these averages and values; private to lib/solid. */
 #ifndef SOLID_KERNEL_CELLS_H
 #define SOLID_KERNEL_CELLS_H
 
@@ -202,7 +202,7 @@ KERNEL_INLINE void kernel_cell_neo_hookean(const struct body *body, const struct
     }
 }
 
-/* What the corners put on the means of faces, -dim P grad N_k, and on the values at nodes, T grad N_k. */
+/* Forces of the corners on the face averages, -dim P grad N_k, and on the node values, T grad N_k. */
 KERNEL_INLINE void kernel_cell_forces(struct body *body, const struct block *block, int dim,
                                       const block_rows P, const block_rows T)
 {

@@ -1,7 +1,7 @@
 /* Kernels over pairs of row and node; private to lib/solid.
  *
- * For each entry of a group they load a displacement or the forces on a node, or four, and the values of four
- * rows, and multiply: the tables decide the speed. */
+ * For each entry of a group they load the displacement of one node, or of four, and the values of four rows,
+ * and multiply and add: reading the operator takes most of the time. */
 #ifndef SOLID_KERNEL_PAIRS_H
 #define SOLID_KERNEL_PAIRS_H
 

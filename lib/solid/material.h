@@ -1,8 +1,8 @@
 /* Hyperelastic materials: energy per reference volume, first Piola stress, and their volumetric part.
  *
- * W(F) = W_shape(F) + U(J), U = kappa/2 y(J)^2 with y = J - 1, or ln J and lambda for kappa. Only U is
- * averaged over nodal volumes; St. Venant-Kirchhoff has no such split (U = 0). F is 3 x 3 row-major; plane
- * strain has F33 = 1. Units Pa.
+ * Equation (11) of lib/README.md: W(F) = W_shape(F) + U(J), U = kappa/2 y(J)^2 with y = J - 1, or ln J and
+ * lambda for kappa. Only U is averaged over nodal volumes; St. Venant-Kirchhoff has no such split (U = 0). F
+ * is 3 x 3 row-major; plane strain has F33 = 1. Units Pa.
  *
  *   neo-Hookean            mu/2 (I1' - 3) + kappa/2 (J - 1)^2
  *   neo-Hookean (log)      mu/2 (I1 - 3) - mu ln J + lambda/2 (ln J)^2

@@ -1,7 +1,9 @@
-/* Means of the displacement field that the corners of conforming cells look at: one for each face (its mean),
- * or one for each node (its value). Corner k of a cell stands for its vertex k, or for the face opposite.
+/* Face averages and node values of the displacement field, which the corners of smoothed cells use: corner k
+ * of a cell stands for the face opposite vertex k (its average, equation (6) of lib/README.md), or for vertex
+ * k (its value).
  *
- * An evaluation gathers the means, works on the cells, and scatters what the corners put on their means. */
+ * An evaluation computes the averages (apply), evaluates the cells, and adds the forces of the corners on
+ * their averages to the nodes (transposed apply), equation (12) of lib/README.md. */
 #ifndef SOLID_MEANS_H
 #define SOLID_MEANS_H
 

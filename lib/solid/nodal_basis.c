@@ -9,8 +9,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Added to the diagonal of the normal equations, by its largest entry: bounds what noise in nearly dependent
- * rows is amplified by. */
+/* Added to the diagonal of the normal equations, by its largest entry: bounds the amplification of noise in
+ * nearly dependent rows. */
 static const double ridge = 1e-5;
 enum { NODES_FOR_THREAD = 4000 };
 enum { MOST_SIDES = 5 }; /* right-hand sides: e_i, and dim + 1 conditions */

@@ -1,13 +1,13 @@
-/* Parameters that are about the values of the field at the nodes.
+/* Nodal parameters: parameters that are about the values of the field at the nodes.
  *
  * Shape functions of moving least squares do not interpolate: with parameters u_j the field at node i is
- * (P u)_i = sum_j phi_j(x_i) u_j. The wider the supports, the nearer P is to singular (least eigenvalues .66,
- * .14, .07, .015 at supports of 1.8 spacings in 2D, and of 1.9, 2, 2.2 in 3D; on regular lattices 0): some
- * patterns of parameters make hardly any field, and no energy. A relaxation in the parameters is slow along
- * these. Here the unknowns of the relaxation are v, with u = Q v and Q a sparse approximate left inverse of P
- * (Grote and Huckle 1997): row i of Q has the pattern of row i of P and minimises |q_i P - e_i|^2, subject
- * to keeping linear fields, sum_j q_ij = 1, sum_j q_ij x_j = x_i. Forces on v are Q^T times those on u. The
- * state of equilibrium does not depend on Q. */
+ * (P u)_i = sum_j phi_j(x_i) u_j, equation (5) of lib/README.md. The wider the supports, the nearer P is to
+ * singular (least eigenvalues .66, .14, .07, .015 at supports of 1.8 spacings in 2D, and of 1.9, 2, 2.2 in
+ * 3D; on regular lattices 0): some patterns of parameters have almost no field and no energy, and a
+ * relaxation in the parameters is slow along these. Here the unknowns of the relaxation are v, with u = Q v
+ * and Q a sparse approximate left inverse of P (Grote and Huckle 1997): row i of Q has the pattern of row i
+ * of P and minimises |q_i P - e_i|^2, subject to keeping linear fields, sum_j q_ij = 1, sum_j q_ij x_j = x_i.
+ * Forces on v are Q^T times those on u. The state of equilibrium does not depend on Q. */
 #ifndef SOLID_NODAL_BASIS_H
 #define SOLID_NODAL_BASIS_H
 

@@ -1,16 +1,16 @@
-/* A table over pairs of a row and a node, laid out for the force loop: rows in blocks, each with a compact
- * list of its nodes, so that a block's displacements lie in the first cache and indices take 16 bits.
+/* A sparse operator (sliced ELL) from nodes to rows, laid out for the force loop: rows in blocks, each with a
+ * compact list of its nodes, so that a block's displacements lie in the first cache and indices take 16 bits.
  *
- * Rows are worked on in groups of four, one to each lane of a vector. An entry of a group has for each row a
- * node and its values: first come entries shared by the rows, all with one node, so that its displacement and
- * force are touched once for four rows; these are the nodes that at least three of the rows have. What is
- * left of the rows' lists stands side by side in entries where each row has its own node. Values of rows that
- * lack a shared node, or whose list is at its end, are zero: a table has some 5 % of them.
+ * A slice is a group of four rows, one to each lane of a vector. An entry of a slice has for each row a node
+ * and its values. First come the shared entries: one node for all four rows, which at least three of them
+ * have, so that its displacement is read, and its force written, once for four rows. The other nodes of the
+ * rows follow, side by side, in entries where each row has its own node. Where a row lacks a shared node, or
+ * its list is at its end, the value is zero: some 5 % of an operator.
  *
- * Gathering computes, for each row, sums over its nodes' displacements; scattering is the transpose, and adds
- * to the nodes. The partition depends on the input alone, never on threads: the blocks of a patch, one after
- * the other, add to forces on its own nodes, and each node sums what its patches put on it, in their order,
- * so that any number of threads gives the same bits. */
+ * Gathering (apply) computes for each row the sum over its nodes; scattering (transposed apply) adds to the
+ * nodes. The partition depends on the input alone, never on threads: the blocks of a patch (accumulation
+ * block), one after the other, add to forces on the patch's own nodes, and each node sums over its patches in
+ * their order, so that any number of threads gives the same bits. */
 #ifndef SOLID_PAIRS_H
 #define SOLID_PAIRS_H
 

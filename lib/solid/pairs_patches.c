@@ -6,8 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Up to so many threads have their share of any table that has as many blocks; the forces of so many blocks
- * stay in the second cache. */
+/* Least patches, where there are as many blocks, so that up to as many threads have work; most blocks of a
+ * patch, whose forces stay in the second cache. */
 enum { LEAST_PATCHES = 32, MOST_BLOCKS = 16 };
 
 static int64_t count_patches(int64_t blocks)

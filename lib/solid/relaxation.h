@@ -1,12 +1,12 @@
 /* Quasi-static solution by dynamic relaxation: central differences with a fictitious mass (inertia.h) and a
  * damping that follows the lowest mode still active (a running Rayleigh quotient), stopped by an estimate of
- * the remaining error.
+ * the remaining error (Underwood 1983; Papadrakakis 1981; equations (21) to (28) of lib/README.md).
  *
  * Error estimate: with the acceleration a of the residual and the lowest frequency w, |e| <= |a| / w^2, which
- * is exact for a mode of a linear system; asked in the norm of the diagonal mass, and of the node that is
- * worst, relative to the one that moved most. While fast modes die out the increments do not show a slow one:
- * before a state is taken for the solution, the lowest frequency there is found by Lanczos iteration, and the
- * relaxation goes on with it where it is lower. */
+ * is exact for a mode of a linear system. It is taken in the norm of the diagonal mass, relative to the
+ * largest displacement, and at the worst node, relative to the node that moved most. While fast modes die out
+ * the increments do not show a slow one: before a state is accepted, the lowest frequency is computed by
+ * Lanczos iteration, and the relaxation continues with it where it is lower. */
 #ifndef SOLID_RELAXATION_H
 #define SOLID_RELAXATION_H
 

@@ -60,7 +60,8 @@ done:
     return status;
 }
 
-/* What conditions that were dropped may be missed by, of the largest prescribed displacement. */
+/* Constraints found linearly dependent are dropped. The solution is accepted only if each of them holds to
+ * this share of the largest prescribed displacement. */
 static const double most_missed = 1e-4;
 
 /* The row of another section that acts nearest to row r in much the same direction, or -1. */
@@ -86,7 +87,7 @@ static int64_t nearest_of_others(const struct solid_system *system, int64_t r)
     return nearest;
 }
 
-/* Row r cannot be met with the others. */
+/* The message that row r conflicts with others. */
 static enum status fail_at_row(const struct solid_system *system, int64_t r, double missed,
                                struct error *error)
 {
@@ -105,7 +106,7 @@ static enum status fail_at_row(const struct solid_system *system, int64_t r, dou
         names != NULL ? names[rows->section[r]] : "?", rows->node[r], place, with, missed);
 }
 
-/* Do the conditions that were dropped agree with the others throughout? */
+/* Whether the constraints that were dropped hold with the others for all loads. */
 static enum status check_dropped(const struct solid_system *system, struct constraint *constraint,
                                  struct error *error)
 {
@@ -253,7 +254,7 @@ static void negate(const struct solid_system *system, double *force)
     }
 }
 
-/* The parameters u of what a caller has, and where forces on them go. */
+/* The parameters u of the unknowns of a caller, and where forces on u are summed. */
 static const double *parameters_of(const struct solid_system *system, const double *v)
 {
     if (system->basis == NULL) {

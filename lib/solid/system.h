@@ -1,4 +1,5 @@
-/* A scene ready to be stepped: a body, its loads, constraints and contacts, on the parameters of its nodes.
+/* A scene ready for time stepping: a body, its loads, constraints and contacts, on the parameters of its
+ * nodes.
  */
 #ifndef SOLID_SYSTEM_H
 #define SOLID_SYSTEM_H
@@ -62,9 +63,10 @@ struct solid_system {
     int64_t contact_count;
     struct constraint_rows rows;
     const char *const *condition_names; /* of the sections of the rows, for messages; NULL: they have none */
-    /* Hat averages leave free what varies within a hat, and under a pressure of some ten shear moduli that
-     * grows: springs at the quadrature points of the constrained facets hold the field to the same targets.
-     * They vanish wherever the field meets them, so that a linear field stays exact. */
+    /* Penalty stabilisation of the constraints. Boundary averages do not constrain variations of the field
+     * within them, which grow under a pressure of some ten shear moduli. Springs at the quadrature points of
+     * the constrained facets hold the field to the same targets. Their forces vanish where the field meets
+     * these, so that a linear field stays exact. */
     struct constraint_rows springs;
     double *spring_stiffness; /* springs.count, N/m (2D: N/m2) */
     double *spring_pull;      /* springs.count: scratch */
@@ -100,11 +102,11 @@ struct deformation system_residual(struct solid_system *system, const double *u,
  * evaluations between may have left those of another state. */
 void system_measure_contacts(struct solid_system *system, const double *u, bool all);
 
-/* The longest way on which a condition or a rigid surface takes a place of the body, at factor 1, m. */
+/* The largest displacement that a condition or a moving rigid surface prescribes, at factor 1, m. */
 double system_longest_way(const struct solid_system *system);
 
-/* force[node_count * dim] = what body and springs put against u: the residual without loads and contacts, and
- * the other way round. */
+/* force[node_count * dim] = internal forces of body and springs at u: minus the residual without loads and
+ * contacts. */
 void system_resist(struct solid_system *system, const double *u, double *force);
 
 /* Forces of the springs, added to force; and their energy. */
