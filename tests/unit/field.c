@@ -43,7 +43,8 @@ static void linear_fields_are_exact(void **state)
             assert_non_null(spacing);
             good(field_spacing(&cells, spacing, &error), &error);
             good(support_radii(&options, cells.node_count, spacing, spacing, &error), &error);
-            good(field_table_build(&options, NULL, &cells, spacing, 80, cloud.points, "points.x", &table, &error),
+            good(field_table_build(&options, NULL, &cells, spacing, 80, cloud.points, "points.x", &table,
+                                   &error),
                  &error);
             field_evaluate(80, table.lists.ptr, table.lists.idx, table.phi, 2, values, got);
             for (int i = 0; i < 160; i++) {
