@@ -53,7 +53,7 @@ frames() { grep -c '^u\.frame\.' list; }
 }
 
 @test "inversion, dynamic: the state one step before it" {
-    scene dynamic 0.3 'components = 0.05, 0.05\ncurve = step' 'end_time = 1\ntime_step_margin = 0.5' > run.scene
+    scene dynamic 0.3 'components = 0.07, 0.07\ncurve = step' 'end_time = 1\ntime_step_margin = 0.5' > run.scene
     stops "is inverted (J = -"
     [ "$(frames)" -ge 2 ]
     # It is good: F of the linear interpolants of the cells is not inverted there.
@@ -63,7 +63,7 @@ frames() { grep -c '^u\.frame\.' list; }
 }
 
 @test "energy drift: the fastest node; the frames before it" {
-    scene dynamic 0.49 'components = 0.05, 0.05' 'end_time = 0.3\ntime_step_margin = 0.999' > run.scene
+    scene dynamic 0.49 'components = 0.1, 0.1' 'end_time = 0.3\ntime_step_margin = 0.999' > run.scene
     stops "the energy balance is off by "
     [ "$(frames)" -ge 4 ]
     grep -q '^energy	f8' list
