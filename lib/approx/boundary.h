@@ -40,6 +40,7 @@ struct boundary_averages {
     int64_t *sample_ptr;  /* count + 1: the quadrature points that each average is made of */
     double *sample_x;     /* sample_ptr[count] * dim, m */
     double *sample_share; /* their shares, sum 1 for each average */
+    int64_t *sample_point; /* of hats: which of the points of boundary_points_build of the same set each is */
 };
 
 /* Build the averages of a facet set; ordered by node, then by facet. STATUS_INPUT when a facet is no face of
