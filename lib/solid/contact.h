@@ -2,10 +2,10 @@
  *
  * The gap of hat a is that of its averaged position x_a = sum_j Phi_aj (X_j + u_j), raised along its normal
  * by what the mean of the undeformed facets lies beneath their node where the boundary is curved. Its
- * pressure is p_a = max(0, lambda_a - k_a g_a): a penalty k_a, made exact by the multiplier lambda_a (augmented
- * Lagrangian), and the force on the parameters is Phi_aj p_a A_a n: transferred by the same averages that
- * measure the gap, so that the total force on the body is sum_a p_a A_a n. Smooth in time: no projection, no
- * chatter.
+ * pressure is p_a = max(0, lambda_a - k_a g_a): a penalty k_a, made exact by the multiplier lambda_a
+ * (augmented Lagrangian), and the force on the parameters is Phi_aj p_a A_a n: transferred by the same
+ * averages that measure the gap, so that the total force on the body is sum_a p_a A_a n. Smooth in time: no
+ * projection, no chatter.
  *
  * The surface may move: hats are looked at in the frame in which it rests, where all that is remembered of
  * them is kept, so that nothing else depends on its motion.

@@ -5,23 +5,23 @@
 #include <math.h>
 #include <stdlib.h>
 
-
 struct marks {
-    double *force;      /* node_count: of the node's hats, N */
-    bool *surrounded;   /* node_count: it presses, as its neighbours do */
-    bool *near;         /* node_count: that, or beside one that is */
+    double *force;    /* node_count: of the node's hats, and of the points beneath, N */
+    bool *presses;    /* node_count: a hat of it does */
+    bool *surrounded; /* node_count: it presses, as its neighbours do */
+    bool *near;       /* node_count: that, or beside one that is; only nodes that press */
 };
 
 static void mark_nodes(int dim, const struct facet_set *set, int64_t node_count, struct marks *marks)
 {
     for (int64_t n = 0; n < node_count; n++) {
-        marks->near[n] = marks->surrounded[n] = marks->force[n] > 0.0;
+        marks->near[n] = marks->surrounded[n] = marks->presses[n];
     }
     for (int64_t f = 0; f < set->count; f++) {
         const int32_t *node = set->facet + f * dim;
         bool all = true;
         for (int k = 0; k < dim; k++) {
-            all = all && marks->force[node[k]] > 0.0;
+            all = all && marks->presses[node[k]];
         }
         for (int k = 0; k < dim && !all; k++) {
             marks->surrounded[node[k]] = marks->near[node[k]] = false;
@@ -34,19 +34,9 @@ static void mark_nodes(int dim, const struct facet_set *set, int64_t node_count,
             any = any || marks->surrounded[node[k]];
         }
         for (int k = 0; k < dim && any; k++) {
-            marks->near[node[k]] = true;
+            marks->near[node[k]] = true; /* it presses, beside one that is surrounded */
         }
     }
-}
-
-/* The sum of p A. */
-static double sum_forces(const struct contact *contact)
-{
-    double sum = 0.0;
-    for (int64_t a = 0; a < contact->count; a++) {
-        sum += contact->pressure[a] * contact->averages->area[a];
-    }
-    return sum;
 }
 
 /* The vertex of the surface that is deepest inside the body, by no more than a facet of the body is wide. */
@@ -84,35 +74,54 @@ done:
     return status;
 }
 
+/* Add what hat a carries, and its part of what the points beneath carry. Whether it presses: by itself, or
+ * where points do beneath more than half of it. */
+static bool add_force(const struct contact *contact, int64_t a, double *force)
+{
+    const struct boundary_averages *hats = contact->averages;
+    double pressed = 0.0;
+    *force += contact->pressure[a] * hats->area[a];
+    for (int64_t s = hats->sample_ptr[a]; s < hats->sample_ptr[a + 1] && contact->points != NULL; s++) {
+        double pressure = contact->points->pressure[hats->sample_point[s]];
+        *force += pressure * hats->sample_share[s] * hats->area[a];
+        pressed += pressure > 0.0 ? hats->sample_share[s] : 0.0;
+    }
+    return contact->pressure[a] > 0.0 || pressed > 0.5;
+}
+
 enum status contact_patch_find(const struct contact *contact, const struct facet_set *set, int64_t node_count,
                                const double *x, struct contact_patch *patch, struct error *error)
 {
     enum status status;
     struct marks marks = {0};
     double resolved = 0.0, largest = 0.0;
-    *patch = (struct contact_patch){.node = -1, .force = sum_forces(contact)};
+    *patch = (struct contact_patch){.node = -1};
     TRY(NEW_ARRAY(&marks.force, node_count, error));
+    TRY(NEW_ARRAY(&marks.presses, node_count, error));
     TRY(NEW_ARRAY(&marks.surrounded, node_count, error));
     TRY(NEW_ARRAY(&marks.near, node_count, error));
     for (int64_t a = 0; a < contact->count; a++) {
-        marks.force[contact->averages->node[a]] += contact->pressure[a] * contact->averages->area[a];
+        int32_t node = contact->averages->node[a];
+        marks.presses[node] = add_force(contact, a, &marks.force[node]) || marks.presses[node];
     }
     mark_nodes(contact->dim, set, node_count, &marks);
     for (int64_t n = 0; n < node_count; n++) {
-        patch->pressing += marks.force[n] > 0.0;
+        patch->pressing += marks.presses[n];
+        patch->force += marks.force[n];
         resolved += marks.near[n] ? marks.force[n] : 0.0;
         if (!marks.near[n] && marks.force[n] > largest) {
             largest = marks.force[n];
             patch->node = (int32_t)n;
         }
     }
-    patch->force += contact->points != NULL ? sum_forces(contact->points) : 0.0;
-    patch->thin = patch->force > 0.0 ? 1.0 - resolved / patch->force : 0.0;
-    if (patch->pressing == 0) {
+    if (patch->force > 0.0) {
+        patch->thin = 1.0 - resolved / patch->force;
+    } else {
         status = find_inside(contact, set, x, patch, error);
     }
 done:
     free(marks.force);
+    free(marks.presses);
     free(marks.surrounded);
     free(marks.near);
     return status;

@@ -4,16 +4,16 @@
 
 #include "solid/contact.h"
 
-/* Nodes press whose hats do. A patch of them is resolved about a node that presses with all its neighbours on
- * the contact's facets: then it is three nodes across, or more beside the facets' rim, where a plane of
- * symmetry may be. What the points carry beyond the hats is not resolved either. */
+/* A node presses where its hat does, or the points beneath more than half of its hat. A patch of them is
+ * resolved about a node that presses with all its neighbours on the contact's facets: then it is three nodes
+ * across, or more beside the facets' rim, where a plane of symmetry may be. */
 struct contact_patch {
     int64_t pressing; /* nodes */
     double force;     /* sum p A over hats and points, N (2D: N/m) */
-    double thin;      /* part of it that is not within a resolved patch or on its border: 0 to 1 */
+    double thin;      /* part of it that is not at the nodes of a resolved patch, 0 to 1 */
     int32_t node;     /* with the largest force in that part; -1: none */
     double inside;    /* how far a vertex of the surface is inside of the body, m, 0: none is. Only looked for
-                         when no node presses */
+                         when nothing presses */
     double place[3];  /* of that vertex, m */
 };
 

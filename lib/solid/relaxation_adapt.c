@@ -196,8 +196,8 @@ bool relaxation_step_back(struct relaxation *r, struct error *error)
     return r->failure == STATUS_OK;
 }
 
-/* What contacts may give way at an equilibrium, m: so much of the body's size, and of the largest motion. A ball
- * that is pressed in by d resists by d^(3/2): to 0.75 percent, then. */
+/* What contacts may give way at an equilibrium, m: so much of the body's size, and of the largest motion. A
+ * ball that is pressed in by d resists by d^(3/2): to 0.75 percent, then. */
 static const double penetration_of_move = 5e-3;
 
 static double penetration_allowed(const struct relaxation *r)

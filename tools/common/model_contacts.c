@@ -35,8 +35,8 @@ done:
 static const double penalty_factor = 50.0;
 
 /* The stiffness of a contact, `share` times what its section says, or else that of a layer of cells. */
-static void set_stiffness(const struct scene_contact *section, const struct solid_system *system, double share,
-                          struct contact *contact)
+static void set_stiffness(const struct scene_contact *section, const struct solid_system *system,
+                          double share, struct contact *contact)
 {
     if (section->stiffness == 0.0) {
         contact_set_stiffness(contact, share * model_penalty_modulus(system, penalty_factor));
@@ -121,8 +121,8 @@ static const double points_share = 8.0;
 
 /* The contact of the points of a section's facets, which moves as that of the hats does. */
 static enum status add_points(const struct model_input *input, const struct scene_contact *section,
-                              const struct facet_set *set, struct solid_system *system,
-                              struct contact *hats, struct error *error)
+                              const struct facet_set *set, struct solid_system *system, struct contact *hats,
+                              struct error *error)
 {
     enum status status;
     struct rigid_surface surface = {0};
@@ -133,7 +133,8 @@ static enum status add_points(const struct model_input *input, const struct scen
     for (int64_t a = 0; a < points->count; a++) { /* each stands for another corner of its facet */
         points->node[a] = set->facet[a / input->face_table.per_face * system->dim + a % system->dim];
     }
-    TRY(contact_build_points(points, system->dim, &surface, points_share * section->stiffness, contact, error));
+    TRY(contact_build_points(points, system->dim, &surface, points_share * section->stiffness, contact,
+                             error));
     set_stiffness(section, system, points_share, contact);
     contact->section = hats->section;
     contact->motion = hats->motion;

@@ -21,6 +21,12 @@ static double *deformed(const struct run *run)
     return x;
 }
 
+/* Whether the scene asks for what such patches are wrong about. */
+static bool wants_forces(const struct scene_output *output)
+{
+    return output->reactions || output->moments || output->gaps;
+}
+
 /* Exits where a surface has gone into the body between its nodes. */
 static void judge_patch(struct run *run, const struct contact *contact, const struct contact_patch *patch,
                         double slack)
@@ -30,21 +36,21 @@ static void judge_patch(struct run *run, const struct contact *contact, const st
     char place[96];
     if (patch->inside > slack) {
         point_text(system->dim, patch->place, place);
-        run_fail(run, STATUS_VERDICT,
-                 "%s: [contact %s]: the rigid surface is %.2g m inside the body at %s, between its nodes, and no "
-                 "node presses: refine the body there until its facets are smaller than the contact",
-                 run->scene->path, name, patch->inside, place);
+        run->last_good = -1.0; /* the frames are all there */
+        run_fail(
+            run, STATUS_VERDICT,
+            "%s: [contact %s]: the rigid surface is %.2g m inside the body at %s, between its nodes, and "
+            "nothing presses: refine the body there until its facets are smaller than the contact",
+            run->scene->path, name, patch->inside, place);
     }
-    if (patch->thin > most_thin) {
-        snprintf(place, sizeof place, "between nodes");
-        if (patch->node >= 0) {
-            point_text(system->dim, system->X + (int64_t)patch->node * system->dim, place);
-        }
-        tool_note(run->tool,
-                  "%s: [contact %s]: %.0f %% of its force is where it is less than three nodes across, most at %s "
-                  "(%lld nodes press in all): the force may be off by tens of percent: refine the body there to a third "
-                  "of the contact's radius",
-                  run->scene->path, name, 100.0 * patch->thin, place, (long long)patch->pressing);
+    if (patch->thin > most_thin && wants_forces(&run->scene->output)) {
+        point_text(system->dim, system->X + (int64_t)patch->node * system->dim, place);
+        tool_note(
+            run->tool,
+            "%s: [contact %s]: presses on %lld node%s, most of it about %s, where that is less than three "
+            "across: the force may be off by tens of percent: refine the body there to a third of the "
+            "contact's radius",
+            run->scene->path, name, (long long)patch->pressing, patch->pressing == 1 ? "" : "s", place);
     }
 }
 
@@ -63,7 +69,8 @@ void run_contacts_judge(struct run *run, double slack)
             continue;
         }
         tool_check(run->tool,
-                   model_facets(&run->model->input, &section->label, &section->facets, &set, &owned, &error), &error);
+                   model_facets(&run->model->input, &section->label, &section->facets, &set, &owned, &error),
+                   &error);
         enum status status = contact_patch_find(contact, &set, system->node_count, x, &patch, &error);
         free(owned);
         tool_check(run->tool, status, &error);
