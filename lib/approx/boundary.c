@@ -20,6 +20,7 @@ static enum status allocate(int dim, int64_t parts, int64_t samples, struct boun
     TRY(NEW_ARRAY(&averages->sample_ptr, parts + 1, error));
     TRY(NEW_ARRAY(&averages->sample_x, samples * dim, error));
     TRY(NEW_ARRAY(&averages->sample_share, samples, error));
+    TRY(NEW_ARRAY(&averages->sample_point, samples, error));
 done:
     return status;
 }
@@ -112,6 +113,7 @@ static enum status add_corner(const struct face_table *table, const struct facet
         averages->area[part] += hat;
         int64_t sample = averages->sample_ptr[part + 1]++;
         averages->sample_share[sample] = hat;
+        averages->sample_point[sample] = corner->facet * table->per_face + g;
         for (int a = 0; a < dim; a++) {
             averages->normal[part * dim + a] += hat * normal[a];
             averages->position[part * dim + a] += hat * x[g * dim + a];
@@ -355,5 +357,6 @@ void boundary_averages_free(struct boundary_averages *averages)
     free(averages->sample_ptr);
     free(averages->sample_x);
     free(averages->sample_share);
+    free(averages->sample_point);
     *averages = (struct boundary_averages){0};
 }

@@ -31,16 +31,17 @@ struct face_table {
 /* One average per hat part. */
 struct boundary_averages {
     int64_t count;
-    int32_t *node;        /* count: the boundary node a */
-    double *area;         /* count: integral of N_a, m or m2 */
-    double *normal;       /* count * dim: mean outward unit normal */
-    double *position;     /* count * dim: integral(N_a X) / integral(N_a), m */
-    int64_t *ptr;         /* count + 1 */
-    int32_t *idx;         /* neighbours, ascending */
-    double *phi;          /* their weights, sum 1 */
-    int64_t *sample_ptr;  /* count + 1: the quadrature points that each average is made of */
-    double *sample_x;     /* sample_ptr[count] * dim, m */
-    double *sample_share; /* their shares, sum 1 for each average */
+    int32_t *node;         /* count: the boundary node a */
+    double *area;          /* count: integral of N_a, m or m2 */
+    double *normal;        /* count * dim: mean outward unit normal */
+    double *position;      /* count * dim: integral(N_a X) / integral(N_a), m */
+    int64_t *ptr;          /* count + 1 */
+    int32_t *idx;          /* neighbours, ascending */
+    double *phi;           /* their weights, sum 1 */
+    int64_t *sample_ptr;   /* count + 1: the quadrature points that each average is made of */
+    double *sample_x;      /* sample_ptr[count] * dim, m */
+    double *sample_share;  /* their shares, sum 1 for each average */
+    int64_t *sample_point; /* of hats: which of the points of boundary_points_build of the same set each is */
 };
 
 /* Build the averages of a facet set; ordered by node, then by facet. STATUS_INPUT when a facet is no face of

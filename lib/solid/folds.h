@@ -23,7 +23,8 @@ enum fold_kind {
     FOLD_NONE,
     FOLD_CELL,   /* a cell is turned over: a node is beyond the opposite side by a tenth of the cell's size */
     FOLD_CREASE, /* the facets that meet at a node (2D) or an edge (3D) have passed through each other */
-    FOLD_CROSSING, /* two parts of the boundary have passed through each other */
+    FOLD_CROSSING, /* two parts of the boundary have passed through each other: by a twentieth of their facets
+                    */
     FOLD_FLAT,     /* cells are inverted between their nodes, but by less: of a sliver, that is soon said */
     FOLD_SUPPORT   /* a free facet at the rim of a plane support has gone through its plane */
 };

@@ -9,7 +9,7 @@ static const double full_turn = 6.28318530717958648;
 /* Positions below this share of the largest coordinate are round-off. */
 static const double round_off = 1e-12;
 
-/* See folds_find_beyond. */
+/* See folds_find_beyond, are_deep. */
 static const double beyond_body = 1e-3, beyond_facet = 0.05;
 static const double turned_share = 0.1; /* see is_turned_over */
 
@@ -199,6 +199,60 @@ static bool goes_through(const struct folds *folds, int64_t f, int64_t g)
     return false;
 }
 
+/* How far facet g reaches behind the plane of facet f; *width receives the length of f (3D: root of twice the
+ * area). */
+static double reach_behind(const struct folds *folds, int64_t f, int64_t g, double *width)
+{
+    int dim = folds->input.dim;
+    double area[3], way[3], deepest = 0.0;
+    const int32_t *node = folds->input.facet + f * dim;
+    fold_area_vector(dim, folds->y, node, area);
+    double size = sqrt(fold_dot(dim, area, area));
+    for (int k = 0; k < dim; k++) {
+        fold_way(dim, at(folds, node[0]), at(folds, folds->input.facet[g * dim + k]), way);
+        deepest = fmax(deepest, -fold_dot(dim, area, way) / size);
+    }
+    *width = dim == 2 ? size : sqrt(size);
+    return deepest;
+}
+
+/* 3D: the least way along which one of the facets can be moved off the other, across two of their edges. */
+static double apart_across_edges(const struct folds *folds, int64_t f, int64_t g)
+{
+    const int32_t *one = folds->input.facet + f * 3, *other = folds->input.facet + g * 3;
+    double least = INFINITY, side[3], beside[3];
+    for (int k = 0; k < 9; k++) {
+        fold_way(3, at(folds, one[k / 3]), at(folds, one[(k / 3 + 1) % 3]), side);
+        fold_way(3, at(folds, other[k % 3]), at(folds, other[(k % 3 + 1) % 3]), beside);
+        double axis[3] = {side[1] * beside[2] - side[2] * beside[1],
+                          side[2] * beside[0] - side[0] * beside[2],
+                          side[0] * beside[1] - side[1] * beside[0]};
+        double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
+        double size2 = fold_dot(3, axis, axis);
+        for (int i = 0; i < 6; i++) {
+            double place = fold_dot(3, axis, at(folds, i < 3 ? one[i] : other[i - 3]));
+            low[i / 3] = fmin(low[i / 3], place);
+            high[i / 3] = fmax(high[i / 3], place);
+        }
+        if (size2 > round_off * fold_dot(3, side, side) * fold_dot(3, beside, beside)) {
+            least = fmin(least, fmin(high[0] - low[1], high[1] - low[0]) / sqrt(size2));
+        }
+    }
+    return least;
+}
+
+/* Whether two facets that meet are through each other by more than a twentieth of the smaller one: so far
+ * must one of them be moved to set them apart. Less is no more than what a field at the nodes is uncertain
+ * by, as conditions and contacts hold averages: a node on a support is beyond its plane by round-off and
+ * more. */
+static bool are_deep(const struct folds *folds, int64_t f, int64_t g)
+{
+    double width[2];
+    double depth = fmin(reach_behind(folds, f, g, &width[0]), reach_behind(folds, g, f, &width[1]));
+    depth = folds->input.dim == 3 ? fmin(depth, apart_across_edges(folds, f, g)) : depth;
+    return depth > beyond_facet * fmin(width[0], width[1]);
+}
+
 /* Whether the boxes of two facets meet along the other axes than the first. */
 static bool boxes_meet(const struct folds *folds, int64_t f, int64_t g)
 {
@@ -252,7 +306,8 @@ static void find_crossings(struct folds *folds, struct fold *fold)
         int64_t f = folds->boxes[i].facet;
         for (int64_t k = i + 1; k < count && folds->boxes[k].low <= folds->boxes[i].high; k++) {
             int64_t g = folds->boxes[k].facet;
-            if (!boxes_meet(folds, f, g) || !(goes_through(folds, f, g) || goes_through(folds, g, f))) {
+            if (!boxes_meet(folds, f, g) || !(goes_through(folds, f, g) || goes_through(folds, g, f)) ||
+                !are_deep(folds, f, g)) {
                 continue;
             }
             if (fold->count++ == 0) {

@@ -48,7 +48,7 @@ static void add_contacts(const struct inertia *inertia, const struct solid_syste
             memset(row, 0, (size_t)size * sizeof *row);
             inertia_add_row(inertia, &average, inertia->normal + hat * inertia->dim, row);
             for (int64_t i = 0; i < size; i++) {
-                double part = contact->stiffness * averages->area[a] * row[i];
+                double part = contact->stiffness[a] * averages->area[a] * row[i];
                 for (int64_t k = 0; k < size && part != 0.0; k++) {
                     matrix[i * size + k] += part * row[k];
                 }

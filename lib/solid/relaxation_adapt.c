@@ -219,6 +219,15 @@ void relaxation_calm(struct relaxation *r, const double *acceleration)
     relaxation_update_time_step(r, r->residual_at, calm_iterations);
 }
 
+/* What contacts may give way at an equilibrium, m: so much of the body's size, and of the largest motion. A
+ * ball that is pressed in by d resists by d^(3/2): to 0.75 percent, then. */
+static const double penetration_of_move = 5e-3;
+
+static double penetration_allowed(const struct relaxation *r)
+{
+    return fmin(r->penetration_allowed, penetration_of_move * r->largest_move);
+}
+
 /* How contacts that can be augmented stand at the last evaluation. */
 struct standing {
     double miss; /* the largest, m: penetration, or a multiplier that presses before the surface is reached */
@@ -226,14 +235,13 @@ struct standing {
     bool idle;    /* and one of them is not needed */
 };
 
-static struct standing stand(const struct relaxation *r)
+static struct standing stand(const struct relaxation *r, double allowed)
 {
     struct standing now = {0.0, false, false};
     for (int64_t c = 0; c < r->system->contact_count; c++) {
         const struct contact *contact = &r->system->contacts[c];
-        double least = contact->stiffness * r->penetration_allowed;
         for (int64_t a = 0; a < contact->count && !contact->penalty_only; a++) {
-            double gap = contact->gap[a];
+            double gap = contact->gap[a], least = contact->stiffness[a] * allowed;
             now.miss = fmax(now.miss, contact->pressure[a] > 0.0 ? fabs(gap) : -gap);
             now.carries = now.carries || contact->multiplier[a] > 0.0;
             now.idle = now.idle || (contact->multiplier[a] > 0.0 && !(contact->pressure[a] > least));
@@ -243,11 +251,12 @@ static struct standing stand(const struct relaxation *r)
 }
 
 /* Move what the penalties carry into the multipliers, so that the next equilibrium penetrates less. */
-static void augment(struct relaxation *r)
+static void augment(struct relaxation *r, double allowed)
 {
     for (int64_t c = 0; c < r->system->contact_count; c++) {
-        (void)contact_augment(&r->system->contacts[c], r->penetration_allowed);
+        (void)contact_augment(&r->system->contacts[c], allowed);
     }
+    r->augmented_step = r->report->steps;
 }
 
 /* An augmentation every T makes the multipliers the integral of the gaps, over T. With a damping c that is
@@ -256,28 +265,32 @@ static void augment(struct relaxation *r)
 void relaxation_follow_contacts(struct relaxation *r)
 {
     double pause = (double)(r->report->steps - r->augmented_step) * r->time_step;
-    if (r->system->contact_count == 0 || r->at_full_load > 0 || r->damping * pause < RELAXATION_PAUSE) {
+    if (r->system->contact_count == 0 || r->damping * pause < RELAXATION_PAUSE) {
         return;
     }
+    bool held = r->at_full_load > 0;
+    double allowed = held ? penetration_allowed(r) : r->penetration_allowed;
     system_measure_contacts(r->system, r->residual_at, false);
-    struct standing now = stand(r);
-    if (now.carries || now.miss > r->penetration_allowed) {
-        augment(r);
-        r->augmented_step = r->report->steps;
+    struct standing now = stand(r, allowed);
+    if (now.miss > allowed || (now.carries && !held)) {
+        augment(r, allowed);
     }
 }
 
 bool relaxation_contacts_hold(struct relaxation *r)
 {
+    double allowed = penetration_allowed(r);
     system_measure_contacts(r->system, r->residual_at, false);
-    struct standing now = stand(r);
-    if (!(now.idle || now.miss > r->penetration_allowed) || r->augmentations == most_augmentations ||
+    struct standing now = stand(r, allowed);
+    r->report->penetration = now.miss;
+    r->report->penetration_allowed = allowed;
+    if (!(now.idle || now.miss > allowed) || r->augmentations == most_augmentations ||
         r->fruitless == most_fruitless) {
         return true;
     }
     r->fruitless = now.miss < 0.8 * r->least_penetration ? 0 : r->fruitless + 1;
     r->least_penetration = fmin(r->least_penetration, now.miss);
-    augment(r);
+    augment(r, allowed);
     r->augmentations++;
     r->best_error = INFINITY; /* another problem begins */
     r->best_step = r->report->steps;

@@ -163,7 +163,7 @@ enum status rigid_build(int dim, int64_t facet_count, const double *corners, boo
     TRY(number_vertices(surface, corners, error));
     TRY(make_normals(surface, flip, error));
     TRY(rigid_join_facets(surface, error));
-    TRY(rigid_fill_bins(surface, &box, error));
+    TRY(rigid_grow_tree(surface, error));
 done:
     if (status != STATUS_OK) {
         rigid_free(surface);
@@ -181,7 +181,8 @@ void rigid_free(struct rigid_surface *surface)
     free(surface->is_rim);
     free(surface->is_smooth);
     free(surface->edge_is_rim);
-    free(surface->start);
-    free(surface->in_bin);
+    free(surface->turn);
+    free(surface->branch);
+    free(surface->in_order);
     *surface = (struct rigid_surface){0};
 }

@@ -8,6 +8,13 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+/* A box around facets, and two branches that share them out, or none. */
+struct rigid_branch {
+    double low[3], high[3]; /* m */
+    int64_t first, end;     /* its facets: in_order[first] to before in_order[end] */
+    int64_t second;         /* 0: a leaf; else the other branch, the first one being the next */
+};
+
 struct rigid_surface {
     int dim;
     int64_t vertex_count, facet_count;
@@ -20,11 +27,10 @@ struct rigid_surface {
     bool *is_smooth;     /* vertex_count: no facet there turns 22.5 degrees or more from the mean normal */
     bool *is_rim;        /* vertex_count: 2D an end of a curve, 3D on an edge without neighbour */
     bool *edge_is_rim;   /* 3D: facet_count * 3, no neighbour */
-    /* Uniform bins over the facets' boxes. */
-    double origin[3], bin; /* lower corner; edge of a bin, m */
-    int64_t bins[3];       /* 1 beyond dim */
-    int64_t *start;        /* CSR over bins, the last axis fastest */
-    int32_t *in_bin;
+    double *turn;        /* vertex_count: largest angle of a facet there with the mean normal, rad */
+    struct rigid_branch *branch; /* branch_count: a tree of boxes, its root first */
+    int64_t branch_count;
+    int32_t *in_order; /* facet_count: the facets as the branches have them */
 };
 
 /* Build from corner coordinates: corners[facet_count * dim * dim], m. Each facet's normal is (dy, -dx) of its
@@ -40,8 +46,8 @@ void rigid_free(struct rigid_surface *surface);
 struct rigid_contact {
     bool found;       /* false: nothing within reach, or x lies beyond an open rim, where the surface ends */
     double distance;  /* how far x may move before contact can begin: the unsigned distance to the closest
-                         point; beyond a rim, that to being over the surface or level with it, whichever is
-                         less, and at a corner of a rim in 3D 0; `reach` when nothing is within */
+                         point; beyond a rim, that to being over the facets there or level with them,
+                         whichever is less; `reach` when nothing is within */
     double gap;       /* signed distance: positive on the body's side, m */
     double normal[3]; /* unit, the direction in which the gap grows */
     double smooth[3]; /* unit, the same, but turning evenly along facets between smooth vertices */

@@ -1,4 +1,4 @@
-/* The closest point of a rigid surface: rings of bins around the point; see rigid.h. */
+/* The closest point of a rigid surface, by its tree of boxes; see rigid.h. */
 #include "solid/rigid.h"
 
 #include <math.h>
@@ -12,6 +12,8 @@ static const double tie = 1e-12;
 
 /* Offsets and distances below this part of the extent are round-off. */
 static const double round_off = 1e-12;
+
+enum { MOST_DEPTH = 64 }; /* of the tree: halves of at most INT32_MAX facets */
 
 struct nearest {
     int64_t facet;    /* -1: none yet */
@@ -163,53 +165,40 @@ static void consider(const struct rigid_surface *surface, int64_t f, const doubl
     }
 }
 
-/* Consider the facets of the bins at distance `ring` from bin at[3]. */
-static void visit_ring(const struct rigid_surface *surface, const int64_t at[3], int64_t ring,
-                       const double *x, struct nearest *nearest)
+/* Squared distance from x to the box of a branch. */
+static double box_distance2(int dim, const struct rigid_branch *branch, const double *x)
 {
-    int64_t low[3], high[3];
-    for (int a = 0; a < 3; a++) {
-        low[a] = at[a] > ring ? at[a] - ring : 0;
-        high[a] = at[a] + ring < surface->bins[a] ? at[a] + ring : surface->bins[a] - 1;
+    double sum = 0.0;
+    for (int a = 0; a < dim; a++) {
+        double out = fmax(fmax(branch->low[a] - x[a], x[a] - branch->high[a]), 0.0);
+        sum += out * out;
     }
-    for (int64_t i = low[0]; i <= high[0]; i++) {
-        for (int64_t j = low[1]; j <= high[1]; j++) {
-            bool whole = llabs(i - at[0]) == ring || llabs(j - at[1]) == ring;
-            for (int64_t k = low[2]; k <= high[2]; k++) {
-                if (!whole && llabs(k - at[2]) != ring) {
-                    continue;
-                }
-                int64_t bin = (i * surface->bins[1] + j) * surface->bins[2] + k;
-                for (int64_t s = surface->start[bin]; s < surface->start[bin + 1]; s++) {
-                    consider(surface, surface->in_bin[s], x, nearest);
-                }
-            }
-        }
-    }
+    return sum;
 }
 
-/* The nearest facet point. The rings are centred on the point of the box around the bins that is closest to
- * x: what they have not covered is at least as far from x as sqrt(outside^2 + covered^2). */
+/* The nearest facet point within reach: branches in depth, the nearer of two first, but those whose boxes are
+ * further away than what is found. */
 static struct nearest find_nearest(const struct rigid_surface *surface, const double *x, double reach)
 {
     struct nearest nearest = {.facet = -1, .distance2 = INFINITY};
-    int64_t at[3] = {0, 0, 0}, last = 0;
-    double outside2 = 0.0, margin = INFINITY;
-    for (int a = 0; a < surface->dim; a++) {
-        double place = (x[a] - surface->origin[a]) / surface->bin;
-        double inside = fmin(fmax(place, 0.0), (double)surface->bins[a]);
-        at[a] = (int64_t)inside < surface->bins[a] ? (int64_t)inside : surface->bins[a] - 1;
-        margin = fmin(margin, fmin(inside - (double)at[a], (double)(at[a] + 1) - inside));
-        outside2 += (place - inside) * (place - inside) * surface->bin * surface->bin;
-        last = at[a] > last ? at[a] : last;
-        last = surface->bins[a] - 1 - at[a] > last ? surface->bins[a] - 1 - at[a] : last;
-    }
-    for (int64_t ring = 0; ring <= last; ring++) {
-        visit_ring(surface, at, ring, x, &nearest);
-        double covered = ((double)ring + margin) * surface->bin;
-        if (fmin(nearest.distance2, reach * reach) <= outside2 + covered * covered) {
-            break;
+    int64_t waiting[MOST_DEPTH] = {0};
+    for (int count = 1; count > 0;) {
+        int64_t at = waiting[--count];
+        const struct rigid_branch *branch = &surface->branch[at];
+        double away2 = box_distance2(surface->dim, branch, x);
+        if (away2 > nearest.distance2 * (1.0 + tie) || away2 > reach * reach) {
+            continue;
         }
+        if (branch->second == 0) {
+            for (int64_t i = branch->first; i < branch->end; i++) {
+                consider(surface, surface->in_order[i], x, &nearest);
+            }
+            continue;
+        }
+        bool swap = box_distance2(surface->dim, &surface->branch[branch->second], x) <
+                    box_distance2(surface->dim, branch + 1, x);
+        waiting[count++] = swap ? at + 1 : branch->second;
+        waiting[count++] = swap ? branch->second : at + 1;
     }
     return nearest;
 }
@@ -236,14 +225,21 @@ static double beyond_rim(const struct rigid_surface *surface, const struct neare
                          const double *away, double *least_way)
 {
     int dim = surface->dim;
-    /* At a corner of triangles the plane of the mean normal, where edges in other directions may be near; at
-     * the end of a segment and on an edge that of the facet. */
+    /* At a corner of triangles the plane of the mean normal, from which those of the facets there turn by no
+     * more than an angle; at the end of a segment and on an edge the plane of the facet. */
     bool corner = dim == 3 && nearest->feature < ON_EDGE_0;
     const double *normal = corner ? pseudo_normal(surface, nearest) : surface->normal + nearest->facet * dim;
     double aside[3] = {0.0, 0.0, 0.0}, height = dot(dim, away, normal);
     along(dim, away, -height, normal, aside);
     double beyond = sqrt(dot(dim, aside, aside));
-    *least_way = corner ? 0.0 : fmin(beyond, fabs(height));
+    double over = beyond, level = fabs(height);
+    if (corner) {
+        int64_t vertex = surface->facet[nearest->facet * dim + (int)nearest->feature - ON_CORNER_0];
+        double c = cos(surface->turn[vertex]), s = sin(surface->turn[vertex]);
+        over = beyond * c - fabs(height) * s;
+        level = fabs(height) * c - beyond * s;
+    }
+    *least_way = fmax(0.0, fmin(over, level));
     return beyond;
 }
 

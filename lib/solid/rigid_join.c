@@ -135,6 +135,7 @@ enum status rigid_join_facets(struct rigid_surface *surface, struct error *error
     TRY(NEW_ARRAY(&surface->vertex_normal, surface->vertex_count * surface->dim, error));
     TRY(NEW_ARRAY(&surface->is_rim, surface->vertex_count, error));
     TRY(NEW_ARRAY(&surface->is_smooth, surface->vertex_count, error));
+    TRY(NEW_ARRAY(&surface->turn, surface->vertex_count, error));
     if (surface->dim == 2) {
         TRY(join_segments(surface, error));
     } else {
@@ -152,11 +153,12 @@ enum status rigid_join_facets(struct rigid_surface *surface, struct error *error
         int64_t vertex = surface->facet[c];
         const double *mean = surface->vertex_normal + vertex * surface->dim;
         const double *normal = surface->normal + c / surface->dim * surface->dim;
-        double cosine = 0.0;
+        double cosine = 0.0, half = 0.5 * sqrt(distance2(surface->dim, mean, normal));
         for (int a = 0; a < surface->dim; a++) {
             cosine += mean[a] * normal[a];
         }
         surface->is_smooth[vertex] = surface->is_smooth[vertex] && cosine >= smooth_cosine;
+        surface->turn[vertex] = fmax(surface->turn[vertex], 2.0 * asin(fmin(half, 1.0)));
     }
 done:
     return status;

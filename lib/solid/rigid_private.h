@@ -7,13 +7,12 @@
 
 #include <math.h>
 
-/* Fill vertex_normal, edge_normal, is_smooth and the rims of a surface whose facets and normals are made.
- * STATUS_INPUT where two facets disagree on the side. */
+/* Fill vertex_normal, edge_normal, is_smooth, turn and the rims of a surface whose facets and normals are
+ * made. STATUS_INPUT where two facets disagree on the side. */
 MUST_CHECK enum status rigid_join_facets(struct rigid_surface *surface, struct error *error);
 
-/* Fill origin, bin, bins, start and in_bin; the box is that around the surface. */
-MUST_CHECK enum status rigid_fill_bins(struct rigid_surface *surface, const struct box *box,
-                                       struct error *error);
+/* Fill branch, branch_count and in_order. */
+MUST_CHECK enum status rigid_grow_tree(struct rigid_surface *surface, struct error *error);
 
 static inline double distance2(int dim, const double *a, const double *b)
 {

@@ -409,7 +409,7 @@ static void rims(void **state)
                     NEAR_TO(contact.normal[2], 1.0, 1e-15);
                 } else {
                     assert_false(contact.found);
-                    NEAR_TO(contact.distance, dx > 0.0 && dy > 0.0 ? 0.0 : fmin(fabs(z), dx + dy), 1e-15);
+                    NEAR_TO(contact.distance, fmin(fabs(z), hypot(dx, dy)), 1e-15);
                 }
             }
         }

@@ -15,7 +15,12 @@ static void judge(struct run *run, const struct relaxation_report *report)
             tool_note(run->tool, "%s: estimated error %.2g, not %.2g: round-off admits no less", scene->path,
                       report->error, scene->solver.tolerance);
         }
+        if (report->penetration > report->penetration_allowed) {
+            tool_note(run->tool, "%s: contacts give way by %.2g m, not %.2g m: a finer cloud there may help",
+                      scene->path, report->penetration, report->penetration_allowed);
+        }
         run_folds_judge(run);
+        run_contacts_judge(run, report->penetration_allowed);
         return;
     }
     if (report->outcome == RELAXATION_STALLED) {

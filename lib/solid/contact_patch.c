@@ -1,0 +1,128 @@
+#include "solid/contact_patch.h"
+
+#include "base/memory.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+struct marks {
+    double *force;    /* node_count: of the node's hats, and of the points beneath, N */
+    bool *presses;    /* node_count: a hat of it does */
+    bool *surrounded; /* node_count: it presses, as its neighbours do */
+    bool *near;       /* node_count: that, or beside one that is; only nodes that press */
+};
+
+static void mark_nodes(int dim, const struct facet_set *set, int64_t node_count, struct marks *marks)
+{
+    for (int64_t n = 0; n < node_count; n++) {
+        marks->near[n] = marks->surrounded[n] = marks->presses[n];
+    }
+    for (int64_t f = 0; f < set->count; f++) {
+        const int32_t *node = set->facet + f * dim;
+        bool all = true;
+        for (int k = 0; k < dim; k++) {
+            all = all && marks->presses[node[k]];
+        }
+        for (int k = 0; k < dim && !all; k++) {
+            marks->surrounded[node[k]] = marks->near[node[k]] = false;
+        }
+    }
+    for (int64_t f = 0; f < set->count; f++) {
+        const int32_t *node = set->facet + f * dim;
+        bool any = false;
+        for (int k = 0; k < dim; k++) {
+            any = any || marks->surrounded[node[k]];
+        }
+        for (int k = 0; k < dim && any; k++) {
+            marks->near[node[k]] = true; /* it presses, beside one that is surrounded */
+        }
+    }
+}
+
+/* The vertex of the surface that is deepest inside the body, by no more than a facet of the body is wide. */
+static enum status find_inside(const struct contact *contact, const struct facet_set *set, const double *x,
+                               struct contact_patch *patch, struct error *error)
+{
+    enum status status;
+    int dim = contact->dim;
+    struct rigid_surface body = {0};
+    double *corners = NULL, area = 0.0;
+    TRY(NEW_ARRAY(&corners, set->count * dim * dim, error));
+    for (int64_t i = 0; i < set->count * dim; i++) {
+        for (int a = 0; a < dim; a++) {
+            corners[i * dim + a] = x[(int64_t)set->facet[i] * dim + a];
+        }
+    }
+    for (int64_t a = 0; a < contact->count; a++) {
+        area += contact->averages->area[a] / (double)contact->count;
+    }
+    TRY(rigid_build(dim, set->count, corners, false, &body, error));
+    for (int64_t v = 0; v < contact->surface.vertex_count; v++) {
+        double place[3];
+        rigid_place_from_rest(&contact->place, dim, contact->surface.vertex + v * dim, place);
+        struct rigid_contact closest = rigid_closest(&body, place, dim == 2 ? area : sqrt(area));
+        if (closest.found && -closest.gap > patch->inside) {
+            patch->inside = -closest.gap;
+            for (int a = 0; a < dim; a++) {
+                patch->place[a] = place[a];
+            }
+        }
+    }
+done:
+    rigid_free(&body);
+    free(corners);
+    return status;
+}
+
+/* Add what hat a carries, and its part of what the points beneath carry. Whether it presses: by itself, or
+ * where points do beneath more than half of it. */
+static bool add_force(const struct contact *contact, int64_t a, double *force)
+{
+    const struct boundary_averages *hats = contact->averages;
+    double pressed = 0.0;
+    *force += contact->pressure[a] * hats->area[a];
+    for (int64_t s = hats->sample_ptr[a]; s < hats->sample_ptr[a + 1] && contact->points != NULL; s++) {
+        double pressure = contact->points->pressure[hats->sample_point[s]];
+        *force += pressure * hats->sample_share[s] * hats->area[a];
+        pressed += pressure > 0.0 ? hats->sample_share[s] : 0.0;
+    }
+    return contact->pressure[a] > 0.0 || pressed > 0.5;
+}
+
+enum status contact_patch_find(const struct contact *contact, const struct facet_set *set, int64_t node_count,
+                               const double *x, struct contact_patch *patch, struct error *error)
+{
+    enum status status;
+    struct marks marks = {0};
+    double resolved = 0.0, largest = 0.0;
+    *patch = (struct contact_patch){.node = -1};
+    TRY(NEW_ARRAY(&marks.force, node_count, error));
+    TRY(NEW_ARRAY(&marks.presses, node_count, error));
+    TRY(NEW_ARRAY(&marks.surrounded, node_count, error));
+    TRY(NEW_ARRAY(&marks.near, node_count, error));
+    for (int64_t a = 0; a < contact->count; a++) {
+        int32_t node = contact->averages->node[a];
+        marks.presses[node] = add_force(contact, a, &marks.force[node]) || marks.presses[node];
+    }
+    mark_nodes(contact->dim, set, node_count, &marks);
+    for (int64_t n = 0; n < node_count; n++) {
+        patch->pressing += marks.presses[n];
+        patch->force += marks.force[n];
+        resolved += marks.near[n] ? marks.force[n] : 0.0;
+        if (!marks.near[n] && marks.force[n] > largest) {
+            largest = marks.force[n];
+            patch->node = (int32_t)n;
+        }
+    }
+    if (patch->force > 0.0) {
+        patch->thin = 1.0 - resolved / patch->force;
+    } else {
+        status = find_inside(contact, set, x, patch, error);
+    }
+done:
+    free(marks.force);
+    free(marks.presses);
+    free(marks.surrounded);
+    free(marks.near);
+    return status;
+}

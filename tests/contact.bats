@@ -1,0 +1,60 @@
+# Contact with rigid surfaces that the body's facets are too large for: told, or refused; and found in good time.
+
+bats_require_minimum_version 1.5.0
+
+load common.bash
+
+setup() {
+    cd "$BATS_TEST_TMPDIR"
+    set -o pipefail
+    export OMP_NUM_THREADS=1
+}
+
+# ball RADIUS DEPTH RIM: a quarter of a block, 480 mm wide, with 7 x 7 x 9 nodes; a ball (mm) comes up into its lower side.
+ball() {
+    cloud -d 3 -k regular -n 7,7,9 --box 0,0.24,0,0.24,0,0.24 | shapefn > block.mts 2> note
+    awk -v R="$1" -v rim="$3" -v rings=24 -v sectors=32 -f "$BATS_TEST_DIRNAME/../examples/indentation/probe.awk" |
+        awk '{ print $1, $2, -$3, $7, $8, -$9, $4, $5, -$6 }' > ball.tsv
+    { block quasi-static | sed 's/dim = 2/dim = 3/'
+        printf '[displacement far]\nfacets = xmax, ymax, zmax\ncomponents = 0, 0, 0\n'
+        printf '[displacement x]\nfacets = xmin\nnormal = 0\n[displacement y]\nfacets = ymin\nnormal = 0\n'
+        printf '[contact ball]\nfacets = zmin\nrigid = ball.tsv\nunit = mm\nside = front\ntranslation = 0, 0, %s\ncurve = linear\n' "${2}e-3"
+        printf '[output]\nreactions = yes\n[solver]\ntolerance = 1e-3\n'; } > ball.scene
+}
+
+@test "a ball that goes into the body between its nodes is a verdict, with the place and the remedy" {
+    ball 10 1 9
+    run --separate-stderr mtled ball.scene block.mts
+    [ "$status" -eq 1 ]
+    [ -z "$output" ]
+    [[ "$stderr" == *'ball.scene: [contact ball]: the rigid surface is 0.00'* ]]
+    [[ "$stderr" == *' m inside the body at ('*'), between its nodes, and nothing presses: refine the body there'* ]]
+}
+
+@test "a ball that presses on one node is told; where the force is not asked for, it is not" {
+    ball 100 10 90
+    run --separate-stderr mtled ball.scene block.mts
+    [ "$status" -eq 0 ]
+    [[ "$stderr" == 'mtled: ball.scene: [contact ball]: presses on 1 node, most of it about (0, 0, 0), where that is less than three across: '* ]]
+    [ "$(wc -l <<< "$stderr")" -eq 1 ]
+    sed -i 's/reactions = yes//' ball.scene
+    mtled ball.scene block.mts 2> said > u.dat
+    [ ! -s said ]
+}
+
+@test "a disc over many nodes is not; the default stiffness keeps it out on a graded body as it does on an even one" {
+    awk 'BEGIN { for (i = -24; i <= 24; i++) { a = i * 0.05; printf "%.12g %.12g\n", 0.1 * sin(a), 0.1 * cos(a) - 0.1 } }' > disc.tsv
+    for kind in 'regular -n 41' 'graded -n 21 --ratio 6'; do
+        # shellcheck disable=SC2086
+        cloud -d 2 -k $kind --box 0,0.2,0,0.2 | shapefn > block.mts 2> note
+        { block quasi-static && printf '[displacement far]\nfacets = ymax\ncomponents = 0, 0\n[displacement x]\nfacets = xmin\nnormal = 0\n'
+            printf '[contact disc]\nfacets = ymin\nrigid = disc.tsv\nunit = m\nside = left\ntranslation = 0, 0.01\ncurve = linear\n'
+            printf '[output]\nreactions = yes\ngaps = yes\n[solver]\ntolerance = 1e-4\n'; } > disc.scene
+        mtled disc.scene block.mts 2> said > u.dat
+        [ ! -s said ]
+        rows gaps u.dat | awk '$4 > 0 && ($3 < -5e-5 || $3 > 5e-5) { bad = 1 } END { exit bad }'
+        rows reactions u.dat | awk 'NR == 3 { print $2 }' >> forces
+    done
+    cat forces
+    awk '{ f[NR] = $1 } END { d = f[1] / f[2] - 1; exit !(f[1] > 1 && d < 0.02 && d > -0.02) }' forces
+}
