@@ -15,7 +15,7 @@ static const char usage[] =
     "A body-centred cubic lattice of cubes of LENGTH (2D: one of equilateral triangles) is cut where\n"
     "labels meet (isosurface stuffing, Labelle and Shewchuk 2007). Interfaces are smooth: where two\n"
     "labels, each smoothed by cubic B-splines, have equal shares. Nodes of interfaces are moved by at most\n"
-    ".4 voxels to keep the volume of each label. Angles of cells are between 8 and 165 degrees.\n"
+    ".55 voxels to keep the volume of each label. Angles of cells are between 8 and 165 degrees.\n"
     "\n"
     "Parts of a label that are thinner than LENGTH may be lost, and bodies about a single lattice point are\n"
     "left out; both is told with their volume: --fine keeps more. Where parts of the body hang together by\n"
