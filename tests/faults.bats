@@ -10,6 +10,7 @@ setup() {
     cd "$BATS_TEST_TMPDIR"
     export OMP_NUM_THREADS=1
     mesh > square.msh
+    /usr/bin/python3 "$BATS_TEST_DIRNAME/helper/nifti.py" step slice.nii 1 2
     pressed_block > block.scene
     cloud -d 2 -k jittered -n 5 --box 0,0.1,0,0.1 --jitter 0.2 > cloud.mts
     ipoints cloud.mts > points.mts
@@ -271,6 +272,8 @@ mts print u u.mts
 mts text table.mts
 mts keep u u.mts
 tovtk u.mts
+warp slice.nii u.mts
+sample slice.nii points.mts
 mtled -h
 mts --version
 END

@@ -17,3 +17,5 @@ replay() {
 @test "tables, surfaces and load curves: accepted finite, or refused in one line" { replay table; }
 
 @test "meshes: what passes the check is what it says" { replay msh; }
+
+@test "images: what is read is what the header says, and is written and read back" { replay image; }

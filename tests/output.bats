@@ -11,9 +11,12 @@ setup() {
     printf '[displacement low]\nfacets = ymin\ncomponents = 0, 0\n[displacement top]\nfacets = ymax\ncomponents = 0, -0.005\n' >> run.scene
     mtled run.scene table.mts > u.dat
     cp "$BATS_TEST_DIRNAME"/fuzz/corpus/msh/ascii22 body.msh
+    /usr/bin/python3 "$BATS_TEST_DIRNAME/helper/nifti.py" step slice.nii 1 2
+    "$BUILD/tests/helper/phantom" sphere > sphere.nii.gz
     writers=("nodes -u mm body.msh" "cloud -d 2 -k regular -n 9 --box 0,1,0,1" "ipoints square.mts" "support square.mts"
         "shapefn table.mts" "mtled run.scene table.mts" "interp -f u u.dat" "mts text square.mts" "mts keep nodes.x square.mts"
-        "tovtk u.dat")
+        "tovtk u.dat" "warp slice.nii u.dat" "sample slice.nii square.mts"
+        "voxels -h 6mm sphere.nii.gz" "voxels -h 6mm --surface label_1 sphere.nii.gz")
     printers=("fieldcmp u.dat u.dat" "mts list square.mts" "mts print nodes.x square.mts" "mtled -h" "cloud --version")
     for command in "${writers[@]}" "${printers[@]}"; do # they work, or the tests below mean nothing
         $command > out 2> note || { echo "$command: $(cat note)"; return 1; }
@@ -87,7 +90,7 @@ quiet() {
 @test "a failure in any stage leaves what -o names as it was, and nothing beside it" {
     mkdir folder
     head -c 2000 table.mts > cut.mts
-    for command in "ipoints" "support" "shapefn" "mtled run.scene" "interp -f u" "mts text" "tovtk"; do
+    for command in "ipoints" "support" "shapefn" "mtled run.scene" "interp -f u" "mts text" "tovtk" "warp slice.nii" "sample slice.nii"; do
         echo precious > folder/kept
         run -2 --separate-stderr $command -o folder/kept cut.mts
         [ "$(cat folder/kept)" = precious ]

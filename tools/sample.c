@@ -11,7 +11,7 @@ static const char usage[] =
     "for each point: its coordinates and the image's values there (three for colours). The points are\n"
     "the nodes of a stream, its integration points or other points in it, or the rows of a table. The\n"
     "world axes of the image are those of the points: x to the right, y to the front, z up. Points in 2D\n"
-    "go with an image of one slice in the plane of x and y.\n"
+    "go with an image of one slice: their x and y are the two world axes in it, in their order.\n"
     "\n"
     "With --material the values are turned into stiffness, by a table with rows of a value, E (Pa) and nu,\n"
     "ascending: linear between the rows, constant beyond. With --tissue each image is the probability of a\n"
@@ -283,8 +283,9 @@ static void sample_images(const struct tool *tool, const struct request *request
     struct error error;
     for (int i = 0; i < request->image_count; i++) {
         struct image image;
+        struct image_axes axes;
         tool_read_image(tool, tool->operands[i], &image);
-        check_image_plane(tool, &image, rows->dim);
+        image_to_body(tool, &image, rows->dim, &axes);
         if (request->stiffness && image.components != 1) {
             tool_fail(tool, STATUS_INPUT, "%s: %zu values at a voxel: stiffness comes from one",
                       tool->operands[i], image.components);
@@ -309,6 +310,7 @@ static void find_moduli(const struct tool *tool, const struct tissue *tissue, st
         if (!tissue_moduli(tissue, rows->value + p * rows->cols, moduli[p], &beyond)) {
             char place[96];
             point_text(rows->dim, rows->x + p * rows->dim, place);
+            free(moduli);
             tool_fail(tool, STATUS_INPUT,
                       "%s: row %lld at %s m: no tissue has a probability above 0 there (--outside 1 gives "
                       "points outside "

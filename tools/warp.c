@@ -8,7 +8,8 @@ static const char usage[] =
     "Reads an image (NIfTI-1 or -2, .nii or .nii.gz, - for standard input) and a stream with nodes.x (m),\n"
     "cells and the displacement u (m), and writes the image moved: at each voxel x the value of IMAGE at\n"
     "the place X that moves to x, X + u(X) = x. The world axes of the image are those of the nodes: x to\n"
-    "the right, y to the front, z up. A body in 2D moves an image of one slice in the plane of x and y.\n"
+    "the right, y to the front, z up. A body in 2D moves an image of one slice: its x and y are the two\n"
+    "world axes in the slice, in their order.\n"
     "Scans, colours (RGB) and labels are taken, of any type, size of voxels, order and direction of axes;\n"
     "values keep their type and scaling.\n"
     "\n"
@@ -151,6 +152,7 @@ struct job {
     const struct motion *motion;
     const int32_t *owner, *other; /* the body where the voxels see it; and in its other state, or NULL */
     double tolerance;             /* m */
+    const struct image_axes *axes;
     struct image *result;
 };
 
@@ -204,9 +206,10 @@ static void do_row(const struct job *job, int64_t row, struct report *report)
 {
     struct image *result = job->result;
     int64_t width = (int64_t)result->size[0], height = (int64_t)result->size[1];
+    int64_t j = row % height, k = row / height;
     for (int64_t i = 0; i < width; i++) {
         int64_t v = row * width + i;
-        const double voxel[3] = {(double)i, (double)(row % height), (double)(row / height)};
+        const double voxel[3] = {(double)i, (double)j, (double)k};
         double x[3], place[3];
         image_world(result, voxel, x);
         find_place(job, v, x, place, report);
@@ -215,7 +218,8 @@ static void do_row(const struct job *job, int64_t row, struct report *report)
             continue;
         }
         for (int c = 0; c < 3; c++) { /* to ITK's axes and unit */
-            result->values[3 * v + c] = (c < 2 ? -1e3 : 1e3) * (place[c] - x[c]);
+            int axis = job->axes->world[c];
+            result->values[3 * v + axis] = (axis < 2 ? -1e3 : 1e3) * (place[c] - x[c]);
         }
     }
 }
@@ -296,7 +300,7 @@ static void new_result(const struct tool *tool, const struct image *source, cons
     }
     memcpy(result->size, grid->size, sizeof result->size);
     memcpy(result->to_world, grid->to_world, sizeof result->to_world);
-    result->unit = grid->unit;
+    result->unit = source != NULL ? grid->unit : 1e-3; /* the vectors are in mm, and ITK reads mm */
     result->space = grid->space;
     result->version = grid->version;
 }
@@ -334,6 +338,7 @@ int main(int argc, char *argv[])
     struct image image, like = {0}, result;
     struct cells cells;
     struct motion motion;
+    struct image_axes axes; /* of the grid */
     struct option options[OPTION_COUNT] = {
         [METHOD] = {.letter = 'i', .name = "interpolation", .takes_value = true},
         [LIKE] = {.name = "like", .takes_value = true},
@@ -354,8 +359,15 @@ int main(int argc, char *argv[])
     tool_read(&tool, tool.operands[1], &stream);
     const double *u = find_field(&tool, &stream, request.section, &cells);
     const struct image *grid = options[LIKE].given ? &like : &image;
-    check_image_plane(&tool, &image, cells.dim);
-    check_image_plane(&tool, grid, cells.dim);
+    image_to_body(&tool, &image, cells.dim, &axes);
+    if (options[LIKE].given) {
+        int across = axes.world[2];
+        image_to_body(&tool, &like, cells.dim, &axes);
+        if (across != axes.world[2]) {
+            tool_fail(&tool, STATUS_INPUT, "--like %s: lies in another plane than %s", options[LIKE].value,
+                      tool.operands[0]);
+        }
+    }
     build_motion(&tool, &cells, u, &motion);
     const double *seen = request.inverse ? cells.x : motion.moved;
     int32_t *owner = find_owners(&tool, grid, &cells, seen, &report.doubly), *other = NULL;
@@ -371,14 +383,21 @@ int main(int argc, char *argv[])
         tell_not_finite(&tool, &image, tool.operands[0]);
     }
     new_result(&tool, request.field ? NULL : &image, grid, &result);
-    struct job job = {&request, request.field ? NULL : &image,           {{0}},  &motion, owner,
-                      other,    tolerance * least_step(grid, cells.dim), &result};
+    struct job job = {.request = &request,
+                      .source = request.field ? NULL : &image,
+                      .motion = &motion,
+                      .owner = owner,
+                      .other = other,
+                      .tolerance = tolerance * least_step(grid, cells.dim),
+                      .axes = &axes,
+                      .result = &result};
     image_to_voxel(&image, job.source_voxel);
     do_all(&job, &report);
     tell(&tool, &request, &motion, grid, &report);
     if (request.verbose && !request.field && request.method == IMAGE_NEAREST) {
         tell_label_volumes(&tool, &image, &result, cells.dim);
     }
+    image_from_body(&result, &axes);
     tool_write_image(&tool, &result);
     free(owner);
     free(other);

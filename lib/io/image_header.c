@@ -97,14 +97,20 @@ int nifti_version(const unsigned char *bytes, bool *swapped)
     return 0;
 }
 
-/* Printable characters of a field of text. */
-static void copy_text(char *text, const unsigned char *bytes, int size)
+/* Printable characters of a field of text, '?' for others. */
+static void copy_text(char *text, const unsigned char *bytes, size_t size)
 {
-    int length = 0;
-    for (; length < size && bytes[length] != '\0'; length++) {
-        text[length] = bytes[length] >= ' ' && bytes[length] != 0x7f ? (char)bytes[length] : '?';
+    size_t length = 0;
+    while (length < size && bytes[length] != '\0') {
+        length++;
     }
+    memcpy(text, bytes, length);
     text[length] = '\0';
+    for (size_t i = 0; i < length; i++) {
+        if (text[i] < ' ' || text[i] > '~') {
+            text[i] = '?';
+        }
+    }
 }
 
 void nifti_decode(const unsigned char *bytes, int version, bool swapped, struct nifti *header,

@@ -1,10 +1,11 @@
-/* Inside of lib/io: the header of a NIfTI file, decoded. */
+/* Inside of lib/io: the bytes of an image file, and the header of a NIfTI file, decoded. */
 #ifndef IO_IMAGE_PRIVATE_H
 #define IO_IMAGE_PRIVATE_H
 
 #include "io/image.h"
 
 #include <stdint.h>
+#include <zlib.h>
 
 enum { NIFTI1_HEADER = 348, NIFTI2_HEADER = 540 };
 
@@ -51,5 +52,24 @@ bool nifti_quaternion(double matrix[3][4], double quatern[3], double pixdim[4]);
 
 /* Add a sentence to image->note. */
 void nifti_note(struct image *image, const char *text);
+
+/* The bytes of a file, compressed or not. Not by zlib's gzread, which takes a file without its checksum for
+ * whole where the data end with a block of its own. */
+struct image_source {
+    int descriptor;
+    bool gzip, ended; /* no more input */
+    bool complete;    /* a member of the gzip file has ended, its checksum right */
+    z_stream stream;  /* its next_in and avail_in: what is read and not yet taken */
+    int64_t taken;    /* bytes so far, after decompression */
+    unsigned char buffer[1 << 15];
+};
+
+/* Begin with an open descriptor, which stays open. */
+MUST_CHECK enum status image_source_open(struct image_source *source, int descriptor, struct error *error);
+void image_source_close(struct image_source *source);
+
+/* Take `size` bytes, or *got fewer at the end of a whole file. */
+MUST_CHECK enum status image_source_take(struct image_source *source, void *bytes, size_t size, size_t *got,
+                                         struct error *error);
 
 #endif

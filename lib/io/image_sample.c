@@ -5,6 +5,9 @@
 
 const char *const image_method_names[IMAGE_METHOD_COUNT] = {"nearest", "linear", "cubic"};
 
+/* A place this near to a voxel, in voxels, is its own: what an inverse leaves of one that did not move. */
+static const double on_voxel = 1e-9;
+
 /* Indices and weights along one axis. */
 struct taps {
     int count;
@@ -19,6 +22,7 @@ static size_t clamped(int64_t index, size_t size)
 
 static void find_taps(enum image_method method, double place, size_t size, struct taps *taps)
 {
+    place = fabs(place - rint(place)) < on_voxel ? rint(place) : place;
     double low = method == IMAGE_NEAREST ? floor(place + 0.5) : floor(place), t = place - low;
     int64_t first = (int64_t)low - (method == IMAGE_CUBIC ? 1 : 0);
     double cubic[4] = {t * (-0.5 + t * (1 - 0.5 * t)), 1 + t * t * (-2.5 + 1.5 * t),

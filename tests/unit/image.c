@@ -384,6 +384,33 @@ static void cut_and_damaged(void **state)
     image_free(&image);
 }
 
+/* A file of many blocks, cut within its checksum, which is all that is missing. */
+static void without_checksum(void **state)
+{
+    (void)state;
+    static unsigned char packed[1 << 18];
+    uint32_t random = 1;
+    begin_nifti(&file, 1, false, 100, 100, 10, 2, 8);
+    for (int i = 0; i < 100000; i++) {
+        random = random * 1664525 + 1013904223;
+        append_value(&file, 1, random >> 24);
+    }
+    size_t size = compress_bytes(file.bytes, file.size, packed, sizeof packed);
+    for (size_t missing = 1; missing < 20; missing++) {
+        assert_int_equal(read_bytes(packed, size - missing), STATUS_INPUT);
+    }
+    memcpy(packed + size, "more", 4);
+    assert_int_equal(read_bytes(packed, size + 4), STATUS_INPUT);
+    assert_int_equal(read_bytes(packed, size), STATUS_OK);
+    image_free(&image);
+    /* Two members, one behind the other, are one file. */
+    size_t first = compress_bytes(file.bytes, 1000, packed, sizeof packed);
+    size = first + compress_bytes(file.bytes + 1000, file.size - 1000, packed + first, sizeof packed - first);
+    assert_int_equal(read_bytes(packed, size), STATUS_OK);
+    assert_near(image.values[99999], random >> 24, 0);
+    image_free(&image);
+}
+
 /* Write an image and read it back. */
 static void write_and_read(const struct image *written, bool gzip)
 {
@@ -505,6 +532,7 @@ int main(void)
         cmocka_unit_test(headers_that_lie),
         cmocka_unit_test(other_files),
         cmocka_unit_test(cut_and_damaged),
+        cmocka_unit_test(without_checksum),
         cmocka_unit_test(round_trips),
         cmocka_unit_test(rounding),
         cmocka_unit_test(large),

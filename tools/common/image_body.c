@@ -11,23 +11,58 @@ static const double most_ratio = 100; /* body to image */
 
 enum { LABELS_MOST = 256 };
 
-/* An image that a body in 2D can move: one slice, in the plane of x and y. */
-void check_image_plane(const struct tool *tool, const struct image *image, int dim)
+/* The world axis that voxel axes a and b are square to, -1 for none. */
+static int axis_across(const struct image *image, int a, int b)
 {
+    for (int w = 0; w < 3; w++) {
+        bool across = true;
+        for (int c = a; c <= b; c += b - a) {
+            double length = hypot(hypot(image->to_world[0][c], image->to_world[1][c]), image->to_world[2][c]);
+            across = across && fabs(image->to_world[w][c]) <= 1e-4 * length;
+        }
+        if (across) {
+            return w;
+        }
+    }
+    return -1;
+}
+
+/* The same image with its world axes and voxel axes in the order of the body's, or back. A voxel axis of one
+ * slice may move behind the others without moving values. */
+static void reorder(struct image *image, const struct image_axes *axes, bool back)
+{
+    struct image before = *image;
+    for (int r = 0; r < 3; r++) {
+        image->size[back ? axes->voxel[r] : r] = before.size[back ? r : axes->voxel[r]];
+        for (int c = 0; c < 3; c++) {
+            int world = axes->world[r], voxel = axes->voxel[c];
+            image->to_world[back ? world : r][back ? voxel : c] =
+                before.to_world[back ? r : world][back ? c : voxel];
+        }
+        image->to_world[back ? axes->world[r] : r][3] = before.to_world[back ? r : axes->world[r]][3];
+    }
+}
+
+void image_to_body(const struct tool *tool, struct image *image, int dim, struct image_axes *axes)
+{
+    *axes = (struct image_axes){{0, 1, 2}, {0, 1, 2}};
     if (dim == 3) {
         return;
     }
-    double slope = 0, step = 0;
-    for (int c = 0; c < 2; c++) {
-        slope = fmax(slope, fabs(image->to_world[2][c]));
-        step = fmax(step, hypot(image->to_world[0][c], image->to_world[1][c]));
-    }
-    if (image->size[2] != 1 || !(slope <= 1e-4 * step)) {
+    int flat = image->size[2] == 1 ? 2 : image->size[1] == 1 ? 1 : 0;
+    int a = flat == 0 ? 1 : 0, b = flat == 2 ? 1 : 2, across = axis_across(image, a, b);
+    if (image->size[flat] > 1 || across < 0) {
         tool_fail(tool, STATUS_INPUT,
-                  "the body is in 2D: it moves an image of one slice in the plane of x and y, not one of %zu "
-                  "slices%s",
-                  image->size[2], image->size[2] == 1 ? " in another plane" : "");
+                  "the body is in 2D: it goes with an image of one slice across a world axis, not %s",
+                  image->size[flat] == 1 ? "an oblique one" : "one of several slices");
     }
+    *axes = (struct image_axes){{across == 0 ? 1 : 0, across == 2 ? 1 : 2, across}, {a, b, flat}};
+    reorder(image, axes, false);
+}
+
+void image_from_body(struct image *image, const struct image_axes *axes)
+{
+    reorder(image, axes, true);
 }
 
 /* Determinant of the axes of a grid in dim dimensions, from the world to voxels. */
@@ -56,32 +91,38 @@ double least_step(const struct image *image, int dim)
     return least;
 }
 
-/* Which cell the centre of each voxel lies in, the nodes being at x. */
+/* place[node_count * dim]: the nodes in voxels of the grid. */
+static double *nodes_in_voxels(const struct tool *tool, const struct image *grid, const struct cells *cells,
+                               const double *x)
+{
+    struct error error;
+    int dim = cells->dim;
+    double inverse[3][4], *place;
+    image_to_voxel(grid, inverse);
+    tool_check(tool, NEW_ARRAY(&place, cells->node_count * dim, &error), &error);
+    for (int64_t n = 0; n < cells->node_count; n++) {
+        double world[3] = {0, 0, grid->to_world[2][3]};
+        memcpy(world, x + n * dim, (size_t)dim * sizeof *x);
+        for (int i = 0; i < dim; i++) {
+            place[n * dim + i] = inverse[i][0] * world[0] + inverse[i][1] * world[1] +
+                                 inverse[i][2] * world[2] + inverse[i][3];
+        }
+    }
+    return place;
+}
+
 int32_t *find_owners(const struct tool *tool, const struct image *grid, const struct cells *cells,
                      const double *x, int64_t *doubly)
 {
     struct error error;
     struct cells placed = *cells;
-    int dim = cells->dim;
-    double inverse[3][4], *place;
     int32_t *owner;
     const int64_t size[3] = {(int64_t)grid->size[0], (int64_t)grid->size[1], (int64_t)grid->size[2]};
-    image_to_voxel(grid, inverse);
-    tool_check(tool, NEW_ARRAY(&place, cells->node_count * dim, &error), &error);
+    double *place = nodes_in_voxels(tool, grid, cells, x);
+    int sign = determinant(grid, cells->dim) < 0 ? -1 : 1;
     tool_check(tool, NEW_ARRAY(&owner, size[0] * size[1] * size[2], &error), &error);
-    for (int64_t n = 0; n < cells->node_count; n++) {
-        double world[3] = {0, 0, grid->to_world[2][3]};
-        memcpy(world, x + n * dim, (size_t)dim * sizeof *x);
-        for (int i = 0; i < dim; i++) {
-            place[n * dim + i] = inverse[i][3];
-            for (int j = 0; j < 3; j++) {
-                place[n * dim + i] += inverse[i][j] * world[j];
-            }
-        }
-    }
     placed.x = place;
-    tool_check(tool, raster_cells(&placed, determinant(grid, dim) < 0 ? -1 : 1, size, owner, doubly, &error),
-               &error);
+    tool_check(tool, raster_cells(&placed, sign, size, owner, doubly, &error), &error);
     free(place);
     return owner;
 }
@@ -127,6 +168,23 @@ void check_image_overlap(const struct tool *tool, const struct image *grid, cons
         tool_fail(tool, STATUS_INPUT,
                   "no voxel of the image (%s) lies in the body (%s): another space, or unit?",
                   box_text(&box, grid_text), box_text(&body, body_text));
+    }
+    double *place = nodes_in_voxels(tool, grid, cells, x);
+    int64_t outside = 0;
+    for (int64_t n = 0; n < cells->node_count; n++) {
+        bool within = true;
+        for (int i = 0; i < cells->dim; i++) {
+            double at = place[n * cells->dim + i];
+            within = within && at >= -1 && at <= (double)grid->size[i];
+        }
+        outside += within ? 0 : 1;
+    }
+    free(place);
+    if (outside > 0) {
+        tool_note(tool,
+                  "%lld of %lld nodes of the body lie more than half a voxel outside of the image: is an "
+                  "axis turned?",
+                  (long long)outside, (long long)cells->node_count);
     }
 }
 

@@ -1,0 +1,232 @@
+"""Images for the tests, made and read by nibabel, apart from the programs' own reader.
+
+nifti.py smooth FILE [WAY]     the test image of smooth waves around a cube of 60 mm, 76 x 76 x 76 voxels of 1 mm; WAY: oblique
+                               (anisotropic, turned, left-handed), swapped (axes in another order and direction), coarse
+nifti.py ball FILE             labels: a ball of 20 mm radius, 2, and within 14 mm 5, in that cube; the axes turned
+nifti.py step FILE LOW HIGH    a slice around a square of 100 mm: LOW where x < 50 mm, else HIGH
+nifti.py same A B TOLERANCE    fails unless the values agree to TOLERANCE and type, size and places are equal
+nifti.py reordered A B         fails unless A and B, stored in other orders, hold the same at the same places
+nifti.py moved SCAN RESULT     rms error of the moved test image, and that of the interpolation alone, inside the cube
+nifti.py fields TO BACK        largest distance from x of the place that TO and then BACK lead to, in voxels, inside the cube
+nifti.py volumes FILE          label and ml
+nifti.py change IN OUT WHAT    OUT: IN as int16 scaled, as RGB, as NIfTI-2, big-endian, of 4 dimensions, with a NaN, a middle slice
+nifti.py value FILE I J K      the value of a voxel
+"""
+
+import sys
+
+import nibabel as nib
+import numpy as np
+
+SIDE = 0.06
+
+
+def displacement(x):
+    """The field that the tests' bodies are moved by, m, at x, m: it vanishes at the sides of the cube."""
+    s = np.clip(x / SIDE, 0, 1)
+    bump = np.prod(np.sin(np.pi * s), axis=-1)
+    return 0.004 * np.stack([0.3 * bump, -0.5 * bump * np.cos(2 * s[..., 0]), -bump], axis=-1)
+
+
+def reference(x):
+    """The place that moves to x."""
+    place = x.copy()
+    for _ in range(60):
+        place = x - displacement(place)
+    return place
+
+
+def scan(x):
+    return 100 + 50 * np.sin(300 * x[..., 0]) * np.cos(200 * x[..., 1] + 1) + 30 * np.sin(250 * x[..., 2])
+
+
+def places(image):
+    """World places of the voxels, m."""
+    index = np.stack(np.meshgrid(*[np.arange(n) for n in image.shape[:3]], indexing="ij"), axis=-1)
+    return (index @ image.affine[:3, :3].T + image.affine[:3, 3]) * 1e-3
+
+
+def inside(x, margin=0.002):
+    return np.all((x > margin) & (x < SIDE - margin), axis=-1)
+
+
+def make(path, values, affine):
+    image = nib.Nifti1Image(values, affine)
+    image.header.set_xyzt_units("mm")
+    image.set_qform(affine, 1)
+    image.set_sform(affine, 1)
+    nib.save(image, path)
+
+
+def grid(way):
+    affine = np.eye(4)
+    affine[:3, 3] = -8
+    size = (76, 76, 76)
+    if way == "coarse":
+        affine[:3, :3] *= 2
+        size = (38, 38, 38)
+    if way in ("oblique", "turned"):
+        c, s = np.cos(0.4), np.sin(0.4)
+        turn = np.array([[c, -s, 0], [s, c, 0], [0, 0, 1]]) @ np.array([[1, 0, 0], [0, c, -s], [0, s, c]])
+        size = (90, 60, 110) if way == "oblique" else (77, 77, 77)
+        affine[:3, :3] = turn @ np.diag([-1.2, 1.9, 0.9] if way == "oblique" else [1, 1, 1])
+        affine[:3, 3] = 30 - affine[:3, :3] @ (np.array(size) / 2)
+    return size, affine
+
+
+def cube_image(way=""):
+    size, affine = grid(way)
+    return nib.Nifti1Image(np.zeros(size, np.float32), affine)
+
+
+def smooth(path, way=""):
+    image = cube_image(way)
+    values = scan(places(image)).astype(np.float32)
+    affine = image.affine
+    if way == "swapped":  # k, -i, j
+        affine = affine @ np.array([[0, -1.0, 0, values.shape[0] - 1], [0, 0, 1, 0], [1, 0, 0, 0], [0, 0, 0, 1]])
+        values = np.ascontiguousarray(values.transpose(2, 0, 1)[:, ::-1, :])
+    make(path, values, affine)
+
+
+def ball(path):
+    image = cube_image("turned")
+    radius = np.linalg.norm(places(image) - SIDE / 2, axis=-1)
+    make(path, (2 * (radius < 0.02) + 3 * (radius < 0.014)).astype(np.int16), image.affine)
+
+
+def step(path, low, high):
+    affine = np.eye(4)
+    affine[:3, 3] = -5.5, -5.5, 7
+    values = np.full((111, 111, 1), float(low), np.float32)
+    values[56:] = float(high)
+    make(path, values, affine)
+
+
+def same(first, second, tolerance):
+    a, b = nib.load(first), nib.load(second)
+    if a.shape != b.shape or a.get_data_dtype() != b.get_data_dtype():
+        sys.exit(f"{a.shape} {a.get_data_dtype()}, {b.shape} {b.get_data_dtype()}")
+    if not np.allclose(a.affine, b.affine, rtol=0, atol=1e-5):
+        sys.exit("other places")
+    x, y = np.asarray(a.dataobj), np.asarray(b.dataobj)
+    if x.dtype.fields:
+        x, y = (np.stack([v[n] for n in "RGB"]).astype(int) for v in (x, y))
+    if not np.allclose(x, y, rtol=0, atol=float(tolerance), equal_nan=True):
+        sys.exit(f"differ by {np.nanmax(np.abs(x - y.astype(float)))}")
+
+
+def reordered(first, second):
+    a, b = nib.as_closest_canonical(nib.load(first)), nib.as_closest_canonical(nib.load(second))
+    if not np.allclose(a.affine, b.affine, atol=1e-5) or np.abs(a.get_fdata() - b.get_fdata()).max() > 1e-4:
+        sys.exit("not the same")
+
+
+def trilinear(values, v):
+    low = np.clip(np.floor(v).astype(int), 0, np.array(values.shape[:3]) - 2)
+    t = v - low
+    total = 0
+    for corner in range(8):
+        bits = np.array([corner & 1, corner >> 1 & 1, corner >> 2 & 1])
+        weight = np.prod(np.where(bits == 1, t, 1 - t), axis=-1)
+        index = low + bits
+        value = values[index[..., 0], index[..., 1], index[..., 2]]
+        total = total + (weight if value.ndim == weight.ndim else weight[..., None]) * value
+    return total
+
+
+def to_voxels(image, x):
+    inverse = np.linalg.inv(image.affine)
+    return x * 1e3 @ inverse[:3, :3].T + inverse[:3, 3]
+
+
+def moved(source, result):
+    a, b = nib.load(source), nib.load(result)
+    x = places(b)
+    place = reference(x)
+    exact, within = scan(place), inside(x)
+    best = trilinear(a.get_fdata(), to_voxels(a, place))
+    print("%.6g %.6g" % tuple(np.sqrt(np.mean((v - exact)[within] ** 2)) for v in (b.get_fdata(), best)))
+
+
+def fields(to, back):
+    a, b = nib.load(to), nib.load(back)
+    assert a.header["dim"].tolist() == [5, *a.shape[:3], 1, 3, 1, 1] and a.header["intent_code"] == 1007
+    assert a.get_data_dtype() == np.float32
+    ras = np.array([-1e-3, -1e-3, 1e-3])
+    x = places(a)
+    first = x + a.get_fdata()[:, :, :, 0] * ras
+    second = first + trilinear(b.get_fdata()[:, :, :, 0], to_voxels(b, first)) * ras
+    error = np.linalg.norm((second - x) @ np.linalg.inv(a.affine)[:3, :3].T * 1e3, axis=-1)
+    place = np.linalg.norm(first - reference(x), axis=-1) * 1e3
+    print("%.6g %.6g" % (error[inside(x)].max(), place[inside(x)].max()))
+
+
+def volumes(path):
+    image = nib.load(path)
+    labels, counts = np.unique(np.asarray(image.dataobj), return_counts=True)
+    for label, count in zip(labels, counts):
+        print(label, count * abs(np.linalg.det(image.affine[:3, :3])) * 1e-3)
+
+
+def change(source, path, what):
+    a = nib.load(source)
+    values = a.get_fdata()
+    if what == "scaled":
+        values = np.round(values * 4)
+        image = nib.Nifti1Image(values.astype(np.int16), a.affine, a.header)
+        image.set_data_dtype(np.int16)
+        image.header.set_slope_inter(0.25, 3)
+    elif what == "rgb":
+        colours = np.zeros(values.shape, dtype=[("R", "u1"), ("G", "u1"), ("B", "u1")])
+        for name, factor in zip("RGB", (1, 0.5, 0.25)):
+            colours[name] = np.clip(values * factor, 0, 255)
+        image = nib.Nifti1Image(colours, a.affine)
+    elif what == "second":
+        image = nib.Nifti2Image(values.astype(np.float64), a.affine)
+        image.set_data_dtype(np.float64)
+    elif what == "big":
+        image = nib.Nifti1Image(values.astype(">f4"), a.affine, nib.Nifti1Header(endianness=">"))
+    elif what == "volumes":
+        image = nib.Nifti1Image(np.stack([values, values], axis=-1).astype(np.float32), a.affine)
+    elif what == "nan":
+        values[38, 38, 38] = np.nan
+        image = nib.Nifti1Image(values.astype(np.float32), a.affine)
+    elif what == "slice":
+        image = nib.Nifti1Image(values[:, :, 38:39].astype(np.float32), a.affine)
+    elif what == "sagittal":
+        image = nib.Nifti1Image(values[38:39].astype(np.float32), a.affine)
+    elif what == "coronal":
+        image = nib.Nifti1Image(values[:, 38, :, None].astype(np.float32), a.affine[:, [0, 2, 1, 3]])
+    elif what in ("m", "um"):
+        scale = {"m": 1e-3, "um": 1e3}[what]
+        image = nib.Nifti1Image(values.astype(np.float32), np.diag([scale, scale, scale, 1]) @ a.affine)
+        image.header.set_xyzt_units({"m": "meter", "um": "micron"}[what])
+    elif what == "far":
+        shift = np.eye(4)
+        shift[:3, 3] = 500
+        image = nib.Nifti1Image(values.astype(np.float32), shift @ a.affine)
+    else:
+        sys.exit(f"no change '{what}'")
+    if what not in ("m", "um"):
+        image.header.set_xyzt_units("mm")
+    if what == "scaled":  # nibabel scales when it writes: the stored numbers are put in as they are
+        image.header["scl_slope"], image.header["scl_inter"] = 0.25, 3
+        with open(path, "wb") as file:
+            header = image.header.copy()
+            header["vox_offset"] = 352
+            file.write(header.binaryblock + b"\0\0\0\0" + values.astype("<i2").tobytes(order="F"))
+        return
+    nib.save(image, path)
+
+
+def value(path, i, j, k):
+    image = nib.load(path)
+    values = image.get_fdata()
+    value = values.reshape(values.shape + (1,) * (3 - values.ndim))[int(i), int(j), int(k)]
+    print(*["%.9g" % v for v in np.atleast_1d(value).ravel()])
+
+
+if __name__ == "__main__":
+    {"smooth": smooth, "ball": ball, "step": step, "same": same, "reordered": reordered, "moved": moved, "fields": fields,
+     "volumes": volumes, "change": change, "value": value}[sys.argv[1]](*sys.argv[2:])

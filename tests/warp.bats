@@ -1,0 +1,291 @@
+# warp: images moved by a displacement, judged by nibabel and by plastimatch, a program of others.
+
+bats_require_minimum_version 1.5.0
+
+load common.bash
+
+nifti() { /usr/bin/python3 "$BATS_TEST_DIRNAME/helper/nifti.py" "$@"; }
+
+# with_u FILE AWK: stream FILE with a section u, the components printed by AWK from each row of nodes.x.
+with_u() {
+    mts print nodes.x "$1" | awk "{ $2 }" OFMT=%.17g > u.rows
+    mts text "$1" | awk -v rows="$(wc -l < u.rows)" -v cols="$(awk '{ print NF; exit }' u.rows)" '
+        /^# end/ { printf "# u f8 %d %d enc=text unit=m\n", rows, cols
+                   while ((getline line < "u.rows") > 0) print line
+                   printf "\n\n# end %d\n", $3 + 1; next }
+        { print }'
+}
+
+# A cube of 60 mm, moved by the field of nifti.py.
+smooth_u='s = .06; pi = atan2(0, -1); b = .004 * sin(pi * $1 / s) * sin(pi * $2 / s) * sin(pi * $3 / s)
+    printf "%.17g %.17g %.17g\n", .3 * b, -.5 * b * cos(2 * $1 / s), -b'
+
+setup() {
+    cd "$BATS_TEST_TMPDIR"
+    set -o pipefail
+    cloud -d 3 -k jittered -n 13 --box 0,0.06,0,0.06,0,0.06 --jitter 0.12 > cube.mts
+    with_u cube.mts "$smooth_u" > u.dat
+}
+
+setup_file() {
+    cd "$BATS_FILE_TMPDIR"
+    nifti smooth scan.nii.gz
+    nifti ball ball.nii.gz
+}
+
+@test "usage, and wrong command lines" {
+    scan=$BATS_FILE_TMPDIR/scan.nii.gz
+    for arguments in "" "$scan u.dat more" "--nonsense $scan u.dat" "-i quintic $scan u.dat" "--fill x $scan u.dat" \
+        "--field --fill 1 $scan u.dat" "--field -i linear $scan u.dat" "--frame -1 $scan u.dat" "-o x.png $scan u.dat" \
+        "missing.nii u.dat" ". u.dat" "$scan missing.dat" "u.dat u.dat" "$scan $scan"; do
+        run -2 --separate-stderr warp $arguments < /dev/null
+        [[ "$stderr" == "warp: "* && ${#stderr_lines[@]} -eq 1 ]] || { echo "$arguments: $stderr"; false; }
+        [ -z "$output" ]
+    done
+    refused 2 "standard input cannot be read twice" warp - - < "$scan"
+    refused 2 "no section u.frame.3" warp --frame 3 "$scan" u.dat
+}
+
+@test "a known field: the error is that of the interpolation, however the image lies in space" {
+    for way in "" oblique swapped coarse; do
+        nifti smooth scan.nii.gz $way
+        warp -o moved.nii.gz scan.nii.gz u.dat
+        nifti moved scan.nii.gz moved.nii.gz > errors
+        awk '{ exit !(NF == 2 && $2 > .01 && $1 <= 1.01 * $2) }' errors || { echo "$way: $(cat errors)"; false; }
+    done
+    warp -i cubic -o cubic.nii.gz "$BATS_FILE_TMPDIR/scan.nii.gz" u.dat
+    nifti moved "$BATS_FILE_TMPDIR/scan.nii.gz" cubic.nii.gz | awk '{ exit !($1 <= .1 * $2) }'
+}
+
+@test "the order and direction of the axes do not matter" {
+    nifti smooth other.nii swapped
+    warp "$BATS_FILE_TMPDIR/scan.nii.gz" u.dat > first.nii.gz
+    warp other.nii u.dat > second.nii.gz
+    nifti reordered first.nii.gz second.nii.gz
+}
+
+@test "fields to and back agree to .05 voxel, and lead to the places of the known field" {
+    for way in "" oblique; do
+        nifti smooth scan.nii.gz $way
+        warp --field scan.nii.gz u.dat > to.nii.gz
+        warp --field --inverse scan.nii.gz u.dat > back.nii.gz
+        nifti fields to.nii.gz back.nii.gz > distances
+        awk '{ exit !(NF == 2 && $1 < .05 && $2 < .02) }' distances || { echo "$way: $(cat distances)"; false; }
+    done
+    run --separate-stderr warp -v -o moved.nii.gz scan.nii.gz u.dat
+    [[ $stderr == *"place and inverse agree to "* ]]
+    awk '/agree to/ { split($0, part, "agree to "); exit !(part[2] + 0 < .05) }' <<< "$stderr"
+}
+
+@test "plastimatch applies our field to the scan and gets our image" {
+    for way in "" oblique; do
+        nifti smooth scan.nii.gz $way
+        warp --fill 0 -o ours.nii.gz scan.nii.gz u.dat
+        warp -o open.nii.gz scan.nii.gz u.dat
+        warp --field -o field.nii.gz scan.nii.gz u.dat
+        plastimatch warp --input scan.nii.gz --xf field.nii.gz --output-img theirs.nii.gz > said
+        nifti same open.nii.gz theirs.nii.gz 0.002
+        run -1 nifti same ours.nii.gz theirs.nii.gz 0.002
+        run -1 nifti same scan.nii.gz theirs.nii.gz 5
+    done
+    # And back: what was moved is brought back by the field of the inverse.
+    nifti smooth scan.nii.gz
+    warp -i cubic -o moved.nii.gz scan.nii.gz u.dat
+    warp --inverse -o ours.nii.gz moved.nii.gz u.dat
+    warp --field --inverse -o field.nii.gz scan.nii.gz u.dat
+    plastimatch warp --input moved.nii.gz --xf field.nii.gz --output-img theirs.nii.gz > said
+    nifti same ours.nii.gz theirs.nii.gz 0.002
+    nifti same scan.nii.gz theirs.nii.gz 2.5
+}
+
+@test "volumes of labels follow J" {
+    # J = 1.15 * .9 * .98
+    with_u cube.mts 'printf "%.17g %.17g %.17g\n", .15 * ($1 - .03) + .05 * ($2 - .03), -.1 * ($2 - .03), -.02 * ($3 - .03)' > u.dat
+    warp -v -i nearest --vacated 9 "$BATS_FILE_TMPDIR/ball.nii.gz" u.dat 2> said > moved.nii.gz
+    nifti volumes "$BATS_FILE_TMPDIR/ball.nii.gz" > before
+    nifti volumes moved.nii.gz > after
+    paste before after | awk '$1 > 0 && $1 != 9 { if ($3 != $1) exit 1; r = $4 / $2 / (1.15 * .9 * .98); if (r < .99 || r > 1.01) exit 1; n++ }
+        END { exit n != 2 }'
+    # What is told is what nibabel counts.
+    awk 'NR == FNR { v[$1] = $2; next } /label [25]:/ { d = $4 - v[$3 + 0]; if (d * d > 1e-4) exit 1; n++ } END { exit n != 2 }' before said
+}
+
+@test "types: integers with scaling, colours, NIfTI-2, big-endian, metres and micrometres" {
+    with_u cube.mts 'print 0, 0, 0' > still.dat
+    for what in scaled rgb second big m um; do
+        nifti change "$BATS_FILE_TMPDIR/scan.nii.gz" "$what.nii" $what
+        warp -o same.nii "$what.nii" still.dat
+        [ $what = big ] || nifti same "$what.nii" same.nii 1e-9
+        warp -o moved.nii "$what.nii" u.dat
+        run -1 nifti same "$what.nii" moved.nii 0
+    done
+    warp -o a.nii big.nii u.dat
+    warp -o b.nii m.nii u.dat
+    warp -o c.nii "$BATS_FILE_TMPDIR/scan.nii.gz" u.dat
+    [ "$(nifti value a.nii 30 31 32)" = "$(nifti value c.nii 30 31 32)" ]
+    awk -v a="$(nifti value b.nii 30 31 32)" -v b="$(nifti value c.nii 30 31 32)" 'BEGIN { d = a - b; exit !(d * d < 1e-8) }'
+}
+
+@test "same bytes: any number of threads, file or pipe, compressed or not" {
+    scan=$BATS_FILE_TMPDIR/scan.nii.gz
+    OMP_NUM_THREADS=1 warp "$scan" u.dat > one.nii.gz
+    OMP_NUM_THREADS=3 warp -o three.nii.gz "$scan" u.dat
+    cmp one.nii.gz three.nii.gz
+    gzip -dc "$scan" | warp -o plain.nii - u.dat
+    gzip -dc one.nii.gz | cmp - plain.nii
+    warp "$scan" < u.dat | cmp - one.nii.gz
+    gzip -t one.nii.gz
+}
+
+@test "outside of the body: as it was, a fill value, what the body left" {
+    # Twice as flat: it leaves the upper half.
+    with_u cube.mts 'print 0, 0, -.5 * $3' > flat.dat
+    scan=$BATS_FILE_TMPDIR/scan.nii.gz
+    warp -o plain.nii "$scan" flat.dat
+    warp --fill -7 -o filled.nii "$scan" flat.dat
+    warp --vacated -8 -v -o vacated.nii "$scan" flat.dat 2> said
+    warp --vacated -8 --fill -7 -o both.nii "$scan" flat.dat
+    # Voxel (i, j, k) is at (i - 8) mm: 70 is beyond the body, 60 where it was, 30 in it.
+    for file in plain vacated; do [ "$(nifti value $file.nii 30 30 70)" = "$(nifti value "$scan" 30 30 70)" ]; done
+    for file in filled both; do [ "$(nifti value $file.nii 30 30 70)" = -7 ]; done
+    [ "$(nifti value plain.nii 30 30 60)" = "$(nifti value "$scan" 30 30 60)" ]
+    [ "$(nifti value filled.nii 30 30 60)" = -7 ]
+    for file in vacated both; do [ "$(nifti value $file.nii 30 30 60)" = -8 ]; done
+    for file in plain filled vacated both; do [ "$(nifti value $file.nii 30 30 30)" = "$(nifti value plain.nii 30 30 30)" ]; done
+    grep -q '^warp: 111630 voxels were left by the body$' said # 61 x 61 x 30
+}
+
+@test "on the grid of another image" {
+    nifti smooth coarse.nii coarse
+    warp --like coarse.nii -o like.nii "$BATS_FILE_TMPDIR/scan.nii.gz" u.dat
+    warp -o own.nii "$BATS_FILE_TMPDIR/scan.nii.gz" u.dat
+    # Every other voxel of the fine grid.
+    [ "$(nifti value like.nii 15 16 17)" = "$(nifti value own.nii 30 32 34)" ]
+    [ "$(nifti value like.nii 1 2 3)" = "$(nifti value own.nii 2 4 6)" ]
+    run -0 --separate-stderr warp --like "$BATS_FILE_TMPDIR/scan.nii.gz" -o fine.nii coarse.nii u.dat
+    nifti smooth oblique.nii oblique
+    run -0 --separate-stderr warp --like oblique.nii -o fine.nii coarse.nii u.dat
+    [[ $stderr == *"voxels show places outside of the image: 0 there"* ]]
+}
+
+@test "frames on the way" {
+    sed 's/^# u f8/# u.frame.2 f8/' u.dat > frames.dat
+    refused 2 "no section u" warp "$BATS_FILE_TMPDIR/scan.nii.gz" frames.dat
+    warp --frame 2 "$BATS_FILE_TMPDIR/scan.nii.gz" frames.dat > frame.nii.gz
+    warp "$BATS_FILE_TMPDIR/scan.nii.gz" u.dat | cmp - frame.nii.gz
+}
+
+@test "2D: a slice across any axis of the world" {
+    cloud -d 2 -k jittered -n 13 --box 0,0.06,0,0.06 --jitter 0.2 > square.mts
+    with_u square.mts 'print .004, .003' > u2.dat
+    for what in slice coronal; do
+        nifti change "$BATS_FILE_TMPDIR/scan.nii.gz" $what.nii $what
+        warp -o moved.nii $what.nii u2.dat
+        [ "$(nifti value moved.nii 40 41 0)" = "$(nifti value $what.nii 36 38 0)" ]
+        [ "$(nifti value moved.nii 2 2 0)" = "$(nifti value $what.nii 2 2 0)" ]
+    done
+    nifti change "$BATS_FILE_TMPDIR/scan.nii.gz" sagittal.nii sagittal
+    warp -o moved.nii sagittal.nii u2.dat
+    [ "$(nifti value moved.nii 0 40 41)" = "$(nifti value sagittal.nii 0 36 38)" ]
+    warp --field -o field.nii sagittal.nii u2.dat # to the left, to the back, up
+    nifti value field.nii 0 40 41 | awk '{ exit !($1 == 0 && ($2 - 4)^2 < 1e-8 && ($3 + 3)^2 < 1e-8) }'
+    nifti value field.nii 0 1 1 | grep -qx -- '-\?0 -\?0 -\?0'
+    refused 2 "lies in another plane than" warp --like coronal.nii sagittal.nii u2.dat
+    refused 2 "an image of one slice across a world axis, not one of several slices" \
+        warp "$BATS_FILE_TMPDIR/scan.nii.gz" u2.dat
+}
+
+@test "units and spaces that cannot be" {
+    scan=$BATS_FILE_TMPDIR/scan.nii.gz
+    nifti change "$scan" far.nii far
+    refused 2 "no voxel of the image (x 492 to 567, y 492 to 567, z 492 to 567 mm) lies in the body (x 0 to 60, " warp far.nii u.dat
+    # x to the left in one of the two
+    cloud -d 3 -k regular -n 4 --box -0.06,0,0,0.06,0,0.06 > left.mts
+    with_u left.mts 'print 0, 0, 0' > left.dat
+    run -0 --separate-stderr warp -o out.nii "$scan" left.dat
+    [[ $stderr == *"48 of 64 nodes of the body lie more than half a voxel outside of the image"* ]]
+    cloud -d 3 -k regular -n 4 --box 0,60,0,60,0,60 > large.mts
+    with_u large.mts 'print 0, 0, 0' > large.dat
+    refused 2 "more than 100 times larger than the image" warp "$scan" large.dat
+    cloud -d 3 -k regular -n 4 --box 0.0001,0.0009,0.0001,0.0009,0.0001,0.0009 > small.mts
+    with_u small.mts 'print 0, 0, 0' > small.dat
+    refused 2 "no voxel of the image" warp "$scan" small.dat
+}
+
+@test "streams that cannot be" {
+    scan=$BATS_FILE_TMPDIR/scan.nii.gz
+    refused 2 "no section u" warp "$scan" cube.mts
+    sed '/^# u f8/{n;s/^[^ ]*/nan/}' u.dat > bad.dat
+    refused 2 "u: row 0" warp "$scan" bad.dat
+    shortened u u.dat > bad.dat
+    refused 2 "u: 2196 rows for 2197 nodes" warp "$scan" bad.dat
+    mts drop cells u.dat > bad.dat
+    refused 2 "no section cells" warp "$scan" bad.dat
+    cloud -d 3 -k halton -n 50 --box 0,0.06,0,0.06,0,0.06 > points.mts
+    refused 2 "no section" warp "$scan" points.mts
+}
+
+@test "folded cells are told" {
+    with_u cube.mts 'd = ($1 - .03)^2 + ($2 - .03)^2 + ($3 - .03)^2; print d < 1e-6 ? .02 : 0, 0, 0' > fold.dat
+    run -0 --separate-stderr warp -o moved.nii "$BATS_FILE_TMPDIR/scan.nii.gz" fold.dat
+    [[ $stderr == *" cells are folded (the first: row "* ]]
+}
+
+@test "a cloud too poor for gradients: linear in the cells, and told" {
+    cloud -d 3 -k regular -n 2 --box 0,0.06,0,0.06,0,0.06 > cells.mts
+    with_u cells.mts 'print .1 * $2, 0, 0' > linear.dat
+    run -0 --separate-stderr warp -o moved.nii "$BATS_FILE_TMPDIR/scan.nii.gz" linear.dat
+    [[ $stderr == "warp: displacement taken as linear in each cell: "* ]]
+}
+
+@test "images that are not what they say: one line, status 2, no output" {
+    scan=$BATS_FILE_TMPDIR/scan.nii.gz
+    size=$(stat -c %s "$scan")
+    for at in 0 1 9 100 3000 $((size / 2)) $((size - 9)) $((size - 1)); do
+        head -c "$at" "$scan" > cut.nii.gz
+        refused 2 "cut.nii.gz: " warp cut.nii.gz u.dat
+        refused 2 "standard input: " warp - u.dat < cut.nii.gz
+    done
+    nifti change "$scan" volumes.nii volumes
+    refused 2 "holds 2 volumes (4-D)" warp volumes.nii u.dat
+    { head -c $((size / 2)) "$scan"; printf '\377\000\377\000'; tail -c +$((size / 2 + 5)) "$scan"; } > damaged.nii.gz
+    refused 2 "damaged" warp damaged.nii.gz u.dat
+    nifti change "$scan" nan.nii nan
+    run -0 --separate-stderr warp -o moved.nii nan.nii u.dat
+    [[ $stderr == "warp: nan.nii: 1 values are not finite"* ]]
+}
+
+@test "output that cannot be written: status 3, and an existing file stays" {
+    scan=$BATS_FILE_TMPDIR/scan.nii.gz
+    run -3 --separate-stderr bash -c "warp $scan u.dat > /dev/full"
+    [ "$stderr" = "warp: standard output: No space left on device" ]
+    echo precious > kept.nii.gz
+    run -2 warp -o kept.nii.gz "$scan" cube.mts
+    [ "$(cat kept.nii.gz)" = precious ]
+    run -0 bash -c "warp $scan u.dat | head -c 10 > ten"
+}
+
+@test "the result of mtled: a cube pressed by a tenth leaves the upper tenth" {
+    cat > cube.scene << 'END'
+[scene]
+dim = 3
+analysis = quasi-static
+[material body]
+region = body
+E = 3000
+nu = 0.45
+rho = 1000
+[displacement bottom]
+facets = zmin
+components = 0, 0, 0
+[displacement top]
+facets = zmax
+components = 0, 0, -0.006
+END
+    cloud -d 3 -k jittered -n 7 --box 0,0.06,0,0.06,0,0.06 --jitter 0.12 | shapefn 2> note | mtled -q cube.scene > pressed.dat
+    warp -v --vacated -8 "$BATS_FILE_TMPDIR/scan.nii.gz" pressed.dat 2> said > moved.nii.gz
+    [ "$(nifti value moved.nii.gz 38 38 65)" = -8 ] # at 57 mm
+    [ "$(nifti value moved.nii.gz 38 38 59)" != -8 ]
+    awk '/displacement at most/ { split($0, part, "at most "); d = part[2] + 0; exit !(d > 5.9 && d < 8) }' said
+    grep -q ' in 0 voxels, without a place ' said
+}
