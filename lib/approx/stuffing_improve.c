@@ -277,7 +277,8 @@ static void measure(const struct labels *labels, struct stuffing *stuffing, cons
 }
 
 enum status stuffing_improve(const struct labels *labels, const struct stuffing_options *options,
-                             const bool *apart, struct stuffing *stuffing, struct error *error)
+                             const bool *apart, const double *dropped, struct stuffing *stuffing,
+                             struct error *error)
 {
     enum status status;
     struct stuffing_star star = {0};
@@ -287,7 +288,7 @@ enum status stuffing_improve(const struct labels *labels, const struct stuffing_
         stuffing_repair(labels, least_score, 0, stuffing, &star);
     }
     separate(labels, stuffing, &star, apart);
-    TRY(stuffing_volumes(labels, options->keep, apart, &star, stuffing, error));
+    TRY(stuffing_volumes(labels, options->keep, apart, dropped, &star, stuffing, error));
     stuffing_repair(labels, last_score, last_slack * labels_voxel(labels), stuffing, &star);
     measure(labels, stuffing, &star);
 done:
