@@ -59,7 +59,8 @@ void star_move(struct stuffing *stuffing, const struct stuffing_star *star, int6
     double *x = stuffing->x + node * dim, before[3] = {0};
     double score = fmin(star_score(stuffing, star, node), goal);
     memcpy(before, x, (size_t)dim * sizeof *x);
-    for (double share = 1; share > 0.1; share /= 2) {
+    double share = 1;
+    for (int halving = 0; halving < 4; halving++, share /= 2) {
         for (int d = 0; d < dim; d++) {
             x[d] = before[d] + share * (target[d] - before[d]);
         }
