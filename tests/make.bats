@@ -162,6 +162,13 @@ few_solutions=(CONVERGENCE_CASES=block20 SPEED_ERROR_CASES=cube square.sizes=0.0
     fails gmsh foreign FOREIGN_MESHES=cylinder -- foreign/cylinder.msh foreign/cylinder.row foreign/foreign.tsv
 }
 
+@test "voxels: an image of which no cells are made is no row" {
+    mkdir -p build/tests/helper
+    stand_in good > build/tests/helper/phantom
+    chmod +x build/tests/helper/phantom
+    fails voxels voxels VOXELS_SHAPES=sphere -o "$fake/tests/helper/phantom" -- voxels/sphere.row voxels/voxels.tsv
+}
+
 @test "bench: whichever kernel fails" {
     kernels=()
     for file in "$top"/pipelines/bench/*.c; do

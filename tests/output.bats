@@ -12,9 +12,11 @@ setup() {
     mtled run.scene table.mts > u.dat
     cp "$BATS_TEST_DIRNAME"/fuzz/corpus/msh/ascii22 body.msh
     /usr/bin/python3 "$BATS_TEST_DIRNAME/helper/nifti.py" step slice.nii 1 2
+    "$BUILD/tests/helper/phantom" sphere > sphere.nii.gz
     writers=("nodes -u mm body.msh" "cloud -d 2 -k regular -n 9 --box 0,1,0,1" "ipoints square.mts" "support square.mts"
         "shapefn square.mts" "mtled run.scene table.mts" "interp -f u u.dat" "mts text square.mts" "mts keep nodes.x square.mts"
-        "tovtk u.dat" "warp slice.nii u.dat" "sample slice.nii square.mts")
+        "tovtk u.dat" "warp slice.nii u.dat" "sample slice.nii square.mts"
+        "voxels -h 6mm sphere.nii.gz" "voxels -h 6mm --surface label_1 sphere.nii.gz")
     printers=("fieldcmp u.dat u.dat" "mts list square.mts" "mts print nodes.x square.mts" "mtled -h" "cloud --version")
     for command in "${writers[@]}" "${printers[@]}"; do # they work, or the tests below mean nothing
         $command > out 2> note || { echo "$command: $(cat note)"; return 1; }

@@ -53,6 +53,7 @@ press() {
 @test "a sphere: a valid stream, its volume, and the compression of it runs" {
     phantom sphere > sphere.nii.gz
     voxels -h 6mm -v sphere.nii.gz > body.mts 2> said
+    run -1 grep border said
     [ -z "$(mts check body.mts)" ]
     [ "$(names cells.region body.mts)" = label_1 ]
     [ "$(names facets.set body.mts)" = "label_1|outside" ]
@@ -167,6 +168,20 @@ END
     refused 2 "not a place on an axis" voxels -h 4mm -s w=8mm body.nii.gz
     refused 2 "not a place on an axis" voxels -h 4mm -s 8mm body.nii.gz
     refused 2 "for bodies in space" voxels -h 4mm --fine 2mm slice.nii.gz
+}
+
+@test "a body that the image cuts off" {
+    phantom sphere > sphere.nii.gz
+    voxels -h 6mm -s z=0 sphere.nii.gz > flat.mts 2> said
+    run -1 grep border said
+    /usr/bin/python3 - << 'END'
+import gzip
+data = bytearray(gzip.open("sphere.nii.gz").read())
+data[352:354] = (1).to_bytes(2, "little") # a corner
+gzip.open("cut.nii.gz", "w").write(bytes(data))
+END
+    voxels -h 6mm cut.nii.gz 2> said | mts check
+    grep -q "voxels: label_1 reaches the border of the image: the body ends there" said
 }
 
 @test "parts of a group by place: groups" {

@@ -88,6 +88,7 @@ static enum status make(const struct labels *labels, const struct stuffing_optio
 {
     struct lattice lattice;
     bool *apart = NULL;
+    double *dropped = NULL;
     enum status status;
     *stuffing = (struct stuffing){.dim = labels->dim};
     TRY(lattice_make(labels, options, &lattice, error));
@@ -97,14 +98,16 @@ static enum status make(const struct labels *labels, const struct stuffing_optio
     }
     lattice_free(&lattice);
     TRY(status);
-    TRY(stuffing_keep(options, stuffing, &apart, error));
+    TRY(NEW_ARRAY(&dropped, labels->count, error));
+    TRY(stuffing_keep(options, stuffing, &apart, dropped, error));
     if (stuffing->cell_count == 0) {
         TRY(fail(error, STATUS_INPUT, "spacing %g m: no lattice point lies in a label: smaller?",
                  options->spacing));
     }
-    TRY(stuffing_improve(labels, options, apart, stuffing, error));
+    TRY(stuffing_improve(labels, options, apart, dropped, stuffing, error));
 done:
     free(apart);
+    free(dropped);
     if (status != STATUS_OK) {
         stuffing_free(stuffing);
     }

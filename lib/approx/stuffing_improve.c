@@ -59,7 +59,8 @@ void star_move(struct stuffing *stuffing, const struct stuffing_star *star, int6
     double *x = stuffing->x + node * dim, before[3] = {0};
     double score = fmin(star_score(stuffing, star, node), goal);
     memcpy(before, x, (size_t)dim * sizeof *x);
-    for (double share = 1; share > 0.1; share /= 2) {
+    double share = 1;
+    for (int halving = 0; halving < 4; halving++, share /= 2) {
         for (int d = 0; d < dim; d++) {
             x[d] = before[d] + share * (target[d] - before[d]);
         }
@@ -277,7 +278,8 @@ static void measure(const struct labels *labels, struct stuffing *stuffing, cons
 }
 
 enum status stuffing_improve(const struct labels *labels, const struct stuffing_options *options,
-                             const bool *apart, struct stuffing *stuffing, struct error *error)
+                             const bool *apart, const double *dropped, struct stuffing *stuffing,
+                             struct error *error)
 {
     enum status status;
     struct stuffing_star star = {0};
@@ -287,7 +289,7 @@ enum status stuffing_improve(const struct labels *labels, const struct stuffing_
         stuffing_repair(labels, least_score, 0, stuffing, &star);
     }
     separate(labels, stuffing, &star, apart);
-    TRY(stuffing_volumes(labels, options->keep, apart, &star, stuffing, error));
+    TRY(stuffing_volumes(labels, options->keep, apart, dropped, &star, stuffing, error));
     stuffing_repair(labels, last_score, last_slack * labels_voxel(labels), stuffing, &star);
     measure(labels, stuffing, &star);
 done:

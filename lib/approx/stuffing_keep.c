@@ -287,7 +287,7 @@ static void keep_bodies(struct keeping *keeping, bool largest_only)
 }
 
 enum status stuffing_keep(const struct stuffing_options *options, struct stuffing *stuffing, bool **apart,
-                          struct error *error)
+                          double *dropped, struct error *error)
 {
     enum status status;
     int dim = stuffing->dim;
@@ -308,6 +308,8 @@ enum status stuffing_keep(const struct stuffing_options *options, struct stuffin
     }
     keep_bodies(&keeping, options->largest);
     for (int64_t c = 0; c < count; c++) {
+        bool left_out = options->keep[stuffing->label[c]] && !keeping.wanted[c];
+        dropped[stuffing->label[c]] += left_out ? cell_volume(&keeping.cells, c) : 0;
         keeping.group[c] = -1;
     }
     TRY(unpinch(&keeping, &star, error));

@@ -41,8 +41,9 @@ static void coordinates(const struct points *points, int64_t point, double x[])
     int32_t place[3];
     place_of(points, point, place);
     if (points->lattice->dim == 2) {
-        x[0] = points->low[0] + points->spacing * (place[0] / 2 + (place[1] / 2 % 2) * 0.5);
-        x[1] = points->low[1] + points->spacing * sqrt(0.75) * (place[1] / 2);
+        int32_t column = place[0] / 2, row = place[1] / 2;
+        x[0] = points->low[0] + points->spacing * (column + (row & 1) * 0.5);
+        x[1] = points->low[1] + points->spacing * sqrt(0.75) * row;
         return;
     }
     for (int d = 0; d < 3; d++) {

@@ -62,9 +62,10 @@ typedef enum status octree_tell(void *context, const int32_t corner[4][3]);
 MUST_CHECK enum status octree_cells(const struct octree *octree, octree_tell *tell, void *context);
 
 /* Keep the cells of labels that are wanted, without specks, cut apart what hangs together by nodes or edges
- * alone, and find the boundary. (*apart)[node_count], allocated: nodes that have others at the same place. */
+ * alone, and find the boundary. (*apart)[node_count], allocated: nodes that have others at the same place.
+ * dropped[labels]: the volume of bodies that are left out is added, m3. */
 MUST_CHECK enum status stuffing_keep(const struct stuffing_options *options, struct stuffing *stuffing,
-                                     bool **apart, struct error *error);
+                                     bool **apart, double *dropped, struct error *error);
 
 /* Cells at each node and the labels that meet there. */
 enum { STUFFING_MOST_LABELS = 4 };
@@ -94,12 +95,14 @@ void stuffing_repair(const struct labels *labels, double least, double slack, st
 /* Move nodes: where labels meet onto their interfaces, those apart[] away from the others at the same place,
  * poor cells into shape, and interfaces for the volumes of labels. */
 MUST_CHECK enum status stuffing_improve(const struct labels *labels, const struct stuffing_options *options,
-                                        const bool *apart, struct stuffing *stuffing, struct error *error);
-
-/* Correct the volumes of labels by small moves of interfaces, without the nodes apart[]. */
-MUST_CHECK enum status stuffing_volumes(const struct labels *labels, const bool *keep, const bool *apart,
-                                        const struct stuffing_star *star, struct stuffing *stuffing,
+                                        const bool *apart, const double *dropped, struct stuffing *stuffing,
                                         struct error *error);
+
+/* Correct the volumes of labels, those of their voxels less dropped[], by small moves of interfaces, without
+ * the nodes apart[]. */
+MUST_CHECK enum status stuffing_volumes(const struct labels *labels, const bool *keep, const bool *apart,
+                                        const double *dropped, const struct stuffing_star *star,
+                                        struct stuffing *stuffing, struct error *error);
 
 /* Move a node towards `target` as far as its cells allow. */
 void star_move(struct stuffing *stuffing, const struct stuffing_star *star, int64_t node,

@@ -176,7 +176,8 @@ static void voxel_volumes(const struct labels *labels, const bool *keep, double 
 }
 
 enum status stuffing_volumes(const struct labels *labels, const bool *keep, const bool *apart,
-                             const struct stuffing_star *star, struct stuffing *stuffing, struct error *error)
+                             const double *dropped, const struct stuffing_star *star,
+                             struct stuffing *stuffing, struct error *error)
 {
     enum status status;
     struct volumes volumes = {.labels = labels, .stuffing = stuffing, .star = star, .apart = apart};
@@ -186,6 +187,9 @@ enum status stuffing_volumes(const struct labels *labels, const bool *keep, cons
     TRY(NEW_ARRAY(&volumes.place, stuffing->node_count * stuffing->dim, error));
     memcpy(volumes.place, stuffing->x, (size_t)(stuffing->node_count * stuffing->dim) * sizeof(double));
     voxel_volumes(labels, keep, volumes.wanted);
+    for (int32_t l = 0; l < labels->count; l++) {
+        volumes.wanted[l] = fmax(volumes.wanted[l] - dropped[l], 0);
+    }
     for (int sweep = 0; sweep < SWEEPS && find_pressures(&volumes); sweep++) {
         correct_volumes(&volumes);
     }

@@ -9,7 +9,7 @@
 
 static const size_t size_limit = (size_t)1 << 24;
 static const int64_t label_limit = INT32_MAX;
-enum { NAMES_LIMIT = 32767 };
+enum { NAMES_LIMIT = 1000 };
 
 enum status label_table_name(struct label_table *table, const char *text, bool kept, int32_t *name,
                              struct error *error)

@@ -372,6 +372,13 @@ static void specks_and_the_largest_body(void **state)
     options.largest = true;
     stuffing = make(&labels, &options);
     assert_int_equal(count_bodies(&stuffing), 1);
+    /* The sphere does not grow to make up for the cube. */
+    struct cells cells = cells_of(&stuffing);
+    double volume = 0;
+    for (int64_t c = 0; c < cells.count; c++) {
+        volume += cell_volume(&cells, c);
+    }
+    assert_true(fabs(volume / (4.0 / 3 * M_PI * pow(24e-3, 3)) - 1) < 0.01);
     stuffing_free(&stuffing);
     free(shape.label);
 }

@@ -302,6 +302,25 @@ static void check_size(const struct tool *tool, const struct label_image *image,
     }
 }
 
+/* Tell what is kept and reaches the border of the image, where the body is cut off. */
+static void note_border(const struct tool *tool, const struct label_image *image)
+{
+    const int64_t *size = image->labels.size;
+    int32_t label = 0;
+    for (int64_t v = 0; v < size[0] * size[1] * size[2] && label == 0; v++) {
+        const int64_t at[3] = {v % size[0], v / size[0] % size[1], v / size[0] / size[1]};
+        bool border = false;
+        for (int d = 0; d < 3; d++) {
+            border = border || (size[d] > 1 && (at[d] == 0 || at[d] == size[d] - 1));
+        }
+        label = border && image->keep[image->voxel[v]] ? image->voxel[v] : 0;
+    }
+    if (label != 0) {
+        tool_note(tool, "%s reaches the border of the image: the body ends there",
+                  label_image_name(image, label));
+    }
+}
+
 void label_image_read(const struct tool *tool, const char *file, const struct label_image_options *options,
                       struct label_image *image)
 {
@@ -325,6 +344,7 @@ void label_image_read(const struct tool *tool, const char *file, const struct la
     set_labels(tool, &source, image, options->table);
     image_free(&source);
     check_size(tool, image, options->unit > 0);
+    note_border(tool, image);
 }
 
 void label_image_free(struct label_image *image)

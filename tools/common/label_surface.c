@@ -3,6 +3,7 @@
 #include "approx/cells.h"
 #include "output.h"
 
+#include <errno.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -179,14 +180,15 @@ void label_surface_write(const struct tool *tool, const struct stuffing *stuffin
     tool_check(tool, output_open(&output, tool->output, &error), &error);
     int descriptor = dup(output.descriptor);
     FILE *file = descriptor >= 0 ? fdopen(descriptor, "w") : NULL;
-    bool written = false;
+    int reason = errno;
     if (file != NULL) {
+        errno = 0;
         print_surface(tool, file, stuffing, options);
-        written = ferror(file) == 0;
-        written = fclose(file) == 0 && written;
+        reason = ferror(file) != 0 ? errno : 0;
+        reason = fclose(file) != 0 && reason == 0 ? errno : reason;
     }
-    if (!written) {
-        tool_fail(tool, STATUS_SYSTEM, "%s: cannot be written", tool->output);
+    if (reason != 0 || file == NULL) {
+        tool_fail(tool, STATUS_SYSTEM, "%s: %s", tool->output, strerror(reason));
     }
     tool_check(tool, output_commit(&output, &error), &error);
 }

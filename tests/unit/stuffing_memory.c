@@ -1,0 +1,117 @@
+/* Whichever allocation fails while cells are made of labels, or a table of labels is read, the status is
+ * STATUS_SYSTEM and nothing stays allocated. See failing_allocator.h. */
+#include "approx/stuffing.h"
+#include "io/label_table.h"
+
+#include <errno.h>
+#include <omp.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <unistd.h>
+
+#include "failing_allocator.h"
+
+#ifdef FAILING_ALLOCATOR
+
+/* What OpenMP allocates its teams by: counted, never denied. */
+void *memalign(size_t alignment, size_t size)
+{
+    return counted(__libc_memalign(alignment, size));
+}
+
+int posix_memalign(void **memory, size_t alignment, size_t size)
+{
+    *memory = counted(__libc_memalign(alignment, size));
+    return *memory == NULL ? ENOMEM : 0;
+}
+
+static char path[] = "/tmp/labels-XXXXXX";
+
+/* Two cubes that touch by an edge, one of two labels, finer at interfaces. */
+static enum status try_stuffing(struct error *error)
+{
+    static uint16_t label[16 * 16 * 16];
+    static const bool keep[3] = {false, true, true};
+    struct labels labels = {.size = {16, 16, 16}, .label = label, .count = 3, .dim = 3};
+    struct stuffing_options options = {.spacing = 4, .finest = 2, .keep = keep, .largest = true};
+    struct stuffing stuffing = {0};
+    int64_t lost[3];
+    for (int v = 0; v < 16 * 16 * 16; v++) {
+        int i = v % 16, j = v / 16 % 16, k = v / 256;
+        bool low = i > 1 && i < 8 && j > 1 && j<8, high = i> 7 && i < 14 && j > 7 && j < 14;
+        label[v] = (uint16_t)(k > 1 && k < 14 && (low || high) ? 1 + (k > 7) : 0);
+    }
+    for (int d = 0; d < 3; d++) {
+        labels.to_voxel[d][d] = 1;
+    }
+    enum status status = stuffing_make(&labels, &options, &stuffing, error);
+    if (status == STATUS_OK) {
+        status = stuffing_lost(&labels, &stuffing, lost, error);
+    }
+    stuffing_free(&stuffing);
+    return status;
+}
+
+static enum status try_label_table(struct error *error)
+{
+    struct label_table table;
+    enum status status = label_table_read(path, &table, error);
+    label_table_free(&table);
+    return status;
+}
+
+/* Not fail_each: qsort does without memory when it gets none. */
+static void cells(void **state)
+{
+    enum { ENOUGH = 1000000 };
+    struct error error = {""};
+    long failed = 0;
+    (void)state;
+    omp_set_num_threads(1);
+    assert_int_equal(try_stuffing(&error), STATUS_OK); /* OpenMP has what it keeps */
+    before_failure = ENOUGH;
+    watched = true;
+    enum status status = try_stuffing(&error);
+    watched = false;
+    assert_int_equal(status, STATUS_OK);
+    long count = ENOUGH - before_failure;
+    for (long i = 0; i < count; i++) {
+        before_failure = i;
+        alive = 0;
+        watched = true;
+        status = try_stuffing(&error);
+        watched = false;
+        assert_int_equal(alive, 0);
+        assert_true(status == STATUS_OK ||
+                    (status == STATUS_SYSTEM && strstr(error.text, "out of memory") != NULL));
+        failed += status == STATUS_SYSTEM;
+    }
+    assert_true(failed > 40 && failed >= count - 4);
+}
+
+static void tables(void **state)
+{
+    (void)state;
+    int descriptor = mkstemp(path);
+    FILE *file = descriptor < 0 ? NULL : fdopen(descriptor, "w");
+    assert_non_null(file);
+    fputs("1 a\n2-4,7 b -\n5 -\n* rest\n", file);
+    assert_int_equal(fclose(file), 0);
+    fail_each(try_label_table, 6);
+    assert_int_equal(unlink(path), 0);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(cells),
+        cmocka_unit_test(tables),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
+#else
+int main(void)
+{
+    return 0;
+}
+#endif
