@@ -249,6 +249,12 @@ softened() {
     [ ! -s none ]
 }
 
+# freed SCENE-LINES...: the square block with these lines is free to do $what.
+freed() {
+    { block quasi-static; printf '%b\n' "$@"; } > free.scene
+    refused 1 "free.scene: nothing holds the body: it $what: add a [displacement] that forbids that" mtled free.scene "${stream:-square.mts}"
+}
+
 @test "what is free to move or turn is named before the first step" {
     square_msh
     nodes -u mm body.msh 2> note | shapefn > square.mts 2> note
