@@ -21,25 +21,27 @@ static int compare_corners(const void *left, const void *right)
     return a->vertex - b->vertex;
 }
 
-/* Whether two facets at a node are of one side: in 3D they must share an edge there, in 2D they meet anyway.
- */
-static bool same_side(const struct face_table *table, const struct facet_set *set, const struct corner *a,
-                      const struct corner *b)
+bool boundary_same_side(const struct face_table *table, const int32_t *a, const int32_t *b)
 {
     double na[3], nb[3], size;
-    const int32_t *fa = set->facet + a->facet * table->dim, *fb = set->facet + b->facet * table->dim;
     int shared = 0;
     for (int i = 0; i < table->dim; i++) {
         for (int k = 0; k < table->dim; k++) {
-            shared += fa[i] == fb[k];
+            shared += a[i] == b[k];
         }
     }
     if (shared < table->dim - 1) {
         return false;
     }
-    boundary_unit_normal(table, fa, na, &size);
-    boundary_unit_normal(table, fb, nb, &size);
+    boundary_unit_normal(table, a, na, &size);
+    boundary_unit_normal(table, b, nb, &size);
     return na[0] * nb[0] + na[1] * nb[1] + na[2] * nb[2] >= side_cosine;
+}
+
+static bool same_side(const struct face_table *table, const struct facet_set *set, const struct corner *a,
+                      const struct corner *b)
+{
+    return boundary_same_side(table, set->facet + a->facet * table->dim, set->facet + b->facet * table->dim);
 }
 
 /* Number the parts of one node's hat: corners first..last-1 joined through neighbours of one side. */

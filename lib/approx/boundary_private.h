@@ -15,6 +15,10 @@ void boundary_unit_normal(const struct face_table *table, const int32_t *facet, 
 
 /* ---- boundary_hats.c: hats, split where the boundary turns ---- */
 
+/* Whether two facets that meet at a node, given by their nodes, are of one side: in 3D they must share an
+ * edge, in 2D they meet anyway. */
+bool boundary_same_side(const struct face_table *table, const int32_t *a, const int32_t *b);
+
 /* One corner of a facet: which hat part it belongs to. */
 struct corner {
     int32_t node;

@@ -429,6 +429,64 @@ static void node_values(void **state)
     }
 }
 
+/* Whether a face lies on the side x = 0 of the box, there all of it below y = limit. */
+static bool on_side_below(const struct sample *sample, int64_t face, double limit)
+{
+    bool is_there = sample->faces.cell[2 * face + 1] < 0;
+    for (int k = 0; k < sample->dim; k++) {
+        const double *x = sample->cloud.x + (int64_t)sample->faces.node[face * sample->dim + k] * sample->dim;
+        is_there = is_there && fabs(x[0]) < 1e-12 && x[1] < limit;
+    }
+    return is_there;
+}
+
+/* A side that is held in part ends where the held faces do; at the edges of the box, where the boundary
+ * turns, and within a boundary that is held altogether nothing ends. */
+static void ends(void **state)
+{
+    (void)state;
+    for (int dim = 2; dim <= 3; dim++) {
+        struct sample sample = make_sample(dim, true, 5);
+        struct face_table table = face_table(&sample);
+        struct error error;
+        bool *held = sample_array(sample.faces.count, sizeof *held);
+        bool *end = sample_array(sample.cloud.node_count, sizeof *end);
+        GOOD(boundary_find_ends(&table, held, end, &error));
+        for (int64_t f = 0; f < sample.faces.count; f++) {
+            held[f] = on_side_below(&sample, f, 2.0 * sample_size);
+        }
+        GOOD(boundary_find_ends(&table, held, end, &error));
+        for (int64_t f = 0; f < sample.faces.count; f++) {
+            held[f] = sample.faces.cell[2 * f + 1] < 0;
+        }
+        GOOD(boundary_find_ends(&table, held, end, &error));
+        for (int64_t n = 0; n < sample.cloud.node_count; n++) {
+            assert_false(end[n]);
+        }
+        double highest = 0.0;
+        for (int64_t f = 0; f < sample.faces.count; f++) {
+            held[f] = on_side_below(&sample, f, 0.6 * sample_size);
+            for (int k = 0; k < dim && held[f]; k++) {
+                highest = fmax(highest, sample.cloud.x[(int64_t)sample.faces.node[f * dim + k] * dim + 1]);
+            }
+        }
+        assert_true(highest > 0.2 * sample_size);
+        GOOD(boundary_find_ends(&table, held, end, &error));
+        int64_t count = 0;
+        for (int64_t n = 0; n < sample.cloud.node_count; n++) {
+            const double *x = sample.cloud.x + n * dim;
+            count += end[n];
+            if (end[n]) {
+                assert_true(fabs(x[0]) < 1e-12 && x[1] > 0.3 * sample_size && x[1] < 0.6 * sample_size);
+            }
+        }
+        assert_int_equal(count, dim == 2 ? 1 : 5);
+        free(held);
+        free(end);
+        sample_free(&sample);
+    }
+}
+
 static void faults(void **state)
 {
     (void)state;
@@ -475,6 +533,7 @@ int main(void)
         cmocka_unit_test(gentle_and_sharp_turns),
         cmocka_unit_test(whole_sides),
         cmocka_unit_test(node_values),
+        cmocka_unit_test(ends),
         cmocka_unit_test(faults),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -60,15 +60,20 @@ static enum status try_cells(struct error *error)
     return try_body_of(&conforming, error);
 }
 
-static enum status build_averages(struct boundary_averages *averages, struct error *error)
+static struct face_table sample_face_table(void)
 {
-    struct face_table table = {.dim = 2,
+    return (struct face_table){.dim = 2,
                                .node_count = sample.cloud.node_count,
                                .x = sample.cloud.x,
                                .faces = &sample.faces,
                                .per_face = sample.face_rule.points,
                                .lists = &sample.face_neighbours,
                                .phi = sample.face_phi};
+}
+
+static enum status build_averages(struct boundary_averages *averages, struct error *error)
+{
+    struct face_table table = sample_face_table();
     struct facet_set set = {sample.cloud.facet_count, sample.cloud.facets};
     return boundary_averages_build(&table, &set, averages, error);
 }
@@ -79,6 +84,14 @@ static enum status try_boundary(struct error *error)
     enum status status = build_averages(&averages, error);
     boundary_averages_free(&averages);
     return status;
+}
+
+static enum status try_ends(struct error *error)
+{
+    static bool none_held[1 << 12], end[1 << 12];
+    struct face_table table = sample_face_table();
+    assert_true(sample.faces.count < 1 << 12 && sample.cloud.node_count < 1 << 12);
+    return boundary_find_ends(&table, none_held, end, error);
 }
 
 static enum status try_rigid(struct error *error)
@@ -157,6 +170,7 @@ static void boundaries(void **state)
 {
     (void)state;
     fail_each(try_boundary, 12);
+    fail_each(try_ends, 1);
 }
 
 static void rigid_surfaces(void **state)

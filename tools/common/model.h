@@ -63,6 +63,10 @@ struct material_list {
 };
 MUST_CHECK enum status model_materials(const struct model_input *input, struct material_list *list,
                                        struct error *error);
+/* The same with softer cells at the ends of what is held by averages; smoothed cells, one point for each. The
+ * list was filled by model_materials. */
+MUST_CHECK enum status model_soften_ends(const struct model_input *input, struct material_list *list,
+                                         struct error *error);
 void material_list_free(struct material_list *list);
 
 /* The facets of the named groups; the error lists the groups that exist. set->facet is owned by the caller
@@ -84,6 +88,9 @@ MUST_CHECK enum status model_add_curve(const struct model_input *input, const st
 /* The modulus of penalties, Pa: that of pressure waves, but at most `factor` times the shear modulus, so that
  * it does not grow with the bulk modulus; the largest of the body's materials. */
 double model_penalty_modulus(const struct solid_system *system, double factor);
+
+/* Whether displacements are prescribed to averages over the facets of the boundary, not at nodes. */
+bool model_holds_averages(const struct model_input *input);
 
 /* held[boundary.count]: whether all nodes of that face are those of facets that one displacement section
  * names; the caller's to free. */

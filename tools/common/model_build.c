@@ -58,6 +58,9 @@ static enum status build_body(const struct model_input *input, struct solid_syst
     const struct scene_solver *solver = &input->scene->solver;
     int dim = input->cells.dim;
     TRY(model_materials(input, &materials, error));
+    if (input->conforming && model_holds_averages(input)) {
+        TRY(model_soften_ends(input, &materials, error));
+    }
     if (solver->volume == SCENE_NODAL_VOLUME) {
         TRY(list_hats(input, &hat_node, &hat_value, error));
     }

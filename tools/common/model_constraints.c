@@ -135,13 +135,6 @@ done:
     return status;
 }
 
-/* Whether conditions act on hat averages. */
-static bool are_hats(const struct model_input *input)
-{
-    const struct scene_solver *solver = &input->scene->solver;
-    return solver->constraint_points == SCENE_HAT_AVERAGES && solver->constraints == SCENE_EBCIEM;
-}
-
 /* Hold what the hat averages of a set leave free. */
 static enum status add_springs(struct prescription *p, const struct facet_set *set, struct error *error)
 {
@@ -292,7 +285,7 @@ static enum status add_section(struct prescription *p, struct error *error)
     if (section->facets.count > 0) {
         TRY(model_facets(p->input, &section->label, &section->facets, &set, &owned, error));
     }
-    if (section->facets.count > 0 && are_hats(p->input)) {
+    if (section->facets.count > 0 && model_holds_averages(p->input)) {
         TRY(add_hats(p, &set, error));
         TRY(add_springs(p, &set, error));
     } else {

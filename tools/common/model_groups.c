@@ -48,6 +48,12 @@ done:
     return status;
 }
 
+bool model_holds_averages(const struct model_input *input)
+{
+    const struct scene_solver *solver = &input->scene->solver;
+    return solver->constraint_points == SCENE_HAT_AVERAGES && solver->constraints == SCENE_EBCIEM;
+}
+
 /* Mark the faces whose nodes are all stamped with the section's number. */
 static void hold_faces(const struct faces *faces, int dim, const int64_t *stamp, int64_t section, bool *held)
 {
