@@ -16,7 +16,7 @@ paper-mls1.name := linear MLS, 4 points, R = 8 mm, regularised weight, condition
 paper-mmls.name := MMLS mu = 1e-7, 4 points, R = 8 mm, regularised weight, conditions at nodes (as in the paper)
 quartic-mls1.name := linear MLS, 4 points, R = 8 mm, quartic weight, conditions at nodes
 quartic-mmls.name := MMLS mu = 1e-7, 4 points, R = 10 mm, quartic weight, conditions at nodes
-default.name := MMLS, conforming cells, nodal volume, hat averages (default)
+default.name := MMLS, smoothed cells, nodal volume, boundary averages (default)
 calculix.name := CalculiX CPE6, same triangles
 calculix-half.name := CalculiX CPE6, half the size
 paper-mls1.title := linear MLS as in the paper

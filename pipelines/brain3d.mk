@@ -17,7 +17,7 @@ BRAIN3D_LARGE := large-free large
 # What each is called in compare.tsv.
 mls1-at-nodes.name := linear MLS, 4 points, k = 1.4, conditions at nodes, pointwise volume
 mmls-at-nodes.name := MMLS, 4 points, k = 1.8, conditions at nodes, pointwise volume
-small-free.name := MMLS, conforming cells, nodal volume, hat averages (default)
+small-free.name := MMLS, smoothed cells, nodal volume, boundary averages (default)
 calculix-free.name := CalculiX C3D10, same tetrahedra
 large-free.name := the default on a finer mesh (reference)
 small.name := sliding on the skull: default

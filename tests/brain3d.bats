@@ -19,7 +19,7 @@ setup() {
     cd "$BATS_FILE_TMPDIR" || return
 }
 
-@test "the brain settles in its skull: forces balance, no point is turned over, no hat goes through" {
+@test "the brain settles in its skull: forces balance, no point is turned over, no contact node goes through" {
     mts check u.dat
     [ "$(awk '$1 == "steps" { print $2 }' log)" -lt 4000 ]
     awk -f "$BATS_TEST_DIRNAME/../pipelines/stream.awk" -f "$BATS_TEST_DIRNAME/../pipelines/brain3d/balance.awk" \
@@ -27,7 +27,7 @@ setup() {
         !($3 > 0.8 && $4 < 1.2)       { print "J from", $3, "to", $4; failed = 1 }
         !($5 > 0.03 && $5 < 0.09)     { print "pressed in by", $5, "N"; failed = 1 }
         !($7 < 0.01 * $5)             { print $7, "N are missing"; failed = 1 }
-        !($8 < 0.1 && $9 > 2)         { print $9, "hats touch, the deepest by", $8, "mm"; failed = 1 }
+        !($8 < 0.1 && $9 > 2)         { print $9, "contact nodes touch, the deepest by", $8, "mm"; failed = 1 }
         { rows++ }
         END { exit failed || rows != 1 }'
 }

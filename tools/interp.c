@@ -8,7 +8,7 @@ static const char usage[] =
     "\n"
     "Reads a stream with nodes.x (m) and fields at the nodes, and writes one with nodes.x = the\n"
     "points (m) and the fields there. By default the points are the stream's own points.x: the\n"
-    "middles of conforming cells, or others (ipoints -g, --lattice), through the stream's table of\n"
+    "middles of smoothed cells, or others (ipoints -g, --lattice), through the stream's table of\n"
     "shape functions; without earlier sections the defaults of ipoints, support and shapefn are run\n"
     "first. With -p they are those of another file. Where the stream has no table for the points,\n"
     "supports and shape functions are made for them.\n"
@@ -369,7 +369,7 @@ static void find_points(const struct tool *tool, const struct option *options, s
         support = recorded.support;
         stage_fill(tool, stream, "ipoints");
         bool has_table =
-            points->solved.radius == NULL && !points_are_conforming(stream_find(stream, "points.x"));
+            points->solved.radius == NULL && !points_are_smoothed(stream_find(stream, "points.x"));
         if (has_table) {
             stage_fill(tool, stream, "shapefn");
         }

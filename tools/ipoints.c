@@ -7,7 +7,7 @@ static const char usage[] =
     "\n"
     "Reads a stream with nodes.x (m) and cells (see nodes) and adds integration points: points.x (m),\n"
     "points.weight (m2 in 2D, m3 in 3D) and points.cell; and the faces of the cells with quadrature\n"
-    "points on them, facepoints.x (m): all faces for conforming cells, else those of the boundary.\n"
+    "points on them, facepoints.x (m): all faces for smoothed cells, else those of the boundary.\n"
     "\n"
     "Adaptive integration (-a) halves the edges of each cell, or of parts of it, until the integral\n"
     "of the products of the shape functions' gradients over the cell (a matrix, in the Frobenius norm)\n"
@@ -118,7 +118,7 @@ static struct ipoints_options parse(const struct tool *tool, const struct option
             tool_fail(tool, STATUS_INPUT, "--%s is for adaptive integration: give -a too", options[i].name);
         }
     }
-    ipoints.conforming = !options[GAUSS].given && !options[ADAPTIVE].given;
+    ipoints.smoothed = !options[GAUSS].given && !options[ADAPTIVE].given;
     ipoints.given_radius = options[FACTOR].given || options[RADIUS].given;
     if (options[ADAPTIVE].given) {
         ipoints.adaptive = true;

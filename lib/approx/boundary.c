@@ -153,8 +153,8 @@ static void take_node(const struct face_table *table, int64_t part, struct bound
     }
 }
 
-/* The parts that averages are made of: hats, split where the boundary turns or not, and, with `sides`, whole
- * sides after them. */
+/* The parts that averages are made of: boundary averages, split where the boundary turns or not, and, with
+ * `sides`, whole sides after them. */
 static enum status collect_parts(const struct face_table *table, const struct facet_set *set, bool split,
                                  struct boundary_sides *sides, struct corner *corners, int64_t *parts,
                                  struct error *error)
@@ -163,7 +163,7 @@ static enum status collect_parts(const struct face_table *table, const struct fa
     int64_t *group = NULL, count = 2 * set->count * table->dim;
     TRY(boundary_collect_corners(table, set, split, corners, parts, error));
     if (sides != NULL) {
-        sides->hat_count = *parts;
+        sides->node_average_count = *parts;
         TRY(NEW_ARRAY(&group, set->count, error));
         TRY(boundary_add_sides(table, set, split, corners, parts, group, &sides->group_count, error));
         TRY(NEW_ARRAY(&sides->group, *parts, error));
@@ -177,7 +177,7 @@ done:
     return status;
 }
 
-/* All kinds of averages; node_lists == NULL: hat averages. */
+/* All kinds of averages; node_lists == NULL: boundary averages. */
 static enum status build(const struct face_table *table, const struct facet_set *set, bool split,
                          struct boundary_sides *sides, const struct neighbours *node_lists,
                          const double *node_phi, struct boundary_averages *averages, struct error *error)

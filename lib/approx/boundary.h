@@ -28,7 +28,7 @@ struct face_table {
     const double *phi;
 };
 
-/* One average per hat part. */
+/* One boundary average per node and side. */
 struct boundary_averages {
     int64_t count;
     int32_t *node;         /* count: the boundary node a */
@@ -41,7 +41,8 @@ struct boundary_averages {
     int64_t *sample_ptr;   /* count + 1: the quadrature points that each average is made of */
     double *sample_x;      /* sample_ptr[count] * dim, m */
     double *sample_share;  /* their shares, sum 1 for each average */
-    int64_t *sample_point; /* of hats: which of the points of boundary_points_build of the same set each is */
+    int64_t *sample_point; /* of boundary averages: which of the points of boundary_points_build of the same
+                              set each is */
 };
 
 /* Build the averages of a facet set; ordered by node, then by facet. STATUS_INPUT when a facet is no face of
@@ -49,15 +50,15 @@ struct boundary_averages {
 MUST_CHECK enum status boundary_averages_build(const struct face_table *table, const struct facet_set *set,
                                                struct boundary_averages *averages, struct error *error);
 
-/* The same, and after the hats an average over each whole side of the set: a part of it within which facets
- * that share an edge (2D: a node) turn by less than 45 degrees. Hats are split between sides, or not: a hat
- * round an edge then holds both sides together. */
+/* The same, and after the boundary averages an average over each whole side of the set: a part of it within
+ * which facets that share an edge (2D: a node) turn by less than 45 degrees. Boundary averages are split
+ * between sides, or not: a boundary average round an edge then holds both sides together. */
 struct boundary_sides {
-    int64_t hat_count;   /* averages before this one are hats, the others sides */
-    int64_t group_count; /* of groups */
-    int64_t *group;      /* averages.count: of split hats the side, else the piece of the set, connected by
-                            nodes, that each average lies on */
-    bool *flat;          /* averages.count: all of its facets have one normal, to a thousandth */
+    int64_t node_average_count; /* averages before this one are boundary averages, the others sides */
+    int64_t group_count;        /* of groups */
+    int64_t *group; /* averages.count: of split boundary averages the side, else the piece of the set,
+                       connected by nodes, that each average lies on */
+    bool *flat;     /* averages.count: all of its facets have one normal, to a thousandth */
 };
 MUST_CHECK enum status boundary_sides_build(const struct face_table *table, const struct facet_set *set,
                                             bool split, struct boundary_averages *averages,

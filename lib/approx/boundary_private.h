@@ -13,13 +13,13 @@ MUST_CHECK enum status boundary_find_faces(const struct face_table *table, const
 /* Outward unit normal (three components, in 2D the last one 0) and size, m or m2, of a facet. */
 void boundary_unit_normal(const struct face_table *table, const int32_t *facet, double *normal, double *size);
 
-/* ---- boundary_hats.c: hats, split where the boundary turns ---- */
+/* ---- boundary_split.c: boundary averages, split where the boundary turns ---- */
 
 /* Whether two facets that meet at a node, given by their nodes, are of one side: in 3D they must share an
  * edge, in 2D they meet anyway. */
 bool boundary_same_side(const struct face_table *table, const int32_t *a, const int32_t *b);
 
-/* One corner of a facet: which hat part it belongs to. */
+/* One corner of a facet: which part it belongs to. */
 struct corner {
     int32_t node;
     int32_t vertex; /* of the facet */
@@ -27,7 +27,7 @@ struct corner {
     int64_t part;
 };
 
-/* The corners[set->count * dim] of the set, sorted by hat part; with `split`, a node's hat has a part for
+/* The corners[set->count * dim] of the set, sorted by part; with `split`, a node has a part for
  * each side of the boundary there. STATUS_INPUT for a node that is not there. */
 MUST_CHECK enum status boundary_collect_corners(const struct face_table *table, const struct facet_set *set,
                                                 bool split, struct corner *corners, int64_t *part_count,

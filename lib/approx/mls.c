@@ -47,7 +47,7 @@ void mls_work_free(struct mls_work *work)
     *work = (struct mls_work){0};
 }
 
-/* Rows of scratch: those of mls_careful, which are more than those of the kernels, then phi and its
+/* Rows of scratch: those of mls_orthogonal, which are more than those of the kernels, then phi and its
  * gradients.
  */
 enum { ROW_OF_VALUES = MLS_ROWS, SCRATCH_ROWS = MLS_ROWS + 1 + 3 };
@@ -93,7 +93,7 @@ static enum status evaluate(const struct mls *mls, const struct mls_support *sup
     }
     double *phi = result->phi != NULL ? result->phi : scratch + ROW_OF_VALUES * stride;
     double *dphi = result->largest != NULL ? scratch + (ROW_OF_VALUES + 1) * stride : result->dphi;
-    *verdict = mls_careful(mls, support, scratch, stride, phi, dphi);
+    *verdict = mls_orthogonal(mls, support, scratch, stride, phi, dphi);
     if (result->largest != NULL) {
         double most = 0.0;
         for (int64_t j = 0; j < support->count; j++) {

@@ -4,7 +4,7 @@
  * Sums over the neighbours run in the same partial sums whatever the instruction set, and no multiplication
  * is fused with an addition (the Makefile says so for lib/approx): every processor gives the same bits. Where
  * the normal equations lose digits, by a small pivot or a defect of the linear reproduction, the point is
- * left to the orthogonal factorisation of mls_careful(). */
+ * left to the orthogonal factorisation of mls_orthogonal(). */
 #ifndef APPROX_MLS_KERNEL_H
 #define APPROX_MLS_KERNEL_H
 
@@ -29,7 +29,7 @@ struct mls_result {
     double *largest; /* the largest |grad phi|, per unit of x */
 };
 
-/* Evaluate at one point; false when that is left to mls_careful(). scratch[MLS_KERNEL_ROWS * stride]. */
+/* Evaluate at one point; false when that is left to mls_orthogonal(). scratch[MLS_KERNEL_ROWS * stride]. */
 typedef bool mls_kernel(const struct mls *mls, const struct mls_support *support, double *scratch,
                         int64_t stride, const struct mls_result *result);
 

@@ -64,7 +64,7 @@ void mls_restore_linear(int m, int dim, const struct mls_factor *factor, const s
 
 /* Values and, unless NULL, gradients by the factorisation that the condition asks for; scratch[MLS_ROWS *
  * stride], stride at least count + MLS_PADDING. */
-enum mls_verdict mls_careful(const struct mls *mls, const struct mls_support *support, double *scratch,
-                             int64_t stride, double *phi, double *dphi);
+enum mls_verdict mls_orthogonal(const struct mls *mls, const struct mls_support *support, double *scratch,
+                                int64_t stride, double *phi, double *dphi);
 
 #endif

@@ -44,7 +44,7 @@ struct face_averages {
 
 /* Averages of the shape functions over faces, whose quadrature points x are, those of face f in rows f n ...
  * (f + 1) n. By the divergence theorem the mean gradient over a cell is the sum over its faces of such an
- * average times the outward normal, per volume: gradients that are smoothed over conforming cells, for which
+ * average times the outward normal, per volume: gradients that are smoothed over smoothed cells, for which
  * the linear patch test holds to round-off (Chen et al. 2001, on background cells). Errors and threads as
  * shape_table. */
 MUST_CHECK enum status shape_average_faces(const struct mls *mls, const double *nodes, const double *radius,

@@ -13,7 +13,7 @@
 /* Points of a block: its part of the operator should take a part of the second cache only. */
 static int64_t points_of_block(int dim)
 {
-    return dim == 2 ? 64 : PAIRS_MAX_ROWS;
+    return dim == 2 ? 64 : OPERATOR_MAX_ROWS;
 }
 
 static enum material_model model_of(const struct body_input *input, int64_t point)
@@ -57,8 +57,8 @@ static enum status copy_points(const struct body_input *input, struct body *body
     int64_t points = input->point_count;
     TRY(NEW_ARRAY(&body->weight, points + BODY_POINT_PADDING, error));
     TRY(NEW_ARRAY(&body->material, points + BODY_POINT_PADDING, error));
-    TRY(NEW_ARRAY(&body->u, body->node_count * PAIRS_STRIDE(dim), error));
-    if (body->conforming || body->averaged) {
+    TRY(NEW_ARRAY(&body->u, body->node_count * OPERATOR_STRIDE(dim), error));
+    if (body->smoothed || body->averaged) {
         TRY(NEW_ARRAY(&body->F, points * dim * dim + BODY_POINT_PADDING, error));
         TRY(NEW_ARRAY(&body->J, points + BODY_POINT_PADDING, error));
     }
@@ -66,7 +66,7 @@ static enum status copy_points(const struct body_input *input, struct body *body
     memcpy(body->materials, input->materials, (size_t)input->material_count * sizeof *body->materials);
     for (int64_t q = 0; q < points; q++) {
         int64_t from = body->order[q];
-        bool alone = !body->conforming && input->ptr[from + 1] <= input->ptr[from];
+        bool alone = !body->smoothed && input->ptr[from + 1] <= input->ptr[from];
         if (alone || !(input->weight[from] > 0.0)) {
             status = fail(error, STATUS_INPUT, "points.weight: row %lld: no weight or no neighbours",
                           (long long)from);
@@ -102,7 +102,7 @@ done:
 
 /* The rows of the table of gradients are the points; within a block their order is free. */
 static enum status order_rows(const struct body_input *input, struct body *body, int64_t **first_row,
-                              struct pairs_rows *rows, struct error *error)
+                              struct operator_rows *rows, struct error *error)
 {
     enum status status;
     TRY(NEW_ARRAY(first_row, body->block_count + 1, error));
@@ -110,23 +110,23 @@ static enum status order_rows(const struct body_input *input, struct body *body,
         (*first_row)[b] = body->blocks[b].first_point;
     }
     (*first_row)[body->block_count] = body->point_count;
-    *rows = (struct pairs_rows){.node_count = input->node_count,
-                                .row_count = input->point_count,
-                                .ptr = input->ptr,
-                                .idx = input->idx,
-                                .row = body->order,
-                                .block_count = body->block_count,
-                                .first_row = *first_row,
-                                .least_sharing = input->dim};
+    *rows = (struct operator_rows){.node_count = input->node_count,
+                                   .row_count = input->point_count,
+                                   .ptr = input->ptr,
+                                   .idx = input->idx,
+                                   .row = body->order,
+                                   .block_count = body->block_count,
+                                   .first_row = *first_row,
+                                   .least_sharing = input->dim};
 done:
     return status;
 }
 
 /* Waiting for each other costs threads some microseconds a step: each must have more to do than that. A pair
- * has a gradient, or in conforming cells one value. */
+ * has a gradient, or in smoothed cells one value. */
 static int worthwhile_threads(const struct body *body)
 {
-    int64_t by_work = 1 + body->pair_count / (body->conforming ? 30000 * body->dim : 30000);
+    int64_t by_work = 1 + body->pair_count / (body->smoothed ? 30000 * body->dim : 30000);
     int64_t available = omp_get_max_threads();
     return (int)(by_work < available ? by_work : available);
 }
@@ -134,7 +134,7 @@ static int worthwhile_threads(const struct body *body)
 enum status body_build(const struct body_input *input, struct body *body, struct error *error)
 {
     enum status status;
-    struct pairs_input pairs = {.dim = input->dim,
+    struct operator_input op = {.dim = input->dim,
                                 .width = input->dim,
                                 .value = input->dphi,
                                 .passes = input->hat_node != NULL ? 2 : 1};
@@ -146,7 +146,7 @@ enum status body_build(const struct body_input *input, struct body *body, struct
                           .ptr = input->ptr,
                           .idx = input->idx,
                           .dphi = input->dphi,
-                          .conforming = input->conforming != NULL,
+                          .smoothed = input->smoothed != NULL,
                           .kernels = force_kernels_select(NULL, input->dim),
                           .averaged = input->hat_node != NULL};
     if (body->point_count < 1 || body->point_count > INT32_MAX / (body->dim + 1)) {
@@ -155,20 +155,20 @@ enum status body_build(const struct body_input *input, struct body *body, struct
     }
     TRY(order_all(input, body, error));
     TRY(cut_blocks(input, body, error));
-    if (!body->conforming) {
-        TRY(order_rows(input, body, &first_row, &pairs.rows, error));
+    if (!body->smoothed) {
+        TRY(order_rows(input, body, &first_row, &op.rows, error));
     }
     TRY(copy_points(input, body, error));
     if (body->averaged) {
         TRY(nodal_volumes_build(input, body, error));
     }
-    if (!body->conforming) {
-        pairs.place = body->node_place;
-        TRY(pairs_build(&pairs, &body->gradients, error));
+    if (!body->smoothed) {
+        op.place = body->node_place;
+        TRY(sparse_operator_build(&op, &body->gradients, error));
         body->pair_count = body->gradients.pair_count;
     } else {
-        TRY(conforming_build(input->conforming, body, &body->cells, error));
-        body->pair_count = body->cells.faces.pairs.pair_count + body->cells.nodes.pairs.pair_count;
+        TRY(smoothed_cells_build(input->smoothed, body, &body->cells, error));
+        body->pair_count = body->cells.faces.op.pair_count + body->cells.nodes.op.pair_count;
     }
     body->threads = worthwhile_threads(body);
     TRY(body_make_bounds(body, error));
@@ -185,8 +185,8 @@ done:
 void body_free(struct body *body)
 {
     body_free_bounds(body);
-    pairs_free(&body->gradients);
-    conforming_free(&body->cells);
+    sparse_operator_free(&body->gradients);
+    smoothed_cells_free(&body->cells);
     nodal_volumes_free(&body->volumes);
     void *arrays[] = {body->order,  body->weight,     body->materials,  body->material,
                       body->blocks, body->node_order, body->node_place, body->u,

@@ -1,21 +1,21 @@
 /* A body laid out for the force loop, equation (12) of lib/README.md: integration points in blocks of one
  * law, ordered along a Morton curve, and the sparse operator that makes their deformation gradients from
  * parameters: gradients of the shape functions at the points or, for smoothed cells, averages over their
- * faces (conforming.h). Total Lagrangian: all of it in the reference configuration (MTLED: Horton et al.
- * 2010). Any number of threads gives the same bits (pairs.h). */
+ * faces (smoothed_cells.h). Total Lagrangian: all of it in the reference configuration (MTLED: Horton et al.
+ * 2010). Any number of threads gives the same bits (sparse_operator.h). */
 #ifndef SOLID_BODY_H
 #define SOLID_BODY_H
 
 #include "base/chunks.h"
 #include "base/status.h"
-#include "solid/conforming.h"
+#include "solid/smoothed_cells.h"
 #include "solid/material.h"
 
 #include <stdbool.h>
 #include <stdint.h>
 
 /* What a body is made of, in the caller's arrays. Those of the table, ptr, idx, dphi, must outlive it; of
- * conforming cells there is none. */
+ * smoothed cells there is none. */
 struct body_input {
     int dim; /* 2 (plane strain) or 3 */
     int64_t node_count, point_count;
@@ -33,7 +33,7 @@ struct body_input {
     /* For nodal volumes; NULL: the pointwise volumetric law throughout. */
     const int32_t *hat_node; /* point_count * (dim + 1): vertices of the background cell of each point */
     const double *hat_value; /* point_count * (dim + 1): their hat functions at the point, sum 1 */
-    const struct conforming_input *conforming; /* the points are cells, in their order; NULL: any points */
+    const struct smoothed_cells_input *smoothed; /* the points are cells, in their order; NULL: any points */
 };
 
 /* Points are worked on so many at a time; weight, material, J and F have as many entries more, which are
@@ -85,8 +85,8 @@ struct force_kernels;
 struct body {
     int dim;
     int64_t node_count, point_count;
-    int64_t pair_count; /* of point and neighbour; of conforming cells, of face or node and neighbour */
-    const int64_t *ptr; /* the caller's table; NULL for conforming cells */
+    int64_t pair_count; /* of point and neighbour; of smoothed cells, of face or node and neighbour */
+    const int64_t *ptr; /* the caller's table; NULL for smoothed cells */
     const int32_t *idx;
     const double *dphi;
     int64_t *order;             /* point_count: the caller's index of each point */
@@ -98,12 +98,12 @@ struct body {
     int32_t *material; /* point_count */
     int64_t block_count;
     struct block *blocks;
-    bool conforming;
-    struct pairs gradients;  /* of the shape functions at the points, in the same blocks, */
-    struct conforming cells; /* or smoothed cells instead */
-    double *u;               /* node_count * stride: displacements in the body's order */
-    double *F;               /* dim * dim rows of point_count: deformation gradients of the last evaluation */
-    double *J;     /* point_count: volume ratios, det F, or of cells that of conforming.h. Points with
+    bool smoothed;
+    struct sparse_operator gradients; /* of the shape functions at the points, in the same blocks, */
+    struct smoothed_cells cells;      /* or smoothed cells instead */
+    double *u;                        /* node_count * stride: displacements in the body's order */
+    double *F;     /* dim * dim rows of point_count: deformation gradients of the last evaluation */
+    double *J;     /* point_count: volume ratios, det F, or of cells that of smoothed_cells.h. Points with
                       pointwise volume keep neither: NULL */
     bool averaged; /* nodal volumetric averaging */
     struct nodal_volumes volumes;
@@ -113,11 +113,11 @@ struct body {
     int64_t scratch_size;
     struct chunks bound_parts;         /* of the blocks, by each of which body_diagonal sums; */
     double *bound;                     /* node_count for each but the first: scratch */
-    struct cell_functions *bound_work; /* for each part, of conforming cells */
+    struct cell_functions *bound_work; /* for each part, of smoothed cells */
 };
 
 /* Lay out a body; but for the tables the input arrays are copied. STATUS_INPUT for a point without neighbours
- * or of no weight, and see conforming_build. */
+ * or of no weight, and see smoothed_cells_build. */
 MUST_CHECK enum status body_build(const struct body_input *input, struct body *body, struct error *error);
 void body_free(struct body *body);
 
@@ -153,17 +153,17 @@ void body_stress(struct body *body, double *stress);
 void body_gradient(struct body *body, double *gradient);
 
 /* Volume ratio of each point at the last evaluation that its volumetric law takes, ratio[point_count],
- * caller's order: det F, or of conforming cells that of conforming.h. */
+ * caller's order: det F, or of smoothed cells that of smoothed_cells.h. */
 void body_volume_ratio(struct body *body, double *ratio);
 
 /* stiffness[node_count], N/m (2D: N/m2): bounds the diagonal of the stiffness at the last evaluation's F (of
- * conforming cells about, far strained ones may exceed it), as sum_q w W''(y (x) grad phi), the second
+ * smoothed cells about, far strained ones may exceed it), as sum_q w W''(y (x) grad phi), the second
  * derivative of the energy along the rank-one change of F that is stiffest, y = F^-T grad phi; at rest sum_q
  * w (lambda + 2 mu) |grad phi|^2. The neo-Hookean formula serves all materials. A
  * limit of the bulk modulus (body_limit_bulk) counts. */
 void body_diagonal(struct body *body, double *stiffness);
 
-/* The same of conforming cells for parameters that are about the values at the nodes (nodal_basis.h): with
+/* The same of smoothed cells for parameters that are about the values at the nodes (nodal_basis.h): with
  * the hat functions of the cells for phi. */
 void body_nodal_diagonal(struct body *body, double *stiffness);
 

@@ -16,7 +16,7 @@ enum status body_make_bounds(struct body *body, struct error *error)
     int64_t least = body->block_count / MOST_PARTS;
     body->bound_parts = chunks_of(body->block_count, least > LEAST_BLOCKS ? least : LEAST_BLOCKS);
     TRY(NEW_ARRAY(&body->bound, (body->bound_parts.count - 1) * body->node_count, error));
-    if (body->conforming) {
+    if (body->smoothed) {
         TRY(NEW_ARRAY(&body->bound_work, MOST_PARTS, error));
         for (int64_t p = 0; p < body->bound_parts.count; p++) {
             TRY(cell_functions_make(body, &body->bound_work[p], error));
@@ -68,7 +68,7 @@ static struct bound bound_at(const struct body *body, int64_t q, const double *F
         bound.A[k] =
             along * (C[a] * C[b] + C[3 + a] * C[3 + b] + C[6 + a] * C[6 + b]) - (a == b ? shear / 3.0 : 0.0);
     }
-    if (body->conforming) {
+    if (body->smoothed) {
         bound.smoothing = 2.0 * body->weight[q] * SMOOTHING_STIFFNESS(body->dim) * material->shear_modulus;
     }
     return bound;
@@ -77,7 +77,7 @@ static struct bound bound_at(const struct body *body, int64_t q, const double *F
 /* Where the bounds are summed. */
 struct bound_sum {
     double *of_node;
-    struct cell_functions *work; /* of conforming cells */
+    struct cell_functions *work; /* of smoothed cells */
 };
 
 static void add_functions(const struct body *body, const struct bound *bound, int64_t count,
@@ -98,7 +98,7 @@ static void add_point(const struct body *body, int64_t q, const double F[9], dou
     (void)J; /* of cells not det F */
     const struct bound_sum *to = context;
     struct bound bound = bound_at(body, q, F);
-    if (body->conforming) {
+    if (body->smoothed) {
         cell_functions_list(body, q, to->work);
         add_functions(body, &bound, to->work->count, to->work->node, to->work->gradient, to->of_node);
     } else {
@@ -117,7 +117,7 @@ static void add_cell(const struct body *body, int64_t q, const double F[9], doub
     struct bound bound = bound_at(body, q, F);
     double gradient[12];
     int corners = body->dim + 1;
-    conforming_hat_gradients(body, q, gradient);
+    smoothed_cells_hat_gradients(body, q, gradient);
     add_functions(body, &bound, corners, body->cells.cell_node + body->order[q] * corners, gradient,
                   to->of_node);
 }
@@ -131,7 +131,7 @@ static void sum_bounds(struct body *body, body_visitor *add, double *stiffness)
         for (int64_t p = 0; p < parts->count; p++) {
             double *sum = p == 0 ? stiffness : body->bound + (p - 1) * body->node_count;
             memset(sum, 0, (size_t)body->node_count * sizeof *sum);
-            struct bound_sum to = {sum, body->conforming ? &body->bound_work[p] : NULL};
+            struct bound_sum to = {sum, body->smoothed ? &body->bound_work[p] : NULL};
             body_visit(body, chunks_begin(parts, p), chunks_begin(parts, p + 1), add, &to);
         }
 #pragma omp for schedule(static)

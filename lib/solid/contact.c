@@ -7,12 +7,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Depths below this part of a hat's length are none. */
+/* Depths below this part of a contact node's length are none. */
 static const double round_off = 1e-6;
-enum { HATS_FOR_THREAD = 1000 }; /* see chunks_of */
+enum { CONTACT_NODES_FOR_THREAD = 1000 }; /* see chunks_of */
 
-/* How deep a hat may be when it is first seen behind the surface without having gone through: half its
- * length, m. */
+/* How deep a contact node may be when it is first seen behind the surface without having gone through: half
+ * its length, m. */
 static double most_depth(const struct contact *contact, int64_t a)
 {
     double area = contact->averages->area[a];
@@ -26,8 +26,8 @@ static void take_mean(const struct contact *contact, int64_t a, const double *v,
     average_take(&average, contact->dim, v, x);
 }
 
-/* Cosine between the body's outward normal at hat a and the direction in which the surface's side lies: at a
- * place where they can touch, it is about -1. */
+/* Cosine between the body's outward normal at contact node a and the direction in which the surface's side
+ * lies: at a place where they can touch, it is about -1. */
 static double facing(const struct contact *contact, int64_t a, const struct rigid_contact *closest)
 {
     double cosine = 0.0;
@@ -37,8 +37,8 @@ static double facing(const struct contact *contact, int64_t a, const struct rigi
     return cosine;
 }
 
-/* No hat may start far behind the surface, or behind it with its back to it: shallow, as around a body that
- * fills a shell, but on the other side. */
+/* No contact node may start far behind the surface, or behind it with its back to it: shallow, as around a
+ * body that fills a shell, but on the other side. */
 static enum status check_side(const struct contact *contact, struct error *error)
 {
     for (int64_t a = 0; a < contact->count; a++) {
@@ -56,7 +56,8 @@ static enum status check_side(const struct contact *contact, struct error *error
 }
 
 /* Facets are chords of a curved boundary, and their mean lies h^2/6r beneath its nodes, which are on it: the
- * gap is that of the boundary, so the mean is raised to the node along the hat's normal. Zero on flats. */
+ * gap is that of the boundary, so the mean is raised to the node along the contact node's normal. Zero on
+ * flats. */
 static void raise_to_node(const struct contact *contact, int64_t a, const double *X, double x[3])
 {
     int dim = contact->dim;
@@ -172,8 +173,8 @@ enum status contact_state(struct contact *contact, const char *prefix, const str
     return state_visit(state, prefix, values, sizeof values / sizeof *values, error);
 }
 
-/* Whether hat a, when it was last looked at, was in front of the plane that touches the surface closest to x,
- * where it now is. */
+/* Whether contact node a, when it was last looked at, was in front of the plane that touches the surface
+ * closest to x, where it now is. */
 static bool was_in_front(const struct contact *contact, int64_t a, const double *x,
                          const struct rigid_contact *closest)
 {
@@ -184,7 +185,7 @@ static bool was_in_front(const struct contact *contact, int64_t a, const double 
     return height >= 0.0;
 }
 
-/* Find gap and normal of hat a, now at x in the surface's frame. */
+/* Find gap and normal of contact node a, now at x in the surface's frame. */
 static void look(struct contact *contact, int64_t a, const double *x)
 {
     int dim = contact->dim;
@@ -205,7 +206,7 @@ static void look(struct contact *contact, int64_t a, const double *x)
     rigid_place_turn(&contact->place, dim, contact->normal + a * dim);
 }
 
-/* p_a at x in the surface's frame. Hats that cannot have reached the surface are not looked at. */
+/* p_a at x in the surface's frame. Contact nodes that cannot have reached the surface are not looked at. */
 static double pressure_at(struct contact *contact, int64_t a, const double *x)
 {
     double moved2 = 0.0, multiplier = contact->multiplier[a];
@@ -221,8 +222,8 @@ static double pressure_at(struct contact *contact, int64_t a, const double *x)
     return fmax(0.0, multiplier - contact->stiffness[a] * contact->gap[a]);
 }
 
-/* Pressures of the hats from `begin` to before `end`. */
-static void press_hats(struct contact *contact, int64_t begin, int64_t end, const double *u)
+/* Pressures of the contact nodes from `begin` to before `end`. */
+static void press_nodes(struct contact *contact, int64_t begin, int64_t end, const double *u)
 {
     int dim = contact->dim;
     for (int64_t a = begin; a < end; a++) {
@@ -243,18 +244,18 @@ void contact_move(struct contact *contact, const double *factor)
 
 void contact_measure(struct contact *contact, const double *u, bool all)
 {
-    struct chunks hats = chunks_of(contact->count, HATS_FOR_THREAD);
+    struct chunks nodes = chunks_of(contact->count, CONTACT_NODES_FOR_THREAD);
     if (all) {
         memset(contact->checked_distance, 0, (size_t)contact->count * sizeof *contact->checked_distance);
     }
-#pragma omp parallel for schedule(static) num_threads(hats.threads)
-    for (int64_t c = 0; c < hats.count; c++) {
-        press_hats(contact, chunks_begin(&hats, c), chunks_begin(&hats, c + 1), u);
+#pragma omp parallel for schedule(static) num_threads(nodes.threads)
+    for (int64_t c = 0; c < nodes.count; c++) {
+        press_nodes(contact, chunks_begin(&nodes, c), chunks_begin(&nodes, c + 1), u);
     }
 }
 
-/* Force on hat a at the last evaluation. */
-static void force_on_hat(const struct contact *contact, int64_t a, double force[3])
+/* Force on contact node a at the last evaluation. */
+static void force_on_node(const struct contact *contact, int64_t a, double force[3])
 {
     double strength = contact->pressure[a] * contact->averages->area[a];
     for (int c = 0; c < contact->dim; c++) {
@@ -268,25 +269,25 @@ void contact_force(struct contact *contact, const double *u, double *force)
     for (int64_t a = 0; a < contact->count; a++) {
         if (contact->pressure[a] > 0.0) {
             struct average average = average_of_boundary(contact->averages, a);
-            double on_hat[3];
-            force_on_hat(contact, a, on_hat);
-            average_spread(&average, contact->dim, on_hat, NULL, force);
+            double on_node[3];
+            force_on_node(contact, a, on_node);
+            average_spread(&average, contact->dim, on_node, NULL, force);
         }
     }
 }
 
-/* The stiffness of the points that press beneath hat a, Pa/m. */
+/* The stiffness of the points that press beneath contact node a, Pa/m. */
 static double stiffness_beneath(const struct contact *contact, int64_t a)
 {
-    const struct boundary_averages *hats = contact->averages;
+    const struct boundary_averages *nodes = contact->averages;
     double sum = 0.0;
     if (contact->points == NULL) {
         return 0.0;
     }
-    for (int64_t s = hats->sample_ptr[a]; s < hats->sample_ptr[a + 1]; s++) {
-        int64_t point = hats->sample_point[s];
+    for (int64_t s = nodes->sample_ptr[a]; s < nodes->sample_ptr[a + 1]; s++) {
+        int64_t point = nodes->sample_point[s];
         if (contact->points->pressure[point] > 0.0) {
-            sum += hats->sample_share[s] * contact->points->stiffness[point];
+            sum += nodes->sample_share[s] * contact->points->stiffness[point];
         }
     }
     return sum;
@@ -337,7 +338,7 @@ void contact_moment(const struct contact *contact, const double *point, double m
         if (!(contact->pressure[a] > 0.0)) {
             continue;
         }
-        force_on_hat(contact, a, force);
+        force_on_node(contact, a, force);
         rigid_place_from_rest(&contact->place, dim, contact->checked_x + a * dim, arm);
         for (int c = 0; c < dim; c++) {
             double raised = contact->rest[a * dim + c] - contact->averages->position[a * dim + c];
@@ -365,7 +366,7 @@ struct contact_work contact_work(const struct contact *contact, const double *fa
         if (!(contact->pressure[a] > 0.0)) {
             continue;
         }
-        force_on_hat(contact, a, force);
+        force_on_node(contact, a, force);
         rigid_place_from_rest(&from, dim, contact->checked_x + a * dim, before);
         rigid_place_from_rest(&to, dim, contact->checked_x + a * dim, after);
         for (int c = 0; c < dim; c++) {

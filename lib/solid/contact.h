@@ -39,14 +39,14 @@ struct contact {
     double *pressure;                         /* count: p_a, Pa */
     double *normal;                           /* count * dim: unit, on the body; 0 beyond a rim */
     bool *behind;                             /* count: came to the back without going through */
-    /* A hat is not looked at again before it has moved, in the surface's frame, as far as the surface was
-     * away. */
+    /* A contact node is not looked at again before it has moved, in the surface's frame, as far as the
+     * surface was away. */
     double *checked_x;        /* count * dim: position when it was last looked at, in that frame */
     double *checked_distance; /* count */
 };
 
 /* Takes over `surface` (also on failure: it becomes empty), which stays where it is unless the caller sets
- * contact->motion, whose factors must be 0 at the begin. X: nodes, m. STATUS_INPUT when a hat starts
+ * contact->motion, whose factors must be 0 at the begin. X: nodes, m. STATUS_INPUT when a contact node starts
  * behind the surface, deeper than half its size or facing away from it: the surface's side is the wrong one.
  */
 MUST_CHECK enum status contact_build(const struct boundary_averages *averages, const double *X, int dim,
@@ -62,9 +62,9 @@ MUST_CHECK enum status contact_build_points(const struct boundary_averages *poin
                                             struct contact *contact, struct error *error);
 void contact_free(struct contact *contact);
 
-/* k_a = modulus / width of hat a, in place of one stiffness for all: that of a layer of cells where the hat
- * is. The width of a point is that of the hats there: they have the area of one facet (2D) or two (3D), of
- * which a point is half or a third. */
+/* k_a = modulus / width of contact node a, in place of one stiffness for all: that of a layer of cells where
+ * the contact node is. The width of a point is that of the contact nodes there: they have the area of one
+ * facet (2D) or two (3D), of which a point is half or a third. */
 void contact_set_stiffness(struct contact *contact, double modulus);
 
 /* What a contact keeps from one evaluation to the next; `prefix` goes in front of the names. */
@@ -85,7 +85,7 @@ void contact_move(struct contact *contact, const double *factor);
 void contact_measure(struct contact *contact, const double *u, bool all);
 
 /* Augment: lambda_a = p_a of the last evaluation, unless there is the penalty only. Points that press beneath
- * the hat stiffen its penalty, and lambda_a takes over as much as they carry: with the k_p of those,
+ * the contact node stiffen its penalty, and lambda_a takes over as much as they carry: with the k_p of those,
  * lambda_a - (k_a + sum N_a A_p k_p / A_a) g_a. Pressures that the penalty alone makes of a penetration of no
  * more than `allowed`, m, need no multiplier and get none. Returns the largest penetration seen then, m. */
 double contact_augment(struct contact *contact, double allowed);
@@ -103,10 +103,10 @@ void contact_moment(const struct contact *contact, const double *point, double m
 /* What the surface does on the body, by the pressures of the last evaluation, while it goes from its place at
  * one set of factors to that at another. */
 struct contact_work {
-    double work;       /* sum p A n . w, w the way of the surface's point under each hat, J (2D: J/m) */
-    double unresolved; /* sum k_a A w^2 over the hats that touch: what the penalty makes of the way, J (2D:
-                        * J/m). A hat that is first touched within a step has its work wrong by an eighth of
-                        * that at the most */
+    double work; /* sum p A n . w, w the way of the surface's point under each contact node, J (2D: J/m) */
+    double unresolved; /* sum k_a A w^2 over the contact nodes that touch: what the penalty makes of the way,
+                        * J (2D: J/m). A contact node that is first touched within a step has its work wrong
+                        * by an eighth of that at the most */
 };
 struct contact_work contact_work(const struct contact *contact, const double *factor_from,
                                  const double *factor_to);

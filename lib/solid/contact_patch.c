@@ -6,8 +6,8 @@
 #include <stdlib.h>
 
 struct marks {
-    double *force;    /* node_count: of the node's hats, and of the points beneath, N */
-    bool *presses;    /* node_count: a hat of it does */
+    double *force;    /* node_count: of the node's contact nodes, and of the points beneath, N */
+    bool *presses;    /* node_count: a contact node of it does */
     bool *surrounded; /* node_count: it presses, as its neighbours do */
     bool *near;       /* node_count: that, or beside one that is; only nodes that press */
 };
@@ -74,8 +74,8 @@ done:
     return status;
 }
 
-/* Add what hat a carries, and its part of what the points beneath carry. Whether it presses: by itself, or
- * where points do beneath more than half of it. */
+/* Add what contact node a carries, and its part of what the points beneath carry. Whether it presses: by
+ * itself, or where points do beneath more than half of it. */
 static bool add_force(const struct contact *contact, int64_t a, double *force)
 {
     const struct boundary_averages *hats = contact->averages;

@@ -4,12 +4,12 @@
 
 #include "solid/contact.h"
 
-/* A node presses where its hat does, or the points beneath more than half of its hat. A patch of them is
- * resolved about a node that presses with all its neighbours on the contact's facets: then it is three nodes
- * across, or more beside the facets' rim, where a plane of symmetry may be. */
+/* A node presses where its contact node does, or the points beneath more than half of its contact node. A
+ * patch of them is resolved about a node that presses with all its neighbours on the contact's facets: then
+ * it is three nodes across, or more beside the facets' rim, where a plane of symmetry may be. */
 struct contact_patch {
     int64_t pressing; /* nodes */
-    double force;     /* sum p A over hats and points, N (2D: N/m) */
+    double force;     /* sum p A over contact nodes and points, N (2D: N/m) */
     double thin;      /* part of it that is not at the nodes of a resolved patch, 0 to 1 */
     int32_t node;     /* with the largest force in that part; -1: none */
     double inside;    /* how far a vertex of the surface is inside of the body, m, 0: none is. Only looked for
@@ -17,8 +17,8 @@ struct contact_patch {
     double place[3];  /* of that vertex, m */
 };
 
-/* The contact of hats as it was evaluated last, on facets set, and the nodes' positions x[node_count * dim],
- * m. STATUS_SYSTEM for memory. */
+/* The contact of contact nodes as it was evaluated last, on facets set, and the nodes' positions x[node_count
+ * * dim], m. STATUS_SYSTEM for memory. */
 MUST_CHECK enum status contact_patch_find(const struct contact *contact, const struct facet_set *set,
                                           int64_t node_count, const double *x, struct contact_patch *patch,
                                           struct error *error);

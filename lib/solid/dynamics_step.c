@@ -16,8 +16,8 @@ double dynamics_time_next(const struct dynamics *d)
     return d->left == 1 ? d->options->end_time : d->mark + (double)(d->done + 1) * d->step;
 }
 
-/* Bound of the largest eigenvalue of M^-1 K for the penalties of all contacts, as if all hats touched: the
- * largest sum of a row's magnitudes. */
+/* Bound of the largest eigenvalue of M^-1 K for the penalties of all contacts, as if all contact nodes
+ * touched: the largest sum of a row's magnitudes. */
 static double contact_bound(const struct solid_system *system, double *stiffness)
 {
     double bound = 0.0;
@@ -50,10 +50,10 @@ void dynamics_bound_contacts(struct dynamics *d)
 
 void dynamics_estimate_frequency(struct dynamics *d, int iterations)
 {
-    struct inertia inertia = {
+    struct preconditioner preconditioner = {
         .dim = d->system->dim, .node_count = d->system->node_count, .mass = d->system->lumped_mass};
-    double frequency =
-        system_largest_frequency(d->system, &inertia, d->u, d->residual, iterations, d->mode, d->scratch);
+    double frequency = system_largest_frequency(d->system, &preconditioner, d->u, d->residual, iterations,
+                                                d->mode, d->scratch);
     d->report->force_evaluations += iterations;
     frequency = sqrt(frequency * frequency + d->contact_squared);
     /* The estimate is from below and wanders: follow rises at once, falls slowly. */

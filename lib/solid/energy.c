@@ -95,7 +95,7 @@ double energy_kinetic(const struct solid_system *system, const double *v, const 
 
 double energy_internal(struct solid_system *system, const double *u)
 {
-    return body_energy(&system->body, u) + system_spring_energy(system, u);
+    return body_energy(&system->body, u) + system_penalty_energy(system, u);
 }
 
 double energy_contact(const struct solid_system *system)

@@ -9,7 +9,7 @@
 struct energy {
     double time;       /* s */
     double kinetic;    /* 1/2 v- M v+, of the velocities half a step before and after */
-    double internal;   /* elastic, of the body and the springs */
+    double internal;   /* elastic, of the body and the constraint penalties */
     double contact;    /* of the contacts' penalties */
     double work;       /* of loads and prescribed motion, since the begin */
     double dissipated; /* by damping, since the begin */
@@ -45,7 +45,7 @@ void energy_balance_complete(struct energy_balance *balance, bool first, struct 
 /* 1/2 v M w */
 double energy_kinetic(const struct solid_system *system, const double *v, const double *w);
 
-/* Of the body at u, and of the springs at system->factor. */
+/* Of the body at u, and of the constraint penalties at system->factor. */
 double energy_internal(struct solid_system *system, const double *u);
 
 /* Sum over all contacts at their last evaluation. */

@@ -32,8 +32,8 @@ static void stress_cell_block(struct body *body, int64_t b)
         stress_cells(body, &body->blocks[b], P, T);
         note_volumes(body, &body->blocks[b]);
     }
-    body->kernels->cell_forces(body, b, (const double(*)[PAIRS_MAX_ROWS])P,
-                               (const double(*)[PAIRS_MAX_ROWS])T);
+    body->kernels->cell_forces(body, b, (const double(*)[OPERATOR_MAX_ROWS])P,
+                               (const double(*)[OPERATOR_MAX_ROWS])T);
 }
 
 /* Stresses of a block of points, and their forces on its nodes. */
@@ -45,12 +45,12 @@ static void stress_point_block(struct body *body, int64_t b, struct block_view s
     } else {
         stress_points(body, &body->blocks[b], state, P);
     }
-    for (int64_t i = body->blocks[b].point_count; i % PAIRS_GROUP != 0; i++) {
+    for (int64_t i = body->blocks[b].point_count; i % OPERATOR_SLICE != 0; i++) {
         for (int k = 0; k < body->dim * body->dim; k++) {
             P[k][i] = 0.0;
         }
     }
-    body->kernels->scatter(body, b, (const double(*)[PAIRS_MAX_ROWS])P, scratch);
+    body->kernels->apply_transposed(body, b, (const double(*)[OPERATOR_MAX_ROWS])P, scratch);
 }
 
 /* F and J of a block of points are kept where volumes are averaged. */
@@ -70,8 +70,8 @@ static struct block_view state_of(struct body *body, int64_t b, struct block_sta
     if (body->F != NULL) {
         return (struct block_view){body->F + first, body->J + first, body->point_count};
     }
-    body->kernels->gather(body, b, state, scratch);
-    return (struct block_view){state->F[0], state->J, PAIRS_MAX_ROWS};
+    body->kernels->apply(body, b, state, scratch);
+    return (struct block_view){state->F[0], state->J, OPERATOR_MAX_ROWS};
 }
 
 /* The calling thread's part of the work arrays. */
@@ -82,8 +82,9 @@ static double *scratch_of_thread(const struct body *body)
 
 enum status body_make_scratch(struct body *body, int threads, struct error *error)
 {
-    int64_t own = pairs_scratch(&body->gradients), faces = pairs_scratch(&body->cells.faces.pairs),
-            nodes = pairs_scratch(&body->cells.nodes.pairs);
+    int64_t own = sparse_operator_scratch(&body->gradients),
+            faces = sparse_operator_scratch(&body->cells.faces.op),
+            nodes = sparse_operator_scratch(&body->cells.nodes.op);
     free(body->scratch);
     own = own > faces ? own : faces;
     own = own > nodes ? own : nodes;
@@ -104,13 +105,13 @@ void body_visit(struct body *body, int64_t first, int64_t last, body_visitor *vi
     }
 }
 
-/* What threads share: loops over blocks, patches and nodes. */
-static void gather_points(struct body *body, double *scratch)
+/* What threads share: loops over blocks, accumulation blocks and nodes. */
+static void apply_points(struct body *body, double *scratch)
 {
 #pragma omp for schedule(static)
     for (int64_t b = 0; b < body->block_count; b++) {
         struct block_state state;
-        body->kernels->gather(body, b, &state, scratch);
+        body->kernels->apply(body, b, &state, scratch);
         keep_state(body, &body->blocks[b], &state);
     }
 }
@@ -119,12 +120,13 @@ static void gather_points(struct body *body, double *scratch)
  * the table comes into the cache. */
 static void force_points(struct body *body, double *scratch)
 {
-    struct pairs *pairs = &body->gradients;
+    struct sparse_operator *op = &body->gradients;
 #pragma omp for schedule(static)
-    for (int64_t p = 0; p < pairs->patch_count; p++) {
-        const struct pair_patch *patch = &pairs->patches[p];
-        pairs_clear_forces(pairs, patch);
-        for (int64_t b = patch->first_block; b < patch->first_block + patch->block_count; b++) {
+    for (int64_t p = 0; p < op->accumulation_count; p++) {
+        const struct accumulation_block *accumulation = &op->accumulation[p];
+        sparse_operator_clear_forces(op, accumulation);
+        for (int64_t b = accumulation->first_block; b < accumulation->first_block + accumulation->block_count;
+             b++) {
             struct block_state state;
             struct block_view view = state_of(body, b, &state, scratch);
             stress_point_block(body, b, view, scratch);
@@ -132,27 +134,29 @@ static void force_points(struct body *body, double *scratch)
     }
 }
 
-static void gather_means(const struct body *body, struct means *means, double *scratch)
+static void apply_averages(const struct body *body, struct field_averages *averages, double *scratch)
 {
 #pragma omp for schedule(static)
-    for (int64_t b = 0; b < means->pairs.block_count; b++) {
-        body->kernels->gather_means(means, b, body->u, scratch);
+    for (int64_t b = 0; b < averages->op.block_count; b++) {
+        body->kernels->apply_averages(averages, b, body->u, scratch);
     }
 }
 
-static void scatter_means(const struct body *body, struct means *means, double *scratch)
+static void apply_averages_transposed(const struct body *body, struct field_averages *averages,
+                                      double *scratch)
 {
 #pragma omp for schedule(static)
-    for (int64_t p = 0; p < means->pairs.patch_count; p++) {
-        const struct pair_patch *patch = &means->pairs.patches[p];
-        pairs_clear_forces(&means->pairs, patch);
-        for (int64_t b = patch->first_block; b < patch->first_block + patch->block_count; b++) {
-            body->kernels->scatter_means(means, b, scratch);
+    for (int64_t p = 0; p < averages->op.accumulation_count; p++) {
+        const struct accumulation_block *accumulation = &averages->op.accumulation[p];
+        sparse_operator_clear_forces(&averages->op, accumulation);
+        for (int64_t b = accumulation->first_block; b < accumulation->first_block + accumulation->block_count;
+             b++) {
+            body->kernels->apply_averages_transposed(averages, b, scratch);
         }
     }
 }
 
-static void gather_cells(struct body *body)
+static void apply_cells(struct body *body)
 {
 #pragma omp for schedule(static)
     for (int64_t b = 0; b < body->block_count; b++) {
@@ -196,12 +200,12 @@ static void sum_nodes(const struct body *body, double *force)
 static void set_state(struct body *body, const double *u, double *scratch)
 {
     place_nodes(body, u);
-    if (body->conforming) {
-        gather_means(body, &body->cells.faces, scratch);
-        gather_means(body, &body->cells.nodes, scratch);
-        gather_cells(body);
+    if (body->smoothed) {
+        apply_averages(body, &body->cells.faces, scratch);
+        apply_averages(body, &body->cells.nodes, scratch);
+        apply_cells(body);
     } else if (body->averaged) {
-        gather_points(body, scratch);
+        apply_points(body, scratch);
     }
     if (body->averaged) {
         nodal_volumes_evaluate(body);
@@ -215,10 +219,10 @@ static void evaluate(struct body *body, const double *u, double *force)
     {
         double *scratch = scratch_of_thread(body);
         set_state(body, u, scratch);
-        if (body->conforming) {
+        if (body->smoothed) {
             force_cells(body);
-            scatter_means(body, &body->cells.faces, scratch);
-            scatter_means(body, &body->cells.nodes, scratch);
+            apply_averages_transposed(body, &body->cells.faces, scratch);
+            apply_averages_transposed(body, &body->cells.nodes, scratch);
         } else {
             force_points(body, scratch);
         }
@@ -256,7 +260,7 @@ static void add_energy(const struct body *body, int64_t q, const double F[9], do
 {
     const struct material *material = &body->materials[body->material[q]];
     double sum = material_shape_energy(material, F);
-    if (body->conforming) {
+    if (body->smoothed) {
         sum += stress_smoothing_energy(body, q, F);
     }
     sum += body->averaged ? nodal_volume_energy(body, q) : material_volume_energy(material, J);

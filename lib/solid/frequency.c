@@ -55,15 +55,16 @@ static void start_mode(double *mode, int64_t size)
     }
 }
 
-double system_largest_frequency(struct solid_system *system, struct inertia *inertia, const double *u,
-                                const double *residual, int iterations, double *mode, double *scratch)
+double system_largest_frequency(struct solid_system *system, struct preconditioner *preconditioner,
+                                const double *u, const double *residual, int iterations, double *mode,
+                                double *scratch)
 {
     int64_t size = system->node_count * system->dim;
     double *displaced = scratch, *response = scratch + size;
     double eigenvalue = 0.0;
     if (largest_entry(mode, size) == 0.0) {
         start_mode(mode, size);
-        constraint_project(&inertia->constraint, NULL, mode);
+        constraint_project(&preconditioner->constraint, NULL, mode);
     }
     double spacing = point_spacing(system);
     for (int it = 0; it < iterations; it++) {
@@ -73,8 +74,8 @@ double system_largest_frequency(struct solid_system *system, struct inertia *ine
             displaced[i] = (residual[i] - response[i]) / epsilon;
             top += mode[i] * displaced[i];
         }
-        eigenvalue = top / inertia_product(inertia, mode, mode);
-        inertia_accelerate(inertia, displaced, response);
+        eigenvalue = top / preconditioner_product(preconditioner, mode, mode);
+        preconditioner_apply(preconditioner, displaced, response);
         double scale = 1.0 / largest_entry(response, size);
         for (int64_t i = 0; i < size; i++) {
             mode[i] = response[i] * scale;
@@ -87,14 +88,14 @@ double system_largest_frequency(struct solid_system *system, struct inertia *ine
  * residuals. */
 static const double least_told = -1e-6;
 
-/* How many eigenvalues of the symmetric tridiagonal matrix (diagonal[n], beside[n - 1]) are below x: Sturm's
- * count. */
-static int eigenvalues_below(int n, const double *diagonal, const double *beside, double x)
+/* How many eigenvalues of the symmetric tridiagonal matrix (diagonal[n], off_diagonal[n - 1]) are below x:
+ * Sturm's count. */
+static int eigenvalues_below(int n, const double *diagonal, const double *off_diagonal, double x)
 {
     int below = 0;
     double pivot = 1.0;
     for (int i = 0; i < n; i++) {
-        double off2 = i > 0 ? beside[i - 1] * beside[i - 1] : 0.0;
+        double off2 = i > 0 ? off_diagonal[i - 1] * off_diagonal[i - 1] : 0.0;
         pivot = diagonal[i] - x - (off2 > 0.0 ? off2 / pivot : 0.0);
         if (fabs(pivot) < 1e-300) {
             pivot = -1e-300;
@@ -106,18 +107,18 @@ static int eigenvalues_below(int n, const double *diagonal, const double *beside
 
 /* Its least eigenvalue, to a part in 1e4 (or of its rounding errors), by bisection between Gershgorin's
  * bounds. */
-static double least_eigenvalue(int n, const double *diagonal, const double *beside)
+static double least_eigenvalue(int n, const double *diagonal, const double *off_diagonal)
 {
     double low = INFINITY, high = INFINITY, most = 0.0;
     for (int i = 0; i < n; i++) {
-        double reach = (i > 0 ? fabs(beside[i - 1]) : 0.0) + (i + 1 < n ? fabs(beside[i]) : 0.0);
+        double reach = (i > 0 ? fabs(off_diagonal[i - 1]) : 0.0) + (i + 1 < n ? fabs(off_diagonal[i]) : 0.0);
         low = fmin(low, diagonal[i] - reach);
         high = fmin(high, diagonal[i]); /* no diagonal entry is below the least eigenvalue */
         most = fmax(most, fabs(diagonal[i]) + reach);
     }
     while (high - low > 1e-4 * fmax(fabs(high), 1e-14 * most)) {
         double middle = 0.5 * (low + high);
-        if (eigenvalues_below(n, diagonal, beside, middle) > 0) {
+        if (eigenvalues_below(n, diagonal, off_diagonal, middle) > 0) {
             high = middle;
         } else {
             low = middle;
@@ -127,12 +128,12 @@ static double least_eigenvalue(int n, const double *diagonal, const double *besi
 }
 
 /* Its largest one. */
-static double largest_eigenvalue(int n, double *diagonal, const double *beside)
+static double largest_eigenvalue(int n, double *diagonal, const double *off_diagonal)
 {
     for (int i = 0; i < n; i++) {
         diagonal[i] = -diagonal[i];
     }
-    double largest = -least_eigenvalue(n, diagonal, beside);
+    double largest = -least_eigenvalue(n, diagonal, off_diagonal);
     for (int i = 0; i < n; i++) {
         diagonal[i] = -diagonal[i];
     }
@@ -140,7 +141,7 @@ static double largest_eigenvalue(int n, double *diagonal, const double *beside)
 }
 
 /* product = M^-1 K move, from the change of the residual from u along the move. */
-static void apply(struct solid_system *system, struct inertia *inertia, const double *u,
+static void apply(struct solid_system *system, struct preconditioner *preconditioner, const double *u,
                   const double *residual, double spacing, const double *move, double *displaced,
                   double *product)
 {
@@ -148,7 +149,7 @@ static void apply(struct solid_system *system, struct inertia *inertia, const do
     for (int64_t i = 0; i < system->node_count * system->dim; i++) {
         displaced[i] = (residual[i] - product[i]) / epsilon;
     }
-    inertia_accelerate(inertia, displaced, product);
+    preconditioner_apply(preconditioner, displaced, product);
 }
 
 /* Whether `count` iterations suffice for the least eigenvalue: with fewer than a share of the ratio of the
@@ -159,20 +160,21 @@ static bool enough(int count, double largest, double least)
 }
 
 /* y[n]: the eigenvector of that matrix to its least eigenvalue, by inverse iteration from just below it. */
-static void least_eigenvector(int n, const double *diagonal, const double *beside, double least,
+static void least_eigenvector(int n, const double *diagonal, const double *off_diagonal, double least,
                               double *pivot, double *y)
 {
     double shift = least - 1e-3 * fabs(least);
     for (int i = 0; i < n; i++) {
-        pivot[i] = diagonal[i] - shift - (i > 0 ? beside[i - 1] * beside[i - 1] / pivot[i - 1] : 0.0);
+        pivot[i] =
+            diagonal[i] - shift - (i > 0 ? off_diagonal[i - 1] * off_diagonal[i - 1] / pivot[i - 1] : 0.0);
         y[i] = 1.0;
     }
     for (int turn = 0; turn < 4; turn++) {
         for (int i = 1; i < n; i++) {
-            y[i] -= beside[i - 1] / pivot[i - 1] * y[i - 1];
+            y[i] -= off_diagonal[i - 1] / pivot[i - 1] * y[i - 1];
         }
         for (int i = n - 1; i >= 0; i--) {
-            y[i] = (y[i] - (i + 1 < n ? beside[i] * y[i + 1] : 0.0)) / pivot[i];
+            y[i] = (y[i] - (i + 1 < n ? off_diagonal[i] * y[i + 1] : 0.0)) / pivot[i];
         }
         double scale = 1.0 / largest_entry(y, n);
         for (int i = 0; i < n; i++) {
@@ -202,7 +204,7 @@ static int32_t most_moved(int dim, int64_t node_count, const double *vector)
 /* A Lanczos iteration at a state. */
 struct lanczos {
     struct solid_system *system;
-    struct inertia *inertia;
+    struct preconditioner *preconditioner;
     const double *u, *residual;
     double spacing;
     double *vector, *before, *product, *displaced; /* system->node_count * dim */
@@ -212,20 +214,22 @@ struct lanczos {
 /* From l->vector; false when its projection onto the admissible moves vanishes. */
 static bool lanczos_begin(struct lanczos *l)
 {
-    double whole = inertia_product_alone(l->inertia, l->vector, l->vector);
-    constraint_project(&l->inertia->constraint, NULL, l->vector);
+    double whole = preconditioner_product_diagonal(l->preconditioner, l->vector, l->vector);
+    constraint_project(&l->preconditioner->constraint, NULL, l->vector);
     memset(l->before, 0, (size_t)(l->system->node_count * l->system->dim) * sizeof *l->before);
-    l->norm = sqrt(inertia_product(l->inertia, l->vector, l->vector));
-    return inertia_product_alone(l->inertia, l->vector, l->vector) > least_free * least_free * whole;
+    l->norm = sqrt(preconditioner_product(l->preconditioner, l->vector, l->vector));
+    return preconditioner_product_diagonal(l->preconditioner, l->vector, l->vector) >
+           least_free * least_free * whole;
 }
 
 /* Vectors in scratch[4 * node_count * dim]; l->vector is a copy of `start`, or pseudo-random for zeros. */
-static struct lanczos lanczos_at(struct solid_system *system, struct inertia *inertia, const double *u,
-                                 const double *residual, const double *start, double *scratch)
+static struct lanczos lanczos_at(struct solid_system *system, struct preconditioner *preconditioner,
+                                 const double *u, const double *residual, const double *start,
+                                 double *scratch)
 {
     int64_t size = system->node_count * system->dim;
     struct lanczos l = {.system = system,
-                        .inertia = inertia,
+                        .preconditioner = preconditioner,
                         .u = u,
                         .residual = residual,
                         .spacing = point_spacing(system),
@@ -241,47 +245,47 @@ static struct lanczos lanczos_at(struct solid_system *system, struct inertia *in
 }
 
 /* Entries k of the diagonal and beside it; before: the k-th vector, of norm 1. */
-static void lanczos_step(struct lanczos *l, int k, double *diagonal, double *beside)
+static void lanczos_step(struct lanczos *l, int k, double *diagonal, double *off_diagonal)
 {
     int64_t size = l->system->node_count * l->system->dim;
     double coupling = k > 0 ? l->norm : 0.0, *product = l->product;
     for (int64_t i = 0; i < size; i++) {
         l->vector[i] /= l->norm;
     }
-    apply(l->system, l->inertia, l->u, l->residual, l->spacing, l->vector, l->displaced, product);
-    diagonal[k] = inertia_product(l->inertia, l->vector, product);
+    apply(l->system, l->preconditioner, l->u, l->residual, l->spacing, l->vector, l->displaced, product);
+    diagonal[k] = preconditioner_product(l->preconditioner, l->vector, product);
     for (int64_t i = 0; i < size; i++) {
         product[i] -= diagonal[k] * l->vector[i] + coupling * l->before[i];
     }
-    l->norm = beside[k] = sqrt(inertia_product(l->inertia, product, product));
+    l->norm = off_diagonal[k] = sqrt(preconditioner_product(l->preconditioner, product, product));
     memcpy(l->before, l->vector, (size_t)size * sizeof *l->before);
     memcpy(l->vector, product, (size_t)size * sizeof *l->vector);
 }
 
-enum status system_spectrum(struct solid_system *system, struct inertia *inertia, const double *u,
-                            const double *residual, int most_iterations, const double *start, double *scratch,
-                            struct spectrum *spectrum, struct error *error)
+enum status system_spectrum(struct solid_system *system, struct preconditioner *preconditioner,
+                            const double *u, const double *residual, int most_iterations, const double *start,
+                            double *scratch, struct spectrum *spectrum, struct error *error)
 {
     enum status status;
-    double *diagonal = NULL, *beside = NULL, last = INFINITY, largest = 0.0;
+    double *diagonal = NULL, *off_diagonal = NULL, last = INFINITY, largest = 0.0;
     int next_check = first_check;
     *spectrum = (struct spectrum){.lowest = INFINITY};
     TRY(NEW_ARRAY(&diagonal, most_iterations, error));
-    TRY(NEW_ARRAY(&beside, most_iterations, error));
-    struct lanczos l = lanczos_at(system, inertia, u, residual, start, scratch);
+    TRY(NEW_ARRAY(&off_diagonal, most_iterations, error));
+    struct lanczos l = lanczos_at(system, preconditioner, u, residual, start, scratch);
     if (!lanczos_begin(&l)) {
         spectrum->lowest = spectrum->largest = 1.0;
         goto done;
     }
     for (int k = 0; k < most_iterations && l.norm > 1e-12 * largest; k++) {
-        lanczos_step(&l, k, diagonal, beside);
+        lanczos_step(&l, k, diagonal, off_diagonal);
         largest = fmax(largest, diagonal[k]);
         spectrum->iterations = k + 1;
         if (k + 1 == next_check || k + 1 == most_iterations || !(l.norm > 1e-12 * largest)) {
-            double value = least_eigenvalue(k + 1, diagonal, beside);
+            double value = least_eigenvalue(k + 1, diagonal, off_diagonal);
             bool is_settled = enough(k + 1, largest, value) && last - value < settled_change * value;
             spectrum->lowest = value;
-            spectrum->largest = largest_eigenvalue(k + 1, diagonal, beside);
+            spectrum->largest = largest_eigenvalue(k + 1, diagonal, off_diagonal);
             if (is_settled || value < least_told * largest) {
                 break;
             }
@@ -291,49 +295,50 @@ enum status system_spectrum(struct solid_system *system, struct inertia *inertia
     }
 done:
     free(diagonal);
-    free(beside);
+    free(off_diagonal);
     return status;
 }
 
-enum status system_unstable_mode(struct solid_system *system, struct inertia *inertia, const double *u,
-                                 const double *residual, const struct spectrum *spectrum, const double *start,
-                                 double *scratch, struct stability *stability, struct error *error)
+enum status system_unstable_mode(struct solid_system *system, struct preconditioner *preconditioner,
+                                 const double *u, const double *residual, const struct spectrum *spectrum,
+                                 const double *start, double *scratch, struct stability *stability,
+                                 struct error *error)
 {
     enum status status;
     int count = spectrum->iterations;
     int64_t size = system->node_count * system->dim;
-    double *diagonal = NULL, *beside = NULL, *share = NULL, *pivot = NULL, *mode = NULL;
+    double *diagonal = NULL, *off_diagonal = NULL, *share = NULL, *pivot = NULL, *mode = NULL;
     *stability = (struct stability){spectrum->lowest / spectrum->largest, 0};
     if (!(spectrum->lowest < least_told * spectrum->largest)) {
         return STATUS_OK;
     }
     TRY(NEW_ARRAY(&diagonal, count, error));
-    TRY(NEW_ARRAY(&beside, count, error));
+    TRY(NEW_ARRAY(&off_diagonal, count, error));
     TRY(NEW_ARRAY(&share, count, error));
     TRY(NEW_ARRAY(&pivot, count, error));
     TRY(NEW_ARRAY(&mode, size, error));
-    struct lanczos l = lanczos_at(system, inertia, u, residual, start, scratch);
+    struct lanczos l = lanczos_at(system, preconditioner, u, residual, start, scratch);
     (void)lanczos_begin(&l);
     for (int k = 0; k < count; k++) { /* the matrix first, */
-        lanczos_step(&l, k, diagonal, beside);
+        lanczos_step(&l, k, diagonal, off_diagonal);
     }
-    least_eigenvector(count, diagonal, beside, spectrum->lowest, pivot, share);
-    l = lanczos_at(system, inertia, u, residual, start, scratch);
+    least_eigenvector(count, diagonal, off_diagonal, spectrum->lowest, pivot, share);
+    l = lanczos_at(system, preconditioner, u, residual, start, scratch);
     (void)lanczos_begin(&l);
     for (int k = 0; k < count; k++) { /* then its vectors, of which the mode is a sum */
-        lanczos_step(&l, k, diagonal, beside);
+        lanczos_step(&l, k, diagonal, off_diagonal);
         for (int64_t i = 0; i < size; i++) {
             mode[i] += share[k] * l.before[i];
         }
     }
-    l = lanczos_at(system, inertia, u, residual, mode, scratch);
+    l = lanczos_at(system, preconditioner, u, residual, mode, scratch);
     (void)lanczos_begin(&l);
-    lanczos_step(&l, 0, diagonal, beside);
+    lanczos_step(&l, 0, diagonal, off_diagonal);
     stability->least = diagonal[0] < least_told * spectrum->largest ? diagonal[0] / spectrum->largest : 0.0;
     stability->node = most_moved(system->dim, system->node_count, mode);
 done:
     free(diagonal);
-    free(beside);
+    free(off_diagonal);
     free(share);
     free(pivot);
     free(mode);

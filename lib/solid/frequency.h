@@ -4,15 +4,16 @@
 #ifndef SOLID_FREQUENCY_H
 #define SOLID_FREQUENCY_H
 
-#include "solid/inertia.h"
+#include "solid/preconditioner.h"
 #include "solid/system.h"
 
 /* Largest frequency, the root of the largest eigenvalue of M^-1 K at u, by `iterations` steps of power
  * iteration that continue from mode[node_count * dim] (a start of zeros is replaced by a fixed pseudo-random
  * one). residual must hold the residual at u. The estimate is from below; repeated calls sharpen it. scratch:
  * 2 * node_count * dim. */
-double system_largest_frequency(struct solid_system *system, struct inertia *inertia, const double *u,
-                                const double *residual, int iterations, double *mode, double *scratch);
+double system_largest_frequency(struct solid_system *system, struct preconditioner *preconditioner,
+                                const double *u, const double *residual, int iterations, double *mode,
+                                double *scratch);
 
 /* Eigenvalues w^2 of M^-1 K among the moves that the conditions admit. */
 struct spectrum {
@@ -26,17 +27,18 @@ struct spectrum {
  * iterations changed the lowest eigenvalue by less than 5 %, when that is negative, or after most_iterations.
  * Lowest <= 0: no minimum of the energy, or a contact that opens or closes there. Both are 1, about what D
  * makes them, where the conditions leave no degree of freedom. scratch: 4 * node_count * dim. */
-MUST_CHECK enum status system_spectrum(struct solid_system *system, struct inertia *inertia, const double *u,
-                                       const double *residual, int most_iterations, const double *start,
-                                       double *scratch, struct spectrum *spectrum, struct error *error);
+MUST_CHECK enum status system_spectrum(struct solid_system *system, struct preconditioner *preconditioner,
+                                       const double *u, const double *residual, int most_iterations,
+                                       const double *start, double *scratch, struct spectrum *spectrum,
+                                       struct error *error);
 
 /* Whether u is stable, by a spectrum that was found from this start. A negative eigenvalue is certain only by
  * its mode, which costs the same iterations twice more: `least` is then the Rayleigh quotient of the mode,
  * which no round-off of the iteration makes negative. scratch as before. */
-MUST_CHECK enum status system_unstable_mode(struct solid_system *system, struct inertia *inertia,
-                                            const double *u, const double *residual,
-                                            const struct spectrum *spectrum, const double *start,
-                                            double *scratch, struct stability *stability,
+MUST_CHECK enum status system_unstable_mode(struct solid_system *system,
+                                            struct preconditioner *preconditioner, const double *u,
+                                            const double *residual, const struct spectrum *spectrum,
+                                            const double *start, double *scratch, struct stability *stability,
                                             struct error *error);
 
 #endif

@@ -4,7 +4,7 @@
 
 #include "base/processor.h"
 #include "solid/kernel_cells.h"
-#include "solid/kernel_means.h"
+#include "solid/kernel_averages.h"
 
 #define KERNEL_SET(set, dim, attribute)                                                                      \
     attribute static void place_##set##_##dim(struct body *body, int64_t first, int64_t last,                \
@@ -17,25 +17,26 @@
     {                                                                                                        \
         sum_nodes_##dim(body, first, last, force);                                                           \
     }                                                                                                        \
-    attribute static void gather_##set##_##dim(struct body *body, int64_t b, struct block_state *state,      \
-                                               double *scratch)                                              \
+    attribute static void apply_##set##_##dim(struct body *body, int64_t b, struct block_state *state,       \
+                                              double *scratch)                                               \
     {                                                                                                        \
-        kernel_gather(&body->gradients, b, dim, body->u, state->F, scratch);                                 \
+        kernel_apply(&body->gradients, b, dim, body->u, state->F, scratch);                                  \
         kernel_determinants(&body->blocks[b], dim, state);                                                   \
     }                                                                                                        \
-    attribute static void scatter_##set##_##dim(struct body *body, int64_t b, const block_rows P,            \
-                                                double *scratch)                                             \
+    attribute static void apply_transposed_##set##_##dim(struct body *body, int64_t b, const block_rows P,   \
+                                                         double *scratch)                                    \
     {                                                                                                        \
-        kernel_scatter(&body->gradients, b, dim, P, scratch);                                                \
+        kernel_apply_transposed(&body->gradients, b, dim, P, scratch);                                       \
     }                                                                                                        \
-    attribute static void gather_means_##set##_##dim(struct means *means, int64_t b, const double *u,        \
-                                                     double *scratch)                                        \
+    attribute static void apply_averages_##set##_##dim(struct field_averages *averages, int64_t b,           \
+                                                       const double *u, double *scratch)                     \
     {                                                                                                        \
-        kernel_gather_means(means, b, dim, u, scratch);                                                      \
+        kernel_apply_averages(averages, b, dim, u, scratch);                                                 \
     }                                                                                                        \
-    attribute static void scatter_means_##set##_##dim(struct means *means, int64_t b, double *scratch)       \
+    attribute static void apply_averages_transposed_##set##_##dim(struct field_averages *averages,           \
+                                                                  int64_t b, double *scratch)                \
     {                                                                                                        \
-        kernel_scatter_means(means, b, dim, scratch);                                                        \
+        kernel_apply_averages_transposed(averages, b, dim, scratch);                                         \
     }                                                                                                        \
     attribute static void cell_gradients_##set##_##dim(struct body *body, int64_t b)                         \
     {                                                                                                        \
@@ -65,10 +66,10 @@
         .name = #set,                                                                                        \
         .place = place_##set##_##dim,                                                                        \
         .sum = sum_##set##_##dim,                                                                            \
-        .gather = gather_##set##_##dim,                                                                      \
-        .scatter = scatter_##set##_##dim,                                                                    \
-        .gather_means = gather_means_##set##_##dim,                                                          \
-        .scatter_means = scatter_means_##set##_##dim,                                                        \
+        .apply = apply_##set##_##dim,                                                                        \
+        .apply_transposed = apply_transposed_##set##_##dim,                                                  \
+        .apply_averages = apply_averages_##set##_##dim,                                                      \
+        .apply_averages_transposed = apply_averages_transposed_##set##_##dim,                                \
         .cell_gradients = cell_gradients_##set##_##dim,                                                      \
         .cell_neo_hookean = cell_neo_hookean_##set##_##dim,                                                  \
         .cell_forces = cell_forces_##set##_##dim,                                                            \

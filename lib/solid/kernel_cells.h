@@ -6,19 +6,19 @@
 #include "solid/kernel_points.h"
 
 /* What the corners of a block's cells look at: component a of corner k in row k dim + a, cells along it. */
-typedef double block_corners[12][PAIRS_MAX_ROWS];
+typedef double block_corners[12][OPERATOR_MAX_ROWS];
 
-KERNEL_INLINE void read_corners(const struct means *means, const struct block *block, int dim,
+KERNEL_INLINE void read_corners(const struct field_averages *averages, const struct block *block, int dim,
                                 block_corners corners)
 {
-    const int32_t *of_corner = means->of_corner + block->first_point * (dim + 1);
+    const int32_t *of_corner = averages->of_corner + block->first_point * (dim + 1);
     int64_t last = block->point_count - 1;
     for (int64_t i = 0; i <= last; i += 4) {
         for (int k = 0; k <= dim; k++) {
-            const double *from[PAIRS_GROUP];
+            const double *from[OPERATOR_SLICE];
             quad4 value[4];
-            for (int r = 0; r < PAIRS_GROUP; r++) { /* the last one again where there are no more */
-                from[r] = means->value + of_corner[(i + r < last ? i + r : last) * (dim + 1) + k];
+            for (int r = 0; r < OPERATOR_SLICE; r++) { /* the last one again where there are no more */
+                from[r] = averages->value + of_corner[(i + r < last ? i + r : last) * (dim + 1) + k];
             }
             load_components(from, dim, value);
             for (int a = 0; a < dim; a++) {
@@ -28,29 +28,29 @@ KERNEL_INLINE void read_corners(const struct means *means, const struct block *b
     }
 }
 
-KERNEL_INLINE void write_corners(struct means *means, const struct block *block, int dim,
+KERNEL_INLINE void write_corners(struct field_averages *averages, const struct block *block, int dim,
                                  const block_corners corners)
 {
-    int64_t i = 0, stride = (dim + 1) * PAIRS_STRIDE(dim);
-    double *force = means->corner_force + block->first_point * stride;
-    for (; i + PAIRS_GROUP <= block->point_count; i += PAIRS_GROUP) {
+    int64_t i = 0, stride = (dim + 1) * OPERATOR_STRIDE(dim);
+    double *force = averages->corner_force + block->first_point * stride;
+    for (; i + OPERATOR_SLICE <= block->point_count; i += OPERATOR_SLICE) {
         for (int k = 0; k <= dim; k++) {
-            double rows[PAIRS_GROUP * PAIRS_STRIDE(3)];
+            double rows[OPERATOR_SLICE * OPERATOR_STRIDE(3)];
             quad4 value[4] = {{0.0}};
             for (int a = 0; a < dim; a++) {
                 LOAD(value[a], corners[k * dim + a] + i);
             }
             store_components(value, dim, rows);
-            for (int r = 0; r < PAIRS_GROUP; r++) {
-                memcpy(force + (i + r) * stride + k * PAIRS_STRIDE(dim), rows + r * PAIRS_STRIDE(dim),
-                       PAIRS_STRIDE(dim) * sizeof *rows);
+            for (int r = 0; r < OPERATOR_SLICE; r++) {
+                memcpy(force + (i + r) * stride + k * OPERATOR_STRIDE(dim), rows + r * OPERATOR_STRIDE(dim),
+                       OPERATOR_STRIDE(dim) * sizeof *rows);
             }
         }
     }
     for (; i < block->point_count; i++) {
         for (int k = 0; k <= dim; k++) {
             for (int a = 0; a < dim; a++) {
-                force[i * stride + k * PAIRS_STRIDE(dim) + a] = corners[k * dim + a][i];
+                force[i * stride + k * OPERATOR_STRIDE(dim) + a] = corners[k * dim + a][i];
             }
         }
     }
@@ -118,14 +118,14 @@ KERNEL_INLINE void kernel_cell_gradients(struct body *body, struct block *block,
 {
     block_corners mean, value;
     block_rows F, interpolant;
-    double determinant[PAIRS_MAX_ROWS], J[PAIRS_MAX_ROWS];
+    double determinant[OPERATOR_MAX_ROWS], J[OPERATOR_MAX_ROWS];
     read_corners(&body->cells.faces, block, dim, mean);
     read_corners(&body->cells.nodes, block, dim, value);
     for (int64_t i = 0; i < block->point_count; i += LANES) {
         lanes hat[9], f[9], h[9], C[9], volume;
         load_hats(body, block->first_point + i, dim, hat);
-        corner_gradient((const double(*)[PAIRS_MAX_ROWS])mean, i, dim, hat, f);
-        corner_gradient((const double(*)[PAIRS_MAX_ROWS])value, i, dim, hat, h);
+        corner_gradient((const double(*)[OPERATOR_MAX_ROWS])mean, i, dim, hat, f);
+        corner_gradient((const double(*)[OPERATOR_MAX_ROWS])value, i, dim, hat, h);
         for (int k = 0; k < dim * dim; k++) {
             double unit = k % (dim + 1) == 0 ? 1.0 : 0.0;
             f[k] = unit - (double)dim * f[k];
@@ -143,8 +143,9 @@ KERNEL_INLINE void kernel_cell_gradients(struct body *body, struct block *block,
         }
         STORE(J + i, volume);
     }
-    keep_rows(body, block, dim * dim, (const double(*)[PAIRS_MAX_ROWS])F, body->F);
-    keep_rows(body, block, dim * dim, (const double(*)[PAIRS_MAX_ROWS])interpolant, body->cells.interpolant);
+    keep_rows(body, block, dim * dim, (const double(*)[OPERATOR_MAX_ROWS])F, body->F);
+    keep_rows(body, block, dim * dim, (const double(*)[OPERATOR_MAX_ROWS])interpolant,
+              body->cells.interpolant);
     memcpy(body->J + block->first_point, J, (size_t)block->point_count * sizeof *J);
     note_least(block, determinant);
 }
@@ -165,11 +166,11 @@ KERNEL_INLINE void cofactor_along(const lanes H[9], const lanes D[9], int dim, l
     }
 }
 
-/* dE/dF in P and dE/dF_h in T of w (W_shape(F) + p J + k |F_h - F|^2 / 2), p held: see conforming.h. */
+/* dE/dF in P and dE/dF_h in T of w (W_shape(F) + p J + k |F_h - F|^2 / 2), p held: see smoothed_cells.h. */
 KERNEL_INLINE void kernel_cell_neo_hookean(const struct body *body, const struct block *block, int dim,
                                            block_rows P, block_rows T)
 {
-    double weighted_pressure[PAIRS_MAX_ROWS];
+    double weighted_pressure[OPERATOR_MAX_ROWS];
     kernel_pressures(body, block, body->J + block->first_point, dim, weighted_pressure);
     for (int64_t i = 0; i < block->point_count; i += LANES) {
         lanes F[9], H[9], D[9], C[9], J, weight, shear, bulk, pressure, stiffness;
@@ -219,8 +220,8 @@ KERNEL_INLINE void kernel_cell_forces(struct body *body, const struct block *blo
         }
         corner_forces(stress, i, dim, hat, 1.0, at_nodes);
     }
-    write_corners(&body->cells.faces, block, dim, (const double(*)[PAIRS_MAX_ROWS])at_faces);
-    write_corners(&body->cells.nodes, block, dim, (const double(*)[PAIRS_MAX_ROWS])at_nodes);
+    write_corners(&body->cells.faces, block, dim, (const double(*)[OPERATOR_MAX_ROWS])at_faces);
+    write_corners(&body->cells.nodes, block, dim, (const double(*)[OPERATOR_MAX_ROWS])at_nodes);
 }
 
 #endif

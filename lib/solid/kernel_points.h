@@ -56,7 +56,7 @@ KERNEL_INLINE void lanes_determinant(const lanes F[9], const lanes C[9], int dim
 }
 
 /* The least determinant of a block. */
-KERNEL_INLINE void note_least(struct block *block, const double determinant[PAIRS_MAX_ROWS])
+KERNEL_INLINE void note_least(struct block *block, const double determinant[OPERATOR_MAX_ROWS])
 {
     double least = INFINITY;
     int64_t worst = 0;
@@ -75,7 +75,7 @@ KERNEL_INLINE void kernel_determinants(struct block *block, int dim, struct bloc
 {
     for (int64_t i = 0; i < block->point_count; i += LANES) {
         lanes F[9], C[9], J;
-        load_matrix(state->F[0] + i, PAIRS_MAX_ROWS, dim, F);
+        load_matrix(state->F[0] + i, OPERATOR_MAX_ROWS, dim, F);
         lanes_cofactor(F, dim, C);
         lanes_determinant(F, C, dim, &J);
         STORE(state->J + i, J);
@@ -147,7 +147,7 @@ KERNEL_INLINE void neo_hookean_shape(const lanes F[9], const lanes *J, const lan
 KERNEL_INLINE void kernel_neo_hookean(const struct body *body, const struct block *block,
                                       struct block_view state, int dim, block_rows P)
 {
-    double weighted_pressure[PAIRS_MAX_ROWS];
+    double weighted_pressure[OPERATOR_MAX_ROWS];
     kernel_pressures(body, block, state.J, dim, weighted_pressure);
     for (int64_t i = 0; i < block->point_count; i += LANES) {
         lanes F[9], C[9], J, weight, shear, bulk, pressure;

@@ -46,11 +46,11 @@ KERNEL_INLINE void transpose(quad4 row[4])
 }
 
 /* Component a of four vectors, in the lanes of x[a]. */
-KERNEL_INLINE void load_components(const double *const from[PAIRS_GROUP], int dim, quad4 x[4])
+KERNEL_INLINE void load_components(const double *const from[OPERATOR_SLICE], int dim, quad4 x[4])
 {
     if (dim == 2) {
-        pair2 v[PAIRS_GROUP];
-        for (int r = 0; r < PAIRS_GROUP; r++) {
+        pair2 v[OPERATOR_SLICE];
+        for (int r = 0; r < OPERATOR_SLICE; r++) {
             LOAD(v[r], from[r]);
         }
         pair2 first = __builtin_shufflevector(v[0], v[1], 0, 2);
@@ -60,14 +60,14 @@ KERNEL_INLINE void load_components(const double *const from[PAIRS_GROUP], int di
         last = __builtin_shufflevector(v[2], v[3], 1, 3);
         x[1] = __builtin_shufflevector(first, last, 0, 1, 2, 3);
     } else {
-        for (int r = 0; r < PAIRS_GROUP; r++) {
+        for (int r = 0; r < OPERATOR_SLICE; r++) {
             LOAD(x[r], from[r]);
         }
         transpose(x);
     }
 }
 
-/* The converse: the four vectors, one behind the other, PAIRS_STRIDE(dim) apart. */
+/* The converse: the four vectors, one behind the other, OPERATOR_STRIDE(dim) apart. */
 KERNEL_INLINE void store_components(const quad4 x[4], int dim, double *to)
 {
     if (dim == 2) {
@@ -78,8 +78,8 @@ KERNEL_INLINE void store_components(const quad4 x[4], int dim, double *to)
     } else {
         quad4 row[4] = {x[0], x[1], x[2], {0.0}};
         transpose(row);
-        for (int r = 0; r < PAIRS_GROUP; r++) {
-            STORE(to + r * PAIRS_STRIDE(3), row[r]);
+        for (int r = 0; r < OPERATOR_SLICE; r++) {
+            STORE(to + r * OPERATOR_STRIDE(3), row[r]);
         }
     }
 }

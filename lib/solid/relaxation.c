@@ -49,10 +49,10 @@ static bool step(struct relaxation *r, double *u, bool measure)
         memcpy(r->acceleration, r->velocity, (size_t)r->size * sizeof *r->velocity);
     }
     memcpy(r->before, u, (size_t)r->size * sizeof *u);
-    if (inertia_follow(&r->inertia, system, measure)) {
+    if (preconditioner_follow(&r->preconditioner, system, measure)) {
         relaxation_note_new_mass(r);
     }
-    inertia_accelerate(&r->inertia, r->residual, r->scratch);
+    preconditioner_apply(&r->preconditioner, r->residual, r->scratch);
     r->unstable = residual_grows(r);
     double *move = r->velocity, push = 2.0 * dt / grow;
     for (int64_t i = 0; i < r->size; i++) {
@@ -60,7 +60,7 @@ static bool step(struct relaxation *r, double *u, bool measure)
     }
     /* The move is projected, not u: round-off relative to u would keep the residual from vanishing. */
     double started = clock_seconds();
-    constraint_project(&r->inertia.constraint, r->factor_change, move);
+    constraint_project(&r->preconditioner.constraint, r->factor_change, move);
     system->cost.constraints += clock_seconds() - started;
     for (int64_t i = 0; i < r->size; i++) {
         u[i] += move[i];
@@ -110,11 +110,12 @@ static enum status measure_row_forces(struct relaxation *r, const double *u, dou
         return STATUS_OK;
     }
     for (int64_t i = 0; i < r->size; i++) {
-        r->scratch[i] = r->residual[i] / r->inertia.mass[i / dim];
+        r->scratch[i] = r->residual[i] / r->preconditioner.mass[i / dim];
     }
-    constraint_project(&r->inertia.constraint, NULL, r->scratch);
-    memcpy(row_force, r->inertia.constraint.multiplier, (size_t)r->system->rows.count * sizeof *row_force);
-    return constraint_share_out(&r->inertia.constraint, row_force, error);
+    constraint_project(&r->preconditioner.constraint, NULL, r->scratch);
+    memcpy(row_force, r->preconditioner.constraint.multiplier,
+           (size_t)r->system->rows.count * sizeof *row_force);
+    return constraint_share_out(&r->preconditioner.constraint, row_force, error);
 }
 
 static bool gives_frames(const struct relaxation *r)
@@ -145,10 +146,10 @@ static bool give_frame(struct relaxation *r, struct error *error)
 /* After an equilibrium on the way the load goes on: what was known of the held load is no longer so. */
 static void let_go(struct relaxation *r)
 {
-    r->at_full_load = r->settled = 0;
+    r->at_full_load = r->converged_checks = 0;
     r->spectrum2 = INFINITY;
     r->spectrum_known = false;
-    r->augmentations = r->fruitless = 0;
+    r->augmentations = r->stagnation = 0;
     r->least_penetration = INFINITY;
 }
 
@@ -178,9 +179,9 @@ static bool follow(struct relaxation *r, struct error *error)
 {
     double *u = r->u;
     relaxation_estimate(r);
-    relaxation_pace(r);
+    relaxation_control_load(r);
     if (r->at_full_load <= CHECK_INTERVAL) { /* take out what round-off has left */
-        constraint_project(&r->inertia.constraint, r->system->factor, u);
+        constraint_project(&r->preconditioner.constraint, r->system->factor, u);
     }
     if (r->report->steps % keep_interval == 0) {
         relaxation_keep_state(r);
@@ -195,7 +196,7 @@ static bool follow(struct relaxation *r, struct error *error)
         relaxation_calm(r, r->acceleration);
     }
     relaxation_follow_contacts(r);
-    return relaxation_update_inertia(r, error);
+    return relaxation_update_preconditioner(r, error);
 }
 
 /* Whether the run ends at this check, and how. A failure ends it, too. */
@@ -205,20 +206,21 @@ static bool ends(struct relaxation *r, enum relaxation_outcome *outcome, struct 
     bool whole = r->at_full_load > 2 * CHECK_INTERVAL;
     bool small = whole && *error_now <= tolerance;
     if (!small) {
-        r->settled = 0;
+        r->converged_checks = 0;
     } else if (r->augmented || !body_is_limited(&r->system->body)) {
-        r->settled++; /* the error counts what the pressures have yet to make up for */
+        r->converged_checks++; /* the error counts what the pressures have yet to make up for */
     }
     *outcome = RELAXATION_STOPPED;
-    if (r->settled >= 2 && !r->spectrum_known && !relaxation_find_lowest_mode(r, r->residual_at, error)) {
+    if (r->converged_checks >= 2 && !r->spectrum_known &&
+        !relaxation_find_lowest_mode(r, r->residual_at, error)) {
         return true;
     }
     *outcome = RELAXATION_CONVERGED;
-    if (r->settled >= 2 && *error_now <= tolerance) {
+    if (r->converged_checks >= 2 && *error_now <= tolerance) {
         if (relaxation_contacts_hold(r)) {
             return true;
         }
-        r->settled = 0;
+        r->converged_checks = 0;
     }
     relaxation_note_best(r);
     if (whole && *error_now <= relaxation_round_off(r) && relaxation_stays(r, 2.0, 200) &&
@@ -302,14 +304,14 @@ static enum status begin(struct relaxation *r, struct error *error)
         relaxation_show(r, 0, 0.0);
     }
     system_relaxation_mass(system, r->scratch);
-    TRY(inertia_set_mass(&r->inertia, system, r->scratch, error));
-    constraint_project(&r->inertia.constraint, system->factor, r->u);
+    TRY(preconditioner_set_mass(&r->preconditioner, system, r->scratch, error));
+    constraint_project(&r->preconditioner.constraint, system->factor, r->u);
     r->residual_at = r->u;
     r->low2 = INFINITY;
     for (int i = 0; i < WINDOWS; i++) {
         r->window[i] = INFINITY;
     }
-    TRY(relaxation_measure_inertia(r, error));
+    TRY(relaxation_measure_preconditioner(r, error));
     for (int i = 0; i < 2; i++) {
         relaxation_keep_state(r);
         relaxation_keep_check(r);
@@ -325,7 +327,7 @@ static enum status resume(struct relaxation *r, struct error *error)
     enum status status;
     body_limit_bulk(&r->system->body, bulk_limit);
     TRY(relaxation_visit(r, r->options->restored, error));
-    TRY(inertia_restore(&r->inertia, r->system, error));
+    TRY(preconditioner_restore(&r->preconditioner, r->system, error));
 done:
     return status;
 }
@@ -342,7 +344,7 @@ enum status relaxation_run(struct solid_system *system, const struct relaxation_
                            .row_force = row_force,
                            .load_rate = 1.0,
                            .top_rate = 1.0,
-                           .caution = 1.0,
+                           .step_safety = 1.0,
                            .least_penetration = INFINITY,
                            .spectrum2 = INFINITY};
     *report = (struct relaxation_report){.least_jacobian = 1.0};

@@ -1,6 +1,7 @@
-/* Quasi-static solution by dynamic relaxation: central differences with a fictitious mass (inertia.h) and a
- * damping that follows the lowest mode still active (a running Rayleigh quotient), stopped by an estimate of
- * the remaining error (Underwood 1983; Papadrakakis 1981; equations (21) to (28) of lib/README.md).
+/* Quasi-static solution by dynamic relaxation: central differences with a fictitious mass (preconditioner.h)
+ * and a damping that follows the lowest mode still active (a running Rayleigh quotient), stopped by an
+ * estimate of the remaining error (Underwood 1983; Papadrakakis 1981; equations (21) to (28) of
+ * lib/README.md).
  *
  * Error estimate: with the acceleration a of the residual and the lowest frequency w, |e| <= |a| / w^2, which
  * is exact for a mode of a linear system. It is taken in the norm of the diagonal mass, relative to the
@@ -44,7 +45,7 @@ struct relaxation_report {
     enum relaxation_outcome outcome;
     int64_t steps;
     int64_t ramp_steps;    /* over which the load was to be applied, */
-    int64_t loading_steps; /* and in which it was, retreats included */
+    int64_t loading_steps; /* and in which it was, backtracks included */
     int64_t force_evaluations;
     double error;             /* estimated remaining error, relative to the largest displacement of the run:
                                * the larger of those on the whole and at the worst node */

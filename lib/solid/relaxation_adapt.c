@@ -9,23 +9,23 @@
 /* Steps in which the load moves something by as much as a cell, or as the body is long; and at least. */
 static const double steps_per_spacing = 50.0, steps_per_size = 400.0;
 static const int64_t least_ramp = 100;
-/* The inertia is measured anew when something moved by so much of the body's thickness, or the largest
+/* The preconditioner is measured anew when something moved by so much of the body's thickness, or the largest
  * frequency rose by that factor: as a body turns, what was soft becomes stiff, the more the slenderer it is.
  */
 static const double most_moved = 1.4, most_raised = 1.25;
 /* The load waits when something moves by more than this part of the body's size in a step, a little more than
  * a ramp makes. */
-static const double most_paced = 1.0 / 320.0;
+static const double most_move_per_step = 1.0 / 320.0;
 /* Lowest eigenvalue by what so few iterations find, which is up to some seven times as much. */
 static const double first_low2 = 0.15;
 static const double least_low2 =
     1e-4; /* first guess of the lowest eigenvalue by the largest, if it is negative */
-static const int64_t most_retreats = 8;                          /* from inverted points */
+static const int64_t most_backtracks = 8;                        /* from inverted points */
 static const double most_stiffening = 1.1, most_softening = 0.5; /* of a node since its mass was set */
 static const int calm_iterations = 5;         /* of the power iteration on a mode that may be unstable */
 static const double most_mass_checks = 5.0;   /* from one look at that to the next */
 static const int64_t most_augmentations = 20; /* of the contacts' multipliers, */
-static const int64_t most_fruitless = 3;      /* of those in a row that change little */
+static const int64_t most_stagnation = 3;     /* of those in a row that change little */
 
 double relaxation_body_size(const struct solid_system *system)
 {
@@ -46,21 +46,22 @@ int64_t relaxation_choose_ramp(const struct relaxation *r)
     return steps > 1e7 ? 10000000 : (int64_t)steps;
 }
 
-void relaxation_pace(struct relaxation *r)
+void relaxation_control_load(struct relaxation *r)
 {
-    double allowed = CHECK_INTERVAL * most_paced * r->body_size, factor = fmax(0.3, allowed / r->moved);
+    double allowed = CHECK_INTERVAL * most_move_per_step * r->body_size,
+           factor = fmax(0.3, allowed / r->moved);
     r->load_rate = fmin(r->top_rate, fmin(factor, 1.2) * r->load_rate);
 }
 
 static double relaxation_share(const struct relaxation *r)
 {
-    return r->caution * r->options->time_step_margin;
+    return r->step_safety * r->options->time_step_margin;
 }
 
 void relaxation_update_time_step(struct relaxation *r, const double *u, int iterations)
 {
-    double frequency =
-        system_largest_frequency(r->system, &r->inertia, u, r->residual, iterations, r->mode, r->scratch);
+    double frequency = system_largest_frequency(r->system, &r->preconditioner, u, r->residual, iterations,
+                                                r->mode, r->scratch);
     r->report->force_evaluations += iterations;
     /* The estimate is from below and wanders: follow rises at once, falls slowly. */
     r->frequency = frequency > r->frequency ? frequency : 0.98 * r->frequency + 0.02 * frequency;
@@ -84,25 +85,25 @@ bool relaxation_update_mass(struct relaxation *r, struct error *error)
     double *mass = r->scratch, highest = 1.0, lowest = 1.0;
     system_relaxation_mass(r->system, mass);
     for (int64_t n = 0; n < r->system->node_count; n++) {
-        highest = fmax(highest, mass[n] / r->inertia.mass[n]);
-        lowest = fmin(lowest, mass[n] / r->inertia.mass[n]);
+        highest = fmax(highest, mass[n] / r->preconditioner.mass[n]);
+        lowest = fmin(lowest, mass[n] / r->preconditioner.mass[n]);
     }
     if (!note_mass_change(r, fmax(log(highest) / log(most_stiffening), log(lowest) / log(most_softening)))) {
         return true;
     }
-    r->failure = inertia_set_mass(&r->inertia, r->system, mass, error);
+    r->failure = preconditioner_set_mass(&r->preconditioner, r->system, mass, error);
     relaxation_note_new_mass(r);
     return r->failure == STATUS_OK;
 }
 
-bool relaxation_update_inertia(struct relaxation *r, struct error *error)
+bool relaxation_update_preconditioner(struct relaxation *r, struct error *error)
 {
     bool moved = r->largest_move > r->measured_move + most_moved * r->thickness;
     bool stiffened = r->frequency > most_raised * r->measured_frequency;
-    if (r->inertia.size == 0 || !(moved || stiffened || inertia_is_stale(&r->inertia))) {
+    if (r->preconditioner.size == 0 || !(moved || stiffened || preconditioner_is_stale(&r->preconditioner))) {
         return true;
     }
-    r->failure = relaxation_measure_inertia(r, error);
+    r->failure = relaxation_measure_preconditioner(r, error);
     return r->failure == STATUS_OK;
 }
 
@@ -113,13 +114,13 @@ void relaxation_note_new_mass(struct relaxation *r)
     r->spectrum_known = false;
 }
 
-enum status relaxation_measure_inertia(struct relaxation *r, struct error *error)
+enum status relaxation_measure_preconditioner(struct relaxation *r, struct error *error)
 {
     struct spectrum spectrum;
-    r->report->force_evaluations += r->inertia.size + 1;
-    enum status status = inertia_measure(&r->inertia, r->system, r->residual_at, error);
+    r->report->force_evaluations += r->preconditioner.size + 1;
+    enum status status = preconditioner_measure(&r->preconditioner, r->system, r->residual_at, error);
     (void)system_residual(r->system, r->residual_at, r->residual); /* the body's last evaluation again */
-    (void)inertia_follow(&r->inertia, r->system, true);
+    (void)preconditioner_follow(&r->preconditioner, r->system, true);
     relaxation_note_new_mass(r);
     TRY(status);
     if (!relaxation_find_spectrum(r, r->residual_at, FIRST_ITERATIONS, &spectrum, error)) {
@@ -166,11 +167,11 @@ void relaxation_go_back(struct relaxation *r, const struct kept_state *kept)
 
 bool relaxation_step_back(struct relaxation *r, struct error *error)
 {
-    if (r->retreats == most_retreats) {
+    if (r->backtracks == most_backtracks) {
         return false;
     }
-    r->retreats++;
-    r->caution *= 0.8;
+    r->backtracks++;
+    r->step_safety *= 0.8;
     r->top_rate *= 0.5;
     r->load_rate = r->top_rate;
     relaxation_go_back(r, &r->older);
@@ -186,9 +187,9 @@ bool relaxation_step_back(struct relaxation *r, struct error *error)
     system_relaxation_mass(r->system, r->scratch);
     r->mass_change = 0.0;
     r->last_mass_check = r->next_mass_check = r->checks;
-    r->failure = inertia_set_mass(&r->inertia, r->system, r->scratch, error);
+    r->failure = preconditioner_set_mass(&r->preconditioner, r->system, r->scratch, error);
     if (r->failure == STATUS_OK) {
-        r->failure = relaxation_measure_inertia(r, error);
+        r->failure = relaxation_measure_preconditioner(r, error);
     }
     return r->failure == STATUS_OK;
 }
@@ -198,8 +199,8 @@ static bool is_unstable(struct relaxation *r, const double *acceleration)
 {
     memcpy(r->mode, acceleration, (size_t)r->size * sizeof *r->mode);
     (void)system_residual(r->system, r->u, r->residual);
-    double frequency = system_largest_frequency(r->system, &r->inertia, r->u, r->residual, calm_iterations,
-                                                r->mode, r->scratch);
+    double frequency = system_largest_frequency(r->system, &r->preconditioner, r->u, r->residual,
+                                                calm_iterations, r->mode, r->scratch);
     r->report->force_evaluations += calm_iterations + 1;
     return !(frequency * r->time_step < 2.0);
 }
@@ -285,10 +286,10 @@ bool relaxation_contacts_hold(struct relaxation *r)
     r->report->penetration = now.miss;
     r->report->penetration_allowed = allowed;
     if (!(now.idle || now.miss > allowed) || r->augmentations == most_augmentations ||
-        r->fruitless == most_fruitless) {
+        r->stagnation == most_stagnation) {
         return true;
     }
-    r->fruitless = now.miss < 0.8 * r->least_penetration ? 0 : r->fruitless + 1;
+    r->stagnation = now.miss < 0.8 * r->least_penetration ? 0 : r->stagnation + 1;
     r->least_penetration = fmin(r->least_penetration, now.miss);
     augment(r, allowed);
     r->augmentations++;

@@ -56,10 +56,10 @@ void relaxation_estimate(struct relaxation *r)
     r->moved = largest_of_nodes(r, du);
     memcpy(r->last_u, r->before, (size_t)r->size * sizeof *r->before);
     memcpy(r->last_acceleration, r->acceleration, (size_t)r->size * sizeof *r->acceleration);
-    constraint_project(&r->inertia.constraint, NULL, du);
-    constraint_project(&r->inertia.constraint, NULL, da);
-    double bottom = inertia_product(&r->inertia, du, du);
-    double quotient = bottom > 0.0 ? inertia_product(&r->inertia, du, da) / bottom : 0.0;
+    constraint_project(&r->preconditioner.constraint, NULL, du);
+    constraint_project(&r->preconditioner.constraint, NULL, da);
+    double bottom = preconditioner_product(&r->preconditioner, du, du);
+    double quotient = bottom > 0.0 ? preconditioner_product(&r->preconditioner, du, da) / bottom : 0.0;
     if (quotient > 0.0 && r->checks > 0 && !r->mass_changed) {
         quotient = fmin(quotient, r->frequency * r->frequency);
         r->low2 = quotient < r->low2 ? quotient : fmin(quotient, most_growth * r->low2);
@@ -70,12 +70,13 @@ void relaxation_estimate(struct relaxation *r)
     r->checks++;
     double least2 = least_of_window(r);
     r->largest_displacement =
-        fmax(r->largest_displacement, sqrt(inertia_product_alone(&r->inertia, r->before, r->before)));
+        fmax(r->largest_displacement,
+             sqrt(preconditioner_product_diagonal(&r->preconditioner, r->before, r->before)));
     r->largest_move = fmax(r->largest_move, largest_of_nodes(r, r->before));
     /* Of the largest so far: a scene may end at rest. */
-    double on_the_whole =
-        ratio(sqrt(inertia_product_alone(&r->inertia, r->acceleration, r->acceleration)) / least2,
-              r->largest_displacement);
+    double on_the_whole = ratio(
+        sqrt(preconditioner_product_diagonal(&r->preconditioner, r->acceleration, r->acceleration)) / least2,
+        r->largest_displacement);
     double at_worst = ratio(largest_of_nodes(r, r->acceleration) / least2, r->largest_move);
     r->report->error = safety * fmax(on_the_whole, at_worst);
     r->report->lowest_frequency = sqrt(least2);
@@ -88,8 +89,8 @@ bool relaxation_find_spectrum(struct relaxation *r, const double *u, int most_it
     double *scratch = NULL;
     r->failure = NEW_ARRAY(&scratch, 4 * r->size, error);
     if (r->failure == STATUS_OK) {
-        r->failure = system_spectrum(r->system, &r->inertia, u, r->residual, most_iterations, r->velocity,
-                                     scratch, spectrum, error);
+        r->failure = system_spectrum(r->system, &r->preconditioner, u, r->residual, most_iterations,
+                                     r->velocity, scratch, spectrum, error);
         r->report->force_evaluations += spectrum->iterations;
     }
     free(scratch);
@@ -113,8 +114,8 @@ static bool note_stability(struct relaxation *r, const double *u, const struct s
     double *scratch = NULL;
     r->failure = NEW_ARRAY(&scratch, 4 * r->size, error);
     if (r->failure == STATUS_OK) {
-        r->failure = system_unstable_mode(r->system, &r->inertia, u, r->residual, spectrum, r->velocity,
-                                          scratch, &r->system->stability, error);
+        r->failure = system_unstable_mode(r->system, &r->preconditioner, u, r->residual, spectrum,
+                                          r->velocity, scratch, &r->system->stability, error);
     }
     struct stability *stability = &r->system->stability;
     if (stability->least > -r->report->error || r->system->contact_count > 0) {

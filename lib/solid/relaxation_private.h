@@ -3,11 +3,11 @@
 #define SOLID_RELAXATION_PRIVATE_H
 
 #include "solid/frequency.h"
-#include "solid/inertia.h"
+#include "solid/preconditioner.h"
 #include "solid/relaxation.h"
 
 enum { CHECK_INTERVAL = 10 };   /* steps between estimates */
-enum { FIRST_ITERATIONS = 30 }; /* of Lanczos, where the inertia was measured */
+enum { FIRST_ITERATIONS = 30 }; /* of Lanczos, where the preconditioner was measured */
 enum { WINDOWS = 8 };           /* recent Rayleigh quotients that the error estimate looks at */
 
 /* Between augmentations, of contacts or of nodal pressures: damping times time. */
@@ -23,7 +23,7 @@ struct relaxation {
     struct solid_system *system;
     const struct relaxation_options *options;
     struct relaxation_report *report;
-    struct inertia inertia;
+    struct preconditioner preconditioner;
     int64_t size;
     double *caller_u, *row_force; /* the caller's; row_force may be NULL */
     double *u;                    /* the unknowns: nodal parameters where there is a basis */
@@ -47,12 +47,12 @@ struct relaxation {
     double spacing;                           /* mean, of the nodes, m */
     double body_size;                         /* diagonal of the nodes' box, m */
     double thickness;                         /* mean, across that, m */
-    double measured_frequency, measured_move; /* the largest ones, when the inertia was measured */
+    double measured_frequency, measured_move; /* the largest ones, when the preconditioner was measured */
     double usual_residual2;                   /* what the residual's norm, squared, is compared with */
     bool unstable;                            /* it grew far above that in the last step */
     int64_t calmed_step;                      /* the last step at which that was mended */
     double penetration_allowed;               /* m */
-    int64_t augmentations, fruitless;         /* of the contacts so far; those in a row that changed little */
+    int64_t augmentations, stagnation;        /* of the contacts so far; those in a row that changed little */
     double least_penetration;                 /* m, before an augmentation */
     int64_t augmented_step;                   /* of the last one while the load grew */
     bool mass_changed; /* since the last check: increments of the acceleration mean nothing */
@@ -65,15 +65,15 @@ struct relaxation {
     double largest_displacement; /* so far, in the norm of the mass */
     double largest_move;         /* so far, of a node, m */
     bool spectrum_known;         /* spectrum2 is of the mass and the load as they are */
-    double caution;              /* on the time step: 1 until an inversion */
-    int64_t retreats;
+    double step_safety;          /* on the time step: 1 until an inversion */
+    int64_t backtracks;
     struct kept_state newer, older;            /* every so often, */
     struct kept_state check_now, check_before; /* at the last two checks */
     int64_t frames;                            /* given so far, but for the first, 0 */
     int64_t
-        at_full_load;   /* steps since the load that is held, that of a frame or the full one, was reached */
-    int64_t settled;    /* checks in a row with a small error */
-    double mass_change; /* of the stiffness since the mass was set: 1 where it is set anew */
+        at_full_load; /* steps since the load that is held, that of a frame or the full one, was reached */
+    int64_t converged_checks; /* checks in a row with a small error */
+    double mass_change;       /* of the stiffness since the mass was set: 1 where it is set anew */
     int64_t last_mass_check, next_mass_check; /* checks: when that was looked at, and is again */
 };
 
@@ -119,7 +119,7 @@ int64_t relaxation_choose_ramp(const struct relaxation *r);
 
 /* Let the load go on only as fast as the body can follow: forces may move it as far as prescribed
  * displacements never do in a step. */
-void relaxation_pace(struct relaxation *r);
+void relaxation_control_load(struct relaxation *r);
 
 /* Take the critical step at u from the largest frequency. */
 void relaxation_update_time_step(struct relaxation *r, const double *u, int iterations);
@@ -131,12 +131,12 @@ bool relaxation_update_mass(struct relaxation *r, struct error *error);
 /* What was known of the lowest mode was of another mass. */
 void relaxation_note_new_mass(struct relaxation *r);
 
-/* Measure the inertia anew where the body has changed since that was done. False on failure. */
-bool relaxation_update_inertia(struct relaxation *r, struct error *error);
+/* Measure the preconditioner anew where the body has changed since that was done. False on failure. */
+bool relaxation_update_preconditioner(struct relaxation *r, struct error *error);
 
-/* Measure the stiffness along the fields of the inertia at the state where the residual is known, and take
- * the time step from it. */
-MUST_CHECK enum status relaxation_measure_inertia(struct relaxation *r, struct error *error);
+/* Measure the stiffness along the coarse fields of the preconditioner at the state where the residual is
+ * known, and take the time step from it. */
+MUST_CHECK enum status relaxation_measure_preconditioner(struct relaxation *r, struct error *error);
 
 /* Go back to a state that was kept, at rest. */
 void relaxation_go_back(struct relaxation *r, const struct kept_state *kept);
@@ -166,7 +166,7 @@ void relaxation_calm(struct relaxation *r, const double *acceleration);
 
 MUST_CHECK enum status relaxation_allocate(struct relaxation *r, struct error *error);
 
-/* Let the system work in nodal parameters (nodal_basis.h) where it is made of conforming cells, from its
+/* Let the system work in nodal parameters (nodal_basis.h) where it is made of smoothed cells, from its
  * parameters u; and let it work in u again. */
 MUST_CHECK enum status relaxation_enter_basis(struct relaxation *r, double *u, struct error *error);
 void relaxation_leave_basis(struct relaxation *r);

@@ -17,7 +17,7 @@ enum status relaxation_enter_basis(struct relaxation *r, double *u, struct error
     struct solid_system *system = r->system;
     const struct neighbours *lists = system->node_lists;
     r->u = u;
-    if (lists == NULL || !system->body.conforming || system->dim == 2) {
+    if (lists == NULL || !system->body.smoothed || system->dim == 2) {
         return STATUS_OK;
     }
     TRY(nodal_basis_build(system->dim, system->node_count, system->X, lists->ptr, lists->idx,
@@ -90,7 +90,7 @@ const double *relaxation_parameters(struct relaxation *r, const double *v)
 enum status relaxation_allocate(struct relaxation *r, struct error *error)
 {
     enum status status;
-    TRY(inertia_build(r->system, true, &r->inertia, error));
+    TRY(preconditioner_build(r->system, true, &r->preconditioner, error));
     TRY(NEW_ARRAY(&r->velocity, r->size, error));
     TRY(NEW_ARRAY(&r->residual, r->size, error));
     TRY(NEW_ARRAY(&r->before, r->size, error));
@@ -123,7 +123,7 @@ void relaxation_release(struct relaxation *r)
     free(r->older.u);
     free(r->check_now.u);
     free(r->check_before.u);
-    inertia_free(&r->inertia);
+    preconditioner_free(&r->preconditioner);
 }
 
 enum status relaxation_visit(void *run, const struct state *state, struct error *error)
@@ -172,15 +172,15 @@ enum status relaxation_visit(void *run, const struct state *state, struct error 
         {"load_rate", STATE_NUMBERS, &r->load_rate, 1},
         {"top_rate", STATE_NUMBERS, &r->top_rate, 1},
         {"loading_steps", STATE_COUNTS, &report->loading_steps, 1},
-        {"caution", STATE_NUMBERS, &r->caution, 1},
-        {"retreats", STATE_COUNTS, &r->retreats, 1},
+        {"caution", STATE_NUMBERS, &r->step_safety, 1},
+        {"retreats", STATE_COUNTS, &r->backtracks, 1},
         {"augmentations", STATE_COUNTS, &r->augmentations, 1},
-        {"fruitless", STATE_COUNTS, &r->fruitless, 1},
+        {"fruitless", STATE_COUNTS, &r->stagnation, 1},
         {"least_penetration", STATE_NUMBERS, &r->least_penetration, 1},
         {"augmented_step", STATE_COUNTS, &r->augmented_step, 1},
         {"frames", STATE_COUNTS, &r->frames, 1},
         {"at_full_load", STATE_COUNTS, &r->at_full_load, 1},
-        {"settled", STATE_COUNTS, &r->settled, 1},
+        {"settled", STATE_COUNTS, &r->converged_checks, 1},
         {"mass_change", STATE_NUMBERS, &r->mass_change, 1},
         {"last_mass_check", STATE_COUNTS, &r->last_mass_check, 1},
         {"next_mass_check", STATE_COUNTS, &r->next_mass_check, 1},
@@ -191,7 +191,7 @@ enum status relaxation_visit(void *run, const struct state *state, struct error 
     };
     enum status status;
     TRY(state_visit(state, NULL, values, sizeof values / sizeof *values, error));
-    TRY(inertia_state(&r->inertia, state, error));
+    TRY(preconditioner_state(&r->preconditioner, state, error));
     TRY(system_state(r->system, state, error));
 done:
     return status;

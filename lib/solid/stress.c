@@ -112,7 +112,7 @@ void stress_cells(const struct body *body, const struct block *block, block_rows
 static void put_stress(const struct body *body, int64_t q, const double F[9], double J, void *stress)
 {
     double *P = (double *)stress + body->order[q] * 9, T[9];
-    if (!body->conforming) {
+    if (!body->smoothed) {
         point_stress(body, q, F, J, P);
         return;
     }

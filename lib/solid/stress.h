@@ -1,4 +1,4 @@
-/* Stresses of points and conforming cells of any law, one at a time; private to lib/solid. */
+/* Stresses of points and smoothed cells of any law, one at a time; private to lib/solid. */
 #ifndef SOLID_STRESS_H
 #define SOLID_STRESS_H
 
@@ -18,10 +18,10 @@ void cofactor_along(const double H[9], const double D[9], double along[9]);
 /* Weighted stresses P of a block of points. */
 void stress_points(const struct body *body, const struct block *block, struct block_view state, block_rows P);
 
-/* Weighted stresses of a block of cells, P on F and T on F_h: see conforming.h. */
+/* Weighted stresses of a block of cells, P on F and T on F_h: see smoothed_cells.h. */
 void stress_cells(const struct body *body, const struct block *block, block_rows P, block_rows T);
 
-/* Energy k |F_h - F|^2 / 2 of a cell, Pa: see conforming.h. */
+/* Energy k |F_h - F|^2 / 2 of a cell, Pa: see smoothed_cells.h. */
 double stress_smoothing_energy(const struct body *body, int64_t point, const double F[9]);
 
 #endif

@@ -36,9 +36,9 @@ void system_free(struct solid_system *system)
     free(system->lumped_mass);
     free(system->factor);
     constraint_rows_free(&system->rows);
-    constraint_rows_free(&system->springs);
-    free(system->spring_stiffness);
-    free(system->spring_pull);
+    constraint_rows_free(&system->penalties);
+    free(system->penalty_stiffness);
+    free(system->penalty_force);
     body_free(&system->body);
     *system = (struct solid_system){0};
 }
@@ -218,31 +218,31 @@ void system_add_loads(const struct solid_system *system, const double *u, double
     }
 }
 
-double system_spring_force(const struct solid_system *system, int64_t r, const double *u)
+double system_penalty_force(const struct solid_system *system, int64_t r, const double *u)
 {
-    const struct constraint_rows *springs = &system->springs;
-    return system->spring_stiffness[r] *
-           (springs->target[r] * system->factor[springs->curve[r]] - constraint_rows_value(springs, r, u));
+    const struct constraint_rows *penalties = &system->penalties;
+    return system->penalty_stiffness[r] * (penalties->target[r] * system->factor[penalties->curve[r]] -
+                                           constraint_rows_value(penalties, r, u));
 }
 
-void system_add_springs(struct solid_system *system, const double *u, double *force)
+void system_add_penalties(struct solid_system *system, const double *u, double *force)
 {
-    const struct constraint_rows *springs = &system->springs;
-    double *pull = system->spring_pull;
-    constraint_rows_values(springs, u, pull);
-    for (int64_t r = 0; r < springs->count; r++) {
-        double target = springs->target[r] * system->factor[springs->curve[r]];
-        pull[r] = system->spring_stiffness[r] * (target - pull[r]);
+    const struct constraint_rows *penalties = &system->penalties;
+    double *pull = system->penalty_force;
+    constraint_rows_values(penalties, u, pull);
+    for (int64_t r = 0; r < penalties->count; r++) {
+        double target = penalties->target[r] * system->factor[penalties->curve[r]];
+        pull[r] = system->penalty_stiffness[r] * (target - pull[r]);
     }
-    constraint_rows_spread(springs, pull, NULL, force);
+    constraint_rows_spread(penalties, pull, NULL, force);
 }
 
-double system_spring_energy(const struct solid_system *system, const double *u)
+double system_penalty_energy(const struct solid_system *system, const double *u)
 {
     double energy = 0.0;
-    for (int64_t r = 0; r < system->springs.count; r++) {
-        double pull = system_spring_force(system, r, u);
-        energy += 0.5 * pull * pull / system->spring_stiffness[r];
+    for (int64_t r = 0; r < system->penalties.count; r++) {
+        double pull = system_penalty_force(system, r, u);
+        energy += 0.5 * pull * pull / system->penalty_stiffness[r];
     }
     return energy;
 }
@@ -284,7 +284,7 @@ void system_resist(struct solid_system *system, const double *v, double *force)
     (void)body_force(&system->body, u, on_u);
     system->cost.force += clock_seconds() - started;
     negate(system, on_u);
-    system_add_springs(system, u, on_u);
+    system_add_penalties(system, u, on_u);
     negate(system, on_u);
     return_forces(system, force);
 }
@@ -299,7 +299,7 @@ struct deformation system_residual(struct solid_system *system, const double *v,
     negate(system, on_u);
     system_add_loads(system, u, on_u);
     double loaded = clock_seconds();
-    system_add_springs(system, u, on_u);
+    system_add_penalties(system, u, on_u);
     double held = clock_seconds();
     for (int64_t c = 0; c < system->contact_count; c++) {
         contact_move(&system->contacts[c], system->factor);
@@ -340,8 +340,8 @@ double system_longest_way(const struct solid_system *system)
     return longest;
 }
 
-/* What a spring that holds an average adds to the stiffness of its nodes; nodal parameters have about the
- * average at the node that it stands for. */
+/* What a constraint penalty that holds an average adds to the stiffness of its nodes; nodal parameters have
+ * about the average at the node that it stands for. */
 static void add_to_bound(const struct solid_system *system, const struct average *average, int32_t node,
                          double stiffness, double *mass)
 {
@@ -367,12 +367,13 @@ void system_relaxation_mass(struct solid_system *system, double *mass)
         const struct boundary_averages *averages = contact->averages;
         for (int64_t a = 0; a < averages->count; a++) {
             struct average average = average_of_boundary(averages, a);
-            add_to_bound(system, &average, averages->node[a], contact->stiffness[a] * averages->area[a], mass);
+            add_to_bound(system, &average, averages->node[a], contact->stiffness[a] * averages->area[a],
+                         mass);
         }
     }
-    for (int64_t r = 0; r < system->springs.count; r++) {
-        struct average average = constraint_rows_average(&system->springs, r);
-        add_to_bound(system, &average, system->springs.node[r], system->spring_stiffness[r], mass);
+    for (int64_t r = 0; r < system->penalties.count; r++) {
+        struct average average = constraint_rows_average(&system->penalties, r);
+        add_to_bound(system, &average, system->penalties.node[r], system->penalty_stiffness[r], mass);
     }
     for (int64_t n = 0; n < system->node_count; n++) {
         sum += mass[n];

@@ -64,12 +64,12 @@ struct solid_system {
     struct constraint_rows rows;
     const char *const *condition_names; /* of the sections of the rows, for messages; NULL: they have none */
     /* Penalty stabilisation of the constraints. Boundary averages do not constrain variations of the field
-     * within them, which grow under a pressure of some ten shear moduli. Springs at the quadrature points of
-     * the constrained facets hold the field to the same targets. Their forces vanish where the field meets
-     * these, so that a linear field stays exact. */
-    struct constraint_rows springs;
-    double *spring_stiffness; /* springs.count, N/m (2D: N/m2) */
-    double *spring_pull;      /* springs.count: scratch */
+     * within them, which grow under a pressure of some ten shear moduli. Constraint penalties at the
+     * quadrature points of the constrained facets hold the field to the same targets. Their forces vanish
+     * where the field meets these, so that a linear field stays exact. */
+    struct constraint_rows penalties;
+    double *penalty_stiffness; /* penalties.count, N/m (2D: N/m2) */
+    double *penalty_force;     /* penalties.count: scratch */
     struct load_curve *curves;
     int64_t curve_count;
     double *lumped_mass; /* node_count, kg (2D: kg/m), positive: each cell shares its mass among its nodes */
@@ -105,16 +105,16 @@ void system_measure_contacts(struct solid_system *system, const double *u, bool 
 /* The largest displacement that a condition or a moving rigid surface prescribes, at factor 1, m. */
 double system_longest_way(const struct solid_system *system);
 
-/* force[node_count * dim] = internal forces of body and springs at u: minus the residual without loads and
- * contacts. */
+/* force[node_count * dim] = internal forces of body and constraint penalties at u: minus the residual without
+ * loads and contacts. */
 void system_resist(struct solid_system *system, const double *u, double *force);
 
-/* Forces of the springs, added to force; and their energy. */
-void system_add_springs(struct solid_system *system, const double *u, double *force);
-double system_spring_energy(const struct solid_system *system, const double *u);
+/* Forces of the constraint penalties, added to force; and their energy. */
+void system_add_penalties(struct solid_system *system, const double *u, double *force);
+double system_penalty_energy(const struct solid_system *system, const double *u);
 
-/* Force of spring r at u along its direction, N (2D: N/m). */
-double system_spring_force(const struct solid_system *system, int64_t r, const double *u);
+/* Force of constraint penalty r at u along its direction, N (2D: N/m). */
+double system_penalty_force(const struct solid_system *system, int64_t r, const double *u);
 
 /* Mass for relaxation: a bound of each node's stiffness, N/m, so that all parts of the body have about the
  * same critical step (1) however the cloud is graded; contact penalties included. mass[node_count] > 0. */

@@ -1,4 +1,4 @@
-/* Neighbour lists, shape functions and the smoothing of conforming cells: default MLS (MMLS, quadratic), on a
+/* Neighbour lists, shape functions and the smoothing of smoothed cells: default MLS (MMLS, quadratic), on a
  * jittered cloud in which a support holds about 40 nodes in 3D, 14 in 2D. Then the same cube from 1e3 to 1e6
  * nodes, points at the nodes: what a pair costs and a node holds as problems grow. */
 #include "bench.h"

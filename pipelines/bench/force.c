@@ -1,5 +1,5 @@
 /* The force loop: one evaluation of the internal forces, in cache in 2D and with a table larger than the
- * caches in 3D, by tables of gradients at points and by means over the faces of conforming cells; then the
+ * caches in 3D, by tables of gradients at points and by means over the faces of smoothed cells; then the
  * same cube from 1e3 to 1e6 nodes, points at the nodes, and with a million points in cells. A row's bytes are
  * those of its table, once; with nodal volume an evaluation reads it twice, and by means over faces always.
  */
@@ -35,7 +35,7 @@ static enum status run_force(void *context, struct error *error)
 /* What is timed. */
 struct variant {
     const char *kernel;
-    bool averaged, conforming;
+    bool averaged, smoothed;
 };
 
 /* What a body is built from, beside the problem; not needed any more once it is. */
@@ -43,21 +43,21 @@ struct ingredients {
     int64_t count;        /* points */
     double *weight;       /* count: each cell's volume to its point; nodes share theirs */
     double *hat_value;    /* count * (dim + 1) */
-    double *centroids;    /* count * dim: the points of conforming cells; else NULL */
+    double *centroids;    /* count * dim: the points of smoothed cells; else NULL */
     int32_t *material_of; /* count, zero */
 };
 
-static enum status make_ingredients(const struct problem *problem, bool conforming, struct ingredients *made,
+static enum status make_ingredients(const struct problem *problem, bool smoothed, struct ingredients *made,
                                     struct error *error)
 {
     enum status status;
     const struct cells *cells = &problem->cells;
     int dim = cells->dim, corners = dim + 1;
-    *made = (struct ingredients){.count = conforming ? cells->count : problem->point_count};
+    *made = (struct ingredients){.count = smoothed ? cells->count : problem->point_count};
     TRY(NEW_ARRAY(&made->weight, made->count, error));
     TRY(NEW_ARRAY(&made->material_of, made->count, error));
     TRY(NEW_ARRAY(&made->hat_value, made->count * corners, error));
-    if (conforming) {
+    if (smoothed) {
         TRY(NEW_ARRAY(&made->centroids, made->count * dim, error));
         for (int64_t q = 0; q < made->count; q++) {
             cell_centroid(cells, q, made->centroids + q * dim);
@@ -81,20 +81,20 @@ static void free_ingredients(struct ingredients *made)
     free(made->material_of);
 }
 
-static struct conforming_input conforming_input(const struct problem *problem)
+static struct smoothed_cells_input smoothed_cells_input(const struct problem *problem)
 {
     const struct cells *cells = &problem->cells;
-    return (struct conforming_input){.x = cells->x,
-                                     .cell_node = cells->node,
-                                     .face_count = problem->faces.count,
-                                     .face_node = problem->faces.node,
-                                     .face_cell = problem->faces.cell,
-                                     .face_ptr = problem->averages.ptr,
-                                     .face_idx = problem->averages.idx,
-                                     .face_phi = problem->averages.phi,
-                                     .node_ptr = problem->node_lists.ptr,
-                                     .node_idx = problem->node_lists.idx,
-                                     .node_phi = problem->node_phi};
+    return (struct smoothed_cells_input){.x = cells->x,
+                                         .cell_node = cells->node,
+                                         .face_count = problem->faces.count,
+                                         .face_node = problem->faces.node,
+                                         .face_cell = problem->faces.cell,
+                                         .face_ptr = problem->averages.ptr,
+                                         .face_idx = problem->averages.idx,
+                                         .face_phi = problem->averages.phi,
+                                         .node_ptr = problem->node_lists.ptr,
+                                         .node_idx = problem->node_lists.idx,
+                                         .node_phi = problem->node_phi};
 }
 
 static enum status build_body(const struct problem *problem, const struct variant *variant,
@@ -102,12 +102,12 @@ static enum status build_body(const struct problem *problem, const struct varian
 {
     const struct cells *cells = &problem->cells;
     int dim = cells->dim;
-    struct conforming_input conforming = conforming_input(problem);
+    struct smoothed_cells_input smoothed = smoothed_cells_input(problem);
     struct material material = {.model = MATERIAL_NEO_HOOKEAN, .density = 1000.0};
     material_set_moduli(&material, 3000.0, 0.49);
     struct body_input input = {.dim = dim,
                                .node_x = cells->x,
-                               .conforming = variant->conforming ? &conforming : NULL,
+                               .smoothed = variant->smoothed ? &smoothed : NULL,
                                .node_count = cells->node_count,
                                .point_count = made->count,
                                .x = made->centroids != NULL ? made->centroids : problem->points,
@@ -130,7 +130,7 @@ static enum status make_loop(struct loop *loop, struct problem *problem, const s
     const struct cells *cells = &problem->cells;
     struct ingredients made;
     *loop = (struct loop){.problem = problem};
-    TRY(make_ingredients(problem, variant->conforming, &made, error));
+    TRY(make_ingredients(problem, variant->smoothed, &made, error));
     double before = problem_heap_bytes();
     TRY(build_body(problem, variant, &made, &loop->body, error));
     loop->heap = problem_heap_bytes() - before;
@@ -155,9 +155,9 @@ static void free_loop(struct loop *loop)
 /* Bytes of the table that the loop reads. */
 static double table_bytes(const struct body *body)
 {
-    return body->conforming
-               ? (double)(pairs_bytes(&body->cells.faces.pairs) + pairs_bytes(&body->cells.nodes.pairs))
-               : (double)pairs_bytes(&body->gradients);
+    return body->smoothed ? (double)(sparse_operator_bytes(&body->cells.faces.op) +
+                                     sparse_operator_bytes(&body->cells.nodes.op))
+                          : (double)sparse_operator_bytes(&body->gradients);
 }
 
 static void bench(struct problem *problem, const struct variant *variant, int threads, double seconds)
@@ -184,14 +184,14 @@ static void bench(struct problem *problem, const struct variant *variant, int th
     free_loop(&loop);
 }
 
-static void bench_all(struct problem *problem, bool conforming, double seconds)
+static void bench_all(struct problem *problem, bool smoothed, double seconds)
 {
     for (int k = 0; k < 4; k++) {
         bool averaged = k % 2 == 1;
-        const char *kernel = conforming ? averaged ? "cells-nodal-volume" : "cells"
+        const char *kernel = smoothed   ? averaged ? "cells-nodal-volume" : "cells"
                              : averaged ? "force-nodal-volume"
                                         : "force";
-        struct variant variant = {kernel, averaged, conforming};
+        struct variant variant = {kernel, averaged, smoothed};
         bench(problem, &variant, k / 2 + 1, seconds);
     }
 }

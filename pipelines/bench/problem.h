@@ -46,7 +46,7 @@ MUST_CHECK enum status problem_averages(void *context, struct error *error);
 MUST_CHECK enum status problem_nodes(struct problem *problem, struct error *error);
 
 /* Makes the bodies that kernels are timed on, one after the other: with a point in each cell, in 2D and 3D;
- * with points on the faces of conforming cells (about twelve times the nodes), in 2D and 3D; and cubes of 1e3
+ * with points on the faces of smoothed cells (about twelve times the nodes), in 2D and 3D; and cubes of 1e3
  * to 1e6 nodes with points at the nodes, which tell how things grow. A failure ends the program. */
 typedef void bench_function(struct problem *problem, double seconds);
 void problem_sweep(bench_function *points, bench_function *cells, bench_function *growth, double seconds);

@@ -44,7 +44,7 @@ END
 cloud -d 2 -k jittered -n 13 --jitter 0.25 --seed 3 --box 0,0.1,0,0.1 -o "$work/cloud2.mts"
 cloud -d 3 -k jittered -n 9 --jitter 0.15 --seed 3 --box 0,0.1,0,0.1,0,0.1 -o "$work/cloud3.mts"
 for dim in 2 3; do
-    patch $dim -c "patch test ${dim}D, conforming cells" patch-cells nodal
+    patch $dim -c "patch test ${dim}D, smoothed cells" patch-cells nodal
     # The others are not exact, here or elsewhere: this records by how much.
     for points in $([ $dim -eq 2 ] && echo 1 3 4 6 7 12 || echo 1 4); do
         patch $dim "-g $points" "patch test ${dim}D, $points point$([ "$points" -eq 1 ] || echo s) per cell" patch-points pointwise
@@ -138,7 +138,7 @@ consistency() {
         }')" 0 consistency
 }
 
-for scheme in 'conforming cells:-c' '4 points per cell:-g 4'; do
+for scheme in 'smoothed cells:-c' '4 points per cell:-g 4'; do
     for dim in 2 3; do
         z=$([ $dim -eq 2 ] || echo z)
         consistency "${dim}D, ${scheme%:*}, in m" $dim "0,0.1,0,0.1${z:+,0,0.1}" "${scheme#*:}"

@@ -40,4 +40,4 @@ done
 elastica 1 0.05 41 3 -c
 coarse=$(end 4)
 elastica 1 0.05 81 5 -c
-at_least 10 'elastica, conforming cells: order of convergence' "$(order_of "$coarse" "$(end 4)" 0.302163 2)" order-beam
+at_least 10 'elastica, smoothed cells: order of convergence' "$(order_of "$coarse" "$(end 4)" 0.302163 2)" order-beam

@@ -162,7 +162,7 @@ static void fault_of_smoothing(void)
     struct error error;
     struct setup setup = one_material(MATERIAL_NEO_HOOKEAN, false);
     struct sample *sample = &samples[0];
-    struct conforming_input conforming = sample_conforming(sample);
+    struct smoothed_cells_input smoothed = sample_smoothed(sample);
     int32_t *material = sample_array(sample->point_count, sizeof *material);
     struct body_input input = {.dim = 2,
                                .node_count = sample->cloud.node_count,
@@ -175,7 +175,7 @@ static void fault_of_smoothing(void)
                                .materials = setup.material,
                                .material = material,
                                .material_count = 1,
-                               .conforming = &conforming};
+                               .smoothed = &smoothed};
     double *changed = &sample->averages.phi[sample->averages.ptr[7]], before = *changed;
     *changed += 0.01;
     assert_int_equal(body_build(&input, &body, &error), STATUS_INPUT);
@@ -189,9 +189,9 @@ static void fault_of_smoothing(void)
     assert_string_equal(error.text,
                         "node.phi: node 5: not the shape functions at this node: run shapefn again");
     *changed = before;
-    conforming.face_count--;
+    smoothed.face_count--;
     assert_int_equal(body_build(&input, &body, &error), STATUS_INPUT);
-    assert_non_null(strstr(error.text, "lacks a face: run ipoints for conforming cells"));
+    assert_non_null(strstr(error.text, "lacks a face: run ipoints for smoothed cells"));
     free(material);
 }
 
@@ -232,9 +232,9 @@ static void faults(void **state)
     fault_of_smoothing();
 }
 
-/* A body so large that forces of several blocks are summed in patches: forces from the caller's table and the
- * stresses, one point after the other; of conforming cells as the slope of the energy. */
-static void patches(void **state)
+/* A body so large that forces of several blocks are summed in accumulation blocks: forces from the caller's
+ * table and the stresses, one point after the other; of smoothed cells as the slope of the energy. */
+static void accumulation(void **state)
 {
     (void)state;
     struct random random = {7};
@@ -244,12 +244,12 @@ static void patches(void **state)
         struct setup setup = three_materials(i % 2 == 1);
         setup.faces = by_faces;
         struct body body = make_body(&sample, &setup);
-        const struct pairs *pairs = by_faces ? &body.cells.faces.pairs : &body.gradients;
+        const struct sparse_operator *op = by_faces ? &body.cells.faces.op : &body.gradients;
         int64_t count = sample.cloud.node_count * 2;
         double *force = sample_array(count, sizeof *force), *expected = sample_array(count, sizeof *expected);
         double *P = sample_array(sample.point_count * 9, sizeof *P);
         double *u = deformed_field(&sample, &body, force, &random), slope = 0.0, h = 1e-9, high;
-        assert_true(pairs->patches[0].block_count > 1);
+        assert_true(op->accumulation[0].block_count > 1);
         (void)body_force(&body, u, force);
         body_stress(&body, P);
         for (int64_t q = 0; q < sample.point_count && !by_faces; q++) {
@@ -306,7 +306,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(rigid_motion),  cmocka_unit_test(force_is_gradient), cmocka_unit_test(balance),
-        cmocka_unit_test(linear_fields), cmocka_unit_test(patches),           cmocka_unit_test(faults),
+        cmocka_unit_test(linear_fields), cmocka_unit_test(accumulation),      cmocka_unit_test(faults),
     };
     return cmocka_run_group_tests(tests, make_samples, free_samples);
 }

@@ -1,9 +1,9 @@
-/* Conforming cells in the force loop: the patch test, gradients as those of the table, and volume ratios that
+/* Smoothed cells in the force loop: the patch test, gradients as those of the table, and volume ratios that
  * make up the volume within the boundary. */
 #include "body_setup.h"
 
-/* A linear field of a body of one material is in equilibrium inside: with conforming cells to round-off. */
-static void patch(void **state)
+/* A linear field of a body of one material is in equilibrium inside: with smoothed cells to round-off. */
+static void accumulation(void **state)
 {
     (void)state;
     static const double A[9] = {1.1, 0.2, 0, 0.1, 0.95, 0, 0, 0, 1};
@@ -121,7 +121,7 @@ static double volume_below(const struct sample *sample, int64_t face, const doub
     return sense * dot(mean, area);
 }
 
-/* Whatever the field, the volume ratios of conforming cells make up the volume within the boundary. */
+/* Whatever the field, the volume ratios of smoothed cells make up the volume within the boundary. */
 static void enclosed_volume(void **state)
 {
     (void)state;
@@ -131,27 +131,28 @@ static void enclosed_volume(void **state)
         struct setup setup = one_material(MATERIAL_NEO_HOOKEAN, true);
         setup.faces = true;
         struct body body = make_body(sample, &setup);
-        double *u = random_field(sample, 0.05 * sample_size, &random), sum = 0.0, means = 0.0, inside = 0.0;
+        double *u = random_field(sample, 0.05 * sample_size, &random), sum = 0.0, averages = 0.0,
+               inside = 0.0;
         double *F = sample_array(sample->point_count * 9, sizeof *F), rest = pow(sample_size, sample->dim);
         (void)body_energy(&body, u);
         body_gradient(&body, F);
         for (int64_t q = 0; q < body.point_count; q++) {
             sum += body.weight[q] * body.J[q];
-            means += body.weight[q] * determinant(F + 9 * body.order[q]);
+            averages += body.weight[q] * determinant(F + 9 * body.order[q]);
         }
         for (int64_t f = 0; f < sample->faces.count; f++) {
             inside += sample->faces.cell[2 * f + 1] < 0 ? volume_below(sample, f, u) : 0.0;
         }
         NEAR_TO(sum, inside, 1e-13 * rest);
 
-        assert_true(fabs(means - inside) > 1e-4 * rest); /* the determinants of the means do not */
+        assert_true(fabs(averages - inside) > 1e-4 * rest); /* the determinants of the averages do not */
         free(u);
         free(F);
         body_free(&body);
     }
 }
 
-/* Conforming cells by means over their faces: the gradients of the table, but for round-off; and for a small
+/* Smoothed cells by averages over their faces: the gradients of the table, but for round-off; and for a small
  * field, where J differs from det F by a square, its forces and energy. */
 static void faces(void **state)
 {
@@ -216,7 +217,7 @@ static void general_law(void **state)
         const struct sample *sample = &samples[i % 4];
         int64_t count = sample->cloud.node_count * sample->dim;
         struct setup setup = one_material(MATERIAL_NEO_HOOKEAN, i < 4);
-        setup.faces = sample->conforming;
+        setup.faces = sample->smoothed;
         struct body body = make_body(sample, &setup);
         double *force = sample_array(count, sizeof *force), *expected = sample_array(count, sizeof *expected);
         double *u = deformed_field(sample, &body, force, &random);
@@ -239,7 +240,7 @@ static void general_law(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(patch),
+        cmocka_unit_test(accumulation),
         cmocka_unit_test(faces),
         cmocka_unit_test(enclosed_volume),
         cmocka_unit_test(general_law),

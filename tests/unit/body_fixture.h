@@ -10,11 +10,11 @@
 #include "approx/cloud.h"
 #include "approx/quadrature.h"
 #include "approx/support.h"
-#include "solid/conforming.h"
+#include "solid/smoothed_cells.h"
 
 struct sample {
     int dim;
-    bool conforming;
+    bool smoothed;
     struct cloud cloud;
     struct cells cells;
     struct faces faces; /* conforming: all; else those of the boundary */
@@ -52,7 +52,7 @@ static inline void sample_faces(struct sample *sample)
     struct error error;
     int dim = sample->dim;
     sample->face_rule = quadrature_face_rule(dim);
-    GOOD(faces_build(&sample->cells, !sample->conforming, &sample->faces, &error));
+    GOOD(faces_build(&sample->cells, !sample->smoothed, &sample->faces, &error));
     int64_t count = sample->faces.count * sample->face_rule.points;
     sample->face_x = sample_array(count * dim, sizeof(double));
     for (int64_t f = 0; f < sample->faces.count; f++) {
@@ -93,7 +93,7 @@ static inline void sample_points(struct sample *sample, int per_cell)
             }
         }
     }
-    if (sample->conforming) {
+    if (sample->smoothed) {
         struct cell_table table = cell_table_make(&sample->cells, &sample->faces, &sample->averages);
         sample->ptr = table.ptr;
         sample->idx = table.idx;
@@ -125,27 +125,27 @@ static inline void sample_nodes(struct sample *sample)
                      "nodes", sample->node_phi, NULL, &error));
 }
 
-/* What a body of conforming cells is made of. */
-static inline struct conforming_input sample_conforming(const struct sample *sample)
+/* What a body of smoothed cells is made of. */
+static inline struct smoothed_cells_input sample_smoothed(const struct sample *sample)
 {
-    return (struct conforming_input){.x = sample->cloud.x,
-                                     .cell_node = sample->cells.node,
-                                     .face_count = sample->faces.count,
-                                     .face_node = sample->faces.node,
-                                     .face_cell = sample->faces.cell,
-                                     .face_ptr = sample->averages.ptr,
-                                     .face_idx = sample->averages.idx,
-                                     .face_phi = sample->averages.phi,
-                                     .node_ptr = sample->node_lists.ptr,
-                                     .node_idx = sample->node_lists.idx,
-                                     .node_phi = sample->node_phi};
+    return (struct smoothed_cells_input){.x = sample->cloud.x,
+                                         .cell_node = sample->cells.node,
+                                         .face_count = sample->faces.count,
+                                         .face_node = sample->faces.node,
+                                         .face_cell = sample->faces.cell,
+                                         .face_ptr = sample->averages.ptr,
+                                         .face_idx = sample->averages.idx,
+                                         .face_phi = sample->averages.phi,
+                                         .node_ptr = sample->node_lists.ptr,
+                                         .node_idx = sample->node_lists.idx,
+                                         .node_phi = sample->node_phi};
 }
 
 /* factor: support radius over local spacing. */
-static inline struct sample make_wide_sample(int dim, bool conforming, int64_t per_axis, double factor)
+static inline struct sample make_wide_sample(int dim, bool smoothed, int64_t per_axis, double factor)
 {
     struct error error;
-    struct sample sample = {.dim = dim, .conforming = conforming};
+    struct sample sample = {.dim = dim, .smoothed = smoothed};
     struct cloud_options cloud = {.kind = CLOUD_JITTERED,
                                   .dim = dim,
                                   .count = {per_axis, per_axis, per_axis},
@@ -165,14 +165,14 @@ static inline struct sample make_wide_sample(int dim, bool conforming, int64_t p
     GOOD(point_grid_build(&sample.grid, dim, sample.cloud.node_count, sample.cloud.x, sample.radius, &error));
     free(spacing);
     sample_faces(&sample);
-    sample_points(&sample, conforming ? 1 : dim == 2 ? 3 : 4);
+    sample_points(&sample, smoothed ? 1 : dim == 2 ? 3 : 4);
     sample_nodes(&sample);
     return sample;
 }
 
-static inline struct sample make_sample(int dim, bool conforming, int64_t per_axis)
+static inline struct sample make_sample(int dim, bool smoothed, int64_t per_axis)
 {
-    return make_wide_sample(dim, conforming, per_axis, 1.8);
+    return make_wide_sample(dim, smoothed, per_axis, 1.8);
 }
 
 static inline void sample_free(struct sample *sample)

@@ -1,5 +1,5 @@
 /* How the force loop computes: the same bits from any number of threads, the same forces whatever the
- * instructions, hats, the bound of the stiffness, and inversion told where it is.
+ * instructions, nodal volumes, the bound of the stiffness, and inversion told where it is.
  */
 #include "body_setup.h"
 

@@ -14,7 +14,7 @@ enum { MATERIALS = 3 };
 /* How a body is made from a sample. */
 struct setup {
     bool averaged;
-    bool faces;      /* conforming cells: by means over faces, not by the table of gradients */
+    bool faces;      /* smoothed cells: by averages over faces, not by the table of gradients */
     int model_count; /* points take the models in turn, by their place */
     struct material material[MATERIALS];
 };
@@ -52,7 +52,7 @@ static inline struct body make_body(const struct sample *sample, const struct se
 {
     struct body body;
     struct error error;
-    struct conforming_input conforming = sample_conforming(sample);
+    struct smoothed_cells_input smoothed = sample_smoothed(sample);
     int32_t *material = sample_array(sample->point_count, sizeof *material);
     for (int64_t q = 0; q < sample->point_count; q++) {
         material[q] = material_at(sample, setup, q);
@@ -61,7 +61,7 @@ static inline struct body make_body(const struct sample *sample, const struct se
                                .node_count = sample->cloud.node_count,
                                .point_count = sample->point_count,
                                .node_x = sample->cloud.x,
-                               .conforming = setup->faces ? &conforming : NULL,
+                               .smoothed = setup->faces ? &smoothed : NULL,
                                .x = sample->x,
                                .weight = sample->weight,
                                .ptr = sample->ptr,
@@ -103,7 +103,7 @@ static inline double *random_field(const struct sample *sample, double size, str
     return u;
 }
 
-/* Made once: conforming cells and Gauss points in 2D, the same in 3D. */
+/* Made once: smoothed cells and Gauss points in 2D, the same in 3D. */
 static struct sample samples[4];
 
 static inline int make_samples(void **state)
@@ -131,7 +131,7 @@ static inline void for_all(void (*check)(const struct sample *, const struct set
     struct random random = {1};
     for (int i = 0; i < 4; i++) {
         for (int averaged = 0; averaged < 2; averaged++) {
-            for (int faces = 0; faces < 1 + (int)samples[i].conforming; faces++) {
+            for (int faces = 0; faces < 1 + (int)samples[i].smoothed; faces++) {
                 for (int model = 0; model < (int)MATERIAL_MODEL_COUNT; model++) {
                     struct setup setup = one_material((enum material_model)model, averaged == 1);
                     setup.faces = faces == 1;

@@ -1,5 +1,5 @@
-/* Boundary averages: sums, linear fields, hats split where the boundary turns, areas, the divergence theorem
- * against the cells' table, and facets that are none. */
+/* Boundary averages: sums, linear fields, boundary averages split where the boundary turns, areas, the
+ * divergence theorem against the cells' table, and facets that are none. */
 #include "body_fixture.h"
 
 static struct face_table face_table(const struct sample *sample)
@@ -84,13 +84,13 @@ static void check_averages(const struct sample *sample, const struct boundary_av
     }
 }
 
-/* The whole boundary in one set: a hat for each side that meets at a node. */
-static void hats_split_at_corners(void **state)
+/* The whole boundary in one set: a boundary average for each side that meets at a node. */
+static void averages_split_at_corners(void **state)
 {
     (void)state;
     for (int dim = 2; dim <= 3; dim++) {
-        for (int conforming = 0; conforming < 2; conforming++) {
-            struct sample sample = make_wide_sample(dim, conforming == 1, dim == 2 ? 6 : 5, 2.6);
+        for (int smoothed = 0; smoothed < 2; smoothed++) {
+            struct sample sample = make_wide_sample(dim, smoothed == 1, dim == 2 ? 6 : 5, 2.6);
             struct boundary_averages averages = averages_of(&sample, all_facets(&sample));
             int64_t expected = 0;
             double area = 0.0, outward[3] = {0.0};
@@ -134,7 +134,8 @@ static void hats_split_at_corners(void **state)
     }
 }
 
-/* A side alone has one hat for each of its nodes, and that is the part of it in the whole boundary. */
+/* A side alone has one boundary average for each of its nodes, and that is the part of it in the whole
+ * boundary. */
 static void sides(void **state)
 {
     (void)state;
@@ -174,7 +175,8 @@ static void sides(void **state)
 }
 
 /* The mean gradient of any field over the body is its boundary's: for every node j,
- * sum_cells V dphi_j = sum_hats A Phi_j n, to round-off, since cells and hats share their quadrature. */
+ * sum_cells V dphi_j = sum_averages A Phi_j n, to round-off, since cells and boundary averages share their
+ * quadrature. */
 static void divergence_theorem(void **state)
 {
     (void)state;
@@ -251,7 +253,7 @@ static void other_vertex_orders(void **state)
     }
 }
 
-/* In 3D two facets that touch at one node only do not share its hat. */
+/* In 3D two facets that touch at one node only do not share its boundary average. */
 static void touching_facets(void **state)
 {
     (void)state;
@@ -275,7 +277,7 @@ static void touching_facets(void **state)
     sample_free(&sample);
 }
 
-/* Hats stay whole on a curve that turns gently. */
+/* Boundary averages stay whole on a curve that turns gently. */
 static void gentle_and_sharp_turns(void **state)
 {
     (void)state;
@@ -320,7 +322,7 @@ static void gentle_and_sharp_turns(void **state)
                 weight[averages.idx[i] == node ? 1 : 2 * (averages.idx[i] == node % corners + 1)] =
                     averages.phi[i];
             }
-            NEAR_TO(weight[0], 1.0 / 6.0, 1e-14); /* integrals of products of hats */
+            NEAR_TO(weight[0], 1.0 / 6.0, 1e-14); /* integrals of products of hat functions */
             NEAR_TO(weight[1], 2.0 / 3.0, 1e-14);
             NEAR_TO(weight[2], 1.0 / 6.0, 1e-14);
             NEAR_TO(averages.area[a], chord, 1e-14);
@@ -332,8 +334,8 @@ static void gentle_and_sharp_turns(void **state)
     }
 }
 
-/* Hats that are not split, and the mean over each side of the box: the hats of a side, split there, make its
- * mean. Of split hats the groups are the sides. */
+/* Boundary averages that are not split, and the mean over each side of the box: the boundary averages of a
+ * side, split there, make its mean. Of split boundary averages the groups are the sides. */
 static void whole_sides(void **state)
 {
     (void)state;
@@ -352,11 +354,11 @@ static void whole_sides(void **state)
                 nodes += sides_at(&sample, n) > 0;
                 parts += sides_at(&sample, n);
             }
-            assert_int_equal(sides.hat_count, split == 1 ? parts : nodes);
-            assert_int_equal(averages.count, sides.hat_count + 2 * dim);
+            assert_int_equal(sides.node_average_count, split == 1 ? parts : nodes);
+            assert_int_equal(averages.count, sides.node_average_count + 2 * dim);
             assert_int_equal(sides.group_count, split == 1 ? 2 * dim : 1);
             for (int64_t a = 0; a < averages.count; a++) {
-                bool is_side = a >= sides.hat_count;
+                bool is_side = a >= sides.node_average_count;
                 double extent = 0.0;
                 assert_int_equal(sides.flat[a],
                                  is_side || split == 1 || sides_at(&sample, averages.node[a]) == 1);
@@ -372,9 +374,9 @@ static void whole_sides(void **state)
                     NEAR_TO(extent, 1.0, 1e-12);
                 }
             }
-            for (int64_t s = sides.hat_count; s < averages.count && split == 1; s++) {
+            for (int64_t s = sides.node_average_count; s < averages.count && split == 1; s++) {
                 double area = 0.0;
-                for (int64_t a = 0; a < sides.hat_count; a++) {
+                for (int64_t a = 0; a < sides.node_average_count; a++) {
                     area += sides.group[a] == sides.group[s] ? averages.area[a] : 0.0;
                 }
                 NEAR_TO(area, whole, 1e-12 * whole);
@@ -525,7 +527,7 @@ static void faults(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(hats_split_at_corners),
+        cmocka_unit_test(averages_split_at_corners),
         cmocka_unit_test(sides),
         cmocka_unit_test(divergence_theorem),
         cmocka_unit_test(other_vertex_orders),

@@ -1,4 +1,4 @@
-/* Shape functions in conforming cells and their mean gradients, from averages over faces, one cell after the
+/* Shape functions in smoothed cells and their mean gradients, from averages over faces, one cell after the
  * other as the divergence theorem has it: what tests compare with. */
 #ifndef TESTS_CELL_TABLE_H
 #define TESTS_CELL_TABLE_H

@@ -1,5 +1,6 @@
-/* Contact of hats with rigid surfaces: forces are the gradient of the energy and balance, hats are skipped
- * only where that changes nothing, multipliers remove the penetration, and nothing is pulled in from behind.
+/* Contact of contact nodes with rigid surfaces: forces are the gradient of the energy and balance, contact
+ * nodes are skipped only where that changes nothing, multipliers remove the penetration, and nothing is
+ * pulled in from behind.
  */
 #include "contact_fixture.h"
 
@@ -8,15 +9,15 @@ static void force_is_gradient(void **state)
 {
     (void)state;
     struct random random = {1};
-    struct hats hats;
+    struct contact_nodes contact_nodes;
     int contacts = 0;
     for (int round = 0; round < 40; round++) {
         int dim = 2 + round % 2;
-        make_hats(&hats, dim, 10.0, &random);
-        struct contact contact = built(&hats, make_shell(dim, 4, 0.8, false), 7e3);
+        make_contact_nodes(&contact_nodes, dim, 10.0, &random);
+        struct contact contact = built(&contact_nodes, make_shell(dim, 4, 0.8, false), 7e3);
         double u[NODES * 3], force[NODES * 3] = {0.0}, aside[NODES * 3], h = 1e-7;
         push_out(u, &random);
-        for (int a = 0; a < HATS && round >= 20; a++) {
+        for (int a = 0; a < CONTACT_NODES && round >= 20; a++) {
             contact.multiplier[a] = uniform(&random, 0.0, 2e3);
         }
         contact_force(&contact, u, force);
@@ -71,33 +72,33 @@ static void smooth_forces(void **state)
     }
 }
 
-/* The sum of the forces on the parameters is sum p A n, and their moment that of the hats' forces where the
- * hats are. */
+/* The sum of the forces on the parameters is sum p A n, and their moment that of the contact nodes' forces
+ * where the contact nodes are. */
 static void balance(void **state)
 {
     (void)state;
     struct random random = {2};
-    struct hats hats;
+    struct contact_nodes contact_nodes;
     for (int round = 0; round < 40; round++) {
         int dim = 2 + round % 2;
-        make_hats(&hats, dim, 10.0, &random);
-        struct contact contact = built(&hats, make_shell(dim, 24, 0.7, false), 1e4);
+        make_contact_nodes(&contact_nodes, dim, 10.0, &random);
+        struct contact contact = built(&contact_nodes, make_shell(dim, 24, 0.7, false), 1e4);
         double u[NODES * 3], force[NODES * 3] = {0.0}, total[3], sum[3] = {0.0}, moment = 0.0, expected = 0.0;
         push_out(u, &random);
         contact_force(&contact, u, force);
         contact_total(&contact, total);
         for (int n = 0; n < NODES; n++) {
-            const double *f = force + n * dim, *X = hats.X + n * dim;
+            const double *f = force + n * dim, *X = contact_nodes.X + n * dim;
             for (int a = 0; a < dim; a++) {
                 sum[a] += f[a];
             }
             moment += (X[0] + u[n * dim]) * f[1] - (X[1] + u[n * dim + 1]) * f[0];
         }
-        for (int a = 0; a < HATS; a++) {
+        for (int a = 0; a < CONTACT_NODES; a++) {
             const double *normal = contact.normal + a * dim;
-            double strength = contact.pressure[a] * hats.area[a];
-            expected +=
-                strength * (position(&hats, u, a, 0) * normal[1] - position(&hats, u, a, 1) * normal[0]);
+            double strength = contact.pressure[a] * contact_nodes.area[a];
+            expected += strength * (position(&contact_nodes, u, a, 0) * normal[1] -
+                                    position(&contact_nodes, u, a, 1) * normal[0]);
         }
         for (int a = 0; a < dim; a++) {
             NEAR_TO(sum[a], total[a], 1e-9);
@@ -107,19 +108,19 @@ static void balance(void **state)
     }
 }
 
-/* Along walks in and out of closed and open shells the forces are the same bits as when every hat is always
- * looked at. */
+/* Along walks in and out of closed and open shells the forces are the same bits as when every contact node is
+ * always looked at. */
 static void skipping(void **state)
 {
     (void)state;
     struct random random = {3};
-    struct hats hats;
+    struct contact_nodes contact_nodes;
     int contacts = 0, steps = 0, skipped = 0;
     for (int round = 0; round < 16; round++) {
         int dim = 2 + round % 2;
-        make_hats(&hats, dim, 10.0, &random);
-        struct contact contact = built(&hats, make_shell(dim, 24, 0.8, round % 4 >= 2), 1e4);
-        struct contact always = built(&hats, make_shell(dim, 24, 0.8, round % 4 >= 2), 1e4);
+        make_contact_nodes(&contact_nodes, dim, 10.0, &random);
+        struct contact contact = built(&contact_nodes, make_shell(dim, 24, 0.8, round % 4 >= 2), 1e4);
+        struct contact always = built(&contact_nodes, make_shell(dim, 24, 0.8, round % 4 >= 2), 1e4);
         double u[NODES * 3] = {0.0}, velocity[NODES * 3] = {0.0};
         for (int step = 0; step < 2000; step++) {
             double force[NODES * 3] = {0.0}, expected[NODES * 3] = {0.0};
@@ -131,7 +132,7 @@ static void skipping(void **state)
                 contact_augment(&contact, 0.0);
                 contact_augment(&always, 0.0);
             }
-            for (int a = 0; a < HATS; a++) {
+            for (int a = 0; a < CONTACT_NODES; a++) {
                 contact.normal[a * dim] = 2.0; /* to see who is skipped */
             }
             contact_force(&contact, u, force);
@@ -139,7 +140,7 @@ static void skipping(void **state)
             contact_force(&always, u, expected);
             assert_memory_equal(force, expected, sizeof force);
             contacts += touching(&contact);
-            for (int a = 0; a < HATS; a++) {
+            for (int a = 0; a < CONTACT_NODES; a++) {
                 skipped += contact.normal[a * dim] > 1.0;
             }
             steps++;
@@ -147,8 +148,8 @@ static void skipping(void **state)
         contact_free(&contact);
         contact_free(&always);
     }
-    assert_true(contacts > steps && contacts < steps * HATS * 3 / 4);
-    assert_true(skipped > steps * HATS / 3);
+    assert_true(contacts > steps && contacts < steps * CONTACT_NODES * 3 / 4);
+    assert_true(skipped > steps * CONTACT_NODES / 3);
 }
 
 /* Particles on springs, pulled through a wall: the penalty leaves them in it, multipliers bring them back. */
@@ -156,19 +157,19 @@ static void augmentation(void **state)
 {
     (void)state;
     for (int dim = 2; dim <= 3; dim++) {
-        struct hats hats;
-        make_particles(&hats, dim, 0.5);
-        for (int a = 0; a < HATS; a++) {
-            hats.X[a * dim] = 0.1 * a / HATS;
+        struct contact_nodes contact_nodes;
+        make_particles(&contact_nodes, dim, 0.5);
+        for (int a = 0; a < CONTACT_NODES; a++) {
+            contact_nodes.X[a * dim] = 0.1 * a / CONTACT_NODES;
         }
-        struct contact contact = built(&hats, make_shell(dim, 24, 0.5, false), 100.0);
+        struct contact contact = built(&contact_nodes, make_shell(dim, 24, 0.5, false), 100.0);
         double u[NODES * 3] = {0.0}, spring = 20.0, pull = 13.0, deepest = INFINITY;
         for (int round = 0; round < 40; round++) {
             double before = deepest;
             for (int step = 0; step < 2000; step++) { /* gradient descent to equilibrium */
                 double force[NODES * 3] = {0.0};
                 contact_force(&contact, u, force);
-                for (int i = 0; i < HATS * dim; i++) {
+                for (int i = 0; i < CONTACT_NODES * dim; i++) {
                     double toward = i % dim == 1 ? pull : 0.0;
                     u[i] += 0.01 * (force[i] + toward - spring * u[i]);
                 }
@@ -177,12 +178,12 @@ static void augmentation(void **state)
             assert_true(round == 0 ? deepest > 0.01 : deepest < 0.9 * before || deepest < 1e-9);
         }
         AT_MOST(deepest, 1e-9);
-        for (int a = 0; a < HATS; a++) {
+        for (int a = 0; a < CONTACT_NODES; a++) {
             /* At the wall, held by what the spring does not take. */
             NEAR_TO(contact.gap[a], 0.0, 1e-9);
             if (dim == 3) {
                 NEAR_TO(u[a * dim + 1], 0.5, 1e-9);
-                NEAR_TO(contact.pressure[a] * hats.area[a], pull - spring * 0.5, 1e-6);
+                NEAR_TO(contact.pressure[a] * contact_nodes.area[a], pull - spring * 0.5, 1e-6);
             }
         }
         contact_free(&contact);
@@ -193,26 +194,26 @@ static void augmentation(void **state)
 static void frictionless(void **state)
 {
     (void)state;
-    struct hats hats;
-    make_particles(&hats, 3, 0.5);
-    struct contact contact = built(&hats, make_shell(3, 6, 0.5, false), 100.0);
+    struct contact_nodes contact_nodes;
+    make_particles(&contact_nodes, 3, 0.5);
+    struct contact contact = built(&contact_nodes, make_shell(3, 6, 0.5, false), 100.0);
     double u[NODES * 3] = {0.0}, force[NODES * 3] = {0.0};
-    for (int a = 0; a < HATS; a++) {
+    for (int a = 0; a < CONTACT_NODES; a++) {
         u[3 * a] = 0.03 * a;
         u[3 * a + 1] = 0.6;
         u[3 * a + 2] = -0.01 * a;
     }
     contact_force(&contact, u, force);
-    for (int a = 0; a < HATS; a++) {
+    for (int a = 0; a < CONTACT_NODES; a++) {
         NEAR_TO(force[3 * a], 0.0, 0.0);
         NEAR_TO(force[3 * a + 1], -100.0 * 0.1 * 0.5, 1e-12);
         NEAR_TO(force[3 * a + 2], 0.0, 0.0);
     }
     /* p = 10; with a multiplier of 10, p = 20. */
-    NEAR_TO(contact_energy(&contact), HATS * 0.5 * 100.0 / 200.0, 1e-12);
+    NEAR_TO(contact_energy(&contact), CONTACT_NODES * 0.5 * 100.0 / 200.0, 1e-12);
     NEAR_TO(contact_augment(&contact, 0.0), 0.1, 1e-15);
     contact_force(&contact, u, force);
-    NEAR_TO(contact_energy(&contact), HATS * 0.5 * 300.0 / 200.0, 1e-12);
+    NEAR_TO(contact_energy(&contact), CONTACT_NODES * 0.5 * 300.0 / 200.0, 1e-12);
     contact_free(&contact);
 }
 
@@ -228,14 +229,14 @@ static void round_the_rim(void **state)
     for (int detail = 1; detail <= 1000; detail *= 10) { /* in long and in short steps */
         struct rigid_surface surface;
         struct error error;
-        struct hats hats;
+        struct contact_nodes contact_nodes;
         GOOD(rigid_build(2, 1, corners, false, &surface, &error));
-        make_particles(&hats, 2, 0.1);
-        for (int a = 0; a < HATS; a++) {
-            hats.X[2 * a] = path[0][0];
-            hats.X[2 * a + 1] = path[0][1];
+        make_particles(&contact_nodes, 2, 0.1);
+        for (int a = 0; a < CONTACT_NODES; a++) {
+            contact_nodes.X[2 * a] = path[0][0];
+            contact_nodes.X[2 * a + 1] = path[0][1];
         }
-        struct contact contact = built(&hats, surface, 100.0);
+        struct contact contact = built(&contact_nodes, surface, 100.0);
         double u[NODES * 3] = {0.0}, force[NODES * 3];
         for (int leg = 1; leg < 10; leg++) {
             for (int step = 1; step <= detail; step++) {
@@ -250,30 +251,30 @@ static void round_the_rim(void **state)
     }
 }
 
-/* The nodes of a body with a curved boundary touch a wall of the same curvature: so do its hats, though the
- * mean of the chords lies beneath. */
+/* The nodes of a body with a curved boundary touch a wall of the same curvature: so do its contact nodes,
+ * though the mean of the chords lies beneath. */
 static void curved_boundary(void **state)
 {
     (void)state;
-    struct hats hats;
+    struct contact_nodes contact_nodes;
     struct random random = {4};
-    make_hats(&hats, 2, 0.1, &random);
-    double u[NODES * 3] = {0.0}, force[NODES * 3] = {0.0}, step = 2.0 * M_PI / HATS;
-    for (int a = 0; a < HATS; a++) {
+    make_contact_nodes(&contact_nodes, 2, 0.1, &random);
+    double u[NODES * 3] = {0.0}, force[NODES * 3] = {0.0}, step = 2.0 * M_PI / CONTACT_NODES;
+    for (int a = 0; a < CONTACT_NODES; a++) {
         double weight[3] = {1.0 / 6.0, 2.0 / 3.0, 1.0 / 6.0}; /* linear fields on two equal chords */
-        hats.X[2 * a] = cos(step * a);
-        hats.X[2 * a + 1] = sin(step * a);
-        hats.normal[2 * a] = hats.X[2 * a];
-        hats.normal[2 * a + 1] = hats.X[2 * a + 1];
-        hats.ptr[a + 1] = 3 * (a + 1);
+        contact_nodes.X[2 * a] = cos(step * a);
+        contact_nodes.X[2 * a + 1] = sin(step * a);
+        contact_nodes.normal[2 * a] = contact_nodes.X[2 * a];
+        contact_nodes.normal[2 * a + 1] = contact_nodes.X[2 * a + 1];
+        contact_nodes.ptr[a + 1] = 3 * (a + 1);
         for (int k = 0; k < 3; k++) {
-            hats.idx[3 * a + k] = (a + HATS - 1 + k) % HATS;
-            hats.phi[3 * a + k] = weight[k];
+            contact_nodes.idx[3 * a + k] = (a + CONTACT_NODES - 1 + k) % CONTACT_NODES;
+            contact_nodes.phi[3 * a + k] = weight[k];
         }
     }
-    struct contact contact = built(&hats, make_shell(2, HATS, 1.0, false), 1.0);
+    struct contact contact = built(&contact_nodes, make_shell(2, CONTACT_NODES, 1.0, false), 1.0);
     contact_force(&contact, u, force);
-    for (int a = 0; a < HATS; a++) {
+    for (int a = 0; a < CONTACT_NODES; a++) {
         NEAR_TO(contact.gap[a], 0.0, 1e-14);
     }
     contact_free(&contact);
@@ -286,34 +287,37 @@ static void wrong_side(void **state)
     struct rigid_surface surface;
     struct contact contact;
     struct error error;
-    struct hats hats;
+    struct contact_nodes contact_nodes;
     static const double corners[] = {1, 0, 0, 0};
-    make_particles(&hats, 2, 0.1);
-    for (int a = 0; a < HATS; a++) {
-        hats.X[2 * a] = 0.5;
-        hats.X[2 * a + 1] = a < 3 ? -0.04 : -0.25;
+    make_particles(&contact_nodes, 2, 0.1);
+    for (int a = 0; a < CONTACT_NODES; a++) {
+        contact_nodes.X[2 * a] = 0.5;
+        contact_nodes.X[2 * a + 1] = a < 3 ? -0.04 : -0.25;
     }
     GOOD(rigid_build(2, 1, corners, false, &surface, &error));
-    assert_int_equal(contact_build(&hats.averages, hats.X, 2, &surface, 1.0, &contact, &error), STATUS_INPUT);
+    assert_int_equal(
+        contact_build(&contact_nodes.averages, contact_nodes.X, 2, &surface, 1.0, &contact, &error),
+        STATUS_INPUT);
     assert_string_equal(error.text, "contact: node 3 starts 0.25 m behind the rigid surface: state its other "
                                     "side, or leave the node's facets out");
     assert_null(surface.vertex);
     assert_null(contact.rest);
     /* Slightly behind is in contact from the start. */
-    for (int a = 3; a < HATS; a++) {
-        hats.X[2 * a + 1] = 1.0;
+    for (int a = 3; a < CONTACT_NODES; a++) {
+        contact_nodes.X[2 * a + 1] = 1.0;
     }
     GOOD(rigid_build(2, 1, corners, false, &surface, &error));
-    GOOD(contact_build(&hats.averages, hats.X, 2, &surface, 1.0, &contact, &error));
+    GOOD(contact_build(&contact_nodes.averages, contact_nodes.X, 2, &surface, 1.0, &contact, &error));
     double u[NODES * 3] = {0.0}, force[NODES * 3] = {0.0};
     contact_force(&contact, u, force);
     NEAR_TO(force[1], 0.04 * 0.1, 1e-15);
     contact_free(&contact);
     /* So it is where the body faces the surface; with its back to it, it is on the wrong side. */
     for (int back = 0; back < 2; back++) {
-        hats.normal[1] = back ? 1.0 : -1.0;
+        contact_nodes.normal[1] = back ? 1.0 : -1.0;
         GOOD(rigid_build(2, 1, corners, false, &surface, &error));
-        enum status status = contact_build(&hats.averages, hats.X, 2, &surface, 1.0, &contact, &error);
+        enum status status =
+            contact_build(&contact_nodes.averages, contact_nodes.X, 2, &surface, 1.0, &contact, &error);
         assert_int_equal(status, back ? STATUS_INPUT : STATUS_OK);
         contact_free(&contact);
     }

@@ -1,4 +1,5 @@
-/* What the tests of contacts share: hats made up of a few nodes, particles, and closed or open shells. */
+/* What the tests of contacts share: contact nodes made up of a few nodes, particles, and closed or open
+ * shells. */
 #ifndef TESTS_CONTACT_FIXTURE_H
 #define TESTS_CONTACT_FIXTURE_H
 
@@ -6,64 +7,66 @@
 
 #include "solid/contact.h"
 
-enum { HATS = 12, NODES = 20, EACH = 4 };
+enum { CONTACT_NODES = 12, NODES = 20, EACH = 4 };
 
-/* Hats made up of a few nodes each, with random weights of sum 1; some negative, as quadratic bases give. */
-struct hats {
+/* Contact nodes made up of a few nodes each, with random weights of sum 1; some negative, as quadratic bases
+ * give. */
+struct contact_nodes {
     int dim;
-    double X[NODES * 3], area[HATS], phi[HATS * EACH];
-    double normal[HATS * 3]; /* zero: hats are where their mean is */
-    int32_t node[HATS], idx[HATS * EACH];
-    int64_t ptr[HATS + 1];
+    double X[NODES * 3], area[CONTACT_NODES], phi[CONTACT_NODES * EACH];
+    double normal[CONTACT_NODES * 3]; /* zero: contact nodes are where their mean is */
+    int32_t node[CONTACT_NODES], idx[CONTACT_NODES * EACH];
+    int64_t ptr[CONTACT_NODES + 1];
     struct boundary_averages averages;
 };
 
-static inline void make_hats(struct hats *hats, int dim, double area, struct random *random)
+static inline void make_contact_nodes(struct contact_nodes *contact_nodes, int dim, double area,
+                                      struct random *random)
 {
-    *hats = (struct hats){.dim = dim};
+    *contact_nodes = (struct contact_nodes){.dim = dim};
     for (int i = 0; i < NODES * dim; i++) {
-        hats->X[i] = uniform(random, -0.6, 0.6);
+        contact_nodes->X[i] = uniform(random, -0.6, 0.6);
     }
-    for (int a = 0; a < HATS; a++) {
+    for (int a = 0; a < CONTACT_NODES; a++) {
         double sum = 0.0;
-        hats->area[a] = area * uniform(random, 0.5, 1.0);
-        hats->node[a] = a;
-        hats->ptr[a + 1] = (a + 1) * EACH;
+        contact_nodes->area[a] = area * uniform(random, 0.5, 1.0);
+        contact_nodes->node[a] = a;
+        contact_nodes->ptr[a + 1] = (a + 1) * EACH;
         for (int i = a * EACH; i < (a + 1) * EACH; i++) { /* the first one outweighs the others */
-            hats->idx[i] = (a + (i - a * EACH) * 2) % NODES;
-            hats->phi[i] = i == a * EACH ? 1.0 : uniform(random, -0.1, 0.5);
-            sum += hats->phi[i];
+            contact_nodes->idx[i] = (a + (i - a * EACH) * 2) % NODES;
+            contact_nodes->phi[i] = i == a * EACH ? 1.0 : uniform(random, -0.1, 0.5);
+            sum += contact_nodes->phi[i];
         }
         for (int i = a * EACH; i < (a + 1) * EACH; i++) {
-            hats->phi[i] /= sum;
+            contact_nodes->phi[i] /= sum;
         }
     }
-    hats->averages = (struct boundary_averages){.count = HATS,
-                                                .node = hats->node,
-                                                .area = hats->area,
-                                                .normal = hats->normal,
-                                                .ptr = hats->ptr,
-                                                .idx = hats->idx,
-                                                .phi = hats->phi};
+    contact_nodes->averages = (struct boundary_averages){.count = CONTACT_NODES,
+                                                         .node = contact_nodes->node,
+                                                         .area = contact_nodes->area,
+                                                         .normal = contact_nodes->normal,
+                                                         .ptr = contact_nodes->ptr,
+                                                         .idx = contact_nodes->idx,
+                                                         .phi = contact_nodes->phi};
 }
 
-/* Hats that are each one node, where X says. */
-static inline void make_particles(struct hats *hats, int dim, double area)
+/* Contact nodes that are each one node, where X says. */
+static inline void make_particles(struct contact_nodes *contact_nodes, int dim, double area)
 {
-    *hats = (struct hats){.dim = dim};
-    for (int a = 0; a < HATS; a++) {
-        hats->area[a] = area;
-        hats->node[a] = hats->idx[a] = a;
-        hats->ptr[a + 1] = a + 1;
-        hats->phi[a] = 1.0;
+    *contact_nodes = (struct contact_nodes){.dim = dim};
+    for (int a = 0; a < CONTACT_NODES; a++) {
+        contact_nodes->area[a] = area;
+        contact_nodes->node[a] = contact_nodes->idx[a] = a;
+        contact_nodes->ptr[a + 1] = a + 1;
+        contact_nodes->phi[a] = 1.0;
     }
-    hats->averages = (struct boundary_averages){.count = HATS,
-                                                .node = hats->node,
-                                                .area = hats->area,
-                                                .normal = hats->normal,
-                                                .ptr = hats->ptr,
-                                                .idx = hats->idx,
-                                                .phi = hats->phi};
+    contact_nodes->averages = (struct boundary_averages){.count = CONTACT_NODES,
+                                                         .node = contact_nodes->node,
+                                                         .area = contact_nodes->area,
+                                                         .normal = contact_nodes->normal,
+                                                         .ptr = contact_nodes->ptr,
+                                                         .idx = contact_nodes->idx,
+                                                         .phi = contact_nodes->phi};
 }
 
 /* A polygon of that many sides about the origin, or a cube with its faces in two triangles; the body is
@@ -98,26 +101,28 @@ static inline struct rigid_surface make_shell(int dim, int sides, double radius,
     return surface;
 }
 
-static inline struct contact built(const struct hats *hats, struct rigid_surface surface, double stiffness)
+static inline struct contact built(const struct contact_nodes *contact_nodes, struct rigid_surface surface,
+                                   double stiffness)
 {
     struct contact contact;
     struct error error;
-    GOOD(contact_build(&hats->averages, hats->X, hats->dim, &surface, stiffness, &contact, &error));
+    GOOD(contact_build(&contact_nodes->averages, contact_nodes->X, contact_nodes->dim, &surface, stiffness,
+                       &contact, &error));
     assert_null(surface.vertex);
     return contact;
 }
 
-static inline double position(const struct hats *hats, const double *u, int a, int axis)
+static inline double position(const struct contact_nodes *contact_nodes, const double *u, int a, int axis)
 {
     double x = 0.0;
-    for (int64_t i = hats->ptr[a]; i < hats->ptr[a + 1]; i++) {
-        int at = hats->idx[i] * hats->dim + axis;
-        x += hats->phi[i] * (hats->X[at] + u[at]);
+    for (int64_t i = contact_nodes->ptr[a]; i < contact_nodes->ptr[a + 1]; i++) {
+        int at = contact_nodes->idx[i] * contact_nodes->dim + axis;
+        x += contact_nodes->phi[i] * (contact_nodes->X[at] + u[at]);
     }
     return x;
 }
 
-/* Displacements that bring about half of the hats into contact. */
+/* Displacements that bring about half of the contact nodes into contact. */
 static inline void push_out(double *u, struct random *random)
 {
     for (int i = 0; i < NODES * 3; i++) {

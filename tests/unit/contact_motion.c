@@ -62,19 +62,19 @@ static void motions(void **state)
     assert_int_equal(rigid_motion_check(&motion, 3, &error), STATUS_INPUT);
 }
 
-/* A shell that moves, and hats that move with it, are as a shell and hats at rest: gaps, pressures and energy
- * the same, forces turned. Along the way hats are skipped as they may be. */
+/* A shell that moves, and contact nodes that move with it, are as a shell and contact nodes at rest: gaps,
+ * pressures and energy the same, forces turned. Along the way contact nodes are skipped as they may be. */
 static void moved_together(void **state)
 {
     (void)state;
     struct random random = {7};
-    struct hats hats;
+    struct contact_nodes contact_nodes;
     int contacts = 0;
     for (int round = 0; round < 20; round++) {
         int dim = 2 + round % 2;
-        make_hats(&hats, dim, 10.0, &random);
-        struct contact rests = built(&hats, make_shell(dim, 12, 0.8, false), 7e3);
-        struct contact moves = built(&hats, make_shell(dim, 12, 0.8, false), 7e3);
+        make_contact_nodes(&contact_nodes, dim, 10.0, &random);
+        struct contact rests = built(&contact_nodes, make_shell(dim, 12, 0.8, false), 7e3);
+        struct contact moves = built(&contact_nodes, make_shell(dim, 12, 0.8, false), 7e3);
         moves.motion = some_motion(dim, &random);
         double u[NODES * 3], turned[NODES * 3];
         push_out(u, &random);
@@ -85,11 +85,11 @@ static void moved_together(void **state)
             for (int n = 0; n < NODES; n++) {
                 double x[3], moved[3];
                 for (int i = 0; i < dim; i++) {
-                    x[i] = hats.X[n * dim + i] + u[n * dim + i];
+                    x[i] = contact_nodes.X[n * dim + i] + u[n * dim + i];
                 }
                 rigid_place_from_rest(&place, dim, x, moved);
                 for (int i = 0; i < dim; i++) {
-                    turned[n * dim + i] = moved[i] - hats.X[n * dim + i];
+                    turned[n * dim + i] = moved[i] - contact_nodes.X[n * dim + i];
                 }
             }
             contact_force(&rests, u, force);
@@ -110,18 +110,19 @@ static void moved_together(void **state)
     assert_true(contacts > 400);
 }
 
-/* While the surface moves and the hats stay, the energy of the penalty grows by the work of the surface. */
+/* While the surface moves and the contact nodes stay, the energy of the penalty grows by the work of the
+ * surface. */
 static void work_of_the_surface(void **state)
 {
     (void)state;
     struct random random = {8};
-    struct hats hats;
+    struct contact_nodes contact_nodes;
     int pressed = 0;
     for (int round = 0; round < 10; round++) {
         int dim = 2 + round % 2, steps = 2000;
         double u[NODES * 3] = {0.0}, work = 0.0, unresolved = 0.0, begin = 0.0;
-        make_hats(&hats, dim, 10.0, &random);
-        struct contact contact = built(&hats, make_shell(dim, 4, 0.8, false), 7e3);
+        make_contact_nodes(&contact_nodes, dim, 10.0, &random);
+        struct contact contact = built(&contact_nodes, make_shell(dim, 4, 0.8, false), 7e3);
         contact.motion = some_motion(dim, &random);
         contact.motion.angle = fmod(contact.motion.angle, 0.3);
         for (int step = 0; step <= steps; step++) {
@@ -147,26 +148,27 @@ static void work_of_the_surface(void **state)
     assert_true(pressed >= 8);
 }
 
-/* The moment is that of the forces on the parameters, about any point, also where hats are raised. */
+/* The moment is that of the forces on the parameters, about any point, also where contact nodes are raised.
+ */
 static void moment(void **state)
 {
     (void)state;
     struct random random = {9};
-    struct hats hats;
+    struct contact_nodes contact_nodes;
     for (int round = 0; round < 20; round++) {
         int dim = 2 + round % 2;
-        double u[NODES * 3], force[NODES * 3] = {0.0}, position_[HATS * 3], sum[3] = {0.0}, told[3],
+        double u[NODES * 3], force[NODES * 3] = {0.0}, position_[CONTACT_NODES * 3], sum[3] = {0.0}, told[3],
                                            zero[NODES * 3] = {0.0};
         double point[3] = {0.3, -0.2, 0.7};
-        make_hats(&hats, dim, 10.0, &random);
-        for (int a = 0; a < HATS; a++) {
-            hats.normal[a * dim] = 1.0;
+        make_contact_nodes(&contact_nodes, dim, 10.0, &random);
+        for (int a = 0; a < CONTACT_NODES; a++) {
+            contact_nodes.normal[a * dim] = 1.0;
             for (int i = 0; i < dim; i++) {
-                position_[a * dim + i] = position(&hats, zero, a, i);
+                position_[a * dim + i] = position(&contact_nodes, zero, a, i);
             }
         }
-        hats.averages.position = position_;
-        struct contact contact = built(&hats, make_shell(dim, 12, 2.0, false), 7e3);
+        contact_nodes.averages.position = position_;
+        struct contact contact = built(&contact_nodes, make_shell(dim, 12, 2.0, false), 7e3);
         contact.motion = some_motion(dim, &random);
         push_out(u, &random);
         contact_move(&contact, one_each);
@@ -175,7 +177,7 @@ static void moment(void **state)
         for (int n = 0; n < NODES; n++) {
             double arm[3] = {0.0}, f[3] = {0.0};
             for (int i = 0; i < dim; i++) {
-                arm[i] = hats.X[n * dim + i] + u[n * dim + i] - point[i];
+                arm[i] = contact_nodes.X[n * dim + i] + u[n * dim + i] - point[i];
                 f[i] = force[n * dim + i];
             }
             for (int i = 0; i < 3; i++) {
@@ -189,15 +191,15 @@ static void moment(void **state)
     }
 }
 
-/* Hats that are too far away to be looked at have the gaps of this state where all are measured. */
+/* Contact nodes that are too far away to be looked at have the gaps of this state where all are measured. */
 static void gaps_of_this_state(void **state)
 {
     (void)state;
-    struct hats hats;
+    struct contact_nodes contact_nodes;
     struct random random = {10};
-    make_hats(&hats, 2, 0.1, &random);
-    struct contact contact = built(&hats, make_shell(2, 12, 5.0, false), 1.0);
-    double u[NODES * 3] = {0.0}, first[HATS];
+    make_contact_nodes(&contact_nodes, 2, 0.1, &random);
+    struct contact contact = built(&contact_nodes, make_shell(2, 12, 5.0, false), 1.0);
+    double u[NODES * 3] = {0.0}, first[CONTACT_NODES];
     contact_measure(&contact, u, false);
     memcpy(first, contact.gap, sizeof first);
     for (int i = 0; i < NODES; i++) {
@@ -205,8 +207,8 @@ static void gaps_of_this_state(void **state)
     }
     contact_measure(&contact, u, true);
     double changed = 0.0;
-    for (int a = 0; a < HATS; a++) {
-        double x[2] = {position(&hats, u, a, 0), position(&hats, u, a, 1)};
+    for (int a = 0; a < CONTACT_NODES; a++) {
+        double x[2] = {position(&contact_nodes, u, a, 0), position(&contact_nodes, u, a, 1)};
         NEAR_TO(contact.gap[a], rigid_closest(&contact.surface, x, INFINITY).gap, 1e-14);
         changed = fmax(changed, fabs(contact.gap[a] - first[a]));
     }
@@ -218,18 +220,18 @@ static void gaps_of_this_state(void **state)
 static void points_without_multipliers(void **state)
 {
     (void)state;
-    struct hats hats;
+    struct contact_nodes contact_nodes;
     struct error error;
-    double place[HATS * 2], u[NODES * 3] = {0.0}, force[NODES * 3] = {0.0};
-    make_particles(&hats, 2, 0.5);
-    for (int a = 0; a < HATS; a++) {
-        place[2 * a] = hats.X[2 * a] = 0.01 * a;
-        place[2 * a + 1] = hats.X[2 * a + 1] = 0.0;
+    double place[CONTACT_NODES * 2], u[NODES * 3] = {0.0}, force[NODES * 3] = {0.0};
+    make_particles(&contact_nodes, 2, 0.5);
+    for (int a = 0; a < CONTACT_NODES; a++) {
+        place[2 * a] = contact_nodes.X[2 * a] = 0.01 * a;
+        place[2 * a + 1] = contact_nodes.X[2 * a + 1] = 0.0;
     }
-    hats.averages.position = place;
+    contact_nodes.averages.position = place;
     struct rigid_surface surface = make_shell(2, 4, 0.5, false);
     struct contact contact;
-    GOOD(contact_build_points(&hats.averages, 2, &surface, 100.0, &contact, &error));
+    GOOD(contact_build_points(&contact_nodes.averages, 2, &surface, 100.0, &contact, &error));
     for (int round = 0; round < 3; round++) {
         u[0] = 0.6;
         contact_force(&contact, u, force);

@@ -4,44 +4,47 @@
 
 #include "solid/contact_patch.h"
 
-/* Places at rest, one sample for each hat: the point of the same number. */
-static double place[HATS * 3];
-static int64_t sample_ptr[HATS + 1], sample_point[HATS];
-static double sample_share[HATS];
+/* Places at rest, one sample for each contact node: the point of the same number. */
+static double place[CONTACT_NODES * 3];
+static int64_t sample_ptr[CONTACT_NODES + 1], sample_point[CONTACT_NODES];
+static double sample_share[CONTACT_NODES];
 
-static void make_samples(struct hats *hats)
+static void make_samples(struct contact_nodes *contact_nodes)
 {
-    for (int a = 0; a < HATS; a++) {
+    for (int a = 0; a < CONTACT_NODES; a++) {
         sample_ptr[a + 1] = a + 1;
         sample_point[a] = a;
         sample_share[a] = 1.0;
     }
-    memcpy(place, hats->X, sizeof place);
-    hats->averages.position = place;
-    hats->averages.sample_ptr = sample_ptr;
-    hats->averages.sample_point = sample_point;
-    hats->averages.sample_share = sample_share;
+    memcpy(place, contact_nodes->X, sizeof place);
+    contact_nodes->averages.position = place;
+    contact_nodes->averages.sample_ptr = sample_ptr;
+    contact_nodes->averages.sample_point = sample_point;
+    contact_nodes->averages.sample_share = sample_share;
 }
 
-static struct contact built_points(const struct hats *hats, struct rigid_surface surface, double stiffness)
+static struct contact built_points(const struct contact_nodes *contact_nodes, struct rigid_surface surface,
+                                   double stiffness)
 {
     struct contact contact;
     struct error error;
-    GOOD(contact_build_points(&hats->averages, hats->dim, &surface, stiffness, &contact, &error));
+    GOOD(contact_build_points(&contact_nodes->averages, contact_nodes->dim, &surface, stiffness, &contact,
+                              &error));
     return contact;
 }
 
-/* A modulus by the hat's width; points have that of the hats that facets of three (2D: two) of them make. */
+/* A modulus by the contact node's width; points have that of the contact nodes that facets of three (2D: two)
+ * of them make. */
 static void by_width(void **state)
 {
     (void)state;
     for (int dim = 2; dim <= 3; dim++) {
-        struct hats hats;
-        make_particles(&hats, dim, 0.01);
-        make_samples(&hats);
-        hats.area[1] = 0.04;
-        struct contact contact = built(&hats, make_shell(dim, 4, 0.5, false), 7.0);
-        struct contact points = built_points(&hats, make_shell(dim, 4, 0.5, false), 7.0);
+        struct contact_nodes contact_nodes;
+        make_particles(&contact_nodes, dim, 0.01);
+        make_samples(&contact_nodes);
+        contact_nodes.area[1] = 0.04;
+        struct contact contact = built(&contact_nodes, make_shell(dim, 4, 0.5, false), 7.0);
+        struct contact points = built_points(&contact_nodes, make_shell(dim, 4, 0.5, false), 7.0);
         NEAR_TO(contact.stiffness[1], 7.0, 0.0);
         contact_set_stiffness(&contact, 3.0);
         contact_set_stiffness(&points, 3.0);
@@ -53,16 +56,17 @@ static void by_width(void **state)
     }
 }
 
-/* Particles on springs, pulled through a wall that hats and, eight times as stiff, points keep out: the
- * multipliers take over both at once. With those of the hats alone a ninth would be left each time. */
+/* Particles on springs, pulled through a wall that contact nodes and, eight times as stiff, points keep out:
+ * the multipliers take over both at once. With those of the contact nodes alone a ninth would be left each
+ * time. */
 static void beneath(void **state)
 {
     (void)state;
-    struct hats hats;
-    make_particles(&hats, 2, 0.5);
-    make_samples(&hats);
-    struct contact contact = built(&hats, make_shell(2, 4, 0.5, false), 100.0);
-    struct contact points = built_points(&hats, make_shell(2, 4, 0.5, false), 800.0);
+    struct contact_nodes contact_nodes;
+    make_particles(&contact_nodes, 2, 0.5);
+    make_samples(&contact_nodes);
+    struct contact contact = built(&contact_nodes, make_shell(2, 4, 0.5, false), 100.0);
+    struct contact points = built_points(&contact_nodes, make_shell(2, 4, 0.5, false), 800.0);
     contact.points = &points;
     double u[NODES * 3] = {0.0}, spring = 20.0, pull = 13.0, deepest[3];
     for (int round = 0; round < 3; round++) {
@@ -70,7 +74,7 @@ static void beneath(void **state)
             double force[NODES * 3] = {0.0};
             contact_force(&contact, u, force);
             contact_force(&points, u, force);
-            for (int i = 0; i < HATS * 2; i++) {
+            for (int i = 0; i < CONTACT_NODES * 2; i++) {
                 u[i] += 0.002 * (force[i] + (i % 2 == 0 ? pull : 0.0) - spring * u[i]);
             }
         }
@@ -83,7 +87,7 @@ static void beneath(void **state)
     contact_free(&points);
 }
 
-/* Nodes on a line, each with a hat, that press in turn. */
+/* Nodes on a line, each with a contact node, that press in turn. */
 static void across(void **state)
 {
     (void)state;
@@ -95,23 +99,23 @@ static void across(void **state)
     } cases[] = {{"000000000000", 0, -1, 0.0}, {"000010000000", 1, 4, 1.0},  {"000011000000", 2, 4, 1.0},
                  {"000111000000", 3, -1, 0.0}, {"110000000000", 2, -1, 0.0}, {"011100000300", 4, 9, 0.5},
                  {"111111111111", 12, -1, 0.0}};
-    struct hats hats;
-    int32_t facet[2 * HATS];
+    struct contact_nodes contact_nodes;
+    int32_t facet[2 * CONTACT_NODES];
     double x[2 * NODES] = {0.0};
-    make_particles(&hats, 2, 0.5);
-    make_samples(&hats);
-    for (int32_t a = 0; a < HATS; a++) {
+    make_particles(&contact_nodes, 2, 0.5);
+    make_samples(&contact_nodes);
+    for (int32_t a = 0; a < CONTACT_NODES; a++) {
         x[2 * a] = 0.1 * a - 0.55;
         x[2 * a + 1] = -0.52;
         facet[2 * a] = a + 1;
         facet[2 * a + 1] = a;
     }
-    struct facet_set set = {HATS - 1, facet};
-    struct contact contact = built(&hats, make_shell(2, 4, 0.5, false), 1.0);
+    struct facet_set set = {CONTACT_NODES - 1, facet};
+    struct contact contact = built(&contact_nodes, make_shell(2, 4, 0.5, false), 1.0);
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         struct contact_patch patch;
         struct error error;
-        for (int a = 0; a < HATS; a++) {
+        for (int a = 0; a < CONTACT_NODES; a++) {
             contact.pressure[a] = cases[i].presses[a] - '0';
         }
         GOOD(contact_patch_find(&contact, &set, NODES, x, &patch, &error));
@@ -126,15 +130,15 @@ static void across(void **state)
 static void inside(void **state)
 {
     (void)state;
-    struct hats hats;
+    struct contact_nodes contact_nodes;
     struct contact_patch patch;
     struct error error;
     double x[2 * NODES] = {-2.0, -0.4, 2.0, -0.4, 2.0, -0.6, -2.0, -0.6};
     static const int32_t up[] = {1, 0}, down[] = {0, 1};
-    make_particles(&hats, 2, 0.5);
-    make_samples(&hats);
+    make_particles(&contact_nodes, 2, 0.5);
+    make_samples(&contact_nodes);
     struct contact contact =
-        built(&hats, make_shell(2, 4, 0.5, false), 1.0); /* corners at (0, +-.5), (+-.5, 0) */
+        built(&contact_nodes, make_shell(2, 4, 0.5, false), 1.0); /* corners at (0, +-.5), (+-.5, 0) */
     GOOD(contact_patch_find(&contact, &(struct facet_set){1, up}, NODES, x, &patch, &error));
     NEAR_TO(patch.inside, 0.1, 1e-12);
     NEAR_TO(patch.place[1], -0.5, 1e-12);

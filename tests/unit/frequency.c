@@ -59,7 +59,7 @@ static void agrees_with_all_eigenvalues(void **state)
     (void)state;
     for (int dim = 2; dim <= 3; dim++) {
         struct lattice l;
-        struct inertia inertia;
+        struct preconditioner preconditioner;
         struct error error;
         struct lattice_options options = lattice_defaults(dim, dim == 2 ? 9 : 4);
         double *mass, *scratch;
@@ -79,15 +79,16 @@ static void agrees_with_all_eigenvalues(void **state)
         }
         (void)system_residual(&l.system, u, residual);
         system_relaxation_mass(&l.system, mass);
-        GOOD(inertia_build(&l.system, false, &inertia, &error));
-        GOOD(inertia_set_mass(&inertia, &l.system, mass, &error));
-        double least = least_of_all(&l, &inertia.constraint, mass, u, residual);
-        GOOD(system_spectrum(&l.system, &inertia, u, residual, 1000, start, scratch, &spectrum, &error));
+        GOOD(preconditioner_build(&l.system, false, &preconditioner, &error));
+        GOOD(preconditioner_set_mass(&preconditioner, &l.system, mass, &error));
+        double least = least_of_all(&l, &preconditioner.constraint, mass, u, residual);
+        GOOD(system_spectrum(&l.system, &preconditioner, u, residual, 1000, start, scratch, &spectrum,
+                             &error));
         print_message("%dD: %g for %g after %d iterations\n", dim, spectrum.lowest, least,
                       spectrum.iterations);
         /* It ends when a third more iterations change it by less than .05; a relaxation allows for .25. */
         AT_MOST(fabs(spectrum.lowest / least - 1.0), 0.1);
-        inertia_free(&inertia);
+        preconditioner_free(&preconditioner);
         free(mass);
         free(scratch);
         free(u);
@@ -105,7 +106,7 @@ static void a_block_compressed_beyond_biots_limit_is_not_stable(void **state)
     const double stretch[] = {0.8, 0.5}, across[] = {1.2379, 1.9123}; /* lateral: of no stress there */
     for (int k = 0; k < 2; k++) {
         struct lattice l;
-        struct inertia inertia;
+        struct preconditioner preconditioner;
         struct error error;
         struct lattice_options options = lattice_defaults(2, 9);
         struct spectrum spectrum;
@@ -124,11 +125,12 @@ static void a_block_compressed_beyond_biots_limit_is_not_stable(void **state)
         }
         (void)system_residual(&l.system, u, residual);
         system_relaxation_mass(&l.system, mass);
-        GOOD(inertia_build(&l.system, false, &inertia, &error));
-        GOOD(inertia_set_mass(&inertia, &l.system, mass, &error));
-        GOOD(system_spectrum(&l.system, &inertia, u, residual, 1000, start, scratch, &spectrum, &error));
-        GOOD(system_unstable_mode(&l.system, &inertia, u, residual, &spectrum, start, scratch, &stability,
-                                  &error));
+        GOOD(preconditioner_build(&l.system, false, &preconditioner, &error));
+        GOOD(preconditioner_set_mass(&preconditioner, &l.system, mass, &error));
+        GOOD(system_spectrum(&l.system, &preconditioner, u, residual, 1000, start, scratch, &spectrum,
+                             &error));
+        GOOD(system_unstable_mode(&l.system, &preconditioner, u, residual, &spectrum, start, scratch,
+                                  &stability, &error));
         print_message("stretch %g: %g of the largest\n", stretch[k], stability.least);
         if (k == 0) {
             assert_true(spectrum.lowest > 0.0 && stability.least > 0.0);
@@ -136,7 +138,7 @@ static void a_block_compressed_beyond_biots_limit_is_not_stable(void **state)
             assert_true(spectrum.lowest < 0.0 && stability.least < 0.0);
             AT_MOST(0.1 - l.system.X[stability.node * 2 + 1], 1e-9); /* on the free side */
         }
-        inertia_free(&inertia);
+        preconditioner_free(&preconditioner);
         free(mass);
         free(scratch);
         free(u);

@@ -17,7 +17,7 @@ struct lattice_options {
     int64_t count[3]; /* nodes along each axis */
     double size[3];   /* m, from the origin */
     double jitter;
-    int gauss_points; /* 0: conforming cells */
+    int gauss_points; /* 0: smoothed cells */
     bool nodal_volume;
     double youngs_modulus, poisson_ratio, density;
 };
@@ -156,18 +156,18 @@ static inline void lattice_body(struct lattice *l)
                                .material_count = 1,
                                .hat_node = options->nodal_volume ? hat_node : NULL,
                                .hat_value = options->nodal_volume ? hat_value : NULL};
-    struct conforming_input conforming = {.x = l->cells.x,
-                                          .cell_node = l->cells.node,
-                                          .face_count = l->faces.count,
-                                          .face_node = l->faces.node,
-                                          .face_cell = l->faces.cell,
-                                          .face_ptr = l->averages.ptr,
-                                          .face_idx = l->averages.idx,
-                                          .face_phi = l->averages.phi,
-                                          .node_ptr = l->node_lists.ptr,
-                                          .node_idx = l->node_lists.idx,
-                                          .node_phi = l->node_phi};
-    input.conforming = options->gauss_points == 0 ? &conforming : NULL;
+    struct smoothed_cells_input smoothed = {.x = l->cells.x,
+                                            .cell_node = l->cells.node,
+                                            .face_count = l->faces.count,
+                                            .face_node = l->faces.node,
+                                            .face_cell = l->faces.cell,
+                                            .face_ptr = l->averages.ptr,
+                                            .face_idx = l->averages.idx,
+                                            .face_phi = l->averages.phi,
+                                            .node_ptr = l->node_lists.ptr,
+                                            .node_idx = l->node_lists.idx,
+                                            .node_phi = l->node_phi};
+    input.smoothed = options->gauss_points == 0 ? &smoothed : NULL;
     GOOD(body_build(&input, &l->system.body, &error));
     free(material);
     free(hat_node);
@@ -247,7 +247,7 @@ static inline int32_t lattice_curve(struct lattice *l, struct load_curve curve)
     return (int32_t)count;
 }
 
-/* The hat averages over the sides in `sides` (bit 2 * axis, + 1 at the high end), split at corners. */
+/* The boundary averages over the sides in `sides` (bit 2 * axis, + 1 at the high end), split at corners. */
 static inline struct boundary_averages lattice_averages(const struct lattice *l, unsigned sides)
 {
     struct error error;

@@ -21,7 +21,7 @@ void GOMP_parallel(void (*work)(void *), void *data, unsigned threads, unsigned 
 
 static struct sample sample; /* made before any allocation fails */
 
-static enum status try_body_of(const struct conforming_input *conforming, struct error *error)
+static enum status try_body_of(const struct smoothed_cells_input *smoothed, struct error *error)
 {
     static const struct material materials[2] = {{.shear_modulus = 1.0, .bulk_modulus = 1.0},
                                                  {.shear_modulus = 2.0, .bulk_modulus = 9.0}};
@@ -43,7 +43,7 @@ static enum status try_body_of(const struct conforming_input *conforming, struct
                                .hat_node = sample.hat_node,
                                .hat_value = sample.hat_value,
                                .node_x = sample.cloud.x,
-                               .conforming = conforming};
+                               .smoothed = smoothed};
     enum status status = body_build(&input, &body, error);
     body_free(&body);
     return status;
@@ -56,8 +56,8 @@ static enum status try_body(struct error *error)
 
 static enum status try_cells(struct error *error)
 {
-    struct conforming_input conforming = sample_conforming(&sample);
-    return try_body_of(&conforming, error);
+    struct smoothed_cells_input smoothed = sample_smoothed(&sample);
+    return try_body_of(&smoothed, error);
 }
 
 static struct face_table sample_face_table(void)

@@ -349,7 +349,7 @@ static void instruction_sets(void **state)
                     }
                     decided += served[0];
                     left += !served[0];
-                    assert_int_equal(mls_careful(&options.mls, &support, scratch, STRIDE, phi[3], dphi[3]),
+                    assert_int_equal(mls_orthogonal(&options.mls, &support, scratch, STRIDE, phi[3], dphi[3]),
                                      MLS_GOOD);
                     double most = 0.0, longest = 0.0;
                     for (int64_t i = 0; i < support.count * dim; i++) {

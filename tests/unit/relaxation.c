@@ -86,7 +86,7 @@ static double patch(int dim, double jitter, int gauss_points, bool nodal_volume)
     return error;
 }
 
-/* Conforming cells with hat averages split at corners pass to round-off; Gauss points do not, by far. */
+/* Smoothed cells with boundary averages split at corners pass to round-off; Gauss points do not, by far. */
 static void linear_patch(void **state)
 {
     (void)state;

@@ -1,4 +1,4 @@
-/* Quadrature, faces of cells, tables of shape functions and their smoothing over conforming cells. */
+/* Quadrature, faces of cells, tables of shape functions and their smoothing over smoothed cells. */
 #include "approx_fixture.h"
 #include "cell_table.h"
 

@@ -77,9 +77,9 @@ static enum status read_points(struct model_input *input, struct error *error)
     TRY(stream_need(stream, "points.weight", TYPE_F8, 1, "ipoints", &input->weight, error));
     TRY(stream_need(stream, "points.cell", TYPE_I4, 1, "ipoints", &input->point_cell, error));
     int64_t count = input->points->rows;
-    input->conforming = points_are_conforming(input->points);
+    input->smoothed = points_are_smoothed(input->points);
     if (input->weight->rows != count || input->point_cell->rows != count ||
-        (input->conforming && count != input->cells.count)) {
+        (input->smoothed && count != input->cells.count)) {
         status =
             fail(error, STATUS_INPUT, "points.x, points.weight, points.cell: do not fit: run ipoints again");
         goto done;
@@ -122,7 +122,7 @@ static enum status read_tables(struct model_input *input, struct error *error)
     int dim = input->cells.dim, per_face = quadrature_face_rule(dim).points;
     struct neighbours *lists = &input->lists;
     TRY(stream_faces(input->stream, &input->cells, &input->faces, error));
-    if (input->conforming) {
+    if (input->smoothed) {
         TRY(read_table(input, "face", "face.phi", 1, input->faces.count, lists, &input->phi, error));
     } else {
         TRY(read_table(input, "nbr", "shape.phi", 1, input->points->rows, lists, &input->phi, error));

@@ -14,8 +14,8 @@ struct model_input {
     const struct scene *scene;
     struct cells cells;
     const struct section *points, *weight, *point_cell;
-    bool conforming;          /* the points are cells */
-    struct neighbours lists;  /* of the points; or, of conforming cells, of the faces */
+    bool smoothed;            /* the points are cells */
+    struct neighbours lists;  /* of the points; or, of smoothed cells, of the faces */
     const double *phi, *dphi; /* following these; dphi NULL: averages over faces */
     struct neighbours boundary_lists, node_lists;
     const double *boundary_phi, *node_phi;

@@ -58,31 +58,31 @@ static enum status build_body(const struct model_input *input, struct solid_syst
     const struct scene_solver *solver = &input->scene->solver;
     int dim = input->cells.dim;
     TRY(model_materials(input, &materials, error));
-    if (input->conforming && model_holds_averages(input)) {
+    if (input->smoothed && model_holds_averages(input)) {
         TRY(model_soften_ends(input, &materials, error));
     }
     if (solver->volume == SCENE_NODAL_VOLUME) {
         TRY(list_hats(input, &hat_node, &hat_value, error));
     }
-    struct conforming_input conforming = {.x = input->cells.x,
-                                          .cell_node = input->cells.node,
-                                          .face_count = input->faces.count,
-                                          .face_node = input->faces.node,
-                                          .face_cell = input->faces.cell,
-                                          .face_ptr = input->lists.ptr,
-                                          .face_idx = input->lists.idx,
-                                          .face_phi = input->phi,
-                                          .node_ptr = input->node_lists.ptr,
-                                          .node_idx = input->node_lists.idx,
-                                          .node_phi = input->node_phi};
+    struct smoothed_cells_input smoothed = {.x = input->cells.x,
+                                            .cell_node = input->cells.node,
+                                            .face_count = input->faces.count,
+                                            .face_node = input->faces.node,
+                                            .face_cell = input->faces.cell,
+                                            .face_ptr = input->lists.ptr,
+                                            .face_idx = input->lists.idx,
+                                            .face_phi = input->phi,
+                                            .node_ptr = input->node_lists.ptr,
+                                            .node_idx = input->node_lists.idx,
+                                            .node_phi = input->node_phi};
     struct body_input body = {.dim = dim,
                               .node_x = input->cells.x,
                               .node_count = input->cells.node_count,
                               .point_count = input->points->rows,
                               .x = input->points->data,
                               .weight = input->weight->data,
-                              .ptr = input->conforming ? NULL : input->lists.ptr,
-                              .idx = input->conforming ? NULL : input->lists.idx,
+                              .ptr = input->smoothed ? NULL : input->lists.ptr,
+                              .idx = input->smoothed ? NULL : input->lists.idx,
                               .dphi = input->dphi,
                               .materials = materials.items,
                               .material = materials.of_point,
@@ -90,7 +90,7 @@ static enum status build_body(const struct model_input *input, struct solid_syst
                               .group = materials.section,
                               .hat_node = hat_node,
                               .hat_value = hat_value,
-                              .conforming = input->conforming ? &conforming : NULL};
+                              .smoothed = input->smoothed ? &smoothed : NULL};
     TRY(body_build(&body, &system->body, error));
 done:
     material_list_free(&materials);
@@ -153,7 +153,7 @@ enum status model_build(const struct stream *stream, const struct scene *scene, 
     system->node_count = model->input.cells.node_count;
     system->X = model->input.cells.x;
     constraint_rows_init(&system->rows, scene->dim);
-    constraint_rows_init(&system->springs, scene->dim);
+    constraint_rows_init(&system->penalties, scene->dim);
     TRY(build_body(&model->input, system, error));
     system->node_lists = &model->input.node_lists;
     system->node_phi = model->input.node_phi;

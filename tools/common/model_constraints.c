@@ -6,28 +6,29 @@
 
 /* Penalty of the constraints between their averages, by the shear modulus and per size of a cell, as in
  * Nitsche's method. From .0001 to 100 the forces on clamped blocks change by .2 %. */
-static const double spring_factor = 10.0;
+static const double constraint_penalty_factor = 10.0;
 
-/* A spring of about the stiffness of a layer of cells, times the area of its point of the facets. */
-static enum status add_spring(const struct prescription *p, const struct boundary_averages *points, int64_t a,
-                              const double *direction, double target, struct error *error)
+/* A constraint penalty of about the stiffness of a layer of cells, times the area of its point of the facets.
+ */
+static enum status add_penalty(const struct prescription *p, const struct boundary_averages *points,
+                               int64_t a, const double *direction, double target, struct error *error)
 {
     struct solid_system *system = p->system;
     int64_t at = points->ptr[a];
     enum status status =
-        constraint_rows_add(&system->springs, points->ptr[a + 1] - at, points->idx + at, points->phi + at,
+        constraint_rows_add(&system->penalties, points->ptr[a + 1] - at, points->idx + at, points->phi + at,
                             direction, target, p->curve, p->number, points->node[a], error);
     if (status != STATUS_OK) {
         return status;
     }
-    double *stiffness = array_grow(system->spring_stiffness, system->springs.count, sizeof *stiffness);
-    system->spring_stiffness = stiffness != NULL ? stiffness : system->spring_stiffness;
-    double *pull = array_grow(system->spring_pull, system->springs.count, sizeof *pull);
-    system->spring_pull = pull != NULL ? pull : system->spring_pull;
+    double *stiffness = array_grow(system->penalty_stiffness, system->penalties.count, sizeof *stiffness);
+    system->penalty_stiffness = stiffness != NULL ? stiffness : system->penalty_stiffness;
+    double *pull = array_grow(system->penalty_force, system->penalties.count, sizeof *pull);
+    system->penalty_force = pull != NULL ? pull : system->penalty_force;
     if (stiffness == NULL || pull == NULL) {
         return fail_memory(error, "springs");
     }
-    stiffness[system->springs.count - 1] = p->modulus * points->area[a] / p->layer;
+    stiffness[system->penalties.count - 1] = p->modulus * points->area[a] / p->layer;
     return STATUS_OK;
 }
 
@@ -37,8 +38,8 @@ static enum status add_row(const struct prescription *p, const struct boundary_a
     int64_t at = averages->ptr[a];
     static const double one = 1.0;
     struct constraint_rows *rows = &p->system->rows;
-    if (p->springs) {
-        return add_spring(p, averages, a, direction, target, error);
+    if (p->penalties) {
+        return add_penalty(p, averages, a, direction, target, error);
     }
     if (p->input->scene->solver.constraints == SCENE_DIRECT) {
         /* With a weight function that almost interpolates, the parameter is the value. */
@@ -107,36 +108,40 @@ static enum status add_rest(const struct prescription *p, const struct boundary_
 }
 
 /* What the section prescribes at the node of an average. */
-static enum status add_claims(const struct prescription *p, const struct boundary_averages *averages,
-                              int64_t a, struct error *error)
+static enum status add_nodal_constraints(const struct prescription *p,
+                                         const struct boundary_averages *averages, int64_t a,
+                                         struct error *error)
 {
     int dim = p->input->cells.dim;
     const struct scene_displacement *section = p->section;
-    struct claim claim = {.node = averages->node[a], .section = p->number, .value = section->normal};
+    struct nodal_constraint nodal_constraint = {
+        .node = averages->node[a], .section = p->number, .value = section->normal};
     double value[3] = {section->components[0], section->components[1], section->components[2]};
     if (section->kind == SCENE_NORMAL) {
-        memcpy(claim.direction, averages->normal + a * dim, (size_t)dim * sizeof *claim.direction);
-        return claims_add(p->claims, &claim, error);
+        memcpy(nodal_constraint.direction, averages->normal + a * dim,
+               (size_t)dim * sizeof *nodal_constraint.direction);
+        return nodal_constraints_add(p->nodal_constraints, &nodal_constraint, error);
     }
     enum status status = STATUS_OK;
     if (section->kind == SCENE_TABLE) {
-        TRY(prescription_value(p, claim.node, p->input->cells.x + (int64_t)claim.node * dim, value, error));
+        TRY(prescription_value(p, nodal_constraint.node,
+                               p->input->cells.x + (int64_t)nodal_constraint.node * dim, value, error));
     }
     for (int i = 0; i < dim; i++) {
         if (prescription_is_free(section, i)) {
             continue;
         }
-        memset(claim.direction, 0, sizeof claim.direction);
-        claim.direction[i] = 1.0;
-        claim.value = value[i];
-        TRY(claims_add(p->claims, &claim, error));
+        memset(nodal_constraint.direction, 0, sizeof nodal_constraint.direction);
+        nodal_constraint.direction[i] = 1.0;
+        nodal_constraint.value = value[i];
+        TRY(nodal_constraints_add(p->nodal_constraints, &nodal_constraint, error));
     }
 done:
     return status;
 }
 
-/* Hold what the hat averages of a set leave free. */
-static enum status add_springs(struct prescription *p, const struct facet_set *set, struct error *error)
+/* Hold what the boundary averages of a set leave free. */
+static enum status add_penalties(struct prescription *p, const struct facet_set *set, struct error *error)
 {
     enum status status;
     struct boundary_averages points = {0};
@@ -146,20 +151,20 @@ static enum status add_springs(struct prescription *p, const struct facet_set *s
         area += points.area[a];
     }
     area /= (double)set->count;
-    p->springs = true;
+    p->penalties = true;
     p->layer = p->input->cells.dim == 2 ? area : sqrt(2.0 * area);
-    p->modulus = model_penalty_modulus(p->system, spring_factor);
+    p->modulus = model_penalty_modulus(p->system, constraint_penalty_factor);
     for (int64_t a = 0; a < points.count; a++) {
         TRY(add_average(p, &points, a, error));
     }
 done:
-    p->springs = false;
+    p->penalties = false;
     boundary_averages_free(&points);
     return status;
 }
 
-/* The mean over side a, along the axes along which hats of its group are left to other sections; along its
- * normal, if that is what is held. */
+/* The mean over side a, along the axes along which boundary averages of its group are left to other sections;
+ * along its normal, if that is what is held. */
 static enum status add_side(const struct prescription *p, const struct boundary_averages *averages,
                             const struct boundary_sides *sides, int64_t a, struct error *error)
 {
@@ -183,9 +188,9 @@ static enum status add_side(const struct prescription *p, const struct boundary_
     return status;
 }
 
-/* Hats for a section. Split, two for each node of an edge, they carry a traction that jumps there; not split
- * they leave the field beside the edge as free as elsewhere. A displacement that is constant makes no linear
- * field but rest, whose traction could jump; and on curved sides none is exact anyway. */
+/* Boundary averages for a section. Split, two for each node of an edge, they carry a traction that jumps
+ * there; not split they leave the field beside the edge as free as elsewhere. A displacement that is constant
+ * makes no linear field but rest, whose traction could jump; and on curved sides none is exact anyway. */
 static enum status build_hats(const struct prescription *p, const struct facet_set *set,
                               struct boundary_averages *averages, struct boundary_sides *sides,
                               struct error *error)
@@ -195,7 +200,7 @@ static enum status build_hats(const struct prescription *p, const struct facet_s
     if (split || status != STATUS_OK || (p->section->kind == SCENE_COMPONENTS && prescription_is_full(p))) {
         return status;
     }
-    for (int64_t a = sides->hat_count; a < averages->count; a++) {
+    for (int64_t a = sides->node_average_count; a < averages->count; a++) {
         if (!sides->flat[a]) {
             return STATUS_OK;
         }
@@ -205,7 +210,7 @@ static enum status build_hats(const struct prescription *p, const struct facet_s
     return boundary_sides_build(&p->input->face_table, set, true, averages, sides, error);
 }
 
-/* Rows on hat averages: hats, then means over flat sides. */
+/* Rows on boundary averages: boundary averages, then means over flat sides. */
 static enum status add_hats(struct prescription *p, const struct facet_set *set, struct error *error)
 {
     enum status status;
@@ -215,12 +220,12 @@ static enum status add_hats(struct prescription *p, const struct facet_set *set,
     int64_t first = p->system->rows.count;
     TRY(build_hats(p, set, &averages, &sides, error));
     TRY(NEW_ARRAY(&p->shared, sides.group_count * dim, error));
-    for (int64_t a = 0; a < sides.hat_count; a++) {
+    for (int64_t a = 0; a < sides.node_average_count; a++) {
         TRY(add_rest(p, &averages, a, p->shared + sides.group[a] * dim, error));
-        TRY(add_claims(p, &averages, a, error));
+        TRY(add_nodal_constraints(p, &averages, a, error));
     }
     held_note(p->held, &p->system->rows, first, p->system->rows.count);
-    for (int64_t a = sides.hat_count; a < averages.count; a++) {
+    for (int64_t a = sides.node_average_count; a < averages.count; a++) {
         if (sides.flat[a]) {
             TRY(add_side(p, &averages, &sides, a, error));
         }
@@ -251,7 +256,7 @@ static enum status add_nodes(struct prescription *p, const struct facet_set *set
     }
     for (int64_t a = 0; a < averages.count; a++) {
         TRY(add_rest(p, &averages, a, NULL, error));
-        TRY(add_claims(p, &averages, a, error));
+        TRY(add_nodal_constraints(p, &averages, a, error));
     }
     held_note(p->held, &p->system->rows, first, p->system->rows.count);
 done:
@@ -273,21 +278,21 @@ static enum status add_section(struct prescription *p, struct error *error)
         TRY(table_read(section->table, 2 * dim, 2 * dim, &p->table, error));
         TRY(ways_build(&p->input->cells, p->table.rows, p->table.cols, p->table.values, section->table_unit,
                        &ways, error));
-        p->scatter = (struct scatter){.dim = dim,
-                                      .value_count = dim,
-                                      .count = p->table.rows,
-                                      .row_size = p->table.cols,
-                                      .row = p->table.values,
-                                      .unit = section->table_unit,
-                                      .ways = &ways};
-        TRY(scatter_build(&p->scatter, error));
+        p->fit = (struct scattered_fit){.dim = dim,
+                                        .value_count = dim,
+                                        .count = p->table.rows,
+                                        .row_size = p->table.cols,
+                                        .row = p->table.values,
+                                        .unit = section->table_unit,
+                                        .ways = &ways};
+        TRY(scattered_fit_build(&p->fit, error));
     }
     if (section->facets.count > 0) {
         TRY(model_facets(p->input, &section->label, &section->facets, &set, &owned, error));
     }
     if (section->facets.count > 0 && model_holds_averages(p->input)) {
         TRY(add_hats(p, &set, error));
-        TRY(add_springs(p, &set, error));
+        TRY(add_penalties(p, &set, error));
     } else {
         TRY(add_nodes(p, &set, error));
     }
@@ -295,7 +300,7 @@ done:
     free(owned);
     ways_free(&ways);
     table_free(&p->table);
-    scatter_free(&p->scatter);
+    scattered_fit_free(&p->fit);
     return status;
 }
 
@@ -303,7 +308,7 @@ enum status model_add_constraints(const struct model_input *input, struct solid_
                                   struct error *note, struct error *error)
 {
     enum status status = STATUS_OK;
-    struct claims claims = {0};
+    struct nodal_constraints nodal_constraints = {0};
     struct held_directions held = {0};
     TRY(held_build(input->cells.dim, input->cells.node_count, &held, error));
     /* Sections that hold few directions come first: what slides along a plane stays on it to its rim. */
@@ -312,7 +317,7 @@ enum status model_add_constraints(const struct model_input *input, struct solid_
             struct prescription p = {.input = input,
                                      .section = &input->scene->displacements[i],
                                      .system = system,
-                                     .claims = &claims,
+                                     .nodal_constraints = &nodal_constraints,
                                      .held = &held,
                                      .number = (int32_t)i};
             if (prescription_directions(&p) == directions) {
@@ -320,9 +325,9 @@ enum status model_add_constraints(const struct model_input *input, struct solid_
             }
         }
     }
-    TRY(claims_check(input, &claims, note, error));
+    TRY(nodal_constraints_check(input, &nodal_constraints, note, error));
 done:
-    claims_free(&claims);
+    nodal_constraints_free(&nodal_constraints);
     held_free(&held);
     return status;
 }

@@ -116,13 +116,14 @@ done:
 }
 
 /* Where a surface presses, it is kept out at the quadrature points, too, by a penalty of so much of the
- * hats'. From 4 to 16 the force on a block that is pressed to 30 % between plates changes by 0.3 %. */
+ * boundary averages'. From 4 to 16 the force on a block that is pressed to 30 % between plates changes by 0.3
+ * %. */
 static const double points_share = 8.0;
 
-/* The contact of the points of a section's facets, which moves as that of the hats does. */
+/* The contact of the points of a section's facets, which moves as that of the boundary averages does. */
 static enum status add_points(const struct model_input *input, const struct scene_contact *section,
-                              const struct facet_set *set, struct solid_system *system, struct contact *hats,
-                              struct error *error)
+                              const struct facet_set *set, struct solid_system *system,
+                              struct contact *averaged, struct error *error)
 {
     enum status status;
     struct rigid_surface surface = {0};
@@ -136,9 +137,9 @@ static enum status add_points(const struct model_input *input, const struct scen
     TRY(contact_build_points(points, system->dim, &surface, points_share * section->stiffness, contact,
                              error));
     set_stiffness(section, system, points_share, contact);
-    contact->section = hats->section;
-    contact->motion = hats->motion;
-    hats->points = contact;
+    contact->section = averaged->section;
+    contact->motion = averaged->motion;
+    averaged->points = contact;
     system->contact_count++;
     points = NULL;
 done:

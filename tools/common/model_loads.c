@@ -29,10 +29,10 @@ static enum status share_mass(const struct model_input *input, double **mass, st
     const int32_t *cell = input->point_cell->data;
     const double *weight = input->weight->data;
     TRY(NEW_ARRAY(mass, input->lists.count, error));
-    for (int64_t i = 0; i < input->lists.count && !input->conforming; i++) {
+    for (int64_t i = 0; i < input->lists.count && !input->smoothed; i++) {
         (*mass)[i] = weight[i] * input->scene->materials[input->cell_material[cell[i]]].density;
     }
-    for (int64_t i = 0; i < 2 * input->lists.count && input->conforming; i++) {
+    for (int64_t i = 0; i < 2 * input->lists.count && input->smoothed; i++) {
         int32_t q = input->faces.cell[i];
         if (q >= 0) {
             (*mass)[i / 2] +=

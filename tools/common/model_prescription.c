@@ -9,7 +9,7 @@ enum status prescription_value(const struct prescription *p, int32_t node, const
     double distance, spacing;
     struct error why;
     char place[96];
-    enum status status = scatter_evaluate(&p->scatter, node, x, value, &distance, &spacing, &why);
+    enum status status = scattered_fit_evaluate(&p->fit, node, x, value, &distance, &spacing, &why);
     if (status != STATUS_OK) {
         point_text(p->input->cells.dim, x, place);
         return scene_fail(error, status, p->input->scene, &p->section->label, "table %s: at %s: %s",

@@ -2,10 +2,10 @@
 #ifndef TOOLS_MODEL_PRESCRIPTION_H
 #define TOOLS_MODEL_PRESCRIPTION_H
 
-#include "model_claims.h"
+#include "model_conflicts.h"
 #include "model_held.h"
 
-#include "approx/scatter.h"
+#include "approx/scattered_fit.h"
 #include "approx/ways.h"
 #include "io/table.h"
 
@@ -14,14 +14,14 @@ struct prescription {
     const struct model_input *input;
     const struct scene_displacement *section;
     struct solid_system *system;
-    struct claims *claims;        /* of all sections */
-    struct held_directions *held; /* by the sections before */
+    struct nodal_constraints *nodal_constraints; /* of all sections */
+    struct held_directions *held;                /* by the sections before */
     bool *shared; /* group_count * dim: sections before hold that component at some of the group's nodes */
-    int32_t number, curve;  /* of the section; of its load curve */
-    struct table table;     /* SCENE_TABLE */
-    struct scatter scatter; /* of the table, with the ways to its points */
-    bool springs;           /* adding springs, not exact rows */
-    double modulus, layer;  /* of the springs: Pa, and the size of the cells there, m */
+    int32_t number, curve;    /* of the section; of its load curve */
+    struct table table;       /* SCENE_TABLE */
+    struct scattered_fit fit; /* of the table, with the ways to its points */
+    bool penalties;           /* adding constraint penalties, not exact rows */
+    double modulus, layer;    /* of the constraint penalties: Pa, and the size of the cells there, m */
 };
 
 /* What a section asks of one average: the displacement, or its component along the normal. */

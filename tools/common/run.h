@@ -45,7 +45,7 @@ void run_drop_tables(struct stream *stream);
 
 /* Exits with a verdict where a body is free to move as a whole, and no contact acts on it; with -v, tells
  * what only contacts hold. */
-void run_check_freedom(struct run *run);
+void run_check_rigid_modes(struct run *run);
 
 /* Quasi-static: relax to the full load. Exits with a verdict when it does not converge. */
 void run_quasi_static(struct run *run);

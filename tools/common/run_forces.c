@@ -40,11 +40,11 @@ static void add_force(const struct run *run, const struct average *average, cons
     moment[dim == 3 ? 2 : 0] += arm[0] * f[1] - arm[1] * f[0];
 }
 
-/* Of the conditions, and of the springs that back them. */
+/* Of the conditions, and of the constraint penalties that back them. */
 static void add_conditions(const struct run *run, struct totals *totals)
 {
     const struct solid_system *system = &run->model->system;
-    const struct constraint_rows *rows = &system->rows, *springs = &system->springs;
+    const struct constraint_rows *rows = &system->rows, *penalties = &system->penalties;
     int dim = totals->dim;
     double force[3];
     for (int64_t r = 0; r < rows->count; r++) {
@@ -58,13 +58,13 @@ static void add_conditions(const struct run *run, struct totals *totals)
         }
         add_force(run, &average, force, rows->section[r], totals);
     }
-    for (int64_t r = 0; r < springs->count; r++) {
-        double pull = system_spring_force(system, r, run->u);
-        struct average average = constraint_rows_average(springs, r);
+    for (int64_t r = 0; r < penalties->count; r++) {
+        double pull = system_penalty_force(system, r, run->u);
+        struct average average = constraint_rows_average(penalties, r);
         for (int a = 0; a < dim; a++) {
-            force[a] = pull * springs->direction[r * dim + a];
+            force[a] = pull * penalties->direction[r * dim + a];
         }
-        add_force(run, &average, force, springs->section[r], totals);
+        add_force(run, &average, force, penalties->section[r], totals);
     }
 }
 

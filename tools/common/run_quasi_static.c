@@ -66,7 +66,7 @@ void run_quasi_static(struct run *run)
                                          .restored = run_checkpoint_state(run)};
     struct relaxation_report report;
     struct error error;
-    run_check_freedom(run);
+    run_check_rigid_modes(run);
     double started = clock_seconds();
     enum status status =
         relaxation_run(&run->model->system, &options, run->u, run->model->row_force, &report, &error);

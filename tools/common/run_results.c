@@ -161,7 +161,7 @@ void run_append_row(const struct run *run, const char *name, double time, const 
     run_put(run, name, rows + 1, count + 1, attributes, table);
 }
 
-/* Gap, pressure and place of every hat of every contact. */
+/* Gap, pressure and place of every contact node of every contact. */
 static void put_gaps(const struct run *run, const struct moment *moment)
 {
     const struct solid_system *system = &run->model->system;

@@ -9,7 +9,7 @@
 
 struct ipoints_options ipoints_defaults(void)
 {
-    return (struct ipoints_options){.conforming = true};
+    return (struct ipoints_options){.smoothed = true};
 }
 
 /* Add points.x, points.weight, points.cell; the stream takes the arrays. */
@@ -203,11 +203,11 @@ enum status stage_ipoints(struct stream *stream, const struct ipoints_options *o
     if (options->adaptive) {
         TRY(put_adaptive_points(stream, &cells, options, radius, unresolved, error));
     } else {
-        int per_cell = options->conforming ? 1 : options->gauss_points;
-        snprintf(rule, sizeof rule, options->conforming ? "conforming" : "gauss%d", per_cell);
+        int per_cell = options->smoothed ? 1 : options->gauss_points;
+        snprintf(rule, sizeof rule, options->smoothed ? "conforming" : "gauss%d", per_cell);
         TRY(put_cell_points(stream, &cells, per_cell, rule, error));
     }
-    TRY(put_faces(stream, &cells, !options->conforming, error));
+    TRY(put_faces(stream, &cells, !options->smoothed, error));
 done:
     free(radius);
     return status;

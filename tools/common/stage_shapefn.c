@@ -103,10 +103,9 @@ static enum status put_table(struct stream *stream, const char *prefix, int64_t 
     return status != STATUS_OK ? status : next;
 }
 
-/* The values at points on the boundary, and the averages over faces of conforming cells. What lies at the
+/* The values at points on the boundary, and the averages over faces of smoothed cells. What lies at the
  * points of faces has served. */
-static enum status put_faces(struct stream *stream, const struct mls *mls, bool conforming,
-                             struct error *error)
+static enum status put_faces(struct stream *stream, const struct mls *mls, bool smoothed, struct error *error)
 {
     enum status status;
     struct cells cells;
@@ -124,7 +123,7 @@ static enum status put_faces(struct stream *stream, const struct mls *mls, bool 
         goto done;
     }
     TRY(shape_average_faces(mls, of.nodes, of.radius, &of.lists, of.x, of.section, &faces, &averages, error));
-    if (conforming) {
+    if (smoothed) {
         status = put_table(stream, "face", faces.count, averages.ptr, averages.idx, averages.phi, error);
         averages.ptr = NULL;
         averages.idx = NULL;
@@ -159,11 +158,11 @@ enum status stage_shapefn(struct stream *stream, const struct mls *mls, struct e
     const struct section *points;
     sections_remove(stream, MADE_WITH_SHAPES, MADE_WITH_SHAPES);
     TRY(stream_need(stream, "points.x", TYPE_F8, mls->dim, "ipoints", &points, error));
-    bool conforming = points_are_conforming(points);
-    if (stream_find(stream, "faces") != NULL || conforming) {
-        TRY(put_faces(stream, mls, conforming, error));
+    bool smoothed = points_are_smoothed(points);
+    if (stream_find(stream, "faces") != NULL || smoothed) {
+        TRY(put_faces(stream, mls, smoothed, error));
     }
-    if (!conforming) {
+    if (!smoothed) {
         TRY(tabulate(stream, mls, "points.x", "nbr", "shape.phi", true, error));
     }
     TRY(tabulate(stream, mls, "nodes.x", "node", "node.phi", false, error));

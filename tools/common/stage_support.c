@@ -264,13 +264,13 @@ enum status stage_support(struct stream *stream, const struct support_options *o
         TRY(reach_build(&cells, &grid, &reach, error));
     }
     const struct reach *within = actual.reach == REACH_CELLS ? &reach : NULL;
-    bool conforming = points_are_conforming(points); /* gradients come from the faces alone */
-    if (!conforming) {
+    bool smoothed = points_are_smoothed(points); /* gradients come from the faces alone */
+    if (!smoothed) {
         listed = (struct listed){.points = points, .prefix = "nbr", .called = "integration points"};
         TRY(places_of(stream, &cells, "points.cell", 1, points->rows, &listed.places, error));
         TRY(put_lists(stream, &actual, &grid, within, &listed, report, error));
     }
-    if (stream_find(stream, "faces") != NULL || conforming) {
+    if (stream_find(stream, "faces") != NULL || smoothed) {
         TRY(stream_need(stream, "facepoints.x", TYPE_F8, dim, "ipoints", &facepoints, error));
         listed = (struct listed){.points = facepoints, .prefix = "facepoint", .called = "points on faces"};
         TRY(places_of(stream, &cells, "faces.cell", 2, facepoints->rows, &listed.places, error));

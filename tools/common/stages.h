@@ -12,7 +12,7 @@
 
 /* How ipoints places integration points. */
 struct ipoints_options {
-    bool conforming;  /* one point per cell, gradients smoothed over the cell */
+    bool smoothed;    /* one point per cell, gradients smoothed over the cell */
     int gauss_points; /* else: points per cell */
     bool adaptive;    /* else: cells subdivided; `refinement` says how */
     struct adaptive_options refinement;

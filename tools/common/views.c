@@ -101,7 +101,7 @@ done:
     return status;
 }
 
-bool points_are_conforming(const struct section *points)
+bool points_are_smoothed(const struct section *points)
 {
     char rule[32];
     return section_attribute(points, "rule", rule, sizeof rule) && strcmp(rule, "conforming") == 0;

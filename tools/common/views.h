@@ -36,7 +36,7 @@ MUST_CHECK enum status stream_neighbours(const struct stream *stream, const char
                                          int64_t columns, struct neighbours *lists, struct error *error);
 
 /* Whether points.x has one point for each cell, for gradients smoothed over it. */
-bool points_are_conforming(const struct section *points);
+bool points_are_smoothed(const struct section *points);
 
 /* Attributes of a section of one vector in each row, "unit=UNIT cols=x,y[,z]", into text[64]; returns it. */
 const char *vector_attributes(int dim, const char *unit, char text[64]);

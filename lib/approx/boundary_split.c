@@ -1,0 +1,171 @@
+/* The boundary averages of a set of facets, split where the boundary turns. */
+#include "approx/boundary_private.h"
+
+#include "base/memory.h"
+
+#include <stdlib.h>
+
+/* Facets that turn by 45 degrees or more at a node belong to different sides; a little less than that, so
+ * that round-off does not decide on chamfers. */
+static const double side_cosine = 0.7072;
+
+static int compare_corners(const void *left, const void *right)
+{
+    const struct corner *a = left, *b = right;
+    if (a->node != b->node) {
+        return a->node < b->node ? -1 : 1;
+    }
+    if (a->facet != b->facet) {
+        return a->facet < b->facet ? -1 : 1;
+    }
+    return a->vertex - b->vertex;
+}
+
+bool boundary_same_side(const struct face_table *table, const int32_t *a, const int32_t *b)
+{
+    double na[3], nb[3], size;
+    int shared = 0;
+    for (int i = 0; i < table->dim; i++) {
+        for (int k = 0; k < table->dim; k++) {
+            shared += a[i] == b[k];
+        }
+    }
+    if (shared < table->dim - 1) {
+        return false;
+    }
+    boundary_unit_normal(table, a, na, &size);
+    boundary_unit_normal(table, b, nb, &size);
+    return na[0] * nb[0] + na[1] * nb[1] + na[2] * nb[2] >= side_cosine;
+}
+
+static bool same_side(const struct face_table *table, const struct facet_set *set, const struct corner *a,
+                      const struct corner *b)
+{
+    return boundary_same_side(table, set->facet + a->facet * table->dim, set->facet + b->facet * table->dim);
+}
+
+/* Number the parts of one node: corners first..last-1 joined through neighbours of one side. */
+static void split_node(const struct face_table *table, const struct facet_set *set, struct corner *corners,
+                       int64_t first, int64_t last, bool split, int64_t *part_count)
+{
+    for (int64_t i = first; i < last; i++) {
+        corners[i].part = -1;
+    }
+    for (int64_t seed = first; seed < last; seed++) {
+        if (corners[seed].part >= 0) {
+            continue;
+        }
+        corners[seed].part = *part_count;
+        for (bool grew = true; grew;) {
+            grew = false;
+            for (int64_t i = first; i < last; i++) {
+                for (int64_t k = first; corners[i].part < 0 && k < last; k++) {
+                    if (corners[k].part == *part_count &&
+                        (!split || same_side(table, set, &corners[i], &corners[k]))) {
+                        corners[i].part = *part_count;
+                        grew = true;
+                    }
+                }
+            }
+        }
+        ++*part_count;
+    }
+}
+
+static int compare_parts(const void *left, const void *right)
+{
+    const struct corner *a = left, *b = right;
+    if (a->part != b->part) {
+        return a->part < b->part ? -1 : 1;
+    }
+    return compare_corners(left, right);
+}
+
+enum status boundary_collect_corners(const struct face_table *table, const struct facet_set *set, bool split,
+                                     struct corner *corners, int64_t *part_count, struct error *error)
+{
+    int dim = table->dim;
+    int64_t count = set->count * dim;
+    for (int64_t i = 0; i < count; i++) {
+        if (set->facet[i] < 0 || set->facet[i] >= table->node_count) {
+            return fail(error, STATUS_INPUT, "facets: no node %d", set->facet[i]);
+        }
+        corners[i] = (struct corner){.node = set->facet[i], .vertex = (int32_t)(i % dim), .facet = i / dim};
+    }
+    qsort(corners, (size_t)count, sizeof *corners, compare_corners);
+    *part_count = 0;
+    for (int64_t first = 0; first < count;) {
+        int64_t last = first;
+        while (last < count && corners[last].node == corners[first].node) {
+            last++;
+        }
+        split_node(table, set, corners, first, last, split, part_count);
+        first = last;
+    }
+    qsort(corners, (size_t)count, sizeof *corners, compare_parts);
+    return STATUS_OK;
+}
+
+/* The first of the facets that facet f is joined with; the chains in `first` are shortened on the way. */
+static int64_t first_of(int64_t *first, int64_t f)
+{
+    while (first[f] != f) {
+        first[f] = first[first[f]];
+        f = first[f];
+    }
+    return f;
+}
+
+static void join(int64_t *first, int64_t f, int64_t g)
+{
+    int64_t a = first_of(first, f), b = first_of(first, g);
+    first[a > b ? a : b] = a > b ? b : a;
+}
+
+/* side, piece[set->count]: the first facet of the side and of the piece of each. */
+static void join_facets(const struct face_table *table, const struct facet_set *set,
+                        const struct corner *corners, int64_t *side, int64_t *piece)
+{
+    int64_t count = set->count * table->dim;
+    for (int64_t f = 0; f < set->count; f++) {
+        side[f] = piece[f] = f;
+    }
+    for (int64_t begin = 0, i = 0; i < count; i++) {
+        begin = corners[i].node == corners[begin].node ? begin : i;
+        join(piece, corners[begin].facet, corners[i].facet);
+        for (int64_t k = begin; k < i; k++) {
+            if (same_side(table, set, &corners[i], &corners[k])) {
+                join(side, corners[i].facet, corners[k].facet);
+            }
+        }
+    }
+}
+
+enum status boundary_add_sides(const struct face_table *table, const struct facet_set *set, bool split,
+                               struct corner *corners, int64_t *part_count, int64_t *group,
+                               int64_t *group_count, struct error *error)
+{
+    enum status status;
+    int dim = table->dim;
+    int64_t count = set->count * dim, *side = NULL, *piece = NULL, *part = NULL;
+    TRY(NEW_ARRAY(&side, set->count, error));
+    TRY(NEW_ARRAY(&piece, set->count, error));
+    TRY(NEW_ARRAY(&part, set->count, error));
+    join_facets(table, set, corners, side, piece);
+    *group_count = 0;
+    for (int64_t f = 0; f < set->count; f++) {
+        int64_t of_side = first_of(side, f), first = split ? of_side : first_of(piece, f);
+        group[f] = first == f ? (*group_count)++ : group[first];
+        part[f] = of_side == f ? (*part_count)++ : part[of_side];
+        for (int k = 0; k < dim; k++) {
+            corners[count + f * dim + k] =
+                (struct corner){.node = set->facet[f * dim + k], .vertex = k, .facet = f, .part = part[f]};
+        }
+    }
+    qsort(corners, (size_t)(2 * count), sizeof *corners, compare_parts);
+done:
+    free(side);
+    free(piece);
+    free(part);
+    return status;
+}

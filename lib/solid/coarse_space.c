@@ -1,0 +1,160 @@
+#include "solid/coarse_kernel.h"
+
+#include "base/chunks.h"
+#include "base/memory.h"
+#include "base/processor.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Radius of the shares, by the largest distance of a node from its nearest centre: 1.2 to 2.5 give as many
+ * steps. */
+static const double reach = 1.5;
+enum { NODES_FOR_THREAD = 10000 }; /* see chunks_of */
+
+static double distance2(const struct coarse_space *coarse, int64_t c, int64_t node)
+{
+    double sum = 0.0;
+    for (int a = 0; a < coarse->dim; a++) {
+        double step = coarse->X[node * coarse->dim + a] - coarse->centre[a][c];
+        sum += step * step;
+    }
+    return sum;
+}
+
+/* Centres: nodes, each the farthest from those before it. Sets the radius. */
+static enum status pick_centres(struct coarse_space *coarse, struct error *error)
+{
+    enum status status;
+    double *least2 = NULL;
+    int64_t next = 0;
+    TRY(NEW_ARRAY(&least2, coarse->node_count, error));
+    for (int64_t n = 0; n < coarse->node_count; n++) {
+        least2[n] = INFINITY;
+    }
+    for (int64_t c = 0; c < coarse->centre_count; c++) {
+        for (int a = 0; a < coarse->dim; a++) {
+            coarse->centre[a][c] = coarse->X[next * coarse->dim + a];
+        }
+        for (int64_t n = 0; n < coarse->node_count; n++) {
+            least2[n] = fmin(least2[n], distance2(coarse, c, n));
+        }
+        for (int64_t n = 0; n < coarse->node_count; n++) {
+            next = least2[n] > least2[next] ? n : next;
+        }
+    }
+    coarse->radius = reach * sqrt(least2[next]);
+done:
+    free(least2);
+    return status;
+}
+
+/* Quartic spline of the distance of a node from centre c. */
+static double weight_of(const struct coarse_space *coarse, int64_t c, int64_t node)
+{
+    double q = sqrt(distance2(coarse, c, node)) / coarse->radius, q2 = q * q;
+    return q < 1.0 ? 1.0 + q2 * (-6.0 + q * (8.0 - 3.0 * q)) : 0.0;
+}
+
+static enum status share_unity(struct coarse_space *coarse, struct error *error)
+{
+    enum status status;
+    TRY(NEW_ARRAY(&coarse->share, coarse->node_count, error));
+    for (int64_t n = 0; n < coarse->node_count; n++) {
+        double sum = 0.0;
+        for (int64_t c = 0; c < coarse->centre_count; c++) {
+            sum += coarse->share[n][c] = weight_of(coarse, c, n);
+        }
+        coarse->share[n] /= sum;
+    }
+done:
+    return status;
+}
+
+enum status coarse_space_build(int dim, int64_t node_count, const double *X, int64_t centre_count,
+                               struct coarse_space *coarse, struct error *error)
+{
+    enum status status = STATUS_OK;
+    *coarse = (struct coarse_space){.dim = dim,
+                                    .node_count = node_count,
+                                    .X = X,
+                                    .centre_count = centre_count,
+                                    .count = centre_count * (dim + 1),
+                                    .kernels = coarse_kernels_of(processor_best_set())};
+    if (centre_count > 0) {
+        TRY(pick_centres(coarse, error));
+        TRY(share_unity(coarse, error));
+    }
+done:
+    if (status != STATUS_OK) {
+        coarse_space_free(coarse);
+    }
+    return status;
+}
+
+void coarse_space_free(struct coarse_space *coarse)
+{
+    free(coarse->share);
+    *coarse = (struct coarse_space){0};
+}
+
+int coarse_space_at_node(const struct coarse_space *coarse, int64_t node, int field[COARSE_MOST_AT_NODE],
+                         double value[COARSE_MOST_AT_NODE])
+{
+    int dim = coarse->dim, count = 0;
+    for (int c = 0; c < coarse->centre_count; c++) {
+        double share = coarse->share[node][c];
+        for (int m = 0; m <= dim && share > 0.0; m++, count++) {
+            double way =
+                m == 0 ? 1.0 : (coarse->X[node * dim + m - 1] - coarse->centre[m - 1][c]) / coarse->radius;
+            field[count] = c * (dim + 1) + m;
+            value[count] = share * way;
+        }
+    }
+    return count;
+}
+
+void coarse_space_restrict(const struct coarse_space *coarse, const double *weight, const double *v,
+                           double *amount)
+{
+    struct chunks chunks = chunks_of(coarse->node_count, NODES_FOR_THREAD);
+    int dim = coarse->dim;
+    coarse_amounts partial[CHUNKS_MOST];
+#pragma omp parallel for schedule(static) num_threads(chunks.threads)
+    for (int64_t c = 0; c < chunks.count; c++) {
+        coarse->kernels->collect(coarse, chunks_begin(&chunks, c), chunks_begin(&chunks, c + 1), weight, v,
+                                 partial[c]);
+    }
+    for (int m = 0; m <= dim; m++) {
+        for (int a = 0; a < dim; a++) {
+            of_centres sum = partial[0][m][a];
+            for (int64_t c = 1; c < chunks.count; c++) {
+                sum += partial[c][m][a];
+            }
+            for (int64_t c = 0; c < coarse->centre_count; c++) {
+                amount[(c * (dim + 1) + m) * dim + a] = m == 0 ? sum[c] : sum[c] / coarse->radius;
+            }
+        }
+    }
+}
+
+void coarse_space_prolongate(const struct coarse_space *coarse, const double *amount, double *u)
+{
+    struct chunks chunks = chunks_of(coarse->node_count, NODES_FOR_THREAD);
+    int dim = coarse->dim;
+    coarse_amounts sorted = {{{0.0}}};
+    for (int m = 0; m <= dim; m++) {
+        for (int a = 0; a < dim; a++) {
+            for (int64_t c = 0; c < coarse->centre_count; c++) {
+                double part = amount[(c * (dim + 1) + m) * dim + a];
+                sorted[m][a][c] = m == 0 ? part : part / coarse->radius;
+            }
+        }
+    }
+#pragma omp parallel for schedule(static) num_threads(chunks.threads)
+    for (int64_t c = 0; c < chunks.count; c++) {
+        coarse->kernels->add(coarse, chunks_begin(&chunks, c), chunks_begin(&chunks, c + 1),
+                             (const of_centres(*)[3])sorted, u);
+    }
+}

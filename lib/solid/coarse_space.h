@@ -1,0 +1,54 @@
+/* The coarse space of the preconditioner, equation (25) of lib/README.md: a partition of unity times the
+ * linear polynomials. A few centres, nodes far from each other, have shares that sum to one (Shepard), by
+ * their distance; each share is a field, and so is its product with each coordinate. Linear fields are
+ * contained exactly. The construction works on any cloud, however thin. */
+#ifndef SOLID_COARSE_SPACE_H
+#define SOLID_COARSE_SPACE_H
+
+#include "base/status.h"
+
+#include <stdint.h>
+
+enum { COARSE_MOST_CENTRES = 8 };
+enum { COARSE_MOST_AT_NODE = 4 * COARSE_MOST_CENTRES };
+
+/* A number for each centre; 0 behind the last. */
+typedef double of_centres __attribute__((vector_size(8 * COARSE_MOST_CENTRES)));
+
+struct coarse_kernels;
+
+/* Fields are numbered c * (dim + 1) + m: the share of centre c, times 1 (m = 0) or a coordinate of the way
+ * from there over the radius. */
+struct coarse_space {
+    int dim;
+    int64_t node_count;
+    const double *X; /* node_count * dim, m; the caller's */
+    int64_t centre_count, count;
+    of_centres centre[3];                 /* dim coordinates, m */
+    double radius;                        /* within which a centre has a share, m */
+    of_centres *share;                    /* node_count: sum 1 */
+    const struct coarse_kernels *kernels; /* for this processor */
+};
+
+/* Fields of so many centres, at most COARSE_MOST_CENTRES; none for 0. */
+MUST_CHECK enum status coarse_space_build(int dim, int64_t node_count, const double *X, int64_t centre_count,
+                                          struct coarse_space *coarse, struct error *error);
+void coarse_space_free(struct coarse_space *coarse);
+
+/* The coarse fields that are not zero at a node: their numbers and values; returns how many. */
+int coarse_space_at_node(const struct coarse_space *coarse, int64_t node, int field[COARSE_MOST_AT_NODE],
+                         double value[COARSE_MOST_AT_NODE]);
+
+/* amount[count * dim] = Z^T v, count > 0: what nodal vectors, such as forces, do along each field, in each
+ * direction; or Z^T (weight v) with a weight for each node, unless that is NULL. Threaded; the same bits for
+ * any number of threads and on any processor, here and below. */
+void coarse_space_restrict(const struct coarse_space *coarse, const double *weight, const double *v,
+                           double *amount);
+
+/* u[node_count * dim] += Z amount. */
+void coarse_space_prolongate(const struct coarse_space *coarse, const double *amount, double *u);
+
+/* The kernels compiled for an instruction set, see base/processor.h, or NULL where there are none. */
+const struct coarse_kernels *coarse_kernels_of(const char *set);
+
+#endif

@@ -1,0 +1,178 @@
+#include "solid/preconditioner_private.h"
+
+#include "base/memory.h"
+#include "solid/rigid_modes.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* Nodes for each field at least: each field costs an evaluation for each direction at the begin. With twice
+ * COARSE_MOST_CENTRES steps are no fewer. */
+static const int64_t nodes_per_coarse_field = 8;
+
+static int64_t centre_count(const struct solid_system *system)
+{
+    int64_t count = system->node_count / (nodes_per_coarse_field * (system->dim + 1));
+    return count < COARSE_MOST_CENTRES ? count : COARSE_MOST_CENTRES;
+}
+
+enum status preconditioner_build(const struct solid_system *system, bool coarse,
+                                 struct preconditioner *preconditioner, struct error *error)
+{
+    enum status status;
+    int64_t cells;
+    *preconditioner = (struct preconditioner){.dim = system->dim, .node_count = system->node_count};
+    preconditioner->has_rigid_mode = system_has_rigid_mode(system);
+    for (int64_t c = 0; c < system->contact_count; c++) {
+        preconditioner->contact_node_count += system->contacts[c].count;
+    }
+    TRY(NEW_ARRAY(&preconditioner->mass, system->node_count, error));
+    TRY(coarse_space_build(system->dim, system->node_count, system->X, coarse ? centre_count(system) : 0,
+                           &preconditioner->coarse, error));
+    preconditioner->size = preconditioner->coarse.count * preconditioner->dim;
+    cells = preconditioner->size * preconditioner->size;
+    TRY(NEW_ARRAY(&preconditioner->active, preconditioner->contact_node_count, error));
+    TRY(NEW_ARRAY(&preconditioner->normal, preconditioner->contact_node_count * preconditioner->dim, error));
+    TRY(NEW_ARRAY(&preconditioner->body, cells, error));
+    TRY(NEW_ARRAY(&preconditioner->weight, cells, error));
+    TRY(NEW_ARRAY(&preconditioner->free_weight, cells, error));
+    TRY(NEW_ARRAY(&preconditioner->held, system->rows.count * preconditioner->size, error));
+    TRY(NEW_ARRAY(&preconditioner->inverse, cells, error));
+    TRY(NEW_ARRAY(&preconditioner->beside, cells, error));
+    TRY(NEW_ARRAY(&preconditioner->amount, 2 * preconditioner->size, error));
+done:
+    if (status != STATUS_OK) {
+        preconditioner_free(preconditioner);
+    }
+    return status;
+}
+
+void preconditioner_free(struct preconditioner *preconditioner)
+{
+    constraint_free(&preconditioner->constraint);
+    coarse_space_free(&preconditioner->coarse);
+    free(preconditioner->mass);
+    free(preconditioner->body);
+    free(preconditioner->active);
+    free(preconditioner->normal);
+    free(preconditioner->weight);
+    free(preconditioner->free_weight);
+    free(preconditioner->held);
+    free(preconditioner->inverse);
+    free(preconditioner->beside);
+    free(preconditioner->amount);
+    *preconditioner = (struct preconditioner){0};
+}
+
+void preconditioner_restrict(const struct preconditioner *preconditioner, const double *move, double *amount)
+{
+    coarse_space_restrict(&preconditioner->coarse, preconditioner->mass, move, amount);
+}
+
+/* y = matrix x, the matrix symmetric */
+static void multiply(int64_t n, const double *matrix, const double *x, double *restrict y)
+{
+    memset(y, 0, (size_t)n * sizeof *y);
+    for (int64_t k = 0; k < n; k++) {
+        for (int64_t i = 0; i < n; i++) {
+            y[i] += x[k] * matrix[k * n + i];
+        }
+    }
+}
+
+void preconditioner_restrict_force(struct preconditioner *preconditioner, const double *force,
+                                   double *acceleration, double *amount)
+{
+    const struct constraint_rows *rows = preconditioner->constraint.rows;
+    double *seen = preconditioner->constraint.multiplier;
+    for (int64_t n = 0; n < preconditioner->node_count; n++) {
+        double inverse = 1.0 / preconditioner->mass[n];
+        for (int64_t i = n * preconditioner->dim; i < (n + 1) * preconditioner->dim; i++) {
+            acceleration[i] = inverse * force[i];
+        }
+    }
+    if (preconditioner->size > 0) {
+        coarse_space_restrict(&preconditioner->coarse, NULL, force, amount);
+    }
+    if (rows == NULL) {
+        return;
+    }
+    constraint_rows_values(rows, acceleration, seen);
+    for (int64_t r = 0; r < rows->count; r++) {
+        const double *held = preconditioner->held + r * preconditioner->size;
+        for (int64_t k = 0; k < preconditioner->size && seen[r] != 0.0; k++) {
+            amount[k] -= held[k] * seen[r];
+        }
+    }
+}
+
+void preconditioner_apply(struct preconditioner *preconditioner, const double *force, double *acceleration)
+{
+    struct constraint *constraint = &preconditioner->constraint;
+    const struct constraint_rows *rows = constraint->rows;
+    double *multiplier = constraint->multiplier, *solved = preconditioner->amount + preconditioner->size;
+    preconditioner_restrict_force(preconditioner, force, acceleration, preconditioner->amount);
+    if (preconditioner->size > 0) {
+        multiply(preconditioner->size, preconditioner->inverse, preconditioner->amount, solved);
+        coarse_space_prolongate(&preconditioner->coarse, solved, acceleration);
+    }
+    if (rows == NULL || rows->count == 0) {
+        return;
+    }
+    envelope_solve(&constraint->factor, multiplier);
+    for (int64_t r = 0; r < rows->count; r++) {
+        const double *held = preconditioner->held + r * preconditioner->size;
+        double sum = multiplier[r];
+        for (int64_t k = 0; k < preconditioner->size; k++) {
+            sum += held[k] * solved[k];
+        }
+        multiplier[r] = -sum;
+    }
+    constraint_rows_spread(rows, multiplier, preconditioner->mass, acceleration);
+}
+
+double preconditioner_product_diagonal(const struct preconditioner *preconditioner, const double *x,
+                                       const double *y)
+{
+    int dim = preconditioner->dim;
+    double sum = 0.0;
+    for (int64_t n = 0; n < preconditioner->node_count; n++) {
+        double part = 0.0;
+        for (int a = 0; a < dim; a++) {
+            part += x[n * dim + a] * y[n * dim + a];
+        }
+        sum += preconditioner->mass[n] * part;
+    }
+    return sum;
+}
+
+double preconditioner_product(const struct preconditioner *preconditioner, const double *x, const double *y)
+{
+    double *amount = preconditioner->amount, *solved = preconditioner->amount + preconditioner->size;
+    double sum = preconditioner_product_diagonal(preconditioner, x, y);
+    if (preconditioner->size > 0) {
+        preconditioner_restrict(preconditioner, x, amount);
+        multiply(preconditioner->size, preconditioner->beside, amount, solved);
+        if (y != x) {
+            preconditioner_restrict(preconditioner, y, amount);
+        }
+        for (int64_t k = 0; k < preconditioner->size; k++) {
+            sum -= amount[k] * solved[k];
+        }
+    }
+    return sum;
+}
+
+enum status preconditioner_state(struct preconditioner *preconditioner, const struct state *state,
+                                 struct error *error)
+{
+    const struct state_value values[] = {
+        {"mass", STATE_NUMBERS, preconditioner->mass, preconditioner->node_count},
+        {"body", STATE_NUMBERS, preconditioner->body, preconditioner->size * preconditioner->size},
+        {"measured", STATE_NUMBERS, &preconditioner->measured_mass, 1},
+        {"touching", STATE_FLAGS, preconditioner->active, preconditioner->contact_node_count},
+        {"normal", STATE_NUMBERS, preconditioner->normal,
+         preconditioner->contact_node_count * preconditioner->dim},
+    };
+    return state_visit(state, "inertia", values, sizeof values / sizeof *values, error);
+}

@@ -1,0 +1,90 @@
+/* The fictitious mass of a relaxation: a preconditioner, since a state at rest does not depend on the mass
+ * (dynamic relaxation: Underwood 1983; equation (23) of lib/README.md).
+ *
+ * With a diagonal mass D that bounds the stiffness of each node, a load spreads by about one support in a
+ * step, and modes as large as the body decide how many steps are needed. On a few smooth fields Z
+ * (coarse_space.h) the mass is therefore the stiffness itself: with the projection P onto moves that the
+ * conditions admit, and A near P^T K P along the coarse fields,
+ *
+ *   M^-1 = P (D^-1 + Z A^-1 Z^T) P^T
+ * where, with the conditions' rows G and S = G D^-1 G^T, P^T f = f - G^T S^-1 G D^-1 f; so one look at G D^-1
+ * f tells both the coarse fields' amounts and the conditions' forces. Also
+ *
+ *   x . M y = x . D y - (Z^T D x) . (A + Z^T D P Z)^-1 (Z^T D y)   for moves x, y that the conditions admit,
+ *
+ * so that the slowest modes left are those that the coarse fields do not resolve. In the terms of linear
+ * systems, a two-level additive preconditioner with deflated constraints. Any positive definite A is sound;
+ * what it has of the contacts must follow them, because a mode that suddenly becomes stiff would be unstable.
+ */
+#ifndef SOLID_PRECONDITIONER_H
+#define SOLID_PRECONDITIONER_H
+
+#include "base/state.h"
+#include "solid/coarse_space.h"
+#include "solid/system.h"
+
+struct preconditioner {
+    int dim;
+    int64_t node_count;
+    double *mass;                 /* node_count: D, N/m (2D: N/m2) */
+    struct constraint constraint; /* with D */
+    struct coarse_space coarse;   /* count 0: none, M = D */
+    int64_t size;                 /* fields.count * dim: rows and columns of the matrices */
+    double *body; /* stiffness of body and constraint penalties along the coarse fields, P Z e_k, N/m (2D:
+                     N/m2) */
+    double measured_mass; /* sum of D when it was measured */
+    bool has_rigid_mode;  /* the conditions leave the body free to move as a whole */
+    bool *active;         /* contact nodes of all contacts: those that A counts in, */
+    double *normal;       /* hat_count * dim: and the surface's normals there */
+    int64_t contact_node_count;
+    double *weight;      /* Z^T D Z */
+    double *free_weight; /* Z^T D P Z */
+    double *held; /* rows of the conditions * size: (G D^-1 G^T)^-1 G Z, what they put against each field */
+    double *inverse; /* A^-1 */
+    double *beside;  /* (A + Z^T D P Z)^-1 */
+    double *amount;  /* 2 * size: scratch */
+};
+
+/* Memory and coarse fields for a system; `coarse` false: no fields. */
+MUST_CHECK enum status preconditioner_build(const struct solid_system *system, bool coarse,
+                                            struct preconditioner *preconditioner, struct error *error);
+void preconditioner_free(struct preconditioner *preconditioner);
+
+/* Set D from the system's last evaluation, and what depends on it. */
+MUST_CHECK enum status preconditioner_set_mass(struct preconditioner *preconditioner,
+                                               const struct solid_system *system, const double *mass,
+                                               struct error *error);
+
+/* Measure the stiffness along the coarse fields at u, by differences: size + 1 evaluations of the body, whose
+ * last evaluation is then another. Follows the contacts. */
+MUST_CHECK enum status preconditioner_measure(struct preconditioner *preconditioner,
+                                              struct solid_system *system, const double *u,
+                                              struct error *error);
+
+/* Whether D has changed so much that the coarse fields should be measured again. */
+bool preconditioner_is_stale(const struct preconditioner *preconditioner);
+
+/* Let A follow the contacts' last evaluation: contact nodes that begin to touch are counted in at once, those
+ * that are no longer near are left out when `leave`. True when M has changed. */
+bool preconditioner_follow(struct preconditioner *preconditioner, const struct solid_system *system,
+                           bool leave);
+
+/* acceleration = M^-1 force. */
+void preconditioner_apply(struct preconditioner *preconditioner, const double *force, double *acceleration);
+
+/* x . D y */
+double preconditioner_product_diagonal(const struct preconditioner *preconditioner, const double *x,
+                                       const double *y);
+
+/* x . M y of moves that the conditions admit. */
+double preconditioner_product(const struct preconditioner *preconditioner, const double *x, const double *y);
+
+/* What another run needs to go on: see base/state.h. Afterwards, in a run that was restored,
+ * preconditioner_restore.
+ */
+MUST_CHECK enum status preconditioner_state(struct preconditioner *preconditioner, const struct state *state,
+                                            struct error *error);
+MUST_CHECK enum status preconditioner_restore(struct preconditioner *preconditioner,
+                                              const struct solid_system *system, struct error *error);
+
+#endif

@@ -1,0 +1,121 @@
+/* The diagonal mass, and what of it and of the conditions the coarse fields feel. */
+#include "solid/preconditioner_private.h"
+
+#include "base/memory.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+static const double most_change = 1.5; /* of the mass, before the coarse fields are measured again */
+
+/* weight = Z^T D Z: directions do not couple. */
+static void weigh_coarse_space(struct preconditioner *preconditioner)
+{
+    int64_t dim = preconditioner->dim, size = preconditioner->size;
+    double *weight = preconditioner->weight, value[COARSE_MOST_AT_NODE];
+    int field[COARSE_MOST_AT_NODE];
+    memset(weight, 0, (size_t)(size * size) * sizeof *weight);
+    for (int64_t n = 0; n < preconditioner->node_count; n++) {
+        int count = coarse_space_at_node(&preconditioner->coarse, n, field, value);
+        for (int i = 0; i < count; i++) {
+            for (int k = 0; k < count; k++) {
+                weight[field[i] * dim * size + field[k] * dim] +=
+                    preconditioner->mass[n] * value[i] * value[k];
+            }
+        }
+    }
+    for (int64_t i = 0; i < size; i += dim) {
+        for (int64_t a = 1; a < dim; a++) {
+            for (int64_t k = 0; k < size; k += dim) {
+                weight[(i + a) * size + k + a] = weight[i * size + k];
+            }
+        }
+    }
+}
+
+void preconditioner_add_row(const struct preconditioner *preconditioner, const struct average *average,
+                            const double *direction, double *row)
+{
+    int field[COARSE_MOST_AT_NODE], dim = preconditioner->dim;
+    double value[COARSE_MOST_AT_NODE];
+    for (int64_t i = 0; i < average->length; i++) {
+        int count = coarse_space_at_node(&preconditioner->coarse, average->idx[i], field, value);
+        for (int k = 0; k < count; k++) {
+            for (int a = 0; a < dim; a++) {
+                row[field[k] * dim + a] += average->phi[i] * value[k] * direction[a];
+            }
+        }
+    }
+}
+
+/* free_weight = Z^T D P Z = Z^T D Z - (G Z)^T (G D^-1 G^T)^-1 G Z: without what the conditions forbid. */
+static enum status weigh_conditions(struct preconditioner *preconditioner, struct error *error)
+{
+    enum status status;
+    const struct constraint_rows *rows = preconditioner->constraint.rows;
+    int64_t size = preconditioner->size;
+    double *conditions = NULL, *solved = NULL;
+    memcpy(preconditioner->free_weight, preconditioner->weight,
+           (size_t)(size * size) * sizeof *preconditioner->weight);
+    TRY(NEW_ARRAY(&conditions, rows->count * size, error));
+    TRY(NEW_ARRAY(&solved, rows->count, error));
+    for (int64_t r = 0; r < rows->count; r++) {
+        struct average average = constraint_rows_average(rows, r);
+        preconditioner_add_row(preconditioner, &average, rows->direction + r * preconditioner->dim,
+                               conditions + r * size);
+    }
+    for (int64_t k = 0; k < size; k++) {
+        double *column = preconditioner->free_weight + k * size; /* or row: symmetric */
+        for (int64_t r = 0; r < rows->count; r++) {
+            solved[r] = conditions[r * size + k];
+        }
+        envelope_solve(&preconditioner->constraint.factor, solved);
+        for (int64_t r = 0; r < rows->count; r++) {
+            preconditioner->held[r * size + k] = solved[r];
+            for (int64_t i = 0; i < size && solved[r] != 0.0; i++) {
+                column[i] -= solved[r] * conditions[r * size + i];
+            }
+        }
+    }
+done:
+    free(conditions);
+    free(solved);
+    return status;
+}
+
+enum status preconditioner_set_mass(struct preconditioner *preconditioner, const struct solid_system *system,
+                                    const double *mass, struct error *error)
+{
+    memcpy(preconditioner->mass, mass, (size_t)preconditioner->node_count * sizeof *mass);
+    return preconditioner_restore(preconditioner, system, error);
+}
+
+enum status preconditioner_restore(struct preconditioner *preconditioner, const struct solid_system *system,
+                                   struct error *error)
+{
+    enum status status;
+    constraint_free(&preconditioner->constraint);
+    TRY(system_constrain(system, preconditioner->mass, &preconditioner->constraint, error));
+    if (preconditioner->size > 0) {
+        weigh_coarse_space(preconditioner);
+        TRY(weigh_conditions(preconditioner, error));
+        preconditioner_invert(preconditioner, system);
+    }
+done:
+    return status;
+}
+
+double preconditioner_sum_of_mass(const struct preconditioner *preconditioner)
+{
+    double sum = 0.0;
+    for (int64_t n = 0; n < preconditioner->node_count; n++) {
+        sum += preconditioner->mass[n];
+    }
+    return sum;
+}
+
+bool preconditioner_is_stale(const struct preconditioner *preconditioner)
+{
+    double change = preconditioner_sum_of_mass(preconditioner) / preconditioner->measured_mass;
+    return preconditioner->size > 0 && (change > most_change || change < 1.0 / most_change);
+}

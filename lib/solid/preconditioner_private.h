@@ -1,0 +1,25 @@
+/* What the parts of the preconditioner share; see preconditioner.h. */
+#ifndef SOLID_PRECONDITIONER_PRIVATE_H
+#define SOLID_PRECONDITIONER_PRIVATE_H
+
+#include "solid/preconditioner.h"
+
+/* amount[size] = Z^T P^T force, and acceleration = D^-1 force, whose values by the rows of the conditions are
+ * left in their multipliers. */
+void preconditioner_restrict_force(struct preconditioner *preconditioner, const double *force,
+                                   double *acceleration, double *amount);
+
+/* amount[size] = Z^T D move */
+void preconditioner_restrict(const struct preconditioner *preconditioner, const double *move, double *amount);
+
+/* row[size] += Z^T phi direction, of an average along a direction. */
+void preconditioner_add_row(const struct preconditioner *preconditioner, const struct average *average,
+                            const double *direction, double *row);
+
+/* sum of D */
+double preconditioner_sum_of_mass(const struct preconditioner *preconditioner);
+
+/* The inverses, from what body, contacts and mass are. */
+void preconditioner_invert(struct preconditioner *preconditioner, const struct solid_system *system);
+
+#endif

@@ -1,0 +1,200 @@
+/* The stiffness of the coarse space: that of the body by differences, that of the active contacts in closed
+ * form. */
+#include "solid/preconditioner_private.h"
+
+#include "base/dense.h"
+#include "base/memory.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Eigenvalues of the coarse space by the largest, which is about 1: a margin for stiffening until the
+ * stiffness is measured again. */
+static const double share = 0.25;
+/* Part of D that is added to the stiffness of the coarse space, so that modes without stiffness have a mass.
+ */
+static const double kept = 1e-4;
+/* Share of the mass of the coarse space that the conditions must leave free for it to be used. */
+static const double least_free = 0.01;
+/* Contact nodes nearer to a surface than this part of their length count as active. */
+static const double near_share = 0.1;
+static const double least_cosine = 0.98; /* of a surface's normal with what it was when it was counted in */
+static const double strain = 1e-6;       /* of the differences that stiffness is measured with */
+
+/* matrix[n * n] := its inverse; false when it is not positive definite. */
+static bool invert(int64_t n, double *matrix)
+{
+    bool good = dense_factorise(n, matrix);
+    if (good) {
+        dense_invert(n, matrix);
+    }
+    return good;
+}
+
+/* matrix += the stiffness along the coarse fields of the contact nodes that count as active. */
+static void add_contacts(const struct preconditioner *preconditioner, const struct solid_system *system,
+                         double *matrix)
+{
+    double *row = preconditioner->amount;
+    int64_t size = preconditioner->size, contact_node = 0;
+    for (int64_t c = 0; c < system->contact_count; c++) {
+        const struct contact *contact = &system->contacts[c];
+        const struct boundary_averages *averages = contact->averages;
+        for (int64_t a = 0; a < contact->count; a++, contact_node++) {
+            if (!preconditioner->active[contact_node]) {
+                continue;
+            }
+            struct average average = average_of_boundary(averages, a);
+            memset(row, 0, (size_t)size * sizeof *row);
+            preconditioner_add_row(preconditioner, &average,
+                                   preconditioner->normal + contact_node * preconditioner->dim, row);
+            for (int64_t i = 0; i < size; i++) {
+                double part = contact->stiffness[a] * averages->area[a] * row[i];
+                for (int64_t k = 0; k < size && part != 0.0; k++) {
+                    matrix[i * size + k] += part * row[k];
+                }
+            }
+        }
+    }
+}
+
+/* Part of the coarse fields' mass that the conditions leave free. */
+static double free_part(const struct preconditioner *preconditioner)
+{
+    double all = 0.0, part = 0.0;
+    for (int64_t k = 0; k < preconditioner->size * preconditioner->size; k += preconditioner->size + 1) {
+        all += preconditioner->weight[k];
+        part += preconditioner->free_weight[k];
+    }
+    return part / all;
+}
+
+void preconditioner_invert(struct preconditioner *preconditioner, const struct solid_system *system)
+{
+    int64_t cells = preconditioner->size * preconditioner->size;
+    double *stiffness = preconditioner->beside;
+    bool good = false;
+    memcpy(stiffness, preconditioner->body, (size_t)cells * sizeof *stiffness);
+    add_contacts(preconditioner, system, stiffness);
+    bool useful = free_part(preconditioner) > least_free;
+    for (double keep = kept; useful && !good && keep < 1e8;
+         keep *= 10.0) { /* unstable bodies have no definite one */
+        for (int64_t i = 0; i < cells; i++) {
+            preconditioner->inverse[i] = stiffness[i] / share + keep * preconditioner->weight[i];
+        }
+        good = invert(preconditioner->size, preconditioner->inverse);
+        for (int64_t i = 0; good && i < cells; i++) {
+            stiffness[i] =
+                stiffness[i] / share + keep * preconditioner->weight[i] + preconditioner->free_weight[i];
+        }
+    }
+    if (!good || !invert(preconditioner->size, preconditioner->beside)) { /* no coarse fields, then */
+        memset(preconditioner->inverse, 0, (size_t)cells * sizeof *preconditioner->inverse);
+        memset(preconditioner->beside, 0, (size_t)cells * sizeof *preconditioner->beside);
+    }
+}
+
+/* field = P Z e_k */
+static void set_field(struct preconditioner *preconditioner, int64_t k, double *field)
+{
+    memset(preconditioner->amount, 0, (size_t)preconditioner->size * sizeof *preconditioner->amount);
+    memset(field, 0, (size_t)(preconditioner->node_count * preconditioner->dim) * sizeof *field);
+    preconditioner->amount[k] = 1.0;
+    coarse_space_prolongate(&preconditioner->coarse, preconditioner->amount, field);
+    constraint_project(&preconditioner->constraint, NULL, field);
+}
+
+static void make_symmetric(int64_t n, double *matrix)
+{
+    for (int64_t i = 0; i < n; i++) {
+        for (int64_t k = 0; k < i; k++) {
+            matrix[i * n + k] = matrix[k * n + i] = 0.5 * (matrix[i * n + k] + matrix[k * n + i]);
+        }
+    }
+}
+
+enum status preconditioner_measure(struct preconditioner *preconditioner, struct solid_system *system,
+                                   const double *u, struct error *error)
+{
+    enum status status = STATUS_OK;
+    int64_t values = preconditioner->node_count * preconditioner->dim;
+    double *at_u = NULL, *moved = NULL, *force = NULL;
+    double epsilon = strain * system_node_spacing(system);
+    if (preconditioner->size == 0) {
+        return STATUS_OK;
+    }
+    TRY(NEW_ARRAY(&at_u, values, error));
+    TRY(NEW_ARRAY(&moved, values, error));
+    TRY(NEW_ARRAY(&force, values, error));
+    system_resist(system, u, at_u);
+    for (int64_t k = 0; k < preconditioner->size; k++) {
+        set_field(preconditioner, k, moved);
+        for (int64_t i = 0; i < values; i++) {
+            moved[i] = u[i] + epsilon * moved[i];
+        }
+        system_resist(system, moved, force);
+        for (int64_t i = 0; i < values; i++) {
+            force[i] = (force[i] - at_u[i]) / epsilon;
+        }
+        preconditioner_restrict_force(preconditioner, force, moved,
+                                      preconditioner->body + k * preconditioner->size);
+    }
+    make_symmetric(preconditioner->size, preconditioner->body);
+    preconditioner->measured_mass = preconditioner_sum_of_mass(preconditioner);
+    preconditioner_invert(preconditioner, system);
+done:
+    free(at_u);
+    free(moved);
+    free(force);
+    return status;
+}
+
+/* Whether the surface at contact node a has turned from what it was when the contact node was counted in. */
+static bool has_turned(const struct contact *contact, int64_t a, const double *counted_normal)
+{
+    double cosine = 0.0;
+    for (int i = 0; i < contact->dim; i++) {
+        cosine += contact->normal[a * contact->dim + i] * counted_normal[i];
+    }
+    return cosine < least_cosine;
+}
+
+/* Count contact node a in or out; true when that is a change. A body that can move as a whole may come to
+ * rest on contact nodes that are not near yet. */
+static bool follow_contact_node(struct preconditioner *preconditioner, const struct contact *contact,
+                                int64_t a, int64_t contact_node, bool leave)
+{
+    double area = contact->averages->area[a], length = contact->dim == 2 ? area : sqrt(area);
+    double *normal = preconditioner->normal + contact_node * contact->dim;
+    bool *counts = &preconditioner->active[contact_node], pressed = contact->pressure[a] > 0.0;
+    if (!pressed && !preconditioner->has_rigid_mode && !(contact->gap[a] < near_share * length)) {
+        bool left = *counts && leave;
+        *counts = *counts && !leave;
+        return left;
+    }
+    if (*counts ? !pressed || !has_turned(contact, a, normal) : !pressed && !leave) {
+        return false;
+    }
+    *counts = true;
+    memcpy(normal, contact->normal + a * contact->dim, (size_t)contact->dim * sizeof *normal);
+    return true;
+}
+
+bool preconditioner_follow(struct preconditioner *preconditioner, const struct solid_system *system,
+                           bool leave)
+{
+    bool changed = false;
+    int64_t contact_node = 0;
+    for (int64_t c = 0; c < system->contact_count; c++) {
+        for (int64_t a = 0; a < system->contacts[c].count; a++) {
+            changed = follow_contact_node(preconditioner, &system->contacts[c], a, contact_node++, leave) ||
+                      changed;
+        }
+    }
+    if (!changed || preconditioner->size == 0) {
+        return false;
+    }
+    preconditioner_invert(preconditioner, system);
+    return true;
+}

@@ -1,0 +1,228 @@
+#include "solid/rigid_modes.h"
+
+#include "base/box.h"
+#include "base/memory.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { MOST_MODES = 6, SWEEPS = 30 };
+/* A rigid mode is free when the squared norm of G times it is below this share of the largest one. */
+static const double least_seen = 1e-8;
+
+/* A body, and the Gram matrix of the conditions on its rigid modes: sum over the rows of value value^T. */
+struct seen {
+    struct box box;
+    double matrix[MOST_MODES][MOST_MODES];
+};
+
+static int move_count(int dim)
+{
+    return dim == 2 ? 3 : MOST_MODES;
+}
+
+static double middle(const struct box *box, int a)
+{
+    return 0.5 * (box->low[a] + box->high[a]);
+}
+
+/* Rigid move k at X, of the order of 1: translations, then rotations about the centre, in 3D about the axes
+ * z, x, y. */
+static void rigid_move(const struct box *box, int k, const double *X, double move[3])
+{
+    int dim = box->dim;
+    memset(move, 0, 3 * sizeof *move);
+    if (k < dim) {
+        move[k] = 1.0;
+        return;
+    }
+    int a = k - dim, b = (a + 1) % dim; /* turns a towards b */
+    double side = box_side(box);
+    move[a] = -(X[b] - middle(box, b)) / side;
+    move[b] = (X[a] - middle(box, a)) / side;
+}
+
+/* Add the values of row r on each rigid mode of a body; body NULL: of all nodes. */
+static void look(const struct solid_system *system, int64_t r, const int32_t *body, int32_t number,
+                 struct seen *seen)
+{
+    const struct constraint_rows *rows = &system->rows;
+    int dim = system->dim, moves = move_count(dim);
+    double value[MOST_MODES] = {0.0};
+    struct average average = constraint_rows_average(rows, r);
+    for (int64_t i = 0; i < average.length; i++) {
+        for (int k = 0; k < moves && (body == NULL || body[average.idx[i]] == number); k++) {
+            double move[3];
+            rigid_move(&seen->box, k, system->X + (int64_t)average.idx[i] * dim, move);
+            for (int a = 0; a < dim; a++) {
+                value[k] += average.phi[i] * rows->direction[r * dim + a] * move[a];
+            }
+        }
+    }
+    for (int i = 0; i < moves; i++) {
+        for (int k = 0; k < moves; k++) {
+            seen->matrix[i][k] += value[i] * value[k];
+        }
+    }
+}
+
+/* Rotate rows and columns p, q of the symmetric matrix so that entry (p, q) vanishes; vector's columns
+ * follow. */
+static void rotate(int n, double matrix[][MOST_MODES], double vector[][MOST_MODES], int p, int q)
+{
+    double theta = 0.5 * (matrix[q][q] - matrix[p][p]) / matrix[p][q];
+    double t = copysign(1.0, theta) / (fabs(theta) + sqrt(theta * theta + 1.0));
+    double c = 1.0 / sqrt(t * t + 1.0), s = t * c;
+    for (int i = 0; i < n; i++) {
+        double at_p = matrix[i][p], at_q = matrix[i][q];
+        matrix[i][p] = c * at_p - s * at_q;
+        matrix[i][q] = s * at_p + c * at_q;
+        at_p = vector[i][p];
+        at_q = vector[i][q];
+        vector[i][p] = c * at_p - s * at_q;
+        vector[i][q] = s * at_p + c * at_q;
+    }
+    for (int i = 0; i < n; i++) {
+        double at_p = matrix[p][i], at_q = matrix[q][i];
+        matrix[p][i] = c * at_p - s * at_q;
+        matrix[q][i] = s * at_p + c * at_q;
+    }
+}
+
+/* Eigenvalues of a symmetric matrix, left on its diagonal, and eigenvectors, the columns of `vector`: cyclic
+ * Jacobi rotations (Golub and Van Loan, Matrix Computations, 8.5). */
+static void diagonalise(int n, double matrix[][MOST_MODES], double vector[][MOST_MODES])
+{
+    for (int i = 0; i < n; i++) {
+        for (int k = 0; k < n; k++) {
+            vector[i][k] = i == k ? 1.0 : 0.0;
+        }
+    }
+    for (int sweep = 0; sweep < SWEEPS; sweep++) {
+        for (int p = 0; p < n; p++) {
+            for (int q = p + 1; q < n; q++) {
+                if (fabs(matrix[p][q]) > 1e-18 * (fabs(matrix[p][p]) + fabs(matrix[q][q]))) {
+                    rotate(n, matrix, vector, p, q);
+                }
+            }
+        }
+    }
+}
+
+/* free[count][MOST_MODES]: an orthonormal basis of the null space of the conditions. */
+static int free_moves(int dim, const struct seen *seen, double basis[][MOST_MODES])
+{
+    int n = move_count(dim), count = 0;
+    double matrix[MOST_MODES][MOST_MODES], vector[MOST_MODES][MOST_MODES], largest = 0.0;
+    memcpy(matrix, seen->matrix, sizeof matrix);
+    diagonalise(n, matrix, vector);
+    for (int k = 0; k < n; k++) {
+        largest = fmax(largest, matrix[k][k]);
+    }
+    for (int k = 0; k < n; k++) {
+        if (!(matrix[k][k] > least_seen * largest)) {
+            for (int i = 0; i < n; i++) {
+                basis[count][i] = vector[i][k];
+            }
+            count++;
+        }
+    }
+    return count;
+}
+
+/* A rotation of coefficients `move`: its axis, and a point of it. */
+static void put_turn(const struct box *box, const double *move, struct rigid_modes *moves)
+{
+    int dim = box->dim;
+    double w[3] = {0.0, 0.0, 0.0}, length2 = 0.0, t[3] = {move[0], move[1], dim == 3 ? move[2] : 0.0};
+    double *axis = moves->axis[moves->turns], *through = moves->through[moves->turns];
+    for (int k = dim; k < move_count(dim); k++) {
+        w[(k - dim + 2) % 3] = move[k] / box_side(box);
+    }
+    for (int a = 0; a < 3; a++) {
+        length2 += w[a] * w[a];
+    }
+    for (int a = 0; a < 3; a++) { /* where t + w x (p - centre) = 0 */
+        int b = (a + 1) % 3, c = (a + 2) % 3;
+        axis[a] = w[a] / sqrt(length2);
+        through[a] = (a < dim ? middle(box, a) : 0.0) + (w[b] * t[c] - w[c] * t[b]) / length2;
+    }
+    moves->turns++;
+}
+
+/* The free moves as translations, and rotations across them. */
+static void name_moves(int dim, const struct seen *seen, struct rigid_modes *moves)
+{
+    int n = move_count(dim);
+    double basis[MOST_MODES][MOST_MODES], turning[MOST_MODES][MOST_MODES], mix[MOST_MODES][MOST_MODES];
+    int count = free_moves(dim, seen, basis);
+    for (int i = 0; i < count; i++) {
+        for (int k = 0; k < count; k++) {
+            turning[i][k] = 0.0;
+            for (int a = dim; a < n; a++) {
+                turning[i][k] += basis[i][a] * basis[k][a];
+            }
+        }
+    }
+    diagonalise(count, turning, mix);
+    for (int k = 0; k < count; k++) {
+        double move[MOST_MODES] = {0.0};
+        for (int i = 0; i < count; i++) {
+            for (int a = 0; a < n; a++) {
+                move[a] += mix[i][k] * basis[i][a];
+            }
+        }
+        if (turning[k][k] > least_seen) {
+            put_turn(&seen->box, move, moves);
+        } else {
+            memcpy(moves->along[moves->translations++], move, (size_t)dim * sizeof *move);
+        }
+    }
+}
+
+enum status system_rigid_modes(const struct solid_system *system, int64_t body_count, const int32_t *body,
+                               struct rigid_modes *moves, struct error *error)
+{
+    enum status status;
+    struct seen *seen = NULL;
+    int dim = system->dim;
+    TRY(NEW_ARRAY(&seen, body_count, error));
+    memset(moves, 0, (size_t)body_count * sizeof *moves);
+    for (int64_t b = 0; b < body_count; b++) {
+        seen[b].box = box_of(dim, 0, NULL);
+    }
+    for (int64_t n = 0; n < system->node_count; n++) {
+        box_add(&seen[body[n]].box, 1, system->X + n * dim);
+        moves[body[n]].nodes++;
+    }
+    for (int64_t r = 0; r < system->rows.count; r++) {
+        struct average average = constraint_rows_average(&system->rows, r);
+        int32_t last = -1;
+        for (int64_t i = 0; i < average.length; i++) { /* a body twice: weighs twice */
+            if (body[average.idx[i]] != last) {
+                last = body[average.idx[i]];
+                look(system, r, body, last, &seen[last]);
+            }
+        }
+    }
+    for (int64_t b = 0; b < body_count; b++) {
+        for (int a = 0; a < dim; a++) {
+            moves[b].centre[a] = middle(&seen[b].box, a);
+        }
+        name_moves(dim, &seen[b], &moves[b]);
+    }
+done:
+    free(seen);
+    return status;
+}
+
+bool system_has_rigid_mode(const struct solid_system *system)
+{
+    double basis[MOST_MODES][MOST_MODES];
+    struct seen seen = {.box = box_of(system->dim, system->node_count, system->X)};
+    for (int64_t r = 0; r < system->rows.count; r++) {
+        look(system, r, NULL, 0, &seen);
+    }
+    return free_moves(system->dim, &seen, basis) > 0;
+}

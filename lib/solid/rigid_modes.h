@@ -1,0 +1,27 @@
+/* Rigid-body modes that the conditions of a system leave free. */
+#ifndef SOLID_RIGID_MODES_H
+#define SOLID_RIGID_MODES_H
+
+#include "solid/system.h"
+
+/* The moves that a body can make without meeting a condition. Contacts and springs do not count. */
+struct rigid_modes {
+    int64_t nodes;        /* of the body */
+    double centre[3];     /* of the box of its nodes, m */
+    int translations;     /* the free ones, */
+    double along[3][3];   /* orthonormal directions of them */
+    int turns;            /* and free rotations beside them */
+    double through[3][3]; /* a point of the axis of each, m; in 2D the point it turns about */
+    double axis[3][3];    /* orthogonal unit vectors; in 2D not used */
+};
+
+/* moves[body_count]: those of each body; body[node_count] tells the body of each node. What a condition sees
+ * of a body is the part of its average that lies on that body's nodes. */
+MUST_CHECK enum status system_rigid_modes(const struct solid_system *system, int64_t body_count,
+                                          const int32_t *body, struct rigid_modes *moves,
+                                          struct error *error);
+
+/* Whether all nodes as one body can move as a whole without meeting a condition. */
+bool system_has_rigid_mode(const struct solid_system *system);
+
+#endif

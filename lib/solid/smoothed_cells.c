@@ -1,0 +1,297 @@
+#include "solid/smoothed_cells.h"
+
+#include "approx/renumber.h"
+#include "base/memory.h"
+#include "solid/body.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Gradients of the hat functions 1 .. dim of a simplex, dim x dim. */
+static void hat_gradients(int dim, const double *x, const int32_t *vertex, double *gradient)
+{
+    double F[9] = {1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0}, C[9];
+    for (int k = 0; k < dim; k++) {
+        for (int a = 0; a < dim; a++) {
+            F[3 * a + k] = x[(int64_t)vertex[k + 1] * dim + a] - x[(int64_t)vertex[0] * dim + a];
+        }
+    }
+    double J = determinant(F);
+    cofactor(F, C); /* C / J = F^-T: its columns are the gradients of hats 1 .. dim */
+    for (int k = 0; k < dim; k++) {
+        for (int a = 0; a < dim; a++) {
+            gradient[k * dim + a] = C[3 * a + k] / J;
+        }
+    }
+}
+
+static enum status set_hats(const struct smoothed_cells_input *input, int dim, int64_t cell_count,
+                            const int64_t *order, struct smoothed_cells *smoothed, struct error *error)
+{
+    enum status status;
+    TRY(NEW_ARRAY(&smoothed->hat, cell_count * dim * dim + BODY_POINT_PADDING, error));
+    for (int64_t q = 0; q < cell_count; q++) {
+        double gradient[9];
+        hat_gradients(dim, input->x, input->cell_node + order[q] * (dim + 1), gradient);
+        for (int k = 0; k < dim * dim; k++) {
+            smoothed->hat[k * cell_count + q] = gradient[k];
+        }
+    }
+done:
+    return status;
+}
+
+/* Corner of a cell that is opposite a face: the one whose vertex the face has not. */
+static int opposite_corner(int dim, const int32_t *vertex, const int32_t *face)
+{
+    for (int k = 0; k < dim; k++) {
+        bool on_face = false;
+        for (int i = 0; i < dim; i++) {
+            on_face = on_face || face[i] == vertex[k];
+        }
+        if (!on_face) {
+            return k;
+        }
+    }
+    return dim;
+}
+
+/* The face opposite each corner. */
+static enum status match_corners(const struct smoothed_cells_input *input, int dim, int64_t cell_count,
+                                 const int64_t *order, int32_t *face_of_corner, struct error *error)
+{
+    enum status status;
+    int64_t *cell_place = NULL;
+    TRY(NEW_ARRAY(&cell_place, cell_count, error));
+    for (int64_t q = 0; q < cell_count; q++) {
+        cell_place[order[q]] = q;
+    }
+    for (int64_t i = 0; i < cell_count * (dim + 1); i++) {
+        face_of_corner[i] = -1;
+    }
+    for (int64_t i = 0; i < input->face_count * 2; i++) {
+        int64_t face = i / 2, cell = input->face_cell[i];
+        if (cell >= 0 && cell < cell_count) {
+            int corner =
+                opposite_corner(dim, input->cell_node + cell * (dim + 1), input->face_node + face * dim);
+            face_of_corner[cell_place[cell] * (dim + 1) + corner] = (int32_t)face;
+        }
+    }
+    for (int64_t i = 0; i < cell_count * (dim + 1); i++) {
+        if (face_of_corner[i] < 0) {
+            status = fail(error, STATUS_INPUT,
+                          "faces.cell: cell %lld lacks a face: run ipoints for smoothed cells",
+                          (long long)order[i / (dim + 1)]);
+            goto done;
+        }
+    }
+done:
+    free(cell_place);
+    return status;
+}
+
+/* A table of shape functions that tools made from cloud and cells: its name, and the points of its rows. */
+struct told {
+    const char *section, *of;
+    const int64_t *ptr;
+    const int32_t *idx;
+    const double *phi, *x;
+};
+
+/* Values of the shape functions must be those at x, or their averages with the centroid there: they reproduce
+ * 1 and x. */
+static enum status check_table(const struct told *table, int64_t rows, int dim, const double *nodes,
+                               struct error *error)
+{
+    for (int64_t r = 0; r < rows; r++) {
+        double sum[4] = {-1.0}, size = 0.0, extent = 0.0;
+        for (int64_t i = table->ptr[r]; i < table->ptr[r + 1]; i++) {
+            sum[0] += table->phi[i];
+            size += fabs(table->phi[i]);
+            for (int a = 0; a < dim; a++) {
+                double offset = nodes[(int64_t)table->idx[i] * dim + a] - table->x[r * dim + a];
+                sum[1 + a] += table->phi[i] * offset;
+                extent = fmax(extent, fabs(offset));
+            }
+        }
+        for (int k = 0; k <= dim; k++) {
+            if (!(fabs(sum[k]) <= 1e-5 * size * (k == 0 ? 1.0 : extent))) {
+                return fail(error, STATUS_INPUT,
+                            "%s: %s %lld: not the shape functions at this %s: run shapefn again",
+                            table->section, table->of, (long long)r, table->of);
+            }
+        }
+    }
+    return STATUS_OK;
+}
+
+/* A row for each node; its corners are the vertices of the cells. */
+static enum status build_nodes(const struct smoothed_cells_input *input, const struct body *body,
+                               struct field_averages *averages, struct error *error)
+{
+    enum status status;
+    int corners = body->dim + 1;
+    int32_t *node_of_corner = NULL;
+    const struct told table = {"node.phi",      "node",          input->node_ptr,
+                               input->node_idx, input->node_phi, input->x};
+    TRY(check_table(&table, body->node_count, body->dim, input->x, error));
+    TRY(NEW_ARRAY(&node_of_corner, body->point_count * corners, error));
+    for (int64_t q = 0; q < body->point_count; q++) {
+        memcpy(node_of_corner + q * corners, input->cell_node + body->order[q] * corners,
+               (size_t)corners * sizeof *node_of_corner);
+    }
+    struct field_averages_input nodes = {.dim = body->dim,
+                                         .node_count = body->node_count,
+                                         .row_count = body->node_count,
+                                         .order = body->node_order,
+                                         .ptr = input->node_ptr,
+                                         .idx = input->node_idx,
+                                         .phi = input->node_phi,
+                                         .place = body->node_place,
+                                         .corner_count = body->point_count * corners,
+                                         .row_of_corner = node_of_corner};
+    status = field_averages_build(&nodes, averages, error);
+done:
+    free(node_of_corner);
+    return status;
+}
+
+/* A row for each face; its corners are those opposite it. */
+static enum status build_faces(const struct smoothed_cells_input *input, const struct body *body,
+                               int32_t *face_of_corner, struct field_averages *averages, struct error *error)
+{
+    enum status status;
+    int dim = body->dim;
+    int64_t cell_count = body->point_count;
+    int64_t *order = NULL;
+    double *x = NULL;
+    TRY(match_corners(input, dim, cell_count, body->order, face_of_corner, error));
+    TRY(NEW_ARRAY(&x, input->face_count * dim, error));
+    for (int64_t f = 0; f < input->face_count; f++) {
+        for (int i = 0; i < dim * dim; i++) {
+            x[f * dim + i % dim] +=
+                input->x[(int64_t)input->face_node[f * dim + i / dim] * dim + i % dim] / dim;
+        }
+    }
+    const struct told table = {"face.phi", "face", input->face_ptr, input->face_idx, input->face_phi, x};
+    TRY(check_table(&table, input->face_count, dim, input->x, error));
+    TRY(NEW_ARRAY(&order, input->face_count, error));
+    TRY(renumber_morton(dim, input->face_count, x, NULL, order, error));
+    struct field_averages_input faces = {.dim = dim,
+                                         .node_count = body->node_count,
+                                         .row_count = input->face_count,
+                                         .order = order,
+                                         .ptr = input->face_ptr,
+                                         .idx = input->face_idx,
+                                         .phi = input->face_phi,
+                                         .place = body->node_place,
+                                         .corner_count = cell_count * (dim + 1),
+                                         .row_of_corner = face_of_corner};
+    status = field_averages_build(&faces, averages, error);
+done:
+    free(order);
+    free(x);
+    return status;
+}
+
+enum status smoothed_cells_build(const struct smoothed_cells_input *input, const struct body *body,
+                                 struct smoothed_cells *smoothed, struct error *error)
+{
+    enum status status;
+    int64_t entries = body->point_count * body->dim * body->dim + BODY_POINT_PADDING;
+    *smoothed = (struct smoothed_cells){.cell_node = input->cell_node,
+                                        .face_ptr = input->face_ptr,
+                                        .face_idx = input->face_idx,
+                                        .face_phi = input->face_phi};
+    TRY(set_hats(input, body->dim, body->point_count, body->order, smoothed, error));
+    TRY(NEW_ARRAY(&smoothed->interpolant, entries, error));
+    TRY(NEW_ARRAY(&smoothed->face_of_corner, body->point_count * (body->dim + 1), error));
+    TRY(build_faces(input, body, smoothed->face_of_corner, &smoothed->faces, error));
+    TRY(build_nodes(input, body, &smoothed->nodes, error));
+done:
+    if (status != STATUS_OK) {
+        smoothed_cells_free(smoothed);
+    }
+    return status;
+}
+
+void smoothed_cells_free(struct smoothed_cells *smoothed)
+{
+    field_averages_free(&smoothed->faces);
+    field_averages_free(&smoothed->nodes);
+    free(smoothed->face_of_corner);
+    free(smoothed->interpolant);
+    free(smoothed->hat);
+    *smoothed = (struct smoothed_cells){0};
+}
+
+void smoothed_cells_hat_gradients(const struct body *body, int64_t q, double *gradient)
+{
+    int dim = body->dim;
+    memset(gradient, 0, (size_t)dim * sizeof *gradient);
+    for (int k = 1; k <= dim; k++) {
+        for (int b = 0; b < dim; b++) {
+            gradient[k * dim + b] = body->cells.hat[((k - 1) * dim + b) * body->point_count + q];
+            gradient[b] -= gradient[k * dim + b];
+        }
+    }
+}
+
+enum status cell_functions_make(const struct body *body, struct cell_functions *functions,
+                                struct error *error)
+{
+    enum status status;
+    const struct smoothed_cells *cells = &body->cells;
+    int64_t most = 0;
+    int corners = body->dim + 1;
+    *functions = (struct cell_functions){0};
+    for (int64_t q = 0; q < body->point_count; q++) {
+        int64_t sum = 0;
+        for (const int32_t *f = cells->face_of_corner + q * corners;
+             f < cells->face_of_corner + (q + 1) * corners; f++) {
+            sum += cells->face_ptr[*f + 1] - cells->face_ptr[*f];
+        }
+        most = sum > most ? sum : most;
+    }
+    TRY(NEW_ARRAY(&functions->place, body->node_count, error));
+    TRY(NEW_ARRAY(&functions->node, most, error));
+    TRY(NEW_ARRAY(&functions->gradient, most * body->dim, error));
+done:
+    if (status != STATUS_OK) {
+        cell_functions_free(functions);
+    }
+    return status;
+}
+
+void cell_functions_free(struct cell_functions *functions)
+{
+    free(functions->place);
+    free(functions->node);
+    free(functions->gradient);
+    *functions = (struct cell_functions){0};
+}
+
+/* A set by two arrays that need no clearing: Briggs and Torczon 1993. */
+void cell_functions_list(const struct body *body, int64_t q, struct cell_functions *functions)
+{
+    const struct smoothed_cells *cells = &body->cells;
+    int dim = body->dim;
+    double hat[12];
+    smoothed_cells_hat_gradients(body, q, hat);
+    functions->count = 0;
+    for (int k = 0; k <= dim; k++) {
+        int32_t face = cells->face_of_corner[q * (dim + 1) + k];
+        for (int64_t i = cells->face_ptr[face]; i < cells->face_ptr[face + 1]; i++) {
+            int32_t node = cells->face_idx[i], at = functions->place[node];
+            if (at >= functions->count || functions->node[at] != node) {
+                at = functions->place[node] = (int32_t)functions->count++;
+                functions->node[at] = node;
+                memset(functions->gradient + at * dim, 0, (size_t)dim * sizeof *functions->gradient);
+            }
+            for (int a = 0; a < dim; a++) {
+                functions->gradient[at * dim + a] -= dim * cells->face_phi[i] * hat[k * dim + a];
+            }
+        }
+    }
+}

@@ -1,0 +1,96 @@
+/* Smoothed cells (strain smoothing: Chen et al. 2001; equations (6) to (10) of lib/README.md): the gradient
+ * of a cell is the mean of the field's over the cell, by the divergence theorem the sum over its faces of the
+ * field's mean on the face times the outward normal, per volume.
+ *
+ * For a simplex the normal of the face opposite vertex k, times its area, is -dim V grad N_k, N_k the hat
+ * function of the vertex. So F = I - dim sum_k m_k (x) grad N_k, where m_k is the field's mean on the face: a
+ * sparse operator of face averages, one value for each pair of face and node, replaces a table of gradients
+ * of dim values for each pair of cell and node, and two cells share each face.
+ *
+ * F is the gradient of no continuous piecewise linear map, so that sum V det F is not the volume within the
+ * boundary: under a pressure the field would buckle within the cells at no cost of volume. With F_h, the
+ * gradient of the linear interpolant of the field at the cell's vertices, the volume ratio of a cell is
+ * therefore
+ *
+ *   J = det F_h - cof F_h : (F_h - F).
+ *
+ * V det F_h is the volume between the vertices, and -V cof F_h : (F_h - F) what lies between them and the
+ * cell's faces: the mean offset of each face times the area of the deformed facet, with the opposite sign in
+ * the neighbour. So sum V J is the volume within the deformed facets of the boundary and their faces'
+ * offsets, whatever the field is inside; and as J and det F differ by the square of F_h - F only, what is
+ * exact for linear fields stays so.
+ *
+ * Smoothing loses the energy of what varies within a cell. The stabilisation energy
+ *
+ *   k |F_h - F|^2 / 2,      k = mu in two dimensions, 2 mu / 3 in three,
+ *
+ * restores it (stabilised nodal integration: Puso, Chen, Zywicz and Elmer 2008). k is derived: for a
+ * quadratic field on a regular simplex, mu / 2 times the variance of the gradient within the cell equals this
+ * energy, in 2D for each field with trace-free second derivatives, in 3D in the mean over all such fields. It
+ * is of second order in the size of the cells, at any strain, and the same in all cells. What was tried:
+ * pipelines/convergence/DEFAULTS.md. */
+#ifndef SOLID_SMOOTHED_CELLS_H
+#define SOLID_SMOOTHED_CELLS_H
+
+#include "solid/field_averages.h"
+
+/* k by mu. */
+#define SMOOTHING_STIFFNESS(dim) ((dim) == 2 ? 1.0 : 2.0 / 3.0)
+
+struct body;
+
+/* What they are made of, in the caller's arrays. One integration point per cell. */
+struct smoothed_cells_input {
+    const double *x;          /* nodes, node_count * dim, m */
+    const int32_t *cell_node; /* cells * (dim + 1) */
+    int64_t face_count;
+    const int32_t *face_node; /* face_count * dim */
+    const int32_t *face_cell; /* face_count * 2, or -1 beyond the boundary */
+    const int64_t *face_ptr;  /* averages of the shape functions over the faces: face_count + 1; with face_idx
+                                 and face_phi to outlive the body */
+    const int32_t *face_idx;
+    const double *face_phi;
+    const int64_t *node_ptr; /* and their values at the nodes: node_count + 1 */
+    const int32_t *node_idx;
+    const double *node_phi;
+};
+
+struct smoothed_cells {
+    const int64_t *face_ptr; /* the caller's averages over faces */
+    const int32_t *face_idx;
+    const double *face_phi;
+    int32_t *face_of_corner;     /* (dim + 1) for each cell, in the body's order: the face opposite */
+    struct field_averages faces; /* means of the field over the faces */
+    struct field_averages nodes; /* values of the field at the vertices */
+    const int32_t *cell_node;    /* the caller's */
+    double *interpolant;         /* F_h at the last evaluation, as body->F */
+    double *hat; /* dim * dim rows of as many as there are cells, and BODY_POINT_PADDING more: row (k - 1) dim
+                    + b holds component b of the gradient of hat k = 1 .. dim in each cell; those of all
+                    vanish together, 1/m */
+};
+
+/* Lay out the cells of a body whose sizes and orders are known. STATUS_INPUT when a cell lacks a face, or the
+ * values are not those at the faces and nodes. */
+MUST_CHECK enum status smoothed_cells_build(const struct smoothed_cells_input *input, const struct body *body,
+                                            struct smoothed_cells *smoothed, struct error *error);
+void smoothed_cells_free(struct smoothed_cells *smoothed);
+
+/* Gradients of the hat functions of cell q, in the body's order: gradient[(dim + 1) * dim], 1/m. */
+void smoothed_cells_hat_gradients(const struct body *body, int64_t q, double *gradient);
+
+/* The shape functions that are not zero on a cell, and their mean gradients over it. */
+struct cell_functions {
+    int32_t
+        *place;    /* node_count: where a node stands in the list, if it is there; stale entries do no harm */
+    int32_t *node; /* the list, of as many as a cell of the body has at most */
+    double *gradient; /* dim for each of the list, 1/m */
+    int64_t count;
+};
+MUST_CHECK enum status cell_functions_make(const struct body *body, struct cell_functions *functions,
+                                           struct error *error);
+void cell_functions_free(struct cell_functions *functions);
+
+/* Those of cell q, in the body's order. */
+void cell_functions_list(const struct body *body, int64_t q, struct cell_functions *functions);
+
+#endif

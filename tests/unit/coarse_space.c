@@ -1,0 +1,177 @@
+/* Smooth fields on a cloud: they share unity and hold linear fields; Z and its transpose agree, with plain
+ * sums and with themselves, whatever the threads and the instructions. */
+#include "solid_fixture.h"
+
+#include "base/memory.h"
+#include "solid/coarse_space.h"
+
+#include <omp.h>
+
+enum { NODES = 34000 }; /* worth three threads */
+
+struct cloud {
+    struct coarse_space coarse;
+    double *X, *v, *weight,
+        *amount;  /* v: vectors at nodes, amount: of the coarse fields, both without pattern */
+    int64_t size; /* of v */
+};
+
+static double *numbers(int64_t count, double low, double high, struct random *random)
+{
+    double *array = array_new(count, sizeof *array);
+    assert_non_null(array);
+    for (int64_t i = 0; i < count; i++) {
+        array[i] = uniform(random, low, high);
+    }
+    return array;
+}
+
+static struct cloud make_cloud(int dim, int64_t node_count, int64_t centre_count)
+{
+    struct cloud cloud = {.size = node_count * dim};
+    struct random random = {(uint64_t)(17 * dim + centre_count)};
+    struct error error;
+    cloud.X = numbers(cloud.size, -0.1, 0.1, &random);
+    for (int64_t n = 0; n < node_count; n++) {
+        cloud.X[n * dim] += 5.0 * cloud.X[n * dim + 1]; /* slender, so that some shares vanish */
+    }
+    GOOD(coarse_space_build(dim, node_count, cloud.X, centre_count, &cloud.coarse, &error));
+    assert_int_equal(cloud.coarse.count, centre_count * (dim + 1));
+    cloud.v = numbers(cloud.size, -1.0, 1.0, &random);
+    cloud.weight = numbers(node_count, 0.5, 2.0, &random);
+    cloud.amount = numbers(cloud.coarse.count * dim, -1.0, 1.0, &random);
+    return cloud;
+}
+
+static void release(struct cloud *cloud)
+{
+    coarse_space_free(&cloud->coarse);
+    free(cloud->X);
+    free(cloud->v);
+    free(cloud->weight);
+    free(cloud->amount);
+}
+
+/* What coarse_space_restrict and coarse_space_prolongate say, by plain sums. */
+static void sum_plainly(const struct cloud *cloud, const double *weight, double *amount, double *u)
+{
+    const struct coarse_space *coarse = &cloud->coarse;
+    int dim = coarse->dim, field[COARSE_MOST_AT_NODE];
+    double value[COARSE_MOST_AT_NODE];
+    for (int64_t n = 0; n < coarse->node_count; n++) {
+        int count = coarse_space_at_node(coarse, n, field, value);
+        for (int k = 0; k < count; k++) {
+            for (int a = 0; a < dim; a++) {
+                double scale = weight != NULL ? weight[n] : 1.0;
+                amount[field[k] * dim + a] += value[k] * scale * cloud->v[n * dim + a];
+                u[n * dim + a] += value[k] * cloud->amount[field[k] * dim + a];
+            }
+        }
+    }
+}
+
+static void plain_sums(void **state)
+{
+    (void)state;
+    for (int dim = 2; dim <= 3; dim++) {
+        for (int64_t centres = 1; centres <= COARSE_MOST_CENTRES; centres += 7) {
+            for (int weighted = 0; weighted < 2; weighted++) {
+                struct cloud cloud = make_cloud(dim, NODES, centres);
+                int64_t size = cloud.coarse.count * dim;
+                const double *weight = weighted ? cloud.weight : NULL;
+                double *amount = array_new(size, sizeof *amount),
+                       *expected = array_new(size, sizeof *expected);
+                double *u = array_new(cloud.size, sizeof *u), *field = array_new(cloud.size, sizeof *field);
+                assert_true(amount != NULL && expected != NULL && u != NULL && field != NULL);
+                sum_plainly(&cloud, weight, expected, field);
+                coarse_space_restrict(&cloud.coarse, weight, cloud.v, amount);
+                coarse_space_prolongate(&cloud.coarse, cloud.amount, u);
+                for (int64_t i = 0; i < size; i++) {
+                    NEAR_TO(amount[i], expected[i], 1e-12 * NODES);
+                }
+                for (int64_t i = 0; i < cloud.size; i++) {
+                    NEAR_TO(u[i], field[i], 1e-13);
+                }
+                free(amount);
+                free(expected);
+                free(u);
+                free(field);
+                release(&cloud);
+            }
+        }
+    }
+}
+
+/* The same bits for 1, 2 and 3 threads and from each set of instructions. */
+static void same_bits(void **state)
+{
+    (void)state;
+    static const char *const sets[] = {"plain", "avx2", "avx512"};
+    int before = omp_get_max_threads();
+    for (int dim = 2; dim <= 3; dim++) {
+        struct cloud cloud = make_cloud(dim, NODES, COARSE_MOST_CENTRES);
+        int64_t size = cloud.coarse.count * dim;
+        double *amounts[2], *coarse[2]; /* the first ones, and others */
+        for (int k = 0; k < 2; k++) {
+            amounts[k] = array_new(size, sizeof **amounts);
+            coarse[k] = array_new(cloud.size, sizeof **coarse);
+            assert_true(amounts[k] != NULL && coarse[k] != NULL);
+        }
+        for (int i = 0; i < 9; i++) {
+            int k = i > 0;
+            omp_set_num_threads(i % 3 + 1);
+            cloud.coarse.kernels = coarse_kernels_of(sets[i / 3]);
+            if (cloud.coarse.kernels == NULL) {
+                assert_true(i > 2); /* there is one for every processor */
+                continue;
+            }
+            memset(coarse[k], 0, (size_t)cloud.size * sizeof **coarse);
+            coarse_space_restrict(&cloud.coarse, cloud.weight, cloud.v, amounts[k]);
+            coarse_space_prolongate(&cloud.coarse, cloud.amount, coarse[k]);
+            assert_memory_equal(amounts[0], amounts[k], (size_t)size * sizeof **amounts);
+            assert_memory_equal(coarse[0], coarse[k], (size_t)cloud.size * sizeof **coarse);
+        }
+        for (int k = 0; k < 2; k++) {
+            free(amounts[k]);
+            free(coarse[k]);
+        }
+        release(&cloud);
+    }
+    omp_set_num_threads(before);
+}
+
+/* The shares of all centres make the constant field, and with the places of the centres the coordinates. */
+static void linear_fields(void **state)
+{
+    (void)state;
+    for (int dim = 2; dim <= 3; dim++) {
+        struct cloud cloud = make_cloud(dim, 500, 6);
+        const struct coarse_space *coarse = &cloud.coarse;
+        double *u = array_new(cloud.size, sizeof *u);
+        assert_non_null(u);
+        memset(cloud.amount, 0, (size_t)(coarse->count * dim) * sizeof *cloud.amount);
+        for (int c = 0; c < coarse->centre_count; c++) {
+            for (int a = 0; a < dim; a++) {
+                int64_t first = (int64_t)c * (dim + 1);
+                cloud.amount[first * dim + a] = 1.0 + coarse->centre[a][c];
+                cloud.amount[(first + 1 + a) * dim + a] = coarse->radius;
+            }
+        }
+        coarse_space_prolongate(coarse, cloud.amount, u);
+        for (int64_t i = 0; i < cloud.size; i++) {
+            NEAR_TO(u[i], 1.0 + cloud.X[i], 1e-14);
+        }
+        free(u);
+        release(&cloud);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(linear_fields),
+        cmocka_unit_test(plain_sums),
+        cmocka_unit_test(same_bits),
+    };
+    return cmocka_run_group_tests_name("coarse_space", tests, NULL, NULL);
+}

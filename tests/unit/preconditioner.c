@@ -1,0 +1,233 @@
+/* The fictitious mass: what is stated of M and its inverse, the frequencies that it leaves, contacts that are
+ * followed. */
+#include "lattice_fixture.h"
+
+#include "solid/frequency.h"
+#include "solid/preconditioner.h"
+
+/* A slender bar, clamped at one end and strained, and its preconditioner measured there. */
+struct strained {
+    struct lattice l;
+    struct preconditioner preconditioner;
+    double *u, *residual;
+    int64_t size;
+};
+
+static void measure(struct strained *s, bool coarse)
+{
+    struct error error;
+    double *mass;
+    ARRAY(mass, s->l.system.node_count);
+    (void)system_residual(&s->l.system, s->u, s->residual);
+    system_relaxation_mass(&s->l.system, mass);
+    GOOD(preconditioner_build(&s->l.system, coarse, &s->preconditioner, &error));
+    GOOD(preconditioner_set_mass(&s->preconditioner, &s->l.system, mass, &error));
+    GOOD(preconditioner_measure(&s->preconditioner, &s->l.system, s->u, &error));
+    (void)system_residual(&s->l.system, s->u, s->residual);
+    free(mass);
+}
+
+static void strain_bar_of(struct strained *s, int dim, double poisson_ratio, double strain, bool clamped,
+                          bool coarse)
+{
+    struct lattice_options options = lattice_defaults(dim, dim == 2 ? 9 : 5);
+    options.poisson_ratio = poisson_ratio;
+    options.count[0] *= 4;
+    options.size[0] *= 4.0;
+    options.jitter = 0.1;
+    lattice_build(&s->l, &options);
+    body_limit_bulk(&s->l.system.body, 50.0);
+    int32_t curve = lattice_curve(&s->l, curve_of_kind(CURVE_SMOOTH));
+    s->size = s->l.system.node_count * dim;
+    s->u = lattice_vector(&s->l);
+    s->residual = lattice_vector(&s->l);
+    for (int a = 0; clamped && a < dim; a++) {
+        double direction[3] = {a == 0, a == 1, a == 2};
+        lattice_prescribe(&s->l, 1u << 0, direction, NULL, NULL, curve);
+    }
+    for (int64_t i = 0; i < s->size; i++) {
+        s->u[i] = (i % dim == 0 ? strain : -strain / (dim - 1)) * s->l.system.X[i];
+    }
+    measure(s, coarse);
+}
+
+static void strain_bar(struct strained *s, int dim, double strain, bool clamped, bool coarse)
+{
+    strain_bar_of(s, dim, 0.49, strain, clamped, coarse);
+}
+
+static void release(struct strained *s)
+{
+    preconditioner_free(&s->preconditioner);
+    lattice_free(&s->l);
+    free(s->u);
+    free(s->residual);
+}
+
+static double dot(const struct strained *s, const double *x, const double *y)
+{
+    double sum = 0.0;
+    for (int64_t i = 0; i < s->size; i++) {
+        sum += x[i] * y[i];
+    }
+    return sum;
+}
+
+/* A move that the conditions admit. */
+static double *random_move(struct strained *s, struct random *random)
+{
+    double *move = lattice_vector(&s->l);
+    for (int64_t i = 0; i < s->size; i++) {
+        move[i] = uniform(random, -1.0, 1.0);
+    }
+    constraint_project(&s->preconditioner.constraint, NULL, move);
+    return move;
+}
+
+/* M^-1 M is the identity on moves that the conditions admit, M is symmetric and positive, and accelerations
+ * meet the conditions. */
+static void check_inverse(struct strained *s)
+{
+    struct random random = {7};
+    assert_true(s->preconditioner.size > 0);
+    assert_false(s->preconditioner.has_rigid_mode);
+    double *x = random_move(s, &random), *y = random_move(s, &random), *force = lattice_vector(&s->l);
+    for (int64_t i = 0; i < s->size; i++) {
+        force[i] = uniform(&random, -1.0, 1.0);
+    }
+    preconditioner_apply(&s->preconditioner, force, y);
+    double work = dot(s, x, force), product = preconditioner_product(&s->preconditioner, x, y);
+    AT_MOST(fabs(product - work), 1e-8 * fabs(work));
+    AT_MOST(fabs(preconditioner_product(&s->preconditioner, y, x) - product), 1e-8 * fabs(product));
+    AT_MOST(0.0, preconditioner_product(&s->preconditioner, x, x));
+    double most = 0.0;
+    for (int64_t i = 0; i < s->size; i++) {
+        most = fmax(most, fabs(y[i]));
+    }
+    AT_MOST(constraint_violation(&s->preconditioner.constraint, s->l.system.factor, y, NULL), 1e-10 * most);
+    free(x);
+    free(y);
+    free(force);
+}
+
+static void mass_and_inverse_agree(void **state)
+{
+    (void)state;
+    for (int dim = 2; dim <= 3; dim++) {
+        struct strained s;
+        strain_bar(&s, dim, 0.0, true, true);
+        check_inverse(&s);
+        release(&s);
+    }
+}
+
+static void frequencies(struct strained *s, double *largest, double *lowest)
+{
+    struct error error;
+    double *mode = lattice_vector(&s->l), *start = lattice_vector(&s->l), *scratch;
+    struct spectrum spectrum;
+    ARRAY(scratch, 4 * s->size);
+    for (int64_t i = 0; i < s->size; i++) {
+        start[i] = sin(1.0 + (double)(i * i % 97));
+    }
+    *largest =
+        system_largest_frequency(&s->l.system, &s->preconditioner, s->u, s->residual, 200, mode, scratch);
+    GOOD(system_spectrum(&s->l.system, &s->preconditioner, s->u, s->residual, 2000, start, scratch, &spectrum,
+                         &error));
+    AT_MOST(fabs(spectrum.largest / (*largest * *largest) - 1.0), 0.01);
+    *lowest = sqrt(spectrum.lowest);
+    free(mode);
+    free(start);
+    free(scratch);
+}
+
+/* The coarse fields carry the modes as large as the bar: the ratio of its frequencies, which is the number of
+ * steps, falls by far, and the largest one hardly rises. */
+static void slow_modes_are_gone(void **state)
+{
+    (void)state;
+    for (int dim = 2; dim <= 3; dim++) {
+        double largest[2], lowest[2];
+        for (int coarse = 0; coarse < 2; coarse++) {
+            struct strained s;
+            strain_bar(&s, dim, 0.0, true, coarse);
+            frequencies(&s, &largest[coarse], &lowest[coarse]);
+            release(&s);
+        }
+        print_message("%dD: ratio of the frequencies %g, with fields %g\n", dim, largest[0] / lowest[0],
+                      largest[1] / lowest[1]);
+        AT_MOST(largest[1], 1.25 * largest[0]);
+        AT_MOST(largest[1] / lowest[1], 0.35 * largest[0] / lowest[0]);
+    }
+}
+
+/* With a limit of the bulk modulus nearly incompressible bodies have the frequencies of one that is less so;
+ * otherwise their ratio would grow by the root of the bulk modulus, 100 times here. */
+static void bulk_modulus_is_limited(void **state)
+{
+    (void)state;
+    for (int dim = 2; dim <= 3; dim++) {
+        double ratio[2];
+        for (int k = 0; k < 2; k++) {
+            struct strained s;
+            double largest, lowest;
+            strain_bar_of(&s, dim, k == 0 ? 0.49 : 0.499999, 0.0, true, true);
+            frequencies(&s, &largest, &lowest);
+            ratio[k] = largest / lowest;
+            release(&s);
+        }
+        print_message("%dD: ratio of the frequencies at nu .49 %g, .499999, limited %g\n", dim, ratio[0],
+                      ratio[1]);
+        AT_MOST(ratio[1], 1.05 * ratio[0]);
+    }
+}
+
+/* Pressed against a plate, contact nodes are counted in at once: the largest frequency stays what it was,
+ * where otherwise a stiff contact would move a body that weighs nothing. */
+static void contacts_are_followed(void **state)
+{
+    (void)state;
+    struct strained s;
+    struct error error;
+    struct rigid_surface plate;
+    const double corners[4] = {-1.0, 0.1, 2.0, 0.1}; /* the body is below: on the right of it */
+    strain_bar(&s, 2, -0.05, false, true);
+    assert_true(s.preconditioner.has_rigid_mode);
+    preconditioner_free(&s.preconditioner);
+    struct boundary_averages averages = lattice_averages(&s.l, 1u << 3);
+    struct contact contact;
+    GOOD(rigid_build(2, 1, corners, false, &plate, &error));
+    GOOD(contact_build(&averages, s.l.system.X, 2, &plate, 1e6, &contact, &error));
+    s.l.system.contacts = &contact;
+    s.l.system.contact_count = 1;
+    measure(&s, true);
+    double alone[2];
+    for (int followed = 0; followed < 2; followed++) {
+        if (followed) {
+            assert_true(preconditioner_follow(&s.preconditioner, &s.l.system, false));
+            assert_false(preconditioner_follow(&s.preconditioner, &s.l.system, false));
+        }
+        double *mode = lattice_vector(&s.l), *scratch;
+        ARRAY(scratch, 2 * s.size);
+        alone[followed] =
+            system_largest_frequency(&s.l.system, &s.preconditioner, s.u, s.residual, 60, mode, scratch);
+        free(mode);
+        free(scratch);
+    }
+    print_message("largest frequency with contacts left out %g, followed %g\n", alone[0], alone[1]);
+    AT_MOST(3.0 * alone[1], alone[0]);
+    AT_MOST(alone[1], 2.0);
+    s.l.system.contacts = NULL;
+    s.l.system.contact_count = 0;
+    contact_free(&contact);
+    boundary_averages_free(&averages);
+    release(&s);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(mass_and_inverse_agree), cmocka_unit_test(slow_modes_are_gone),
+        cmocka_unit_test(bulk_modulus_is_limited), cmocka_unit_test(contacts_are_followed)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,34 @@
+/* Where boundaries of two displacement sections meet, they share nodes: each section prescribes a value
+ * there. The section that comes first holds the node (model_held.h), so that another value would be left out
+ * silently. */
+#ifndef TOOLS_MODEL_CONFLICTS_H
+#define TOOLS_MODEL_CONFLICTS_H
+
+#include "model.h"
+
+struct nodal_constraint {
+    int32_t node;
+    int32_t section;     /* index into the scene's displacements */
+    double direction[3]; /* unit */
+    double value;        /* m */
+};
+
+struct nodal_constraints {
+    int64_t count, room;
+    struct nodal_constraint *list;
+};
+
+MUST_CHECK enum status nodal_constraints_add(struct nodal_constraints *nodal_constraints,
+                                             const struct nodal_constraint *nodal_constraint,
+                                             struct error *error);
+void nodal_constraints_free(struct nodal_constraints *nodal_constraints);
+
+/* Two sections that prescribe values of one node along one direction, further apart than a tenth of the
+ * largest value that either prescribes, are an error that names them. Of those that are nearer, as measured
+ * values at a rim may be, the first is told in `note`, which is empty when all agree; the section that holds
+ * fewer directions decides, or the one that comes first in the scene. */
+MUST_CHECK enum status nodal_constraints_check(const struct model_input *input,
+                                               struct nodal_constraints *nodal_constraints,
+                                               struct error *note, struct error *error);
+
+#endif

@@ -1,0 +1,183 @@
+/* Bodies that nothing holds: told before the first step. */
+#include "names.h"
+#include "run.h"
+
+#include "approx/support.h"
+#include "solid/rigid_modes.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* The bodies of a model: what hangs together by cells. */
+struct bodies {
+    int64_t count;
+    int32_t *of_node;          /* node_count */
+    int64_t *cell;             /* count: one of its cells, whose region names it */
+    bool *touches;             /* count: a contact acts on it */
+    struct rigid_modes *moves; /* count */
+};
+
+/* The first of the nodes that node n is joined with; the chains in `first` are shortened on the way. */
+static int32_t first_of(int32_t *first, int32_t n)
+{
+    while (first[n] != n) {
+        first[n] = first[first[n]];
+        n = first[n];
+    }
+    return n;
+}
+
+/* of_node[n]: the first node of its body; then its number. Nodes in no cell are bodies of their own. */
+static void join_cells(const struct cells *cells, struct bodies *bodies)
+{
+    int corners = cells->dim + 1;
+    int32_t *first = bodies->of_node;
+    for (int64_t n = 0; n < cells->node_count; n++) {
+        first[n] = (int32_t)n;
+    }
+    for (int64_t c = 0; c < cells->count; c++) {
+        for (int k = 1; k < corners; k++) {
+            int32_t a = first_of(first, cells->node[c * corners]),
+                    b = first_of(first, cells->node[c * corners + k]);
+            first[a > b ? a : b] = a > b ? b : a;
+        }
+    }
+    for (int64_t n = 0; n < cells->node_count; n++) {
+        /* The first node comes before the others: it has its number by then. */
+        int32_t of = first[n];
+        first[n] = of == n ? (int32_t)bodies->count++ : first[of];
+    }
+}
+
+static enum status bodies_find(const struct model *model, struct bodies *bodies, struct error *error)
+{
+    enum status status;
+    const struct cells *cells = &model->input.cells;
+    const struct solid_system *system = &model->system;
+    *bodies = (struct bodies){0};
+    TRY(NEW_ARRAY(&bodies->of_node, cells->node_count, error));
+    join_cells(cells, bodies);
+    TRY(NEW_ARRAY(&bodies->cell, bodies->count, error));
+    TRY(NEW_ARRAY(&bodies->touches, bodies->count, error));
+    TRY(NEW_ARRAY(&bodies->moves, bodies->count, error));
+    for (int64_t c = 0; c < cells->count; c++) {
+        bodies->cell[bodies->of_node[cells->node[c * (cells->dim + 1)]]] = c;
+    }
+    for (int64_t c = 0; c < system->contact_count; c++) {
+        const struct boundary_averages *averages = &system->contact_averages[c];
+        for (int64_t a = 0; a < averages->count; a++) {
+            bodies->touches[bodies->of_node[averages->node[a]]] = true;
+        }
+    }
+    TRY(system_rigid_modes(system, bodies->count, bodies->of_node, bodies->moves, error));
+done:
+    return status;
+}
+
+static void bodies_free(struct bodies *bodies)
+{
+    free(bodies->of_node);
+    free(bodies->cell);
+    free(bodies->touches);
+    free(bodies->moves);
+}
+
+/* A direction in words, its largest component positive, round-off taken out. */
+static void direction_text(int dim, const double *direction, char text[96])
+{
+    double x[3];
+    int largest = 0;
+    for (int a = 0; a < dim; a++) {
+        largest = fabs(direction[a]) > fabs(direction[largest]) + 1e-6 ? a : largest;
+    }
+    for (int a = 0; a < dim; a++) {
+        x[a] = fabs(direction[a]) > 1e-6 ? direction[a] * copysign(1.0, direction[largest]) : 0.0;
+    }
+    point_text(dim, x, text);
+}
+
+/* "may move along (1, 0), may turn about (0, 0.1)" */
+static void moves_text(int dim, double size, const struct rigid_modes *moves, char *text, size_t room)
+{
+    char what[96], where[96];
+    size_t at = 0;
+    text[0] = '\0';
+    if (moves->translations == dim) {
+        at += (size_t)snprintf(text, room, "may move along any direction");
+    }
+    for (int k = 0; k < moves->translations && moves->translations < dim; k++) {
+        direction_text(dim, moves->along[k], what);
+        at += (size_t)snprintf(text + at, at < room ? room - at : 0, "%smay move along %s",
+                               at > 0 ? ", " : "", what);
+    }
+    if (moves->turns == (dim == 2 ? 1 : 3) && moves->translations == dim) {
+        (void)snprintf(text + at, at < room ? room - at : 0, " and turn about any axis");
+        return;
+    }
+    for (int k = 0; k < moves->turns; k++) {
+        double through[3];
+        for (int a = 0; a < dim; a++) {
+            through[a] = fabs(moves->through[k][a]) > 1e-9 * size ? moves->through[k][a] : 0.0;
+        }
+        point_text(dim, through, where);
+        direction_text(dim, moves->axis[k], what);
+        at += dim == 2 ? (size_t)snprintf(text + at, at < room ? room - at : 0, "%smay turn about %s",
+                                          at > 0 ? ", " : "", where)
+                       : (size_t)snprintf(text + at, at < room ? room - at : 0,
+                                          "%smay turn about the axis through %s along %s", at > 0 ? ", " : "",
+                                          where, what);
+    }
+}
+
+/* "the body", or "body 2 (region lump, near (0.1, 0.2))", numbered from 1 */
+static enum status body_text(const struct model *model, const struct bodies *bodies, int64_t b,
+                             char text[256], struct error *error)
+{
+    enum status status;
+    char *names = NULL, place[96], *name;
+    const struct section *region;
+    snprintf(text, 256, "the body");
+    if (bodies->count > 1) {
+        TRY(stream_need(model->input.stream, "cells.region", TYPE_I4, 1, "nodes", &region, error));
+        TRY(names_of_section(region, &names, error));
+        name = names;
+        for (int32_t k = ((const int32_t *)region->data)[bodies->cell[b]]; k > 0 && name != NULL; k--) {
+            name = strchr(name, ',') != NULL ? strchr(name, ',') + 1 : NULL;
+        }
+        point_text(model->input.cells.dim, bodies->moves[b].centre, place);
+        snprintf(text, 256, "body %lld (region %.*s, near %s)", (long long)b + 1,
+                 name != NULL ? (int)strcspn(name, ",") : 1, name != NULL ? name : "?", place);
+    } else {
+        status = STATUS_OK;
+    }
+done:
+    free(names);
+    return status;
+}
+
+void run_check_rigid_modes(struct run *run)
+{
+    struct error error;
+    struct bodies bodies;
+    const struct model *model = run->model;
+    tool_check(run->tool, bodies_find(model, &bodies, &error), &error);
+    for (int64_t b = 0; b < bodies.count; b++) {
+        const struct rigid_modes *moves = &bodies.moves[b];
+        char body[256], what[512];
+        if (moves->translations + moves->turns == 0) {
+            continue;
+        }
+        moves_text(model->input.cells.dim, model->input.extent, moves, what, sizeof what);
+        tool_check(run->tool, body_text(model, &bodies, b, body, &error), &error);
+        if (!bodies.touches[b]) {
+            run_fail(run, STATUS_VERDICT,
+                     "%s: nothing holds %s: it %s: add a [displacement] that forbids that", run->scene->path,
+                     body, what);
+        }
+        if (run->verbose) {
+            tool_note(run->tool, "%s: only contact holds %s: it %s otherwise", run->scene->path, body, what);
+        }
+    }
+    bodies_free(&bodies);
+}
