@@ -276,33 +276,12 @@ void contact_force(struct contact *contact, const double *u, double *force)
     }
 }
 
-/* The stiffness of the points that press beneath contact node a, Pa/m. */
-static double stiffness_beneath(const struct contact *contact, int64_t a)
-{
-    const struct boundary_averages *nodes = contact->averages;
-    double sum = 0.0;
-    if (contact->points == NULL) {
-        return 0.0;
-    }
-    for (int64_t s = nodes->sample_ptr[a]; s < nodes->sample_ptr[a + 1]; s++) {
-        int64_t point = nodes->sample_point[s];
-        if (contact->points->pressure[point] > 0.0) {
-            sum += nodes->sample_share[s] * contact->points->stiffness[point];
-        }
-    }
-    return sum;
-}
-
 double contact_augment(struct contact *contact, double allowed)
 {
     double deepest = 0.0;
     for (int64_t a = 0; a < contact->count; a++) {
-        double p = contact->pressure[a];
-        if (contact->penalty_only || !(p > contact->stiffness[a] * allowed)) {
-            contact->multiplier[a] = 0.0;
-        } else {
-            contact->multiplier[a] = fmax(0.0, p - stiffness_beneath(contact, a) * contact->gap[a]);
-        }
+        double p = contact->pressure[a], least = contact->stiffness[a] * allowed;
+        contact->multiplier[a] = contact->penalty_only || !(p > least) ? 0.0 : p;
         deepest = fmax(deepest, -contact->gap[a]);
     }
     return deepest;

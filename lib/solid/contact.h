@@ -84,10 +84,9 @@ void contact_move(struct contact *contact, const double *factor);
  * the surface is too far away for a pressure. */
 void contact_measure(struct contact *contact, const double *u, bool all);
 
-/* Augment: lambda_a = p_a of the last evaluation, unless there is the penalty only. Points that press beneath
- * the contact node stiffen its penalty, and lambda_a takes over as much as they carry: with the k_p of those,
- * lambda_a - (k_a + sum N_a A_p k_p / A_a) g_a. Pressures that the penalty alone makes of a penetration of no
- * more than `allowed`, m, need no multiplier and get none. Returns the largest penetration seen then, m. */
+/* Augment: lambda_a = p_a of the last evaluation, unless there is the penalty only. Pressures that the
+ * penalty alone makes of a penetration of no more than `allowed`, m, need no multiplier and get none. Returns
+ * the largest penetration seen then, m. */
 double contact_augment(struct contact *contact, double allowed);
 
 /* Energy of the penalty at the last evaluation, sum A_a (p_a^2 - lambda_a^2) / (2 k_a), J (2D: J/m). */

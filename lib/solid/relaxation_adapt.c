@@ -266,15 +266,13 @@ static void augment(struct relaxation *r, double allowed)
 void relaxation_follow_contacts(struct relaxation *r)
 {
     double pause = (double)(r->report->steps - r->augmented_step) * r->time_step;
-    if (r->system->contact_count == 0 || r->damping * pause < RELAXATION_PAUSE) {
+    if (r->system->contact_count == 0 || r->at_full_load > 0 || r->damping * pause < RELAXATION_PAUSE) {
         return;
     }
-    bool held = r->at_full_load > 0;
-    double allowed = held ? penetration_allowed(r) : r->penetration_allowed;
     system_measure_contacts(r->system, r->residual_at, false);
-    struct standing now = stand(r, allowed);
-    if (now.miss > allowed || (now.carries && !held)) {
-        augment(r, allowed);
+    struct standing now = stand(r, r->penetration_allowed);
+    if (now.carries || now.miss > r->penetration_allowed) {
+        augment(r, r->penetration_allowed);
     }
 }
 
