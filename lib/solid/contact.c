@@ -78,10 +78,10 @@ static enum status begin(const struct boundary_averages *averages, int dim, stru
 {
     enum status status;
     int64_t count = averages->count;
-    *contact = (struct contact){.dim = dim, .count = count, .averages = averages, .surface = *surface};
+    *contact = (struct contact){
+        .dim = dim, .count = count, .averages = averages, .surface = *surface, .stiffness = stiffness};
     *surface = (struct rigid_surface){0};
     TRY(NEW_ARRAY(&contact->rest, count * dim, error));
-    TRY(NEW_ARRAY(&contact->stiffness, count, error));
     TRY(NEW_ARRAY(&contact->multiplier, count, error));
     TRY(NEW_ARRAY(&contact->gap, count, error));
     TRY(NEW_ARRAY(&contact->pressure, count, error));
@@ -91,7 +91,6 @@ static enum status begin(const struct boundary_averages *averages, int dim, stru
     TRY(NEW_ARRAY(&contact->checked_distance, count, error));
     for (int64_t a = 0; a < count; a++) {
         contact->gap[a] = INFINITY;
-        contact->stiffness[a] = stiffness;
     }
     for (int64_t i = 0; i < count * dim; i++) {
         contact->checked_x[i] = INFINITY; /* never looked at: it may be in contact from the start */
@@ -133,19 +132,9 @@ done:
     return status;
 }
 
-void contact_set_stiffness(struct contact *contact, double modulus)
-{
-    int parts = !contact->penalty_only ? 1 : contact->dim == 2 ? 2 : 6;
-    for (int64_t a = 0; a < contact->count; a++) {
-        double area = parts * contact->averages->area[a];
-        contact->stiffness[a] = modulus / (contact->dim == 2 ? area : sqrt(area));
-    }
-}
-
 void contact_free(struct contact *contact)
 {
     rigid_free(&contact->surface);
-    free(contact->stiffness);
     free(contact->rest);
     free(contact->multiplier);
     free(contact->gap);
@@ -210,7 +199,7 @@ static void look(struct contact *contact, int64_t a, const double *x)
 static double pressure_at(struct contact *contact, int64_t a, const double *x)
 {
     double moved2 = 0.0, multiplier = contact->multiplier[a];
-    double free_way = contact->checked_distance[a] - multiplier / contact->stiffness[a];
+    double free_way = contact->checked_distance[a] - multiplier / contact->stiffness;
     for (int c = 0; c < contact->dim; c++) {
         double step = x[c] - contact->checked_x[a * contact->dim + c];
         moved2 += step * step;
@@ -219,7 +208,7 @@ static double pressure_at(struct contact *contact, int64_t a, const double *x)
         return 0.0;
     }
     look(contact, a, x);
-    return fmax(0.0, multiplier - contact->stiffness[a] * contact->gap[a]);
+    return fmax(0.0, multiplier - contact->stiffness * contact->gap[a]);
 }
 
 /* Pressures of the contact nodes from `begin` to before `end`. */
@@ -280,7 +269,7 @@ double contact_augment(struct contact *contact, double allowed)
 {
     double deepest = 0.0;
     for (int64_t a = 0; a < contact->count; a++) {
-        double p = contact->pressure[a], least = contact->stiffness[a] * allowed;
+        double p = contact->pressure[a], least = contact->stiffness * allowed;
         contact->multiplier[a] = contact->penalty_only || !(p > least) ? 0.0 : p;
         deepest = fmax(deepest, -contact->gap[a]);
     }
@@ -292,7 +281,7 @@ double contact_energy(const struct contact *contact)
     double sum = 0.0;
     for (int64_t a = 0; a < contact->count; a++) {
         double p = contact->pressure[a], multiplier = contact->multiplier[a];
-        sum += contact->averages->area[a] * (p * p - multiplier * multiplier) / (2.0 * contact->stiffness[a]);
+        sum += contact->averages->area[a] * (p * p - multiplier * multiplier) / (2.0 * contact->stiffness);
     }
     return sum;
 }
@@ -351,7 +340,7 @@ struct contact_work contact_work(const struct contact *contact, const double *fa
         for (int c = 0; c < dim; c++) {
             double way = after[c] - before[c];
             sum.work += force[c] * way;
-            sum.unresolved += contact->stiffness[a] * contact->averages->area[a] * way * way;
+            sum.unresolved += contact->stiffness * contact->averages->area[a] * way * way;
         }
     }
     return sum;

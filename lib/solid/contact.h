@@ -3,7 +3,7 @@
  *
  * The gap of contact node a is that of its averaged position x_a = sum_j Phi_aj (X_j + u_j). On a curved
  * boundary that position lies below the node, by an offset that is computed at rest and added along the
- * normal. The pressure is p_a = max(0, lambda_a - k_a g_a): a penalty k_a, made exact by the multiplier
+ * normal. The pressure is p_a = max(0, lambda_a - k g_a): a penalty k, made exact by the multiplier
  * lambda_a (augmented Lagrangian), and the force on the parameters is Phi_aj p_a A_a n: transferred by the
  * same averages that measure the gap, so that the total force on the body is sum_a p_a A_a n. There is no
  * projection, so that contact nodes do not chatter.
@@ -32,7 +32,7 @@ struct contact {
     int32_t section;                          /* the caller's label */
     bool penalty_only;                        /* no multipliers: see contact_build_points */
     const struct contact *points;             /* of the same facets and surface; NULL: none */
-    double *stiffness;                        /* count: k_a, Pa/m, > 0 */
+    double stiffness;                         /* k, Pa/m, > 0 */
     double *rest;                             /* count * dim: x_a at u = 0, so raised, m */
     double *multiplier;                       /* count: lambda_a, Pa, >= 0 */
     double *gap;                              /* count: when last looked at, m; INFINITY beyond a rim */
@@ -62,11 +62,6 @@ MUST_CHECK enum status contact_build_points(const struct boundary_averages *poin
                                             struct contact *contact, struct error *error);
 void contact_free(struct contact *contact);
 
-/* k_a = modulus / width of contact node a, in place of one stiffness for all: that of a layer of cells where
- * the contact node is. The width of a point is that of the contact nodes there: they have the area of one
- * facet (2D) or two (3D), of which a point is half or a third. */
-void contact_set_stiffness(struct contact *contact, double modulus);
-
 /* What a contact keeps from one evaluation to the next; `prefix` goes in front of the names. */
 MUST_CHECK enum status contact_state(struct contact *contact, const char *prefix, const struct state *state,
                                      struct error *error);
@@ -89,7 +84,7 @@ void contact_measure(struct contact *contact, const double *u, bool all);
  * the largest penetration seen then, m. */
 double contact_augment(struct contact *contact, double allowed);
 
-/* Energy of the penalty at the last evaluation, sum A_a (p_a^2 - lambda_a^2) / (2 k_a), J (2D: J/m). */
+/* Energy of the penalty at the last evaluation, sum A_a (p_a^2 - lambda_a^2) / (2 k), J (2D: J/m). */
 double contact_energy(const struct contact *contact);
 
 /* Total force on the body at the last evaluation, total[dim], N (2D: N/m). */
@@ -103,7 +98,7 @@ void contact_moment(const struct contact *contact, const double *point, double m
  * one set of factors to that at another. */
 struct contact_work {
     double work; /* sum p A n . w, w the way of the surface's point under each contact node, J (2D: J/m) */
-    double unresolved; /* sum k_a A w^2 over the contact nodes that touch: what the penalty makes of the way,
+    double unresolved; /* sum k A w^2 over the contact nodes that touch: what the penalty makes of the way,
                         * J (2D: J/m). A contact node that is first touched within a step has its work wrong
                         * by an eighth of that at the most */
 };

@@ -31,7 +31,7 @@ static double contact_bound(const struct solid_system *system, double *stiffness
             for (int64_t i = averages->ptr[a]; i < averages->ptr[a + 1]; i++) {
                 sum += fabs(averages->phi[i]);
             }
-            sum *= system->contacts[c].stiffness[a] * averages->area[a];
+            sum *= system->contacts[c].stiffness * averages->area[a];
             for (int64_t i = averages->ptr[a]; i < averages->ptr[a + 1]; i++) {
                 stiffness[averages->idx[i]] += sum * fabs(averages->phi[i]);
             }

@@ -50,7 +50,7 @@ static void add_contacts(const struct preconditioner *preconditioner, const stru
             preconditioner_add_row(preconditioner, &average,
                                    preconditioner->normal + contact_node * preconditioner->dim, row);
             for (int64_t i = 0; i < size; i++) {
-                double part = contact->stiffness[a] * averages->area[a] * row[i];
+                double part = contact->stiffness * averages->area[a] * row[i];
                 for (int64_t k = 0; k < size && part != 0.0; k++) {
                     matrix[i * size + k] += part * row[k];
                 }

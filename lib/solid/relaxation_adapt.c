@@ -220,15 +220,6 @@ void relaxation_calm(struct relaxation *r, const double *acceleration)
     relaxation_update_time_step(r, r->residual_at, calm_iterations);
 }
 
-/* What contacts may give way at an equilibrium, m: so much of the body's size, and of the largest motion. A
- * ball that is pressed in by d resists by d^(3/2): to 0.75 percent, then. */
-static const double penetration_of_move = 5e-3;
-
-static double penetration_allowed(const struct relaxation *r)
-{
-    return fmin(r->penetration_allowed, penetration_of_move * r->largest_move);
-}
-
 /* How contacts that can be augmented stand at the last evaluation. */
 struct standing {
     double miss; /* the largest, m: penetration, or a multiplier that presses before the surface is reached */
@@ -242,7 +233,7 @@ static struct standing stand(const struct relaxation *r, double allowed)
     for (int64_t c = 0; c < r->system->contact_count; c++) {
         const struct contact *contact = &r->system->contacts[c];
         for (int64_t a = 0; a < contact->count && !contact->penalty_only; a++) {
-            double gap = contact->gap[a], least = contact->stiffness[a] * allowed;
+            double gap = contact->gap[a], least = contact->stiffness * allowed;
             now.miss = fmax(now.miss, contact->pressure[a] > 0.0 ? fabs(gap) : -gap);
             now.carries = now.carries || contact->multiplier[a] > 0.0;
             now.idle = now.idle || (contact->multiplier[a] > 0.0 && !(contact->pressure[a] > least));
@@ -278,7 +269,7 @@ void relaxation_follow_contacts(struct relaxation *r)
 
 bool relaxation_contacts_hold(struct relaxation *r)
 {
-    double allowed = penetration_allowed(r);
+    double allowed = r->penetration_allowed;
     system_measure_contacts(r->system, r->residual_at, false);
     struct standing now = stand(r, allowed);
     r->report->penetration = now.miss;

@@ -367,8 +367,7 @@ void system_relaxation_mass(struct solid_system *system, double *mass)
         const struct boundary_averages *averages = contact->averages;
         for (int64_t a = 0; a < averages->count; a++) {
             struct average average = average_of_boundary(averages, a);
-            add_to_bound(system, &average, averages->node[a], contact->stiffness[a] * averages->area[a],
-                         mass);
+            add_to_bound(system, &average, averages->node[a], contact->stiffness * averages->area[a], mass);
         }
     }
     for (int64_t r = 0; r < system->penalties.count; r++) {

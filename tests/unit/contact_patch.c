@@ -1,5 +1,4 @@
-/* The stiffness of contacts by the width of their averages, multipliers that take over what points carry, and
- * whether averages resolve where a contact presses. */
+/* Whether boundary averages resolve where a contact presses. */
 #include "contact_fixture.h"
 
 #include "solid/contact_patch.h"
@@ -21,70 +20,6 @@ static void make_samples(struct contact_nodes *contact_nodes)
     contact_nodes->averages.sample_ptr = sample_ptr;
     contact_nodes->averages.sample_point = sample_point;
     contact_nodes->averages.sample_share = sample_share;
-}
-
-static struct contact built_points(const struct contact_nodes *contact_nodes, struct rigid_surface surface,
-                                   double stiffness)
-{
-    struct contact contact;
-    struct error error;
-    GOOD(contact_build_points(&contact_nodes->averages, contact_nodes->dim, &surface, stiffness, &contact,
-                              &error));
-    return contact;
-}
-
-/* A modulus by the contact node's width; points have that of the contact nodes that facets of three (2D: two)
- * of them make. */
-static void by_width(void **state)
-{
-    (void)state;
-    for (int dim = 2; dim <= 3; dim++) {
-        struct contact_nodes contact_nodes;
-        make_particles(&contact_nodes, dim, 0.01);
-        make_samples(&contact_nodes);
-        contact_nodes.area[1] = 0.04;
-        struct contact contact = built(&contact_nodes, make_shell(dim, 4, 0.5, false), 7.0);
-        struct contact points = built_points(&contact_nodes, make_shell(dim, 4, 0.5, false), 7.0);
-        NEAR_TO(contact.stiffness[1], 7.0, 0.0);
-        contact_set_stiffness(&contact, 3.0);
-        contact_set_stiffness(&points, 3.0);
-        NEAR_TO(contact.stiffness[0], dim == 2 ? 300.0 : 30.0, 1e-10);
-        NEAR_TO(contact.stiffness[1], dim == 2 ? 75.0 : 15.0, 1e-10);
-        NEAR_TO(points.stiffness[0], dim == 2 ? 150.0 : 30.0 / sqrt(6.0), 1e-10);
-        contact_free(&contact);
-        contact_free(&points);
-    }
-}
-
-/* Particles on springs, pulled through a wall that contact nodes and, eight times as stiff, points keep out:
- * the multipliers take over both at once. With those of the contact nodes alone a ninth would be left each
- * time. */
-static void beneath(void **state)
-{
-    (void)state;
-    struct contact_nodes contact_nodes;
-    make_particles(&contact_nodes, 2, 0.5);
-    make_samples(&contact_nodes);
-    struct contact contact = built(&contact_nodes, make_shell(2, 4, 0.5, false), 100.0);
-    struct contact points = built_points(&contact_nodes, make_shell(2, 4, 0.5, false), 800.0);
-    contact.points = &points;
-    double u[NODES * 3] = {0.0}, spring = 20.0, pull = 13.0, deepest[3];
-    for (int round = 0; round < 3; round++) {
-        for (int step = 0; step < 2000; step++) { /* gradient descent to equilibrium */
-            double force[NODES * 3] = {0.0};
-            contact_force(&contact, u, force);
-            contact_force(&points, u, force);
-            for (int i = 0; i < CONTACT_NODES * 2; i++) {
-                u[i] += 0.002 * (force[i] + (i % 2 == 0 ? pull : 0.0) - spring * u[i]);
-            }
-        }
-        deepest[round] = contact_augment(&contact, 0.0);
-    }
-    assert_true(deepest[0] > 1e-3);
-    AT_MOST(deepest[1], 0.1 * deepest[0]);
-    AT_MOST(deepest[2], 0.01 * deepest[0]);
-    contact_free(&contact);
-    contact_free(&points);
 }
 
 /* Nodes on a line, each with a contact node, that press in turn. */
@@ -149,7 +84,6 @@ static void inside(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(by_width), cmocka_unit_test(beneath),
-                                       cmocka_unit_test(across), cmocka_unit_test(inside)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(across), cmocka_unit_test(inside)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

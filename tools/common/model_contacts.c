@@ -34,13 +34,15 @@ done:
 /* By the shear modulus: that of pressure waves at Poisson's ratio .49. */
 static const double penalty_factor = 50.0;
 
-/* The stiffness of a contact, `share` times what its section says, or else that of a layer of cells. */
-static void set_stiffness(const struct scene_contact *section, const struct solid_system *system,
-                          double share, struct contact *contact)
+/* Penalty of about the stiffness of a layer of cells: as stiff as the critical step allows without loss. */
+static double default_stiffness(const struct solid_system *system, const struct boundary_averages *averages)
 {
-    if (section->stiffness == 0.0) {
-        contact_set_stiffness(contact, share * model_penalty_modulus(system, penalty_factor));
+    double modulus = model_penalty_modulus(system, penalty_factor), area = 0.0;
+    for (int64_t a = 0; a < averages->count; a++) {
+        area += averages->area[a];
     }
+    area /= (double)averages->count;
+    return modulus / (system->dim == 2 ? area : sqrt(area));
 }
 
 /* A curve that takes more than half of its largest factor in this share of the scene's time jumps. */
@@ -134,9 +136,8 @@ static enum status add_points(const struct model_input *input, const struct scen
     for (int64_t a = 0; a < points->count; a++) { /* each stands for another corner of its facet */
         points->node[a] = set->facet[a / input->face_table.per_face * system->dim + a % system->dim];
     }
-    TRY(contact_build_points(points, system->dim, &surface, points_share * section->stiffness, contact,
+    TRY(contact_build_points(points, system->dim, &surface, points_share * averaged->stiffness, contact,
                              error));
-    set_stiffness(section, system, points_share, contact);
     contact->section = averaged->section;
     contact->motion = averaged->motion;
     averaged->points = contact;
@@ -162,8 +163,8 @@ static enum status add_contact(const struct model_input *input, int32_t number, 
     TRY(model_facets(input, &section->label, &section->facets, &set, &owned, error));
     TRY(boundary_averages_build(&input->face_table, &set, averages, error));
     TRY(read_surface(section, system->dim, &surface, error));
-    TRY(contact_build(averages, system->X, system->dim, &surface, section->stiffness, contact, error));
-    set_stiffness(section, system, 1.0, contact);
+    double stiffness = section->stiffness > 0.0 ? section->stiffness : default_stiffness(system, averages);
+    TRY(contact_build(averages, system->X, system->dim, &surface, stiffness, contact, error));
     system->contact_count++;
     averages = NULL;
     contact->section = number;
