@@ -14,16 +14,17 @@ NEURO_GROUPS := -u mm -f 'stem=ball:0,-41,-65,12' -f 'exposed=ball:63.5,16,20,33
 NEURO_RANDOM := awk -f $(NEURO_SCRIPTS)/random.awk
 NEURO_TIMED := bash $(NEURO_SCRIPTS)/timed.sh
 NEURO_PROGRAMS := $(addprefix $(BUILD)/bin/,voxels groups shapefn mtled interp sample warp mts)
-NEURO_STAGES := body table u scan
+# What is predicted: from the exposed cortex alone, and knowing as well how the patient lies.
+NEURO_PREDICTIONS := craniotomy position
 NEURO_LOG = 2> $(@:.dat=.log) || { cat $(@:.dat=.log) >&2; false; }
 
 .PHONY: neurosurgery
 neurosurgery: $(addprefix $(NEURO)/,neurosurgery.tsv volumes.tsv seconds.tsv slices.png)
-	@awk -F '\t' '{ printf "%-62s %10s %10s\n", $$1, $$2, $$3 }' $<
+	@awk -F '\t' '{ printf "%-56s %12s %12s %12s\n", $$1, $$2, $$3, $$4 }' $<
 	@echo
-	@awk -F '\t' '{ printf "%-14s %10s %10s %10s\n", $$1, $$2, $$3, $$4 }' $(NEURO)/volumes.tsv
+	@awk -F '\t' '{ printf "%-18s %12s %12s %12s %12s\n", $$1, $$2, $$3, $$4, $$5 }' $(NEURO)/volumes.tsv
 	@echo
-	@awk -F '\t' '{ printf "%-14s %10s %10s\n", $$1, $$2, $$3 }' $(NEURO)/seconds.tsv
+	@awk -F '\t' '{ printf "%-18s %12s\n", $$1, $$2 }' $(NEURO)/seconds.tsv
 
 $(NEURO)/%: export PATH := $(abspath $(BUILD))/bin:$(PATH)
 
@@ -59,8 +60,8 @@ $(NEURO)/predicted.body.mts: $(NEURO_LABELS) $(NEURO_INPUT)/labels.tsv $(NEURO_P
 $(NEURO)/predicted.table.mts: $(NEURO)/predicted.body.mts $(NEURO_PROGRAMS)
 	$(NEURO_TIMED) $(@:.mts=.seconds) "shapefn $< > $@"
 
-$(NEURO)/predicted.u.dat: $(NEURO)/predicted.table.mts $(NEURO)/craniotomy.scene $(NEURO)/exposed.tsv $(NEURO)/skull.tsv $(NEURO_PROGRAMS)
-	$(NEURO_TIMED) $(@:.dat=.seconds) "mtled -v $(NEURO)/craniotomy.scene $< > $@" $(NEURO_LOG)
+$(NEURO_PREDICTIONS:%=$(NEURO)/%.u.dat): %.u.dat: $(NEURO)/predicted.table.mts %.scene $(NEURO)/exposed.tsv $(NEURO)/skull.tsv $(NEURO_PROGRAMS)
+	$(NEURO_TIMED) $(@:.dat=.seconds) "mtled -v $*.scene $< > $@" $(NEURO_LOG)
 
 $(NEURO)/%.scan.nii.gz: $(NEURO)/%.u.dat $(NEURO_PROGRAMS)
 	$(NEURO_TIMED) $(@:.nii.gz=.seconds) "warp -i linear --vacated 0 $(NEURO_SCAN) $< > $@"
@@ -89,16 +90,18 @@ $(NEURO)/%.landmarks: $(NEURO)/%.u.dat $(NEURO)/landmarks.tsv $(NEURO_PROGRAMS)
 $(NEURO)/%.ventricles: $(NEURO)/%.u.dat $(NEURO)/ventricles.corners $(NEURO_PROGRAMS)
 	interp -f u -p $(NEURO)/ventricles.corners -u mm $< | mts print u - > $@
 
-$(NEURO)/neurosurgery.tsv: $(NEURO)/true.landmarks $(NEURO)/predicted.landmarks $(NEURO)/true.ventricles $(NEURO)/predicted.ventricles \
+$(NEURO)/neurosurgery.tsv: $(foreach kind,landmarks ventricles,$(patsubst %,$(NEURO)/%.$(kind),true $(NEURO_PREDICTIONS))) \
         $(NEURO)/ventricles.tsv $(NEURO_SCRIPTS)/target.awk $(NEURO_SCRIPTS)/surface.awk
-	(printf 'distance from the true state\tbefore\tafter\n'; awk -f $(NEURO_SCRIPTS)/target.awk $(filter %.landmarks,$^); \
+	(printf 'distance from the true state\tunpredicted\tfrom_cortex\twith_gravity\n'; awk -f $(NEURO_SCRIPTS)/target.awk $(filter %.landmarks,$^); \
 	    awk -f $(NEURO_SCRIPTS)/surface.awk -v triangles=$(NEURO)/ventricles.tsv $(filter %.ventricles,$^)) > $@
 
-$(NEURO)/volumes.tsv: $(NEURO)/predicted.labels.nii.gz $(NEURO)/true.labels.nii.gz $(NEURO_SCRIPTS)/volumes.awk
-	awk -f $(NEURO_SCRIPTS)/volumes.awk $(NEURO_INPUT)/labels.tsv $(NEURO)/predicted.labels.log $(NEURO)/true.labels.log > $@
+$(NEURO)/volumes.tsv: $(patsubst %,$(NEURO)/%.labels.nii.gz,$(NEURO_PREDICTIONS) true) $(NEURO_SCRIPTS)/volumes.awk
+	awk -f $(NEURO_SCRIPTS)/volumes.awk $(NEURO_INPUT)/labels.tsv $(patsubst %,$(NEURO)/%.labels.log,$(NEURO_PREDICTIONS) true) > $@
 
-$(NEURO)/seconds.tsv: $(NEURO)/predicted.scan.nii.gz pipelines/neurosurgery.mk
-	(printf 'stage\tseconds\n'; for stage in $(NEURO_STAGES); do printf '%s\t%s\n' $$stage "$$(cat $(NEURO)/predicted.$$stage.seconds)"; done) > $@
+$(NEURO)/seconds.tsv: $(NEURO)/craniotomy.scan.nii.gz
+	(printf 'stage\tseconds\n'; printf '%s\t%s\n' 'voxels and groups' "$$(cat $(NEURO)/predicted.body.seconds)" \
+	    shapefn "$$(cat $(NEURO)/predicted.table.seconds)" mtled "$$(cat $(NEURO)/craniotomy.u.seconds)" \
+	    warp "$$(cat $(NEURO)/craniotomy.scan.seconds)") > $@
 
 # ---- pictures --------------------------------------------------------------------------------------------------------
 
@@ -112,7 +115,7 @@ $(NEURO)/slice.places: pipelines/neurosurgery.mk
 $(NEURO)/before.slice: $(NEURO_SCAN) $(NEURO)/slice.places $(NEURO_PROGRAMS)
 	sample -p $(NEURO)/slice.places -u mm $< > $@
 
-$(NEURO)/predicted.slice $(NEURO)/true.slice: %.slice: %.scan.nii.gz $(NEURO)/slice.places $(NEURO_PROGRAMS)
+$(NEURO)/craniotomy.slice $(NEURO)/true.slice: %.slice: %.scan.nii.gz $(NEURO)/slice.places $(NEURO_PROGRAMS)
 	sample -p $(NEURO)/slice.places -u mm $< > $@
 
 NEURO_CONTOUR = voxels -s z=$(NEURO_SLICE)mm -h 3mm -l $(NEURO_INPUT)/labels.tsv --surface ventricles -u mm $< > $@
@@ -121,13 +124,24 @@ $(NEURO)/before.contour: $(NEURO_LABELS) $(NEURO_INPUT)/labels.tsv $(NEURO_PROGR
 	@mkdir -p $(@D)
 	$(NEURO_CONTOUR)
 
-$(NEURO)/predicted.contour $(NEURO)/true.contour: %.contour: %.labels.nii.gz $(NEURO_INPUT)/labels.tsv $(NEURO_PROGRAMS)
+$(NEURO)/craniotomy.contour $(NEURO)/true.contour: %.contour: %.labels.nii.gz $(NEURO_INPUT)/labels.tsv $(NEURO_PROGRAMS)
 	$(NEURO_CONTOUR)
 
-NEURO_PARTS := before predicted true
+NEURO_PARTS := before craniotomy true
 
 $(NEURO)/slices.plot: $(NEURO_PARTS:%=$(NEURO)/%.slice) $(NEURO_SCRIPTS)/slice.awk
 	awk -f $(NEURO_SCRIPTS)/slice.awk $(filter %.slice,$^) > $@
 
-$(NEURO)/slices.png: $(NEURO)/slices.plot $(NEURO_PARTS:%=$(NEURO)/%.contour) $(NEURO_SCRIPTS)/slices.gp
+# Every three millimetres within the brain.
+$(NEURO)/distance.places: $(NEURO)/slice.places $(NEURO_LABELS) $(NEURO_PROGRAMS)
+	sample -i nearest -p $< -u mm $(NEURO_LABELS) | awk '!/^#/ && $$4 > 0 && $$1 % 3 == 0 && $$2 % 3 == 0 { print $$1, $$2, $$3 }' > $@
+
+$(NEURO)/%.distance: $(NEURO)/%.u.dat $(NEURO)/distance.places $(NEURO_PROGRAMS)
+	interp -f u -p $(NEURO)/distance.places -u mm $< | mts print u - > $@
+
+$(NEURO)/distance.plot: $(NEURO)/distance.places $(patsubst %,$(NEURO)/%.distance,true $(NEURO_PREDICTIONS))
+	paste -d ' ' $^ | awk '\
+	    { print $$1, $$2, 1e3 * sqrt(($$4 - $$7)^2 + ($$5 - $$8)^2 + ($$6 - $$9)^2), 1e3 * sqrt(($$4 - $$10)^2 + ($$5 - $$11)^2 + ($$6 - $$12)^2) }' > $@
+
+$(NEURO)/slices.png: $(NEURO)/slices.plot $(NEURO)/distance.plot $(NEURO_PARTS:%=$(NEURO)/%.contour) $(NEURO_SCRIPTS)/slices.gp
 	gnuplot -e "folder='$(NEURO)'; out='$@'" $(NEURO_SCRIPTS)/slices.gp

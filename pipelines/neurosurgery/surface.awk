@@ -1,6 +1,7 @@
-# Distance of a surface from where it truly is, before and after, mm: awk -f surface.awk -v triangles=FILE TRUE PREDICTED
+# Distance of a surface from where it truly is, mm, without and with prediction:
+# awk -f surface.awk -v triangles=FILE TRUE PREDICTED...
 #
-# The triangles are those of voxels --surface, m; TRUE and PREDICTED the displacements of their corners, m, in the order of the file, three
+# The triangles are those of voxels --surface, m; TRUE and PREDICTED... the displacements of their corners, m, in the order of the file, three
 # for a triangle. From each corner the distance to the nearest triangle of the other surface is taken, both ways; the Hausdorff distance is
 # the larger of the two 95th percentiles, and the share is that of all corners that are no farther than two voxels of 1 mm.
 
@@ -24,30 +25,23 @@ FNR == 1 { file++ }
 { for (i = 1; i <= 3; i++) u[file, FNR - 1, i] = 1e3 * $i; got[file] = FNR }
 
 END {
-    if (n == 0 || got[1] != n || got[2] != n) {
-        print "surface.awk: " n + 0 " corners, and displacements of " got[1] + 0 " and " got[2] + 0 > "/dev/stderr"
+    for (f = 1; f <= file; f++) if (got[f] != n) wrong = 1
+    if (n == 0 || file < 2 || wrong) {
+        print "surface.awk: files are missing, or not of " n " corners" > "/dev/stderr"
         exit 1
     }
-    for (i = 0; i < n; i++) for (k = 1; k <= 3; k++) {
-        place[0, i, k] = x[i, k]
-        place[1, i, k] = x[i, k] + u[1, i, k]
-        place[2, i, k] = x[i, k] + u[2, i, k]
+    # Place 0: before; place f: after the displacement of file f, the first of which is the true one.
+    for (i = 0; i < n; i++) for (k = 1; k <= 3; k++) for (f = 0; f <= file; f++) place[f, i, k] = x[i, k] + (f ? u[f, i, k] : 0)
+    for (f = 0; f <= file; f++) {
+        if (f == 1) continue
+        near = 0
+        there = percentile_of_distances(f, 1)
+        back = percentile_of_distances(1, f)
+        distances = distances sprintf("\t%.2f", there > back ? there : back)
+        shares = shares sprintf("\t%.1f", 100 * near / (2 * singles))
     }
-    compare(0)
-    hausdorff0 = hausdorff
-    share0 = share
-    compare(2)
-    printf "surface of the ventricles, 95 %% Hausdorff distance, mm\t%.2f\t%.2f\n", hausdorff0, hausdorff
-    printf "surface of the ventricles within two voxels, %%\t%.1f\t%.1f\n", share0, share
-}
-
-# Surface A (0 before, 2 predicted) against the true one, 1.
-function compare(a,    there, back) {
-    near = 0
-    there = percentile_of_distances(a, 1)
-    back = percentile_of_distances(1, a)
-    hausdorff = there > back ? there : back
-    share = 100 * near / (2 * singles)
+    print "surface of the ventricles, 95 % Hausdorff distance, mm" distances
+    print "surface of the ventricles within two voxels, %" shares
 }
 
 function percentile_of_distances(from, to,    i, j, k, t, d, least, radius, c, distance, sorted) {

@@ -1,15 +1,28 @@
-# Errors of landmarks before and after, mm: awk -f target.awk TRUE PREDICTED, both rows ux uy uz, m.
+# Errors of landmarks, mm, without and with prediction: awk -f target.awk TRUE PREDICTED..., all of rows ux uy uz, m.
 
-NR == FNR { for (i = 1; i <= 3; i++) true[FNR, i] = $i; before[FNR] = size($1, $2, $3); n = FNR; next }
-{ after[FNR] = size($1 - true[FNR, 1], $2 - true[FNR, 2], $3 - true[FNR, 3]); m = FNR }
+FNR == 1 { file++ }
+file == 1 { for (i = 1; i <= 3; i++) true[FNR, i] = $i; error[1, FNR] = size($1, $2, $3) }
+file > 1 { error[file, FNR] = size($1 - true[FNR, 1], $2 - true[FNR, 2], $3 - true[FNR, 3]) }
+{ n[file] = FNR }
 
 END {
-    if (n == 0 || n != m) {
-        print "target.awk: " n " rows and " m + 0 > "/dev/stderr"
+    for (f = 1; f <= file; f++) if (n[f] != n[1]) wrong = 1
+    if (file < 2 || wrong) {
+        print "target.awk: files are missing, or their lengths differ" > "/dev/stderr"
         exit 1
     }
-    printf "landmarks, mean, mm\t%.2f\t%.2f\n", mean(before, n), mean(after, n)
-    printf "landmarks, 95th percentile, mm\t%.2f\t%.2f\n", percentile(before, n, 95), percentile(after, n, 95)
+    row("landmarks, mean, mm", 0)
+    row("landmarks, 95th percentile, mm", 95)
+}
+
+# The mean, or a percentile.
+function row(title, percent,    f, i, value) {
+    printf "%s", title
+    for (f = 1; f <= file; f++) {
+        for (i = 1; i <= n[1]; i++) value[i] = error[f, i]
+        printf "\t%.2f", percent ? percentile(value, n[1], percent) : mean(value, n[1])
+    }
+    print ""
 }
 
 function size(x, y, z) { return 1e3 * sqrt(x * x + y * y + z * z) }
