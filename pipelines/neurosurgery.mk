@@ -1,4 +1,5 @@
-# make neurosurgery: a craniotomy from a label image to a warped scan: the shift of a brain (Colin27) predicted from 200 noisy points of the exposed cortex, against a finer solution with a load that the prediction is not told of
+# make neurosurgery: a craniotomy from a label image to a warped scan: the shift of a brain (Colin27) predicted from 200 noisy points of the
+# exposed cortex, without and with gravity, against a finer solution
 #
 # Everything lies in build/out/neurosurgery: neurosurgery.tsv (errors before and after), volumes.tsv, seconds.tsv, pictures. The scan is
 # that of Debian's mricron-data; where it is not installed the label image stands in for it.
