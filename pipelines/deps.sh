@@ -2,7 +2,8 @@
 # Install what the project needs and what is missing. Quick and silent when nothing is. Programs may come from any
 # package (gnuplot-qt is as good as gnuplot-nox, which would push it out); libraries are asked for by package.
 # CalculiX and FreeFEM (with a BLAS that does it justice) are for comparison only: the studies need them, no program does. Python's
-# are for the tests, which read what tovtk and warp write; plastimatch applies a field of warp to a scan.
+# are for the tests, which read what tovtk and warp write; plastimatch applies a field of warp to a scan. mricron-data has the scan of a
+# head for make neurosurgery.
 # deps.sh lint, deps.sh fuzz: what make lint and make fuzz need, which nothing else does.
 set -eu -o pipefail
 
@@ -22,7 +23,7 @@ fuzz)
     programs=(gcc:gcc make:make pkg-config:pkg-config gmsh:gmsh gnuplot:gnuplot-nox ccx:calculix-ccx
         FreeFem++-nw:freefem++ bats:bats shellcheck:shellcheck plastimatch:plastimatch)
     libraries=(libgsl-dev libinih-dev zlib1g-dev libcmocka-dev libfreefem++ libopenblas0-serial
-        python3-numpy python3-vtk9 python3-meshio python3-nibabel)
+        python3-numpy python3-vtk9 python3-meshio python3-nibabel mricron-data)
     ;;
 esac
 

@@ -169,6 +169,16 @@ few_solutions=(CONVERGENCE_CASES=block20 SPEED_ERROR_CASES=cube square.sizes=0.0
     fails voxels voxels VOXELS_SHAPES=sphere -o "$fake/tests/helper/phantom" -- voxels/sphere.row voxels/voxels.tsv
 }
 
+@test "neurosurgery: whichever program fails" {
+    at=neurosurgery
+    for tool in voxels groups shapefn mtled; do
+        fails $tool neurosurgery -- $at/true.u.dat $at/measured.tsv $at/craniotomy.u.dat $at/neurosurgery.tsv
+    done
+    fails interp neurosurgery -- $at/true.landmarks $at/exposed.tsv $at/neurosurgery.tsv
+    fails warp neurosurgery -- $at/true.scan.nii.gz $at/true.labels.nii.gz $at/volumes.tsv
+    fails sample neurosurgery -- $at/landmarks.tsv $at/before.slice $at/slices.png
+}
+
 @test "bench: whichever kernel fails" {
     kernels=()
     for file in "$top"/pipelines/bench/*.c; do
