@@ -86,7 +86,6 @@ struct rows {
 static void parse(const struct tool *tool, const struct option *options, struct request *request)
 {
     struct error error;
-    int method = IMAGE_LINEAR;
     *request = (struct request){.at = options[AT].value,
                                 .region = options[REGION].value,
                                 .points = options[POINTS].value,
@@ -114,13 +113,7 @@ static void parse(const struct tool *tool, const struct option *options, struct 
         tool_fail(tool, STATUS_INPUT, "--region is for integration points (points.x), not for %s",
                   request->at);
     }
-    if (options[METHOD].given) {
-        tool_check(tool,
-                   parse_choice(options[METHOD].value, "-i", image_method_names, IMAGE_METHOD_COUNT, &method,
-                                &error),
-                   &error);
-    }
-    request->method = (enum image_method)method;
+    request->method = tool_image_method(tool, options[METHOD].value);
     if (options[UNIT].given) {
         tool_check(tool, parse_length_unit(options[UNIT].value, "-u", &request->unit, &error), &error);
     }

@@ -83,7 +83,6 @@ struct report {
 static void parse(const struct tool *tool, const struct option *options, struct request *request)
 {
     struct error error;
-    int method = IMAGE_LINEAR;
     int64_t frame = 0;
     *request = (struct request){.fills = options[FILL].given,
                                 .marks_vacated = options[VACATED].given,
@@ -96,13 +95,7 @@ static void parse(const struct tool *tool, const struct option *options, struct 
             tool_fail(tool, STATUS_INPUT, "--%s is for images, not for --field", options[i].name);
         }
     }
-    if (options[METHOD].given) {
-        tool_check(tool,
-                   parse_choice(options[METHOD].value, "-i", image_method_names, IMAGE_METHOD_COUNT, &method,
-                                &error),
-                   &error);
-    }
-    request->method = (enum image_method)method;
+    request->method = tool_image_method(tool, options[METHOD].value);
     if (request->fills) {
         tool_check(tool,
                    parse_double(options[FILL].value, "--fill", -DBL_MAX, DBL_MAX, &request->fill, &error),

@@ -13,22 +13,31 @@
 #include <stdlib.h>
 #include <string.h>
 
+enum { ROWS = NODAL_PRESSURE_ROWS, SLICES_AT_ONCE = 32 };
+
 /* A bulk modulus that is off by a part x moves a body by about x mu / kappa of its strain, which is to be at
  * most this part; and x at most that. */
-enum { ROWS = NODAL_PRESSURE_ROWS, SLICES_AT_ONCE = 32 };
 static const double effect = 2e-5, most_inaccurate = 0.02;
 /* With augmentations what is missing of A^-1 counts by limited by whole bulk modulus; at most this. */
 static const double augmented_accuracy = 0.01;
 
-/* How many volumes share points with volume a, itself included. */
-static int64_t count_neighbours(const struct nodal_volumes *volumes, int vertices, int64_t a, int64_t *seen)
+/* The volumes that share points with volume a, itself included, each once: every ROWS-th place of idx; NULL:
+ * count only. seen: scratch, in which no entry is a before. Returns how many. */
+static int64_t list_neighbours(const struct nodal_volumes *volumes, int vertices, int64_t a, int64_t *seen,
+                               int32_t *idx)
 {
     int64_t count = 0;
     for (int64_t i = volumes->ptr[a]; i < volumes->ptr[a + 1]; i++) {
         const int32_t *of = volumes->of_point + volumes->slot[i] / vertices * vertices;
         for (int k = 0; k < vertices; k++) {
-            count += seen[of[k]] != a;
+            if (seen[of[k]] == a) {
+                continue;
+            }
             seen[of[k]] = a;
+            if (idx != NULL) {
+                idx[count * ROWS] = of[k];
+            }
+            count++;
         }
     }
     return count;
@@ -73,7 +82,7 @@ static enum status lay_out(const struct body *body, struct nodal_pressures *pres
     for (int64_t slice = 0; slice < pressures->slices; slice++) {
         int64_t widest = 0;
         for (int64_t a = slice * ROWS; a < (slice + 1) * ROWS && a < volumes->count; a++) {
-            int64_t width = count_neighbours(volumes, vertices, a, seen);
+            int64_t width = list_neighbours(volumes, vertices, a, seen, NULL);
             widest = width > widest ? width : widest;
         }
         pressures->ptr[slice + 1] = pressures->ptr[slice] + widest;
@@ -98,22 +107,11 @@ static void choose_iterations(struct nodal_pressures *pressures, double largest,
 static void set_columns(const struct body *body, int64_t *seen, struct nodal_pressures *pressures)
 {
     const struct nodal_volumes *volumes = &body->volumes;
-    int vertices = body->dim + 1;
     for (int64_t a = 0; a < volumes->count; a++) {
-        int64_t at = pressures->ptr[a / ROWS] * ROWS + a % ROWS, end = pressures->ptr[a / ROWS + 1] * ROWS;
-        for (int64_t i = volumes->ptr[a]; i < volumes->ptr[a + 1]; i++) {
-            int64_t first = volumes->slot[i] / vertices * vertices;
-            for (int64_t k = first; k < first + vertices; k++) {
-                int32_t b = volumes->of_point[k];
-                if (seen[b] != a) {
-                    seen[b] = a;
-                    pressures->idx[at] = b;
-                    at += ROWS;
-                }
-            }
-        }
-        for (; at < end; at += ROWS) {
-            pressures->idx[at] = (int32_t)a;
+        int64_t slice = a / ROWS, width = pressures->ptr[slice + 1] - pressures->ptr[slice];
+        int32_t *idx = pressures->idx + pressures->ptr[slice] * ROWS + a % ROWS;
+        for (int64_t k = list_neighbours(volumes, body->dim + 1, a, seen, idx); k < width; k++) {
+            idx[k * ROWS] = (int32_t)a;
         }
     }
 }

@@ -227,13 +227,13 @@ struct standing {
     bool idle;    /* and one of them is not needed */
 };
 
-static struct standing stand(const struct relaxation *r, double allowed)
+static struct standing stand(const struct relaxation *r)
 {
     struct standing now = {0.0, false, false};
     for (int64_t c = 0; c < r->system->contact_count; c++) {
         const struct contact *contact = &r->system->contacts[c];
         for (int64_t a = 0; a < contact->count && !contact->penalty_only; a++) {
-            double gap = contact->gap[a], least = contact->stiffness * allowed;
+            double gap = contact->gap[a], least = contact->stiffness * r->penetration_allowed;
             now.miss = fmax(now.miss, contact->pressure[a] > 0.0 ? fabs(gap) : -gap);
             now.carries = now.carries || contact->multiplier[a] > 0.0;
             now.idle = now.idle || (contact->multiplier[a] > 0.0 && !(contact->pressure[a] > least));
@@ -243,17 +243,16 @@ static struct standing stand(const struct relaxation *r, double allowed)
 }
 
 /* Move what the penalties carry into the multipliers, so that the next equilibrium penetrates less. */
-static void augment(struct relaxation *r, double allowed)
+static void augment(struct relaxation *r)
 {
     for (int64_t c = 0; c < r->system->contact_count; c++) {
-        (void)contact_augment(&r->system->contacts[c], allowed);
+        (void)contact_augment(&r->system->contacts[c], r->penetration_allowed);
     }
     r->augmented_step = r->report->steps;
 }
 
 /* An augmentation every T makes the multipliers the integral of the gaps, over T. With a damping c that is
  * stable where c T > k / (k + stiffness of the body), so at c T = 1 and above; RELAXATION_PAUSE is c T. */
-
 void relaxation_follow_contacts(struct relaxation *r)
 {
     double pause = (double)(r->report->steps - r->augmented_step) * r->time_step;
@@ -261,9 +260,9 @@ void relaxation_follow_contacts(struct relaxation *r)
         return;
     }
     system_measure_contacts(r->system, r->residual_at, false);
-    struct standing now = stand(r, r->penetration_allowed);
+    struct standing now = stand(r);
     if (now.carries || now.miss > r->penetration_allowed) {
-        augment(r, r->penetration_allowed);
+        augment(r);
     }
 }
 
@@ -271,7 +270,7 @@ bool relaxation_contacts_hold(struct relaxation *r)
 {
     double allowed = r->penetration_allowed;
     system_measure_contacts(r->system, r->residual_at, false);
-    struct standing now = stand(r, allowed);
+    struct standing now = stand(r);
     r->report->penetration = now.miss;
     r->report->penetration_allowed = allowed;
     if (!(now.idle || now.miss > allowed) || r->augmentations == most_augmentations ||
@@ -280,7 +279,7 @@ bool relaxation_contacts_hold(struct relaxation *r)
     }
     r->stagnation = now.miss < 0.8 * r->least_penetration ? 0 : r->stagnation + 1;
     r->least_penetration = fmin(r->least_penetration, now.miss);
-    augment(r, allowed);
+    augment(r);
     r->augmentations++;
     r->best_error = INFINITY; /* another problem begins */
     r->best_step = r->report->steps;

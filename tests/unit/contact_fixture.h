@@ -20,6 +20,18 @@ struct contact_nodes {
     struct boundary_averages averages;
 };
 
+/* Let the averages be those arrays. */
+static inline void refer_to_averages(struct contact_nodes *contact_nodes)
+{
+    contact_nodes->averages = (struct boundary_averages){.count = CONTACT_NODES,
+                                                         .node = contact_nodes->node,
+                                                         .area = contact_nodes->area,
+                                                         .normal = contact_nodes->normal,
+                                                         .ptr = contact_nodes->ptr,
+                                                         .idx = contact_nodes->idx,
+                                                         .phi = contact_nodes->phi};
+}
+
 static inline void make_contact_nodes(struct contact_nodes *contact_nodes, int dim, double area,
                                       struct random *random)
 {
@@ -41,13 +53,7 @@ static inline void make_contact_nodes(struct contact_nodes *contact_nodes, int d
             contact_nodes->phi[i] /= sum;
         }
     }
-    contact_nodes->averages = (struct boundary_averages){.count = CONTACT_NODES,
-                                                         .node = contact_nodes->node,
-                                                         .area = contact_nodes->area,
-                                                         .normal = contact_nodes->normal,
-                                                         .ptr = contact_nodes->ptr,
-                                                         .idx = contact_nodes->idx,
-                                                         .phi = contact_nodes->phi};
+    refer_to_averages(contact_nodes);
 }
 
 /* Contact nodes that are each one node, where X says. */
@@ -60,13 +66,7 @@ static inline void make_particles(struct contact_nodes *contact_nodes, int dim, 
         contact_nodes->ptr[a + 1] = a + 1;
         contact_nodes->phi[a] = 1.0;
     }
-    contact_nodes->averages = (struct boundary_averages){.count = CONTACT_NODES,
-                                                         .node = contact_nodes->node,
-                                                         .area = contact_nodes->area,
-                                                         .normal = contact_nodes->normal,
-                                                         .ptr = contact_nodes->ptr,
-                                                         .idx = contact_nodes->idx,
-                                                         .phi = contact_nodes->phi};
+    refer_to_averages(contact_nodes);
 }
 
 /* A polygon of that many sides about the origin, or a cube with its faces in two triangles; the body is

@@ -26,6 +26,17 @@ void tool_read_image(const struct tool *tool, const char *file, struct image *im
     }
 }
 
+enum image_method tool_image_method(const struct tool *tool, const char *name)
+{
+    struct error error;
+    int method = IMAGE_LINEAR;
+    if (name != NULL) {
+        tool_check(tool, parse_choice(name, "-i", image_method_names, IMAGE_METHOD_COUNT, &method, &error),
+                   &error);
+    }
+    return (enum image_method)method;
+}
+
 void tool_check_image_output(const struct tool *tool)
 {
     if (tool->output == NULL && isatty(STDOUT_FILENO)) {
