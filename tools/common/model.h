@@ -93,8 +93,9 @@ double model_penalty_modulus(const struct solid_system *system, double factor);
 bool model_holds_averages(const struct model_input *input);
 
 /* held[boundary.count]: whether all nodes of that face are those of facets that one displacement section
- * names; the caller's to free. */
-MUST_CHECK enum status model_held_faces(const struct model_input *input, bool **held, struct error *error);
+ * names, which prescribes at least so many directions; the caller's to free. */
+MUST_CHECK enum status model_held_faces(const struct model_input *input, int least, bool **held,
+                                        struct error *error);
 
 /* u, v[node_count * dim]: the state at the begin that the scene's [initial] gives, m and m/s, as parameters.
  */

@@ -320,7 +320,7 @@ enum status model_add_constraints(const struct model_input *input, struct solid_
                                      .nodal_constraints = &nodal_constraints,
                                      .held = &held,
                                      .number = (int32_t)i};
-            if (prescription_directions(&p) == directions) {
+            if (prescription_directions(p.section, input->cells.dim) == directions) {
                 TRY(add_section(&p, error));
             }
         }

@@ -1,4 +1,4 @@
-#include "model.h"
+#include "model_prescription.h"
 
 #include "names.h"
 
@@ -66,7 +66,7 @@ static void hold_faces(const struct faces *faces, int dim, const int64_t *stamp,
     }
 }
 
-enum status model_held_faces(const struct model_input *input, bool **held, struct error *error)
+enum status model_held_faces(const struct model_input *input, int least, bool **held, struct error *error)
 {
     enum status status;
     int dim = input->cells.dim;
@@ -77,7 +77,7 @@ enum status model_held_faces(const struct model_input *input, bool **held, struc
     for (int64_t i = 0; i < input->scene->displacement_count; i++) {
         const struct scene_displacement *section = &input->scene->displacements[i];
         struct facet_set set;
-        if (section->facets.count == 0) {
+        if (section->facets.count == 0 || prescription_directions(section, dim) < least) {
             continue;
         }
         TRY(model_facets(input, &section->label, &section->facets, &set, &owned, error));

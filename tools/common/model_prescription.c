@@ -53,18 +53,18 @@ bool prescription_is_free(const struct scene_displacement *section, int i)
     return section->kind == SCENE_COMPONENTS && section->is_free[i];
 }
 
-int prescription_directions(const struct prescription *p)
+int prescription_directions(const struct scene_displacement *section, int dim)
 {
     int count = 0;
-    for (int i = 0; i < p->input->cells.dim; i++) {
-        count += !prescription_is_free(p->section, i);
+    for (int i = 0; i < dim; i++) {
+        count += !prescription_is_free(section, i);
     }
-    return p->section->kind == SCENE_NORMAL ? 1 : count;
+    return section->kind == SCENE_NORMAL ? 1 : count;
 }
 
 bool prescription_is_full(const struct prescription *p)
 {
-    return prescription_directions(p) == p->input->cells.dim;
+    return prescription_directions(p->section, p->input->cells.dim) == p->input->cells.dim;
 }
 
 enum status prescription_demand(const struct prescription *p, const struct boundary_averages *averages,

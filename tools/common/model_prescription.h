@@ -35,7 +35,7 @@ struct demand {
 bool prescription_is_free(const struct scene_displacement *section, int i);
 
 /* How many directions the section prescribes at a place; all of them? */
-int prescription_directions(const struct prescription *p);
+int prescription_directions(const struct scene_displacement *section, int dim);
 bool prescription_is_full(const struct prescription *p);
 
 /* value[dim] = the displacement of the section's table at x, beside that node, m. */
