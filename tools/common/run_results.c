@@ -29,7 +29,7 @@ static void put_field(const struct run *run, const struct moment *moment, const 
     int64_t nodes = run->model->system.node_count;
     char vector[64];
     double *field = run_new_values(run, nodes * dim), *parameters = run_new_values(run, nodes * dim);
-    model_nodal_field(&run->model->input, u, field);
+    assembly_nodal_field(&run->model->assembly, u, field);
     memcpy(parameters, u, (size_t)(nodes * dim) * sizeof *u);
     put(run, moment, "u", nodes, dim, vector_attributes(dim, "m", vector), field);
     put(run, moment, "parameters", nodes, dim, vector, parameters);

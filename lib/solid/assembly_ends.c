@@ -1,4 +1,4 @@
-#include "model.h"
+#include "solid/assembly.h"
 
 #include "base/memory.h"
 
@@ -17,12 +17,12 @@
 static const double end_stiffness = 0.85;
 
 /* soft[cells.count]: which cells are softened. */
-static enum status find_soft_cells(const struct model_input *input, bool *soft, struct error *error)
+static enum status find_soft_cells(const struct assembly *input, bool *soft, struct error *error)
 {
     enum status status;
     int corners = input->cells.dim + 1;
     bool *held = NULL, *end = NULL;
-    TRY(model_held_faces(input, &held, error));
+    TRY(assembly_held_faces(input, &held, error));
     TRY(NEW_ARRAY(&end, input->cells.node_count, error));
     TRY(boundary_find_ends(&input->face_table, held, end, error));
     for (int64_t c = 0; c < input->cells.count; c++) {
@@ -51,11 +51,11 @@ static void add_softened(struct material_list *list, int32_t m)
     list->section[list->count++] = list->section[m];
 }
 
-enum status model_soften_ends(const struct model_input *input, struct material_list *list,
-                              struct error *error)
+enum status assembly_soften_ends(const struct assembly *input, struct material_list *list,
+                                 struct error *error)
 {
     enum status status;
-    const int32_t *cell = input->point_cell->data;
+    const int32_t *cell = input->point_cell;
     bool *soft = NULL;
     int64_t *softened = NULL; /* of each material, 0 if there is none yet */
     struct material *items = array_grow(list->items, 2 * list->count, sizeof *items);
@@ -68,7 +68,7 @@ enum status model_soften_ends(const struct model_input *input, struct material_l
     TRY(NEW_ARRAY(&soft, input->cells.count, error));
     TRY(NEW_ARRAY(&softened, list->count, error));
     TRY(find_soft_cells(input, soft, error));
-    for (int64_t q = 0; q < input->points->rows; q++) {
+    for (int64_t q = 0; q < input->point_count; q++) {
         int32_t m = list->of_point[q];
         if (!soft[cell[q]]) {
             continue;
