@@ -70,7 +70,9 @@ static enum status build_body(struct assembly *input, struct solid_system *syste
                                             .face_phi = input->phi,
                                             .node_ptr = input->node_lists.ptr,
                                             .node_idx = input->node_lists.idx,
-                                            .node_phi = input->node_phi};
+                                            .node_phi = input->node_phi,
+                                            .copied = input->copied,
+                                            .context = input->context};
     struct body_input body = {.dim = input->cells.dim,
                               .node_x = input->cells.x,
                               .node_count = input->cells.node_count,
@@ -151,10 +153,10 @@ enum status assembly_build(struct assembly *input, struct solid_system *system, 
     constraint_rows_init(&system->rows, system->dim);
     constraint_rows_init(&system->penalties, system->dim);
     TRY(NEW_ARRAY(&system->factor, system->curve_count, error));
-    TRY(build_body(input, system, error));
     TRY(lump_mass(input, system, error));
-    TRY(assembly_add_conditions(input, system, note, error));
     TRY(assembly_add_loads(input, system, error));
+    TRY(build_body(input, system, error));
+    TRY(assembly_add_conditions(input, system, note, error));
     TRY(assembly_add_contacts(input, system, error));
 done:
     if (status != STATUS_OK) {

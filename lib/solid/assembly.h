@@ -72,6 +72,9 @@ struct assembly {
     struct neighbours lists, boundary_lists, node_lists;
     const double *phi, *dphi; /* dphi NULL: averages over faces */
     const double *boundary_phi, *node_phi;
+    /* Called, unless NULL, when `lists`, phi and dphi are not needed any more: the larger part of memory. */
+    void (*copied)(void *context);
+    void *context;
 
     struct material_list materials; /* the caller's to free; assembly adds softer ones, once */
     bool pointwise_volume;          /* no nodal volumes */

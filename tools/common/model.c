@@ -97,7 +97,15 @@ static enum status check_moments(const struct model *model, struct error *error)
     return STATUS_OK;
 }
 
-enum status model_build(const struct stream *stream, const struct scene *scene, struct model *model,
+static void drop_copied(void *stream)
+{
+    static const char *const names[] = {"face.ptr", "face.idx", "face.phi"};
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
+        stream_remove(stream, names[i]);
+    }
+}
+
+enum status model_build(struct stream *stream, const struct scene *scene, struct model *model,
                         struct error *error)
 {
     enum status status;
@@ -115,6 +123,8 @@ enum status model_build(const struct stream *stream, const struct scene *scene, 
     TRY(model_materials(model, error));
     TRY(check_moments(model, error));
     TRY(model_conditions(model, error));
+    input->copied = drop_copied;
+    input->context = stream;
     TRY(assembly_build(input, &model->system, &model->note, error));
     TRY(NEW_ARRAY(&model->row_force, model->system.rows.count, error));
 done:

@@ -37,8 +37,9 @@ static void put_field(const struct run *run, const struct moment *moment, const 
 
 void run_put_supports(const struct run *run)
 {
-    const struct section *radius = stream_find(run->stream, "support.radius");
-    if (radius != NULL && radius->rows == run->model->system.node_count) {
+    const struct section *radius = stream_find(run->stream, "support.radius"),
+                         *nodes = stream_find(run->stream, "nodes.x");
+    if (radius != NULL && nodes != NULL && radius->rows == nodes->rows) {
         double *values = run_new_values(run, radius->rows);
         memcpy(values, radius->data, (size_t)radius->rows * sizeof *values);
         run_put(run, "parameters.radius", radius->rows, 1, radius->attributes, values);
