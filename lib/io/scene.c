@@ -37,14 +37,9 @@ static enum status add_item(const struct place *place, const struct scene_kind *
 static enum status read_section(const struct place *place, struct scene *scene)
 {
     const struct ini_section *section = place->section;
-    const struct scene_kind *kind = scene_kind_find(section->kind);
-    enum status status = STATUS_OK;
-    if (kind == NULL) {
-        TRY(place_fail(
-            place, NULL,
-            "unknown section: allowed are scene, material, displacement, contact, pressure, traction, "
-            "force, initial, output, solver"));
-    }
+    const struct scene_kind *kind;
+    enum status status;
+    TRY(scene_kind_find(place, &kind));
     if (kind->has_items && section->name[0] == '\0') {
         TRY(place_fail(place, NULL, "lacks its name: write [%s NAME]", section->kind));
     }
