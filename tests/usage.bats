@@ -107,3 +107,28 @@ setup() {
         run -1 grep -E ' U (system|popen|f?exec(l|le|lp|v|ve|vp|vpe)|execveat|fork|vfork|posix_spawnp?|wordexp)(@|$)' imports
     done
 }
+
+@test "mtled-scene(5) has every section and key that a scene may have, and no other" {
+    refused() { # what is allowed instead of the last line of a scene
+        printf '[scene]\ndim = 2\nanalysis = quasi-static\n%b\n' "$1" > wrong.scene
+        mtled wrong.scene < /dev/null 2>&1 | sed -n 's/.*: allowed are //p' | tr -d ,
+    }
+    for kind in $(refused '[nonsense]'); do
+        case $kind in
+            scene) keys=$(refused 'zzz = 1') ;;
+            initial | output | solver) keys=$(refused "[$kind]\nzzz = 1") ;;
+            *) keys=$(refused "[$kind x]\nzzz = 1") ;;
+        esac
+        for key in $keys; do echo "$kind $key"; done
+    done | sort > allowed
+    [ "$(cut -d ' ' -f 1 allowed | sort -u | wc -l)" -ge 10 ]
+    # Keys are bold behind .TP; a list may serve several kinds.
+    awk '/^\.S[SH]/ { line = $0; count = 0; while (match(line, /\[[a-z]+/)) { kind[++count] = substr(line, RSTART + 1, RLENGTH - 1)
+                       line = substr(line, RSTART + RLENGTH) } }
+         tag && /^\.B / { gsub(/,/, ""); for (k = 1; k <= count; k++) for (i = 2; i <= NF; i++) print kind[k], $i }
+         { tag = /^\.TP/ }' "$top/tools/mtled-scene.5" | sort > told
+    [ -z "$(comm -23 allowed told)" ] || { comm -23 allowed told; false; }
+    # Those of the loads, told in one list, are keys of one of them.
+    join -v 2 <(sed 's/.* //' allowed | sort -u) <(comm -13 allowed told | sed 's/.* //' | sort -u) > unknown
+    [ ! -s unknown ] || { cat unknown; false; }
+}

@@ -131,14 +131,14 @@ int main(int argc, char *argv[])
         .checkpoint = {.file = options[CHECKPOINT].value, .interval = every},
         .read_seconds = read,
         .display = {.shown = !options[QUIET].given && isatty(STDERR_FILENO), .started = clock_seconds()}};
+    run_put_supports(&run);
+    run_checkpoint_begin(&run);
     tool_check(&tool, model_build(&stream, &scene, &model, &error), &error);
     if (model.note.text[0] != '\0') {
         tool_note(&tool, "%s", model.note.text);
     }
     tool_check(&tool, NEW_ARRAY(&run.u, model.system.node_count * scene.dim, &error), &error);
     run.prepare_seconds = clock_seconds() - run.display.started;
-    run_put_supports(&run);
-    run_checkpoint_begin(&run);
     run_folds_begin(&run);
     run_stability_begin(&run);
     if (scene.analysis == SCENE_DYNAMIC) {

@@ -4,6 +4,7 @@
 #include "io/scene_ini.h"
 #include "io/scene_kinds.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -23,24 +24,22 @@ static enum status add_item(const struct place *place, const struct scene_kind *
     char *item = (char *)items + (size_t)*count * kind->item_size;
     memset(item, 0, kind->item_size);
     ++*count;
-    struct scene_label label = {.kind = strdup(place->section->kind),
-                                .name = strdup(place->section->name),
-                                .line = place->section->line};
+    const struct ini_section *section = place->section;
+    struct scene_label label = {.name = strdup(section->name)};
+    if (asprintf(&label.where, "%s:%lld: [%s %s]", scene->path, (long long)section->line, section->kind,
+                 section->name) < 0) {
+        label.where = NULL;
+    }
     memcpy(item, &label, sizeof label);
-    return label.kind != NULL && label.name != NULL ? STATUS_OK : fail_memory(place->error, scene->path);
+    return label.name != NULL && label.where != NULL ? STATUS_OK : fail_memory(place->error, scene->path);
 }
 
 static enum status read_section(const struct place *place, struct scene *scene)
 {
     const struct ini_section *section = place->section;
-    const struct scene_kind *kind = scene_kind_find(section->kind);
-    enum status status = STATUS_OK;
-    if (kind == NULL) {
-        TRY(place_fail(
-            place, NULL,
-            "unknown section: allowed are scene, material, displacement, contact, pressure, traction, "
-            "force, initial, output, solver"));
-    }
+    const struct scene_kind *kind;
+    enum status status;
+    TRY(scene_kind_find(place, &kind));
     if (kind->has_items && section->name[0] == '\0') {
         TRY(place_fail(place, NULL, "lacks its name: write [%s NAME]", section->kind));
     }
@@ -85,9 +84,8 @@ static enum status check_regions(const struct scene *scene, struct error *error)
             for (int64_t r = 0; r < material->regions.count * regions->count; r++) {
                 const char *region = material->regions.names[r / regions->count];
                 if (strcmp(region, regions->names[r % regions->count]) == 0) {
-                    return scene_fail(error, STATUS_INPUT, scene, &material->label,
-                                      "region: '%s' is of material %s already", region,
-                                      scene->materials[other].label.name);
+                    return fail(error, STATUS_INPUT, "%s: region: '%s' is of material %s already",
+                                material->label.where, region, scene->materials[other].label.name);
                 }
             }
         }

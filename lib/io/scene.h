@@ -61,11 +61,9 @@ struct name_list {
     int64_t count;
 };
 
-/* Where a section stands, for messages: see scene_fail. */
 struct scene_label {
-    char *kind; /* "displacement" */
-    char *name; /* "craniotomy" */
-    int64_t line;
+    char *name;  /* "craniotomy" */
+    char *where; /* in front of messages about the section: "brain.scene:12: [displacement craniotomy]" */
 };
 
 struct scene_curve {
@@ -181,10 +179,5 @@ MUST_CHECK enum status scene_read(const char *path, struct scene *scene, struct 
 
 /* Release everything the scene owns; it becomes empty. */
 void scene_free(struct scene *scene);
-
-/* fail() with "FILE:LINE: [kind NAME]: " in front of the message. */
-enum status scene_fail(struct error *error, enum status status, const struct scene *scene,
-                       const struct scene_label *label, const char *format, ...)
-    __attribute__((format(printf, 5, 6)));
 
 #endif

@@ -1,8 +1,6 @@
-/* Releasing a scene, and messages about it. */
+/* Releasing a scene. */
 #include "io/scene.h"
 
-#include <stdarg.h>
-#include <stdio.h>
 #include <stdlib.h>
 
 static void free_names(struct name_list *list)
@@ -15,8 +13,8 @@ static void free_names(struct name_list *list)
 
 static void free_label(struct scene_label *label)
 {
-    free(label->kind);
     free(label->name);
+    free(label->where);
 }
 
 static void free_loads(struct scene_load *loads, int64_t count)
@@ -62,16 +60,4 @@ void scene_free(struct scene *scene)
     free(scene->path);
     free(scene->title);
     *scene = (struct scene){0};
-}
-
-enum status scene_fail(struct error *error, enum status status, const struct scene *scene,
-                       const struct scene_label *label, const char *format, ...)
-{
-    char message[sizeof error->text];
-    va_list arguments;
-    va_start(arguments, format);
-    vsnprintf(message, sizeof message, format, arguments);
-    va_end(arguments);
-    return fail(error, status, "%s:%lld: [%s %s]: %s", scene->path, (long long)label->line, label->kind,
-                label->name, message);
 }

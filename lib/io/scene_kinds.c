@@ -15,7 +15,6 @@ static enum status read_scene(const struct place *place, struct scene *scene)
     double dim = 0;
     int analysis = 0;
     enum status status = STATUS_OK;
-    TRY(place_only_keys(place, KEYS{"dim", "analysis", "title", "gravity", NULL}));
     TRY(place_require(place, "dim", "give 2 or 3"));
     TRY(place_require(place, "analysis", "give quasi-static or dynamic"));
     TRY(place_number(place, "dim", range_any, &dim));
@@ -81,8 +80,6 @@ static enum status read_material(const struct place *place, struct scene *scene)
 {
     struct scene_material *material = &scene->materials[scene->material_count - 1];
     enum status status = STATUS_OK;
-    TRY(place_only_keys(place,
-                        KEYS{"region", "model", "E", "nu", "rho", "ratio", "alpha", "table", "unit", NULL}));
     TRY(place_require(place, "region", "name the regions made of it"));
     TRY(place_names(place, "region", &material->regions));
     TRY(read_model(place, material));
@@ -103,8 +100,6 @@ static enum status read_displacement(const struct place *place, struct scene *sc
 {
     struct scene_displacement *displacement = &scene->displacements[scene->displacement_count - 1];
     enum status status = STATUS_OK;
-    TRY(place_only_keys(place,
-                        KEYS{"facets", "nodes", "table", "unit", "components", "normal", "curve", NULL}));
     TRY(place_require_one(place, KEYS{"facets", "nodes", NULL}));
     TRY(place_require_one(place, KEYS{"table", "components", "normal", NULL}));
     TRY(place_names(place, "facets", &displacement->facets));
@@ -186,8 +181,6 @@ static enum status read_contact(const struct place *place, struct scene *scene)
     struct scene_contact *contact = &scene->contacts[scene->contact_count - 1];
     int side = 0;
     enum status status = STATUS_OK;
-    TRY(place_only_keys(place, KEYS{"facets", "rigid", "unit", "side", "stiffness", "translation", "angle",
-                                    "axis_point", "axis", "curve", "angle_curve", NULL}));
     TRY(place_require(place, "facets", "name the facet groups that may touch"));
     TRY(place_require(place, "rigid", "name the file of the rigid surface"));
     TRY(place_require(place, "side",
@@ -207,7 +200,6 @@ static enum status read_pressure(const struct place *place, struct scene *scene)
 {
     struct scene_load *load = &scene->pressures[scene->pressure_count - 1];
     enum status status = STATUS_OK;
-    TRY(place_only_keys(place, KEYS{"facets", "value", "curve", NULL}));
     TRY(place_require(place, "facets", "name the facet groups pressed"));
     TRY(place_require(place, "value", "give the pressure in Pa"));
     TRY(place_names(place, "facets", &load->facets));
@@ -222,7 +214,6 @@ static enum status read_vector_load(const struct place *place, const char *where
                                     struct name_list *groups, struct scene_load *load)
 {
     enum status status = STATUS_OK;
-    TRY(place_only_keys(place, KEYS{where, "components", "curve", NULL}));
     TRY(place_require(place, where, "name the groups loaded"));
     TRY(place_require(place, "components", unit));
     TRY(place_names(place, where, groups));
@@ -248,7 +239,6 @@ static enum status read_force(const struct place *place, struct scene *scene)
 static enum status read_initial(const struct place *place, struct scene *scene)
 {
     enum status status = STATUS_OK;
-    TRY(place_only_keys(place, KEYS{"table", "unit", NULL}));
     if (scene->analysis == SCENE_QUASI_STATIC) {
         TRY(place_fail(place, NULL, "a quasi-static scene has no time: only dynamic scenes begin somewhere"));
     }
@@ -264,9 +254,6 @@ static enum status read_output(const struct place *place, struct scene *scene)
     struct scene_output *output = &scene->output;
     int allowed = 0;
     enum status status = STATUS_OK;
-    TRY(place_only_keys(place,
-                        KEYS{"frames", "interval", "stress", "strain", "pressure", "volume_ratio", "energy",
-                             "reactions", "moments", "moments_about", "gaps", "folds", NULL}));
     TRY(place_count(place, "frames", 1000000, &output->frames));
     TRY(place_number(place, "interval", range_positive, &output->interval));
     if (place_has(place, "frames")) {
@@ -304,8 +291,6 @@ static enum status read_solver(const struct place *place, struct scene *scene)
     int point = (int)solver->constraint_points;
     int volume = (int)solver->volume;
     enum status status = STATUS_OK;
-    TRY(place_only_keys(place, KEYS{"constraints", "constraint_points", "volume", "tolerance", "max_steps",
-                                    "ramp_steps", "end_time", "time_step_margin", "damping", NULL}));
     TRY(place_choice(place, "constraints", constraints, &constraint));
     TRY(place_choice(place, "constraint_points", points, &point));
     TRY(place_choice(place, "volume", volumes, &volume));
@@ -335,26 +320,43 @@ done:
 #define ITEMS(items, count)                                                                                  \
     true, offsetof(struct scene, items), offsetof(struct scene, count), sizeof *((struct scene *)0)->items
 
+/* Every section and key stands here once: others are refused with these lists, and a test looks for each in
+ * the manual. */
 static const struct scene_kind kinds[] = {
-    {"scene", read_scene, false, 0, 0, 0},
-    {"material", read_material, ITEMS(materials, material_count)},
-    {"displacement", read_displacement, ITEMS(displacements, displacement_count)},
-    {"contact", read_contact, ITEMS(contacts, contact_count)},
-    {"pressure", read_pressure, ITEMS(pressures, pressure_count)},
-    {"traction", read_traction, ITEMS(tractions, traction_count)},
-    {"force", read_force, ITEMS(forces, force_count)},
-    {"initial", read_initial, false, 0, 0, 0},
-    {"output", read_output, false, 0, 0, 0},
-    {"solver", read_solver, false, 0, 0, 0},
+    {"scene", KEYS{"dim", "analysis", "title", "gravity", NULL}, read_scene, false, 0, 0, 0},
+    {"material", KEYS{"region", "model", "E", "nu", "rho", "ratio", "alpha", "table", "unit", NULL},
+     read_material, ITEMS(materials, material_count)},
+    {"displacement", KEYS{"facets", "nodes", "table", "unit", "components", "normal", "curve", NULL},
+     read_displacement, ITEMS(displacements, displacement_count)},
+    {"contact",
+     KEYS{"facets", "rigid", "unit", "side", "stiffness", "translation", "angle", "axis_point", "axis",
+          "curve", "angle_curve", NULL},
+     read_contact, ITEMS(contacts, contact_count)},
+    {"pressure", KEYS{"facets", "value", "curve", NULL}, read_pressure, ITEMS(pressures, pressure_count)},
+    {"traction", KEYS{"facets", "components", "curve", NULL}, read_traction,
+     ITEMS(tractions, traction_count)},
+    {"force", KEYS{"nodes", "components", "curve", NULL}, read_force, ITEMS(forces, force_count)},
+    {"initial", KEYS{"table", "unit", NULL}, read_initial, false, 0, 0, 0},
+    {"output",
+     KEYS{"frames", "interval", "stress", "strain", "pressure", "volume_ratio", "energy", "reactions",
+          "moments", "moments_about", "gaps", "folds", NULL},
+     read_output, false, 0, 0, 0},
+    {"solver",
+     KEYS{"constraints", "constraint_points", "volume", "tolerance", "max_steps", "ramp_steps", "end_time",
+          "time_step_margin", "damping", NULL},
+     read_solver, false, 0, 0, 0},
 };
 enum { KIND_COUNT = sizeof kinds / sizeof kinds[0] };
 
-const struct scene_kind *scene_kind_find(const char *name)
+enum status scene_kind_find(const struct place *place, const struct scene_kind **kind)
 {
+    const char *names[KIND_COUNT + 1] = {NULL};
     for (int k = 0; k < KIND_COUNT; k++) {
-        if (strcmp(kinds[k].name, name) == 0) {
-            return &kinds[k];
+        names[k] = kinds[k].name;
+        if (strcmp(kinds[k].name, place->section->kind) == 0) {
+            *kind = &kinds[k];
+            return place_only_keys(place, kinds[k].keys);
         }
     }
-    return NULL;
+    return place_unknown(place, NULL, "section", names);
 }

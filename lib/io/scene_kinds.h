@@ -9,13 +9,14 @@
 /* How the sections of a kind are read, and the array of the scene that they extend, if any. */
 struct scene_kind {
     const char *name;
+    const char *const *keys; /* all that it may have; NULL-terminated */
     enum status (*read)(const struct place *place, struct scene *scene);
     bool has_items;
     size_t items, count; /* offsets in struct scene of the array and its count */
     size_t item_size;    /* items begin with a struct scene_label */
 };
 
-/* The kind of that name, or NULL. */
-const struct scene_kind *scene_kind_find(const char *name);
+/* The kind of the section; an error for another name, or a key that the kind has not. */
+MUST_CHECK enum status scene_kind_find(const struct place *place, const struct scene_kind **kind);
 
 #endif

@@ -75,6 +75,14 @@ enum status place_require_one(const struct place *place, const char *const keys[
                : place_fail(place, NULL, "%s of %s: give exactly one", count == 0 ? "none" : "several", list);
 }
 
+enum status place_unknown(const struct place *place, const char *key, const char *what,
+                          const char *const allowed[])
+{
+    char list[320];
+    join(allowed, list, sizeof list);
+    return place_fail(place, key, "unknown %s: allowed are %s", what, list);
+}
+
 enum status place_only_keys(const struct place *place, const char *const keys[])
 {
     for (int64_t e = 0; e < place->section->entry_count; e++) {
@@ -84,9 +92,7 @@ enum status place_only_keys(const struct place *place, const char *const keys[])
             i++;
         }
         if (keys[i] == NULL) {
-            char list[320];
-            join(keys, list, sizeof list);
-            return place_fail(place, key, "unknown key: allowed are %s", list);
+            return place_unknown(place, key, "key", keys);
         }
     }
     return STATUS_OK;

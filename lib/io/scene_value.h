@@ -42,6 +42,10 @@ MUST_CHECK enum status place_forbid(const struct place *place, const char *key, 
 /* An error unless exactly one of the keys (a NULL-terminated list) is there. */
 MUST_CHECK enum status place_require_one(const struct place *place, const char *const keys[]);
 
+/* The error that a key, or with key NULL the section itself, is none of those (a NULL-terminated list). */
+enum status place_unknown(const struct place *place, const char *key, const char *what,
+                          const char *const allowed[]);
+
 /* An error unless all keys of the section are among `keys` (a NULL-terminated list). */
 MUST_CHECK enum status place_only_keys(const struct place *place, const char *const keys[]);
 

@@ -13,7 +13,7 @@
 /* Points of a block: its part of the operator should take a part of the second cache only. */
 static int64_t points_of_block(int dim)
 {
-    return dim == 2 ? 64 : OPERATOR_MAX_ROWS;
+    return dim == 2 ? 64 : BLOCK_MOST_POINTS;
 }
 
 static enum material_model model_of(const struct body_input *input, int64_t point)
@@ -57,11 +57,10 @@ static enum status copy_points(const struct body_input *input, struct body *body
     int64_t points = input->point_count;
     TRY(NEW_ARRAY(&body->weight, points + BODY_POINT_PADDING, error));
     TRY(NEW_ARRAY(&body->material, points + BODY_POINT_PADDING, error));
-    TRY(NEW_ARRAY(&body->u, body->node_count * OPERATOR_STRIDE(dim), error));
-    if (body->smoothed || body->averaged) {
-        TRY(NEW_ARRAY(&body->F, points * dim * dim + BODY_POINT_PADDING, error));
-        TRY(NEW_ARRAY(&body->J, points + BODY_POINT_PADDING, error));
-    }
+    TRY(NEW_ARRAY(&body->u, body->node_count * VECTOR_STRIDE(dim), error));
+    TRY(NEW_ARRAY(&body->force, body->node_count * VECTOR_STRIDE(dim), error));
+    TRY(NEW_ARRAY(&body->F, points * dim * dim + BODY_POINT_PADDING, error));
+    TRY(NEW_ARRAY(&body->J, points + BODY_POINT_PADDING, error));
     TRY(NEW_ARRAY(&body->materials, input->material_count, error));
     memcpy(body->materials, input->materials, (size_t)input->material_count * sizeof *body->materials);
     for (int64_t q = 0; q < points; q++) {
@@ -100,24 +99,28 @@ done:
     return status;
 }
 
-/* The rows of the table of gradients are the points; within a block their order is free. */
-static enum status order_rows(const struct body_input *input, struct body *body, int64_t **first_row,
-                              struct operator_rows *rows, struct error *error)
+/* The table of gradients at points. */
+static enum status copy_gradients(const struct body_input *input, struct body *body, struct error *error)
 {
     enum status status;
-    TRY(NEW_ARRAY(first_row, body->block_count + 1, error));
-    for (int64_t b = 0; b < body->block_count; b++) {
-        (*first_row)[b] = body->blocks[b].first_point;
+    int dim = body->dim;
+    int64_t rows = body->point_count * dim, at = 0;
+    struct sparse *matrix = &body->gradients;
+    if (rows > INT32_MAX) {
+        return fail(error, STATUS_INPUT, "points.x: %lld points: too many", (long long)body->point_count);
     }
-    (*first_row)[body->block_count] = body->point_count;
-    *rows = (struct operator_rows){.node_count = input->node_count,
-                                   .row_count = input->point_count,
-                                   .ptr = input->ptr,
-                                   .idx = input->idx,
-                                   .row = body->order,
-                                   .block_count = body->block_count,
-                                   .first_row = *first_row,
-                                   .least_sharing = input->dim};
+    TRY(sparse_new(rows, body->node_count, input->ptr[body->point_count] * dim, matrix, error));
+    for (int64_t r = 0; r < rows; r++) {
+        int64_t from = body->order[r / dim];
+        for (int64_t i = input->ptr[from]; i < input->ptr[from + 1]; i++, at++) {
+            matrix->idx[at] = body->node_place[input->idx[i]];
+            matrix->value[at] = input->dphi[i * dim + r % dim];
+        }
+        matrix->ptr[r + 1] = at;
+    }
+    TRY(sparse_transpose(matrix, &body->transposed, error));
+    TRY(NEW_ARRAY(&body->derivative, rows * VECTOR_STRIDE(dim), error));
+    body->pair_count = at / dim;
 done:
     return status;
 }
@@ -134,18 +137,10 @@ static int worthwhile_threads(const struct body *body)
 enum status body_build(const struct body_input *input, struct body *body, struct error *error)
 {
     enum status status;
-    struct operator_input op = {.dim = input->dim,
-                                .width = input->dim,
-                                .value = input->dphi,
-                                .passes = input->hat_node != NULL ? 2 : 1};
-    int64_t *first_row = NULL;
     *body = (struct body){.dim = input->dim,
                           .node_count = input->node_count,
                           .point_count = input->point_count,
                           .material_count = input->material_count,
-                          .ptr = input->ptr,
-                          .idx = input->idx,
-                          .dphi = input->dphi,
                           .smoothed = input->smoothed != NULL,
                           .kernels = force_kernels_select(NULL, input->dim),
                           .averaged = input->hat_node != NULL};
@@ -155,27 +150,19 @@ enum status body_build(const struct body_input *input, struct body *body, struct
     }
     TRY(order_all(input, body, error));
     TRY(cut_blocks(input, body, error));
-    if (!body->smoothed) {
-        TRY(order_rows(input, body, &first_row, &op.rows, error));
-    }
     TRY(copy_points(input, body, error));
     if (body->averaged) {
         TRY(nodal_volumes_build(input, body, error));
     }
     if (!body->smoothed) {
-        op.place = body->node_place;
-        TRY(sparse_operator_build(&op, &body->gradients, error));
-        body->pair_count = body->gradients.pair_count;
+        TRY(copy_gradients(input, body, error));
     } else {
         TRY(smoothed_cells_build(input->smoothed, body, &body->cells, error));
-        body->pair_count = body->cells.faces.op.pair_count + body->cells.nodes.op.pair_count;
+        body->pair_count = body->cells.averages.matrix.ptr[body->cells.averages.matrix.row_count];
     }
     body->threads = worthwhile_threads(body);
     TRY(body_make_bounds(body, error));
-    int threads = body->bound_parts.threads;
-    TRY(body_make_scratch(body, threads > body->threads ? threads : body->threads, error));
 done:
-    free(first_row);
     if (status != STATUS_OK) {
         body_free(body);
     }
@@ -185,12 +172,13 @@ done:
 void body_free(struct body *body)
 {
     body_free_bounds(body);
-    sparse_operator_free(&body->gradients);
+    sparse_free(&body->gradients);
+    sparse_free(&body->transposed);
     smoothed_cells_free(&body->cells);
     nodal_volumes_free(&body->volumes);
     void *arrays[] = {body->order,  body->weight,     body->materials,  body->material,
                       body->blocks, body->node_order, body->node_place, body->u,
-                      body->F,      body->J,          body->scratch};
+                      body->F,      body->J,          body->force,      body->derivative};
     for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) {
         free(arrays[i]);
     }

@@ -2,7 +2,7 @@
  * law, ordered along a Morton curve, and the sparse operator that makes their deformation gradients from
  * parameters: gradients of the shape functions at the points or, for smoothed cells, averages over their
  * faces (smoothed_cells.h). Total Lagrangian: all of it in the reference configuration (MTLED: Horton et al.
- * 2010). Any number of threads gives the same bits (sparse_operator.h). */
+ * 2010). Any number of threads gives the same bits (base/sparse.h). */
 #ifndef SOLID_BODY_H
 #define SOLID_BODY_H
 
@@ -14,8 +14,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-/* What a body is made of, in the caller's arrays. Those of the table, ptr, idx, dphi, must outlive it; of
- * smoothed cells there is none. */
+/* What a body is made of, in the caller's arrays. */
 struct body_input {
     int dim; /* 2 (plane strain) or 3 */
     int64_t node_count, point_count;
@@ -39,6 +38,9 @@ struct body_input {
 /* Points are worked on so many at a time; weight, material, J and F have as many entries more, which are
  * read and not used. */
 #define BODY_POINT_PADDING 8
+
+/* The most points of a block. */
+#define BLOCK_MOST_POINTS 128
 
 struct block {
     int64_t first_point, point_count; /* in the body's order */
@@ -85,10 +87,7 @@ struct force_kernels;
 struct body {
     int dim;
     int64_t node_count, point_count;
-    int64_t pair_count; /* of point and neighbour; of smoothed cells, of face or node and neighbour */
-    const int64_t *ptr; /* the caller's table; NULL for smoothed cells */
-    const int32_t *idx;
-    const double *dphi;
+    int64_t pair_count;         /* of point and neighbour; of smoothed cells, of face or node and neighbour */
     int64_t *order;             /* point_count: the caller's index of each point */
     int64_t *node_order;        /* node_count: the caller's index of each node */
     int32_t *node_place;        /* node_count: the body's index of each of the caller's nodes */
@@ -99,24 +98,23 @@ struct body {
     int64_t block_count;
     struct block *blocks;
     bool smoothed;
-    struct sparse_operator gradients; /* of the shape functions at the points, in the same blocks, */
-    struct smoothed_cells cells;      /* or smoothed cells instead */
-    double *u;                        /* node_count * stride: displacements in the body's order */
-    double *F;     /* dim * dim rows of point_count: deformation gradients of the last evaluation */
-    double *J;     /* point_count: volume ratios, det F, or of cells that of smoothed_cells.h. Points with
-                      pointwise volume keep neither: NULL */
-    bool averaged; /* nodal volumetric averaging */
+    struct sparse gradients, transposed; /* of the shape functions: row q dim + k has the derivatives along k
+                                            at point q; and the transpose; */
+    double *derivative;          /* du/dx_k, or the stress, of each row: VECTOR_STRIDE(dim) of each; */
+    struct smoothed_cells cells; /* or smoothed cells instead */
+    double *u, *force; /* node_count * VECTOR_STRIDE(dim): displacements and forces in the body's order */
+    double *F;         /* dim * dim rows of point_count: deformation gradients of the last evaluation */
+    double *J;         /* point_count: volume ratios, det F, or of cells that of smoothed_cells.h */
+    bool averaged;     /* nodal volumetric averaging */
     struct nodal_volumes volumes;
     const struct force_kernels *kernels; /* for this processor */
     int threads;                         /* worth using for so many pairs */
-    double *scratch;                     /* of each thread so many doubles */
-    int64_t scratch_size;
-    struct chunks bound_parts;         /* of the blocks, by each of which body_diagonal sums; */
-    double *bound;                     /* node_count for each but the first: scratch */
-    struct cell_functions *bound_work; /* for each part, of smoothed cells */
+    struct chunks bound_parts;           /* of the blocks, by each of which body_diagonal sums; */
+    double *bound;                       /* node_count for each: scratch */
+    struct cell_functions *bound_work;   /* for each part */
 };
 
-/* Lay out a body; but for the tables the input arrays are copied. STATUS_INPUT for a point without neighbours
+/* Lay out a body; the arrays are copied. STATUS_INPUT for a point without neighbours
  * or of no weight, and see smoothed_cells_build. */
 MUST_CHECK enum status body_build(const struct body_input *input, struct body *body, struct error *error);
 void body_free(struct body *body);

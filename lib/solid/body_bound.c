@@ -15,12 +15,10 @@ enum status body_make_bounds(struct body *body, struct error *error)
     enum status status;
     int64_t least = body->block_count / MOST_PARTS;
     body->bound_parts = chunks_of(body->block_count, least > LEAST_BLOCKS ? least : LEAST_BLOCKS);
-    TRY(NEW_ARRAY(&body->bound, (body->bound_parts.count - 1) * body->node_count, error));
-    if (body->smoothed) {
-        TRY(NEW_ARRAY(&body->bound_work, MOST_PARTS, error));
-        for (int64_t p = 0; p < body->bound_parts.count; p++) {
-            TRY(cell_functions_make(body, &body->bound_work[p], error));
-        }
+    TRY(NEW_ARRAY(&body->bound, body->bound_parts.count * body->node_count, error));
+    TRY(NEW_ARRAY(&body->bound_work, MOST_PARTS, error));
+    for (int64_t p = 0; p < body->bound_parts.count; p++) {
+        TRY(cell_functions_make(body, &body->bound_work[p], error));
     }
 done:
     return status;
@@ -77,7 +75,7 @@ static struct bound bound_at(const struct body *body, int64_t q, const double *F
 /* Where the bounds are summed. */
 struct bound_sum {
     double *of_node;
-    struct cell_functions *work; /* of smoothed cells */
+    struct cell_functions *work;
 };
 
 static void add_functions(const struct body *body, const struct bound *bound, int64_t count,
@@ -97,15 +95,20 @@ static void add_point(const struct body *body, int64_t q, const double F[9], dou
 {
     (void)J; /* of cells not det F */
     const struct bound_sum *to = context;
+    struct cell_functions *work = to->work;
     struct bound bound = bound_at(body, q, F);
     if (body->smoothed) {
-        cell_functions_list(body, q, to->work);
-        add_functions(body, &bound, to->work->count, to->work->node, to->work->gradient, to->of_node);
-    } else {
-        int64_t row = body->order[q], at = body->ptr[row];
-        add_functions(body, &bound, body->ptr[row + 1] - at, body->idx + at, body->dphi + at * body->dim,
-                      to->of_node);
+        cell_functions_list(body, q, work);
+        add_functions(body, &bound, work->count, work->node, work->gradient, to->of_node);
+        return;
     }
+    const struct sparse *matrix = &body->gradients; /* the rows of a point have the same nodes */
+    int dim = body->dim;
+    int64_t at = matrix->ptr[q * dim], count = matrix->ptr[q * dim + 1] - at;
+    for (int64_t i = 0; i < count * dim; i++) {
+        work->gradient[i] = matrix->value[at + i % dim * count + i / dim];
+    }
+    add_functions(body, &bound, count, matrix->idx + at, work->gradient, to->of_node);
 }
 
 /* The same for parameters that are values at the nodes, whose functions are about the hat functions of a
@@ -116,10 +119,12 @@ static void add_cell(const struct body *body, int64_t q, const double F[9], doub
     const struct bound_sum *to = context;
     struct bound bound = bound_at(body, q, F);
     double gradient[12];
-    int corners = body->dim + 1;
+    int32_t node[4];
+    for (int k = 0; k <= body->dim; k++) {
+        node[k] = smoothed_cells_node(body, q, k);
+    }
     smoothed_cells_hat_gradients(body, q, gradient);
-    add_functions(body, &bound, corners, body->cells.cell_node + body->order[q] * corners, gradient,
-                  to->of_node);
+    add_functions(body, &bound, body->dim + 1, node, gradient, to->of_node);
 }
 
 static void sum_bounds(struct body *body, body_visitor *add, double *stiffness)
@@ -129,16 +134,18 @@ static void sum_bounds(struct body *body, body_visitor *add, double *stiffness)
     {
 #pragma omp for schedule(static)
         for (int64_t p = 0; p < parts->count; p++) {
-            double *sum = p == 0 ? stiffness : body->bound + (p - 1) * body->node_count;
+            double *sum = body->bound + p * body->node_count;
             memset(sum, 0, (size_t)body->node_count * sizeof *sum);
-            struct bound_sum to = {sum, body->smoothed ? &body->bound_work[p] : NULL};
+            struct bound_sum to = {sum, &body->bound_work[p]};
             body_visit(body, chunks_begin(parts, p), chunks_begin(parts, p + 1), add, &to);
         }
 #pragma omp for schedule(static)
         for (int64_t n = 0; n < body->node_count; n++) {
+            double sum = body->bound[n];
             for (int64_t p = 1; p < parts->count; p++) {
-                stiffness[n] += body->bound[(p - 1) * body->node_count + n];
+                sum += body->bound[p * body->node_count + n];
             }
+            stiffness[body->node_order[n]] = sum;
         }
     }
 }

@@ -1,6 +1,7 @@
 #include "solid/constraint.h"
 
 #include "base/memory.h"
+#include "base/sparse.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -175,87 +176,58 @@ void constraint_rows_spread(const struct constraint_rows *rows, const double *am
     }
 }
 
-/* Rows that touch each node, CSR. */
-static enum status rows_of_nodes(const struct constraint_rows *rows, int64_t node_count, int64_t **ptr,
-                                 int64_t **row, double **phi, struct error *error)
-{
-    enum status status;
-    TRY(NEW_ARRAY(ptr, node_count + 2, error));
-    for (int64_t r = 0; r < rows->count; r++) {
-        struct average average = constraint_rows_average(rows, r);
-        for (int64_t i = 0; i < average.length; i++) {
-            (*ptr)[average.idx[i] + 2]++;
-        }
-    }
-    for (int64_t n = 0; n < node_count; n++) {
-        (*ptr)[n + 2] += (*ptr)[n + 1];
-    }
-    TRY(NEW_ARRAY(row, (*ptr)[node_count + 1], error));
-    TRY(NEW_ARRAY(phi, (*ptr)[node_count + 1], error));
-    for (int64_t r = 0; r < rows->count; r++) {
-        struct average average = constraint_rows_average(rows, r);
-        for (int64_t i = 0; i < average.length; i++) {
-            int64_t at = (*ptr)[average.idx[i] + 1]++;
-            (*row)[at] = r;
-            (*phi)[at] = average.phi[i];
-        }
-    }
-done:
-    return status;
-}
-
 /* G M^-1 G^T in CSR. Rows of orthogonal directions do not couple, so that axis-aligned conditions decompose.
  */
 static enum status assemble(const struct constraint_rows *rows, int64_t node_count, const double *mass,
                             int64_t **ptr, int64_t **column, double **value, struct error *error)
 {
     enum status status;
-    int64_t *node_ptr = NULL, *node_row = NULL, *touched = NULL, capacity = 0;
-    double *node_phi = NULL, *sum = NULL;
-    int dim = rows->dim;
-    TRY(rows_of_nodes(rows, node_count, &node_ptr, &node_row, &node_phi, error));
+    const struct sparse lists = {rows->list_count, node_count, rows->ptr, rows->idx, rows->phi};
+    struct sparse of_node = {0};
+    int64_t *touched = NULL, *last = NULL, capacity = 0, at = 0; /* last: the list that touched each last */
+    double *sum = NULL;
+    TRY(sparse_transpose(&lists, &of_node, error));
     TRY(NEW_ARRAY(ptr, rows->count + 1, error));
-    TRY(NEW_ARRAY(&touched, rows->count, error));
-    TRY(NEW_ARRAY(&sum, rows->count, error));
-    for (int64_t r = 0; r < rows->count; r++) {
-        int64_t count = 0, at = (*ptr)[r];
-        struct average average = constraint_rows_average(rows, r);
-        for (int64_t i = 0; i < average.length; i++) {
-            int32_t node = average.idx[i];
-            for (int64_t k = node_ptr[node]; k < node_ptr[node + 1]; k++) {
-                int64_t s = node_row[k];
-                double cosine = 0.0;
-                for (int a = 0; a < dim; a++) {
-                    cosine += rows->direction[r * dim + a] * rows->direction[s * dim + a];
+    TRY(NEW_ARRAY(&touched, rows->list_count, error));
+    TRY(NEW_ARRAY(&last, rows->list_count, error));
+    TRY(NEW_ARRAY(&sum, rows->list_count, error));
+    for (int64_t l = 0; l < rows->list_count; l++) {
+        int64_t count = 0;
+        for (int64_t i = rows->ptr[l]; i < rows->ptr[l + 1]; i++) {
+            int32_t node = rows->idx[i];
+            for (int64_t k = of_node.ptr[node]; k < of_node.ptr[node + 1]; k++) {
+                int32_t m = of_node.idx[k];
+                if (last[m] != l + 1) {
+                    last[m] = l + 1;
+                    sum[m] = 0.0;
+                    touched[count++] = m;
                 }
-                if (fabs(cosine) < 1e-14) {
-                    continue;
-                }
-                double part = cosine * average.phi[i] * node_phi[k] / mass[node];
-                if (sum[s] == 0.0) {
-                    touched[count++] = s;
-                    sum[s] = 1e-300; /* marks it as touched even if the first part is zero */
-                }
-                sum[s] += part;
+                sum[m] += rows->phi[i] * of_node.value[k] / mass[node];
             }
         }
-        if (at + count > capacity) {
-            capacity = (at + count) * 2 + 1024;
-            TRY(grow(column, capacity, sizeof **column, error));
-            TRY(grow(value, capacity, sizeof **value, error));
+        for (int64_t r = rows->first[l]; r < rows->first[l + 1]; r++) {
+            for (int64_t t = 0; t < count; t++) {
+                for (int64_t s = rows->first[touched[t]]; s < rows->first[touched[t] + 1]; s++) {
+                    double cosine = along(rows, r, rows->direction + s * rows->dim);
+                    if (fabs(cosine) < 1e-14) {
+                        continue;
+                    }
+                    if (at == capacity) {
+                        capacity = at * 2 + 1024;
+                        TRY(grow(column, capacity, sizeof **column, error));
+                        TRY(grow(value, capacity, sizeof **value, error));
+                    }
+                    (*column)[at] = s;
+                    (*value)[at++] = cosine * sum[touched[t]];
+                }
+            }
+            (*ptr)[r + 1] = at;
         }
-        for (int64_t i = 0; i < count; i++) {
-            (*column)[at + i] = touched[i];
-            (*value)[at + i] = sum[touched[i]];
-            sum[touched[i]] = 0.0;
-        }
-        (*ptr)[r + 1] = at + count;
     }
 done:
-    free(node_ptr);
-    free(node_row);
-    free(node_phi);
+    sparse_free(&of_node);
     free(touched);
+    free(last);
     free(sum);
     return status;
 }

@@ -3,85 +3,63 @@
 #include "base/memory.h"
 
 #include <stdlib.h>
-#include <string.h>
 
-/* The averages in the order of the table. */
-struct mean_order {
-    struct operator_rows rows;
-    int32_t *corners; /* row_count: of each of the caller's rows */
-    int64_t *row;     /* these two belong to rows */
-    int64_t *first_row;
-};
-
-static void order_free(struct mean_order *order)
+/* The rows of a table, from number `first` on; *at counts the entries. */
+static void copy_rows(const struct average_table *table, const int32_t *place, int64_t first, int64_t *at,
+                      struct sparse *matrix)
 {
-    free(order->corners);
-    free(order->row);
-    free(order->first_row);
+    for (int64_t r = 0; r < table->row_count; r++) {
+        int64_t from = table->order[r];
+        for (int64_t i = table->ptr[from]; i < table->ptr[from + 1]; i++, ++*at) {
+            matrix->idx[*at] = place[table->idx[i]];
+            matrix->value[*at] = table->phi[i];
+        }
+        matrix->ptr[first + r + 1] = *at;
+    }
 }
 
-/* Blocks of averages. All slices but the last are full. */
-static enum status order_averages(const struct field_averages_input *input, struct mean_order *order,
-                                  struct error *error)
+/* Which row each corner looks at, as of_corner has it. */
+static enum status match_corners(const struct field_averages_input *input, struct field_averages *averages,
+                                 struct error *error)
 {
-    enum status status;
-    int64_t rows = input->row_count, blocks = (rows + OPERATOR_MAX_ROWS - 1) / OPERATOR_MAX_ROWS;
-    TRY(NEW_ARRAY(&order->corners, rows, error));
-    TRY(NEW_ARRAY(&order->row, rows, error));
-    TRY(NEW_ARRAY(&order->first_row, blocks + 1, error));
-    for (int64_t i = 0; i < input->corner_count; i++) {
-        order->corners[input->row_of_corner[i]]++;
+    enum status status = STATUS_OK;
+    int64_t *place_of = NULL; /* of each of the caller's rows */
+    for (int k = 0; k < 2; k++) {
+        const struct average_table *table = &input->tables[k];
+        int64_t first = k * input->tables[0].row_count;
+        TRY(NEW_ARRAY(&place_of, table->row_count, error));
+        for (int64_t r = 0; r < table->row_count; r++) {
+            place_of[table->order[r]] = first + r;
+        }
+        for (int64_t i = 0; i < input->corner_count; i++) {
+            averages->of_corner[k * input->corner_count + i] =
+                (int32_t)(place_of[table->row_of_corner[i]] * VECTOR_STRIDE(input->dim));
+        }
+        free(place_of);
+        place_of = NULL;
     }
-    memcpy(order->row, input->order, (size_t)rows * sizeof *order->row);
-    for (int64_t b = 0; b < blocks; b++) {
-        int64_t end = (b + 1) * OPERATOR_MAX_ROWS;
-        order->first_row[b + 1] = end < rows ? end : rows;
-    }
-    order->rows = (struct operator_rows){.node_count = input->node_count,
-                                         .row_count = rows,
-                                         .ptr = input->ptr,
-                                         .idx = input->idx,
-                                         .row = order->row,
-                                         .block_count = blocks,
-                                         .first_row = order->first_row,
-                                         .least_sharing = 2};
 done:
     return status;
 }
 
-/* Which value each corner looks at, and the corners of each slice. */
-static enum status list_corners(const struct field_averages_input *input, const struct mean_order *order,
-                                struct field_averages *averages, struct error *error)
+/* The corners of each row. */
+static enum status list_corners(int dim, struct field_averages *averages, struct error *error)
 {
     enum status status;
-    int64_t *place_of = NULL; /* of each of the caller's rows */
-    int64_t slices = averages->op.slice_count;
-    int32_t *filled = order->corners; /* from here on: how many of each row have been listed */
-    TRY(NEW_ARRAY(&place_of, input->row_count, error));
-    TRY(NEW_ARRAY(&averages->of_corner, input->corner_count, error));
-    TRY(NEW_ARRAY(&averages->corner_ptr, slices + 1, error));
-    for (int64_t g = 0; g < slices; g++) {
-        int32_t most = 0;
-        for (int64_t r = g * OPERATOR_SLICE; r < (g + 1) * OPERATOR_SLICE && r < input->row_count; r++) {
-            int32_t corners = order->corners[order->row[r]];
-            most = corners > most ? corners : most;
-            place_of[order->row[r]] = r;
-        }
-        averages->corner_ptr[g + 1] = averages->corner_ptr[g] + most;
+    int64_t rows = averages->matrix.row_count, corners = 2 * averages->corner_count;
+    TRY(NEW_ARRAY(&averages->corner_ptr, rows + 2, error));
+    TRY(NEW_ARRAY(&averages->corner, corners, error));
+    for (int64_t i = 0; i < corners; i++) {
+        averages->corner_ptr[averages->of_corner[i] / VECTOR_STRIDE(dim) + 2]++;
     }
-    TRY(NEW_ARRAY(&averages->corner, averages->corner_ptr[slices] * OPERATOR_SLICE, error));
-    for (int64_t i = 0; i < averages->corner_ptr[slices] * OPERATOR_SLICE; i++) {
-        averages->corner[i] = (int32_t)input->corner_count;
+    for (int64_t r = 0; r < rows; r++) {
+        averages->corner_ptr[r + 2] += averages->corner_ptr[r + 1];
     }
-    memset(filled, 0, (size_t)input->row_count * sizeof *filled);
-    for (int64_t i = 0; i < input->corner_count; i++) {
-        int32_t row = input->row_of_corner[i];
-        int64_t slice = place_of[row] / OPERATOR_SLICE, lane = place_of[row] % OPERATOR_SLICE;
-        averages->of_corner[i] = (int32_t)(place_of[row] * OPERATOR_STRIDE(input->dim));
-        averages->corner[(averages->corner_ptr[slice] + filled[row]++) * OPERATOR_SLICE + lane] = (int32_t)i;
+    for (int64_t i = 0; i < corners; i++) {
+        averages->corner[averages->corner_ptr[averages->of_corner[i] / VECTOR_STRIDE(dim) + 1]++] =
+            (int32_t)i;
     }
 done:
-    free(place_of);
     return status;
 }
 
@@ -89,35 +67,40 @@ enum status field_averages_build(const struct field_averages_input *input, struc
                                  struct error *error)
 {
     enum status status;
-    struct mean_order order = {0};
-    *averages = (struct field_averages){0};
-    if (input->row_count > INT32_MAX / OPERATOR_STRIDE(input->dim)) {
-        return fail(error, STATUS_INPUT, "%lld faces or nodes: too many", (long long)input->row_count);
+    const struct average_table *faces = &input->tables[0], *nodes = &input->tables[1];
+    int64_t rows = faces->row_count + nodes->row_count, at = 0, stride = VECTOR_STRIDE(input->dim);
+    *averages = (struct field_averages){.corner_count = input->corner_count};
+    if (rows > INT32_MAX / stride || input->corner_count > INT32_MAX / 2) {
+        return fail(error, STATUS_INPUT, "%lld faces and nodes: too many", (long long)rows);
     }
-    TRY(order_averages(input, &order, error));
-    struct operator_input op = {.rows = order.rows,
-                                .dim = input->dim,
-                                .width = 1,
-                                .value = input->phi,
-                                .place = input->place,
-                                .passes = 2};
-    TRY(sparse_operator_build(&op, &averages->op, error));
-    TRY(NEW_ARRAY(&averages->value, averages->op.slice_count * OPERATOR_SLICE * OPERATOR_STRIDE(input->dim),
-                  error));
-    TRY(NEW_ARRAY(&averages->corner_force, (input->corner_count + 1) * OPERATOR_STRIDE(input->dim), error));
-    TRY(list_corners(input, &order, averages, error));
+    TRY(sparse_new(rows, input->node_count, faces->ptr[faces->row_count] + nodes->ptr[nodes->row_count],
+                   &averages->matrix, error));
+    copy_rows(faces, input->place, 0, &at, &averages->matrix);
+    copy_rows(nodes, input->place, faces->row_count, &at, &averages->matrix);
+    TRY(NEW_ARRAY(&averages->value, rows * stride, error));
+    TRY(NEW_ARRAY(&averages->force, rows * stride, error));
+    TRY(NEW_ARRAY(&averages->of_corner, 2 * input->corner_count, error));
+    TRY(NEW_ARRAY(&averages->corner_force, 2 * input->corner_count * stride, error));
+    TRY(match_corners(input, averages, error));
+    TRY(list_corners(input->dim, averages, error));
 done:
-    order_free(&order);
     if (status != STATUS_OK) {
         field_averages_free(averages);
     }
     return status;
 }
 
+enum status field_averages_transpose(struct field_averages *averages, struct error *error)
+{
+    return sparse_transpose(&averages->matrix, &averages->transposed, error);
+}
+
 void field_averages_free(struct field_averages *averages)
 {
-    sparse_operator_free(&averages->op);
+    sparse_free(&averages->matrix);
+    sparse_free(&averages->transposed);
     free(averages->value);
+    free(averages->force);
     free(averages->of_corner);
     free(averages->corner_force);
     free(averages->corner_ptr);

@@ -1,39 +1,49 @@
 /* Face averages and node values of the displacement field, which the corners of smoothed cells use: corner k
- * of a cell stands for the face opposite vertex k (its average, equation (6) of lib/README.md), or for vertex
- * k (its value).
+ * of a cell stands for the face opposite vertex k (its average, equation (6) of lib/README.md), and for
+ * vertex k (its value).
  *
- * An evaluation computes the averages (apply), evaluates the cells, and adds the forces of the corners on
- * their averages to the nodes (transposed apply), equation (12) of lib/README.md. */
+ * An evaluation computes the averages (apply), evaluates the cells, sums the forces of the corners on each
+ * average, and adds these to the nodes (transposed apply), equation (12) of lib/README.md. */
 #ifndef SOLID_FIELD_AVERAGES_H
 #define SOLID_FIELD_AVERAGES_H
 
-#include "solid/sparse_operator.h"
+#include "base/sparse.h"
+
+/* Displacements and forces stand so many doubles apart in the force loop: 2, or 3 padded to 4. */
+#define VECTOR_STRIDE(dim) ((dim) == 2 ? 2 : 4)
 
 struct field_averages {
-    struct sparse_operator op; /* a row for each mean; all slices but the last are full */
-    double *value;             /* at the last evaluation, m: OPERATOR_STRIDE(dim) for each mean */
-    int32_t *of_corner;        /* corner_count: where the value begins that each corner looks at */
-    double *corner_force; /* (corner_count + 1) * stride: what each corner puts on its mean, N (2D: N/m); last
-                             zeros */
-    int64_t *corner_ptr;  /* op.slice_count + 1: for each slice the corners of its averages, ascending, */
-    int32_t *corner;      /* corner_ptr[] * OPERATOR_SLICE: in turn, filled up with the zeros */
+    struct sparse matrix, transposed; /* B: a row for each face, then one for each node; and its transpose */
+    double *value;                    /* of each row at the last evaluation, m: VECTOR_STRIDE(dim) for each */
+    double *force;                    /* on each row, likewise, N (2D: N/m) */
+    int64_t corner_count;             /* of faces; as many of nodes follow */
+    int32_t *of_corner;               /* 2 corner_count: where the value begins that each corner looks at */
+    double *corner_force;             /* 2 corner_count, likewise: what each corner puts on its row */
+    int64_t *corner_ptr;              /* row_count + 1: the corners of each row, */
+    int32_t *corner;                  /* 2 corner_count: by rows, ascending */
+};
+
+/* One of the caller's tables: averages over the faces, or values at the nodes. */
+struct average_table {
+    int64_t row_count;
+    const int64_t *order; /* row_count: the rows in an order that keeps near ones near */
+    const int64_t *ptr;   /* row_count + 1 */
+    const int32_t *idx;
+    const double *phi;
+    const int32_t *row_of_corner; /* corner_count */
 };
 
 struct field_averages_input {
     int dim;
-    int64_t node_count, row_count; /* rows: the averages */
-    const int64_t *order;          /* row_count: the caller's rows in an order that keeps near ones near */
-    const int64_t *ptr;            /* the caller's table: row_count + 1 */
-    const int32_t *idx;
-    const double *phi;
+    int64_t node_count, corner_count;
     const int32_t *place; /* node_count: the number by which each of the caller's nodes goes in the body */
-    int64_t corner_count;
-    const int32_t *row_of_corner; /* corner_count: the caller's row that each corner looks at */
+    struct average_table tables[2]; /* faces, nodes */
 };
 
-/* Lay out a table; the arrays are copied. */
+/* Lay out the tables but for the transpose; the arrays are copied. */
 MUST_CHECK enum status field_averages_build(const struct field_averages_input *input,
                                             struct field_averages *averages, struct error *error);
+MUST_CHECK enum status field_averages_transpose(struct field_averages *averages, struct error *error);
 void field_averages_free(struct field_averages *averages);
 
 #endif

@@ -4,39 +4,27 @@
 
 #include "base/processor.h"
 #include "solid/kernel_cells.h"
-#include "solid/kernel_averages.h"
+#include "solid/kernel_sparse.h"
 
 #define KERNEL_SET(set, dim, attribute)                                                                      \
-    attribute static void place_##set##_##dim(struct body *body, int64_t first, int64_t last,                \
-                                              const double *u)                                               \
+    attribute static void apply_##set##_##dim(const struct sparse *matrix, int64_t begin, int64_t end,       \
+                                              const double *x, double *y)                                    \
     {                                                                                                        \
-        kernel_place(body, first, last, dim, u);                                                             \
+        apply_rows_##dim(matrix, begin, end, x, y);                                                          \
     }                                                                                                        \
-    attribute static void sum_##set##_##dim(const struct body *body, int64_t first, int64_t last,            \
-                                            double *force)                                                   \
+    attribute static void sum_corners_##set##_##dim(struct field_averages *averages, int64_t begin,          \
+                                                    int64_t end)                                             \
     {                                                                                                        \
-        sum_nodes_##dim(body, first, last, force);                                                           \
+        sum_corners_##dim(averages, begin, end);                                                             \
     }                                                                                                        \
-    attribute static void apply_##set##_##dim(struct body *body, int64_t b, struct block_state *state,       \
-                                              double *scratch)                                               \
+    attribute static void point_gradients_##set##_##dim(struct body *body, int64_t b)                        \
     {                                                                                                        \
-        kernel_apply(&body->gradients, b, dim, body->u, state->F, scratch);                                  \
-        kernel_determinants(&body->blocks[b], dim, state);                                                   \
+        kernel_point_gradients(body, &body->blocks[b], dim);                                                 \
+        kernel_determinants(body, &body->blocks[b], dim);                                                    \
     }                                                                                                        \
-    attribute static void apply_transposed_##set##_##dim(struct body *body, int64_t b, const block_rows P,   \
-                                                         double *scratch)                                    \
+    attribute static void point_forces_##set##_##dim(struct body *body, int64_t b, const block_rows P)       \
     {                                                                                                        \
-        kernel_apply_transposed(&body->gradients, b, dim, P, scratch);                                       \
-    }                                                                                                        \
-    attribute static void apply_averages_##set##_##dim(struct field_averages *averages, int64_t b,           \
-                                                       const double *u, double *scratch)                     \
-    {                                                                                                        \
-        kernel_apply_averages(averages, b, dim, u, scratch);                                                 \
-    }                                                                                                        \
-    attribute static void apply_averages_transposed_##set##_##dim(struct field_averages *averages,           \
-                                                                  int64_t b, double *scratch)                \
-    {                                                                                                        \
-        kernel_apply_averages_transposed(averages, b, dim, scratch);                                         \
+        kernel_point_forces(body, &body->blocks[b], dim, P);                                                 \
     }                                                                                                        \
     attribute static void cell_gradients_##set##_##dim(struct body *body, int64_t b)                         \
     {                                                                                                        \
@@ -52,10 +40,9 @@
     {                                                                                                        \
         kernel_cell_forces(body, &body->blocks[b], dim, P, T);                                               \
     }                                                                                                        \
-    attribute static void neo_hookean_##set##_##dim(const struct body *body, int64_t b,                      \
-                                                    struct block_view state, block_rows P)                   \
+    attribute static void neo_hookean_##set##_##dim(const struct body *body, int64_t b, block_rows P)        \
     {                                                                                                        \
-        kernel_neo_hookean(body, &body->blocks[b], state, dim, P);                                           \
+        kernel_neo_hookean(body, &body->blocks[b], dim, P);                                                  \
     }                                                                                                        \
     attribute static void bounds_##set##_##dim(const double *g, int64_t count, const double A[9],            \
                                                double smoothing, double *sum)                                \
@@ -64,12 +51,10 @@
     }                                                                                                        \
     static const struct force_kernels kernels_##set##_##dim = {                                              \
         .name = #set,                                                                                        \
-        .place = place_##set##_##dim,                                                                        \
-        .sum = sum_##set##_##dim,                                                                            \
         .apply = apply_##set##_##dim,                                                                        \
-        .apply_transposed = apply_transposed_##set##_##dim,                                                  \
-        .apply_averages = apply_averages_##set##_##dim,                                                      \
-        .apply_averages_transposed = apply_averages_transposed_##set##_##dim,                                \
+        .sum_corners = sum_corners_##set##_##dim,                                                            \
+        .point_gradients = point_gradients_##set##_##dim,                                                    \
+        .point_forces = point_forces_##set##_##dim,                                                          \
         .cell_gradients = cell_gradients_##set##_##dim,                                                      \
         .cell_neo_hookean = cell_neo_hookean_##set##_##dim,                                                  \
         .cell_forces = cell_forces_##set##_##dim,                                                            \

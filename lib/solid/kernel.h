@@ -4,38 +4,21 @@
 
 #include "solid/body.h"
 
-/* Matrices of the points of a block: row k of component k, points along it. A stress that is scattered has
- * zeros behind the last point, up to a whole group. */
-typedef double block_rows[9][OPERATOR_MAX_ROWS];
+/* Matrices of the points of a block: row k of component k, points along it. */
+typedef double block_rows[9][BLOCK_MOST_POINTS];
 
-/* What an evaluation finds at the points of a block; */
-struct block_state {
-    block_rows F;
-    double J[OPERATOR_MAX_ROWS];
-};
-
-/* that, or what the body keeps of it: components of F so far apart. */
-struct block_view {
-    const double *F, *J;
-    int64_t apart;
-};
-
-/* Each works on the block of that number. scratch: sparse_operator_scratch(). */
+/* Each works on the rows, nodes or block of that number. */
 struct force_kernels {
     const char *name;
-    /* For nodes first .. last - 1: displacements into the body's order; and force, in the caller's, as the
-     * sum of what the blocks put on them. */
-    void (*place)(struct body *body, int64_t first, int64_t last, const double *u);
-    void (*sum)(const struct body *body, int64_t first, int64_t last, double *force);
-    /* F and J of points from the table of gradients and body->u; and the forces of weighted stresses P, added
-     * to those of the block's accumulation block. */
-    void (*apply)(struct body *body, int64_t block, struct block_state *state, double *scratch);
-    void (*apply_transposed)(struct body *body, int64_t block, const block_rows P, double *scratch);
-    /* Averages from the field u; and the forces of what the corners put on them. */
-    void (*apply_averages)(struct field_averages *averages, int64_t block, const double *u, double *scratch);
-    void (*apply_averages_transposed)(struct field_averages *averages, int64_t block, double *scratch);
+    /* y = A x for rows begin .. end - 1, of vectors VECTOR_STRIDE(dim) apart. */
+    void (*apply)(const struct sparse *matrix, int64_t begin, int64_t end, const double *x, double *y);
+    /* The forces of the corners on averages begin .. end - 1. */
+    void (*sum_corners)(struct field_averages *averages, int64_t begin, int64_t end);
+    /* F and J of points from the derivatives of the field; and weighted stresses P in the place of these. */
+    void (*point_gradients)(struct body *body, int64_t block);
+    void (*point_forces)(struct body *body, int64_t block, const block_rows P);
     /* Weighted stresses of a block of neo-Hookean points. */
-    void (*neo_hookean)(const struct body *body, int64_t block, struct block_view state, block_rows P);
+    void (*neo_hookean)(const struct body *body, int64_t block, block_rows P);
     /* What gradients g[count * dim] add to bounds of the stiffness: g A g, if positive, and smoothing |g|^2.
      */
     void (*bounds)(const double *g, int64_t count, const double A[9], double smoothing, double *sum);
@@ -48,9 +31,6 @@ struct force_kernels {
 
 /* Sets by name, plain, avx2, avx512: NULL where the processor lacks it; the best one for NULL. */
 const struct force_kernels *force_kernels_select(const char *name, int dim);
-
-/* Work arrays for so many threads; body_build() makes those for the threads it chooses. */
-MUST_CHECK enum status body_make_scratch(struct body *body, int threads, struct error *error);
 
 /* What body_diagonal needs. */
 MUST_CHECK enum status body_make_bounds(struct body *body, struct error *error);

@@ -5,19 +5,20 @@
 
 #include "solid/kernel_points.h"
 
-/* What the corners of a block's cells look at: component a of corner k in row k dim + a, cells along it. */
-typedef double block_corners[12][OPERATOR_MAX_ROWS];
+/* What the corners of a block's cells look at, faces or nodes, whose corners begin at `first`: component a of
+ * corner k in row k dim + a, cells along it. */
+typedef double block_corners[12][BLOCK_MOST_POINTS];
 
-KERNEL_INLINE void read_corners(const struct field_averages *averages, const struct block *block, int dim,
-                                block_corners corners)
+KERNEL_INLINE void read_corners(const struct field_averages *averages, int64_t first,
+                                const struct block *block, int dim, block_corners corners)
 {
-    const int32_t *of_corner = averages->of_corner + block->first_point * (dim + 1);
+    const int32_t *of_corner = averages->of_corner + first + block->first_point * (dim + 1);
     int64_t last = block->point_count - 1;
     for (int64_t i = 0; i <= last; i += 4) {
         for (int k = 0; k <= dim; k++) {
-            const double *from[OPERATOR_SLICE];
+            const double *from[4];
             quad4 value[4];
-            for (int r = 0; r < OPERATOR_SLICE; r++) { /* the last one again where there are no more */
+            for (int r = 0; r < 4; r++) { /* the last one again where there are no more */
                 from[r] = averages->value + of_corner[(i + r < last ? i + r : last) * (dim + 1) + k];
             }
             load_components(from, dim, value);
@@ -28,29 +29,29 @@ KERNEL_INLINE void read_corners(const struct field_averages *averages, const str
     }
 }
 
-KERNEL_INLINE void write_corners(struct field_averages *averages, const struct block *block, int dim,
-                                 const block_corners corners)
+KERNEL_INLINE void write_corners(struct field_averages *averages, int64_t first, const struct block *block,
+                                 int dim, const block_corners corners)
 {
-    int64_t i = 0, stride = (dim + 1) * OPERATOR_STRIDE(dim);
-    double *force = averages->corner_force + block->first_point * stride;
-    for (; i + OPERATOR_SLICE <= block->point_count; i += OPERATOR_SLICE) {
+    int64_t i = 0, stride = (dim + 1) * VECTOR_STRIDE(dim);
+    double *force = averages->corner_force + first * VECTOR_STRIDE(dim) + block->first_point * stride;
+    for (; i + 4 <= block->point_count; i += 4) {
         for (int k = 0; k <= dim; k++) {
-            double rows[OPERATOR_SLICE * OPERATOR_STRIDE(3)];
+            double rows[4 * VECTOR_STRIDE(3)];
             quad4 value[4] = {{0.0}};
             for (int a = 0; a < dim; a++) {
                 LOAD(value[a], corners[k * dim + a] + i);
             }
             store_components(value, dim, rows);
-            for (int r = 0; r < OPERATOR_SLICE; r++) {
-                memcpy(force + (i + r) * stride + k * OPERATOR_STRIDE(dim), rows + r * OPERATOR_STRIDE(dim),
-                       OPERATOR_STRIDE(dim) * sizeof *rows);
+            for (int r = 0; r < 4; r++) {
+                memcpy(force + (i + r) * stride + k * VECTOR_STRIDE(dim), rows + r * VECTOR_STRIDE(dim),
+                       VECTOR_STRIDE(dim) * sizeof *rows);
             }
         }
     }
     for (; i < block->point_count; i++) {
         for (int k = 0; k <= dim; k++) {
             for (int a = 0; a < dim; a++) {
-                force[i * stride + k * OPERATOR_STRIDE(dim) + a] = corners[k * dim + a][i];
+                force[i * stride + k * VECTOR_STRIDE(dim) + a] = corners[k * dim + a][i];
             }
         }
     }
@@ -116,16 +117,17 @@ KERNEL_INLINE void keep_rows(const struct body *body, const struct block *block,
  * the least determinant is that of F. */
 KERNEL_INLINE void kernel_cell_gradients(struct body *body, struct block *block, int dim)
 {
+    const struct field_averages *averages = &body->cells.averages;
     block_corners mean, value;
     block_rows F, interpolant;
-    double determinant[OPERATOR_MAX_ROWS], J[OPERATOR_MAX_ROWS];
-    read_corners(&body->cells.faces, block, dim, mean);
-    read_corners(&body->cells.nodes, block, dim, value);
+    double determinant[BLOCK_MOST_POINTS], J[BLOCK_MOST_POINTS];
+    read_corners(averages, 0, block, dim, mean);
+    read_corners(averages, averages->corner_count, block, dim, value);
     for (int64_t i = 0; i < block->point_count; i += LANES) {
         lanes hat[9], f[9], h[9], C[9], volume;
         load_hats(body, block->first_point + i, dim, hat);
-        corner_gradient((const double(*)[OPERATOR_MAX_ROWS])mean, i, dim, hat, f);
-        corner_gradient((const double(*)[OPERATOR_MAX_ROWS])value, i, dim, hat, h);
+        corner_gradient((const double(*)[BLOCK_MOST_POINTS])mean, i, dim, hat, f);
+        corner_gradient((const double(*)[BLOCK_MOST_POINTS])value, i, dim, hat, h);
         for (int k = 0; k < dim * dim; k++) {
             double unit = k % (dim + 1) == 0 ? 1.0 : 0.0;
             f[k] = unit - (double)dim * f[k];
@@ -143,8 +145,8 @@ KERNEL_INLINE void kernel_cell_gradients(struct body *body, struct block *block,
         }
         STORE(J + i, volume);
     }
-    keep_rows(body, block, dim * dim, (const double(*)[OPERATOR_MAX_ROWS])F, body->F);
-    keep_rows(body, block, dim * dim, (const double(*)[OPERATOR_MAX_ROWS])interpolant,
+    keep_rows(body, block, dim * dim, (const double(*)[BLOCK_MOST_POINTS])F, body->F);
+    keep_rows(body, block, dim * dim, (const double(*)[BLOCK_MOST_POINTS])interpolant,
               body->cells.interpolant);
     memcpy(body->J + block->first_point, J, (size_t)block->point_count * sizeof *J);
     note_least(block, determinant);
@@ -170,7 +172,7 @@ KERNEL_INLINE void cofactor_along(const lanes H[9], const lanes D[9], int dim, l
 KERNEL_INLINE void kernel_cell_neo_hookean(const struct body *body, const struct block *block, int dim,
                                            block_rows P, block_rows T)
 {
-    double weighted_pressure[OPERATOR_MAX_ROWS];
+    double weighted_pressure[BLOCK_MOST_POINTS];
     kernel_pressures(body, block, body->J + block->first_point, dim, weighted_pressure);
     for (int64_t i = 0; i < block->point_count; i += LANES) {
         lanes F[9], H[9], D[9], C[9], J, weight, shear, bulk, pressure, stiffness;
@@ -207,6 +209,7 @@ KERNEL_INLINE void kernel_cell_neo_hookean(const struct body *body, const struct
 KERNEL_INLINE void kernel_cell_forces(struct body *body, const struct block *block, int dim,
                                       const block_rows P, const block_rows T)
 {
+    struct field_averages *averages = &body->cells.averages;
     block_corners at_faces, at_nodes;
     for (int64_t i = 0; i < block->point_count; i += LANES) {
         lanes hat[9], stress[9];
@@ -220,8 +223,8 @@ KERNEL_INLINE void kernel_cell_forces(struct body *body, const struct block *blo
         }
         corner_forces(stress, i, dim, hat, 1.0, at_nodes);
     }
-    write_corners(&body->cells.faces, block, dim, (const double(*)[OPERATOR_MAX_ROWS])at_faces);
-    write_corners(&body->cells.nodes, block, dim, (const double(*)[OPERATOR_MAX_ROWS])at_nodes);
+    write_corners(averages, 0, block, dim, (const double(*)[BLOCK_MOST_POINTS])at_faces);
+    write_corners(averages, averages->corner_count, block, dim, (const double(*)[BLOCK_MOST_POINTS])at_nodes);
 }
 
 #endif

@@ -56,7 +56,7 @@ KERNEL_INLINE void lanes_determinant(const lanes F[9], const lanes C[9], int dim
 }
 
 /* The least determinant of a block. */
-KERNEL_INLINE void note_least(struct block *block, const double determinant[OPERATOR_MAX_ROWS])
+KERNEL_INLINE void note_least(struct block *block, const double *determinant)
 {
     double least = INFINITY;
     int64_t worst = 0;
@@ -71,16 +71,18 @@ KERNEL_INLINE void note_least(struct block *block, const double determinant[OPER
 }
 
 /* J from F, and the least of the block. */
-KERNEL_INLINE void kernel_determinants(struct block *block, int dim, struct block_state *state)
+KERNEL_INLINE void kernel_determinants(struct body *body, struct block *block, int dim)
 {
+    double determinant[BLOCK_MOST_POINTS + LANES];
     for (int64_t i = 0; i < block->point_count; i += LANES) {
         lanes F[9], C[9], J;
-        load_matrix(state->F[0] + i, OPERATOR_MAX_ROWS, dim, F);
+        load_matrix(body->F + block->first_point + i, body->point_count, dim, F);
         lanes_cofactor(F, dim, C);
         lanes_determinant(F, C, dim, &J);
-        STORE(state->J + i, J);
+        STORE(determinant + i, J);
     }
-    note_least(block, state->J);
+    memcpy(body->J + block->first_point, determinant, (size_t)block->point_count * sizeof *determinant);
+    note_least(block, determinant);
 }
 
 /* x^(-1/3) for x > 0 by Newton's iteration from a guess by the exponent: exact to a few ulp. */
@@ -144,18 +146,18 @@ KERNEL_INLINE void neo_hookean_shape(const lanes F[9], const lanes *J, const lan
 }
 
 /* P = mu J^(-2/3) (F - I1/3 F^-T) + p J F^-T, times the weight. */
-KERNEL_INLINE void kernel_neo_hookean(const struct body *body, const struct block *block,
-                                      struct block_view state, int dim, block_rows P)
+KERNEL_INLINE void kernel_neo_hookean(const struct body *body, const struct block *block, int dim,
+                                      block_rows P)
 {
-    double weighted_pressure[OPERATOR_MAX_ROWS];
-    kernel_pressures(body, block, state.J, dim, weighted_pressure);
+    double weighted_pressure[BLOCK_MOST_POINTS];
+    kernel_pressures(body, block, body->J + block->first_point, dim, weighted_pressure);
     for (int64_t i = 0; i < block->point_count; i += LANES) {
         lanes F[9], C[9], J, weight, shear, bulk, pressure;
         struct lanes_shape shape;
         int64_t q = block->first_point + i;
-        load_matrix(state.F + i, state.apart, dim, F);
+        load_matrix(body->F + q, body->point_count, dim, F);
         lanes_cofactor(F, dim, C);
-        LOAD(J, state.J + i);
+        LOAD(J, body->J + q);
         LOAD(weight, body->weight + q);
         load_moduli(body, q, &shear, &bulk);
         LOAD(pressure, weighted_pressure + i);

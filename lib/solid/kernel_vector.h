@@ -23,15 +23,6 @@ typedef int32_t lanes_int __attribute__((vector_size(4 * LANES)));
 #define LOAD(vector, from) memcpy(&(vector), (from), sizeof(vector))
 #define STORE(to, vector) memcpy((to), &(vector), sizeof(vector))
 
-/* A table ahead of the place where a kernel reads is asked for, into the second cache: what waits for memory
- * then runs beside the arithmetic. `bytes` at a time, from `at` on. */
-KERNEL_INLINE void prefetch(const char *at, int64_t bytes)
-{
-    for (int64_t i = 0; i < bytes; i += 64) {
-        __builtin_prefetch(at + i, 0, 2);
-    }
-}
-
 /* Transpose the 4 x 4 matrix whose rows these are. */
 KERNEL_INLINE void transpose(quad4 row[4])
 {
@@ -46,11 +37,11 @@ KERNEL_INLINE void transpose(quad4 row[4])
 }
 
 /* Component a of four vectors, in the lanes of x[a]. */
-KERNEL_INLINE void load_components(const double *const from[OPERATOR_SLICE], int dim, quad4 x[4])
+KERNEL_INLINE void load_components(const double *const from[4], int dim, quad4 x[4])
 {
     if (dim == 2) {
-        pair2 v[OPERATOR_SLICE];
-        for (int r = 0; r < OPERATOR_SLICE; r++) {
+        pair2 v[4];
+        for (int r = 0; r < 4; r++) {
             LOAD(v[r], from[r]);
         }
         pair2 first = __builtin_shufflevector(v[0], v[1], 0, 2);
@@ -60,14 +51,14 @@ KERNEL_INLINE void load_components(const double *const from[OPERATOR_SLICE], int
         last = __builtin_shufflevector(v[2], v[3], 1, 3);
         x[1] = __builtin_shufflevector(first, last, 0, 1, 2, 3);
     } else {
-        for (int r = 0; r < OPERATOR_SLICE; r++) {
+        for (int r = 0; r < 4; r++) {
             LOAD(x[r], from[r]);
         }
         transpose(x);
     }
 }
 
-/* The converse: the four vectors, one behind the other, OPERATOR_STRIDE(dim) apart. */
+/* The converse: the four vectors, one behind the other, VECTOR_STRIDE(dim) apart. */
 KERNEL_INLINE void store_components(const quad4 x[4], int dim, double *to)
 {
     if (dim == 2) {
@@ -78,8 +69,8 @@ KERNEL_INLINE void store_components(const quad4 x[4], int dim, double *to)
     } else {
         quad4 row[4] = {x[0], x[1], x[2], {0.0}};
         transpose(row);
-        for (int r = 0; r < OPERATOR_SLICE; r++) {
-            STORE(to + r * OPERATOR_STRIDE(3), row[r]);
+        for (int r = 0; r < 4; r++) {
+            STORE(to + r * VECTOR_STRIDE(3), row[r]);
         }
     }
 }

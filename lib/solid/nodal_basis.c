@@ -195,34 +195,6 @@ done:
     return status;
 }
 
-static enum status transpose(struct nodal_basis *basis, struct error *error)
-{
-    enum status status;
-    int64_t nodes = basis->node_count, entries = basis->ptr[nodes];
-    int64_t *next = NULL;
-    TRY(NEW_ARRAY(&next, nodes, error));
-    TRY(NEW_ARRAY(&basis->transposed_ptr, nodes + 1, error));
-    TRY(NEW_ARRAY(&basis->transposed_idx, entries, error));
-    TRY(NEW_ARRAY(&basis->transposed_value, entries, error));
-    for (int64_t i = 0; i < entries; i++) {
-        basis->transposed_ptr[basis->idx[i] + 1]++;
-    }
-    for (int64_t n = 0; n < nodes; n++) {
-        basis->transposed_ptr[n + 1] += basis->transposed_ptr[n];
-        next[n] = basis->transposed_ptr[n];
-    }
-    for (int64_t n = 0; n < nodes; n++) {
-        for (int64_t i = basis->ptr[n]; i < basis->ptr[n + 1]; i++) {
-            int64_t at = next[basis->idx[i]]++;
-            basis->transposed_idx[at] = (int32_t)n;
-            basis->transposed_value[at] = basis->value[i];
-        }
-    }
-done:
-    free(next);
-    return status;
-}
-
 enum status nodal_basis_build(int dim, int64_t node_count, const double *X, const int64_t *ptr,
                               const int32_t *idx, const double *phi, struct nodal_basis *basis,
                               struct error *error)
@@ -232,13 +204,14 @@ enum status nodal_basis_build(int dim, int64_t node_count, const double *X, cons
     struct chunks chunks = chunks_of(node_count, NODES_FOR_THREAD);
     struct error errors[CHUNKS_MOST];
     enum status of_chunk[CHUNKS_MOST];
-    int64_t entries = ptr[node_count];
-    *basis = (struct nodal_basis){.dim = dim, .node_count = node_count, .ptr = ptr, .idx = idx};
-    TRY(NEW_ARRAY(&basis->value, entries, error));
+    *basis = (struct nodal_basis){.dim = dim};
+    TRY(sparse_new(node_count, node_count, ptr[node_count], &basis->matrix, error));
+    memcpy(basis->matrix.ptr, ptr, (size_t)(node_count + 1) * sizeof *ptr);
+    memcpy(basis->matrix.idx, idx, (size_t)ptr[node_count] * sizeof *idx);
 #pragma omp parallel for schedule(dynamic) num_threads(chunks.threads)
     for (int64_t c = 0; c < chunks.count; c++) {
-        of_chunk[c] = make_rows(&table, chunks_begin(&chunks, c), chunks_begin(&chunks, c + 1), basis->value,
-                                &errors[c]);
+        of_chunk[c] = make_rows(&table, chunks_begin(&chunks, c), chunks_begin(&chunks, c + 1),
+                                basis->matrix.value, &errors[c]);
     }
     for (int64_t c = 0; c < chunks.count; c++) {
         if (of_chunk[c] != STATUS_OK) {
@@ -247,7 +220,7 @@ enum status nodal_basis_build(int dim, int64_t node_count, const double *X, cons
             goto done;
         }
     }
-    status = transpose(basis, error);
+    status = sparse_transpose(&basis->matrix, &basis->transposed, error);
 done:
     if (status != STATUS_OK) {
         nodal_basis_free(basis);
@@ -257,63 +230,28 @@ done:
 
 double nodal_basis_magnification(const struct nodal_basis *basis)
 {
+    const struct sparse *matrix = &basis->matrix;
     double sum = 0.0;
-    for (int64_t i = 0; i < basis->ptr[basis->node_count]; i++) {
-        sum += fabs(basis->value[i]);
+    for (int64_t i = 0; i < matrix->ptr[matrix->row_count]; i++) {
+        sum += fabs(matrix->value[i]);
     }
-    return sum / (double)basis->node_count;
+    return sum / (double)matrix->row_count;
 }
 
 void nodal_basis_free(struct nodal_basis *basis)
 {
-    void *arrays[] = {basis->value, basis->transposed_ptr, basis->transposed_idx, basis->transposed_value};
-    for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) {
-        free(arrays[i]);
-    }
-    *basis = (struct nodal_basis){0};
-}
-
-static inline __attribute__((always_inline)) void multiply(int64_t begin, int64_t end, int dim,
-                                                           const int64_t *ptr, const int32_t *idx,
-                                                           const double *value, const double *x, double *y)
-{
-    for (int64_t n = begin; n < end; n++) {
-        double sum[3] = {0.0, 0.0, 0.0};
-        for (int64_t i = ptr[n]; i < ptr[n + 1]; i++) {
-            const double *at = x + (int64_t)idx[i] * dim;
-            for (int a = 0; a < dim; a++) {
-                sum[a] += value[i] * at[a];
-            }
-        }
-        for (int a = 0; a < dim; a++) {
-            y[n * dim + a] = sum[a];
-        }
-    }
-}
-
-static void multiply_threaded(const struct nodal_basis *basis, const int64_t *ptr, const int32_t *idx,
-                              const double *value, const double *x, double *y)
-{
-    struct chunks chunks = chunks_of(basis->node_count, NODES_FOR_THREAD);
-#pragma omp parallel for schedule(static) num_threads(chunks.threads)
-    for (int64_t c = 0; c < chunks.count; c++) {
-        int64_t begin = chunks_begin(&chunks, c), end = chunks_begin(&chunks, c + 1);
-        if (basis->dim == 2) {
-            multiply(begin, end, 2, ptr, idx, value, x, y);
-        } else {
-            multiply(begin, end, 3, ptr, idx, value, x, y);
-        }
-    }
+    sparse_free(&basis->matrix);
+    sparse_free(&basis->transposed);
 }
 
 void nodal_basis_apply(const struct nodal_basis *basis, const double *v, double *u)
 {
-    multiply_threaded(basis, basis->ptr, basis->idx, basis->value, v, u);
+    sparse_apply(&basis->matrix, basis->dim, v, u);
 }
 
 void nodal_basis_apply_transposed(const struct nodal_basis *basis, const double *f, double *v)
 {
-    multiply_threaded(basis, basis->transposed_ptr, basis->transposed_idx, basis->transposed_value, f, v);
+    sparse_apply(&basis->transposed, basis->dim, f, v);
 }
 
 enum status nodal_basis_transform_rows(const struct nodal_basis *basis, const struct constraint_rows *rows,
@@ -324,23 +262,23 @@ enum status nodal_basis_transform_rows(const struct nodal_basis *basis, const st
     int32_t *idx = NULL;
     double *phi = NULL;
     constraint_rows_init(transformed, rows->dim);
-    TRY(NEW_ARRAY(&at, basis->node_count, error));
-    TRY(NEW_ARRAY(&idx, basis->node_count, error));
-    TRY(NEW_ARRAY(&phi, basis->node_count, error));
-    memset(at, -1, (size_t)basis->node_count * sizeof *at);
+    TRY(NEW_ARRAY(&at, basis->matrix.row_count, error));
+    TRY(NEW_ARRAY(&idx, basis->matrix.row_count, error));
+    TRY(NEW_ARRAY(&phi, basis->matrix.row_count, error));
+    memset(at, -1, (size_t)basis->matrix.row_count * sizeof *at);
     for (int64_t l = 0, r = 0; l < rows->list_count; l++) {
         struct average average = constraint_rows_average(rows, r);
         int64_t length = 0;
         for (int64_t i = 0; i < average.length; i++) {
             int32_t node = average.idx[i];
-            for (int64_t k = basis->ptr[node]; k < basis->ptr[node + 1]; k++) {
-                int32_t column = basis->idx[k];
+            for (int64_t k = basis->matrix.ptr[node]; k < basis->matrix.ptr[node + 1]; k++) {
+                int32_t column = basis->matrix.idx[k];
                 if (at[column] < 0) {
                     at[column] = length;
                     idx[length] = column;
                     phi[length++] = 0.0;
                 }
-                phi[at[column]] += average.phi[i] * basis->value[k];
+                phi[at[column]] += average.phi[i] * basis->matrix.value[k];
             }
         }
         for (int64_t i = 0; i < length; i++) {

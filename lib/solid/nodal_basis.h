@@ -12,24 +12,18 @@
 #define SOLID_NODAL_BASIS_H
 
 #include "base/status.h"
+#include "base/sparse.h"
 #include "solid/constraint.h"
 
 #include <stdint.h>
 
-/* A sparse matrix by rows, and its transpose; the same bits for any number of threads. */
 struct nodal_basis {
     int dim;
-    int64_t node_count;
-    const int64_t *ptr; /* node_count + 1; the caller's, as idx */
-    const int32_t *idx; /* ptr[node_count]: columns */
-    double *value;
-    int64_t *transposed_ptr; /* the transpose, likewise */
-    int32_t *transposed_idx;
-    double *transposed_value;
+    struct sparse matrix, transposed; /* Q, and Q^T; node_count rows each */
 };
 
 /* From the values of the shape functions at the nodes, in CSR: ptr[node_count + 1], idx and phi;
- * X[node_count * dim], m. ptr and idx must outlive the basis. */
+ * X[node_count * dim], m. */
 MUST_CHECK enum status nodal_basis_build(int dim, int64_t node_count, const double *X, const int64_t *ptr,
                                          const int32_t *idx, const double *phi, struct nodal_basis *basis,
                                          struct error *error);

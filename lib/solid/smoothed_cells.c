@@ -126,47 +126,18 @@ static enum status check_table(const struct told *table, int64_t rows, int dim, 
     return STATUS_OK;
 }
 
-/* A row for each node; its corners are the vertices of the cells. */
-static enum status build_nodes(const struct smoothed_cells_input *input, const struct body *body,
-                               struct field_averages *averages, struct error *error)
+/* A row for each face, whose corners are those opposite it, and for each node, whose corners are the vertices
+ * of the cells there. */
+static enum status build_averages(const struct smoothed_cells_input *input, const struct body *body,
+                                  struct smoothed_cells *smoothed, struct error *error)
 {
     enum status status;
-    int corners = body->dim + 1;
-    int32_t *node_of_corner = NULL;
-    const struct told table = {"node.phi",      "node",          input->node_ptr,
-                               input->node_idx, input->node_phi, input->x};
-    TRY(check_table(&table, body->node_count, body->dim, input->x, error));
-    TRY(NEW_ARRAY(&node_of_corner, body->point_count * corners, error));
-    for (int64_t q = 0; q < body->point_count; q++) {
-        memcpy(node_of_corner + q * corners, input->cell_node + body->order[q] * corners,
-               (size_t)corners * sizeof *node_of_corner);
-    }
-    struct field_averages_input nodes = {.dim = body->dim,
-                                         .node_count = body->node_count,
-                                         .row_count = body->node_count,
-                                         .order = body->node_order,
-                                         .ptr = input->node_ptr,
-                                         .idx = input->node_idx,
-                                         .phi = input->node_phi,
-                                         .place = body->node_place,
-                                         .corner_count = body->point_count * corners,
-                                         .row_of_corner = node_of_corner};
-    status = field_averages_build(&nodes, averages, error);
-done:
-    free(node_of_corner);
-    return status;
-}
-
-/* A row for each face; its corners are those opposite it. */
-static enum status build_faces(const struct smoothed_cells_input *input, const struct body *body,
-                               int32_t *face_of_corner, struct field_averages *averages, struct error *error)
-{
-    enum status status;
-    int dim = body->dim;
-    int64_t cell_count = body->point_count;
+    int dim = body->dim, corners = dim + 1;
     int64_t *order = NULL;
+    int32_t *node_of_corner = NULL, *face_of_corner = NULL;
     double *x = NULL;
-    TRY(match_corners(input, dim, cell_count, body->order, face_of_corner, error));
+    TRY(NEW_ARRAY(&face_of_corner, body->point_count * corners, error));
+    TRY(match_corners(input, dim, body->point_count, body->order, face_of_corner, error));
     TRY(NEW_ARRAY(&x, input->face_count * dim, error));
     for (int64_t f = 0; f < input->face_count; f++) {
         for (int i = 0; i < dim * dim; i++) {
@@ -174,22 +145,35 @@ static enum status build_faces(const struct smoothed_cells_input *input, const s
                 input->x[(int64_t)input->face_node[f * dim + i / dim] * dim + i % dim] / dim;
         }
     }
-    const struct told table = {"face.phi", "face", input->face_ptr, input->face_idx, input->face_phi, x};
-    TRY(check_table(&table, input->face_count, dim, input->x, error));
+    const struct told faces = {"face.phi", "face", input->face_ptr, input->face_idx, input->face_phi, x};
+    const struct told nodes = {"node.phi",      "node",          input->node_ptr,
+                               input->node_idx, input->node_phi, input->x};
+    TRY(check_table(&faces, input->face_count, dim, input->x, error));
+    TRY(check_table(&nodes, body->node_count, dim, input->x, error));
     TRY(NEW_ARRAY(&order, input->face_count, error));
     TRY(renumber_morton(dim, input->face_count, x, NULL, order, error));
-    struct field_averages_input faces = {.dim = dim,
-                                         .node_count = body->node_count,
-                                         .row_count = input->face_count,
-                                         .order = order,
-                                         .ptr = input->face_ptr,
-                                         .idx = input->face_idx,
-                                         .phi = input->face_phi,
-                                         .place = body->node_place,
-                                         .corner_count = cell_count * (dim + 1),
-                                         .row_of_corner = face_of_corner};
-    status = field_averages_build(&faces, averages, error);
+    TRY(NEW_ARRAY(&node_of_corner, body->point_count * corners, error));
+    for (int64_t q = 0; q < body->point_count; q++) {
+        memcpy(node_of_corner + q * corners, input->cell_node + body->order[q] * corners,
+               (size_t)corners * sizeof *node_of_corner);
+    }
+    const struct field_averages_input averages = {
+        .dim = dim,
+        .node_count = body->node_count,
+        .corner_count = body->point_count * corners,
+        .place = body->node_place,
+        .tables = {
+            {input->face_count, order, input->face_ptr, input->face_idx, input->face_phi, face_of_corner},
+            {body->node_count, body->node_order, input->node_ptr, input->node_idx, input->node_phi,
+             node_of_corner}}};
+    TRY(field_averages_build(&averages, &smoothed->averages, error));
+    if (input->copied != NULL) {
+        input->copied(input->context);
+    }
+    status = field_averages_transpose(&smoothed->averages, error);
 done:
+    free(node_of_corner);
+    free(face_of_corner);
     free(order);
     free(x);
     return status;
@@ -200,15 +184,10 @@ enum status smoothed_cells_build(const struct smoothed_cells_input *input, const
 {
     enum status status;
     int64_t entries = body->point_count * body->dim * body->dim + BODY_POINT_PADDING;
-    *smoothed = (struct smoothed_cells){.cell_node = input->cell_node,
-                                        .face_ptr = input->face_ptr,
-                                        .face_idx = input->face_idx,
-                                        .face_phi = input->face_phi};
+    *smoothed = (struct smoothed_cells){0};
     TRY(set_hats(input, body->dim, body->point_count, body->order, smoothed, error));
     TRY(NEW_ARRAY(&smoothed->interpolant, entries, error));
-    TRY(NEW_ARRAY(&smoothed->face_of_corner, body->point_count * (body->dim + 1), error));
-    TRY(build_faces(input, body, smoothed->face_of_corner, &smoothed->faces, error));
-    TRY(build_nodes(input, body, &smoothed->nodes, error));
+    TRY(build_averages(input, body, smoothed, error));
 done:
     if (status != STATUS_OK) {
         smoothed_cells_free(smoothed);
@@ -218,9 +197,7 @@ done:
 
 void smoothed_cells_free(struct smoothed_cells *smoothed)
 {
-    field_averages_free(&smoothed->faces);
-    field_averages_free(&smoothed->nodes);
-    free(smoothed->face_of_corner);
+    field_averages_free(&smoothed->averages);
     free(smoothed->interpolant);
     free(smoothed->hat);
     *smoothed = (struct smoothed_cells){0};
@@ -238,19 +215,32 @@ void smoothed_cells_hat_gradients(const struct body *body, int64_t q, double *gr
     }
 }
 
+/* The row of the averages that corner k of a cell looks at, of its faces (which = 0) or nodes. */
+static int64_t row_of_corner(const struct body *body, int64_t q, int which, int k)
+{
+    const struct field_averages *averages = &body->cells.averages;
+    return averages->of_corner[which * averages->corner_count + q * (body->dim + 1) + k] /
+           VECTOR_STRIDE(body->dim);
+}
+
+int32_t smoothed_cells_node(const struct body *body, int64_t q, int k)
+{
+    int64_t faces = body->cells.averages.matrix.row_count - body->node_count;
+    return (int32_t)(row_of_corner(body, q, 1, k) - faces);
+}
+
 enum status cell_functions_make(const struct body *body, struct cell_functions *functions,
                                 struct error *error)
 {
     enum status status;
-    const struct smoothed_cells *cells = &body->cells;
+    const struct sparse *matrix = body->smoothed ? &body->cells.averages.matrix : &body->gradients;
     int64_t most = 0;
-    int corners = body->dim + 1;
     *functions = (struct cell_functions){0};
     for (int64_t q = 0; q < body->point_count; q++) {
-        int64_t sum = 0;
-        for (const int32_t *f = cells->face_of_corner + q * corners;
-             f < cells->face_of_corner + (q + 1) * corners; f++) {
-            sum += cells->face_ptr[*f + 1] - cells->face_ptr[*f];
+        int64_t sum = body->smoothed ? 0 : matrix->ptr[q * body->dim + 1] - matrix->ptr[q * body->dim];
+        for (int k = 0; k <= body->dim && body->smoothed; k++) {
+            int64_t row = row_of_corner(body, q, 0, k);
+            sum += matrix->ptr[row + 1] - matrix->ptr[row];
         }
         most = sum > most ? sum : most;
     }
@@ -275,22 +265,22 @@ void cell_functions_free(struct cell_functions *functions)
 /* A set by two arrays that need no clearing: Briggs and Torczon 1993. */
 void cell_functions_list(const struct body *body, int64_t q, struct cell_functions *functions)
 {
-    const struct smoothed_cells *cells = &body->cells;
+    const struct sparse *matrix = &body->cells.averages.matrix;
     int dim = body->dim;
     double hat[12];
     smoothed_cells_hat_gradients(body, q, hat);
     functions->count = 0;
     for (int k = 0; k <= dim; k++) {
-        int32_t face = cells->face_of_corner[q * (dim + 1) + k];
-        for (int64_t i = cells->face_ptr[face]; i < cells->face_ptr[face + 1]; i++) {
-            int32_t node = cells->face_idx[i], at = functions->place[node];
+        int64_t row = row_of_corner(body, q, 0, k);
+        for (int64_t i = matrix->ptr[row]; i < matrix->ptr[row + 1]; i++) {
+            int32_t node = matrix->idx[i], at = functions->place[node];
             if (at >= functions->count || functions->node[at] != node) {
                 at = functions->place[node] = (int32_t)functions->count++;
                 functions->node[at] = node;
                 memset(functions->gradient + at * dim, 0, (size_t)dim * sizeof *functions->gradient);
             }
             for (int a = 0; a < dim; a++) {
-                functions->gradient[at * dim + a] -= dim * cells->face_phi[i] * hat[k * dim + a];
+                functions->gradient[at * dim + a] -= dim * matrix->value[i] * hat[k * dim + a];
             }
         }
     }

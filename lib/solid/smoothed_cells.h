@@ -46,24 +46,19 @@ struct smoothed_cells_input {
     int64_t face_count;
     const int32_t *face_node; /* face_count * dim */
     const int32_t *face_cell; /* face_count * 2, or -1 beyond the boundary */
-    const int64_t *face_ptr;  /* averages of the shape functions over the faces: face_count + 1; with face_idx
-                                 and face_phi to outlive the body */
+    const int64_t *face_ptr;  /* averages of the shape functions over the faces: face_count + 1 */
     const int32_t *face_idx;
     const double *face_phi;
     const int64_t *node_ptr; /* and their values at the nodes: node_count + 1 */
     const int32_t *node_idx;
     const double *node_phi;
+    void (*copied)(void *context); /* when face_ptr, face_idx and face_phi are not needed any more; or NULL */
+    void *context;
 };
 
 struct smoothed_cells {
-    const int64_t *face_ptr; /* the caller's averages over faces */
-    const int32_t *face_idx;
-    const double *face_phi;
-    int32_t *face_of_corner;     /* (dim + 1) for each cell, in the body's order: the face opposite */
-    struct field_averages faces; /* means of the field over the faces */
-    struct field_averages nodes; /* values of the field at the vertices */
-    const int32_t *cell_node;    /* the caller's */
-    double *interpolant;         /* F_h at the last evaluation, as body->F */
+    struct field_averages averages; /* over the faces, and values at the nodes */
+    double *interpolant;            /* F_h at the last evaluation, as body->F */
     double *hat; /* dim * dim rows of as many as there are cells, and BODY_POINT_PADDING more: row (k - 1) dim
                     + b holds component b of the gradient of hat k = 1 .. dim in each cell; those of all
                     vanish together, 1/m */
@@ -78,7 +73,11 @@ void smoothed_cells_free(struct smoothed_cells *smoothed);
 /* Gradients of the hat functions of cell q, in the body's order: gradient[(dim + 1) * dim], 1/m. */
 void smoothed_cells_hat_gradients(const struct body *body, int64_t q, double *gradient);
 
-/* The shape functions that are not zero on a cell, and their mean gradients over it. */
+/* Vertex k of cell q, as a number in the body's order. */
+int32_t smoothed_cells_node(const struct body *body, int64_t q, int k);
+
+/* The shape functions that are not zero on a cell, and their mean gradients over it; nodes are numbers in the
+ * body's order. Of other points only the room for the gradients. */
 struct cell_functions {
     int32_t
         *place;    /* node_count: where a node stands in the list, if it is there; stale entries do no harm */

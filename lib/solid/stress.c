@@ -43,13 +43,14 @@ static void put(const struct body *body, int64_t q, int64_t i, const double stre
     }
 }
 
-void stress_points(const struct body *body, const struct block *block, struct block_view state, block_rows P)
+void stress_points(const struct body *body, const struct block *block, block_rows P)
 {
     for (int64_t i = 0; i < block->point_count; i++) {
         double F[9], stress[9];
-        stress_matrix(body->dim, state.F + i, state.apart, F);
-        point_stress(body, block->first_point + i, F, state.J[i], stress);
-        put(body, block->first_point + i, i, stress, P);
+        int64_t q = block->first_point + i;
+        stress_matrix(body->dim, body->F + q, body->point_count, F);
+        point_stress(body, q, F, body->J[q], stress);
+        put(body, q, i, stress, P);
     }
 }
 

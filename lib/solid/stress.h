@@ -4,10 +4,9 @@
 
 #include "solid/kernel.h"
 
-/* Visit the points of blocks first .. last - 1 with F and J at the last evaluation. Where these are not kept
- * they are gathered anew; a block's least determinant is noted again, as it was. */
+/* Visit the points of blocks first .. last - 1 with F and J at the last evaluation. */
 typedef void body_visitor(const struct body *body, int64_t point, const double F[9], double J, void *context);
-void body_visit(struct body *body, int64_t first, int64_t last, body_visitor *visit, void *context);
+void body_visit(const struct body *body, int64_t first, int64_t last, body_visitor *visit, void *context);
 
 /* A matrix of a point, 3 x 3 with 1 at the end in plane strain, from rows that lie so far apart. */
 void stress_matrix(int dim, const double *row, int64_t apart, double F[9]);
@@ -16,7 +15,7 @@ void stress_matrix(int dim, const double *row, int64_t apart, double F[9]);
 void cofactor_along(const double H[9], const double D[9], double along[9]);
 
 /* Weighted stresses P of a block of points. */
-void stress_points(const struct body *body, const struct block *block, struct block_view state, block_rows P);
+void stress_points(const struct body *body, const struct block *block, block_rows P);
 
 /* Weighted stresses of a block of cells, P on F and T on F_h: see smoothed_cells.h. */
 void stress_cells(const struct body *body, const struct block *block, block_rows P, block_rows T);

@@ -4,6 +4,7 @@
 #include "approx/support.h"
 #include "base/clock.h"
 #include "base/memory.h"
+#include "solid/assembly.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -16,7 +17,6 @@ void system_free(struct solid_system *system)
         free(system->loads[i].force);
     }
     for (int64_t i = 0; i < system->pressure_count; i++) {
-        free(system->pressures[i].facet);
         free(system->pressures[i].corner);
         boundary_averages_free(&system->pressures[i].corners);
         boundary_averages_free(&system->pressures[i].points);
@@ -92,18 +92,18 @@ static enum status fail_at_row(const struct solid_system *system, int64_t r, dou
                                struct error *error)
 {
     const struct constraint_rows *rows = &system->rows;
-    const char *const *names = system->condition_names;
+    const struct condition *conditions = system->conditions;
     int64_t other = nearest_of_others(system, r);
     char place[96], with[160] = "others";
     point_text(system->dim, system->X + (int64_t)rows->node[r] * system->dim, place);
-    if (names != NULL && other >= 0) {
-        snprintf(with, sizeof with, "those of [displacement %.100s] and others", names[rows->section[other]]);
+    if (conditions != NULL && other >= 0) {
+        snprintf(with, sizeof with, "those of [displacement %.100s] and others", conditions[rows->section[other]].name);
     }
     return fail(
         error, STATUS_VERDICT,
         "[displacement %.100s]: the conditions at node %d at %s disagree with %s by %.2g m: prescribe its "
         "displacement once, as by components = free in one section, or refine the cloud there",
-        names != NULL ? names[rows->section[r]] : "?", rows->node[r], place, with, missed);
+        conditions != NULL ? conditions[rows->section[r]].name : "?", rows->node[r], place, with, missed);
 }
 
 /* Whether the constraints that were dropped hold with the others for all loads. */

@@ -14,7 +14,6 @@
 struct dead_load {
     double *force; /* node_count * dim, N (2D: N/m) */
     int32_t curve;
-    int32_t section; /* the caller's label */
 };
 
 /* A pressure on facets that follows the deformation: it acts on the deformed facets, whose corners move with
@@ -22,7 +21,7 @@ struct dead_load {
  * so that under a constant pressure the linear patch test holds. */
 struct pressure_load {
     int64_t facet_count;
-    int32_t *facet;                   /* facet_count * dim, oriented outward */
+    const int32_t *facet;             /* facet_count * dim, oriented outward; the caller's */
     struct boundary_averages corners; /* node values on the set: where corners are */
     int32_t *corner;                  /* facet_count * dim: the entry of each corner */
     struct boundary_averages
@@ -43,6 +42,8 @@ struct stability {
     int64_t node; /* negative: where its mode moves most */
 };
 
+struct condition;
+
 struct solid_system {
     int dim;
     int64_t node_count;
@@ -62,7 +63,7 @@ struct solid_system {
     struct boundary_averages *contact_averages; /* contact_count: what the contacts act on */
     int64_t contact_count;
     struct constraint_rows rows;
-    const char *const *condition_names; /* of the sections of the rows, for messages; NULL: they have none */
+    const struct condition *conditions; /* of the rows, for messages; the caller's; NULL: not known */
     /* Penalty stabilisation of the constraints. Boundary averages do not constrain variations of the field
      * within them, which grow under a pressure of some ten shear moduli. Constraint penalties at the
      * quadrature points of the constrained facets hold the field to the same targets. Their forces vanish

@@ -1,7 +1,7 @@
 /* The force loop: one evaluation of the internal forces, in cache in 2D and with a table larger than the
  * caches in 3D, by tables of gradients at points and by means over the faces of smoothed cells; then the
  * same cube from 1e3 to 1e6 nodes, points at the nodes, and with a million points in cells. A row's bytes are
- * those of its table, once; with nodal volume an evaluation reads it twice, and by means over faces always.
+ * those of its operator, once; an evaluation reads it, and then its transpose.
  */
 #include "bench.h"
 #include "problem.h"
@@ -152,12 +152,11 @@ static void free_loop(struct loop *loop)
     free(loop->force);
 }
 
-/* Bytes of the table that the loop reads. */
+/* Bytes of the operator, of which the loop reads one, and of its transpose. */
 static double table_bytes(const struct body *body)
 {
-    return body->smoothed ? (double)(sparse_operator_bytes(&body->cells.faces.op) +
-                                     sparse_operator_bytes(&body->cells.nodes.op))
-                          : (double)sparse_operator_bytes(&body->gradients);
+    const struct sparse *matrix = body->smoothed ? &body->cells.averages.matrix : &body->gradients;
+    return (double)matrix->ptr[matrix->row_count] * (double)(sizeof *matrix->value + sizeof *matrix->idx);
 }
 
 static void bench(struct problem *problem, const struct variant *variant, int threads, double seconds)

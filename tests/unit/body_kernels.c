@@ -21,8 +21,6 @@ static void check_threads(const struct sample *sample, const struct setup *setup
         omp_set_num_threads(threads);
         struct body body = make_body(sample, setup);
         double *force = sample_array(count, sizeof *force);
-        struct error error;
-        GOOD(body_make_scratch(&body, threads, &error));
         body.threads = threads; /* also where so many would not pay */
         for (int call = 0; call < 2; call++) {
             (void)body_force(&body, u, force);

@@ -2,7 +2,7 @@
  * where they do not; and rows so nearly dependent, or so long, that a plain factorization suffers. */
 #include "solid_fixture.h"
 
-#include "solid/system.h"
+#include "solid/assembly.h"
 
 enum { NODES = 12 };
 
@@ -120,9 +120,9 @@ static void disagreement_is_named(void **state)
     struct line line;
     struct constraint constraint;
     struct error error;
-    static const char *const names[] = {"plate", "rim"};
+    static const struct condition conditions[] = {{.name = "plate"}, {.name = "rim"}};
     line_begin(&line);
-    line.system.condition_names = names;
+    line.system.conditions = conditions;
     hold(&line, 3, 4, 0.25, 0);
     hold(&line, 3, 4, 0.5, 1);
     assert_int_equal(system_constrain(&line.system, line.mass, &constraint, &error), STATUS_VERDICT);

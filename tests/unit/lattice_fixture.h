@@ -1,5 +1,5 @@
 /* Small bodies for tests of whole systems: a box of lattice cells with its table of shape functions, supports
- * and loads on its sides, built through lib/approx as the tools do it. */
+ * and loads on its sides, built through lib/approx and solid/assembly.h as the tools do it. */
 #ifndef TESTS_LATTICE_FIXTURE_H
 #define TESTS_LATTICE_FIXTURE_H
 
@@ -9,7 +9,7 @@
 #include "approx/cloud.h"
 #include "approx/quadrature.h"
 #include "approx/support.h"
-#include "solid/system.h"
+#include "solid/assembly.h"
 
 /* What to build. Sides of the box are numbered 2 * axis, + 1 at the high end. */
 struct lattice_options {
@@ -27,17 +27,14 @@ struct lattice {
     struct cloud cloud;
     struct cells cells;
     struct faces faces;
-    int per_face;
     double *radius, *face_x, *point_x, *weight;
     int32_t *point_cell;
     struct point_grid grid;
     struct support_lists face_lists, node_lists, point_lists;
-    struct neighbours face_neighbours, node_neighbours;
     double *face_phi, *node_phi, *point_phi, *point_dphi;
     struct face_averages averages;
     struct cell_table smoothed;
-    struct face_table face_table;
-    struct material material;
+    struct assembly assembly;
     struct solid_system system;
 };
 
@@ -77,101 +74,84 @@ static inline void lattice_tabulate(struct lattice *l, int64_t count, const doub
                      dphi != NULL ? *dphi : NULL, &error));
 }
 
+/* Shape functions on the faces, and their averages of smoothed cells. */
 static inline void lattice_faces(struct lattice *l)
 {
     struct error error;
     int dim = l->options.dim;
     struct quadrature_rule rule = quadrature_face_rule(dim);
-    l->per_face = rule.points;
-    GOOD(faces_build(&l->cells, false, &l->faces, &error));
+    struct support_options support = support_defaults(dim);
+    GOOD(faces_build(&l->cells, l->options.gauss_points > 0, &l->faces, &error));
     ARRAY(l->face_x, l->faces.count * rule.points * dim);
     for (int64_t f = 0; f < l->faces.count; f++) {
         quadrature_positions(&rule, dim, l->cells.x, l->faces.node + f * dim,
                              l->face_x + f * rule.points * dim);
     }
     lattice_tabulate(l, l->faces.count * rule.points, l->face_x, &l->face_lists, &l->face_phi, NULL);
-    l->face_neighbours = support_view(&l->face_lists);
-    l->face_table = (struct face_table){.dim = dim,
-                                        .node_count = l->cells.node_count,
-                                        .x = l->cells.x,
-                                        .faces = &l->faces,
-                                        .per_face = rule.points,
-                                        .lists = &l->face_neighbours,
-                                        .phi = l->face_phi};
+    struct neighbours lists = support_view(&l->face_lists);
+    GOOD(shape_average_faces(&support.mls, l->cells.x, l->radius, &lists, l->face_x, "faces", &l->faces,
+                             &l->averages, &error));
+    if (l->options.gauss_points == 0) {
+        l->smoothed = cell_table_make(&l->cells, &l->faces, &l->averages);
+    }
 }
 
-/* Integration points, the body and its lumped mass. */
-static inline void lattice_body(struct lattice *l)
+/* Integration points: one for each smoothed cell, or Gauss points with gradients. */
+static inline int64_t lattice_points(struct lattice *l)
 {
     struct error error;
-    const struct lattice_options *options = &l->options;
-    int dim = options->dim, corners = dim + 1;
-    int each = options->gauss_points > 0 ? options->gauss_points : 1;
+    int dim = l->options.dim, each = l->options.gauss_points > 0 ? l->options.gauss_points : 1;
     int64_t count = l->cells.count * each;
     struct quadrature_rule rule;
-    int32_t *hat_node, *material;
-    double *hat_value;
     GOOD(quadrature_cell_rule(dim, each, &rule, &error));
     ARRAY(l->point_x, count * dim);
     ARRAY(l->weight, count);
-    ARRAY(material, count);
-    ARRAY(hat_node, count * corners);
-    ARRAY(hat_value, count * corners);
-    ARRAY(l->system.lumped_mass, l->cells.node_count);
+    ARRAY(l->point_cell, count);
     for (int64_t c = 0; c < l->cells.count; c++) {
-        double volume = cell_volume(&l->cells, c);
-        const int32_t *vertex = l->cells.node + c * corners;
-        quadrature_positions(&rule, dim, l->cells.x, vertex, l->point_x + c * each * dim);
+        quadrature_positions(&rule, dim, l->cells.x, l->cells.node + c * (dim + 1),
+                             l->point_x + c * each * dim);
         for (int64_t q = c * each; q < (c + 1) * each; q++) {
-            l->weight[q] = volume * rule.weight[q - c * each];
-            for (int k = 0; k < corners; k++) {
-                hat_node[q * corners + k] = vertex[k];
-                hat_value[q * corners + k] = rule.barycentric[(q - c * each) * corners + k];
-            }
-        }
-        for (int k = 0; k < corners; k++) {
-            l->system.lumped_mass[vertex[k]] += options->density * volume / corners;
+            l->weight[q] = cell_volume(&l->cells, c) * rule.weight[q - c * each];
+            l->point_cell[q] = (int32_t)c;
         }
     }
-    if (options->gauss_points > 0) {
+    if (l->options.gauss_points > 0) {
         lattice_tabulate(l, count, l->point_x, &l->point_lists, &l->point_phi, &l->point_dphi);
-    } else {
-        struct support_options support = support_defaults(dim);
-        GOOD(shape_average_faces(&support.mls, l->cells.x, l->radius, &l->face_neighbours, l->face_x, "faces",
-                                 &l->faces, &l->averages, &error));
-        l->smoothed = cell_table_make(&l->cells, &l->faces, &l->averages);
     }
-    l->material = (struct material){.model = MATERIAL_NEO_HOOKEAN, .density = options->density};
-    material_set_moduli(&l->material, options->youngs_modulus, options->poisson_ratio);
-    struct body_input input = {.dim = dim,
-                               .node_count = l->cells.node_count,
-                               .point_count = count,
-                               .x = l->point_x,
-                               .weight = l->weight,
-                               .ptr = l->point_lists.ptr,
-                               .idx = l->point_lists.idx,
-                               .dphi = l->point_dphi,
-                               .materials = &l->material,
-                               .material = material,
-                               .material_count = 1,
-                               .hat_node = options->nodal_volume ? hat_node : NULL,
-                               .hat_value = options->nodal_volume ? hat_value : NULL};
-    struct smoothed_cells_input smoothed = {.x = l->cells.x,
-                                            .cell_node = l->cells.node,
-                                            .face_count = l->faces.count,
-                                            .face_node = l->faces.node,
-                                            .face_cell = l->faces.cell,
-                                            .face_ptr = l->averages.ptr,
-                                            .face_idx = l->averages.idx,
-                                            .face_phi = l->averages.phi,
-                                            .node_ptr = l->node_lists.ptr,
-                                            .node_idx = l->node_lists.idx,
-                                            .node_phi = l->node_phi};
-    input.smoothed = options->gauss_points == 0 ? &smoothed : NULL;
-    GOOD(body_build(&input, &l->system.body, &error));
-    free(material);
-    free(hat_node);
-    free(hat_value);
+    return count;
+}
+
+/* The system, of one material and without conditions. */
+static inline void lattice_system(struct lattice *l, int64_t point_count)
+{
+    struct error error, note;
+    struct material_list list = {.count = 1};
+    ARRAY(list.items, 1);
+    ARRAY(list.of_point, point_count);
+    ARRAY(list.of_cell, l->cells.count);
+    ARRAY(list.section, 1);
+    list.items[0] = (struct material){.model = MATERIAL_NEO_HOOKEAN, .density = l->options.density};
+    material_set_moduli(&list.items[0], l->options.youngs_modulus, l->options.poisson_ratio);
+    bool smoothed = l->options.gauss_points == 0;
+    struct neighbours averages = {.count = l->averages.count, .ptr = l->averages.ptr, .idx = l->averages.idx};
+    l->assembly = (struct assembly){.cells = l->cells,
+                                    .faces = l->faces,
+                                    .smoothed = smoothed,
+                                    .point_count = point_count,
+                                    .x = l->point_x,
+                                    .weight = l->weight,
+                                    .point_cell = l->point_cell,
+                                    .lists = smoothed ? averages : support_view(&l->point_lists),
+                                    .boundary_lists = support_view(&l->face_lists),
+                                    .node_lists = support_view(&l->node_lists),
+                                    .phi = smoothed ? l->averages.phi : l->point_phi,
+                                    .dphi = l->point_dphi,
+                                    .boundary_phi = l->face_phi,
+                                    .node_phi = l->node_phi,
+                                    .materials = list,
+                                    .pointwise_volume = !l->options.nodal_volume};
+    assembly_complete(&l->assembly);
+    GOOD(assembly_build(&l->assembly, &l->system, &note, &error));
 }
 
 static inline void lattice_build(struct lattice *l, const struct lattice_options *options)
@@ -201,21 +181,15 @@ static inline void lattice_build(struct lattice *l, const struct lattice_options
     GOOD(support_radii(&support, l->cells.node_count, spacing, l->radius, &error));
     free(spacing);
     GOOD(point_grid_build(&l->grid, dim, l->cells.node_count, l->cells.x, l->radius, &error));
-    l->system.dim = dim;
-    l->system.node_count = l->cells.node_count;
-    l->system.X = l->cells.x;
-    constraint_rows_init(&l->system.rows, dim);
     lattice_faces(l);
     lattice_tabulate(l, l->cells.node_count, l->cells.x, &l->node_lists, &l->node_phi, NULL);
-    l->node_neighbours = support_view(&l->node_lists);
-    l->system.node_lists = &l->node_neighbours;
-    l->system.node_phi = l->node_phi;
-    lattice_body(l);
+    lattice_system(l, lattice_points(l));
 }
 
 static inline void lattice_free(struct lattice *l)
 {
     system_free(&l->system);
+    material_list_free(&l->assembly.materials);
     face_averages_free(&l->averages);
     cell_table_free(&l->smoothed);
     support_free(&l->face_lists);
@@ -228,6 +202,7 @@ static inline void lattice_free(struct lattice *l)
     free(l->face_x);
     free(l->point_x);
     free(l->weight);
+    free(l->point_cell);
     free(l->face_phi);
     free(l->node_phi);
     free(l->point_phi);
@@ -262,7 +237,7 @@ static inline struct boundary_averages lattice_averages(const struct lattice *l,
         }
     }
     set.facet = facet;
-    GOOD(boundary_averages_build(&l->face_table, &set, &averages, &error));
+    GOOD(boundary_averages_build(&l->assembly.face_table, &set, &averages, &error));
     free(facet);
     return averages;
 }

@@ -1,96 +1,39 @@
 #include "model.h"
 
-#include "names.h"
-
 #include "approx/quadrature.h"
 #include "base/box.h"
-#include "io/table.h"
 
 #include <math.h>
 #include <stdlib.h>
 
-/* Material of each region: -1 where the scene names none. */
-static enum status materials_of_regions(const struct scene *scene, const char *names, int64_t region_count,
-                                        int32_t *material, struct error *error)
-{
-    for (int64_t r = 0; r < region_count; r++) {
-        material[r] = -1;
-    }
-    for (int64_t m = 0; m < scene->material_count; m++) {
-        const struct scene_material *section = &scene->materials[m];
-        for (int64_t i = 0; i < section->regions.count; i++) {
-            int64_t region = names_index(names, section->regions.names[i]);
-            if (region < 0 || region >= region_count) {
-                return scene_fail(error, STATUS_INPUT, scene, &section->label,
-                                  "the mesh has no region '%s'; present: %s", section->regions.names[i],
-                                  names[0] != '\0' ? names : "none");
-            }
-            material[region] = (int32_t)m;
-        }
-    }
-    return STATUS_OK;
-}
-
-/* cell_material[cell]: from cells.region and the scene. */
-static enum status materials_of_cells(struct model_input *input, struct error *error)
-{
-    enum status status;
-    const struct section *region;
-    char *names = NULL;
-    int32_t *material = NULL;
-    int64_t region_count = 1;
-    TRY(stream_need(input->stream, "cells.region", TYPE_I4, 1, "nodes", &region, error));
-    TRY(names_of_section(region, &names, error));
-    const int32_t *of_cell = region->data;
-    for (const char *at = names; *at != '\0'; at++) {
-        region_count += *at == ',';
-    }
-    TRY(NEW_ARRAY(&material, region_count, error));
-    TRY(NEW_ARRAY(&input->cell_material, input->cells.count, error));
-    TRY(materials_of_regions(input->scene, names, region_count, material, error));
-    if (region->rows != input->cells.count) {
-        status = fail(error, STATUS_INPUT, "cells.region: does not fit the cells");
-        goto done;
-    }
-    for (int64_t c = 0; c < input->cells.count; c++) {
-        if (of_cell[c] < 0 || of_cell[c] >= region_count || material[of_cell[c]] < 0) {
-            status = fail(
-                error, STATUS_INPUT,
-                "%s: region %d of the mesh (of %s) has no material: name it, or leave it out with nodes -r",
-                input->scene->path, of_cell[c], names);
-            goto done;
-        }
-        input->cell_material[c] = material[of_cell[c]];
-    }
-done:
-    free(names);
-    free(material);
-    return status;
-}
+static const double farthest_moments = 1e6; /* of the body's size */
 
 /* The integration points. */
-static enum status read_points(struct model_input *input, struct error *error)
+static enum status read_points(const struct stream *stream, struct assembly *input, struct error *error)
 {
     enum status status;
-    const struct stream *stream = input->stream;
-    TRY(stream_need(stream, "points.x", TYPE_F8, input->cells.dim, "ipoints", &input->points, error));
-    TRY(stream_need(stream, "points.weight", TYPE_F8, 1, "ipoints", &input->weight, error));
-    TRY(stream_need(stream, "points.cell", TYPE_I4, 1, "ipoints", &input->point_cell, error));
-    int64_t count = input->points->rows;
-    input->smoothed = points_are_smoothed(input->points);
-    if (input->weight->rows != count || input->point_cell->rows != count ||
-        (input->smoothed && count != input->cells.count)) {
+    const struct section *points, *weight, *cell;
+    TRY(stream_need(stream, "points.x", TYPE_F8, input->cells.dim, "ipoints", &points, error));
+    TRY(stream_need(stream, "points.weight", TYPE_F8, 1, "ipoints", &weight, error));
+    TRY(stream_need(stream, "points.cell", TYPE_I4, 1, "ipoints", &cell, error));
+    input->smoothed = points_are_smoothed(points);
+    input->point_count = points->rows;
+    input->x = points->data;
+    input->weight = weight->data;
+    input->point_cell = cell->data;
+    if (weight->rows != points->rows || cell->rows != points->rows ||
+        (input->smoothed && points->rows != input->cells.count)) {
         status =
             fail(error, STATUS_INPUT, "points.x, points.weight, points.cell: do not fit: run ipoints again");
         goto done;
     }
-    const int32_t *cell = input->point_cell->data;
-    for (int64_t q = 0; q < count; q++) {
-        if (cell[q] < 0 || cell[q] >= input->cells.count) {
+    for (int64_t q = 0; q < input->point_count; q++) {
+        int32_t of_point = input->point_cell[q];
+        if (of_point < 0 || of_point >= input->cells.count) {
             status =
                 fail(error, STATUS_INPUT,
                      "points.cell: row %lld: no cell %d: an evaluation lattice cannot be integrated over",
-                     (long long)q, cell[q]);
+                     (long long)q, of_point);
             goto done;
         }
     }
@@ -99,14 +42,14 @@ done:
 }
 
 /* A table of shapefn: sections PREFIX.ptr and .idx, and values or gradients on these lists. */
-static enum status read_table(const struct model_input *input, const char *prefix, const char *values,
-                              int cols, int64_t rows, struct neighbours *lists, const double **phi,
+static enum status read_table(const struct stream *stream, const char *prefix, const char *values, int cols,
+                              int64_t rows, int64_t node_count, struct neighbours *lists, const double **phi,
                               struct error *error)
 {
     enum status status;
     const struct section *section;
-    TRY(stream_need(input->stream, values, TYPE_F8, cols, "shapefn", &section, error));
-    TRY(stream_neighbours(input->stream, prefix, rows, input->cells.node_count, lists, error));
+    TRY(stream_need(stream, values, TYPE_F8, cols, "shapefn", &section, error));
+    TRY(stream_neighbours(stream, prefix, rows, node_count, lists, error));
     if (section->rows != lists->ptr[rows]) {
         status = fail(error, STATUS_INPUT, "%s: does not fit %s.idx: run shapefn again", values, prefix);
     }
@@ -116,132 +59,114 @@ done:
 }
 
 /* The tables over points or faces, over the boundary, and over the nodes. */
-static enum status read_tables(struct model_input *input, struct error *error)
+static enum status read_tables(const struct stream *stream, struct assembly *input, struct error *error)
 {
     enum status status;
     int dim = input->cells.dim, per_face = quadrature_face_rule(dim).points;
-    struct neighbours *lists = &input->lists;
-    TRY(stream_faces(input->stream, &input->cells, &input->faces, error));
+    int64_t nodes = input->cells.node_count, points = input->point_count;
+    TRY(stream_faces(stream, &input->cells, &input->faces, error));
     if (input->smoothed) {
-        TRY(read_table(input, "face", "face.phi", 1, input->faces.count, lists, &input->phi, error));
+        TRY(read_table(stream, "face", "face.phi", 1, input->faces.count, nodes, &input->lists, &input->phi,
+                       error));
     } else {
-        TRY(read_table(input, "nbr", "shape.phi", 1, input->points->rows, lists, &input->phi, error));
-        TRY(read_table(input, "nbr", "shape.dphi", dim, input->points->rows, lists, &input->dphi, error));
+        TRY(read_table(stream, "nbr", "shape.phi", 1, points, nodes, &input->lists, &input->phi, error));
+        TRY(read_table(stream, "nbr", "shape.dphi", dim, points, nodes, &input->lists, &input->dphi, error));
     }
-    input->boundary = input->faces;
-    input->boundary.count = input->faces.boundary_count;
-    TRY(read_table(input, "boundary", "boundary.phi", 1, input->boundary.count * per_face,
+    TRY(read_table(stream, "boundary", "boundary.phi", 1, input->faces.boundary_count * per_face, nodes,
                    &input->boundary_lists, &input->boundary_phi, error));
-    TRY(read_table(input, "node", "node.phi", 1, input->cells.node_count, &input->node_lists,
-                   &input->node_phi, error));
-    input->face_table = (struct face_table){.dim = dim,
-                                            .node_count = input->cells.node_count,
-                                            .x = input->cells.x,
-                                            .faces = &input->boundary,
-                                            .per_face = per_face,
-                                            .lists = &input->boundary_lists,
-                                            .phi = input->boundary_phi};
+    TRY(read_table(stream, "node", "node.phi", 1, nodes, nodes, &input->node_lists, &input->node_phi, error));
 done:
     return status;
 }
 
-enum status model_input_read(const struct stream *stream, const struct scene *scene,
-                             struct model_input *input, struct error *error)
+/* Moments about a point that far away are differences of huge numbers: a unit or a sign is wrong. */
+static enum status check_moments(const struct model *model, struct error *error)
+{
+    const struct scene_output *output = &model->scene->output;
+    const struct cells *cells = &model->assembly.cells;
+    struct box box = box_of(cells->dim, cells->node_count, cells->x);
+    for (int a = 0; a < cells->dim && output->moments; a++) {
+        double away = fmax(box.low[a] - output->about[a], output->about[a] - box.high[a]);
+        if (!(away <= farthest_moments * model->assembly.extent)) {
+            return fail(
+                error, STATUS_INPUT,
+                "%s: [output]: moments_about: %.3g m from the body of %.3g m: give a point near it, in m",
+                model->scene->path, away, model->assembly.extent);
+        }
+    }
+    return STATUS_OK;
+}
+
+static void drop_copied(void *stream)
+{
+    static const char *const names[] = {"face.ptr", "face.idx", "face.phi"};
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
+        stream_remove(stream, names[i]);
+    }
+}
+
+enum status model_build(struct stream *stream, const struct scene *scene, struct model *model,
+                        struct error *error)
 {
     enum status status;
-    *input = (struct model_input){.stream = stream, .scene = scene};
+    struct assembly *input = &model->assembly;
+    *model = (struct model){.stream = stream, .scene = scene};
     TRY(stream_cells(stream, true, &input->cells, error));
     if (scene->dim != input->cells.dim) {
         status = fail(error, STATUS_INPUT, "%s: dim = %d, but the nodes have %d coordinates", scene->path,
                       scene->dim, input->cells.dim);
         goto done;
     }
-    struct box box = box_of(scene->dim, input->cells.node_count, input->cells.x);
-    input->extent = box_diagonal(&box);
-    TRY(materials_of_cells(input, error));
-    TRY(read_points(input, error));
-    TRY(read_tables(input, error));
+    TRY(read_points(stream, input, error));
+    TRY(read_tables(stream, input, error));
+    assembly_complete(input);
+    TRY(model_materials(model, error));
+    TRY(check_moments(model, error));
+    TRY(model_conditions(model, error));
+    input->copied = drop_copied;
+    input->context = stream;
+    TRY(assembly_build(input, &model->system, &model->note, error));
+    TRY(NEW_ARRAY(&model->row_force, model->system.rows.count, error));
 done:
     if (status != STATUS_OK) {
-        model_input_free(input);
+        model_free(model);
     }
     return status;
 }
 
-void model_input_free(struct model_input *input)
+void model_free(struct model *model)
 {
-    free(input->cell_material);
-    input->cell_material = NULL;
+    for (int64_t i = 0; i < model->assembly.curve_count; i++) {
+        curve_free(&model->assembly.curves[i]);
+    }
+    free(model->assembly.curves);
+    for (int64_t i = 0; i < model->owned_count; i++) {
+        free(model->owned[i]);
+    }
+    free(model->owned);
+    material_list_free(&model->assembly.materials);
+    system_free(&model->system);
+    free(model->row_force);
+    *model = (struct model){0};
 }
 
-enum status model_add_curve(const struct model_input *input, const struct scene_label *label,
-                            const struct scene_curve *curve, struct solid_system *system, int32_t *index,
-                            struct error *error)
+enum status model_own(struct model *model, void *array, struct error *error)
 {
-    static const enum curve_kind kinds[] = {[SCENE_CURVE_SMOOTH] = CURVE_SMOOTH,
-                                            [SCENE_CURVE_LINEAR] = CURVE_LINEAR,
-                                            [SCENE_CURVE_STEP] = CURVE_STEP,
-                                            [SCENE_CURVE_FILE] = CURVE_TABLE};
-    enum status status = STATUS_OK;
-    struct table table = {0};
-    struct load_curve *grown = array_grow(system->curves, system->curve_count + 1, sizeof *system->curves);
+    void **grown = array_grow(model->owned, model->owned_count + 1, sizeof *grown);
     if (grown == NULL) {
-        return fail_memory(error, "load curves");
+        free(array);
+        return fail_memory(error, "conditions");
     }
-    system->curves = grown;
-    double *factor = array_grow(system->factor, system->curve_count + 1, sizeof *factor);
-    if (factor == NULL) {
-        return fail_memory(error, "load curves");
-    }
-    system->factor = factor;
-    if (curve->kind != SCENE_CURVE_FILE) {
-        system->curves[system->curve_count] = curve_of_kind(kinds[curve->kind]);
-    } else {
-        double end = input->scene->analysis == SCENE_DYNAMIC ? input->scene->solver.end_time : 1.0;
-        TRY(table_read(curve->file, 2, 2, &table, error));
-        status = curve_tabulate(&system->curves[system->curve_count], table.rows, table.values, end, error);
-        if (status != STATUS_OK) {
-            struct error inner = *error;
-            status = scene_fail(error, status, input->scene, label, "curve %s: %s", curve->file, inner.text);
-            goto done;
-        }
-    }
-    *index = (int32_t)system->curve_count++;
-done:
-    table_free(&table);
-    return status;
+    model->owned = grown;
+    model->owned[model->owned_count++] = array;
+    return STATUS_OK;
 }
 
-double model_penalty_modulus(const struct solid_system *system, double factor)
-{
-    double modulus = 0.0;
-    for (int64_t m = 0; m < system->body.material_count; m++) {
-        const struct material *material = &system->body.materials[m];
-        modulus = fmax(modulus, fmin(factor * material->shear_modulus, material_wave_modulus(material)));
-    }
-    return modulus;
-}
-
-double model_away(const struct model_input *input, const double *row, double unit, const double *x)
+double model_away(const struct model *model, const double *row, double unit, const double *x)
 {
     double away = 0.0;
-    for (int a = 0; a < input->cells.dim; a++) {
+    for (int a = 0; a < model->assembly.cells.dim; a++) {
         away = fmax(away, fabs(row[a] * unit - x[a]));
     }
-    return away / input->extent;
-}
-
-void model_nodal_field(const struct model_input *input, const double *u, double *field)
-{
-    int dim = input->cells.dim;
-    const struct neighbours *lists = &input->node_lists;
-    for (int64_t n = 0; n < lists->count; n++) {
-        for (int a = 0; a < dim; a++) {
-            double sum = 0.0;
-            for (int64_t i = lists->ptr[n]; i < lists->ptr[n + 1]; i++) {
-                sum += input->node_phi[i] * u[(int64_t)lists->idx[i] * dim + a];
-            }
-            field[n * dim + a] = sum;
-        }
-    }
+    return away / model->assembly.extent;
 }

@@ -1,5 +1,7 @@
 #include "model.h"
 
+#include "names.h"
+
 #include "io/table.h"
 
 #include <stdlib.h>
@@ -19,42 +21,41 @@ static void set_material(const struct scene_material *section, struct material *
 }
 
 /* Row `row` of a table is that of point q, and holds moduli. */
-static enum status check_row(const struct model_input *input, const struct scene_material *section,
+static enum status check_row(const struct model *model, const struct scene_material *section,
                              const struct table *table, int64_t row, int64_t q, struct error *error)
 {
-    int dim = input->cells.dim;
-    const double *x = (const double *)input->points->data + q * dim,
-                 *values = table->values + row * table->cols;
+    int dim = model->assembly.cells.dim;
+    const double *x = model->assembly.x + q * dim, *values = table->values + row * table->cols;
     if (row == table->rows) {
-        return scene_fail(error, STATUS_INPUT, input->scene, &section->label,
-                          "table %s: %lld rows do not match the integration points of its regions: none is "
-                          "left for point %lld",
-                          section->table, (long long)table->rows, (long long)q);
+        return fail(error, STATUS_INPUT,
+                    "%s: table %s: %lld rows do not match the integration points of its regions: none is "
+                    "left for point %lld",
+                    section->label.where, section->table, (long long)table->rows, (long long)q);
     }
-    double away = model_away(input, values, section->table_unit, x);
+    double away = model_away(model, values, section->table_unit, x);
     if (!(away <= MODEL_SAME_PLACE)) {
-        return scene_fail(error, STATUS_INPUT, input->scene, &section->label,
-                          "%s:%lld: the rows do not match the integration points of its regions: %g m from "
-                          "point %lld",
-                          section->table, (long long)table->line[row], away * input->extent, (long long)q);
+        return fail(error, STATUS_INPUT,
+                    "%s: %s:%lld: the rows do not match the integration points of its regions: %g m from "
+                    "point %lld",
+                    section->label.where, section->table, (long long)table->line[row],
+                    away * model->assembly.extent, (long long)q);
     }
     double modulus = values[dim], ratio = values[dim + 1];
     if (!(modulus > 0.0) || !(ratio > -1.0 && ratio < 0.5)) {
-        return scene_fail(error, STATUS_INPUT, input->scene, &section->label,
-                          "%s:%lld: E = %g, nu = %g: E must be positive, nu within (-1, .5)", section->table,
-                          (long long)table->line[row], modulus, ratio);
+        return fail(error, STATUS_INPUT,
+                    "%s: %s:%lld: E = %g, nu = %g: E must be positive, nu within (-1, .5)",
+                    section->label.where, section->table, (long long)table->line[row], modulus, ratio);
     }
     return STATUS_OK;
 }
 
 /* One row per integration point of the section's regions, in the order of the points: coordinates, E, nu. */
-static enum status add_point_table(const struct model_input *input, int64_t m, struct material_list *list,
-                                   struct error *error)
+static enum status add_point_table(struct model *model, int64_t m, struct error *error)
 {
     enum status status;
-    const struct scene_material *section = &input->scene->materials[m];
-    const int32_t *cell = input->point_cell->data;
-    int dim = input->cells.dim;
+    struct material_list *list = &model->assembly.materials;
+    const struct scene_material *section = &model->scene->materials[m];
+    int dim = model->assembly.cells.dim;
     struct table table = {0};
     int64_t row = 0;
     TRY(table_read(section->table, dim + 2, dim + 2, &table, error));
@@ -64,11 +65,11 @@ static enum status add_point_table(const struct model_input *input, int64_t m, s
         goto done;
     }
     list->items = grown;
-    for (int64_t q = 0; q < input->points->rows; q++) {
-        if (input->cell_material[cell[q]] != m) {
+    for (int64_t q = 0; q < model->assembly.point_count; q++) {
+        if (list->of_point[q] != m) {
             continue;
         }
-        TRY(check_row(input, section, &table, row, q, error));
+        TRY(check_row(model, section, &table, row, q, error));
         const double *values = table.values + row++ * table.cols;
         struct material *material = &list->items[list->count];
         *material = list->items[m];
@@ -77,48 +78,101 @@ static enum status add_point_table(const struct model_input *input, int64_t m, s
         list->of_point[q] = (int32_t)list->count++;
     }
     if (row != table.rows) {
-        status = scene_fail(error, STATUS_INPUT, input->scene, &section->label,
-                            "table %s: %lld rows for %lld integration points", section->table,
-                            (long long)table.rows, (long long)row);
+        status = fail(error, STATUS_INPUT, "%s: table %s: %lld rows for %lld integration points",
+                      section->label.where, section->table, (long long)table.rows, (long long)row);
     }
 done:
     table_free(&table);
     return status;
 }
 
-enum status model_materials(const struct model_input *input, struct material_list *list, struct error *error)
+/* Material of each region: -1 where the scene names none. */
+static enum status materials_of_regions(const struct scene *scene, const char *names, int64_t region_count,
+                                        int32_t *material, struct error *error)
 {
-    enum status status = STATUS_OK;
-    const int32_t *cell = input->point_cell->data;
-    const struct scene *scene = input->scene;
+    for (int64_t r = 0; r < region_count; r++) {
+        material[r] = -1;
+    }
+    for (int64_t m = 0; m < scene->material_count; m++) {
+        const struct scene_material *section = &scene->materials[m];
+        for (int64_t i = 0; i < section->regions.count; i++) {
+            int64_t region = names_index(names, section->regions.names[i]);
+            if (region < 0 || region >= region_count) {
+                return fail(error, STATUS_INPUT, "%s: the mesh has no region '%s'; present: %s",
+                            section->label.where, section->regions.names[i],
+                            names[0] != '\0' ? names : "none");
+            }
+            material[region] = (int32_t)m;
+        }
+    }
+    return STATUS_OK;
+}
+
+/* The material of each cell: from cells.region and the scene. */
+static enum status materials_of_cells(struct model *model, struct error *error)
+{
+    enum status status;
+    const struct section *region;
+    const struct cells *cells = &model->assembly.cells;
+    char *names = NULL;
+    int32_t *material = NULL;
+    int64_t region_count = 1;
+    TRY(stream_need(model->stream, "cells.region", TYPE_I4, 1, "nodes", &region, error));
+    TRY(names_of_section(region, &names, error));
+    const int32_t *of_cell = region->data;
+    for (const char *at = names; *at != '\0'; at++) {
+        region_count += *at == ',';
+    }
+    TRY(NEW_ARRAY(&material, region_count, error));
+    TRY(NEW_ARRAY(&model->assembly.materials.of_cell, cells->count, error));
+    TRY(materials_of_regions(model->scene, names, region_count, material, error));
+    if (region->rows != cells->count) {
+        status = fail(error, STATUS_INPUT, "cells.region: does not fit the cells");
+        goto done;
+    }
+    for (int64_t c = 0; c < cells->count; c++) {
+        if (of_cell[c] < 0 || of_cell[c] >= region_count || material[of_cell[c]] < 0) {
+            status = fail(
+                error, STATUS_INPUT,
+                "%s: region %d of the mesh (of %s) has no material: name it, or leave it out with nodes -r",
+                model->scene->path, of_cell[c], names);
+            goto done;
+        }
+        model->assembly.materials.of_cell[c] = material[of_cell[c]];
+    }
+done:
+    free(names);
+    free(material);
+    return status;
+}
+
+enum status model_materials(struct model *model, struct error *error)
+{
+    enum status status;
+    const struct scene *scene = model->scene;
+    int64_t points = model->assembly.point_count;
+    struct material_list *list = &model->assembly.materials;
+    TRY(materials_of_cells(model, error));
     list->items = array_grow(NULL, scene->material_count, sizeof *list->items);
     if (list->items == NULL) {
         return fail_memory(error, "materials");
     }
-    TRY(NEW_ARRAY(&list->of_point, input->points->rows, error));
+    TRY(NEW_ARRAY(&list->of_point, points, error));
     /* At most one for each section and for each point. */
-    TRY(NEW_ARRAY(&list->section, scene->material_count + input->points->rows, error));
+    TRY(NEW_ARRAY(&list->section, scene->material_count + points, error));
     list->count = scene->material_count;
     for (int64_t m = 0; m < scene->material_count; m++) {
         set_material(&scene->materials[m], &list->items[m]);
         list->section[m] = (int32_t)m;
     }
-    for (int64_t q = 0; q < input->points->rows; q++) {
-        list->of_point[q] = input->cell_material[cell[q]];
+    for (int64_t q = 0; q < points; q++) {
+        list->of_point[q] = list->of_cell[model->assembly.point_cell[q]];
     }
     for (int64_t m = 0; m < scene->material_count; m++) {
         if (scene->materials[m].table != NULL) {
-            TRY(add_point_table(input, m, list, error));
+            TRY(add_point_table(model, m, error));
         }
     }
 done:
     return status;
-}
-
-void material_list_free(struct material_list *list)
-{
-    free(list->items);
-    free(list->of_point);
-    free(list->section);
-    *list = (struct material_list){0};
 }

@@ -84,7 +84,7 @@ static void put_view(struct run *run, const struct progress *progress, struct st
         }
     }
     double *field = run_new_values(run, nodes * dim);
-    model_nodal_field(&run->model->input, progress->u, field);
+    assembly_nodal_field(&run->model->assembly, progress->u, field);
     tool_check(run->tool, stream_put(stream, "u.last", TYPE_F8, nodes, dim, "unit=m", field, true, &error),
                &error);
 }

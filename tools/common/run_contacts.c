@@ -14,7 +14,7 @@ static double *deformed(const struct run *run)
 {
     const struct solid_system *system = &run->model->system;
     double *x = run_new_values(run, system->node_count * system->dim);
-    model_nodal_field(&run->model->input, run->u, x);
+    assembly_nodal_field(&run->model->assembly, run->u, x);
     for (int64_t i = 0; i < system->node_count * system->dim; i++) {
         x[i] += system->X[i];
     }
@@ -61,19 +61,13 @@ void run_contacts_judge(struct run *run, double slack)
     double *x = system->contact_count > 0 ? deformed(run) : NULL;
     for (int64_t c = 0; c < system->contact_count; c++) {
         const struct contact *contact = &system->contacts[c];
-        const struct scene_contact *section = &run->scene->contacts[contact->section];
-        struct facet_set set;
+        const struct facet_set *set = &run->model->assembly.contacts[contact->section].facets;
         struct contact_patch patch;
-        int32_t *owned = NULL;
         if (contact->penalty_only) {
             continue;
         }
-        tool_check(run->tool,
-                   model_facets(&run->model->input, &section->label, &section->facets, &set, &owned, &error),
+        tool_check(run->tool, contact_patch_find(contact, set, system->node_count, x, &patch, &error),
                    &error);
-        enum status status = contact_patch_find(contact, &set, system->node_count, x, &patch, &error);
-        free(owned);
-        tool_check(run->tool, status, &error);
         judge_patch(run, contact, &patch, slack);
     }
     free(x);

@@ -21,21 +21,21 @@ static void judge(struct run *run, const struct dynamics_report *report)
         run_folds_judge(run);
         return;
     case DYNAMICS_INVERTED:
-        place_of(run, run->model->input.points->data, report->point, place);
+        place_of(run, run->model->assembly.x, report->point, place);
         run_fail(run, STATUS_VERDICT,
                  "%s: step %lld, t = %.6g s: integration point %lld at %s is inverted (J = %.3g): apply the "
                  "load more slowly, or a smaller one, lower time_step_margin (%g), or refine there",
                  scene->path, (long long)report->steps, report->time, (long long)report->point, place,
                  report->least_jacobian, scene->solver.time_step_margin);
     case DYNAMICS_COLLAPSED:
-        place_of(run, run->model->input.cells.x, report->node, place);
+        place_of(run, run->model->assembly.cells.x, report->node, place);
         run_fail(run, STATUS_VERDICT,
                  "%s: step %lld, t = %.6g s: the critical step has fallen below %g of the first one "
                  "(%.3g s), by node %lld at %s: apply a smaller load, or refine there",
                  scene->path, (long long)report->steps, report->time, DYNAMICS_LEAST_STEP, report->first_step,
                  (long long)report->node, place);
     case DYNAMICS_DRIFTED:
-        place_of(run, run->model->input.cells.x, report->node, place);
+        place_of(run, run->model->assembly.cells.x, report->node, place);
         run_fail(run, STATUS_VERDICT,
                  "%s: step %lld, t = %.6g s: the energy balance is off by %.2g of the largest energy (most "
                  "%g), the fastest is node %lld at %s: lower time_step_margin (%g), or apply the load more "
@@ -99,7 +99,7 @@ void run_dynamic(struct run *run)
     double *velocity = NULL;
     if (run->scene->initial.table != NULL) {
         velocity = run_new_values(run, run->model->system.node_count * run->scene->dim);
-        tool_check(run->tool, model_initial(&run->model->input, run->u, velocity, &error), &error);
+        tool_check(run->tool, model_initial(run->model, run->u, velocity, &error), &error);
     }
     if (options.frame_interval > 0.0 && options.restored == NULL) {
         run_put_frame(run, 0, 0.0, run->u);

@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static enum status build(const struct model_input *input, struct run_folds *folds, struct error *error)
+static enum status build(const struct assembly *input, struct run_folds *folds, struct error *error)
 {
     enum status status;
     const struct cells *cells = &input->cells;
@@ -19,7 +19,7 @@ static enum status build(const struct model_input *input, struct run_folds *fold
                               .cell = cells->node,
                               .facet_count = input->boundary.count,
                               .facet = input->boundary.node};
-    TRY(model_held_faces(input, 1, &folds->held, error));
+    TRY(assembly_held_faces(input, 1, &folds->held, error));
     body.held = folds->held;
     TRY(NEW_ARRAY(&folds->field, cells->node_count * cells->dim, error));
     TRY(NEW_ARRAY(&folds->stopped, cells->node_count, error));
@@ -32,7 +32,7 @@ void run_folds_begin(struct run *run)
 {
     struct error error;
     const struct state *restored = run_checkpoint_state(run);
-    tool_check(run->tool, build(&run->model->input, &run->folds, &error), &error);
+    tool_check(run->tool, build(&run->model->assembly, &run->folds, &error), &error);
     if (restored != NULL) {
         tool_check(run->tool, run_folds_state(run, restored, &error), &error);
     }
@@ -86,7 +86,7 @@ void run_folds_look(struct run *run, const double *u, double time, bool is_frame
 {
     struct run_folds *folds = &run->folds;
     bool counts = is_frame || run->scene->analysis == SCENE_DYNAMIC;
-    model_nodal_field(&run->model->input, u, folds->field);
+    assembly_nodal_field(&run->model->assembly, u, folds->field);
     mark_stopped(run, folds->stopped);
     struct fold fold = folds_find(&folds->folds, folds->field, folds->stopped);
     struct fold none = {.kind = FOLD_NONE}, noted = fold;

@@ -37,8 +37,7 @@ static void judge(struct run *run, const struct relaxation_report *report)
         run_checkpoint_stop(run, report->steps);
     }
     if (report->outcome == RELAXATION_INVERTED) {
-        const double *x =
-            (const double *)run->model->input.points->data + report->inverted_point * scene->dim;
+        const double *x = run->model->assembly.x + report->inverted_point * scene->dim;
         point_text(scene->dim, x, place);
         run_fail(run, STATUS_VERDICT,
                  "%s: step %lld: integration point %lld at %s is inverted (J = %.3g): apply the load in "

@@ -29,7 +29,7 @@ static void put_field(const struct run *run, const struct moment *moment, const 
     int64_t nodes = run->model->system.node_count;
     char vector[64];
     double *field = run_new_values(run, nodes * dim), *parameters = run_new_values(run, nodes * dim);
-    model_nodal_field(&run->model->input, u, field);
+    assembly_nodal_field(&run->model->assembly, u, field);
     memcpy(parameters, u, (size_t)(nodes * dim) * sizeof *u);
     put(run, moment, "u", nodes, dim, vector_attributes(dim, "m", vector), field);
     put(run, moment, "parameters", nodes, dim, vector, parameters);
@@ -37,8 +37,9 @@ static void put_field(const struct run *run, const struct moment *moment, const 
 
 void run_put_supports(const struct run *run)
 {
-    const struct section *radius = stream_find(run->stream, "support.radius");
-    if (radius != NULL && radius->rows == run->model->system.node_count) {
+    const struct section *radius = stream_find(run->stream, "support.radius"),
+                         *nodes = stream_find(run->stream, "nodes.x");
+    if (radius != NULL && nodes != NULL && radius->rows == nodes->rows) {
         double *values = run_new_values(run, radius->rows);
         memcpy(values, radius->data, (size_t)radius->rows * sizeof *values);
         run_put(run, "parameters.radius", radius->rows, 1, radius->attributes, values);

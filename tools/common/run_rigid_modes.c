@@ -53,7 +53,7 @@ static void join_cells(const struct cells *cells, struct bodies *bodies)
 static enum status bodies_find(const struct model *model, struct bodies *bodies, struct error *error)
 {
     enum status status;
-    const struct cells *cells = &model->input.cells;
+    const struct cells *cells = &model->assembly.cells;
     const struct solid_system *system = &model->system;
     *bodies = (struct bodies){0};
     TRY(NEW_ARRAY(&bodies->of_node, cells->node_count, error));
@@ -139,13 +139,13 @@ static enum status body_text(const struct model *model, const struct bodies *bod
     const struct section *region;
     snprintf(text, 256, "the body");
     if (bodies->count > 1) {
-        TRY(stream_need(model->input.stream, "cells.region", TYPE_I4, 1, "nodes", &region, error));
+        TRY(stream_need(model->stream, "cells.region", TYPE_I4, 1, "nodes", &region, error));
         TRY(names_of_section(region, &names, error));
         name = names;
         for (int32_t k = ((const int32_t *)region->data)[bodies->cell[b]]; k > 0 && name != NULL; k--) {
             name = strchr(name, ',') != NULL ? strchr(name, ',') + 1 : NULL;
         }
-        point_text(model->input.cells.dim, bodies->moves[b].centre, place);
+        point_text(model->assembly.cells.dim, bodies->moves[b].centre, place);
         snprintf(text, 256, "body %lld (region %.*s, near %s)", (long long)b + 1,
                  name != NULL ? (int)strcspn(name, ",") : 1, name != NULL ? name : "?", place);
     } else {
@@ -168,7 +168,7 @@ void run_check_rigid_modes(struct run *run)
         if (moves->translations + moves->turns == 0) {
             continue;
         }
-        moves_text(model->input.cells.dim, model->input.extent, moves, what, sizeof what);
+        moves_text(model->assembly.cells.dim, model->assembly.extent, moves, what, sizeof what);
         tool_check(run->tool, body_text(model, &bodies, b, body, &error), &error);
         if (!bodies.touches[b]) {
             run_fail(run, STATUS_VERDICT,

@@ -1,4 +1,4 @@
-#include "model_held.h"
+#include "solid/held_directions.h"
 
 #include "base/memory.h"
 

@@ -1,4 +1,6 @@
-#include "model_prescription.h"
+#include "solid/prescription.h"
+
+#include "base/memory.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -17,7 +19,7 @@ static enum status add_penalty(const struct prescription *p, const struct bounda
     int64_t at = points->ptr[a];
     enum status status =
         constraint_rows_add(&system->penalties, points->ptr[a + 1] - at, points->idx + at, points->phi + at,
-                            direction, target, p->curve, p->number, points->node[a], error);
+                            direction, target, p->condition->curve, p->number, points->node[a], error);
     if (status != STATUS_OK) {
         return status;
     }
@@ -41,13 +43,13 @@ static enum status add_row(const struct prescription *p, const struct boundary_a
     if (p->penalties) {
         return add_penalty(p, averages, a, direction, target, error);
     }
-    if (p->input->scene->solver.constraints == SCENE_DIRECT) {
+    if (p->input->direct) {
         /* With a weight function that almost interpolates, the parameter is the value. */
-        return constraint_rows_add(rows, 1, &averages->node[a], &one, direction, target, p->curve, p->number,
-                                   averages->node[a], error);
+        return constraint_rows_add(rows, 1, &averages->node[a], &one, direction, target, p->condition->curve,
+                                   p->number, averages->node[a], error);
     }
     return constraint_rows_add(rows, averages->ptr[a + 1] - at, averages->idx + at, averages->phi + at,
-                               direction, target, p->curve, p->number, averages->node[a], error);
+                               direction, target, p->condition->curve, p->number, averages->node[a], error);
 }
 
 /* All rows of one average, whatever is held already. */
@@ -55,7 +57,7 @@ static enum status add_average(const struct prescription *p, const struct bounda
                                int64_t a, struct error *error)
 {
     struct demand demand;
-    enum status status = prescription_demand(p, averages, a, &demand, error);
+    enum status status = prescription_demand(p, averages, a, false, &demand, error);
     for (int k = 0; status == STATUS_OK && k < demand.count; k++) {
         status = add_row(p, averages, a, demand.direction + k * p->input->cells.dim, demand.value[k], error);
     }
@@ -74,7 +76,7 @@ static void note_shared(const struct prescription *p, int32_t node, bool *shared
     }
 }
 
-/* The rows of one average along directions that no section before holds at its node. Where the whole
+/* The rows of one average along directions that no condition before holds at its node. Where the whole
  * displacement is prescribed, the directions are turned to be across what is held. */
 static enum status add_rest(const struct prescription *p, const struct boundary_averages *averages, int64_t a,
                             bool *shared, struct error *error)
@@ -84,7 +86,7 @@ static enum status add_rest(const struct prescription *p, const struct boundary_
     struct demand demand;
     double mine[9];
     bool full = prescription_is_full(p);
-    enum status status = prescription_demand(p, averages, a, &demand, error);
+    enum status status = prescription_demand(p, averages, a, false, &demand, error);
     for (int k = 0; status == STATUS_OK && k < demand.count; k++) {
         double rest[3], target = demand.value[k], *direction = demand.direction + k * dim;
         double length = held_rest(p->held, node, full ? count : 0, mine, direction, rest);
@@ -107,42 +109,34 @@ static enum status add_rest(const struct prescription *p, const struct boundary_
     return status;
 }
 
-/* What the section prescribes at the node of an average. */
-static enum status add_nodal_constraints(const struct prescription *p,
-                                         const struct boundary_averages *averages, int64_t a,
-                                         struct error *error)
+/* The rows of the first `count` averages, and what the condition prescribes at their nodes. With sides, what
+ * conditions before hold there is noted for each group. */
+static enum status add_all(const struct prescription *p, const struct boundary_averages *averages,
+                           const struct boundary_sides *sides, int64_t count, struct error *error)
 {
-    int dim = p->input->cells.dim;
-    const struct scene_displacement *section = p->section;
-    struct nodal_constraint nodal_constraint = {
-        .node = averages->node[a], .section = p->number, .value = section->normal};
-    double value[3] = {section->components[0], section->components[1], section->components[2]};
-    if (section->kind == SCENE_NORMAL) {
-        memcpy(nodal_constraint.direction, averages->normal + a * dim,
-               (size_t)dim * sizeof *nodal_constraint.direction);
-        return nodal_constraints_add(p->nodal_constraints, &nodal_constraint, error);
-    }
     enum status status = STATUS_OK;
-    if (section->kind == SCENE_TABLE) {
-        TRY(prescription_value(p, nodal_constraint.node,
-                               p->input->cells.x + (int64_t)nodal_constraint.node * dim, value, error));
-    }
-    for (int i = 0; i < dim; i++) {
-        if (prescription_is_free(section, i)) {
-            continue;
+    int dim = p->input->cells.dim;
+    int64_t first = p->system->rows.count;
+    for (int64_t a = 0; a < count; a++) {
+        struct nodal_constraint nodal = {.node = averages->node[a], .condition = p->number};
+        struct demand demand;
+        TRY(add_rest(p, averages, a, sides != NULL ? p->shared + sides->group[a] * dim : NULL, error));
+        TRY(prescription_demand(p, averages, a, true, &demand, error));
+        for (int k = 0; k < demand.count; k++) {
+            memcpy(nodal.direction, demand.direction + k * dim, (size_t)dim * sizeof *nodal.direction);
+            nodal.value = demand.value[k];
+            TRY(nodal_constraints_add(p->nodal_constraints, &nodal, error));
         }
-        memset(nodal_constraint.direction, 0, sizeof nodal_constraint.direction);
-        nodal_constraint.direction[i] = 1.0;
-        nodal_constraint.value = value[i];
-        TRY(nodal_constraints_add(p->nodal_constraints, &nodal_constraint, error));
     }
+    held_note(p->held, &p->system->rows, first, p->system->rows.count);
 done:
     return status;
 }
 
 /* Hold what the boundary averages of a set leave free. */
-static enum status add_penalties(struct prescription *p, const struct facet_set *set, struct error *error)
+static enum status add_penalties(struct prescription *p, struct error *error)
 {
+    const struct facet_set *set = &p->condition->facets;
     enum status status;
     struct boundary_averages points = {0};
     double area = 0.0;
@@ -153,7 +147,7 @@ static enum status add_penalties(struct prescription *p, const struct facet_set 
     area /= (double)set->count;
     p->penalties = true;
     p->layer = p->input->cells.dim == 2 ? area : sqrt(2.0 * area);
-    p->modulus = model_penalty_modulus(p->system, constraint_penalty_factor);
+    p->modulus = assembly_penalty_modulus(p->system, constraint_penalty_factor);
     for (int64_t a = 0; a < points.count; a++) {
         TRY(add_average(p, &points, a, error));
     }
@@ -163,41 +157,41 @@ done:
     return status;
 }
 
-/* The mean over side a, along the axes along which boundary averages of its group are left to other sections;
- * along its normal, if that is what is held. */
+/* The mean over side a, along the axes along which boundary averages of its group are left to other
+ * conditions; along its normal, if that is what is held. */
 static enum status add_side(const struct prescription *p, const struct boundary_averages *averages,
                             const struct boundary_sides *sides, int64_t a, struct error *error)
 {
     int dim = p->input->cells.dim;
     const bool *shared = p->shared + sides->group[a] * dim;
     struct demand demand;
-    enum status status = prescription_demand(p, averages, a, &demand, error);
-    if (p->section->kind == SCENE_NORMAL) {
+    enum status status = prescription_demand(p, averages, a, false, &demand, error);
+    if (p->condition->kind == CONDITION_NORMAL) {
         bool any = shared[0] || shared[1] || shared[dim - 1];
         return status == STATUS_OK && any ? add_row(p, averages, a, demand.direction, demand.value[0], error)
                                           : status;
     }
-    for (int i = 0, k = 0; status == STATUS_OK && i < dim; i++) {
-        double axis[3] = {0.0, 0.0, 0.0};
-        axis[i] = 1.0;
-        if (!prescription_is_free(p->section, i) && shared[i]) {
+    for (int k = 0; status == STATUS_OK && k < demand.count; k++) {
+        const double *axis = demand.direction + k * dim;
+        int i = axis[0] != 0.0 ? 0 : axis[1] != 0.0 ? 1 : 2;
+        if (shared[i]) {
             status = add_row(p, averages, a, axis, demand.value[k], error);
         }
-        k += !prescription_is_free(p->section, i);
     }
     return status;
 }
 
-/* Boundary averages for a section. Split, two for each node of an edge, they carry a traction that jumps
+/* Boundary averages for a condition. Split, two for each node of an edge, they carry a traction that jumps
  * there; not split they leave the field beside the edge as free as elsewhere. A displacement that is constant
  * makes no linear field but rest, whose traction could jump; and on curved sides none is exact anyway. */
-static enum status build_hats(const struct prescription *p, const struct facet_set *set,
-                              struct boundary_averages *averages, struct boundary_sides *sides,
-                              struct error *error)
+static enum status build_hats(const struct prescription *p, struct boundary_averages *averages,
+                              struct boundary_sides *sides, struct error *error)
 {
-    bool split = p->section->kind == SCENE_NORMAL;
+    const struct facet_set *set = &p->condition->facets;
+    bool split = p->condition->kind == CONDITION_NORMAL;
     enum status status = boundary_sides_build(&p->input->face_table, set, split, averages, sides, error);
-    if (split || status != STATUS_OK || (p->section->kind == SCENE_COMPONENTS && prescription_is_full(p))) {
+    if (split || status != STATUS_OK ||
+        (p->condition->kind == CONDITION_COMPONENTS && prescription_is_full(p))) {
         return status;
     }
     for (int64_t a = sides->node_average_count; a < averages->count; a++) {
@@ -210,21 +204,15 @@ static enum status build_hats(const struct prescription *p, const struct facet_s
     return boundary_sides_build(&p->input->face_table, set, true, averages, sides, error);
 }
 
-/* Rows on boundary averages: boundary averages, then means over flat sides. */
-static enum status add_hats(struct prescription *p, const struct facet_set *set, struct error *error)
+/* Rows on boundary averages, then means over flat sides. */
+static enum status add_hats(struct prescription *p, struct error *error)
 {
     enum status status;
     struct boundary_averages averages = {0};
     struct boundary_sides sides = {0};
-    int dim = p->input->cells.dim;
-    int64_t first = p->system->rows.count;
-    TRY(build_hats(p, set, &averages, &sides, error));
-    TRY(NEW_ARRAY(&p->shared, sides.group_count * dim, error));
-    for (int64_t a = 0; a < sides.node_average_count; a++) {
-        TRY(add_rest(p, &averages, a, p->shared + sides.group[a] * dim, error));
-        TRY(add_nodal_constraints(p, &averages, a, error));
-    }
-    held_note(p->held, &p->system->rows, first, p->system->rows.count);
+    TRY(build_hats(p, &averages, &sides, error));
+    TRY(NEW_ARRAY(&p->shared, sides.group_count * p->input->cells.dim, error));
+    TRY(add_all(p, &averages, &sides, sides.node_average_count, error));
     for (int64_t a = sides.node_average_count; a < averages.count; a++) {
         if (sides.flat[a]) {
             TRY(add_side(p, &averages, &sides, a, error));
@@ -239,89 +227,73 @@ done:
 }
 
 /* Rows on values at the nodes of facets or of sets. */
-static enum status add_nodes(struct prescription *p, const struct facet_set *set, struct error *error)
+static enum status add_nodes(struct prescription *p, struct error *error)
 {
     enum status status;
-    const struct model_input *input = p->input;
+    const struct assembly *input = p->input;
+    const struct condition *condition = p->condition;
     struct boundary_averages averages = {0};
-    int32_t *owned = NULL;
-    int64_t first = p->system->rows.count, count;
-    if (set->count > 0) {
-        TRY(boundary_nodes_build(&input->face_table, set, &input->node_lists, input->node_phi, &averages,
-                                 error));
+    if (condition->facets.count > 0) {
+        TRY(boundary_nodes_build(&input->face_table, &condition->facets, &input->node_lists, input->node_phi,
+                                 &averages, error));
     } else {
-        TRY(model_nodes(input, &p->section->label, &p->section->nodes, &owned, &count, error));
-        TRY(boundary_list_build(input->cells.dim, input->cells.x, owned, count, &input->node_lists,
-                                input->node_phi, &averages, error));
+        TRY(boundary_list_build(input->cells.dim, input->cells.x, condition->nodes, condition->node_count,
+                                &input->node_lists, input->node_phi, &averages, error));
     }
-    for (int64_t a = 0; a < averages.count; a++) {
-        TRY(add_rest(p, &averages, a, NULL, error));
-        TRY(add_nodal_constraints(p, &averages, a, error));
-    }
-    held_note(p->held, &p->system->rows, first, p->system->rows.count);
+    TRY(add_all(p, &averages, NULL, averages.count, error));
 done:
-    free(owned);
     boundary_averages_free(&averages);
     return status;
 }
 
-static enum status add_section(struct prescription *p, struct error *error)
+static enum status add_condition(struct prescription *p, struct error *error)
 {
-    enum status status;
+    enum status status = STATUS_OK;
     int dim = p->input->cells.dim;
-    const struct scene_displacement *section = p->section;
-    struct facet_set set = {0};
+    const struct condition *condition = p->condition;
     struct ways ways = {0};
-    int32_t *owned = NULL;
-    TRY(model_add_curve(p->input, &section->label, &section->curve, p->system, &p->curve, error));
-    if (section->kind == SCENE_TABLE) {
-        TRY(table_read(section->table, 2 * dim, 2 * dim, &p->table, error));
-        TRY(ways_build(&p->input->cells, p->table.rows, p->table.cols, p->table.values, section->table_unit,
+    if (condition->kind == CONDITION_TABLE) {
+        TRY(ways_build(&p->input->cells, condition->row_count, 2 * dim, condition->rows, condition->unit,
                        &ways, error));
         p->fit = (struct scattered_fit){.dim = dim,
                                         .value_count = dim,
-                                        .count = p->table.rows,
-                                        .row_size = p->table.cols,
-                                        .row = p->table.values,
-                                        .unit = section->table_unit,
+                                        .count = condition->row_count,
+                                        .row_size = 2 * dim,
+                                        .row = condition->rows,
+                                        .unit = condition->unit,
                                         .ways = &ways};
         TRY(scattered_fit_build(&p->fit, error));
     }
-    if (section->facets.count > 0) {
-        TRY(model_facets(p->input, &section->label, &section->facets, &set, &owned, error));
-    }
-    if (section->facets.count > 0 && model_holds_averages(p->input)) {
-        TRY(add_hats(p, &set, error));
-        TRY(add_penalties(p, &set, error));
+    if (condition->facets.count > 0 && assembly_holds_averages(p->input)) {
+        TRY(add_hats(p, error));
+        TRY(add_penalties(p, error));
     } else {
-        TRY(add_nodes(p, &set, error));
+        TRY(add_nodes(p, error));
     }
 done:
-    free(owned);
     ways_free(&ways);
-    table_free(&p->table);
     scattered_fit_free(&p->fit);
     return status;
 }
 
-enum status model_add_constraints(const struct model_input *input, struct solid_system *system,
-                                  struct error *note, struct error *error)
+enum status assembly_add_conditions(const struct assembly *input, struct solid_system *system,
+                                    struct error *note, struct error *error)
 {
     enum status status = STATUS_OK;
     struct nodal_constraints nodal_constraints = {0};
     struct held_directions held = {0};
     TRY(held_build(input->cells.dim, input->cells.node_count, &held, error));
-    /* Sections that hold few directions come first: what slides along a plane stays on it to its rim. */
+    /* Conditions that hold few directions come first: what slides along a plane stays on it to its rim. */
     for (int directions = 1; directions <= input->cells.dim; directions++) {
-        for (int64_t i = 0; i < input->scene->displacement_count; i++) {
+        for (int64_t i = 0; i < input->condition_count; i++) {
             struct prescription p = {.input = input,
-                                     .section = &input->scene->displacements[i],
+                                     .condition = &input->conditions[i],
                                      .system = system,
                                      .nodal_constraints = &nodal_constraints,
                                      .held = &held,
                                      .number = (int32_t)i};
-            if (prescription_directions(p.section, input->cells.dim) == directions) {
-                TRY(add_section(&p, error));
+            if (prescription_directions(p.condition, input->cells.dim) == directions) {
+                TRY(add_condition(&p, error));
             }
         }
     }

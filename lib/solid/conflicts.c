@@ -1,9 +1,11 @@
-#include "model_conflicts.h"
+#include "solid/conflicts.h"
+
+#include "base/memory.h"
 
 #include <math.h>
 #include <stdlib.h>
 
-/* Of the largest value that either section prescribes: prescribed values further apart are an error, and
+/* Of the largest value that either condition prescribes: prescribed values further apart are an error, and
  * prescribed values that are nearer than the second, also of that part of the body's size, are the same. */
 static const double largest_jump = 0.1, same_jump = 1e-9, least_size = 1e-6;
 
@@ -29,12 +31,12 @@ void nodal_constraints_free(struct nodal_constraints *nodal_constraints)
     *nodal_constraints = (struct nodal_constraints){0};
 }
 
-/* By node, then in the order of the scene. */
+/* By node, then in the order of the conditions. */
 static int compare_nodal_constraints(const void *left, const void *right)
 {
     const struct nodal_constraint *a = left, *b = right;
     return a->node != b->node ? (a->node > b->node) - (a->node < b->node)
-                              : (a->section > b->section) - (a->section < b->section);
+                              : (a->condition > b->condition) - (a->condition < b->condition);
 }
 
 /* The difference of two prescribed values along one direction; 0 when their directions differ. */
@@ -47,32 +49,30 @@ static double jump(const struct nodal_constraint *a, const struct nodal_constrai
     return fabs(along) > 1.0 - 1e-9 ? fabs(b->value - copysign(a->value, along * a->value)) : 0.0;
 }
 
-/* What two sections prescribe: STATUS_OK when they agree, else the message. */
-static enum status compare(const struct model_input *input, const struct nodal_constraint *first,
+/* What two conditions prescribe: STATUS_OK when they agree, else the message. */
+static enum status compare(const struct assembly *input, const struct nodal_constraint *first,
                            const struct nodal_constraint *second, double most, struct error *error)
 {
-    const struct scene *scene = input->scene;
     char place[96];
     if (jump(first, second, input->cells.dim) <= same_jump * most) {
         return STATUS_OK;
     }
     point_text(input->cells.dim, input->cells.x + (int64_t)second->node * input->cells.dim, place);
-    return scene_fail(error, STATUS_INPUT, scene, &scene->displacements[second->section].label,
-                      "node %d at %s is prescribed twice: %g m here, %g m in [displacement %s]", second->node,
-                      place, second->value, first->value, scene->displacements[first->section].label.name);
+    return fail(error, STATUS_INPUT,
+                "%s: node %d at %s is prescribed twice: %g m here, %g m in [displacement %s]",
+                input->conditions[second->condition].where, second->node, place, second->value, first->value,
+                input->conditions[first->condition].name);
 }
 
-enum status nodal_constraints_check(const struct model_input *input,
-                                    struct nodal_constraints *nodal_constraints, struct error *note,
-                                    struct error *error)
+enum status nodal_constraints_check(const struct assembly *input, struct nodal_constraints *nodal_constraints,
+                                    struct error *note, struct error *error)
 {
     enum status status;
-    const struct scene *scene = input->scene;
     double *largest = NULL;
     note->text[0] = '\0';
-    TRY(NEW_ARRAY(&largest, scene->displacement_count, error));
+    TRY(NEW_ARRAY(&largest, input->condition_count, error));
     for (int64_t c = 0; c < nodal_constraints->count; c++) {
-        double *most = &largest[nodal_constraints->list[c].section];
+        double *most = &largest[nodal_constraints->list[c].condition];
         *most = fmax(*most, fabs(nodal_constraints->list[c].value));
     }
     if (nodal_constraints->count > 0) {
@@ -83,8 +83,8 @@ enum status nodal_constraints_check(const struct model_input *input,
         const struct nodal_constraint *second = &nodal_constraints->list[b];
         for (int64_t a = b - 1; a >= 0 && nodal_constraints->list[a].node == second->node; a--) {
             const struct nodal_constraint *first = &nodal_constraints->list[a];
-            double most = fmax(largest[first->section], largest[second->section]);
-            if (first->section == second->section ||
+            double most = fmax(largest[first->condition], largest[second->condition]);
+            if (first->condition == second->condition ||
                 compare(input, first, second, fmax(most, least_size * input->extent), error) == STATUS_OK) {
                 continue;
             }

@@ -1,4 +1,4 @@
-#include "model.h"
+#include "solid/assembly.h"
 
 #include "base/memory.h"
 
@@ -35,13 +35,13 @@ static const double edge_bulk = 15.0;
 enum { AT_SMOOTH_END = 1, AT_EDGE = 2, SIDES = 4 };
 
 /* Set the bit `at` of the cells that touch ends of one kind. */
-static enum status mark_cells(const struct model_input *input, enum boundary_end kind, int at, char *beside,
+static enum status mark_cells(const struct assembly *input, enum boundary_end kind, int at, char *beside,
                               struct error *error)
 {
     enum status status;
     int dim = input->cells.dim, corners = dim + 1;
     bool *held = NULL, *end = NULL;
-    TRY(model_held_faces(input, kind == BOUNDARY_END_SHARP ? dim : 1, &held, error));
+    TRY(assembly_held_faces(input, kind == BOUNDARY_END_SHARP ? dim : 1, &held, error));
     TRY(NEW_ARRAY(&end, input->cells.node_count, error));
     TRY(boundary_find_ends(&input->face_table, kind, held, end, error));
     for (int64_t c = 0; c < input->cells.count; c++) {
@@ -75,11 +75,11 @@ static void add_softened(struct material_list *list, int32_t m, int beside)
     list->section[list->count++] = list->section[m];
 }
 
-enum status model_soften_ends(const struct model_input *input, struct material_list *list,
-                              struct error *error)
+enum status assembly_soften_ends(const struct assembly *input, struct material_list *list,
+                                 struct error *error)
 {
     enum status status;
-    const int32_t *cell = input->point_cell->data;
+    const int32_t *cell = input->point_cell;
     char *beside = NULL;
     int64_t *softened = NULL; /* of each material and SIDES, 0 if there is none yet */
     struct material *items = array_grow(list->items, SIDES * list->count, sizeof *items);
@@ -95,7 +95,7 @@ enum status model_soften_ends(const struct model_input *input, struct material_l
     if (input->cells.dim == 3) {
         TRY(mark_cells(input, BOUNDARY_END_SHARP, AT_EDGE, beside, error));
     }
-    for (int64_t q = 0; q < input->points->rows; q++) {
+    for (int64_t q = 0; q < input->point_count; q++) {
         int32_t m = list->of_point[q];
         int64_t variant = (int64_t)SIDES * m + beside[cell[q]];
         if (beside[cell[q]] == 0) {

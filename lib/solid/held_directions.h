@@ -1,8 +1,8 @@
 /* Which directions earlier displacement sections hold at each node. Where sections meet, a node's averages on
  * either side of the edge nearly depend on each other: so each section holds only what is not held yet, and
  * the means of its sides carry what the traction on the side has beyond that. */
-#ifndef TOOLS_MODEL_HELD_H
-#define TOOLS_MODEL_HELD_H
+#ifndef SOLID_HELD_DIRECTIONS_H
+#define SOLID_HELD_DIRECTIONS_H
 
 #include "base/status.h"
 #include "solid/constraint.h"

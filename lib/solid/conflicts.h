@@ -1,14 +1,13 @@
-/* Where boundaries of two displacement sections meet, they share nodes: each section prescribes a value
- * there. The section that comes first holds the node (model_held.h), so that another value would be left out
- * silently. */
-#ifndef TOOLS_MODEL_CONFLICTS_H
-#define TOOLS_MODEL_CONFLICTS_H
+/* Where facets of two conditions meet, they share nodes: each prescribes a value there. The one that comes
+ * first holds the node (held_directions.h), so that another value would be left out silently. */
+#ifndef SOLID_CONFLICTS_H
+#define SOLID_CONFLICTS_H
 
-#include "model.h"
+#include "solid/assembly.h"
 
 struct nodal_constraint {
     int32_t node;
-    int32_t section;     /* index into the scene's displacements */
+    int32_t condition;   /* its number */
     double direction[3]; /* unit */
     double value;        /* m */
 };
@@ -23,11 +22,11 @@ MUST_CHECK enum status nodal_constraints_add(struct nodal_constraints *nodal_con
                                              struct error *error);
 void nodal_constraints_free(struct nodal_constraints *nodal_constraints);
 
-/* Two sections that prescribe values of one node along one direction, further apart than a tenth of the
+/* Two conditions that prescribe values of one node along one direction, further apart than a tenth of the
  * largest value that either prescribes, are an error that names them. Of those that are nearer, as measured
- * values at a rim may be, the first is told in `note`, which is empty when all agree; the section that holds
- * fewer directions decides, or the one that comes first in the scene. */
-MUST_CHECK enum status nodal_constraints_check(const struct model_input *input,
+ * values at a rim may be, the first is told in `note`, which is empty when all agree; the one that holds
+ * fewer directions decides, or the one that comes first. */
+MUST_CHECK enum status nodal_constraints_check(const struct assembly *input,
                                                struct nodal_constraints *nodal_constraints,
                                                struct error *note, struct error *error);
 

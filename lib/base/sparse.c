@@ -1,0 +1,93 @@
+#include "base/sparse.h"
+
+#include "base/chunks.h"
+#include "base/memory.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+enum { ROWS_FOR_THREAD = 4000 }; /* see chunks_of */
+
+enum status sparse_new(int64_t row_count, int64_t column_count, int64_t entries, struct sparse *matrix,
+                       struct error *error)
+{
+    enum status status;
+    *matrix = (struct sparse){.row_count = row_count, .column_count = column_count};
+    TRY(NEW_ARRAY(&matrix->ptr, row_count + 1, error));
+    TRY(NEW_ARRAY(&matrix->idx, entries, error));
+    TRY(NEW_ARRAY(&matrix->value, entries, error));
+done:
+    if (status != STATUS_OK) {
+        sparse_free(matrix);
+    }
+    return status;
+}
+
+enum status sparse_transpose(const struct sparse *matrix, struct sparse *transposed, struct error *error)
+{
+    enum status status;
+    int64_t entries = matrix->ptr[matrix->row_count], *next = NULL;
+    *transposed = (struct sparse){0};
+    TRY(NEW_ARRAY(&next, matrix->column_count + 1, error));
+    TRY(sparse_new(matrix->column_count, matrix->row_count, entries, transposed, error));
+    for (int64_t i = 0; i < entries; i++) {
+        transposed->ptr[matrix->idx[i] + 1]++;
+    }
+    for (int64_t c = 0; c < matrix->column_count; c++) {
+        transposed->ptr[c + 1] += transposed->ptr[c];
+        next[c + 1] = transposed->ptr[c + 1];
+    }
+    for (int64_t r = 0; r < matrix->row_count; r++) {
+        for (int64_t i = matrix->ptr[r]; i < matrix->ptr[r + 1]; i++) {
+            int64_t at = next[matrix->idx[i]]++;
+            transposed->idx[at] = (int32_t)r;
+            transposed->value[at] = matrix->value[i];
+        }
+    }
+done:
+    free(next);
+    return status;
+}
+
+void sparse_free(struct sparse *matrix)
+{
+    free(matrix->ptr);
+    free(matrix->idx);
+    free(matrix->value);
+    *matrix = (struct sparse){0};
+}
+
+/* The width is known when compiling where it is 2 or 3. */
+static inline __attribute__((always_inline)) void
+apply_rows(const struct sparse *matrix, int64_t begin, int64_t end, int64_t width, const double *x, double *y)
+{
+    for (int64_t r = begin; r < end; r++) {
+        double sum[3] = {0.0, 0.0, 0.0}, *to = width <= 3 ? sum : y + r * width;
+        for (int64_t a = 0; a < width; a++) {
+            to[a] = 0.0;
+        }
+        for (int64_t i = matrix->ptr[r]; i < matrix->ptr[r + 1]; i++) {
+            const double *at = x + matrix->idx[i] * width;
+            for (int64_t a = 0; a < width; a++) {
+                to[a] += matrix->value[i] * at[a];
+            }
+        }
+        memmove(y + r * width, to, (size_t)width * sizeof *y);
+    }
+}
+
+void sparse_apply(const struct sparse *matrix, int64_t width, const double *x, double *y)
+{
+    struct chunks chunks = chunks_of(matrix->row_count, ROWS_FOR_THREAD);
+#pragma omp parallel for schedule(static) num_threads(chunks.threads)
+    for (int64_t c = 0; c < chunks.count; c++) {
+        int64_t begin = chunks_begin(&chunks, c), end = chunks_begin(&chunks, c + 1);
+        if (width == 2) {
+            apply_rows(matrix, begin, end, 2, x, y);
+        } else if (width == 3) {
+            apply_rows(matrix, begin, end, 3, x, y);
+        } else {
+            apply_rows(matrix, begin, end, width, x, y);
+        }
+    }
+}

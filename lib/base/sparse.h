@@ -1,0 +1,31 @@
+/* Sparse matrices by rows (CSR), which act on fields: the rows of a vector are numbers, or the components of
+ * a displacement or force. The force loop applies such an operator and its transpose, equation (12) of
+ * lib/README.md, which is stored as well: each row is summed by one thread and in one order, so that any
+ * number of threads gives the same bits. */
+#ifndef BASE_SPARSE_H
+#define BASE_SPARSE_H
+
+#include "base/status.h"
+
+#include <stdint.h>
+
+struct sparse {
+    int64_t row_count, column_count;
+    int64_t *ptr;  /* row_count + 1 */
+    int32_t *idx;  /* ptr[row_count]: columns */
+    double *value; /* ptr[row_count] */
+};
+
+/* Room for so many rows and entries: the caller fills in ptr, idx and value. */
+MUST_CHECK enum status sparse_new(int64_t row_count, int64_t column_count, int64_t entries,
+                                  struct sparse *matrix, struct error *error);
+
+/* The transpose, the entries of each row in the order of the matrix's rows. `transposed` is not `matrix`. */
+MUST_CHECK enum status sparse_transpose(const struct sparse *matrix, struct sparse *transposed,
+                                        struct error *error);
+void sparse_free(struct sparse *matrix);
+
+/* y[row_count * width] = A x of x[column_count * width], another array. Threaded. */
+void sparse_apply(const struct sparse *matrix, int64_t width, const double *x, double *y);
+
+#endif

@@ -1,0 +1,236 @@
+#include "solid/assembly.h"
+
+#include "solid/prescription.h"
+
+#include "approx/field.h"
+#include "approx/quadrature.h"
+#include "base/box.h"
+#include "base/memory.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Barycentric coordinates of a point in a cell. */
+static void barycentric(const struct cells *cells, int64_t cell, const double *x, double *value)
+{
+    int dim = cells->dim;
+    double moved_x[12];
+    const int32_t *v = cells->node + cell * (dim + 1);
+    static const int32_t in_order[4] = {0, 1, 2, 3};
+    struct cells one = {.dim = dim, .node_count = dim + 1, .x = moved_x, .count = 1, .node = in_order};
+    double volume = cell_volume(cells, cell);
+    for (int k = 0; k <= dim; k++) {
+        for (int i = 0; i <= dim; i++) {
+            for (int a = 0; a < dim; a++) {
+                moved_x[i * dim + a] = i == k ? x[a] : cells->x[(int64_t)v[i] * dim + a];
+            }
+        }
+        value[k] = cell_volume(&one, 0) / volume;
+    }
+}
+
+/* node, value[point_count * (dim + 1)]: the vertices of the cell of each point, and their hat functions
+ * there. */
+static enum status list_hats(const struct assembly *input, int32_t **node, double **value,
+                             struct error *error)
+{
+    enum status status;
+    const struct cells *cells = &input->cells;
+    const int32_t *cell = input->point_cell;
+    int corners = cells->dim + 1;
+    TRY(NEW_ARRAY(node, input->point_count * corners, error));
+    TRY(NEW_ARRAY(value, input->point_count * corners, error));
+    for (int64_t q = 0; q < input->point_count; q++) {
+        memcpy(*node + q * corners, cells->node + (int64_t)cell[q] * corners,
+               (size_t)corners * sizeof **node);
+        barycentric(cells, cell[q], input->x + q * cells->dim, *value + q * corners);
+    }
+done:
+    return status;
+}
+
+static enum status build_body(struct assembly *input, struct solid_system *system, struct error *error)
+{
+    enum status status;
+    struct material_list *materials = &input->materials;
+    int32_t *hat_node = NULL;
+    double *hat_value = NULL;
+    if (input->smoothed && assembly_holds_averages(input)) {
+        TRY(assembly_soften_ends(input, materials, error));
+    }
+    if (!input->pointwise_volume) {
+        TRY(list_hats(input, &hat_node, &hat_value, error));
+    }
+    struct smoothed_cells_input smoothed = {.x = input->cells.x,
+                                            .cell_node = input->cells.node,
+                                            .face_count = input->faces.count,
+                                            .face_node = input->faces.node,
+                                            .face_cell = input->faces.cell,
+                                            .face_ptr = input->lists.ptr,
+                                            .face_idx = input->lists.idx,
+                                            .face_phi = input->phi,
+                                            .node_ptr = input->node_lists.ptr,
+                                            .node_idx = input->node_lists.idx,
+                                            .node_phi = input->node_phi,
+                                            .copied = input->copied,
+                                            .context = input->context};
+    struct body_input body = {.dim = input->cells.dim,
+                              .node_x = input->cells.x,
+                              .node_count = input->cells.node_count,
+                              .point_count = input->point_count,
+                              .x = input->x,
+                              .weight = input->weight,
+                              .ptr = input->smoothed ? NULL : input->lists.ptr,
+                              .idx = input->smoothed ? NULL : input->lists.idx,
+                              .dphi = input->dphi,
+                              .materials = materials->items,
+                              .material = materials->of_point,
+                              .material_count = materials->count,
+                              .group = materials->section,
+                              .hat_node = hat_node,
+                              .hat_value = hat_value,
+                              .smoothed = input->smoothed ? &smoothed : NULL};
+    TRY(body_build(&body, &system->body, error));
+done:
+    free(hat_node);
+    free(hat_value);
+    return status;
+}
+
+/* Each cell shares its mass equally among its nodes: positive, and of the right total and centre. */
+static enum status lump_mass(const struct assembly *input, struct solid_system *system, struct error *error)
+{
+    enum status status;
+    int corners = input->cells.dim + 1;
+    TRY(NEW_ARRAY(&system->lumped_mass, input->cells.node_count, error));
+    for (int64_t c = 0; c < input->cells.count; c++) {
+        double density = input->materials.items[input->materials.of_cell[c]].density;
+        for (int k = 0; k < corners; k++) {
+            system->lumped_mass[input->cells.node[c * corners + k]] +=
+                density * cell_volume(&input->cells, c) / corners;
+        }
+    }
+    for (int64_t n = 0; n < input->cells.node_count; n++) {
+        if (!(system->lumped_mass[n] > 0.0)) {
+            status = fail(error, STATUS_INPUT, "nodes.x: row %lld: the node is in no cell: it has no mass",
+                          (long long)n);
+            goto done;
+        }
+    }
+done:
+    return status;
+}
+
+void assembly_complete(struct assembly *input)
+{
+    int dim = input->cells.dim;
+    struct box box = box_of(dim, input->cells.node_count, input->cells.x);
+    input->extent = box_diagonal(&box);
+    input->boundary = input->faces;
+    input->boundary.count = input->faces.boundary_count;
+    input->face_table = (struct face_table){.dim = dim,
+                                            .node_count = input->cells.node_count,
+                                            .x = input->cells.x,
+                                            .faces = &input->boundary,
+                                            .per_face = quadrature_face_rule(dim).points,
+                                            .lists = &input->boundary_lists,
+                                            .phi = input->boundary_phi};
+}
+
+enum status assembly_build(struct assembly *input, struct solid_system *system, struct error *note,
+                           struct error *error)
+{
+    enum status status;
+    *system = (struct solid_system){.dim = input->cells.dim,
+                                    .node_count = input->cells.node_count,
+                                    .X = input->cells.x,
+                                    .node_lists = &input->node_lists,
+                                    .node_phi = input->node_phi,
+                                    .curves = input->curves,
+                                    .curve_count = input->curve_count,
+                                    .conditions = input->conditions};
+    input->curves = NULL;
+    input->curve_count = 0;
+    constraint_rows_init(&system->rows, system->dim);
+    constraint_rows_init(&system->penalties, system->dim);
+    TRY(NEW_ARRAY(&system->factor, system->curve_count, error));
+    TRY(lump_mass(input, system, error));
+    TRY(assembly_add_loads(input, system, error));
+    TRY(build_body(input, system, error));
+    TRY(assembly_add_conditions(input, system, note, error));
+    TRY(assembly_add_contacts(input, system, error));
+done:
+    if (status != STATUS_OK) {
+        system_free(system);
+    }
+    return status;
+}
+
+void material_list_free(struct material_list *list)
+{
+    free(list->items);
+    free(list->of_point);
+    free(list->of_cell);
+    free(list->section);
+    *list = (struct material_list){0};
+}
+
+bool assembly_has_gravity(const struct assembly *input)
+{
+    return input->gravity[0] != 0.0 || input->gravity[1] != 0.0 || input->gravity[2] != 0.0;
+}
+
+bool assembly_holds_averages(const struct assembly *input)
+{
+    return !input->node_values && !input->direct;
+}
+
+/* Mark the faces whose nodes are all stamped with the condition's number. */
+static void hold_faces(const struct faces *faces, int dim, const int64_t *stamp, int64_t number, bool *held)
+{
+    for (int64_t f = 0; f < faces->count; f++) {
+        bool is_held = true;
+        for (int k = 0; k < dim; k++) {
+            is_held = is_held && stamp[faces->node[f * dim + k]] == number;
+        }
+        held[f] = held[f] || is_held;
+    }
+}
+
+enum status assembly_held_faces(const struct assembly *input, int least, bool **held, struct error *error)
+{
+    enum status status;
+    int dim = input->cells.dim;
+    int64_t *stamp = NULL; /* of each node: the last condition that names it, from 1 on */
+    TRY(NEW_ARRAY(held, input->boundary.count, error));
+    TRY(NEW_ARRAY(&stamp, input->cells.node_count, error));
+    for (int64_t i = 0; i < input->condition_count; i++) {
+        const struct facet_set *set = &input->conditions[i].facets;
+        for (int64_t k = 0; k < set->count * dim; k++) {
+            stamp[set->facet[k]] = i + 1;
+        }
+        if (set->count > 0 && prescription_directions(&input->conditions[i], dim) >= least) {
+            hold_faces(&input->boundary, dim, stamp, i + 1, *held);
+        }
+    }
+done:
+    free(stamp);
+    return status;
+}
+
+double assembly_penalty_modulus(const struct solid_system *system, double factor)
+{
+    double modulus = 0.0;
+    for (int64_t m = 0; m < system->body.material_count; m++) {
+        const struct material *material = &system->body.materials[m];
+        modulus = fmax(modulus, fmin(factor * material->shear_modulus, material_wave_modulus(material)));
+    }
+    return modulus;
+}
+
+void assembly_nodal_field(const struct assembly *input, const double *u, double *field)
+{
+    field_evaluate(input->cells.node_count, input->node_lists.ptr, input->node_lists.idx, input->node_phi,
+                   input->cells.dim, u, field);
+}

@@ -1,0 +1,138 @@
+/* Assembly: a system ready for time stepping from a cloud of nodes with its tables of shape functions,
+ * materials, and conditions. All arrays are the caller's, who keeps them as long as the system. */
+#ifndef SOLID_ASSEMBLY_H
+#define SOLID_ASSEMBLY_H
+
+#include "solid/system.h"
+
+enum condition_kind { CONDITION_COMPONENTS, CONDITION_NORMAL, CONDITION_TABLE };
+
+/* A prescribed displacement, of averages over facets or of values at nodes. */
+struct condition {
+    const char *name;
+    const char *where;       /* in front of messages about it: "brain.scene:12: [displacement skull]" */
+    struct facet_set facets; /* or, where there are none, */
+    const int32_t *nodes;    /* node_count: ascending */
+    int64_t node_count;
+    enum condition_kind kind;
+    double components[3]; /* m, dim of them */
+    bool is_free[3];      /* CONDITION_COMPONENTS: this one is not prescribed */
+    double normal;        /* CONDITION_NORMAL: along the outward normal at rest, m */
+    int64_t row_count;    /* CONDITION_TABLE: measured points: */
+    const double *rows;   /* row_count * 2 dim: coordinates, then displacement, */
+    double unit;          /* in units of so many m */
+    const char *table;    /* its name, for messages */
+    int32_t curve;
+};
+
+enum load_kind { LOAD_PRESSURE, LOAD_TRACTION, LOAD_FORCE };
+
+struct load {
+    enum load_kind kind;
+    struct facet_set facets; /* of a pressure or a traction */
+    const int32_t *nodes;    /* node_count: of forces */
+    int64_t node_count;
+    double pressure;      /* Pa, positive pushes inward */
+    double components[3]; /* traction: Pa; force: N on each node (2D: N/m) */
+    int32_t curve;
+};
+
+/* Contact of facets with a rigid surface. */
+struct contact_condition {
+    const char *where; /* as of a condition */
+    struct facet_set facets;
+    const double *corners; /* rigid_count * dim * dim: facets of the surface, see rigid_build, m */
+    int64_t rigid_count;
+    bool flip;
+    double stiffness; /* Pa/m; 0: that of a layer of cells */
+    struct rigid_motion motion;
+};
+
+/* Materials: those of the sections, and more where a section has its own at each point. */
+struct material_list {
+    struct material *items; /* count */
+    int64_t count;
+    int32_t *of_point; /* of each integration point */
+    int32_t *of_cell;  /* of each cell: that of its section */
+    int32_t *section;  /* count: of each */
+};
+void material_list_free(struct material_list *list);
+
+struct assembly {
+    /* The cloud, its cells, and all their faces; without smoothed cells only those on the boundary. */
+    struct cells cells;
+    struct faces faces;
+    /* Integration points: each in a cell; smoothed cells are one point each, in their order. */
+    bool smoothed;
+    int64_t point_count;
+    const double *x, *weight; /* point_count * dim, m; point_count, m2 or m3 */
+    const int32_t *point_cell;
+    /* Shape functions: at the points, with gradients; or, of smoothed cells, averages over the faces; at the
+     * quadrature points of the boundary (quadrature_face_rule); at the nodes. */
+    struct neighbours lists, boundary_lists, node_lists;
+    const double *phi, *dphi; /* dphi NULL: averages over faces */
+    const double *boundary_phi, *node_phi;
+    /* Called, unless NULL, when `lists`, phi and dphi are not needed any more: the larger part of memory. */
+    void (*copied)(void *context);
+    void *context;
+
+    struct material_list materials; /* the caller's to free; assembly adds softer ones, once */
+    bool pointwise_volume;          /* no nodal volumes */
+
+    struct load_curve *curves; /* curve_count; taken over by the system */
+    int64_t curve_count;
+    const struct condition *conditions;
+    int64_t condition_count;
+    bool node_values; /* conditions on facets hold values at nodes, not averages; */
+    bool direct;      /* or the parameters there instead of values */
+    const struct load *loads;
+    int64_t load_count;
+    double gravity[3]; /* m/s2; 0: none */
+    int32_t gravity_curve;
+    const struct contact_condition *contacts;
+    int64_t contact_count;
+    bool in_time; /* for dynamics: gravity by the lumped mass */
+
+    /* Set by assembly_complete. */
+    struct faces boundary; /* the faces on the boundary */
+    struct face_table face_table;
+    double extent; /* diagonal of the box of the nodes, m */
+};
+
+/* Fill in what follows from the cells, their faces and the tables; the assembly must stay where it is. */
+void assembly_complete(struct assembly *input);
+
+/* Build the system. `note` receives a remark that is no error, or an empty text. Errors: those of the parts;
+ * STATUS_INPUT also for a node of no cell, and for conditions that disagree. On failure nothing is left. */
+MUST_CHECK enum status assembly_build(struct assembly *input, struct solid_system *system, struct error *note,
+                                      struct error *error);
+
+/* The parts of assembly_build, in their own files: displacements, loads, contacts, and softer cells at the
+ * ends of what is held by averages (of smoothed cells). */
+MUST_CHECK enum status assembly_add_conditions(const struct assembly *input, struct solid_system *system,
+                                               struct error *note, struct error *error);
+MUST_CHECK enum status assembly_add_loads(const struct assembly *input, struct solid_system *system,
+                                          struct error *error);
+MUST_CHECK enum status assembly_add_contacts(const struct assembly *input, struct solid_system *system,
+                                             struct error *error);
+MUST_CHECK enum status assembly_soften_ends(const struct assembly *input, struct material_list *list,
+                                            struct error *error);
+
+bool assembly_has_gravity(const struct assembly *input);
+
+/* Whether displacements are prescribed to averages over the facets of the boundary, not at nodes. */
+bool assembly_holds_averages(const struct assembly *input);
+
+/* held[boundary.count]: whether all nodes of that face are those of facets that one condition names, which
+ * prescribes at least so many directions; the caller's to free. */
+MUST_CHECK enum status assembly_held_faces(const struct assembly *input, int least, bool **held,
+                                           struct error *error);
+
+/* The modulus of penalties, Pa: that of pressure waves, but at most `factor` times the shear modulus, so that
+ * it does not grow with the bulk modulus; the largest of the body's materials. */
+double assembly_penalty_modulus(const struct solid_system *system, double factor);
+
+/* field[node_count * dim] = u_h at the nodes. */
+void assembly_nodal_field(const struct assembly *input, const double *u, double *field);
+
+#endif

@@ -1,0 +1,157 @@
+#include "solid/assembly.h"
+
+#include "base/memory.h"
+
+#include <stdlib.h>
+
+/* Append an empty dead load. */
+static enum status new_load(struct solid_system *system, int32_t curve, double **force, struct error *error)
+{
+    struct dead_load *grown = array_grow(system->loads, system->load_count + 1, sizeof *grown);
+    if (grown == NULL) {
+        return fail_memory(error, "loads");
+    }
+    system->loads = grown;
+    grown += system->load_count;
+    *grown = (struct dead_load){.curve = curve};
+    enum status status = NEW_ARRAY(&grown->force, system->node_count * system->dim, error);
+    if (status == STATUS_OK) {
+        system->load_count++;
+        *force = grown->force;
+    }
+    return status;
+}
+
+/* The mass that each row of the table over points or faces stands for: of a face, its cells' in equal parts.
+ */
+static enum status share_mass(const struct assembly *input, double **mass, struct error *error)
+{
+    enum status status;
+    const struct material_list *materials = &input->materials;
+    TRY(NEW_ARRAY(mass, input->lists.count, error));
+    for (int64_t i = 0; i < input->lists.count && !input->smoothed; i++) {
+        (*mass)[i] = input->weight[i] * materials->items[materials->of_cell[input->point_cell[i]]].density;
+    }
+    for (int64_t i = 0; i < 2 * input->lists.count && input->smoothed; i++) {
+        int32_t q = input->faces.cell[i];
+        if (q >= 0) {
+            (*mass)[i / 2] +=
+                input->weight[q] * materials->items[materials->of_cell[q]].density / (input->cells.dim + 1);
+        }
+    }
+done:
+    return status;
+}
+
+static enum status add_gravity(const struct assembly *input, struct solid_system *system, struct error *error)
+{
+    enum status status;
+    int dim = system->dim;
+    double *force, *mass = NULL;
+    TRY(new_load(system, input->gravity_curve, &force, error));
+    /* In time by the lumped mass, so that a free body falls as one. */
+    for (int64_t i = 0; input->in_time && i < system->node_count * dim; i++) {
+        force[i] = system->lumped_mass[i / dim] * input->gravity[i % dim];
+    }
+    TRY(share_mass(input, &mass, error));
+    for (int64_t r = 0; !input->in_time && r < input->lists.count; r++) {
+        for (int64_t i = input->lists.ptr[r]; i < input->lists.ptr[r + 1]; i++) {
+            for (int a = 0; a < dim; a++) {
+                force[(int64_t)input->lists.idx[i] * dim + a] += mass[r] * input->phi[i] * input->gravity[a];
+            }
+        }
+    }
+done:
+    free(mass);
+    return status;
+}
+
+static enum status add_traction(const struct assembly *input, const struct load *load,
+                                struct solid_system *system, struct error *error)
+{
+    enum status status;
+    struct boundary_averages averages = {0};
+    double *force;
+    int dim = system->dim;
+    TRY(boundary_averages_build(&input->face_table, &load->facets, &averages, error));
+    TRY(new_load(system, load->curve, &force, error));
+    for (int64_t a = 0; a < averages.count; a++) {
+        for (int64_t i = averages.ptr[a]; i < averages.ptr[a + 1]; i++) {
+            for (int k = 0; k < dim; k++) {
+                force[(int64_t)averages.idx[i] * dim + k] +=
+                    averages.area[a] * averages.phi[i] * load->components[k];
+            }
+        }
+    }
+done:
+    boundary_averages_free(&averages);
+    return status;
+}
+
+static enum status add_force(const struct assembly *input, const struct load *load,
+                             struct solid_system *system, struct error *error)
+{
+    const struct neighbours *lists = &input->node_lists;
+    double *force;
+    int dim = system->dim;
+    enum status status = new_load(system, load->curve, &force, error);
+    for (int64_t n = 0; status == STATUS_OK && n < load->node_count; n++) {
+        for (int64_t i = lists->ptr[load->nodes[n]]; i < lists->ptr[load->nodes[n] + 1]; i++) {
+            for (int k = 0; k < dim; k++) {
+                force[(int64_t)lists->idx[i] * dim + k] += input->node_phi[i] * load->components[k];
+            }
+        }
+    }
+    return status;
+}
+
+static enum status add_pressure(const struct assembly *input, const struct load *load,
+                                struct solid_system *system, struct error *error)
+{
+    enum status status;
+    const struct facet_set *set = &load->facets;
+    int64_t count = set->count * system->dim;
+    struct pressure_load *grown = array_grow(system->pressures, system->pressure_count + 1, sizeof *grown);
+    if (grown == NULL) {
+        return fail_memory(error, "loads");
+    }
+    system->pressures = grown;
+    struct pressure_load *pressure = &grown[system->pressure_count++];
+    *pressure = (struct pressure_load){
+        .pressure = load->pressure, .curve = load->curve, .facet_count = set->count, .facet = set->facet};
+    TRY(boundary_nodes_build(&input->face_table, set, &input->node_lists, input->node_phi, &pressure->corners,
+                             error));
+    TRY(boundary_points_build(&input->face_table, set, &pressure->points, error));
+    TRY(NEW_ARRAY(&pressure->corner, count, error));
+    for (int64_t i = 0; i < count; i++) {
+        /* Averages of node values are in the order of their nodes. */
+        int64_t low = 0, high = pressure->corners.count - 1;
+        while (low < high) {
+            int64_t middle = (low + high) / 2;
+            if (pressure->corners.node[middle] < set->facet[i]) {
+                low = middle + 1;
+            } else {
+                high = middle;
+            }
+        }
+        pressure->corner[i] = (int32_t)low;
+    }
+done:
+    return status;
+}
+
+enum status assembly_add_loads(const struct assembly *input, struct solid_system *system, struct error *error)
+{
+    static enum status (*const add[])(const struct assembly *, const struct load *, struct solid_system *,
+                                      struct error *) = {
+        [LOAD_PRESSURE] = add_pressure, [LOAD_TRACTION] = add_traction, [LOAD_FORCE] = add_force};
+    enum status status = STATUS_OK;
+    if (assembly_has_gravity(input)) {
+        TRY(add_gravity(input, system, error));
+    }
+    for (int64_t i = 0; i < input->load_count; i++) {
+        TRY(add[input->loads[i].kind](input, &input->loads[i], system, error));
+    }
+done:
+    return status;
+}

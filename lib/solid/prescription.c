@@ -1,0 +1,93 @@
+#include "solid/prescription.h"
+
+#include <math.h>
+#include <string.h>
+
+/* value[dim] = the displacement of the condition's table at x, beside that node, m. */
+static enum status value_at(const struct prescription *p, int32_t node, const double *x, double *value,
+                            struct error *error)
+{
+    const struct condition *condition = p->condition;
+    double distance, spacing;
+    struct error why;
+    char place[96];
+    enum status status = scattered_fit_evaluate(&p->fit, node, x, value, &distance, &spacing, &why);
+    point_text(p->input->cells.dim, x, place);
+    if (status != STATUS_OK) {
+        return fail(error, status, "%s: table %s: at %s: %s", condition->where, condition->table, place,
+                    why.text);
+    }
+    if (condition->row_count > 1 && !(distance <= fmin(8.0 * spacing, p->input->extent))) {
+        return fail(error, STATUS_INPUT,
+                    "%s: table %s: its nearest point is %.3g m from the boundary at %s, its points are %.3g "
+                    "m apart: wrong unit or wrong place",
+                    condition->where, condition->table, distance, place, spacing);
+    }
+    return STATUS_OK;
+}
+
+/* Mean of the table over the samples of one average. */
+static enum status average_of_table(const struct prescription *p, const struct boundary_averages *averages,
+                                    int64_t a, double *mean, struct error *error)
+{
+    int dim = p->input->cells.dim;
+    memset(mean, 0, (size_t)dim * sizeof *mean);
+    for (int64_t s = averages->sample_ptr[a]; s < averages->sample_ptr[a + 1]; s++) {
+        double value[3];
+        enum status status = value_at(p, averages->node[a], averages->sample_x + s * dim, value, error);
+        if (status != STATUS_OK) {
+            return status;
+        }
+        for (int i = 0; i < dim; i++) {
+            mean[i] += averages->sample_share[s] * value[i];
+        }
+    }
+    return STATUS_OK;
+}
+
+/* Whether the condition leaves component i open. */
+static bool is_free(const struct condition *condition, int i)
+{
+    return condition->kind == CONDITION_COMPONENTS && condition->is_free[i];
+}
+
+int prescription_directions(const struct condition *condition, int dim)
+{
+    int count = 0;
+    for (int i = 0; i < dim; i++) {
+        count += !is_free(condition, i);
+    }
+    return condition->kind == CONDITION_NORMAL ? 1 : count;
+}
+
+bool prescription_is_full(const struct prescription *p)
+{
+    return prescription_directions(p->condition, p->input->cells.dim) == p->input->cells.dim;
+}
+
+enum status prescription_demand(const struct prescription *p, const struct boundary_averages *averages,
+                                int64_t a, bool at_node, struct demand *demand, struct error *error)
+{
+    enum status status = STATUS_OK;
+    int dim = p->input->cells.dim;
+    int32_t node = averages->node[a];
+    const struct condition *condition = p->condition;
+    double value[3] = {condition->components[0], condition->components[1], condition->components[2]};
+    *demand = (struct demand){.count = 0};
+    if (condition->kind == CONDITION_NORMAL) {
+        memcpy(demand->direction, averages->normal + a * dim, (size_t)dim * sizeof *demand->direction);
+        demand->value[demand->count++] = condition->normal;
+        return STATUS_OK;
+    }
+    if (condition->kind == CONDITION_TABLE) {
+        status = at_node ? value_at(p, node, p->input->cells.x + (int64_t)node * dim, value, error)
+                         : average_of_table(p, averages, a, value, error);
+    }
+    for (int i = 0; status == STATUS_OK && i < dim; i++) {
+        if (!is_free(p->condition, i)) {
+            demand->direction[demand->count * dim + i] = 1.0;
+            demand->value[demand->count++] = value[i];
+        }
+    }
+    return status;
+}

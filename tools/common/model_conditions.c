@@ -1,0 +1,243 @@
+/* Displacements, loads and contacts of a scene, as the assembly takes them. */
+#include "model.h"
+
+#include "io/surface.h"
+#include "io/table.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Append a curve; *index receives its number. */
+static enum status add_curve(struct model *model, const struct scene_label *label,
+                             const struct scene_curve *curve, int32_t *index, struct error *error)
+{
+    static const enum curve_kind kinds[] = {[SCENE_CURVE_SMOOTH] = CURVE_SMOOTH,
+                                            [SCENE_CURVE_LINEAR] = CURVE_LINEAR,
+                                            [SCENE_CURVE_STEP] = CURVE_STEP,
+                                            [SCENE_CURVE_FILE] = CURVE_TABLE};
+    enum status status = STATUS_OK;
+    struct assembly *input = &model->assembly;
+    struct table table = {0};
+    struct load_curve *grown = array_grow(input->curves, input->curve_count + 1, sizeof *grown);
+    if (grown == NULL) {
+        return fail_memory(error, "load curves");
+    }
+    input->curves = grown;
+    if (curve->kind != SCENE_CURVE_FILE) {
+        grown[input->curve_count] = curve_of_kind(kinds[curve->kind]);
+    } else {
+        double end = input->in_time ? model->scene->solver.end_time : 1.0;
+        TRY(table_read(curve->file, 2, 2, &table, error));
+        status = curve_tabulate(&grown[input->curve_count], table.rows, table.values, end, error);
+        if (status != STATUS_OK) {
+            fail_in(error, status, "%s: curve %s", label->where, curve->file);
+            goto done;
+        }
+    }
+    *index = (int32_t)input->curve_count++;
+done:
+    table_free(&table);
+    return status;
+}
+
+static enum status add_displacement(struct model *model, const struct scene_displacement *section,
+                                    struct condition *condition, struct error *error)
+{
+    enum status status = STATUS_OK;
+    static const enum condition_kind kinds[] = {[SCENE_COMPONENTS] = CONDITION_COMPONENTS,
+                                                [SCENE_NORMAL] = CONDITION_NORMAL,
+                                                [SCENE_TABLE] = CONDITION_TABLE};
+    int dim = model->assembly.cells.dim;
+    struct table table = {0};
+    *condition = (struct condition){.name = section->label.name,
+                                    .where = section->label.where,
+                                    .kind = kinds[section->kind],
+                                    .normal = section->normal,
+                                    .unit = section->table_unit,
+                                    .table = section->table};
+    for (int a = 0; a < dim; a++) {
+        condition->components[a] = section->components[a];
+        condition->is_free[a] = section->is_free[a];
+    }
+    TRY(add_curve(model, &section->label, &section->curve, &condition->curve, error));
+    if (section->kind == SCENE_TABLE) {
+        TRY(table_read(section->table, 2 * dim, 2 * dim, &table, error));
+        condition->row_count = table.rows;
+        condition->rows = table.values;
+        table.values = NULL;
+        TRY(model_own(model, (void *)condition->rows, error));
+    }
+    if (section->facets.count > 0) {
+        TRY(model_facets(model, &section->label, &section->facets, &condition->facets, error));
+    } else {
+        TRY(model_nodes(model, &section->label, &section->nodes, &condition->nodes, &condition->node_count,
+                        error));
+    }
+done:
+    table_free(&table);
+    return status;
+}
+
+static enum status add_load(struct model *model, const struct scene_load *section, enum load_kind kind,
+                            struct load *load, struct error *error)
+{
+    enum status status;
+    *load =
+        (struct load){.kind = kind,
+                      .pressure = section->pressure,
+                      .components = {section->components[0], section->components[1], section->components[2]}};
+    if (kind == LOAD_FORCE) {
+        TRY(model_nodes(model, &section->label, &section->nodes, &load->nodes, &load->node_count, error));
+    } else {
+        TRY(model_facets(model, &section->label, &section->facets, &load->facets, error));
+    }
+    TRY(add_curve(model, &section->label, &section->curve, &load->curve, error));
+done:
+    return status;
+}
+
+static enum status add_loads(struct model *model, struct error *error)
+{
+    enum status status;
+    const struct scene *scene = model->scene;
+    struct assembly *input = &model->assembly;
+    const struct {
+        const struct scene_load *sections;
+        int64_t count;
+        enum load_kind kind;
+    } kinds[] = {{scene->tractions, scene->traction_count, LOAD_TRACTION},
+                 {scene->forces, scene->force_count, LOAD_FORCE},
+                 {scene->pressures, scene->pressure_count, LOAD_PRESSURE}};
+    /* In time gravity is there from the begin; a state of rest is approached gently. */
+    const struct scene_curve curve = {.kind = input->in_time ? SCENE_CURVE_STEP : SCENE_CURVE_SMOOTH};
+    struct load *loads;
+    TRY(NEW_ARRAY(&loads, scene->traction_count + scene->force_count + scene->pressure_count, error));
+    TRY(model_own(model, loads, error));
+    input->loads = loads;
+    memcpy(input->gravity, scene->gravity, sizeof input->gravity);
+    if (assembly_has_gravity(input)) {
+        TRY(add_curve(model, NULL, &curve, &input->gravity_curve, error));
+    }
+    for (int k = 0; k < 3; k++) {
+        for (int64_t i = 0; i < kinds[k].count; i++) {
+            TRY(add_load(model, &kinds[k].sections[i], kinds[k].kind, &loads[input->load_count++], error));
+        }
+    }
+done:
+    return status;
+}
+
+/* Corners of a rigid surface's facets, m: consecutive points of each polyline, or triangles. */
+static enum status read_surface(struct model *model, const struct scene_contact *section,
+                                struct contact_condition *contact, struct error *error)
+{
+    enum status status;
+    struct table table = {0};
+    double *corners;
+    int dim = model->assembly.cells.dim;
+    int64_t count = 0;
+    TRY(surface_read(section->rigid, dim, &table, error));
+    TRY(NEW_ARRAY(&corners, table.rows * (dim == 2 ? 4 : 9), error));
+    TRY(model_own(model, corners, error));
+    for (int64_t b = 0; b < table.block_count && dim == 2; b++) {
+        for (int64_t r = table.block_ptr[b]; r + 1 < table.block_ptr[b + 1]; r++) {
+            for (int i = 0; i < 4; i++) {
+                corners[count * 4 + i] = table.values[r * 2 + i] * section->rigid_unit;
+            }
+            count++;
+        }
+    }
+    for (int64_t i = 0; i < table.rows * 9 && dim == 3; i++) {
+        corners[i] = table.values[i] * section->rigid_unit;
+    }
+    contact->corners = corners;
+    contact->rigid_count = dim == 3 ? table.rows : count;
+    contact->flip = section->side == SCENE_LEFT || section->side == SCENE_BACK;
+done:
+    table_free(&table);
+    return status;
+}
+
+static enum status add_contact(struct model *model, const struct scene_contact *section,
+                               struct contact_condition *contact, struct error *error)
+{
+    enum status status;
+    struct rigid_motion *motion = &contact->motion;
+    *contact = (struct contact_condition){.where = section->label.where, .stiffness = section->stiffness};
+    TRY(model_facets(model, &section->label, &section->facets, &contact->facets, error));
+    TRY(read_surface(model, section, contact, error));
+    motion->moves = section->moves;
+    if (!section->moves) {
+        return STATUS_OK;
+    }
+    motion->angle = section->angle * (M_PI / 180.0);
+    for (int i = 0; i < 3; i++) {
+        motion->translation[i] = section->translation[i];
+        motion->point[i] = section->axis_point[i];
+        motion->axis[i] = section->angle != 0.0 ? section->axis[i] : (double)(i == 2);
+    }
+    TRY(add_curve(model, &section->label, &section->curve, &motion->translation_curve, error));
+    TRY(add_curve(model, &section->label, &section->angle_curve, &motion->rotation_curve, error));
+done:
+    return status;
+}
+
+enum status model_conditions(struct model *model, struct error *error)
+{
+    enum status status;
+    const struct scene *scene = model->scene;
+    struct assembly *input = &model->assembly;
+    struct condition *conditions;
+    struct contact_condition *contacts;
+    input->in_time = scene->analysis == SCENE_DYNAMIC;
+    input->pointwise_volume = scene->solver.volume == SCENE_POINTWISE_VOLUME;
+    input->node_values = scene->solver.constraint_points == SCENE_NODE_VALUES;
+    input->direct = scene->solver.constraints == SCENE_DIRECT;
+    TRY(NEW_ARRAY(&conditions, scene->displacement_count, error));
+    TRY(model_own(model, conditions, error));
+    TRY(NEW_ARRAY(&contacts, scene->contact_count, error));
+    TRY(model_own(model, contacts, error));
+    input->conditions = conditions;
+    input->contacts = contacts;
+    for (; input->condition_count < scene->displacement_count; input->condition_count++) {
+        TRY(add_displacement(model, &scene->displacements[input->condition_count],
+                             &conditions[input->condition_count], error));
+    }
+    TRY(add_loads(model, error));
+    for (; input->contact_count < scene->contact_count; input->contact_count++) {
+        TRY(add_contact(model, &scene->contacts[input->contact_count], &contacts[input->contact_count],
+                        error));
+    }
+done:
+    return status;
+}
+
+enum status model_initial(const struct model *model, double *u, double *v, struct error *error)
+{
+    enum status status;
+    const struct scene_initial *initial = &model->scene->initial;
+    const struct cells *cells = &model->assembly.cells;
+    int dim = cells->dim;
+    struct table table = {0};
+    TRY(table_read(initial->table, 3 * dim, 3 * dim, &table, error));
+    if (table.rows != cells->node_count) {
+        TRY(fail(error, STATUS_INPUT, "%s: [initial]: table %s: %lld rows for %lld nodes: give one for each",
+                 model->scene->path, initial->table, (long long)table.rows, (long long)cells->node_count));
+    }
+    for (int64_t n = 0; n < cells->node_count; n++) {
+        const double *row = table.values + n * table.cols;
+        if (!(model_away(model, row, initial->table_unit, cells->x + n * dim) <= MODEL_SAME_PLACE)) {
+            TRY(fail(error, STATUS_INPUT,
+                     "%s:%lld: not the place of node %lld: give the nodes in the order of the mesh",
+                     initial->table, (long long)table.line[n], (long long)n));
+        }
+        for (int a = 0; a < dim; a++) {
+            u[n * dim + a] = row[dim + a] * initial->table_unit;
+            v[n * dim + a] = row[2 * dim + a] * initial->table_unit;
+        }
+    }
+done:
+    table_free(&table);
+    return status;
+}
