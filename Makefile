@@ -36,6 +36,8 @@ SANITIZE := $(if $(SAN)$(FUZZ),-fsanitize=address$(comma)undefined -fno-sanitize
 CFLAGS := -std=c11 -D_GNU_SOURCE -g -Ilib -Itools/common $(WARNINGS) $(HARDENING) $(OPTIMISE) $(SANITIZE) -fopenmp
 LDFLAGS := -pie -Wl,-z,relro -Wl,-z,now -fopenmp $(SANITIZE)
 LDLIBS := -lgsl -lgslcblas -linih -lz -lm
+# What lib/approx/partition_metis.c takes, for the programs that cut bodies.
+$(BUILD)/bin/part $(BUILD)/tests/partition: LDLIBS += -lmetis
 
 LIBRARY := $(BUILD)/libmtled.a
 LIBRARY_OBJECTS := $(patsubst %.c,$(BUILD)/%.o,$(wildcard lib/*/*.c))
