@@ -10,6 +10,7 @@
 #   gallery  liver  phantom     examples that others can judge, with pictures
 #   convergence  speed-error    error against mesh size, and against time, beside mixed elements and CalculiX
 #   uncertainty                 brain shift with uncertain stiffness; cases of a table: pipelines/sweep
+#   scale                       time, bytes and memory of each stage for a node; a body in parts
 #   bench  estimate             speed of the kernels; what the error estimate is worth
 # make install PREFIX=/usr/local    make deb    make clean    (pipelines/install.mk)
 
