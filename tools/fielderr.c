@@ -109,6 +109,7 @@ static struct request parse(const struct tool *tool, const struct option *option
 static double check_coarser(const struct tool *tool, const struct request *request, const struct side *fine,
                             const struct side *coarse)
 {
+    sides_check(tool, fine, coarse, request->field);
     double found = field_error_ratio(&fine->field.cells, &coarse->field.cells);
     if (!(found > 1.0)) {
         tool_fail(tool, STATUS_INPUT,

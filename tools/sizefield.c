@@ -32,8 +32,8 @@ static const char usage[] =
     "Examples:\n"
     "  sizefield -s 0.3 -u mm -o sizes.pos u.dat\n"
     "  printf 'Merge \"sizes.pos\";\\nBackground Mesh View[0];\\n' | cat body.geo - > graded.geo\n"
-    "  gmsh -2 graded.geo -setnumber Mesh.MeshSizeExtendFromBoundary 0 \\\n"
-    "      -setnumber Mesh.MeshSizeFromPoints 0 -o graded.msh\n";
+    "  printf 'Mesh.MeshSize%s = 0;\\n' ExtendFromBoundary FromPoints FromCurvature >> graded.geo\n"
+    "  gmsh -2 graded.geo -o graded.msh\n";
 
 #include "output.h"
 #include "regions.h"

@@ -8,36 +8,69 @@
 /* The order of the error of the gradient. */
 static const double gradient_order = 1.0;
 
-/* Between the normals of a facet and of a node at it; radians. */
-static const double corner_angle = 0.7;
+/* There is a corner, and no curve, where the normals of a facet and of a node at it are so far from each
+ * other, radians, or where at the facet's other nodes they are so much nearer. */
+static const double corner_angle = 0.7, corner_share = 0.25;
 
-/* The error that all cells are to have, 0 where there is none. */
-static double equal_error(const struct cells *cells, const double *squared, double share)
+/* What a cell's size is multiplied by to have the error `equal`; size: the present one. */
+static double cell_factor(const struct cells *cells, double squared, double size, double equal, double least)
 {
-    double a = cells->dim / (gradient_order + 0.5 * cells->dim), sum = 0.0, powers = 0.0;
-    for (int64_t q = 0; q < cells->count; q++) {
-        sum += squared[q];
-        powers += pow(squared[q], 0.5 * a);
+    double factor = SIZE_FIELD_MOST;
+    if (squared > 0.0) {
+        factor = pow(equal / sqrt(squared), 1.0 / (gradient_order + 0.5 * cells->dim));
     }
-    return powers > 0.0 ? pow(share * sum / powers, 1.0 / (2.0 - a)) : 0.0;
+    return fmin(fmax(factor, fmax(SIZE_FIELD_LEAST, least / size)), SIZE_FIELD_MOST);
 }
 
-/* log_factor[node_count]: mean over the cells at a node of the logarithm of what multiplies their size. */
-static enum status node_factors(const struct cells *cells, const double *squared, double equal,
-                                double *log_factor, struct error *error)
+static double cell_size(const struct cells *cells, const double *spacing, int64_t q)
+{
+    double sum = 0.0;
+    for (int k = 0; k <= cells->dim; k++) {
+        sum += spacing[cells->node[q * (cells->dim + 1) + k]];
+    }
+    return sum / (cells->dim + 1);
+}
+
+/* The error that all cells are to have: sum e_K^2 falls to its share, as a cell's part of it falls by the
+ * order of the error, twice; by bisection. Cells that the least size keeps from becoming smaller are left
+ * out: no others can make up for them. */
+static double equal_error(const struct cells *cells, const double *squared, const double *spacing,
+                          const struct size_field_request *request)
+{
+    double wanted = 0.0, largest = 0.0;
+    for (int64_t q = 0; q < cells->count; q++) {
+        bool bound = cell_size(cells, spacing, q) * sqrt(request->share) < request->least;
+        wanted += bound ? 0.0 : request->share * squared[q];
+        largest = fmax(largest, squared[q]);
+    }
+    double low = 1e-6 * sqrt(largest), high = 1e6 * sqrt(largest);
+    for (int step = 0; step < 60 && largest > 0.0; step++) {
+        double middle = sqrt(low * high), after = 0.0;
+        for (int64_t q = 0; q < cells->count; q++) {
+            double size = cell_size(cells, spacing, q);
+            bool bound = size * sqrt(request->share) < request->least;
+            double factor = cell_factor(cells, squared[q], size, middle, request->least);
+            after += bound ? 0.0 : squared[q] * pow(factor, 2.0 * gradient_order);
+        }
+        *(after > wanted ? &high : &low) = middle;
+    }
+    return low;
+}
+
+/* size[node_count]: the spacing times the geometric mean of the factors of the cells at each node. */
+static enum status node_sizes(const struct cells *cells, const double *squared, const double *spacing,
+                              const struct size_field_request *request, double *size, struct error *error)
 {
     enum status status;
+    double equal = equal_error(cells, squared, spacing, request);
     int64_t *count = NULL;
     TRY(NEW_ARRAY(&count, cells->node_count, error));
     for (int64_t q = 0; q < cells->count; q++) {
-        double factor = SIZE_FIELD_MOST;
-        if (squared[q] > 0.0) {
-            factor = pow(equal / sqrt(squared[q]), 1.0 / (gradient_order + 0.5 * cells->dim));
-        }
-        factor = fmin(fmax(factor, SIZE_FIELD_LEAST), SIZE_FIELD_MOST);
+        double now = cell_size(cells, spacing, q);
+        double factor = cell_factor(cells, squared[q], now, equal, request->least);
         for (int k = 0; k <= cells->dim; k++) {
             int64_t n = cells->node[q * (cells->dim + 1) + k];
-            log_factor[n] += log(factor);
+            size[n] += log(factor);
             count[n]++;
         }
     }
@@ -45,7 +78,7 @@ static enum status node_factors(const struct cells *cells, const double *squared
         if (count[n] == 0) {
             TRY(fail(error, STATUS_INPUT, "node %lld belongs to no cell", (long long)n));
         }
-        log_factor[n] /= (double)count[n];
+        size[n] = spacing[n] * exp(size[n] / (double)count[n]);
     }
 done:
     free(count);
@@ -88,11 +121,9 @@ static double angle_between(int dim, const double *u, const double *v)
     return acos(fmin(fmax(uv / sqrt(uu * vv), -1.0), 1.0));
 }
 
-/* A chord of length h is h^2 / (8 R) off a curve of radius R. The normal turns by d / R between a node and
- * the middle of a facet at it, d away. Where it turns by more than corner_angle there is a corner and no
- * curve. */
-static void limit_sag(const struct cells *cells, const struct faces *faces, const double *normal, double sag,
-                      double *size)
+/* angle[node_count]: the largest between the boundary's normal at a node and those of its facets. */
+static void boundary_angles(const struct cells *cells, const struct faces *faces, const double *normal,
+                            double *angle)
 {
     int dim = cells->dim;
     for (int64_t f = 0; f < faces->boundary_count; f++) {
@@ -100,7 +131,25 @@ static void limit_sag(const struct cells *cells, const struct faces *faces, cons
         double vector[3];
         face_area_vector(dim, cells->x, node, vector);
         for (int k = 0; k < dim; k++) {
-            double distance = 0.0, angle = angle_between(dim, vector, normal + node[k] * dim);
+            angle[node[k]] = fmax(angle[node[k]], angle_between(dim, vector, normal + node[k] * dim));
+        }
+    }
+}
+
+/* A chord of length h is h^2 / (8 R) off a curve of radius R. The normal turns by d / R between a node and
+ * the middle of a facet at it, d away. */
+static void limit_sag(const struct cells *cells, const struct faces *faces, const double *angle, double sag,
+                      double *size)
+{
+    int dim = cells->dim;
+    for (int64_t f = 0; f < faces->boundary_count; f++) {
+        const int32_t *node = faces->node + f * dim;
+        double beside = 0.0; /* the least angle at a node of the facet: small beside a corner of flat sides */
+        for (int k = 0; k < dim; k++) {
+            beside = k == 0 ? angle[node[k]] : fmin(beside, angle[node[k]]);
+        }
+        for (int k = 0; k < dim; k++) {
+            double distance = 0.0;
             for (int a = 0; a < dim; a++) {
                 double middle = 0.0;
                 for (int i = 0; i < dim; i++) {
@@ -108,8 +157,9 @@ static void limit_sag(const struct cells *cells, const struct faces *faces, cons
                 }
                 distance = hypot(distance, middle - cells->x[node[k] * dim + a]);
             }
-            if (angle > 0.0 && angle < corner_angle) {
-                size[node[k]] = fmin(size[node[k]], sqrt(8.0 * sag * distance / angle));
+            if (angle[node[k]] > 0.0 && angle[node[k]] < corner_angle &&
+                beside > corner_share * angle[node[k]]) {
+                size[node[k]] = fmin(size[node[k]], sqrt(8.0 * sag * distance / angle[node[k]]));
             }
         }
     }
@@ -177,23 +227,22 @@ enum status size_field_build(const struct cells *cells, const double *squared,
                              struct error *error)
 {
     enum status status;
-    double *spacing = NULL, *normal = NULL;
+    double *spacing = NULL, *normal = NULL, *angle = NULL;
     *field = (struct size_field){0};
     TRY(NEW_ARRAY(&spacing, cells->node_count, error));
     TRY(NEW_ARRAY(&normal, cells->node_count * cells->dim, error));
+    TRY(NEW_ARRAY(&angle, cells->node_count, error));
     TRY(NEW_ARRAY(&field->size, cells->node_count, error));
     TRY(NEW_ARRAY(&field->outer, cells->node_count * cells->dim, error));
     TRY(faces_build(cells, true, &field->boundary, error));
     TRY(cells_node_spacing(cells, spacing, error));
-    TRY(node_factors(cells, squared, equal_error(cells, squared, request->share), field->size, error));
-    for (int64_t n = 0; n < cells->node_count; n++) {
-        field->size[n] = spacing[n] * exp(field->size[n]);
-    }
+    TRY(node_sizes(cells, squared, spacing, request, field->size, error));
     boundary_normals(cells, &field->boundary, normal);
     move_outward(cells, normal, spacing, field->outer);
     keep_boundary(&field->boundary, spacing, field->size);
     if (request->sag > 0.0) {
-        limit_sag(cells, &field->boundary, normal, request->sag, field->size);
+        boundary_angles(cells, &field->boundary, normal, angle);
+        limit_sag(cells, &field->boundary, angle, request->sag, field->size);
     }
     for (int64_t n = 0; n < cells->node_count; n++) {
         field->size[n] = fmax(field->size[n], request->least);
@@ -210,6 +259,7 @@ enum status size_field_build(const struct cells *cells, const double *squared,
 done:
     free(spacing);
     free(normal);
+    free(angle);
     return status;
 }
 

@@ -5,12 +5,12 @@
  * all (equidistribution). The displacement's error is taken to be proportional to the sum e_K^2: where a
  * solution is singular it is, and where it is smooth both are of the second order.
  *
- * So a mesh that is to have a share s of the present error has cells of
+ * So the mesh that is to have a share s of the present error has cells of
  *
- *   h_new = h (e / e_K)^(1 / (1 + dim / 2)),   e^(2 - a) = s sum e_K^2 / sum e_K^a,   a = dim / (1 + dim /
- * 2),
+ *   h_new = h (e / e_K)^(1 / (1 + dim / 2)),    sum e_K^2 (h_new / h)^2 = s sum e_K^2,
  *
- * and sum (e_K / e)^a of them. */
+ * with e such that the second holds, also where bounds on h_new prevent the first; but for cells that already
+ * are about as small as any may be. */
 #ifndef APPROX_SIZE_FIELD_H
 #define APPROX_SIZE_FIELD_H
 
@@ -34,7 +34,8 @@ struct size_field_request {
 struct size_field {
     double *size; /* node_count: wanted length of the cells' edges at the nodes, m */
     struct faces boundary;
-    double *outer;  /* node_count * dim, m: nodes of the boundary moved outward by half their spacing, so that
+    double
+        *outer;     /* node_count * dim, m: nodes of the boundary moved outward by half their spacing, so that
                        a  finer mesh of a curved body lies within the cells and the layer beyond the boundary */
     double nodes;   /* that a mesh of these sizes has, about */
     double unbound; /* and without the limit */

@@ -57,9 +57,10 @@ void side_read(const struct tool *tool, const char *file, const char *field, str
     }
 }
 
-static void check_same_kind(const struct tool *tool, const struct nodal_field *a, const struct nodal_field *b,
-                            const char *name)
+void sides_check(const struct tool *tool, const struct side *first, const struct side *second,
+                 const char *name)
 {
+    const struct nodal_field *a = &first->field, *b = &second->field;
     if (a->cells.dim != b->cells.dim || a->cols != b->cols) {
         tool_fail(tool, STATUS_INPUT, "%s: %lld columns in %dD against %lld columns in %dD", name,
                   (long long)a->cols, a->cells.dim, (long long)b->cols, b->cells.dim);
@@ -84,7 +85,7 @@ void findings_make(const struct tool *tool, const char *region, bool skip_outsid
     struct error error;
     struct field_comparison *comparison = &findings->comparison;
     bool *chosen;
-    check_same_kind(tool, &a->field, &b->field, field);
+    sides_check(tool, a, b, field);
     tool_check(tool, regions_read(&a->stream, &a->field.cells, &findings->regions, &error), &error);
     tool_check(tool, regions_choose(&findings->regions, region, &chosen, &error), &error);
     enum status status = field_compare(&a->field, &b->field, chosen, skip_outside, comparison, &error);

@@ -36,6 +36,10 @@ void side_read(const struct tool *tool, const char *file, const char *field, str
 /* Notes the first value that is not finite; returns whether there is one. */
 bool side_has_unknown(const struct tool *tool, const struct side *side, const char *field);
 
+/* Exits for fields of other shapes. */
+void sides_check(const struct tool *tool, const struct side *first, const struct side *second,
+                 const char *name);
+
 /* Compare at the nodes of A, or at those of one of its regions (unless NULL); exits on failure. */
 void findings_make(const struct tool *tool, const char *region, bool skip_outside, const char *field,
                    const struct side *a, const struct side *b, struct findings *findings);
