@@ -52,7 +52,7 @@ static double equal_error(const struct cells *cells, const double *squared, cons
             double factor = cell_factor(cells, squared[q], size, middle, request->least);
             after += bound ? 0.0 : squared[q] * pow(factor, 2.0 * gradient_order);
         }
-        *(after > wanted ? &high : &low) = middle;
+        *(after >= wanted ? &high : &low) = middle;
     }
     return low;
 }
