@@ -9,9 +9,11 @@
  * p is known only between bounds: 2 where the solution is smooth, 1 and a little more where a corner or a
  * change from held to free makes it singular. Their middle is assumed; of three clouds it is observed.
  *
- * Recovery (Zienkiewicz and Zhu 1987). The gradient of the linear interpolant in a cell is compared with that
- * averaged at the nodes, with the volumes of the cells of one region as weights. It tells from one solution
- * where the cloud is too coarse, not how far the displacement is off: that depends on the whole body. */
+ * Recovery (Zienkiewicz and Zhu, A simple error estimator and adaptive procedure for practical engineering
+ * analysis, Int. J. Numer. Meth. Eng. 24 (1987), 337). The gradient of the linear interpolant in a cell is
+ * compared with that averaged at the nodes, with the volumes of the cells of one region as weights. It tells
+ * from one solution where the cloud is too coarse, not how far the displacement is off: that depends on the
+ * whole body. */
 #ifndef APPROX_FIELD_ERROR_H
 #define APPROX_FIELD_ERROR_H
 

@@ -10,6 +10,7 @@ rm -rf "$folder"
 # The budget of nodes or of rounds ends these runs, or a body that folds where cells become small.
 KEEP_ROUNDS=1 bash "$here/../refine/refine.sh" "$3" "$4" "$5" "$folder" > "$folder.log" 2>&1 || [ $? -eq 1 ]
 cat "$folder.log" >&2
+[ "$(wc -l < "$folder/rounds.tsv")" -gt 1 ] # one round at least
 tail -n +2 "$folder/rounds.tsv" | while IFS=$'\t' read -r round nodes mean _ seconds all; do
     u=$folder/u-$round.dat
     total=$(awk "BEGIN { print ${total:-0} + $all }")
