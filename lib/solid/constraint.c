@@ -175,88 +175,113 @@ void constraint_rows_spread(const struct constraint_rows *rows, const double *am
     }
 }
 
-/* Rows that touch each node, CSR. */
-static enum status rows_of_nodes(const struct constraint_rows *rows, int64_t node_count, int64_t **ptr,
-                                 int64_t **row, double **phi, struct error *error)
+/* Lists that touch each node, CSR. */
+static enum status lists_of_nodes(const struct constraint_rows *rows, int64_t node_count, int64_t **ptr,
+                                  int64_t **list, double **phi, struct error *error)
 {
     enum status status;
     TRY(NEW_ARRAY(ptr, node_count + 2, error));
-    for (int64_t r = 0; r < rows->count; r++) {
-        struct average average = constraint_rows_average(rows, r);
-        for (int64_t i = 0; i < average.length; i++) {
-            (*ptr)[average.idx[i] + 2]++;
-        }
+    for (int64_t i = 0; i < rows->ptr[rows->list_count]; i++) {
+        (*ptr)[rows->idx[i] + 2]++;
     }
     for (int64_t n = 0; n < node_count; n++) {
         (*ptr)[n + 2] += (*ptr)[n + 1];
     }
-    TRY(NEW_ARRAY(row, (*ptr)[node_count + 1], error));
+    TRY(NEW_ARRAY(list, (*ptr)[node_count + 1], error));
     TRY(NEW_ARRAY(phi, (*ptr)[node_count + 1], error));
-    for (int64_t r = 0; r < rows->count; r++) {
-        struct average average = constraint_rows_average(rows, r);
-        for (int64_t i = 0; i < average.length; i++) {
-            int64_t at = (*ptr)[average.idx[i] + 1]++;
-            (*row)[at] = r;
-            (*phi)[at] = average.phi[i];
+    for (int64_t l = 0; l < rows->list_count; l++) {
+        for (int64_t i = rows->ptr[l]; i < rows->ptr[l + 1]; i++) {
+            int64_t at = (*ptr)[rows->idx[i] + 1]++;
+            (*list)[at] = l;
+            (*phi)[at] = rows->phi[i];
         }
     }
 done:
     return status;
 }
 
-/* G M^-1 G^T in CSR. Rows of orthogonal directions do not couple, so that axis-aligned conditions decompose.
- */
+/* What couples two rows is the cosine of their directions times a product of their lists. */
+struct coupling {
+    int64_t *node_ptr, *node_list; /* lists_of_nodes */
+    double *node_phi;
+    int64_t *touched; /* lists that share nodes with the one at hand, `count` of them */
+    int64_t count;
+    double *sum; /* list_count: their products with it, phi . M^-1 phi */
+};
+
+static void couple_list(const struct constraint_rows *rows, const double *mass, int64_t list,
+                        struct coupling *coupling)
+{
+    coupling->count = 0;
+    for (int64_t i = rows->ptr[list]; i < rows->ptr[list + 1]; i++) {
+        int32_t node = rows->idx[i];
+        double share = rows->phi[i] / mass[node];
+        for (int64_t k = coupling->node_ptr[node]; k < coupling->node_ptr[node + 1]; k++) {
+            int64_t other = coupling->node_list[k];
+            if (coupling->sum[other] == 0.0) {
+                coupling->touched[coupling->count++] = other;
+                coupling->sum[other] = 1e-300; /* marks it as touched even if the first part is zero */
+            }
+            coupling->sum[other] += share * coupling->node_phi[k];
+        }
+    }
+}
+
+/* The entries of row r of G M^-1 G^T, whose list was coupled, or NULL to count only; returns how many. Rows
+ * of orthogonal directions do not couple, so that axis-aligned conditions decompose. */
+static int64_t set_row(const struct constraint_rows *rows, const struct coupling *coupling, int64_t r,
+                       int64_t *column, double *value)
+{
+    int64_t count = 0;
+    for (int64_t i = 0; i < coupling->count; i++) {
+        int64_t other = coupling->touched[i];
+        for (int64_t s = rows->first[other]; s < rows->first[other + 1]; s++) {
+            double cosine = along(rows, r, rows->direction + s * rows->dim);
+            if (fabs(cosine) < 1e-14) {
+                continue;
+            }
+            if (column != NULL) {
+                column[count] = s;
+                value[count] = cosine * coupling->sum[other];
+            }
+            count++;
+        }
+    }
+    return count;
+}
+
+/* G M^-1 G^T in CSR. */
 static enum status assemble(const struct constraint_rows *rows, int64_t node_count, const double *mass,
                             int64_t **ptr, int64_t **column, double **value, struct error *error)
 {
     enum status status;
-    int64_t *node_ptr = NULL, *node_row = NULL, *touched = NULL, capacity = 0;
-    double *node_phi = NULL, *sum = NULL;
-    int dim = rows->dim;
-    TRY(rows_of_nodes(rows, node_count, &node_ptr, &node_row, &node_phi, error));
+    struct coupling coupling = {0};
+    int64_t capacity = 0;
+    TRY(lists_of_nodes(rows, node_count, &coupling.node_ptr, &coupling.node_list, &coupling.node_phi, error));
     TRY(NEW_ARRAY(ptr, rows->count + 1, error));
-    TRY(NEW_ARRAY(&touched, rows->count, error));
-    TRY(NEW_ARRAY(&sum, rows->count, error));
-    for (int64_t r = 0; r < rows->count; r++) {
-        int64_t count = 0, at = (*ptr)[r];
-        struct average average = constraint_rows_average(rows, r);
-        for (int64_t i = 0; i < average.length; i++) {
-            int32_t node = average.idx[i];
-            for (int64_t k = node_ptr[node]; k < node_ptr[node + 1]; k++) {
-                int64_t s = node_row[k];
-                double cosine = 0.0;
-                for (int a = 0; a < dim; a++) {
-                    cosine += rows->direction[r * dim + a] * rows->direction[s * dim + a];
-                }
-                if (fabs(cosine) < 1e-14) {
-                    continue;
-                }
-                double part = cosine * average.phi[i] * node_phi[k] / mass[node];
-                if (sum[s] == 0.0) {
-                    touched[count++] = s;
-                    sum[s] = 1e-300; /* marks it as touched even if the first part is zero */
-                }
-                sum[s] += part;
+    TRY(NEW_ARRAY(&coupling.touched, rows->list_count, error));
+    TRY(NEW_ARRAY(&coupling.sum, rows->list_count, error));
+    for (int64_t l = 0; l < rows->list_count; l++) {
+        couple_list(rows, mass, l, &coupling);
+        for (int64_t r = rows->first[l]; r < rows->first[l + 1]; r++) {
+            int64_t at = (*ptr)[r], end = at + set_row(rows, &coupling, r, NULL, NULL);
+            if (end > capacity) {
+                capacity = end * 2 + 1024;
+                TRY(grow(column, capacity, sizeof **column, error));
+                TRY(grow(value, capacity, sizeof **value, error));
             }
+            (*ptr)[r + 1] = at + set_row(rows, &coupling, r, *column + at, *value + at);
         }
-        if (at + count > capacity) {
-            capacity = (at + count) * 2 + 1024;
-            TRY(grow(column, capacity, sizeof **column, error));
-            TRY(grow(value, capacity, sizeof **value, error));
+        for (int64_t i = 0; i < coupling.count; i++) {
+            coupling.sum[coupling.touched[i]] = 0.0;
         }
-        for (int64_t i = 0; i < count; i++) {
-            (*column)[at + i] = touched[i];
-            (*value)[at + i] = sum[touched[i]];
-            sum[touched[i]] = 0.0;
-        }
-        (*ptr)[r + 1] = at + count;
     }
 done:
-    free(node_ptr);
-    free(node_row);
-    free(node_phi);
-    free(touched);
-    free(sum);
+    free(coupling.node_ptr);
+    free(coupling.node_list);
+    free(coupling.node_phi);
+    free(coupling.touched);
+    free(coupling.sum);
     return status;
 }
 

@@ -127,11 +127,6 @@ static double least_eigenvalue(int n, const double *diagonal, const double *off_
     return high;
 }
 
-double tridiagonal_least(int n, const double *diagonal, const double *off_diagonal)
-{
-    return least_eigenvalue(n, diagonal, off_diagonal);
-}
-
 /* Its largest one. */
 static double largest_eigenvalue(int n, double *diagonal, const double *off_diagonal)
 {

@@ -15,8 +15,6 @@ double system_largest_frequency(struct solid_system *system, struct precondition
                                 const double *u, const double *residual, int iterations, double *mode,
                                 double *scratch);
 
-double tridiagonal_least(int n, const double *diagonal, const double *off_diagonal);
-
 /* Eigenvalues w^2 of M^-1 K among the moves that the conditions admit. */
 struct spectrum {
     double lowest, largest; /* estimates, from above and from below */

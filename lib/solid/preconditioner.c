@@ -13,9 +13,6 @@ static const int64_t nodes_per_coarse_field = 8;
 static int64_t centre_count(const struct solid_system *system)
 {
     int64_t count = system->node_count / (nodes_per_coarse_field * (system->dim + 1));
-    if (getenv("COARSE") != NULL) {
-        count = atoi(getenv("COARSE"));
-    }
     return count < COARSE_MOST_CENTRES ? count : COARSE_MOST_CENTRES;
 }
 

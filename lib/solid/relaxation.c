@@ -5,12 +5,6 @@
 
 #include <math.h>
 #include <string.h>
-#include <stdlib.h>
-
-void minimise_trace(struct relaxation *r, const double *u);
-void minimise_save(struct relaxation *r);
-void minimise_clock(void);
-enum relaxation_outcome minimise(struct relaxation *r, struct error *error);
 
 static const int64_t keep_interval = 200;               /* steps between states to go back to */
 static const double penetration_share = 1e-4;           /* of the body's size: what a contact may penetrate */
@@ -276,9 +270,6 @@ static enum relaxation_outcome iterate(struct relaxation *r, struct error *error
                 return RELAXATION_INVERTED;
             }
         }
-        if (measure) {
-            minimise_trace(r, r->u);
-        }
         if (r->unstable) {
             relaxation_calm(r, r->scratch);
         }
@@ -363,10 +354,8 @@ enum status relaxation_run(struct solid_system *system, const struct relaxation_
     r.body_size = relaxation_body_size(system);
     r.thickness = relaxation_thickness(system);
     r.penetration_allowed = penetration_share * r.body_size;
-    minimise_clock();
     TRY(options->restored != NULL ? resume(&r, error) : begin(&r, error));
-    report->outcome = getenv("METHOD") != NULL ? minimise(&r, error) : iterate(&r, error);
-    minimise_save(&r);
+    report->outcome = iterate(&r, error);
     TRY(r.failure);
     report->largest_frequency = r.frequency;
     if (report->outcome == RELAXATION_INVERTED) {

@@ -5,7 +5,6 @@
 
 #include <math.h>
 #include <string.h>
-#include <stdlib.h>
 
 /* Steps in which the load moves something by as much as a cell, or as the body is long; and at least. */
 static const double steps_per_spacing = 50.0, steps_per_size = 400.0;
@@ -124,9 +123,6 @@ enum status relaxation_measure_preconditioner(struct relaxation *r, struct error
     (void)preconditioner_follow(&r->preconditioner, r->system, true);
     relaxation_note_new_mass(r);
     TRY(status);
-    if (getenv("METHOD") != NULL) {
-        return STATUS_OK;
-    }
     if (!relaxation_find_spectrum(r, r->residual_at, FIRST_ITERATIONS, &spectrum, error)) {
         return r->failure;
     }
@@ -266,17 +262,6 @@ void relaxation_follow_contacts(struct relaxation *r)
     system_measure_contacts(r->system, r->residual_at, false);
     struct standing now = stand(r);
     if (now.carries || now.miss > r->penetration_allowed) {
-        augment(r);
-    }
-}
-
-void relaxation_augment_now(struct relaxation *r);
-void relaxation_augment_now(struct relaxation *r)
-{
-    system_measure_contacts(r->system, r->residual_at, false);
-    struct standing now = stand(r);
-    if ((r->load >= (double)r->report->ramp_steps ? now.idle : now.carries) ||
-        now.miss > r->penetration_allowed) {
         augment(r);
     }
 }
