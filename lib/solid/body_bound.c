@@ -41,9 +41,10 @@ struct bound {
     double A[9], smoothing;
 };
 
+static const double at_rest[9] = {1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0};
+
 static struct bound bound_at(const struct body *body, int64_t q, const double *F)
 {
-    static const double at_rest[9] = {1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0};
     const struct material *material = &body->materials[body->material[q]];
     struct bound bound = {.smoothing = 0.0};
     double C[9], I1 = 0.0;
@@ -78,6 +79,7 @@ static struct bound bound_at(const struct body *body, int64_t q, const double *F
 struct bound_sum {
     double *of_node;
     struct cell_functions *work; /* of smoothed cells */
+    bool at_rest;
 };
 
 static void add_functions(const struct body *body, const struct bound *bound, int64_t count,
@@ -108,13 +110,12 @@ static void add_point(const struct body *body, int64_t q, const double F[9], dou
     }
 }
 
-/* The same for parameters that are values at the nodes, whose functions are about the hat functions of a
- * cell. */
+/* The same with the hat functions of the cell. */
 static void add_cell(const struct body *body, int64_t q, const double F[9], double J, void *context)
 {
     (void)J;
     const struct bound_sum *to = context;
-    struct bound bound = bound_at(body, q, F);
+    struct bound bound = bound_at(body, q, to->at_rest ? at_rest : F);
     double gradient[12];
     int corners = body->dim + 1;
     smoothed_cells_hat_gradients(body, q, gradient);
@@ -122,7 +123,7 @@ static void add_cell(const struct body *body, int64_t q, const double F[9], doub
                   to->of_node);
 }
 
-static void sum_bounds(struct body *body, body_visitor *add, double *stiffness)
+static void sum_bounds(struct body *body, body_visitor *add, bool rest, double *stiffness)
 {
     const struct chunks *parts = &body->bound_parts;
 #pragma omp parallel num_threads(parts->threads)
@@ -131,7 +132,7 @@ static void sum_bounds(struct body *body, body_visitor *add, double *stiffness)
         for (int64_t p = 0; p < parts->count; p++) {
             double *sum = p == 0 ? stiffness : body->bound + (p - 1) * body->node_count;
             memset(sum, 0, (size_t)body->node_count * sizeof *sum);
-            struct bound_sum to = {sum, body->smoothed ? &body->bound_work[p] : NULL};
+            struct bound_sum to = {sum, body->smoothed ? &body->bound_work[p] : NULL, rest};
             body_visit(body, chunks_begin(parts, p), chunks_begin(parts, p + 1), add, &to);
         }
 #pragma omp for schedule(static)
@@ -145,10 +146,10 @@ static void sum_bounds(struct body *body, body_visitor *add, double *stiffness)
 
 void body_diagonal(struct body *body, double *stiffness)
 {
-    sum_bounds(body, add_point, stiffness);
+    sum_bounds(body, add_point, false, stiffness);
 }
 
-void body_nodal_diagonal(struct body *body, double *stiffness)
+void body_nodal_diagonal(struct body *body, bool rest, double *stiffness)
 {
-    sum_bounds(body, add_cell, stiffness);
+    sum_bounds(body, add_cell, rest, stiffness);
 }
