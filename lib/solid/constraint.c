@@ -176,88 +176,110 @@ void constraint_rows_spread(const struct constraint_rows *rows, const double *am
     }
 }
 
-/* Rows that touch each node, CSR. */
-static enum status rows_of_nodes(const struct constraint_rows *rows, int64_t node_count, int64_t **ptr,
-                                 int64_t **row, double **phi, struct error *error)
+/* Lists that touch each node, CSR. */
+static enum status lists_of_nodes(const struct constraint_rows *rows, int64_t node_count, int64_t **ptr,
+                                  int64_t **list, double **phi, struct error *error)
 {
     enum status status;
+    int64_t pairs = rows->ptr[rows->list_count];
     TRY(NEW_ARRAY(ptr, node_count + 2, error));
-    for (int64_t r = 0; r < rows->count; r++) {
-        struct average average = constraint_rows_average(rows, r);
-        for (int64_t i = 0; i < average.length; i++) {
-            (*ptr)[average.idx[i] + 2]++;
-        }
+    for (int64_t i = 0; i < pairs; i++) {
+        (*ptr)[rows->idx[i] + 2]++;
     }
     for (int64_t n = 0; n < node_count; n++) {
         (*ptr)[n + 2] += (*ptr)[n + 1];
     }
-    TRY(NEW_ARRAY(row, (*ptr)[node_count + 1], error));
-    TRY(NEW_ARRAY(phi, (*ptr)[node_count + 1], error));
-    for (int64_t r = 0; r < rows->count; r++) {
-        struct average average = constraint_rows_average(rows, r);
-        for (int64_t i = 0; i < average.length; i++) {
-            int64_t at = (*ptr)[average.idx[i] + 1]++;
-            (*row)[at] = r;
-            (*phi)[at] = average.phi[i];
+    TRY(NEW_ARRAY(list, pairs, error));
+    TRY(NEW_ARRAY(phi, pairs, error));
+    for (int64_t l = 0; l < rows->list_count; l++) {
+        for (int64_t i = rows->ptr[l]; i < rows->ptr[l + 1]; i++) {
+            int64_t at = (*ptr)[rows->idx[i] + 1]++;
+            (*list)[at] = l;
+            (*phi)[at] = rows->phi[i];
         }
     }
 done:
     return status;
 }
 
-/* G M^-1 G^T in CSR. Rows of orthogonal directions do not couple, so that axis-aligned conditions decompose.
- */
-static enum status assemble(const struct constraint_rows *rows, int64_t node_count, const double *mass,
-                            int64_t **ptr, int64_t **column, double **value, struct error *error)
+/* A matrix by rows, CSR, as it grows. */
+struct growing {
+    int64_t *ptr, *column, capacity;
+    double *value;
+};
+
+/* Row r of G M^-1 G^T: products of its list with others, times cosines. Rows of orthogonal directions do not
+ * couple, so that axis-aligned conditions decompose. */
+static enum status append_row(const struct constraint_rows *rows, int64_t r, int64_t count,
+                              const int64_t *touched, const double *product, struct growing *matrix,
+                              struct error *error)
 {
-    enum status status;
-    int64_t *node_ptr = NULL, *node_row = NULL, *touched = NULL, capacity = 0;
-    double *node_phi = NULL, *sum = NULL;
+    enum status status = STATUS_OK;
     int dim = rows->dim;
-    TRY(rows_of_nodes(rows, node_count, &node_ptr, &node_row, &node_phi, error));
-    TRY(NEW_ARRAY(ptr, rows->count + 1, error));
-    TRY(NEW_ARRAY(&touched, rows->count, error));
-    TRY(NEW_ARRAY(&sum, rows->count, error));
-    for (int64_t r = 0; r < rows->count; r++) {
-        int64_t count = 0, at = (*ptr)[r];
-        struct average average = constraint_rows_average(rows, r);
-        for (int64_t i = 0; i < average.length; i++) {
-            int32_t node = average.idx[i];
-            for (int64_t k = node_ptr[node]; k < node_ptr[node + 1]; k++) {
-                int64_t s = node_row[k];
-                double cosine = 0.0;
-                for (int a = 0; a < dim; a++) {
-                    cosine += rows->direction[r * dim + a] * rows->direction[s * dim + a];
-                }
-                if (fabs(cosine) < 1e-14) {
-                    continue;
-                }
-                double part = cosine * average.phi[i] * node_phi[k] / mass[node];
-                if (sum[s] == 0.0) {
-                    touched[count++] = s;
-                    sum[s] = 1e-300; /* marks it as touched even if the first part is zero */
-                }
-                sum[s] += part;
+    int64_t at = matrix->ptr[r], most = at;
+    for (int64_t t = 0; t < count; t++) {
+        most += rows->first[touched[t] + 1] - rows->first[touched[t]];
+    }
+    if (most > matrix->capacity) {
+        matrix->capacity = most * 2 + 1024;
+        TRY(grow(&matrix->column, matrix->capacity, sizeof *matrix->column, error));
+        TRY(grow(&matrix->value, matrix->capacity, sizeof *matrix->value, error));
+    }
+    for (int64_t t = 0; t < count; t++) {
+        for (int64_t s = rows->first[touched[t]]; s < rows->first[touched[t] + 1]; s++) {
+            double cosine = 0.0;
+            for (int a = 0; a < dim; a++) {
+                cosine += rows->direction[r * dim + a] * rows->direction[s * dim + a];
+            }
+            if (fabs(cosine) >= 1e-14) {
+                matrix->column[at] = s;
+                matrix->value[at++] = cosine * product[touched[t]];
             }
         }
-        if (at + count > capacity) {
-            capacity = (at + count) * 2 + 1024;
-            TRY(grow(column, capacity, sizeof **column, error));
-            TRY(grow(value, capacity, sizeof **value, error));
+    }
+    matrix->ptr[r + 1] = at;
+done:
+    return status;
+}
+
+/* G M^-1 G^T. */
+static enum status assemble(const struct constraint_rows *rows, int64_t node_count, const double *mass,
+                            struct growing *matrix, struct error *error)
+{
+    enum status status;
+    int64_t *node_ptr = NULL, *node_list = NULL, *touched = NULL, *seen = NULL;
+    double *node_phi = NULL, *product = NULL;
+    TRY(lists_of_nodes(rows, node_count, &node_ptr, &node_list, &node_phi, error));
+    TRY(NEW_ARRAY(&matrix->ptr, rows->count + 1, error));
+    TRY(NEW_ARRAY(&touched, rows->list_count, error));
+    TRY(NEW_ARRAY(&seen, rows->list_count, error)); /* 1 + the last list that has seen each */
+    TRY(NEW_ARRAY(&product, rows->list_count, error));
+    for (int64_t l = 0; l < rows->list_count; l++) {
+        int64_t count = 0;
+        for (int64_t i = rows->ptr[l]; i < rows->ptr[l + 1]; i++) {
+            int32_t node = rows->idx[i];
+            double part = rows->phi[i] / mass[node];
+            for (int64_t k = node_ptr[node]; k < node_ptr[node + 1]; k++) {
+                int64_t m = node_list[k];
+                if (seen[m] != l + 1) {
+                    seen[m] = l + 1;
+                    touched[count++] = m;
+                    product[m] = 0.0;
+                }
+                product[m] += part * node_phi[k];
+            }
         }
-        for (int64_t i = 0; i < count; i++) {
-            (*column)[at + i] = touched[i];
-            (*value)[at + i] = sum[touched[i]];
-            sum[touched[i]] = 0.0;
+        for (int64_t r = rows->first[l]; r < rows->first[l + 1]; r++) {
+            TRY(append_row(rows, r, count, touched, product, matrix, error));
         }
-        (*ptr)[r + 1] = at + count;
     }
 done:
     free(node_ptr);
-    free(node_row);
+    free(node_list);
     free(node_phi);
     free(touched);
-    free(sum);
+    free(seen);
+    free(product);
     return status;
 }
 
@@ -266,8 +288,7 @@ enum status constraint_build(const struct constraint_rows *rows, int64_t node_co
                              struct constraint *constraint, struct error *error)
 {
     enum status status = STATUS_OK;
-    int64_t *ptr = NULL, *column = NULL;
-    double *value = NULL;
+    struct growing matrix = {0};
     *constraint = (struct constraint){.node_count = node_count,
                                       .rows = rows,
                                       .mass = mass,
@@ -281,12 +302,13 @@ enum status constraint_build(const struct constraint_rows *rows, int64_t node_co
         TRY(NEW_ARRAY(&constraint->scratch, 2 * node_count * rows->dim, error));
         rows = inverse_rows;
     }
-    TRY(assemble(rows, node_count, mass, &ptr, &column, &value, error));
-    TRY(envelope_factorise(rows->count, ptr, column, value, least_pivot, &constraint->factor, error));
+    TRY(assemble(rows, node_count, mass, &matrix, error));
+    TRY(envelope_factorise(rows->count, matrix.ptr, matrix.column, matrix.value, least_pivot,
+                           &constraint->factor, error));
 done:
-    free(ptr);
-    free(column);
-    free(value);
+    free(matrix.ptr);
+    free(matrix.column);
+    free(matrix.value);
     if (status != STATUS_OK) {
         constraint_free(constraint);
     }
