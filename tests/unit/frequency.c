@@ -78,7 +78,7 @@ static void agrees_with_all_eigenvalues(void **state)
             start[i] = sin(1.0 + (double)(i * i % 97));
         }
         (void)system_residual(&l.system, u, residual);
-        system_relaxation_mass(&l.system, mass);
+        system_relaxation_mass(&l.system, false, mass);
         GOOD(preconditioner_build(&l.system, false, &preconditioner, &error));
         GOOD(preconditioner_set_mass(&preconditioner, &l.system, mass, &error));
         double least = least_of_all(&l, &preconditioner.constraint, mass, u, residual);
@@ -124,7 +124,7 @@ static void a_block_compressed_beyond_biots_limit_is_not_stable(void **state)
             start[i] = sin(1.0 + (double)(i * i % 97));
         }
         (void)system_residual(&l.system, u, residual);
-        system_relaxation_mass(&l.system, mass);
+        system_relaxation_mass(&l.system, false, mass);
         GOOD(preconditioner_build(&l.system, false, &preconditioner, &error));
         GOOD(preconditioner_set_mass(&preconditioner, &l.system, mass, &error));
         GOOD(system_spectrum(&l.system, &preconditioner, u, residual, 1000, start, scratch, &spectrum,

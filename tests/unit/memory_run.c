@@ -25,8 +25,8 @@ static double *u, *v;
 
 static void to_rest(void)
 {
-    memset(u, 0, (size_t)lattice.system.node_count * 2 * sizeof *u);
-    memset(v, 0, (size_t)lattice.system.node_count * 2 * sizeof *v);
+    memset(u, 0, (size_t)(lattice.system.node_count * lattice.system.dim) * sizeof *u);
+    memset(v, 0, (size_t)(lattice.system.node_count * lattice.system.dim) * sizeof *v);
 }
 
 static enum status try_relaxation(struct error *error)
@@ -60,10 +60,10 @@ static void dynamics(void **state)
     fail_each(try_dynamics, 15);
 }
 
-int main(void)
+static int run_in(int dim)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(relaxations), cmocka_unit_test(dynamics)};
-    struct lattice_options options = lattice_defaults(2, 4);
+    struct lattice_options options = lattice_defaults(dim, dim == 2 ? 4 : 3);
     lattice_build(&lattice, &options);
     int32_t curve = lattice_curve(&lattice, curve_of_kind(CURVE_SMOOTH));
     lattice_slide(&lattice, 1u << 2, curve);
@@ -76,6 +76,11 @@ int main(void)
     free(v);
     lattice_free(&lattice);
     return failed;
+}
+
+int main(void)
+{
+    return run_in(2) + run_in(3);
 }
 
 #else
