@@ -9,6 +9,8 @@
 #   neurosurgery                a craniotomy, from a label image to a warped scan
 #   gallery  liver  phantom     examples that others can judge, with pictures
 #   convergence  speed-error    error against mesh size, and against time, beside mixed elements and CalculiX
+#   uncertainty                 brain shift with uncertain stiffness; cases of a table: pipelines/sweep
+#   scale                       time, bytes and memory of each stage for a node; a body in parts
 #   bench  estimate             speed of the kernels; what the error estimate is worth
 # make install PREFIX=/usr/local    make deb    make clean    (pipelines/install.mk)
 
@@ -35,6 +37,8 @@ SANITIZE := $(if $(SAN)$(FUZZ),-fsanitize=address$(comma)undefined -fno-sanitize
 CFLAGS := -std=c11 -D_GNU_SOURCE -g -Ilib -Itools/common $(WARNINGS) $(HARDENING) $(OPTIMISE) $(SANITIZE) -fopenmp
 LDFLAGS := -pie -Wl,-z,relro -Wl,-z,now -fopenmp $(SANITIZE)
 LDLIBS := -lgsl -lgslcblas -linih -lz -lm
+# What lib/approx/partition_metis.c takes, for the programs that cut bodies.
+$(BUILD)/bin/part $(BUILD)/tests/partition: LDLIBS += -lmetis
 
 LIBRARY := $(BUILD)/libmtled.a
 LIBRARY_OBJECTS := $(patsubst %.c,$(BUILD)/%.o,$(wildcard lib/*/*.c))

@@ -3,13 +3,14 @@
 # (`make brain2d table1 readme`, for example). Pictures are made small by ImageMagick, and left as they are where there is none.
 
 README_TEXTS := README.md examples/README.md pipelines/README.md
-README_PICTURES := brain2d/section brain2d/difference table1/surface speed-error/speed-error brain3d/brain3d convergence/convergence
+README_PICTURES := brain2d/section brain2d/difference table1/surface speed-error/speed-error brain3d/brain3d convergence/convergence uncertainty/uncertainty
 RESULTS := pipelines/results
 # Tables of the studies, and what they are called there.
 RESULT_TABLES := brain2d/compare=brain2d brain3d/compare=brain3d table1/beside=table1 speed-error/speed-error=speed-error \
     speed-error/reach=reach convergence/convergence=convergence hard/hard=hard hard/summary=hard-summary hard/misses=hard-misses \
     estimate/estimate=estimate estimate/summary=estimate-summary foreign/foreign=foreign gallery/phantom=phantom \
-    gallery/indentation=indentation neurosurgery/neurosurgery=neurosurgery
+    gallery/indentation=indentation adaptive/effectivity=effectivity adaptive/effectivity-summary=effectivity-summary \
+    adaptive/refinement=refinement neurosurgery/neurosurgery=neurosurgery uncertainty/uncertainty=uncertainty
 
 .PHONY: readme results
 # Only what is newer than the file that is kept.

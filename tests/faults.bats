@@ -267,6 +267,8 @@ shapefn lists.mts
 mtled block.scene table.mts
 interp u.mts
 fieldcmp u.mts u.mts
+fielderr u.mts coarse.mts
+sizefield u.mts
 mts list table.mts
 mts print u u.mts
 mts text table.mts
@@ -281,6 +283,7 @@ END
 
 @test "fault 19: a full device, also at the end of writing" {
     mtled block.scene table.mts > u.mts
+    cloud -d 2 -k regular -n 3 --box 0,0.1,0,0.1 | shapefn 2> said | mtled block.scene > coarse.mts
     while IFS= read -r command; do
         status=0
         message=$(bash -c "$command > /dev/full" 2>&1 | grep -v -e 'left out' -e 'with defaults') || true
@@ -293,6 +296,7 @@ END
 
 @test "fault 20: a reader that stops early" {
     mtled block.scene table.mts > u.mts
+    cloud -d 2 -k regular -n 3 --box 0,0.1,0,0.1 | shapefn 2> said | mtled block.scene > coarse.mts
     while IFS= read -r command; do
         # By then the reader is gone.
         run --separate-stderr bash -c "{ sleep 0.1; exec $command; } | true; exit \${PIPESTATUS[0]}"

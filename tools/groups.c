@@ -393,6 +393,9 @@ int main(int argc, char *argv[])
         tool_check(&tool, parse_length_unit(options[UNIT].value, "-u", &unit, &error), &error);
     }
     tool_read(&tool, tool.operands[0], &stream);
+    if (stream_find(&stream, "part.node") != NULL) {
+        tool_fail(&tool, STATUS_INPUT, "the input is one part of a body: make groups before it is cut");
+    }
     tool_check(&tool, group_body_read(&stream, &body, &error), &error);
     for (int i = 0; i < uses.count; i++) {
         struct request request = {&body, &uses.use[i], unit, options[REPLACE].given};

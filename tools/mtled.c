@@ -118,6 +118,9 @@ int main(int argc, char *argv[])
     tool_check(&tool, scene_read(tool.operands[0], &scene, &error), &error);
     tool_read(&tool, tool.operand_count > 1 ? tool.operands[1] : NULL, &stream);
     drop_results(&stream);
+    if (stream_find(&stream, "part.node") != NULL) {
+        tool_fail(&tool, STATUS_INPUT, "the input is one part of a body: put all parts together by unpart");
+    }
     double read = clock_seconds() - started;
     stage_fill(&tool, &stream, "shapefn");
 

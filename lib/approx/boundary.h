@@ -82,11 +82,14 @@ MUST_CHECK enum status boundary_list_build(int dim, const double *x, const int32
 MUST_CHECK enum status boundary_points_build(const struct face_table *table, const struct facet_set *set,
                                              struct boundary_averages *averages, struct error *error);
 
-/* end[table->node_count] becomes true at the nodes where held faces end on a side that goes on: where a held
- * face of the boundary meets one that is not held, across an edge (2D: a node) at which it turns by less than
- * 45 degrees. held[table->faces->count]. */
-MUST_CHECK enum status boundary_find_ends(const struct face_table *table, const bool *held, bool *end,
-                                          struct error *error);
+/* Ends of held faces: smooth, on a side that goes on; sharp, at an edge between two sides. */
+enum boundary_end { BOUNDARY_END_SMOOTH, BOUNDARY_END_SHARP };
+
+/* end[table->node_count] becomes true at the nodes where a held face of the boundary meets one that is not
+ * held, across an edge (2D: a node) at which it turns by less than 45 degrees (smooth) or by more (sharp).
+ * held[table->faces->count]. */
+MUST_CHECK enum status boundary_find_ends(const struct face_table *table, enum boundary_end kind,
+                                          const bool *held, bool *end, struct error *error);
 
 void boundary_averages_free(struct boundary_averages *averages);
 

@@ -1,5 +1,7 @@
 #include "solid/assembly.h"
 
+#include "solid/prescription.h"
+
 #include "approx/field.h"
 #include "approx/quadrature.h"
 #include "base/box.h"
@@ -196,7 +198,7 @@ static void hold_faces(const struct faces *faces, int dim, const int64_t *stamp,
     }
 }
 
-enum status assembly_held_faces(const struct assembly *input, bool **held, struct error *error)
+enum status assembly_held_faces(const struct assembly *input, int least, bool **held, struct error *error)
 {
     enum status status;
     int dim = input->cells.dim;
@@ -208,7 +210,7 @@ enum status assembly_held_faces(const struct assembly *input, bool **held, struc
         for (int64_t k = 0; k < set->count * dim; k++) {
             stamp[set->facet[k]] = i + 1;
         }
-        if (set->count > 0) {
+        if (set->count > 0 && prescription_directions(&input->conditions[i], dim) >= least) {
             hold_faces(&input->boundary, dim, stamp, i + 1, *held);
         }
     }

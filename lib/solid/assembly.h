@@ -123,9 +123,10 @@ bool assembly_has_gravity(const struct assembly *input);
 /* Whether displacements are prescribed to averages over the facets of the boundary, not at nodes. */
 bool assembly_holds_averages(const struct assembly *input);
 
-/* held[boundary.count]: whether all nodes of that face are those of facets that one condition names; the
- * caller's to free. */
-MUST_CHECK enum status assembly_held_faces(const struct assembly *input, bool **held, struct error *error);
+/* held[boundary.count]: whether all nodes of that face are those of facets that one condition names, which
+ * prescribes at least so many directions; the caller's to free. */
+MUST_CHECK enum status assembly_held_faces(const struct assembly *input, int least, bool **held,
+                                           struct error *error);
 
 /* The modulus of penalties, Pa: that of pressure waves, but at most `factor` times the shear modulus, so that
  * it does not grow with the bulk modulus; the largest of the body's materials. */

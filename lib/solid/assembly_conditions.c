@@ -292,7 +292,7 @@ enum status assembly_add_conditions(const struct assembly *input, struct solid_s
                                      .nodal_constraints = &nodal_constraints,
                                      .held = &held,
                                      .number = (int32_t)i};
-            if (prescription_directions(&p) == directions) {
+            if (prescription_directions(p.condition, input->cells.dim) == directions) {
                 TRY(add_condition(&p, error));
             }
         }

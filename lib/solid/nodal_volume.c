@@ -8,7 +8,7 @@
 /* s by the shear modulus. */
 static const double points_part = 2.0;
 /* epsilon */
-static const double stabilisation = 0.25;
+static const double stabilisation = 0.125;
 
 /* A nodal volume for each pair of background node and group of materials. */
 struct key {

@@ -46,23 +46,23 @@ static enum status average_of_table(const struct prescription *p, const struct b
 }
 
 /* Whether the condition leaves component i open. */
-static bool is_free(const struct prescription *p, int i)
+static bool is_free(const struct condition *condition, int i)
 {
-    return p->condition->kind == CONDITION_COMPONENTS && p->condition->is_free[i];
+    return condition->kind == CONDITION_COMPONENTS && condition->is_free[i];
 }
 
-int prescription_directions(const struct prescription *p)
+int prescription_directions(const struct condition *condition, int dim)
 {
     int count = 0;
-    for (int i = 0; i < p->input->cells.dim; i++) {
-        count += !is_free(p, i);
+    for (int i = 0; i < dim; i++) {
+        count += !is_free(condition, i);
     }
-    return p->condition->kind == CONDITION_NORMAL ? 1 : count;
+    return condition->kind == CONDITION_NORMAL ? 1 : count;
 }
 
 bool prescription_is_full(const struct prescription *p)
 {
-    return prescription_directions(p) == p->input->cells.dim;
+    return prescription_directions(p->condition, p->input->cells.dim) == p->input->cells.dim;
 }
 
 enum status prescription_demand(const struct prescription *p, const struct boundary_averages *averages,
@@ -84,7 +84,7 @@ enum status prescription_demand(const struct prescription *p, const struct bound
                          : average_of_table(p, averages, a, value, error);
     }
     for (int i = 0; status == STATUS_OK && i < dim; i++) {
-        if (!is_free(p, i)) {
+        if (!is_free(p->condition, i)) {
             demand->direction[demand->count * dim + i] = 1.0;
             demand->value[demand->count++] = value[i];
         }

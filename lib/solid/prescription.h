@@ -30,7 +30,7 @@ struct demand {
 };
 
 /* How many directions the condition prescribes at a place; all of them? */
-int prescription_directions(const struct prescription *p);
+int prescription_directions(const struct condition *condition, int dim);
 bool prescription_is_full(const struct prescription *p);
 
 /* What the condition asks of average a; or, of the same directions, at its node. */

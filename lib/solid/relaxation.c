@@ -84,7 +84,7 @@ static bool tell(struct relaxation *r)
     int64_t at = r->report->steps;
     struct progress progress = {.step = at,
                                 .u = relaxation_parameters(r, r->u),
-                                .move = r->moved,
+                                .move = at - r->back_step <= CHECK_INTERVAL ? INFINITY : r->moved,
                                 .error = r->report->error,
                                 .remaining = -1.0,
                                 .state = relaxation_visit,

@@ -160,6 +160,7 @@ void relaxation_keep_check(struct relaxation *r)
 void relaxation_go_back(struct relaxation *r, const struct kept_state *kept)
 {
     r->load = kept->load;
+    r->back_step = r->report->steps;
     memcpy(r->u, kept->u, (size_t)r->size * sizeof *r->u);
     memcpy(r->velocity, kept->u + r->size, (size_t)r->size * sizeof *r->velocity);
     system_load_factors(r->system, fmin(1.0, r->load / (double)r->report->ramp_steps));
@@ -201,7 +202,8 @@ static bool is_unstable(struct relaxation *r, const double *acceleration)
     (void)system_residual(r->system, r->u, r->residual);
     double frequency = system_largest_frequency(r->system, &r->preconditioner, r->u, r->residual,
                                                 calm_iterations, r->mode, r->scratch);
-    r->report->force_evaluations += calm_iterations + 1;
+    (void)system_residual(r->system, r->u, r->residual); /* the body's last evaluation again */
+    r->report->force_evaluations += calm_iterations + 2;
     return !(frequency * r->time_step < 2.0);
 }
 

@@ -51,6 +51,7 @@ struct relaxation {
     double usual_residual2;                   /* what the residual's norm, squared, is compared with */
     bool unstable;                            /* it grew far above that in the last step */
     int64_t calmed_step;                      /* the last step at which that was mended */
+    int64_t back_step;                        /* the last step that went back to a kept state */
     double penetration_allowed;               /* m */
     int64_t augmentations, stagnation;        /* of the contacts so far; those in a row that changed little */
     double least_penetration;                 /* m, before an augmentation */

@@ -155,6 +155,7 @@ enum status relaxation_visit(void *run, const struct state *state, struct error 
         {"frequency", STATE_NUMBERS, &r->frequency, 1},
         {"usual_residual2", STATE_NUMBERS, &r->usual_residual2, 1},
         {"calmed_step", STATE_COUNTS, &r->calmed_step, 1},
+        {"back_step", STATE_COUNTS, &r->back_step, 1},
         {"measured_frequency", STATE_NUMBERS, &r->measured_frequency, 1},
         {"measured_move", STATE_NUMBERS, &r->measured_move, 1},
         {"low2", STATE_NUMBERS, &r->low2, 1},

@@ -453,15 +453,15 @@ static void ends(void **state)
         struct error error;
         bool *held = sample_array(sample.faces.count, sizeof *held);
         bool *end = sample_array(sample.cloud.node_count, sizeof *end);
-        GOOD(boundary_find_ends(&table, held, end, &error));
+        GOOD(boundary_find_ends(&table, BOUNDARY_END_SMOOTH, held, end, &error));
         for (int64_t f = 0; f < sample.faces.count; f++) {
             held[f] = on_side_below(&sample, f, 2.0 * sample_size);
         }
-        GOOD(boundary_find_ends(&table, held, end, &error));
+        GOOD(boundary_find_ends(&table, BOUNDARY_END_SMOOTH, held, end, &error));
         for (int64_t f = 0; f < sample.faces.count; f++) {
             held[f] = sample.faces.cell[2 * f + 1] < 0;
         }
-        GOOD(boundary_find_ends(&table, held, end, &error));
+        GOOD(boundary_find_ends(&table, BOUNDARY_END_SMOOTH, held, end, &error));
         for (int64_t n = 0; n < sample.cloud.node_count; n++) {
             assert_false(end[n]);
         }
@@ -473,7 +473,7 @@ static void ends(void **state)
             }
         }
         assert_true(highest > 0.2 * sample_size);
-        GOOD(boundary_find_ends(&table, held, end, &error));
+        GOOD(boundary_find_ends(&table, BOUNDARY_END_SMOOTH, held, end, &error));
         int64_t count = 0;
         for (int64_t n = 0; n < sample.cloud.node_count; n++) {
             const double *x = sample.cloud.x + n * dim;
@@ -483,6 +483,20 @@ static void ends(void **state)
             }
         }
         assert_int_equal(count, dim == 2 ? 1 : 5);
+        /* The whole side, whose edges are sharp ends. */
+        memset(end, 0, (size_t)sample.cloud.node_count * sizeof *end);
+        for (int64_t f = 0; f < sample.faces.count; f++) {
+            held[f] = on_side_below(&sample, f, 2.0 * sample_size);
+        }
+        GOOD(boundary_find_ends(&table, BOUNDARY_END_SHARP, held, end, &error));
+        for (int64_t n = 0; n < sample.cloud.node_count; n++) {
+            const double *x = sample.cloud.x + n * dim;
+            bool is_edge = false;
+            for (int k = 1; k < dim; k++) {
+                is_edge = is_edge || x[k] < 1e-12 || x[k] > sample_size - 1e-12;
+            }
+            assert_int_equal(end[n], fabs(x[0]) < 1e-12 && is_edge);
+        }
         free(held);
         free(end);
         sample_free(&sample);

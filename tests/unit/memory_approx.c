@@ -3,7 +3,9 @@
 #include "approx/adaptive.h"
 #include "approx/cloud.h"
 #include "approx/field_compare.h"
+#include "approx/field_error.h"
 #include "approx/quadrature.h"
+#include "approx/size_field.h"
 #include "approx/ways.h"
 #include "base/memory.h"
 
@@ -166,6 +168,26 @@ done:
     return status;
 }
 
+/* The error of a field's gradient and the sizes of a finer mesh. */
+static enum status try_sizes(struct error *error)
+{
+    enum status status;
+    static const double values[49] = {[24] = 1.0};
+    struct cloud_options wanted = {.kind = CLOUD_REGULAR, .dim = 2, .count = {7, 7}, .high = {1.0, 1.0}};
+    struct size_field_request request = {.share = 0.5, .most_nodes = 1000.0, .sag = 0.1};
+    struct cloud cloud = {0};
+    struct size_field field = {0};
+    double squared[72];
+    TRY(cloud_make(&wanted, &cloud, error));
+    struct cells cells = {2, cloud.node_count, cloud.x, cloud.cell_count, cloud.cells};
+    TRY(field_error_recovered(&cells, NULL, 0, 1, values, squared, error));
+    TRY(size_field_build(&cells, squared, &request, &field, error));
+done:
+    size_field_free(&field);
+    cloud_free(&cloud);
+    return status;
+}
+
 /* One thread, and a first run unwatched: what OpenMP allocates for itself is not ours to test. */
 static void tables(void **state)
 {
@@ -199,13 +221,19 @@ static void comparisons(void **state)
     fail_each(try_compare, 30);
 }
 
+static void sizes(void **state)
+{
+    (void)state;
+    struct error error;
+    assert_int_equal(try_sizes(&error), STATUS_OK);
+    fail_each(try_sizes, 10);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(tables),
-        cmocka_unit_test(around_corners),
-        cmocka_unit_test(adaptive),
-        cmocka_unit_test(comparisons),
+        cmocka_unit_test(tables),      cmocka_unit_test(around_corners), cmocka_unit_test(adaptive),
+        cmocka_unit_test(comparisons), cmocka_unit_test(sizes),
     };
     gsl_set_error_handler_off(); /* as the tools do */
     omp_set_num_threads(1);

@@ -19,7 +19,7 @@ static enum status build(const struct assembly *input, struct run_folds *folds, 
                               .cell = cells->node,
                               .facet_count = input->boundary.count,
                               .facet = input->boundary.node};
-    TRY(assembly_held_faces(input, &folds->held, error));
+    TRY(assembly_held_faces(input, 1, &folds->held, error));
     body.held = folds->held;
     TRY(NEW_ARRAY(&folds->field, cells->node_count * cells->dim, error));
     TRY(NEW_ARRAY(&folds->stopped, cells->node_count, error));

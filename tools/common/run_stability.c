@@ -8,7 +8,7 @@
  * that leaves it has grown, and then rise exponentially. So a body has left an equilibrium when, under a load
  * that is held, the largest of the last looks' moves has risen by this factor over what it was at an
  * estimated error below `near_error`; moves below a share of the displacement are round-off. */
-static const double growth = 10.0, near_error = 0.01, least_share = 1e-6;
+static const double growth = 4.0, near_error = 0.1, least_share = 1e-6;
 
 static int64_t parameter_count(const struct run *run)
 {

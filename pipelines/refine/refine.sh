@@ -1,0 +1,174 @@
+#!/bin/bash
+# A scene on meshes that are refined where it must be: refine.sh SCENE GEO TOL OUT
+#
+# Each round meshes the geometry by gmsh at sizes s and 2 s, solves the scene on both, and estimates the error of the finer solution
+# (fielderr). While its mean is above TOL (0.2mm; m without a unit), the next round's sizes come from sizefield. In the folder OUT stay
+# those of the last good round: body.msh, sizes.pos, u.dat, coarse.dat, errors.tsv; and rounds.tsv, a row for each round:
+#   round, nodes, mean_mm over the body and max_mm of the nodes (estimated), seconds (processor time: nodes to mtled on the finer mesh), all_seconds (all of the
+#   round, gmsh and the coarser mesh as well)
+#
+# Environment: UNIT of the geometry (default mm), NODES at most (default 20000), ROUNDS at most (default 8), GMSH more arguments for gmsh,
+# START a factor for the sizes of the first round (default 1), LEAST a length with unit below which no size goes (sizefield), GRADED=no: all sizes
+# made smaller alike.
+#
+# Exit status: 0 below TOL; 1 the budget of nodes or rounds is spent, or a round failed: the last good one is kept; 2 wrong usage.
+set -euo pipefail
+export LC_ALL=C OMP_NUM_THREADS=${OMP_NUM_THREADS:-1}
+TIMEFORMAT='%U %S'
+scene=${1-} geometry=${2-} tolerance=${3-} out=${4-}
+unit=${UNIT:-mm} budget=${NODES:-20000} rounds=${ROUNDS:-8} start=${START:-1}
+
+# fail STATUS MESSAGE
+fail() {
+    echo "refine: $2" >&2
+    exit "$1"
+}
+
+# calc EXPRESSION
+calc() {
+    awk "BEGIN { printf \"%.9g\", $1 }"
+}
+
+# holds EXPRESSION
+holds() {
+    awk "BEGIN { exit !($1) }"
+}
+
+# metres LENGTH: a number, or a number and a unit.
+metres() {
+    [[ $1 =~ ^([0-9]+\.?[0-9]*|\.[0-9]+)(e-?[0-9]+)?(m|cm|mm|um)?$ ]] || return 1
+    case ${BASH_REMATCH[3]} in
+        cm) calc "${BASH_REMATCH[1]}${BASH_REMATCH[2]} * 1e-2" ;;
+        mm) calc "${BASH_REMATCH[1]}${BASH_REMATCH[2]} * 1e-3" ;;
+        um) calc "${BASH_REMATCH[1]}${BASH_REMATCH[2]} * 1e-6" ;;
+        *) calc "${BASH_REMATCH[1]}${BASH_REMATCH[2]} * 1" ;;
+    esac
+}
+
+[ -n "$out" ] || fail 2 "usage: make refine SCENE=FILE GEO=FILE TOL=LENGTH"
+[ -f "$scene" ] || fail 2 "SCENE: no file $scene"
+[ -f "$geometry" ] || fail 2 "GEO: no file $geometry"
+if ! wanted=$(metres "$tolerance") || ! holds "$wanted > 0"; then
+    fail 2 "TOL: '$tolerance' is not a positive length, such as 0.2mm"
+fi
+[[ $budget =~ ^[1-9][0-9]{1,7}$ ]] || fail 2 "NODES: '$budget' is not a number of nodes from 10 to 99999999"
+[[ $rounds =~ ^[1-9][0-9]?$ ]] || fail 2 "ROUNDS: '$rounds' is not a number from 1 to 99"
+if [[ ! $start =~ ^[0-9]*\.?[0-9]+$ ]] || ! holds "$start > 0"; then
+    fail 2 "START: '$start' is not a positive number"
+fi
+dim=$(sed -n 's/^dim *= *\([23]\).*/\1/p' "$scene")
+[ -n "$dim" ] || fail 2 "SCENE: $scene has no dim = 2 or 3"
+mkdir -p "$out"
+work=$(mktemp -d "$out/.round.XXXXXX")
+trap 'rm -rf "$work"' EXIT
+
+# mesh FACTOR FILE: the geometry with the sizes of the last round, or its own, times FACTOR.
+mesh() {
+    local from=$geometry
+    [ ! -s "$work/graded.geo" ] || from=$work/graded.geo
+    # shellcheck disable=SC2086 # several arguments
+    gmsh -v 1 "-$dim" ${GMSH-} -setnumber Mesh.RandomSeed 1 -clscale "$1" "$from" -o "$2" > "$work/log" 2>&1
+}
+
+# solve MESH FILE
+solve() {
+    nodes -u "$unit" "$1" 2> "$work/log" | shapefn 2>> "$work/log" | mtled -q "$scene" -o "$2" 2>> "$work/log"
+}
+
+# What the last command said, in a line.
+said() {
+    grep -v 'ran with defaults' "$work/log" | tail -n 1
+}
+
+# The processor seconds in a file of `time`.
+seconds() {
+    awk '{ sum += $1 + $2 } END { printf "%.2f", sum }' "$@"
+}
+
+quantity() {
+    awk -F '\t' -v name="$1" '$1 == name { print $2 }' "$work/errors.tsv"
+}
+
+# keep: what a later round that fails leaves alone.
+keep() {
+    local file
+    for file in body.msh u.dat coarse.dat errors.tsv sizes.pos; do
+        [ ! -e "$work/$file" ] || cp "$work/$file" "$out/.$file.new"
+    done
+    rm -f "$out/sizes.pos"
+    for file in body.msh u.dat coarse.dat errors.tsv sizes.pos; do
+        [ ! -e "$out/.$file.new" ] || mv "$out/.$file.new" "$out/$file"
+    done
+}
+
+kept=none what=''
+# lost WHAT: a round that failed.
+lost() {
+    fail 1 "round $round: $1: $(said); kept: $kept"
+}
+
+# grade: sizes.pos and graded.geo for the share of the error of the last good round.
+grade() {
+    sizefield -v -s "$share" -n "$budget" --sag "$(calc "$share * $estimate")" ${least:+--least "$least"} -u "$unit" -o "$work/sizes.pos" \
+        "$out/u.dat" 2> "$work/log" || lost sizefield
+    smallest=$(awk -F '\t' '$1 == "least size" { print $2 }' "$work/log")
+    # Whatever else the geometry says of sizes does not count.
+    {
+        printf 'Include "%s";\nMerge "%s";\nBackground Mesh View[0];\n' "$(realpath "$geometry")" "$(realpath "$work/sizes.pos")"
+        printf 'Mesh.MeshSize%s;\n' 'ExtendFromBoundary = 0' 'FromPoints = 0' 'FromCurvature = 0' 'Min = 0' 'Max = 1e22'
+    } > "$work/graded.geo"
+}
+
+# attempt: a round's meshes, solutions and estimate; where it fails $what says at what.
+attempt() {
+    rm -f "$work"/*.time
+    what=gmsh
+    { time mesh "$factor" "$work/body.msh"; } 2> "$work/mesh.time" || return 1
+    { time mesh "$(calc "2 * $factor")" "$work/coarse.msh"; } 2> "$work/coarse_mesh.time" || return 1
+    what="the scene"
+    { time solve "$work/body.msh" "$work/u.dat"; } 2> "$work/solve.time" || return 1
+    what="the scene at twice the size"
+    { time solve "$work/coarse.msh" "$work/coarse.dat"; } 2> "$work/coarse.time" || return 1
+    what=fielderr
+    { time fielderr --skip-outside "$work/u.dat" "$work/coarse.dat" > "$work/errors.tsv" 2> "$work/log"; } 2> "$work/estimate.time" || return 1
+}
+
+printf 'round\tnodes\tmean_mm\tmax_mm\tseconds\tall_seconds\n' | tee "$out/rounds.tsv"
+factor=$start least=${LEAST-} again=0
+for ((round = 1; round <= rounds; round++)); do
+    if ! attempt; then
+        if [ ! -s "$work/graded.geo" ] || [[ $what != "the scene"* ]] || ((again++ == 3)); then
+            lost "$what"
+        fi
+        # Small cells at a corner may fold where larger ones do not.
+        least=$(calc "2 * $smallest")$([[ $unit =~ ^(m|cm|mm|um)$ ]] && echo "$unit")
+        echo "refine: round $round: $what: $(said): once more with no size below $least" >&2
+        grade
+        ((round--))
+        continue
+    fi
+    nodes=$(quantity n) estimate=$(quantity mean)
+    printf '%d\t%d\t%.6g\t%.6g\t%s\t%s\n' "$round" "$nodes" "$(calc "1000 * $estimate")" "$(calc "1000 * $(quantity max)")" \
+        "$(seconds "$work/solve.time")" "$(seconds "$work"/*.time)" | tee -a "$out/rounds.tsv"
+    keep
+    kept="round $round, $nodes nodes, $(calc "1000 * $estimate") mm"
+    [ -z "${KEEP_ROUNDS-}" ] || cp "$work/u.dat" "$out/u-$round.dat"
+    ! holds "$estimate <= $wanted" || exit 0
+    left=$(sed -n 's/^tolerance *= *//p' "$scene")
+    holds "$wanted > ${left:-1e-5} * $(quantity reference)" ||
+        fail 1 "TOL: $tolerance is less than the error that the scene's [solver] tolerance of ${left:-1e-5} leaves; kept: $kept"
+    holds "$nodes < 0.85 * $budget" || fail 1 "the budget of $budget nodes (NODES) is spent; kept: $kept"
+    holds "$nodes > 1.05 * ${before:-0}" || fail 1 "the sizes become no smaller${least:+ than $least (LEAST)}; kept: $kept"
+    before=$nodes
+    # A round at a time: the errors tell little of sizes far from those they were found with.
+    share=$(awk -v s="$(calc "0.8 * $wanted / $estimate")" 'BEGIN { print (s < 0.25 ? 0.25 : s) }')
+    if [ "${GRADED-}" = no ]; then
+        # Errors of an order of 1.5 or a little more; no more nodes than there may be.
+        factor=$(awk -v f="$factor" -v s="$share" -v room="$(calc "$nodes / $budget")" -v dim="$dim" \
+            'BEGIN { a = s ^ 0.6; b = room ^ (1 / dim); print f * (a > b ? a : b) }')
+    else
+        grade
+        factor=1
+    fi
+done
+fail 1 "$rounds rounds (ROUNDS) are over; kept: $kept"

@@ -1,0 +1,197 @@
+# fielderr: an estimate of the discretisation error from two or three clouds; sizefield: sizes of a graded mesh; make refine.
+
+bats_require_minimum_version 1.5.0
+load common
+
+setup() {
+    cd "$BATS_TEST_TMPDIR"
+    set -o pipefail
+    top=$BATS_TEST_DIRNAME/..
+}
+
+# value NAME: that line's value in $output.
+value() {
+    awk -F '\t' -v name="$1" '$1 == name { print $2; found = 1 } END { exit !found }' <<< "$output"
+}
+
+# about VALUE EXPECTED SHARE
+about() {
+    awk -v a="$1" -v b="$2" -v share="$3" 'BEGIN { exit !((a - b) ^ 2 <= (share * b) ^ 2) }' || { echo "$1 is not about $2"; return 1; }
+}
+
+# field FILE N ERROR [VALUES]: a lattice of N nodes per axis with the linear field (1 + x, y), off by ERROR along x.
+field() {
+    cloud -d 2 -k regular -n "$2" --box 0,1,0,1 -t -o cloud.dat
+    {
+        sed '/^# end/d' cloud.dat
+        echo "# u f8 $(($2 * $2)) 2 enc=text unit=m"
+        mts print nodes.x cloud.dat | awk -v off="$3" '{ print 1 + $1 + off, $2 }'
+        printf '\n\n# reactions f8 2 2 enc=text unit=N/m rows=%s\n%s\n%s\n' "${4:-foot,head}" "3 $(awk "BEGIN { print 4 + $3 }")" "0 -5"
+        printf '\n\n# energy f8 1 2 enc=text unit=J/m cols=internal,contact\n%s 0\n' "$(awk "BEGIN { print 10 - 2 * $3 }")"
+        printf '\n\n# end %d\n' $(($(grep -c '^# [a-z].* enc=' cloud.dat) + 3))
+    } > "$1"
+    mts check "$1"
+}
+
+@test "an error that falls by a known order is found, of the field, of forces and of the energy" {
+    field fine.dat 17 0.01
+    field coarse.dat 9 0.04
+    field coarser.dat 5 0.16
+    run -0 --separate-stderr fielderr -p 2 fine.dat coarse.dat
+    about "$(value avg)" 0.01 1e-5
+    about "$(value max)" 0.01 1e-5
+    about "$(value mean)" 0.01 1e-5
+    about "$(value avg.body)" 0.01 1e-5
+    [ "$(value n)" = 289 ]
+    [ "$(value order)" = 2 ]
+    [ "$(value ratio)" = 2 ]
+    [ "$(value cells_ratio)" = 2 ]
+    about "$(value force.foot)" 0.01 1e-5
+    about "$(value force_relative.foot)" "$(awk 'BEGIN { print 0.01 / sqrt(9 + 4.01 ^ 2) }')" 1e-5
+    [ "$(value force.head)" = 0 ]
+    [ "$(value force_relative.head)" = 0 ]
+    about "$(value energy)" 0.02 1e-5
+    about "$(value energy_relative)" "$(awk 'BEGIN { print 0.02 / 9.98 }')" 1e-5
+    about "$(value reference)" "$(awk 'BEGIN { print sqrt(2.01 ^ 2 + 1) }')" 1e-5
+    run -0 --separate-stderr fielderr fine.dat coarse.dat
+    about "$(value avg)" "$(awk 'BEGIN { print 0.03 / (2 ^ 1.5 - 1) }')" 1e-5
+    run -0 --separate-stderr fielderr fine.dat coarse.dat coarser.dat
+    about "$(value order)" 2 1e-5
+    about "$(value avg)" 0.01 1e-5
+    run -0 --separate-stderr fielderr -r 4 -p 1 fine.dat coarser.dat
+    about "$(value avg)" 0.05 1e-5
+    run -0 --separate-stderr fielderr -p 2 - coarse.dat < fine.dat
+    about "$(value avg)" 0.01 1e-5
+}
+
+@test "fielderr: a map, tolerances, conditions that only one result has" {
+    field fine.dat 17 0.01
+    field coarse.dat 9 0.04 foot,other
+    run -0 --separate-stderr fielderr -p 2 -t -m map.dat --tol-avg 10.1mm --tol-max 0.0101 fine.dat coarse.dat
+    mts check map.dat
+    mts print error map.dat | awk '($1 - 0.01) ^ 2 > 1e-16 { exit 1 } END { exit NR != 289 }'
+    value force.foot
+    run ! value force.head
+    run -1 --separate-stderr fielderr -p 2 --tol-avg 9.9mm fine.dat coarse.dat
+    [[ $stderr == "fielderr: avg 0.01"*" is beyond 0.0099" ]]
+    mts text fine.dat | sed 's/^1\.01 0$/nan 0/; s/^1\.01 -\?0$/nan 0/' > nan.dat
+    grep -q '^nan' nan.dat
+    run -1 --separate-stderr fielderr nan.dat coarse.dat
+    [[ $stderr == *"not a finite number"* ]]
+}
+
+@test "fielderr: the wrong way round, the same cloud, other ratios, wrong command lines" {
+    field fine.dat 17 0.01
+    field coarse.dat 9 0.04
+    refused 2 "coarse.dat has 81 nodes, fine.dat 289: the coarser result comes second" fielderr coarse.dat fine.dat
+    refused 2 "the coarser result comes second" fielderr fine.dat fine.dat
+    refused 2 "-p: of three results the order is observed" fielderr -p 1 fine.dat coarse.dat coarse.dat
+    refused 2 "the coarser result comes second" fielderr fine.dat coarse.dat fine.dat
+    for arguments in "-p 0" "-p nan" "-r 1" "-r 0.5" "-r x" "--tol-avg -1" "--field none" "--region none" "-t"; do
+        # shellcheck disable=SC2086 # several arguments
+        refused 2 "" fielderr $arguments fine.dat coarse.dat
+    done
+    run -0 --separate-stderr fielderr -r 8 fine.dat coarse.dat
+    [[ $stderr == "fielderr: fine.dat has 2 times as many cells per direction as coarse.dat, not 8: see -r" ]]
+    cloud -d 3 -k regular -n 3 --box 0,1,0,1,0,1 --field linear -o cube.mts
+    refused 2 "1 columns in 3D" fielderr fine.dat cube.mts
+}
+
+# A block between plates at three sizes; the error of the finest of them is known from a finer one.
+@test "the estimate of a clamped block is about its error" {
+    pressed_block > block.scene
+    printf '[output]\nreactions = yes\nenergy = yes\n' >> block.scene
+    for n in 9 17 65; do
+        cloud -d 2 -k jittered --jitter 0.2 -n $n --box 0,0.1,0,0.1 | shapefn 2> log | mtled -q block.scene -o $n.dat
+    done
+    run -0 --separate-stderr fieldcmp 17.dat 65.dat
+    error=$(value avg)
+    run -0 --separate-stderr fielderr 17.dat 9.dat
+    echo "error $error, estimate $(value avg)"
+    awk -v a="$(value avg)" -v b="$error" 'BEGIN { exit !(a > 0.5 * b && a < 2 * b) }'
+    value force.bottom
+    value energy
+}
+
+@test "sizefield: finer at the plates' corners, a view that gmsh takes, and its limits" {
+    pressed_block > block.scene
+    cloud -d 2 -k regular -n 21 --box 0,0.1,0,0.1 | shapefn 2> log | mtled -q block.scene -o u.dat
+    run -0 --separate-stderr sizefield -v -s 0.25 -u mm u.dat
+    [[ ${lines[0]} == 'View "size" {' ]]
+    [ "${lines[-1]}" = "};" ]
+    [ "$(grep -c '^ST(' <<< "$output")" -eq $((2 * 20 * 20 + 2 * 80)) ]
+    [ "$(wc -l <<< "$stderr")" -eq 3 ]
+    least=$(awk -F '\t' '$1 == "least size" { print $2 }' <<< "$stderr")
+    awk -v least="$least" 'BEGIN { exit !(least > 1 && least < 3) }'
+    # The least sizes are at the corners of the block, in mm.
+    sed -n 's/^ST(\([^)]*\)){\([^}]*\)};/\1,\2/p' <<< "$output" | awk -F , '
+        { for (k = 0; k < 3; k++) if (best == "" || $(10 + k) < best) { best = $(10 + k); x = $(3 * k + 1); y = $(3 * k + 2) } }
+        END { print x, y; exit !((x < 10 || x > 90) && (y < 10 || y > 90)) }'
+    sizefield -s 0.25 -u mm -o sizes.pos u.dat
+    printf 'SetFactory("OpenCASCADE");\nRectangle(1) = {0, 0, 0, 100, 100};\nPhysical Surface("body") = {1};\nMerge "sizes.pos";\nBackground Mesh View[0];\n' > graded.geo
+    gmsh -v 1 -2 graded.geo -setnumber Mesh.MeshSizeExtendFromBoundary 0 -setnumber Mesh.MeshSizeFromPoints 0 -o graded.msh
+    asked=$(awk -F '\t' '$1 == "nodes" { print $2 }' <<< "$stderr")
+    about "$(nodes -u mm graded.msh | mts print nodes.x | wc -l)" "$asked" 0.25
+    run -0 --separate-stderr sizefield -v -s 1e-6 -n 500 u.dat
+    [[ $stderr == "sizefield: these sizes ask for "*" nodes: made larger for 500 (-n)"* ]]
+    run -0 --separate-stderr sizefield -v -s 0.25 --least 4mm u.dat
+    [[ $stderr == *"least size	0.004"* ]]
+    sizefield u.dat | cmp - <(OMP_NUM_THREADS=3 sizefield u.dat)
+    for arguments in "-s 0" "-s -1" "-s nan" "-n 0" "-n 1e9" "-n 1000000000" "-u foot" "--least 0" "--sag -1mm" "--field none" "--field nodes.y"; do
+        # shellcheck disable=SC2086 # several arguments
+        refused 2 "" sizefield $arguments u.dat
+    done
+    mts keep nodes.x,u u.dat > bare.dat
+    refused 2 "cells" sizefield bare.dat
+    status=0
+    sizefield u.dat > /dev/full 2> said || status=$?
+    [ "$status" -eq 3 ]
+    grep -q 'No space left' said
+}
+
+@test "make refine: a round at a time until the estimate is below the tolerance" {
+    run -0 bash "$top/pipelines/refine/refine.sh" "$top/examples/block/block.scene" "$top/examples/block/block.geo" 0.003mm out
+    mts check out/u.dat
+    [ -s out/body.msh ]
+    rounds=$(($(wc -l < out/rounds.tsv) - 1))
+    [ "$rounds" -ge 2 ]
+    [ -s out/sizes.pos ]
+    awk -F '\t' 'NR > 1 { if (NR > 2 && !($2 > nodes)) exit 1; nodes = $2; mean = $3 } END { exit !(mean <= 0.003) }' out/rounds.tsv
+    # The result is that of the last round, and the estimate holds against a finer solution.
+    [ "$(mts print nodes.x out/u.dat | wc -l)" -eq "$(tail -n 1 out/rounds.tsv | cut -f 2)" ]
+    gmsh -v 1 -2 -clscale 0.25 "$top/examples/block/block.geo" -o fine.msh
+    nodes -u mm fine.msh | shapefn 2> log | mtled -q "$top/examples/block/block.scene" -o fine.dat
+    fieldcmp --tol-avg 0.006mm fine.dat out/u.dat
+}
+
+@test "make refine: wrong tolerance, budget, size, files: one line; a budget that is spent keeps the last good round" {
+    scene=$top/examples/block/block.scene geometry=$top/examples/block/block.geo
+    for tolerance in 0 -1 nan 0mm 1foot 1e- '' '1 mm'; do
+        run -2 bash "$top/pipelines/refine/refine.sh" "$scene" "$geometry" "$tolerance" out
+        [ "${#lines[@]}" -eq 1 ]
+        [[ $output == "refine: TOL: "* ]]
+    done
+    for setting in NODES=0 NODES=none NODES=1e9 NODES=1000000000 ROUNDS=0 START=0 START=x; do
+        run -2 env "$setting" bash "$top/pipelines/refine/refine.sh" "$scene" "$geometry" 1mm out
+        [ "${#lines[@]}" -eq 1 ]
+        [[ $output == "refine: ${setting%%=*}: "* ]]
+    done
+    run -2 bash "$top/pipelines/refine/refine.sh" missing.scene "$geometry" 1mm out
+    [ "$output" = "refine: SCENE: no file missing.scene" ]
+    run -2 bash "$top/pipelines/refine/refine.sh" "$scene" missing.geo 1mm out
+    [ "$output" = "refine: GEO: no file missing.geo" ]
+    [ ! -e out ]
+    run -1 --separate-stderr env NODES=400 bash "$top/pipelines/refine/refine.sh" "$scene" "$geometry" 0.001mm out
+    [[ $stderr == "refine: the budget of 400 nodes (NODES) is spent; kept: round "* ]]
+    mts check out/u.dat
+    run -1 --separate-stderr bash "$top/pipelines/refine/refine.sh" "$scene" "$geometry" 1e-12 other
+    [[ $stderr == "refine: TOL: 1e-12 is less than the error that the scene's [solver] tolerance of 1e-5 leaves; kept: round 1, "* ]]
+    mts check other/u.dat
+    # A scene that is no good ends the first round, and what was there before stays.
+    cp -r out before
+    sed 's/^E = .*/E = -1/' "$scene" > bad.scene
+    run -1 --separate-stderr bash "$top/pipelines/refine/refine.sh" bad.scene "$geometry" 0.1mm out
+    [ "$(wc -l <<< "$stderr")" -eq 1 ]
+    [[ $stderr == "refine: round 1: the scene: mtled: "*"kept: none" ]]
+    cmp out/u.dat before/u.dat
+}

@@ -1,0 +1,229 @@
+#include "comparison.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+double comparison_tolerance(const struct tool *tool, const struct option *option)
+{
+    struct error error;
+    double value = INFINITY;
+    char what[32];
+    if (!option->given) {
+        return value;
+    }
+    snprintf(what, sizeof what, "--%s", option->name);
+    bool plain = strspn(option->value, "+-.0123456789eE") == strlen(option->value);
+    tool_check(tool,
+               plain ? parse_double(option->value, what, 0.0, 1e300, &value, &error)
+                     : parse_length(option->value, what, &value, &error),
+               &error);
+    return value;
+}
+
+void side_read(const struct tool *tool, const char *file, const char *field, struct side *side)
+{
+    struct error error;
+    const struct section *section;
+    *side = (struct side){.name = strcmp(file, "-") == 0 ? "standard input" : file};
+    tool_read(tool, file, &side->stream);
+    enum status status = stream_cells(&side->stream, false, &side->field.cells, &error);
+    if (status == STATUS_OK) {
+        status = stream_need(&side->stream, field, TYPE_F8, 0, "mtled", &section, &error);
+    }
+    if (status == STATUS_OK && (section->cols > 3 || section->rows != side->field.cells.node_count)) {
+        status =
+            fail(&error, STATUS_INPUT,
+                 "%s: %lld rows of %lld columns: not a field of 1 to 3 columns on %lld nodes", field,
+                 (long long)section->rows, (long long)section->cols, (long long)side->field.cells.node_count);
+    }
+    if (status != STATUS_OK) {
+        tool_fail(tool, status, "%s: %s", side->name, error.text);
+    }
+    status = solved_read(&side->stream, &side->solved, &error);
+    if (status != STATUS_OK) {
+        tool_fail(tool, status, "%s: %s", side->name, error.text);
+    }
+    const struct section *parameters = solved_parameters(&side->stream, &side->solved, section);
+    side->section = section;
+    side->field.cols = section->cols;
+    side->field.values = section->data;
+    if (parameters != section) {
+        side->field.parameters = parameters->data;
+        side->field.radius = side->solved.radius;
+        side->field.support = &side->solved.recorded.support;
+        side->field.shapes = &side->solved.recorded.shapes;
+    }
+}
+
+void sides_check(const struct tool *tool, const struct side *first, const struct side *second,
+                 const char *name)
+{
+    const struct nodal_field *a = &first->field, *b = &second->field;
+    if (a->cells.dim != b->cells.dim || a->cols != b->cols) {
+        tool_fail(tool, STATUS_INPUT, "%s: %lld columns in %dD against %lld columns in %dD", name,
+                  (long long)a->cols, a->cells.dim, (long long)b->cols, b->cells.dim);
+    }
+}
+
+bool side_has_unknown(const struct tool *tool, const struct side *side, const char *field)
+{
+    for (int64_t i = 0; i < side->field.cells.node_count * side->field.cols; i++) {
+        if (!isfinite(side->field.values[i])) {
+            tool_note(tool, "%s: %s: row %lld: not a finite number", side->name, field,
+                      (long long)(i / side->field.cols));
+            return true;
+        }
+    }
+    return false;
+}
+
+void findings_make(const struct tool *tool, const char *region, bool skip_outside, const char *field,
+                   const struct side *a, const struct side *b, struct findings *findings)
+{
+    struct error error;
+    struct field_comparison *comparison = &findings->comparison;
+    bool *chosen;
+    sides_check(tool, a, b, field);
+    tool_check(tool, regions_read(&a->stream, &a->field.cells, &findings->regions, &error), &error);
+    tool_check(tool, regions_choose(&findings->regions, region, &chosen, &error), &error);
+    enum status status = field_compare(&a->field, &b->field, chosen, skip_outside, comparison, &error);
+    if (status != STATUS_OK) {
+        tool_fail(tool, status, "%s%s", error.text,
+                  comparison->outside > 0 ? ": --skip-outside leaves them out" : "");
+    }
+    if (comparison->count == 0) {
+        tool_fail(tool, STATUS_INPUT, "no node of A to compare");
+    }
+    tool_check(tool,
+               field_statistics(comparison->count, comparison->node, comparison->difference,
+                                &findings->statistics, &error),
+               &error);
+    findings->reference = field_largest(b->field.cells.node_count, b->field.cols, b->field.values);
+    free(chosen);
+}
+
+void findings_free(struct findings *findings)
+{
+    regions_free(&findings->regions);
+    field_comparison_free(&findings->comparison);
+    field_statistics_free(&findings->statistics);
+}
+
+void print_quantity(const char *name, const char *part, double value)
+{
+    printf("%s%s%s\t%.9g\n", name, part != NULL ? "." : "", part != NULL ? part : "", value);
+}
+
+static void print_percentiles(const struct field_statistics *statistics, bool all)
+{
+    static const int percents[] = {5, 10, 25, 50, 75, 90, 95, 99};
+    char name[16];
+    for (size_t i = 0; i < sizeof percents / sizeof *percents; i++) {
+        if (all || percents[i] == 50 || percents[i] >= 95) {
+            snprintf(name, sizeof name, "p%d", percents[i]);
+            print_quantity(name, NULL, field_percentile(statistics, percents[i]));
+        }
+    }
+}
+
+static double relative(double value, double reference)
+{
+    return value == 0.0 ? 0.0 : value / reference;
+}
+
+void print_findings(const struct findings *findings, const struct cells *cells, bool percentiles)
+{
+    const struct field_comparison *comparison = &findings->comparison;
+    const struct field_statistics *all = &findings->statistics;
+    print_quantity("avg", NULL, all->average);
+    print_quantity("max", NULL, all->largest);
+    print_quantity("rmse", NULL, all->rmse);
+    print_percentiles(all, percentiles);
+    printf("n\t%lld\n", (long long)all->count);
+    if (!comparison->coincide) {
+        printf("outside\t%lld\n", (long long)comparison->outside);
+    }
+    printf("clouds\t%s\n", comparison->coincide ? "coincide" : "interpolated");
+    for (int i = 0; i < cells->dim; i++) {
+        printf("%s%.9g", i == 0 ? "max_at\t" : " ", cells->x[all->largest_at * cells->dim + i]);
+    }
+    putchar('\n');
+}
+
+void print_relative(const struct findings *findings)
+{
+    const struct field_statistics *all = &findings->statistics;
+    print_quantity("reference", NULL, findings->reference);
+    print_quantity("avg_relative", NULL, relative(all->average, findings->reference));
+    print_quantity("max_relative", NULL, relative(all->largest, findings->reference));
+}
+
+enum status print_regions(const struct findings *findings, struct error *error)
+{
+    const struct field_comparison *comparison = &findings->comparison;
+    const struct regions *regions = &findings->regions;
+    enum status status;
+    int64_t *node = NULL;
+    TRY(NEW_ARRAY(&node, comparison->count, error));
+    for (int r = 0; r < regions->count; r++) {
+        struct field_statistics statistics;
+        int64_t count = 0;
+        for (int64_t i = 0; i < comparison->count; i++) {
+            if (regions->member[comparison->node[i] * regions->count + r]) {
+                node[count++] = comparison->node[i];
+            }
+        }
+        printf("n.%s\t%lld\n", regions->name[r], (long long)count);
+        if (count > 0) {
+            TRY(field_statistics(count, node, comparison->difference, &statistics, error));
+            print_quantity("avg", regions->name[r], statistics.average);
+            print_quantity("max", regions->name[r], statistics.largest);
+            print_quantity("rmse", regions->name[r], statistics.rmse);
+            print_quantity("p95", regions->name[r], field_percentile(&statistics, 95));
+            field_statistics_free(&statistics);
+        }
+    }
+done:
+    free(node);
+    return status;
+}
+
+void comparison_write_map(struct tool *tool, struct side *a, const char *name, double *value,
+                          const char *file, bool text)
+{
+    struct error error;
+    static const char *const kept[] = {"nodes.x", "cells", "cells.region"};
+    struct stream *stream = &a->stream;
+    char unit[32], attributes[48] = "";
+    if (section_attribute(a->section, "unit", unit, sizeof unit) && strchr(unit, ',') == NULL) {
+        snprintf(attributes, sizeof attributes, "unit=%s", unit);
+    }
+    for (int64_t s = stream->section_count; s-- > 0;) {
+        bool keep = false;
+        for (size_t k = 0; k < sizeof kept / sizeof *kept; k++) {
+            keep = keep || strcmp(stream->sections[s].name, kept[k]) == 0;
+        }
+        if (!keep) {
+            stream_remove(stream, stream->sections[s].name);
+        }
+    }
+    tool_check(
+        tool,
+        stream_put(stream, name, TYPE_F8, a->field.cells.node_count, 1, attributes, value, false, &error),
+        &error);
+    tool->output = file;
+    tool_write(tool, stream, text);
+}
+
+bool comparison_within(const struct tool *tool, const char *name, double value, double tolerance)
+{
+    if (!(value <= tolerance)) {
+        if (isfinite(tolerance)) {
+            tool_note(tool, "%s %.9g is beyond %.9g", name, value, tolerance);
+        }
+        return false;
+    }
+    return true;
+}

@@ -1,0 +1,57 @@
+/* Putting the parts of a body (see part) together again: which rows of each part's sections are its own, and
+ * where they stand in the sections of the whole. */
+#ifndef TOOLS_REJOIN_H
+#define TOOLS_REJOIN_H
+
+#include "tool.h"
+#include "views.h"
+
+/* What the rows of a section stand for. */
+enum rows_of {
+    ROWS_NODES,
+    ROWS_CELLS,
+    ROWS_FACETS,
+    ROWS_SETS, /* members of node sets */
+    ROWS_POINTS,
+    ROWS_FACES,
+    ROWS_FACEPOINTS,
+    ROWS_BOUNDARY, /* points on faces on the boundary */
+    ROWS_KINDS
+};
+
+/* One part, as it was read. */
+struct rejoin_part {
+    const char *file;
+    struct stream stream;
+    int64_t number, parts;
+    char cut[16];
+    struct cells cells;
+    const int32_t *node, *owner, *cell; /* part.node, part.owner, part.cell */
+    struct faces faces;                 /* local; count 0 without */
+    bool *at_edge;                      /* of nodes: not all of their cells are in this part */
+    int32_t *
+        to[ROWS_KINDS]; /* of each of its rows the row in the whole, -1: another part's; NULL: no such rows */
+    int64_t count[ROWS_KINDS];
+};
+
+struct rejoin {
+    const struct tool *tool;
+    int64_t part_count;
+    struct rejoin_part *part; /* by number */
+    int64_t rows[ROWS_KINDS]; /* of the whole */
+    int dim;
+    double *x;     /* of the whole */
+    int32_t *cell; /* rows[ROWS_CELLS] * (dim + 1) */
+    struct faces faces;
+    double widen;
+};
+
+/* The parts in these files, checked to be all parts of one cut. Exits with a message on failure. */
+void rejoin_begin(struct rejoin *rejoin, const struct tool *tool, char *const files[], int64_t count);
+
+/* Put all sections that can be put together into the stream, in the order of part 0. */
+void rejoin_sections(const struct rejoin *rejoin, struct stream *stream);
+
+void rejoin_free(struct rejoin *rejoin);
+
+#endif

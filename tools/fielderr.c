@@ -1,0 +1,291 @@
+static const char usage[] =
+    "fielderr - estimate the discretisation error of a displacement\n"
+    "\n"
+    "usage: fielderr [-p ORDER] [-r RATIO] [--tol-avg M] [--tol-max M] [--field NAME] [--region NAME]\n"
+    "                [--skip-outside] [--percentiles] [-m FILE] [-t] FINE COARSE [COARSER]\n"
+    "\n"
+    "Reads two results of mtled of the same scene, FINE and COARSE, whose cloud has half as many nodes\n"
+    "per direction (gmsh -clscale 2, voxels with twice -h: an eighth of the work, 2D a quarter), and\n"
+    "tells how far FINE is from the solution on ever finer clouds; - is standard input. The estimate is\n"
+    "extrapolated (Richardson): at each node of FINE, the distance of the two fields by\n"
+    "2^ORDER - 1. The order is 2 where a solution is smooth, and 1 or a little more where it is\n"
+    "singular, as where a held part of the boundary meets a free one: their middle, 1.5, is assumed.\n"
+    "With a third result, COARSER by as much again, it is observed, within 1 and 2.\n"
+    "\n"
+    "Prints what fieldcmp prints, of the estimated error: avg, max, rmse, p50, p95, p99 (m), n, clouds,\n"
+    "max_at, the same of each region; and\n"
+    "  mean                   the average over the body, as avg is that over the nodes, of which a graded\n"
+    "                         cloud has most in few places\n"
+    "  reference              largest norm of FINE's field; avg_relative and max_relative: relative to\n"
+    "                         it\n"
+    "  order, ratio           those that were used; cells_ratio: the one that the cells have\n"
+    "  force.NAME             error of the force of each condition and contact that both results have\n"
+    "                         (reactions = yes in [output]), N (2D: N/m); force_relative.NAME: relative\n"
+    "                         to that force in FINE\n"
+    "  energy, energy_relative  the same of the elastic energy (energy = yes), J (2D: J/m)\n"
+    "\n"
+    "The estimate is blind to what both clouds have in common: the geometry (a polygon for a curve, a\n"
+    "segmentation), the material, conditions and contacts, and the scene's [solver] tolerance, which\n"
+    "has to be well below the error. It is no bound. Where a cloud is so coarse that its order is not\n"
+    "seen yet, it may be off by a factor of two or three; at single nodes it is less certain than on\n"
+    "average.\n"
+    "\n"
+    "Options:\n"
+    "  -p, --order ORDER      assumed order, above 0 and up to 4 (default 1.5)\n"
+    "  -r, --ratio RATIO      spacing of COARSE by that of FINE, above 1 (default 2)\n"
+    "      --tol-avg M        largest average admitted (m; or with a unit, e.g. 0.1mm)\n"
+    "      --tol-max M        largest maximum admitted\n"
+    "      --field NAME       the field, of 1 to 3 columns (default u)\n"
+    "      --region NAME      only the nodes of this region of FINE\n"
+    "      --skip-outside     leave nodes outside of COARSE's cloud out\n"
+    "      --percentiles      also p5, p10, p25, p75, p90\n"
+    "  -m, --map FILE         write nodes.x, cells and the section error (nan where left out) to FILE\n"
+    "  -t, --text             write FILE as text\n"
+    "\n"
+    "Exit status:\n"
+    "  0  within the tolerances, or none given\n"
+    "  1  beyond one of them, or a value is not a number\n"
+    "  2  wrong usage, unreadable or not comparable\n"
+    "  3  input, output or memory failed\n"
+    "\n"
+    "Examples:\n"
+    "  gmsh -2 -clscale 2 body.geo -o coarse.msh\n"
+    "  nodes -u mm coarse.msh | shapefn | mtled body.scene > coarse.dat\n"
+    "  fielderr --tol-avg 0.1mm u.dat coarse.dat\n";
+
+#include "comparison.h"
+
+#include "approx/field_error.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { ORDER, RATIO, TOL_AVG, TOL_MAX, FIELD, REGION, SKIP_OUTSIDE, PERCENTILES, MAP, TEXT, OPTION_COUNT };
+
+/* Cells per direction by the ratio that is used: outside of this it is noted. */
+static const double least_agreement = 0.65, most_agreement = 1.5;
+
+/* What the command line asks for. */
+struct request {
+    double order; /* 0: none given */
+    double ratio;
+    double tol_avg, tol_max; /* infinite: any */
+    const char *field;
+    const char *region; /* NULL: all */
+    const char *map;    /* the file; NULL: none */
+    bool skip_outside, percentiles, text;
+};
+
+static struct request parse(const struct tool *tool, const struct option *options)
+{
+    struct error error;
+    struct request request = {.ratio = 2.0,
+                              .tol_avg = comparison_tolerance(tool, &options[TOL_AVG]),
+                              .tol_max = comparison_tolerance(tool, &options[TOL_MAX]),
+                              .field = options[FIELD].given ? options[FIELD].value : "u",
+                              .region = options[REGION].value,
+                              .map = options[MAP].value,
+                              .skip_outside = options[SKIP_OUTSIDE].given,
+                              .percentiles = options[PERCENTILES].given,
+                              .text = options[TEXT].given};
+    if (options[TEXT].given && !options[MAP].given) {
+        tool_fail(tool, STATUS_INPUT, "-t goes with -m");
+    }
+    if (options[ORDER].given) {
+        if (tool->operand_count > 2) {
+            tool_fail(tool, STATUS_INPUT, "-p: of three results the order is observed");
+        }
+        tool_check(tool, parse_double(options[ORDER].value, "-p", 0.01, 4.0, &request.order, &error), &error);
+    }
+    if (options[RATIO].given) {
+        tool_check(tool, parse_double(options[RATIO].value, "-r", 1.01, 100.0, &request.ratio, &error),
+                   &error);
+    }
+    return request;
+}
+
+/* Exits where the second cloud is no coarser one. */
+static double check_coarser(const struct tool *tool, const struct request *request, const struct side *fine,
+                            const struct side *coarse)
+{
+    sides_check(tool, fine, coarse, request->field);
+    double found = field_error_ratio(&fine->field.cells, &coarse->field.cells);
+    if (!(found > 1.0)) {
+        tool_fail(tool, STATUS_INPUT,
+                  "%s has %lld nodes, %s %lld: the coarser result comes second, on a cloud of its own",
+                  fine->name, (long long)fine->field.cells.node_count, coarse->name,
+                  (long long)coarse->field.cells.node_count);
+    }
+    if (found < least_agreement * request->ratio || found > most_agreement * request->ratio) {
+        tool_note(tool, "%s has %.2g times as many cells per direction as %s, not %.3g: see -r", fine->name,
+                  found, coarse->name, request->ratio);
+    }
+    return found;
+}
+
+/* The difference of a row of `name` in the two streams, and the length of it in the fine one. */
+static double row_difference(const struct section *fine, int64_t i, const struct section *coarse, int64_t k,
+                             double *length)
+{
+    const double *f = (const double *)fine->data + i * fine->cols;
+    const double *c = (const double *)coarse->data + k * coarse->cols;
+    double sum = 0.0;
+    *length = field_largest(1, fine->cols, f);
+    for (int64_t a = 0; a < fine->cols; a++) {
+        sum += (f[a] - c[a]) * (f[a] - c[a]);
+    }
+    return sqrt(sum);
+}
+
+static const struct section *find_table(const struct side *side, const char *name, int64_t cols)
+{
+    const struct section *section = stream_find(&side->stream, name);
+    return section != NULL && section->type == TYPE_F8 && section->cols == cols ? section : NULL;
+}
+
+/* Names of rows, cut at their commas; their count. `text` is as long as the attributes of a section. */
+static int64_t row_names(const struct section *section, char *text, char *names[])
+{
+    int64_t count = 0;
+    if (!section_attribute(section, "rows", text, strlen(section->attributes) + 1)) {
+        return 0;
+    }
+    for (char *rest = text; rest != NULL && count < section->rows;) {
+        names[count++] = strsep(&rest, ",");
+    }
+    return count;
+}
+
+/* Conditions and contacts that both results have. */
+static enum status print_forces(const struct side *fine, const struct side *coarse, double share,
+                                struct error *error)
+{
+    enum status status;
+    int dim = fine->field.cells.dim;
+    const struct section *f = find_table(fine, "reactions", dim);
+    const struct section *c = find_table(coarse, "reactions", dim);
+    char *text[2] = {NULL, NULL}, **names[2] = {NULL, NULL};
+    if (f == NULL || c == NULL) {
+        return STATUS_OK;
+    }
+    TRY(NEW_ARRAY(&text[0], (int64_t)strlen(f->attributes) + 1, error));
+    TRY(NEW_ARRAY(&text[1], (int64_t)strlen(c->attributes) + 1, error));
+    TRY(NEW_ARRAY(&names[0], f->rows, error));
+    TRY(NEW_ARRAY(&names[1], c->rows, error));
+    int64_t count[2] = {row_names(f, text[0], names[0]), row_names(c, text[1], names[1])};
+    for (int64_t i = 0; i < count[0]; i++) {
+        for (int64_t k = 0; k < count[1]; k++) {
+            if (strcmp(names[0][i], names[1][k]) == 0) {
+                double length, off = row_difference(f, i, c, k, &length);
+                print_quantity("force", names[0][i], share * off);
+                print_quantity("force_relative", names[0][i], off == 0.0 ? 0.0 : share * off / length);
+            }
+        }
+    }
+done:
+    for (int i = 0; i < 2; i++) {
+        free(text[i]);
+        free(names[i]);
+    }
+    return status;
+}
+
+static void print_energy(const struct side *fine, const struct side *coarse, double share)
+{
+    const struct section *f = find_table(fine, "energy", 2), *c = find_table(coarse, "energy", 2);
+    if (f != NULL && c != NULL && f->rows == 1 && c->rows == 1) {
+        double at_rest = *(const double *)f->data, off = fabs(at_rest - *(const double *)c->data);
+        print_quantity("energy", NULL, share * off);
+        print_quantity("energy_relative", NULL, off == 0.0 ? 0.0 : share * off / fabs(at_rest));
+    }
+}
+
+/* The order assumed, or that of the averages of differences of three results. */
+static double choose_order(struct tool *tool, const struct request *request, const struct side *coarse,
+                           const struct findings *findings)
+{
+    struct side coarser;
+    struct findings beyond;
+    if (tool->operand_count < 3) {
+        return request->order > 0.0 ? request->order : FIELD_ERROR_ORDER;
+    }
+    side_read(tool, tool->operands[2], request->field, &coarser);
+    (void)check_coarser(tool, request, coarse, &coarser);
+    findings_make(tool, NULL, request->skip_outside, request->field, coarse, &coarser, &beyond);
+    double order = field_error_order(findings->statistics.average, beyond.statistics.average, request->ratio);
+    findings_free(&beyond);
+    stream_free(&coarser.stream);
+    return order;
+}
+
+/* From differences of the two fields to the error of the first one. */
+static void scale(struct findings *findings, double share, int64_t node_count)
+{
+    struct field_statistics *all = &findings->statistics;
+    for (int64_t n = 0; n < node_count; n++) {
+        findings->comparison.difference[n] *= share;
+    }
+    for (int64_t i = 0; i < all->count; i++) {
+        all->sorted[i] *= share;
+    }
+    all->average *= share;
+    all->largest *= share;
+    all->rmse *= share;
+}
+
+int main(int argc, char *argv[])
+{
+    struct tool tool;
+    struct side fine, coarse;
+    struct findings findings;
+    struct error error;
+    struct option options[OPTION_COUNT] = {
+        [ORDER] = {.letter = 'p', .name = "order", .takes_value = true},
+        [RATIO] = {.letter = 'r', .name = "ratio", .takes_value = true},
+        [TOL_AVG] = {.name = "tol-avg", .takes_value = true},
+        [TOL_MAX] = {.name = "tol-max", .takes_value = true},
+        [FIELD] = {.name = "field", .takes_value = true},
+        [REGION] = {.name = "region", .takes_value = true},
+        [SKIP_OUTSIDE] = {.name = "skip-outside"},
+        [PERCENTILES] = {.name = "percentiles"},
+        [MAP] = {.letter = 'm', .name = "map", .takes_value = true},
+        [TEXT] = {.letter = 't', .name = "text"},
+    };
+    tool_begin(&tool, usage, options, OPTION_COUNT, 2, 3, argc, argv);
+    struct request request = parse(&tool, options);
+    side_read(&tool, tool.operands[0], request.field, &fine);
+    side_read(&tool, tool.operands[1], request.field, &coarse);
+    double found = check_coarser(&tool, &request, &fine, &coarse);
+    findings_make(&tool, request.region, request.skip_outside, request.field, &fine, &coarse, &findings);
+    double order = choose_order(&tool, &request, &coarse, &findings);
+    double share = field_error_share(request.ratio, order);
+    scale(&findings, share, fine.field.cells.node_count);
+    findings.reference = field_largest(fine.field.cells.node_count, fine.field.cols, fine.field.values);
+    print_findings(&findings, &fine.field.cells, request.percentiles);
+    if (request.region == NULL && fine.field.cells.count > 0) {
+        print_quantity("mean", NULL, field_error_mean(&fine.field.cells, findings.comparison.difference));
+    }
+    print_relative(&findings);
+    print_quantity("order", NULL, order);
+    print_quantity("ratio", NULL, request.ratio);
+    print_quantity("cells_ratio", NULL, found);
+    tool_check(&tool, print_forces(&fine, &coarse, share, &error), &error);
+    print_energy(&fine, &coarse, share);
+    if (request.region == NULL) {
+        tool_check(&tool, print_regions(&findings, &error), &error);
+    }
+    bool good = !side_has_unknown(&tool, &fine, request.field);
+    good = !side_has_unknown(&tool, &coarse, request.field) && good;
+    good = comparison_within(&tool, "avg", findings.statistics.average, request.tol_avg) && good;
+    good = comparison_within(&tool, "max", findings.statistics.largest, request.tol_max) && good;
+    if (request.map != NULL) {
+        comparison_write_map(&tool, &fine, "error", findings.comparison.difference, request.map,
+                             request.text);
+    }
+    findings_free(&findings);
+    stream_free(&fine.stream);
+    stream_free(&coarse.stream);
+    int status = tool_end(&tool);
+    return good ? status : (int)STATUS_VERDICT;
+}

@@ -1,0 +1,212 @@
+static const char usage[] =
+    "part - cut a body into parts, each a stream of its own\n"
+    "\n"
+    "usage: part -k PARTS [-w WIDEN] [-f FACTOR | -R RADIUS] [-v] [-t] [-o NAME] [FILE]\n"
+    "\n"
+    "Reads a stream with nodes and cells (see nodes, voxels, cloud) and cuts it into PARTS of about\n"
+    "equal work, with few nodes between them, by METIS. Each part is written as a stream under NAME,\n"
+    "in which %d is its number, from 0. It has the nodes and cells of the part, and a halo of those of\n"
+    "others that supports reach over, so that ipoints, support and shapefn compute on it what they\n"
+    "compute on the whole body: run the three, with the same options, on each part, side by side or on\n"
+    "several machines, and unpart puts tables and fields together again, to the same bytes.\n"
+    "\n"
+    "Nodes and cells keep their order. part.node and part.cell have their numbers in the body, part.owner\n"
+    "the part that each node belongs to; a cell belongs to the part with most of its vertices. Sections\n"
+    "of ipoints, support and shapefn, results other than fields at the nodes, and unknown sections are\n"
+    "left out, with a note. Groups are to be made before a body is cut.\n"
+    "\n"
+    "Options:\n"
+    "  -k, --parts PARTS      how many parts\n"
+    "  -w, --widen WIDEN      the most that support will widen radii (default 1.5); unpart refuses parts\n"
+    "                         whose halo turns out too narrow\n"
+    "  -f, --factor FACTOR    support's -k, if it is to be given (default 1.8, in 3D 2)\n"
+    "  -R, --radius RADIUS    support's -R, if it is to be given\n"
+    "  -v, --verbose          report on standard error, as a table of one row: parts; mean and largest\n"
+    "                         number of own nodes; of nodes with the halo in the streams; of nodes of\n"
+    "                         others that an evaluation needs, and of the parts that these belong to; bytes\n"
+    "                         that a part exchanges in an evaluation, mean and largest; imbalance, the\n"
+    "                         largest work over the mean, less 1. Without -o that is all.\n"
+    "  -t, --text             write text instead of binary\n"
+    "  -o, --output NAME      each part's file, which appears only when whole\n"
+    "\n"
+    "Examples:\n"
+    "  nodes -u mm body.msh | part -k 8 -o part.%d.mts\n"
+    "  ls part.?.mts | xargs -P 8 -I {} shapefn -o {}.table {} && unpart part.?.mts.table > table.mts\n";
+
+#include "cut_body.h"
+#include "mls_options.h"
+
+#include <stdlib.h>
+#include <string.h>
+#include <zlib.h>
+
+enum { PARTS, WIDEN, FACTOR, RADIUS, VERBOSE, TEXT, OUTPUT, OPTION_COUNT };
+
+/* "NAME with %d" with a number in its place; to be freed. */
+static char *numbered(const struct tool *tool, const char *name, int32_t number)
+{
+    char *text;
+    const char *at = strstr(name, "%d");
+    int before = at != NULL ? (int)(at - name) : 0;
+    if (at == NULL || strstr(at + 1, "%d") != NULL) {
+        tool_fail(tool, STATUS_INPUT, "-o %s: has to have one %%d, where the number of the part goes", name);
+    }
+    if (asprintf(&text, "%.*s%d%s", before, name, number, name + before + 2) < 0) {
+        tool_fail(tool, STATUS_SYSTEM, "out of memory");
+    }
+    return text;
+}
+
+/* What -v tells. */
+struct report {
+    double own, nodes, needed, others, work;
+    double most_own, most_nodes, most_needed, most_others, most_work;
+};
+
+static void add(double value, double *sum, double *most)
+{
+    *sum += value;
+    *most = value > *most ? value : *most;
+}
+
+static void print_report(const struct cut_body *whole, const struct report *report)
+{
+    int32_t parts = whole->partition.parts;
+    /* Displacements of the nodes of others come in, forces on them go out; and the same for one's own nodes.
+     */
+    double bytes = 2.0 * whole->cells.dim * sizeof(double);
+    fprintf(stderr, "parts\town_nodes\tmost\tstored_nodes\tmost\tneeded_nodes\tmost\tother_parts\tmost\tbytes"
+                    "\tmost\timbalance\n");
+    fprintf(stderr, "%d\t%.0f\t%.0f\t%.0f\t%.0f\t%.0f\t%.0f\t%.1f\t%.0f\t%.0f\t%.0f\t%.4f\n", parts,
+            report->own / parts, report->most_own, report->nodes / parts, report->most_nodes,
+            report->needed / parts, report->most_needed, report->others / parts, report->most_others,
+            bytes * report->needed / parts, bytes * report->most_needed,
+            report->most_work * parts / report->work - 1.0);
+}
+
+static void write_parts(const struct cut_body *whole, bool wanted, bool text, struct report *report)
+{
+    struct error error;
+    struct body_part_work work = {0};
+    const char *name = whole->tool->output;
+    for (int32_t k = 0; k < whole->partition.parts; k++) {
+        struct body_part body;
+        tool_check(whole->tool,
+                   body_part_build(&whole->partition, k, whole->own_cell + whole->own_ptr[k],
+                                   whole->own_ptr[k + 1] - whole->own_ptr[k], wanted, &work, &body, &error),
+                   &error);
+        add((double)body.own_nodes, &report->own, &report->most_own);
+        add((double)body.node_count, &report->nodes, &report->most_nodes);
+        add((double)body.needed, &report->needed, &report->most_needed);
+        add((double)body.others, &report->others, &report->most_others);
+        add(body.work, &report->work, &report->most_work);
+        if (wanted) {
+            cut_body_make_part(whole, k, &body);
+            char *file = numbered(whole->tool, name, k);
+            whole->tool->output = file;
+            if (k == 0) {
+                tool_write(whole->tool, whole->stream, text); /* and how it was made, for all */
+            } else {
+                tool_copy(whole->tool, whole->stream, text);
+            }
+            whole->tool->output = name;
+            free(file);
+        }
+        body_part_free(&body);
+    }
+    body_part_work_free(&work);
+}
+
+/* What parts of one cut have in common, and those of another have not. */
+static uint32_t identify(const struct cut_body *whole)
+{
+    const struct cells *cells = &whole->cells;
+    uLong crc = crc32_z(0, NULL, 0);
+    crc = crc32_z(crc, (const Bytef *)cells->x, (size_t)(cells->node_count * cells->dim) * sizeof *cells->x);
+    crc = crc32_z(crc, (const Bytef *)cells->node,
+                  (size_t)(cells->count * (cells->dim + 1)) * sizeof *cells->node);
+    crc = crc32_z(crc, (const Bytef *)whole->owner, (size_t)cells->node_count * sizeof *whole->owner);
+    return (uint32_t)crc32_z(crc, (const Bytef *)&whole->partition.widen, sizeof whole->partition.widen);
+}
+
+/* Only this program calls METIS, so that the others are linked without. */
+static void cut(struct cut_body *whole, const struct support_options *support)
+{
+    struct error error;
+    struct tool *tool = whole->tool;
+    struct cells *cells = &whole->cells;
+    tool_check(tool, NEW_ARRAY(&whole->radius, cells->node_count, &error), &error);
+    tool_check(tool, NEW_ARRAY(&whole->owner, cells->node_count, &error), &error);
+    tool_check(tool, NEW_ARRAY(&whole->work, cells->count, &error), &error);
+    tool_check(tool, stage_radii(whole->stream, support, cells->node_count, cells->x, whole->radius, &error),
+               &error);
+    tool_check(tool,
+               point_grid_build(&whole->grid, cells->dim, cells->node_count, cells->x, whole->radius, &error),
+               &error);
+    tool_check(tool, cell_stars_build(cells, &whole->stars, &error), &error);
+    tool_check(tool, partition_work(cells, &whole->grid, whole->work, &error), &error);
+    tool_check(
+        tool,
+        partition_nodes(cells, &whole->stars, whole->work, whole->partition.parts, whole->owner, &error),
+        &error);
+    whole->partition.cells = cells;
+    whole->partition.stars = &whole->stars;
+    whole->partition.grid = &whole->grid;
+    whole->partition.owner = whole->owner;
+    whole->partition.work = whole->work;
+    tool_check(tool, partition_own_cells(&whole->partition, &whole->own_ptr, &whole->own_cell, &error),
+               &error);
+    whole->cut = identify(whole);
+}
+
+int main(int argc, char *argv[])
+{
+    struct tool tool;
+    struct stream stream;
+    struct error error;
+    struct option options[OPTION_COUNT] = {
+        [PARTS] = {.letter = 'k', .name = "parts", .takes_value = true},
+        [WIDEN] = {.letter = 'w', .name = "widen", .takes_value = true},
+        [FACTOR] = {.letter = 'f', .name = "factor", .takes_value = true},
+        [RADIUS] = {.letter = 'R', .name = "radius", .takes_value = true},
+        [VERBOSE] = {.letter = 'v', .name = "verbose"},
+        [TEXT] = {.letter = 't', .name = "text"},
+        [OUTPUT] = {.letter = 'o', .name = "output", .takes_value = true},
+    };
+    int64_t parts = 0;
+    struct cut_body whole = {.tool = &tool, .stream = &stream, .partition = {.widen = 1.5}};
+    struct support_options support = support_defaults(2);
+    tool_begin(&tool, usage, options, OPTION_COUNT, 0, 1, argc, argv);
+    if (!options[PARTS].given) {
+        tool_fail(&tool, STATUS_INPUT, "give -k PARTS (see -h)");
+    }
+    tool_check(&tool, parse_integer(options[PARTS].value, "-k", 1, 1000000, &parts, &error), &error);
+    whole.partition.parts = (int32_t)parts;
+    if (options[WIDEN].given) {
+        tool_check(&tool, parse_double(options[WIDEN].value, "-w", 1.0, 8.0, &whole.partition.widen, &error),
+                   &error);
+    }
+    tool_check(&tool, radius_apply_options(&options[FACTOR], &options[RADIUS], &support, &error), &error);
+    if (tool.output != NULL) {
+        free(numbered(&tool, tool.output, 0));
+    } else if (!options[VERBOSE].given) {
+        tool_fail(&tool, STATUS_INPUT, "nothing to do: give -o NAME or -v (see -h)");
+    }
+    tool_read(&tool, tool.operands[0], &stream);
+    if (stream_find(&stream, "part.node") != NULL) {
+        tool_fail(&tool, STATUS_INPUT, "part.node: the input is a part already");
+    }
+    tool_check(&tool, stream_cells(&stream, true, &whole.cells, &error), &error);
+    support = support_defaults(whole.cells.dim);
+    tool_check(&tool, radius_apply_options(&options[FACTOR], &options[RADIUS], &support, &error), &error);
+    cut(&whole, &support);
+    cut_body_keep_sections(&whole);
+    struct report report = {0};
+    write_parts(&whole, tool.output != NULL, options[TEXT].given, &report);
+    if (options[VERBOSE].given) {
+        print_report(&whole, &report);
+    }
+    stream_free(&stream);
+    cut_body_free(&whole);
+    return tool_end(&tool);
+}

@@ -1,0 +1,51 @@
+static const char usage[] =
+    "unpart - put the parts of a body together\n"
+    "\n"
+    "usage: unpart [-t] [-o FILE] PART...\n"
+    "\n"
+    "Reads all parts that part has written, in any order, and writes the stream of the whole body: nodes,\n"
+    "cells, groups, what ipoints, support and shapefn have added to the parts, and fields at nodes and\n"
+    "points, in the order of the mesh. Every row comes from the part that owns it, and is what these\n"
+    "tools make of the whole body, to the bit. Tables of the body as a whole (reactions, energy) and\n"
+    "unknown sections are left out, with a note.\n"
+    "\n"
+    "Parts of different cuts, a part that is missing or stands twice, and parts that were not treated\n"
+    "alike are refused; as is a part with a list of neighbours that reaches to the edge of its halo, where\n"
+    "it may differ from that of the whole body (part -w).\n"
+    "\n"
+    "Options:\n"
+    "  -t, --text             write text instead of binary\n"
+    "  -o, --output FILE      write to FILE, which appears only when whole\n"
+    "\n"
+    "Examples:\n"
+    "  unpart part.*.mts > table.mts\n";
+
+#include "rejoin.h"
+
+#include <limits.h>
+
+enum { TEXT, OUTPUT, OPTION_COUNT };
+
+int main(int argc, char *argv[])
+{
+    struct tool tool;
+    struct rejoin rejoin;
+    struct stream stream;
+    struct option options[OPTION_COUNT] = {
+        [TEXT] = {.letter = 't', .name = "text"},
+        [OUTPUT] = {.letter = 'o', .name = "output", .takes_value = true},
+    };
+    tool_begin(&tool, usage, options, OPTION_COUNT, 1, INT_MAX, argc, argv);
+    rejoin_begin(&rejoin, &tool, tool.operands, tool.operand_count);
+    stream_init(&stream);
+    rejoin_sections(&rejoin, &stream);
+    /* How part 0 was made. */
+    stream.provenance = rejoin.part[0].stream.provenance;
+    stream.provenance_count = rejoin.part[0].stream.provenance_count;
+    rejoin.part[0].stream.provenance = NULL;
+    rejoin.part[0].stream.provenance_count = 0;
+    tool_write(&tool, &stream, options[TEXT].given);
+    stream_free(&stream);
+    rejoin_free(&rejoin);
+    return tool_end(&tool);
+}
