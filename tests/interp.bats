@@ -194,14 +194,14 @@ END
     ipoints linear.mts | support | shapefn | interp | mts print u | cmp - <(mts print u own.mts)
 }
 
-@test "nan in a field stays nan; a broken table is refused" {
+@test "nan in a field stays nan; broken supports are refused" {
     ipoints -g 3 linear.mts | support | shapefn | mts text > table.txt
     awk '/^# u / { at = 1; print; next } at && at++ == 70 { print "nan"; next } { print }' table.txt > nan.txt
     interp nan.txt | mts print u | grep -c nan
-    awk '/^# nbr.idx/ { at = 1; print; next } at && at++ == 70 { print "144"; next } { print }' table.txt > bad.txt
+    awk '/^# support.radius/ { at = 1; print; next } at && at++ == 70 { print "-1"; next } { print }' table.txt > bad.txt
     run -2 --separate-stderr interp bad.txt
-    [[ "$stderr" == *"nbr.idx: row 69: no node 144"* ]]
-    awk '/^# shape.phi/ { at = 1; $4--; print; next } at && at++ == 1 { next } { print }' table.txt > bad.txt
+    [[ "$stderr" == *"support.radius: row 69: -1 is not a positive length"* ]]
+    awk '/^# support.radius/ { at = 1; $4--; print; next } at && at++ == 1 { next } { print }' table.txt > bad.txt
     run -2 --separate-stderr interp bad.txt
-    [[ "$stderr" == *"shape.phi"* ]]
+    [[ "$stderr" == *"support.radius: "*" rows for "*" nodes"* ]]
 }

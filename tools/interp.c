@@ -8,10 +8,9 @@ static const char usage[] =
     "\n"
     "Reads a stream with nodes.x (m) and fields at the nodes, and writes one with nodes.x = the\n"
     "points (m) and the fields there. By default the points are the stream's own points.x: the\n"
-    "middles of smoothed cells, or others (ipoints -g, --lattice), through the stream's table of\n"
-    "shape functions; without earlier sections the defaults of ipoints, support and shapefn are run\n"
-    "first. With -p they are those of another file. Where the stream has no table for the points,\n"
-    "supports and shape functions are made for them.\n"
+    "middles of smoothed cells, or others (ipoints -g, --lattice), and supports and shape functions\n"
+    "are those that the stream records; without earlier sections the defaults of ipoints, support\n"
+    "and shapefn. With -p the points are those of another file.\n"
     "\n"
     "Of results of mtled, u and u.frame.K are the solver's own field: its parameters and supports are\n"
     "in the stream, and at the nodes it is what u says. Options that choose other supports or shape\n"
@@ -76,10 +75,7 @@ struct points {
     int64_t count;
     double *x;    /* count * dim, m; owned */
     int64_t *row; /* count: of the file, with --skip-outside; owned */
-    const int64_t *ptr;
-    const int32_t *idx;
-    const double *phi;
-    struct field_table own; /* what ptr, idx, phi view when made here */
+    struct field_table table;
 };
 
 static struct support_options parse(const struct tool *tool, const struct option *options, int dim)
@@ -88,7 +84,7 @@ static struct support_options parse(const struct tool *tool, const struct option
     struct error error;
     for (int i = UNIT; i <= LAST_OF_MLS; i++) {
         if (options[i].given && !options[POINTS].given) {
-            tool_fail(tool, STATUS_INPUT, "--%s needs -p (else the stream's own table is used)",
+            tool_fail(tool, STATUS_INPUT, "--%s needs -p (else the stream's own supports are used)",
                       options[i].name);
         }
     }
@@ -189,24 +185,23 @@ done:
 }
 
 /* Supports and shape functions at the points: of the stream's own integration points, or, with a file, of the
- * user's, which may lie outside. */
-static enum status make_table(const struct tool *tool, const struct support_options *support,
-                              const struct stream *stream, bool skip, const char *file, struct points *points,
-                              struct error *error)
+ * user's, which may lie outside; those of a field that is known, or chosen. */
+static enum status make_table(const struct tool *tool, const struct solved *known,
+                              const struct support_options *support, const struct stream *stream, bool skip,
+                              const char *file, struct points *points, struct error *error)
 {
     enum status status;
     struct cells cells;
     double *spacing = NULL, *radius = NULL;
-    const struct solved *solved = &points->solved;
     const struct mls *shapes = NULL;
     TRY(stream_cells(stream, false, &cells, error));
     TRY(NEW_ARRAY(&spacing, cells.node_count, error));
     TRY(NEW_ARRAY(&radius, cells.node_count, error));
     TRY(field_spacing(&cells, spacing, error));
-    if (solved->radius != NULL) {
-        support = &solved->recorded.support;
-        shapes = &solved->recorded.shapes;
-        memcpy(radius, solved->radius, (size_t)cells.node_count * sizeof *radius);
+    if (known->radius != NULL) {
+        support = &known->recorded.support;
+        shapes = &known->recorded.shapes;
+        memcpy(radius, known->radius, (size_t)cells.node_count * sizeof *radius);
     } else {
         TRY(support_radii(support, cells.node_count, spacing, radius, error));
     }
@@ -214,10 +209,7 @@ static enum status make_table(const struct tool *tool, const struct support_opti
         TRY(drop_outside(tool, &cells, spacing, skip, file, points, error));
     }
     TRY(field_table_build(support, shapes, &cells, radius, points->count, points->x,
-                          file != NULL ? file : "points.x", &points->own, error));
-    points->ptr = points->own.lists.ptr;
-    points->idx = points->own.lists.idx;
-    points->phi = points->own.phi;
+                          file != NULL ? file : "points.x", &points->table, error));
 done:
     free(spacing);
     free(radius);
@@ -238,26 +230,6 @@ done:
     return status;
 }
 
-/* The stream's own table at its own points. */
-static enum status view_table(const struct stream *stream, int64_t node_count, struct points *points,
-                              struct error *error)
-{
-    enum status status;
-    const struct section *phi;
-    struct neighbours lists;
-    TRY(stream_need(stream, "shape.phi", TYPE_F8, 1, "shapefn", &phi, error));
-    TRY(stream_neighbours(stream, "nbr", points->count, node_count, &lists, error));
-    if (phi->rows != lists.ptr[points->count]) {
-        status = fail(error, STATUS_INPUT, "shape.phi: does not fit nbr.idx: run shapefn again");
-        goto done;
-    }
-    points->ptr = lists.ptr;
-    points->idx = lists.idx;
-    points->phi = phi->data;
-done:
-    return status;
-}
-
 /* Whether a section is a field at the nodes: not one of those that describe the discretisation. */
 static bool is_field(const struct section *section, int64_t node_count)
 {
@@ -267,6 +239,12 @@ static bool is_field(const struct section *section, int64_t node_count)
     return section->type == TYPE_F8 && section->rows == node_count;
 }
 
+static void evaluate(const struct points *points, const struct section *field, double *values)
+{
+    field_evaluate(points->count, points->table.lists.ptr, points->table.lists.idx, points->table.phi,
+                   field->cols, field->data, values);
+}
+
 static void put_values(const struct tool *tool, const struct stream *stream, const struct section *field,
                        const struct points *points, struct stream *output)
 {
@@ -274,7 +252,7 @@ static void put_values(const struct tool *tool, const struct stream *stream, con
     double *values;
     const struct section *from = solved_parameters(stream, &points->solved, field);
     tool_check(tool, NEW_ARRAY(&values, points->count * field->cols, &error), &error);
-    field_evaluate(points->count, points->ptr, points->idx, points->phi, from->cols, from->data, values);
+    evaluate(points, from, values);
     tool_check(tool,
                stream_put(output, field->name, TYPE_F8, points->count, field->cols, field->attributes, values,
                           true, &error),
@@ -331,7 +309,7 @@ static void put_deformed(const struct tool *tool, const struct stream *stream, i
     }
     tool_check(tool, NEW_ARRAY(&x, points->count * dim, &error), &error);
     u = solved_parameters(stream, &points->solved, u);
-    field_evaluate(points->count, points->ptr, points->idx, points->phi, dim, u->data, x);
+    evaluate(points, u, x);
     for (int64_t i = 0; i < points->count * dim; i++) {
         x[i] += points->x[i];
     }
@@ -351,10 +329,9 @@ static bool chooses_supports(const struct option *options)
     return chooses;
 }
 
-/* The points wanted: the stream's own, or those of a file; and their table: the stream's, where it has one at
- * its own points and no field that was solved for. */
+/* The points wanted: the stream's own, or those of a file; and supports and shape functions there. */
 static void find_points(const struct tool *tool, const struct option *options, struct stream *stream, int dim,
-                        int64_t node_count, struct points *points)
+                        struct points *points)
 {
     struct error error;
     const char *file = options[POINTS].value;
@@ -362,28 +339,21 @@ static void find_points(const struct tool *tool, const struct option *options, s
     if (!chooses_supports(options)) {
         tool_check(tool, solved_read(stream, &points->solved, &error), &error);
     }
+    struct solved known = points->solved;
     if (file == NULL) {
-        struct recorded recorded;
-        tool_check(tool, stage_recorded(stream_find(stream, "support.radius"), dim, &recorded, &error),
-                   &error);
-        support = recorded.support;
+        const struct section *radius = stream_find(stream, "support.radius");
         stage_fill(tool, stream, "ipoints");
-        bool has_table =
-            points->solved.radius == NULL && !points_are_smoothed(stream_find(stream, "points.x"));
-        if (has_table) {
-            stage_fill(tool, stream, "shapefn");
-        }
         tool_check(tool, copy_points(stream, dim, points, &error), &error);
-        if (has_table) {
-            tool_check(tool, view_table(stream, node_count, points, &error), &error);
-            return;
+        if (known.radius == NULL && radius != NULL) {
+            tool_check(tool, supports_read(stream, radius->name, &known, &error), &error);
         }
     } else if (options[UNIT].given) {
         read_table(tool, file, options[UNIT].value, dim, points);
     } else {
         read_nodes(tool, file, dim, points);
     }
-    tool_check(tool, make_table(tool, &support, stream, options[SKIP_OUTSIDE].given, file, points, &error),
+    tool_check(tool,
+               make_table(tool, &known, &support, stream, options[SKIP_OUTSIDE].given, file, points, &error),
                &error);
 }
 
@@ -429,7 +399,7 @@ int main(int argc, char *argv[])
     (void)parse(&tool, options, 0); /* usage errors before waiting for the input */
     tool_read(&tool, tool.operands[0], &stream);
     tool_check(&tool, stream_nodes(&stream, &dim, &node_count, &nodes, &error), &error);
-    find_points(&tool, options, &stream, dim, node_count, &points);
+    find_points(&tool, options, &stream, dim, &points);
     begin_output(&tool, &stream, dim, &points, &output);
     if (options[FIELD].given) {
         put_fields(&tool, &stream, node_count, options[FIELD].value, &points, &output);
@@ -445,7 +415,7 @@ int main(int argc, char *argv[])
                    &error);
     }
     tool_write(&tool, &output, options[TEXT].given);
-    field_table_free(&points.own);
+    field_table_free(&points.table);
     stream_free(&output);
     free(points.row);
     stream_free(&stream);

@@ -98,7 +98,7 @@ static void held_faces(void **state)
                                            {.facets = side_facets(&l, 1u << 3, &high)}};
     l.assembly.conditions = conditions;
     l.assembly.condition_count = 2;
-    GOOD(assembly_held_faces(&l.assembly, &held, &error));
+    GOOD(assembly_held_faces(&l.assembly, 1, &held, &error));
     for (int64_t f = 0; f < l.assembly.boundary.count; f++) {
         const double *a = l.cells.x + 2 * (int64_t)l.assembly.boundary.node[2 * f],
                      *b = l.cells.x + 2 * (int64_t)l.assembly.boundary.node[2 * f + 1];

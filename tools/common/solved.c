@@ -7,11 +7,17 @@ static const char prefix[] = "parameters";
 
 enum status solved_read(const struct stream *stream, struct solved *solved, struct error *error)
 {
+    return supports_read(stream, "parameters.radius", solved, error);
+}
+
+enum status supports_read(const struct stream *stream, const char *name, struct solved *solved,
+                          struct error *error)
+{
     enum status status = STATUS_OK;
     int dim;
     int64_t node_count;
     const double *x;
-    const struct section *radius = stream_find(stream, "parameters.radius");
+    const struct section *radius = stream_find(stream, name);
     *solved = (struct solved){0};
     if (radius == NULL) {
         return STATUS_OK;
