@@ -9,7 +9,9 @@
 #   neurosurgery                a craniotomy, from a label image to a warped scan
 #   gallery  liver  phantom     examples that others can judge, with pictures
 #   convergence  speed-error    error against mesh size, and against time, beside mixed elements and CalculiX
-#   bench  estimate             speed of the kernels; what the error estimate is worth
+#   adaptive                    what the estimate of the discretisation error is worth; graded meshes against even ones
+#   bench  estimate             speed of the kernels; what the estimate of the iteration's error is worth
+# make refine SCENE=... GEO=... TOL=0.1mm    a scene of your own, on meshes refined where it must be (pipelines/refine.mk)
 # make install PREFIX=/usr/local    make deb    make clean    (pipelines/install.mk)
 
 # Waiting threads sleep, so that other programs on the same cores do not slow tests and studies down.
