@@ -11,7 +11,9 @@
 #   convergence  speed-error    error against mesh size, and against time, beside mixed elements and CalculiX
 #   uncertainty                 brain shift with uncertain stiffness; cases of a table: pipelines/sweep
 #   scale                       time, bytes and memory of each stage for a node; a body in parts
-#   bench  estimate             speed of the kernels; what the error estimate is worth
+#   adaptive                    what the estimate of the discretisation error is worth; graded meshes against even ones
+#   bench  estimate             speed of the kernels; what the estimate of the iteration's error is worth
+# make refine SCENE=... GEO=... TOL=0.1mm    a scene of your own, on meshes refined where it must be (pipelines/refine.mk)
 # make install PREFIX=/usr/local    make deb    make clean    (pipelines/install.mk)
 
 # Waiting threads sleep, so that other programs on the same cores do not slow tests and studies down.

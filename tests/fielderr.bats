@@ -141,6 +141,14 @@ field() {
         # shellcheck disable=SC2086 # several arguments
         refused 2 "" sizefield $arguments u.dat
     done
+    cloud -d 3 -k regular -n 3 --box 0,0.1,0,0.1,0,0.1 --field quadratic -o cube.mts
+    run -0 --separate-stderr sizefield cube.mts
+    [ "$(grep -c '^SS(' <<< "$output")" -eq $(($(mts print cells cube.mts | wc -l) + 3 * 6 * 2 * 2 * 2)) ]
+    sed -n 's/^SS(\([^)]*\)){.*/\1/p' <<< "$output" | awk -F , '
+        { for (k = 0; k < 12; k++) if ($(k + 1) < -0.05 || $(k + 1) > 0.15) exit 1 } # in m, and near the cube
+        { for (a = 1; a <= 3; a++) { u[a] = $(3 + a) - $a; v[a] = $(6 + a) - $a; w[a] = $(9 + a) - $a }
+          volume = u[1] * (v[2] * w[3] - v[3] * w[2]) + u[2] * (v[3] * w[1] - v[1] * w[3]) + u[3] * (v[1] * w[2] - v[2] * w[1])
+          if (volume ^ 2 < 1e-20) exit 1 }'
     mts keep nodes.x,u u.dat > bare.dat
     refused 2 "cells" sizefield bare.dat
     status=0
