@@ -183,3 +183,25 @@ cut_and_compute() {
     refused 3 "nowhere/0.mts" part -k 2 -o nowhere/%d.mts square.mts
     run -3 --separate-stderr unpart -o /dev/full part.0.mts part.1.mts
 }
+
+@test "model of an evaluation on many processes: one part, no messages; two parts, by hand" {
+    printf 'stage\tnodes\tus_per_node\nmtled, an evaluation\t1000\t9\nmtled, an evaluation\t8000\t2\n' > stages.tsv
+    printf 'parts\towns\n1\t8000\t8000\t8000\t8000\t0\t0\t0\t0\t0\t0\t0\n2\t4000\t4000\t5000\t5000\t600\t600\t1\t1\t28800\t28800\t0.05\n' > parts.tsv
+    awk -f "$top/pipelines/scale/model.awk" stages.tsv parts.tsv > model.tsv
+    # 8000 nodes at 2 us; on two: 4000 x 2 us x 1.05, and 10 + 2 messages of 10 us, 28 800 + 8 x 8 x 300 bytes at 10 GB/s.
+    [ "$(sed -n 2p model.tsv)" = "$(printf 'strong\t1\t8000\t0\t16000.0\t0.0\t0.0\t1.0\t100')" ]
+    [ "$(sed -n 3p model.tsv)" = "$(printf 'strong\t2\t4000\t600\t8400.0\t124.8\t1.5\t1.9\t94')" ]
+    # 50 000 nodes a part, in a cube of 36.84 spacings, a halo 0.38 deep on all sides.
+    awk -F '\t' '$1 == "weak" && $2 == 1024 { exit !($4 > 3140 && $4 < 3150 && $5 == 103000) }' model.tsv
+    run -1 awk -f "$top/pipelines/scale/model.awk" <(head -n 1 stages.tsv) parts.tsv
+}
+
+@test "make scale: every stage, halos and the model" {
+    at=$PWD/out/scale
+    make -C "$top" BUILD="$(realpath --relative-to "$top" "$BUILD")" OUT="$PWD/out" SCALE_SIZES=6 SCALE_CUT=8 SCALE_PARTS="2 4" \
+        "$at"/{stages,parts,model}.tsv > log 2>&1 || { cat log; false; }
+    [ "$(cut -f 1 "$at/stages.tsv" | paste -s -d /)" = "stage/cloud/ipoints/support/shapefn/mtled, one step/mtled, an evaluation/part, 8 parts" ]
+    awk -F '\t' 'NR > 1 && $1 != "part, 8 parts" && !($2 == 216 && $3 > 0) { exit 1 } $1 == "shapefn" { exit !($4 > 5000 && $4 < 12000) }' "$at/stages.tsv"
+    [ "$(cut -f 1 "$at/parts.tsv" | paste -s -d /)" = parts/2/4 ]
+    [ "$(grep -c '^strong' "$at/model.tsv") $(grep -c '^weak' "$at/model.tsv")" = "2 10" ]
+}
