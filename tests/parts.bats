@@ -147,6 +147,42 @@ cut_and_compute() {
     [ -z "$output" ]
 }
 
+@test "bodies and parts whose numbers are damaged" {
+    square_msh
+    nodes -u mm -t body.msh > square.dat
+    # damage SECTION VALUE FILE: the first number of its first row.
+    damage() { awk -v name="$1" -v value="$2" '/^# / { on = $2 == name } !/^#/ && NF && on { $1 = value; on = 0 } { print }' "$3"; }
+    refuse() { # TEXT SECTION VALUE
+        damage "$2" "$3" square.dat > damaged.dat
+        run ! cmp -s damaged.dat square.dat
+        refused 2 "$1" part -k 2 -v damaged.dat
+    }
+    refuse "facets: row 0: no node 900" facets 900
+    refuse "facets: row 0: no node -1" facets -1
+    refuse "sets.idx: row 0: no node 900" sets.idx 900
+    refuse "sets.ptr: does not fit sets.idx" sets.ptr 1
+    refuse "sets.ptr: row 0: decreases, or is beyond" sets.ptr -1
+    refuse "cells: row 0: " cells 900
+    shortened facets.set square.dat > damaged.dat
+    refused 2 "facets.set: does not fit facets" part -k 2 -v damaged.dat
+    shortened cells.region square.dat > damaged.dat
+    refused 2 "cells.region: does not fit cells" part -k 2 -v damaged.dat
+    part -t -k 2 -o part.%d.dat square.dat
+    for section in part.node part.owner part.cell part.facet facets sets.idx sets.ptr; do
+        for value in -1 900 2000000000; do
+            damage $section $value part.1.dat > damaged.dat
+            run -2 --separate-stderr unpart part.0.dat damaged.dat
+            [ -z "$output" ]
+        done
+    done
+    # Heads that promise what is not there are found out before memory is asked for.
+    for lie in 's/nodes=[0-9]*/nodes=2000000000/' 's/cells=[0-9]*/cells=2000000000/' 's/parts=2/parts=2000000000/'; do
+        for k in 0 1; do sed "$lie" part.$k.dat > lie.$k.dat; done
+        run -2 --separate-stderr bash -c 'ulimit -v 2000000; unpart lie.0.dat lie.1.dat'
+        [ -z "$output" ]
+    done
+}
+
 @test "a halo that is too narrow is told of, and a wider one does" {
     cloud -d 2 -k jittered --jitter 0.3 -n 24 --box 0,0.1,0,0.1 > square.mts
     part -k 6 -w 1 -o part.%d.mts square.mts
