@@ -10,7 +10,8 @@ RESULT_TABLES := brain2d/compare=brain2d brain3d/compare=brain3d table1/beside=t
     speed-error/reach=reach convergence/convergence=convergence hard/hard=hard hard/summary=hard-summary hard/misses=hard-misses \
     estimate/estimate=estimate estimate/summary=estimate-summary foreign/foreign=foreign gallery/phantom=phantom \
     gallery/indentation=indentation adaptive/effectivity=effectivity adaptive/effectivity-summary=effectivity-summary \
-    adaptive/refinement=refinement neurosurgery/neurosurgery=neurosurgery uncertainty/uncertainty=uncertainty
+    adaptive/refinement=refinement neurosurgery/neurosurgery=neurosurgery uncertainty/uncertainty=uncertainty scale/stages=scale \
+    scale/parts=scale-parts scale/model=scale-model
 
 .PHONY: readme results
 # Only what is newer than the file that is kept.

@@ -6,13 +6,14 @@
 SCALE := $(OUT)/scale
 SCALE_SIZES ?= 22 47
 SCALE_PARTS ?= 2 4 8 16 32 64 128 256 512 1024
+# Nodes along an edge of the cube that is cut.
+SCALE_CUT ?= 47
 SCALE_SCRIPTS := pipelines/scale
 SCALE_PROGRAMS := $(addprefix $(BUILD)/bin/,cloud ipoints support shapefn mtled part)
-SCALE_LARGEST = $(lastword $(SCALE_SIZES))
 
 .PHONY: scale
 scale: $(SCALE)/stages.tsv $(SCALE)/parts.tsv $(SCALE)/model.tsv
-	@for table in $^; do awk -F '\t' '{ for (i = 1; i <= NF; i++) printf "%-" (i == 1 ? 22 : 15) "s", $$i; print "" }' \
+	@for table in $^; do awk -F '\t' '{ for (i = 1; i <= NF; i++) printf "%-" (i == 1 ? 21 : 14) "s ", $$i; print "" }' \
 	    $$table; echo; done
 
 $(SCALE)/%: export PATH := $(abspath $(BUILD))/bin:$(PATH)
@@ -22,8 +23,12 @@ $(SCALE_SIZES:%=$(SCALE)/%.rows): $(SCALE)/%.rows: $(SCALE_SCRIPTS)/stages.sh $(
 	bash $< $* $(@D) > $@
 
 # Wider supports are not asked for: the halo is that of an evaluation.
-$(SCALE)/parts.tsv: $(SCALE_SIZES:%=$(SCALE)/%.rows)
-	(for parts in $(SCALE_PARTS); do part -k $$parts -w 1 -v $(@D)/$(SCALE_LARGEST).cloud.mts 2>&1; done) | awk '!/^parts/ || NR == 1' > $@
+$(SCALE)/cut.mts: $(BUILD)/bin/cloud
+	@mkdir -p $(@D)
+	cloud -d 3 -k jittered --jitter 0.15 -n $(SCALE_CUT) --box 0,0.1,0,0.1,0,0.1 -o $@
+
+$(SCALE)/parts.tsv: $(SCALE)/cut.mts $(BUILD)/bin/part
+	(for parts in $(SCALE_PARTS); do part -k $$parts -w 1 -v $< 2>&1; done) | awk '!/^parts/ || NR == 1' > $@
 
 $(SCALE)/stages.tsv: $(SCALE_SIZES:%=$(SCALE)/%.rows)
 	(printf 'stage\tnodes\tus_per_node\tB_written\tB_peak\tB_not_mapped\tGB_not_mapped\n'; \

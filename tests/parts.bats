@@ -147,6 +147,42 @@ cut_and_compute() {
     [ -z "$output" ]
 }
 
+@test "bodies and parts whose numbers are damaged" {
+    square_msh
+    nodes -u mm -t body.msh > square.dat
+    # damage SECTION VALUE FILE: the first number of its first row.
+    damage() { awk -v name="$1" -v value="$2" '/^# / { on = $2 == name } !/^#/ && NF && on { $1 = value; on = 0 } { print }' "$3"; }
+    refuse() { # TEXT SECTION VALUE
+        damage "$2" "$3" square.dat > damaged.dat
+        run ! cmp -s damaged.dat square.dat
+        refused 2 "$1" part -k 2 -v damaged.dat
+    }
+    refuse "facets: row 0: no node 900" facets 900
+    refuse "facets: row 0: no node -1" facets -1
+    refuse "sets.idx: row 0: no node 900" sets.idx 900
+    refuse "sets.ptr: does not fit sets.idx" sets.ptr 1
+    refuse "sets.ptr: row 0: decreases, or is beyond" sets.ptr -1
+    refuse "cells: row 0: " cells 900
+    shortened facets.set square.dat > damaged.dat
+    refused 2 "facets.set: does not fit facets" part -k 2 -v damaged.dat
+    shortened cells.region square.dat > damaged.dat
+    refused 2 "cells.region: does not fit cells" part -k 2 -v damaged.dat
+    part -t -k 2 -o part.%d.dat square.dat
+    for section in part.node part.owner part.cell part.facet facets sets.idx sets.ptr; do
+        for value in -1 900 2000000000; do
+            damage $section $value part.1.dat > damaged.dat
+            run -2 --separate-stderr unpart part.0.dat damaged.dat
+            [ -z "$output" ]
+        done
+    done
+    # Heads that promise what is not there are found out before memory is asked for.
+    for lie in 's/nodes=[0-9]*/nodes=2000000000/' 's/cells=[0-9]*/cells=2000000000/' 's/parts=2/parts=2000000000/'; do
+        for k in 0 1; do sed "$lie" part.$k.dat > lie.$k.dat; done
+        run -2 --separate-stderr bash -c 'ulimit -v 2000000; unpart lie.0.dat lie.1.dat'
+        [ -z "$output" ]
+    done
+}
+
 @test "a halo that is too narrow is told of, and a wider one does" {
     cloud -d 2 -k jittered --jitter 0.3 -n 24 --box 0,0.1,0,0.1 > square.mts
     part -k 6 -w 1 -o part.%d.mts square.mts
@@ -182,4 +218,26 @@ cut_and_compute() {
     # Where nothing can be written.
     refused 3 "nowhere/0.mts" part -k 2 -o nowhere/%d.mts square.mts
     run -3 --separate-stderr unpart -o /dev/full part.0.mts part.1.mts
+}
+
+@test "model of an evaluation on many processes: one part, no messages; two parts, by hand" {
+    printf 'stage\tnodes\tus_per_node\nmtled, an evaluation\t1000\t9\nmtled, an evaluation\t8000\t2\n' > stages.tsv
+    printf 'parts\towns\n1\t8000\t8000\t8000\t8000\t0\t0\t0\t0\t0\t0\t0\n2\t4000\t4000\t5000\t5000\t600\t600\t1\t1\t28800\t28800\t0.05\n' > parts.tsv
+    awk -f "$top/pipelines/scale/model.awk" stages.tsv parts.tsv > model.tsv
+    # 8000 nodes at 2 us; on two: 4000 x 2 us x 1.05, and 10 + 2 messages of 10 us, 28 800 + 8 x 8 x 300 bytes at 10 GB/s.
+    [ "$(sed -n 2p model.tsv)" = "$(printf 'strong\t1\t8000\t0\t16000.0\t0.0\t0.0\t1.0\t100')" ]
+    [ "$(sed -n 3p model.tsv)" = "$(printf 'strong\t2\t4000\t600\t8400.0\t124.8\t1.5\t1.9\t94')" ]
+    # 50 000 nodes a part, in a cube of 36.84 spacings, a halo 0.38 deep on all sides.
+    awk -F '\t' '$1 == "weak" && $2 == 1024 { exit !($4 > 3140 && $4 < 3150 && $5 == 103000) }' model.tsv
+    run -1 awk -f "$top/pipelines/scale/model.awk" <(head -n 1 stages.tsv) parts.tsv
+}
+
+@test "make scale: every stage, halos and the model" {
+    at=$PWD/out/scale
+    make -C "$top" BUILD="$(realpath --relative-to "$top" "$BUILD")" OUT="$PWD/out" SCALE_SIZES=6 SCALE_CUT=8 SCALE_PARTS="2 4" \
+        "$at"/{stages,parts,model}.tsv > log 2>&1 || { cat log; false; }
+    [ "$(cut -f 1 "$at/stages.tsv" | paste -s -d /)" = "stage/cloud/ipoints/support/shapefn/mtled, one step/mtled, an evaluation/part, 8 parts" ]
+    awk -F '\t' 'NR > 1 && $1 != "part, 8 parts" && !($2 == 216 && $3 > 0) { exit 1 } $1 == "shapefn" { exit !($4 > 5000 && $4 < 12000) }' "$at/stages.tsv"
+    [ "$(cut -f 1 "$at/parts.tsv" | paste -s -d /)" = parts/2/4 ]
+    [ "$(grep -c '^strong' "$at/model.tsv") $(grep -c '^weak' "$at/model.tsv")" = "2 10" ]
 }

@@ -75,8 +75,9 @@ static void print_report(const struct cut_body *whole, const struct report *repo
     /* Displacements of the nodes of others come in, forces on them go out; and the same for one's own nodes.
      */
     double bytes = 2.0 * whole->cells.dim * sizeof(double);
-    fprintf(stderr, "parts\town_nodes\tmost\tstored_nodes\tmost\tneeded_nodes\tmost\tother_parts\tmost\tbytes"
-                    "\tmost\timbalance\n");
+    fprintf(stderr,
+            "parts\town_nodes\town_most\tstored_nodes\tstored_most\tneeded_nodes\tneeded_most\tother_parts"
+            "\tother_parts_most\tbytes\tbytes_most\timbalance\n");
     fprintf(stderr, "%d\t%.0f\t%.0f\t%.0f\t%.0f\t%.0f\t%.0f\t%.1f\t%.0f\t%.0f\t%.0f\t%.4f\n", parts,
             report->own / parts, report->most_own, report->nodes / parts, report->most_nodes,
             report->needed / parts, report->most_needed, report->others / parts, report->most_others,

@@ -7,7 +7,7 @@
 #     nu = 0.49). These nodes are taken for half of those that an evaluation needs, which is more than there are;
 #   - one sum over all parts: 2 log2(parts) messages.
 # A message takes `latency` s and its bytes over `bandwidth` bytes/s. Strong: the body of PARTS. Weak: 50 000 nodes a part, with the depth of the
-# halo as measured on the part that has most neighbours: of a cube of m^3 own nodes (m + 2 depth)^3 - m^3 are needed.
+# halo as measured, the largest of all rows: of a cube of m^3 own nodes, with neighbours on all sides, (m + 2 depth)^3 - m^3 are needed.
 
 BEGIN {
     FS = OFS = "\t"
@@ -21,7 +21,8 @@ FNR == NR { if ($1 == "mtled, an evaluation" && $2 > largest) { largest = $2; ke
 {
     parts[++n] = $1; own[n] = $2; needed[n] = $7; others[n] = $9; bytes[n] = $11; imbalance[n] = $12
     nodes = $1 * $2
-    if ($9 > most) { most = $9; depth = ((($2 + $7)^(1 / 3)) - $2^(1 / 3)) / 2 }
+    deep = (($2 + $6)^(1 / 3) - $2^(1 / 3)) / 2
+    if (deep > depth) depth = deep
 }
 END {
     if (kernel == "" || n == 0) { print "model.awk: no time of an evaluation, or no parts" > "/dev/stderr"; exit 1 }
@@ -30,7 +31,7 @@ END {
         row("strong", parts[i], own[i], needed[i], others[i], bytes[i], imbalance[i], nodes * kernel)
     m = each^(1 / 3)
     halo = (m + 2 * depth)^3 - m^3
-    for (p = 2; p <= 1024; p *= 2) row("weak", p, each, halo, most, 48 * halo, 0.03, p * each * kernel)
+    for (p = 2; p <= 1024; p *= 2) row("weak", p, each, halo, 26, 48 * halo, 0.03, p * each * kernel)
 }
 
 function row(kind, p, own_nodes, halo_nodes, beside, amount, uneven, alone,    computing, waiting) {

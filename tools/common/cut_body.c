@@ -13,7 +13,64 @@ static bool is_nodal(const struct cut_body *whole, const struct section *section
             return section->rows == whole->cells.node_count;
         }
     }
-    return strcmp(section->name, "parameters.radius") == 0 || strcmp(section->name, "nodes.x") == 0;
+    return strcmp(section->name, "nodes.x") == 0 ||
+           (strcmp(section->name, "parameters.radius") == 0 && section->rows == whole->cells.node_count);
+}
+
+/* Numbers of nodes. */
+static void check_nodes(const struct cut_body *whole, const char *name, int64_t cols)
+{
+    struct error error;
+    const struct section *section;
+    tool_check(whole->tool, stream_need(whole->stream, name, TYPE_I4, cols, "nodes", &section, &error),
+               &error);
+    const int32_t *node = section->data;
+    for (int64_t i = 0; i < section->rows * cols; i++) {
+        if (node[i] < 0 || node[i] >= whole->cells.node_count) {
+            tool_fail(whole->tool, STATUS_INPUT, "%s: row %lld: no node %d", name, (long long)(i / cols),
+                      node[i]);
+        }
+    }
+}
+
+static void check_rows(const struct cut_body *whole, const char *name, const char *like)
+{
+    const struct section *section = stream_find(whole->stream, name),
+                         *other = stream_find(whole->stream, like);
+    if ((section != NULL) != (other != NULL) || (section != NULL && section->rows != other->rows)) {
+        tool_fail(whole->tool, STATUS_INPUT, "%s: does not fit %s: run nodes again", name, like);
+    }
+}
+
+/* What is cut here, and has not been looked at before. */
+static void check_groups(const struct cut_body *whole)
+{
+    struct error error;
+    const struct section *ptr, *idx;
+    if (stream_find(whole->stream, "cells.region") != NULL) {
+        check_rows(whole, "cells.region", "cells");
+    }
+    check_rows(whole, "facets.set", "facets");
+    if (stream_find(whole->stream, "facets") != NULL) {
+        check_nodes(whole, "facets", whole->cells.dim);
+    }
+    if (stream_find(whole->stream, "sets.ptr") == NULL && stream_find(whole->stream, "sets.idx") == NULL) {
+        return;
+    }
+    tool_check(whole->tool, stream_need(whole->stream, "sets.ptr", TYPE_I8, 1, "nodes", &ptr, &error),
+               &error);
+    check_nodes(whole, "sets.idx", 1);
+    idx = stream_find(whole->stream, "sets.idx");
+    const int64_t *begin = ptr->data;
+    for (int64_t s = 0; s < ptr->rows; s++) {
+        if (begin[s] < (s > 0 ? begin[s - 1] : 0) || begin[s] > idx->rows) {
+            tool_fail(whole->tool, STATUS_INPUT, "sets.ptr: row %lld: decreases, or is beyond sets.idx",
+                      (long long)s);
+        }
+    }
+    if (ptr->rows < 1 || begin[0] != 0 || begin[ptr->rows - 1] != idx->rows) {
+        tool_fail(whole->tool, STATUS_INPUT, "sets.ptr: does not fit sets.idx: run nodes again");
+    }
 }
 
 /* Take out what cannot be cut, and keep what the rest was. */
@@ -24,6 +81,7 @@ void cut_body_keep_sections(struct cut_body *whole)
     struct error error;
     struct stream *stream = whole->stream;
     char dropped[256] = "";
+    check_groups(whole);
     for (int64_t i = stream->section_count - 1; i >= 0; i--) {
         const struct section *section = &stream->sections[i];
         bool kept = is_nodal(whole, section);

@@ -74,15 +74,30 @@ static void read_part(struct rejoin *rejoin, struct rejoin_part *part, const cha
         numbers(rejoin, part, "part.cell", part->cells.count, 0, attribute(rejoin, part, "cells"), true);
 }
 
+/* Of as many parts as there are to be, none is missing if none stands twice. */
+static void check_numbers(const struct rejoin *rejoin)
+{
+    int64_t parts = rejoin->part[0].parts, number = 0;
+    for (bool found = true; found && number < parts; number += found) {
+        found = false;
+        for (int64_t k = 0; k < rejoin->part_count && !found; k++) {
+            found = rejoin->part[k].number == number;
+        }
+    }
+    if (number < parts) {
+        tool_fail(rejoin->tool, STATUS_INPUT, "part %lld of %lld is missing", (long long)number,
+                  (long long)parts);
+    }
+}
+
 /* Each part once, in the order of their numbers. */
 static void sort_parts(struct rejoin *rejoin)
 {
     const struct tool *tool = rejoin->tool;
     struct error error;
     struct rejoin_part *sorted, *first = &rejoin->part[0];
-    tool_check(tool, NEW_ARRAY(&sorted, first->parts, &error), &error);
     for (int64_t k = 0; k < rejoin->part_count; k++) {
-        struct rejoin_part *part = &rejoin->part[k];
+        const struct rejoin_part *part = &rejoin->part[k];
         if (strcmp(part->cut, first->cut) != 0 || part->parts != first->parts ||
             attribute(rejoin, part, "nodes") != attribute(rejoin, first, "nodes") ||
             attribute(rejoin, part, "cells") != attribute(rejoin, first, "cells") ||
@@ -94,17 +109,16 @@ static void sort_parts(struct rejoin *rejoin)
             tool_fail(tool, STATUS_INPUT, "%s: part.node: part %lld of %lld", part->file,
                       (long long)part->number, (long long)part->parts);
         }
+    }
+    check_numbers(rejoin);
+    tool_check(tool, NEW_ARRAY(&sorted, first->parts, &error), &error);
+    for (int64_t k = 0; k < rejoin->part_count; k++) {
+        const struct rejoin_part *part = &rejoin->part[k];
         if (sorted[part->number].file != NULL) {
             tool_fail(tool, STATUS_INPUT, "%s and %s are the same part, %lld", sorted[part->number].file,
                       part->file, (long long)part->number);
         }
         sorted[part->number] = *part;
-    }
-    for (int64_t k = 0; k < first->parts; k++) {
-        if (sorted[k].file == NULL) {
-            tool_fail(tool, STATUS_INPUT, "part %lld of %lld is missing", (long long)k,
-                      (long long)first->parts);
-        }
     }
     free(rejoin->part);
     rejoin->part = sorted;
@@ -125,24 +139,29 @@ static void check_rows(const struct rejoin *rejoin, enum rows_of kind, const cha
     struct error error;
     bool *found;
     int64_t total = 0;
-    tool_check(rejoin->tool, NEW_ARRAY(&found, rejoin->rows[kind], &error), &error);
     for (int64_t k = 0; k < rejoin->part_count; k++) {
         const struct rejoin_part *part = &rejoin->part[k];
         for (int64_t i = 0; i < part->count[kind]; i++) {
-            int32_t to = part->to[kind][i];
-            if (to >= 0 && (to >= rejoin->rows[kind] || found[to])) {
-                tool_fail(rejoin->tool, STATUS_INPUT, "%s: %s: row %lld is another part's as well: cut again",
-                          part->file, called, (long long)i);
-            }
-            if (to >= 0) {
-                found[to] = true;
-                total++;
-            }
+            total += part->to[kind][i] >= 0;
         }
     }
     if (total != rejoin->rows[kind]) {
         tool_fail(rejoin->tool, STATUS_INPUT, "%s: %lld rows in all parts, not %lld: cut again", called,
                   (long long)total, (long long)rejoin->rows[kind]);
+    }
+    tool_check(rejoin->tool, NEW_ARRAY(&found, total, &error), &error);
+    for (int64_t k = 0; k < rejoin->part_count; k++) {
+        const struct rejoin_part *part = &rejoin->part[k];
+        for (int64_t i = 0; i < part->count[kind]; i++) {
+            int32_t to = part->to[kind][i];
+            if (to >= 0 && (to >= total || found[to])) {
+                tool_fail(rejoin->tool, STATUS_INPUT, "%s: %s: row %lld is another part's as well: cut again",
+                          part->file, called, (long long)i);
+            }
+            if (to >= 0) {
+                found[to] = true;
+            }
+        }
     }
     free(found);
 }
