@@ -41,11 +41,25 @@ stops() {
 
 frames() { grep -c '^u\.frame\.' list; }
 
-@test "inversion, quasi-static: the point, its place, J; the state before it" {
-    # The whole boundary is turned inside out: somewhere on the way a point must be inverted.
+# The whole boundary is turned inside out: somewhere on the way a point must be inverted.
+turn_over() {
     printf '%s\n' '0 0 0.12 0' '0.1 0 -0.12 0' '0 0.1 0.12 0' '0.1 0.1 -0.12 0' > flip.tsv
     scene quasi-static 0.3 'table = flip.tsv\nunit = m' '' |
         sed '/^\[displacement bottom/,/^components/d; s/^facets = ymax/facets = xmin, xmax, ymin, ymax/' > run.scene
+}
+
+@test "inversion of a sliver: its quality, and what helps" {
+    turn_over
+    cloud -t -d 2 -k regular -n 6 --box 0,0.1,0,0.1 |
+        awk '/^# nodes.x/ { row = -1; on = 1 } on && row == 14 { $1 = 0.04999; $2 = 0.03001 } { print; row++ }' > sliver.mts
+    mts check sliver.mts | grep -q '^cells: row 15: poor: quality 2e-06'
+    shapefn sliver.mts > table.mts
+    stops "integration point 15 at"
+    tail -n 1 u.dat | grep -qF 'refine there; its cell is a sliver of quality 2e-06: improve the mesh, or take Gauss points (ipoints -g 1)'
+}
+
+@test "inversion, quasi-static: the point, its place, J; the state before it" {
+    turn_over
     stops "is inverted (J = -"
     [ "$(frames)" -ge 3 ]
     time=$(sed -n 's/^u\.frame\..*time=//p' list | tail -n 1)

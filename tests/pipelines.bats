@@ -341,6 +341,15 @@ END
     PATH=$PWD/bin:$PATH bash "$pipelines/foreign/push.sh" jittered-1 jittered-1.msh > row
     awk -F '\t' '{ exit !(NF == 9 && $1 == "jittered-1" && $2 > 100 && $3 > 300 && $4 < 0.02 && $5 == 1 && $6 == 40 &&
         $8 == 0.5 && $9 == "mtled: folded") }' row
+    cat > bin/mtled << 'END'
+#!/bin/bash
+echo "mtled: $(grep components "$2" | tail -n 1)" >&2
+exit 1
+END
+    for name in jittered-1 jittered-1-pulled; do
+        PATH=$PWD/bin:$PATH bash "$pipelines/foreign/push.sh" $name jittered-1.msh
+    done > rows
+    cut -f 9 rows | awk '{ way[NR] = $4 + 0 } END { exit !(NR == 2 && way[1] < -0.008 && way[2] == -way[1]) }'
     head -c 900 voxels-hex.msh > cut.msh
     bash "$pipelines/foreign/push.sh" cut cut.msh > row
     awk -F '\t' '{ exit !(NF == 9 && $2 == "-" && $5 == 2 && $9 ~ /^nodes: .*cut.msh: /) }' row

@@ -1,12 +1,14 @@
 #!/bin/bash
 # One mesh, as a new user would try it: held within 12 % of one end of its longest side, the same at the other end pushed by
-# 12 % of the length, nu .49, everything by default: bash push.sh NAME MESH [SECONDS] prints a row of foreign.tsv. Seconds are
-# those of the processor in mtled, which is stopped after so many.
+# 12 % of the length, nu .49, everything by default: bash push.sh NAME MESH [SECONDS] prints a row of foreign.tsv. A NAME
+# that ends in -pulled is pulled. Seconds are those of the processor in mtled, which is stopped after so many.
 set -uo pipefail
 export LC_ALL=C OMP_NUM_THREADS=1
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 name=$1 mesh=$2 seconds=${3:-200}
+way=-.12
+[[ $name != *-pulled ]] || way=.12
 status=0
 
 # told PATTERN FILE: what stands behind the tab of a line of a report.
@@ -24,12 +26,12 @@ read -r nodes cells < <(sed -nE 's/^nodes: ([0-9]+) nodes, ([0-9]+) cells.*/\1 \
 quality=$(sed -nE 's/^nodes: quality of the cells: least ([^,]*),.*/\1/p' "$work/said")
 groups -f held=low:long,12% -f pushed=high:long,12% "$work/body.mts" > "$work/named.mts" 2> "$work/said" ||
     { status=$?; fail "$(last "$work/said")"; }
-push=$(mts print nodes.x "$work/body.mts" | awk '
+push=$(mts print nodes.x "$work/body.mts" | awk -v way=$way '
     { for (k = 1; k <= 3; k++) { if (NR == 1 || $k < low[k]) low[k] = $k; if (NR == 1 || $k > high[k]) high[k] = $k } }
     END {
         axis = 1
         for (k = 2; k <= 3; k++) if (high[k] - low[k] > (high[axis] - low[axis]) * (1 + 1e-6)) axis = k
-        for (k = 1; k <= 3; k++) printf "%s%.9g", (k > 1 ? ", " : ""), (k == axis ? -.12 * (high[k] - low[k]) : 0)
+        for (k = 1; k <= 3; k++) printf "%s%.9g", (k > 1 ? ", " : ""), (k == axis ? way * (high[k] - low[k]) : 0)
     }')
 regions=$(mts list "$work/body.mts" | sed -nE 's/^cells.region.*names=(.*)$/\1/p')
 cat > "$work/push.scene" << END

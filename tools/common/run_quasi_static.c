@@ -1,5 +1,6 @@
 #include "run.h"
 
+#include "approx/quality.h"
 #include "solid/relaxation.h"
 
 /* Augmentations end when they change little: what is left then is told from so many times what is allowed. */
@@ -9,7 +10,7 @@ static const double most_penetration = 10.0;
 static void judge(struct run *run, const struct relaxation_report *report)
 {
     const struct scene *scene = run->scene;
-    char place[96] = "", load[48] = "";
+    char place[96] = "", load[48] = "", sliver[128] = "";
     if (report->load < 1.0) {
         snprintf(load, sizeof load, " (at %.3g of the load)", report->load);
     }
@@ -39,11 +40,20 @@ static void judge(struct run *run, const struct relaxation_report *report)
     if (report->outcome == RELAXATION_INVERTED) {
         const double *x = run->model->assembly.x + report->inverted_point * scene->dim;
         point_text(scene->dim, x, place);
+        if (run->model->assembly.smoothed) {
+            double quality = cell_quality(&run->model->assembly.cells, report->inverted_point);
+            if (quality < POOR_QUALITY) {
+                snprintf(sliver, sizeof sliver,
+                         "; its cell is a sliver of quality %.2g: improve the mesh, or take Gauss points "
+                         "(ipoints -g 1)",
+                         quality);
+            }
+        }
         run_fail(run, STATUS_VERDICT,
                  "%s: step %lld: integration point %lld at %s is inverted (J = %.3g): apply the load in "
-                 "more steps (ramp_steps > %lld), or a smaller one, or refine there",
+                 "more steps (ramp_steps > %lld), or a smaller one, or refine there%s",
                  scene->path, (long long)report->steps, (long long)report->inverted_point, place,
-                 report->least_jacobian, (long long)report->ramp_steps);
+                 report->least_jacobian, (long long)report->ramp_steps, sliver);
     }
     run_fail(run, STATUS_VERDICT,
              "%s: not converged after %lld steps%s: estimated remaining error %.2g of the displacement: "
