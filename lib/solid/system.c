@@ -23,7 +23,10 @@ void system_free(struct solid_system *system)
     }
     for (int64_t i = 0; i < system->contact_count; i++) {
         contact_free(&system->contacts[i]);
-        boundary_averages_free(&system->contact_averages[i]);
+        boundary_averages_free(&system->contact_points[i]);
+        if (system->contact_hats != NULL) {
+            boundary_averages_free(&system->contact_hats[i]);
+        }
     }
     for (int64_t i = 0; i < system->curve_count; i++) {
         curve_free(&system->curves[i]);
@@ -31,7 +34,8 @@ void system_free(struct solid_system *system)
     free(system->loads);
     free(system->pressures);
     free(system->contacts);
-    free(system->contact_averages);
+    free(system->contact_points);
+    free(system->contact_hats);
     free(system->curves);
     free(system->lumped_mass);
     free(system->factor);
@@ -255,7 +259,7 @@ static void negate(const struct solid_system *system, double *force)
 }
 
 /* The parameters u of the unknowns of a caller, and where forces on u are summed. */
-static const double *parameters_of(const struct solid_system *system, const double *v)
+const double *system_parameters(const struct solid_system *system, const double *v)
 {
     if (system->basis == NULL) {
         return v;
@@ -278,7 +282,7 @@ static void return_forces(const struct solid_system *system, double *force)
 
 void system_resist(struct solid_system *system, const double *v, double *force)
 {
-    const double *u = parameters_of(system, v);
+    const double *u = system_parameters(system, v);
     double *on_u = forces_of(system, force);
     double started = clock_seconds();
     (void)body_force(&system->body, u, on_u);
@@ -291,7 +295,7 @@ void system_resist(struct solid_system *system, const double *v, double *force)
 
 struct deformation system_residual(struct solid_system *system, const double *v, double *residual)
 {
-    const double *u = parameters_of(system, v);
+    const double *u = system_parameters(system, v);
     double *on_u = forces_of(system, residual);
     double started = clock_seconds();
     struct deformation deformation = body_force(&system->body, u, on_u);
@@ -311,17 +315,6 @@ struct deformation system_residual(struct solid_system *system, const double *v,
     system->cost.contact += clock_seconds() - held;
     return_forces(system, residual);
     return deformation;
-}
-
-void system_measure_contacts(struct solid_system *system, const double *v, bool all)
-{
-    const double *u = parameters_of(system, v);
-    double started = clock_seconds();
-    for (int64_t c = 0; c < system->contact_count; c++) {
-        contact_move(&system->contacts[c], system->factor);
-        contact_measure(&system->contacts[c], u, all);
-    }
-    system->cost.contact += clock_seconds() - started;
 }
 
 double system_longest_way(const struct solid_system *system)
@@ -364,10 +357,11 @@ void system_relaxation_mass(struct solid_system *system, double *mass)
     }
     for (int64_t c = 0; c < system->contact_count; c++) {
         const struct contact *contact = &system->contacts[c];
-        const struct boundary_averages *averages = contact->averages;
+        const struct boundary_averages *averages = contact->points;
         for (int64_t a = 0; a < averages->count; a++) {
             struct average average = average_of_boundary(averages, a);
-            add_to_bound(system, &average, averages->node[a], contact->stiffness * averages->area[a], mass);
+            add_to_bound(system, &average, averages->node[a], contact->stiffness[a] * averages->area[a],
+                         mass);
         }
     }
     for (int64_t r = 0; r < system->penalties.count; r++) {

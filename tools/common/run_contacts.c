@@ -65,9 +65,6 @@ void run_contacts_judge(struct run *run, double slack)
         struct facet_set set;
         struct contact_patch patch;
         int32_t *owned = NULL;
-        if (contact->penalty_only) {
-            continue;
-        }
         tool_check(run->tool,
                    model_facets(&run->model->input, &section->label, &section->facets, &set, &owned, &error),
                    &error);
