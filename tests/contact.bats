@@ -52,7 +52,8 @@ ball() {
             printf '[output]\nreactions = yes\ngaps = yes\n[solver]\ntolerance = 1e-4\n'; } > disc.scene
         mtled disc.scene block.mts 2> said > u.dat
         [ ! -s said ]
-        rows gaps u.dat | awk '$4 > 0 && ($3 < -5e-5 || $3 > 5e-5) { bad = 1 } END { exit bad }'
+        # At the end of the patch a node presses with a part of its facets.
+        rows gaps u.dat | awk '$3 < -5e-5 { bad = 1 } $4 > 0 && $3 > 5e-5 { ends++ } END { exit bad || ends > 1 }'
         rows reactions u.dat | awk 'NR == 3 { print $2 }' >> forces
     done
     cat forces

@@ -8,16 +8,10 @@
 /* By the shear modulus: that of pressure waves at Poisson's ratio .49. */
 static const double penalty_factor = 50.0;
 
-/* Penalty of about the stiffness of a layer of cells: as stiff as the critical step allows without loss. */
-static double default_stiffness(const struct solid_system *system, const struct boundary_averages *averages)
-{
-    double modulus = assembly_penalty_modulus(system, penalty_factor), area = 0.0;
-    for (int64_t a = 0; a < averages->count; a++) {
-        area += averages->area[a];
-    }
-    area /= (double)averages->count;
-    return modulus / (system->dim == 2 ? area : sqrt(area));
-}
+/* At points so many times as much. A surface that multipliers alone press on, of which the pressure is some
+ * ten shear moduli, is not stable: it buckles away from what presses unless the penalty is stiffer than that.
+ */
+static const double points_share = 8.0;
 
 /* A curve that takes more than half of its largest factor in this share of the scene's time jumps. */
 static const double jump_time = 1e-3;
@@ -62,37 +56,45 @@ done:
     return status;
 }
 
-/* Where a surface presses, it is kept out at the quadrature points, too, by a penalty of so much of the
- * boundary averages'. From 4 to 16 the force on a block that is pressed to 30 % between plates changes by 0.3
- * %. */
-static const double points_share = 8.0;
+/* Whether the facets are flat about each node, to a thousandth: else they are chords of a curved boundary. */
+static bool is_flat(const struct boundary_averages *points, const struct boundary_averages *hats, int dim)
+{
+    for (int64_t a = 0; a < hats->count; a++) {
+        for (int64_t s = hats->sample_ptr[a]; s < hats->sample_ptr[a + 1]; s++) {
+            double away2 = 0.0;
+            for (int c = 0; c < dim; c++) {
+                double d = hats->normal[a * dim + c] - points->normal[hats->sample_point[s] * dim + c];
+                away2 += d * d;
+            }
+            if (away2 > 1e-6) {
+                return false;
+            }
+        }
+    }
+    return true;
+}
 
-/* The contact of the points of the facets, which moves as that of the boundary averages does. */
-static enum status add_points(const struct assembly *input, const struct contact_condition *condition,
-                              struct solid_system *system, struct contact *averaged, struct error *error)
+/* What the contact acts on. In a relaxation the quadrature points of flat facets, with multipliers at the
+ * nodes. Those of chords lie beneath the boundary, each by another amount: then boundary averages, which are
+ * raised to their nodes; and in dynamics, where each point costs. */
+static enum status build_points(const struct assembly *input, const struct facet_set *set,
+                                struct boundary_averages *points, struct boundary_averages *hats,
+                                struct error *error)
 {
     enum status status;
-    const struct facet_set *set = &condition->facets;
-    struct rigid_surface surface = {0};
-    struct boundary_averages *points = &system->contact_averages[system->contact_count];
-    struct contact *contact = &system->contacts[system->contact_count];
-    TRY(boundary_points_build(&input->face_table, set, points, error));
-    TRY(rigid_build(system->dim, condition->rigid_count, condition->corners, condition->flip, &surface,
-                    error));
-    for (int64_t a = 0; a < points->count; a++) { /* each stands for another corner of its facet */
-        points->node[a] = set->facet[a / input->face_table.per_face * system->dim + a % system->dim];
-    }
-    TRY(contact_build_points(points, system->dim, &surface, points_share * averaged->stiffness, contact,
-                             error));
-    contact->section = averaged->section;
-    contact->motion = averaged->motion;
-    averaged->points = contact;
-    system->contact_count++;
-    points = NULL;
-done:
-    if (points != NULL) {
+    const struct face_table *table = &input->face_table;
+    TRY(boundary_averages_build(table, set, hats, error));
+    TRY(boundary_points_build(table, set, points, error));
+    if (input->in_time || !is_flat(points, hats, table->dim)) {
         boundary_averages_free(points);
+        *points = *hats;
+        *hats = (struct boundary_averages){0};
+        return STATUS_OK;
     }
+    for (int64_t p = 0; p < points->count; p++) { /* each stands for another corner of its facet */
+        points->node[p] = set->facet[p / table->per_face * table->dim + p % table->dim];
+    }
+done:
     return status;
 }
 
@@ -102,25 +104,21 @@ static enum status add_contact(const struct assembly *input, int32_t number, str
     enum status status;
     const struct contact_condition *condition = &input->contacts[number];
     struct rigid_surface surface = {0};
-    struct boundary_averages *averages = &system->contact_averages[system->contact_count];
-    struct contact *contact = &system->contacts[system->contact_count];
-    TRY(boundary_averages_build(&input->face_table, &condition->facets, averages, error));
+    struct boundary_averages *points = &system->contact_points[number], *hats = &system->contact_hats[number];
+    struct contact *contact = &system->contacts[number];
+    system->contact_count++;
+    TRY(build_points(input, &condition->facets, points, hats, error));
     TRY(rigid_build(system->dim, condition->rigid_count, condition->corners, condition->flip, &surface,
                     error));
-    double stiffness =
-        condition->stiffness > 0.0 ? condition->stiffness : default_stiffness(system, averages);
-    TRY(contact_build(averages, system->X, system->dim, &surface, stiffness, contact, error));
-    system->contact_count++;
-    averages = NULL;
+    TRY(contact_build(points, hats->count > 0 ? hats : NULL, system->X, system->dim, &surface,
+                      condition->stiffness, contact, error));
+    if (condition->stiffness == 0.0) {
+        contact_set_stiffness(contact, (hats->count > 0 ? points_share : 1.0) *
+                                           assembly_penalty_modulus(system, penalty_factor));
+    }
     contact->section = number;
     TRY(add_motion(condition, system, &contact->motion, error));
-    if (condition->motion.moves && !input->in_time) {
-        TRY(add_points(input, condition, system, contact, error));
-    }
 done:
-    if (averages != NULL) {
-        boundary_averages_free(averages);
-    }
     return status;
 }
 
@@ -129,8 +127,9 @@ enum status assembly_add_contacts(const struct assembly *input, struct solid_sys
 {
     enum status status;
     int64_t sections = input->contact_count;
-    TRY(NEW_ARRAY(&system->contacts, 2 * sections, error));
-    TRY(NEW_ARRAY(&system->contact_averages, 2 * sections, error));
+    TRY(NEW_ARRAY(&system->contacts, sections, error));
+    TRY(NEW_ARRAY(&system->contact_points, sections, error));
+    TRY(NEW_ARRAY(&system->contact_hats, sections, error));
     for (int64_t i = 0; i < sections; i++) {
         TRY(add_contact(input, (int32_t)i, system, error));
     }

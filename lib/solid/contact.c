@@ -7,90 +7,116 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Depths below this part of a contact node's length are none. */
+/* Depths below this part of a point's width are none. */
 static const double round_off = 1e-6;
-enum { CONTACT_NODES_FOR_THREAD = 1000 }; /* see chunks_of */
+enum { POINTS_FOR_THREAD = 1000 }; /* see chunks_of */
 
-/* How deep a contact node may be when it is first seen behind the surface without having gone through: half
- * its length, m. */
-static double most_depth(const struct contact *contact, int64_t a)
+/* The width of the facets at point p, m. A point of a facet is half or a third of it. */
+static double width_of(const struct contact *contact, int64_t p)
 {
-    double area = contact->averages->area[a];
-    return 0.5 * (contact->dim == 2 ? area : sqrt(area));
+    int points = contact->hats == NULL ? 1 : contact->dim;
+    double area = contact->points->area[p] * points;
+    return contact->dim == 2 ? area : sqrt(area);
 }
 
-/* sum_j Phi_aj v_j for node values v */
-static void take_mean(const struct contact *contact, int64_t a, const double *v, double x[3])
+/* How deep a point may be when it is first seen behind the surface without having gone through, m. */
+static double most_depth(const struct contact *contact, int64_t p)
 {
-    struct average average = average_of_boundary(contact->averages, a);
+    return 0.5 * width_of(contact, p);
+}
+
+/* sum_j Phi_pj v_j for node values v */
+static void take_mean(const struct contact *contact, int64_t p, const double *v, double x[3])
+{
+    struct average average = average_of_boundary(contact->points, p);
     average_take(&average, contact->dim, v, x);
 }
 
-/* Cosine between the body's outward normal at contact node a and the direction in which the surface's side
- * lies: at a place where they can touch, it is about -1. */
-static double facing(const struct contact *contact, int64_t a, const struct rigid_contact *closest)
+/* Cosine between the body's outward normal at point p and the direction in which the surface's side lies: at
+ * a place where they can touch, it is about -1. */
+static double facing(const struct contact *contact, int64_t p, const struct rigid_contact *closest)
 {
     double cosine = 0.0;
     for (int c = 0; c < contact->dim; c++) {
-        cosine += contact->averages->normal[a * contact->dim + c] * closest->normal[c];
+        cosine += contact->points->normal[p * contact->dim + c] * closest->normal[c];
     }
     return cosine;
 }
 
-/* No contact node may start far behind the surface, or behind it with its back to it: shallow, as around a
- * body that fills a shell, but on the other side. */
+/* No point may start far behind the surface, or behind it with its back to it: shallow, as around a body that
+ * fills a shell, but on the other side. */
 static enum status check_side(const struct contact *contact, struct error *error)
 {
-    for (int64_t a = 0; a < contact->count; a++) {
+    for (int64_t p = 0; p < contact->count; p++) {
         struct rigid_contact closest =
-            rigid_closest(&contact->surface, contact->rest + a * contact->dim, INFINITY);
-        double depth = closest.found ? -closest.gap : 0.0, length = most_depth(contact, a);
-        if (depth > length || (depth > round_off * length && facing(contact, a, &closest) > 0.5)) {
+            rigid_closest(&contact->surface, contact->rest + p * contact->dim, INFINITY);
+        double depth = closest.found ? -closest.gap : 0.0, length = most_depth(contact, p);
+        if (depth > length || (depth > round_off * length && facing(contact, p, &closest) > 0.5)) {
             return fail(error, STATUS_INPUT,
                         "contact: node %d starts %.3g m behind the rigid surface: state its other side, or "
                         "leave the node's facets out",
-                        contact->averages->node[a], depth);
+                        contact->points->node[p], depth);
         }
     }
     return STATUS_OK;
 }
 
-/* Facets are chords of a curved boundary, and their mean lies h^2/6r beneath its nodes, which are on it: the
- * gap is that of the boundary, so the mean is raised to the node along the contact node's normal. Zero on
- * flats. */
-static void raise_to_node(const struct contact *contact, int64_t a, const double *X, double x[3])
+/* Add to x `share` of the way from `from` to the plane through a node with that normal. */
+static void raise(int dim, double share, const double *from, const double *node, const double *normal,
+                  double *x)
 {
-    int dim = contact->dim;
-    const double *node = X + (int64_t)contact->averages->node[a] * dim;
-    const double *normal = contact->averages->normal + a * dim;
     double height = 0.0;
     for (int c = 0; c < dim; c++) {
-        height += (node[c] - x[c]) * normal[c];
+        height += (node[c] - from[c]) * normal[c];
     }
     for (int c = 0; c < dim; c++) {
-        x[c] += height * normal[c];
+        x[c] += share * height * normal[c];
     }
 }
 
-/* An empty contact that takes over the surface. */
-static enum status begin(const struct boundary_averages *averages, int dim, struct rigid_surface *surface,
-                         double stiffness, struct contact *contact, struct error *error)
+/* Where the points are at rest. The facets are chords of a curved boundary. A quadratic one with the normals
+ * n_a at the nodes lies above point p by sum_a N_a(p) (x_a - x_p) . n_a / 2; a boundary average, which lies
+ * beneath its node, is raised to it. Zero on flats. */
+static void place_at_rest(struct contact *contact, const double *X)
+{
+    int dim = contact->dim;
+    const struct boundary_averages *points = contact->points, *hats = contact->hats;
+    for (int64_t p = 0; p < contact->count; p++) {
+        double *x = contact->rest + p * dim;
+        take_mean(contact, p, X, x);
+        if (hats == NULL) {
+            raise(dim, 1.0, x, X + (int64_t)points->node[p] * dim, points->normal + p * dim, x);
+        }
+    }
+    for (int64_t a = 0; hats != NULL && a < hats->count; a++) {
+        for (int64_t s = hats->sample_ptr[a]; s < hats->sample_ptr[a + 1]; s++) {
+            int64_t p = hats->sample_point[s];
+            double hat = hats->sample_share[s] * hats->area[a] / points->area[p];
+            raise(dim, 0.5 * hat, points->position + p * dim, X + (int64_t)hats->node[a] * dim,
+                  hats->normal + a * dim, contact->rest + p * dim);
+        }
+    }
+}
+
+static enum status allocate(double stiffness, struct contact *contact, struct error *error)
 {
     enum status status;
-    int64_t count = averages->count;
-    *contact = (struct contact){
-        .dim = dim, .count = count, .averages = averages, .surface = *surface, .stiffness = stiffness};
-    *surface = (struct rigid_surface){0};
+    int64_t count = contact->count, dim = contact->dim;
+    TRY(NEW_ARRAY(&contact->stiffness, count, error));
     TRY(NEW_ARRAY(&contact->rest, count * dim, error));
-    TRY(NEW_ARRAY(&contact->multiplier, count, error));
-    TRY(NEW_ARRAY(&contact->gap, count, error));
-    TRY(NEW_ARRAY(&contact->pressure, count, error));
-    TRY(NEW_ARRAY(&contact->normal, count * dim, error));
+    TRY(NEW_ARRAY(&contact->multiplier, contact_nodes(contact)->count, error));
     TRY(NEW_ARRAY(&contact->behind, count, error));
     TRY(NEW_ARRAY(&contact->checked_x, count * dim, error));
     TRY(NEW_ARRAY(&contact->checked_distance, count, error));
-    for (int64_t a = 0; a < count; a++) {
-        contact->gap[a] = INFINITY;
+    TRY(NEW_ARRAY(&contact->checked_normal, count * dim, error));
+    TRY(NEW_ARRAY(&contact->held, count, error));
+    TRY(NEW_ARRAY(&contact->gap, count, error));
+    TRY(NEW_ARRAY(&contact->pressure, count, error));
+    TRY(NEW_ARRAY(&contact->normal, count * dim, error));
+    TRY(NEW_ARRAY(&contact->view, count, error));
+    for (int64_t p = 0; p < count; p++) {
+        contact->gap[p] = INFINITY;
+        contact->stiffness[p] = stiffness;
     }
     for (int64_t i = 0; i < count * dim; i++) {
         contact->checked_x[i] = INFINITY; /* never looked at: it may be in contact from the start */
@@ -99,16 +125,16 @@ done:
     return status;
 }
 
-enum status contact_build(const struct boundary_averages *averages, const double *X, int dim,
-                          struct rigid_surface *surface, double stiffness, struct contact *contact,
-                          struct error *error)
+enum status contact_build(const struct boundary_averages *points, const struct boundary_averages *hats,
+                          const double *X, int dim, struct rigid_surface *surface, double stiffness,
+                          struct contact *contact, struct error *error)
 {
     enum status status;
-    TRY(begin(averages, dim, surface, stiffness, contact, error));
-    for (int64_t a = 0; a < averages->count; a++) {
-        take_mean(contact, a, X, contact->rest + a * dim);
-        raise_to_node(contact, a, X, contact->rest + a * dim);
-    }
+    *contact = (struct contact){
+        .dim = dim, .count = points->count, .points = points, .hats = hats, .surface = *surface};
+    *surface = (struct rigid_surface){0};
+    TRY(allocate(stiffness, contact, error));
+    place_at_rest(contact, X);
     TRY(check_side(contact, error));
 done:
     if (status != STATUS_OK) {
@@ -117,32 +143,28 @@ done:
     return status;
 }
 
-enum status contact_build_points(const struct boundary_averages *points, int dim,
-                                 struct rigid_surface *surface, double stiffness, struct contact *contact,
-                                 struct error *error)
+void contact_set_stiffness(struct contact *contact, double modulus)
 {
-    enum status status;
-    TRY(begin(points, dim, surface, stiffness, contact, error));
-    contact->penalty_only = true;
-    memcpy(contact->rest, points->position, (size_t)(points->count * dim) * sizeof *contact->rest);
-done:
-    if (status != STATUS_OK) {
-        contact_free(contact);
+    for (int64_t p = 0; p < contact->count; p++) {
+        contact->stiffness[p] = modulus / width_of(contact, p);
     }
-    return status;
 }
 
 void contact_free(struct contact *contact)
 {
     rigid_free(&contact->surface);
+    free(contact->stiffness);
     free(contact->rest);
     free(contact->multiplier);
-    free(contact->gap);
-    free(contact->pressure);
-    free(contact->normal);
     free(contact->behind);
     free(contact->checked_x);
     free(contact->checked_distance);
+    free(contact->checked_normal);
+    free(contact->held);
+    free(contact->gap);
+    free(contact->pressure);
+    free(contact->normal);
+    free(contact->view);
     *contact = (struct contact){0};
 }
 
@@ -151,15 +173,15 @@ enum status contact_state(struct contact *contact, const char *prefix, const str
 {
     int64_t count = contact->count, dim = contact->dim;
     const struct state_value values[] = {
-        {"multiplier", STATE_NUMBERS, contact->multiplier, count},
-        {"gap", STATE_NUMBERS, contact->gap, count},
-        {"pressure", STATE_NUMBERS, contact->pressure, count},
-        {"normal", STATE_NUMBERS, contact->normal, count * dim},
+        {"multiplier", STATE_NUMBERS, contact->multiplier, contact_nodes(contact)->count},
         {"behind", STATE_FLAGS, contact->behind, count},
         {"checked_x", STATE_NUMBERS, contact->checked_x, count * dim},
         {"checked_distance", STATE_NUMBERS, contact->checked_distance, count},
+        {"checked_normal", STATE_NUMBERS, contact->checked_normal, count * dim},
     };
-    return state_visit(state, prefix, values, sizeof values / sizeof *values, error);
+    enum status status = state_visit(state, prefix, values, sizeof values / sizeof *values, error);
+    contact_spread_multipliers(contact); /* whichever way the visit goes */
+    return status;
 }
 
 /* Whether contact node a, when it was last looked at, was in front of the plane that touches the surface
@@ -174,55 +196,53 @@ static bool was_in_front(const struct contact *contact, int64_t a, const double 
     return height >= 0.0;
 }
 
-/* Find gap and normal of contact node a, now at x in the surface's frame. */
-static void look(struct contact *contact, int64_t a, const double *x)
+/* Find the surface at point p. */
+static void look(struct contact *contact, int64_t p, struct contact_view *view)
 {
-    int dim = contact->dim;
-    struct rigid_contact closest = rigid_closest(&contact->surface, x, INFINITY);
-    bool was_inside = contact->gap[a] < 0.0;
+    struct rigid_contact closest = rigid_closest(&contact->surface, view->x, INFINITY);
+    bool was_inside = contact->checked_distance[p] < 0.0 && !contact->behind[p];
     double gap = closest.found ? closest.gap : INFINITY;
-    if (!(gap < 0.0)) {
-        contact->behind[a] = false;
-    } else if (!was_inside && -gap > most_depth(contact, a) && !was_in_front(contact, a, x, &closest)) {
-        contact->behind[a] = true;
-    }
-    contact->gap[a] = contact->behind[a] ? INFINITY : gap;
-    contact->checked_distance[a] = gap < 0.0 ? 0.0 : closest.distance;
-    for (int c = 0; c < dim; c++) {
-        contact->normal[a * dim + c] = closest.smooth[c];
-        contact->checked_x[a * dim + c] = x[c];
-    }
-    rigid_place_turn(&contact->place, dim, contact->normal + a * dim);
+    view->looked = true;
+    view->behind = gap < 0.0 && (contact->behind[p] || (!was_inside && -gap > most_depth(contact, p) &&
+                                                        !was_in_front(contact, p, view->x, &closest)));
+    view->distance = fmin(gap, closest.distance);
+    memcpy(view->normal, closest.smooth, sizeof view->normal);
+    contact->gap[p] = view->behind ? INFINITY : gap;
 }
 
-/* p_a at x in the surface's frame. Contact nodes that cannot have reached the surface are not looked at. */
-static double pressure_at(struct contact *contact, int64_t a, const double *x)
+/* How near point p, where it is seen, may have come to the surface since it was looked at, m. */
+static double least_distance(const struct contact *contact, int64_t p, const struct contact_view *view)
 {
-    double moved2 = 0.0, multiplier = contact->multiplier[a];
-    double free_way = contact->checked_distance[a] - multiplier / contact->stiffness;
+    double moved2 = 0.0;
     for (int c = 0; c < contact->dim; c++) {
-        double step = x[c] - contact->checked_x[a * contact->dim + c];
+        double step = view->x[c] - contact->checked_x[p * contact->dim + c];
         moved2 += step * step;
     }
-    if (free_way > 0.0 && moved2 < free_way * free_way) {
-        return 0.0;
-    }
-    look(contact, a, x);
-    return fmax(0.0, multiplier - contact->stiffness * contact->gap[a]);
+    return contact->checked_distance[p] - sqrt(moved2);
 }
 
-/* Pressures of the contact nodes from `begin` to before `end`. */
-static void press_nodes(struct contact *contact, int64_t begin, int64_t end, const double *u)
+/* Gaps and pressures of the points from `begin` to before `end`. The surface is not looked for where it is
+ * too far away for a pressure: the gap is then that of the last look. */
+static void measure_points(struct contact *contact, int64_t begin, int64_t end, const double *u, bool all)
 {
     int dim = contact->dim;
-    for (int64_t a = begin; a < end; a++) {
-        double x[3], in_frame[3];
-        take_mean(contact, a, u, x);
+    for (int64_t p = begin; p < end; p++) {
+        struct contact_view *view = &contact->view[p];
+        double x[3], *normal = contact->normal + p * dim;
+        take_mean(contact, p, u, x);
         for (int c = 0; c < dim; c++) {
-            x[c] += contact->rest[a * dim + c];
+            x[c] += contact->rest[p * dim + c];
         }
-        rigid_place_to_rest(&contact->place, dim, x, in_frame);
-        contact->pressure[a] = pressure_at(contact, a, in_frame);
+        rigid_place_to_rest(&contact->place, dim, x, view->x);
+        view->looked = false;
+        contact->gap[p] = contact->checked_distance[p];
+        memcpy(normal, contact->checked_normal + p * dim, (size_t)dim * sizeof *normal);
+        if (all || !(least_distance(contact, p, view) > contact->held[p] / contact->stiffness[p])) {
+            look(contact, p, view);
+            memcpy(normal, view->normal, (size_t)dim * sizeof *normal);
+        }
+        rigid_place_turn(&contact->place, dim, normal);
+        contact->pressure[p] = fmax(0.0, contact->held[p] - contact->stiffness[p] * contact->gap[p]);
     }
 }
 
@@ -233,20 +253,31 @@ void contact_move(struct contact *contact, const double *factor)
 
 void contact_measure(struct contact *contact, const double *u, bool all)
 {
-    struct chunks nodes = chunks_of(contact->count, CONTACT_NODES_FOR_THREAD);
-    if (all) {
-        memset(contact->checked_distance, 0, (size_t)contact->count * sizeof *contact->checked_distance);
-    }
+    struct chunks nodes = chunks_of(contact->count, POINTS_FOR_THREAD);
 #pragma omp parallel for schedule(static) num_threads(nodes.threads)
     for (int64_t c = 0; c < nodes.count; c++) {
-        press_nodes(contact, chunks_begin(&nodes, c), chunks_begin(&nodes, c + 1), u);
+        measure_points(contact, chunks_begin(&nodes, c), chunks_begin(&nodes, c + 1), u, all);
+    }
+}
+
+void contact_accept(struct contact *contact)
+{
+    int dim = contact->dim;
+    for (int64_t a = 0; a < contact->count; a++) {
+        const struct contact_view *view = &contact->view[a];
+        if (view->looked) {
+            contact->behind[a] = view->behind;
+            contact->checked_distance[a] = view->distance;
+            memcpy(contact->checked_x + a * dim, view->x, (size_t)dim * sizeof *view->x);
+            memcpy(contact->checked_normal + a * dim, view->normal, (size_t)dim * sizeof *view->normal);
+        }
     }
 }
 
 /* Force on contact node a at the last evaluation. */
 static void force_on_node(const struct contact *contact, int64_t a, double force[3])
 {
-    double strength = contact->pressure[a] * contact->averages->area[a];
+    double strength = contact->pressure[a] * contact->points->area[a];
     for (int c = 0; c < contact->dim; c++) {
         force[c] = strength * contact->normal[a * contact->dim + c];
     }
@@ -257,7 +288,7 @@ void contact_force(struct contact *contact, const double *u, double *force)
     contact_measure(contact, u, false);
     for (int64_t a = 0; a < contact->count; a++) {
         if (contact->pressure[a] > 0.0) {
-            struct average average = average_of_boundary(contact->averages, a);
+            struct average average = average_of_boundary(contact->points, a);
             double on_node[3];
             force_on_node(contact, a, on_node);
             average_spread(&average, contact->dim, on_node, NULL, force);
@@ -265,23 +296,12 @@ void contact_force(struct contact *contact, const double *u, double *force)
     }
 }
 
-double contact_augment(struct contact *contact, double allowed)
-{
-    double deepest = 0.0;
-    for (int64_t a = 0; a < contact->count; a++) {
-        double p = contact->pressure[a], least = contact->stiffness * allowed;
-        contact->multiplier[a] = contact->penalty_only || !(p > least) ? 0.0 : p;
-        deepest = fmax(deepest, -contact->gap[a]);
-    }
-    return deepest;
-}
-
 double contact_energy(const struct contact *contact)
 {
     double sum = 0.0;
     for (int64_t a = 0; a < contact->count; a++) {
-        double p = contact->pressure[a], multiplier = contact->multiplier[a];
-        sum += contact->averages->area[a] * (p * p - multiplier * multiplier) / (2.0 * contact->stiffness);
+        double p = contact->pressure[a], held = contact->held[a];
+        sum += contact->points->area[a] * (p * p - held * held) / (2.0 * contact->stiffness[a]);
     }
     return sum;
 }
@@ -292,7 +312,7 @@ void contact_total(const struct contact *contact, double *total)
     for (int64_t a = 0; a < contact->count; a++) {
         for (int c = 0; c < contact->dim; c++) {
             total[c] +=
-                contact->pressure[a] * contact->averages->area[a] * contact->normal[a * contact->dim + c];
+                contact->pressure[a] * contact->points->area[a] * contact->normal[a * contact->dim + c];
         }
     }
 }
@@ -307,9 +327,9 @@ void contact_moment(const struct contact *contact, const double *point, double m
             continue;
         }
         force_on_node(contact, a, force);
-        rigid_place_from_rest(&contact->place, dim, contact->checked_x + a * dim, arm);
+        rigid_place_from_rest(&contact->place, dim, contact->view[a].x, arm);
         for (int c = 0; c < dim; c++) {
-            double raised = contact->rest[a * dim + c] - contact->averages->position[a * dim + c];
+            double raised = contact->rest[a * dim + c] - contact->points->position[a * dim + c];
             arm[c] -= raised + point[c];
         }
         for (int c = 0; c < 3; c++) {
@@ -335,12 +355,12 @@ struct contact_work contact_work(const struct contact *contact, const double *fa
             continue;
         }
         force_on_node(contact, a, force);
-        rigid_place_from_rest(&from, dim, contact->checked_x + a * dim, before);
-        rigid_place_from_rest(&to, dim, contact->checked_x + a * dim, after);
+        rigid_place_from_rest(&from, dim, contact->view[a].x, before);
+        rigid_place_from_rest(&to, dim, contact->view[a].x, after);
         for (int c = 0; c < dim; c++) {
             double way = after[c] - before[c];
             sum.work += force[c] * way;
-            sum.unresolved += contact->stiffness * contact->averages->area[a] * way * way;
+            sum.unresolved += contact->stiffness[a] * contact->points->area[a] * way * way;
         }
     }
     return sum;

@@ -1,18 +1,23 @@
-/* Frictionless contact of boundary averages with a rigid surface, finite sliding, by an augmented Lagrangian:
+/* Frictionless contact of a boundary with a rigid surface, finite sliding, by an augmented Lagrangian:
  * equations (19) and (20) of lib/README.md.
  *
- * The gap of contact node a is that of its averaged position x_a = sum_j Phi_aj (X_j + u_j). On a curved
- * boundary that position lies below the node, by an offset that is computed at rest and added along the
- * normal. The pressure is p_a = max(0, lambda_a - k g_a): a penalty k, made exact by the multiplier
- * lambda_a (augmented Lagrangian), and the force on the parameters is Phi_aj p_a A_a n: transferred by the
- * same averages that measure the gap, so that the total force on the body is sum_a p_a A_a n. There is no
- * projection, so that contact nodes do not chatter.
+ * Contact points are quadrature points of the facets. Point p at x_p = sum_j Phi_pj (X_j + u_j) has the gap
+ * g_p, the signed distance to the surface, and the pressure
  *
- * The surface may move: gaps are evaluated in the frame in which it rests, and all that is kept of a contact
- * node from one evaluation to the next is kept in that frame.
+ *     p_p = max(0, sum_a N_a(p) lambda_a - k_p g_p):
  *
- * Contact begins where a node goes through the surface. One that comes round an open rim to the back, deeper
- * than half its own size, stays free until it is in front again. */
+ * a penalty k_p about multipliers lambda_a of the boundary nodes, with the hat functions N_a of the facets,
+ * as in mortar methods. The force on the parameters is Phi_pj p_p A_p n. What is pressed on is linear in the
+ * gap from both sides, so that only points at the end of a patch open and close. The gap of a node is the
+ * mean of those of the points beneath its hat function; multipliers make it vanish where they press. Without
+ * hat functions each point has a multiplier of its own; such points may be boundary averages.
+ *
+ * Contact begins where a point goes through the surface. One that comes round an open rim to the back, deeper
+ * than half its own width, stays free until it is in front again.
+ *
+ * An evaluation changes no state: the same parameters give the same forces, whatever was evaluated between.
+ * Two functions change it, contact_accept at a step that is taken and contact_augment. The surface may move:
+ * places are kept in the frame in which it rests. */
 #ifndef SOLID_CONTACT_H
 #define SOLID_CONTACT_H
 
@@ -22,47 +27,56 @@
 #include "solid/rigid.h"
 #include "solid/rigid_motion.h"
 
+/* What an evaluation sees of a point. */
+struct contact_view {
+    double x[3];      /* where it is, in the surface's frame, m */
+    bool looked;      /* the surface was looked for; else it is too far away for a pressure, and these are: */
+    bool behind;      /* as in the state */
+    double distance;  /* as checked_distance */
+    double normal[3]; /* as checked_normal */
+};
+
 struct contact {
     int dim;
-    int64_t count;
-    const struct boundary_averages *averages; /* the caller's; must outlive the contact */
-    struct rigid_surface surface;             /* owned; at rest */
-    struct rigid_motion motion;               /* of the surface */
-    struct rigid_place place;                 /* where the surface is: see contact_move */
-    int32_t section;                          /* the caller's label */
-    bool penalty_only;                        /* no multipliers: see contact_build_points */
-    const struct contact *points;             /* of the same facets and surface; NULL: none */
-    double stiffness;                         /* k, Pa/m, > 0 */
-    double *rest;                             /* count * dim: x_a at u = 0, so raised, m */
-    double *multiplier;                       /* count: lambda_a, Pa, >= 0 */
-    double *gap;                              /* count: when last looked at, m; INFINITY beyond a rim */
-    double *pressure;                         /* count: p_a, Pa */
-    double *normal;                           /* count * dim: unit, on the body; 0 beyond a rim */
-    bool *behind;                             /* count: came to the back without going through */
-    /* A contact node is not looked at again before it has moved, in the surface's frame, as far as the
-     * surface was away. */
-    double *checked_x;        /* count * dim: position when it was last looked at, in that frame */
-    double *checked_distance; /* count */
+    int64_t count;                          /* points */
+    const struct boundary_averages *points; /* the caller's, as the hats; must outlive the contact */
+    const struct boundary_averages *hats;   /* of the nodes, whose samples the points are; NULL: none */
+    struct rigid_surface surface;           /* owned; at rest */
+    struct rigid_motion motion;             /* of the surface */
+    struct rigid_place place;               /* where the surface is: see contact_move */
+    int32_t section;                        /* the caller's label */
+    double *stiffness;                      /* count: k_p, Pa/m, > 0 */
+    double *rest;                           /* count * dim: x_p at u = 0, so raised, m */
+    /* The state, all that a checkpoint holds. A point is not looked at again before it has moved from
+     * checked_x as far as the surface was away. */
+    double *multiplier;       /* lambda_a, Pa, >= 0: of the nodes, or count */
+    bool *behind;             /* count: came to the back without going through */
+    double *checked_x;        /* count * dim: where it was when it was last looked at, m */
+    double *checked_distance; /* count: how far the surface was away then, m; negative: how deep it was */
+    double *checked_normal;   /* count * dim: of the surface there, in its frame */
+    double *held;             /* count: sum_a N_a(p) lambda_a, Pa; follows from the multipliers */
+    /* Of the last evaluation. */
+    double *gap; /* count: g_p, m; INFINITY beyond a rim; where it is too far away, when last looked at */
+    double *pressure;          /* count: p_p, Pa */
+    double *normal;            /* count * dim: unit, on the body; 0 where the surface was never looked for */
+    struct contact_view *view; /* count */
 };
 
 /* Takes over `surface` (also on failure: it becomes empty), which stays where it is unless the caller sets
- * contact->motion, whose factors must be 0 at the begin. X: nodes, m. STATUS_INPUT when a contact node starts
- * behind the surface, deeper than half its size or facing away from it: the surface's side is the wrong one.
- */
-MUST_CHECK enum status contact_build(const struct boundary_averages *averages, const double *X, int dim,
+ * contact->motion, whose factors must be 0 at the begin. X: nodes, m. The facets are chords of a curved
+ * boundary: the points are raised to where that is, by the normals at the nodes. STATUS_INPUT when a point
+ * starts behind the surface, deeper than half its width or facing away from it: the surface's side is the
+ * wrong one. */
+MUST_CHECK enum status contact_build(const struct boundary_averages *points,
+                                     const struct boundary_averages *hats, const double *X, int dim,
                                      struct rigid_surface *surface, double stiffness, struct contact *contact,
                                      struct error *error);
-/* The same for the values at the quadrature points of the facets, whose variation within an average the
- * averages do not constrain. Under a pressure of some ten shear moduli it grows; a penalty at the points
- * alone, with a multiple of the stiffness of the averages, keeps it small and vanishes where the contact of
- * the averages is met. The points are taken where they are, on the chords of a curved boundary, and there is
- * no wrong side. */
-MUST_CHECK enum status contact_build_points(const struct boundary_averages *points, int dim,
-                                            struct rigid_surface *surface, double stiffness,
-                                            struct contact *contact, struct error *error);
 void contact_free(struct contact *contact);
 
-/* What a contact keeps from one evaluation to the next; `prefix` goes in front of the names. */
+/* k_p = modulus / width of the facets there: that of a layer of cells. */
+void contact_set_stiffness(struct contact *contact, double modulus);
+
+/* The state of a contact; `prefix` goes in front of the names. */
 MUST_CHECK enum status contact_state(struct contact *contact, const char *prefix, const struct state *state,
                                      struct error *error);
 
@@ -75,16 +89,41 @@ void contact_force(struct contact *contact, const double *u, double *force);
 /* Move the surface to its place at these values of the load curves; for the evaluations that follow. */
 void contact_move(struct contact *contact, const double *factor);
 
-/* The same without forces: gaps and pressures at parameters u. Only with `all` are gaps those of u also where
- * the surface is too far away for a pressure. */
+/* The same without forces: gaps and pressures at parameters u. With `all` the surface is looked for also
+ * where it is too far away for a pressure. */
 void contact_measure(struct contact *contact, const double *u, bool all);
 
-/* Augment: lambda_a = p_a of the last evaluation, unless there is the penalty only. Pressures that the
- * penalty alone makes of a penetration of no more than `allowed`, m, need no multiplier and get none. Returns
- * the largest penetration seen then, m. */
-double contact_augment(struct contact *contact, double allowed);
+/* The step whose state was evaluated last is taken: points are where they were seen then. */
+void contact_accept(struct contact *contact);
 
-/* Energy of the penalty at the last evaluation, sum A_a (p_a^2 - lambda_a^2) / (2 k), J (2D: J/m). */
+/* Augment by the last evaluation: a step up the gradient of the augmented Lagrangian, which is concave in the
+ * multipliers, as long as the penalties allow without an overshoot:
+ *
+ *     lambda_a <- max(0, lambda_a + sum_p N_a A_p (p_p - held_p) / k_p / sum_p N_a A_p / k_p).
+ *
+ * Where all points beneath the hat function press that is lambda_a - k g_a, g_a being their mean gap. */
+void contact_augment(struct contact *contact);
+
+/* The pressures held at the points, from the multipliers. */
+void contact_spread_multipliers(struct contact *contact);
+
+/* What contact nodes penetrate, or are kept away from the surface, at the last evaluation: the largest change
+ * that an augmentation would make of a multiplier, as the gap that the penalty makes of it, m. */
+double contact_miss(const struct contact *contact);
+
+/* The boundary nodes of a contact, or its points where it has no hats; and what the last evaluation says of
+ * one: means over its hat function. */
+const struct boundary_averages *contact_nodes(const struct contact *contact);
+struct contact_node {
+    double gap;       /* m, of the points that have one; INFINITY: none has */
+    double pressure;  /* Pa */
+    double pressed;   /* part of the hat function above points that press, 0 to 1 */
+    double stiffness; /* Pa/m, of the penalty */
+    double normal[3]; /* unit; 0 where the surface was never looked for */
+};
+struct contact_node contact_node(const struct contact *contact, int64_t a);
+
+/* Energy of the penalty at the last evaluation, sum A_p (p_p^2 - held_p^2) / (2 k_p), J (2D: J/m). */
 double contact_energy(const struct contact *contact);
 
 /* Total force on the body at the last evaluation, total[dim], N (2D: N/m). */
@@ -97,9 +136,9 @@ void contact_moment(const struct contact *contact, const double *point, double m
 /* What the surface does on the body, by the pressures of the last evaluation, while it goes from its place at
  * one set of factors to that at another. */
 struct contact_work {
-    double work; /* sum p A n . w, w the way of the surface's point under each contact node, J (2D: J/m) */
-    double unresolved; /* sum k A w^2 over the contact nodes that touch: what the penalty makes of the way,
-                        * J (2D: J/m). A contact node that is first touched within a step has its work wrong
+    double work;       /* sum p A n . w, w the way of the surface under each point, J (2D: J/m) */
+    double unresolved; /* sum k_p A w^2 over the points that touch: what the penalty makes of the way,
+                        * J (2D: J/m). A point that is first touched within a step has its work wrong
                         * by an eighth of that at the most */
 };
 struct contact_work contact_work(const struct contact *contact, const double *factor_from,

@@ -46,6 +46,7 @@ static enum status find_inside(const struct contact *contact, const struct facet
     enum status status;
     int dim = contact->dim;
     struct rigid_surface body = {0};
+    const struct boundary_averages *nodes = contact_nodes(contact);
     double *corners = NULL, area = 0.0;
     TRY(NEW_ARRAY(&corners, set->count * dim * dim, error));
     for (int64_t i = 0; i < set->count * dim; i++) {
@@ -53,8 +54,8 @@ static enum status find_inside(const struct contact *contact, const struct facet
             corners[i * dim + a] = x[(int64_t)set->facet[i] * dim + a];
         }
     }
-    for (int64_t a = 0; a < contact->count; a++) {
-        area += contact->averages->area[a] / (double)contact->count;
+    for (int64_t a = 0; a < nodes->count; a++) {
+        area += nodes->area[a] / (double)nodes->count;
     }
     TRY(rigid_build(dim, set->count, corners, false, &body, error));
     for (int64_t v = 0; v < contact->surface.vertex_count; v++) {
@@ -74,35 +75,22 @@ done:
     return status;
 }
 
-/* Add what contact node a carries, and its part of what the points beneath carry. Whether it presses: by
- * itself, or where points do beneath more than half of it. */
-static bool add_force(const struct contact *contact, int64_t a, double *force)
-{
-    const struct boundary_averages *hats = contact->averages;
-    double pressed = 0.0;
-    *force += contact->pressure[a] * hats->area[a];
-    for (int64_t s = hats->sample_ptr[a]; s < hats->sample_ptr[a + 1] && contact->points != NULL; s++) {
-        double pressure = contact->points->pressure[hats->sample_point[s]];
-        *force += pressure * hats->sample_share[s] * hats->area[a];
-        pressed += pressure > 0.0 ? hats->sample_share[s] : 0.0;
-    }
-    return contact->pressure[a] > 0.0 || pressed > 0.5;
-}
-
 enum status contact_patch_find(const struct contact *contact, const struct facet_set *set, int64_t node_count,
                                const double *x, struct contact_patch *patch, struct error *error)
 {
     enum status status;
     struct marks marks = {0};
+    const struct boundary_averages *nodes = contact_nodes(contact);
     double resolved = 0.0, largest = 0.0;
     *patch = (struct contact_patch){.node = -1};
     TRY(NEW_ARRAY(&marks.force, node_count, error));
     TRY(NEW_ARRAY(&marks.presses, node_count, error));
     TRY(NEW_ARRAY(&marks.surrounded, node_count, error));
     TRY(NEW_ARRAY(&marks.near, node_count, error));
-    for (int64_t a = 0; a < contact->count; a++) {
-        int32_t node = contact->averages->node[a];
-        marks.presses[node] = add_force(contact, a, &marks.force[node]) || marks.presses[node];
+    for (int64_t a = 0; a < nodes->count; a++) {
+        struct contact_node node = contact_node(contact, a);
+        marks.force[nodes->node[a]] += node.pressure * nodes->area[a];
+        marks.presses[nodes->node[a]] |= node.pressed > 0.5;
     }
     mark_nodes(contact->dim, set, node_count, &marks);
     for (int64_t n = 0; n < node_count; n++) {

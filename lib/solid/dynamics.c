@@ -114,6 +114,7 @@ static enum dynamics_outcome march(struct dynamics *d, struct error *error)
         if (!evaluate(d)) {
             return DYNAMICS_INVERTED;
         }
+        system_accept(d->system);
         double contact = energy_contact(d->system);
         if (is_check && !is_last) {
             dynamics_estimate_frequency(d, n == 0 ? first_iterations : later_iterations);

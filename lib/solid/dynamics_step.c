@@ -25,13 +25,13 @@ static double contact_bound(const struct solid_system *system, double *stiffness
         stiffness[n] = 0.0;
     }
     for (int64_t c = 0; c < system->contact_count; c++) {
-        const struct boundary_averages *averages = system->contacts[c].averages;
+        const struct boundary_averages *averages = system->contacts[c].points;
         for (int64_t a = 0; a < averages->count; a++) {
             double sum = 0.0;
             for (int64_t i = averages->ptr[a]; i < averages->ptr[a + 1]; i++) {
                 sum += fabs(averages->phi[i]);
             }
-            sum *= system->contacts[c].stiffness * averages->area[a];
+            sum *= system->contacts[c].stiffness[a] * averages->area[a];
             for (int64_t i = averages->ptr[a]; i < averages->ptr[a + 1]; i++) {
                 stiffness[averages->idx[i]] += sum * fabs(averages->phi[i]);
             }

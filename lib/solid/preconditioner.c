@@ -61,7 +61,7 @@ enum status preconditioner_build(struct solid_system *system, bool coarse,
     *preconditioner = (struct preconditioner){.dim = system->dim, .node_count = system->node_count};
     preconditioner->has_rigid_mode = system_has_rigid_mode(system);
     for (int64_t c = 0; c < system->contact_count; c++) {
-        preconditioner->contact_node_count += system->contacts[c].count;
+        preconditioner->contact_node_count += contact_nodes(&system->contacts[c])->count;
     }
     TRY(NEW_ARRAY(&preconditioner->mass, system->node_count, error));
     TRY(NEW_ARRAY(&preconditioner->stiffness, system->node_count, error));

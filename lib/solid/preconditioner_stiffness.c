@@ -37,20 +37,21 @@ static void add_contacts(const struct preconditioner *preconditioner, const stru
                          double *matrix)
 {
     double *row = preconditioner->amount;
-    int64_t size = preconditioner->size, contact_node = 0;
+    int64_t size = preconditioner->size, at = 0;
     for (int64_t c = 0; c < system->contact_count; c++) {
         const struct contact *contact = &system->contacts[c];
-        const struct boundary_averages *averages = contact->averages;
-        for (int64_t a = 0; a < contact->count; a++, contact_node++) {
-            if (!preconditioner->active[contact_node]) {
+        const struct boundary_averages *averages = contact_nodes(contact);
+        for (int64_t a = 0; a < averages->count; a++, at++) {
+            if (!preconditioner->active[at]) {
                 continue;
             }
             struct average average = average_of_boundary(averages, a);
+            double stiffness = contact_node(contact, a).stiffness * averages->area[a];
             memset(row, 0, (size_t)size * sizeof *row);
             preconditioner_add_row(preconditioner, &average,
-                                   preconditioner->normal + contact_node * preconditioner->dim, row);
+                                   preconditioner->normal + at * preconditioner->dim, row);
             for (int64_t i = 0; i < size; i++) {
-                double part = contact->stiffness * averages->area[a] * row[i];
+                double part = stiffness * row[i];
                 for (int64_t k = 0; k < size && part != 0.0; k++) {
                     matrix[i * size + k] += part * row[k];
                 }
@@ -150,34 +151,35 @@ done:
     return status;
 }
 
-/* Whether the surface at contact node a has turned from what it was when the contact node was counted in. */
-static bool has_turned(const struct contact *contact, int64_t a, const double *counted_normal)
+/* Whether the surface has turned from what it was when a contact node was counted in. */
+static bool has_turned(const struct contact_node *node, int dim, const double *counted_normal)
 {
     double cosine = 0.0;
-    for (int i = 0; i < contact->dim; i++) {
-        cosine += contact->normal[a * contact->dim + i] * counted_normal[i];
+    for (int i = 0; i < dim; i++) {
+        cosine += node->normal[i] * counted_normal[i];
     }
     return cosine < least_cosine;
 }
 
 /* Count contact node a in or out; true when that is a change. A body that can move as a whole may come to
  * rest on contact nodes that are not near yet. */
-static bool follow_contact_node(struct preconditioner *preconditioner, const struct contact *contact,
-                                int64_t a, int64_t contact_node, bool leave)
+static bool follow_node(struct preconditioner *preconditioner, const struct contact *contact, int64_t a,
+                        int64_t at, bool leave)
 {
-    double area = contact->averages->area[a], length = contact->dim == 2 ? area : sqrt(area);
-    double *normal = preconditioner->normal + contact_node * contact->dim;
-    bool *counts = &preconditioner->active[contact_node], pressed = contact->pressure[a] > 0.0;
-    if (!pressed && !preconditioner->has_rigid_mode && !(contact->gap[a] < near_share * length)) {
+    double area = contact_nodes(contact)->area[a], length = contact->dim == 2 ? area : sqrt(area);
+    double *normal = preconditioner->normal + at * contact->dim;
+    struct contact_node node = contact_node(contact, a);
+    bool *counts = &preconditioner->active[at], pressed = node.pressure > 0.0;
+    if (!pressed && !preconditioner->has_rigid_mode && !(node.gap < near_share * length)) {
         bool left = *counts && leave;
         *counts = *counts && !leave;
         return left;
     }
-    if (*counts ? !pressed || !has_turned(contact, a, normal) : !pressed && !leave) {
+    if (*counts ? !pressed || !has_turned(&node, contact->dim, normal) : !pressed && !leave) {
         return false;
     }
     *counts = true;
-    memcpy(normal, contact->normal + a * contact->dim, (size_t)contact->dim * sizeof *normal);
+    memcpy(normal, node.normal, (size_t)contact->dim * sizeof *normal);
     return true;
 }
 
@@ -185,11 +187,10 @@ bool preconditioner_follow(struct preconditioner *preconditioner, const struct s
                            bool leave)
 {
     bool changed = false;
-    int64_t contact_node = 0;
+    int64_t at = 0;
     for (int64_t c = 0; c < system->contact_count; c++) {
-        for (int64_t a = 0; a < system->contacts[c].count; a++) {
-            changed = follow_contact_node(preconditioner, &system->contacts[c], a, contact_node++, leave) ||
-                      changed;
+        for (int64_t a = 0; a < contact_nodes(&system->contacts[c])->count; a++) {
+            changed = follow_node(preconditioner, &system->contacts[c], a, at++, leave) || changed;
         }
     }
     if (!changed || preconditioner->size == 0) {

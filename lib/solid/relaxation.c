@@ -7,16 +7,11 @@
 #include <string.h>
 
 static const int64_t keep_interval = 200;               /* steps between states to go back to */
-static const double penetration_share = 1e-4;           /* of the body's size: what a contact may penetrate */
 static const double usual_rise = 1.5, usual_fall = 0.8; /* of the residual's squared norm in a step */
 static const double unstable_rise = 6.0;                /* over what is usual: a mode is unstable */
 static const int64_t hover_steps = 50;                  /* without half the error: is a mode unstable? */
 /* Bulk modulus by shear modulus that volume changes meet: so few steps as at Poisson's ratio .49. */
 static const double bulk_limit = 50.0;
-/* Damping times time between augmentations of the pressures. What is held follows the volume that a mode has
- * at that moment; of a mode that swings, exp(-c T / 2) of its amplitude is left from one to the next, with
- * any sign, and the iteration is stable below 1/3. */
-static const double pressure_pause = 3.0;
 static const int64_t calm_steps = 20; /* after that was mended, before the next look */
 /* At every check: the mode is kept, so that it sharpens; while the load grows another may overtake it. */
 static const int iterations = 1, iterations_loading = 2;
@@ -37,6 +32,30 @@ static bool residual_grows(struct relaxation *r)
     return grows;
 }
 
+/* After the evaluation of a step: let multipliers, the nodal pressures held and those of contacts, take over
+ * what penalties carry. The next step is a check, whose error counts what that leaves. */
+static void augment(struct relaxation *r)
+{
+    int64_t pause = r->report->steps - r->augmented_step;
+    bool pressures = body_is_limited(&r->system->body);
+    if ((r->report->steps + 1) % CHECK_INTERVAL != 0 || pause < 2 * CHECK_INTERVAL ||
+        r->damping * (double)pause * r->time_step < RELAXATION_PAUSE) {
+        return;
+    }
+    bool contacts = r->system->contact_count > 0 && relaxation_contacts_lack(r);
+    if (pressures) {
+        body_augment(&r->system->body);
+    }
+    if (contacts) {
+        system_augment_contacts(r->system);
+        r->augmentations += r->at_full_load > 0;
+    }
+    if (pressures || contacts) {
+        r->augmented_step = r->report->steps;
+        r->usual_residual2 = 0.0;
+    }
+}
+
 /* One step; with `measure` the acceleration of the projected residual at the old u is kept. */
 static bool step(struct relaxation *r, double *u, bool measure)
 {
@@ -49,6 +68,7 @@ static bool step(struct relaxation *r, double *u, bool measure)
         r->report->inverted_point = deformation.point;
         return false;
     }
+    system_accept(system);
     if (measure) {
         memcpy(r->acceleration, r->velocity, (size_t)r->size * sizeof *r->velocity);
     }
@@ -58,6 +78,7 @@ static bool step(struct relaxation *r, double *u, bool measure)
     }
     preconditioner_apply(&r->preconditioner, r->residual, r->scratch);
     r->unstable = residual_grows(r);
+    augment(r);
     double *move = r->velocity, push = 2.0 * dt / grow;
     for (int64_t i = 0; i < r->size; i++) {
         move[i] = dt * (keep * r->velocity[i] + push * r->scratch[i]);
@@ -150,8 +171,7 @@ static void let_go(struct relaxation *r)
     r->at_full_load = r->converged_checks = 0;
     r->spectrum2 = INFINITY;
     r->spectrum_known = false;
-    r->augmentations = r->stagnation = 0;
-    r->least_penetration = INFINITY;
+    r->augmentations = 0;
 }
 
 /* Set the load factors, and by how much they change. */
@@ -196,7 +216,6 @@ static bool follow(struct relaxation *r, struct error *error)
     if (hovers(r)) {
         relaxation_calm(r, r->acceleration);
     }
-    relaxation_follow_contacts(r);
     return relaxation_update_preconditioner(r, error);
 }
 
@@ -206,10 +225,11 @@ static bool ends(struct relaxation *r, enum relaxation_outcome *outcome, struct 
     const double *error_now = &r->report->error, tolerance = r->options->tolerance;
     bool whole = r->at_full_load > 2 * CHECK_INTERVAL;
     bool small = whole && *error_now <= tolerance;
+    bool augmented = r->augmented_step == r->report->steps - 1;
     if (!small) {
         r->converged_checks = 0;
-    } else if (r->augmented || !body_is_limited(&r->system->body)) {
-        r->converged_checks++; /* the error counts what the pressures have yet to make up for */
+    } else if (augmented || !body_is_limited(&r->system->body)) {
+        r->converged_checks++; /* the error counts what the multipliers have yet to make up for */
     }
     *outcome = RELAXATION_STOPPED;
     if (r->converged_checks >= 2 && !r->spectrum_known &&
@@ -232,21 +252,6 @@ static bool ends(struct relaxation *r, enum relaxation_outcome *outcome, struct 
     return relaxation_stays(r, 20.0, 5000);
 }
 
-/* At a check, before its evaluation: hold the pressures. An augmentation every T makes the pressures held the
- * integral of what the bulk modulus is limited by, over T; pressure_pause is c T.
- */
-static bool augment_pressures(struct relaxation *r)
-{
-    double pause = (double)(r->report->steps - r->held_step) * r->time_step;
-    if (!body_is_limited(&r->system->body) || r->damping * pause < pressure_pause) {
-        return false;
-    }
-    body_augment(&r->system->body);
-    r->held_step = r->report->steps;
-    r->usual_residual2 = 0.0;
-    return true;
-}
-
 static bool is_interrupted(const struct relaxation *r)
 {
     return r->options->interrupted != NULL && *r->options->interrupted != 0;
@@ -264,7 +269,6 @@ static enum relaxation_outcome iterate(struct relaxation *r, struct error *error
         r->at_full_load = r->load < hold ? 0 : r->at_full_load + 1;
         r->report->loading_steps += r->at_full_load == 0;
         change_load(r, r->load / ramp);
-        r->augmented = measure && augment_pressures(r);
         if (!step(r, r->u, measure)) {
             measure = false;
             if (!relaxation_step_back(r, error)) {
@@ -344,7 +348,6 @@ enum status relaxation_run(struct solid_system *system, const struct relaxation_
                            .load_rate = 1.0,
                            .top_rate = 1.0,
                            .step_safety = 1.0,
-                           .least_penetration = INFINITY,
                            .spectrum2 = INFINITY};
     *report = (struct relaxation_report){.least_jacobian = 1.0};
     body_limit_bulk(&system->body, bulk_limit);
@@ -352,7 +355,6 @@ enum status relaxation_run(struct solid_system *system, const struct relaxation_
     r.spacing = system_node_spacing(system);
     r.body_size = relaxation_body_size(system);
     r.thickness = relaxation_thickness(system);
-    r.penetration_allowed = penetration_share * r.body_size;
     TRY(options->restored != NULL ? resume(&r, error) : begin(&r, error));
     report->outcome = iterate(&r, error);
     TRY(r.failure);

@@ -51,7 +51,7 @@ struct relaxation_report {
                                * the larger of those on the whole and at the worst node */
     double largest_frequency; /* in the fictitious mass's units */
     double lowest_frequency;
-    double penetration, penetration_allowed; /* of contacts' averages, m: the largest, and what may be */
+    double penetration, penetration_allowed; /* of contacts, m: see contact_miss */
     double load;            /* of which u is the state, 0..1; RELAXATION_INVERTED: a state before, at rest */
     int64_t inverted_point; /* the caller's index, RELAXATION_INVERTED */
     double least_jacobian;

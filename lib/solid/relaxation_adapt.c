@@ -22,10 +22,12 @@ static const double least_low2 =
     1e-4; /* first guess of the lowest eigenvalue by the largest, if it is negative */
 static const int64_t most_backtracks = 8;                        /* from inverted points */
 static const double most_stiffening = 1.1, most_softening = 0.5; /* of a node since its mass was set */
-static const int calm_iterations = 5;         /* of the power iteration on a mode that may be unstable */
-static const double most_mass_checks = 5.0;   /* from one look at that to the next */
-static const int64_t most_augmentations = 20; /* of the contacts' multipliers, */
-static const int64_t most_stagnation = 3;     /* of those in a row that change little */
+static const int calm_iterations = 5;       /* of the power iteration on a mode that may be unstable */
+static const double most_mass_checks = 5.0; /* from one look at that to the next */
+
+/* What contacts may penetrate at an equilibrium, by the largest motion; and augmentations until they do. */
+static const double penetration_share = 1e-3;
+static const int64_t most_augmentations = 100;
 
 double relaxation_body_size(const struct solid_system *system)
 {
@@ -224,68 +226,21 @@ void relaxation_calm(struct relaxation *r, const double *acceleration)
     relaxation_update_time_step(r, r->residual_at, calm_iterations);
 }
 
-/* How contacts that can be augmented stand at the last evaluation. */
-struct standing {
-    double miss; /* the largest, m: penetration, or a multiplier that presses before the surface is reached */
-    bool carries; /* there are multipliers */
-    bool idle;    /* and one of them is not needed */
-};
-
-static struct standing stand(const struct relaxation *r)
+static double penetration_allowed(const struct relaxation *r)
 {
-    struct standing now = {0.0, false, false};
-    for (int64_t c = 0; c < r->system->contact_count; c++) {
-        const struct contact *contact = &r->system->contacts[c];
-        for (int64_t a = 0; a < contact->count && !contact->penalty_only; a++) {
-            double gap = contact->gap[a], least = contact->stiffness * r->penetration_allowed;
-            now.miss = fmax(now.miss, contact->pressure[a] > 0.0 ? fabs(gap) : -gap);
-            now.carries = now.carries || contact->multiplier[a] > 0.0;
-            now.idle = now.idle || (contact->multiplier[a] > 0.0 && !(contact->pressure[a] > least));
-        }
-    }
-    return now;
+    return penetration_share * r->largest_move;
 }
 
-/* Move what the penalties carry into the multipliers, so that the next equilibrium penetrates less. */
-static void augment(struct relaxation *r)
+bool relaxation_contacts_lack(const struct relaxation *r)
 {
-    for (int64_t c = 0; c < r->system->contact_count; c++) {
-        (void)contact_augment(&r->system->contacts[c], r->penetration_allowed);
-    }
-    r->augmented_step = r->report->steps;
-}
-
-/* An augmentation every T makes the multipliers the integral of the gaps, over T. With a damping c that is
- * stable where c T > k / (k + stiffness of the body), so at c T = 1 and above; RELAXATION_PAUSE is c T. */
-void relaxation_follow_contacts(struct relaxation *r)
-{
-    double pause = (double)(r->report->steps - r->augmented_step) * r->time_step;
-    if (r->system->contact_count == 0 || r->at_full_load > 0 || r->damping * pause < RELAXATION_PAUSE) {
-        return;
-    }
-    system_measure_contacts(r->system, r->residual_at, false);
-    struct standing now = stand(r);
-    if (now.carries || now.miss > r->penetration_allowed) {
-        augment(r);
-    }
+    return r->at_full_load == 0 ||
+           (r->augmentations < most_augmentations && system_contact_miss(r->system) > penetration_allowed(r));
 }
 
 bool relaxation_contacts_hold(struct relaxation *r)
 {
-    double allowed = r->penetration_allowed;
     system_measure_contacts(r->system, r->residual_at, false);
-    struct standing now = stand(r);
-    r->report->penetration = now.miss;
-    r->report->penetration_allowed = allowed;
-    if (!(now.idle || now.miss > allowed) || r->augmentations == most_augmentations ||
-        r->stagnation == most_stagnation) {
-        return true;
-    }
-    r->stagnation = now.miss < 0.8 * r->least_penetration ? 0 : r->stagnation + 1;
-    r->least_penetration = fmin(r->least_penetration, now.miss);
-    augment(r);
-    r->augmentations++;
-    r->best_error = INFINITY; /* another problem begins */
-    r->best_step = r->report->steps;
-    return false;
+    r->report->penetration = system_contact_miss(r->system);
+    r->report->penetration_allowed = penetration_allowed(r);
+    return !relaxation_contacts_lack(r);
 }

@@ -60,7 +60,8 @@ void relaxation_estimate(struct relaxation *r)
     constraint_project(&r->preconditioner.constraint, NULL, da);
     double bottom = preconditioner_product(&r->preconditioner, du, du);
     double quotient = bottom > 0.0 ? preconditioner_product(&r->preconditioner, du, da) / bottom : 0.0;
-    if (quotient > 0.0 && r->checks > 0 && !r->mass_changed) {
+    bool augmented = r->report->steps - r->augmented_step < CHECK_INTERVAL;
+    if (quotient > 0.0 && r->checks > 0 && !r->mass_changed && !augmented) {
         quotient = fmin(quotient, r->frequency * r->frequency);
         r->low2 = quotient < r->low2 ? quotient : fmin(quotient, most_growth * r->low2);
         r->low2 = fmin(r->low2, r->spectrum2);

@@ -10,8 +10,9 @@ enum { CHECK_INTERVAL = 10 };   /* steps between estimates */
 enum { FIRST_ITERATIONS = 30 }; /* of Lanczos, where the preconditioner was measured */
 enum { WINDOWS = 8 };           /* recent Rayleigh quotients that the error estimate looks at */
 
-/* Between augmentations of contacts: damping times time. */
-#define RELAXATION_PAUSE 2.0
+/* Between augmentations, of contacts and of nodal pressures: damping times time. Modes that swing are stable
+ * above 2 ln 3. */
+#define RELAXATION_PAUSE 3.0
 
 /* A state to go back to. */
 struct kept_state {
@@ -47,13 +48,9 @@ struct relaxation {
     bool unstable;                            /* it grew far above that in the last step */
     int64_t calmed_step;                      /* the last step at which that was mended */
     int64_t back_step;                        /* the last step that went back to a kept state */
-    double penetration_allowed;               /* m */
-    int64_t augmentations, stagnation;        /* of the contacts so far; those in a row that changed little */
-    double least_penetration;                 /* m, before an augmentation */
-    int64_t augmented_step;                   /* of the last one while the load grew */
-    bool mass_changed; /* since the last check: increments of the acceleration mean nothing */
-    int64_t held_step; /* when the nodal pressures were held last */
-    bool augmented;    /* in this step */
+    bool mass_changed;      /* since the last check: increments of the acceleration mean nothing */
+    int64_t augmented_step; /* when multipliers took over last */
+    int64_t augmentations;  /* of contacts at the load that is held */
     enum status failure;
     double load, load_rate;      /* steps of the ramp applied so far, and per step, at most top_rate */
     double top_rate;             /* 1 until an inversion */
@@ -147,11 +144,11 @@ void relaxation_keep_state(struct relaxation *r);
  * False when that has been tried often enough - the deformation itself inverts - and on failure. */
 bool relaxation_step_back(struct relaxation *r, struct error *error);
 
-/* While the load grows, after a check: augment contacts that penetrate too deep. Left to the end, their
- * pressures would double at once. */
-void relaxation_follow_contacts(struct relaxation *r);
+/* Whether multipliers of contacts have to follow: always while the load grows, as left to the end they would
+ * change at once; at the load that is held where contacts penetrate more than they may. */
+bool relaxation_contacts_lack(const struct relaxation *r);
 
-/* Whether a converged state may stand; contacts that penetrate too deep are augmented and relaxed again. */
+/* Whether a converged state may stand; notes what contacts penetrate. */
 bool relaxation_contacts_hold(struct relaxation *r);
 
 /* A mode may be unstable, which the acceleration shows. If it is: go on from the check before the last, at

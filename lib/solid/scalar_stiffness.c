@@ -7,13 +7,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The bonds: penalties of the conditions, one for each list of rows, then the contacts' averages, of points
- * and all. */
+/* The bonds: penalties of the conditions, one for each list of rows, then the points of the contacts. */
 static int64_t count_bonds(const struct solid_system *system)
 {
     int64_t count = system->penalties.list_count;
     for (int64_t c = 0; c < system->contact_count; c++) {
-        count += system->contacts[c].averages->count;
+        count += system->contacts[c].points->count;
     }
     return count;
 }
@@ -28,11 +27,11 @@ static struct average bond_at(const struct solid_system *system, int64_t b, doub
     }
     b -= system->penalties.list_count;
     int64_t c = 0;
-    for (; b >= system->contacts[c].averages->count; c++) {
-        b -= system->contacts[c].averages->count;
+    for (; b >= system->contacts[c].points->count; c++) {
+        b -= system->contacts[c].points->count;
     }
-    *stiffness = system->contacts[c].stiffness * system->contacts[c].averages->area[b];
-    return average_of_boundary(system->contacts[c].averages, b);
+    *stiffness = system->contacts[c].stiffness[b] * system->contacts[c].points->area[b];
+    return average_of_boundary(system->contacts[c].points, b);
 }
 
 /* Field or bond f, of nodes of the body's order or the system's. */

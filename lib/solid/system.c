@@ -23,7 +23,10 @@ void system_free(struct solid_system *system)
     }
     for (int64_t i = 0; i < system->contact_count; i++) {
         contact_free(&system->contacts[i]);
-        boundary_averages_free(&system->contact_averages[i]);
+        boundary_averages_free(&system->contact_points[i]);
+        if (system->contact_hats != NULL) {
+            boundary_averages_free(&system->contact_hats[i]);
+        }
     }
     for (int64_t i = 0; i < system->curve_count; i++) {
         curve_free(&system->curves[i]);
@@ -31,7 +34,8 @@ void system_free(struct solid_system *system)
     free(system->loads);
     free(system->pressures);
     free(system->contacts);
-    free(system->contact_averages);
+    free(system->contact_points);
+    free(system->contact_hats);
     free(system->curves);
     free(system->lumped_mass);
     free(system->factor);
@@ -97,7 +101,8 @@ static enum status fail_at_row(const struct solid_system *system, int64_t r, dou
     char place[96], with[160] = "others";
     point_text(system->dim, system->X + (int64_t)rows->node[r] * system->dim, place);
     if (conditions != NULL && other >= 0) {
-        snprintf(with, sizeof with, "those of [displacement %.100s] and others", conditions[rows->section[other]].name);
+        snprintf(with, sizeof with, "those of [displacement %.100s] and others",
+                 conditions[rows->section[other]].name);
     }
     return fail(
         error, STATUS_VERDICT,
@@ -294,16 +299,6 @@ struct deformation system_residual(struct solid_system *system, const double *u,
     return deformation;
 }
 
-void system_measure_contacts(struct solid_system *system, const double *u, bool all)
-{
-    double started = clock_seconds();
-    for (int64_t c = 0; c < system->contact_count; c++) {
-        contact_move(&system->contacts[c], system->factor);
-        contact_measure(&system->contacts[c], u, all);
-    }
-    system->cost.contact += clock_seconds() - started;
-}
-
 double system_longest_way(const struct solid_system *system)
 {
     double longest = 0.0;
@@ -337,9 +332,10 @@ static void add_penalties_to_bound(const struct solid_system *system, double *ma
 {
     for (int64_t c = 0; c < system->contact_count; c++) {
         const struct contact *contact = &system->contacts[c];
-        for (int64_t a = 0; a < contact->averages->count; a++) {
-            struct average average = average_of_boundary(contact->averages, a);
-            add_to_bound(&average, contact->stiffness * contact->averages->area[a], mass);
+        const struct boundary_averages *averages = contact->points;
+        for (int64_t a = 0; a < averages->count; a++) {
+            struct average average = average_of_boundary(averages, a);
+            add_to_bound(&average, contact->stiffness[a] * averages->area[a], mass);
         }
     }
     for (int64_t r = 0; r < system->penalties.count; r++) {

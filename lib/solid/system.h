@@ -55,7 +55,7 @@ struct solid_system {
     struct pressure_load *pressures;
     int64_t pressure_count;
     struct contact *contacts;
-    struct boundary_averages *contact_averages; /* contact_count: what the contacts act on */
+    struct boundary_averages *contact_points, *contact_hats; /* contact_count: what the contacts act on */
     int64_t contact_count;
     struct constraint_rows rows;
     const struct condition *conditions; /* of the rows, for messages; the caller's; NULL: not known */
@@ -99,6 +99,13 @@ void system_add_loads(const struct solid_system *system, const double *u, double
 
 /* residual[node_count * dim] = loads at system->factor + contact - internal forces, at parameters u. */
 struct deformation system_residual(struct solid_system *system, const double *u, double *residual);
+
+/* The step whose state was evaluated last is taken: see contact_accept. Evaluations alone change no state. */
+void system_accept(struct solid_system *system);
+
+/* contact_augment, and the largest contact_miss, of all contacts. */
+void system_augment_contacts(struct solid_system *system);
+double system_contact_miss(const struct solid_system *system);
 
 /* Gaps and pressures of the contacts at parameters u and system->factor, see contact_measure. Other
  * evaluations between may have left those of another state. */

@@ -35,8 +35,8 @@ static void build(struct lattice *l)
     assert_true(averages != NULL && l->system.contacts != NULL);
     *averages = lattice_averages(l, 1u << 2);
     GOOD(rigid_build(2, 1, corners, true, &floor, &error));
-    GOOD(contact_build(averages, l->system.X, 2, &floor, 1e5, l->system.contacts, &error));
-    l->system.contact_averages = averages;
+    GOOD(contact_build(averages, NULL, l->system.X, 2, &floor, 1e5, l->system.contacts, &error));
+    l->system.contact_points = averages;
     l->system.contact_count = 1;
 }
 

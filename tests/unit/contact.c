@@ -18,7 +18,7 @@ static void force_is_gradient(void **state)
         double u[NODES * 3], force[NODES * 3] = {0.0}, aside[NODES * 3], h = 1e-7;
         push_out(u, &random);
         for (int a = 0; a < CONTACT_NODES && round >= 20; a++) {
-            contact.multiplier[a] = uniform(&random, 0.0, 2e3);
+            contact.multiplier[a] = contact.held[a] = uniform(&random, 0.0, 2e3);
         }
         contact_force(&contact, u, force);
         contacts += touching(&contact);
@@ -129,19 +129,18 @@ static void skipping(void **state)
                 u[i] += velocity[i];
             }
             if (step % 500 == 499) {
-                contact_augment(&contact, 0.0);
-                contact_augment(&always, 0.0);
-            }
-            for (int a = 0; a < CONTACT_NODES; a++) {
-                contact.normal[a * dim] = 2.0; /* to see who is skipped */
+                contact_augment(&contact);
+                contact_augment(&always);
             }
             contact_force(&contact, u, force);
+            contact_accept(&contact);
             contact_measure(&always, u, true);
+            contact_accept(&always);
             contact_force(&always, u, expected);
             assert_memory_equal(force, expected, sizeof force);
             contacts += touching(&contact);
             for (int a = 0; a < CONTACT_NODES; a++) {
-                skipped += contact.normal[a * dim] > 1.0;
+                skipped += !contact.view[a].looked;
             }
             steps++;
         }
@@ -150,6 +149,58 @@ static void skipping(void **state)
     }
     assert_true(contacts > steps && contacts < steps * CONTACT_NODES * 3 / 4);
     assert_true(skipped > steps * CONTACT_NODES / 3);
+}
+
+/* Along such walks evaluations at other places and back again change nothing: forces, gaps and the state are
+ * the same bytes. */
+static void evaluations_change_no_state(void **state)
+{
+    (void)state;
+    struct random random = {5};
+    struct contact_nodes contact_nodes;
+    int changes = 0, touches = 0;
+    for (int round = 0; round < 8; round++) {
+        int dim = 2 + round % 2;
+        make_contact_nodes(&contact_nodes, dim, 10.0, &random);
+        struct contact walks = built(&contact_nodes, make_shell(dim, 24, 0.8, round % 4 >= 2), 1e4);
+        struct contact strays = built(&contact_nodes, make_shell(dim, 24, 0.8, round % 4 >= 2), 1e4);
+        double u[NODES * 3] = {0.0}, away[NODES * 3], last[NODES * 3] = {0.0};
+        for (int step = 0; step < 300; step++) {
+            double force[NODES * 3] = {0.0}, other[NODES * 3] = {0.0}, elsewhere[NODES * 3] = {0.0};
+            for (int i = 0; i < NODES * dim; i++) {
+                u[i] += uniform(&random, -5e-2, 5e-2);
+            }
+            contact_force(&walks, u, force);
+            for (int k = 0; k < 3; k++) {
+                for (int i = 0; i < NODES * dim; i++) {
+                    away[i] = u[i] + uniform(&random, -0.5, 0.5);
+                }
+                contact_force(&strays, away, elsewhere);
+            }
+            contact_force(&strays, u, other);
+            assert_memory_equal(force, other, sizeof force);
+            assert_memory_equal(walks.gap, strays.gap, sizeof(double) * CONTACT_NODES);
+            assert_memory_equal(walks.normal, strays.normal, sizeof(double) * (size_t)(CONTACT_NODES * dim));
+            contact_accept(&walks);
+            contact_accept(&strays);
+            if (step % 50 == 49) {
+                contact_augment(&walks);
+                contact_augment(&strays);
+            }
+            assert_memory_equal(walks.multiplier, strays.multiplier, sizeof(double) * CONTACT_NODES);
+            assert_memory_equal(walks.behind, strays.behind, sizeof(bool) * CONTACT_NODES);
+            assert_memory_equal(walks.checked_x, strays.checked_x,
+                                sizeof(double) * (size_t)(CONTACT_NODES * dim));
+            assert_memory_equal(walks.checked_distance, strays.checked_distance,
+                                sizeof(double) * CONTACT_NODES);
+            changes += memcmp(last, force, sizeof force) != 0;
+            touches += touching(&walks);
+            memcpy(last, force, sizeof force);
+        }
+        contact_free(&walks);
+        contact_free(&strays);
+    }
+    assert_true(changes > 500 && touches > 500);
 }
 
 /* Particles on springs, pulled through a wall: the penalty leaves them in it, multipliers bring them back. */
@@ -174,7 +225,8 @@ static void augmentation(void **state)
                     u[i] += 0.01 * (force[i] + toward - spring * u[i]);
                 }
             }
-            deepest = contact_augment(&contact, 0.0);
+            deepest = contact_miss(&contact);
+            contact_augment(&contact);
             assert_true(round == 0 ? deepest > 0.01 : deepest < 0.9 * before || deepest < 1e-9);
         }
         AT_MOST(deepest, 1e-9);
@@ -211,7 +263,8 @@ static void frictionless(void **state)
     }
     /* p = 10; with a multiplier of 10, p = 20. */
     NEAR_TO(contact_energy(&contact), CONTACT_NODES * 0.5 * 100.0 / 200.0, 1e-12);
-    NEAR_TO(contact_augment(&contact, 0.0), 0.1, 1e-15);
+    NEAR_TO(contact_miss(&contact), 0.1, 1e-15);
+    contact_augment(&contact);
     contact_force(&contact, u, force);
     NEAR_TO(contact_energy(&contact), CONTACT_NODES * 0.5 * 300.0 / 200.0, 1e-12);
     contact_free(&contact);
@@ -244,6 +297,7 @@ static void round_the_rim(void **state)
                 u[0] = (1.0 - part) * path[leg - 1][0] + part * path[leg][0] - path[0][0];
                 u[1] = (1.0 - part) * path[leg - 1][1] + part * path[leg][1] - path[0][1];
                 contact_force(&contact, u, force);
+                contact_accept(&contact);
             }
             assert_int_equal(contact.pressure[0] > 0.0, held[leg]);
         }
@@ -296,7 +350,7 @@ static void wrong_side(void **state)
     }
     GOOD(rigid_build(2, 1, corners, false, &surface, &error));
     assert_int_equal(
-        contact_build(&contact_nodes.averages, contact_nodes.X, 2, &surface, 1.0, &contact, &error),
+        contact_build(&contact_nodes.averages, NULL, contact_nodes.X, 2, &surface, 1.0, &contact, &error),
         STATUS_INPUT);
     assert_string_equal(error.text, "contact: node 3 starts 0.25 m behind the rigid surface: state its other "
                                     "side, or leave the node's facets out");
@@ -307,7 +361,7 @@ static void wrong_side(void **state)
         contact_nodes.X[2 * a + 1] = 1.0;
     }
     GOOD(rigid_build(2, 1, corners, false, &surface, &error));
-    GOOD(contact_build(&contact_nodes.averages, contact_nodes.X, 2, &surface, 1.0, &contact, &error));
+    GOOD(contact_build(&contact_nodes.averages, NULL, contact_nodes.X, 2, &surface, 1.0, &contact, &error));
     double u[NODES * 3] = {0.0}, force[NODES * 3] = {0.0};
     contact_force(&contact, u, force);
     NEAR_TO(force[1], 0.04 * 0.1, 1e-15);
@@ -317,7 +371,7 @@ static void wrong_side(void **state)
         contact_nodes.normal[1] = back ? 1.0 : -1.0;
         GOOD(rigid_build(2, 1, corners, false, &surface, &error));
         enum status status =
-            contact_build(&contact_nodes.averages, contact_nodes.X, 2, &surface, 1.0, &contact, &error);
+            contact_build(&contact_nodes.averages, NULL, contact_nodes.X, 2, &surface, 1.0, &contact, &error);
         assert_int_equal(status, back ? STATUS_INPUT : STATUS_OK);
         contact_free(&contact);
     }
@@ -328,10 +382,15 @@ static void wrong_side(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(force_is_gradient), cmocka_unit_test(smooth_forces),
-        cmocka_unit_test(balance),           cmocka_unit_test(skipping),
-        cmocka_unit_test(augmentation),      cmocka_unit_test(frictionless),
-        cmocka_unit_test(round_the_rim),     cmocka_unit_test(curved_boundary),
+        cmocka_unit_test(force_is_gradient),
+        cmocka_unit_test(smooth_forces),
+        cmocka_unit_test(balance),
+        cmocka_unit_test(skipping),
+        cmocka_unit_test(evaluations_change_no_state),
+        cmocka_unit_test(augmentation),
+        cmocka_unit_test(frictionless),
+        cmocka_unit_test(round_the_rim),
+        cmocka_unit_test(curved_boundary),
         cmocka_unit_test(wrong_side),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

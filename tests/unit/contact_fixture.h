@@ -106,8 +106,8 @@ static inline struct contact built(const struct contact_nodes *contact_nodes, st
 {
     struct contact contact;
     struct error error;
-    GOOD(contact_build(&contact_nodes->averages, contact_nodes->X, contact_nodes->dim, &surface, stiffness,
-                       &contact, &error));
+    GOOD(contact_build(&contact_nodes->averages, NULL, contact_nodes->X, contact_nodes->dim, &surface,
+                       stiffness, &contact, &error));
     assert_null(surface.vertex);
     return contact;
 }

@@ -95,6 +95,8 @@ static void moved_together(void **state)
             contact_force(&rests, u, force);
             contact_move(&moves, factor);
             contact_force(&moves, turned, other);
+            contact_accept(&rests);
+            contact_accept(&moves);
             for (int n = 0; n < NODES; n++) {
                 rigid_place_turn(&place, dim, force + n * dim);
             }
@@ -216,28 +218,80 @@ static void gaps_of_this_state(void **state)
     contact_free(&contact);
 }
 
-/* Points press with the penalty alone, and begin where they are. */
-static void points_without_multipliers(void **state)
+/* Points in pairs on edges of a line of nodes: multipliers are at the nodes, and an augmentation makes them
+ * the mean of what points beneath them press. Where all press the next one closes the gap of a wall that
+ * yields. */
+static void multipliers_of_hats(void **state)
 {
     (void)state;
-    struct contact_nodes contact_nodes;
+    enum { HATS = CONTACT_NODES / 2 + 1 };
+    struct contact_nodes points;
     struct error error;
     double place[CONTACT_NODES * 2], u[NODES * 3] = {0.0}, force[NODES * 3] = {0.0};
-    make_particles(&contact_nodes, 2, 0.5);
-    for (int a = 0; a < CONTACT_NODES; a++) {
-        place[2 * a] = contact_nodes.X[2 * a] = 0.01 * a;
-        place[2 * a + 1] = contact_nodes.X[2 * a + 1] = 0.0;
+    double area[HATS], normal[HATS * 2] = {0.0}, share[HATS * 4];
+    int32_t node[HATS];
+    int64_t sample_ptr[HATS + 1] = {0}, sample_point[HATS * 4];
+    struct boundary_averages hats = {.count = HATS,
+                                     .node = node,
+                                     .area = area,
+                                     .normal = normal,
+                                     .sample_ptr = sample_ptr,
+                                     .sample_point = sample_point,
+                                     .sample_share = share};
+    make_particles(&points, 2, 0.5);
+    points.averages.position = place;
+    for (int p = 0; p < CONTACT_NODES; p++) { /* each edge is 1 long, its points at 1/4 and 3/4 */
+        points.X[2 * p] = place[2 * p] = p / 2 + 0.25 + 0.5 * (p % 2);
+        points.X[2 * p + 1] = place[2 * p + 1] = 0.0;
+        points.normal[2 * p + 1] = 1.0;
+        u[2 * p + 1] = 0.1;
     }
-    contact_nodes.averages.position = place;
-    struct rigid_surface surface = make_shell(2, 4, 0.5, false);
+    for (int a = 0; a < HATS; a++) {
+        int64_t at = sample_ptr[a];
+        node[a] = CONTACT_NODES + a;
+        area[a] = 0.0;
+        points.X[2 * node[a]] = a;
+        points.X[2 * node[a] + 1] = 0.0;
+        normal[2 * a + 1] = 1.0;
+        for (int p = 2 * a - 2; p < 2 * a + 2; p++) {
+            if (p >= 0 && p < CONTACT_NODES) {
+                sample_point[at] = p;
+                share[at] = 0.5 * (1.0 - fabs(place[2 * p] - a));
+                area[a] += share[at++];
+            }
+        }
+        for (int64_t s = sample_ptr[a]; s < at; s++) {
+            share[s] /= area[a];
+        }
+        sample_ptr[a + 1] = at;
+    }
+    static const double corners[] = {10, 0.05, -10, 0.05};
+    struct rigid_surface wall;
     struct contact contact;
-    GOOD(contact_build_points(&contact_nodes.averages, 2, &surface, 100.0, &contact, &error));
-    for (int round = 0; round < 3; round++) {
-        u[0] = 0.6;
-        contact_force(&contact, u, force);
-        NEAR_TO(contact.pressure[0], 10.0, 1e-12);
-        NEAR_TO(contact_augment(&contact, 0.0), 0.1, 1e-14);
+    GOOD(rigid_build(2, 1, corners, true, &wall, &error));
+    GOOD(contact_build(&points.averages, &hats, points.X, 2, &wall, 100.0, &contact, &error));
+    contact_force(&contact, u, force);
+    NEAR_TO(contact_miss(&contact), 0.05, 1e-15);
+    contact_augment(&contact);
+    for (int a = 0; a < HATS; a++) {
+        NEAR_TO(contact.multiplier[a], 5.0, 1e-13);
+        NEAR_TO(contact_node(&contact, a).gap, -0.05, 1e-15);
+        NEAR_TO(contact_node(&contact, a).pressed, 1.0, 1e-15);
     }
+    for (int p = 0; p < CONTACT_NODES; p++) { /* hats sum to 1; and both sides of the wall count */
+        NEAR_TO(contact.held[p], 5.0, 1e-13);
+        u[2 * p + 1] = p < 6 ? 0.05 : p == 6 ? 0.07 : 0.2 * (p > 8);
+    }
+    memset(force, 0, sizeof force);
+    contact_force(&contact, u, force);
+    NEAR_TO(contact.pressure[0], 5.0, 1e-13);
+    NEAR_TO(contact.pressure[6], 7.0, 1e-13);
+    NEAR_TO(contact.pressure[7], 0.0, 1e-13);
+    NEAR_TO(force[1], -2.5, 1e-13);
+    contact_augment(&contact);
+    NEAR_TO(contact.multiplier[0], 5.0, 1e-13);
+    /* Hat 3: points 4 to 7 with shares 1/8, 3/8, 3/8, 1/8 press 5, 5, 7, 0, where 5 was held. */
+    NEAR_TO(contact.multiplier[3], 5.0 + 0.375 * 2.0 - 0.125 * 5.0, 1e-13);
     contact_free(&contact);
 }
 
@@ -249,7 +303,7 @@ int main(void)
         cmocka_unit_test(work_of_the_surface),
         cmocka_unit_test(moment),
         cmocka_unit_test(gaps_of_this_state),
-        cmocka_unit_test(points_without_multipliers),
+        cmocka_unit_test(multipliers_of_hats),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -414,8 +414,8 @@ static void bounce(void **state)
     assert_true(averages != NULL && l.system.contacts != NULL);
     *averages = lattice_averages(&l, 1u << 2);
     GOOD(rigid_build(2, 1, corners, true, &floor, &error));
-    GOOD(contact_build(averages, l.system.X, 2, &floor, 4000 / 0.02, l.system.contacts, &error));
-    l.system.contact_averages = averages;
+    GOOD(contact_build(averages, NULL, l.system.X, 2, &floor, 4000 / 0.02, l.system.contacts, &error));
+    l.system.contact_points = averages;
     l.system.contact_count = 1;
     double *u = lattice_vector(&l), *v = lattice_vector(&l), p[3], L[3];
     for (int64_t n = 0; n < l.system.node_count; n++) {

@@ -115,25 +115,7 @@ static enum status try_contact(struct error *error)
         status = rigid_build(2, 1, corners, false, &surface, error);
     }
     if (status == STATUS_OK) {
-        status = contact_build(&averages, sample.cloud.x, 2, &surface, 1.0, &contact, error);
-    }
-    contact_free(&contact);
-    boundary_averages_free(&averages);
-    return status;
-}
-
-static enum status try_points(struct error *error)
-{
-    static const double corners[] = {1, -1, -1, -1};
-    struct boundary_averages averages;
-    struct rigid_surface surface;
-    struct contact contact = {0};
-    enum status status = build_averages(&averages, error);
-    if (status == STATUS_OK) {
-        status = rigid_build(2, 1, corners, false, &surface, error);
-    }
-    if (status == STATUS_OK) {
-        status = contact_build_points(&averages, 2, &surface, 1.0, &contact, error);
+        status = contact_build(&averages, NULL, sample.cloud.x, 2, &surface, 1.0, &contact, error);
     }
     contact_free(&contact);
     boundary_averages_free(&averages);
@@ -183,7 +165,6 @@ static void contacts(void **state)
 {
     (void)state;
     fail_each(try_contact, 30);
-    fail_each(try_points, 30);
 }
 
 static void folds_of_bodies(void **state)

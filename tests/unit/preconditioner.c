@@ -197,7 +197,7 @@ static void contacts_are_followed(void **state)
     struct boundary_averages averages = lattice_averages(&s.l, 1u << 3);
     struct contact contact;
     GOOD(rigid_build(2, 1, corners, false, &plate, &error));
-    GOOD(contact_build(&averages, s.l.system.X, 2, &plate, 1e6, &contact, &error));
+    GOOD(contact_build(&averages, NULL, s.l.system.X, 2, &plate, 1e6, &contact, &error));
     s.l.system.contacts = &contact;
     s.l.system.contact_count = 1;
     measure(&s, true);

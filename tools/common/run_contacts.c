@@ -63,9 +63,6 @@ void run_contacts_judge(struct run *run, double slack)
         const struct contact *contact = &system->contacts[c];
         const struct facet_set *set = &run->model->assembly.contacts[contact->section].facets;
         struct contact_patch patch;
-        if (contact->penalty_only) {
-            continue;
-        }
         tool_check(run->tool, contact_patch_find(contact, set, system->node_count, x, &patch, &error),
                    &error);
         judge_patch(run, contact, &patch, slack);

@@ -56,10 +56,10 @@ static void mark_stopped(const struct run *run, bool *stopped)
     memset(stopped, 0, (size_t)system->node_count * sizeof *stopped);
     for (int64_t c = 0; c < system->contact_count; c++) {
         const struct contact *contact = &system->contacts[c];
-        for (int64_t a = 0; a < contact->count && !contact->penalty_only; a++) {
-            int32_t node = contact->averages->node[a];
-            double area = contact->averages->area[a], length = contact->dim == 2 ? area : sqrt(area);
-            stopped[node] = stopped[node] || contact->gap[a] < near_share * length;
+        const struct boundary_averages *nodes = contact_nodes(contact);
+        for (int64_t a = 0; a < nodes->count; a++) {
+            double area = nodes->area[a], length = contact->dim == 2 ? area : sqrt(area);
+            stopped[nodes->node[a]] |= contact_node(contact, a).gap < near_share * length;
         }
     }
 }

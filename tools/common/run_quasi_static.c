@@ -3,9 +3,6 @@
 #include "approx/quality.h"
 #include "solid/relaxation.h"
 
-/* Augmentations end when they change little: what is left then is told from so many times what is allowed. */
-static const double most_penetration = 10.0;
-
 /* A verdict other than converged ends the run: nothing half-done passes for a result. */
 static void judge(struct run *run, const struct relaxation_report *report)
 {
@@ -19,7 +16,7 @@ static void judge(struct run *run, const struct relaxation_report *report)
             tool_note(run->tool, "%s: estimated error %.2g, not %.2g: round-off admits no less", scene->path,
                       report->error, scene->solver.tolerance);
         }
-        if (report->penetration > most_penetration * report->penetration_allowed) {
+        if (report->penetration > report->penetration_allowed) {
             tool_note(run->tool, "%s: contacts give way by %.2g m, not %.2g m: a finer cloud there may help",
                       scene->path, report->penetration, report->penetration_allowed);
         }

@@ -169,15 +169,17 @@ static void put_gaps(const struct run *run, const struct moment *moment)
     int dim = run->scene->dim, cols = dim + 2;
     int64_t rows = 0, at = 0;
     for (int64_t c = 0; c < system->contact_count; c++) {
-        rows += system->contacts[c].penalty_only ? 0 : system->contacts[c].count;
+        rows += contact_nodes(&system->contacts[c])->count;
     }
     double *values = run_new_values(run, rows * cols);
     for (int64_t c = 0; c < system->contact_count; c++) {
         const struct contact *contact = &system->contacts[c];
-        for (int64_t a = 0; a < contact->count && !contact->penalty_only; a++, at++) {
-            memcpy(values + at * cols, contact->averages->position + a * dim, (size_t)dim * sizeof *values);
-            values[at * cols + dim] = contact->gap[a];
-            values[at * cols + dim + 1] = contact->pressure[a];
+        const struct boundary_averages *nodes = contact_nodes(contact);
+        for (int64_t a = 0; a < nodes->count; a++, at++) {
+            struct contact_node node = contact_node(contact, a);
+            memcpy(values + at * cols, nodes->position + a * dim, (size_t)dim * sizeof *values);
+            values[at * cols + dim] = node.gap;
+            values[at * cols + dim + 1] = node.pressure;
         }
     }
     put(run, moment, "gaps", rows, cols,

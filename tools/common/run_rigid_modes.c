@@ -65,7 +65,7 @@ static enum status bodies_find(const struct model *model, struct bodies *bodies,
         bodies->cell[bodies->of_node[cells->node[c * (cells->dim + 1)]]] = c;
     }
     for (int64_t c = 0; c < system->contact_count; c++) {
-        const struct boundary_averages *averages = &system->contact_averages[c];
+        const struct boundary_averages *averages = &system->contact_points[c];
         for (int64_t a = 0; a < averages->count; a++) {
             bodies->touches[bodies->of_node[averages->node[a]]] = true;
         }

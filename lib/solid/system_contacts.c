@@ -1,0 +1,39 @@
+/* The contacts of a system, all at once. */
+#include "solid/system.h"
+
+#include "base/clock.h"
+
+#include <math.h>
+
+void system_measure_contacts(struct solid_system *system, const double *u, bool all)
+{
+    double started = clock_seconds();
+    for (int64_t c = 0; c < system->contact_count; c++) {
+        contact_move(&system->contacts[c], system->factor);
+        contact_measure(&system->contacts[c], u, all);
+    }
+    system->cost.contact += clock_seconds() - started;
+}
+
+void system_accept(struct solid_system *system)
+{
+    for (int64_t c = 0; c < system->contact_count; c++) {
+        contact_accept(&system->contacts[c]);
+    }
+}
+
+void system_augment_contacts(struct solid_system *system)
+{
+    for (int64_t c = 0; c < system->contact_count; c++) {
+        contact_augment(&system->contacts[c]);
+    }
+}
+
+double system_contact_miss(const struct solid_system *system)
+{
+    double miss = 0.0;
+    for (int64_t c = 0; c < system->contact_count; c++) {
+        miss = fmax(miss, contact_miss(&system->contacts[c]));
+    }
+    return miss;
+}
