@@ -99,13 +99,32 @@ done:
     return status;
 }
 
+/* Displacements of measured points. */
+static enum status read_points(const struct place *place, struct scene_displacement *displacement)
+{
+    enum status status = STATUS_OK;
+    TRY(place_only_keys(place, KEYS{"points", "unit", "reach", "model_error", "curve", NULL}));
+    TRY(place_table(place, "points", &displacement->table, &displacement->table_unit));
+    TRY(place_number(place, "reach", range_positive, &displacement->reach));
+    TRY(place_number(place, "model_error", range_positive, &displacement->model_error));
+    TRY(place_curve(place, "curve", &displacement->curve));
+    displacement->kind = SCENE_POINTS;
+done:
+    return status;
+}
+
 static enum status read_displacement(const struct place *place, struct scene *scene)
 {
     struct scene_displacement *displacement = &scene->displacements[scene->displacement_count - 1];
     enum status status = STATUS_OK;
-    TRY(place_only_keys(place,
-                        KEYS{"facets", "nodes", "table", "unit", "components", "normal", "curve", NULL}));
-    TRY(place_require_one(place, KEYS{"facets", "nodes", NULL}));
+    TRY(place_only_keys(place, KEYS{"facets", "nodes", "points", "table", "unit", "components", "normal",
+                                    "reach", "model_error", "curve", NULL}));
+    TRY(place_require_one(place, KEYS{"facets", "nodes", "points", NULL}));
+    if (place_has(place, "points")) {
+        return read_points(place, displacement);
+    }
+    TRY(place_forbid(place, "reach", "it goes with points"));
+    TRY(place_forbid(place, "model_error", "it goes with points"));
     TRY(place_require_one(place, KEYS{"table", "components", "normal", NULL}));
     TRY(place_names(place, "facets", &displacement->facets));
     TRY(place_names(place, "nodes", &displacement->nodes));

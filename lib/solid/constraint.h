@@ -71,6 +71,11 @@ MUST_CHECK enum status constraint_build(const struct constraint_rows *rows, int6
                                         struct error *error);
 void constraint_free(struct constraint *constraint);
 
+/* G M^-1 G^T alone, dropping rows of pivots below `least`, see envelope_factorise. */
+MUST_CHECK enum status constraint_factorise(const struct constraint_rows *rows, int64_t node_count,
+                                            const double *mass, double least, struct envelope *factor,
+                                            struct error *error);
+
 /* u += M^-1 G^T multiplier such that G u = target * factor[curve]. With factor == NULL the targets are zero.
  */
 void constraint_project(struct constraint *constraint, const double *factor, double *u);

@@ -218,35 +218,6 @@ void system_add_loads(const struct solid_system *system, const double *u, double
     }
 }
 
-double system_penalty_force(const struct solid_system *system, int64_t r, const double *u)
-{
-    const struct constraint_rows *penalties = &system->penalties;
-    return system->penalty_stiffness[r] * (penalties->target[r] * system->factor[penalties->curve[r]] -
-                                           constraint_rows_value(penalties, r, u));
-}
-
-void system_add_penalties(struct solid_system *system, const double *u, double *force)
-{
-    const struct constraint_rows *penalties = &system->penalties;
-    double *pull = system->penalty_force;
-    constraint_rows_values(penalties, u, pull);
-    for (int64_t r = 0; r < penalties->count; r++) {
-        double target = penalties->target[r] * system->factor[penalties->curve[r]];
-        pull[r] = system->penalty_stiffness[r] * (target - pull[r]);
-    }
-    constraint_rows_spread(penalties, pull, NULL, force);
-}
-
-double system_penalty_energy(const struct solid_system *system, const double *u)
-{
-    double energy = 0.0;
-    for (int64_t r = 0; r < system->penalties.count; r++) {
-        double pull = system_penalty_force(system, r, u);
-        energy += 0.5 * pull * pull / system->penalty_stiffness[r];
-    }
-    return energy;
-}
-
 static void negate(const struct solid_system *system, double *force)
 {
     for (int64_t i = 0; i < system->node_count * system->dim; i++) {
@@ -329,6 +300,9 @@ double system_longest_way(const struct solid_system *system)
     double longest = 0.0;
     for (int64_t r = 0; r < system->rows.count; r++) {
         longest = fmax(longest, fabs(system->rows.target[r]));
+    }
+    for (int64_t r = system->penalties.count - system->spring_count; r < system->penalties.count; r++) {
+        longest = fmax(longest, fabs(system->penalties.target[r]));
     }
     for (int64_t c = 0; c < system->contact_count; c++) {
         const struct contact *contact = &system->contacts[c];

@@ -68,6 +68,7 @@ struct solid_system {
      * quadrature points of the constrained facets hold the field to the same targets. Their forces vanish
      * where the field meets these, so that a linear field stays exact. */
     struct constraint_rows penalties;
+    int64_t spring_count; /* the last of the penalties: they hold measured points and back no condition */
     double *penalty_stiffness; /* penalties.count, N/m (2D: N/m2) */
     double *penalty_force;     /* penalties.count: scratch */
     struct load_curve *curves;
@@ -112,6 +113,12 @@ void system_resist(struct solid_system *system, const double *u, double *force);
 /* Forces of the constraint penalties, added to force; and their energy. */
 void system_add_penalties(struct solid_system *system, const double *u, double *force);
 double system_penalty_energy(const struct solid_system *system, const double *u);
+
+/* Append a constraint penalty; the arguments are those of constraint_rows_add, and its stiffness, N/m. */
+MUST_CHECK enum status system_append_penalty(struct solid_system *system, const struct average *average,
+                                             const double *direction, double target, int32_t curve,
+                                             int32_t section, int32_t node, double stiffness,
+                                             struct error *error);
 
 /* Force of constraint penalty r at u along its direction, N (2D: N/m). */
 double system_penalty_force(const struct solid_system *system, int64_t r, const double *u);

@@ -49,6 +49,8 @@ void model_free(struct model *model);
 /* The parts of model_build, in their own files. */
 MUST_CHECK enum status model_add_constraints(const struct model_input *input, struct solid_system *system,
                                              struct error *note, struct error *error);
+MUST_CHECK enum status model_add_points(const struct model_input *input, struct solid_system *system,
+                                        struct error *note, struct error *error);
 MUST_CHECK enum status model_add_loads(const struct model_input *input, struct solid_system *system,
                                        struct error *error);
 MUST_CHECK enum status model_add_contacts(const struct model_input *input, struct solid_system *system,

@@ -159,6 +159,7 @@ enum status model_build(const struct stream *stream, const struct scene *scene, 
     system->node_phi = model->input.node_phi;
     TRY(lump_mass(&model->input, system, error));
     TRY(model_add_constraints(&model->input, system, &model->note, error));
+    TRY(model_add_points(&model->input, system, &model->note, error));
     TRY(NEW_ARRAY(&model->condition_names, scene->displacement_count, error));
     for (int64_t i = 0; i < scene->displacement_count; i++) {
         model->condition_names[i] = scene->displacements[i].label.name;

@@ -13,23 +13,9 @@ static const double constraint_penalty_factor = 10.0;
 static enum status add_penalty(const struct prescription *p, const struct boundary_averages *points,
                                int64_t a, const double *direction, double target, struct error *error)
 {
-    struct solid_system *system = p->system;
-    int64_t at = points->ptr[a];
-    enum status status =
-        constraint_rows_add(&system->penalties, points->ptr[a + 1] - at, points->idx + at, points->phi + at,
-                            direction, target, p->curve, p->number, points->node[a], error);
-    if (status != STATUS_OK) {
-        return status;
-    }
-    double *stiffness = array_grow(system->penalty_stiffness, system->penalties.count, sizeof *stiffness);
-    system->penalty_stiffness = stiffness != NULL ? stiffness : system->penalty_stiffness;
-    double *pull = array_grow(system->penalty_force, system->penalties.count, sizeof *pull);
-    system->penalty_force = pull != NULL ? pull : system->penalty_force;
-    if (stiffness == NULL || pull == NULL) {
-        return fail_memory(error, "springs");
-    }
-    stiffness[system->penalties.count - 1] = p->modulus * points->area[a] / p->layer;
-    return STATUS_OK;
+    struct average average = average_of_boundary(points, a);
+    return system_append_penalty(p->system, &average, direction, target, p->curve, p->number, points->node[a],
+                                 p->modulus * points->area[a] / p->layer, error);
 }
 
 static enum status add_row(const struct prescription *p, const struct boundary_averages *averages, int64_t a,
@@ -320,7 +306,7 @@ enum status model_add_constraints(const struct model_input *input, struct solid_
                                      .nodal_constraints = &nodal_constraints,
                                      .held = &held,
                                      .number = (int32_t)i};
-            if (prescription_directions(&p) == directions) {
+            if (p.section->kind != SCENE_POINTS && prescription_directions(&p) == directions) {
                 TRY(add_section(&p, error));
             }
         }

@@ -75,6 +75,9 @@ void run_drop_frames(struct stream *stream);
 /* Zeros; exits when there is no memory. */
 double *run_new_values(const struct run *run, int64_t count);
 
+/* Of a verbose report: how far the springs of measured points are from what was measured. */
+void run_report_springs(const struct run *run);
+
 /* End of a verbose report: what each part of the scene cost, s and share of the whole. */
 void run_report_cost(const struct run *run);
 

@@ -87,5 +87,6 @@ void run_quasi_static(struct run *run)
                 (long long)report.loading_steps, (long long)report.force_evaluations);
         fprintf(stderr, "estimated error\t%.3g\nfrequency ratio\t%.5g\nleast J\t%.4g\n", report.error,
                 report.largest_frequency / report.lowest_frequency, report.least_jacobian);
+        run_report_springs(run);
     }
 }
