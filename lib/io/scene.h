@@ -15,7 +15,8 @@
  * - [contact NAME]: facets = GROUPS; rigid = FILE; unit; side = left|right (2D), front|back (3D); stiffness
  *   (Pa/m); the motion of the surface: angle (degrees), axis_point (m), axis (3D), translation (m), curve,
  *   angle_curve
- * - [pressure NAME]: facets = GROUPS; value (Pa, positive pushes inward); curve
+ * - [pressure NAME]: facets = GROUPS; value (Pa, positive pushes inward), or of a fluid: density (kg/m3),
+ * level = X,Y[,Z] (m), side = below (default)|above|both, gravity (m/s2); curve
  * - [traction NAME]: facets = GROUPS; components (Pa); curve
  * - [force NAME]: nodes = SETS; components (N on each node; in 2D N per metre of thickness); curve
  * - [initial]: table = FILE; unit (dynamic)
@@ -119,13 +120,22 @@ struct scene_contact {
     struct scene_curve curve, angle_curve;
 };
 
+/* The part of a fluid that presses: below its level, above (where it hangs: the pressure is negative), or
+ * all.
+ */
+enum scene_level_side { SCENE_BELOW, SCENE_ABOVE, SCENE_BELOW_AND_ABOVE };
+
 /* A pressure, traction or force. */
 struct scene_load {
     struct scene_label label;
     struct name_list facets; /* pressure, traction: at least one */
     struct name_list nodes;  /* force: at least one node set */
-    double pressure;         /* pressure: Pa, positive pushes inward */
-    double components[3];    /* traction: Pa; force: N on each node (2D: N/m) */
+    double pressure;         /* pressure: Pa, positive pushes inward; of a fluid 0 */
+    double density;          /* pressure: of a fluid, kg/m3; 0: none */
+    double level[3];         /* of a fluid: a place at its level, m */
+    double gravity[3];       /* of a fluid: m/s2; zeros: that of the scene */
+    enum scene_level_side level_side;
+    double components[3]; /* traction: Pa; force: N on each node (2D: N/m) */
     struct scene_curve curve;
 };
 

@@ -138,11 +138,8 @@ static enum status read_displacement(const struct place *place, struct scene *sc
     } else if (place_has(place, "components")) {
         displacement->kind = SCENE_COMPONENTS;
     }
-    int free_count = 0;
-    for (int i = 0; i < scene->dim; i++) {
-        free_count += displacement->is_free[i];
-    }
-    if (free_count == scene->dim) {
+    const bool *is_free = displacement->is_free;
+    if (is_free[0] && is_free[1] && is_free[scene->dim - 1]) {
         TRY(place_fail(place, "components", "all are free: nothing is prescribed"));
     }
 done:
@@ -222,15 +219,39 @@ done:
     return status;
 }
 
+/* A pressure that grows with the depth below the level of a fluid. */
+static enum status read_fluid(const struct place *place, const struct scene *scene, struct scene_load *load)
+{
+    static const char *const sides[] = {"below", "above", "both", NULL};
+    int side = SCENE_BELOW;
+    enum status status;
+    TRY(place_require(place, "level", "give a place at the level of the fluid, m"));
+    TRY(place_number(place, "density", range_positive, &load->density));
+    TRY(place_vector(place, "level", scene->dim, load->level, NULL));
+    TRY(place_choice(place, "side", sides, &side));
+    TRY(place_vector(place, "gravity", scene->dim, load->gravity, NULL));
+    load->level_side = (enum scene_level_side)side;
+done:
+    return status;
+}
+
 static enum status read_pressure(const struct place *place, struct scene *scene)
 {
     struct scene_load *load = &scene->pressures[scene->pressure_count - 1];
     enum status status = STATUS_OK;
-    TRY(place_only_keys(place, KEYS{"facets", "value", "curve", NULL}));
+    TRY(place_only_keys(place,
+                        KEYS{"facets", "value", "density", "level", "side", "gravity", "curve", NULL}));
     TRY(place_require(place, "facets", "name the facet groups pressed"));
-    TRY(place_require(place, "value", "give the pressure in Pa"));
+    TRY(place_require_one(place, KEYS{"value", "density", NULL}));
     TRY(place_names(place, "facets", &load->facets));
     TRY(place_number(place, "value", range_any, &load->pressure));
+    if (place_has(place, "density")) {
+        TRY(read_fluid(place, scene, load));
+    } else {
+        for (const char *const *key = KEYS{"level", "side", "gravity", NULL}; *key != NULL; key++) {
+            TRY(place_forbid(place, *key, "it goes with density"));
+        }
+    }
     TRY(place_curve(place, "curve", &load->curve));
 done:
     return status;
@@ -282,7 +303,7 @@ static enum status read_output(const struct place *place, struct scene *scene)
     static const char *const folds[] = {"refused", "allowed", NULL};
     struct scene_output *output = &scene->output;
     int allowed = 0;
-    enum status status = STATUS_OK;
+    enum status status;
     TRY(place_only_keys(place,
                         KEYS{"frames", "interval", "stress", "strain", "pressure", "volume_ratio", "energy",
                              "reactions", "moments", "moments_about", "gaps", "folds", NULL}));

@@ -174,9 +174,26 @@ static void corner_position(const struct solid_system *system, const struct boun
     }
 }
 
+/* The pressure at quadrature point p of the deformed facets. */
+static double pressure_at(const struct solid_system *system, const struct pressure_load *load, int64_t p,
+                          const double *u)
+{
+    double x[3], depth = 0.0;
+    struct average average = average_of_boundary(&load->points, p);
+    if (!load->is_fluid) {
+        return load->pressure;
+    }
+    average_take(&average, system->dim, u, x);
+    for (int a = 0; a < system->dim; a++) {
+        depth += load->weight[a] * (load->points.position[p * system->dim + a] + x[a] - load->level[a]);
+    }
+    bool presses = load->part == FLUID_ALL || (depth > 0.0) == (load->part == FLUID_BELOW);
+    return presses ? depth : 0.0;
+}
+
 /* Forces of a following pressure: those on a deformed facet are shared by its quadrature points as its area
  * at rest is. */
-static void add_pressure(const struct solid_system *system, const struct pressure_load *load, double pressure,
+static void add_pressure(const struct solid_system *system, const struct pressure_load *load, double factor,
                          const double *u, double *residual)
 {
     int dim = system->dim;
@@ -192,7 +209,7 @@ static void add_pressure(const struct solid_system *system, const struct pressur
             at_rest += load->points.area[p];
         }
         for (int64_t p = f * each; p < (f + 1) * each; p++) {
-            double share[3];
+            double share[3], pressure = factor * pressure_at(system, load, p, u);
             for (int a = 0; a < dim; a++) {
                 share[a] = -pressure * area[a] * load->points.area[p] / at_rest;
             }
@@ -214,7 +231,7 @@ void system_add_loads(const struct solid_system *system, const double *u, double
     }
     for (int64_t l = 0; l < system->pressure_count; l++) {
         const struct pressure_load *load = &system->pressures[l];
-        add_pressure(system, load, load->pressure * system->factor[load->curve], u, force);
+        add_pressure(system, load, system->factor[load->curve], u, force);
     }
 }
 

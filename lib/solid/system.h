@@ -17,6 +17,9 @@ struct dead_load {
     int32_t section; /* the caller's label */
 };
 
+/* Which part of a fluid presses: below its level, above, where it pulls, or all. */
+enum fluid_part { FLUID_BELOW, FLUID_ABOVE, FLUID_ALL };
+
 /* A pressure on facets that follows the deformation: it acts on the deformed facets, whose corners move with
  * the field at the nodes, and is transferred by the facets' own quadrature, as the cells' gradients are made,
  * so that under a constant pressure the linear patch test holds. */
@@ -26,8 +29,12 @@ struct pressure_load {
     struct boundary_averages corners; /* node values on the set: where corners are */
     int32_t *corner;                  /* facet_count * dim: the entry of each corner */
     struct boundary_averages
-        points;      /* values at the quadrature points, as many for each facet: what carries it */
-    double pressure; /* Pa, positive pushes inward */
+        points;       /* values at the quadrature points, as many for each facet: what carries it */
+    double pressure;  /* Pa, positive pushes inward */
+    bool is_fluid;    /* then instead: */
+    double weight[3]; /* of a fluid, density times gravity, N/m3: the pressure grows along it, */
+    double level[3];  /* from 0 at the level of this place, m */
+    enum fluid_part part;
     int32_t curve;
 };
 

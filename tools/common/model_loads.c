@@ -1,5 +1,6 @@
 #include "model.h"
 
+#include <math.h>
 #include <stdlib.h>
 
 /* Append an empty dead load. */
@@ -125,6 +126,27 @@ done:
     return status;
 }
 
+/* The fluid of a section that has one. */
+static enum status set_fluid(const struct model_input *input, const struct scene_load *load,
+                             struct pressure_load *pressure, struct error *error)
+{
+    static const enum fluid_part parts[] = {
+        [SCENE_BELOW] = FLUID_BELOW, [SCENE_ABOVE] = FLUID_ABOVE, [SCENE_BELOW_AND_ABOVE] = FLUID_ALL};
+    double length = hypot(hypot(load->gravity[0], load->gravity[1]), load->gravity[2]);
+    const double *gravity = length > 0.0 ? load->gravity : input->scene->gravity;
+    if (!(hypot(hypot(gravity[0], gravity[1]), gravity[2]) > 0.0)) {
+        return scene_fail(error, STATUS_INPUT, input->scene, &load->label,
+                          "density: a fluid without weight: give gravity here or in [scene]");
+    }
+    for (int a = 0; a < 3; a++) {
+        pressure->weight[a] = load->density * gravity[a];
+        pressure->level[a] = load->level[a];
+    }
+    pressure->is_fluid = true;
+    pressure->part = parts[load->level_side];
+    return STATUS_OK;
+}
+
 static enum status add_pressure(const struct model_input *input, const struct scene_load *load,
                                 struct solid_system *system, struct error *error)
 {
@@ -138,6 +160,9 @@ static enum status add_pressure(const struct model_input *input, const struct sc
     system->pressures = grown;
     struct pressure_load *pressure = &grown[system->pressure_count++];
     *pressure = (struct pressure_load){.pressure = load->pressure};
+    if (load->density > 0.0) {
+        TRY(set_fluid(input, load, pressure, error));
+    }
     TRY(model_facets(input, &load->label, &load->facets, &set, &pressure->facet, error));
     pressure->facet_count = set.count;
     TRY(boundary_nodes_build(&input->face_table, &set, &input->node_lists, input->node_phi,
