@@ -9,7 +9,8 @@ RESULTS := pipelines/results
 RESULT_TABLES := brain2d/compare=brain2d brain3d/compare=brain3d table1/beside=table1 speed-error/speed-error=speed-error \
     speed-error/reach=reach convergence/convergence=convergence hard/hard=hard hard/summary=hard-summary hard/misses=hard-misses \
     estimate/estimate=estimate estimate/summary=estimate-summary foreign/foreign=foreign gallery/phantom=phantom \
-    gallery/indentation=indentation neurosurgery/neurosurgery=neurosurgery
+    gallery/indentation=indentation neurosurgery/neurosurgery=neurosurgery \
+    neurosurgery/resection/neurosurgery=neurosurgery-resection neurosurgery/electrodes/neurosurgery=neurosurgery-electrodes
 
 .PHONY: readme results
 # Only what is newer than the file that is kept.
