@@ -32,12 +32,12 @@ NEURO_SEEN := from the exposed cortex
 else ifeq ($(NEURO_SCENARIO),resection)
 NEURO_NAMES := $(NEURO_INPUT)/resection.tsv
 NEURO_GROUPS := $(NEURO_STEM) -f 'exposed=ball:63.5,16,20,33 and parenchyma|outside' -f 'cortex=parenchyma|outside without stem without exposed'
-NEURO_INSIDE := $$4 == 1
+NEURO_INSIDE := $$4 > 0 && $$4 < 3
 NEURO_MEASURED := -v 'groups=exposed,parenchyma|tumour' -v deviation=0.5
 else ifeq ($(NEURO_SCENARIO),electrodes)
 NEURO_NAMES := $(NEURO_INPUT)/electrodes.tsv
 NEURO_GROUPS := $(NEURO_STEM) -f 'cortex=parenchyma|outside without stem'
-NEURO_INSIDE := $$4 % 2 == 1
+NEURO_INSIDE := $$4 > 0
 else
 $(error NEURO_SCENARIO: $(NEURO_SCENARIO) is none of craniotomy, resection, electrodes)
 endif
