@@ -6,7 +6,7 @@
 #   table1  brain2d  brain3d    as in the papers: approximation, a brain section, the whole brain
 #   hard                        cases with known answers
 #   foreign  voxels             meshes as others make them, label images
-#   neurosurgery                a craniotomy, from a label image to a warped scan
+#   neurosurgery                brain shift, from a label image to a warped scan
 #   gallery  liver  phantom     examples that others can judge, with pictures
 #   convergence  speed-error    error against mesh size, and against time, beside mixed elements and CalculiX
 #   uncertainty                 brain shift with uncertain stiffness; cases of a table: pipelines/sweep

@@ -1,9 +1,11 @@
-# make neurosurgery: a craniotomy from a label image to a warped scan: the shift of a brain (Colin27) predicted from 200 noisy points of the
-# exposed cortex, without and with gravity, against a finer solution
+# make neurosurgery: brain shift from a label image to a warped scan (Colin27): a craniotomy predicted from 200 noisy points of the exposed cortex, a
+# resection with drainage, electrodes; against finer solutions
 #
-# Everything lies in build/out/neurosurgery: neurosurgery.tsv (errors before and after), volumes.tsv, seconds.tsv, pictures. The scan is
-# that of Debian's mricron-data; where it is not installed the label image stands in for it.
-NEURO := $(OUT)/neurosurgery
+# Everything lies in build/out/neurosurgery, and in resection and electrodes there: neurosurgery.tsv (errors before and after), seconds.tsv, a
+# picture; of the craniotomy volumes.tsv as well. The scan is that of Debian's mricron-data; where it is not installed the label image stands
+# in for it. One of them alone: make neurosurgery-one NEURO_SCENARIO=resection.
+NEURO_SCENARIO ?= craniotomy
+NEURO := $(OUT)/neurosurgery$(patsubst %,/%,$(filter-out craniotomy,$(NEURO_SCENARIO)))
 NEURO_INPUT := examples/neurosurgery
 NEURO_LABELS := $(NEURO_INPUT)/colin27_labels.nii.gz
 NEURO_SCAN ?= $(firstword $(wildcard /usr/share/mricron/templates/ch2.nii.gz) $(NEURO_LABELS))
@@ -11,19 +13,50 @@ NEURO_SCRIPTS := pipelines/neurosurgery
 # Spacing of the nodes of the prediction and of the true state.
 NEURO_SPACING ?= 9mm
 NEURO_TRUE_SPACING ?= 7mm
-NEURO_GROUPS := -u mm -f 'stem=ball:0,-41,-65,12' -f 'exposed=ball:63.5,16,20,33' -f 'cortex=all without stem without exposed'
 NEURO_RANDOM := awk -f $(NEURO_SCRIPTS)/random.awk
 NEURO_TIMED := bash $(NEURO_SCRIPTS)/timed.sh
 NEURO_PROGRAMS := $(addprefix $(BUILD)/bin/,voxels groups shapefn mtled interp sample warp mts)
-# What is predicted: from the exposed cortex alone, and knowing as well how the patient lies.
-NEURO_PREDICTIONS := craniotomy position
 NEURO_LOG = 2> $(@:.dat=.log) || { cat $(@:.dat=.log) >&2; false; }
 
-.PHONY: neurosurgery
-neurosurgery: $(addprefix $(NEURO)/,neurosurgery.tsv volumes.tsv seconds.tsv slices.png)
-	@awk -F '\t' '{ printf "%-56s %12s %12s %12s\n", $$1, $$2, $$3, $$4 }' $<
+# What differs: the names of the labels, of parts of the surface, labels that landmarks lie in, the true scene, what is predicted: from what is
+# seen alone, and knowing as well how the patient lies.
+NEURO_STEM := -u mm -f 'stem=ball:0,-41,-65,12'
+ifeq ($(NEURO_SCENARIO),craniotomy)
+NEURO_NAMES := $(NEURO_INPUT)/labels.tsv
+NEURO_GROUPS := $(NEURO_STEM) -f 'exposed=ball:63.5,16,20,33' -f 'cortex=all without stem without exposed'
+NEURO_INSIDE := $$4 > 0
+NEURO_TRUTH := truth
+NEURO_PREDICTIONS := craniotomy position
+NEURO_COLUMNS := from_cortex\twith_gravity
+NEURO_SEEN := from the exposed cortex
+else ifeq ($(NEURO_SCENARIO),resection)
+NEURO_NAMES := $(NEURO_INPUT)/resection.tsv
+NEURO_GROUPS := $(NEURO_STEM) -f 'exposed=ball:63.5,16,20,33 and parenchyma|outside' -f 'cortex=parenchyma|outside without stem without exposed'
+NEURO_INSIDE := $$4 > 0 && $$4 < 3
+NEURO_MEASURED := -v 'groups=exposed,parenchyma|tumour' -v deviation=0.5
+else ifeq ($(NEURO_SCENARIO),electrodes)
+NEURO_NAMES := $(NEURO_INPUT)/electrodes.tsv
+NEURO_GROUPS := $(NEURO_STEM) -f 'cortex=parenchyma|outside without stem'
+NEURO_INSIDE := $$4 > 0
+else
+$(error NEURO_SCENARIO: $(NEURO_SCENARIO) is none of craniotomy, resection, electrodes)
+endif
+NEURO_TRUTH ?= $(NEURO_SCENARIO)_truth
+NEURO_PREDICTIONS ?= $(NEURO_SCENARIO) $(NEURO_SCENARIO)_position
+NEURO_COLUMNS ?= from_points\twith_gravity
+NEURO_SEEN ?= from points
+NEURO_FIRST := $(firstword $(NEURO_PREDICTIONS))
+
+.PHONY: neurosurgery neurosurgery-one
+neurosurgery: neurosurgery-one
+	@$(MAKE) --no-print-directory neurosurgery-one NEURO_SCENARIO=resection
+	@$(MAKE) --no-print-directory neurosurgery-one NEURO_SCENARIO=electrodes
+
+neurosurgery-one: $(addprefix $(NEURO)/,neurosurgery.tsv seconds.tsv slices.png) $(if $(filter craniotomy,$(NEURO_SCENARIO)),$(NEURO)/volumes.tsv)
 	@echo
-	@awk -F '\t' '{ printf "%-18s %12s %12s %12s %12s\n", $$1, $$2, $$3, $$4, $$5 }' $(NEURO)/volumes.tsv
+	@echo '$(NEURO_SCENARIO)'
+	@awk -F '\t' '{ printf "%-56s %12s %12s %12s\n", $$1, $$2, $$3, $$4 }' $<
+	@[ ! -f $(NEURO)/volumes.tsv ] || { echo; awk -F '\t' '{ printf "%-18s %12s %12s %12s %12s\n", $$1, $$2, $$3, $$4, $$5 }' $(NEURO)/volumes.tsv; }
 	@echo
 	@awk -F '\t' '{ printf "%-18s %12s\n", $$1, $$2 }' $(NEURO)/seconds.tsv
 
@@ -39,12 +72,22 @@ $(NEURO)/skull.tsv: $(NEURO_LABELS) $(NEURO_INPUT)/brain.tsv $(NEURO_PROGRAMS)
 	@mkdir -p $(@D)
 	voxels $< -h 6mm -l $(NEURO_INPUT)/brain.tsv --surface 'brain|outside' --gap 2mm > $@
 
-$(NEURO)/true.u.dat: $(NEURO_LABELS) $(NEURO_INPUT)/labels.tsv $(NEURO)/truth.scene $(NEURO)/skull.tsv $(NEURO_PROGRAMS)
-	(voxels $< -h $(NEURO_TRUE_SPACING) -l $(NEURO_INPUT)/labels.tsv | groups $(NEURO_GROUPS) | shapefn | \
-	    mtled -v $(NEURO)/truth.scene) > $@ $(NEURO_LOG)
+$(NEURO)/true.u.dat: $(NEURO_LABELS) $(NEURO_NAMES) $(NEURO)/$(NEURO_TRUTH).scene $(NEURO)/skull.tsv $(NEURO_PROGRAMS)
+	(voxels $< -h $(NEURO_TRUE_SPACING) -l $(NEURO_NAMES) | groups $(NEURO_GROUPS) | shapefn | \
+	    mtled -v $(NEURO)/$(NEURO_TRUTH).scene) > $@ $(NEURO_LOG)
 
+ifeq ($(NEURO_SCENARIO),electrodes)
+# Contacts of twelve electrodes that lie in the brain.
+$(NEURO)/measured.tsv: $(NEURO)/true.u.dat $(NEURO_LABELS) $(NEURO_SCRIPTS)/electrodes.awk $(NEURO_SCRIPTS)/noisy.awk $(NEURO_SCRIPTS)/random.awk $(NEURO_PROGRAMS)
+	awk -f $(NEURO_SCRIPTS)/electrodes.awk > $(@:.tsv=.all)
+	sample -i nearest -p $(@:.tsv=.all) -u mm $(NEURO_LABELS) | awk '!/^#/ && ($(NEURO_INSIDE)) && n < 200 { n++; print $$1, $$2, $$3 }' > $(@:.tsv=.places)
+	interp -f u -p $(@:.tsv=.places) -u mm $< | mts print u - > $(@:.tsv=.moved)
+	$(NEURO_RANDOM) -f $(NEURO_SCRIPTS)/noisy.awk -v noise=0.5 $(@:.tsv=.places) $(@:.tsv=.moved) > $@
+else
 $(NEURO)/measured.tsv: $(NEURO)/true.u.dat $(NEURO_SCRIPTS)/measured.awk $(NEURO_SCRIPTS)/random.awk pipelines/stream.awk
-	$(NEURO_RANDOM) -f pipelines/stream.awk -f $(NEURO_SCRIPTS)/measured.awk -v field=$< -v points=200 -v noise=0.5 > $@
+	$(NEURO_RANDOM) -f pipelines/stream.awk -f $(NEURO_SCRIPTS)/measured.awk -v field=$< -v points=200 -v noise=0.5 \
+	    $(NEURO_MEASURED) > $@
+endif
 
 # ---- prediction ------------------------------------------------------------------------------------------------------
 
@@ -54,14 +97,14 @@ $(NEURO)/exposed.tsv: $(NEURO)/measured.tsv $(NEURO_SCRIPTS)/points.awk $(NEURO_
 	awk -f $(NEURO_SCRIPTS)/points.awk $< | interp -f u -p $(@:.tsv=.places) -u mm -b mls1 -R 15mm > $(@:.tsv=.smooth)
 	paste $(@:.tsv=.places) <(mts print u $(@:.tsv=.smooth) | awk '{ print 1e3 * $$1, 1e3 * $$2, 1e3 * $$3 }') > $@
 
-$(NEURO)/predicted.body.mts: $(NEURO_LABELS) $(NEURO_INPUT)/labels.tsv $(NEURO_PROGRAMS)
+$(NEURO)/predicted.body.mts: $(NEURO_LABELS) $(NEURO_NAMES) $(NEURO_PROGRAMS)
 	@mkdir -p $(@D)
-	$(NEURO_TIMED) $(@:.mts=.seconds) "voxels $< -h $(NEURO_SPACING) -l $(NEURO_INPUT)/labels.tsv | groups $(NEURO_GROUPS) > $@"
+	$(NEURO_TIMED) $(@:.mts=.seconds) "voxels $< -h $(NEURO_SPACING) -l $(NEURO_NAMES) | groups $(NEURO_GROUPS) > $@"
 
 $(NEURO)/predicted.table.mts: $(NEURO)/predicted.body.mts $(NEURO_PROGRAMS)
 	$(NEURO_TIMED) $(@:.mts=.seconds) "shapefn $< > $@"
 
-$(NEURO_PREDICTIONS:%=$(NEURO)/%.u.dat): %.u.dat: $(NEURO)/predicted.table.mts %.scene $(NEURO)/exposed.tsv $(NEURO)/skull.tsv $(NEURO_PROGRAMS)
+$(NEURO_PREDICTIONS:%=$(NEURO)/%.u.dat): %.u.dat: $(NEURO)/predicted.table.mts %.scene $(NEURO)/$(if $(filter craniotomy,$(NEURO_SCENARIO)),exposed,measured).tsv $(NEURO)/skull.tsv $(NEURO_PROGRAMS)
 	$(NEURO_TIMED) $(@:.dat=.seconds) "mtled -v $*.scene $< > $@" $(NEURO_LOG)
 
 $(NEURO)/%.scan.nii.gz: $(NEURO)/%.u.dat $(NEURO_PROGRAMS)
@@ -76,7 +119,7 @@ $(NEURO)/%.labels.nii.gz: $(NEURO)/%.u.dat $(NEURO_PROGRAMS)
 $(NEURO)/landmarks.tsv: $(NEURO_LABELS) $(NEURO_SCRIPTS)/places.awk $(NEURO_SCRIPTS)/random.awk $(NEURO_PROGRAMS)
 	@mkdir -p $(@D)
 	$(NEURO_RANDOM) -f $(NEURO_SCRIPTS)/places.awk -v count=200 -v low=-72,-106,-66 -v high=72,73,84 > $(@:.tsv=.places)
-	sample -i nearest -p $(@:.tsv=.places) -u mm $< | awk '!/^#/ && $$4 > 0 && n < 50 { n++; print $$1, $$2, $$3 }' > $@
+	sample -i nearest -p $(@:.tsv=.places) -u mm $< | awk '!/^#/ && $(NEURO_INSIDE) && n < 50 { n++; print $$1, $$2, $$3 }' > $@
 
 $(NEURO)/ventricles.tsv: $(NEURO_LABELS) $(NEURO_INPUT)/labels.tsv $(NEURO_PROGRAMS)
 	@mkdir -p $(@D)
@@ -93,16 +136,16 @@ $(NEURO)/%.ventricles: $(NEURO)/%.u.dat $(NEURO)/ventricles.corners $(NEURO_PROG
 
 $(NEURO)/neurosurgery.tsv: $(foreach kind,landmarks ventricles,$(patsubst %,$(NEURO)/%.$(kind),true $(NEURO_PREDICTIONS))) \
         $(NEURO)/ventricles.tsv $(NEURO_SCRIPTS)/target.awk $(NEURO_SCRIPTS)/surface.awk
-	(printf 'distance from the true state\tunpredicted\tfrom_cortex\twith_gravity\n'; awk -f $(NEURO_SCRIPTS)/target.awk $(filter %.landmarks,$^); \
+	(printf 'distance from the true state\tunpredicted\t$(NEURO_COLUMNS)\n'; awk -f $(NEURO_SCRIPTS)/target.awk $(filter %.landmarks,$^); \
 	    awk -f $(NEURO_SCRIPTS)/surface.awk -v triangles=$(NEURO)/ventricles.tsv $(filter %.ventricles,$^)) > $@
 
 $(NEURO)/volumes.tsv: $(patsubst %,$(NEURO)/%.labels.nii.gz,$(NEURO_PREDICTIONS) true) $(NEURO_SCRIPTS)/volumes.awk
 	awk -f $(NEURO_SCRIPTS)/volumes.awk $(NEURO_INPUT)/labels.tsv $(patsubst %,$(NEURO)/%.labels.log,$(NEURO_PREDICTIONS) true) > $@
 
-$(NEURO)/seconds.tsv: $(NEURO)/craniotomy.scan.nii.gz
+$(NEURO)/seconds.tsv: $(NEURO)/$(NEURO_FIRST).scan.nii.gz
 	(printf 'stage\tseconds\n'; printf '%s\t%s\n' 'voxels and groups' "$$(cat $(NEURO)/predicted.body.seconds)" \
-	    shapefn "$$(cat $(NEURO)/predicted.table.seconds)" mtled "$$(cat $(NEURO)/craniotomy.u.seconds)" \
-	    warp "$$(cat $(NEURO)/craniotomy.scan.seconds)") > $@
+	    shapefn "$$(cat $(NEURO)/predicted.table.seconds)" mtled "$$(cat $(NEURO)/$(NEURO_FIRST).u.seconds)" \
+	    warp "$$(cat $(NEURO)/$(NEURO_FIRST).scan.seconds)") > $@
 
 # ---- pictures --------------------------------------------------------------------------------------------------------
 
@@ -116,7 +159,7 @@ $(NEURO)/slice.places: pipelines/neurosurgery.mk
 $(NEURO)/before.slice: $(NEURO_SCAN) $(NEURO)/slice.places $(NEURO_PROGRAMS)
 	sample -p $(NEURO)/slice.places -u mm $< > $@
 
-$(NEURO)/craniotomy.slice $(NEURO)/true.slice: %.slice: %.scan.nii.gz $(NEURO)/slice.places $(NEURO_PROGRAMS)
+$(NEURO)/$(NEURO_FIRST).slice $(NEURO)/true.slice: %.slice: %.scan.nii.gz $(NEURO)/slice.places $(NEURO_PROGRAMS)
 	sample -p $(NEURO)/slice.places -u mm $< > $@
 
 NEURO_CONTOUR = voxels -s z=$(NEURO_SLICE)mm -h 3mm -l $(NEURO_INPUT)/labels.tsv --surface ventricles -u mm $< > $@
@@ -125,17 +168,17 @@ $(NEURO)/before.contour: $(NEURO_LABELS) $(NEURO_INPUT)/labels.tsv $(NEURO_PROGR
 	@mkdir -p $(@D)
 	$(NEURO_CONTOUR)
 
-$(NEURO)/craniotomy.contour $(NEURO)/true.contour: %.contour: %.labels.nii.gz $(NEURO_INPUT)/labels.tsv $(NEURO_PROGRAMS)
+$(NEURO)/$(NEURO_FIRST).contour $(NEURO)/true.contour: %.contour: %.labels.nii.gz $(NEURO_INPUT)/labels.tsv $(NEURO_PROGRAMS)
 	$(NEURO_CONTOUR)
 
-NEURO_PARTS := before craniotomy true
+NEURO_PARTS := before $(NEURO_FIRST) true
 
 $(NEURO)/slices.plot: $(NEURO_PARTS:%=$(NEURO)/%.slice) $(NEURO_SCRIPTS)/slice.awk
 	awk -f $(NEURO_SCRIPTS)/slice.awk $(filter %.slice,$^) > $@
 
 # Every three millimetres within the brain.
 $(NEURO)/distance.places: $(NEURO)/slice.places $(NEURO_LABELS) $(NEURO_PROGRAMS)
-	sample -i nearest -p $< -u mm $(NEURO_LABELS) | awk '!/^#/ && $$4 > 0 && $$1 % 3 == 0 && $$2 % 3 == 0 { print $$1, $$2, $$3 }' > $@
+	sample -i nearest -p $< -u mm $(NEURO_LABELS) | awk '!/^#/ && $(NEURO_INSIDE) && $$1 % 3 == 0 && $$2 % 3 == 0 { print $$1, $$2, $$3 }' > $@
 
 $(NEURO)/%.distance: $(NEURO)/%.u.dat $(NEURO)/distance.places $(NEURO_PROGRAMS)
 	interp -f u -p $(NEURO)/distance.places -u mm $< | mts print u - > $@
@@ -145,4 +188,4 @@ $(NEURO)/distance.plot: $(NEURO)/distance.places $(patsubst %,$(NEURO)/%.distanc
 	    { print $$1, $$2, 1e3 * sqrt(($$4 - $$7)^2 + ($$5 - $$8)^2 + ($$6 - $$9)^2), 1e3 * sqrt(($$4 - $$10)^2 + ($$5 - $$11)^2 + ($$6 - $$12)^2) }' > $@
 
 $(NEURO)/slices.png: $(NEURO)/slices.plot $(NEURO)/distance.plot $(NEURO_PARTS:%=$(NEURO)/%.contour) $(NEURO_SCRIPTS)/slices.gp
-	gnuplot -e "folder='$(NEURO)'; out='$@'" $(NEURO_SCRIPTS)/slices.gp
+	gnuplot -e "folder='$(NEURO)'; out='$@'; prediction='$(NEURO_FIRST)'; seen='$(NEURO_SEEN)'" $(NEURO_SCRIPTS)/slices.gp

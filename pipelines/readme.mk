@@ -11,7 +11,8 @@ RESULT_TABLES := brain2d/compare=brain2d brain3d/compare=brain3d table1/beside=t
     estimate/estimate=estimate estimate/summary=estimate-summary foreign/foreign=foreign gallery/phantom=phantom \
     gallery/indentation=indentation adaptive/effectivity=effectivity adaptive/effectivity-summary=effectivity-summary \
     adaptive/refinement=refinement neurosurgery/neurosurgery=neurosurgery uncertainty/uncertainty=uncertainty scale/stages=scale \
-    scale/parts=scale-parts scale/model=scale-model
+    scale/parts=scale-parts scale/model=scale-model \
+    neurosurgery/resection/neurosurgery=neurosurgery-resection neurosurgery/electrodes/neurosurgery=neurosurgery-electrodes
 
 .PHONY: readme results
 # Only what is newer than the file that is kept.

@@ -84,6 +84,84 @@ near() { fieldcmp "--tol-$1" "$2" other.dat u.dat > /dev/null; }
     done
 }
 
+# immersed DIM LEVEL [LINES...]: a block of 0.1 m on a wall below, between walls that it slides along, as heavy as the fluid it stands in, which
+# is so deep and does not get under it; leaves u.dat
+immersed() {
+    local walls='xmin, xmax' top=ymax
+    local level="0.05, $2" gravity='0, -9.81' box=0,0.1,0,0.1 count=9
+    [ "$1" = 2 ] || { walls="$walls, ymin, ymax" top=zmax level="0.05, 0.05, $2" gravity="0, 0, -9.81" box=$box,0,0.1 count=5; }
+    cloud -d "$1" -k jittered -n $count --box $box --jitter 0.1 | shapefn > table.mts 2> note
+    {
+        block quasi-static "gravity = $gravity" | sed "s/^dim = 2/dim = $1/"
+        printf '[displacement walls]\nfacets = %s\nnormal = 0\n[displacement bottom]\nfacets = %s\nnormal = 0\n' "$walls" "${top/max/min}"
+        printf '[pressure fluid]\nfacets = %s\ndensity = 1000\nlevel = %s\n' $top "$level"
+        printf '%b\n' "${@:3}" '[output]\nreactions = yes\npressure = yes\n[solver]\ntolerance = 1e-8\n'
+    } > run.scene
+    mtled run.scene table.mts > u.dat
+}
+
+# On the top as deformed: the bottom bears the weight, and the fluid above the top.
+@test "a fluid that stands above: its weight on the deformed top, in 2D and 3D; nothing where its level is below" {
+    for dim in 2 3; do
+        immersed $dim 0.3
+        rows reactions u.dat > forces
+        moved=$(paste -d ' ' <(mts print nodes.x u.dat) <(mts print u u.dat) | awk -v d=$dim '$d > 0.0999 { s += $(2 * d); n++ } END { print s / n }')
+        awk -v d=$dim -v moved="$moved" 'NR == 2 {
+            area = 0.1 ^ (d - 1); to_be = 9810 * area * (0.1 + 0.2 - moved)
+            e = $d / to_be - 1; print $d, to_be; exit !(e < 2e-5 && e > -2e-5 && moved < -0.001) }' forces
+        immersed $dim 0.05
+        rows reactions u.dat | awk -v d=$dim 'NR == 2 { e = $d / (9810 * 0.1 ^ d) - 1; exit !(e < 1e-6 && e > -1e-6) }'
+        # hanging from above, where the level is: the same with the other sign
+        immersed $dim 0.05 'side = above'
+        rows reactions u.dat | awk -v d=$dim 'NR == 2 { f = $d / (9810 * 0.1 ^ (d - 1)); print f; exit !(f < 0.1 - 0.049 && f > 0.1 - 0.051) }'
+    done
+}
+
+@test "a fluid on all sides of a body that is as heavy: it floats; half immersed: half of its weight; any direction of gravity" {
+    cloud -d 3 -k jittered -n 6 --box 0,0.1,0,0.1,0,0.1 --jitter 0.1 | shapefn > table.mts 2> note
+    for level in 0.16 0.05; do
+        {
+            block quasi-static 'gravity = 0, 0, -9.81' | sed 's/^dim = 2/dim = 3/; s/^E = .*/E = 300000/'
+            printf '[displacement point]\npoints = hold.tsv\nunit = m\n[pressure fluid]\nfacets = xmin, xmax, ymin, ymax, zmin, zmax\ndensity = 1000\n'
+            printf 'level = 0, 0, %s\n[output]\nreactions = yes\nmoments = yes\nmoments_about = 0.05, 0.05, 0.05\n[solver]\ntolerance = 1e-8\n' $level
+        } > run.scene
+        printf '0.02 0.03 0.05 0 0 0\n0.08 0.03 0.05 0 0 0\n0.05 0.08 0.05 0 0 0\n' > hold.tsv
+        mtled run.scene table.mts > u.dat
+        rows reactions u.dat | awk -v immersed="$(awk -v l=$level 'BEGIN { print (l > 0.1 ? 0.1 : l) }')" '{
+            e = $3 / 9.81 - (0.1 - immersed) * 10; print; exit !(e < 2e-3 && e > -2e-3 && $1^2 < 1e-6 && $2^2 < 1e-6) }'
+    done
+    # turned: gravity along x, the level in a section of its own
+    sed 's/^gravity = .*/gravity = -9.81, 0, 0/; s/^level = .*/level = 0.16, 0, 0/' run.scene > turned.scene
+    mtled turned.scene table.mts > u.dat
+    rows reactions u.dat | awk '{ exit !($1^2 + $2^2 + $3^2 < 4e-4) }'
+    sed 's/^gravity = .*//; s/^level = .*/&\ngravity = 0, 0, -9.81/' run.scene > light.scene
+    mtled light.scene table.mts > u.dat # no weight: half immersed
+    rows reactions u.dat | awk '{ e = $3 / 9.81 + 0.5; exit !(e < 2e-3 && e > -2e-3) }'
+}
+
+@test "a fluid: force and moment on a wall, up to its level amid a facet; keys that do not go together" {
+    cloud -d 2 -k regular -n 21 --box 0,0.1,0,0.1 | shapefn > wall.mts 2> note
+    {
+        block quasi-static | sed 's/^E = .*/E = 1e7/'
+        printf '[displacement back]\nfacets = xmax\ncomponents = 0, 0\n[pressure fluid]\nfacets = xmin\ndensity = 1000\nlevel = 0, 0.083\ngravity = 0, -9.81\n'
+        printf '[output]\nreactions = yes\nmoments = yes\n'
+    } > wall.scene
+    mtled wall.scene wall.mts > u.dat
+    # rho g h^2 / 2, at a third of its height
+    rows reactions u.dat | awk '{ e = -$1 / (9810 * 0.083^2 / 2) - 1; print e; exit !(e < 2e-3 && e > -2e-3) }'
+    rows moments u.dat | awk '{ e = $1 / (9810 * 0.083^3 / 6) - 1; print e; exit !(e < 3e-3 && e > -3e-3) }'
+    sed '/^gravity = /d' wall.scene > weightless.scene
+    refused 2 "[pressure fluid]: density: a fluid without weight: give gravity here or in [scene]" mtled weightless.scene wall.mts
+    sed '/^level = /d' wall.scene > no.scene
+    refused 2 "level" mtled no.scene wall.mts
+    sed 's/^density = .*/value = 3/' wall.scene > no.scene
+    refused 2 "level: not allowed: it goes with density" mtled no.scene wall.mts
+    sed 's/^density = .*/&\nvalue = 3/' wall.scene > no.scene
+    refused 2 "value" mtled no.scene wall.mts
+    sed 's/^level = .*/&\nside = left/' wall.scene > no.scene
+    refused 2 "side: 'left' is none of below, above, both" mtled no.scene wall.mts
+}
+
 @test "a force on a node; its section's own curve in time" {
     { block quasi-static && held_below; } > held.scene
     solved '[force pull]\nnodes = corner\ncomponents = 3, -2'
@@ -164,4 +242,25 @@ near() { fieldcmp "--tol-$1" "$2" other.dat u.dat > /dev/null; }
     mts drop sets.ptr square.mts | mts drop sets.idx > none.mts
     printf -- '-1 -0.005\n2 -0.005\n' > floor.tsv
     refused 2 "sets.ptr" mtled block.scene none.mts
+}
+
+@test "contact: a node that is pressed into a crease of the rigid surface chatters: named, with what helps" {
+    cat > tip.geo << 'END'
+Mesh.MeshSizeMax = 10;
+Point(1) = {0, 0, 0}; Point(2) = {40, 16.1, 0}; Point(3) = {40, 80, 0}; Point(4) = {-40, 80, 0}; Point(5) = {-40, 16.1, 0};
+Line(1) = {1, 2}; Line(2) = {2, 3}; Line(3) = {3, 4}; Line(4) = {4, 5}; Line(5) = {5, 1};
+Curve Loop(1) = {1:5}; Plane Surface(1) = {1};
+Physical Surface("body") = {1}; Physical Curve("tip") = {1, 5}; Physical Curve("top") = {3};
+END
+    gmsh -v 1 -2 tip.geo -o tip.msh
+    nodes -u mm tip.msh | shapefn > tip.mts 2> note
+    printf -- '-200 86\n0 0\n200 86\n' > v.tsv
+    { block quasi-static; printf '[displacement top]\nfacets = top\ncomponents = 0.001, -0.004\n[contact v]\nfacets = tip\nrigid = v.tsv\nunit = mm\nside = left\n'
+        printf '[solver]\ntolerance = 1e-4\n'; } > tip.scene
+    refused 1 "[contact v]: node 0 at (0, 0) is pressed into a crease of the rigid surface, where the closest facet changes and turns by 4" \
+        mtled tip.scene tip.mts
+    [[ "$stderr" == *": make the surface smoother there"* ]]
+    # rounded off: a curve of many chords
+    awk 'BEGIN { for (x = -200; x <= 200; x += 5) printf "%g %.6f\n", x, sqrt((0.43 * x) ^ 2 + 20 ^ 2) - 20 }' > v.tsv
+    mtled tip.scene tip.mts > u.dat
 }

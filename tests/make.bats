@@ -187,6 +187,9 @@ few_solutions=(CONVERGENCE_CASES=block20 SPEED_ERROR_CASES=cube square.sizes=0.0
     fails interp neurosurgery -- $at/true.landmarks $at/exposed.tsv $at/neurosurgery.tsv
     fails warp neurosurgery -- $at/true.scan.nii.gz $at/true.labels.nii.gz $at/volumes.tsv
     fails sample neurosurgery -- $at/landmarks.tsv $at/before.slice $at/slices.png
+    for scenario in resection electrodes; do
+        fails interp neurosurgery-one NEURO_SCENARIO=$scenario -- $at/$scenario/true.landmarks $at/$scenario/neurosurgery.tsv
+    done
 }
 
 @test "bench: whichever kernel fails" {

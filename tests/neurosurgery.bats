@@ -30,6 +30,29 @@ setup() {
     sample -p "$at/landmarks.tsv" -u mm "$at/craniotomy.scan.nii.gz" > values
 }
 
+# scenario NAME SPACING TRUE_SPACING: landmarks of the true state and of two predictions, as rows
+scenario() {
+    local at=$PWD/out/neurosurgery/$1
+    make -C "$top" BUILD="$(realpath --relative-to "$top" "$BUILD")" OUT="$PWD/out" NEURO_SCENARIO="$1" NEURO_SPACING="$2" NEURO_TRUE_SPACING="$3" \
+        "$at"/{true,"$1","$1"_position}.landmarks > log 2>&1 || { cat log; false; }
+    awk -f "$scripts/target.awk" "$at"/{true,"$1","$1"_position}.landmarks | tee rows
+}
+
+@test "a resection: the cavity has a wall, fluid stands below a level; points of cortex and cavity tell most of the shift" {
+    scenario resection 14mm 13mm
+    awk -F '\t' 'NR == 1 { exit !($2 > 3 && $3 < 0.6 * $2 && $4 < 0.35 * $2) }' rows
+    mts list out/neurosurgery/resection/predicted.body.mts | grep -q '^facets.set.*names=.*parenchyma|tumour'
+    awk 'NF != 7 || $7 != 0.5 { bad = !/^#/ } END { exit bad }' out/neurosurgery/resection/measured.tsv
+}
+
+@test "electrodes: points inside tell most of the shift, without a load" {
+    scenario electrodes 14mm 13mm
+    awk -F '\t' 'NR == 1 { exit !($2 > 3 && $3 < 0.35 * $2 && $4 < 0.25 * $2) }' rows
+    [ "$(wc -l < out/neurosurgery/electrodes/measured.tsv)" -eq 200 ]
+    run -2 make -C "$top" NEURO_SCENARIO=nose neurosurgery
+    [[ "$output" == *"NEURO_SCENARIO: nose is none of craniotomy, resection, electrodes"* ]]
+}
+
 @test "distance of a surface: a square moved along its normal, and one that grows" {
     printf '0 0 0 .01 0 0 .01 .01 0\n0 0 0 .01 .01 0 0 .01 0\n' > triangles
     u() { for _ in 1 2 3 4 5 6; do echo "$1"; done; }

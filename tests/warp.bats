@@ -289,3 +289,19 @@ END
     awk '/displacement at most/ { split($0, part, "at most "); d = part[2] + 0; exit !(d > 5.9 && d < 8) }' said
     grep -q ' in 0 voxels, without a place ' said
 }
+
+@test "between the nodes: the field that mtled solved for, nearer than a fit of its values" {
+    cloud -d 3 -k jittered -n 6 --box 0,0.06,0,0.06,0,0.06 --jitter 0.15 --seed 2 | shapefn > coarse.mts 2> note
+    printf '[scene]\ndim = 3\nanalysis = quasi-static\n[material body]\nregion = body\nE = 3000\nnu = 0.45\nrho = 1000\n[displacement low]\nfacets = zmin\ncomponents = 0, 0, 0\n[displacement high]\nfacets = zmax\ncomponents = 0.01, 0, -0.006\n' > bend.scene
+    mtled bend.scene coarse.mts > u.dat
+    mts keep nodes.x,cells,u u.dat > bare.dat
+    awk 'BEGIN { for (x = 6; x <= 54; x += 6) for (y = 6; y <= 54; y += 6) for (z = 6; z <= 54; z += 6) print x, y, z }' > places
+    interp -f u -p places -u mm u.dat | mts print u - > exact
+    for field in u bare; do
+        warp --field --inverse "$BATS_FILE_TMPDIR/scan.nii.gz" $field.dat > field.nii.gz
+        sample -i linear -p places -u mm field.nii.gz | grep -v '^#' | paste - exact | # LPS, mm
+            awk '{ s += ($4 + 1e3 * $7)^2 + ($5 + 1e3 * $8)^2 + ($6 - 1e3 * $9)^2 } END { print sqrt(s / NR) }' >> off
+    done
+    cat off
+    awk '{ off[NR] = $1 } END { exit !(NR == 2 && off[1] < 0.9 * off[2] && off[1] < 0.05) }' off
+}

@@ -13,8 +13,9 @@ static const char usage[] =
     "Scans, colours (RGB) and labels are taken, of any type, size of voxels, order and direction of axes;\n"
     "values keep their type and scaling.\n"
     "\n"
-    "Between the nodes the displacement is quadratic in each cell, continuous, with the gradients of a\n"
-    "moving least squares fit at the nodes. Places are found by Newton's method to 1e-4 of a voxel, from\n"
+    "Between the nodes the displacement is quadratic in each cell, continuous, with the gradients of the\n"
+    "field that mtled solved for (its section parameters) at the nodes, or of a fit where the stream\n"
+    "does not tell that field. Places are found by Newton's method to 1e-4 of a voxel, from\n"
     "the moved cell that the voxel lies in. Voxels outside of the moved body stay as they are: so does\n"
     "what the body uncovers, unless --vacated or --fill gives it a value. Where X lies outside of IMAGE the\n"
     "value is that of --fill, or 0, and the voxels are counted.\n"
@@ -49,6 +50,7 @@ static const char usage[] =
 
 #include "image_body.h"
 #include "images.h"
+#include "solved.h"
 #include "views.h"
 
 #include "approx/motion.h"
@@ -310,14 +312,21 @@ static void tell_not_finite(const struct tool *tool, const struct image *image, 
     }
 }
 
-static void build_motion(const struct tool *tool, const struct cells *cells, const double *u,
-                         struct motion *motion)
+/* Gradients are those of the field that mtled solved for, where the stream tells it. */
+static void build_motion(const struct tool *tool, const struct stream *stream, const char *section,
+                         const struct cells *cells, const double *u, struct motion *motion)
 {
     struct error error;
-    enum status status = motion_build(cells, u, false, motion, &error);
+    struct solved solved;
+    tool_check(tool, solved_read(stream, &solved, &error), &error);
+    const struct section *field = stream_find(stream, section);
+    const struct section *parameters = solved_parameters(stream, &solved, field);
+    struct motion_source source = {&solved.recorded.support, &solved.recorded.shapes, solved.radius,
+                                   parameters->data};
+    enum status status = motion_build(cells, u, false, parameters != field ? &source : NULL, motion, &error);
     if (status == STATUS_VERDICT) {
         tool_note(tool, "displacement taken as linear in each cell: %s", error.text);
-        status = motion_build(cells, u, true, motion, &error);
+        status = motion_build(cells, u, true, NULL, motion, &error);
     }
     tool_check(tool, status, &error);
 }
@@ -361,7 +370,7 @@ int main(int argc, char *argv[])
                       tool.operands[0]);
         }
     }
-    build_motion(&tool, &cells, u, &motion);
+    build_motion(&tool, &stream, request.section, &cells, u, &motion);
     const double *seen = request.inverse ? cells.x : motion.moved;
     int32_t *owner = find_owners(&tool, grid, &cells, seen, &report.doubly), *other = NULL;
     int64_t inside = 0, ignored;

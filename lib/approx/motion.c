@@ -7,6 +7,7 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 static const int newton_most = 30;
 static const double step_out = 1e-6; /* a barycentric coordinate below its negative: in the next cell */
@@ -45,31 +46,52 @@ static void edges(const struct cells *cells, const double *x, int64_t cell, doub
     }
 }
 
-/* Gradients of the fit at the nodes. */
-static enum status find_gradients(const struct cells *cells, const double *u, double *gradient,
-                                  struct error *error)
+/* Radii for a fit at the nodes. */
+static enum status choose_radii(const struct cells *cells, const struct support_options *options,
+                                double *radius, struct error *error)
+{
+    enum status status;
+    double *spacing = NULL;
+    TRY(NEW_ARRAY(&spacing, cells->node_count, error));
+    TRY(field_spacing(cells, spacing, error));
+    TRY(support_radii(options, cells->node_count, spacing, radius, error));
+done:
+    free(spacing);
+    return status;
+}
+
+/* Gradients at the nodes, of the source, or of a fit. */
+static enum status find_gradients(const struct cells *cells, const double *u,
+                                  const struct motion_source *source, double *gradient, struct error *error)
 {
     int dim = cells->dim;
     int64_t nodes = cells->node_count;
-    struct support_options options = support_defaults(dim);
+    struct support_options options = source != NULL ? *source->support : support_defaults(dim);
+    struct mls shapes = source != NULL ? *source->shapes : options.mls;
     struct reach_places places = {.nodes = true};
     struct support_lists lists = {0};
     struct point_grid grid = {0};
     struct reach reach = {0};
-    double *spacing = NULL, *radius = NULL, *phi = NULL, *dphi = NULL;
+    double *radius = NULL, *phi = NULL, *dphi = NULL;
     enum status status = STATUS_OK;
-    options.mls.basis = BASIS_QUADRATIC;
-    TRY(NEW_ARRAY(&spacing, nodes, error));
     TRY(NEW_ARRAY(&radius, nodes, error));
-    TRY(field_spacing(cells, spacing, error));
-    TRY(support_radii(&options, nodes, spacing, radius, error));
+    if (source != NULL) {
+        u = source->parameters;
+        memcpy(radius, source->radius, (size_t)nodes * sizeof *radius);
+    } else {
+        options.mls.basis = shapes.basis = BASIS_QUADRATIC;
+        TRY(choose_radii(cells, &options, radius, error));
+    }
     TRY(point_grid_build(&grid, dim, nodes, cells->x, radius, error));
-    TRY(reach_build(cells, &grid, &reach, error));
-    TRY(support_build_within(&options, &grid, &reach, &places, nodes, cells->x, "nodes", &lists, error));
+    if (options.reach == REACH_CELLS) {
+        TRY(reach_build(cells, &grid, &reach, error));
+    }
+    TRY(support_build_within(&options, &grid, options.reach == REACH_CELLS ? &reach : NULL, &places, nodes,
+                             cells->x, "nodes", &lists, error));
     TRY(NEW_ARRAY(&phi, lists.ptr[nodes], error));
     TRY(NEW_ARRAY(&dphi, lists.ptr[nodes] * dim, error));
     struct neighbours view = support_view(&lists);
-    TRY(shape_table(&options.mls, cells->x, radius, &view, cells->x, "nodes", phi, dphi, error));
+    TRY(shape_table(&shapes, cells->x, radius, &view, cells->x, "nodes", phi, dphi, error));
     for (int64_t n = 0; n < nodes; n++) {
         for (int64_t p = lists.ptr[n]; p < lists.ptr[n + 1]; p++) {
             for (int ij = 0; ij < dim * dim; ij++) {
@@ -78,7 +100,6 @@ static enum status find_gradients(const struct cells *cells, const double *u, do
         }
     }
 done:
-    free(spacing);
     free(radius);
     free(phi);
     free(dphi);
@@ -88,8 +109,8 @@ done:
     return status;
 }
 
-enum status motion_build(const struct cells *cells, const double *u, bool linear, struct motion *motion,
-                         struct error *error)
+enum status motion_build(const struct cells *cells, const double *u, bool linear,
+                         const struct motion_source *source, struct motion *motion, struct error *error)
 {
     int dim = cells->dim;
     enum status status = STATUS_OK;
@@ -111,7 +132,7 @@ enum status motion_build(const struct cells *cells, const double *u, bool linear
     }
     if (!linear) {
         TRY(NEW_ARRAY(&motion->gradient, cells->node_count * dim * dim, error));
-        TRY(find_gradients(cells, u, motion->gradient, error));
+        TRY(find_gradients(cells, u, source, motion->gradient, error));
     }
 done:
     if (status != STATUS_OK) {

@@ -1,7 +1,8 @@
 /* The motion of a body that nodal displacements describe, between the nodes too, and its inverse.
  *
  * In a cell the displacement is u(X) = sum_a N_a(X) (u_a + G_a (X - X_a) / 2), with the linear N_a of the
- * cell's nodes and the gradients G_a of the quadratic moving least squares fit there. It takes the nodal
+ * cell's nodes and the gradients G_a there: of the field, where it is known, or of a quadratic moving least
+ * squares fit. It takes the nodal
  * values at the nodes, is continuous across faces, and reproduces quadratic fields where the gradients are
  * theirs: half the gradient term makes up for the error of linear interpolation, sum_a N_a u_a = u + sum_a
  * N_a (X - X_a) H (X
@@ -10,6 +11,16 @@
 #define APPROX_MOTION_H
 
 #include "approx/cells.h"
+#include "approx/support.h"
+
+/* The field that nodal values are those of, u(X) = sum_j phi_j(X) parameters_j: its gradients are taken
+ * instead of those of a fit. All the caller's. */
+struct motion_source {
+    const struct support_options *support;
+    const struct mls *shapes; /* of phi */
+    const double *radius;     /* node_count: of the supports, m */
+    const double *parameters; /* node_count * dim, m */
+};
 
 struct motion {
     struct cells cells;
@@ -20,11 +31,12 @@ struct motion {
     double *moved;    /* node_count * dim: x + u */
 };
 
-/* The cells and u must outlive it. linear: no gradients, the displacement is piecewise linear. STATUS_VERDICT
- * where the cloud is too poor for a fit at some node, which `linear` does without; STATUS_INPUT as
- * cells_across. */
+/* The cells and u must outlive it. source: NULL for the gradients of a fit of u. linear: no gradients, the
+ * displacement is piecewise linear. STATUS_VERDICT where the cloud is too poor for a fit at some node, which
+ * `linear` does without; STATUS_INPUT as cells_across. */
 MUST_CHECK enum status motion_build(const struct cells *cells, const double *u, bool linear,
-                                    struct motion *motion, struct error *error);
+                                    const struct motion_source *source, struct motion *motion,
+                                    struct error *error);
 void motion_free(struct motion *motion);
 
 /* Cells whose moved nodes span no positive volume; *first receives the lowest of them. */

@@ -254,7 +254,7 @@ enum status envelope_factorise(int64_t n, const int64_t *ptr, const int64_t *col
     TRY(fill(n, ptr, column, value, factor, error));
     for (int64_t i = 0; i < n; i++) {
         if (i < n - longs) {
-            (void)factor_row(factor, i, weak_pivot);
+            (void)factor_row(factor, i, fmax(weak_pivot, least));
         } else {
             drop_row(factor, i);
         }

@@ -11,10 +11,12 @@
  *   of E and nu, table = FILE with unit
  * - [displacement NAME]: facets = GROUPS or nodes = SETS; one of table = FILE with unit, components =
  * UX,UY[,UZ] (m, or `free`), normal = VALUE (m, along the outward normal; facets only); curve
+ * - or, for measured points: points = FILE with unit; reach (m); model_error (m); curve
  * - [contact NAME]: facets = GROUPS; rigid = FILE; unit; side = left|right (2D), front|back (3D); stiffness
  *   (Pa/m); the motion of the surface: angle (degrees), axis_point (m), axis (3D), translation (m), curve,
  *   angle_curve
- * - [pressure NAME]: facets = GROUPS; value (Pa, positive pushes inward); curve
+ * - [pressure NAME]: facets = GROUPS; value (Pa, positive pushes inward), or of a fluid: density (kg/m3),
+ * level = X,Y[,Z] (m), side = below (default)|above|both, gravity (m/s2); curve
  * - [traction NAME]: facets = GROUPS; components (Pa); curve
  * - [force NAME]: nodes = SETS; components (N on each node; in 2D N per metre of thickness); curve
  * - [initial]: table = FILE; unit (dynamic)
@@ -43,7 +45,7 @@ enum scene_model {
     SCENE_ST_VENANT_KIRCHHOFF
 };
 
-enum scene_prescription { SCENE_TABLE, SCENE_COMPONENTS, SCENE_NORMAL };
+enum scene_prescription { SCENE_TABLE, SCENE_COMPONENTS, SCENE_NORMAL, SCENE_POINTS };
 
 enum scene_curve_kind { SCENE_CURVE_SMOOTH, SCENE_CURVE_LINEAR, SCENE_CURVE_STEP, SCENE_CURVE_FILE };
 
@@ -86,13 +88,17 @@ struct scene_material {
 
 struct scene_displacement {
     struct scene_label label;
-    struct name_list facets, nodes; /* exactly one is given; nodes never with SCENE_NORMAL */
+    struct name_list facets, nodes; /* exactly one is given, none with SCENE_POINTS; nodes never with
+                                       SCENE_NORMAL */
     enum scene_prescription kind;
-    char *table;          /* SCENE_TABLE: rows (dim coordinates, dim displacement components) */
-    double table_unit;    /* m per unit of the table */
+    char *table;       /* SCENE_TABLE: rows (dim coordinates, dim displacement components); SCENE_POINTS: the
+                          same of measured points, and perhaps a standard deviation; components may be open */
+    double table_unit; /* m per unit of the table */
     double components[3]; /* SCENE_COMPONENTS: m, dim of them */
     bool is_free[3];      /* SCENE_COMPONENTS: this component is not prescribed; never all of them */
     double normal;        /* SCENE_NORMAL: m, along the outward reference normal */
+    double reach;         /* SCENE_POINTS: how far from the body a point may be, m; 0: not given */
+    double model_error;   /* SCENE_POINTS: how far off the scene is without the points, m; 0: not given */
     struct scene_curve curve;
 };
 
@@ -112,13 +118,22 @@ struct scene_contact {
     struct scene_curve curve, angle_curve;
 };
 
+/* The part of a fluid that presses: below its level, above (where it hangs: the pressure is negative), or
+ * all.
+ */
+enum scene_level_side { SCENE_BELOW, SCENE_ABOVE, SCENE_BELOW_AND_ABOVE };
+
 /* A pressure, traction or force. */
 struct scene_load {
     struct scene_label label;
     struct name_list facets; /* pressure, traction: at least one */
     struct name_list nodes;  /* force: at least one node set */
-    double pressure;         /* pressure: Pa, positive pushes inward */
-    double components[3];    /* traction: Pa; force: N on each node (2D: N/m) */
+    double pressure;         /* pressure: Pa, positive pushes inward; of a fluid 0 */
+    double density;          /* pressure: of a fluid, kg/m3; 0: none */
+    double level[3];         /* of a fluid: a place at its level, m */
+    double gravity[3];       /* of a fluid: m/s2; zeros: that of the scene */
+    enum scene_level_side level_side;
+    double components[3]; /* traction: Pa; force: N on each node (2D: N/m) */
     struct scene_curve curve;
 };
 

@@ -96,11 +96,30 @@ done:
     return status;
 }
 
+/* Displacements of measured points. */
+static enum status read_points(const struct place *place, struct scene_displacement *displacement)
+{
+    enum status status = STATUS_OK;
+    TRY(place_only_keys(place, KEYS{"points", "unit", "reach", "model_error", "curve", NULL}));
+    TRY(place_table(place, "points", &displacement->table, &displacement->table_unit));
+    TRY(place_number(place, "reach", range_positive, &displacement->reach));
+    TRY(place_number(place, "model_error", range_positive, &displacement->model_error));
+    TRY(place_curve(place, "curve", &displacement->curve));
+    displacement->kind = SCENE_POINTS;
+done:
+    return status;
+}
+
 static enum status read_displacement(const struct place *place, struct scene *scene)
 {
     struct scene_displacement *displacement = &scene->displacements[scene->displacement_count - 1];
     enum status status = STATUS_OK;
-    TRY(place_require_one(place, KEYS{"facets", "nodes", NULL}));
+    TRY(place_require_one(place, KEYS{"facets", "nodes", "points", NULL}));
+    if (place_has(place, "points")) {
+        return read_points(place, displacement);
+    }
+    TRY(place_forbid(place, "reach", "it goes with points"));
+    TRY(place_forbid(place, "model_error", "it goes with points"));
     TRY(place_require_one(place, KEYS{"table", "components", "normal", NULL}));
     TRY(place_names(place, "facets", &displacement->facets));
     TRY(place_names(place, "nodes", &displacement->nodes));
@@ -114,11 +133,8 @@ static enum status read_displacement(const struct place *place, struct scene *sc
     } else if (place_has(place, "components")) {
         displacement->kind = SCENE_COMPONENTS;
     }
-    int free_count = 0;
-    for (int i = 0; i < scene->dim; i++) {
-        free_count += displacement->is_free[i];
-    }
-    if (free_count == scene->dim) {
+    const bool *is_free = displacement->is_free;
+    if (is_free[0] && is_free[1] && is_free[scene->dim - 1]) {
         TRY(place_fail(place, "components", "all are free: nothing is prescribed"));
     }
 done:
@@ -196,14 +212,37 @@ done:
     return status;
 }
 
+/* A pressure that grows with the depth below the level of a fluid. */
+static enum status read_fluid(const struct place *place, const struct scene *scene, struct scene_load *load)
+{
+    static const char *const sides[] = {"below", "above", "both", NULL};
+    int side = SCENE_BELOW;
+    enum status status;
+    TRY(place_require(place, "level", "give a place at the level of the fluid, m"));
+    TRY(place_number(place, "density", range_positive, &load->density));
+    TRY(place_vector(place, "level", scene->dim, load->level, NULL));
+    TRY(place_choice(place, "side", sides, &side));
+    TRY(place_vector(place, "gravity", scene->dim, load->gravity, NULL));
+    load->level_side = (enum scene_level_side)side;
+done:
+    return status;
+}
+
 static enum status read_pressure(const struct place *place, struct scene *scene)
 {
     struct scene_load *load = &scene->pressures[scene->pressure_count - 1];
     enum status status = STATUS_OK;
     TRY(place_require(place, "facets", "name the facet groups pressed"));
-    TRY(place_require(place, "value", "give the pressure in Pa"));
+    TRY(place_require_one(place, KEYS{"value", "density", NULL}));
     TRY(place_names(place, "facets", &load->facets));
     TRY(place_number(place, "value", range_any, &load->pressure));
+    if (place_has(place, "density")) {
+        TRY(read_fluid(place, scene, load));
+    } else {
+        for (const char *const *key = KEYS{"level", "side", "gravity", NULL}; *key != NULL; key++) {
+            TRY(place_forbid(place, *key, "it goes with density"));
+        }
+    }
     TRY(place_curve(place, "curve", &load->curve));
 done:
     return status;
@@ -326,13 +365,16 @@ static const struct scene_kind kinds[] = {
     {"scene", KEYS{"dim", "analysis", "title", "gravity", NULL}, read_scene, false, 0, 0, 0},
     {"material", KEYS{"region", "model", "E", "nu", "rho", "ratio", "alpha", "table", "unit", NULL},
      read_material, ITEMS(materials, material_count)},
-    {"displacement", KEYS{"facets", "nodes", "table", "unit", "components", "normal", "curve", NULL},
+    {"displacement",
+     KEYS{"facets", "nodes", "points", "table", "unit", "components", "normal", "reach", "model_error",
+          "curve", NULL},
      read_displacement, ITEMS(displacements, displacement_count)},
     {"contact",
      KEYS{"facets", "rigid", "unit", "side", "stiffness", "translation", "angle", "axis_point", "axis",
           "curve", "angle_curve", NULL},
      read_contact, ITEMS(contacts, contact_count)},
-    {"pressure", KEYS{"facets", "value", "curve", NULL}, read_pressure, ITEMS(pressures, pressure_count)},
+    {"pressure", KEYS{"facets", "value", "density", "level", "side", "gravity", "curve", NULL}, read_pressure,
+     ITEMS(pressures, pressure_count)},
     {"traction", KEYS{"facets", "components", "curve", NULL}, read_traction,
      ITEMS(tractions, traction_count)},
     {"force", KEYS{"nodes", "components", "curve", NULL}, read_force, ITEMS(forces, force_count)},

@@ -5,9 +5,11 @@
 #include "io/textfile.h"
 
 #include <float.h>
+#include <math.h>
 #include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 
 static const size_t size_limit = (size_t)1 << 31;
 enum { COLUMN_LIMIT = 64, WORD_LIMIT = 64 };
@@ -56,9 +58,19 @@ static size_t next_word(const char **at)
     return **at == '#' ? 0 : strcspn(*at, " \t\n");
 }
 
+/* What a table may be: so many columns, and those from open to closed - 1 may lack a value. */
+struct form {
+    int least, most, open, closed;
+};
+
+static bool is_no_value(const char *word)
+{
+    return strcmp(word, "-") == 0 || strcasecmp(word, "nan") == 0;
+}
+
 /* Split the line at `text` into numbers; *count of them, 0 for a blank or comment line. */
-static enum status read_row(const char *path, int64_t line, const char *text, double row[COLUMN_LIMIT],
-                            int *count, struct error *error)
+static enum status read_row(const char *path, int64_t line, const char *text, const struct form *form,
+                            double row[COLUMN_LIMIT], int *count, struct error *error)
 {
     *count = 0;
     for (size_t length; (length = next_word(&text)) > 0; text += length) {
@@ -68,6 +80,10 @@ static enum status read_row(const char *path, int64_t line, const char *text, do
         if (*count == COLUMN_LIMIT) {
             return fail(error, STATUS_INPUT, "%s:%lld: more than %d columns", path, (long long)line,
                         COLUMN_LIMIT);
+        }
+        if (*count >= form->open && *count < form->closed && is_no_value(word)) {
+            row[(*count)++] = NAN;
+            continue;
         }
         if (length >= sizeof word ||
             parse_double(word, "", -DBL_MAX, DBL_MAX, &row[*count], &why) != STATUS_OK) {
@@ -88,8 +104,9 @@ static bool is_blank_line(const char *text)
 }
 
 static enum status check_columns(const char *path, int64_t line, const struct table *table, int count,
-                                 int least, int most, struct error *error)
+                                 const struct form *form, struct error *error)
 {
+    int least = form->least, most = form->most;
     if (table->rows > 0 && count != table->cols) {
         return fail(error, STATUS_INPUT, "%s:%lld: has %d columns, the rows before %lld", path,
                     (long long)line, count, (long long)table->cols);
@@ -103,7 +120,8 @@ static enum status check_columns(const char *path, int64_t line, const struct ta
                                 (long long)line, count, least, most);
 }
 
-enum status table_read(const char *path, int least, int most, struct table *table, struct error *error)
+static enum status read_form(const char *path, const struct form *form, struct table *table,
+                             struct error *error)
 {
     struct textfile file = {0};
     int64_t room = 0;
@@ -117,9 +135,9 @@ enum status table_read(const char *path, int least, int most, struct table *tabl
         if (is_blank_line(at)) {
             TRY(table_end_block(table, error));
         }
-        TRY(read_row(path, line, at, row, &count, error));
+        TRY(read_row(path, line, at, form, row, &count, error));
         if (count > 0) {
-            TRY(check_columns(path, line, table, count, least, most, error));
+            TRY(check_columns(path, line, table, count, form, error));
             table->cols = count;
             TRY(table_append(table, row, line, &room, error));
         }
@@ -134,6 +152,17 @@ done:
         table_free(table);
     }
     return status;
+}
+
+enum status table_read(const char *path, int least, int most, struct table *table, struct error *error)
+{
+    return read_form(path, &(struct form){.least = least, .most = most}, table, error);
+}
+
+enum status table_read_open(const char *path, int least, int most, int open, int closed, struct table *table,
+                            struct error *error)
+{
+    return read_form(path, &(struct form){least, most, open, closed}, table, error);
 }
 
 void table_free(struct table *table)

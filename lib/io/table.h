@@ -11,7 +11,7 @@
 
 struct table {
     int64_t rows, cols;  /* both >= 1 */
-    double *values;      /* rows x cols, finite */
+    double *values;      /* rows x cols, finite; NAN where table_read_open read none */
     int64_t *line;       /* rows: the line of each row in its file (the triangle's number for binary STL) */
     int64_t block_count; /* >= 1 */
     int64_t *block_ptr;  /* block_count + 1: block b holds rows block_ptr[b] .. block_ptr[b + 1] - 1, at least
@@ -23,6 +23,10 @@ struct table {
  * number of columns outside of least..most, and a file without rows. On failure the table is empty. */
 MUST_CHECK enum status table_read(const char *path, int least, int most, struct table *table,
                                   struct error *error);
+
+/* The same; in the columns open .. closed - 1, from 0 on, '-' or 'nan' stands for no value. */
+MUST_CHECK enum status table_read_open(const char *path, int least, int most, int open, int closed,
+                                       struct table *table, struct error *error);
 
 void table_free(struct table *table);
 

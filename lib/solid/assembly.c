@@ -159,6 +159,7 @@ enum status assembly_build(struct assembly *input, struct solid_system *system, 
     TRY(assembly_add_loads(input, system, error));
     TRY(build_body(input, system, error));
     TRY(assembly_add_conditions(input, system, note, error));
+    TRY(assembly_add_points(input, system, note, error));
     TRY(assembly_add_contacts(input, system, error));
 done:
     if (status != STATUS_OK) {

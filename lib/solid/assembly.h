@@ -3,9 +3,10 @@
 #ifndef SOLID_ASSEMBLY_H
 #define SOLID_ASSEMBLY_H
 
+#include "solid/measured.h"
 #include "solid/system.h"
 
-enum condition_kind { CONDITION_COMPONENTS, CONDITION_NORMAL, CONDITION_TABLE };
+enum condition_kind { CONDITION_COMPONENTS, CONDITION_NORMAL, CONDITION_TABLE, CONDITION_POINTS };
 
 /* A prescribed displacement, of averages over facets or of values at nodes. */
 struct condition {
@@ -23,6 +24,12 @@ struct condition {
     double unit;          /* in units of so many m */
     const char *table;    /* its name, for messages */
     int32_t curve;
+    /* CONDITION_POINTS, where nothing above but the names and the curve is used: */
+    struct measured measured; /* points anywhere in the body */
+    const int64_t *line;      /* measured.count: of each in its table */
+    struct neighbours field;  /* the nodes that the field is made of there, */
+    const double *field_phi;  /* and their shares */
+    double model_error;       /* see measured.h; 0: root mean square of what was measured */
 };
 
 enum load_kind { LOAD_PRESSURE, LOAD_TRACTION, LOAD_FORCE };
@@ -32,8 +39,11 @@ struct load {
     struct facet_set facets; /* of a pressure or a traction */
     const int32_t *nodes;    /* node_count: of forces */
     int64_t node_count;
-    double pressure;      /* Pa, positive pushes inward */
-    double components[3]; /* traction: Pa; force: N on each node (2D: N/m) */
+    double pressure; /* Pa, positive pushes inward; and with is_fluid: */
+    bool is_fluid;
+    enum fluid_part part;
+    double weight[3], level[3]; /* N/m3, and a place at its level, m */
+    double components[3];       /* traction: Pa; force: N on each node (2D: N/m) */
     int32_t curve;
 };
 
@@ -107,10 +117,13 @@ void assembly_complete(struct assembly *input);
 MUST_CHECK enum status assembly_build(struct assembly *input, struct solid_system *system, struct error *note,
                                       struct error *error);
 
-/* The parts of assembly_build, in their own files: displacements, loads, contacts, and softer cells at the
+/* The parts of assembly_build, in their own files: displacements, measured points, loads,
+ * contacts, and softer cells at the
  * ends of what is held by averages (of smoothed cells). */
 MUST_CHECK enum status assembly_add_conditions(const struct assembly *input, struct solid_system *system,
                                                struct error *note, struct error *error);
+MUST_CHECK enum status assembly_add_points(const struct assembly *input, struct solid_system *system,
+                                           struct error *note, struct error *error);
 MUST_CHECK enum status assembly_add_loads(const struct assembly *input, struct solid_system *system,
                                           struct error *error);
 MUST_CHECK enum status assembly_add_contacts(const struct assembly *input, struct solid_system *system,

@@ -15,23 +15,9 @@ static const double constraint_penalty_factor = 10.0;
 static enum status add_penalty(const struct prescription *p, const struct boundary_averages *points,
                                int64_t a, const double *direction, double target, struct error *error)
 {
-    struct solid_system *system = p->system;
-    int64_t at = points->ptr[a];
-    enum status status =
-        constraint_rows_add(&system->penalties, points->ptr[a + 1] - at, points->idx + at, points->phi + at,
-                            direction, target, p->condition->curve, p->number, points->node[a], error);
-    if (status != STATUS_OK) {
-        return status;
-    }
-    double *stiffness = array_grow(system->penalty_stiffness, system->penalties.count, sizeof *stiffness);
-    system->penalty_stiffness = stiffness != NULL ? stiffness : system->penalty_stiffness;
-    double *pull = array_grow(system->penalty_force, system->penalties.count, sizeof *pull);
-    system->penalty_force = pull != NULL ? pull : system->penalty_force;
-    if (stiffness == NULL || pull == NULL) {
-        return fail_memory(error, "springs");
-    }
-    stiffness[system->penalties.count - 1] = p->modulus * points->area[a] / p->layer;
-    return STATUS_OK;
+    struct average average = average_of_boundary(points, a);
+    return system_append_penalty(p->system, &average, direction, target, p->condition->curve, p->number,
+                                 points->node[a], p->modulus * points->area[a] / p->layer, error);
 }
 
 static enum status add_row(const struct prescription *p, const struct boundary_averages *averages, int64_t a,
@@ -292,7 +278,8 @@ enum status assembly_add_conditions(const struct assembly *input, struct solid_s
                                      .nodal_constraints = &nodal_constraints,
                                      .held = &held,
                                      .number = (int32_t)i};
-            if (prescription_directions(p.condition, input->cells.dim) == directions) {
+            if (p.condition->kind != CONDITION_POINTS &&
+                prescription_directions(p.condition, input->cells.dim) == directions) {
                 TRY(add_condition(&p, error));
             }
         }

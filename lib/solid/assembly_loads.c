@@ -119,6 +119,12 @@ static enum status add_pressure(const struct assembly *input, const struct load 
     struct pressure_load *pressure = &grown[system->pressure_count++];
     *pressure = (struct pressure_load){
         .pressure = load->pressure, .curve = load->curve, .facet_count = set->count, .facet = set->facet};
+    for (int a = 0; a < 3 && load->is_fluid; a++) {
+        pressure->weight[a] = load->weight[a];
+        pressure->level[a] = load->level[a];
+    }
+    pressure->is_fluid = load->is_fluid;
+    pressure->part = load->part;
     TRY(boundary_nodes_build(&input->face_table, set, &input->node_lists, input->node_phi, &pressure->corners,
                              error));
     TRY(boundary_points_build(&input->face_table, set, &pressure->points, error));

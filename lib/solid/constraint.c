@@ -233,13 +233,26 @@ done:
     return status;
 }
 
+enum status constraint_factorise(const struct constraint_rows *rows, int64_t node_count, const double *mass,
+                                 double least, struct envelope *factor, struct error *error)
+{
+    enum status status;
+    int64_t *ptr = NULL, *column = NULL;
+    double *value = NULL;
+    TRY(assemble(rows, node_count, mass, &ptr, &column, &value, error));
+    TRY(envelope_factorise(rows->count, ptr, column, value, least, factor, error));
+done:
+    free(ptr);
+    free(column);
+    free(value);
+    return status;
+}
+
 enum status constraint_build(const struct constraint_rows *rows, int64_t node_count, const double *mass,
                              const struct inverse_factor *inverse, const struct constraint_rows *inverse_rows,
                              struct constraint *constraint, struct error *error)
 {
     enum status status = STATUS_OK;
-    int64_t *ptr = NULL, *column = NULL;
-    double *value = NULL;
     *constraint = (struct constraint){.node_count = node_count,
                                       .rows = rows,
                                       .mass = mass,
@@ -253,12 +266,8 @@ enum status constraint_build(const struct constraint_rows *rows, int64_t node_co
         TRY(NEW_ARRAY(&constraint->scratch, 2 * node_count * rows->dim, error));
         rows = inverse_rows;
     }
-    TRY(assemble(rows, node_count, mass, &ptr, &column, &value, error));
-    TRY(envelope_factorise(rows->count, ptr, column, value, least_pivot, &constraint->factor, error));
+    TRY(constraint_factorise(rows, node_count, mass, least_pivot, &constraint->factor, error));
 done:
-    free(ptr);
-    free(column);
-    free(value);
     if (status != STATUS_OK) {
         constraint_free(constraint);
     }

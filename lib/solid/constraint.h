@@ -81,6 +81,11 @@ void constraint_free(struct constraint *constraint);
 /* u += M^-1 G^T amount[rows->count] */
 void constraint_spread(const struct constraint *constraint, const double *amount, double *u);
 
+/* G M^-1 G^T alone, dropping rows of pivots below `least`, see envelope_factorise. */
+MUST_CHECK enum status constraint_factorise(const struct constraint_rows *rows, int64_t node_count,
+                                            const double *mass, double least, struct envelope *factor,
+                                            struct error *error);
+
 /* u += M^-1 G^T multiplier such that G u = target * factor[curve]. With factor == NULL the targets are zero.
  */
 void constraint_project(struct constraint *constraint, const double *factor, double *u);

@@ -44,10 +44,9 @@ static void rigid_move(const struct box *box, int k, const double *X, double mov
 }
 
 /* Add the values of row r on each rigid mode of a body; body NULL: of all nodes. */
-static void look(const struct solid_system *system, int64_t r, const int32_t *body, int32_t number,
-                 struct seen *seen)
+static void look(const struct solid_system *system, const struct constraint_rows *rows, int64_t r,
+                 const int32_t *body, int32_t number, struct seen *seen)
 {
-    const struct constraint_rows *rows = &system->rows;
     int dim = system->dim, moves = move_count(dim);
     double value[MOST_MODES] = {0.0};
     struct average average = constraint_rows_average(rows, r);
@@ -181,6 +180,28 @@ static void name_moves(int dim, const struct seen *seen, struct rigid_modes *mov
     }
 }
 
+/* The springs of measured points hold as rows do. */
+static int64_t first_spring(const struct solid_system *system)
+{
+    return system->penalties.count - system->spring_count;
+}
+
+/* Rows from `first` on, on the bodies that they hold. */
+static void look_at_bodies(const struct solid_system *system, const struct constraint_rows *rows,
+                           int64_t first, const int32_t *body, struct seen *seen)
+{
+    for (int64_t r = first; r < rows->count; r++) {
+        struct average average = constraint_rows_average(rows, r);
+        int32_t last = -1;
+        for (int64_t i = 0; i < average.length; i++) { /* a body twice: weighs twice */
+            if (body[average.idx[i]] != last) {
+                last = body[average.idx[i]];
+                look(system, rows, r, body, last, &seen[last]);
+            }
+        }
+    }
+}
+
 enum status system_rigid_modes(const struct solid_system *system, int64_t body_count, const int32_t *body,
                                struct rigid_modes *moves, struct error *error)
 {
@@ -196,16 +217,8 @@ enum status system_rigid_modes(const struct solid_system *system, int64_t body_c
         box_add(&seen[body[n]].box, 1, system->X + n * dim);
         moves[body[n]].nodes++;
     }
-    for (int64_t r = 0; r < system->rows.count; r++) {
-        struct average average = constraint_rows_average(&system->rows, r);
-        int32_t last = -1;
-        for (int64_t i = 0; i < average.length; i++) { /* a body twice: weighs twice */
-            if (body[average.idx[i]] != last) {
-                last = body[average.idx[i]];
-                look(system, r, body, last, &seen[last]);
-            }
-        }
-    }
+    look_at_bodies(system, &system->rows, 0, body, seen);
+    look_at_bodies(system, &system->penalties, first_spring(system), body, seen);
     for (int64_t b = 0; b < body_count; b++) {
         for (int a = 0; a < dim; a++) {
             moves[b].centre[a] = middle(&seen[b].box, a);
@@ -222,7 +235,10 @@ bool system_has_rigid_mode(const struct solid_system *system)
     double basis[MOST_MODES][MOST_MODES];
     struct seen seen = {.box = box_of(system->dim, system->node_count, system->X)};
     for (int64_t r = 0; r < system->rows.count; r++) {
-        look(system, r, NULL, 0, &seen);
+        look(system, &system->rows, r, NULL, 0, &seen);
+    }
+    for (int64_t r = first_spring(system); r < system->penalties.count; r++) {
+        look(system, &system->penalties, r, NULL, 0, &seen);
     }
     return free_moves(system->dim, &seen, basis) > 0;
 }

@@ -188,9 +188,26 @@ static void corner_position(const struct solid_system *system, const struct boun
     }
 }
 
+/* The pressure at quadrature point p of the deformed facets. */
+static double pressure_at(const struct solid_system *system, const struct pressure_load *load, int64_t p,
+                          const double *u)
+{
+    double x[3], depth = 0.0;
+    struct average average = average_of_boundary(&load->points, p);
+    if (!load->is_fluid) {
+        return load->pressure;
+    }
+    average_take(&average, system->dim, u, x);
+    for (int a = 0; a < system->dim; a++) {
+        depth += load->weight[a] * (load->points.position[p * system->dim + a] + x[a] - load->level[a]);
+    }
+    bool presses = load->part == FLUID_ALL || (depth > 0.0) == (load->part == FLUID_BELOW);
+    return presses ? depth : 0.0;
+}
+
 /* Forces of a following pressure: those on a deformed facet are shared by its quadrature points as its area
  * at rest is. */
-static void add_pressure(const struct solid_system *system, const struct pressure_load *load, double pressure,
+static void add_pressure(const struct solid_system *system, const struct pressure_load *load, double factor,
                          const double *u, double *residual)
 {
     int dim = system->dim;
@@ -206,7 +223,7 @@ static void add_pressure(const struct solid_system *system, const struct pressur
             at_rest += load->points.area[p];
         }
         for (int64_t p = f * each; p < (f + 1) * each; p++) {
-            double share[3];
+            double share[3], pressure = factor * pressure_at(system, load, p, u);
             for (int a = 0; a < dim; a++) {
                 share[a] = -pressure * area[a] * load->points.area[p] / at_rest;
             }
@@ -228,37 +245,8 @@ void system_add_loads(const struct solid_system *system, const double *u, double
     }
     for (int64_t l = 0; l < system->pressure_count; l++) {
         const struct pressure_load *load = &system->pressures[l];
-        add_pressure(system, load, load->pressure * system->factor[load->curve], u, force);
+        add_pressure(system, load, system->factor[load->curve], u, force);
     }
-}
-
-double system_penalty_force(const struct solid_system *system, int64_t r, const double *u)
-{
-    const struct constraint_rows *penalties = &system->penalties;
-    return system->penalty_stiffness[r] * (penalties->target[r] * system->factor[penalties->curve[r]] -
-                                           constraint_rows_value(penalties, r, u));
-}
-
-void system_add_penalties(struct solid_system *system, const double *u, double *force)
-{
-    const struct constraint_rows *penalties = &system->penalties;
-    double *pull = system->penalty_force;
-    constraint_rows_values(penalties, u, pull);
-    for (int64_t r = 0; r < penalties->count; r++) {
-        double target = penalties->target[r] * system->factor[penalties->curve[r]];
-        pull[r] = system->penalty_stiffness[r] * (target - pull[r]);
-    }
-    constraint_rows_spread(penalties, pull, NULL, force);
-}
-
-double system_penalty_energy(const struct solid_system *system, const double *u)
-{
-    double energy = 0.0;
-    for (int64_t r = 0; r < system->penalties.count; r++) {
-        double pull = system_penalty_force(system, r, u);
-        energy += 0.5 * pull * pull / system->penalty_stiffness[r];
-    }
-    return energy;
 }
 
 static void negate(const struct solid_system *system, double *force)
@@ -304,6 +292,9 @@ double system_longest_way(const struct solid_system *system)
     double longest = 0.0;
     for (int64_t r = 0; r < system->rows.count; r++) {
         longest = fmax(longest, fabs(system->rows.target[r]));
+    }
+    for (int64_t r = system->penalties.count - system->spring_count; r < system->penalties.count; r++) {
+        longest = fmax(longest, fabs(system->penalties.target[r]));
     }
     for (int64_t c = 0; c < system->contact_count; c++) {
         const struct contact *contact = &system->contacts[c];

@@ -15,6 +15,9 @@ struct dead_load {
     int32_t curve;
 };
 
+/* Which part of a fluid presses: below its level, above, where it pulls, or all. */
+enum fluid_part { FLUID_BELOW, FLUID_ABOVE, FLUID_ALL };
+
 /* A pressure on facets that follows the deformation: it acts on the deformed facets, whose corners move with
  * the field at the nodes, and is transferred by the facets' own quadrature, as the cells' gradients are made,
  * so that under a constant pressure the linear patch test holds. */
@@ -24,8 +27,12 @@ struct pressure_load {
     struct boundary_averages corners; /* node values on the set: where corners are */
     int32_t *corner;                  /* facet_count * dim: the entry of each corner */
     struct boundary_averages
-        points;      /* values at the quadrature points, as many for each facet: what carries it */
-    double pressure; /* Pa, positive pushes inward */
+        points;       /* values at the quadrature points, as many for each facet: what carries it */
+    double pressure;  /* Pa, positive pushes inward */
+    bool is_fluid;    /* then instead: */
+    double weight[3]; /* of a fluid, density times gravity, N/m3: the pressure grows along it, */
+    double level[3];  /* from 0 at the level of this place, m */
+    enum fluid_part part;
     int32_t curve;
 };
 
@@ -64,6 +71,7 @@ struct solid_system {
      * quadrature points of the constrained facets hold the field to the same targets. Their forces vanish
      * where the field meets these, so that a linear field stays exact. */
     struct constraint_rows penalties;
+    int64_t spring_count; /* the last of the penalties: they hold measured points and back no condition */
     double *penalty_stiffness; /* penalties.count, N/m (2D: N/m2) */
     double *penalty_force;     /* penalties.count: scratch */
     struct load_curve *curves;
@@ -121,6 +129,12 @@ void system_resist(struct solid_system *system, const double *u, double *force);
 /* Forces of the constraint penalties, added to force; and their energy. */
 void system_add_penalties(struct solid_system *system, const double *u, double *force);
 double system_penalty_energy(const struct solid_system *system, const double *u);
+
+/* Append a constraint penalty; the arguments are those of constraint_rows_add, and its stiffness, N/m. */
+MUST_CHECK enum status system_append_penalty(struct solid_system *system, const struct average *average,
+                                             const double *direction, double target, int32_t curve,
+                                             int32_t section, int32_t node, double stiffness,
+                                             struct error *error);
 
 /* Force of constraint penalty r at u along its direction, N (2D: N/m). */
 double system_penalty_force(const struct solid_system *system, int64_t r, const double *u);

@@ -1,23 +1,28 @@
-# What is measured in the operating theatre: rows x y z ux uy uz, mm, of points spread over the exposed cortex, with noise in each
-# component: awk -f stream.awk -f random.awk -f measured.awk -v field=u.dat -v points=200 -v noise=0.5
+# What is measured in the operating theatre: rows x y z ux uy uz, mm, of points spread over the exposed cortex, or over other facets, with noise in
+# each component, and perhaps a column with its standard deviation:
+# awk -f stream.awk -f random.awk -f measured.awk -v field=u.dat -v points=200 -v noise=0.5 [-v groups=NAME,...] [-v deviation=0.5]
 
 BEGIN {
     read_stream(field, "")
     need_section("u", "is " field " a result of mtled?")
     need_section("facets.set", "groups -f exposed=...")
     n = split(attribute["facets.set", "names"], name, ",")
-    for (i = 1; i <= n; i++) if (name[i] == "exposed") exposed = i - 1
-    if (exposed == "") die(field ": no facets 'exposed'")
-    for (f = 0; f < rows["facets"]; f++) if (value["facets.set", f, 0] == exposed) facet[count++] = f
+    m = split(groups == "" ? "exposed" : groups, wanted, ",")
+    for (k = 1; k <= m; k++) {
+        set = -1
+        for (i = 1; i <= n; i++) if (name[i] == wanted[k]) set = i - 1
+        if (set < 0) die(field ": no facets '" wanted[k] "'")
+        for (f = 0; f < rows["facets"]; f++) if (value["facets.set", f, 0] == set) facet[count++] = f
+    }
     if (count < points) points = count
-    if (points == 0) die(field ": the group 'exposed' is empty")
+    if (points == 0) die(field ": the groups are empty")
     print "# Exposed cortex: places before and displacements"
     print "# x_mm\ty_mm\tz_mm\tux_mm\tuy_mm\tuz_mm"
     for (i = 0; i < points; i++) {
         f = facet[int(i * count / points)]
         printf "%.3f\t%.3f\t%.3f", mean("nodes.x", f, 0), mean("nodes.x", f, 1), mean("nodes.x", f, 2)
         for (axis = 0; axis < 3; axis++) printf "\t%.3f", mean("u", f, axis) + noise * normal()
-        print ""
+        print deviation == "" ? "" : "\t" deviation
     }
 }
 

@@ -1,4 +1,5 @@
-# Scans with the contours of the ventricles, and how far they are from the true one: gnuplot -e "folder='FOLDER'; out='FILE.png'" slices.gp
+# Scans with the contours of the ventricles, and how far they are from the true one: gnuplot -e "folder='FOLDER'; out='FILE.png';
+# prediction='NAME'; seen='from ...'" slices.gp
 
 set terminal pngcairo size 1500,1300 font "DejaVu Sans,16" background "white"
 set output out
@@ -28,9 +29,9 @@ eval(place(0, 0))
 set title "before"
 plot data using 1:2:3 with image notitle, contour("before") using (1e3 * $1):(1e3 * $2) with lines lw 2.5 lc rgb before title "ventricles"
 eval(place(1, 0))
-set title "predicted from the exposed cortex"
+set title "predicted ".seen
 plot data using 1:2:4 with image notitle, contour("true") using (1e3 * $1):(1e3 * $2) with lines lw 2.5 lc rgb true title "true", \
-     contour("craniotomy") using (1e3 * $1):(1e3 * $2) with lines lw 2.5 lc rgb predicted title "predicted"
+     contour(prediction) using (1e3 * $1):(1e3 * $2) with lines lw 2.5 lc rgb predicted title "predicted"
 eval(place(2, 0))
 set title "true"
 plot data using 1:2:5 with image notitle, contour("before") using (1e3 * $1):(1e3 * $2) with lines lw 2.5 lc rgb before title "before", \

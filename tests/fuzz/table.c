@@ -1,6 +1,8 @@
-/* Fuzz target: what a scene names: tables, surfaces (STL too) and load curves. The first byte says which. */
+/* Fuzz target: what a scene names: tables, surfaces (STL too), load curves and measured points; and tables of
+ * labels. The first byte says which. */
 #include "fuzz.h"
 
+#include "io/label_table.h"
 #include "io/surface.h"
 #include "solid/curve.h"
 #include "solid/rigid.h"
@@ -8,6 +10,45 @@
 #include <gsl/gsl_errno.h>
 #include <math.h>
 #include <string.h>
+
+/* Names are there, no number has two, and each is found as it stands. */
+static void try_labels(const char *path)
+{
+    struct label_table table;
+    struct error error = {""};
+    if (!is_accepted(label_table_read(path, &table, &error), &error)) {
+        REQUIRE(table.name_count == 0 && table.range_count == 0);
+        return;
+    }
+    REQUIRE(table.range_count > 0 || table.others);
+    for (int32_t r = 0; r < table.range_count; r++) {
+        int32_t name = -2;
+        REQUIRE(table.range[r].first <= table.range[r].last);
+        REQUIRE(table.range[r].name >= -1 && table.range[r].name < table.name_count);
+        REQUIRE(label_table_find(&table, table.range[r].first, &name) && name == table.range[r].name);
+        REQUIRE(label_table_find(&table, table.range[r].last, &name) && name == table.range[r].name);
+    }
+    for (int32_t n = 0; n < table.name_count; n++) {
+        REQUIRE(table.name[n].text[0] != '\0' && strpbrk(table.name[n].text, ",\"':\n\t ") == NULL);
+        for (int32_t k = 0; k < n; k++) {
+            REQUIRE(strcmp(table.name[n].text, table.name[k].text) != 0);
+        }
+    }
+    label_table_free(&table);
+}
+
+/* Rows of measured points in a plane: what is open is in the columns that may be. */
+static void try_points(const char *path)
+{
+    struct table table;
+    struct error error = {""};
+    if (is_accepted(table_read_open(path, 4, 5, 2, 4, &table, &error), &error)) {
+        for (int64_t i = 0; i < table.rows * table.cols; i++) {
+            REQUIRE(isfinite(table.values[i]) || (i % table.cols / 2 == 1 && isnan(table.values[i])));
+        }
+    }
+    table_free(&table);
+}
 
 static void require_table(const struct table *table)
 {
@@ -57,6 +98,11 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     gsl_set_error_handler_off();
     int file = file_of_bytes(data + 1, size - 1, name);
     snprintf(path, sizeof path, "%s", name);
+    if (data[0] == 4 || data[0] == 5) {
+        data[0] == 4 ? try_labels(path) : try_points(path);
+        close(file);
+        return 0;
+    }
     int kind = data[0] % 4;
     if (kind == 3) { /* surface_read goes by the name's ending */
         snprintf(path, sizeof path, "/tmp/fuzz-%ld.stl", (long)getpid());

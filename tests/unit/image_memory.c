@@ -73,7 +73,7 @@ static enum status move(struct error *error)
     int32_t owner[64];
     int64_t doubly;
     static const int64_t size[3] = {4, 4, 4};
-    enum status status = motion_build(&cells, u, false, &motion, error);
+    enum status status = motion_build(&cells, u, false, NULL, &motion, error);
     if (status == STATUS_OK) {
         status = raster_cells(&cells, 1, size, owner, &doubly, error);
     }

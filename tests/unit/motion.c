@@ -131,7 +131,7 @@ static void check_polynomial(int dim, bool linear, field_function field, double 
     struct motion motion;
     double inverse_error;
     make_body(dim, dim == 2 ? 9 : 6, field, &body);
-    assert_int_equal(motion_build(&body.cells, body.u, linear, &motion, &error), STATUS_OK);
+    assert_int_equal(motion_build(&body.cells, body.u, linear, NULL, &motion, &error), STATUS_OK);
     assert_true(largest_error(&motion, field, &inverse_error) <= tolerance);
     assert_true(inverse_error <= 1e-10);
     motion_free(&motion);
@@ -158,7 +158,7 @@ static void orders(void **state)
             struct body body;
             struct motion motion;
             make_body(2, fine ? 41 : 21, smooth_field, &body);
-            assert_int_equal(motion_build(&body.cells, body.u, linear, &motion, &error), STATUS_OK);
+            assert_int_equal(motion_build(&body.cells, body.u, linear, NULL, &motion, &error), STATUS_OK);
             errors[fine] = largest_error(&motion, smooth_field, &ignored);
             motion_free(&motion);
             drop_body(&body);
@@ -178,7 +178,7 @@ static void walks(void **state)
     struct body body;
     struct motion motion;
     make_body(3, 6, smooth_field, &body);
-    assert_int_equal(motion_build(&body.cells, body.u, false, &motion, &error), STATUS_OK);
+    assert_int_equal(motion_build(&body.cells, body.u, false, NULL, &motion, &error), STATUS_OK);
     for (int64_t c = 0; c < body.cells.count; c++) {
         for (int a = 0; a <= 3; a++) {
             int64_t start = motion.across[4 * c + a];
@@ -204,7 +204,7 @@ static void folds(void **state)
     struct cells cells = {2, 4, x, 2, node};
     struct motion motion;
     int64_t first = -1;
-    assert_int_equal(motion_build(&cells, u, true, &motion, &error), STATUS_OK);
+    assert_int_equal(motion_build(&cells, u, true, NULL, &motion, &error), STATUS_OK);
     assert_int_equal(motion_folded(&motion, &first), 1);
     assert_int_equal(first, 1);
     motion_free(&motion);

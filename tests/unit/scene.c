@@ -335,7 +335,7 @@ static void conditions(void **state)
     fails(HEAD BODY "[force d]\nfacets = f\ncomponents = 0,1\n", 10, "facets: unknown key");
     fails(HEAD BODY "[force d]\nnodes = f\n", 9, "components: missing: give the force on each node in N");
     fails(HEAD BODY "[traction d]\ncomponents = 0,0\n", 9, "facets: missing");
-    fails(HEAD BODY "[pressure d]\nfacets = f\n", 9, "value: missing: give the pressure in Pa");
+    fails(HEAD BODY "[pressure d]\nfacets = f\n", 9, "none of value, density");
     fails(HEAD BODY "[contact c]\nfacets = f\nrigid = s\nunit = m\n", 9, "side: missing: left or right");
     fails(HEAD BODY "[contact c]\nfacets = f\nrigid = s\nunit = m\nside = front\n", 13,
           "none of left, right");

@@ -9,6 +9,7 @@
 #include <cmocka.h>
 
 #include <float.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -46,6 +47,23 @@ static void round_trip(void **state)
     assert_int_equal(table.block_count, 1);
     assert_int_equal(table.block_ptr[1], 3);
     table_free(&table);
+}
+
+static void values_that_are_open(void **state)
+{
+    (void)state;
+    static const char text[] = "1 2 - 4\n5 nan NaN 8\n", wrong[] = "1 - 3 4\n";
+    struct table table;
+    struct error error;
+    write_to(path, text, strlen(text));
+    assert_int_equal(table_read_open(path, 4, 4, 1, 3, &table, &error), STATUS_OK);
+    assert_true(isnan(table.values[2]) && isnan(table.values[5]) && isnan(table.values[6]));
+    assert_true(table.values[3] == 4 && table.values[7] == 8);
+    table_free(&table);
+    assert_int_equal(table_read(path, 4, 4, &table, &error), STATUS_INPUT);
+    write_to(path, wrong, strlen(wrong));
+    assert_int_equal(table_read_open(path, 4, 4, 2, 3, &table, &error), STATUS_INPUT);
+    assert_non_null(strstr(error.text, ":1: column 2: '-' is not a finite number"));
 }
 
 static void blocks(void **state)
@@ -263,9 +281,10 @@ static int remove_folder(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(round_trip), cmocka_unit_test(blocks),     cmocka_unit_test(grows),
-        cmocka_unit_test(faults),     cmocka_unit_test(truncation), cmocka_unit_test(triangles),
-        cmocka_unit_test(curves),
+        cmocka_unit_test(round_trip), cmocka_unit_test(values_that_are_open),
+        cmocka_unit_test(blocks),     cmocka_unit_test(grows),
+        cmocka_unit_test(faults),     cmocka_unit_test(truncation),
+        cmocka_unit_test(triangles),  cmocka_unit_test(curves),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }

@@ -29,6 +29,9 @@ void model_free(struct model *model);
  * contacts, with their curves, facets, nodes and tables. */
 MUST_CHECK enum status model_materials(struct model *model, struct error *error);
 MUST_CHECK enum status model_conditions(struct model *model, struct error *error);
+/* Measured points: what is read of them, and the field there; compared and added by the assembly. */
+MUST_CHECK enum status model_points(struct model *model, const struct scene_displacement *section,
+                                    struct condition *condition, struct error *error);
 
 /* An array that the model frees; also on failure. */
 MUST_CHECK enum status model_own(struct model *model, void *array, struct error *error);

@@ -47,7 +47,8 @@ static enum status add_displacement(struct model *model, const struct scene_disp
     enum status status = STATUS_OK;
     static const enum condition_kind kinds[] = {[SCENE_COMPONENTS] = CONDITION_COMPONENTS,
                                                 [SCENE_NORMAL] = CONDITION_NORMAL,
-                                                [SCENE_TABLE] = CONDITION_TABLE};
+                                                [SCENE_TABLE] = CONDITION_TABLE,
+                                                [SCENE_POINTS] = CONDITION_POINTS};
     int dim = model->assembly.cells.dim;
     struct table table = {0};
     *condition = (struct condition){.name = section->label.name,
@@ -61,6 +62,9 @@ static enum status add_displacement(struct model *model, const struct scene_disp
         condition->is_free[a] = section->is_free[a];
     }
     TRY(add_curve(model, &section->label, &section->curve, &condition->curve, error));
+    if (section->kind == SCENE_POINTS) {
+        return model_points(model, section, condition, error);
+    }
     if (section->kind == SCENE_TABLE) {
         TRY(table_read(section->table, 2 * dim, 2 * dim, &table, error));
         condition->row_count = table.rows;
@@ -79,6 +83,28 @@ done:
     return status;
 }
 
+/* The fluid of a section that has one. */
+static enum status set_fluid(const struct model *model, const struct scene_load *section, struct load *load,
+                             struct error *error)
+{
+    static const enum fluid_part parts[] = {
+        [SCENE_BELOW] = FLUID_BELOW, [SCENE_ABOVE] = FLUID_ABOVE, [SCENE_BELOW_AND_ABOVE] = FLUID_ALL};
+    double length = hypot(hypot(section->gravity[0], section->gravity[1]), section->gravity[2]);
+    const double *gravity = length > 0.0 ? section->gravity : model->scene->gravity;
+    if (!(hypot(hypot(gravity[0], gravity[1]), gravity[2]) > 0.0)) {
+        return fail(error, STATUS_INPUT,
+                    "%s: density: a fluid without weight: give gravity here or in [scene]",
+                    section->label.where);
+    }
+    for (int a = 0; a < 3; a++) {
+        load->weight[a] = section->density * gravity[a];
+        load->level[a] = section->level[a];
+    }
+    load->is_fluid = true;
+    load->part = parts[section->level_side];
+    return STATUS_OK;
+}
+
 static enum status add_load(struct model *model, const struct scene_load *section, enum load_kind kind,
                             struct load *load, struct error *error)
 {
@@ -91,6 +117,9 @@ static enum status add_load(struct model *model, const struct scene_load *sectio
         TRY(model_nodes(model, &section->label, &section->nodes, &load->nodes, &load->node_count, error));
     } else {
         TRY(model_facets(model, &section->label, &section->facets, &load->facets, error));
+    }
+    if (section->density > 0.0) {
+        TRY(set_fluid(model, section, load, error));
     }
     TRY(add_curve(model, &section->label, &section->curve, &load->curve, error));
 done:

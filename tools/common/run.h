@@ -55,6 +55,10 @@ void run_quasi_static(struct run *run);
  */
 void run_contacts_judge(struct run *run, double slack);
 
+/* Of a run that stalled: ": ..." on the sharpest crease of a rigid surface that a contact node is pressed
+ * into, which makes it chatter, and what helps; "" where there is none. */
+void run_creases_text(struct run *run, char text[512]);
+
 /* Dynamic: step to the end time. Exits with a verdict when it cannot; adds the section energy on request. */
 void run_dynamic(struct run *run);
 
@@ -74,6 +78,9 @@ void run_drop_frames(struct stream *stream);
 
 /* Zeros; exits when there is no memory. */
 double *run_new_values(const struct run *run, int64_t count);
+
+/* Of a verbose report: how far the springs of measured points are from what was measured. */
+void run_report_springs(const struct run *run);
 
 /* End of a verbose report: what each part of the scene cost, s and share of the whole. */
 void run_report_cost(const struct run *run);

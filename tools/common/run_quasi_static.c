@@ -7,7 +7,7 @@
 static void judge(struct run *run, const struct relaxation_report *report)
 {
     const struct scene *scene = run->scene;
-    char place[96] = "", load[48] = "", sliver[128] = "";
+    char place[96] = "", load[48] = "", sliver[128] = "", creases[512];
     if (report->load < 1.0) {
         snprintf(load, sizeof load, " (at %.3g of the load)", report->load);
     }
@@ -25,11 +25,13 @@ static void judge(struct run *run, const struct relaxation_report *report)
         return;
     }
     if (report->outcome == RELAXATION_STALLED) {
+        run_creases_text(run, creases);
         run_fail(
-            run, STATUS_VERDICT,
-            "%s: step %lld%s: the estimated error stays at %.2g of the displacement: a larger tolerance, a "
-            "finer cloud at the contacts, or supports against rigid motion may help",
-            scene->path, (long long)report->steps, load, report->error);
+            run, STATUS_VERDICT, "%s: step %lld%s: the estimated error stays at %.2g of the displacement%s",
+            scene->path, (long long)report->steps, load, report->error,
+            creases[0] != '\0' ? creases
+                               : ": a larger tolerance, a finer cloud at the contacts, or supports against "
+                                 "rigid motion may help");
     }
     if (report->outcome == RELAXATION_STOPPED) {
         run_checkpoint_stop(run, report->steps);
@@ -52,11 +54,11 @@ static void judge(struct run *run, const struct relaxation_report *report)
                  scene->path, (long long)report->steps, (long long)report->inverted_point, place,
                  report->least_jacobian, (long long)report->ramp_steps, sliver);
     }
+    run_creases_text(run, creases);
     run_fail(run, STATUS_VERDICT,
              "%s: not converged after %lld steps%s: estimated remaining error %.2g of the displacement: "
-             "allow more "
-             "(max_steps), or hold the body against rigid motion",
-             scene->path, (long long)report->steps, load, report->error);
+             "allow more (max_steps), or hold the body against rigid motion%s",
+             scene->path, (long long)report->steps, load, report->error, creases);
 }
 
 void run_quasi_static(struct run *run)
@@ -93,5 +95,6 @@ void run_quasi_static(struct run *run)
                 (long long)report.loading_steps, (long long)report.force_evaluations);
         fprintf(stderr, "estimated error\t%.3g\nfrequency ratio\t%.5g\nleast J\t%.4g\n", report.error,
                 report.largest_frequency / report.lowest_frequency, report.least_jacobian);
+        run_report_springs(run);
     }
 }

@@ -1,0 +1,255 @@
+/* Displacements of measured points, anywhere in the body or on it: exact conditions on the field there, or
+ * springs. */
+#include "solid/assembly.h"
+
+#include "base/memory.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+/* One condition of measured points. */
+struct point_condition {
+    const struct assembly *input;
+    const struct condition *condition;
+    const struct measured *measured;
+    struct solid_system *system;
+    int32_t number;
+    double *volume, *shear; /* of the nodes: m3 and Pa */
+    double energy;          /* that the springs go by, J (2D: J/m) */
+};
+
+/* "FILE:LINE: [displacement NAME]: points TABLE:LINE: ..." */
+static enum status fail_at(const struct point_condition *p, int64_t row, struct error *error,
+                           const char *what)
+{
+    char place[96];
+    point_text(p->measured->dim, p->measured->x + row * p->measured->dim, place);
+    return fail(error, STATUS_INPUT, "%s: points %s:%lld: at %s: %s", p->condition->where,
+                p->condition->table, (long long)p->condition->line[row], place, what);
+}
+
+/* What decides how stiff the body is at its nodes. */
+static enum status look_at_nodes(struct point_condition *p, struct error *error)
+{
+    enum status status;
+    const struct body *body = &p->system->body;
+    const struct cells *cells = &p->input->cells;
+    const int32_t *cell = p->input->point_cell;
+    int corners = cells->dim + 1;
+    TRY(NEW_ARRAY(&p->volume, cells->node_count, error));
+    TRY(NEW_ARRAY(&p->shear, cells->node_count, error));
+    for (int64_t q = 0; q < body->point_count; q++) {
+        const int32_t *node = cells->node + (int64_t)cell[body->order[q]] * corners;
+        for (int k = 0; k < corners; k++) {
+            p->volume[node[k]] += body->weight[q] / corners;
+            p->shear[node[k]] += body->weight[q] / corners * body->materials[body->material[q]].shear_modulus;
+        }
+    }
+    for (int64_t n = 0; n < cells->node_count; n++) {
+        p->shear[n] /= p->volume[n];
+    }
+done:
+    return status;
+}
+
+/* What two rows say of each other. */
+static enum status compare_rows(const struct point_condition *p, struct error *note, struct error *error)
+{
+    struct measured_pair exact, others, repeated;
+    char what[192];
+    enum status status =
+        measured_compare(p->measured, 1e-9 * p->input->extent, &exact, &others, &repeated, error);
+    if (status == STATUS_OK && exact.count > 0) {
+        snprintf(what, sizeof what,
+                 "contradicts line %lld, %.3g m away: their displacements differ by %.3g m, which turns over "
+                 "what is between: give standard deviations, or leave one out",
+                 (long long)p->condition->line[exact.first], exact.distance, exact.apart);
+        return fail_at(p, exact.second, error, what);
+    }
+    if (status == STATUS_OK && repeated.count > 0) {
+        snprintf(what, sizeof what, "is the point of line %lld again: leave one out",
+                 (long long)p->condition->line[repeated.first]);
+        return fail_at(p, repeated.second, error, what);
+    }
+    if (status == STATUS_OK && others.count > 0 && note->text[0] == '\0') {
+        snprintf(what, sizeof what,
+                 "contradicts line %lld, %.3g m away: their displacements differ by %.3g m, more than six "
+                 "standard deviations (pairs like this: %lld)",
+                 (long long)p->condition->line[others.first], others.distance, others.apart,
+                 (long long)others.count);
+        (void)fail_at(p, others.second, note, what);
+    }
+    return status;
+}
+
+/* The nearest of the nodes that a point's field is made of. */
+static int32_t nearest_node(const struct point_condition *p, int64_t i)
+{
+    int dim = p->measured->dim;
+    const int64_t *ptr = p->condition->field.ptr;
+    const int32_t *idx = p->condition->field.idx;
+    double least = INFINITY;
+    int32_t nearest = idx[ptr[i]];
+    for (int64_t k = ptr[i]; k < ptr[i + 1]; k++) {
+        double sum = 0.0;
+        for (int a = 0; a < dim; a++) {
+            double way = p->input->cells.x[(int64_t)idx[k] * dim + a] - p->measured->x[i * dim + a];
+            sum += way * way;
+        }
+        if (sum < least) {
+            least = sum;
+            nearest = idx[k];
+        }
+    }
+    return nearest;
+}
+
+/* The rows of one point, or its springs. */
+static enum status add_point(const struct point_condition *p, int64_t i, struct error *error)
+{
+    enum status status = STATUS_OK;
+    int dim = p->measured->dim;
+    int64_t at = p->condition->field.ptr[i];
+    int32_t node = nearest_node(p, i);
+    struct average average = {p->condition->field.ptr[i + 1] - at, p->condition->field.idx + at,
+                              p->condition->field_phi + at};
+    for (int a = 0; a < dim; a++) {
+        double direction[3] = {0.0, 0.0, 0.0}, target = p->measured->u[i * dim + a];
+        double deviation = p->measured->deviation[i];
+        direction[a] = 1.0;
+        if (isnan(target)) {
+            continue;
+        }
+        if (!(deviation > 0.0)) {
+            TRY(constraint_rows_add(&p->system->rows, average.length, average.idx, average.phi, direction,
+                                    target, p->condition->curve, p->number, node, error));
+            continue;
+        }
+        TRY(system_append_penalty(p->system, &average, direction, target, p->condition->curve, p->number,
+                                  node, p->energy / (deviation * deviation), error));
+        p->system->spring_count++;
+    }
+done:
+    return status;
+}
+
+/* Root mean square of what was measured, by components. */
+static double usual_displacement(const struct measured *measured)
+{
+    double sum = 0.0;
+    int64_t count = 0;
+    for (int64_t i = 0; i < measured->count * measured->dim; i++) {
+        if (!isnan(measured->u[i])) {
+            sum += measured->u[i] * measured->u[i];
+            count++;
+        }
+    }
+    return sqrt(sum / (double)count);
+}
+
+/* The energy scale of the springs, if there are any. */
+static enum status set_energy(struct point_condition *p, struct error *error)
+{
+    enum status status = STATUS_OK;
+    const struct measured *measured = p->measured;
+    struct measured_region region = {.body_size = p->input->extent, .model_error = p->condition->model_error};
+    bool *seen = NULL;
+    double points = 0.0;
+    TRY(NEW_ARRAY(&seen, p->system->node_count, error));
+    for (int64_t i = 0; i < measured->count; i++) {
+        int32_t node = nearest_node(p, i);
+        for (int64_t k = p->condition->field.ptr[i];
+             k < p->condition->field.ptr[i + 1] && measured->deviation[i] > 0.0; k++) {
+            region.nodes += !seen[p->condition->field.idx[k]];
+            seen[p->condition->field.idx[k]] = true;
+        }
+        if (measured->deviation[i] > 0.0) {
+            region.shear_modulus += p->shear[node];
+            region.volume += p->volume[node];
+            points += 1.0;
+        }
+    }
+    if (!(points > 0.0)) {
+        goto done;
+    }
+    region.shear_modulus /= points;
+    region.volume /= points;
+    if (!(region.model_error > 0.0)) {
+        region.model_error = usual_displacement(measured);
+    }
+    if (!(region.model_error > 0.0)) {
+        status = fail(error, STATUS_INPUT,
+                      "%s: points %s: all that was measured is 0: say by model_error how far off the scene "
+                      "may be without them, m",
+                      p->condition->where, p->condition->table);
+        goto done;
+    }
+    p->energy = measured_energy(measured, &region);
+done:
+    free(seen);
+    return status;
+}
+
+/* Exact rows from `first` on, one for each component that is known, that leave each other or the sections
+ * before too little. */
+static enum status check_rows(const struct point_condition *p, int64_t first, struct error *error)
+{
+    enum status status;
+    const struct constraint_rows *rows = &p->system->rows;
+    int dim = p->measured->dim;
+    int64_t row = first;
+    bool *dependent = NULL;
+    TRY(NEW_ARRAY(&dependent, rows->count, error));
+    TRY(measured_dependent(rows, p->system->node_count, dependent, error));
+    for (int64_t i = 0; i < p->measured->count; i++) {
+        for (int a = 0; a < dim && !(p->measured->deviation[i] > 0.0); a++) {
+            if (!isnan(p->measured->u[i * dim + a]) && dependent[row++]) {
+                status = fail_at(p, i, error,
+                                 "too many points for the nodes there, or one on what another section holds: "
+                                 "leave it out, give standard deviations, or refine the cloud");
+                goto done;
+            }
+        }
+    }
+done:
+    free(dependent);
+    return status;
+}
+
+static enum status add_condition(struct point_condition *p, struct error *note, struct error *error)
+{
+    enum status status;
+    int64_t first = p->system->rows.count;
+    TRY(compare_rows(p, note, error));
+    TRY(look_at_nodes(p, error));
+    TRY(set_energy(p, error));
+    for (int64_t i = 0; i < p->measured->count; i++) {
+        TRY(add_point(p, i, error));
+    }
+    if (p->system->rows.count > first) {
+        TRY(check_rows(p, first, error));
+    }
+done:
+    free(p->volume);
+    free(p->shear);
+    return status;
+}
+
+enum status assembly_add_points(const struct assembly *input, struct solid_system *system, struct error *note,
+                                struct error *error)
+{
+    enum status status = STATUS_OK;
+    for (int64_t i = 0; i < input->condition_count; i++) {
+        if (input->conditions[i].kind == CONDITION_POINTS) {
+            struct point_condition p = {.input = input,
+                                        .condition = &input->conditions[i],
+                                        .measured = &input->conditions[i].measured,
+                                        .system = system,
+                                        .number = (int32_t)i};
+            TRY(add_condition(&p, note, error));
+        }
+    }
+done:
+    return status;
+}

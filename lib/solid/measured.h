@@ -1,0 +1,66 @@
+/* Displacements measured at any points of a body: springs that hold what is known to a standard deviation,
+ * points that contradict each other, and conditions that leave each other too little to decide.
+ *
+ * A spring is a term of weighted least squares beside the elastic energy: e (u_h - u)^2 / (2 sigma^2) for a
+ * component known to the standard deviation sigma. Then the equilibrium is the most probable displacement,
+ * where what the scene does not know moves the body by random fields whose covariance is e times its
+ * compliance A. The scale e, an energy, is that of maximum likelihood: d . A^-1 d / N for N measured
+ * components by which the scene without the points is off, d, which is twice the least elastic energy of
+ * that. It is estimated as the energy that moves the ball of radius l of the points by s, the root mean
+ * square of d, in an incompressible medium (Stokes 1851; in 2D a circle, to leading order, in a body of size
+ * L):
+ *
+ *   e = k s^2 / N,   k = 6 pi mu l,   in 2D 4 pi mu / ln (L / l). (29)
+ *
+ * A point alone thus goes s^2 / (s^2 + sigma^2) of the way to what was measured (Wiener 1949); and where N
+ * points hold a region, their springs together are that much stiffer than it. More points than nodes can
+ * follow count as so many as these. */
+#ifndef SOLID_MEASURED_H
+#define SOLID_MEASURED_H
+
+#include "solid/constraint.h"
+
+/* Points of a body; the arrays are the caller's. */
+struct measured {
+    int dim;
+    int64_t count;
+    const double *x;         /* count * dim: where they are at rest, m */
+    const double *u;         /* count * dim: displacement, m; NAN: this component is not known */
+    const double *deviation; /* count: of each component, m; 0: exact */
+};
+
+/* What e depends on. */
+struct measured_region {
+    double shear_modulus; /* mu, Pa: mean at the points */
+    double volume;        /* of the body that a node stands for: mean, m3 (2D: m2) */
+    double body_size;     /* L, m */
+    double model_error;   /* s, m */
+    int64_t nodes;        /* that the field at the points is made of */
+};
+
+/* e, J (2D: J/m), by the points that are not exact; l is the radius of the ball with the same radius of
+ * gyration, at least that of the ball that a node stands for. 0 without such points. */
+double measured_energy(const struct measured *measured, const struct measured_region *region);
+
+/* Two points, first < second. */
+struct measured_pair {
+    int64_t first, second; /* -1, -1: none */
+    double distance;       /* of the points at rest, m */
+    double apart;          /* difference of what is known of both displacements, m */
+    int64_t count;         /* of all pairs of this kind */
+};
+
+/* Pairs whose displacements differ by more than their distance and six standard deviations of the difference:
+ * what lies between them would be turned over. Of exact points (both), and of others; the first of each by
+ * `second`. Exact points at one place, to `same` m, that know a component both are `repeated`, and in no
+ * other list if they agree. Time n log n where displacements are alike. STATUS_SYSTEM: memory. */
+MUST_CHECK enum status measured_compare(const struct measured *measured, double same,
+                                        struct measured_pair *exact, struct measured_pair *others,
+                                        struct measured_pair *repeated, struct error *error);
+
+/* dependent[rows->count]: rows of which the part that is independent of the others is at most a tenth, so
+ * that a difference between measurements would be magnified ten times beside them. */
+MUST_CHECK enum status measured_dependent(const struct constraint_rows *rows, int64_t node_count,
+                                          bool *dependent, struct error *error);
+
+#endif
