@@ -97,7 +97,8 @@ static enum status fail_at_row(const struct solid_system *system, int64_t r, dou
     char place[96], with[160] = "others";
     point_text(system->dim, system->X + (int64_t)rows->node[r] * system->dim, place);
     if (conditions != NULL && other >= 0) {
-        snprintf(with, sizeof with, "those of [displacement %.100s] and others", conditions[rows->section[other]].name);
+        snprintf(with, sizeof with, "those of [displacement %.100s] and others",
+                 conditions[rows->section[other]].name);
     }
     return fail(
         error, STATUS_VERDICT,
