@@ -97,6 +97,22 @@ done:
     return status;
 }
 
+/* Sum of a[k] b[k], in four parts: one would wait for each addition. */
+static double product(int64_t count, const double *a, const double *b)
+{
+    double sum[4] = {0.0, 0.0, 0.0, 0.0};
+    int64_t k = 0;
+    for (; k + 4 <= count; k += 4) {
+        for (int i = 0; i < 4; i++) {
+            sum[i] += a[k + i] * b[k + i];
+        }
+    }
+    for (; k < count; k++) {
+        sum[0] += a[k] * b[k];
+    }
+    return (sum[0] + sum[1]) + (sum[2] + sum[3]);
+}
+
 /* Row i of the factor, to be indexed by column. */
 static double *row_at(const struct envelope *factor, int64_t i)
 {
@@ -109,12 +125,8 @@ static void eliminate(struct envelope *factor, int64_t i, int64_t columns)
     double *row = row_at(factor, i);
     for (int64_t k = factor->first[i]; k < columns; k++) {
         const double *other = row_at(factor, k);
-        double sum = row[k];
         int64_t from = factor->first[i] > factor->first[k] ? factor->first[i] : factor->first[k];
-        for (int64_t l = from; l < k; l++) {
-            sum -= row[l] * other[l];
-        }
-        row[k] = sum / other[k];
+        row[k] = (row[k] - product(k - from, row + from, other + from)) / other[k];
     }
 }
 
@@ -122,12 +134,9 @@ static void eliminate(struct envelope *factor, int64_t i, int64_t columns)
 static double reduced(const struct envelope *factor, int64_t i, int64_t j, int64_t columns)
 {
     const double *row = row_at(factor, i), *other = row_at(factor, j);
-    double sum = j >= factor->first[i] ? row[j] : 0.0;
+    double entry = j >= factor->first[i] ? row[j] : 0.0;
     int64_t from = factor->first[i] > factor->first[j] ? factor->first[i] : factor->first[j];
-    for (int64_t l = from; l < columns; l++) {
-        sum -= row[l] * other[l];
-    }
-    return sum;
+    return entry - product(columns - from, row + from, other + from);
 }
 
 static void drop_row(struct envelope *factor, int64_t i)
@@ -293,18 +302,17 @@ void envelope_solve(const struct envelope *factor, double *x)
 {
     double *y = factor->scratch;
     for (int64_t i = 0; i < factor->n; i++) {
-        const double *row = factor->value + factor->start[i] - factor->first[i];
-        double sum = x[factor->order[i]];
-        for (int64_t k = factor->first[i]; k < i; k++) {
-            sum -= row[k] * y[k];
-        }
-        y[i] = sum / row[i];
+        const double *row = factor->value + factor->start[i];
+        int64_t first = factor->first[i];
+        y[i] = (x[factor->order[i]] - product(i - first, row, y + first)) / row[i - first];
     }
     for (int64_t i = factor->n - 1; i >= 0; i--) {
-        const double *row = factor->value + factor->start[i] - factor->first[i];
-        y[i] /= row[i];
-        for (int64_t k = factor->first[i]; k < i; k++) {
-            y[k] -= row[k] * y[i];
+        const double *row = factor->value + factor->start[i];
+        int64_t first = factor->first[i];
+        double *restrict before = y + first, last = y[i] / row[i - first];
+        y[i] = last;
+        for (int64_t k = 0; k < i - first; k++) {
+            before[k] -= row[k] * last;
         }
     }
     for (int64_t i = 0; i < factor->n; i++) {

@@ -161,8 +161,7 @@ void body_volume_ratio(struct body *body, double *ratio);
  * limit of the bulk modulus (body_limit_bulk) counts. */
 void body_diagonal(struct body *body, double *stiffness);
 
-/* The same of smoothed cells for parameters that are about the values at the nodes (nodal_basis.h): with
- * the hat functions of the cells for phi. */
-void body_nodal_diagonal(struct body *body, double *stiffness);
+/* The same of smoothed cells with the hat functions of the cells for phi, which is quicker; or with F = I. */
+void body_nodal_diagonal(struct body *body, bool rest, double *stiffness);
 
 #endif

@@ -39,9 +39,10 @@ struct bound {
     double A[9], smoothing;
 };
 
+static const double at_rest[9] = {1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0};
+
 static struct bound bound_at(const struct body *body, int64_t q, const double *F)
 {
-    static const double at_rest[9] = {1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0};
     const struct material *material = &body->materials[body->material[q]];
     struct bound bound = {.smoothing = 0.0};
     double C[9], I1 = 0.0;
@@ -76,6 +77,7 @@ static struct bound bound_at(const struct body *body, int64_t q, const double *F
 struct bound_sum {
     double *of_node;
     struct cell_functions *work;
+    bool at_rest;
 };
 
 static void add_functions(const struct body *body, const struct bound *bound, int64_t count,
@@ -111,13 +113,12 @@ static void add_point(const struct body *body, int64_t q, const double F[9], dou
     add_functions(body, &bound, count, matrix->idx + at, work->gradient, to->of_node);
 }
 
-/* The same for parameters that are values at the nodes, whose functions are about the hat functions of a
- * cell. */
+/* The same with the hat functions of the cell. */
 static void add_cell(const struct body *body, int64_t q, const double F[9], double J, void *context)
 {
     (void)J;
     const struct bound_sum *to = context;
-    struct bound bound = bound_at(body, q, F);
+    struct bound bound = bound_at(body, q, to->at_rest ? at_rest : F);
     double gradient[12];
     int32_t node[4];
     for (int k = 0; k <= body->dim; k++) {
@@ -127,7 +128,7 @@ static void add_cell(const struct body *body, int64_t q, const double F[9], doub
     add_functions(body, &bound, body->dim + 1, node, gradient, to->of_node);
 }
 
-static void sum_bounds(struct body *body, body_visitor *add, double *stiffness)
+static void sum_bounds(struct body *body, body_visitor *add, bool rest, double *stiffness)
 {
     const struct chunks *parts = &body->bound_parts;
 #pragma omp parallel num_threads(parts->threads)
@@ -136,7 +137,7 @@ static void sum_bounds(struct body *body, body_visitor *add, double *stiffness)
         for (int64_t p = 0; p < parts->count; p++) {
             double *sum = body->bound + p * body->node_count;
             memset(sum, 0, (size_t)body->node_count * sizeof *sum);
-            struct bound_sum to = {sum, &body->bound_work[p]};
+            struct bound_sum to = {sum, &body->bound_work[p], rest};
             body_visit(body, chunks_begin(parts, p), chunks_begin(parts, p + 1), add, &to);
         }
 #pragma omp for schedule(static)
@@ -152,10 +153,10 @@ static void sum_bounds(struct body *body, body_visitor *add, double *stiffness)
 
 void body_diagonal(struct body *body, double *stiffness)
 {
-    sum_bounds(body, add_point, stiffness);
+    sum_bounds(body, add_point, false, stiffness);
 }
 
-void body_nodal_diagonal(struct body *body, double *stiffness)
+void body_nodal_diagonal(struct body *body, bool rest, double *stiffness)
 {
-    sum_bounds(body, add_cell, stiffness);
+    sum_bounds(body, add_cell, rest, stiffness);
 }

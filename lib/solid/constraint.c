@@ -2,6 +2,7 @@
 
 #include "base/memory.h"
 #include "base/sparse.h"
+#include "solid/inverse_factor.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -233,16 +234,25 @@ done:
 }
 
 enum status constraint_build(const struct constraint_rows *rows, int64_t node_count, const double *mass,
+                             const struct inverse_factor *inverse, const struct constraint_rows *inverse_rows,
                              struct constraint *constraint, struct error *error)
 {
     enum status status = STATUS_OK;
     int64_t *ptr = NULL, *column = NULL;
     double *value = NULL;
-    *constraint = (struct constraint){.node_count = node_count, .rows = rows, .mass = mass};
+    *constraint = (struct constraint){.node_count = node_count,
+                                      .rows = rows,
+                                      .mass = mass,
+                                      .inverse = inverse,
+                                      .inverse_rows = inverse_rows};
     if (rows->count == 0) {
         return STATUS_OK;
     }
     TRY(NEW_ARRAY(&constraint->multiplier, rows->count, error));
+    if (inverse != NULL) {
+        TRY(NEW_ARRAY(&constraint->scratch, 2 * node_count * rows->dim, error));
+        rows = inverse_rows;
+    }
     TRY(assemble(rows, node_count, mass, &ptr, &column, &value, error));
     TRY(envelope_factorise(rows->count, ptr, column, value, least_pivot, &constraint->factor, error));
 done:
@@ -258,8 +268,26 @@ done:
 void constraint_free(struct constraint *constraint)
 {
     free(constraint->multiplier);
+    free(constraint->scratch);
     envelope_free(&constraint->factor);
     *constraint = (struct constraint){0};
+}
+
+void constraint_spread(const struct constraint *constraint, const double *amount, double *u)
+{
+    if (constraint->inverse == NULL) {
+        constraint_rows_spread(constraint->rows, amount, constraint->mass, u);
+        return;
+    }
+    int dim = constraint->rows->dim;
+    int64_t size = constraint->node_count * dim;
+    double *on_inverse = constraint->scratch, *move = constraint->scratch + size;
+    memset(on_inverse, 0, (size_t)size * sizeof *on_inverse);
+    constraint_rows_spread(constraint->inverse_rows, amount, constraint->mass, on_inverse);
+    inverse_factor_apply_transposed(constraint->inverse, dim, on_inverse, move);
+    for (int64_t i = 0; i < size; i++) {
+        u[i] += move[i];
+    }
 }
 
 void constraint_project(struct constraint *constraint, const double *factor, double *u)
@@ -271,7 +299,7 @@ void constraint_project(struct constraint *constraint, const double *factor, dou
     double *multiplier = constraint->multiplier;
     constraint_rows_missing(rows, factor, u, multiplier);
     envelope_solve(&constraint->factor, multiplier);
-    constraint_rows_spread(rows, multiplier, constraint->mass, u);
+    constraint_spread(constraint, multiplier, u);
 }
 
 double constraint_violation(const struct constraint *constraint, const double *factor, const double *u,

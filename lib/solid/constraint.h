@@ -55,21 +55,31 @@ void constraint_rows_missing(const struct constraint_rows *rows, const double *f
 void constraint_rows_spread(const struct constraint_rows *rows, const double *amount, const double *mass,
                             double *u);
 
+struct inverse_factor;
+
 /* The factored system. */
 struct constraint {
     int64_t node_count;
-    const struct constraint_rows *rows; /* the caller's; must outlive the constraint */
-    const double *mass;                 /* node_count; the caller's */
+    const struct constraint_rows *rows;         /* the caller's; must outlive the constraint */
+    const double *mass;                         /* node_count; the caller's */
+    const struct inverse_factor *inverse;       /* NULL; or M^-1 = L^T D^-1 L with this L, and D in `mass`, */
+    const struct constraint_rows *inverse_rows; /* and the rows G L^T; both the caller's */
+    double *scratch;                            /* 2 * node_count * dim, with these */
     struct envelope factor;
     double *multiplier; /* count: of the last projection, N s2 in the step's scaling */
 };
 
-/* Factor G M^-1 G^T. Rows that depend on others are dropped (factor.dropped): they are met when their targets
- * agree with the others', see constraint_violation, and bear no force until constraint_share_out. */
+/* Factor G M^-1 G^T; `inverse` and `inverse_rows` NULL: M is diagonal. Rows that depend on others are dropped
+ * (factor.dropped): they are met when their targets agree with the others', see constraint_violation, and
+ * bear no force until constraint_share_out. */
 MUST_CHECK enum status constraint_build(const struct constraint_rows *rows, int64_t node_count,
-                                        const double *mass, struct constraint *constraint,
-                                        struct error *error);
+                                        const double *mass, const struct inverse_factor *inverse,
+                                        const struct constraint_rows *inverse_rows,
+                                        struct constraint *constraint, struct error *error);
 void constraint_free(struct constraint *constraint);
+
+/* u += M^-1 G^T amount[rows->count] */
+void constraint_spread(const struct constraint *constraint, const double *amount, double *u);
 
 /* u += M^-1 G^T multiplier such that G u = target * factor[curve]. With factor == NULL the targets are zero.
  */

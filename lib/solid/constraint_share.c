@@ -22,7 +22,7 @@ static enum status null_rows(const struct constraint *constraint, double *null, 
         double *combination = null + d * rows->count;
         memset(u, 0, (size_t)size * sizeof *u);
         unit[dropped[d]] = 1.0;
-        constraint_rows_spread(rows, unit, constraint->mass, u);
+        constraint_spread(constraint, unit, u);
         unit[dropped[d]] = 0.0;
         constraint_rows_values(rows, u, combination);
         envelope_solve(&constraint->factor, combination);
@@ -38,8 +38,10 @@ done:
 /* scale[count] = the diagonal of G M^-1 G^T */
 static void diagonal(const struct constraint *constraint, double *scale)
 {
-    for (int64_t r = 0; r < constraint->rows->count; r++) {
-        struct average average = constraint_rows_average(constraint->rows, r);
+    const struct constraint_rows *rows =
+        constraint->inverse == NULL ? constraint->rows : constraint->inverse_rows;
+    for (int64_t r = 0; r < rows->count; r++) {
+        struct average average = constraint_rows_average(rows, r);
         scale[r] = 0.0;
         for (int64_t i = 0; i < average.length; i++) {
             scale[r] += average.phi[i] * average.phi[i] / constraint->mass[average.idx[i]];

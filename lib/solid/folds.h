@@ -63,9 +63,9 @@ struct fold_rim {
     int32_t node, on_rim;  /* a node of the free one off the support, and one that both have */
 };
 
-/* The extent of a facet along the first axis. */
+/* The extent of a facet along each axis. */
 struct fold_box {
-    double low, high;
+    double low[3], high[3];
     int64_t facet;
 };
 
@@ -85,7 +85,7 @@ struct folds {
     /* Scratch. */
     double *y;              /* node_count * dim: positions */
     double largest;         /* of their coordinates, m */
-    struct fold_box *boxes; /* facet_count, by low */
+    struct fold_box *boxes; /* facet_count, by low[0] */
     double *plane; /* facet_count * 7: of the support that begins with each facet: the sum of its area
                     * vectors,  of its corners, their number */
 };

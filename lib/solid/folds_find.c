@@ -253,32 +253,21 @@ static bool are_deep(const struct folds *folds, int64_t f, int64_t g)
     return depth > beyond_facet * fmin(width[0], width[1]);
 }
 
-/* Whether the boxes of two facets meet along the other axes than the first. */
-static bool boxes_meet(const struct folds *folds, int64_t f, int64_t g)
+/* Whether two boxes meet along the other axes than the first. */
+static bool boxes_meet(int dim, const struct fold_box *one, const struct fold_box *other)
 {
-    int dim = folds->input.dim;
+    bool meet = true;
     for (int i = 1; i < dim; i++) {
-        double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
-        for (int k = 0; k < dim; k++) {
-            double a = at(folds, folds->input.facet[f * dim + k])[i];
-            double b = at(folds, folds->input.facet[g * dim + k])[i];
-            low[0] = fmin(low[0], a);
-            high[0] = fmax(high[0], a);
-            low[1] = fmin(low[1], b);
-            high[1] = fmax(high[1], b);
-        }
-        if (low[0] > high[1] || low[1] > high[0]) {
-            return false;
-        }
+        meet = meet && one->low[i] <= other->high[i] && other->low[i] <= one->high[i];
     }
-    return true;
+    return meet;
 }
 
 static int compare_boxes(const void *left, const void *right)
 {
     const struct fold_box *a = left, *b = right;
-    if (a->low != b->low) {
-        return a->low < b->low ? -1 : 1;
+    if (a->low[0] != b->low[0]) {
+        return a->low[0] < b->low[0] ? -1 : 1;
     }
     return (a->facet > b->facet) - (a->facet < b->facet);
 }
@@ -288,11 +277,15 @@ static void sort_boxes(struct folds *folds)
     int dim = folds->input.dim;
     for (int64_t f = 0; f < folds->input.facet_count; f++) {
         struct fold_box *box = &folds->boxes[f];
-        *box = (struct fold_box){.low = INFINITY, .high = -INFINITY, .facet = f};
-        for (int k = 0; k < dim; k++) {
-            double place = at(folds, folds->input.facet[f * dim + k])[0];
-            box->low = fmin(box->low, place);
-            box->high = fmax(box->high, place);
+        box->facet = f;
+        for (int i = 0; i < dim; i++) {
+            box->low[i] = INFINITY;
+            box->high[i] = -INFINITY;
+            for (int k = 0; k < dim; k++) {
+                double place = at(folds, folds->input.facet[f * dim + k])[i];
+                box->low[i] = fmin(box->low[i], place);
+                box->high[i] = fmax(box->high[i], place);
+            }
         }
     }
     qsort(folds->boxes, (size_t)folds->input.facet_count, sizeof *folds->boxes, compare_boxes);
@@ -303,11 +296,12 @@ static void find_crossings(struct folds *folds, struct fold *fold)
     int64_t count = folds->input.facet_count;
     sort_boxes(folds);
     for (int64_t i = 0; i < count; i++) {
-        int64_t f = folds->boxes[i].facet;
-        for (int64_t k = i + 1; k < count && folds->boxes[k].low <= folds->boxes[i].high; k++) {
-            int64_t g = folds->boxes[k].facet;
-            if (!boxes_meet(folds, f, g) || !(goes_through(folds, f, g) || goes_through(folds, g, f)) ||
-                !are_deep(folds, f, g)) {
+        const struct fold_box *boxes = folds->boxes;
+        int64_t f = boxes[i].facet;
+        for (int64_t k = i + 1; k < count && boxes[k].low[0] <= boxes[i].high[0]; k++) {
+            int64_t g = boxes[k].facet;
+            if (!boxes_meet(folds->input.dim, &boxes[i], &boxes[k]) ||
+                !(goes_through(folds, f, g) || goes_through(folds, g, f)) || !are_deep(folds, f, g)) {
                 continue;
             }
             if (fold->count++ == 0) {

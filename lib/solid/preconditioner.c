@@ -16,7 +16,44 @@ static int64_t centre_count(const struct solid_system *system)
     return count < COARSE_MOST_CENTRES ? count : COARSE_MOST_CENTRES;
 }
 
-enum status preconditioner_build(const struct solid_system *system, bool coarse,
+/* L^-T Z of the scalar coarse fields, by rows. */
+static enum status transform_fields(struct preconditioner *preconditioner, struct error *error)
+{
+    enum status status;
+    int64_t nodes = preconditioner->node_count;
+    int field[COARSE_MOST_AT_NODE];
+    double value[COARSE_MOST_AT_NODE];
+    TRY(NEW_ARRAY(&preconditioner->inverse_fields, preconditioner->coarse.count * nodes, error));
+    for (int64_t n = 0; n < nodes; n++) {
+        int count = coarse_space_at_node(&preconditioner->coarse, n, field, value);
+        for (int k = 0; k < count; k++) {
+            preconditioner->inverse_fields[field[k] * nodes + n] = value[k];
+        }
+    }
+    for (int64_t k = 0; k < preconditioner->coarse.count; k++) {
+        inverse_factor_solve_transposed(&preconditioner->factor, 1,
+                                        preconditioner->inverse_fields + k * nodes);
+    }
+done:
+    return status;
+}
+
+static enum status build_inverse(struct solid_system *system, struct preconditioner *preconditioner,
+                                 struct error *error)
+{
+    enum status status;
+    TRY(inverse_factor_build(system, &preconditioner->factor, error));
+    TRY(inverse_factor_transform_rows(&preconditioner->factor, &system->rows, &preconditioner->factor_rows,
+                                      error));
+    TRY(NEW_ARRAY(&preconditioner->at_rest, system->node_count, error));
+    TRY(NEW_ARRAY(&preconditioner->on_inverse, 2 * system->node_count * system->dim, error));
+    system_relaxation_mass(system, true, preconditioner->at_rest);
+    TRY(transform_fields(preconditioner, error));
+done:
+    return status;
+}
+
+enum status preconditioner_build(struct solid_system *system, bool coarse,
                                  struct preconditioner *preconditioner, struct error *error)
 {
     enum status status;
@@ -27,6 +64,7 @@ enum status preconditioner_build(const struct solid_system *system, bool coarse,
         preconditioner->contact_node_count += system->contacts[c].count;
     }
     TRY(NEW_ARRAY(&preconditioner->mass, system->node_count, error));
+    TRY(NEW_ARRAY(&preconditioner->stiffness, system->node_count, error));
     TRY(coarse_space_build(system->dim, system->node_count, system->X, coarse ? centre_count(system) : 0,
                            &preconditioner->coarse, error));
     preconditioner->size = preconditioner->coarse.count * preconditioner->dim;
@@ -40,6 +78,9 @@ enum status preconditioner_build(const struct solid_system *system, bool coarse,
     TRY(NEW_ARRAY(&preconditioner->inverse, cells, error));
     TRY(NEW_ARRAY(&preconditioner->beside, cells, error));
     TRY(NEW_ARRAY(&preconditioner->amount, 2 * preconditioner->size, error));
+    if (coarse && system_has_inverse(system)) {
+        TRY(build_inverse(system, preconditioner, error));
+    }
 done:
     if (status != STATUS_OK) {
         preconditioner_free(preconditioner);
@@ -51,6 +92,12 @@ void preconditioner_free(struct preconditioner *preconditioner)
 {
     constraint_free(&preconditioner->constraint);
     coarse_space_free(&preconditioner->coarse);
+    inverse_factor_free(&preconditioner->factor);
+    constraint_rows_free(&preconditioner->factor_rows);
+    free(preconditioner->inverse_fields);
+    free(preconditioner->on_inverse);
+    free(preconditioner->at_rest);
+    free(preconditioner->stiffness);
     free(preconditioner->mass);
     free(preconditioner->body);
     free(preconditioner->active);
@@ -64,11 +111,6 @@ void preconditioner_free(struct preconditioner *preconditioner)
     *preconditioner = (struct preconditioner){0};
 }
 
-void preconditioner_restrict(const struct preconditioner *preconditioner, const double *move, double *amount)
-{
-    coarse_space_restrict(&preconditioner->coarse, preconditioner->mass, move, amount);
-}
-
 /* y = matrix x, the matrix symmetric */
 static void multiply(int64_t n, const double *matrix, const double *x, double *restrict y)
 {
@@ -80,17 +122,36 @@ static void multiply(int64_t n, const double *matrix, const double *x, double *r
     }
 }
 
+/* y = D^-1 x */
+static void divide_by_mass(const struct preconditioner *preconditioner, const double *x, double *y)
+{
+    for (int64_t n = 0; n < preconditioner->node_count; n++) {
+        double inverse = 1.0 / preconditioner->mass[n];
+        for (int64_t i = n * preconditioner->dim; i < (n + 1) * preconditioner->dim; i++) {
+            y[i] = inverse * x[i];
+        }
+    }
+}
+
+void preconditioner_smooth(struct preconditioner *preconditioner, const double *force, double *result)
+{
+    const struct inverse_factor *inverse = &preconditioner->factor;
+    double *on_inverse = preconditioner->on_inverse;
+    if (inverse->node_count == 0) {
+        divide_by_mass(preconditioner, force, result);
+        return;
+    }
+    inverse_factor_apply(inverse, preconditioner->dim, force, on_inverse);
+    divide_by_mass(preconditioner, on_inverse, on_inverse);
+    inverse_factor_apply_transposed(inverse, preconditioner->dim, on_inverse, result);
+}
+
 void preconditioner_restrict_force(struct preconditioner *preconditioner, const double *force,
                                    double *acceleration, double *amount)
 {
     const struct constraint_rows *rows = preconditioner->constraint.rows;
     double *seen = preconditioner->constraint.multiplier;
-    for (int64_t n = 0; n < preconditioner->node_count; n++) {
-        double inverse = 1.0 / preconditioner->mass[n];
-        for (int64_t i = n * preconditioner->dim; i < (n + 1) * preconditioner->dim; i++) {
-            acceleration[i] = inverse * force[i];
-        }
-    }
+    preconditioner_smooth(preconditioner, force, acceleration);
     if (preconditioner->size > 0) {
         coarse_space_restrict(&preconditioner->coarse, NULL, force, amount);
     }
@@ -128,11 +189,23 @@ void preconditioner_apply(struct preconditioner *preconditioner, const double *f
         }
         multiplier[r] = -sum;
     }
-    constraint_rows_spread(rows, multiplier, preconditioner->mass, acceleration);
+    constraint_spread(constraint, multiplier, acceleration);
 }
 
-double preconditioner_product_diagonal(const struct preconditioner *preconditioner, const double *x,
-                                       const double *y)
+/* L^-T move, into scratch; or the move itself. */
+static const double *on_inverse(const struct preconditioner *preconditioner, const double *move,
+                                double *scratch)
+{
+    if (preconditioner->factor.node_count == 0) {
+        return move;
+    }
+    memcpy(scratch, move, (size_t)(preconditioner->node_count * preconditioner->dim) * sizeof *move);
+    inverse_factor_solve_transposed(&preconditioner->factor, preconditioner->dim, scratch);
+    return scratch;
+}
+
+/* x . D y */
+static double weighted_product(const struct preconditioner *preconditioner, const double *x, const double *y)
 {
     int dim = preconditioner->dim;
     double sum = 0.0;
@@ -146,15 +219,54 @@ double preconditioner_product_diagonal(const struct preconditioner *precondition
     return sum;
 }
 
-double preconditioner_product(const struct preconditioner *preconditioner, const double *x, const double *y)
+/* amount[size] = Z^T B^-1 move = (L^-T Z)^T D L^-T move, of moved = L^-T move. */
+static void restrict_move(const struct preconditioner *preconditioner, const double *moved, double *amount)
+{
+    int dim = preconditioner->dim;
+    int64_t nodes = preconditioner->node_count;
+    if (preconditioner->factor.node_count == 0) {
+        coarse_space_restrict(&preconditioner->coarse, preconditioner->mass, moved, amount);
+        return;
+    }
+    memset(amount, 0, (size_t)preconditioner->size * sizeof *amount);
+    for (int64_t k = 0; k < preconditioner->coarse.count; k++) {
+        const double *field = preconditioner->inverse_fields + k * nodes;
+        for (int64_t n = 0; n < nodes; n++) {
+            double weight = preconditioner->mass[n] * field[n];
+            for (int a = 0; a < dim; a++) {
+                amount[k * dim + a] += weight * moved[n * dim + a];
+            }
+        }
+    }
+}
+
+/* Both moves in terms of L. */
+static void take_moves(struct preconditioner *preconditioner, const double **x, const double **y)
+{
+    double *scratch = preconditioner->on_inverse;
+    bool same = *x == *y;
+    *x = on_inverse(preconditioner, *x, scratch);
+    *y = same ? *x
+              : on_inverse(preconditioner, *y, scratch + preconditioner->node_count * preconditioner->dim);
+}
+
+double preconditioner_product_diagonal(struct preconditioner *preconditioner, const double *x,
+                                       const double *y)
+{
+    take_moves(preconditioner, &x, &y);
+    return weighted_product(preconditioner, x, y);
+}
+
+double preconditioner_product(struct preconditioner *preconditioner, const double *x, const double *y)
 {
     double *amount = preconditioner->amount, *solved = preconditioner->amount + preconditioner->size;
-    double sum = preconditioner_product_diagonal(preconditioner, x, y);
+    take_moves(preconditioner, &x, &y);
+    double sum = weighted_product(preconditioner, x, y);
     if (preconditioner->size > 0) {
-        preconditioner_restrict(preconditioner, x, amount);
+        restrict_move(preconditioner, x, amount);
         multiply(preconditioner->size, preconditioner->beside, amount, solved);
         if (y != x) {
-            preconditioner_restrict(preconditioner, y, amount);
+            restrict_move(preconditioner, y, amount);
         }
         for (int64_t k = 0; k < preconditioner->size; k++) {
             sum -= amount[k] * solved[k];
@@ -168,6 +280,7 @@ enum status preconditioner_state(struct preconditioner *preconditioner, const st
 {
     const struct state_value values[] = {
         {"mass", STATE_NUMBERS, preconditioner->mass, preconditioner->node_count},
+        {"stiffness", STATE_NUMBERS, preconditioner->stiffness, preconditioner->node_count},
         {"body", STATE_NUMBERS, preconditioner->body, preconditioner->size * preconditioner->size},
         {"measured", STATE_NUMBERS, &preconditioner->measured_mass, 1},
         {"touching", STATE_FLAGS, preconditioner->active, preconditioner->contact_node_count},

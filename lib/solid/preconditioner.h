@@ -6,11 +6,15 @@
  * (coarse_space.h) the mass is therefore the stiffness itself: with the projection P onto moves that the
  * conditions admit, and A near P^T K P along the coarse fields,
  *
- *   M^-1 = P (D^-1 + Z A^-1 Z^T) P^T
- * where, with the conditions' rows G and S = G D^-1 G^T, P^T f = f - G^T S^-1 G D^-1 f; so one look at G D^-1
- * f tells both the coarse fields' amounts and the conditions' forces. Also
+ *   M^-1 = P (B + Z A^-1 Z^T) P^T
  *
- *   x . M y = x . D y - (Z^T D x) . (A + Z^T D P Z)^-1 (Z^T D y)   for moves x, y that the conditions admit,
+ * where, with the conditions' rows G and S = G B G^T, P^T f = f - G^T S^-1 G B f; so one look at G B f tells
+ * both the coarse fields' amounts and the conditions' forces. Also
+ *
+ *   x . M y = x . B^-1 y - (Z^T B^-1 x) . (A + Z^T B^-1 P Z)^-1 (Z^T B^-1 y)
+ *
+ * for moves x, y that the conditions admit. Of smoothed cells B = L^T D^-1 L, with the factor L of
+ * inverse_factor.h and D by how much the stiffness around each node has changed since rest; else B = D^-1,
  *
  * so that the slowest modes left are those that the coarse fields do not resolve. In the terms of linear
  * systems, a two-level additive preconditioner with deflated constraints. Any positive definite A is sound;
@@ -21,15 +25,22 @@
 
 #include "base/state.h"
 #include "solid/coarse_space.h"
+#include "solid/inverse_factor.h"
 #include "solid/system.h"
 
 struct preconditioner {
     int dim;
     int64_t node_count;
-    double *mass;                 /* node_count: D, N/m (2D: N/m2) */
-    struct constraint constraint; /* with D */
-    struct coarse_space coarse;   /* count 0: none, M = D */
-    int64_t size;                 /* fields.count * dim: rows and columns of the matrices */
+    double *stiffness;                  /* node_count: of which D was set, N/m (2D: N/m2), */
+    double *at_rest;                    /* and with an inverse factor what it is at rest */
+    double *mass;                       /* node_count: D, N/m (2D: N/m2); with an inverse factor a number */
+    struct inverse_factor factor;       /* node_count 0: none */
+    struct constraint_rows factor_rows; /* G L^T */
+    double *inverse_fields;             /* coarse.count rows of node_count: L^-T of the coarse fields */
+    double *on_inverse;                 /* 2 * node_count * dim: scratch */
+    struct constraint constraint;       /* with D */
+    struct coarse_space coarse;         /* count 0: none, M = D */
+    int64_t size;                       /* fields.count * dim: rows and columns of the matrices */
     double *body; /* stiffness of body and constraint penalties along the coarse fields, P Z e_k, N/m (2D:
                      N/m2) */
     double measured_mass; /* sum of D when it was measured */
@@ -45,14 +56,14 @@ struct preconditioner {
     double *amount;  /* 2 * size: scratch */
 };
 
-/* Memory and coarse fields for a system; `coarse` false: no fields. */
-MUST_CHECK enum status preconditioner_build(const struct solid_system *system, bool coarse,
+/* Memory, coarse fields and inverse factor for a system; `coarse` false: none of both, M = D. */
+MUST_CHECK enum status preconditioner_build(struct solid_system *system, bool coarse,
                                             struct preconditioner *preconditioner, struct error *error);
 void preconditioner_free(struct preconditioner *preconditioner);
 
-/* Set D from the system's last evaluation, and what depends on it. */
+/* Set D from system_relaxation_mass at the system's last evaluation, and what depends on it. */
 MUST_CHECK enum status preconditioner_set_mass(struct preconditioner *preconditioner,
-                                               const struct solid_system *system, const double *mass,
+                                               const struct solid_system *system, const double *stiffness,
                                                struct error *error);
 
 /* Measure the stiffness along the coarse fields at u, by differences: size + 1 evaluations of the body, whose
@@ -72,12 +83,15 @@ bool preconditioner_follow(struct preconditioner *preconditioner, const struct s
 /* acceleration = M^-1 force. */
 void preconditioner_apply(struct preconditioner *preconditioner, const double *force, double *acceleration);
 
-/* x . D y */
-double preconditioner_product_diagonal(const struct preconditioner *preconditioner, const double *x,
+/* result = B force */
+void preconditioner_smooth(struct preconditioner *preconditioner, const double *force, double *result);
+
+/* x . B^-1 y */
+double preconditioner_product_diagonal(struct preconditioner *preconditioner, const double *x,
                                        const double *y);
 
 /* x . M y of moves that the conditions admit. */
-double preconditioner_product(const struct preconditioner *preconditioner, const double *x, const double *y);
+double preconditioner_product(struct preconditioner *preconditioner, const double *x, const double *y);
 
 /* What another run needs to go on: see base/state.h. Afterwards, in a run that was restored,
  * preconditioner_restore.

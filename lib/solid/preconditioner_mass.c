@@ -8,13 +8,37 @@
 
 static const double most_change = 1.5; /* of the mass, before the coarse fields are measured again */
 
-/* weight = Z^T D Z: directions do not couple. */
+/* weight = (L^-T Z)^T D L^-T Z */
+static void weigh_inverse_fields(struct preconditioner *preconditioner)
+{
+    int64_t dim = preconditioner->dim, size = preconditioner->size, nodes = preconditioner->node_count;
+    for (int64_t i = 0; i < preconditioner->coarse.count; i++) {
+        const double *first = preconditioner->inverse_fields + i * nodes;
+        for (int64_t k = 0; k <= i; k++) {
+            const double *second = preconditioner->inverse_fields + k * nodes;
+            double sum = 0.0;
+            for (int64_t n = 0; n < nodes; n++) {
+                sum += preconditioner->mass[n] * first[n] * second[n];
+            }
+            for (int64_t a = 0; a < dim; a++) {
+                preconditioner->weight[(i * dim + a) * size + k * dim + a] =
+                    preconditioner->weight[(k * dim + a) * size + i * dim + a] = sum;
+            }
+        }
+    }
+}
+
+/* weight = Z^T B^-1 Z: directions do not couple. */
 static void weigh_coarse_space(struct preconditioner *preconditioner)
 {
     int64_t dim = preconditioner->dim, size = preconditioner->size;
     double *weight = preconditioner->weight, value[COARSE_MOST_AT_NODE];
     int field[COARSE_MOST_AT_NODE];
     memset(weight, 0, (size_t)(size * size) * sizeof *weight);
+    if (preconditioner->factor.node_count > 0) {
+        weigh_inverse_fields(preconditioner);
+        return;
+    }
     for (int64_t n = 0; n < preconditioner->node_count; n++) {
         int count = coarse_space_at_node(&preconditioner->coarse, n, field, value);
         for (int i = 0; i < count; i++) {
@@ -48,7 +72,7 @@ void preconditioner_add_row(const struct preconditioner *preconditioner, const s
     }
 }
 
-/* free_weight = Z^T D P Z = Z^T D Z - (G Z)^T (G D^-1 G^T)^-1 G Z: without what the conditions forbid. */
+/* free_weight = Z^T B^-1 P Z = Z^T B^-1 Z - (G Z)^T (G B G^T)^-1 G Z: without what the conditions forbid. */
 static enum status weigh_conditions(struct preconditioner *preconditioner, struct error *error)
 {
     enum status status;
@@ -84,9 +108,13 @@ done:
 }
 
 enum status preconditioner_set_mass(struct preconditioner *preconditioner, const struct solid_system *system,
-                                    const double *mass, struct error *error)
+                                    const double *stiffness, struct error *error)
 {
-    memcpy(preconditioner->mass, mass, (size_t)preconditioner->node_count * sizeof *mass);
+    for (int64_t n = 0; n < preconditioner->node_count; n++) {
+        preconditioner->stiffness[n] = stiffness[n];
+        preconditioner->mass[n] =
+            preconditioner->at_rest != NULL ? stiffness[n] / preconditioner->at_rest[n] : stiffness[n];
+    }
     return preconditioner_restore(preconditioner, system, error);
 }
 
@@ -95,7 +123,10 @@ enum status preconditioner_restore(struct preconditioner *preconditioner, const 
 {
     enum status status;
     constraint_free(&preconditioner->constraint);
-    TRY(system_constrain(system, preconditioner->mass, &preconditioner->constraint, error));
+    bool within = preconditioner->factor.node_count > 0;
+    TRY(system_constrain_within(system, preconditioner->mass, within ? &preconditioner->factor : NULL,
+                                within ? &preconditioner->factor_rows : NULL, &preconditioner->constraint,
+                                error));
     if (preconditioner->size > 0) {
         weigh_coarse_space(preconditioner);
         TRY(weigh_conditions(preconditioner, error));

@@ -4,13 +4,10 @@
 
 #include "solid/preconditioner.h"
 
-/* amount[size] = Z^T P^T force, and acceleration = D^-1 force, whose values by the rows of the conditions are
+/* amount[size] = Z^T P^T force, and acceleration = B force, whose values by the rows of the conditions are
  * left in their multipliers. */
 void preconditioner_restrict_force(struct preconditioner *preconditioner, const double *force,
                                    double *acceleration, double *amount);
-
-/* amount[size] = Z^T D move */
-void preconditioner_restrict(const struct preconditioner *preconditioner, const double *move, double *amount);
 
 /* row[size] += Z^T phi direction, of an average along a direction. */
 void preconditioner_add_row(const struct preconditioner *preconditioner, const struct average *average,

@@ -13,6 +13,10 @@ static const double unstable_rise = 6.0;                /* over what is usual: a
 static const int64_t hover_steps = 50;                  /* without half the error: is a mode unstable? */
 /* Bulk modulus by shear modulus that volume changes meet: so few steps as at Poisson's ratio .49. */
 static const double bulk_limit = 50.0;
+/* Damping times time between augmentations of the pressures. What is held follows the volume that a mode has
+ * at that moment; of a mode that swings, exp(-c T / 2) of its amplitude is left from one to the next, with
+ * any sign, and the iteration is stable below 1/3. */
+static const double pressure_pause = 3.0;
 static const int64_t calm_steps = 20; /* after that was mended, before the next look */
 /* At every check: the mode is kept, so that it sharpens; while the load grows another may overtake it. */
 static const int iterations = 1, iterations_loading = 2;
@@ -83,7 +87,7 @@ static bool tell(struct relaxation *r)
     }
     int64_t at = r->report->steps;
     struct progress progress = {.step = at,
-                                .u = relaxation_parameters(r, r->u),
+                                .u = r->u,
                                 .move = at - r->back_step <= CHECK_INTERVAL ? INFINITY : r->moved,
                                 .error = r->report->error,
                                 .remaining = -1.0,
@@ -104,14 +108,11 @@ static bool tell(struct relaxation *r)
 static enum status measure_row_forces(struct relaxation *r, const double *u, double *row_force,
                                       struct error *error)
 {
-    int dim = r->system->dim;
     (void)system_residual(r->system, u, r->residual);
     if (row_force == NULL || r->system->rows.count == 0) {
         return STATUS_OK;
     }
-    for (int64_t i = 0; i < r->size; i++) {
-        r->scratch[i] = r->residual[i] / r->preconditioner.mass[i / dim];
-    }
+    preconditioner_smooth(&r->preconditioner, r->residual, r->scratch);
     constraint_project(&r->preconditioner.constraint, NULL, r->scratch);
     memcpy(row_force, r->preconditioner.constraint.multiplier,
            (size_t)r->system->rows.count * sizeof *row_force);
@@ -139,7 +140,7 @@ static bool give_frame(struct relaxation *r, struct error *error)
         return false;
     }
     r->frames++;
-    relaxation_show(r, r->frames, r->load / (double)r->report->ramp_steps);
+    r->options->frame(r->options->context, r->frames, r->load / (double)r->report->ramp_steps, r->u);
     return true;
 }
 
@@ -232,12 +233,12 @@ static bool ends(struct relaxation *r, enum relaxation_outcome *outcome, struct 
 }
 
 /* At a check, before its evaluation: hold the pressures. An augmentation every T makes the pressures held the
- * integral of what the bulk modulus is limited by, over T; see relaxation_follow_contacts on how long T is.
+ * integral of what the bulk modulus is limited by, over T; pressure_pause is c T.
  */
 static bool augment_pressures(struct relaxation *r)
 {
     double pause = (double)(r->report->steps - r->held_step) * r->time_step;
-    if (!body_is_limited(&r->system->body) || r->damping * pause < RELAXATION_PAUSE) {
+    if (!body_is_limited(&r->system->body) || r->damping * pause < pressure_pause) {
         return false;
     }
     body_augment(&r->system->body);
@@ -297,13 +298,12 @@ static enum status begin(struct relaxation *r, struct error *error)
 {
     enum status status;
     struct solid_system *system = r->system;
-    body_limit_bulk(&system->body, bulk_limit);
     system_load_factors(system, 0.0);
     (void)system_residual(system, r->u, r->residual);
     if (gives_frames(r)) {
-        relaxation_show(r, 0, 0.0);
+        r->options->frame(r->options->context, 0, 0.0, r->u);
     }
-    system_relaxation_mass(system, r->scratch);
+    system_relaxation_mass(system, false, r->scratch);
     TRY(preconditioner_set_mass(&r->preconditioner, system, r->scratch, error));
     constraint_project(&r->preconditioner.constraint, system->factor, r->u);
     r->residual_at = r->u;
@@ -325,7 +325,6 @@ done:
 static enum status resume(struct relaxation *r, struct error *error)
 {
     enum status status;
-    body_limit_bulk(&r->system->body, bulk_limit);
     TRY(relaxation_visit(r, r->options->restored, error));
     TRY(preconditioner_restore(&r->preconditioner, r->system, error));
 done:
@@ -340,7 +339,7 @@ enum status relaxation_run(struct solid_system *system, const struct relaxation_
                            .options = options,
                            .report = report,
                            .size = system->node_count * system->dim,
-                           .caller_u = u,
+                           .u = u,
                            .row_force = row_force,
                            .load_rate = 1.0,
                            .top_rate = 1.0,
@@ -348,7 +347,7 @@ enum status relaxation_run(struct solid_system *system, const struct relaxation_
                            .least_penetration = INFINITY,
                            .spectrum2 = INFINITY};
     *report = (struct relaxation_report){.least_jacobian = 1.0};
-    TRY(relaxation_enter_basis(&r, u, error));
+    body_limit_bulk(&system->body, bulk_limit);
     TRY(relaxation_allocate(&r, error));
     r.spacing = system_node_spacing(system);
     r.body_size = relaxation_body_size(system);
@@ -369,11 +368,7 @@ enum status relaxation_run(struct solid_system *system, const struct relaxation_
         r.failure = measure_row_forces(&r, r.u, row_force, error);
     }
     TRY(r.failure);
-    if (r.u != u) {
-        memcpy(u, relaxation_parameters(&r, r.u), (size_t)r.size * sizeof *u);
-    }
 done:
     relaxation_release(&r);
-    relaxation_leave_basis(&r);
     return status;
 }

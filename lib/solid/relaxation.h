@@ -4,10 +4,10 @@
  * lib/README.md).
  *
  * Error estimate: with the acceleration a of the residual and the lowest frequency w, |e| <= |a| / w^2, which
- * is exact for a mode of a linear system. It is taken in the norm of the diagonal mass, relative to the
- * largest displacement, and at the worst node, relative to the node that moved most. While fast modes die out
- * the increments do not show a slow one: before a state is accepted, the lowest frequency is computed by
- * Lanczos iteration, and the relaxation continues with it where it is lower. */
+ * is exact for a mode of a linear system. It is taken in the norm of the mass without its coarse fields,
+ * relative to the largest displacement, and at the worst node, relative to the node that moved most. While
+ * fast modes die out the increments do not show a slow one: before a state is accepted, the lowest frequency
+ * is computed by Lanczos iteration, and the relaxation continues with it where it is lower. */
 #ifndef SOLID_RELAXATION_H
 #define SOLID_RELAXATION_H
 

@@ -83,10 +83,10 @@ static bool note_mass_change(struct relaxation *r, double change)
 bool relaxation_update_mass(struct relaxation *r, struct error *error)
 {
     double *mass = r->scratch, highest = 1.0, lowest = 1.0;
-    system_relaxation_mass(r->system, mass);
+    system_relaxation_mass(r->system, false, mass);
     for (int64_t n = 0; n < r->system->node_count; n++) {
-        highest = fmax(highest, mass[n] / r->preconditioner.mass[n]);
-        lowest = fmin(lowest, mass[n] / r->preconditioner.mass[n]);
+        highest = fmax(highest, mass[n] / r->preconditioner.stiffness[n]);
+        lowest = fmin(lowest, mass[n] / r->preconditioner.stiffness[n]);
     }
     if (!note_mass_change(r, fmax(log(highest) / log(most_stiffening), log(lowest) / log(most_softening)))) {
         return true;
@@ -185,7 +185,7 @@ bool relaxation_step_back(struct relaxation *r, struct error *error)
     if (!(system_residual(r->system, r->u, r->residual).least_jacobian > 0.0)) {
         return false;
     }
-    system_relaxation_mass(r->system, r->scratch);
+    system_relaxation_mass(r->system, false, r->scratch);
     r->mass_change = 0.0;
     r->last_mass_check = r->next_mass_check = r->checks;
     r->failure = preconditioner_set_mass(&r->preconditioner, r->system, r->scratch, error);
@@ -212,6 +212,8 @@ void relaxation_calm(struct relaxation *r, const double *acceleration)
     r->calmed_step = r->report->steps;
     r->usual_residual2 = 0.0;
     if (!is_unstable(r, acceleration)) {
+        (void)system_residual(r->system, r->u, r->residual); /* what is held next is of this state */
+        r->report->force_evaluations++;
         return;
     }
     relaxation_go_back(r, &r->check_before);

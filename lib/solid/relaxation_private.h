@@ -10,7 +10,7 @@ enum { CHECK_INTERVAL = 10 };   /* steps between estimates */
 enum { FIRST_ITERATIONS = 30 }; /* of Lanczos, where the preconditioner was measured */
 enum { WINDOWS = 8 };           /* recent Rayleigh quotients that the error estimate looks at */
 
-/* Between augmentations, of contacts or of nodal pressures: damping times time. */
+/* Between augmentations of contacts: damping times time. */
 #define RELAXATION_PAUSE 2.0
 
 /* A state to go back to. */
@@ -25,12 +25,7 @@ struct relaxation {
     struct relaxation_report *report;
     struct preconditioner preconditioner;
     int64_t size;
-    double *caller_u, *row_force; /* the caller's; row_force may be NULL */
-    double *u;                    /* the unknowns: nodal parameters where there is a basis */
-    struct nodal_basis basis;
-    struct constraint_rows rows; /* on these; */
-    struct constraint_rows on_u; /* the system's own meanwhile */
-    double *shown;               /* parameters, for progress and frames */
+    double *u, *row_force; /* the caller's; row_force may be NULL */
     double *velocity, *residual, *before;
     const double *residual_at; /* where the residual is known, at a check: u or before */
     double *factor_change;     /* of the load curves in this step */
@@ -166,18 +161,6 @@ void relaxation_calm(struct relaxation *r, const double *acceleration);
 /* ---- relaxation_state.c: memory, and what a checkpoint holds ---- */
 
 MUST_CHECK enum status relaxation_allocate(struct relaxation *r, struct error *error);
-
-/* Let the system work in nodal parameters (nodal_basis.h) where it is made of smoothed cells, from its
- * parameters u; and let it work in u again. */
-MUST_CHECK enum status relaxation_enter_basis(struct relaxation *r, double *u, struct error *error);
-void relaxation_leave_basis(struct relaxation *r);
-
-/* Put the parameters of the state into the caller's u and give it as frame `number`, the system working in
- * these for that time. */
-void relaxation_show(struct relaxation *r, int64_t number, double time);
-
-/* The parameters of the state v. */
-const double *relaxation_parameters(struct relaxation *r, const double *v);
 
 void relaxation_release(struct relaxation *r);
 

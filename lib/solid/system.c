@@ -149,7 +149,16 @@ done:
 enum status system_constrain(const struct solid_system *system, const double *mass,
                              struct constraint *constraint, struct error *error)
 {
-    enum status status = constraint_build(&system->rows, system->node_count, mass, constraint, error);
+    return system_constrain_within(system, mass, NULL, NULL, constraint, error);
+}
+
+enum status system_constrain_within(const struct solid_system *system, const double *mass,
+                                    const struct inverse_factor *inverse,
+                                    const struct constraint_rows *inverse_rows, struct constraint *constraint,
+                                    struct error *error)
+{
+    enum status status =
+        constraint_build(&system->rows, system->node_count, mass, inverse, inverse_rows, constraint, error);
     if (status == STATUS_OK && constraint->factor.dropped > 0) {
         status = check_dropped(system, constraint, error);
     }
@@ -255,68 +264,39 @@ static void negate(const struct solid_system *system, double *force)
     }
 }
 
-/* The parameters u of the unknowns of a caller, and where forces on u are summed. */
-static const double *parameters_of(const struct solid_system *system, const double *v)
+void system_resist(struct solid_system *system, const double *u, double *force)
 {
-    if (system->basis == NULL) {
-        return v;
-    }
-    nodal_basis_apply(system->basis, v, system->basis_u);
-    return system->basis_u;
-}
-
-static double *forces_of(const struct solid_system *system, double *force)
-{
-    return system->basis == NULL ? force : system->basis_force;
-}
-
-static void return_forces(const struct solid_system *system, double *force)
-{
-    if (system->basis != NULL) {
-        nodal_basis_apply_transposed(system->basis, system->basis_force, force);
-    }
-}
-
-void system_resist(struct solid_system *system, const double *v, double *force)
-{
-    const double *u = parameters_of(system, v);
-    double *on_u = forces_of(system, force);
     double started = clock_seconds();
-    (void)body_force(&system->body, u, on_u);
+    (void)body_force(&system->body, u, force);
     system->cost.force += clock_seconds() - started;
-    negate(system, on_u);
-    system_add_penalties(system, u, on_u);
-    negate(system, on_u);
-    return_forces(system, force);
+    negate(system, force);
+    system_add_penalties(system, u, force);
+    negate(system, force);
 }
 
-struct deformation system_residual(struct solid_system *system, const double *v, double *residual)
+struct deformation system_residual(struct solid_system *system, const double *u, double *residual)
 {
-    const double *u = parameters_of(system, v);
-    double *on_u = forces_of(system, residual);
     double started = clock_seconds();
-    struct deformation deformation = body_force(&system->body, u, on_u);
+    struct deformation deformation = body_force(&system->body, u, residual);
     double forced = clock_seconds();
-    negate(system, on_u);
-    system_add_loads(system, u, on_u);
+    negate(system, residual);
+    system_add_loads(system, u, residual);
     double loaded = clock_seconds();
-    system_add_penalties(system, u, on_u);
+    system_add_penalties(system, u, residual);
     double held = clock_seconds();
     for (int64_t c = 0; c < system->contact_count; c++) {
         contact_move(&system->contacts[c], system->factor);
-        contact_force(&system->contacts[c], u, on_u);
+        contact_force(&system->contacts[c], u, residual);
     }
     system->cost.force += forced - started;
     system->cost.loads += loaded - forced;
     system->cost.constraints += held - loaded;
     system->cost.contact += clock_seconds() - held;
-    return_forces(system, residual);
     return deformation;
 }
 
-void system_measure_contacts(struct solid_system *system, const double *v, bool all)
+void system_measure_contacts(struct solid_system *system, const double *u, bool all)
 {
-    const double *u = parameters_of(system, v);
     double started = clock_seconds();
     for (int64_t c = 0; c < system->contact_count; c++) {
         contact_move(&system->contacts[c], system->factor);
@@ -341,39 +321,42 @@ double system_longest_way(const struct solid_system *system)
     return longest;
 }
 
-/* What a constraint penalty that holds an average adds to the stiffness of its nodes; nodal parameters have
- * about the average at the node that it stands for. */
-static void add_to_bound(const struct solid_system *system, const struct average *average, int32_t node,
-                         double stiffness, double *mass)
+bool system_has_inverse(const struct solid_system *system)
 {
-    if (system->basis != NULL) {
-        mass[node] += stiffness;
-        return;
-    }
+    return system->dim == 3 && system->body.smoothed && system->node_lists != NULL;
+}
+
+/* What a constraint penalty that holds an average adds to the stiffness of its nodes. */
+static void add_to_bound(const struct average *average, double stiffness, double *mass)
+{
     for (int64_t i = 0; i < average->length; i++) {
         mass[average->idx[i]] += stiffness * average->phi[i] * average->phi[i];
     }
 }
 
-void system_relaxation_mass(struct solid_system *system, double *mass)
+static void add_penalties_to_bound(const struct solid_system *system, double *mass)
 {
-    double sum = 0.0;
-    if (system->basis != NULL) {
-        body_nodal_diagonal(&system->body, mass);
-    } else {
-        body_diagonal(&system->body, mass);
-    }
     for (int64_t c = 0; c < system->contact_count; c++) {
         const struct contact *contact = &system->contacts[c];
-        const struct boundary_averages *averages = contact->averages;
-        for (int64_t a = 0; a < averages->count; a++) {
-            struct average average = average_of_boundary(averages, a);
-            add_to_bound(system, &average, averages->node[a], contact->stiffness * averages->area[a], mass);
+        for (int64_t a = 0; a < contact->averages->count; a++) {
+            struct average average = average_of_boundary(contact->averages, a);
+            add_to_bound(&average, contact->stiffness * contact->averages->area[a], mass);
         }
     }
     for (int64_t r = 0; r < system->penalties.count; r++) {
         struct average average = constraint_rows_average(&system->penalties, r);
-        add_to_bound(system, &average, system->penalties.node[r], system->penalty_stiffness[r], mass);
+        add_to_bound(&average, system->penalty_stiffness[r], mass);
+    }
+}
+
+void system_relaxation_mass(struct solid_system *system, bool rest, double *mass)
+{
+    double sum = 0.0;
+    if (system_has_inverse(system)) {
+        body_nodal_diagonal(&system->body, rest, mass);
+    } else {
+        body_diagonal(&system->body, mass);
+        add_penalties_to_bound(system, mass);
     }
     for (int64_t n = 0; n < system->node_count; n++) {
         sum += mass[n];

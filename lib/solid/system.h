@@ -8,7 +8,6 @@
 #include "solid/constraint.h"
 #include "solid/contact.h"
 #include "solid/curve.h"
-#include "solid/nodal_basis.h"
 
 /* A dead load: forces on the parameters, scaled by a load curve. */
 struct dead_load {
@@ -51,10 +50,6 @@ struct solid_system {
     struct body body;
     const struct neighbours *node_lists; /* values of the shape functions at the nodes, the caller's; NULL: */
     const double *node_phi;              /* not known */
-    /* While a relaxation runs in nodal parameters v, u = Q v: what goes by u in system_residual and
-     * system_resist is v, forces are those on v, and `rows` act on v. NULL: none of that. */
-    const struct nodal_basis *basis;
-    double *basis_u, *basis_force; /* node_count * dim: scratch, with a basis */
     struct dead_load *loads;
     int64_t load_count;
     struct pressure_load *pressures;
@@ -93,6 +88,12 @@ void system_load_factors(struct solid_system *system, double s);
 MUST_CHECK enum status system_constrain(const struct solid_system *system, const double *mass,
                                         struct constraint *constraint, struct error *error);
 
+/* The same with an inverse factor, see constraint_build. */
+MUST_CHECK enum status system_constrain_within(const struct solid_system *system, const double *mass,
+                                               const struct inverse_factor *inverse,
+                                               const struct constraint_rows *inverse_rows,
+                                               struct constraint *constraint, struct error *error);
+
 /* force[node_count * dim] += dead loads and pressures at system->factor, at parameters u. */
 void system_add_loads(const struct solid_system *system, const double *u, double *force);
 
@@ -117,9 +118,15 @@ double system_penalty_energy(const struct solid_system *system, const double *u)
 /* Force of constraint penalty r at u along its direction, N (2D: N/m). */
 double system_penalty_force(const struct solid_system *system, int64_t r, const double *u);
 
+/* Whether relaxations have an inverse factor (inverse_factor.h): in three dimensions, with smoothed cells and
+ * values at the nodes. In two, supports are narrow, and it saves no steps. */
+bool system_has_inverse(const struct solid_system *system);
+
 /* Mass for relaxation: a bound of each node's stiffness, N/m, so that all parts of the body have about the
- * same critical step (1) however the cloud is graded; contact penalties included. mass[node_count] > 0. */
-void system_relaxation_mass(struct solid_system *system, double *mass);
+ * same critical step (1) however the cloud is graded; contact penalties included. mass[node_count] > 0. With
+ * an inverse factor, which knows the stiffness at rest: of each node's part of the cells, of which only the
+ * change since rest matters; `rest`: as it was there. */
+void system_relaxation_mass(struct solid_system *system, bool rest, double *mass);
 
 /* Mean spacing of the nodes, m. */
 double system_node_spacing(const struct solid_system *system);

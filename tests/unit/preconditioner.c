@@ -19,7 +19,7 @@ static void measure(struct strained *s, bool coarse)
     double *mass;
     ARRAY(mass, s->l.system.node_count);
     (void)system_residual(&s->l.system, s->u, s->residual);
-    system_relaxation_mass(&s->l.system, mass);
+    system_relaxation_mass(&s->l.system, false, mass);
     GOOD(preconditioner_build(&s->l.system, coarse, &s->preconditioner, &error));
     GOOD(preconditioner_set_mass(&s->preconditioner, &s->l.system, mass, &error));
     GOOD(preconditioner_measure(&s->preconditioner, &s->l.system, s->u, &error));
@@ -142,7 +142,7 @@ static void frequencies(struct strained *s, double *largest, double *lowest)
 }
 
 /* The coarse fields carry the modes as large as the bar: the ratio of its frequencies, which is the number of
- * steps, falls by far, and the largest one hardly rises. */
+ * steps, falls by far, and the largest one hardly rises; in 3D the inverse factor leaves it below 2. */
 static void slow_modes_are_gone(void **state)
 {
     (void)state;
@@ -156,8 +156,8 @@ static void slow_modes_are_gone(void **state)
         }
         print_message("%dD: ratio of the frequencies %g, with fields %g\n", dim, largest[0] / lowest[0],
                       largest[1] / lowest[1]);
-        AT_MOST(largest[1], 1.25 * largest[0]);
-        AT_MOST(largest[1] / lowest[1], 0.35 * largest[0] / lowest[0]);
+        AT_MOST(largest[1], dim == 2 ? 1.25 * largest[0] : 2.0);
+        AT_MOST(largest[1] / lowest[1], (dim == 2 ? 0.35 : 0.05) * largest[0] / lowest[0]);
     }
 }
 

@@ -307,7 +307,7 @@ static void estimate_is_a_bound(void **state)
         double *exact = relaxed(&l, 1e-10, NULL), *residual = lattice_vector(&l);
         ARRAY(mass, l.system.node_count);
         (void)system_residual(&l.system, exact, residual);
-        system_relaxation_mass(&l.system, mass);
+        system_relaxation_mass(&l.system, false, mass);
         for (size_t k = 0; k < sizeof tolerances / sizeof *tolerances; k++) {
             double *u = lattice_vector(&l);
             struct relaxation_options options = to(tolerances[k]);

@@ -1,0 +1,55 @@
+/* A sparse approximate inverse of the stiffness of smoothed cells, in factors: K^-1 ~ L^T D^-1 L with a lower
+ * triangular L (Kolotilina and Yeremin 1993).
+ *
+ * The wider the supports, the more patterns of parameters there are that make hardly any field: a diagonal
+ * mass leaves these as slow modes. L knows them. It is of the scalar stiffness
+ *
+ *   S = sum_q w_q c_q ( g_q (x) g_q + k (h_q - g_q) (x) (h_q - g_q) ) + sum_r s_r phi_r (x) phi_r
+ *
+ * at rest, with the smoothed gradients g_q of the shape functions in cell q, those of the linear interpolant
+ * h_q, the modulus c_q of pressure waves, limited as the body's, with twice that of the stabilisation, k the
+ * stiffness of the stabilisation by the shear modulus, and the penalties of conditions and contacts. Row i of
+ * L has the nodes of lower number that are nearest to i, of those that S couples to it; with itself these are
+ * the list p, and L_ip = y / sqrt(y_i), S_pp y = e_i. So the diagonal of L S L^T is 1. */
+#ifndef SOLID_INVERSE_FACTOR_H
+#define SOLID_INVERSE_FACTOR_H
+
+#include "base/status.h"
+#include "solid/constraint.h"
+
+#include <stdint.h>
+
+struct solid_system;
+
+/* L by rows, the diagonal last, and its transpose, the diagonal first; the same bits for any number of
+ * threads. */
+struct inverse_factor {
+    int64_t node_count; /* 0: there is none */
+    int64_t *ptr;       /* node_count + 1 */
+    int32_t *idx;       /* ascending */
+    double *value;
+    int64_t *transposed_ptr;
+    int32_t *transposed_idx;
+    double *transposed_value;
+};
+
+/* For a system whose body is made of smoothed cells and that knows the values at its nodes. */
+MUST_CHECK enum status inverse_factor_build(const struct solid_system *system, struct inverse_factor *factor,
+                                            struct error *error);
+void inverse_factor_free(struct inverse_factor *factor);
+
+/* y = L x, and y = L^T x, of vectors of node_count * dim, not the same. */
+void inverse_factor_apply(const struct inverse_factor *factor, int dim, const double *x, double *y);
+void inverse_factor_apply_transposed(const struct inverse_factor *factor, int dim, const double *x,
+                                     double *y);
+
+/* x := L^-T x */
+void inverse_factor_solve_transposed(const struct inverse_factor *factor, int dim, double *x);
+
+/* The rows G as rows G L^T, in the same order. */
+MUST_CHECK enum status inverse_factor_transform_rows(const struct inverse_factor *factor,
+                                                     const struct constraint_rows *rows,
+                                                     struct constraint_rows *transformed,
+                                                     struct error *error);
+
+#endif

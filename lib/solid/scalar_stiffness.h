@@ -1,0 +1,43 @@
+/* The scalar stiffness of smoothed cells that inverse_factor.h describes, row by row; private to lib/solid.
+ */
+#ifndef SOLID_SCALAR_STIFFNESS_H
+#define SOLID_SCALAR_STIFFNESS_H
+
+#include "base/status.h"
+
+#include <stdint.h>
+
+struct solid_system;
+
+/* Fields are the averages over the faces, then the values at the nodes. Bonds are the averages that penalties
+ * act on. */
+struct scalar_stiffness {
+    const struct solid_system *system;
+    int64_t field_count, bond_count;
+    int64_t *node_ptr; /* node_count + 1: the fields, then the bonds, that each node is in (CSR), */
+    int32_t *node_field;
+    double *node_phi;       /* and its share there */
+    double *bond_stiffness; /* N/m (2D: N/m2) */
+};
+
+MUST_CHECK enum status scalar_stiffness_make(const struct solid_system *system,
+                                             struct scalar_stiffness *stiffness, struct error *error);
+void scalar_stiffness_free(struct scalar_stiffness *stiffness);
+
+/* A row, and scratch for it: zeros between calls, where nothing else is said. */
+struct scalar_row {
+    int64_t count;
+    int32_t *node; /* its entries, ascending, */
+    double *value; /* and their values, N/m (2D: N/m2) */
+    double *at_field, *on_field, *sum;
+    int32_t *touched;                            /* fields */
+    int64_t *cell_seen, *field_seen, *node_seen; /* 1 + the last row that has seen each */
+};
+MUST_CHECK enum status scalar_row_make(const struct scalar_stiffness *stiffness, struct scalar_row *row,
+                                       struct error *error);
+void scalar_row_free(struct scalar_row *row);
+
+/* Row i up to the diagonal, which is its last entry. */
+void scalar_stiffness_row(const struct scalar_stiffness *stiffness, int64_t i, struct scalar_row *row);
+
+#endif

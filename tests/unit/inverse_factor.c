@@ -1,0 +1,162 @@
+/* The scalar stiffness and its sparse approximate inverse: what is stated of S and of the factor L. */
+#include "lattice_fixture.h"
+
+#include "solid/inverse_factor.h"
+#include "solid/scalar_stiffness.h"
+
+/* A jittered cube, one side of it held, and S of it as a full matrix. */
+struct cube {
+    struct lattice l;
+    struct inverse_factor factor;
+    double *S;
+    int64_t n;
+};
+
+static void build(struct cube *cube, bool bonded)
+{
+    struct error error;
+    struct scalar_stiffness stiffness;
+    struct scalar_row row;
+    struct lattice_options options = lattice_defaults(3, 5);
+    options.jitter = 0.2;
+    lattice_build(&cube->l, &options);
+    int32_t curve = lattice_curve(&cube->l, curve_of_kind(CURVE_SMOOTH));
+    lattice_slide(&cube->l, 1u << 2, curve);
+    struct solid_system *system = &cube->l.system;
+    if (bonded) {
+        struct average average = constraint_rows_average(&system->rows, 0);
+        constraint_rows_init(&system->penalties, 3);
+        GOOD(constraint_rows_add(&system->penalties, average.length, average.idx, average.phi,
+                                 system->rows.direction, 0.0, curve, 0, 0, &error));
+        ARRAY(system->penalty_stiffness, 1);
+        system->penalty_stiffness[0] = 300.0;
+    }
+    cube->n = system->node_count;
+    ARRAY(cube->S, cube->n * cube->n);
+    GOOD(scalar_stiffness_make(system, &stiffness, &error));
+    GOOD(scalar_row_make(&stiffness, &row, &error));
+    for (int64_t i = 0; i < cube->n; i++) {
+        scalar_stiffness_row(&stiffness, i, &row);
+        assert_int_equal(row.node[row.count - 1], i);
+        for (int64_t k = 0; k < row.count; k++) {
+            cube->S[i * cube->n + row.node[k]] = cube->S[row.node[k] * cube->n + i] = row.value[k];
+        }
+    }
+    scalar_row_free(&row);
+    scalar_stiffness_free(&stiffness);
+    GOOD(inverse_factor_build(system, &cube->factor, &error));
+}
+
+static void release(struct cube *cube)
+{
+    inverse_factor_free(&cube->factor);
+    free(cube->S);
+    lattice_free(&cube->l);
+}
+
+static double energy(const struct cube *cube, const double *x)
+{
+    double sum = 0.0;
+    for (int64_t i = 0; i < cube->n * cube->n; i++) {
+        sum += x[i / cube->n] * cube->S[i] * x[i % cube->n];
+    }
+    return sum;
+}
+
+/* x . S x of a constant is 0 but for the bonds; of a linear field it is volume times modulus, as the shape
+ * functions reproduce it. */
+static void linear_fields_have_their_energy(void **state)
+{
+    (void)state;
+    for (int bonded = 0; bonded < 2; bonded++) {
+        struct cube cube;
+        build(&cube, bonded);
+        const struct body *body = &cube.l.system.body;
+        const struct material *material = body->materials;
+        double *x;
+        ARRAY(x, cube.n);
+        for (int64_t i = 0; i < cube.n; i++) {
+            x[i] = 1.0;
+        }
+        double modulus =
+            material->bulk_modulus + (4.0 / 3.0 + 2.0 * SMOOTHING_STIFFNESS(3)) * material->shear_modulus;
+        double whole = body_volume(body) * modulus;
+        AT_MOST(fabs(energy(&cube, x) - (bonded ? 300.0 : 0.0)), 1e-6 * whole);
+        for (int64_t i = 0; i < cube.n && !bonded; i++) {
+            x[i] = 3.0 * cube.l.system.X[3 * i] - 2.0 * cube.l.system.X[3 * i + 1];
+        }
+        if (!bonded) {
+            AT_MOST(fabs(energy(&cube, x) / (13.0 * whole) - 1.0), 1e-9);
+        }
+        free(x);
+        release(&cube);
+    }
+}
+
+/* L is lower triangular, the diagonal of L S L^T is 1. */
+static void the_diagonal_is_one(void **state)
+{
+    (void)state;
+    struct cube cube;
+    build(&cube, true);
+    const struct inverse_factor *factor = &cube.factor;
+    double *x;
+    ARRAY(x, cube.n);
+    for (int64_t i = 0; i < cube.n; i++) {
+        assert_int_equal(factor->idx[factor->ptr[i + 1] - 1], i);
+        memset(x, 0, (size_t)cube.n * sizeof *x);
+        for (int64_t k = factor->ptr[i]; k < factor->ptr[i + 1]; k++) {
+            assert_true(k == factor->ptr[i] || factor->idx[k] > factor->idx[k - 1]);
+            x[factor->idx[k]] = factor->value[k];
+        }
+        AT_MOST(fabs(energy(&cube, x) - 1.0), 1e-6);
+    }
+    free(x);
+    release(&cube);
+}
+
+/* Solving undoes applying; rows of conditions act on y as they do on L^T y. */
+static void the_transpose_is_undone(void **state)
+{
+    (void)state;
+    struct cube cube;
+    struct error error;
+    struct constraint_rows rows;
+    build(&cube, false);
+    struct random random = {3};
+    double *y = lattice_vector(&cube.l), *u = lattice_vector(&cube.l), *back = lattice_vector(&cube.l);
+    double product = 0.0, transposed = 0.0;
+    for (int64_t i = 0; i < 3 * cube.n; i++) {
+        y[i] = uniform(&random, -1.0, 1.0);
+    }
+    inverse_factor_apply_transposed(&cube.factor, 3, y, u);
+    GOOD(inverse_factor_transform_rows(&cube.factor, &cube.l.system.rows, &rows, &error));
+    assert_int_equal(rows.count, cube.l.system.rows.count);
+    for (int64_t r = 0; r < rows.count; r++) {
+        double expected = constraint_rows_value(&cube.l.system.rows, r, u);
+        AT_MOST(fabs(constraint_rows_value(&rows, r, y) - expected), 1e-10 * fabs(expected) + 1e-12);
+    }
+    inverse_factor_apply(&cube.factor, 3, u, back);
+    for (int64_t i = 0; i < 3 * cube.n; i++) { /* y . L u = L^T y . u */
+        product += y[i] * back[i];
+        transposed += u[i] * u[i];
+    }
+    AT_MOST(fabs(product / transposed - 1.0), 1e-10);
+    inverse_factor_solve_transposed(&cube.factor, 3, u);
+    for (int64_t i = 0; i < 3 * cube.n; i++) {
+        AT_MOST(fabs(u[i] - y[i]), 1e-9);
+    }
+    constraint_rows_free(&rows);
+    free(y);
+    free(u);
+    free(back);
+    release(&cube);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {cmocka_unit_test(linear_fields_have_their_energy),
+                                       cmocka_unit_test(the_diagonal_is_one),
+                                       cmocka_unit_test(the_transpose_is_undone)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
