@@ -125,8 +125,11 @@ done:
 enum status assembly_add_contacts(const struct assembly *input, struct solid_system *system,
                                   struct error *error)
 {
-    enum status status;
+    enum status status = STATUS_OK;
     int64_t sections = input->contact_count;
+    if (sections == 0) {
+        return STATUS_OK;
+    }
     TRY(NEW_ARRAY(&system->contacts, sections, error));
     TRY(NEW_ARRAY(&system->contact_points, sections, error));
     TRY(NEW_ARRAY(&system->contact_hats, sections, error));

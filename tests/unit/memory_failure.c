@@ -74,7 +74,7 @@ static void scenes(void **state)
                "[contact c]\nfacets = f\nrigid = r\nunit = m\nside = left\n"
                "[pressure p]\nfacets = f\nvalue = 1\ncurve = c\n"
                "[force p]\nnodes = f\ncomponents = 0,1\n");
-    fail_each(try_scene, 100);
+    fail_each(try_scene, 90);
 }
 
 static void tables(void **state)
