@@ -409,12 +409,13 @@ loads() {
     [[ $BUILD != *-san*-clang ]] || skip "clang's sanitizers are in the programs, and come before what is preloaded"
     samples=30 sanitized=
     [[ $BUILD != *-san* ]] || { samples=8 sanitized=', under sanitizers: no leak'; }
-    cloud -d 2 -k regular -n 3 --box 0,0.1,0,0.1 > cloud.mts
+    cloud -d 2 -k regular -n 5 --box 0,0.1,0,0.1 > cloud.mts
     ipoints cloud.mts > points.mts
     support points.mts > lists.mts
     shapefn lists.mts > table.mts
     printf '[output]\nstress = yes\nreactions = yes\nframes = 2\n[solver]\ntolerance = 1e-3\n' >> block.scene
     mtled block.scene table.mts > u.mts
+    cloud -d 2 -k regular -n 3 --box 0,0.1,0,0.1 | shapefn 2> said | mtled block.scene > coarse.mts
     printf -- '-1 -0.001\n2 -0.001\n' > floor.tsv
     { pressed_block | sed '/bottom/,/^$/d' && loads; } > loaded.scene
     { swinging_block | sed '/bottom/,/^$/d; s/0.05/0.01/' && loads; printf '[output]\nenergy = yes\ngaps = yes\n'; } > moving.scene
