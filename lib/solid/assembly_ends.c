@@ -35,7 +35,7 @@ static const double edge_bulk = 15.0;
 enum { AT_SMOOTH_END = 1, AT_EDGE = 2, SIDES = 4 };
 
 /* Set the bit `at` of the cells that touch ends of one kind. */
-static enum status mark_cells(const struct assembly *input, enum boundary_end kind, int at, char *beside,
+static enum status mark_cells(const struct assembly *input, enum boundary_end kind, int at, int *beside,
                               struct error *error)
 {
     enum status status;
@@ -46,12 +46,12 @@ static enum status mark_cells(const struct assembly *input, enum boundary_end ki
     TRY(boundary_find_ends(&input->face_table, kind, held, end, error));
     for (int64_t c = 0; c < input->cells.count; c++) {
         for (int k = 0; k < corners; k++) {
-            beside[c] |= (char)(end[input->cells.node[c * corners + k]] ? at : 0);
+            beside[c] |= end[input->cells.node[c * corners + k]] ? at : 0;
         }
     }
     for (int64_t f = 0; f < input->boundary.count; f++) {
         if (held[f] && kind == BOUNDARY_END_SMOOTH) {
-            beside[input->boundary.cell[2 * f]] &= (char)~at;
+            beside[input->boundary.cell[2 * f]] &= ~at;
         }
     }
 done:
@@ -80,7 +80,7 @@ enum status assembly_soften_ends(const struct assembly *input, struct material_l
 {
     enum status status;
     const int32_t *cell = input->point_cell;
-    char *beside = NULL;
+    int *beside = NULL;
     int64_t *softened = NULL; /* of each material and SIDES, 0 if there is none yet */
     struct material *items = array_grow(list->items, SIDES * list->count, sizeof *items);
     list->items = items != NULL ? items : list->items;
