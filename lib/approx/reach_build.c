@@ -8,14 +8,14 @@
 #include <string.h>
 
 /* Pairs (row, value), to become a CSR. */
-struct sparse_operator {
+struct pair_list {
     int64_t count, capacity;
     struct {
         int32_t row, value;
     } * pair;
 };
 
-static enum status add_pair(struct sparse_operator *pairs, int32_t row, int32_t value, struct error *error)
+static enum status add_pair(struct pair_list *pairs, int32_t row, int32_t value, struct error *error)
 {
     if (pairs->count == pairs->capacity) {
         int64_t capacity = 2 * pairs->capacity + 256;
@@ -32,7 +32,7 @@ static enum status add_pair(struct sparse_operator *pairs, int32_t row, int32_t 
 }
 
 /* ptr[rows + 1], idx: the values of each row in their order. */
-static enum status file_pairs(const struct sparse_operator *pairs, int64_t rows, int64_t **ptr, int32_t **idx,
+static enum status file_pairs(const struct pair_list *pairs, int64_t rows, int64_t **ptr, int32_t **idx,
                               struct error *error)
 {
     enum status status;
@@ -55,7 +55,7 @@ done:
 static enum status file_stars(struct reach *reach, struct error *error)
 {
     enum status status = STATUS_OK;
-    struct sparse_operator pairs = {0};
+    struct pair_list pairs = {0};
     int corners = reach->cells.dim + 1;
     for (int64_t i = 0; i < reach->cells.count * corners; i++) {
         TRY(add_pair(&pairs, reach->cells.node[i], (int32_t)(i / corners), error));
@@ -142,7 +142,7 @@ static bool is_of_facet(int dim, const struct reach_facet *facet, int32_t node)
 static enum status file_opposing(struct reach *reach, struct error *error)
 {
     enum status status = STATUS_OK;
-    struct sparse_operator pairs = {0};
+    struct pair_list pairs = {0};
     struct index_list near = {0};
     int dim = reach->cells.dim;
     for (int64_t f = 0; f < reach->facet_count; f++) {
@@ -275,7 +275,7 @@ static bool is_reentrant(const struct reach *reach, const struct ridge *first, c
 static enum status find_corners(struct reach *reach, struct reach_work *work, struct error *error)
 {
     enum status status;
-    struct sparse_operator edges = {0};
+    struct pair_list edges = {0};
     struct ridge *ridges = NULL;
     int dim = reach->cells.dim;
     int64_t count = reach->facet_count * dim;
@@ -313,7 +313,7 @@ done:
 static enum status file_views(struct reach *reach, struct reach_work *work, struct error *error)
 {
     enum status status = STATUS_OK;
-    struct sparse_operator pairs = {0};
+    struct pair_list pairs = {0};
     struct index_list near = {0};
     int dim = reach->cells.dim;
     for (int64_t n = 0; n < reach->cells.node_count; n++) {
