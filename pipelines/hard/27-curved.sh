@@ -48,3 +48,27 @@ for case in '0.025 reaction-coarse' '0.0125 reaction-fine'; do
             "$(calc "($more - $less) / 1e-4 / 2")" "$limit"
     done
 done
+
+# The same ball pressed from within, nearly incompressible: no worse than twice the error at .49 (Lame's solution).
+for h in 0.025 0.0125; do
+    gmsh -3 -v 1 -setnumber h $h "$geometry" -o "$work/body.msh" > /dev/null
+    nodes -u m "$work/body.msh" 2> /dev/null | shapefn -o "$work/table.mts" 2> /dev/null
+    errors=()
+    for nu in 0.49 0.4999; do
+        nu=$nu scene "$work/pressed.scene" <<END
+[pressure inside]
+facets = inner
+value = 1
+[displacement planes]
+facets = planes
+normal = 0
+[solver]
+tolerance = 1e-7
+END
+        relax "$work/pressed.scene" "$work/table.mts" "$work/u.dat"
+        mean=$(mean_at "$work/u.dat" 'sqrt($1 ^ 2 + $2 ^ 2 + $3 ^ 2) < 0.05 * (1 + 1e-5)' '($4 * $1 + $5 * $2 + $6 * $3) / sqrt($1 ^ 2 + $2 ^ 2 + $3 ^ 2)')
+        errors+=("$(calc "$mean / ((0.05 * (1 - 2 * $nu) + 0.1 ^ 3 * (1 + $nu) / 2 / 0.05 ^ 2) * 0.05 ^ 3 / 3000 / (0.1 ^ 3 - 0.05 ^ 3)) - 1")")
+    done
+    at_most 27 "hollow ball, spacing $h m, pressed from within: error of u(a), nu 0.4999 / nu 0.49" \
+        "$(calc "sqrt((${errors[1]} / ${errors[0]}) ^ 2)")" locking
+done
