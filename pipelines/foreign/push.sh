@@ -19,7 +19,9 @@ fail() {
         "$(told steps "$work/log")" "$(tail -n 1 "$work/time" 2> /dev/null || echo 0)" "$(told 'least J' "$work/log")" "$1"
     exit 0
 }
-last() { tail -n 1 "$1" | tr '\t' ' ' | cut -c 1-160; }
+
+# What a program said at last, without the folder of this run.
+last() { tail -n 1 "$1" | tr '\t' ' ' | sed "s|$work/||g" | cut -c 1-200; }
 
 nodes -v -u mm "$mesh" > "$work/body.mts" 2> "$work/said" || { status=$?; fail "$(last "$work/said")"; }
 read -r nodes cells < <(sed -nE 's/^nodes: ([0-9]+) nodes, ([0-9]+) cells.*/\1 \2/p' "$work/said")
@@ -57,5 +59,5 @@ TIMEFORMAT=%U
 { time (ulimit -S -t "$seconds" && mtled -v "$work/push.scene" "$work/table.mts" > "$work/u.dat" 2> "$work/log"); } 2> "$work/time" ||
     status=$?
 [ "$status" -ne 152 ] || fail "not done after $seconds s of the processor"
-[ "$status" -eq 0 ] || fail "$(grep -a '^mtled: ' "$work/log" | tail -n 1 | tr '\t' ' ' | cut -c 1-160)"
+[ "$status" -eq 0 ] || fail "$(last <(grep -a '^mtled: ' "$work/log"))"
 fail "force $(mts print reactions "$work/u.dat" | awk 'NR == 1 { printf "%.3g N", sqrt($1 ^ 2 + $2 ^ 2 + $3 ^ 2) }')"
