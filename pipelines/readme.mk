@@ -2,7 +2,7 @@
 # pipelines/README.md are made afresh: with these figures, and with what the commands in them print now
 # (`make brain2d table1 readme`, for example). Pictures are made small by ImageMagick, and left as they are where there is none.
 
-README_TEXTS := README.md examples/README.md pipelines/README.md
+README_TEXTS := README.md examples/README.md examples/neurosurgery/README.md pipelines/README.md
 README_PICTURES := brain2d/section brain2d/difference table1/surface speed-error/speed-error brain3d/brain3d convergence/convergence uncertainty/uncertainty
 RESULTS := pipelines/results
 # Tables of the studies, and what they are called there.
@@ -10,7 +10,8 @@ RESULT_TABLES := brain2d/compare=brain2d brain3d/compare=brain3d table1/beside=t
     speed-error/reach=reach convergence/convergence=convergence hard/hard=hard hard/summary=hard-summary hard/misses=hard-misses \
     estimate/estimate=estimate estimate/summary=estimate-summary foreign/foreign=foreign gallery/phantom=phantom \
     gallery/indentation=indentation adaptive/effectivity=effectivity adaptive/effectivity-summary=effectivity-summary \
-    adaptive/refinement=refinement neurosurgery/neurosurgery=neurosurgery uncertainty/uncertainty=uncertainty scale/stages=scale \
+    adaptive/refinement=refinement neurosurgery/neurosurgery=neurosurgery neurosurgery/volumes=neurosurgery-volumes \
+    neurosurgery/seconds=neurosurgery-seconds uncertainty/uncertainty=uncertainty scale/stages=scale \
     scale/parts=scale-parts scale/model=scale-model \
     neurosurgery/resection/neurosurgery=neurosurgery-resection neurosurgery/electrodes/neurosurgery=neurosurgery-electrodes
 

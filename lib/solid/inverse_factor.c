@@ -1,6 +1,5 @@
 #include "solid/inverse_factor.h"
 
-#include "base/chunks.h"
 #include "base/dense.h"
 #include "base/memory.h"
 #include "solid/scalar_stiffness.h"
@@ -15,7 +14,6 @@
 enum { MOST_ENTRIES = 24 };
 static const double ridge = 1e-9;       /* on the diagonal of S_pp, by itself */
 static const double least_share = 1e-6; /* of the mean diagonal entry, that nodes without stiffness have */
-enum { NODES_FOR_THREAD = 4000 };
 
 /* S up to its diagonal, by rows. */
 struct lower {
@@ -154,7 +152,7 @@ static void solve_row(const struct lower *lower, int64_t count, const int32_t *l
 }
 
 static enum status make_rows(const struct solid_system *system, const struct lower *lower,
-                             struct inverse_factor *factor, struct error *error)
+                             struct sparse *factor, struct error *error)
 {
     enum status status;
     struct near *near = NULL;
@@ -179,46 +177,17 @@ done:
     return status;
 }
 
-static enum status transpose(struct inverse_factor *factor, struct error *error)
-{
-    enum status status;
-    int64_t nodes = factor->node_count, entries = factor->ptr[nodes];
-    int64_t *next = NULL;
-    TRY(NEW_ARRAY(&next, nodes, error));
-    TRY(NEW_ARRAY(&factor->transposed_ptr, nodes + 1, error));
-    TRY(NEW_ARRAY(&factor->transposed_idx, entries, error));
-    TRY(NEW_ARRAY(&factor->transposed_value, entries, error));
-    for (int64_t i = 0; i < entries; i++) {
-        factor->transposed_ptr[factor->idx[i] + 1]++;
-    }
-    for (int64_t n = 0; n < nodes; n++) {
-        factor->transposed_ptr[n + 1] += factor->transposed_ptr[n];
-        next[n] = factor->transposed_ptr[n];
-    }
-    for (int64_t n = 0; n < nodes; n++) {
-        for (int64_t i = factor->ptr[n]; i < factor->ptr[n + 1]; i++) {
-            int64_t at = next[factor->idx[i]]++;
-            factor->transposed_idx[at] = (int32_t)n;
-            factor->transposed_value[at] = factor->value[i];
-        }
-    }
-done:
-    free(next);
-    return status;
-}
-
 enum status inverse_factor_build(const struct solid_system *system, struct inverse_factor *factor,
                                  struct error *error)
 {
     enum status status;
     struct lower lower = {0};
-    *factor = (struct inverse_factor){.node_count = system->node_count};
+    int64_t nodes = system->node_count;
+    *factor = (struct inverse_factor){0};
     TRY(make_lower(system, &lower, error));
-    TRY(NEW_ARRAY(&factor->ptr, system->node_count + 1, error));
-    TRY(NEW_ARRAY(&factor->idx, system->node_count * MOST_ENTRIES, error));
-    TRY(NEW_ARRAY(&factor->value, system->node_count * MOST_ENTRIES, error));
-    TRY(make_rows(system, &lower, factor, error));
-    TRY(transpose(factor, error));
+    TRY(sparse_new(nodes, nodes, nodes * MOST_ENTRIES, &factor->rows, error));
+    TRY(make_rows(system, &lower, &factor->rows, error));
+    TRY(sparse_transpose(&factor->rows, &factor->transposed, error));
 done:
     free(lower.ptr);
     free(lower.idx);
@@ -231,74 +200,33 @@ done:
 
 void inverse_factor_free(struct inverse_factor *factor)
 {
-    void *arrays[] = {factor->ptr,
-                      factor->idx,
-                      factor->value,
-                      factor->transposed_ptr,
-                      factor->transposed_idx,
-                      factor->transposed_value};
-    for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) {
-        free(arrays[i]);
-    }
-    *factor = (struct inverse_factor){0};
-}
-
-static inline __attribute__((always_inline)) void multiply(int64_t begin, int64_t end, int dim,
-                                                           const int64_t *ptr, const int32_t *idx,
-                                                           const double *value, const double *x, double *y)
-{
-    for (int64_t n = begin; n < end; n++) {
-        double sum[3] = {0.0, 0.0, 0.0};
-        for (int64_t i = ptr[n]; i < ptr[n + 1]; i++) {
-            const double *at = x + (int64_t)idx[i] * dim;
-            for (int a = 0; a < dim; a++) {
-                sum[a] += value[i] * at[a];
-            }
-        }
-        for (int a = 0; a < dim; a++) {
-            y[n * dim + a] = sum[a];
-        }
-    }
-}
-
-static void multiply_threaded(int64_t nodes, int dim, const int64_t *ptr, const int32_t *idx,
-                              const double *value, const double *x, double *y)
-{
-    struct chunks chunks = chunks_of(nodes, NODES_FOR_THREAD);
-#pragma omp parallel for schedule(static) num_threads(chunks.threads)
-    for (int64_t c = 0; c < chunks.count; c++) {
-        int64_t begin = chunks_begin(&chunks, c), end = chunks_begin(&chunks, c + 1);
-        if (dim == 2) {
-            multiply(begin, end, 2, ptr, idx, value, x, y);
-        } else {
-            multiply(begin, end, 3, ptr, idx, value, x, y);
-        }
-    }
+    sparse_free(&factor->rows);
+    sparse_free(&factor->transposed);
 }
 
 void inverse_factor_apply(const struct inverse_factor *factor, int dim, const double *x, double *y)
 {
-    multiply_threaded(factor->node_count, dim, factor->ptr, factor->idx, factor->value, x, y);
+    sparse_apply(&factor->rows, dim, x, y);
 }
 
 void inverse_factor_apply_transposed(const struct inverse_factor *factor, int dim, const double *x, double *y)
 {
-    multiply_threaded(factor->node_count, dim, factor->transposed_ptr, factor->transposed_idx,
-                      factor->transposed_value, x, y);
+    sparse_apply(&factor->transposed, dim, x, y);
 }
 
 void inverse_factor_solve_transposed(const struct inverse_factor *factor, int dim, double *x)
 {
-    for (int64_t n = factor->node_count; n-- > 0;) {
-        int64_t first = factor->transposed_ptr[n];
-        for (int64_t i = first + 1; i < factor->transposed_ptr[n + 1]; i++) {
-            const double *at = x + (int64_t)factor->transposed_idx[i] * dim;
+    const struct sparse *matrix = &factor->transposed;
+    for (int64_t n = matrix->row_count; n-- > 0;) {
+        int64_t first = matrix->ptr[n];
+        for (int64_t i = first + 1; i < matrix->ptr[n + 1]; i++) {
+            const double *at = x + (int64_t)matrix->idx[i] * dim;
             for (int a = 0; a < dim; a++) {
-                x[n * dim + a] -= factor->transposed_value[i] * at[a];
+                x[n * dim + a] -= matrix->value[i] * at[a];
             }
         }
         for (int a = 0; a < dim; a++) {
-            x[n * dim + a] /= factor->transposed_value[first];
+            x[n * dim + a] /= matrix->value[first];
         }
     }
 }
@@ -308,27 +236,28 @@ enum status inverse_factor_transform_rows(const struct inverse_factor *factor,
                                           struct constraint_rows *transformed, struct error *error)
 {
     enum status status;
+    const struct sparse *matrix = &factor->transposed;
     int64_t *at = NULL;
     int32_t *idx = NULL;
     double *phi = NULL;
     constraint_rows_init(transformed, rows->dim);
-    TRY(NEW_ARRAY(&at, factor->node_count, error));
-    TRY(NEW_ARRAY(&idx, factor->node_count, error));
-    TRY(NEW_ARRAY(&phi, factor->node_count, error));
-    memset(at, -1, (size_t)factor->node_count * sizeof *at);
+    TRY(NEW_ARRAY(&at, matrix->row_count, error));
+    TRY(NEW_ARRAY(&idx, matrix->row_count, error));
+    TRY(NEW_ARRAY(&phi, matrix->row_count, error));
+    memset(at, -1, (size_t)matrix->row_count * sizeof *at);
     for (int64_t l = 0, r = 0; l < rows->list_count; l++) {
         struct average average = constraint_rows_average(rows, r);
         int64_t length = 0;
         for (int64_t i = 0; i < average.length; i++) {
             int32_t node = average.idx[i];
-            for (int64_t k = factor->transposed_ptr[node]; k < factor->transposed_ptr[node + 1]; k++) {
-                int32_t column = factor->transposed_idx[k];
+            for (int64_t k = matrix->ptr[node]; k < matrix->ptr[node + 1]; k++) {
+                int32_t column = matrix->idx[k];
                 if (at[column] < 0) {
                     at[column] = length;
                     idx[length] = column;
                     phi[length++] = 0.0;
                 }
-                phi[at[column]] += average.phi[i] * factor->transposed_value[k];
+                phi[at[column]] += average.phi[i] * matrix->value[k];
             }
         }
         for (int64_t i = 0; i < length; i++) {

@@ -14,23 +14,16 @@
 #ifndef SOLID_INVERSE_FACTOR_H
 #define SOLID_INVERSE_FACTOR_H
 
-#include "base/status.h"
+#include "base/sparse.h"
 #include "solid/constraint.h"
 
 #include <stdint.h>
 
 struct solid_system;
 
-/* L by rows, the diagonal last, and its transpose, the diagonal first; the same bits for any number of
- * threads. */
 struct inverse_factor {
-    int64_t node_count; /* 0: there is none */
-    int64_t *ptr;       /* node_count + 1 */
-    int32_t *idx;       /* ascending */
-    double *value;
-    int64_t *transposed_ptr;
-    int32_t *transposed_idx;
-    double *transposed_value;
+    struct sparse rows, transposed; /* L, the diagonal last in each row, and L^T, the diagonal first; without
+                                       rows there is none */
 };
 
 /* For a system whose body is made of smoothed cells and that knows the values at its nodes. */

@@ -137,7 +137,7 @@ void preconditioner_smooth(struct preconditioner *preconditioner, const double *
 {
     const struct inverse_factor *inverse = &preconditioner->factor;
     double *on_inverse = preconditioner->on_inverse;
-    if (inverse->node_count == 0) {
+    if (inverse->rows.row_count == 0) {
         divide_by_mass(preconditioner, force, result);
         return;
     }
@@ -196,7 +196,7 @@ void preconditioner_apply(struct preconditioner *preconditioner, const double *f
 static const double *on_inverse(const struct preconditioner *preconditioner, const double *move,
                                 double *scratch)
 {
-    if (preconditioner->factor.node_count == 0) {
+    if (preconditioner->factor.rows.row_count == 0) {
         return move;
     }
     memcpy(scratch, move, (size_t)(preconditioner->node_count * preconditioner->dim) * sizeof *move);
@@ -224,7 +224,7 @@ static void restrict_move(const struct preconditioner *preconditioner, const dou
 {
     int dim = preconditioner->dim;
     int64_t nodes = preconditioner->node_count;
-    if (preconditioner->factor.node_count == 0) {
+    if (preconditioner->factor.rows.row_count == 0) {
         coarse_space_restrict(&preconditioner->coarse, preconditioner->mass, moved, amount);
         return;
     }

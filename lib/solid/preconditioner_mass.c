@@ -35,7 +35,7 @@ static void weigh_coarse_space(struct preconditioner *preconditioner)
     double *weight = preconditioner->weight, value[COARSE_MOST_AT_NODE];
     int field[COARSE_MOST_AT_NODE];
     memset(weight, 0, (size_t)(size * size) * sizeof *weight);
-    if (preconditioner->factor.node_count > 0) {
+    if (preconditioner->factor.rows.row_count > 0) {
         weigh_inverse_fields(preconditioner);
         return;
     }
@@ -123,7 +123,7 @@ enum status preconditioner_restore(struct preconditioner *preconditioner, const 
 {
     enum status status;
     constraint_free(&preconditioner->constraint);
-    bool within = preconditioner->factor.node_count > 0;
+    bool within = preconditioner->factor.rows.row_count > 0;
     TRY(system_constrain_within(system, preconditioner->mass, within ? &preconditioner->factor : NULL,
                                 within ? &preconditioner->factor_rows : NULL, &preconditioner->constraint,
                                 error));

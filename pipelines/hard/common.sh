@@ -78,7 +78,7 @@ relax() {
     if ! mtled -v "$1" "$2" > "$3" 2> "$3.log"; then
         tail -n 1 "$3.log" >&2
         : > "$3"
-        [ -z "${ESTIMATE:-}" ] || no_estimate - >> "$ESTIMATE"
+        [ -z "${ESTIMATE:-}" ] || grep -q "the body folds" "$3.log" || no_estimate - >> "$ESTIMATE"
     elif [ -n "${ESTIMATE:-}" ] && grep -q quasi-static "$1"; then
         estimate "$1" "$2" >> "$ESTIMATE"
     fi

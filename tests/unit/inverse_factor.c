@@ -103,11 +103,11 @@ static void the_diagonal_is_one(void **state)
     double *x;
     ARRAY(x, cube.n);
     for (int64_t i = 0; i < cube.n; i++) {
-        assert_int_equal(factor->idx[factor->ptr[i + 1] - 1], i);
+        assert_int_equal(factor->rows.idx[factor->rows.ptr[i + 1] - 1], i);
         memset(x, 0, (size_t)cube.n * sizeof *x);
-        for (int64_t k = factor->ptr[i]; k < factor->ptr[i + 1]; k++) {
-            assert_true(k == factor->ptr[i] || factor->idx[k] > factor->idx[k - 1]);
-            x[factor->idx[k]] = factor->value[k];
+        for (int64_t k = factor->rows.ptr[i]; k < factor->rows.ptr[i + 1]; k++) {
+            assert_true(k == factor->rows.ptr[i] || factor->rows.idx[k] > factor->rows.idx[k - 1]);
+            x[factor->rows.idx[k]] = factor->rows.value[k];
         }
         AT_MOST(fabs(energy(&cube, x) - 1.0), 1e-6);
     }
