@@ -217,6 +217,7 @@ static inline int32_t lattice_curve(struct lattice *l, struct load_curve curve)
     l->system.factor = realloc(l->system.factor, ((size_t)count + 1) * sizeof *l->system.factor);
     assert_non_null(l->system.curves);
     assert_non_null(l->system.factor);
+    l->system.factor[count] = 0.0; /* until a load is set */
     l->system.curves[count] = curve;
     l->system.curve_count++;
     return (int32_t)count;
