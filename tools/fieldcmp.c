@@ -47,73 +47,24 @@ static const char usage[] =
 
 #include "comparison.h"
 
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-
-enum { TOL_AVG, TOL_MAX, FIELD, REGION, SKIP_OUTSIDE, PERCENTILES, MAP, TEXT, OPTION_COUNT };
-
-/* What the command line asks for. */
-struct request {
-    double tol_avg, tol_max; /* infinite: any */
-    const char *field;
-    const char *region; /* NULL: all */
-    const char *map;    /* the file; NULL: none */
-    bool skip_outside, percentiles, text;
-};
-
-static struct request parse(const struct tool *tool, const struct option *options)
-{
-    if (options[TEXT].given && !options[MAP].given) {
-        tool_fail(tool, STATUS_INPUT, "-t goes with -m");
-    }
-    return (struct request){.tol_avg = comparison_tolerance(tool, &options[TOL_AVG]),
-                            .tol_max = comparison_tolerance(tool, &options[TOL_MAX]),
-                            .field = options[FIELD].given ? options[FIELD].value : "u",
-                            .region = options[REGION].value,
-                            .map = options[MAP].value,
-                            .skip_outside = options[SKIP_OUTSIDE].given,
-                            .percentiles = options[PERCENTILES].given,
-                            .text = options[TEXT].given};
-}
-
-/* Whether all values are numbers, and the differences within the tolerances. */
-static bool judge(const struct tool *tool, const struct request *request, const struct side *a,
-                  const struct side *b, const struct field_statistics *statistics)
-{
-    bool good = !side_has_unknown(tool, a, request->field);
-    good = !side_has_unknown(tool, b, request->field) && good;
-    good = comparison_within(tool, "avg", statistics->average, request->tol_avg) && good;
-    return comparison_within(tool, "max", statistics->largest, request->tol_max) && good;
-}
-
 int main(int argc, char *argv[])
 {
     struct tool tool;
     struct side a, b;
     struct findings findings;
     struct error error;
-    struct option options[OPTION_COUNT] = {
-        [TOL_AVG] = {.name = "tol-avg", .takes_value = true},
-        [TOL_MAX] = {.name = "tol-max", .takes_value = true},
-        [FIELD] = {.name = "field", .takes_value = true},
-        [REGION] = {.name = "region", .takes_value = true},
-        [SKIP_OUTSIDE] = {.name = "skip-outside"},
-        [PERCENTILES] = {.name = "percentiles"},
-        [MAP] = {.letter = 'm', .name = "map", .takes_value = true},
-        [TEXT] = {.letter = 't', .name = "text"},
-    };
-    tool_begin(&tool, usage, options, OPTION_COUNT, 2, 2, argc, argv);
-    struct request request = parse(&tool, options);
+    struct option options[] = {COMPARISON_OPTIONS};
+    tool_begin(&tool, usage, options, COMPARISON_OPTION_COUNT, 2, 2, argc, argv);
+    struct comparison_request request = comparison_parse(&tool, options);
     side_read(&tool, tool.operands[0], request.field, &a);
     side_read(&tool, tool.operands[1], request.field, &b);
-    findings_make(&tool, request.region, request.skip_outside, request.field, &a, &b, &findings);
+    findings_make(&tool, &request, &a, &b, &findings);
     print_findings(&findings, &a.field.cells, request.percentiles);
     print_relative(&findings);
     if (request.region == NULL) {
         tool_check(&tool, print_regions(&findings, &error), &error);
     }
-    bool good = judge(&tool, &request, &a, &b, &findings.statistics);
+    bool good = comparison_judge(&tool, &request, &a, &b, &findings.statistics);
     if (request.map != NULL) {
         comparison_write_map(&tool, &a, "difference", findings.comparison.difference, request.map,
                              request.text);

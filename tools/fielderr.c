@@ -61,7 +61,7 @@ static const char usage[] =
 #include <stdlib.h>
 #include <string.h>
 
-enum { ORDER, RATIO, TOL_AVG, TOL_MAX, FIELD, REGION, SKIP_OUTSIDE, PERCENTILES, MAP, TEXT, OPTION_COUNT };
+enum { ORDER = COMPARISON_OPTION_COUNT, RATIO, OPTION_COUNT };
 
 /* Cells per direction by the ratio that is used: outside of this it is noted. */
 static const double least_agreement = 0.65, most_agreement = 1.5;
@@ -70,28 +70,13 @@ static const double least_agreement = 0.65, most_agreement = 1.5;
 struct request {
     double order; /* 0: none given */
     double ratio;
-    double tol_avg, tol_max; /* infinite: any */
-    const char *field;
-    const char *region; /* NULL: all */
-    const char *map;    /* the file; NULL: none */
-    bool skip_outside, percentiles, text;
+    struct comparison_request comparison;
 };
 
 static struct request parse(const struct tool *tool, const struct option *options)
 {
     struct error error;
-    struct request request = {.ratio = 2.0,
-                              .tol_avg = comparison_tolerance(tool, &options[TOL_AVG]),
-                              .tol_max = comparison_tolerance(tool, &options[TOL_MAX]),
-                              .field = options[FIELD].given ? options[FIELD].value : "u",
-                              .region = options[REGION].value,
-                              .map = options[MAP].value,
-                              .skip_outside = options[SKIP_OUTSIDE].given,
-                              .percentiles = options[PERCENTILES].given,
-                              .text = options[TEXT].given};
-    if (options[TEXT].given && !options[MAP].given) {
-        tool_fail(tool, STATUS_INPUT, "-t goes with -m");
-    }
+    struct request request = {.ratio = 2.0, .comparison = comparison_parse(tool, options)};
     if (options[ORDER].given) {
         if (tool->operand_count > 2) {
             tool_fail(tool, STATUS_INPUT, "-p: of three results the order is observed");
@@ -109,7 +94,7 @@ static struct request parse(const struct tool *tool, const struct option *option
 static double check_coarser(const struct tool *tool, const struct request *request, const struct side *fine,
                             const struct side *coarse)
 {
-    sides_check(tool, fine, coarse, request->field);
+    sides_check(tool, fine, coarse, request->comparison.field);
     double found = field_error_ratio(&fine->field.cells, &coarse->field.cells);
     if (!(found > 1.0)) {
         tool_fail(tool, STATUS_INPUT,
@@ -207,12 +192,14 @@ static double choose_order(struct tool *tool, const struct request *request, con
 {
     struct side coarser;
     struct findings beyond;
+    struct comparison_request everywhere = request->comparison;
+    everywhere.region = NULL;
     if (tool->operand_count < 3) {
         return request->order > 0.0 ? request->order : FIELD_ERROR_ORDER;
     }
-    side_read(tool, tool->operands[2], request->field, &coarser);
+    side_read(tool, tool->operands[2], request->comparison.field, &coarser);
     (void)check_coarser(tool, request, coarse, &coarser);
-    findings_make(tool, NULL, request->skip_outside, request->field, coarse, &coarser, &beyond);
+    findings_make(tool, &everywhere, coarse, &coarser, &beyond);
     double order = field_error_order(findings->statistics.average, beyond.statistics.average, request->ratio);
     findings_free(&beyond);
     stream_free(&coarser.stream);
@@ -240,30 +227,24 @@ int main(int argc, char *argv[])
     struct side fine, coarse;
     struct findings findings;
     struct error error;
-    struct option options[OPTION_COUNT] = {
+    struct option options[] = {
+        COMPARISON_OPTIONS,
         [ORDER] = {.letter = 'p', .name = "order", .takes_value = true},
         [RATIO] = {.letter = 'r', .name = "ratio", .takes_value = true},
-        [TOL_AVG] = {.name = "tol-avg", .takes_value = true},
-        [TOL_MAX] = {.name = "tol-max", .takes_value = true},
-        [FIELD] = {.name = "field", .takes_value = true},
-        [REGION] = {.name = "region", .takes_value = true},
-        [SKIP_OUTSIDE] = {.name = "skip-outside"},
-        [PERCENTILES] = {.name = "percentiles"},
-        [MAP] = {.letter = 'm', .name = "map", .takes_value = true},
-        [TEXT] = {.letter = 't', .name = "text"},
     };
     tool_begin(&tool, usage, options, OPTION_COUNT, 2, 3, argc, argv);
     struct request request = parse(&tool, options);
-    side_read(&tool, tool.operands[0], request.field, &fine);
-    side_read(&tool, tool.operands[1], request.field, &coarse);
+    const struct comparison_request *asked = &request.comparison;
+    side_read(&tool, tool.operands[0], asked->field, &fine);
+    side_read(&tool, tool.operands[1], asked->field, &coarse);
     double found = check_coarser(&tool, &request, &fine, &coarse);
-    findings_make(&tool, request.region, request.skip_outside, request.field, &fine, &coarse, &findings);
+    findings_make(&tool, asked, &fine, &coarse, &findings);
     double order = choose_order(&tool, &request, &coarse, &findings);
     double share = field_error_share(request.ratio, order);
     scale(&findings, share, fine.field.cells.node_count);
     findings.reference = field_largest(fine.field.cells.node_count, fine.field.cols, fine.field.values);
-    print_findings(&findings, &fine.field.cells, request.percentiles);
-    if (request.region == NULL && fine.field.cells.count > 0) {
+    print_findings(&findings, &fine.field.cells, asked->percentiles);
+    if (asked->region == NULL && fine.field.cells.count > 0) {
         print_quantity("mean", NULL, field_error_mean(&fine.field.cells, findings.comparison.difference));
     }
     print_relative(&findings);
@@ -272,16 +253,12 @@ int main(int argc, char *argv[])
     print_quantity("cells_ratio", NULL, found);
     tool_check(&tool, print_forces(&fine, &coarse, share, &error), &error);
     print_energy(&fine, &coarse, share);
-    if (request.region == NULL) {
+    if (asked->region == NULL) {
         tool_check(&tool, print_regions(&findings, &error), &error);
     }
-    bool good = !side_has_unknown(&tool, &fine, request.field);
-    good = !side_has_unknown(&tool, &coarse, request.field) && good;
-    good = comparison_within(&tool, "avg", findings.statistics.average, request.tol_avg) && good;
-    good = comparison_within(&tool, "max", findings.statistics.largest, request.tol_max) && good;
-    if (request.map != NULL) {
-        comparison_write_map(&tool, &fine, "error", findings.comparison.difference, request.map,
-                             request.text);
+    bool good = comparison_judge(&tool, asked, &fine, &coarse, &findings.statistics);
+    if (asked->map != NULL) {
+        comparison_write_map(&tool, &fine, "error", findings.comparison.difference, asked->map, asked->text);
     }
     findings_free(&findings);
     stream_free(&fine.stream);

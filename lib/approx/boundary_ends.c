@@ -20,18 +20,6 @@ static int compare_faces_at_nodes(const void *left, const void *right)
     return (a->face > b->face) - (a->face < b->face);
 }
 
-/* Whether faces of `dim` nodes have an edge (2D: a node) in common. */
-static bool share_edge(int dim, const int32_t *a, const int32_t *b)
-{
-    int shared = 0;
-    for (int i = 0; i < dim; i++) {
-        for (int k = 0; k < dim; k++) {
-            shared += a[i] == b[k];
-        }
-    }
-    return shared >= dim - 1;
-}
-
 enum status boundary_find_ends(const struct face_table *table, enum boundary_end kind, const bool *held,
                                bool *end, struct error *error)
 {
@@ -50,7 +38,7 @@ enum status boundary_find_ends(const struct face_table *table, enum boundary_end
     for (int64_t i = 0; i < count; i++) {
         for (int64_t k = i + 1; k < count && at[k].node == at[i].node; k++) {
             int64_t f = at[i].face, g = at[k].face;
-            if (held[f] != held[g] && share_edge(dim, node + f * dim, node + g * dim) &&
+            if (held[f] != held[g] && boundary_share_edge(dim, node + f * dim, node + g * dim) &&
                 boundary_same_side(table, node + f * dim, node + g * dim) == (kind == BOUNDARY_END_SMOOTH)) {
                 end[at[i].node] = true;
             }

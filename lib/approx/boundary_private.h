@@ -15,6 +15,9 @@ void boundary_unit_normal(const struct face_table *table, const int32_t *facet, 
 
 /* ---- boundary_split.c: boundary averages, split where the boundary turns ---- */
 
+/* Whether two facets, given by their dim nodes, have an edge (2D: a node) in common. */
+bool boundary_share_edge(int dim, const int32_t *a, const int32_t *b);
+
 /* Whether two facets that meet at a node, given by their nodes, are of one side: in 3D they must share an
  * edge, in 2D they meet anyway. */
 bool boundary_same_side(const struct face_table *table, const int32_t *a, const int32_t *b);

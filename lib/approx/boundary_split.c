@@ -21,16 +21,21 @@ static int compare_corners(const void *left, const void *right)
     return a->vertex - b->vertex;
 }
 
-bool boundary_same_side(const struct face_table *table, const int32_t *a, const int32_t *b)
+bool boundary_share_edge(int dim, const int32_t *a, const int32_t *b)
 {
-    double na[3], nb[3], size;
     int shared = 0;
-    for (int i = 0; i < table->dim; i++) {
-        for (int k = 0; k < table->dim; k++) {
+    for (int i = 0; i < dim; i++) {
+        for (int k = 0; k < dim; k++) {
             shared += a[i] == b[k];
         }
     }
-    if (shared < table->dim - 1) {
+    return shared >= dim - 1;
+}
+
+bool boundary_same_side(const struct face_table *table, const int32_t *a, const int32_t *b)
+{
+    double na[3], nb[3], size;
+    if (!boundary_share_edge(table->dim, a, b)) {
         return false;
     }
     boundary_unit_normal(table, a, na, &size);

@@ -204,8 +204,7 @@ static bool is_unstable(struct relaxation *r, const double *acceleration)
     (void)system_residual(r->system, r->u, r->residual);
     double frequency = system_largest_frequency(r->system, &r->preconditioner, r->u, r->residual,
                                                 calm_iterations, r->mode, r->scratch);
-    (void)system_residual(r->system, r->u, r->residual); /* the body's last evaluation again */
-    r->report->force_evaluations += calm_iterations + 2;
+    r->report->force_evaluations += calm_iterations + 1;
     return !(frequency * r->time_step < 2.0);
 }
 
@@ -214,7 +213,7 @@ void relaxation_calm(struct relaxation *r, const double *acceleration)
     r->calmed_step = r->report->steps;
     r->usual_residual2 = 0.0;
     if (!is_unstable(r, acceleration)) {
-        (void)system_residual(r->system, r->u, r->residual); /* what is held next is of this state */
+        (void)system_residual(r->system, r->u, r->residual); /* the body's last evaluation again */
         r->report->force_evaluations++;
         return;
     }

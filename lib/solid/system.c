@@ -4,7 +4,7 @@
 #include "approx/support.h"
 #include "base/clock.h"
 #include "base/memory.h"
-#include "solid/assembly.h"
+#include "solid/condition.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -20,17 +20,22 @@ radial() {
     mean_at "$1" 'sqrt($1 ^ 2 + $2 ^ 2) < 1 + 1e-6' '($3 * $1 + $4 * $2) / sqrt($1 ^ 2 + $2 ^ 2)'
 }
 
-# Row 8: a pressure of .1 Pa, the linear limit; scaled to 100 Pa.
-for case in '0.3 0.0635556' '0.49 0.0665533'; do
-    read -r nu reference <<< "$case"
-    for n in 8 16; do
-        dim=2 nu=$nu scene "$work/a.scene" <<END
+# pressed NU N OUT: by a pressure of .1 Pa, the linear limit.
+pressed() {
+    dim=2 nu=$1 scene "$work/a.scene" <<END
 [pressure inside]
 facets = inner
 value = 0.1
 $symmetry
 END
-        relax "$work/a.scene" "$work/table$n.mts" "$work/a$n.dat"
+    relax "$work/a.scene" "$work/table$2.mts" "$3"
+}
+
+# Row 8, scaled to 100 Pa.
+for case in '0.3 0.0635556' '0.49 0.0665533'; do
+    read -r nu reference <<< "$case"
+    for n in 8 16; do
+        pressed "$nu" $n "$work/a$n.dat"
     done
     row 8 "thick cylinder, nu $nu: u(a), m" "$(calc "$(radial "$work/a16.dat") * 1000")" "$reference" cylinder
     at_least 8 "thick cylinder, nu $nu: order of convergence" \
@@ -40,13 +45,7 @@ done
 # Nearly incompressible, on the coarse mesh: no worse than twice the error at .49 (u(a) = p a (1 + nu) (b^2 + (1 - 2 nu) a^2) / (E (b^2 - a^2))).
 errors=()
 for nu in 0.49 0.4999; do
-    dim=2 nu=$nu scene "$work/a.scene" <<END
-[pressure inside]
-facets = inner
-value = 0.1
-$symmetry
-END
-    relax "$work/a.scene" "$work/table8.mts" "$work/a.dat"
+    pressed $nu 8 "$work/a.dat"
     errors+=("$(calc "$(radial "$work/a.dat") / (0.1 * (1 + $nu) * (4 + 1 - 2 * $nu) / 9000) - 1")")
 done
 at_most 8 'thick cylinder, 8 cells around: error of u(a), nu 0.4999 / nu 0.49' "$(calc "sqrt((${errors[1]} / ${errors[0]}) ^ 2)")" locking

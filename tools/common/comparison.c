@@ -5,7 +5,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-double comparison_tolerance(const struct tool *tool, const struct option *option)
+/* The value of a tolerance: a length, or a number of the field's own unit; 0 is allowed. Infinite when it is
+ * not given. */
+static double tolerance_of(const struct tool *tool, const struct option *option)
 {
     struct error error;
     double value = INFINITY;
@@ -20,6 +22,21 @@ double comparison_tolerance(const struct tool *tool, const struct option *option
                      : parse_length(option->value, what, &value, &error),
                &error);
     return value;
+}
+
+struct comparison_request comparison_parse(const struct tool *tool, const struct option *options)
+{
+    if (options[TEXT].given && !options[MAP].given) {
+        tool_fail(tool, STATUS_INPUT, "-t goes with -m");
+    }
+    return (struct comparison_request){.tol_avg = tolerance_of(tool, &options[TOL_AVG]),
+                                       .tol_max = tolerance_of(tool, &options[TOL_MAX]),
+                                       .field = options[FIELD].given ? options[FIELD].value : "u",
+                                       .region = options[REGION].value,
+                                       .map = options[MAP].value,
+                                       .skip_outside = options[SKIP_OUTSIDE].given,
+                                       .percentiles = options[PERCENTILES].given,
+                                       .text = options[TEXT].given};
 }
 
 void side_read(const struct tool *tool, const char *file, const char *field, struct side *side)
@@ -67,7 +84,8 @@ void sides_check(const struct tool *tool, const struct side *first, const struct
     }
 }
 
-bool side_has_unknown(const struct tool *tool, const struct side *side, const char *field)
+/* Notes the first value that is not finite; returns whether there is one. */
+static bool has_unknown(const struct tool *tool, const struct side *side, const char *field)
 {
     for (int64_t i = 0; i < side->field.cells.node_count * side->field.cols; i++) {
         if (!isfinite(side->field.values[i])) {
@@ -79,16 +97,17 @@ bool side_has_unknown(const struct tool *tool, const struct side *side, const ch
     return false;
 }
 
-void findings_make(const struct tool *tool, const char *region, bool skip_outside, const char *field,
-                   const struct side *a, const struct side *b, struct findings *findings)
+void findings_make(const struct tool *tool, const struct comparison_request *request, const struct side *a,
+                   const struct side *b, struct findings *findings)
 {
     struct error error;
     struct field_comparison *comparison = &findings->comparison;
     bool *chosen;
-    sides_check(tool, a, b, field);
+    sides_check(tool, a, b, request->field);
     tool_check(tool, regions_read(&a->stream, &a->field.cells, &findings->regions, &error), &error);
-    tool_check(tool, regions_choose(&findings->regions, region, &chosen, &error), &error);
-    enum status status = field_compare(&a->field, &b->field, chosen, skip_outside, comparison, &error);
+    tool_check(tool, regions_choose(&findings->regions, request->region, &chosen, &error), &error);
+    enum status status =
+        field_compare(&a->field, &b->field, chosen, request->skip_outside, comparison, &error);
     if (status != STATUS_OK) {
         tool_fail(tool, status, "%s%s", error.text,
                   comparison->outside > 0 ? ": --skip-outside leaves them out" : "");
@@ -217,7 +236,8 @@ void comparison_write_map(struct tool *tool, struct side *a, const char *name, d
     tool_write(tool, stream, text);
 }
 
-bool comparison_within(const struct tool *tool, const char *name, double value, double tolerance)
+/* Whether a value is within its tolerance; NaN is not. Notes if it is beyond. */
+static bool is_within(const struct tool *tool, const char *name, double value, double tolerance)
 {
     if (!(value <= tolerance)) {
         if (isfinite(tolerance)) {
@@ -226,4 +246,13 @@ bool comparison_within(const struct tool *tool, const char *name, double value, 
         return false;
     }
     return true;
+}
+
+bool comparison_judge(const struct tool *tool, const struct comparison_request *request, const struct side *a,
+                      const struct side *b, const struct field_statistics *statistics)
+{
+    bool good = !has_unknown(tool, a, request->field);
+    good = !has_unknown(tool, b, request->field) && good;
+    good = is_within(tool, "avg", statistics->average, request->tol_avg) && good;
+    return is_within(tool, "max", statistics->largest, request->tol_max) && good;
 }

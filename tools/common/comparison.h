@@ -26,23 +26,36 @@ struct findings {
     double reference;                   /* largest norm of B's field */
 };
 
-/* The value of a tolerance: a length, or a number of the field's own unit; 0 is allowed. Infinite when it is
- * not given. */
-double comparison_tolerance(const struct tool *tool, const struct option *option);
+/* The options of both programs, and what they ask for. */
+enum { TOL_AVG, TOL_MAX, FIELD, REGION, SKIP_OUTSIDE, PERCENTILES, MAP, TEXT, COMPARISON_OPTION_COUNT };
+#define COMPARISON_OPTIONS                                                                                   \
+    [TOL_AVG] = {.name = "tol-avg", .takes_value = true},                                                    \
+    [TOL_MAX] = {.name = "tol-max", .takes_value = true}, [FIELD] = {.name = "field", .takes_value = true},  \
+    [REGION] = {.name = "region", .takes_value = true}, [SKIP_OUTSIDE] = {.name = "skip-outside"},           \
+    [PERCENTILES] = {.name = "percentiles"}, [MAP] = {.letter = 'm', .name = "map", .takes_value = true},    \
+    [TEXT] = {.letter = 't', .name = "text"}
+
+struct comparison_request {
+    double tol_avg, tol_max; /* a length, or in the field's own unit; infinite: any */
+    const char *field;
+    const char *region; /* NULL: all */
+    const char *map;    /* the file; NULL: none */
+    bool skip_outside, percentiles, text;
+};
+
+/* Exits for values that cannot be. */
+struct comparison_request comparison_parse(const struct tool *tool, const struct option *options);
 
 /* Read a stream and its field; exits on failure. */
 void side_read(const struct tool *tool, const char *file, const char *field, struct side *side);
-
-/* Notes the first value that is not finite; returns whether there is one. */
-bool side_has_unknown(const struct tool *tool, const struct side *side, const char *field);
 
 /* Exits for fields of other shapes. */
 void sides_check(const struct tool *tool, const struct side *first, const struct side *second,
                  const char *name);
 
-/* Compare at the nodes of A, or at those of one of its regions (unless NULL); exits on failure. */
-void findings_make(const struct tool *tool, const char *region, bool skip_outside, const char *field,
-                   const struct side *a, const struct side *b, struct findings *findings);
+/* Compare at the nodes of A, or at those of one of its regions, as asked for; exits on failure. */
+void findings_make(const struct tool *tool, const struct comparison_request *request, const struct side *a,
+                   const struct side *b, struct findings *findings);
 void findings_free(struct findings *findings);
 
 /* "name TAB value", "name.part TAB value". */
@@ -61,7 +74,9 @@ MUST_CHECK enum status print_regions(const struct findings *findings, struct err
 void comparison_write_map(struct tool *tool, struct side *a, const char *name, double *value,
                           const char *file, bool text);
 
-/* Whether a value is within its tolerance; NaN is not. Notes if it is beyond. */
-bool comparison_within(const struct tool *tool, const char *name, double value, double tolerance);
+/* Whether all values of both sides are numbers, and the statistics within the tolerances; NaN is not. Notes
+ * what is not. */
+bool comparison_judge(const struct tool *tool, const struct comparison_request *request, const struct side *a,
+                      const struct side *b, const struct field_statistics *statistics);
 
 #endif
