@@ -76,7 +76,7 @@ $(BRAIN2D_AT_NODES:%=$(BRAIN2D)/%.dat): $(BRAIN2D)/%.dat: $(BRAIN2D_INPUT)/paper
 	(nodes -u mm $(@D)/body.msh | ipoints -g 4 | support -v $($*.support) | shapefn | \
 	    mtled -v $<) > $@ $(BRAIN2D_LOG)
 
-BRAIN2D_CALCULIX := $(addprefix pipelines/,calculix/solve.sh calculix/deck.awk calculix/deck2d.awk calculix/field.awk stream.awk scene.awk)
+BRAIN2D_CALCULIX := $(addprefix pipelines/,calculix/solve.sh calculix/deck.awk calculix/deck2d.awk calculix/field.awk stream.awk scene.awk table.awk)
 
 $(BRAIN2D)/calculix.dat: $(BRAIN2D)/body.cloud.dat
 $(BRAIN2D)/calculix-half.dat: $(BRAIN2D)/half.cloud.dat

@@ -86,7 +86,7 @@ make_cube() {
     printf '0 0 0 1 0 0 0 1 0\n1 0 0 1 1 0.5 0 1 0\n' > back.tsv # normals up, away from a body below
     for side in back front; do
         (cat cube.scene; printf '[contact roof]\nfacets = zmax\nrigid = back.tsv\nunit = cm\nside = %s\n' $side) > contact.scene
-        awk -f "$pipelines/stream.awk" -f "$pipelines/scene.awk" -f "$pipelines/calculix/deck.awk" -f "$pipelines/calculix/deck3d.awk" \
+        awk -f "$pipelines/stream.awk" -f "$pipelines/scene.awk" -f "$pipelines/table.awk" -f "$pipelines/calculix/deck.awk" -f "$pipelines/calculix/deck3d.awk" \
             -v scene=contact.scene -v mesh=cube.dat > deck.inp
         awk -F, -v up=$([ $side = back ] && echo 1 || echo -1) '
             /^\*/ { part = $0; next }
@@ -108,7 +108,7 @@ make_cube() {
     printf '2 0.5\n1 0\n0 0\n' > right.tsv
     for side in left right; do
         (cat patch.scene; printf '[contact floor]\nfacets = ymin\nrigid = %s.tsv\nunit = cm\nside = %s\n' $side $side) > contact.scene
-        awk -f "$pipelines/stream.awk" -f "$pipelines/scene.awk" -f "$pipelines/calculix/deck.awk" -f "$pipelines/calculix/deck2d.awk" -v scene=contact.scene -v mesh=square.dat > deck.inp
+        awk -f "$pipelines/stream.awk" -f "$pipelines/scene.awk" -f "$pipelines/table.awk" -f "$pipelines/calculix/deck.awk" -f "$pipelines/calculix/deck2d.awk" -v scene=contact.scene -v mesh=square.dat > deck.inp
         awk -F, '
             /^\*/ { part = $0; next }
             part ~ /^\*NODE/ { x[$1] = $2; y[$1] = $3 }
@@ -161,6 +161,21 @@ END
     done
 }
 
+@test "mixed elements: sides that tables displace, a linear field to round-off in 2D and 3D, middles of edges too" {
+    make_patch
+    bash "$pipelines/mixed/solve.sh" patch.scene square.dat > u.dat 2> log
+    paste <(mts print nodes.x u.dat) <(mts print u u.dat) | awk '
+        { a = $3 - .05 * $1 - .02 * $2; b = $4 + .03 * $1 + .04 * $2; if (!(a * a + b * b < 1e-24)) { print; exit 1 } }
+        END { if (NR != 49) exit 1 }'
+    make_cube
+    bash "$pipelines/mixed/solve.sh" cube.scene cube.dat > u.dat 2> log
+    # A table on a surface is fitted, with combinations of the points that it does not tell kept small: to 1e-8 of it.
+    paste <(mts print nodes.x u.dat) <(mts print u u.dat) | awk '
+        { a = $4 - .05 * $1 - .02 * $2; b = $5 + .03 * $2 - .01 * $3; c = $6 - .02 * $1 + .04 * $3 }
+        !(a * a + b * b + c * c < 1e-14) { print; exit 1 }
+        END { if (NR != 125) exit 1 }'
+}
+
 @test "mixed elements: a traction along a side is what the other side holds" {
     make_patch
     {
@@ -210,7 +225,7 @@ END
 
 @test "deck: what it does not understand, and a stream cut short, are errors" {
     make_patch
-    deck() { awk -f "$pipelines/stream.awk" -f "$pipelines/scene.awk" -f "$pipelines/calculix/deck.awk" -f "$pipelines/calculix/deck2d.awk" -v scene="$1" -v mesh="$2"; }
+    deck() { awk -f "$pipelines/stream.awk" -f "$pipelines/scene.awk" -f "$pipelines/table.awk" -f "$pipelines/calculix/deck.awk" -f "$pipelines/calculix/deck2d.awk" -v scene="$1" -v mesh="$2"; }
     (cat patch.scene; printf '[pressure top]\nfacets = ymax\nvalue = 1\n') > pressure.scene
     run ! deck pressure.scene square.dat
     sed 's/facets = ymax/facets = roof/' patch.scene > roof.scene
