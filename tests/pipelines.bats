@@ -81,27 +81,6 @@ make_cube() {
         END { for (d = 1; d <= 3; d++) if (!(sum[d] ^ 2 < (1e-4 * size) ^ 2)) exit 1; exit n != 6 || !(size > 0) }'
 }
 
-@test "deck: wedges lie behind rigid triangles, on either side, with the face that is touched first" {
-    make_cube
-    printf '0 0 0 1 0 0 0 1 0\n1 0 0 1 1 0.5 0 1 0\n' > back.tsv # normals up, away from a body below
-    for side in back front; do
-        (cat cube.scene; printf '[contact roof]\nfacets = zmax\nrigid = back.tsv\nunit = cm\nside = %s\n' $side) > contact.scene
-        awk -f "$pipelines/stream.awk" -f "$pipelines/scene.awk" -f "$pipelines/table.awk" -f "$pipelines/calculix/deck.awk" -f "$pipelines/calculix/deck3d.awk" \
-            -v scene=contact.scene -v mesh=cube.dat > deck.inp
-        awk -F, -v up=$([ $side = back ] && echo 1 || echo -1) '
-            /^\*/ { part = $0; next }
-            part ~ /^\*NODE,/ { x[$1] = $2; y[$1] = $3; z[$1] = $4 }
-            part ~ /C3D6/ {
-                n++
-                area = (x[$3] - x[$2]) * (y[$4] - y[$2]) - (x[$4] - x[$2]) * (y[$3] - y[$2])
-                rise = z[$5] - z[$2]
-                if (!(area * rise > 0)) { print "element", $1, "is turned"; exit 1 }
-                if (!(up * rise > 0.004 && up * rise < 0.0061)) { print "element", $1, "lies before the surface"; exit 1 }
-            }
-            END { if (n != 2) exit 1 }' deck.inp
-    done
-}
-
 @test "deck: the strip of a rigid curve lies behind it, its elements counter-clockwise, on either side" {
     make_patch
     printf '0 0\n1 0\n2 0.5\n' > left.tsv
@@ -176,6 +155,19 @@ END
         END { if (NR != 125) exit 1 }'
 }
 
+@test "mixed elements: a block that lies on a curve, a gap below it at first" {
+    make_confined 2
+    # Held at its sides and pushed down by 3 mm, of which 2 mm are the gap: as a block that is pressed by 1 mm on what it slides on.
+    sed 's/-0.02/-0.001/' confined.scene > held.scene
+    bash "$pipelines/mixed/solve.sh" held.scene body.dat > held.dat 2> log
+    sed -e 's/, ymin$//' -e 's/-0.02/-0.003/' confined.scene > pushed.scene
+    printf '[contact floor]\nfacets = ymin\nrigid = floor.tsv\nunit = mm\nside = left\n' >> pushed.scene
+    printf -- '-50 -2\n40 -2\n150 -2\n' > floor.tsv
+    bash "$pipelines/mixed/solve.sh" pushed.scene body.dat > pushed.dat 2> log
+    paste <(mts print u held.dat) <(mts print u pushed.dat) | awk '
+        { a = $3 - $1; b = $4 - $2 + 0.002 } !(a * a + b * b < 1e-10) { print; exit 1 } END { if (NR < 20) exit 1 }'
+}
+
 @test "mixed elements: a traction along a side is what the other side holds" {
     make_patch
     {
@@ -189,9 +181,12 @@ END
 @test "mixed elements: what they do not understand, and a missing or failing FreeFEM, are one line" {
     make_confined 2
     try() { run --separate-stderr "$1" bash "$pipelines/mixed/solve.sh" "$2" body.dat; [ -z "$output" ]; }
-    (cat confined.scene; printf '[contact floor]\nfacets = ymin\nrigid = a.tsv\nunit = m\nside = left\n') > contact.scene
-    try -2 contact.scene
-    [[ $stderr == *"section [contact] is not understood"* && ${#stderr_lines[@]} -eq 1 ]]
+    (cat confined.scene; printf '[pressure wall]\nfacets = ymin\nvalue = 3\n') > pressure.scene
+    try -2 pressure.scene
+    [[ $stderr == *"section [pressure] is not understood"* && ${#stderr_lines[@]} -eq 1 ]]
+    (cat confined.scene; printf '[contact floor]\nfacets = ymin\nrigid = a.tsv\nunit = m\nside = left\ntranslation = 0, 1\n') > moved.scene
+    try -2 moved.scene
+    [[ $stderr == *"only one contact, with a curve that stays"* && ${#stderr_lines[@]} -eq 1 ]]
     sed 's/normal = -0.02/components = free, -0.02/; s/ymin$/ymax/' confined.scene > twice.scene
     try -2 twice.scene
     [[ $stderr == *"ymax is moved in two ways"* ]]

@@ -5,7 +5,7 @@
 # STREAM (text) holds what `nodes` writes. Its triangles become quadratic plane strain elements (CPE6), its tetrahedra
 # quadratic ones (C3D10), with the mid-nodes on the straight edges, so that nodes 1..N are those of the stream and the
 # geometry is the same. Understood of a scene: neo-Hookean materials of one region each, displacements by table or by
-# components on one group of facets, contact of one group with a rigid surface, in 2D tractions; anything else in it is an error. SI units, in
+# components on one group of facets, in 2D contact of one group with a rigid curve, and tractions; anything else in it is an error. SI units, in
 # 2D per metre of thickness. The load is applied in increments of at most PART of it (0.1).
 
 BEGIN {

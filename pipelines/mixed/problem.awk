@@ -6,7 +6,8 @@
 # number of the group of a facet, from 1, as label and that of the region of a cell, from 1, as region; DIR/problem, which the
 # programs read; and DIR/given, how many rows, and a row A B u.. for the nodes, A = B from 0, and the edges of the facets that a table displaces. Understood of
 # a scene: neo-Hookean materials of one region each, displacements by components, by a table, or along the normal of a flat
-# face across an axis, dead tractions; anything else in it is an error. SI units, in 2D per metre of thickness.
+# face across an axis, dead tractions, in 2D one contact with a rigid curve that stays, which goes to DIR/rigid; anything
+# else in it is an error. SI units, in 2D per metre of thickness.
 
 BEGIN {
     read_scene(scene)
@@ -22,9 +23,11 @@ BEGIN {
     for (k = 1; k <= section_count; k++) if (kind[k] == "material") take_material(k)
     else if (kind[k] == "displacement") take_displacement(k)
     else if (kind[k] == "traction") take_traction(k)
+    else if (kind[k] == "contact" && dim == 2) take_contact(k)
     else if (kind[k] !~ /^(solver|output)$/) die(scene ": section [" kind[k] "] is not understood")
     for (k = 1; k <= section_count; k++) if ((k, "table") in scene_value) give(k)
     print_given(out "/given")
+    print_rigid(out "/rigid")
     print_mesh(out "/body." (dim == 2 ? "msh" : "mesh"))
     print_problem(out "/problem")
 }
@@ -130,6 +133,27 @@ function take_traction(k,    names, count, i, d, value_, label) {
         label = name_index("facets.set", names[i]) + 1
         for (d = 1; d <= dim; d++) traction[label, d] += value_[d]
     }
+}
+
+# One rigid curve, the body on its left, and the labels that it may touch.
+function take_contact(k,    n, i, j, names, count) {
+    if (rigid_count || (k, "translation") in scene_value || (k, "angle") in scene_value)
+        die(scene ": only one contact, with a curve that stays")
+    n = read_table(k, "rigid", 2)
+    for (i = 1; i <= n; i++) {
+        j = scene_value[k, "side"] == "left" ? i : n + 1 - i
+        rigid_row[i] = sprintf("%.17g %.17g", table[j, 1], table[j, 2])
+    }
+    rigid_count = n
+    count = split(scene_value[k, "facets"], names, /[ \t]*,[ \t]*/)
+    for (i = 1; i <= count; i++) touching[++touching_count] = name_index("facets.set", names[i]) + 1
+}
+
+function print_rigid(file,    i) {
+    print touching_count + 0, rigid_count + 0 > file
+    for (i = 1; i <= touching_count; i++) print touching[i] > file
+    for (i = 1; i <= rigid_count; i++) print rigid_row[i] > file
+    close(file)
 }
 
 function print_mesh(file,    i, d, c, line) {
