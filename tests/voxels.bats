@@ -100,6 +100,14 @@ layer 3mm
 END
 }
 
+@test "crevices narrower than the spacing: the compression runs, and no fold is seen" {
+    for seed in 6 9 16 17; do
+        phantom blobs "$seed" > image.nii.gz
+        voxels --largest -h 5mm image.nii.gz > body.mts 2> said
+        press body.mts
+    done
+}
+
 @test "the voxels' order does not matter, nor the number of threads, nor whether a file or a pipe is read" {
     phantom blobs 5 1,1,2 > image.nii.gz
     phantom blobs@flipped 5 1,1,2 > flipped.nii.gz
@@ -141,7 +149,7 @@ END
 @test "thin parts are told, and kept by a finer lattice at their interfaces" {
     phantom thin > thin.nii.gz
     voxels -h 6mm thin.nii.gz 2> said > coarse.mts
-    grep -qE "voxels: label_2: 3.04[0-9]* ml of voxels, 0[.0-9]* ml of cells \(-[89]" said
+    grep -qE "voxels: label_2: 3.04[0-9]* ml of voxels, 0[.0-9]* ml of cells \(-[78]" said
     grep -qE "voxels: label_2: 2\.[0-9]+ ml are lost in parts thinner than the spacing" said
     voxels -h 6mm --fine 1.5mm:label_2 -v thin.nii.gz 2> said > fine.mts
     read -r before after < <(said label_2)

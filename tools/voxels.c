@@ -18,8 +18,9 @@ static const char usage[] =
     ".55 voxels to keep the volume of each label. Angles of cells are between 8 and 165 degrees.\n"
     "\n"
     "Parts of a label that are thinner than LENGTH may be lost, and bodies about a single lattice point are\n"
-    "left out; both is told with their volume: --fine keeps more. Where parts of the body hang together by\n"
-    "a node or an edge alone they are cut apart. Parts of the boundary get names by the program groups:\n"
+    "left out; both is told with their volume: --fine keeps more. Bodies that hang together by a node or an\n"
+    "edge are cut apart; between parts of one body a gap is filled there, and crevices are at their tips.\n"
+    "Parts of the boundary get names by the program groups:\n"
     "'groups -u mm -f opening=\"ball:30,20,80,40 and parenchyma|outside\"'.\n"
     "\n"
     "A slice, which is an image of one slice or one chosen by -s, makes a body in the plane: x and y of\n"
@@ -203,8 +204,14 @@ static void report(const struct tool *tool, const struct label_image *image, con
                   cells.dim == 3 ? "ml" : "cm2");
     }
     if (stuffing->pinched > 0) {
-        tool_note(tool, "parts that hung together by a node or an edge alone are cut apart at %lld nodes",
+        tool_note(tool, "bodies that hung together by a node or an edge alone are cut apart at %lld nodes",
                   (long long)stuffing->pinched);
+    }
+    if (stuffing->hinges > 0) {
+        tool_note(
+            tool,
+            "parts of a body touch by a node or an edge alone at %lld nodes: --fine may tell them apart",
+            (long long)stuffing->hinges);
     }
     report_labels(tool, image, stuffing, verbose);
     report_bodies(tool, &cells, verbose);

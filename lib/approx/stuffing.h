@@ -43,7 +43,8 @@ struct stuffing {
     int64_t facet_count;
     int32_t *facet;  /* facet_count * dim: the boundary, oriented outward */
     int32_t *side;   /* facet_count * 2: the label within, and the one beyond that is not kept */
-    int64_t pinched; /* nodes at which parts hung together by a node or an edge alone: they are cut apart */
+    int64_t pinched; /* nodes at which bodies hung together by a node or an edge alone: they are cut apart */
+    int64_t hinges;  /* nodes by which, or by an edge, alone parts of one body hang together there */
     int64_t specks;  /* bodies about a single point of the lattice: they are left out, */
     double speck_volume; /* m3 */
     int64_t astray;  /* nodes of interfaces farther than STUFFING_MOST_ASTRAY voxels from where labels meet */

@@ -11,8 +11,7 @@
 static const double most_offset = 0.55;
 enum { SWEEPS = 12 };
 
-/* Gradient of a cell's volume with respect to the place of its corner k. */
-static void volume_gradient(const struct stuffing *stuffing, int64_t cell, int k, double gradient[3])
+void stuffing_gradient(const struct stuffing *stuffing, int64_t cell, int k, double gradient[3])
 {
     int dim = stuffing->dim;
     static const int of_triangle[3][2] = {{1, 2}, {2, 0}, {0, 1}};
@@ -61,7 +60,7 @@ static void node_gradients(const struct volumes *volumes, int64_t node, double G
         while (row < star->labels[node] && star->label[node][row] != volumes->stuffing->label[cell]) {
             row++;
         }
-        volume_gradient(volumes->stuffing, cell, k, gradient);
+        stuffing_gradient(volumes->stuffing, cell, k, gradient);
         for (int d = 0; d < corners - 1 && row < star->labels[node]; d++) {
             G[row][d] += gradient[d];
         }
