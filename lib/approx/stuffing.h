@@ -20,9 +20,11 @@ struct stuffing_options {
     double spacing; /* of the lattice, m: edge of its cubes (2D: of its triangles) */
     double finest;  /* 3D: edge of the cubes at interfaces, m: the spacing is halved until it is no larger; 0:
                        as  elsewhere */
-    const bool *fine; /* labels->count: at interfaces of these labels; NULL: at all */
-    const bool *keep; /* labels->count: cells of this label are wanted; never of label 0 */
-    bool largest;     /* of several connected bodies only the largest */
+    const bool *fine;     /* labels->count: at interfaces of these labels; NULL: at all */
+    const bool *keep;     /* labels->count: cells of this label are wanted; never of label 0 */
+    const int32_t *whole; /* labels->count: the label whose part each is: the volume of a whole is kept; NULL:
+                             of each label */
+    bool largest;         /* of several connected bodies only the largest */
 };
 
 /* Angles of cells, degrees: stuffing_make keeps within them where it can. */

@@ -126,7 +126,7 @@ static void fit(const struct labels *labels, const bool *keep, struct stuffing *
         }
         memcpy(target, stuffing->x + n * dim, (size_t)dim * sizeof *target);
         memcpy(label, star->label[n], sizeof star->label[n]);
-        if (!interface_project(labels, count, label, target)) {
+        if (!line_project(labels, keep, count, label, target)) {
             label[count] = label_at(labels, stuffing, n);
             if (meets(star, n, label[count]) || !interface_project(labels, count + 1, label, target)) {
                 memcpy(target, stuffing->x + n * dim, (size_t)dim * sizeof *target);
@@ -243,7 +243,7 @@ enum status stuffing_improve(const struct labels *labels, const struct stuffing_
         stuffing_repair(labels, options->keep, least_score, 0, stuffing, &star);
     }
     separate(labels, stuffing, &star, apart);
-    TRY(stuffing_volumes(labels, options->keep, apart, dropped, &star, stuffing, error));
+    TRY(stuffing_volumes(labels, options, apart, dropped, &star, stuffing, error));
     stuffing_repair(labels, options->keep, last_score, last_slack * labels_voxel(labels), stuffing, &star);
     for (int sweep = 0; sweep < FIT_SWEEPS; sweep++) {
         settle(labels, options->keep, stuffing, &star);

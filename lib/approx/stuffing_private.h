@@ -125,6 +125,10 @@ bool interface_project(const struct labels *labels, int count, const uint16_t la
 bool node_project(const struct labels *labels, const bool *keep, const struct stuffing_star *star,
                   int64_t node, double x[]);
 
+/* Move x to where all the labels meet, also from several voxels off. False where there is no such place. */
+bool line_project(const struct labels *labels, const bool *keep, int count, const uint16_t label[],
+                  double x[]);
+
 /* The label beyond an interface: one label, or any that is kept, or any that is not. */
 struct interface_beyond {
     int32_t label; /* -1: any with keep[] == kept */
@@ -153,9 +157,10 @@ MUST_CHECK enum status stuffing_improve(const struct labels *labels, const struc
 
 /* Correct the volumes of labels, those of their voxels less dropped[], by small moves of interfaces, without
  * the nodes apart[]. */
-MUST_CHECK enum status stuffing_volumes(const struct labels *labels, const bool *keep, const bool *apart,
-                                        const double *dropped, const struct stuffing_star *star,
-                                        struct stuffing *stuffing, struct error *error);
+MUST_CHECK enum status stuffing_volumes(const struct labels *labels, const struct stuffing_options *options,
+                                        const bool *apart, const double *dropped,
+                                        const struct stuffing_star *star, struct stuffing *stuffing,
+                                        struct error *error);
 
 /* Move a node towards `target` as far as its cells allow. */
 void star_move(struct stuffing *stuffing, const struct stuffing_star *star, int64_t node,

@@ -184,3 +184,34 @@ double interface_distance(const struct labels *labels, const double x[],
     }
     return sqrt(square);
 }
+
+bool line_project(const struct labels *labels, const bool *keep, int count, const uint16_t label[],
+                  double x[])
+{
+    double y[3] = {0};
+    memcpy(y, x, (size_t)labels->dim * sizeof *x);
+    if (interface_project(labels, count, label, x)) {
+        return true;
+    }
+    /* Far from there: to each of the labels in turn, and back onto the surface. */
+    bool boundary = false;
+    for (int i = 0; i < count; i++) {
+        boundary = boundary || !keep[label[i]];
+    }
+    for (int round = 0; round < 4; round++) {
+        for (int i = 0; i < count; i++) {
+            const struct interface_beyond region = {label[i], keep, true};
+            if (keep[label[i]] && labels_at(labels, y) != label[i] && !search_change(labels, &region, y)) {
+                return false;
+            }
+        }
+        if (boundary && !project_to_surface(labels, keep, y)) {
+            return false;
+        }
+    }
+    if (!interface_project(labels, count, label, y)) {
+        return false;
+    }
+    memcpy(x, y, (size_t)labels->dim * sizeof *x);
+    return true;
+}
