@@ -61,8 +61,7 @@ static const char usage[] =
     "  voxels labels.nii.gz -h 6mm | shapefn | mtled craniotomy.scene > u.dat\n"
     "  printf '1 parenchyma\\n2 ventricles -\\n3,10-12 tumour\\n* -\\n' > names\n"
     "  voxels -l names -h 4mm -v < labels.nii.gz > body.mts\n"
-    "  voxels -h 4mm -l names --surface 'parenchyma|outside' --gap 1mm labels.nii.gz > skull.tsv\n"
-;
+    "  voxels -h 4mm -l names --surface 'parenchyma|outside' --gap 1mm labels.nii.gz > skull.tsv\n";
 
 #include "label_mesh.h"
 #include "label_part.h"

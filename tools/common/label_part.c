@@ -147,16 +147,16 @@ static void make_part(const struct tool *tool, const struct place *place, struct
 static void add_part(const struct tool *tool, const char *text, struct label_image *image)
 {
     struct place place = {.is_ball = false};
-    char *name = strdup(text), *expression = name;
-    char **part = array_grow(image->part, image->part_count + 1, sizeof *part);
-    if (name == NULL || part == NULL) {
-        tool_fail(tool, STATUS_SYSTEM, "out of memory");
-    }
-    image->part = part;
-    strsep(&expression, "=");
-    if (expression == NULL) {
+    struct error error;
+    size_t length = strcspn(text, "=");
+    if (text[length] == '\0') {
         tool_fail(tool, STATUS_INPUT, "--part: '%.60s' is not NAME=ball:X,Y,Z,RADIUS or NAME=IMAGE", text);
     }
+    const char *expression = text + length + 1;
+    char *name = strndup(text, length);
+    char **part = array_grow(image->part, image->part_count + 1, sizeof *part);
+    tool_check(tool, name == NULL || part == NULL ? fail_memory(&error, "a part") : STATUS_OK, &error);
+    image->part = part;
     check_name(tool, image, name);
     image->part[image->part_count++] = name;
     if (strncmp(expression, "ball:", 5) == 0) {
