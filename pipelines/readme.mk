@@ -14,7 +14,7 @@ RESULT_TABLES := brain2d/compare=brain2d brain2d-convergence/convergence=brain2d
     adaptive/refinement=refinement neurosurgery/neurosurgery=neurosurgery neurosurgery/volumes=neurosurgery-volumes \
     neurosurgery/seconds=neurosurgery-seconds uncertainty/uncertainty=uncertainty scale/stages=scale \
     scale/parts=scale-parts scale/model=scale-model \
-    neurosurgery/resection/neurosurgery=neurosurgery-resection neurosurgery/electrodes/neurosurgery=neurosurgery-electrodes
+    voxels/voxels=voxels neurosurgery/resection/neurosurgery=neurosurgery-resection neurosurgery/electrodes/neurosurgery=neurosurgery-electrodes
 
 .PHONY: readme results
 # Only what is newer than the file that is kept.
