@@ -429,7 +429,10 @@ END
     printf '<?xml version="1.0"?>\n<VTKFile type="UnstructuredGrid">\n' > body.vtu
     refused 2 "python3 -c 'import meshio as m; m.write" nodes -u m body.vtu
     printf '*HEADING\n*NODE\n1, 0, 0, 0\n' > body.inp
-    refused 2 "an Abaqus deck" nodes -u m body.inp
+    refused 2 "an Abaqus deck: python3 -c 'import meshio as m; m.write" nodes -u m body.inp
+    /usr/bin/python3 -c 'import meshio as m; a = m.read("filled.msh"); a.cell_data = {}; a.write("body.inp")' > said 2>&1
+    by_usage 2 body.inp
+    nodes -u m -t body.msh 2> said | volumes /dev/stdin | grep -qx '1 1'
     refused 2 "a geometry of gmsh: gmsh -3 FILE.geo -o body.msh" nodes -u m cube.geo
 }
 
