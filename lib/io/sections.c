@@ -50,6 +50,7 @@ const struct section_kind section_kinds[SECTION_KINDS] = {
     {"parameters", TYPE_F8, COLS_DIM, "nodes.x", FINITE, NULL, MADE_WITH_RESULTS},
     {"parameters.radius", TYPE_F8, 1, "nodes.x", POSITIVE, NULL, MADE_WITH_RESULTS},
     {"parameters.side", TYPE_I4, 1, "cells", INDEX, "cells", MADE_WITH_RESULTS},
+    {"iteration", TYPE_F8, 1, NULL, FINITE, NULL, MADE_WITH_RESULTS},
     {"u", TYPE_F8, COLS_ANY, NULL, ANY, NULL, MADE_WITH_RESULTS},
     {"stress", TYPE_F8, COLS_ANY, NULL, ANY, NULL, MADE_WITH_RESULTS},
     {"strain", TYPE_F8, COLS_ANY, NULL, ANY, NULL, MADE_WITH_RESULTS},
