@@ -61,11 +61,17 @@ static void judge(struct run *run, const struct relaxation_report *report)
              scene->path, (long long)report->steps, load, report->error, creases);
 }
 
-/* How far the iteration may have left the field from where it would end, m. */
+/* How far the iteration may have left the field from where it would end, m: the relaxation, and contacts that
+ * still give way. */
+static double iteration_error(const struct relaxation_report *report)
+{
+    return report->error * report->largest_move + report->penetration;
+}
+
 static void put_error(const struct run *run, const struct relaxation_report *report)
 {
     double *error = run_new_values(run, 1);
-    *error = report->error * report->largest_move;
+    *error = iteration_error(report);
     run_put(run, "iteration", 1, 1, "unit=m cols=error", error);
 }
 
@@ -103,7 +109,7 @@ void run_quasi_static(struct run *run)
                 (long long)body->point_count, (long long)body->pair_count, (long long)report.steps,
                 (long long)report.loading_steps, (long long)report.force_evaluations);
         fprintf(stderr, "iteration error, m\t%.3g\ndiscretisation error, m\tsee fielderr\n",
-                report.error * report.largest_move);
+                iteration_error(&report));
         fprintf(stderr, "estimated error\t%.3g\nfrequency ratio\t%.5g\nleast J\t%.4g\n", report.error,
                 report.largest_frequency / report.lowest_frequency, report.least_jacobian);
         run_report_springs(run);
