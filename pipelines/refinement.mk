@@ -46,7 +46,7 @@ adaptive: $(ADAPTIVE)/effectivity.tsv $(ADAPTIVE)/effectivity-summary.tsv $(ADAP
 
 $(ADAPTIVE)/%: export PATH := $(abspath $(BUILD))/bin:$(PATH)
 
-ADAPTIVE_PROGRAMS := $(addprefix $(BUILD)/bin/,nodes shapefn mtled fieldcmp fielderr sizefield interp cloud)
+ADAPTIVE_PROGRAMS := $(addprefix $(BUILD)/bin/,nodes ipoints support shapefn mtled fieldcmp fielderr sizefield interp cloud)
 ADAPTIVE_SCRIPTS := pipelines/adaptive/rounds.sh pipelines/refine/refine.sh
 
 # References at the nodes, and at places that lie evenly.
