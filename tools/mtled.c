@@ -140,6 +140,9 @@ int main(int argc, char *argv[])
     if (model.note.text[0] != '\0') {
         tool_note(&tool, "%s", model.note.text);
     }
+    if (model.interfaces.text[0] != '\0') {
+        tool_note(&tool, "%s", model.interfaces.text);
+    }
     tool_check(&tool, NEW_ARRAY(&run.u, model.system.node_count * scene.dim, &error), &error);
     run.prepare_seconds = clock_seconds() - run.display.started;
     run_folds_begin(&run);

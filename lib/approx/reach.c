@@ -140,8 +140,9 @@ enum status reach_begin(const struct reach *reach, const struct reach_places *pl
     memcpy(work->from, x, (size_t)reach->cells.dim * sizeof *x);
     work->cell_count = -1;
     if (places->nodes) {
-        work->cell = reach->star + reach->star_ptr[p];
-        work->cell_count = reach->star_ptr[p + 1] - reach->star_ptr[p];
+        int64_t node = places->node != NULL ? places->node[p] : p;
+        work->cell = reach->star + reach->star_ptr[node];
+        work->cell_count = reach->star_ptr[node + 1] - reach->star_ptr[node];
     } else if (places->cell != NULL) {
         int64_t count = 0;
         for (int64_t i = 0; i < places->per_row; i++) {

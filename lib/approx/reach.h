@@ -58,10 +58,12 @@ void reach_free(struct reach *reach);
 /* The cells that points lie in. Zeros: unknown, to be found. A point outside of all cells sees what the
  * nearest place in a cell sees; far from all cells, all that is near enough. */
 struct reach_places {
-    bool nodes;             /* point p is node p */
+    bool nodes;             /* point p is node p, */
+    const int32_t *node;    /* or, unless NULL, that node */
     const int32_t *cell;    /* else, unless NULL: cells, -1 for none, per_row for each row */
     int64_t per_row;        /* 1 or 2 */
     int64_t points_per_row; /* row of point p: p / points_per_row */
+    const int64_t *row;     /* the number of each point in messages; NULL: p */
 };
 
 /* Scratch space for one thread, all zero at first; grows on demand. */

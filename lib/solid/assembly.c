@@ -135,7 +135,8 @@ void assembly_complete(struct assembly *input)
                                             .faces = &input->boundary,
                                             .per_face = quadrature_face_rule(dim).points,
                                             .lists = &input->boundary_lists,
-                                            .phi = input->boundary_phi};
+                                            .phi = input->boundary_phi,
+                                            .cell_side = input->cell_side};
 }
 
 enum status assembly_build(struct assembly *input, struct solid_system *system, struct error *note,

@@ -359,6 +359,7 @@ enum status relaxation_run(struct solid_system *system, const struct relaxation_
     report->outcome = iterate(&r, error);
     TRY(r.failure);
     report->largest_frequency = r.frequency;
+    report->largest_move = r.largest_move;
     if (report->outcome == RELAXATION_INVERTED) {
         r.load = r.older.load;
         memcpy(r.u, r.older.u, (size_t)r.size * sizeof *r.u);
