@@ -79,6 +79,17 @@ $(BUILD)/bin/%: $(BUILD)/tools/%.o $(COMMON_OBJECTS) $(LIBRARY)
 	@mkdir -p $(@D)
 	$(CC) $(LDFLAGS) -o $@ $^ $(LDLIBS)
 
+# mtled for several processes, under mpirun: where MPI is there. How processes talk is all that differs.
+MPICC := $(shell command -v mpicc || true)
+MPI_PROGRAM := $(BUILD)/bin/mtled-mpi
+.PHONY: mpi
+mpi: $(MPI_PROGRAM)
+$(BUILD)/tools/mpi/%.o: CC = mpicc
+$(MPI_PROGRAM): $(BUILD)/tools/mtled.o $(BUILD)/tools/mpi/process.o \
+        $(filter-out %/process.o,$(COMMON_OBJECTS)) $(LIBRARY)
+	@mkdir -p $(@D)
+	mpicc $(LDFLAGS) -o $@ $^ $(LDLIBS)
+
 $(BUILD)/tests/%: $(BUILD)/tests/unit/%.o $(LIBRARY)
 	@mkdir -p $(@D)
 	$(CC) $(LDFLAGS) -o $@ $^ $(LDLIBS) -lcmocka
@@ -115,7 +126,7 @@ endif
 deps:
 	@bash pipelines/deps.sh
 
-check: all $(UNIT_TESTS) $(FUZZ_TARGETS) $(TEST_HELPERS)
+check: all $(if $(MPICC),mpi) $(UNIT_TESTS) $(FUZZ_TARGETS) $(TEST_HELPERS)
 	@BUILD="$(abspath $(BUILD))" bash tests/run.sh
 
 clean:
