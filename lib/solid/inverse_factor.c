@@ -293,6 +293,22 @@ done:
     return status;
 }
 
+/* Stretches of nodes of about the same work, most of which is that of making S. */
+static enum status share_nodes(const struct solid_system *system, struct inverse_factor *factor,
+                               struct error *error)
+{
+    enum status status;
+    double *work = NULL;
+    TRY(NEW_ARRAY(&work, system->node_count, error));
+    if (factor->ranks != NULL) {
+        scalar_stiffness_work(system, work);
+    }
+    TRY(ranks_share(factor->ranks, system->node_count, work, &factor->first, error));
+done:
+    free(work);
+    return status;
+}
+
 enum status inverse_factor_build(const struct solid_system *system, struct inverse_factor *factor,
                                  struct error *error)
 {
@@ -300,7 +316,7 @@ enum status inverse_factor_build(const struct solid_system *system, struct inver
     struct lower lower = {0};
     int64_t nodes = system->node_count, *length = NULL;
     *factor = (struct inverse_factor){.ranks = system->body.share.ranks};
-    TRY(ranks_share(factor->ranks, nodes, NULL, &factor->first, error));
+    TRY(share_nodes(system, factor, error));
     TRY(make_lower(system, factor, &lower, error));
     TRY(sparse_new(nodes, nodes, nodes * MOST_ENTRIES, &factor->rows, error));
     TRY(NEW_ARRAY(&length, nodes, error));

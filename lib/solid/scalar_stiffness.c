@@ -137,6 +137,26 @@ void scalar_stiffness_free(struct scalar_stiffness *stiffness)
     *stiffness = (struct scalar_stiffness){0};
 }
 
+void scalar_stiffness_work(const struct solid_system *system, double *work)
+{
+    const struct scalar_stiffness fields = {
+        .system = system, .field_count = system->body.cells.averages.row_count};
+    for (int64_t f = 0; f < fields.field_count; f++) {
+        struct average field = field_at(&fields, f);
+        for (int64_t i = 0; i < field.length; i++) {
+            work[node_of(&fields, f, &field, i)] += 1.0;
+        }
+    }
+    const struct neighbours *lists = system->node_lists;
+    for (int64_t n = 0; n < system->node_count; n++) {
+        int64_t length = lists->ptr[n + 1] - lists->ptr[n], lower = 0;
+        for (int64_t i = lists->ptr[n]; i < lists->ptr[n + 1]; i++) {
+            lower += lists->idx[i] <= n;
+        }
+        work[n] *= 1.0 + (double)lower / (double)(length > 0 ? length : 1);
+    }
+}
+
 enum status scalar_row_make(const struct scalar_stiffness *stiffness, struct scalar_row *row,
                             struct error *error)
 {

@@ -26,6 +26,10 @@ MUST_CHECK enum status scalar_stiffness_make(const struct solid_system *system, 
                                              struct scalar_stiffness *stiffness, struct error *error);
 void scalar_stiffness_free(struct scalar_stiffness *stiffness);
 
+/* work[node_count]: about how much work each row is, as the fields that the node is in; what lies beyond the
+ * diagonal is looked at only, and takes half the time. `work` has zeros. */
+void scalar_stiffness_work(const struct solid_system *system, double *work);
+
 /* A row, and scratch for it: zeros between calls, where nothing else is said. */
 struct scalar_row {
     int64_t count;

@@ -7,6 +7,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 #include <unistd.h>
 
 /* Seconds that a process which fails waits for the others to fail as well. */
@@ -15,10 +16,10 @@ static const double most_wait = 10.0;
 /* Of the whole process. */
 static struct {
     struct ranks ranks;
-    int *count, *place;    /* scratch: of each process */
-    MPI_Request *requests; /* 2 of each */
-    MPI_Comm ends;         /* on which processes tell that they fail */
-    double sent, waited;   /* bytes, seconds */
+    int *count, *place;        /* scratch: of each process */
+    MPI_Request *requests;     /* 2 of each */
+    MPI_Comm ends;             /* on which processes tell that they fail */
+    double sent, waited, spun; /* bytes; seconds of sending and waiting, and of the processor in these */
     bool failing, alone, ended;
     MPI_Request failed;
 } own;
@@ -27,6 +28,29 @@ static _Noreturn void fail_memory_now(void)
 {
     fprintf(stderr, "mtled: out of memory\n");
     _exit((int)STATUS_SYSTEM);
+}
+
+static double processor_seconds(clockid_t clock)
+{
+    struct timespec now;
+    clock_gettime(clock, &now);
+    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+/* What a message costs, with the waiting for it, goes to own.waited and own.spun. */
+struct cost_of_message {
+    double started, processor;
+};
+
+static struct cost_of_message begin_message(void)
+{
+    return (struct cost_of_message){clock_seconds(), processor_seconds(CLOCK_THREAD_CPUTIME_ID)};
+}
+
+static void end_message(const struct cost_of_message *message)
+{
+    own.waited += clock_seconds() - message->started;
+    own.spun += processor_seconds(CLOCK_THREAD_CPUTIME_ID) - message->processor;
 }
 
 static MPI_Datatype type_of(size_t size)
@@ -39,7 +63,7 @@ static MPI_Datatype type_of(size_t size)
 
 static void gather(const struct ranks *ranks, void *items, size_t size, const int64_t *first)
 {
-    double started = clock_seconds();
+    struct cost_of_message message = begin_message();
     MPI_Datatype type = type_of(size);
     for (int r = 0; r < ranks->count; r++) {
         own.count[r] = (int)(first[r + 1] - first[r]);
@@ -48,13 +72,13 @@ static void gather(const struct ranks *ranks, void *items, size_t size, const in
     MPI_Allgatherv(MPI_IN_PLACE, 0, type, items, own.count, own.place, type, MPI_COMM_WORLD);
     MPI_Type_free(&type);
     own.sent += (double)own.count[ranks->rank] * (double)size * (ranks->count - 1);
-    own.waited += clock_seconds() - started;
+    end_message(&message);
 }
 
 static void exchange(const struct ranks *ranks, size_t size, const void *send, const int64_t *send_first,
                      void *receive, const int64_t *receive_first)
 {
-    double started = clock_seconds();
+    struct cost_of_message message = begin_message();
     MPI_Datatype type = type_of(size);
     int requests = 0;
     for (int r = 0; r < ranks->count; r++) {
@@ -76,7 +100,7 @@ static void exchange(const struct ranks *ranks, size_t size, const void *send, c
     }
     MPI_Waitall(requests, own.requests, MPI_STATUSES_IGNORE);
     MPI_Type_free(&type);
-    own.waited += clock_seconds() - started;
+    end_message(&message);
 }
 
 static void send(const struct ranks *ranks, int to, const double *x, int64_t count)
@@ -89,17 +113,17 @@ static void send(const struct ranks *ranks, int to, const double *x, int64_t cou
 static void receive(const struct ranks *ranks, int from, double *x, int64_t count)
 {
     (void)ranks;
-    double started = clock_seconds();
+    struct cost_of_message message = begin_message();
     MPI_Recv(x, (int)count, MPI_DOUBLE, from, 1, MPI_COMM_WORLD, MPI_STATUS_IGNORE);
-    own.waited += clock_seconds() - started;
+    end_message(&message);
 }
 
 static int64_t most(const struct ranks *ranks, int64_t value)
 {
     (void)ranks;
-    double started = clock_seconds();
+    struct cost_of_message message = begin_message();
     MPI_Allreduce(MPI_IN_PLACE, &value, 1, MPI_INT64_T, MPI_MAX, MPI_COMM_WORLD);
-    own.waited += clock_seconds() - started;
+    end_message(&message);
     return value;
 }
 
@@ -164,14 +188,22 @@ void process_end(void)
 
 void process_report(int64_t evaluations)
 {
-    double mine[2] = {own.sent, own.waited}, all[2], largest[2];
+    enum { SENT, COMPUTING, WAITING, VALUES };
+    double mine[VALUES] = {own.sent, processor_seconds(CLOCK_PROCESS_CPUTIME_ID) - own.spun, own.waited};
+    double all[VALUES], largest[VALUES];
     int count = own.ranks.count;
-    MPI_Allreduce(mine, all, 2, MPI_DOUBLE, MPI_SUM, MPI_COMM_WORLD);
-    MPI_Allreduce(mine, largest, 2, MPI_DOUBLE, MPI_MAX, MPI_COMM_WORLD);
-    if (process_speaks() && count > 1) {
+    if (count == 1) {
+        return;
+    }
+    MPI_Allreduce(mine, all, VALUES, MPI_DOUBLE, MPI_SUM, MPI_COMM_WORLD);
+    MPI_Allreduce(mine, largest, VALUES, MPI_DOUBLE, MPI_MAX, MPI_COMM_WORLD);
+    if (process_speaks()) {
         fprintf(stderr, "processes\t%d\n", count);
         fprintf(stderr, "bytes sent by a process in an evaluation\t%.0f\tmost\t%.0f\n",
-                all[0] / count / (double)evaluations, largest[0] / (double)evaluations);
-        fprintf(stderr, "seconds of sending and waiting\t%.3f\tmost\t%.3f\n", all[1] / count, largest[1]);
+                all[SENT] / count / (double)evaluations, largest[SENT] / (double)evaluations);
+        fprintf(stderr, "processor seconds of a process but for waiting\t%.3f\tmost\t%.3f\n",
+                all[COMPUTING] / count, largest[COMPUTING]);
+        fprintf(stderr, "seconds of sending and waiting\t%.3f\tmost\t%.3f\n", all[WAITING] / count,
+                largest[WAITING]);
     }
 }
