@@ -7,6 +7,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 #include <time.h>
 #include <unistd.h>
 
@@ -20,6 +21,7 @@ static struct {
     MPI_Request *requests;     /* 2 of each */
     MPI_Comm ends;             /* on which processes tell that they fail */
     double sent, waited, spun; /* bytes; seconds of sending and waiting, and of the processor in these */
+    bool patient;              /* waiting processes sleep, else they spin */
     bool failing, alone, ended;
     MPI_Request failed;
 } own;
@@ -61,6 +63,24 @@ static MPI_Datatype type_of(size_t size)
     return type;
 }
 
+/* Until these requests are done. */
+static void wait_for(int count, MPI_Request *requests)
+{
+    static const int spins = 200, most_nap = 200; /* us */
+    int done = 0, nap = 10;
+    if (!own.patient) {
+        MPI_Waitall(count, requests, MPI_STATUSES_IGNORE);
+        return;
+    }
+    for (int i = 0; !done; i++) {
+        MPI_Testall(count, requests, &done, MPI_STATUSES_IGNORE);
+        if (!done && i > spins) {
+            usleep((useconds_t)nap);
+            nap = 2 * nap < most_nap ? 2 * nap : most_nap;
+        }
+    }
+}
+
 static void gather(const struct ranks *ranks, void *items, size_t size, const int64_t *first)
 {
     struct cost_of_message message = begin_message();
@@ -69,7 +89,8 @@ static void gather(const struct ranks *ranks, void *items, size_t size, const in
         own.count[r] = (int)(first[r + 1] - first[r]);
         own.place[r] = (int)first[r];
     }
-    MPI_Allgatherv(MPI_IN_PLACE, 0, type, items, own.count, own.place, type, MPI_COMM_WORLD);
+    MPI_Iallgatherv(MPI_IN_PLACE, 0, type, items, own.count, own.place, type, MPI_COMM_WORLD, own.requests);
+    wait_for(1, own.requests);
     MPI_Type_free(&type);
     own.sent += (double)own.count[ranks->rank] * (double)size * (ranks->count - 1);
     end_message(&message);
@@ -98,33 +119,39 @@ static void exchange(const struct ranks *ranks, size_t size, const void *send, c
             own.sent += (double)count * (double)size;
         }
     }
-    MPI_Waitall(requests, own.requests, MPI_STATUSES_IGNORE);
+    wait_for(requests, own.requests);
     MPI_Type_free(&type);
     end_message(&message);
 }
 
-static void send(const struct ranks *ranks, int to, const double *x, int64_t count)
+static void send_to(const struct ranks *ranks, int to, const double *x, int64_t count)
 {
+    struct cost_of_message message = begin_message();
     (void)ranks;
-    MPI_Send(x, (int)count, MPI_DOUBLE, to, 1, MPI_COMM_WORLD);
+    MPI_Isend(x, (int)count, MPI_DOUBLE, to, 1, MPI_COMM_WORLD, own.requests);
+    wait_for(1, own.requests);
     own.sent += (double)count * sizeof *x;
+    end_message(&message);
 }
 
-static void receive(const struct ranks *ranks, int from, double *x, int64_t count)
+static void receive_from(const struct ranks *ranks, int from, double *x, int64_t count)
 {
-    (void)ranks;
     struct cost_of_message message = begin_message();
-    MPI_Recv(x, (int)count, MPI_DOUBLE, from, 1, MPI_COMM_WORLD, MPI_STATUS_IGNORE);
+    (void)ranks;
+    MPI_Irecv(x, (int)count, MPI_DOUBLE, from, 1, MPI_COMM_WORLD, own.requests);
+    wait_for(1, own.requests);
     end_message(&message);
 }
 
 static int64_t most(const struct ranks *ranks, int64_t value)
 {
-    (void)ranks;
     struct cost_of_message message = begin_message();
-    MPI_Allreduce(MPI_IN_PLACE, &value, 1, MPI_INT64_T, MPI_MAX, MPI_COMM_WORLD);
+    int64_t largest = value;
+    (void)ranks;
+    MPI_Iallreduce(&value, &largest, 1, MPI_INT64_T, MPI_MAX, MPI_COMM_WORLD, own.requests);
+    wait_for(1, own.requests);
     end_message(&message);
-    return value;
+    return largest;
 }
 
 void process_begin(int *argc, char ***argv)
@@ -133,7 +160,9 @@ void process_begin(int *argc, char ***argv)
     int provided;
     struct ranks *ranks = &own.ranks;
     *ranks = (struct ranks){
-        .gather = gather, .exchange = exchange, .send = send, .receive = receive, .most = most};
+        .gather = gather, .exchange = exchange, .send = send_to, .receive = receive_from, .most = most};
+    const char *policy = getenv("OMP_WAIT_POLICY");
+    own.patient = policy != NULL && strcasecmp(policy, "passive") == 0;
     MPI_Init_thread(argc, argv, MPI_THREAD_FUNNELED, &provided);
     MPI_Comm_size(MPI_COMM_WORLD, &ranks->count);
     MPI_Comm_rank(MPI_COMM_WORLD, &ranks->rank);
