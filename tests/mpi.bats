@@ -153,6 +153,7 @@ SCENE
     { pressed_block; printf '[solver]\nramp_steps = 4000\n[output]\nframes = 2\n'; } > run.scene
     mtled -q -o whole.dat run.scene table.mts
     for victim in 1 2; do
+        rm -f run.ckpt.old
         begin 2 -q -c run.ckpt -e 0 -o out.dat run.scene table.mts
         kill -KILL "$(pgrep -P $! | sed -n ${victim}p)"
         status=0
