@@ -66,7 +66,7 @@ static const char usage[] =
     "\n"
     "Examples:\n"
     "  nodes -u mm body.msh | shapefn | mtled brain2d.scene > u.dat\n"
-    "  nodes -u mm body.msh | ipoints -g 4 | support -k 2 | shapefn | mtled -v brain2d.scene > u.dat\n";
+    "  mpirun -n 4 mtled-mpi -o u.dat brain2d.scene table.mts    by processes (make mpi); same bytes\n";
 
 #include "process.h"
 #include "run.h"
