@@ -119,7 +119,8 @@ int main(int argc, char *argv[])
     tool_begin(&tool, usage, options, OPTION_COUNT, 1, 2, argc, argv);
     double every = parse_every(&tool, options), started = clock_seconds();
     if (process_ranks() != NULL && (tool.operand_count < 2 || strcmp(tool.operands[1], "-") == 0)) {
-        tool_fail(&tool, STATUS_INPUT, "several processes cannot share standard input: name the stream's file");
+        tool_fail(&tool, STATUS_INPUT,
+                  "several processes cannot share standard input: name the stream's file");
     }
     tool_check(&tool, scene_read(tool.operands[0], &scene, &error), &error);
     tool_read(&tool, tool.operand_count > 1 ? tool.operands[1] : NULL, &stream);
@@ -130,16 +131,16 @@ int main(int argc, char *argv[])
     double read = clock_seconds() - started;
     stage_fill(&tool, &stream, "shapefn");
 
-    struct run run = {
-        .tool = &tool,
-        .scene = &scene,
-        .model = &model,
-        .stream = &stream,
-        .verbose = options[VERBOSE].given && process_speaks(),
-        .text = !options[BINARY].given,
-        .checkpoint = {.file = options[CHECKPOINT].value, .interval = every},
-        .read_seconds = read,
-        .display = {.shown = !options[QUIET].given && process_speaks() && isatty(STDERR_FILENO), .started = clock_seconds()}};
+    struct run run = {.tool = &tool,
+                      .scene = &scene,
+                      .model = &model,
+                      .stream = &stream,
+                      .verbose = options[VERBOSE].given && process_speaks(),
+                      .text = !options[BINARY].given,
+                      .checkpoint = {.file = options[CHECKPOINT].value, .interval = every},
+                      .read_seconds = read,
+                      .display = {.shown = !options[QUIET].given && process_speaks() && isatty(STDERR_FILENO),
+                                  .started = clock_seconds()}};
     run_put_supports(&run);
     run_checkpoint_begin(&run);
     tool_check(&tool, model_build(&stream, &scene, &model, &error), &error);

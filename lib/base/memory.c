@@ -39,7 +39,8 @@ void *array_new_untouched(int64_t count, size_t size)
         return NULL;
     }
     /* Private pages that are given back are zeros when they are next looked at. */
-    size_t before = (page - (uintptr_t)array % page) % page, pages = bytes > before ? (bytes - before) / page : 0;
+    size_t before = (page - (uintptr_t)array % page) % page,
+           pages = bytes > before ? (bytes - before) / page : 0;
     if (pages == 0 || madvise(array + before, pages * page, MADV_DONTNEED) != 0) {
         memset(array, 0, bytes);
         return array;

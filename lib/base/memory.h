@@ -23,8 +23,9 @@ void *array_grow(void *array, int64_t count, size_t size);
                                                                    : fail_memory((error), #pointer))
 
 #define NEW_ARRAY_UNTOUCHED(pointer, count, error)                                                           \
-    ((*(pointer) = array_new_untouched((count), sizeof **(pointer))) != NULL ? STATUS_OK                     \
-                                                                             : fail_memory((error), #pointer))
+    ((*(pointer) = array_new_untouched((count), sizeof **(pointer))) != NULL                                 \
+         ? STATUS_OK                                                                                         \
+         : fail_memory((error), #pointer))
 
 /* Evaluate a status expression; on failure, leave through the label `done` with `status` set.
  * The functions of lib/ have one exit path, which frees. */

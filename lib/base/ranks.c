@@ -178,8 +178,8 @@ done:
 
 void halo_free(struct halo *halo)
 {
-    void *arrays[] = {halo->send_first, halo->receive_first, halo->send, halo->receive, halo->sent,
-                      halo->received};
+    void *arrays[] = {halo->send_first, halo->receive_first, halo->send,
+                      halo->receive,    halo->sent,          halo->received};
     for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) {
         free(arrays[i]);
     }

@@ -15,8 +15,8 @@
 
 struct ranks {
     int count, rank; /* this process is rank 0 .. count - 1 */
-    /* items[first[count]], of `size` bytes each: those from first[r] to before first[r + 1] are what process r
-     * has; afterwards all have all. */
+    /* items[first[count]], of `size` bytes each: those from first[r] to before first[r + 1] are what process
+     * r has; afterwards all have all. */
     void (*gather)(const struct ranks *ranks, void *items, size_t size, const int64_t *first);
     /* send[send_first[r]] to before send[send_first[r + 1]] goes to process r, and what comes from it to
      * receive[receive_first[r]] and behind. Processes that have nothing for each other do not wait. */

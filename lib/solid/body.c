@@ -119,7 +119,8 @@ static enum status copy_rows(const struct body_input *input, const struct body *
     at = 0;
     for (int64_t r = 0; r < rows; r++) {
         int64_t from = body->order[r / dim];
-        for (int64_t i = input->ptr[from]; i < input->ptr[from + 1] && r >= begin * dim && r < end * dim; i++) {
+        for (int64_t i = input->ptr[from]; i < input->ptr[from + 1] && r >= begin * dim && r < end * dim;
+             i++) {
             int32_t node = body->node_place[input->idx[i]];
             if (node >= first && node < last) {
                 matrix->idx[at] = node;
@@ -148,7 +149,8 @@ static enum status copy_gradients(const struct body_input *input, struct body *b
     if (share->ranks == NULL) {
         TRY(sparse_transpose(&body->gradients, &body->transposed, error));
     } else {
-        TRY(copy_rows(input, body, 0, body->point_count, share->begin_node, share->end_node, &columns, error));
+        TRY(copy_rows(input, body, 0, body->point_count, share->begin_node, share->end_node, &columns,
+                      error));
         TRY(sparse_transpose(&columns, &body->transposed, error));
         TRY(sparse_rows_used(&columns, &wanted, error));
     }
@@ -196,8 +198,8 @@ enum status body_build(const struct body_input *input, struct body *body, struct
     if (!body->smoothed) {
         TRY(copy_gradients(input, body, error));
     } else {
-        body->pair_count =
-            input->smoothed->face_ptr[input->smoothed->face_count] + input->smoothed->node_ptr[body->node_count];
+        body->pair_count = input->smoothed->face_ptr[input->smoothed->face_count] +
+                           input->smoothed->node_ptr[body->node_count];
         TRY(smoothed_cells_build(input->smoothed, body, error));
     }
     body->threads = worthwhile_threads(body);

@@ -34,7 +34,7 @@ struct body_input {
     const int32_t *hat_node; /* point_count * (dim + 1): vertices of the background cell of each point */
     const double *hat_value; /* point_count * (dim + 1): their hat functions at the point, sum 1 */
     const struct smoothed_cells_input *smoothed; /* the points are cells, in their order; NULL: any points */
-    const struct ranks *ranks; /* processes that compute the body together; NULL: one */
+    const struct ranks *ranks;                   /* processes that compute the body together; NULL: one */
 };
 
 /* Points are worked on so many at a time; weight, material, J and F have as many entries more, which are

@@ -4,8 +4,8 @@
 
 #include <stdlib.h>
 
-/* Rows of a table, from number `first_row` on; *at counts the entries. Without the matrix's arrays nothing else
- * is done. */
+/* Rows of a table, from number `first_row` on; *at counts the entries. Without the matrix's arrays nothing
+ * else is done. */
 static void copy_rows(const struct field_averages_input *input, const struct average_table *table,
                       const bool *wanted, int64_t first, int64_t last, int64_t first_row, int64_t *at,
                       struct sparse *matrix)

@@ -35,8 +35,8 @@ struct field_averages {
     double *corner_force;             /* 2 corner_count, likewise: what each corner puts on its row */
     int64_t *corner_ptr;              /* row_count + 1: the corners of each row, */
     int32_t *corner;                  /* 2 corner_count: by rows, ascending */
-    struct average_table told[2]; /* of several processes: the tables, the caller's, */
-    int64_t *face_order;          /* with this order of the faces */
+    struct average_table told[2];     /* of several processes: the tables, the caller's, */
+    int64_t *face_order;              /* with this order of the faces */
 };
 
 struct field_averages_input {

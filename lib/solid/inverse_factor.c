@@ -2,6 +2,7 @@
 
 #include "base/dense.h"
 #include "base/memory.h"
+#include "solid/lower_stiffness.h"
 #include "solid/scalar_stiffness.h"
 #include "solid/system.h"
 
@@ -12,95 +13,7 @@
 /* Entries of a row of L: with 12, 24 and 40 the ratio of the frequencies of a bar is 26, 22, 22; of a ball of
  * flat cells 119, 79, 52. */
 enum { MOST_ENTRIES = 24 };
-static const double ridge = 1e-9;       /* on the diagonal of S_pp, by itself */
-static const double least_share = 1e-6; /* of the mean diagonal entry, that nodes without stiffness have */
-
-/* S up to its diagonal, by rows: those of own nodes, and such others as are needed. */
-struct lower {
-    int64_t *begin, *end; /* of each row */
-    int32_t *idx;
-    double *value;
-    int64_t count, capacity;
-    double least; /* on the diagonal */
-};
-
-static enum status make_room(struct lower *lower, int64_t more, struct error *error)
-{
-    if (lower->count + more > lower->capacity) {
-        int64_t capacity = 2 * (lower->count + more) + 4096;
-        int32_t *idx = array_grow(lower->idx, capacity, sizeof *idx);
-        lower->idx = idx != NULL ? idx : lower->idx;
-        double *value = array_grow(lower->value, capacity, sizeof *value);
-        lower->value = value != NULL ? value : lower->value;
-        if (idx == NULL || value == NULL) {
-            return fail_memory(error, "preconditioner");
-        }
-        lower->capacity = capacity;
-    }
-    return STATUS_OK;
-}
-
-static enum status keep_row(const struct scalar_row *row, int64_t i, struct lower *lower, struct error *error)
-{
-    enum status status;
-    int64_t at = lower->count;
-    TRY(make_room(lower, row->count, error));
-    if (row->count > 0) {
-        memcpy(lower->idx + at, row->node, (size_t)row->count * sizeof *row->node);
-        memcpy(lower->value + at, row->value, (size_t)row->count * sizeof *row->value);
-    }
-    lower->begin[i] = at;
-    lower->end[i] = lower->count = at + row->count;
-done:
-    return status;
-}
-
-static enum status make_lower(const struct solid_system *system, const struct inverse_factor *factor,
-                              struct lower *lower, struct error *error)
-{
-    enum status status;
-    struct scalar_stiffness stiffness = {0};
-    struct scalar_row row = {0};
-    double sum = 0.0, *diagonal = NULL;
-    int64_t nodes = system->node_count, begin = factor->first[ranks_rank(factor->ranks)],
-            end = factor->first[ranks_rank(factor->ranks) + 1];
-    TRY(scalar_stiffness_make(system, begin, end, &stiffness, error));
-    TRY(scalar_row_make(&stiffness, &row, error));
-    TRY(NEW_ARRAY(&lower->begin, nodes, error));
-    TRY(NEW_ARRAY(&lower->end, nodes, error));
-    TRY(NEW_ARRAY(&diagonal, nodes, error));
-    for (int64_t i = begin; i < end; i++) {
-        scalar_stiffness_row(&stiffness, i, &row);
-        diagonal[i] = row.count > 0 ? row.value[row.count - 1] : 0.0;
-        TRY(keep_row(&row, i, lower, error));
-    }
-    ranks_gather(factor->ranks, diagonal, sizeof *diagonal, factor->first);
-    for (int64_t i = 0; i < nodes; i++) {
-        sum += diagonal[i];
-    }
-    lower->least = least_share * sum / (double)nodes;
-done:
-    free(diagonal);
-    scalar_row_free(&row);
-    scalar_stiffness_free(&stiffness);
-    return status;
-}
-
-/* S_ij, j <= i; 0 where there is no such entry. */
-static double entry(const struct lower *lower, int32_t i, int32_t j)
-{
-    int64_t low = lower->begin[i], high = lower->end[i];
-    while (low < high) {
-        int64_t middle = (low + high) / 2;
-        if (lower->idx[middle] < j) {
-            low = middle + 1;
-        } else {
-            high = middle;
-        }
-    }
-    double value = low < lower->end[i] && lower->idx[low] == j ? lower->value[low] : 0.0;
-    return i == j ? fmax(value, lower->least) : value;
-}
+static const double ridge = 1e-9; /* on the diagonal of S_pp, by itself */
 
 struct near {
     double distance2;
@@ -154,7 +67,7 @@ static void solve_row(const struct lower *lower, int64_t count, const int32_t *l
     double matrix[MOST_ENTRIES * MOST_ENTRIES];
     for (int64_t a = 0; a < count; a++) {
         for (int64_t b = 0; b <= a; b++) {
-            matrix[a * count + b] = entry(lower, list[a], list[b]) * (a == b ? 1.0 + ridge : 1.0);
+            matrix[a * count + b] = lower_entry(lower, list[a], list[b]) * (a == b ? 1.0 + ridge : 1.0);
         }
     }
     memset(value, 0, (size_t)count * sizeof *value);
@@ -162,7 +75,7 @@ static void solve_row(const struct lower *lower, int64_t count, const int32_t *l
     if (dense_factorise(count, matrix)) {
         dense_solve(count, matrix, value);
     } else {
-        value[count - 1] = 1.0 / entry(lower, list[count - 1], list[count - 1]);
+        value[count - 1] = 1.0 / lower_entry(lower, list[count - 1], list[count - 1]);
     }
     double scale = 1.0 / sqrt(value[count - 1]);
     for (int64_t k = 0; k < count; k++) {
@@ -170,67 +83,8 @@ static void solve_row(const struct lower *lower, int64_t count, const int32_t *l
     }
 }
 
-static int owner_of_node(const void *factor, int64_t node)
-{
-    const struct inverse_factor *of = factor;
-    return ranks_owner(of->ranks, of->first, node);
-}
-
-/* The rows of S that others have and that those of the own nodes look at. */
-static enum status fetch_rows(const struct inverse_factor *factor, const bool *wanted, int64_t nodes,
-                              struct lower *lower, struct error *error)
-{
-    enum status status;
-    const struct ranks *ranks = factor->ranks;
-    struct halo halo = {0};
-    double *length = NULL, *value = NULL;
-    int32_t *idx = NULL;
-    int64_t *send_first = NULL, *receive_first = NULL, at = 0, first = lower->count;
-    TRY(halo_build(ranks, nodes, wanted, 1, owner_of_node, factor, &halo, error));
-    TRY(NEW_ARRAY(&length, nodes, error));
-    TRY(NEW_ARRAY(&send_first, ranks->count + 1, error));
-    TRY(NEW_ARRAY(&receive_first, ranks->count + 1, error));
-    for (int64_t i = 0; i < nodes; i++) {
-        length[i] = (double)(lower->end[i] - lower->begin[i]);
-    }
-    halo_exchange(&halo, 1, length);
-    for (int r = 0; r < ranks->count; r++) {
-        send_first[r + 1] = send_first[r];
-        for (int64_t i = halo.send_first[r]; i < halo.send_first[r + 1]; i++) {
-            send_first[r + 1] += lower->end[halo.send[i]] - lower->begin[halo.send[i]];
-        }
-        receive_first[r + 1] = receive_first[r];
-        for (int64_t i = halo.receive_first[r]; i < halo.receive_first[r + 1]; i++) {
-            int64_t node = halo.receive[i];
-            lower->begin[node] = first + receive_first[r + 1];
-            receive_first[r + 1] += (int64_t)length[node];
-            lower->end[node] = first + receive_first[r + 1];
-        }
-    }
-    TRY(make_room(lower, receive_first[ranks->count], error));
-    TRY(NEW_ARRAY(&idx, send_first[ranks->count], error));
-    TRY(NEW_ARRAY(&value, send_first[ranks->count], error));
-    for (int64_t i = 0; i < halo.send_first[ranks->count]; i++) {
-        int64_t from = lower->begin[halo.send[i]], count = lower->end[halo.send[i]] - from;
-        memcpy(idx + at, lower->idx + from, (size_t)count * sizeof *idx);
-        memcpy(value + at, lower->value + from, (size_t)count * sizeof *value);
-        at += count;
-    }
-    ranks->exchange(ranks, sizeof *idx, idx, send_first, lower->idx + first, receive_first);
-    ranks->exchange(ranks, sizeof *value, value, send_first, lower->value + first, receive_first);
-    lower->count += receive_first[ranks->count];
-done:
-    halo_free(&halo);
-    free(length);
-    free(send_first);
-    free(receive_first);
-    free(idx);
-    free(value);
-    return status;
-}
-
-/* Rows of own nodes, one behind the other from the begin of the factor's arrays on; length[node]: how long each
- * is. */
+/* Rows of own nodes, one behind the other from the begin of the factor's arrays on; length[node]: how long
+ * each is. */
 static enum status make_rows(const struct solid_system *system, struct lower *lower,
                              struct inverse_factor *factor, int64_t *length, struct error *error)
 {
@@ -253,7 +107,7 @@ static enum status make_rows(const struct solid_system *system, struct lower *lo
                 wanted[list[k]] = true;
             }
         }
-        TRY(fetch_rows(factor, wanted, system->node_count, lower, error));
+        TRY(lower_fetch(factor, wanted, system->node_count, lower, error));
     }
     for (int64_t i = begin; i < end; i++) {
         length[i] = choose(system, lower, (int32_t)i, near, list);
@@ -317,7 +171,7 @@ enum status inverse_factor_build(const struct solid_system *system, struct inver
     int64_t nodes = system->node_count, *length = NULL;
     *factor = (struct inverse_factor){.ranks = system->body.share.ranks};
     TRY(share_nodes(system, factor, error));
-    TRY(make_lower(system, factor, &lower, error));
+    TRY(lower_make(system, factor, &lower, error));
     TRY(sparse_new(nodes, nodes, nodes * MOST_ENTRIES, &factor->rows, error));
     TRY(NEW_ARRAY(&length, nodes, error));
     TRY(make_rows(system, &lower, factor, length, error));
@@ -325,10 +179,7 @@ enum status inverse_factor_build(const struct solid_system *system, struct inver
     TRY(sparse_transpose(&factor->rows, &factor->transposed, error));
 done:
     free(length);
-    free(lower.begin);
-    free(lower.end);
-    free(lower.idx);
-    free(lower.value);
+    lower_free(&lower);
     if (status != STATUS_OK) {
         inverse_factor_free(factor);
     }

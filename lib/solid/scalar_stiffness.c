@@ -110,7 +110,8 @@ enum status scalar_stiffness_make(const struct solid_system *system, int64_t beg
 {
     enum status status;
     const struct body *body = &system->body;
-    *stiffness = (struct scalar_stiffness){.system = system, .begin = begin, .end = end, .bond_count = count_bonds(system)};
+    *stiffness = (struct scalar_stiffness){
+        .system = system, .begin = begin, .end = end, .bond_count = count_bonds(system)};
     stiffness->field_count = body->cells.averages.matrix.row_count;
     if (stiffness->field_count + stiffness->bond_count > INT32_MAX) {
         status = fail(error, STATUS_SYSTEM, "preconditioner: more than 2^31 faces, nodes and conditions");
@@ -139,8 +140,8 @@ void scalar_stiffness_free(struct scalar_stiffness *stiffness)
 
 void scalar_stiffness_work(const struct solid_system *system, double *work)
 {
-    const struct scalar_stiffness fields = {
-        .system = system, .field_count = system->body.cells.averages.row_count};
+    const struct scalar_stiffness fields = {.system = system,
+                                            .field_count = system->body.cells.averages.row_count};
     for (int64_t f = 0; f < fields.field_count; f++) {
         struct average field = field_at(&fields, f);
         for (int64_t i = 0; i < field.length; i++) {

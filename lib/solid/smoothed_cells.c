@@ -126,7 +126,8 @@ static enum status check_table(const struct told *table, int64_t rows, int dim, 
     return STATUS_OK;
 }
 
-/* Of several processes: the rows that cells of this one look at, and the transpose of the columns of its nodes. */
+/* Of several processes: the rows that cells of this one look at, and the transpose of the columns of its
+ * nodes. */
 static enum status copy_shares(const struct field_averages_input *tables, struct body *body,
                                struct error *error)
 {

@@ -65,8 +65,8 @@ struct smoothed_cells {
                     vanish together, 1/m */
 };
 
-/* Lay out the cells of a body whose sizes, orders and shares are known. STATUS_INPUT when a cell lacks a face,
- * or the values are not those at the faces and nodes. */
+/* Lay out the cells of a body whose sizes, orders and shares are known. STATUS_INPUT when a cell lacks a
+ * face, or the values are not those at the faces and nodes. */
 MUST_CHECK enum status smoothed_cells_build(const struct smoothed_cells_input *input, struct body *body,
                                             struct error *error);
 void smoothed_cells_free(struct smoothed_cells *smoothed);

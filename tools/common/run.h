@@ -26,9 +26,9 @@ struct run {
     struct run_folds folds;
     struct run_stability stability;
     bool verbose;
-    bool text;        /* the form of what is written */
-    double *u;        /* parameters, node_count * dim, m */
-    double last_good; /* the time, as in struct progress, of which u is the state; negative: none */
+    bool text;           /* the form of what is written */
+    double *u;           /* parameters, node_count * dim, m */
+    double last_good;    /* the time, as in struct progress, of which u is the state; negative: none */
     int64_t evaluations; /* of forces */
     double read_seconds, prepare_seconds, solve_seconds, write_seconds;
 };

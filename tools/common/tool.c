@@ -35,7 +35,8 @@ _Noreturn void tool_fail(const struct tool *tool, enum status status, const char
 {
     va_list values;
     bool said = process_speaks();
-    for (int turn = 0; turn < 2; turn++) { /* of several processes the first one speaks, or one that fails alone */
+    for (int turn = 0; turn < 2;
+         turn++) { /* of several processes the first one speaks, or one that fails alone */
         if (turn == 0 ? said : process_fails_alone() && !said) {
             va_start(values, format);
             print_message(tool, format, values);
@@ -299,8 +300,7 @@ static enum status write_stdout(const struct stream *stream, bool text, struct e
         return fail_in(error, status, "standard output");
     }
     stdout_closed = close(STDOUT_FILENO) == 0;
-    return stdout_closed ? STATUS_OK
-                         : fail(error, STATUS_SYSTEM, "standard output: %s", strerror(errno));
+    return stdout_closed ? STATUS_OK : fail(error, STATUS_SYSTEM, "standard output: %s", strerror(errno));
 }
 
 static enum status write_output(const struct tool *tool, const struct stream *stream, bool text,
