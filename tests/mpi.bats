@@ -24,7 +24,7 @@ begin() {
     local count=$1
     shift
     mpirun --quiet --oversubscribe --bind-to none -n "$count" mtled-mpi "$@" 2> said 3>&- &
-    for ((tries = 0; tries < 500; tries++)); do
+    for ((tries = 0; tries < 3000; tries++)); do
         [ ! -e run.ckpt.old ] || break
         sleep 0.02
     done
