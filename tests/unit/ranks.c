@@ -149,8 +149,10 @@ static int64_t evaluate(struct body *body, const double *u, double *results)
     *at++ = body_energy(body, u);
     body_limit_bulk(body, 2.0);
     (void)body_force(body, u, at);
-    body_augment(body);
-    (void)body_force(body, u, at);
+    if (body_is_limited(body)) {
+        body_augment(body);
+        (void)body_force(body, u, at);
+    }
     return at + nodes * body->dim - results;
 }
 
