@@ -90,7 +90,8 @@ static enum status build_body(struct assembly *input, struct solid_system *syste
                               .group = materials->section,
                               .hat_node = hat_node,
                               .hat_value = hat_value,
-                              .smoothed = input->smoothed ? &smoothed : NULL};
+                              .smoothed = input->smoothed ? &smoothed : NULL,
+                              .ranks = input->ranks};
     TRY(body_build(&body, &system->body, error));
 done:
     free(hat_node);

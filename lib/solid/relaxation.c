@@ -254,7 +254,8 @@ static bool ends(struct relaxation *r, enum relaxation_outcome *outcome, struct 
 
 static bool is_interrupted(const struct relaxation *r)
 {
-    return r->options->interrupted != NULL && *r->options->interrupted != 0;
+    return r->options->interrupted != NULL &&
+           ranks_most(r->system->body.share.ranks, *r->options->interrupted) != 0;
 }
 
 static enum relaxation_outcome iterate(struct relaxation *r, struct error *error)

@@ -34,23 +34,33 @@ static struct average bond_at(const struct solid_system *system, int64_t b, doub
     return average_of_boundary(system->contacts[c].points, b);
 }
 
-/* Field or bond f, of nodes of the body's order or the system's. */
+/* Field or bond f; of nodes of the body's order or the system's. Of several processes the body has not all
+ * rows here, but their tables are. */
 static struct average field_at(const struct scalar_stiffness *stiffness, int64_t f)
 {
-    const struct sparse *matrix = &stiffness->system->body.cells.averages.matrix;
+    const struct field_averages *averages = &stiffness->system->body.cells.averages;
     double unused;
-    if (f < stiffness->field_count) {
-        int64_t at = matrix->ptr[f];
-        return (struct average){matrix->ptr[f + 1] - at, matrix->idx + at, matrix->value + at};
+    if (f >= stiffness->field_count) {
+        return bond_at(stiffness->system, f - stiffness->field_count, &unused);
     }
-    return bond_at(stiffness->system, f - stiffness->field_count, &unused);
+    if (averages->face_order == NULL) {
+        int64_t at = averages->matrix.ptr[f];
+        return (struct average){averages->matrix.ptr[f + 1] - at, averages->matrix.idx + at,
+                                averages->matrix.value + at};
+    }
+    int64_t faces = averages->told[0].row_count;
+    const struct average_table *table = &averages->told[f < faces ? 0 : 1];
+    int64_t row = f < faces ? averages->face_order[f] : stiffness->system->body.node_order[f - faces];
+    int64_t at = table->ptr[row];
+    return (struct average){table->ptr[row + 1] - at, table->idx + at, table->phi + at};
 }
 
 /* Node k of field or bond f, as the system counts nodes. */
 static int64_t node_of(const struct scalar_stiffness *stiffness, int64_t f, const struct average *field,
                        int64_t k)
 {
-    return f < stiffness->field_count ? stiffness->system->body.node_order[field->idx[k]] : field->idx[k];
+    bool in_body = f < stiffness->field_count && stiffness->system->body.cells.averages.face_order == NULL;
+    return in_body ? stiffness->system->body.node_order[field->idx[k]] : field->idx[k];
 }
 
 /* The field that corner k of cell q looks at: its face, or with `vertex` its node. */
@@ -71,7 +81,8 @@ static enum status list_nodes(struct scalar_stiffness *stiffness, struct error *
     for (int64_t f = 0; f < all; f++) {
         struct average field = field_at(stiffness, f);
         for (int64_t i = 0; i < field.length; i++) {
-            start[node_of(stiffness, f, &field, i) + 2]++;
+            int64_t node = node_of(stiffness, f, &field, i);
+            start[node + 2] += node >= stiffness->begin && node < stiffness->end;
         }
     }
     for (int64_t n = 0; n < nodes; n++) {
@@ -82,21 +93,25 @@ static enum status list_nodes(struct scalar_stiffness *stiffness, struct error *
     for (int64_t f = 0; f < all; f++) {
         struct average field = field_at(stiffness, f);
         for (int64_t i = 0; i < field.length; i++) {
-            int64_t at = start[node_of(stiffness, f, &field, i) + 1]++;
-            stiffness->node_field[at] = (int32_t)f;
-            stiffness->node_phi[at] = field.phi[i];
+            int64_t node = node_of(stiffness, f, &field, i);
+            if (node >= stiffness->begin && node < stiffness->end) {
+                int64_t at = start[node + 1]++;
+                stiffness->node_field[at] = (int32_t)f;
+                stiffness->node_phi[at] = field.phi[i];
+            }
         }
     }
 done:
     return status;
 }
 
-enum status scalar_stiffness_make(const struct solid_system *system, struct scalar_stiffness *stiffness,
-                                  struct error *error)
+enum status scalar_stiffness_make(const struct solid_system *system, int64_t begin, int64_t end,
+                                  struct scalar_stiffness *stiffness, struct error *error)
 {
     enum status status;
     const struct body *body = &system->body;
-    *stiffness = (struct scalar_stiffness){.system = system, .bond_count = count_bonds(system)};
+    *stiffness = (struct scalar_stiffness){
+        .system = system, .begin = begin, .end = end, .bond_count = count_bonds(system)};
     stiffness->field_count = body->cells.averages.matrix.row_count;
     if (stiffness->field_count + stiffness->bond_count > INT32_MAX) {
         status = fail(error, STATUS_SYSTEM, "preconditioner: more than 2^31 faces, nodes and conditions");
@@ -121,6 +136,26 @@ void scalar_stiffness_free(struct scalar_stiffness *stiffness)
     free(stiffness->node_phi);
     free(stiffness->bond_stiffness);
     *stiffness = (struct scalar_stiffness){0};
+}
+
+void scalar_stiffness_work(const struct solid_system *system, double *work)
+{
+    const struct scalar_stiffness fields = {.system = system,
+                                            .field_count = system->body.cells.averages.row_count};
+    for (int64_t f = 0; f < fields.field_count; f++) {
+        struct average field = field_at(&fields, f);
+        for (int64_t i = 0; i < field.length; i++) {
+            work[node_of(&fields, f, &field, i)] += 1.0;
+        }
+    }
+    const struct neighbours *lists = system->node_lists;
+    for (int64_t n = 0; n < system->node_count; n++) {
+        int64_t length = lists->ptr[n + 1] - lists->ptr[n], lower = 0;
+        for (int64_t i = lists->ptr[n]; i < lists->ptr[n + 1]; i++) {
+            lower += lists->idx[i] <= n;
+        }
+        work[n] *= 1.0 + (double)lower / (double)(length > 0 ? length : 1);
+    }
 }
 
 enum status scalar_row_make(const struct scalar_stiffness *stiffness, struct scalar_row *row,

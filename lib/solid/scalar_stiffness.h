@@ -13,6 +13,7 @@ struct solid_system;
  * act on. */
 struct scalar_stiffness {
     const struct solid_system *system;
+    int64_t begin, end; /* rows that can be asked for */
     int64_t field_count, bond_count;
     int64_t *node_ptr; /* node_count + 1: the fields, then the bonds, that each node is in (CSR), */
     int32_t *node_field;
@@ -20,9 +21,14 @@ struct scalar_stiffness {
     double *bond_stiffness; /* N/m (2D: N/m2) */
 };
 
-MUST_CHECK enum status scalar_stiffness_make(const struct solid_system *system,
+/* For the rows from `begin` to before `end`. */
+MUST_CHECK enum status scalar_stiffness_make(const struct solid_system *system, int64_t begin, int64_t end,
                                              struct scalar_stiffness *stiffness, struct error *error);
 void scalar_stiffness_free(struct scalar_stiffness *stiffness);
+
+/* work[node_count]: about how much work each row is, as the fields that the node is in; what lies beyond the
+ * diagonal is looked at only, and takes half the time. `work` has zeros. */
+void scalar_stiffness_work(const struct solid_system *system, double *work);
 
 /* A row, and scratch for it: zeros between calls, where nothing else is said. */
 struct scalar_row {

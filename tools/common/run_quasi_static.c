@@ -99,6 +99,7 @@ void run_quasi_static(struct run *run)
     run_clear_progress(&run->display);
     tool_check(run->tool, status, &error);
     run->last_good = report.load;
+    run->evaluations = report.force_evaluations;
     run_folds_look(run, run->u, report.load, true);
     run_stability_look(run, report.load);
     judge(run, &report);
