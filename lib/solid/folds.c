@@ -256,7 +256,9 @@ enum status folds_build(const struct fold_input *input, struct folds *folds, str
     struct fold at_rest = folds_find(folds, u, stopped);
     if (at_rest.kind != FOLD_CROSSING && at_rest.kind != FOLD_WITHIN) {
         at_rest = (struct fold){.cell = -1, .facet = {-1, -1}};
-        TRY(folds_find_overlaps(folds, &at_rest, error));
+        if (folds->body_count > 1) {
+            TRY(folds_look_for_overlaps(folds, true, &at_rest, error));
+        }
     }
     if (at_rest.kind == FOLD_CROSSING || at_rest.kind == FOLD_WITHIN) {
         folds->at_rest = at_rest;

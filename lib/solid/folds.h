@@ -25,7 +25,7 @@ enum fold_kind {
     FOLD_CREASE, /* the facets that meet at a node (2D) or an edge (3D) have passed through each other */
     FOLD_CROSSING, /* two parts of the boundary have passed through each other: by a twentieth of their facets
                     */
-    FOLD_WITHIN,   /* a body lies within another one, at rest: or a cell of it */
+    FOLD_WITHIN,   /* a body lies within another one; or a cell within one that it is no neighbour of */
     FOLD_FLAT,     /* cells are inverted between their nodes, but by less: of a sliver, that is soon said */
     FOLD_SUPPORT   /* a free facet at the rim of a plane support has gone through its plane */
 };
@@ -33,7 +33,7 @@ enum fold_kind {
 struct fold {
     enum fold_kind kind;
     int64_t count;    /* of that kind */
-    int64_t cell;     /* FOLD_CELL, FOLD_FLAT: the first one; FOLD_WITHIN: one of the inner body; else -1 */
+    int64_t cell;     /* FOLD_CELL, FOLD_FLAT: the first one; FOLD_WITHIN: that one; else -1 */
     int64_t facet[2]; /* else: facets of the input, those of the first one, -1 where there is none;
                          FOLD_SUPPORT: the free one, then that of the support */
     double place[3];  /* at rest, m: middle of the cell or of the first facet */
@@ -111,6 +111,13 @@ void folds_free(struct folds *folds);
  * [node_count] have a surface against them. A cell between such nodes and held ones is pressed flat against a
  * plate; as averages are held and no nodes, it may be turned over a little, and does not count. */
 struct fold folds_find(struct folds *folds, const double *u, const bool *stopped);
+
+/* Look for cells whose middle is within a cell that they share no node with: parts of the body that lie on
+ * each other, also where their boundaries only touch. That costs more than folds_find, so it is for states
+ * that are kept. *fold is FOLD_NONE or FOLD_WITHIN; none where bodies interpenetrate at rest. STATUS_SYSTEM
+ * for memory. */
+MUST_CHECK enum status folds_find_overlaps(struct folds *folds, const double *u, struct fold *fold,
+                                           struct error *error);
 
 /* Look for free facets that have gone through the plane of a support: by more than a thousandth of the body's
  * size and a twentieth of the facet's, as conditions hold averages and no nodes. Nodes that are `stopped` do

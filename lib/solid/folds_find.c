@@ -332,7 +332,7 @@ double folds_rim_beyond(const struct folds *folds, const struct fold_rim *rim, c
     return depth / sqrt(fold_dot(dim, plane, plane));
 }
 
-static void take_positions(struct folds *folds, const double *u)
+void folds_take_positions(struct folds *folds, const double *u)
 {
     folds->largest = 0.0;
     for (int64_t i = 0; i < folds->input.node_count * folds->input.dim; i++) {
@@ -344,7 +344,7 @@ static void take_positions(struct folds *folds, const double *u)
 struct fold folds_find(struct folds *folds, const double *u, const bool *stopped)
 {
     struct fold cells = {.cell = -1, .facet = {-1, -1}}, fold = cells;
-    take_positions(folds, u);
+    folds_take_positions(folds, u);
     find_cells(folds, stopped, &cells);
     if (cells.kind == FOLD_CELL) {
         return cells;
@@ -361,7 +361,7 @@ struct fold folds_find(struct folds *folds, const double *u, const bool *stopped
 struct fold folds_find_beyond(struct folds *folds, const double *u, const bool *stopped)
 {
     struct fold fold = {.cell = -1, .facet = {-1, -1}};
-    take_positions(folds, u);
+    folds_take_positions(folds, u);
     folds_fill_planes(folds, folds->y);
     for (int64_t r = 0; r < folds->rim_count; r++) {
         const struct fold_rim *rim = &folds->rims[r];

@@ -58,9 +58,13 @@ MUST_CHECK enum status folds_find_bodies(struct folds *folds, struct error *erro
 /* Look for a body within another, where boundaries do not cross. */
 void folds_find_within(struct folds *folds, struct fold *fold);
 
-/* The same at rest for each cell: whether its middle is deep in a cell of another body. Boundaries that go
- * through each other at nodes do not show as crossed. */
-MUST_CHECK enum status folds_find_overlaps(struct folds *folds, struct fold *fold, struct error *error);
+/* Look for cells whose middle is deep in a cell of another body, or else in any cell that they share no node
+ * with. Boundaries that go through each other at nodes, or lie on each other, do not show as crossed. */
+MUST_CHECK enum status folds_look_for_overlaps(struct folds *folds, bool of_bodies, struct fold *fold,
+                                               struct error *error);
+
+/* Positions of the displacement u, in the scratch. */
+void folds_take_positions(struct folds *folds, const double *u);
 
 /* Sums over the facets of each plane support, into folds->plane. */
 void folds_fill_planes(struct folds *folds, const double *y);

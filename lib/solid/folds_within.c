@@ -111,41 +111,60 @@ void folds_find_within(struct folds *folds, struct fold *fold)
     }
 }
 
-enum status folds_find_overlaps(struct folds *folds, struct fold *fold, struct error *error)
+/* Whether two cells have a node together. */
+static bool are_neighbours(const struct folds *folds, int64_t c, int64_t other)
+{
+    int corners = folds->input.dim + 1;
+    const int32_t *one = folds->input.cell + c * corners, *two = folds->input.cell + other * corners;
+    for (int k = 0; k < corners * corners; k++) {
+        if (one[k / corners] == two[k % corners]) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/* The box around a cell. */
+static void bound(const struct folds *folds, int64_t cell, double *low, double *high)
+{
+    int dim = folds->input.dim;
+    for (int i = 0; i < dim; i++) {
+        low[i] = INFINITY;
+        high[i] = -INFINITY;
+        for (int k = 0; k <= dim; k++) {
+            double place = folds->y[(int64_t)folds->input.cell[cell * (dim + 1) + k] * dim + i];
+            low[i] = fmin(low[i], place);
+            high[i] = fmax(high[i], place);
+        }
+    }
+}
+
+enum status folds_look_for_overlaps(struct folds *folds, bool of_bodies, struct fold *fold,
+                                    struct error *error)
 {
     enum status status = STATUS_OK;
-    int dim = folds->input.dim, corners = dim + 1;
+    int dim = folds->input.dim;
     int64_t count = folds->input.cell_count;
     struct point_grid grid = {0};
     struct index_list near = {0};
     double *middle = NULL, *radius = NULL;
-    if (folds->body_count < 2) {
-        return STATUS_OK;
-    }
     TRY(NEW_ARRAY(&middle, count * dim, error));
     TRY(NEW_ARRAY(&radius, count, error));
     for (int64_t c = 0; c < count; c++) {
-        find_middle(folds, folds->input.x, c, middle + c * dim);
+        find_middle(folds, folds->y, c, middle + c * dim);
         radius[c] = round_off * folds->extent;
     }
     TRY(point_grid_build(&grid, dim, count, middle, radius, error));
     for (int64_t c = 0; c < count; c++) {
         double low[3], high[3];
-        for (int i = 0; i < dim; i++) {
-            low[i] = INFINITY;
-            high[i] = -INFINITY;
-            for (int k = 0; k < corners; k++) {
-                double place = folds->input.x[(int64_t)folds->input.cell[c * corners + k] * dim + i];
-                low[i] = fmin(low[i], place);
-                high[i] = fmax(high[i], place);
-            }
-        }
+        bound(folds, c, low, high);
         near.count = 0;
         TRY(point_grid_query_box(&grid, low, high, 1.0, &near, error));
         for (int64_t i = 0; i < near.count; i++) {
             int32_t other = near.index[i];
-            if (folds->part[other] != folds->part[c] &&
-                contains(folds, c, middle + (int64_t)other * dim, not_deep) && fold->count++ == 0) {
+            bool apart =
+                folds->part[other] != folds->part[c] || (!of_bodies && !are_neighbours(folds, c, other));
+            if (apart && contains(folds, c, middle + (int64_t)other * dim, not_deep) && fold->count++ == 0) {
                 fold->kind = FOLD_WITHIN;
                 fold->cell = other;
                 find_middle(folds, folds->input.x, other, fold->place);
@@ -158,4 +177,11 @@ done:
     free(middle);
     free(radius);
     return status;
+}
+
+enum status folds_find_overlaps(struct folds *folds, const double *u, struct fold *fold, struct error *error)
+{
+    *fold = (struct fold){.cell = -1, .facet = {-1, -1}};
+    folds_take_positions(folds, u);
+    return folds->at_rest.kind == FOLD_NONE ? folds_look_for_overlaps(folds, false, fold, error) : STATUS_OK;
 }

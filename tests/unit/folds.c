@@ -420,12 +420,43 @@ static void another_body(void **state)
     }
 }
 
+/* A strip that is bent to a ring and goes on over its begin, exactly: boundaries lie on each other and do not
+ * cross. */
+static void over_itself(void **state)
+{
+    (void)state;
+    static struct shape shape;
+    double y[MOST_NODES * 3], u[MOST_NODES * 3];
+    struct fold fold;
+    struct error error;
+    for (int dim = 2; dim <= 3; dim++) {
+        make_grid(&shape, dim, 16, 2);
+        for (int turns = 12; turns <= 18; turns += 2) { /* as many pieces make a whole turn */
+            memcpy(y, shape.x, sizeof y);
+            for (int64_t k = 0; k < shape.nodes; k++) {
+                double angle = 32.0 * acos(-1.0) / turns * shape.x[k * dim],
+                       r = 1.3 - 0.3 * shape.x[k * dim + 1];
+                y[k * dim] = r * cos(angle);
+                y[k * dim + 1] = r * sin(angle);
+            }
+            for (int64_t i = 0; i < shape.nodes * dim; i++) {
+                u[i] = y[i] - shape.x[i];
+            }
+            assert_int_equal(found(&shape, y).kind, FOLD_NONE);
+            GOOD(folds_find_overlaps(&shape.folds, u, &fold, &error));
+            assert_int_equal(fold.kind, turns < 16 ? FOLD_WITHIN : FOLD_NONE);
+            assert_int_equal(fold.count > 0, turns < 16);
+        }
+        folds_free(&shape.folds);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(one_to_one),   cmocka_unit_test(crossing),          cmocka_unit_test(crease),
         cmocka_unit_test(inverted),     cmocka_unit_test(through_the_plane), cmocka_unit_test(barely_through),
-        cmocka_unit_test(another_body),
+        cmocka_unit_test(another_body), cmocka_unit_test(over_itself),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -145,6 +145,12 @@ void run_folds_look(struct run *run, const double *u, double time, bool is_frame
     assembly_nodal_field(&run->model->assembly, u, folds->field);
     mark_stopped(run, folds->stopped);
     struct fold fold = folds_find(&folds->folds, folds->field, folds->stopped);
+    if (is_frame && (fold.kind == FOLD_NONE || fold.kind == FOLD_FLAT)) {
+        struct fold overlap;
+        struct error error;
+        tool_check(run->tool, folds_find_overlaps(&folds->folds, folds->field, &overlap, &error), &error);
+        fold = overlap.kind != FOLD_NONE ? overlap : fold;
+    }
     struct fold none = {.kind = FOLD_NONE}, noted = fold;
     bool is_flat = fold.kind == FOLD_FLAT;
     if (!is_flat) {
@@ -231,7 +237,7 @@ void run_folds_describe(const struct run *run, int which, char *text, size_t siz
         snprintf(text, size, "the body folds %s: %s at %s goes through %s", when, one, place, other);
         return;
     case FOLD_WITHIN:
-        snprintf(text, size, "the body folds %s: the body of cell %lld at %s is within another", when,
+        snprintf(text, size, "the body folds %s: cell %lld at %s is within another one", when,
                  (long long)fold->cell, place);
         return;
     case FOLD_FLAT:
