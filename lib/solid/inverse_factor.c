@@ -28,7 +28,7 @@ static enum status keep_row(const struct scalar_row *row, int64_t i, struct lowe
 {
     int64_t at = lower->ptr[i];
     if (at + row->count > lower->capacity) {
-        int64_t capacity = 2 * (at + row->count) + 4096;
+        int64_t capacity = (at + row->count) / 4 * 5 + 4096;
         int32_t *idx = array_grow(lower->idx, capacity, sizeof *idx);
         lower->idx = idx != NULL ? idx : lower->idx;
         double *value = array_grow(lower->value, capacity, sizeof *value);

@@ -34,25 +34,6 @@ static struct average bond_at(const struct solid_system *system, int64_t b, doub
     return average_of_boundary(system->contacts[c].points, b);
 }
 
-/* Field or bond f, of nodes of the body's order or the system's. */
-static struct average field_at(const struct scalar_stiffness *stiffness, int64_t f)
-{
-    const struct sparse *matrix = &stiffness->system->body.cells.averages.matrix;
-    double unused;
-    if (f < stiffness->field_count) {
-        int64_t at = matrix->ptr[f];
-        return (struct average){matrix->ptr[f + 1] - at, matrix->idx + at, matrix->value + at};
-    }
-    return bond_at(stiffness->system, f - stiffness->field_count, &unused);
-}
-
-/* Node k of field or bond f, as the system counts nodes. */
-static int64_t node_of(const struct scalar_stiffness *stiffness, int64_t f, const struct average *field,
-                       int64_t k)
-{
-    return f < stiffness->field_count ? stiffness->system->body.node_order[field->idx[k]] : field->idx[k];
-}
-
 /* The field that corner k of cell q looks at: its face, or with `vertex` its node. */
 static int64_t field_of_corner(const struct scalar_stiffness *stiffness, int64_t q, int k, bool vertex)
 {
@@ -62,32 +43,28 @@ static int64_t field_of_corner(const struct scalar_stiffness *stiffness, int64_t
     return averages->of_corner[corner] / VECTOR_STRIDE(body->dim);
 }
 
-static enum status list_nodes(struct scalar_stiffness *stiffness, struct error *error)
+static enum status list_bonds(struct scalar_stiffness *stiffness, struct error *error)
 {
     enum status status;
-    int64_t nodes = stiffness->system->node_count, all = stiffness->field_count + stiffness->bond_count;
-    TRY(NEW_ARRAY(&stiffness->node_ptr, nodes + 2, error));
-    int64_t *start = stiffness->node_ptr;
-    for (int64_t f = 0; f < all; f++) {
-        struct average field = field_at(stiffness, f);
-        for (int64_t i = 0; i < field.length; i++) {
-            start[node_of(stiffness, f, &field, i) + 2]++;
+    const struct solid_system *system = stiffness->system;
+    struct sparse by_bond = {0};
+    double unused;
+    int64_t entries = 0, at = 0;
+    for (int64_t b = 0; b < stiffness->bond_count; b++) {
+        entries += bond_at(system, b, &unused).length;
+    }
+    TRY(sparse_new(stiffness->bond_count, system->node_count, entries, &by_bond, error));
+    for (int64_t b = 0; b < stiffness->bond_count; b++) {
+        struct average bond = bond_at(system, b, &stiffness->bond_stiffness[b]);
+        for (int64_t i = 0; i < bond.length; i++, at++) {
+            by_bond.idx[at] = bond.idx[i];
+            by_bond.value[at] = bond.phi[i];
         }
+        by_bond.ptr[b + 1] = at;
     }
-    for (int64_t n = 0; n < nodes; n++) {
-        start[n + 2] += start[n + 1];
-    }
-    TRY(NEW_ARRAY(&stiffness->node_field, start[nodes + 1], error));
-    TRY(NEW_ARRAY(&stiffness->node_phi, start[nodes + 1], error));
-    for (int64_t f = 0; f < all; f++) {
-        struct average field = field_at(stiffness, f);
-        for (int64_t i = 0; i < field.length; i++) {
-            int64_t at = start[node_of(stiffness, f, &field, i) + 1]++;
-            stiffness->node_field[at] = (int32_t)f;
-            stiffness->node_phi[at] = field.phi[i];
-        }
-    }
+    TRY(sparse_transpose(&by_bond, &stiffness->bonds, error));
 done:
+    sparse_free(&by_bond);
     return status;
 }
 
@@ -103,10 +80,7 @@ enum status scalar_stiffness_make(const struct solid_system *system, struct scal
         goto done;
     }
     TRY(NEW_ARRAY(&stiffness->bond_stiffness, stiffness->bond_count, error));
-    for (int64_t b = 0; b < stiffness->bond_count; b++) {
-        (void)bond_at(system, b, &stiffness->bond_stiffness[b]);
-    }
-    TRY(list_nodes(stiffness, error));
+    TRY(list_bonds(stiffness, error));
 done:
     if (status != STATUS_OK) {
         scalar_stiffness_free(stiffness);
@@ -116,9 +90,7 @@ done:
 
 void scalar_stiffness_free(struct scalar_stiffness *stiffness)
 {
-    free(stiffness->node_ptr);
-    free(stiffness->node_field);
-    free(stiffness->node_phi);
+    sparse_free(&stiffness->bonds);
     free(stiffness->bond_stiffness);
     *stiffness = (struct scalar_stiffness){0};
 }
@@ -137,7 +109,6 @@ enum status scalar_row_make(const struct scalar_stiffness *stiffness, struct sca
     TRY(NEW_ARRAY(&row->touched, fields, error));
     TRY(NEW_ARRAY(&row->cell_seen, stiffness->system->body.point_count, error));
     TRY(NEW_ARRAY(&row->field_seen, fields, error));
-    TRY(NEW_ARRAY(&row->node_seen, nodes, error));
 done:
     if (status != STATUS_OK) {
         scalar_row_free(row);
@@ -147,8 +118,8 @@ done:
 
 void scalar_row_free(struct scalar_row *row)
 {
-    void *arrays[] = {row->node,    row->value,     row->at_field,   row->on_field, row->sum,
-                      row->touched, row->cell_seen, row->field_seen, row->node_seen};
+    void *arrays[] = {row->node, row->value,   row->at_field,  row->on_field,
+                      row->sum,  row->touched, row->cell_seen, row->field_seen};
     for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) {
         free(arrays[i]);
     }
@@ -210,57 +181,87 @@ static int compare_nodes(const void *left, const void *right)
     return (a > b) - (a < b);
 }
 
+/* Force on a node of the body's order, listed in row->node. */
+static inline void add_to_node(int32_t node, double amount, int64_t i, struct scalar_row *row)
+{
+    struct scalar_sum *at = &row->sum[node];
+    if (at->row != i + 1) {
+        *at = (struct scalar_sum){.row = i + 1};
+        row->node[row->count++] = node;
+    }
+    at->sum += amount;
+}
+
 /* The forces on the nodes up to i. */
 static void spread(const struct scalar_stiffness *stiffness, int64_t touched, int64_t i,
                    struct scalar_row *row)
 {
+    const struct body *body = &stiffness->system->body;
+    const struct sparse *matrix = &body->cells.averages.matrix;
+    int64_t kept = 0;
+    double unused;
     row->count = 0;
     for (int64_t t = 0; t < touched; t++) {
-        struct average field = field_at(stiffness, row->touched[t]);
-        double force = row->on_field[row->touched[t]];
-        for (int64_t k = 0; k < field.length; k++) {
-            int32_t node = (int32_t)node_of(stiffness, row->touched[t], &field, k);
-            if (node > i) {
-                continue;
+        int64_t f = row->touched[t];
+        double force = row->on_field[f];
+        for (int64_t k = f < stiffness->field_count ? matrix->ptr[f] : 0;
+             f < stiffness->field_count && k < matrix->ptr[f + 1]; k++) {
+            add_to_node(matrix->idx[k], force * matrix->value[k], i, row);
+        }
+        if (f >= stiffness->field_count) {
+            struct average bond = bond_at(stiffness->system, f - stiffness->field_count, &unused);
+            for (int64_t k = 0; k < bond.length; k++) {
+                add_to_node(body->node_place[bond.idx[k]], force * bond.phi[k], i, row);
             }
-            if (row->node_seen[node] != i + 1) {
-                row->node_seen[node] = i + 1;
-                row->node[row->count++] = node;
-                row->sum[node] = 0.0;
-            }
-            row->sum[node] += force * field.phi[k];
         }
     }
+    for (int64_t k = 0; k < row->count; k++) {
+        int64_t node = body->node_order[row->node[k]];
+        if (node <= i) {
+            row->node[kept++] = (int32_t)node;
+        }
+    }
+    row->count = kept;
     qsort(row->node, (size_t)row->count, sizeof *row->node, compare_nodes);
     for (int64_t k = 0; k < row->count; k++) {
-        row->value[k] = row->sum[row->node[k]];
+        row->value[k] = row->sum[body->node_place[row->node[k]]].sum;
+    }
+}
+
+/* The cells whose corners look at field f. */
+static void add_cells(const struct scalar_stiffness *stiffness, int64_t f, int64_t i, struct scalar_row *row,
+                      int64_t *touched)
+{
+    const struct body *body = &stiffness->system->body;
+    const struct field_averages *averages = &body->cells.averages;
+    for (int64_t c = averages->corner_ptr[f]; c < averages->corner_ptr[f + 1]; c++) {
+        int64_t q = averages->corner[c] % averages->corner_count / (body->dim + 1);
+        if (row->cell_seen[q] != i + 1) {
+            row->cell_seen[q] = i + 1;
+            add_cell(stiffness, q, i, row, touched);
+        }
     }
 }
 
 void scalar_stiffness_row(const struct scalar_stiffness *stiffness, int64_t i, struct scalar_row *row)
 {
-    const struct field_averages *averages = &stiffness->system->body.cells.averages;
-    int dim = stiffness->system->body.dim;
-    int64_t first = stiffness->node_ptr[i], last = stiffness->node_ptr[i + 1], touched = 0;
-    for (int64_t n = first; n < last; n++) {
-        row->at_field[stiffness->node_field[n]] = stiffness->node_phi[n];
+    const struct body *body = &stiffness->system->body;
+    const struct sparse *fields = &body->cells.averages.transposed, *bonds = &stiffness->bonds;
+    int64_t first = fields->ptr[body->node_place[i]], last = fields->ptr[body->node_place[i] + 1];
+    int64_t touched = 0;
+    for (int64_t k = first; k < last; k++) {
+        row->at_field[fields->idx[k]] = fields->value[k];
     }
-    for (int64_t n = first; n < last; n++) {
-        int64_t f = stiffness->node_field[n], bond = f - stiffness->field_count;
-        if (bond >= 0) {
-            put(stiffness->bond_stiffness[bond] * stiffness->node_phi[n], f, i, row, &touched);
-            continue;
-        }
-        for (int64_t c = averages->corner_ptr[f]; c < averages->corner_ptr[f + 1]; c++) {
-            int64_t q = averages->corner[c] % averages->corner_count / (dim + 1);
-            if (row->cell_seen[q] != i + 1) {
-                row->cell_seen[q] = i + 1;
-                add_cell(stiffness, q, i, row, &touched);
-            }
-        }
+    for (int64_t k = first; k < last; k++) {
+        add_cells(stiffness, fields->idx[k], i, row, &touched);
     }
-    for (int64_t n = first; n < last; n++) {
-        row->at_field[stiffness->node_field[n]] = 0.0;
+    for (int64_t k = bonds->ptr[i]; k < bonds->ptr[i + 1]; k++) {
+        int64_t bond = bonds->idx[k];
+        put(stiffness->bond_stiffness[bond] * bonds->value[k], stiffness->field_count + bond, i, row,
+            &touched);
+    }
+    for (int64_t k = first; k < last; k++) {
+        row->at_field[fields->idx[k]] = 0.0;
     }
     spread(stiffness, touched, i, row);
 }

@@ -3,7 +3,7 @@
 #ifndef SOLID_SCALAR_STIFFNESS_H
 #define SOLID_SCALAR_STIFFNESS_H
 
-#include "base/status.h"
+#include "base/sparse.h"
 
 #include <stdint.h>
 
@@ -14,10 +14,15 @@ struct solid_system;
 struct scalar_stiffness {
     const struct solid_system *system;
     int64_t field_count, bond_count;
-    int64_t *node_ptr; /* node_count + 1: the fields, then the bonds, that each node is in (CSR), */
-    int32_t *node_field;
-    double *node_phi;       /* and its share there */
+    struct sparse
+        bonds; /* a row for each node, in the system's order: the bonds that it is in, and its shares */
     double *bond_stiffness; /* N/m (2D: N/m2) */
+};
+
+/* A sum at a node, where `row` is 1 + that of the row. */
+struct scalar_sum {
+    double sum;
+    int64_t row;
 };
 
 MUST_CHECK enum status scalar_stiffness_make(const struct solid_system *system,
@@ -29,9 +34,10 @@ struct scalar_row {
     int64_t count;
     int32_t *node; /* its entries, ascending, */
     double *value; /* and their values, N/m (2D: N/m2) */
-    double *at_field, *on_field, *sum;
-    int32_t *touched;                            /* fields */
-    int64_t *cell_seen, *field_seen, *node_seen; /* 1 + the last row that has seen each */
+    double *at_field, *on_field;
+    struct scalar_sum *sum;          /* of nodes in the body's order */
+    int32_t *touched;                /* fields */
+    int64_t *cell_seen, *field_seen; /* 1 + the last row that has seen each */
 };
 MUST_CHECK enum status scalar_row_make(const struct scalar_stiffness *stiffness, struct scalar_row *row,
                                        struct error *error);
