@@ -1,5 +1,6 @@
 # make            build the tools into build/bin
 # make deps       install what is missing (Debian, Ubuntu)
+# make mpi        mtled for several processes under mpirun, build/bin/mtled-mpi
 # make check      run all tests                         make SAN=1 check   ... under sanitizers
 # make faults, fuzz, lint, coverage: what the programs survive, what a fuzzer finds, static checks, lines under test
 # make STUDY      run a study of pipelines/: tables and pictures into build/out/STUDY; minutes each:
@@ -79,6 +80,20 @@ $(BUILD)/bin/%: $(BUILD)/tools/%.o $(COMMON_OBJECTS) $(LIBRARY)
 	@mkdir -p $(@D)
 	$(CC) $(LDFLAGS) -o $@ $^ $(LDLIBS)
 
+# mtled for several processes, under mpirun: where MPI is there. How processes talk is all that differs.
+# The compiler of openmpi-bin alone lacks the headers of libopenmpi-dev.
+HAS_MPI := $(shell echo '\#include <mpi.h>' | mpicc -E -x c - > /dev/null 2>&1 && echo yes)
+MPI_PROGRAM := $(BUILD)/bin/mtled-mpi
+.PHONY: mpi has-mpi
+mpi: $(MPI_PROGRAM)
+has-mpi:
+	@[ -n "$(HAS_MPI)" ] || { echo 'make: no MPI here: make deps installs it' >&2; false; }
+$(BUILD)/tools/mpi/%.o: CC = mpicc
+$(BUILD)/tools/mpi/process.o: | has-mpi
+$(MPI_PROGRAM): $(BUILD)/tools/mtled.o $(BUILD)/tools/mpi/process.o $(filter-out %/process.o,$(COMMON_OBJECTS)) $(LIBRARY)
+	@mkdir -p $(@D)
+	mpicc $(LDFLAGS) -o $@ $^ $(LDLIBS)
+
 $(BUILD)/tests/%: $(BUILD)/tests/unit/%.o $(LIBRARY)
 	@mkdir -p $(@D)
 	$(CC) $(LDFLAGS) -o $@ $^ $(LDLIBS) -lcmocka
@@ -115,7 +130,7 @@ endif
 deps:
 	@bash pipelines/deps.sh
 
-check: all $(UNIT_TESTS) $(FUZZ_TARGETS) $(TEST_HELPERS)
+check: all $(if $(HAS_MPI),mpi) $(UNIT_TESTS) $(FUZZ_TARGETS) $(TEST_HELPERS)
 	@BUILD="$(abspath $(BUILD))" bash tests/run.sh
 
 clean:

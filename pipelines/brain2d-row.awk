@@ -18,5 +18,5 @@ END {
     }
     print scheme, "nodes" in value ? value["nodes"] : value["n"], value["points"],
         sprintf("%.4f", 1e3 * value["avg"]), sprintf("%.4f", 1e3 * value["max"]),
-        value["steps"], sprintf("%.2f", value["solve seconds"])
+        value["steps"], sprintf("%.2f", "solve seconds" in value ? value["solve seconds"] : value["assembly seconds"] + value["solver seconds"])
 }

@@ -1,4 +1,4 @@
-# make brain2d: the brain section by several schemes and by CalculiX, each compared with the converged reference.
+# make brain2d: the brain section by several schemes and by mixed elements (FreeFEM), each compared with the converged reference.
 #
 # Everything lies in build/out/brain2d. A scheme S has S.dat (the displacements, a text stream), S.log (what the tools
 # report), S.difference.dat (distance from the reference at the nodes) and S.row (its line of compare.tsv). The default
@@ -8,8 +8,8 @@ BRAIN2D := $(OUT)/brain2d
 BRAIN2D_INPUT := examples/brain2d
 BRAIN2D_TABLES := $(BRAIN2D_INPUT)/load.tsv $(BRAIN2D_INPUT)/skull.tsv
 BRAIN2D_AT_NODES := paper-mls1 paper-mmls quartic-mls1 quartic-mmls
-BRAIN2D_SCHEMES := $(BRAIN2D_AT_NODES) default calculix calculix-half
-BRAIN2D_SHOWN := paper-mls1 paper-mmls default calculix
+BRAIN2D_SCHEMES := $(BRAIN2D_AT_NODES) default mixed mixed-half
+BRAIN2D_SHOWN := paper-mls1 paper-mmls default mixed
 
 # What each is called in compare.tsv and above its picture.
 paper-mls1.name := linear MLS, 4 points, R = 8 mm, regularised weight, conditions at nodes (as in the paper)
@@ -17,12 +17,11 @@ paper-mmls.name := MMLS mu = 1e-7, 4 points, R = 8 mm, regularised weight, condi
 quartic-mls1.name := linear MLS, 4 points, R = 8 mm, quartic weight, conditions at nodes
 quartic-mmls.name := MMLS mu = 1e-7, 4 points, R = 10 mm, quartic weight, conditions at nodes
 default.name := MMLS, smoothed cells, nodal volume, boundary averages (default)
-calculix.name := CalculiX CPE6, same triangles
-calculix-half.name := CalculiX CPE6, half the size
+mixed.name := mixed elements (FreeFEM), same triangles
+mixed-half.name := mixed elements (FreeFEM), half the size
 paper-mls1.title := linear MLS as in the paper
 paper-mmls.title := MMLS as in the paper
 default.title := default
-calculix.title := CalculiX, same triangles
 
 .PHONY: brain2d
 brain2d: $(BRAIN2D)/compare.tsv $(BRAIN2D)/section.png $(BRAIN2D)/difference.png $(BRAIN2D)/u.dat $(BRAIN2D)/u.vtu
@@ -40,7 +39,7 @@ $(BRAIN2D)/body.msh $(BRAIN2D)/half.msh: $(BRAIN2D_INPUT)/brain2d.geo
 	@mkdir -p $(@D)
 	gmsh -2 -v 2 $< -setnumber lc $(BRAIN2D_SIZE) $(BRAIN2D_SIZES) -o $@
 
-# The cloud is renewed only when it changes, so that a rebuilt tool does not call for a new CalculiX solution.
+# The cloud is renewed only when it changes, so that a rebuilt tool does not call for new solutions by mixed elements.
 $(BRAIN2D)/body.made $(BRAIN2D)/half.made: $(BRAIN2D)/%.made: $(BRAIN2D)/%.msh $(BUILD)/bin/nodes
 	nodes -u mm -t $< > $(@:.made=.new)
 	cmp -s $(@:.made=.new) $(@:.made=.cloud.dat) || cp $(@:.made=.new) $(@:.made=.cloud.dat)
@@ -76,17 +75,15 @@ $(BRAIN2D_AT_NODES:%=$(BRAIN2D)/%.dat): $(BRAIN2D)/%.dat: $(BRAIN2D_INPUT)/paper
 	(nodes -u mm $(@D)/body.msh | ipoints -g 4 | support -v $($*.support) | shapefn | \
 	    mtled -v $<) > $@ $(BRAIN2D_LOG)
 
-BRAIN2D_CALCULIX := $(addprefix pipelines/,calculix/solve.sh calculix/deck.awk calculix/deck2d.awk calculix/field.awk stream.awk scene.awk)
-
-$(BRAIN2D)/calculix.dat: $(BRAIN2D)/body.cloud.dat
-$(BRAIN2D)/calculix-half.dat: $(BRAIN2D)/half.cloud.dat
-$(BRAIN2D)/calculix.dat $(BRAIN2D)/calculix-half.dat: $(BRAIN2D_INPUT)/brain2d.scene $(BRAIN2D_TABLES) \
-        $(BRAIN2D_CALCULIX)
-	bash pipelines/calculix/solve.sh $< $(filter %.cloud.dat,$^) > $@ $(BRAIN2D_LOG)
+$(BRAIN2D)/mixed.dat: $(BRAIN2D)/body.cloud.dat
+$(BRAIN2D)/mixed-half.dat: $(BRAIN2D)/half.cloud.dat
+$(BRAIN2D)/mixed.dat $(BRAIN2D)/mixed-half.dat: $(BRAIN2D_INPUT)/brain2d.scene $(BRAIN2D_TABLES) $(wildcard pipelines/mixed/*) \
+        $(addprefix pipelines/,stream.awk scene.awk table.awk)
+	bash pipelines/mixed/solve.sh $< $(filter %.cloud.dat,$^) > $@ $(BRAIN2D_LOG)
 
 # ---- comparison ------------------------------------------------------------------------------------------------------
 
-$(BRAIN2D)/reference.dat: $(BRAIN2D_INPUT)/brain2d_reference.tsv pipelines/reference.awk
+$(BRAIN2D)/reference.dat: $(BRAIN2D_INPUT)/brain2d_graded.tsv pipelines/reference.awk
 	@mkdir -p $(@D)
 	awk -f pipelines/reference.awk $< > $@
 

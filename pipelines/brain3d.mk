@@ -1,7 +1,5 @@
-# make brain3d: the whole brain: several schemes and CalculiX without the skull on 3 290 nodes, compared with the default on 15 428;
+# make brain3d: the whole brain: several schemes and mixed elements (FreeFEM) without the skull, compared with mixed elements on a finer mesh;
 # then the default sliding on the skull, coarse and fine. make brain3d-fine adds the default on 61 700 nodes: half an hour.
-#
-# CalculiX solves the scene without contact: with it, its quadratic tetrahedra take more than a quarter of an hour.
 #
 # Everything lies in build/out/brain3d. A scheme S has S.dat (the displacements, a text stream), S.log (what the tools
 # report), S.errors (its distance from the reference), S.row (its line of compare.tsv) and S.balance (that of balance.tsv).
@@ -10,22 +8,21 @@ BRAIN3D := $(OUT)/brain3d
 BRAIN3D_INPUT := examples/brain3d
 BRAIN3D_TABLES := $(BRAIN3D_INPUT)/load.tsv $(BRAIN3D_INPUT)/skull.tsv
 BRAIN3D_AT_NODES := mls1-at-nodes mmls-at-nodes
-BRAIN3D_FREE := $(BRAIN3D_AT_NODES) small-free calculix-free
-BRAIN3D_SMALL := $(BRAIN3D_FREE) small
-BRAIN3D_LARGE := large-free large
+BRAIN3D_FREE := $(BRAIN3D_AT_NODES) small-free mixed-free
+BRAIN3D_COMPARED := $(BRAIN3D_FREE) large-free small
 
 # What each is called in compare.tsv.
 mls1-at-nodes.name := linear MLS, 4 points, k = 1.4, conditions at nodes, pointwise volume
 mmls-at-nodes.name := MMLS, 4 points, k = 1.8, conditions at nodes, pointwise volume
 small-free.name := MMLS, smoothed cells, nodal volume, boundary averages (default)
-calculix-free.name := CalculiX C3D10, same tetrahedra
-large-free.name := the default on a finer mesh (reference)
+mixed-free.name := mixed elements (FreeFEM), same tetrahedra
+large-free.name := the default on a finer mesh
 small.name := sliding on the skull: default
 large.name := sliding on the skull: the default on a finer mesh (reference)
 
 .PHONY: brain3d brain3d-fine
 brain3d: $(BRAIN3D)/compare.tsv $(BRAIN3D)/balance.tsv $(BRAIN3D)/brain3d.png $(BRAIN3D)/brain3d.vtu
-	@awk -F '\t' '{ printf "%-74s %6s %6s %8s %8s %6s %8s %16s %16s\n", $$1, $$2, $$3, $$4, $$5, $$6, $$7, $$8, $$9 }' $<
+	@awk -F '\t' '{ printf "%-74s %6s %6s %8s %8s %6s %8s\n", $$1, $$2, $$3, $$4, $$5, $$6, $$7 }' $<
 	@echo
 	@awk -F '\t' '{ printf "%-74s %8s %7s %7s %9s %9s %9s %9s %7s %8s\n", $$1, $$2, $$3, $$4, $$5, $$6, $$7, $$8, $$9, $$10 }' \
 	    $(BRAIN3D)/balance.tsv
@@ -50,7 +47,7 @@ $(BRAIN3D)/brain3d.geo: $(BRAIN3D_INPUT)/brain3d.geo
 $(BRAIN3D)/small.msh $(BRAIN3D)/large.msh $(BRAIN3D)/fine.msh: $(BRAIN3D)/brain3d.geo $(BRAIN3D)/brain3d_surfaces.msh
 	gmsh -3 -nt 1 -v 2 $< -setnumber lc $(BRAIN3D_SIZE) -o $@
 
-# The cloud is renewed only when it changes, so that a rebuilt tool does not call for a new CalculiX solution.
+# The cloud is renewed only when it changes, so that a rebuilt tool does not call for a new solution by mixed elements.
 $(BRAIN3D)/small.made: $(BRAIN3D)/small.msh $(BUILD)/bin/nodes
 	nodes -u mm -t $< > $(@:.made=.new)
 	cmp -s $(@:.made=.new) $(@:.made=.cloud.dat) || cp $(@:.made=.new) $(@:.made=.cloud.dat)
@@ -90,36 +87,32 @@ $(BRAIN3D_AT_NODES:%=$(BRAIN3D)/%.dat): $(BRAIN3D)/%.dat: $(BRAIN3D)/small.msh $
 	(nodes -u mm $< | ipoints -g 4 | support -v $($*.support) | shapefn | \
 	    mtled -v $(BRAIN3D_INPUT)/paper.scene) > $@ $(BRAIN3D_LOG)
 
-BRAIN3D_CALCULIX := $(addprefix pipelines/,calculix/solve.sh calculix/deck.awk calculix/deck3d.awk calculix/field.awk stream.awk scene.awk)
-
-$(BRAIN3D)/calculix-free.dat: $(BRAIN3D_INPUT)/free.scene $(BRAIN3D)/small.cloud.dat $(BRAIN3D_TABLES) $(BRAIN3D_CALCULIX)
-	bash pipelines/calculix/solve.sh $(wordlist 1,2,$^) 0.25 > $@ $(BRAIN3D_LOG)
+$(BRAIN3D)/mixed-free.dat: $(BRAIN3D_INPUT)/free.scene $(BRAIN3D)/small.cloud.dat $(BRAIN3D_TABLES) $(wildcard pipelines/mixed/*) \
+        $(addprefix pipelines/,stream.awk scene.awk table.awk)
+	bash pipelines/mixed/solve.sh $(wordlist 1,2,$^) > $@ $(BRAIN3D_LOG)
 
 # ---- comparison ------------------------------------------------------------------------------------------------------
 
-# Each against the finer mesh, and those without the skull also against CalculiX, in the same scene.
-$(BRAIN3D_FREE:%=$(BRAIN3D)/%.errors): $(BRAIN3D)/%.errors: $(BRAIN3D)/%.dat $(BRAIN3D)/large-free.dat $(BUILD)/bin/fieldcmp
-	fieldcmp $(wordlist 1,2,$^) > $@
+# Without the skull each against the reference; with it the default against the default on a finer mesh.
+$(BRAIN3D)/reference.dat: $(BRAIN3D_INPUT)/brain3d_free.tsv.gz pipelines/reference.awk
+	@mkdir -p $(@D)
+	gzip -dc $< | awk -f pipelines/reference.awk > $@
 
-$(BRAIN3D)/small.errors: $(BRAIN3D)/small.dat $(BRAIN3D)/large.dat $(BUILD)/bin/fieldcmp
-	fieldcmp $(wordlist 1,2,$^) > $@
+$(BRAIN3D)/%-free.errors $(BRAIN3D)/%-at-nodes.errors: BRAIN3D_REFERENCE := reference
+$(BRAIN3D)/small.errors: BRAIN3D_REFERENCE := large
+$(BRAIN3D_COMPARED:%=$(BRAIN3D)/%.errors): $(BRAIN3D)/%.errors: $(BRAIN3D)/%.dat $(BRAIN3D)/reference.dat $(BUILD)/bin/fieldcmp
+$(BRAIN3D)/small.errors: $(BRAIN3D)/large.dat
+$(BRAIN3D_COMPARED:%=$(BRAIN3D)/%.errors):
+	fieldcmp $< $(BRAIN3D)/$(BRAIN3D_REFERENCE).dat > $@
 
-$(BRAIN3D_FREE:%=$(BRAIN3D)/%.beside): $(BRAIN3D)/%.beside: $(BRAIN3D)/%.dat $(BRAIN3D)/calculix-free.dat $(BUILD)/bin/fieldcmp
-	fieldcmp $< $(BRAIN3D)/calculix-free.dat > $@
+BRAIN3D_ROWS := $(BRAIN3D_COMPARED) large
 
-$(BRAIN3D_FREE:%=$(BRAIN3D)/%.row): $(BRAIN3D)/%.row: $(BRAIN3D)/%.beside
-$(BRAIN3D_SMALL:%=$(BRAIN3D)/%.row): $(BRAIN3D)/%.row: $(BRAIN3D)/%.errors pipelines/brain3d/row.awk
-	awk -f pipelines/brain3d/row.awk -v scheme='$($*.name)' -v field=$(@:.row=.dat) $(@:.row=.log) $(@:.row=.errors) \
-	    $(filter %.beside,$^) > $@
-
-$(BRAIN3D_LARGE:%=$(BRAIN3D)/%.row): $(BRAIN3D)/%.row: $(BRAIN3D)/%.dat pipelines/brain3d/row.awk
-	awk -f pipelines/brain3d/row.awk -v scheme='$($*.name)' -v field=$< $(@:.row=.log) > $@
-
-BRAIN3D_ROWS := $(BRAIN3D_FREE) large-free small large
+$(BRAIN3D_ROWS:%=$(BRAIN3D)/%.row): $(BRAIN3D)/%.row: $(BRAIN3D)/%.dat pipelines/brain3d/row.awk
+	awk -f pipelines/brain3d/row.awk -v scheme='$($*.name)' -v field=$< $(@:.row=.log) $(filter %.errors,$^) > $@
+$(BRAIN3D_COMPARED:%=$(BRAIN3D)/%.row): $(BRAIN3D)/%.row: $(BRAIN3D)/%.errors
 
 $(BRAIN3D)/compare.tsv: $(BRAIN3D_ROWS:%=$(BRAIN3D)/%.row) pipelines/brain3d.mk
-	(printf 'scheme\tnodes\tpoints\tavg_mm\tmax_mm\tsteps\tseconds\tcalculix_avg_mm\tcalculix_max_mm\n'; \
-	    cat $(filter %.row,$^)) > $@
+	(printf 'scheme\tnodes\tpoints\tavg_mm\tmax_mm\tsteps\tseconds\n'; cat $(filter %.row,$^)) > $@
 
 $(BRAIN3D_ROWS:%=$(BRAIN3D)/%.balance): $(BRAIN3D)/%.balance: $(BRAIN3D)/%.dat pipelines/brain3d/balance.awk
 	awk -f pipelines/stream.awk -f pipelines/brain3d/balance.awk -v scheme='$($*.name)' -v field=$< \

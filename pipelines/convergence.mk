@@ -10,8 +10,6 @@ CONVERGENCE_INPUT := examples/convergence
 CONVERGENCE_CASES := block10 block20 block20_4999 cook brain
 CONVERGENCE_ALL_CASES := $(CONVERGENCE_CASES) block10_graded cube cube_4999 cube_graded
 CONVERGENCE_SCHEMES := mls1 mmls default mixed calculix
-# Mixed elements: only where nothing touches.
-brain.schemes := $(filter-out mixed,$(CONVERGENCE_SCHEMES))
 # Finer at the rims of the plates, of a part between planes of symmetry.
 block10_graded.schemes := default mixed
 cube_graded.schemes := default mixed
@@ -58,7 +56,7 @@ block10_graded.reference := $(block10.reference)
 block20.reference := $(CONVERGENCE_INPUT)/block20.tsv
 block20_4999.reference := $(CONVERGENCE_INPUT)/block20_4999.tsv
 cook.reference := $(CONVERGENCE_INPUT)/cook.tsv
-brain.reference := examples/brain2d/brain2d_reference.tsv
+brain.reference := examples/brain2d/brain2d_graded.tsv
 cube.reference := $(CONVERGENCE_INPUT)/cube.tsv.gz
 cube_graded.reference := $(cube.reference)
 cube_4999.reference := $(CONVERGENCE_INPUT)/cube_4999.tsv.gz
@@ -91,7 +89,7 @@ $(foreach m,square cook brain cube quarter eighth,$(foreach s,$($(m).sizes),$(ev
 # A rebuilt tool does not call for all of it again; `make clean` does.
 CONVERGENCE_PROGRAMS := $(addprefix $(BUILD)/bin/,nodes ipoints support shapefn mtled mts fieldcmp)
 
-CONVERGENCE_MIXED := $(wildcard pipelines/mixed/*) pipelines/scene.awk
+CONVERGENCE_MIXED := $(wildcard pipelines/mixed/*) $(addprefix pipelines/,stream.awk scene.awk table.awk)
 
 # CASE, SCHEME, SIZE
 define CONVERGENCE_SOLUTION

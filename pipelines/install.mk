@@ -15,7 +15,7 @@ install: install-programs install-library
 
 install-programs: all
 	install -d $(INTO)/bin $(INTO)/share/man/man1 $(INTO)/share/man/man5 $(INTO)/share/bash-completion/completions
-	install -m 755 $(PROGRAMS) $(INTO)/bin
+	install -m 755 $(PROGRAMS) $(wildcard $(MPI_PROGRAM)) $(INTO)/bin
 	install -m 644 $(filter %.1,$(MAN_PAGES)) $(INTO)/share/man/man1
 	install -m 644 $(filter %.5,$(MAN_PAGES)) $(INTO)/share/man/man5
 	install -m 644 $(COMPLETIONS) $(INTO)/share/bash-completion/completions

@@ -2,7 +2,7 @@
 # resection with drainage, electrodes; against finer solutions
 #
 # Everything lies in build/out/neurosurgery, and in resection and electrodes there: neurosurgery.tsv (errors before and after), seconds.tsv, a
-# picture; of the craniotomy volumes.tsv as well. The scan is that of Debian's mricron-data; where it is not installed the label image stands
+# picture; of the craniotomy volumes.tsv and a film of the shift as well. The scan is that of Debian's mricron-data; where it is not installed the label image stands
 # in for it. One of them alone: make neurosurgery-one NEURO_SCENARIO=resection.
 NEURO_SCENARIO ?= craniotomy
 NEURO := $(OUT)/neurosurgery$(patsubst %,/%,$(filter-out craniotomy,$(NEURO_SCENARIO)))
@@ -18,12 +18,14 @@ NEURO_TIMED := bash $(NEURO_SCRIPTS)/timed.sh
 NEURO_PROGRAMS := $(addprefix $(BUILD)/bin/,voxels groups shapefn mtled interp sample warp mts)
 NEURO_LOG = 2> $(@:.dat=.log) || { cat $(@:.dat=.log) >&2; false; }
 
-# What differs: the names of the labels, of parts of the surface, labels that landmarks lie in, the true scene, what is predicted: from what is
+# What differs: the names of the labels, the part of the surface that is seen, names of others, labels that landmarks lie in, the true scene, what is predicted: from what is
 # seen alone, and knowing as well how the patient lies.
 NEURO_STEM := -u mm -f 'stem=ball:0,-41,-65,12'
+NEURO_EXPOSED := --part exposed=ball:63.5mm,16mm,20mm,33mm
 ifeq ($(NEURO_SCENARIO),craniotomy)
 NEURO_NAMES := $(NEURO_INPUT)/labels.tsv
-NEURO_GROUPS := $(NEURO_STEM) -f 'exposed=ball:63.5,16,20,33' -f 'cortex=all without stem without exposed'
+NEURO_PART := $(NEURO_EXPOSED)
+NEURO_GROUPS := $(NEURO_STEM) -f 'cortex=all without stem without exposed'
 NEURO_INSIDE := $$4 > 0
 NEURO_TRUTH := truth
 NEURO_PREDICTIONS := craniotomy position
@@ -31,7 +33,8 @@ NEURO_COLUMNS := from_cortex\twith_gravity
 NEURO_SEEN := from the exposed cortex
 else ifeq ($(NEURO_SCENARIO),resection)
 NEURO_NAMES := $(NEURO_INPUT)/resection.tsv
-NEURO_GROUPS := $(NEURO_STEM) -f 'exposed=ball:63.5,16,20,33 and parenchyma|outside' -f 'cortex=parenchyma|outside without stem without exposed'
+NEURO_PART := $(NEURO_EXPOSED)
+NEURO_GROUPS := $(NEURO_STEM) -f 'cortex=parenchyma|outside without stem'
 NEURO_INSIDE := $$4 > 0 && $$4 < 3
 NEURO_MEASURED := -v 'groups=exposed,parenchyma|tumour' -v deviation=0.5
 else ifeq ($(NEURO_SCENARIO),electrodes)
@@ -52,7 +55,7 @@ neurosurgery: neurosurgery-one
 	@$(MAKE) --no-print-directory neurosurgery-one NEURO_SCENARIO=resection
 	@$(MAKE) --no-print-directory neurosurgery-one NEURO_SCENARIO=electrodes
 
-neurosurgery-one: $(addprefix $(NEURO)/,neurosurgery.tsv seconds.tsv slices.png) $(if $(filter craniotomy,$(NEURO_SCENARIO)),$(NEURO)/volumes.tsv)
+neurosurgery-one: $(addprefix $(NEURO)/,neurosurgery.tsv seconds.tsv slices.png) $(if $(filter craniotomy,$(NEURO_SCENARIO)),$(addprefix $(NEURO)/,volumes.tsv shift.gif))
 	@echo
 	@echo '$(NEURO_SCENARIO)'
 	@awk -F '\t' '{ printf "%-56s %12s %12s %12s\n", $$1, $$2, $$3, $$4 }' $<
@@ -73,7 +76,7 @@ $(NEURO)/skull.tsv: $(NEURO_LABELS) $(NEURO_INPUT)/brain.tsv $(NEURO_PROGRAMS)
 	voxels $< -h 6mm -l $(NEURO_INPUT)/brain.tsv --surface 'brain|outside' --gap 2mm > $@
 
 $(NEURO)/true.u.dat: $(NEURO_LABELS) $(NEURO_NAMES) $(NEURO)/$(NEURO_TRUTH).scene $(NEURO)/skull.tsv $(NEURO_PROGRAMS)
-	(voxels $< -h $(NEURO_TRUE_SPACING) -l $(NEURO_NAMES) | groups $(NEURO_GROUPS) | shapefn | \
+	(voxels $< -h $(NEURO_TRUE_SPACING) -l $(NEURO_NAMES) $(NEURO_PART) | groups $(NEURO_GROUPS) | shapefn | \
 	    mtled -v $(NEURO)/$(NEURO_TRUTH).scene) > $@ $(NEURO_LOG)
 
 ifeq ($(NEURO_SCENARIO),electrodes)
@@ -99,7 +102,7 @@ $(NEURO)/exposed.tsv: $(NEURO)/measured.tsv $(NEURO_SCRIPTS)/points.awk $(NEURO_
 
 $(NEURO)/predicted.body.mts: $(NEURO_LABELS) $(NEURO_NAMES) $(NEURO_PROGRAMS)
 	@mkdir -p $(@D)
-	$(NEURO_TIMED) $(@:.mts=.seconds) "voxels $< -h $(NEURO_SPACING) -l $(NEURO_NAMES) | groups $(NEURO_GROUPS) > $@"
+	$(NEURO_TIMED) $(@:.mts=.seconds) "voxels $< -h $(NEURO_SPACING) -l $(NEURO_NAMES) $(NEURO_PART) | groups $(NEURO_GROUPS) > $@"
 
 $(NEURO)/predicted.table.mts: $(NEURO)/predicted.body.mts $(NEURO_PROGRAMS)
 	$(NEURO_TIMED) $(@:.mts=.seconds) "shapefn $< > $@"
@@ -189,3 +192,23 @@ $(NEURO)/distance.plot: $(NEURO)/distance.places $(patsubst %,$(NEURO)/%.distanc
 
 $(NEURO)/slices.png: $(NEURO)/slices.plot $(NEURO)/distance.plot $(NEURO_PARTS:%=$(NEURO)/%.contour) $(NEURO_SCRIPTS)/slices.gp
 	gnuplot -e "folder='$(NEURO)'; out='$@'; prediction='$(NEURO_FIRST)'; seen='$(NEURO_SEEN)'" $(NEURO_SCRIPTS)/slices.gp
+
+# The shift on the way: states of equilibrium at shares of the load.
+NEURO_FRAMES := 0 1 2 3 4 5
+
+$(NEURO)/shift.scene: $(NEURO_INPUT)/position.scene
+	@mkdir -p $(@D)
+	(cat $<; printf '\n[output]\nframes = $(lastword $(NEURO_FRAMES))\n') > $@
+
+$(NEURO)/shift.u.dat: $(NEURO)/predicted.table.mts $(NEURO)/shift.scene $(NEURO)/exposed.tsv $(NEURO)/skull.tsv $(NEURO_PROGRAMS)
+	mtled -v $(NEURO)/shift.scene $< > $@ $(NEURO_LOG)
+
+$(NEURO_FRAMES:%=$(NEURO)/shift-%.slice): $(NEURO)/shift-%.slice: $(NEURO)/shift.u.dat $(NEURO_SCAN) $(NEURO)/slice.places
+	warp --frame $* --vacated 0 -o $(@:.slice=.nii) $(NEURO_SCAN) $<
+	sample -p $(NEURO)/slice.places -u mm $(@:.slice=.nii) > $@
+	rm $(@:.slice=.nii)
+
+$(NEURO)/shift.gif: $(NEURO_FRAMES:%=$(NEURO)/shift-%.slice) $(NEURO)/before.contour $(NEURO_SCRIPTS)/shift.gp
+	for k in $(NEURO_FRAMES); do awk '/^#/ || NF < 4 { next } $$2 != last && NR > 1 { print "" } { last = $$2; print $$1, $$2, $$4 }' \
+	    $(NEURO)/shift-$$k.slice > $(NEURO)/shift-$$k.plot; done
+	gnuplot -e "folder='$(NEURO)'; out='$@'; last=$(lastword $(NEURO_FRAMES))" $(NEURO_SCRIPTS)/shift.gp

@@ -1,4 +1,4 @@
-# make adaptive: what an estimate of the discretisation error is worth on 37 runs with known answers, and error against nodes and time on meshes refined evenly and where the estimate says so
+# make adaptive: what an estimate of the discretisation error is worth on 39 runs with known answers, and error against nodes and time on meshes refined evenly and where the estimate says so
 #
 # Effectivity: estimated over true mean error at the nodes, for the meshes of make convergence, each beside one of twice the size
 # (effectivity.tsv). Refinement: blocks, Cook's membrane, the brain section and the cube by pipelines/refine from one coarse mesh on, graded
@@ -16,7 +16,7 @@ cylinder.gmsh = -setnumber n $(1)
 cylinder.unit := m
 # Sizes of the runs of the estimate: where a mesh of twice the size is none, or folds, it begins finer.
 cube.estimated := 0.021 0.0155 0.011
-cylinder.estimated := 8 16
+cylinder.estimated := 8 16 32
 adaptive_sizes = $(or $($($(1).mesh).estimated),$($($(1).mesh).sizes))
 
 # Of the refinement: the size that it begins with, the tolerance, about what the reference is uncertain by, the budget of nodes, and the
@@ -46,7 +46,7 @@ adaptive: $(ADAPTIVE)/effectivity.tsv $(ADAPTIVE)/effectivity-summary.tsv $(ADAP
 
 $(ADAPTIVE)/%: export PATH := $(abspath $(BUILD))/bin:$(PATH)
 
-ADAPTIVE_PROGRAMS := $(addprefix $(BUILD)/bin/,nodes shapefn mtled fieldcmp fielderr sizefield interp cloud)
+ADAPTIVE_PROGRAMS := $(addprefix $(BUILD)/bin/,nodes ipoints support shapefn mtled fieldcmp fielderr sizefield interp cloud)
 ADAPTIVE_SCRIPTS := pipelines/adaptive/rounds.sh pipelines/refine/refine.sh
 
 # References at the nodes, and at places that lie evenly.

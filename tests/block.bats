@@ -29,6 +29,28 @@ setup() {
         END { if (!(s[0] / n[0] < 1.3 * s[1] / n[1] && s[1] < 0)) { print s[0] / n[0], s[1] / n[1]; exit 1 } }'
 }
 
+@test "block: where supports stop at the lump, the stress in it is even, to its rim" {
+    # The root mean square of the difference of the vertical stress between cells of the lump that share an edge, by its mean.
+    roughness() {
+        paste <(mts print cells.region "$1") <(mts print cells "$1") <(mts print stress "$1") | awk '
+            $1 == 0 {
+                n++; sum += $6
+                for (k = 2; k <= 4; k++) {
+                    a = $k; b = k < 4 ? $(k + 1) : $2
+                    edge = a < b ? a " " b : b " " a
+                    if (edge in other) { squares += ($6 - other[edge]) ^ 2; pairs++ } else other[edge] = $6
+                }
+            }
+            END { print sqrt(squares / pairs) / (-sum / n) }'
+    }
+    mtled -q "$block/block.scene" table.mts > across.dat 2> note
+    nodes -u mm block.msh | ipoints | support -i lump | shapefn | mtled -q "$block/block.scene" > stops.dat
+    across=$(roughness across.dat)
+    stops=$(roughness stops.dat)
+    echo "$across $stops"
+    awk -v across="$across" -v stops="$stops" 'BEGIN { exit !(stops > 0 && stops < across / 3) }'
+}
+
 @test "block: a misspelt key and a group that is not there are named with their line" {
     sed 's/^nu = 0.49/nuu = 0.49/' "$block/block.scene" > key.scene
     run -2 --separate-stderr mtled key.scene table.mts

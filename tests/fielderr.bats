@@ -64,6 +64,70 @@ field() {
     about "$(value avg)" 0.01 1e-5
 }
 
+@test "fielderr: with a region the observed order is that of the whole body, as in the lines of regions" {
+    # Two regions; in the left one the error is five times as large, and falls by another order.
+    for spec in fine:17:0.01:0.05 coarse:9:0.04:0.1 coarser:5:0.16:0.2; do
+        IFS=: read -r name n right left <<< "$spec"
+        cloud -d 2 -k regular -n "$n" --box 0,1,0,1 -t -o cloud.dat
+        mts print nodes.x cloud.dat > x
+        {
+            awk -v n="$n" '
+                /^# cells.region/ { sub("names=body", "names=right,left"); on = 1; print; next }
+                /^# end/ { exit }
+                /^# / { on = 0 }
+                on && NF { c++; $0 = int((c - 1) / 2) % (n - 1) < (n - 1) / 2 ? 1 : 0 }
+                { print }' cloud.dat
+            echo "# u f8 $((n * n)) 2 enc=text unit=m"
+            awk -v right="$right" -v left="$left" '{ print 1 + $1 + ($1 <= 0.5 ? left : right), $2 }' x
+            printf '\n\n# end %d\n' $(($(grep -c '^# [a-z].* enc=' cloud.dat) + 1))
+        } > "$name.dat"
+        mts check "$name.dat"
+    done
+    run -0 --separate-stderr fielderr fine.dat coarse.dat coarser.dat
+    order=$(value order) left=$(value avg.left) right=$(value avg.right)
+    awk -v p="$order" 'BEGIN { exit !(p > 1.01 && p < 1.99) }'
+    for region in left right; do
+        run -0 --separate-stderr fielderr --region $region fine.dat coarse.dat coarser.dat
+        [ "$(value order)" = "$order" ]
+        [ "$(value avg)" = "${!region}" ]
+    done
+}
+
+@test "both errors: what the iteration leaves, carried by the result, beside that of the discretisation" {
+    pressed_block > block.scene
+    printf '[solver]\ntolerance = 1e-7\n' >> block.scene
+    sed 's/1e-7/1e-10/' block.scene > exact.scene
+    for n in 9 17; do
+        cloud -d 2 -k jittered --jitter 0.2 -n $n --box 0,0.1,0,0.1 | shapefn > $n.mts 2> log
+        mtled -v block.scene $n.mts > $n.dat 2> $n.log
+    done
+    told=$(mts print iteration 17.dat)
+    about "$(awk -F '\t' '$1 == "iteration error, m" { print $2 }' 17.log)" "$told" 0.01
+    grep -q '^discretisation error, m' 17.log
+    # It is a bound, of the order of the tolerance.
+    mtled -q exact.scene 17.mts > exact.dat
+    run -0 --separate-stderr fieldcmp 17.dat exact.dat
+    awk -v max="$(value max)" -v told="$told" 'BEGIN { exit !(max <= told && told <= 1e-7 * 0.006) }'
+    [ "$(value iteration_a)" = "$(printf '%.9g' "$told")" ]
+    awk -v b="$(value iteration_b)" -v a="$told" 'BEGIN { exit !(b > 0 && b < a / 100) }'
+    run -0 --separate-stderr fielderr 17.dat 9.dat
+    [ "$(value dominant)" = discretisation ]
+    awk -v both="$(value iteration)" -v told="$told" 'BEGIN { exit !(both > told && both < 10 * told) }'
+    [ -z "$stderr" ]
+    # So coarse a tolerance that the iteration is what two results differ by.
+    sed 's/1e-7/0.3/' block.scene > rough.scene
+    for n in 9 17; do mtled -q rough.scene $n.mts > rough$n.dat; done
+    run -0 --separate-stderr fielderr rough17.dat rough9.dat
+    [ "$(value dominant)" = iteration ]
+    [[ $stderr == "fielderr: the iterations may have left "*" m: a smaller tolerance in [solver]"* ]]
+    # A result of another program does not tell.
+    mts drop iteration 17.dat > untold.dat
+    run -0 --separate-stderr fielderr untold.dat 9.dat
+    run ! value dominant
+    run -0 --separate-stderr fieldcmp untold.dat 9.dat
+    run ! value iteration_a
+}
+
 @test "fielderr: a map, tolerances, conditions that only one result has" {
     field fine.dat 17 0.01
     field coarse.dat 9 0.04 foot,other

@@ -42,8 +42,8 @@ setup() {
 @test "indentation: the force on a ball that is pressed in is that of Hertz, the body held at 120 mm" {
     gmsh -3 -nt 1 -v 1 "$top/examples/indentation/tissue.geo" -o tissue.msh
     cp "$top/examples/indentation/probe.tsv" .
-    sed 's/^frames = .*/frames = 1/; s/^tolerance = .*/tolerance = 1e-2/' "$top/examples/indentation/indentation.scene" > a.scene
+    sed 's/^frames = .*/frames = 4/; s/^tolerance = .*/tolerance = 1e-2/' "$top/examples/indentation/indentation.scene" > a.scene
     nodes -u mm tissue.msh | groups -f 'probed=ball:0,0,0,0.0045 and normal:0,0,1,10' 2> said | shapefn 2> said | mtled a.scene > u.dat
     mts print reactions.frames u.dat | awk -f "$top/pipelines/gallery/hertz.awk" | tee rows
-    awk 'NR == 2 { ok = $5 > 0.98 && $5 < 1.02 && $1 == 0.6 } END { exit !(ok && NR == 2) }' rows
+    awk 'NR > 1 { for (i = 4; i <= 5; i++) good += $i > 0.98 && $i < 1.02 } END { exit !(good == 8 && NR == 5) }' rows
 }

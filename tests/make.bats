@@ -124,11 +124,11 @@ few_solutions=(CONVERGENCE_CASES=block20 SPEED_ERROR_CASES=cube square.sizes=0.0
 
 @test "adaptive: whichever program fails" {
     few_rounds=(ADAPTIVE_CASES=block20 ADAPTIVE_EFFECTIVITY=block20 square.sizes=0.03)
-    for tool in gmsh nodes shapefn mtled fielderr; do
+    for tool in gmsh nodes ipoints support shapefn mtled fielderr; do
         fails $tool adaptive "${few_rounds[@]}" -- adaptive/block20-{0.03,even,graded}.row adaptive/{effectivity,refinement}.tsv
     done
     # A comparison, of rounds that there are.
-    for tool in gmsh nodes shapefn mtled fielderr sizefield; do ln -sf "$(command -v $tool)" build/bin/$tool; done
+    for tool in gmsh nodes ipoints support shapefn mtled fielderr sizefield; do ln -sf "$(command -v $tool)" build/bin/$tool; done
     fails fieldcmp adaptive "${few_rounds[@]}" square.gmsh='-2 -setnumber h 0.01' ADAPTIVE_BUDGET=300 -- adaptive/block20-{0.03,even,graded}.row
 }
 

@@ -92,7 +92,8 @@ limit_memory() {
     grep -q '^# cells.region .* names=body$' square.mts
     grep -q "nodes: nodes of no cell, left out: 1" notes
     grep -q "nodes: group 'diagonal': facets between two cells, made a set of nodes: 1" notes
-    [ "$(wc -l < notes)" -eq 2 ]
+    grep -q "nodes: 100 % of the boundary is on parts about one cell thick, the thinnest 1 of a cell at (" notes
+    [ "$(wc -l < notes)" -eq 3 ]
 }
 
 @test "file, redirection, pipe and -o give the same bytes; so do -b and the default" {
@@ -326,6 +327,24 @@ limit_memory() {
     grep -q "nodes: cell 0: quality 0.83 at 0.6667 0.3333 m" said
 }
 
+@test "a plate of one cell is told, one of two cells and a cube are not" {
+    # plate THICKNESS: with cells of 1
+    plate() {
+        printf 'Point(1) = {0, 0, 0};\nline() = Extrude {6, 0, 0} { Point{1}; Layers{6}; };\n'
+        printf 'face() = Extrude {0, 4, 0} { Line{line(1)}; Layers{4}; };\nbody() = Extrude {0, 0, %s} { Surface{face(1)}; Layers{%s}; };\n' "$1" "$2"
+    }
+    plate 0.5 1 > plate.geo
+    gmsh -v 1 -3 plate.geo -o plate.msh
+    nodes -u cm plate.msh 2> said > plate.mts
+    grep -qE "nodes: 8[0-9] % of the boundary is on parts about one cell thick, the thinnest 0.44 of a cell at \(.*, .*, .*\) m: they bend too stiffly" said
+    plate 2 2 > plate.geo
+    gmsh -v 1 -3 plate.geo -o plate.msh
+    nodes -u cm plate.msh 2> said > plate.mts
+    cube tet
+    nodes -u cm cube.msh 2>> said > cube.mts
+    run ! grep thick said
+}
+
 @test "no physical groups: the region is body, and how to come by names is told" {
     cube tet
     sed -i '/Physical/d' cube.geo
@@ -429,7 +448,10 @@ END
     printf '<?xml version="1.0"?>\n<VTKFile type="UnstructuredGrid">\n' > body.vtu
     refused 2 "python3 -c 'import meshio as m; m.write" nodes -u m body.vtu
     printf '*HEADING\n*NODE\n1, 0, 0, 0\n' > body.inp
-    refused 2 "an Abaqus deck" nodes -u m body.inp
+    refused 2 "an Abaqus deck: python3 -c 'import meshio as m; m.write" nodes -u m body.inp
+    /usr/bin/python3 -c 'import meshio as m; a = m.read("filled.msh"); a.cell_data = {}; a.write("body.inp")' > said 2>&1
+    by_usage 2 body.inp
+    nodes -u m -t body.msh 2> said | volumes /dev/stdin | grep -qx '1 1'
     refused 2 "a geometry of gmsh: gmsh -3 FILE.geo -o body.msh" nodes -u m cube.geo
 }
 

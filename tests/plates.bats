@@ -115,6 +115,29 @@ crushed() {
     refused 2 "folds: 'maybe' is none of refused, allowed" mtled bad.scene fine.mts
 }
 
+@test "bodies that interpenetrate at rest are refused with the place, unless the scene allows it" {
+    # two(CORNER, SIZE): a square of .1 and another one
+    two() {
+        printf 'SetFactory("OpenCASCADE");\nRectangle(1) = {0, 0, 0, 0.1, 0.1};\nRectangle(2) = {%s, 0, %s, %s};\n' "$1" "$2" "$2"
+        printf 'Physical Surface("body") = {1, 2};\nMesh.MeshSizeMax = 0.02;\n'
+    }
+    # Boundaries that cross between nodes, and at nodes; one body wholly in the other.
+    for case in '0.073, 0.033/0.06/bodies, or parts of one, interpenetrate at rest: ends at (' \
+        '0.07, 0.03/0.06/bodies interpenetrate at rest: cell ' '0.03, 0.03/0.04/bodies interpenetrate at rest: cell '; do
+        IFS=/ read -r corner size said <<< "$case"
+        two "$corner" "$size" > two.geo
+        gmsh -v 1 -2 two.geo -o two.msh
+        nodes -u m two.msh 2> note | groups -f 'ends=low:x,5% or ball:0.103,0.06,0.04 or ball:0.05,0.05,0.03' | shapefn > two.mts 2> note
+        { block quasi-static
+            printf '[displacement ends]\nfacets = ends\ncomponents = 0, 0\n'; } > two.scene
+        refused 2 "two.scene: $said" mtled two.scene two.mts
+        [[ $stderr == *": set them apart in the mesh, or allow it ([output] folds = allowed)" ]]
+        printf '[output]\nfolds = allowed\n' >> two.scene
+        mtled two.scene two.mts 2> said > u.dat
+        grep -qF "two.scene: $said" said
+    done
+}
+
 # A cube of N nodes a side between sliding ends, pressed to a stretch of STRETCH; LINES of [output]: buckled N STRETCH TOLERANCE LINES
 buckled() {
     cloud -d 3 -k jittered -n "$1" --jitter 0.15 --seed 7 --box 0,0.1,0,0.1,0,0.1 | shapefn > cube.mts 2> note

@@ -100,6 +100,14 @@ layer 3mm
 END
 }
 
+@test "crevices narrower than the spacing: the compression runs, and no fold is seen" {
+    for seed in 6 9 16 17; do
+        phantom blobs "$seed" > image.nii.gz
+        voxels --largest -h 5mm image.nii.gz > body.mts 2> said
+        press body.mts
+    done
+}
+
 @test "the voxels' order does not matter, nor the number of threads, nor whether a file or a pipe is read" {
     phantom blobs 5 1,1,2 > image.nii.gz
     phantom blobs@flipped 5 1,1,2 > flipped.nii.gz
@@ -141,7 +149,7 @@ END
 @test "thin parts are told, and kept by a finer lattice at their interfaces" {
     phantom thin > thin.nii.gz
     voxels -h 6mm thin.nii.gz 2> said > coarse.mts
-    grep -qE "voxels: label_2: 3.04[0-9]* ml of voxels, 0[.0-9]* ml of cells \(-[89]" said
+    grep -qE "voxels: label_2: 3.04[0-9]* ml of voxels, 0[.0-9]* ml of cells \(-[78]" said
     grep -qE "voxels: label_2: 2\.[0-9]+ ml are lost in parts thinner than the spacing" said
     voxels -h 6mm --fine 1.5mm:label_2 -v thin.nii.gz 2> said > fine.mts
     read -r before after < <(said label_2)
@@ -198,6 +206,53 @@ volume() {
         v = $1 * ($5 * $9 - $6 * $8) - $2 * ($4 * $9 - $6 * $7) + $3 * ($4 * $8 - $5 * $7)
         sum += v / 6e-6
     } END { printf "%.5g", sum }' "$1"
+}
+
+# rim GROUP BODY: for each node on the rim of a group of facets, its place
+rim() {
+    local set
+    set=$(names facets.set "$2" | grep -nx "$1" | cut -d : -f 1)
+    paste <(mts print facets.set "$2") <(mts print facets "$2") | awk -v set=$((set - 1)) '
+        $1 == set { for (i = 2; i <= 4; i++) { a = $i; b = $(i < 4 ? i + 1 : 2); n[a < b ? a " " b : b " " a]++ } }
+        END { for (k in n) if (n[k] == 1) { split(k, e, " "); print e[1]; print e[2] } }' | sort -nu > rim.nodes
+    mts print nodes.x "$2" | awk 'NR == FNR { on[$1] = 1; next } FNR - 1 in on' rim.nodes -
+}
+
+@test "a part of the boundary: its rim lies where it is told, by a ball or a mask" {
+    phantom four > image.nii.gz
+    voxels -h 5mm --part cap=ball:0mm,0,24mm,14mm -v image.nii.gz > body.mts 2> said
+    [ -z "$(mts check body.mts)" ]
+    [ "$(names cells.region body.mts | tr '\n' ' ')" = "label_1 label_2 label_3 label_4 " ]
+    names facets.set body.mts | grep -qx cap
+    run -1 grep -q cap <(names sets.ptr body.mts)
+    rim cap body.mts > ball
+    # By groups it would be off by a third of the spacing.
+    awk '{ d = sqrt($1^2 + $2^2 + ($3 - .024)^2) - .014; square += d * d; n++ }
+        END { print n, sqrt(square / n); exit !(n > 12 && sqrt(square / n) < 0.0007) }' ball
+    for label in 1 2 3 4; do
+        read -r before after < <(said label_$label)
+        near "$after" "$before" 0.01
+    done
+    # Voxels of a mask count where they are not 0: here the parts of a torus.
+    phantom sphere > sphere.nii.gz
+    phantom torus > torus.nii.gz
+    voxels -h 5mm --part belt=torus.nii.gz sphere.nii.gz 2> said > body.mts
+    rim belt body.mts | awk '{ n++; if (!($3 < .009 && $3 > -.009)) exit 1 } END { exit n < 12 }'
+    # The later one of two has all.
+    voxels -h 5mm --part belt=torus.nii.gz --part all=ball:0,0,0,40mm sphere.nii.gz 2> said > body.mts || true
+    grep -q "voxels: --part belt: no facet of the boundary lies in it" said
+    phantom sphere@slice > slice.nii.gz
+    voxels -h 4mm --part tip=ball:0,24mm,8mm slice.nii.gz 2> said | mts list | grep -q "names=.*tip"
+    refused 2 "--part: ball:1mm,2mm: 4 lengths are wanted" voxels -h 5mm --part a=ball:1mm,2mm sphere.nii.gz
+    refused 2 "--part: ball:1mm,0,0,-2mm: 4 lengths are wanted, the radius above 0" voxels -h 5mm --part a=ball:1mm,0,0,-2mm sphere.nii.gz
+    refused 2 "--part" voxels -h 5mm --part a=ball:,,,2mm sphere.nii.gz
+    refused 2 "--part: 'label_1' is the name of a label or of another part" voxels -h 5mm --part label_1=torus.nii.gz sphere.nii.gz
+    refused 2 "--part: 'a' is not NAME=ball:X,Y,Z,RADIUS or NAME=IMAGE" voxels -h 5mm --part a sphere.nii.gz
+    refused 2 "--part: 'a|b': a name without" voxels -h 5mm --part 'a|b=torus.nii.gz' sphere.nii.gz
+    refused 2 "--part a: no voxel of a label that is kept lies in it" voxels -h 5mm --part a=ball:1m,0,0,2mm sphere.nii.gz
+    refused 2 "missing.nii.gz" voxels -h 5mm --part a=missing.nii.gz sphere.nii.gz
+    refused 2 "--part: 'parsecs' is none of m, cm, mm, um" voxels -h 5mm --part a=ball:0,0,0,5parsecs sphere.nii.gz
+    refused 2 "--surface goes without --part" voxels -h 5mm --part a=torus.nii.gz --surface label_1 sphere.nii.gz
 }
 
 @test "the surface of a label as a table for contact, at a gap" {

@@ -19,6 +19,9 @@ static const char usage[] =
     "  max_at                 coordinates of the node of the maximum, m\n"
     "  reference              largest norm of B's field; avg_relative and max_relative: relative to\n"
     "                         it\n"
+    "  iteration_a, iteration_b  how far the iterations of mtled may have left A and B from where they\n"
+    "                         would end, at the worst node, m: a difference below that is of the\n"
+    "                         iteration. What lies above is of the clouds: see fielderr\n"
     "  n.REGION, avg.REGION, max.REGION, rmse.REGION, p95.REGION\n"
     "                         the same for the nodes of each region of A's cells\n"
     "\n"
@@ -47,6 +50,15 @@ static const char usage[] =
 
 #include "comparison.h"
 
+/* Where it is known. */
+static void print_iteration(const char *name, const struct side *side)
+{
+    double error = iteration_error(side);
+    if (error >= 0.0) {
+        print_quantity(name, NULL, error);
+    }
+}
+
 int main(int argc, char *argv[])
 {
     struct tool tool;
@@ -61,6 +73,8 @@ int main(int argc, char *argv[])
     findings_make(&tool, &request, &a, &b, &findings);
     print_findings(&findings, &a.field.cells, request.percentiles);
     print_relative(&findings);
+    print_iteration("iteration_a", &a);
+    print_iteration("iteration_b", &b);
     if (request.region == NULL) {
         tool_check(&tool, print_regions(&findings, &error), &error);
     }

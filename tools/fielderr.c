@@ -18,6 +18,10 @@ static const char usage[] =
     "                         cloud has most in few places\n"
     "  reference              largest norm of FINE's field; avg_relative and max_relative: relative to\n"
     "                         it\n"
+    "  iteration              how far the iterations of mtled, FINE's and COARSE's, may have moved the\n"
+    "                         estimate, m; where results tell\n"
+    "  dominant               discretisation where avg is larger than that; else iteration, with a note:\n"
+    "                         a smaller tolerance in [solver] is needed before a finer cloud\n"
     "  order, ratio           those that were used; cells_ratio: the one that the cells have\n"
     "  force.NAME             error of the force of each condition and contact that both results have\n"
     "                         (reactions = yes in [output]), N (2D: N/m); force_relative.NAME: relative\n"
@@ -25,10 +29,9 @@ static const char usage[] =
     "  energy, energy_relative  the same of the elastic energy (energy = yes), J (2D: J/m)\n"
     "\n"
     "The estimate is blind to what both clouds have in common: the geometry (a polygon for a curve, a\n"
-    "segmentation), the material, conditions and contacts, and the scene's [solver] tolerance, which\n"
-    "has to be well below the error. It is no bound. Where a cloud is so coarse that its order is not\n"
-    "seen yet, it may be off by a factor of two or three; at single nodes it is less certain than on\n"
-    "average.\n"
+    "segmentation), the material, conditions and contacts. It is no bound. Where a cloud is so coarse\n"
+    "that its order is not seen yet, it may be off by a factor of two or three; at single nodes it is\n"
+    "less certain than on average.\n"
     "\n"
     "Options:\n"
     "  -p, --order ORDER      assumed order, above 0 and up to 4 (default 1.5)\n"
@@ -186,24 +189,57 @@ static void print_energy(const struct side *fine, const struct side *coarse, dou
     }
 }
 
-/* The order assumed, or that of the averages of differences of three results. */
-static double choose_order(struct tool *tool, const struct request *request, const struct side *coarse,
-                           const struct findings *findings)
+/* The average difference of two results over all nodes of the first. */
+static double average_difference(const struct tool *tool, const struct request *request,
+                                 const struct side *first, const struct side *second)
 {
-    struct side coarser;
-    struct findings beyond;
+    struct findings findings;
     struct comparison_request everywhere = request->comparison;
     everywhere.region = NULL;
+    findings_make(tool, &everywhere, first, second, &findings);
+    double average = findings.statistics.average;
+    findings_free(&findings);
+    return average;
+}
+
+/* The order assumed, or that of the averages of differences of three results: of the whole body, also where a
+ * region is asked for, as its error is in part one from elsewhere, and an average over more nodes is
+ * steadier.
+ */
+static double choose_order(struct tool *tool, const struct request *request, const struct side *fine,
+                           const struct side *coarse, const struct findings *findings)
+{
+    struct side coarser;
     if (tool->operand_count < 3) {
         return request->order > 0.0 ? request->order : FIELD_ERROR_ORDER;
     }
     side_read(tool, tool->operands[2], request->comparison.field, &coarser);
     (void)check_coarser(tool, request, coarse, &coarser);
-    findings_make(tool, &everywhere, coarse, &coarser, &beyond);
-    double order = field_error_order(findings->statistics.average, beyond.statistics.average, request->ratio);
-    findings_free(&beyond);
+    double near = request->comparison.region == NULL ? findings->statistics.average
+                                                     : average_difference(tool, request, fine, coarse);
+    double far = average_difference(tool, request, coarse, &coarser);
     stream_free(&coarser.stream);
-    return order;
+    return field_error_order(near, far, request->ratio);
+}
+
+/* Both errors beside each other: what the iterations of the two results leave, which the estimate, `share` of
+ * their difference, contains, and its average. */
+static void print_iteration(const struct tool *tool, const struct side *fine, const struct side *coarse,
+                            double share, double average)
+{
+    double own = iteration_error(fine), other = iteration_error(coarse);
+    if (own < 0.0 || other < 0.0) {
+        return;
+    }
+    double left = own + share * (own + other);
+    print_quantity("iteration", NULL, left);
+    printf("dominant\t%s\n", average > left ? "discretisation" : "iteration");
+    if (!(average > left)) {
+        tool_note(tool,
+                  "the iterations may have left %.3g m: a smaller tolerance in [solver] shows the error "
+                  "of the discretisation",
+                  left);
+    }
 }
 
 /* From differences of the two fields to the error of the first one. */
@@ -239,7 +275,7 @@ int main(int argc, char *argv[])
     side_read(&tool, tool.operands[1], asked->field, &coarse);
     double found = check_coarser(&tool, &request, &fine, &coarse);
     findings_make(&tool, asked, &fine, &coarse, &findings);
-    double order = choose_order(&tool, &request, &coarse, &findings);
+    double order = choose_order(&tool, &request, &fine, &coarse, &findings);
     double share = field_error_share(request.ratio, order);
     scale(&findings, share, fine.field.cells.node_count);
     findings.reference = field_largest(fine.field.cells.node_count, fine.field.cols, fine.field.values);
@@ -248,6 +284,7 @@ int main(int argc, char *argv[])
         print_quantity("mean", NULL, field_error_mean(&fine.field.cells, findings.comparison.difference));
     }
     print_relative(&findings);
+    print_iteration(&tool, &fine, &coarse, share, findings.statistics.average);
     print_quantity("order", NULL, order);
     print_quantity("ratio", NULL, request.ratio);
     print_quantity("cells_ratio", NULL, found);

@@ -345,7 +345,7 @@ static void find_points(const struct tool *tool, const struct option *options, s
         stage_fill(tool, stream, "ipoints");
         tool_check(tool, copy_points(stream, dim, points, &error), &error);
         if (known.radius == NULL && radius != NULL) {
-            tool_check(tool, supports_read(stream, radius->name, &known, &error), &error);
+            tool_check(tool, supports_read(stream, "support", &known, &error), &error);
         }
     } else if (options[UNIT].given) {
         read_table(tool, file, options[UNIT].value, dim, points);

@@ -143,7 +143,7 @@ static struct ipoints_options parse_for(const struct tool *tool, const struct op
     struct error error;
     struct recorded recorded;
     tool_check(tool, stream_nodes(stream, &dim, &node_count, &x, &error), &error);
-    tool_check(tool, stage_recorded(stream_find(stream, "support.radius"), dim, &recorded, &error), &error);
+    tool_check(tool, stage_recorded(stream, "support", dim, &recorded, &error), &error);
     struct ipoints_options ipoints = parse(tool, options, &recorded.support.mls);
     ipoints.refinement.support.reach = recorded.support.reach;
     return ipoints;

@@ -66,13 +66,15 @@ static const char usage[] =
     "\n"
     "Examples:\n"
     "  nodes -u mm body.msh | shapefn | mtled brain2d.scene > u.dat\n"
-    "  nodes -u mm body.msh | ipoints -g 4 | support -k 2 | shapefn | mtled -v brain2d.scene > u.dat\n";
+    "  mpirun -n 4 mtled-mpi -o u.dat brain2d.scene table.mts    by processes (make mpi); same bytes\n";
 
+#include "process.h"
 #include "run.h"
 
 #include "io/sections.h"
 
 #include <stdlib.h>
+#include <string.h>
 #include <unistd.h>
 
 enum { VERBOSE, QUIET, BINARY, OUTPUT, CHECKPOINT, EVERY, OPTION_COUNT };
@@ -113,8 +115,13 @@ int main(int argc, char *argv[])
         [CHECKPOINT] = {.letter = 'c', .name = "checkpoint", .takes_value = true, .silent = true},
         [EVERY] = {.letter = 'e', .name = "every", .takes_value = true, .silent = true},
     };
+    process_begin(&argc, &argv);
     tool_begin(&tool, usage, options, OPTION_COUNT, 1, 2, argc, argv);
     double every = parse_every(&tool, options), started = clock_seconds();
+    if (process_ranks() != NULL && (tool.operand_count < 2 || strcmp(tool.operands[1], "-") == 0)) {
+        tool_fail(&tool, STATUS_INPUT,
+                  "several processes cannot share standard input: name the stream's file");
+    }
     tool_check(&tool, scene_read(tool.operands[0], &scene, &error), &error);
     tool_read(&tool, tool.operand_count > 1 ? tool.operands[1] : NULL, &stream);
     drop_results(&stream);
@@ -124,21 +131,24 @@ int main(int argc, char *argv[])
     double read = clock_seconds() - started;
     stage_fill(&tool, &stream, "shapefn");
 
-    struct run run = {
-        .tool = &tool,
-        .scene = &scene,
-        .model = &model,
-        .stream = &stream,
-        .verbose = options[VERBOSE].given,
-        .text = !options[BINARY].given,
-        .checkpoint = {.file = options[CHECKPOINT].value, .interval = every},
-        .read_seconds = read,
-        .display = {.shown = !options[QUIET].given && isatty(STDERR_FILENO), .started = clock_seconds()}};
+    struct run run = {.tool = &tool,
+                      .scene = &scene,
+                      .model = &model,
+                      .stream = &stream,
+                      .verbose = options[VERBOSE].given && process_speaks(),
+                      .text = !options[BINARY].given,
+                      .checkpoint = {.file = options[CHECKPOINT].value, .interval = every},
+                      .read_seconds = read,
+                      .display = {.shown = !options[QUIET].given && process_speaks() && isatty(STDERR_FILENO),
+                                  .started = clock_seconds()}};
     run_put_supports(&run);
     run_checkpoint_begin(&run);
     tool_check(&tool, model_build(&stream, &scene, &model, &error), &error);
     if (model.note.text[0] != '\0') {
         tool_note(&tool, "%s", model.note.text);
+    }
+    if (model.interfaces.text[0] != '\0') {
+        tool_note(&tool, "%s", model.interfaces.text);
     }
     tool_check(&tool, NEW_ARRAY(&run.u, model.system.node_count * scene.dim, &error), &error);
     run.prepare_seconds = clock_seconds() - run.display.started;
@@ -158,6 +168,9 @@ int main(int argc, char *argv[])
     run_checkpoint_remove(&run);
     if (run.verbose) {
         run_report_cost(&run);
+    }
+    if (options[VERBOSE].given) {
+        process_report(run.evaluations);
     }
     run_folds_free(&run);
     run_stability_free(&run);

@@ -16,19 +16,20 @@ static const char usage[] =
     "What is no part of the body is left out, with a note: nodes of no cell, facets of no cell, empty\n"
     "groups, midside nodes of second-order cells, the second of two equal cells. A cell in two groups is\n"
     "of that with the lower tag. Bodies that touch but share no nodes stay two bodies, with a note.\n"
+    "A note also says where a body is about one cell thick: there it bends too stiffly.\n"
     "Cells without volume or folded, nodes of one body at the same place, and files that are truncated or\n"
     "inconsistent are errors. Sections of the file other than its groups, nodes and elements are not\n"
     "looked at, and nothing in the file is run.\n"
     "\n"
     "Geometries are meshed by 'gmsh -3 body.geo -o body.msh' (STEP, too; -2 in the plane).\n"
-    "Meshes of other programs: 'gmsh body.mesh -save -o body.msh' (MEDIT, Abaqus and others). VTK and VTU\n"
-    "by python3-meshio, an integer array of the cells, here REGION, as regions: group_1 where it is 0, ...\n"
+    "Meshes of other programs: 'gmsh body.mesh -save -o body.msh' (MEDIT and others). VTK and VTU by\n"
+    "python3-meshio, an integer array of the cells, here REGION, as regions: group_1 where it is 0, ...\n"
     "  python3 -c 'import meshio as m; a = m.read(\"body.vtu\"); r = [1 + k.astype(int).ravel() for k in\n"
     "  a.cell_data[\"REGION\"]]; m.Mesh(a.points, a.cells, cell_data={\"gmsh:physical\": r,\n"
     "  \"gmsh:geometrical\": r}).write(\"body.msh\", file_format=\"gmsh22\")'\n"
-    "In what tovtk writes REGION is cells.region. Where there is none, or meshio made the file of a mesh of\n"
-    "gmsh: python3 -c 'import meshio as m; m.write(\"body.msh\", m.read(\"body.vtu\"),\n"
-    "file_format=\"gmsh22\")'.\n"
+    "In what tovtk writes REGION is cells.region. Where there is none, of an Abaqus deck, or where meshio\n"
+    "made the file of a mesh of gmsh: python3 -c 'import meshio as m;\n"
+    "m.write(\"body.msh\", m.read(\"body.vtu\"), file_format=\"gmsh22\")'.\n"
     "A closed surface in STL is filled by a file fill.geo of the lines Merge \"body.stl\";\n"
     "Surface Loop(1) = {1};  Volume(1) = {1};  and 'gmsh -3 fill.geo -o body.msh'.\n"
     "\n"
@@ -56,6 +57,8 @@ static const char usage[] =
 #include "io/msh.h"
 #include "tool.h"
 
+#include "approx/support.h"
+#include "approx/thin.h"
 #include "base/box.h"
 
 #include <math.h>
@@ -98,6 +101,29 @@ static void list_groups(const struct tool *tool, const struct msh *msh)
 #define LARGEST_DIAGONAL 10.0
 #define SMALLEST_DIAGONAL 1e-3
 
+/* A body is thin where its thickness is less than this, in lengths of cells: bending of a plate of one cell
+ * is too stiff by 40 %, of two cells by 5 %. So much of the boundary is told. */
+#define THIN 1.5
+#define THIN_SHARE 0.1
+
+static void note_thin(const struct tool *tool, const struct cells *cells)
+{
+    struct thin_report thin;
+    struct error error;
+    char place[96];
+    tool_check(tool, cells_find_thin(cells, THIN, &thin, &error), &error);
+    if (thin.share > THIN_SHARE) {
+        point_text(cells->dim, thin.place, place);
+        tool_note(tool,
+                  "%.0f %% of the boundary is on parts about one cell thick, the thinnest %.2g of a cell at "
+                  "%s m: they "
+                  "bend too stiffly, up to several times where thinner than their cells are long: two cells "
+                  "through "
+                  "them are enough",
+                  100.0 * thin.share, thin.least, place);
+    }
+}
+
 static void report(const struct tool *tool, const struct mesh *mesh, bool verbose)
 {
     struct box box = box_of(mesh->dim, mesh->node_count, mesh->x);
@@ -109,6 +135,7 @@ static void report(const struct tool *tool, const struct mesh *mesh, bool verbos
     if (diagonal > LARGEST_DIAGONAL || diagonal < SMALLEST_DIAGONAL) {
         tool_note(tool, "the body is %.3g m across: is the unit of -u right?", diagonal);
     }
+    note_thin(tool, &cells);
     if (!verbose) {
         return;
     }

@@ -46,9 +46,8 @@ static const char usage[] =
 
 #include "image_body.h"
 #include "images.h"
-#include "names.h"
+#include "sample_points.h"
 #include "output.h"
-#include "stages.h"
 #include "tissue.h"
 #include "views.h"
 
@@ -71,16 +70,6 @@ struct request {
     bool has_outside, stiffness, text;
     struct tissue tissue;
     int image_count;
-};
-
-/* The points, and what comes of them. */
-struct rows {
-    const char *what; /* the points in messages */
-    int dim;
-    int64_t count;
-    double *x;     /* count * dim, m; owned */
-    int64_t cols;  /* values at a point */
-    double *value; /* count * cols; owned */
 };
 
 static void parse(const struct tool *tool, const struct option *options, struct request *request)
@@ -130,96 +119,6 @@ static void parse(const struct tool *tool, const struct option *options, struct 
     }
 }
 
-/* The rows of a table of coordinates. */
-static void read_table(const struct tool *tool, const struct request *request, struct rows *rows)
-{
-    struct table table;
-    struct error error;
-    tool_check(tool, table_read(request->points, 2, 3, &table, &error), &error);
-    *rows = (struct rows){
-        .what = request->points, .dim = (int)table.cols, .count = table.rows, .x = table.values};
-    table.values = NULL;
-    table_free(&table);
-    for (int64_t i = 0; i < rows->count * rows->dim; i++) {
-        rows->x[i] *= request->unit;
-    }
-}
-
-/* wanted[...]: for each region whether the list names it; allocated. */
-static bool *find_regions(const struct tool *tool, const struct section *region, const char *list,
-                          size_t *most)
-{
-    struct error error;
-    char *names, *copy = strdup(list), *name;
-    bool *wanted;
-    tool_check(tool, copy == NULL ? fail_memory(&error, "-r") : STATUS_OK, &error);
-    tool_check(tool, names_of_section(region, &names, &error), &error);
-    *most = strlen(names) + 1;
-    tool_check(tool, NEW_ARRAY(&wanted, (int64_t)*most, &error), &error);
-    for (char *rest = copy; (name = strsep(&rest, ",")) != NULL;) {
-        int64_t index = names_index(names, name);
-        if (index < 0) {
-            tool_fail(tool, STATUS_INPUT, "-r: no region '%s': there are %s", name, names);
-        }
-        wanted[index] = true;
-    }
-    free(copy);
-    free(names);
-    return wanted;
-}
-
-/* Keep the points in cells of the chosen regions. */
-static void choose_regions(const struct tool *tool, const struct stream *stream, const char *list,
-                           struct rows *rows)
-{
-    struct error error;
-    const struct section *cell, *region;
-    int64_t kept = 0;
-    size_t most;
-    tool_check(tool, stream_need(stream, "points.cell", TYPE_I4, 1, "ipoints", &cell, &error), &error);
-    tool_check(tool, stream_need(stream, "cells.region", TYPE_I4, 1, "nodes", &region, &error), &error);
-    if (cell->rows != rows->count) {
-        tool_fail(tool, STATUS_INPUT, "points.cell: not one row per point: run ipoints again");
-    }
-    bool *wanted = find_regions(tool, region, list, &most);
-    for (int64_t q = 0; q < rows->count; q++) {
-        int64_t c = ((const int32_t *)cell->data)[q];
-        int64_t r = c >= 0 && c < region->rows ? ((const int32_t *)region->data)[c] : -1;
-        if (r < 0 || (size_t)r >= most) {
-            tool_fail(tool, STATUS_INPUT, "points.cell: row %lld: no cell of a region", (long long)q);
-        }
-        if (wanted[r]) {
-            memmove(rows->x + kept++ * rows->dim, rows->x + q * rows->dim,
-                    (size_t)rows->dim * sizeof *rows->x);
-        }
-    }
-    rows->count = kept;
-    free(wanted);
-}
-
-/* The points of a section. */
-static void read_section(const struct tool *tool, const struct request *request, const char *file,
-                         struct stream *stream, struct rows *rows)
-{
-    struct error error;
-    const struct section *at;
-    tool_read(tool, file, stream);
-    if (strcmp(request->at, "points.x") == 0) {
-        stage_fill(tool, stream, "ipoints");
-    }
-    tool_check(tool, stream_need(stream, request->at, TYPE_F8, 0, "nodes", &at, &error), &error);
-    if (at->cols < 2 || at->cols > 3) {
-        tool_fail(tool, STATUS_INPUT, "%s: %lld columns: points have 2 or 3 coordinates", request->at,
-                  (long long)at->cols);
-    }
-    *rows = (struct rows){.what = request->at, .dim = (int)at->cols, .count = at->rows};
-    tool_check(tool, NEW_ARRAY(&rows->x, at->rows * at->cols, &error), &error);
-    memcpy(rows->x, at->data, (size_t)(at->rows * at->cols) * sizeof *rows->x);
-    if (request->region != NULL) {
-        choose_regions(tool, stream, request->region, rows);
-    }
-}
-
 /* Whether all are finite. */
 static bool are_finite(const double *values, size_t count)
 {
@@ -233,7 +132,7 @@ static bool are_finite(const double *values, size_t count)
 
 /* One image's values at all points, into columns `first` and on. */
 static void sample_image(const struct tool *tool, const struct request *request, const struct image *image,
-                         const char *name, struct rows *rows, int64_t first)
+                         const char *name, struct sample_points *rows, int64_t first)
 {
     double inverse[3][4];
     int64_t outside = 0, first_outside = -1;
@@ -271,7 +170,7 @@ static void sample_image(const struct tool *tool, const struct request *request,
 }
 
 /* The values of all images. The first one says how many there are at a point. */
-static void sample_images(const struct tool *tool, const struct request *request, struct rows *rows)
+static void sample_images(const struct tool *tool, const struct request *request, struct sample_points *rows)
 {
     struct error error;
     for (int i = 0; i < request->image_count; i++) {
@@ -293,7 +192,7 @@ static void sample_images(const struct tool *tool, const struct request *request
 }
 
 /* E and nu in place of the images' values. */
-static void find_moduli(const struct tool *tool, const struct tissue *tissue, struct rows *rows)
+static void find_moduli(const struct tool *tool, const struct tissue *tissue, struct sample_points *rows)
 {
     struct error error;
     double(*moduli)[2];
@@ -320,7 +219,7 @@ static void find_moduli(const struct tool *tool, const struct tissue *tissue, st
     rows->cols = 2;
 }
 
-static void print_rows(FILE *file, const struct request *request, const struct rows *rows)
+static void print_rows(FILE *file, const struct request *request, const struct sample_points *rows)
 {
     fprintf(file, "# x y%s", rows->dim == 3 ? " z" : "");
     for (int64_t c = 0; c < rows->cols; c++) {
@@ -339,7 +238,8 @@ static void print_rows(FILE *file, const struct request *request, const struct r
 }
 
 /* To the output file, or standard output. */
-static void write_table(const struct tool *tool, const struct request *request, const struct rows *rows)
+static void write_table(const struct tool *tool, const struct request *request,
+                        const struct sample_points *rows)
 {
     struct error error;
     struct output output;
@@ -367,7 +267,7 @@ int main(int argc, char *argv[])
     struct tool tool;
     struct stream stream;
     struct request request;
-    struct rows rows;
+    struct sample_points rows;
     struct error error;
     static struct option_uses uses; /* of --tissue */
     struct option options[OPTION_COUNT] = {
@@ -394,9 +294,10 @@ int main(int argc, char *argv[])
     }
     stream_init(&stream);
     if (request.points != NULL) {
-        read_table(&tool, &request, &rows);
+        sample_points_table(&tool, request.points, request.unit, &rows);
     } else {
-        read_section(&tool, &request, tool.operands[request.image_count], &stream, &rows);
+        sample_points_section(&tool, tool.operands[request.image_count], request.at, request.region, &stream,
+                              &rows);
     }
     sample_images(&tool, &request, &rows);
     if (request.stiffness) {

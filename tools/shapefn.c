@@ -68,7 +68,7 @@ int main(int argc, char *argv[])
     tool_read(&tool, tool.operands[0], &stream);
     tool_check(&tool, stream_nodes(&stream, &dim, &node_count, &x, &error), &error);
     stage_fill(&tool, &stream, "support");
-    tool_check(&tool, stage_recorded(stream_find(&stream, "support.radius"), dim, &recorded, &error), &error);
+    tool_check(&tool, stage_recorded(&stream, "support", dim, &recorded, &error), &error);
     recorded.shapes = recorded.support.mls;
     tool_check(&tool, mls_apply_options(options + BASIS, &recorded.shapes, &error), &error);
     tool_check(&tool, stage_shapefn(&stream, &recorded.shapes, &error), &error);

@@ -2,8 +2,8 @@ static const char usage[] =
     "support - support domains and neighbour lists\n"
     "\n"
     "usage: support [-k FACTOR | -R RADIUS] [-m LEAST] [-n MOST]\n"
-    "               [--no-widen] [--bound BOUND] [--reach RULE] [-b BASIS] [-w WEIGHT] [--mu MU]\n"
-    "               [--mu-unit UNIT] [-v] [-t] [-o FILE] [FILE]\n"
+    "               [--no-widen] [--bound BOUND] [--reach RULE] [-i REGION[,REGION...]] [-b BASIS]\n"
+    "               [-w WEIGHT] [--mu MU] [--mu-unit UNIT] [-v] [-t] [-o FILE] [FILE]\n"
     "\n"
     "Reads a stream with nodes.x (m) and points (see ipoints) and adds the support radius of every\n"
     "node and the lists of neighbours - the nodes whose supports contain the point - of the\n"
@@ -14,6 +14,12 @@ static const char usage[] =
     "weight follows the length of that path. Bodies that no face of a cell joins do not see each\n"
     "other, even where they touch; a node that cells share sees, and is seen by, all of them. Clouds\n"
     "without cells have neighbours by distance alone.\n"
+    "\n"
+    "Nor do they act across interfaces, which -i names by their regions: where the stiffness jumps the\n"
+    "gradient of the displacement does, which shape functions that see both sides smooth away, and\n"
+    "with it the stress. The nodes of an interface belong to both sides, so that the displacement is\n"
+    "continuous. What lies on it has the shape functions of the region that is named first: name the\n"
+    "stiffest first. Interfaces between materials of one stiffness need no name.\n"
     "\n"
     "Where a list holds too few nodes, or badly placed ones, for the basis, all radii are widened for\n"
     "that point until the moment matrix is well conditioned and the gradients of the shape functions\n"
@@ -29,6 +35,8 @@ static const char usage[] =
     "      --no-widen         leave unfit supports as they are, for shapefn to report\n"
     "      --bound BOUND      largest |grad phi| times spacing admitted (default 6)\n"
     "      --reach RULE       cells (default where there are cells), or distance: also across gaps\n"
+    "  -i, --interface REGION[,REGION...]\n"
+    "                         supports stop at the boundaries of these regions\n"
     "  -b, --basis BASIS      mls1, mls2 or mmls2 (default): what the lists are for; shapefn follows\n"
     "                         it\n"
     "  -w, --weight WEIGHT    quartic (default) or regularised; shapefn follows it\n"
@@ -46,6 +54,8 @@ static const char usage[] =
 #include "mls_options.h"
 #include "stages.h"
 
+#include <stdlib.h>
+
 enum {
     FACTOR,
     RADIUS,
@@ -54,6 +64,7 @@ enum {
     NO_WIDEN,
     BOUND,
     REACH,
+    INTERFACE,
     BASIS,
     LAST_OF_MLS = BASIS + MLS_OPTION_COUNT - 1,
     VERBOSE,
@@ -89,6 +100,9 @@ static struct support_options parse(const struct tool *tool, const struct option
             parse_choice(options[REACH].value, "--reach", reach_names, REACH_RULE_COUNT, &choice, &error),
             &error);
         support.reach = (enum reach_rule)choice;
+    }
+    if (options[INTERFACE].given && support.reach == REACH_DISTANCE) {
+        tool_fail(tool, STATUS_INPUT, "--reach distance acts across the interfaces of -i");
     }
     support.widen = !options[NO_WIDEN].given;
     tool_check(tool, mls_apply_options(options + BASIS, &support.mls, &error), &error);
@@ -134,6 +148,7 @@ int main(int argc, char *argv[])
         [NO_WIDEN] = {.name = "no-widen"},
         [BOUND] = {.name = "bound", .takes_value = true},
         [REACH] = {.name = "reach", .takes_value = true},
+        [INTERFACE] = {.letter = 'i', .name = "interface", .takes_value = true},
         [BASIS] = MLS_OPTIONS,
         [VERBOSE] = {.letter = 'v', .name = "verbose"},
         [TEXT] = {.letter = 't', .name = "text"},
@@ -149,6 +164,11 @@ int main(int argc, char *argv[])
     tool_check(&tool, stream_nodes(&stream, &dim, &node_count, &x, &error), &error);
     struct support_options support = parse(&tool, options, dim);
     stage_fill(&tool, &stream, "ipoints");
+    int32_t *side = NULL;
+    if (options[INTERFACE].given) {
+        tool_check(&tool, stage_interfaces(&stream, options[INTERFACE].value, &side, &error), &error);
+        support.side = side;
+    }
     tool_check(&tool, stage_support(&stream, &support, &report, &error), &error);
     if (options[REACH].given && report.reach != support.reach) {
         tool_fail(&tool, STATUS_INPUT, "--reach cells: the input has no cells: --reach distance");
@@ -158,5 +178,6 @@ int main(int argc, char *argv[])
     }
     tool_write(&tool, &stream, options[TEXT].given);
     stream_free(&stream);
+    free(side);
     return tool_end(&tool);
 }

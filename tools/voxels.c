@@ -1,8 +1,8 @@
 static const char usage[] =
     "voxels - label image to node cloud, background cells, facets and node sets\n"
     "\n"
-    "usage: voxels -h LENGTH [--fine LENGTH[:NAME,...]] [-l TABLE] [-s AXIS=PLACE] [--largest]\n"
-    "              [-u UNIT] [-v] [-b | -t] [-o FILE] [IMAGE]\n"
+    "usage: voxels -h LENGTH [--fine LENGTH[:NAME,...]] [-l TABLE] [--part NAME=PLACE]...\n"
+    "              [-s AXIS=PLACE] [--largest] [-u UNIT] [-v] [-b | -t] [-o FILE] [IMAGE]\n"
     "       voxels -h LENGTH --surface NAME[|NAME] [--gap LENGTH] [--fine LENGTH[:NAME,...]] [-l TABLE]\n"
     "              [-s AXIS=PLACE] [--largest] [-u UNIT] [-v] [-o FILE] [IMAGE]\n"
     "\n"
@@ -10,17 +10,19 @@ static const char usage[] =
     "nodes writes of a mesh: nodes.x (world coordinates, m; x to the right, y to the front, z up), cells,\n"
     "cells.region with the labels' names, facets of the boundary in groups A|B of the region A and what\n"
     "lies beyond, B: 'outside' or a label that is left out; and as node sets A|B the interfaces between\n"
-    "regions. Any shape will do: no surface is made first, and none has to be mended.\n"
+    "regions.\n"
     "\n"
     "A body-centred cubic lattice of cubes of LENGTH (2D: one of equilateral triangles) is cut where\n"
     "labels meet (isosurface stuffing, Labelle and Shewchuk 2007). Interfaces are smooth: where two\n"
-    "labels, each smoothed by cubic B-splines, have equal shares. Nodes of interfaces are moved by at most\n"
-    ".55 voxels to keep the volume of each label. Angles of cells are between 8 and 165 degrees.\n"
+    "labels, smoothed by cubic B-splines, have equal shares. Their nodes are moved by at most .55 voxels\n"
+    "to keep the volume of each label. Angles of cells are between 8 and 165 degrees.\n"
     "\n"
-    "Parts of a label that are thinner than LENGTH may be lost, and bodies about a single lattice point are\n"
-    "left out; both is told with their volume: --fine keeps more. Where parts of the body hang together by\n"
-    "a node or an edge alone they are cut apart. Parts of the boundary get names by the program groups:\n"
-    "'groups -u mm -f opening=\"ball:30,20,80,40 and parenchyma|outside\"'.\n"
+    "Parts of a label that are thinner than LENGTH may be lost, and bodies about a single lattice point\n"
+    "are left out; both is told: --fine keeps more. Bodies that hang together by a node or an edge are\n"
+    "cut apart; between parts of one body a gap is filled there, and crevices are at their tips.\n"
+    "\n"
+    "A part of the outer boundary gets a name by --part, with nodes on its rim; others, of whole facets, by\n"
+    "groups.\n"
     "\n"
     "A slice, which is an image of one slice or one chosen by -s, makes a body in the plane: x and y of\n"
     "the stream are then the two world axes in the slice, in their order.\n"
@@ -43,6 +45,8 @@ static const char usage[] =
     "                          that label, which may be outside, lies beyond it\n"
     "      --gap LENGTH        move that surface outward by LENGTH\n"
     "  -l, --labels TABLE      names of labels\n"
+    "      --part NAME=PLACE   name of the boundary in ball:X,Y,Z,RADIUS, lengths with units, or in the\n"
+    "                          voxels of a mask image; of two that overlap the later one has it\n"
     "  -s, --slice AXIS=PLACE  the slice nearest to PLACE on a world axis, as z=12mm\n"
     "      --largest           the largest connected body only\n"
     "  -u, --unit UNIT         unit of the file's lengths, instead of what it says: m, cm, mm, um, or a\n"
@@ -57,10 +61,10 @@ static const char usage[] =
     "  voxels labels.nii.gz -h 6mm | shapefn | mtled craniotomy.scene > u.dat\n"
     "  printf '1 parenchyma\\n2 ventricles -\\n3,10-12 tumour\\n* -\\n' > names\n"
     "  voxels -l names -h 4mm -v < labels.nii.gz > body.mts\n"
-    "  voxels -h 4mm -l names --surface 'parenchyma|outside' --gap 1mm labels.nii.gz > skull.tsv\n"
-    "  voxels -s z=40mm -h 3mm labels.nii.gz | mts list\n";
+    "  voxels -h 4mm -l names --surface 'parenchyma|outside' --gap 1mm labels.nii.gz > skull.tsv\n";
 
 #include "label_mesh.h"
+#include "label_part.h"
 #include "label_surface.h"
 
 #include "approx/cells.h"
@@ -76,6 +80,7 @@ enum {
     SURFACE,
     GAP,
     LABELS,
+    PART,
     SLICE,
     LARGEST,
     UNIT,
@@ -89,11 +94,12 @@ enum {
 /* Volumes are told where they are off by more than this share. */
 static const double told_share = 0.01;
 
-/* Volume of the cells of each label, m3 (2D: m2). */
-static void cell_volumes(const struct cells *cells, const int32_t *label, double *volume)
+/* Volume of the cells of each label with its parts, m3 (2D: m2). */
+static void cell_volumes(const struct cells *cells, const struct label_image *image, const int32_t *label,
+                         double *volume)
 {
     for (int64_t c = 0; c < cells->count; c++) {
-        volume[label[c]] += cell_volume(cells, c);
+        volume[image->region[label[c]]] += cell_volume(cells, c);
     }
 }
 
@@ -109,16 +115,21 @@ static void report_labels(const struct tool *tool, const struct label_image *ima
     struct cells cells = {stuffing->dim, stuffing->node_count, stuffing->x, stuffing->cell_count,
                           stuffing->cell};
     struct error error;
-    double *volume = NULL;
+    double *volume = NULL, *voxels = NULL;
     int64_t *lost = NULL;
     int dim = stuffing->dim;
     const char *unit = dim == 3 ? "ml" : "cm2";
     tool_check(tool, NEW_ARRAY(&volume, image->labels.count, &error), &error);
     tool_check(tool, NEW_ARRAY(&lost, image->labels.count, &error), &error);
     tool_check(tool, stuffing_lost(&image->labels, stuffing, lost, &error), &error);
-    cell_volumes(&cells, stuffing->label, volume);
+    tool_check(tool, NEW_ARRAY(&voxels, image->labels.count, &error), &error);
+    cell_volumes(&cells, image, stuffing->label, volume);
     for (int32_t l = 1; l < image->labels.count; l++) {
-        double before = shown(dim, image->volume[l]), after = shown(dim, volume[l]);
+        voxels[image->region[l]] += image->volume[l];
+        lost[image->region[l]] += image->region[l] != l ? lost[l] : 0;
+    }
+    for (int32_t l = 1; l <= image->table.name_count; l++) {
+        double before = shown(dim, voxels[l]), after = shown(dim, volume[l]);
         double missing = shown(dim, (double)lost[l] * image->voxel_volume);
         const char *name = label_image_name(image, l);
         if (!image->keep[l]) {
@@ -142,6 +153,7 @@ static void report_labels(const struct tool *tool, const struct label_image *ima
         }
     }
     free(volume);
+    free(voxels);
     free(lost);
 }
 
@@ -203,8 +215,14 @@ static void report(const struct tool *tool, const struct label_image *image, con
                   cells.dim == 3 ? "ml" : "cm2");
     }
     if (stuffing->pinched > 0) {
-        tool_note(tool, "parts that hung together by a node or an edge alone are cut apart at %lld nodes",
+        tool_note(tool, "bodies that hung together by a node or an edge alone are cut apart at %lld nodes",
                   (long long)stuffing->pinched);
+    }
+    if (stuffing->hinges > 0) {
+        tool_note(
+            tool,
+            "parts of a body touch by a node or an edge alone at %lld nodes: --fine may tell them apart",
+            (long long)stuffing->hinges);
     }
     report_labels(tool, image, stuffing, verbose);
     report_bodies(tool, &cells, verbose);
@@ -240,7 +258,9 @@ static bool *parse_fine(const struct tool *tool, const struct label_image *image
         if (label < 0) {
             tool_fail(tool, STATUS_INPUT, "--fine: no label '%.60s'", name);
         }
-        fine[label] = true;
+        for (int32_t l = 0; l < image->labels.count; l++) {
+            fine[l] = fine[l] || image->region[l] == label;
+        }
     }
     free(copy);
     return fine;
@@ -254,6 +274,15 @@ static void write_stream(const struct tool *tool, const struct label_image *imag
     struct error error;
     tool_check(tool, label_mesh_make(image, stuffing, &mesh, &error), &error);
     stream_init(&stream);
+    for (int32_t p = 0; p < image->part_count; p++) {
+        bool found = false;
+        for (int32_t s = 0; s < mesh.facet_sets.count; s++) {
+            found = found || strcmp(mesh.facet_sets.name[s], image->part[p]) == 0;
+        }
+        if (!found) {
+            tool_fail(tool, STATUS_INPUT, "--part %s: no facet of the boundary lies in it", image->part[p]);
+        }
+    }
     tool_check(tool, mesh_put(&mesh, &stream, &error), &error);
     tool_write(tool, &stream, text);
     stream_free(&stream);
@@ -271,6 +300,9 @@ static void check_options(const struct tool *tool, const struct option options[]
     if (options[SURFACE].given && (options[BINARY].given || options[TEXT].given)) {
         tool_fail(tool, STATUS_INPUT, "--surface goes without -b and -t: it writes a table");
     }
+    if (options[SURFACE].given && options[PART].given) {
+        tool_fail(tool, STATUS_INPUT, "--surface goes without --part");
+    }
     if (options[GAP].given && !options[SURFACE].given) {
         tool_fail(tool, STATUS_INPUT, "--gap goes with --surface");
     }
@@ -279,6 +311,7 @@ static void check_options(const struct tool *tool, const struct option options[]
 int main(int argc, char *argv[])
 {
     static char help[] = "--help";
+    static struct option_uses parts;
     struct tool tool;
     struct label_image image;
     struct stuffing stuffing;
@@ -291,6 +324,7 @@ int main(int argc, char *argv[])
         [SURFACE] = {.name = "surface", .takes_value = true},
         [GAP] = {.name = "gap", .takes_value = true},
         [LABELS] = {.letter = 'l', .name = "labels", .takes_value = true},
+        [PART] = {.name = "part", .takes_value = true, .uses = &parts},
         [SLICE] = {.letter = 's', .name = "slice", .takes_value = true},
         [LARGEST] = {.name = "largest"},
         [UNIT] = {.letter = 'u', .name = "unit", .takes_value = true},
@@ -311,6 +345,7 @@ int main(int argc, char *argv[])
     wanted.table = options[LABELS].value;
     wanted.slice = options[SLICE].value;
     label_image_read(&tool, tool.operands[0], &wanted, &image);
+    label_parts_make(&tool, &parts, &image);
     struct label_surface_options surface = {.gap = 0};
     if (options[GAP].given) {
         tool_check(&tool, parse_length(options[GAP].value, "--gap", &surface.gap, &error), &error);
@@ -322,7 +357,7 @@ int main(int argc, char *argv[])
         }
     }
     struct stuffing_options stuffing_options = {
-        .spacing = spacing, .keep = image.keep, .largest = options[LARGEST].given};
+        .spacing = spacing, .keep = image.keep, .whole = image.region, .largest = options[LARGEST].given};
     bool *fine = NULL;
     if (options[FINE].given) {
         fine = parse_fine(&tool, &image, options[FINE].value, spacing, &stuffing_options.finest);

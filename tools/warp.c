@@ -52,6 +52,7 @@ static const char usage[] =
 #include "images.h"
 #include "solved.h"
 #include "views.h"
+#include "warp_voxels.h"
 
 #include "approx/motion.h"
 #include "io/image_sample.h"
@@ -65,33 +66,16 @@ enum { METHOD, LIKE, FILL, VACATED, FIELD, INVERSE, FRAME, VERBOSE, OUTPUT, OPTI
 
 static const double tolerance = 1e-4; /* of the places, in voxels */
 
-/* What was asked for. */
-struct request {
-    enum image_method method;
-    bool fills, marks_vacated, field, inverse, verbose;
-    double fill, vacated;
-    char section[32]; /* u, u.frame.K */
-};
-
-/* What has come of it. */
-struct report {
-    int64_t moved, vacated,
-        beyond;              /* voxels: in the moved body; uncovered; whose place is outside of the image */
-    int64_t doubly, inexact; /* in two cells; whose place was not found */
-    double farthest;         /* displacement, m */
-    double inconsistency;    /* |place(X) - x|, m */
-};
-
-static void parse(const struct tool *tool, const struct option *options, struct request *request)
+static void parse(const struct tool *tool, const struct option *options, struct warp_request *request)
 {
     struct error error;
     int64_t frame = 0;
-    *request = (struct request){.fills = options[FILL].given,
-                                .marks_vacated = options[VACATED].given,
-                                .field = options[FIELD].given,
-                                .inverse = options[INVERSE].given,
-                                .verbose = options[VERBOSE].given,
-                                .section = "u"};
+    *request = (struct warp_request){.fills = options[FILL].given,
+                                     .marks_vacated = options[VACATED].given,
+                                     .field = options[FIELD].given,
+                                     .inverse = options[INVERSE].given,
+                                     .verbose = options[VERBOSE].given,
+                                     .section = "u"};
     for (int i = METHOD; i <= VACATED; i++) {
         if (request->field && options[i].given) {
             tool_fail(tool, STATUS_INPUT, "--%s is for images, not for --field", options[i].name);
@@ -139,106 +123,8 @@ static const double *find_field(const struct tool *tool, const struct stream *st
     return values;
 }
 
-/* Everything that the loop over voxels looks at. */
-struct job {
-    const struct request *request;
-    const struct image *source; /* NULL: the field is written */
-    double source_voxel[3][4];
-    const struct motion *motion;
-    const int32_t *owner, *other; /* the body where the voxels see it; and in its other state, or NULL */
-    double tolerance;             /* m */
-    const struct image_axes *axes;
-    struct image *result;
-};
-
-/* The place in the other state that is seen at x: for places outside of the body x itself. */
-static void find_place(const struct job *job, int64_t v, const double x[3], double place[3],
-                       struct report *report)
-{
-    int dim = job->motion->cells.dim;
-    double residual = 0, square = 0;
-    memcpy(place, x, 3 * sizeof *x);
-    if (job->owner[v] < 0) {
-        return;
-    }
-    if (job->request->inverse) {
-        motion_place(job->motion, job->owner[v], x, place);
-    } else if (!motion_inverse(job->motion, job->owner[v], x, job->tolerance, place, &residual)) {
-        report->inexact++;
-    }
-    for (int i = 0; i < dim; i++) {
-        square += (place[i] - x[i]) * (place[i] - x[i]);
-    }
-    report->moved++;
-    report->farthest = fmax(report->farthest, sqrt(square));
-    report->inconsistency = fmax(report->inconsistency, residual);
-}
-
-/* The value of the moved image at voxel v, which shows `place`. */
-static void put_value(const struct job *job, int64_t v, const double place[3], struct report *report)
-{
-    const struct request *request = job->request;
-    size_t components = job->result->components;
-    double voxel[3], *value = job->result->values + (size_t)v * components;
-    bool outside = job->owner[v] < 0, vacated = outside && job->other != NULL && job->other[v] >= 0;
-    report->vacated += vacated;
-    for (int i = 0; i < 3; i++) {
-        const double *row = job->source_voxel[i];
-        voxel[i] = row[0] * place[0] + row[1] * place[1] + row[2] * place[2] + row[3];
-    }
-    bool known = !(vacated && request->marks_vacated) && !(outside && request->fills);
-    if (known && image_sample(job->source, request->method, voxel, value)) {
-        return;
-    }
-    report->beyond += known;
-    for (size_t c = 0; c < components; c++) {
-        value[c] = vacated && request->marks_vacated ? request->vacated : request->fills ? request->fill : 0;
-    }
-}
-
-/* One row of voxels. */
-static void do_row(const struct job *job, int64_t row, struct report *report)
-{
-    struct image *result = job->result;
-    int64_t width = (int64_t)result->size[0], height = (int64_t)result->size[1];
-    int64_t j = row % height, k = row / height;
-    for (int64_t i = 0; i < width; i++) {
-        int64_t v = row * width + i;
-        const double voxel[3] = {(double)i, (double)j, (double)k};
-        double x[3], place[3];
-        image_world(result, voxel, x);
-        find_place(job, v, x, place, report);
-        if (job->source != NULL) {
-            put_value(job, v, place, report);
-            continue;
-        }
-        for (int c = 0; c < 3; c++) { /* to ITK's axes and unit */
-            int axis = job->axes->world[c];
-            result->values[3 * v + axis] = (axis < 2 ? -1e3 : 1e3) * (place[c] - x[c]);
-        }
-    }
-}
-
-static void do_all(const struct job *job, struct report *report)
-{
-    int64_t rows = (int64_t)(job->result->size[1] * job->result->size[2]);
-    int64_t moved = 0, vacated = 0, beyond = 0, inexact = 0;
-    double farthest = 0, inconsistency = 0;
-#pragma omp parallel for schedule(dynamic, 16) reduction(+ : moved, vacated, beyond, inexact)                \
-    reduction(max : farthest, inconsistency)
-    for (int64_t row = 0; row < rows; row++) {
-        struct report own = {0};
-        do_row(job, row, &own);
-        moved += own.moved, vacated += own.vacated, beyond += own.beyond, inexact += own.inexact;
-        farthest = fmax(farthest, own.farthest);
-        inconsistency = fmax(inconsistency, own.inconsistency);
-    }
-    report->moved = moved, report->vacated = vacated, report->beyond = beyond, report->inexact = inexact;
-    report->farthest = farthest, report->inconsistency = inconsistency;
-}
-
-static void tell(const struct tool *tool, const struct request *request, const struct motion *motion,
-                 const struct image *grid, const struct report *report)
+static void tell(const struct tool *tool, const struct warp_request *request, const struct motion *motion,
+                 const struct image *grid, const struct warp_report *report)
 {
     char text[128];
     int dim = motion->cells.dim;
@@ -335,8 +221,8 @@ int main(int argc, char *argv[])
 {
     struct tool tool;
     struct stream stream;
-    struct request request;
-    struct report report = {0};
+    struct warp_request request;
+    struct warp_report report = {0};
     struct image image, like = {0}, result;
     struct cells cells;
     struct motion motion;
@@ -385,16 +271,16 @@ int main(int argc, char *argv[])
         tell_not_finite(&tool, &image, tool.operands[0]);
     }
     new_result(&tool, request.field ? NULL : &image, grid, &result);
-    struct job job = {.request = &request,
-                      .source = request.field ? NULL : &image,
-                      .motion = &motion,
-                      .owner = owner,
-                      .other = other,
-                      .tolerance = tolerance * least_step(grid, cells.dim),
-                      .axes = &axes,
-                      .result = &result};
+    struct warp_job job = {.request = &request,
+                           .source = request.field ? NULL : &image,
+                           .motion = &motion,
+                           .owner = owner,
+                           .other = other,
+                           .tolerance = tolerance * least_step(grid, cells.dim),
+                           .axes = &axes,
+                           .result = &result};
     image_to_voxel(&image, job.source_voxel);
-    do_all(&job, &report);
+    warp_voxels(&job, &report);
     tell(&tool, &request, &motion, grid, &report);
     if (request.verbose && !request.field && request.method == IMAGE_NEAREST) {
         tell_label_volumes(&tool, &image, &result, cells.dim);

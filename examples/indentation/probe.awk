@@ -1,5 +1,5 @@
 # The lower cap of a ball of radius R that rests on the origin, triangles a b c in a row, mm, normals outward:
-# awk -v R=10 -v rim=5 -v rings=12 -v sectors=32 -f probe.awk > probe.tsv
+# awk -v R=10 -v rim=4 -v rings=24 -v sectors=32 -f probe.awk > probe.tsv
 BEGIN {
     pi = atan2(0, -1)
     for (i = 0; i < rings; i++)

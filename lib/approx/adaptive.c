@@ -166,10 +166,7 @@ enum status adaptive_points_build(const struct adaptive_options *options, const 
     int64_t marked;
     *points = (struct adaptive_points){0};
     TRY(quadrature_cell_rule(cells->dim, options->rule_points, &refinement.rule, error));
-    TRY(point_grid_build(&refinement.grid, cells->dim, cells->node_count, cells->x, radius, error));
-    if (options->support.reach == REACH_CELLS) {
-        TRY(reach_build(cells, &refinement.grid, &refinement.reach, error));
-    }
+    TRY(support_space_build(&options->support, cells, radius, &refinement.space, error));
     TRY(NEW_ARRAY(&refinement.norm, cells->count, error));
     TRY(start(cells, &leaves, error));
     do {
@@ -179,8 +176,7 @@ enum status adaptive_points_build(const struct adaptive_options *options, const 
     } while (marked > 0);
     TRY(place_points(&refinement, &leaves, points, error));
 done:
-    reach_free(&refinement.reach);
-    point_grid_free(&refinement.grid);
+    support_space_free(&refinement.space);
     free(refinement.norm);
     free(leaves.leaf);
     if (status != STATUS_OK) {

@@ -81,11 +81,9 @@ static enum status sample_leaves(const struct refinement *refinement, struct lea
             x += per_rule * dim;
         }
     }
-    bool by_cells = refinement->options->support.reach == REACH_CELLS;
     struct reach_places places = {.cell = sample->cell, .per_row = 1, .points_per_row = sample->per_leaf};
-    TRY(support_build_within(&refinement->options->support, &refinement->grid,
-                             by_cells ? &refinement->reach : NULL, &places, points, sample->x,
-                             "adaptive points", &sample->lists, error));
+    TRY(support_space_lists(&refinement->options->support, &refinement->space, &places, points, sample->x,
+                            "adaptive points", &sample->lists, error));
     int64_t pairs = sample->lists.ptr[points];
     TRY(NEW_ARRAY(&sample->phi, pairs, error));
     TRY(NEW_ARRAY(&sample->dphi, pairs * dim, error));

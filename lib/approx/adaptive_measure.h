@@ -5,6 +5,7 @@
 
 #include "approx/adaptive.h"
 #include "approx/quadrature.h"
+#include "approx/support_space.h"
 
 /* A subcell. */
 struct leaf {
@@ -26,8 +27,7 @@ struct refinement {
     const struct adaptive_options *options;
     const struct cells *cells;
     const double *radius;
-    struct point_grid grid;
-    struct reach reach; /* unless options->support.reach is REACH_DISTANCE */
+    struct support_space space;
     struct quadrature_rule rule;
     double *norm; /* |K| of each cell, by the rule on the whole cell */
 };

@@ -155,13 +155,13 @@ static void take_node(const struct face_table *table, int64_t part, struct bound
 
 /* The parts that averages are made of: boundary averages, split where the boundary turns or not, and, with
  * `sides`, whole sides after them. */
-static enum status collect_parts(const struct face_table *table, const struct facet_set *set, bool split,
-                                 struct boundary_sides *sides, struct corner *corners, int64_t *parts,
-                                 struct error *error)
+static enum status collect_parts(const struct face_table *table, const struct facet_set *set,
+                                 const int64_t *face_of, bool split, struct boundary_sides *sides,
+                                 struct corner *corners, int64_t *parts, struct error *error)
 {
-    enum status status;
+    enum status status = STATUS_OK;
     int64_t *group = NULL, count = 2 * set->count * table->dim;
-    TRY(boundary_collect_corners(table, set, split, corners, parts, error));
+    boundary_collect_corners(table, set, face_of, split, corners, parts);
     if (sides != NULL) {
         sides->node_average_count = *parts;
         TRY(NEW_ARRAY(&group, set->count, error));
@@ -193,8 +193,8 @@ static enum status build(const struct face_table *table, const struct facet_set 
     TRY(NEW_ARRAY(&face_of, set->count, error));
     TRY(NEW_ARRAY(&row.value, table->node_count, error));
     TRY(NEW_ARRAY(&row.is_touched, table->node_count, error));
-    TRY(collect_parts(table, set, split, sides, corners, &parts, error));
     TRY(boundary_find_faces(table, set, face_of, error));
+    TRY(collect_parts(table, set, face_of, split, sides, corners, &parts, error));
     TRY(allocate(dim, parts, corner_count * table->per_face, averages, error));
     for (int64_t part = 0, next = 0; part < parts; part++) {
         int32_t node = corners[next].node;

@@ -2,9 +2,10 @@
  * function. Constraints and contact act on them.
  *
  * The average at a boundary node a is Phi_a u = integral(N_a u_h ds) / integral(N_a ds) over the facets of a
- * set, equation (17) of lib/README.md. Where the boundary turns sharply at a node there is one average for
- * each side, so that the multipliers can carry a traction that jumps there: with the quadrature that smooths
- * the cells the linear patch test then holds to round-off. */
+ * set, equation (17) of lib/README.md. Where the boundary turns sharply at a node, or an interface at which
+ * supports stop meets it, there is one average for each side, so that the multipliers can carry a traction
+ * that jumps there: with the quadrature that smooths the cells the linear patch test then holds to round-off.
+ */
 #ifndef APPROX_BOUNDARY_H
 #define APPROX_BOUNDARY_H
 
@@ -26,6 +27,8 @@ struct face_table {
     int per_face;                   /* quadrature points of each face */
     const struct neighbours *lists; /* of the points of the faces */
     const double *phi;
+    const int32_t
+        *cell_side; /* of each cell, the side of the interfaces at which supports stop; NULL: none */
 };
 
 /* One boundary average per node and side. */

@@ -30,6 +30,11 @@ enum status boundary_find_faces(const struct face_table *table, const struct fac
     struct keyed_face *keyed = NULL;
     int dim = table->dim;
     int64_t count = 0;
+    for (int64_t i = 0; i < set->count * dim; i++) {
+        if (set->facet[i] < 0 || set->facet[i] >= table->node_count) {
+            return fail(error, STATUS_INPUT, "facets: no node %d", set->facet[i]);
+        }
+    }
     TRY(NEW_ARRAY(&keyed, table->faces->count, error));
     for (int64_t f = 0; f < table->faces->count; f++) {
         if (table->faces->cell[2 * f + 1] < 0) {

@@ -6,7 +6,8 @@
 
 /* ---- boundary_facets.c: facets and the faces of the table that they are ---- */
 
-/* face_of[i]: the face of the table that facet i of the set is. STATUS_INPUT where it is none. */
+/* face_of[i]: the face of the table that facet i of the set is. STATUS_INPUT where it is none, or a node of
+ * it is not there. */
 MUST_CHECK enum status boundary_find_faces(const struct face_table *table, const struct facet_set *set,
                                            int64_t *face_of, struct error *error);
 
@@ -26,15 +27,16 @@ bool boundary_same_side(const struct face_table *table, const int32_t *a, const 
 struct corner {
     int32_t node;
     int32_t vertex; /* of the facet */
+    int32_t side;   /* of an interface, that the facet is on */
     int64_t facet;  /* of the set */
     int64_t part;
 };
 
-/* The corners[set->count * dim] of the set, sorted by part; with `split`, a node has a part for
- * each side of the boundary there. STATUS_INPUT for a node that is not there. */
-MUST_CHECK enum status boundary_collect_corners(const struct face_table *table, const struct facet_set *set,
-                                                bool split, struct corner *corners, int64_t *part_count,
-                                                struct error *error);
+/* The corners[set->count * dim] of the set, whose facets are those faces of the table, sorted by part; with
+ * `split`, a node has a part for each side of the boundary there. */
+void boundary_collect_corners(const struct face_table *table, const struct facet_set *set,
+                              const int64_t *face_of, bool split, struct corner *corners,
+                              int64_t *part_count);
 
 /* Append to the corners[2 * set->count * dim], sorted by part, those of whole sides: a part with all corners
  * of its facets for each side. Sides are the parts of a set within which facets that share an edge (2D: a

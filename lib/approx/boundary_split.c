@@ -46,7 +46,8 @@ bool boundary_same_side(const struct face_table *table, const int32_t *a, const 
 static bool same_side(const struct face_table *table, const struct facet_set *set, const struct corner *a,
                       const struct corner *b)
 {
-    return boundary_same_side(table, set->facet + a->facet * table->dim, set->facet + b->facet * table->dim);
+    return a->side == b->side &&
+           boundary_same_side(table, set->facet + a->facet * table->dim, set->facet + b->facet * table->dim);
 }
 
 /* Number the parts of one node: corners first..last-1 joined through neighbours of one side. */
@@ -86,16 +87,16 @@ static int compare_parts(const void *left, const void *right)
     return compare_corners(left, right);
 }
 
-enum status boundary_collect_corners(const struct face_table *table, const struct facet_set *set, bool split,
-                                     struct corner *corners, int64_t *part_count, struct error *error)
+void boundary_collect_corners(const struct face_table *table, const struct facet_set *set,
+                              const int64_t *face_of, bool split, struct corner *corners, int64_t *part_count)
 {
     int dim = table->dim;
     int64_t count = set->count * dim;
     for (int64_t i = 0; i < count; i++) {
-        if (set->facet[i] < 0 || set->facet[i] >= table->node_count) {
-            return fail(error, STATUS_INPUT, "facets: no node %d", set->facet[i]);
-        }
         corners[i] = (struct corner){.node = set->facet[i], .vertex = (int32_t)(i % dim), .facet = i / dim};
+        if (table->cell_side != NULL) {
+            corners[i].side = table->cell_side[table->faces->cell[2 * face_of[i / dim]]];
+        }
     }
     qsort(corners, (size_t)count, sizeof *corners, compare_corners);
     *part_count = 0;
@@ -108,7 +109,6 @@ enum status boundary_collect_corners(const struct face_table *table, const struc
         first = last;
     }
     qsort(corners, (size_t)count, sizeof *corners, compare_parts);
-    return STATUS_OK;
 }
 
 /* The first of the facets that facet f is joined with; the chains in `first` are shortened on the way. */

@@ -1,5 +1,6 @@
 #include "approx/field.h"
 
+#include "approx/support_space.h"
 #include "base/memory.h"
 
 #include <stdlib.h>
@@ -33,24 +34,17 @@ enum status field_table_build(const struct support_options *options, const struc
                               const struct cells *cells, const double *radius, int64_t count, const double *x,
                               const char *what, struct field_table *table, struct error *error)
 {
-    struct reach reach = {0};
-    bool by_cells = options->reach == REACH_CELLS && cells->count > 0;
     enum status status;
-    struct point_grid grid = {0};
+    struct support_space space;
     *table = (struct field_table){0};
-    TRY(point_grid_build(&grid, options->mls.dim, cells->node_count, cells->x, radius, error));
-    if (by_cells) {
-        TRY(reach_build(cells, &grid, &reach, error));
-    }
-    TRY(support_build_within(options, &grid, by_cells ? &reach : NULL, NULL, count, x, what, &table->lists,
-                             error));
+    TRY(support_space_build(options, cells, radius, &space, error));
+    TRY(support_space_lists(options, &space, NULL, count, x, what, &table->lists, error));
     TRY(NEW_ARRAY(&table->phi, table->lists.ptr[count], error));
     struct neighbours lists = support_view(&table->lists);
     TRY(shape_table(shapes != NULL ? shapes : &options->mls, cells->x, radius, &lists, x, what, table->phi,
                     NULL, error));
 done:
-    reach_free(&reach);
-    point_grid_free(&grid);
+    support_space_free(&space);
     if (status != STATUS_OK) {
         field_table_free(table);
     }

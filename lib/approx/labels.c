@@ -1,7 +1,6 @@
 #include "approx/labels.h"
 
 #include <math.h>
-#include <stdbool.h>
 #include <string.h>
 
 /* The place of a point in the grid, and the weights of the voxels about it along each axis. */
@@ -123,6 +122,19 @@ int32_t labels_at(const struct labels *labels, const double x[])
         }
     }
     return mix.label[best];
+}
+
+int32_t label_largest(const struct label_mix *mix, const bool *keep, bool kept)
+{
+    int best = -1;
+    for (int i = 0; i < mix->count; i++) {
+        bool larger = best < 0 || mix->share[i] > mix->share[best] ||
+                      (mix->share[i] == mix->share[best] && mix->label[i] < mix->label[best]);
+        if (keep[mix->label[i]] == kept && mix->share[i] > 0 && larger) {
+            best = i;
+        }
+    }
+    return best >= 0 ? mix->label[best] : -1;
 }
 
 double labels_difference(const struct labels *labels, const double x[], int32_t a, int32_t b,

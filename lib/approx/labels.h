@@ -5,6 +5,7 @@
 #ifndef APPROX_LABELS_H
 #define APPROX_LABELS_H
 
+#include <stdbool.h>
 #include <stdint.h>
 
 /* The grid. Label 0 is the outside, also beyond the grid; along an axis with one voxel it extends without
@@ -39,6 +40,10 @@ double label_share(const struct label_mix *mix, int32_t label);
 
 /* The label of the largest share at a point, of equal ones the lowest. */
 int32_t labels_at(const struct labels *labels, const double x[]);
+
+/* The label of the largest share in a mix among those with keep[label] == kept; -1 where all shares of these
+ * are zero. */
+int32_t label_largest(const struct label_mix *mix, const bool *keep, bool kept);
 
 /* Share of label a less that of b at a point, and its gradient[dim], 1/m. */
 double labels_difference(const struct labels *labels, const double x[], int32_t a, int32_t b,

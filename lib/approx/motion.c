@@ -2,7 +2,7 @@
 
 #include "approx/field.h"
 #include "approx/shape.h"
-#include "approx/support.h"
+#include "approx/support_space.h"
 #include "base/memory.h"
 
 #include <math.h>
@@ -70,8 +70,7 @@ static enum status find_gradients(const struct cells *cells, const double *u,
     struct mls shapes = source != NULL ? *source->shapes : options.mls;
     struct reach_places places = {.nodes = true};
     struct support_lists lists = {0};
-    struct point_grid grid = {0};
-    struct reach reach = {0};
+    struct support_space space = {0};
     double *radius = NULL, *phi = NULL, *dphi = NULL;
     enum status status = STATUS_OK;
     TRY(NEW_ARRAY(&radius, nodes, error));
@@ -82,12 +81,8 @@ static enum status find_gradients(const struct cells *cells, const double *u,
         options.mls.basis = shapes.basis = BASIS_QUADRATIC;
         TRY(choose_radii(cells, &options, radius, error));
     }
-    TRY(point_grid_build(&grid, dim, nodes, cells->x, radius, error));
-    if (options.reach == REACH_CELLS) {
-        TRY(reach_build(cells, &grid, &reach, error));
-    }
-    TRY(support_build_within(&options, &grid, options.reach == REACH_CELLS ? &reach : NULL, &places, nodes,
-                             cells->x, "nodes", &lists, error));
+    TRY(support_space_build(&options, cells, radius, &space, error));
+    TRY(support_space_lists(&options, &space, &places, nodes, cells->x, "nodes", &lists, error));
     TRY(NEW_ARRAY(&phi, lists.ptr[nodes], error));
     TRY(NEW_ARRAY(&dphi, lists.ptr[nodes] * dim, error));
     struct neighbours view = support_view(&lists);
@@ -104,8 +99,7 @@ done:
     free(phi);
     free(dphi);
     support_free(&lists);
-    reach_free(&reach);
-    point_grid_free(&grid);
+    support_space_free(&space);
     return status;
 }
 

@@ -1,6 +1,7 @@
 #include "approx/reach_private.h"
 
 #include "base/memory.h"
+#include "base/processor.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -8,27 +9,38 @@
 
 const char *const reach_names[REACH_RULE_COUNT] = {"cells", "distance"};
 
-/* passes[]: which of the facets that oppose a node may lie between it and x: those that x is not beyond, and
- * whose ball the segment from x to the node may meet. Coordinates are relative to the node, in floats, with
- * an allowance for their round-off. Returns whether there are any. */
-static bool find_near(const struct reach *reach, int32_t node, const double *from, int32_t *passes)
+/* The segments from a node to the points of a row: those in a ball. */
+struct row_view {
+    float middle[3], inverse; /* of the ball, from the node; 1 / its squared distance */
+    float within;             /* radius of the ball, and an allowance for round-off */
+};
+
+static struct row_view view_row(const struct reach *reach, int32_t node, const struct reach_work *work)
 {
     int dim = reach->cells.dim;
-    int64_t first = reach->opposing_ptr[node], count = reach->opposing_ptr[node + 1] - first;
     const double *own = reach->cells.x + (int64_t)node * dim;
-    float within = (float)(1e-4 * reach->grid->radius[node]);
-    float x = (float)(from[0] - own[0]), y = (float)(from[1] - own[1]), z = 0.0F;
-    int32_t any = 0;
-    if (dim == 3) {
-        z = (float)(from[2] - own[2]);
+    struct row_view row = {.within = (float)(work->row_radius + 1e-4 * reach->grid->radius[node])};
+    float distance2 = 0.0F;
+    for (int a = 0; a < dim; a++) {
+        row.middle[a] = (float)(work->row_middle[a] - own[a]);
+        distance2 += row.middle[a] * row.middle[a];
     }
-    float length2 = x * x + y * y + z * z, inverse = length2 > 0.0F ? 1.0F / length2 : 0.0F;
-    float *const *view = reach->opposing_view;
+    row.inverse = distance2 > 0.0F ? 1.0F / distance2 : 0.0F;
+    return row;
+}
+
+/* passes[REACH_BLOCK]: which of the facets from `first` on may hide the node from the row: the row is not
+ * beyond them, and the segments may meet their balls. Returns whether there are any. */
+KERNEL_INLINE bool block_passes(float *const *view, int64_t first, const struct row_view *row,
+                                int32_t *passes)
+{
     const float *nx = view[0] + first, *ny = view[1] + first, *nz = view[2] + first, *above = view[3] + first;
     const float *mx = view[4] + first, *my = view[5] + first, *mz = view[6] + first, *size = view[7] + first;
-    for (int64_t i = 0; i < count; i++) {
+    float x = row->middle[0], y = row->middle[1], z = row->middle[2], within = row->within;
+    int32_t any = 0;
+    for (int i = 0; i < REACH_BLOCK; i++) {
         float height = above[i] + nx[i] * x + ny[i] * y + nz[i] * z;
-        float t = (mx[i] * x + my[i] * y + mz[i] * z) * inverse, reached = size[i] + within;
+        float t = (mx[i] * x + my[i] * y + mz[i] * z) * row->inverse, reached = size[i] + within;
         t = t < 0.0F ? 0.0F : t;
         t = t > 1.0F ? 1.0F : t;
         float dx = mx[i] - t * x, dy = my[i] - t * y, dz = mz[i] - t * z;
@@ -38,27 +50,78 @@ static bool find_near(const struct reach *reach, int32_t node, const double *fro
     return any != 0;
 }
 
-enum status reach_list_facets(const struct reach *reach, const double *x, const int32_t *index, int64_t count,
+/* List those of the facets opposing[first, last); returns how many. */
+KERNEL_INLINE int64_t list_passing(float *const *view, const int32_t *opposing, int64_t first, int64_t last,
+                                   const struct row_view *row, int32_t *list)
+{
+    int64_t count = 0;
+    for (int64_t i = first; i < last; i += REACH_BLOCK) {
+        int32_t passes[REACH_BLOCK];
+        if (block_passes(view, i, row, passes)) {
+            for (int64_t k = i; k < i + REACH_BLOCK && k < last; k++) {
+                list[count] = opposing[k];
+                count += passes[k - i];
+            }
+        }
+    }
+    return count;
+}
+
+#define LIST_SET(set, attribute)                                                                             \
+    attribute static int64_t list_passing_##set(float *const *view, const int32_t *opposing, int64_t first,  \
+                                                int64_t last, const struct row_view *row, int32_t *list)     \
+    {                                                                                                        \
+        return list_passing(view, opposing, first, last, row, list);                                         \
+    }
+LIST_SET(plain, PLAIN_SET)
+LIST_SET(avx2, AVX2_SET)
+LIST_SET(avx512, AVX512_SET)
+
+enum status reach_list_facets(const struct reach *reach, const int32_t *index, int64_t count,
                               struct reach_work *work, struct error *error)
 {
-    enum status status;
-    TRY(reach_work_reserve(reach, work, error));
-    work->near.count = 0;
+    enum status status = STATUS_OK;
     for (int64_t i = 0; i < count; i++) {
         int32_t node = index[i];
-        int64_t first = reach->opposing_ptr[node], opposing = reach->opposing_ptr[node + 1] - first;
+        int64_t first = reach->opposing_ptr[node], last = reach->opposing_ptr[node + 1];
+        if (work->listed[node] == work->row_serial) {
+            continue;
+        }
+        work->listed[node] = work->row_serial;
         work->near_begin[node] = (int32_t)work->near.count;
-        if (opposing > 0 && find_near(reach, node, x, work->passes)) {
-            TRY(index_list_reserve(&work->near, opposing, error));
-            for (int64_t k = 0; k < opposing; k++) {
-                work->near.index[work->near.count] = reach->opposing[first + k];
-                work->near.count += work->passes[k];
-            }
+        if (first < last) {
+            struct row_view row = view_row(reach, node, work);
+            TRY(index_list_reserve(&work->near, last - first + 1, error));
+            int32_t *list = work->near.index + work->near.count;
+            work->near.count += (work->avx512 ? list_passing_avx512
+                                 : work->avx2 ? list_passing_avx2
+                                              : list_passing_plain)((float *const *)reach->opposing_view,
+                                                                    reach->opposing, first, last, &row, list);
         }
         work->near_end[node] = (int32_t)work->near.count;
     }
 done:
     return status;
+}
+
+void reach_begin_row(const struct reach *reach, const double *x, int64_t count, struct reach_work *work)
+{
+    int dim = reach->cells.dim;
+    if (++work->row_serial == UINT32_MAX) {
+        memset(work->listed, 0, (size_t)reach->cells.node_count * sizeof *work->listed);
+        work->row_serial = 1;
+    }
+    work->near.count = 0;
+    work->row_radius = 0.0;
+    for (int a = 0; a < dim; a++) {
+        work->row_middle[a] = 0.0;
+        for (int64_t i = 0; i < count; i++) {
+            work->row_middle[a] += x[i * dim + a] / (double)count;
+        }
+    }
+    for (int64_t i = 0; i < count; i++) {
+        work->row_radius = fmax(work->row_radius, reach_distance(dim, work->row_middle, x + i * dim));
+    }
 }
 
 enum status reach_begin(const struct reach *reach, const struct reach_places *places, int64_t p,
@@ -77,8 +140,9 @@ enum status reach_begin(const struct reach *reach, const struct reach_places *pl
     memcpy(work->from, x, (size_t)reach->cells.dim * sizeof *x);
     work->cell_count = -1;
     if (places->nodes) {
-        work->cell = reach->star + reach->star_ptr[p];
-        work->cell_count = reach->star_ptr[p + 1] - reach->star_ptr[p];
+        int64_t node = places->node != NULL ? places->node[p] : p;
+        work->cell = reach->star + reach->star_ptr[node];
+        work->cell_count = reach->star_ptr[node + 1] - reach->star_ptr[node];
     } else if (places->cell != NULL) {
         int64_t count = 0;
         for (int64_t i = 0; i < places->per_row; i++) {
@@ -89,6 +153,11 @@ enum status reach_begin(const struct reach *reach, const struct reach_places *pl
         }
         work->cell = work->given;
         work->cell_count = count > 0 ? count : -1;
+    }
+    int64_t per_row = places->nodes || places->cell == NULL ? 1 : places->points_per_row;
+    if (per_row == 1 || work->row != p / per_row || work->row_serial == 0) {
+        work->row = p / per_row;
+        reach_begin_row(reach, x - p % per_row * reach->cells.dim, per_row, work);
     }
     return STATUS_OK;
 }
@@ -179,4 +248,24 @@ enum status reach_filter(const struct reach *reach, double widen, int32_t *index
     }
 done:
     return status;
+}
+
+void reach_free(struct reach *reach)
+{
+    free(reach->across);
+    free(reach->star_ptr);
+    free(reach->star);
+    free(reach->facet);
+    free(reach->opposing_ptr);
+    free(reach->opposing);
+    for (int a = 0; a < 8; a++) {
+        free(reach->opposing_view[a]);
+    }
+    free(reach->corner);
+    free(reach->edge_ptr);
+    free(reach->edge);
+    free(reach->seen_ptr);
+    free(reach->seen);
+    free(reach->seen_length);
+    *reach = (struct reach){0};
 }

@@ -38,7 +38,6 @@ struct reach {
     int64_t *opposing_ptr; /* node_count + 1: the facets within its radius that hide a node from points behind
                               them (CSR) */
     int32_t *opposing;
-    int64_t most_opposing;
     float *opposing_view[8]; /* with `opposing`, from the node: the facet's normal, the height of the node
                                 above its plane, the middle and the radius of its ball */
     bool *corner;            /* node_count: paths may bend there */
@@ -46,6 +45,7 @@ struct reach {
     int32_t *edge;
     int64_t *seen_ptr; /* node_count + 1: the corners that a node, within its radius, is in sight of (CSR) */
     int32_t *seen;
+    double *seen_length; /* with `seen`: how far, m */
 };
 
 /* Errors: STATUS_INPUT for cells that share a face with more than one other; STATUS_SYSTEM (memory). */
@@ -58,10 +58,12 @@ void reach_free(struct reach *reach);
 /* The cells that points lie in. Zeros: unknown, to be found. A point outside of all cells sees what the
  * nearest place in a cell sees; far from all cells, all that is near enough. */
 struct reach_places {
-    bool nodes;             /* point p is node p */
+    bool nodes;             /* point p is node p, */
+    const int32_t *node;    /* or, unless NULL, that node */
     const int32_t *cell;    /* else, unless NULL: cells, -1 for none, per_row for each row */
     int64_t per_row;        /* 1 or 2 */
     int64_t points_per_row; /* row of point p: p / points_per_row */
+    const int64_t *row;     /* the number of each point in messages; NULL: p */
 };
 
 /* Scratch space for one thread, all zero at first; grows on demand. */
@@ -69,20 +71,23 @@ struct reach_work {
     const double *x; /* the point that is looked from */
     double from[3];  /* itself; or for a point outside, its place in the nearest cell */
     bool outside;
-    const int32_t *cell;            /* the cells that it lies in */
-    int64_t cell_count;             /* -1: not looked for yet */
-    int32_t given[2];               /* what `cell` may view */
-    struct index_list own;          /* likewise */
-    uint32_t serial;                /* of the point */
-    uint32_t *mark;                 /* node_count: 2 serial, and 1 more for a node that is hidden */
-    uint32_t pass;                  /* serial of the search for paths */
-    uint32_t *passed;               /* node_count: the last pass that put down a length and a node before */
-    double *length;                 /* node_count: of the shortest path, infinite: none yet */
-    int32_t *before;                /* node_count: the node before on that path, -1: the point itself */
+    const int32_t *cell;   /* the cells that it lies in */
+    int64_t cell_count;    /* -1: not looked for yet */
+    int32_t given[2];      /* what `cell` may view */
+    struct index_list own; /* likewise */
+    uint32_t serial;       /* of the point */
+    uint32_t *mark;        /* node_count: 2 serial, and 1 more for a node that is hidden */
+    uint32_t pass;         /* serial of the search for paths */
+    uint32_t *passed;      /* node_count: the last pass that put down a length and a node before */
+    double *length;        /* node_count: of the shortest path, infinite: none yet */
+    int32_t *before;       /* node_count: the node before on that path, -1: the point itself */
+    int64_t row;           /* of the points, see reach_places; their ball: */
+    double row_middle[3], row_radius;
+    uint32_t row_serial, *listed;   /* node_count: the last row that facets are listed for */
+    bool avx2, avx512;              /* what the processor has */
     int32_t *near_begin, *near_end; /* node_count: for the candidates, the facets that may lie
                                        between, in `near` */
     struct index_list near;
-    int32_t *passes; /* scratch */
     struct index_list hidden, stack, visited;
     int64_t changed;  /* candidates of the last filter that were out of sight */
     int64_t around;   /* neighbours of the last filter that are seen around corners */
@@ -91,14 +96,14 @@ struct reach_work {
 };
 void reach_work_free(struct reach_work *work);
 
-/* The point to evaluate next: point p of x[][dim]. */
+/* The point to evaluate next: point p of x[][dim], at x; the points of its row stand beside it. */
 MUST_CHECK enum status reach_begin(const struct reach *reach, const struct reach_places *places, int64_t p,
                                    const double *x, struct reach_work *work, struct error *error);
 
-/* List the facets that may lie between a point x and each of its candidates index[count]: nodes that are
+/* List the facets that may lie between the points of the row and each candidate index[count]: nodes that are
  * nearer than their radius. Call before the first reach_filter() of a point. */
-MUST_CHECK enum status reach_list_facets(const struct reach *reach, const double *x, const int32_t *index,
-                                         int64_t count, struct reach_work *work, struct error *error);
+MUST_CHECK enum status reach_list_facets(const struct reach *reach, const int32_t *index, int64_t count,
+                                         struct reach_work *work, struct error *error);
 
 /* Of the candidates index[*count], nodes that are nearer than `widen` times their radius, keep those whose
  * shortest path is as well. Where work->around > 0, work->image[*count * dim] holds the offset to each of

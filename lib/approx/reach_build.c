@@ -172,12 +172,10 @@ static enum status file_opposing(struct reach *reach, struct error *error)
     }
     TRY(file_pairs(&pairs, reach->cells.node_count, &reach->opposing_ptr, &reach->opposing, error));
     for (int a = 0; a < 8; a++) {
-        TRY(NEW_ARRAY(&reach->opposing_view[a], pairs.count, error));
+        TRY(NEW_ARRAY(&reach->opposing_view[a], pairs.count + REACH_BLOCK, error));
     }
     for (int32_t n = 0; n < reach->cells.node_count; n++) {
-        int64_t first = reach->opposing_ptr[n], last = reach->opposing_ptr[n + 1];
-        reach->most_opposing = last - first > reach->most_opposing ? last - first : reach->most_opposing;
-        for (int64_t i = first; i < last; i++) {
+        for (int64_t i = reach->opposing_ptr[n]; i < reach->opposing_ptr[n + 1]; i++) {
             const struct reach_facet *facet = &reach->facet[reach->opposing[i]];
             for (int a = 0; a < dim; a++) {
                 reach->opposing_view[a][i] = (float)facet->normal[a];
@@ -321,7 +319,9 @@ static enum status file_views(struct reach *reach, struct reach_work *work, stru
         near.count = 0;
         if (reach->corner[n]) {
             TRY(point_grid_query(reach->grid, x, 1.0, &near, error));
-            TRY(reach_list_facets(reach, x, near.index, near.count, work, error));
+            TRY(reach_work_reserve(reach, work, error));
+            reach_begin_row(reach, x, 1, work);
+            TRY(reach_list_facets(reach, near.index, near.count, work, error));
         }
         for (int64_t i = 0; i < near.count; i++) {
             bool seen;
@@ -333,6 +333,13 @@ static enum status file_views(struct reach *reach, struct reach_work *work, stru
         }
     }
     TRY(file_pairs(&pairs, reach->cells.node_count, &reach->seen_ptr, &reach->seen, error));
+    TRY(NEW_ARRAY(&reach->seen_length, pairs.count, error));
+    for (int64_t n = 0; n < reach->cells.node_count; n++) {
+        for (int64_t i = reach->seen_ptr[n]; i < reach->seen_ptr[n + 1]; i++) {
+            reach->seen_length[i] =
+                reach_distance(dim, reach->cells.x + (int64_t)reach->seen[i] * dim, reach->cells.x + n * dim);
+        }
+    }
 done:
     free(pairs.pair);
     free(near.index);
@@ -373,23 +380,4 @@ done:
         reach_free(reach);
     }
     return status;
-}
-
-void reach_free(struct reach *reach)
-{
-    free(reach->across);
-    free(reach->star_ptr);
-    free(reach->star);
-    free(reach->facet);
-    free(reach->opposing_ptr);
-    free(reach->opposing);
-    for (int a = 0; a < 8; a++) {
-        free(reach->opposing_view[a]);
-    }
-    free(reach->corner);
-    free(reach->edge_ptr);
-    free(reach->edge);
-    free(reach->seen_ptr);
-    free(reach->seen);
-    *reach = (struct reach){0};
 }

@@ -2,6 +2,7 @@
 #include "approx/reach_private.h"
 
 #include "base/memory.h"
+#include "base/processor.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -20,9 +21,11 @@ enum status reach_work_reserve(const struct reach *reach, struct reach_work *wor
         TRY(NEW_ARRAY(&work->passed, reach->cells.node_count, error));
         TRY(NEW_ARRAY(&work->length, reach->cells.node_count, error));
         TRY(NEW_ARRAY(&work->before, reach->cells.node_count, error));
+        TRY(NEW_ARRAY(&work->listed, reach->cells.node_count, error));
         TRY(NEW_ARRAY(&work->near_begin, reach->cells.node_count, error));
         TRY(NEW_ARRAY(&work->near_end, reach->cells.node_count, error));
-        TRY(NEW_ARRAY(&work->passes, reach->most_opposing, error));
+        work->avx2 = processor_has("avx2");
+        work->avx512 = processor_has("avx512");
     }
 done:
     return status;
@@ -35,10 +38,10 @@ void reach_work_free(struct reach_work *work)
     free(work->passed);
     free(work->length);
     free(work->before);
+    free(work->listed);
     free(work->near_begin);
     free(work->near_end);
     free(work->near.index);
-    free(work->passes);
     free(work->hidden.index);
     free(work->stack.index);
     free(work->visited.index);
@@ -50,8 +53,6 @@ void reach_work_free(struct reach_work *work)
  * them. */
 static bool shorten(const struct reach *reach, int32_t node, double limit, struct reach_work *work)
 {
-    int dim = reach->cells.dim;
-    const double *x = reach->cells.x;
     double least = fmin(work->length[node], limit);
     bool shorter = false;
     for (int64_t i = reach->seen_ptr[node]; i < reach->seen_ptr[node + 1]; i++) {
@@ -59,8 +60,7 @@ static bool shorten(const struct reach *reach, int32_t node, double limit, struc
         if (work->passed[corner] != work->pass || !(work->length[corner] < least)) {
             continue;
         }
-        double length =
-            work->length[corner] + reach_distance(dim, x + (int64_t)corner * dim, x + (int64_t)node * dim);
+        double length = work->length[corner] + reach->seen_length[i];
         if (length < least) {
             least = work->length[node] = length;
             work->before[node] = corner;
@@ -133,6 +133,9 @@ static double shortest_over_edge(const double *a, const double *b, const double 
         t = t < 0.0 ? 0.0 : t > 1.0 ? 1.0 : t;
     }
     *passes = t;
+    if (!(t > 0.0)) {
+        return INFINITY;
+    }
     return sqrt(off_p * off_p + (along_p - t) * (along_p - t) * length2) +
            sqrt(off_q * off_q + (along_q - t) * (along_q - t) * length2);
 }

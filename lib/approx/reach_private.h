@@ -7,6 +7,12 @@
 /* A point nearer to a plane than this share of the support radius lies on it. */
 #define REACH_ON_PLANE 1e-9
 
+/* Opposing facets are tested in blocks; their views are longer by one. */
+#define REACH_BLOCK 16
+
+/* The next row of points: x[count * dim]. */
+void reach_begin_row(const struct reach *reach, const double *x, int64_t count, struct reach_work *work);
+
 /* Whether the segment from x, in any of the cells, to a node stays within cells that follow each other by
  * faces. For node -1, no cell's, work->visited is left with the cells around x that hang together. */
 MUST_CHECK enum status reach_walk(const struct reach *reach, const double *x, const int32_t *cell,

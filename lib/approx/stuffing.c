@@ -87,19 +87,21 @@ static enum status make(const struct labels *labels, const struct stuffing_optio
                         struct stuffing *stuffing, struct error *error)
 {
     struct lattice lattice;
-    bool *apart = NULL;
+    bool *apart = NULL, *between = NULL;
     double *dropped = NULL;
     enum status status;
     *stuffing = (struct stuffing){.dim = labels->dim};
     TRY(lattice_make(labels, options, &lattice, error));
     status = lattice_cut(&lattice, error);
     if (status == STATUS_OK) {
-        status = lattice_cells(&lattice, stuffing, error);
+        status = lattice_cells(&lattice, stuffing, &between, error);
     }
     lattice_free(&lattice);
-    TRY(status);
+    if (status != STATUS_OK) {
+        goto done;
+    }
     TRY(NEW_ARRAY(&dropped, labels->count, error));
-    TRY(stuffing_keep(options, stuffing, &apart, dropped, error));
+    TRY(stuffing_keep(options, between, stuffing, &apart, dropped, error));
     if (stuffing->cell_count == 0) {
         TRY(fail(error, STATUS_INPUT, "spacing %g m: no lattice point lies in a label: smaller?",
                  options->spacing));
@@ -107,6 +109,7 @@ static enum status make(const struct labels *labels, const struct stuffing_optio
     TRY(stuffing_improve(labels, options, apart, dropped, stuffing, error));
 done:
     free(apart);
+    free(between);
     free(dropped);
     if (status != STATUS_OK) {
         stuffing_free(stuffing);

@@ -20,9 +20,11 @@ struct stuffing_options {
     double spacing; /* of the lattice, m: edge of its cubes (2D: of its triangles) */
     double finest;  /* 3D: edge of the cubes at interfaces, m: the spacing is halved until it is no larger; 0:
                        as  elsewhere */
-    const bool *fine; /* labels->count: at interfaces of these labels; NULL: at all */
-    const bool *keep; /* labels->count: cells of this label are wanted; never of label 0 */
-    bool largest;     /* of several connected bodies only the largest */
+    const bool *fine;     /* labels->count: at interfaces of these labels; NULL: at all */
+    const bool *keep;     /* labels->count: cells of this label are wanted; never of label 0 */
+    const int32_t *whole; /* labels->count: the label whose part each is: the volume of a whole is kept; NULL:
+                             of each label */
+    bool largest;         /* of several connected bodies only the largest */
 };
 
 /* Angles of cells, degrees: stuffing_make keeps within them where it can. */
@@ -43,7 +45,8 @@ struct stuffing {
     int64_t facet_count;
     int32_t *facet;  /* facet_count * dim: the boundary, oriented outward */
     int32_t *side;   /* facet_count * 2: the label within, and the one beyond that is not kept */
-    int64_t pinched; /* nodes at which parts hung together by a node or an edge alone: they are cut apart */
+    int64_t pinched; /* nodes at which bodies hung together by a node or an edge alone: they are cut apart */
+    int64_t hinges;  /* nodes by which, or by an edge, alone parts of one body hang together there */
     int64_t specks;  /* bodies about a single point of the lattice: they are left out, */
     double speck_volume; /* m3 */
     int64_t astray;  /* nodes of interfaces farther than STUFFING_MOST_ASTRAY voxels from where labels meet */

@@ -1,20 +1,9 @@
-#include "approx/stuffing_private.h"
+#include "approx/stuffing_cut_private.h"
 #include "base/memory.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-
-/* Pieces of one cell of the lattice: each of its six edges doubles them at most. */
-enum { PIECES_MOST = 64 };
-
-struct cutting {
-    const struct lattice *lattice;
-    struct stuffing *stuffing;
-    int64_t room;      /* cells allocated */
-    double *x;         /* nodes of the lattice and of cuts: coordinates, m */
-    int32_t *cut_node; /* lattice->edge_count */
-};
 
 /* An edge of a cell that is cut, and what sets the place of its cut among the others: it comes after edges of
  * larger order[0], then of lower order[1], then before those of higher number. */
@@ -50,9 +39,6 @@ static enum status append(struct cutting *cutting, const int32_t *node, struct e
     struct stuffing *stuffing = cutting->stuffing;
     int32_t label = label_of(cutting, node);
     int corners = stuffing->dim + 1;
-    if (label == 0) {
-        return STATUS_OK;
-    }
     if (stuffing->cell_count == cutting->room) {
         int64_t room = cutting->room + cutting->room / 2 + 1024;
         int32_t *cell = array_grow(stuffing->cell, room * corners, sizeof *cell);
@@ -65,9 +51,19 @@ static enum status append(struct cutting *cutting, const int32_t *node, struct e
             return fail_memory(error, "labels of cells");
         }
         stuffing->label = labels;
+        bool *between = array_grow(cutting->between, room, sizeof *between);
+        if (between == NULL) {
+            return fail_memory(error, "cells");
+        }
+        cutting->between = between;
         cutting->room = room;
     }
     memcpy(stuffing->cell + stuffing->cell_count * corners, node, (size_t)corners * sizeof *node);
+    cutting->between[stuffing->cell_count] = true;
+    for (int k = 0; k < corners; k++) {
+        cutting->between[stuffing->cell_count] =
+            cutting->between[stuffing->cell_count] && on_interface(cutting, node[k]);
+    }
     stuffing->label[stuffing->cell_count++] = label;
     return STATUS_OK;
 }
@@ -132,52 +128,80 @@ static int find_bisections(const struct cutting *cutting, const int32_t *node, s
     return count;
 }
 
+bool cutting_bisect(struct cutting_pieces *pieces, int32_t p, int32_t q, int32_t middle)
+{
+    int before = pieces->count;
+    for (int i = 0; i < before; i++) {
+        int first = -1, second = -1;
+        for (int k = 0; k < pieces->corners; k++) {
+            first = pieces->node[i][k] == p ? k : first;
+            second = pieces->node[i][k] == q ? k : second;
+        }
+        if (first < 0 || second < 0) {
+            continue;
+        }
+        if (pieces->count == CUTTING_MOST_PIECES) {
+            return false;
+        }
+        memcpy(pieces->node[pieces->count], pieces->node[i], sizeof pieces->node[i]);
+        pieces->node[i][first] = middle;
+        pieces->node[pieces->count++][second] = middle;
+    }
+    return true;
+}
+
 /* Cut one cell of the lattice, and append its pieces. */
 static enum status cut_cell(struct cutting *cutting, const int32_t *node, struct error *error)
 {
-    const struct lattice *lattice = cutting->lattice;
-    int corners = lattice->dim + 1, count = 1;
-    int32_t piece[PIECES_MOST][4];
+    struct cutting_pieces pieces = {.count = 1, .corners = cutting->lattice->dim + 1};
     struct bisection bisections[6];
-    memcpy(piece[0], node, (size_t)corners * sizeof *node);
-    int bisection_count = find_bisections(cutting, node, bisections);
-    for (int b = 0; b < bisection_count; b++) {
-        int before = count;
-        for (int i = 0; i < before; i++) {
-            int first = -1, second = -1;
-            for (int k = 0; k < corners; k++) {
-                first = piece[i][k] == bisections[b].end[0] ? k : first;
-                second = piece[i][k] == bisections[b].end[1] ? k : second;
-            }
-            if (first >= 0 && second >= 0) {
-                memcpy(piece[count], piece[i], sizeof piece[count]);
-                piece[i][first] = bisections[b].node;
-                piece[count++][second] = bisections[b].node;
-            }
-        }
+    memcpy(pieces.node[0], node, (size_t)pieces.corners * sizeof *node);
+    int count = find_bisections(cutting, node, bisections);
+    for (int b = 0; b < count; b++) {
+        cutting_bisect(&pieces, bisections[b].end[0], bisections[b].end[1], bisections[b].node);
     }
-    for (int i = 0; i < count; i++) {
-        enum status status = append(cutting, piece[i], error);
-        if (status != STATUS_OK) {
-            return status;
-        }
+    enum status status = cutting_again(cutting, &pieces, error);
+    for (int i = 0; i < pieces.count && status == STATUS_OK && !cutting->searching; i++) {
+        status = append(cutting, pieces.node[i], error);
     }
-    return STATUS_OK;
+    return status;
 }
 
-/* Number the cuts behind the nodes of the lattice; how many nodes there are then. */
-static enum status set_nodes(struct cutting *cutting, int64_t *count, struct error *error)
+/* Collect the second cuts of all cells and find where they lie. */
+static enum status find_seconds(struct cutting *cutting, struct error *error)
+{
+    const struct lattice *lattice = cutting->lattice;
+    enum status status;
+    cutting->searching = true;
+    for (int64_t c = 0; c < lattice->cell_count; c++) {
+        TRY(cut_cell(cutting, lattice->cell + c * (lattice->dim + 1), error));
+    }
+    cutting->searching = false;
+    TRY(cutting_seconds(cutting, error));
+done:
+    return status;
+}
+
+/* Number the cuts behind the nodes of the lattice. */
+static enum status set_nodes(struct cutting *cutting, struct error *error)
 {
     const struct lattice *lattice = cutting->lattice;
     enum status status;
     int dim = lattice->dim;
+    int64_t *count = &cutting->node_count;
     *count = lattice->node_count;
     TRY(NEW_ARRAY(&cutting->cut_node, lattice->edge_count, error));
+    TRY(NEW_ARRAY(&cutting->cut_edge, lattice->edge_count, error));
     for (int64_t e = 0; e < lattice->edge_count; e++) {
-        cutting->cut_node[e] = lattice->cut[e] > 0 ? (int32_t)(*count)++ : -1;
+        cutting->cut_node[e] = -1;
+        if (lattice->cut[e] > 0) {
+            cutting->cut_edge[*count - lattice->node_count] = (int32_t)e;
+            cutting->cut_node[e] = (int32_t)(*count)++;
+        }
     }
-    if (*count > INT32_MAX) {
-        TRY(fail(error, STATUS_INPUT, "more than 2147483647 nodes: a larger spacing?"));
+    cutting->cuts = *count - lattice->node_count;
+    if (*count > INT32_MAX / 2) {
+        TRY(fail(error, STATUS_INPUT, "more than 1073741823 nodes: a larger spacing?"));
     }
     TRY(NEW_ARRAY(&cutting->x, *count * dim, error));
     memcpy(cutting->x, lattice->x, (size_t)(lattice->node_count * dim) * sizeof *cutting->x);
@@ -194,10 +218,11 @@ done:
 }
 
 /* Number the nodes of cells anew, without those of no cell; x is replaced. */
-static enum status compact(struct cutting *cutting, int64_t count, struct error *error)
+static enum status compact(struct cutting *cutting, struct error *error)
 {
     struct stuffing *stuffing = cutting->stuffing;
     int dim = stuffing->dim;
+    int64_t count = cutting->node_count;
     int32_t *number = NULL;
     enum status status;
     TRY(NEW_ARRAY(&number, count, error));
@@ -221,20 +246,24 @@ done:
     return status;
 }
 
-enum status lattice_cells(const struct lattice *lattice, struct stuffing *stuffing, struct error *error)
+enum status lattice_cells(const struct lattice *lattice, struct stuffing *stuffing, bool **between,
+                          struct error *error)
 {
     struct cutting cutting = {.lattice = lattice, .stuffing = stuffing};
     enum status status;
-    int64_t count;
     *stuffing = (struct stuffing){.dim = lattice->dim};
-    TRY(set_nodes(&cutting, &count, error));
+    TRY(set_nodes(&cutting, error));
+    TRY(find_seconds(&cutting, error));
     for (int64_t c = 0; c < lattice->cell_count; c++) {
         TRY(cut_cell(&cutting, lattice->cell + c * (lattice->dim + 1), error));
     }
-    TRY(compact(&cutting, count, error));
+    TRY(compact(&cutting, error));
 done:
     free(cutting.x);
     free(cutting.cut_node);
+    free(cutting.cut_edge);
+    free(cutting.second);
+    *between = cutting.between;
     if (status != STATUS_OK) {
         stuffing_free(stuffing);
     }

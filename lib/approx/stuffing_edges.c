@@ -86,15 +86,29 @@ int64_t lattice_edge(const struct lattice *lattice, int32_t p, int32_t q)
     return -1;
 }
 
-/* The fraction of an edge, from its first end, at which the share of the first end's label ceases to be the
- * larger one
- * (`strictly`), or begins to be the smaller one. */
-static double change(const struct lattice *lattice, int64_t edge, bool strictly)
+bool same_side(const struct lattice *lattice, int32_t a, int32_t b)
 {
-    const int32_t *end = lattice->end + 2 * edge;
-    const double *p = lattice->x + (int64_t)end[0] * lattice->dim,
-                 *q = lattice->x + (int64_t)end[1] * lattice->dim;
-    int32_t a = lattice->label[end[0]], b = lattice->label[end[1]];
+    return a == b || (!lattice->keep[a] && !lattice->keep[b]);
+}
+
+/* What changes its sign on the way from a label to another: the share of the one less that of the other.
+ * Between the body and what is left out it is that of the body's label with the largest share less that of
+ * the others', so that a layer of a third label at the surface, too thin for the lattice, does not move the
+ * surface. */
+static double difference(const struct lattice *lattice, const struct label_mix *mix, int32_t a, int32_t b)
+{
+    if (lattice->keep[a] != lattice->keep[b]) {
+        a = label_largest(mix, lattice->keep, lattice->keep[a]);
+        b = label_largest(mix, lattice->keep, lattice->keep[b]);
+    }
+    return label_share(mix, a) - label_share(mix, b);
+}
+
+/* The fraction of the way from p to q at which this difference ceases to be positive (`strictly`), or begins
+ * to be negative. */
+static double change(const struct lattice *lattice, const double p[], const double q[], int32_t a, int32_t b,
+                     bool strictly)
+{
     double low = 0, high = 1;
     for (int step = 0; step < 16; step++) {
         double t = (low + high) / 2, x[3];
@@ -103,8 +117,8 @@ static double change(const struct lattice *lattice, int64_t edge, bool strictly)
             x[d] = p[d] + t * (q[d] - p[d]);
         }
         labels_mix(lattice->labels, x, &mix);
-        double difference = label_share(&mix, a) - label_share(&mix, b);
-        if (strictly ? difference > 0 : difference >= 0) {
+        double value = difference(lattice, &mix, a, b);
+        if (strictly ? value > 0 : value >= 0) {
             low = t;
         } else {
             high = t;
@@ -133,7 +147,40 @@ static double length_of(const struct lattice *lattice, int64_t edge)
     return sqrt(square);
 }
 
-/* Move a point onto the nearest of the cuts that lie near it; the edges there are cut no more. */
+double lattice_change(const struct lattice *lattice, const double p[], const double q[], int32_t a, int32_t b)
+{
+    /* Where a third label lies between the two, their shares are equal, 0, over a stretch: its middle. */
+    return (change(lattice, p, q, a, b, true) + change(lattice, p, q, a, b, false)) / 2;
+}
+
+static double cut_of(const struct lattice *lattice, int64_t edge)
+{
+    const int32_t *end = lattice->end + 2 * edge;
+    return lattice_change(lattice, lattice->x + (int64_t)end[0] * lattice->dim,
+                          lattice->x + (int64_t)end[1] * lattice->dim, lattice->label[end[0]],
+                          lattice->label[end[1]]);
+}
+
+/* A point has moved onto an interface: the edges that end there are cut no more, but those to a third label
+ * that the interface with that is far from. */
+static void take_cuts(struct lattice *lattice, int64_t node, int32_t beyond)
+{
+    for (int64_t i = lattice->edge_ptr[node]; i < lattice->edge_ptr[node + 1]; i++) {
+        int64_t edge = lattice->edge_idx[i];
+        const int32_t *end = lattice->end + 2 * edge;
+        int32_t label = lattice->label[end[0] == node ? end[1] : end[0]];
+        double near = near_end(lattice, edge);
+        if (lattice->cut[edge] > 0 && !same_side(lattice, label, beyond)) {
+            double cut = cut_of(lattice, edge), t = end[0] == node ? cut : 1 - cut;
+            t = t < near ? 0 : fmin(t, 1 - near);
+            lattice->cut[edge] = t == 0 ? 0 : end[0] == node ? t : 1 - t;
+        } else {
+            lattice->cut[edge] = 0;
+        }
+    }
+}
+
+/* Move a point onto the nearest of the cuts that lie near it. */
 static void snap(struct lattice *lattice, int64_t node)
 {
     int dim = lattice->dim;
@@ -157,9 +204,7 @@ static void snap(struct lattice *lattice, int64_t node)
     for (int d = 0; d < dim; d++) {
         lattice->x[node * dim + d] += fraction * (other[d] - lattice->x[node * dim + d]);
     }
-    for (int64_t i = lattice->edge_ptr[node]; i < lattice->edge_ptr[node + 1]; i++) {
-        lattice->cut[lattice->edge_idx[i]] = 0;
-    }
+    take_cuts(lattice, node, lattice->label[end[0] == node ? end[1] : end[0]]);
 }
 
 enum status lattice_cut(struct lattice *lattice, struct error *error)
@@ -168,10 +213,11 @@ enum status lattice_cut(struct lattice *lattice, struct error *error)
     if (status != STATUS_OK) {
         return status;
     }
-    /* Where a third label lies between the two, their shares are equal, 0, over a stretch: its middle. */
 #pragma omp parallel for schedule(dynamic, 256)
     for (int64_t e = 0; e < lattice->edge_count; e++) {
-        lattice->cut[e] = (change(lattice, e, true) + change(lattice, e, false)) / 2;
+        bool cut =
+            !same_side(lattice, lattice->label[lattice->end[2 * e]], lattice->label[lattice->end[2 * e + 1]]);
+        lattice->cut[e] = cut ? cut_of(lattice, e) : 0;
     }
     for (int64_t n = 0; n < lattice->node_count; n++) {
         snap(lattice, n);

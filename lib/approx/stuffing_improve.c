@@ -1,6 +1,5 @@
 #include "approx/cells.h"
 #include "approx/stuffing_private.h"
-#include "base/dense.h"
 #include "base/memory.h"
 
 #include <math.h>
@@ -73,78 +72,20 @@ void star_move(struct stuffing *stuffing, const struct stuffing_star *star, int6
 
 /* ---- onto the interfaces ---- */
 
-/* The step of least length that makes the linearised differences zero; false where they do not change. */
-static bool newton_step(const struct labels *labels, int count, const uint16_t label[], const double x[],
-                        double step[3])
-{
-    int rows = count - 1, dim = labels->dim;
-    double J[3][3] = {{0}}, A[9], g[3], voxel = labels_voxel(labels);
-    rows = rows < dim ? rows : dim;
-    for (int r = 0; r < rows; r++) {
-        g[r] = labels_difference(labels, x, label[0], label[r + 1], J[r]);
-    }
-    for (int r = 0; r < rows; r++) {
-        for (int c = 0; c < rows; c++) {
-            A[r * rows + c] = 0;
-            for (int d = 0; d < dim; d++) {
-                A[r * rows + c] += J[r][d] * J[c][d];
-            }
-        }
-        if (!(A[r * rows + r] * voxel * voxel > 1e-4)) {
-            return false;
-        }
-        A[r * rows + r] *= 1 + 1e-3;
-    }
-    if (!dense_factorise(rows, A)) {
-        return false;
-    }
-    dense_solve(rows, A, g);
-    double length = 0;
-    for (int d = 0; d < dim; d++) {
-        step[d] = 0;
-        for (int r = 0; r < rows; r++) {
-            step[d] -= J[r][d] * g[r];
-        }
-        length += step[d] * step[d];
-    }
-    length = sqrt(length);
-    for (int d = 0; d < dim && length > voxel / 2; d++) {
-        step[d] *= voxel / 2 / length;
-    }
-    return isfinite(length);
-}
-
-bool interface_project(const struct labels *labels, int count, const uint16_t label[], double x[])
-{
-    double y[3] = {0}, length = INFINITY, voxel = labels_voxel(labels);
-    struct label_mix mix;
-    memcpy(y, x, (size_t)labels->dim * sizeof *x);
-    for (int i = 0; i < 20 && length > 1e-3 * voxel; i++) {
-        double step[3];
-        if (!newton_step(labels, count, label, y, step)) {
-            return false;
-        }
-        length = 0;
-        for (int d = 0; d < labels->dim; d++) {
-            y[d] += step[d];
-            length = fmax(length, fabs(step[d]));
-        }
-    }
-    labels_mix(labels, y, &mix);
-    double share = label_share(&mix, label[0]);
-    for (int i = 0; i < mix.count; i++) {
-        if (mix.share[i] > share + 0.05) {
-            return false;
-        }
-    }
-    memcpy(x, y, (size_t)labels->dim * sizeof *x);
-    return length <= 1e-3 * voxel;
-}
-
 /* The label of the largest share at a node. */
 static uint16_t label_at(const struct labels *labels, const struct stuffing *stuffing, int64_t node)
 {
     return (uint16_t)labels_at(labels, stuffing->x + node * stuffing->dim);
+}
+
+/* Of the labels that meet at a node, how many are kept. */
+static int kept_labels(const struct stuffing_star *star, int64_t node, const bool *keep)
+{
+    int count = 0;
+    for (int i = 0; i < star->labels[node]; i++) {
+        count += keep[star->label[node][i]];
+    }
+    return count;
 }
 
 static bool meets(const struct stuffing_star *star, int64_t node, uint16_t label)
@@ -157,14 +98,27 @@ static bool meets(const struct stuffing_star *star, int64_t node, uint16_t label
     return false;
 }
 
+static void move_there(double voxel, struct stuffing *stuffing, const struct stuffing_star *star,
+                       int64_t node, const double target[])
+{
+    double distance = 0;
+    for (int d = 0; d < stuffing->dim; d++) {
+        distance = fmax(distance, fabs(target[d] - stuffing->x[node * stuffing->dim + d]));
+    }
+    if (distance > 0.01 * voxel) {
+        star_move(stuffing, star, node, target);
+    }
+}
+
 /* Nodes where three labels meet, and others that are off their interface. In a gap between labels that no
  * cell fills, the label there counts as well. */
-static void fit(const struct labels *labels, struct stuffing *stuffing, const struct stuffing_star *star)
+static void fit(const struct labels *labels, const bool *keep, struct stuffing *stuffing,
+                const struct stuffing_star *star)
 {
     int dim = labels->dim;
     double voxel = labels_voxel(labels);
     for (int64_t n = 0; n < stuffing->node_count; n++) {
-        double target[3] = {0}, distance = 0;
+        double target[3] = {0};
         uint16_t label[STUFFING_MOST_LABELS + 1];
         int count = star->labels[n];
         if (count < 2) {
@@ -172,17 +126,17 @@ static void fit(const struct labels *labels, struct stuffing *stuffing, const st
         }
         memcpy(target, stuffing->x + n * dim, (size_t)dim * sizeof *target);
         memcpy(label, star->label[n], sizeof star->label[n]);
-        if (!interface_project(labels, count, label, target)) {
+        if (!line_project(labels, keep, count, label, target)) {
             label[count] = label_at(labels, stuffing, n);
             if (meets(star, n, label[count]) || !interface_project(labels, count + 1, label, target)) {
-                continue;
+                memcpy(target, stuffing->x + n * dim, (size_t)dim * sizeof *target);
             }
         }
-        for (int d = 0; d < dim; d++) {
-            distance = fmax(distance, fabs(target[d] - stuffing->x[n * dim + d]));
-        }
-        if (distance > 0.01 * voxel) {
-            star_move(stuffing, star, n, target);
+        move_there(voxel, stuffing, star, n, target);
+        /* Where the line on which labels meet cannot be reached, the surface counts, or the interface. */
+        memcpy(target, stuffing->x + n * dim, (size_t)dim * sizeof *target);
+        if (node_project(labels, keep, star, n, target)) {
+            move_there(voxel, stuffing, star, n, target);
         }
     }
 }
@@ -220,58 +174,58 @@ static void separate(const struct labels *labels, struct stuffing *stuffing, con
     }
 }
 
-/* The least distance, in steps of a tenth of a voxel, at which the label is another one in some direction;
- * infinity where it is the same within three voxels. */
-static double search_change(const struct labels *labels, const double x[], int32_t label)
-{
-    int dim = labels->dim, directions = dim == 2 ? 9 : 27;
-    double voxel = labels_voxel(labels);
-    for (int step = 1; step <= 30; step++) {
-        for (int direction = 0; direction < directions; direction++) {
-            static const int power[3] = {1, 3, 9};
-            double square = 0, place[3] = {0};
-            for (int d = 0; d < dim; d++) {
-                place[d] = direction / power[d] % 3 - 1;
-                square += place[d] * place[d];
-            }
-            for (int d = 0; d < dim; d++) {
-                place[d] = x[d] + (square > 0 ? 0.1 * step * voxel * place[d] / sqrt(square) : 0);
-            }
-            if (labels_at(labels, place) != label) {
-                return 0.1 * step * voxel;
-            }
-        }
-    }
-    return INFINITY;
-}
-
-/* How far a node of interfaces is from where the label there gives way to one that meets at it, m. */
-static double distance(const struct labels *labels, const struct stuffing *stuffing,
+/* How far a node of interfaces is off them, m: on the boundary from the surface of the body, elsewhere from
+ * where the label there gives way to another one that meets at the node. */
+static double distance(const struct labels *labels, const bool *keep, const struct stuffing *stuffing,
                        const struct stuffing_star *star, int64_t node)
 {
-    int dim = labels->dim;
-    const double *x = stuffing->x + node * dim;
-    uint16_t pair[2] = {label_at(labels, stuffing, node), 0};
+    const double *x = stuffing->x + node * labels->dim;
+    if (kept_labels(star, node, keep) < star->labels[node]) {
+        const struct interface_beyond body = {-1, keep, true}, outside = {-1, keep, false};
+        return fmax(interface_distance(labels, x, &body), interface_distance(labels, x, &outside));
+    }
+    int32_t here = labels_at(labels, x);
     double least = INFINITY;
     for (int i = 0; i < star->labels[node]; i++) {
-        double place[3] = {0}, square = 0;
-        memcpy(place, x, (size_t)dim * sizeof *place);
-        pair[1] = star->label[node][i];
-        if (pair[1] == pair[0] || !interface_project(labels, 2, pair, place)) {
-            continue;
-        }
-        for (int d = 0; d < dim; d++) {
-            square += (place[d] - x[d]) * (place[d] - x[d]);
-        }
-        least = fmin(least, sqrt(square));
+        const struct interface_beyond region = {star->label[node][i], keep, true};
+        least = region.label != here ? fmin(least, interface_distance(labels, x, &region)) : least;
     }
-    return least < INFINITY ? least : search_change(labels, x, pair[0]);
+    return least;
 }
 
-static void measure(const struct labels *labels, struct stuffing *stuffing, const struct stuffing_star *star)
+/* Bring nodes that are still off their interface as near as cells within the bounds of the angles allow. */
+static void settle(const struct labels *labels, const bool *keep, struct stuffing *stuffing,
+                   const struct stuffing_star *star)
+{
+    int dim = stuffing->dim;
+    double most = last_slack * labels_voxel(labels);
+    for (int64_t n = 0; n < stuffing->node_count; n++) {
+        double *x = stuffing->x + n * dim, from[3] = {0}, target[3] = {0}, off;
+        if (star->labels[n] < 2 || !((off = distance(labels, keep, stuffing, star, n)) > most)) {
+            continue;
+        }
+        double score = fmin(star_score(stuffing, star, n), last_score);
+        memcpy(from, x, (size_t)dim * sizeof *x);
+        memcpy(target, x, (size_t)dim * sizeof *x);
+        if (!node_project(labels, keep, star, n, target)) {
+            continue;
+        }
+        for (int step = 8; step >= 0; step--) {
+            for (int d = 0; d < dim; d++) {
+                x[d] = from[d] + step / 8.0 * (target[d] - from[d]);
+            }
+            if (star_score(stuffing, star, n) >= score) {
+                break;
+            }
+        }
+    }
+}
+
+static void measure(const struct labels *labels, const bool *keep, struct stuffing *stuffing,
+                    const struct stuffing_star *star)
 {
     for (int64_t n = 0; n < stuffing->node_count; n++) {
-        double off = star->labels[n] > 1 ? distance(labels, stuffing, star, n) : 0;
+        double off = star->labels[n] > 1 ? distance(labels, keep, stuffing, star, n) : 0;
         stuffing->astray += off > STUFFING_MOST_ASTRAY * labels_voxel(labels);
         stuffing->farthest = off < INFINITY ? fmax(stuffing->farthest, off) : stuffing->farthest;
     }
@@ -285,13 +239,16 @@ enum status stuffing_improve(const struct labels *labels, const struct stuffing_
     struct stuffing_star star = {0};
     TRY(star_make(stuffing, &star, error));
     for (int sweep = 0; sweep < FIT_SWEEPS; sweep++) {
-        fit(labels, stuffing, &star);
-        stuffing_repair(labels, least_score, 0, stuffing, &star);
+        fit(labels, options->keep, stuffing, &star);
+        stuffing_repair(labels, options->keep, least_score, 0, stuffing, &star);
     }
     separate(labels, stuffing, &star, apart);
-    TRY(stuffing_volumes(labels, options->keep, apart, dropped, &star, stuffing, error));
-    stuffing_repair(labels, last_score, last_slack * labels_voxel(labels), stuffing, &star);
-    measure(labels, stuffing, &star);
+    TRY(stuffing_volumes(labels, options, apart, dropped, &star, stuffing, error));
+    stuffing_repair(labels, options->keep, last_score, last_slack * labels_voxel(labels), stuffing, &star);
+    for (int sweep = 0; sweep < FIT_SWEEPS; sweep++) {
+        settle(labels, options->keep, stuffing, &star);
+    }
+    measure(labels, options->keep, stuffing, &star);
 done:
     star_free(&star);
     return status;

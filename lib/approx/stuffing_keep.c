@@ -60,103 +60,6 @@ void star_free(struct stuffing_star *star)
     *star = (struct stuffing_star){0};
 }
 
-/* ---- what hangs by a node or an edge ---- */
-
-/* Cells to keep, and scratch for their groups at a node. */
-struct keeping {
-    struct stuffing *stuffing;
-    struct cells cells;
-    int32_t *across;
-    bool *wanted;
-    int32_t *group; /* cell_count: -1 */
-    bool *apart;    /* nodes: whether there are others at the same place */
-    int32_t *stack;
-};
-
-/* Give the cells at a node that hang together by faces there one number; returns how many groups there are.
- */
-static int32_t find_groups(struct keeping *keeping, const struct stuffing_star *star, int64_t node)
-{
-    int corners = keeping->cells.dim + 1;
-    int32_t count = 0;
-    for (int64_t i = star->ptr[node]; i < star->ptr[node + 1]; i++) {
-        int64_t depth = 0;
-        if (!keeping->wanted[star->cell[i]] || keeping->group[star->cell[i]] >= 0) {
-            continue;
-        }
-        keeping->stack[depth++] = star->cell[i];
-        keeping->group[star->cell[i]] = count;
-        while (depth > 0) {
-            int64_t cell = keeping->stack[--depth];
-            for (int k = 0; k < corners; k++) {
-                int32_t next = keeping->across[cell * corners + k];
-                bool at_node = keeping->cells.node[cell * corners + k] != node;
-                if (at_node && next >= 0 && keeping->wanted[next] && keeping->group[next] < 0) {
-                    keeping->group[next] = count;
-                    keeping->stack[depth++] = next;
-                }
-            }
-        }
-        count++;
-    }
-    return count;
-}
-
-/* Give the cells of each group at a node but the first a node of their own, at the same place. */
-static void cut_apart(struct keeping *keeping, const struct stuffing_star *star, int64_t node, int32_t count)
-{
-    struct stuffing *stuffing = keeping->stuffing;
-    int dim = stuffing->dim, corners = dim + 1;
-    for (int64_t i = star->ptr[node]; i < star->ptr[node + 1]; i++) {
-        int64_t cell = star->cell[i];
-        for (int k = 0; k < corners && keeping->group[cell] > 0; k++) {
-            if (stuffing->cell[cell * corners + k] == node) {
-                stuffing->cell[cell * corners + k] = (int32_t)stuffing->node_count + keeping->group[cell] - 1;
-            }
-        }
-    }
-    keeping->apart[node] = true;
-    for (int32_t g = 1; g < count; g++) {
-        memcpy(stuffing->x + stuffing->node_count * dim, stuffing->x + node * dim,
-               (size_t)dim * sizeof(double));
-        keeping->apart[stuffing->node_count++] = true;
-    }
-    stuffing->pinched++;
-}
-
-/* Cut the body where its parts hang together by nodes or edges alone. Nodes of several groups are counted
- * first. */
-static enum status unpinch(struct keeping *keeping, const struct stuffing_star *star, struct error *error)
-{
-    struct stuffing *stuffing = keeping->stuffing;
-    enum status status;
-    int64_t nodes = stuffing->node_count, fresh = 0;
-    double *x = NULL;
-    for (int cutting = 0; cutting < 2; cutting++) {
-        for (int64_t n = 0; n < nodes; n++) {
-            int32_t count = find_groups(keeping, star, n);
-            fresh += cutting == 0 && count > 1 ? count - 1 : 0;
-            if (cutting == 1 && count > 1) {
-                cut_apart(keeping, star, n, count);
-            }
-            for (int64_t i = star->ptr[n]; i < star->ptr[n + 1]; i++) {
-                keeping->group[star->cell[i]] = -1;
-            }
-        }
-        if (cutting == 0) {
-            TRY(NEW_ARRAY(&keeping->apart, nodes + fresh, error));
-            TRY(NEW_ARRAY(&x, (nodes + fresh) * stuffing->dim, error));
-            memcpy(x, stuffing->x, (size_t)(nodes * stuffing->dim) * sizeof *x);
-            free(stuffing->x);
-            stuffing->x = x;
-        }
-    }
-    keeping->cells.node_count = stuffing->node_count;
-    keeping->cells.x = stuffing->x;
-done:
-    return status;
-}
-
 /* ---- the boundary ---- */
 
 /* The face opposite a corner, oriented outward of a positively oriented cell. */
@@ -170,7 +73,7 @@ static void face_of(int dim, const int32_t *node, int opposite, int32_t *face)
 }
 
 /* The boundary of the wanted cells, counted or, where there is room, stored. */
-static int64_t find_facets(const struct keeping *keeping, int32_t *facet, int32_t *side)
+static int64_t find_facets(const struct stuffing_keeping *keeping, int32_t *facet, int32_t *side)
 {
     int dim = keeping->cells.dim;
     int64_t count = 0;
@@ -192,7 +95,7 @@ static int64_t find_facets(const struct keeping *keeping, int32_t *facet, int32_
 }
 
 /* Drop the cells that are not wanted, and the nodes of none; all arrays are numbered anew. */
-static enum status drop(struct keeping *keeping, struct error *error)
+static enum status drop(struct stuffing_keeping *keeping, struct error *error)
 {
     struct stuffing *stuffing = keeping->stuffing;
     enum status status;
@@ -233,7 +136,7 @@ done:
 
 /* The connected body of wanted cells that holds a cell: its volume and how many cells it has. Gives these the
  * number. */
-static double fill_body(struct keeping *keeping, int64_t first, int32_t number, int64_t *count)
+static double fill_body(struct stuffing_keeping *keeping, int64_t first, int32_t number, int64_t *count)
 {
     int corners = keeping->cells.dim + 1;
     int64_t depth = 0;
@@ -258,7 +161,7 @@ static double fill_body(struct keeping *keeping, int64_t first, int32_t number, 
 
 /* Of the connected bodies leave out those about a single point of the lattice, which has no more cells about
  * it than that, or all but the largest. */
-static void keep_bodies(struct keeping *keeping, bool largest_only)
+static void keep_bodies(struct stuffing_keeping *keeping, bool largest_only)
 {
     struct stuffing *stuffing = keeping->stuffing;
     int32_t number = 0, largest = -1;
@@ -286,20 +189,24 @@ static void keep_bodies(struct keeping *keeping, bool largest_only)
     }
 }
 
-enum status stuffing_keep(const struct stuffing_options *options, struct stuffing *stuffing, bool **apart,
-                          double *dropped, struct error *error)
+enum status stuffing_keep(const struct stuffing_options *options, const bool *between,
+                          struct stuffing *stuffing, bool **apart, double *dropped, struct error *error)
 {
     enum status status;
     int dim = stuffing->dim;
     int64_t count = stuffing->cell_count;
+    int32_t bodies = 0;
     struct stuffing_star star = {0};
-    struct keeping keeping = {.stuffing = stuffing,
-                              .cells = {dim, stuffing->node_count, stuffing->x, count, stuffing->cell}};
+    struct stuffing_keeping keeping = {
+        .stuffing = stuffing,
+        .between = between,
+        .cells = {dim, stuffing->node_count, stuffing->x, count, stuffing->cell}};
     *apart = NULL;
     TRY(NEW_ARRAY(&keeping.across, count * (dim + 1), error));
     TRY(NEW_ARRAY(&keeping.wanted, count, error));
     TRY(NEW_ARRAY(&keeping.group, count, error));
     TRY(NEW_ARRAY(&keeping.stack, count + 1, error));
+    TRY(NEW_ARRAY(&keeping.from, count, error));
     TRY(cells_across(&keeping.cells, keeping.across, error));
     TRY(star_make(stuffing, &star, error));
     for (int64_t c = 0; c < count; c++) {
@@ -312,7 +219,15 @@ enum status stuffing_keep(const struct stuffing_options *options, struct stuffin
         dropped[stuffing->label[c]] += left_out ? cell_volume(&keeping.cells, c) : 0;
         keeping.group[c] = -1;
     }
-    TRY(unpinch(&keeping, &star, error));
+    stuffing_join(&keeping, &star);
+    memset(keeping.group, -1, (size_t)count * sizeof *keeping.group);
+    for (int64_t c = 0; c < count; c++) {
+        int64_t cells;
+        if (keeping.wanted[c] && keeping.group[c] < 0) {
+            fill_body(&keeping, c, bodies++, &cells);
+        }
+    }
+    TRY(stuffing_cut_apart(&keeping, &star, error));
     stuffing->facet_count = find_facets(&keeping, NULL, NULL);
     TRY(NEW_ARRAY(&stuffing->facet, stuffing->facet_count * dim, error));
     TRY(NEW_ARRAY(&stuffing->side, stuffing->facet_count * 2, error));
@@ -326,6 +241,7 @@ done:
     free(keeping.wanted);
     free(keeping.group);
     free(keeping.stack);
+    free(keeping.from);
     free(keeping.apart);
     return status;
 }

@@ -248,7 +248,7 @@ enum status lattice_make(const struct labels *labels, const struct stuffing_opti
 {
     enum status status;
     struct points points = {.lattice = lattice, .levels = 1, .spacing = options->spacing, .error = error};
-    *lattice = (struct lattice){.labels = labels, .dim = labels->dim};
+    *lattice = (struct lattice){.labels = labels, .keep = options->keep, .dim = labels->dim};
     if (options->finest > 0 && labels->dim == 2) {
         TRY(fail(error, STATUS_INPUT, "finer interfaces are for bodies in space, not for slices"));
     }

@@ -2,12 +2,14 @@
 #ifndef APPROX_STUFFING_PRIVATE_H
 #define APPROX_STUFFING_PRIVATE_H
 
+#include "approx/cells.h"
 #include "approx/stuffing.h"
 
 /* The lattice whose cells are cut. 3D: corners and centres of cubes, which are leaves of an octree; 2D:
  * equilateral triangles. Cells whose points are all outside are left out. */
 struct lattice {
     const struct labels *labels;
+    const bool *keep; /* labels->count: labels of the body */
     int dim;
     int64_t node_count;
     double *x;       /* node_count * dim, m; lattice_cut moves some onto interfaces */
@@ -30,14 +32,22 @@ MUST_CHECK enum status lattice_make(const struct labels *labels, const struct st
                                     struct lattice *lattice, struct error *error);
 void lattice_free(struct lattice *lattice);
 
+/* Whether two labels are one to the body: the same, or both left out. */
+bool same_side(const struct lattice *lattice, int32_t a, int32_t b);
+
+/* The fraction of the way from p, of label a, to q, of label b, at which the interface lies. */
+double lattice_change(const struct lattice *lattice, const double p[], const double q[], int32_t a,
+                      int32_t b);
+
 /* Find where edges are cut, and move points that lie near a cut onto it. */
 MUST_CHECK enum status lattice_cut(struct lattice *lattice, struct error *error);
 
 /* The edge between two nodes, -1 when it is not cut. */
 int64_t lattice_edge(const struct lattice *lattice, int32_t p, int32_t q);
 
-/* Cut the lattice's cells into cells of one label each; label 0 is left out. */
-MUST_CHECK enum status lattice_cells(const struct lattice *lattice, struct stuffing *stuffing,
+/* Cut the lattice's cells into cells of one label each, outside with them. (*between)[cell_count], allocated:
+ * cells all of whose nodes lie on interfaces. */
+MUST_CHECK enum status lattice_cells(const struct lattice *lattice, struct stuffing *stuffing, bool **between,
                                      struct error *error);
 
 /* Leaves of the octree over count[3] cubes of the finest level. */
@@ -61,12 +71,6 @@ void octree_free(struct octree *octree);
 typedef enum status octree_tell(void *context, const int32_t corner[4][3]);
 MUST_CHECK enum status octree_cells(const struct octree *octree, octree_tell *tell, void *context);
 
-/* Keep the cells of labels that are wanted, without specks, cut apart what hangs together by nodes or edges
- * alone, and find the boundary. (*apart)[node_count], allocated: nodes that have others at the same place.
- * dropped[labels]: the volume of bodies that are left out is added, m3. */
-MUST_CHECK enum status stuffing_keep(const struct stuffing_options *options, struct stuffing *stuffing,
-                                     bool **apart, double *dropped, struct error *error);
-
 /* Cells at each node and the labels that meet there. */
 enum { STUFFING_MOST_LABELS = 4 };
 struct stuffing_star {
@@ -79,6 +83,35 @@ MUST_CHECK enum status star_make(const struct stuffing *stuffing, struct stuffin
                                  struct error *error);
 void star_free(struct stuffing_star *star);
 
+/* Keep the cells of labels that are wanted, without specks, join or cut apart what hangs together by nodes or
+ * edges alone, and find the boundary. between[cell_count]: cells all of whose nodes lie on interfaces.
+ * (*apart)[node_count], allocated: nodes that have others at the same place. dropped[labels]: the volume of
+ * bodies that are left out is added, m3. */
+MUST_CHECK enum status stuffing_keep(const struct stuffing_options *options, const bool *between,
+                                     struct stuffing *stuffing, bool **apart, double *dropped,
+                                     struct error *error);
+
+/* The cells that are kept, and scratch. */
+struct stuffing_keeping {
+    struct stuffing *stuffing;
+    struct cells cells;
+    int32_t *across; /* cells_across */
+    bool *wanted;
+    const bool *between;
+    int32_t *group; /* cell_count: -1 between calls, or the connected body of a cell */
+    bool *apart;    /* nodes: whether there are others at the same place */
+    int32_t *stack; /* cell_count + 1 */
+    int32_t *from;  /* cell_count */
+};
+
+/* Where parts hang together by a node or an edge alone: take cells between interfaces into the body that join
+ * them, or leave out those that hang there. No node leaves its interface. */
+void stuffing_join(struct stuffing_keeping *keeping, const struct stuffing_star *star);
+
+/* Cut bodies, whose numbers stand in group[], apart where they touch by a node or an edge. */
+MUST_CHECK enum status stuffing_cut_apart(struct stuffing_keeping *keeping, const struct stuffing_star *star,
+                                          struct error *error);
+
 /* The poorest score of the cells at a node: the score of a cell is 1 where its angles just keep within the
  * bounds, and negative where it is inverted. */
 double star_score(const struct stuffing *stuffing, const struct stuffing_star *star, int64_t node);
@@ -87,10 +120,34 @@ double stuffing_score(const struct stuffing *stuffing, int64_t cell);
 /* Move x onto the interface of the labels, at most four; false where there is none near. */
 bool interface_project(const struct labels *labels, int count, const uint16_t label[], double x[]);
 
+/* Move x onto what a node lies on: on the boundary the surface of the body, elsewhere where all labels of the
+ * node meet. False where there is none near. */
+bool node_project(const struct labels *labels, const bool *keep, const struct stuffing_star *star,
+                  int64_t node, double x[]);
+
+/* Move x to where all the labels meet, also from several voxels off. False where there is no such place. */
+bool line_project(const struct labels *labels, const bool *keep, int count, const uint16_t label[],
+                  double x[]);
+
+/* The label beyond an interface: one label, or any that is kept, or any that is not. */
+struct interface_beyond {
+    int32_t label; /* -1: any with keep[] == kept */
+    const bool *keep;
+    bool kept;
+};
+
+/* Distance of a place from the interface to what lies beyond, m: 0 within that; infinity where there is none
+ * within six voxels. */
+double interface_distance(const struct labels *labels, const double x[],
+                          const struct interface_beyond *beyond);
+
+/* Gradient of a cell's volume with respect to the place of its corner k: normal to the face opposite. */
+void stuffing_gradient(const struct stuffing *stuffing, int64_t cell, int k, double gradient[3]);
+
 /* Move the nodes of cells that score less than `least`, those of interfaces within these or at most `slack`,
  * m, off, until they score more. */
-void stuffing_repair(const struct labels *labels, double least, double slack, struct stuffing *stuffing,
-                     const struct stuffing_star *star);
+void stuffing_repair(const struct labels *labels, const bool *keep, double least, double slack,
+                     struct stuffing *stuffing, const struct stuffing_star *star);
 
 /* Move nodes: where labels meet onto their interfaces, those apart[] away from the others at the same place,
  * poor cells into shape, and interfaces for the volumes of labels. */
@@ -100,9 +157,10 @@ MUST_CHECK enum status stuffing_improve(const struct labels *labels, const struc
 
 /* Correct the volumes of labels, those of their voxels less dropped[], by small moves of interfaces, without
  * the nodes apart[]. */
-MUST_CHECK enum status stuffing_volumes(const struct labels *labels, const bool *keep, const bool *apart,
-                                        const double *dropped, const struct stuffing_star *star,
-                                        struct stuffing *stuffing, struct error *error);
+MUST_CHECK enum status stuffing_volumes(const struct labels *labels, const struct stuffing_options *options,
+                                        const bool *apart, const double *dropped,
+                                        const struct stuffing_star *star, struct stuffing *stuffing,
+                                        struct error *error);
 
 /* Move a node towards `target` as far as its cells allow. */
 void star_move(struct stuffing *stuffing, const struct stuffing_star *star, int64_t node,

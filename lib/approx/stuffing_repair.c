@@ -29,14 +29,14 @@ static double edge_length(const struct stuffing *stuffing, const struct stuffing
 
 /* Put a place onto the interface of a node, or leave it where it is no farther from there than the slack, m.
  * False where there is no interface near. */
-static bool keep_to_interface(const struct labels *labels, const struct stuffing_star *star, int64_t node,
-                              double slack, double place[3])
+static bool keep_to_interface(const struct labels *labels, const bool *keep, const struct stuffing_star *star,
+                              int64_t node, double slack, double place[3])
 {
     double projected[3] = {place[0], place[1], place[2]}, square = 0;
     if (star->labels[node] < 2) {
         return true;
     }
-    if (!interface_project(labels, star->labels[node], star->label[node], projected)) {
+    if (!node_project(labels, keep, star, node, projected)) {
         return false;
     }
     for (int d = 0; d < labels->dim; d++) {
@@ -50,7 +50,7 @@ static bool keep_to_interface(const struct labels *labels, const struct stuffing
 
 /* Try steps in all directions, along the axes and between them, of falling length; nodes of interfaces stay
  * there, but for the slack. Takes the best of each length that improves the poorest cell at the node. */
-static bool search(const struct labels *labels, double slack, struct stuffing *stuffing,
+static bool search(const struct labels *labels, const bool *keep, double slack, struct stuffing *stuffing,
                    const struct stuffing_star *star, int64_t node)
 {
     int dim = stuffing->dim, directions = dim == 2 ? 9 : 27;
@@ -70,7 +70,7 @@ static bool search(const struct labels *labels, double slack, struct stuffing *s
             for (int d = 0; d < dim; d++) {
                 place[d] = here[d] + (norm > 0 ? length / sqrt(norm) * place[d] : 0);
             }
-            if (!keep_to_interface(labels, star, node, slack, place)) {
+            if (!keep_to_interface(labels, keep, star, node, slack, place)) {
                 continue;
             }
             memcpy(x, place, (size_t)dim * sizeof *x);
@@ -87,8 +87,8 @@ static bool search(const struct labels *labels, double slack, struct stuffing *s
     return improved;
 }
 
-void stuffing_repair(const struct labels *labels, double least, double slack, struct stuffing *stuffing,
-                     const struct stuffing_star *star)
+void stuffing_repair(const struct labels *labels, const bool *keep, double least, double slack,
+                     struct stuffing *stuffing, const struct stuffing_star *star)
 {
     bool improved = true;
     for (int sweep = 0; sweep < SWEEPS && improved; sweep++) {
@@ -96,7 +96,7 @@ void stuffing_repair(const struct labels *labels, double least, double slack, st
         for (int64_t c = 0; c < stuffing->cell_count; c++) {
             for (int k = 0; k <= stuffing->dim && stuffing_score(stuffing, c) < least; k++) {
                 int64_t node = stuffing->cell[c * (stuffing->dim + 1) + k];
-                improved = search(labels, slack, stuffing, star, node) || improved;
+                improved = search(labels, keep, slack, stuffing, star, node) || improved;
             }
         }
     }

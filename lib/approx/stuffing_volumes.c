@@ -11,8 +11,7 @@
 static const double most_offset = 0.55;
 enum { SWEEPS = 12 };
 
-/* Gradient of a cell's volume with respect to the place of its corner k. */
-static void volume_gradient(const struct stuffing *stuffing, int64_t cell, int k, double gradient[3])
+void stuffing_gradient(const struct stuffing *stuffing, int64_t cell, int k, double gradient[3])
 {
     int dim = stuffing->dim;
     static const int of_triangle[3][2] = {{1, 2}, {2, 0}, {0, 1}};
@@ -38,11 +37,12 @@ struct volumes {
     const struct labels *labels;
     struct stuffing *stuffing;
     const struct stuffing_star *star;
-    const bool *apart; /* nodes that stay */
-    double *wanted;    /* labels->count: of the voxels, m3; 0: not to be kept */
-    double *pressure;  /* labels->count */
-    double *matrix;    /* labels->count squared */
-    double *place;     /* nodes: before the first move */
+    const int32_t *whole; /* labels->count: the label whose part each is, of which the arrays below are */
+    const bool *apart;    /* nodes that stay */
+    double *wanted;       /* labels->count: of the voxels, m3; 0: not to be kept */
+    double *pressure;     /* labels->count */
+    double *matrix;       /* labels->count squared */
+    double *place;        /* nodes: before the first move */
 };
 
 /* Gradients of the volumes of the labels at a node: one row for each label of its star. */
@@ -61,7 +61,7 @@ static void node_gradients(const struct volumes *volumes, int64_t node, double G
         while (row < star->labels[node] && star->label[node][row] != volumes->stuffing->label[cell]) {
             row++;
         }
-        volume_gradient(volumes->stuffing, cell, k, gradient);
+        stuffing_gradient(volumes->stuffing, cell, k, gradient);
         for (int d = 0; d < corners - 1 && row < star->labels[node]; d++) {
             G[row][d] += gradient[d];
         }
@@ -95,7 +95,7 @@ static bool find_pressures(struct volumes *volumes)
     memcpy(volumes->pressure, volumes->wanted, (size_t)count * sizeof(double));
     memset(volumes->matrix, 0, (size_t)count * (size_t)count * sizeof(double));
     for (int64_t c = 0; c < cells.count; c++) {
-        volumes->pressure[stuffing->label[c]] -= cell_volume(&cells, c);
+        volumes->pressure[volumes->whole[stuffing->label[c]]] -= cell_volume(&cells, c);
     }
     for (int32_t l = 0; l < count; l++) {
         volumes->pressure[l] = volumes->wanted[l] > 0 ? volumes->pressure[l] : 0;
@@ -111,7 +111,7 @@ static bool find_pressures(struct volumes *volumes)
         double weight = node_weight(dim, G);
         for (int i = 0; i < volumes->star->labels[n]; i++) {
             for (int j = 0; j < volumes->star->labels[n]; j++) {
-                double *entry = &volumes->matrix[label[i] * count + label[j]];
+                double *entry = &volumes->matrix[volumes->whole[label[i]] * count + volumes->whole[label[j]]];
                 for (int d = 0; d < dim; d++) {
                     *entry += weight * G[i][d] * G[j][d];
                 }
@@ -144,7 +144,7 @@ static void correct_volumes(struct volumes *volumes)
         for (int d = 0; d < dim; d++) {
             target[d] = stuffing->x[n * dim + d];
             for (int i = 0; i < volumes->star->labels[n]; i++) {
-                target[d] += weight * volumes->pressure[volumes->star->label[n][i]] * G[i][d];
+                target[d] += weight * volumes->pressure[volumes->whole[volumes->star->label[n][i]]] * G[i][d];
             }
             length += (target[d] - place[d]) * (target[d] - place[d]);
         }
@@ -175,25 +175,33 @@ static void voxel_volumes(const struct labels *labels, const bool *keep, double 
     }
 }
 
-enum status stuffing_volumes(const struct labels *labels, const bool *keep, const bool *apart,
-                             const double *dropped, const struct stuffing_star *star,
+enum status stuffing_volumes(const struct labels *labels, const struct stuffing_options *options,
+                             const bool *apart, const double *dropped, const struct stuffing_star *star,
                              struct stuffing *stuffing, struct error *error)
 {
     enum status status;
+    int32_t *whole = NULL;
+    double *voxels = NULL;
     struct volumes volumes = {.labels = labels, .stuffing = stuffing, .star = star, .apart = apart};
+    TRY(NEW_ARRAY(&whole, labels->count, error));
+    TRY(NEW_ARRAY(&voxels, labels->count, error));
     TRY(NEW_ARRAY(&volumes.wanted, labels->count, error));
     TRY(NEW_ARRAY(&volumes.pressure, labels->count, error));
     TRY(NEW_ARRAY(&volumes.matrix, (int64_t)labels->count * labels->count, error));
     TRY(NEW_ARRAY(&volumes.place, stuffing->node_count * stuffing->dim, error));
     memcpy(volumes.place, stuffing->x, (size_t)(stuffing->node_count * stuffing->dim) * sizeof(double));
-    voxel_volumes(labels, keep, volumes.wanted);
+    voxel_volumes(labels, options->keep, voxels);
     for (int32_t l = 0; l < labels->count; l++) {
-        volumes.wanted[l] = fmax(volumes.wanted[l] - dropped[l], 0);
+        whole[l] = options->whole != NULL ? options->whole[l] : l;
+        volumes.wanted[whole[l]] += fmax(voxels[l] - dropped[l], 0);
     }
+    volumes.whole = whole;
     for (int sweep = 0; sweep < SWEEPS && find_pressures(&volumes); sweep++) {
         correct_volumes(&volumes);
     }
 done:
+    free(whole);
+    free(voxels);
     free(volumes.wanted);
     free(volumes.pressure);
     free(volumes.matrix);

@@ -45,6 +45,11 @@ static bool is_finite(int dim, const double *x)
     return true;
 }
 
+static long long row_of(const struct search *search, int64_t p)
+{
+    return search->places.row != NULL ? search->places.row[p] : p;
+}
+
 /* The message for a point without a good support; the radius in it reveals a stray node. */
 static enum status fail_support(const struct search *search, int64_t row, const int32_t *index, int64_t count,
                                 struct error *error)
@@ -63,7 +68,7 @@ static enum status fail_support(const struct search *search, int64_t row, const 
     return fail(error, STATUS_VERDICT,
                 "%s: row %lld at %s: no good support even at %g times the radius (%lld nodes within%s%s): "
                 "coplanar, stray or too few nodes there",
-                search->what, (long long)row, place, SUPPORT_WIDEN_LIMIT, (long long)count,
+                search->what, row_of(search, row), place, SUPPORT_WIDEN_LIMIT, (long long)count,
                 search->reach != NULL ? " reach through the cells" : "", stray);
 }
 
@@ -79,7 +84,7 @@ static enum status build_chunk(const struct search *search, int64_t first, int64
         bool serves;
         if (!is_finite(dim, search->x + p * dim)) {
             return fail(error, STATUS_INPUT, "%s: row %lld: not a finite coordinate", search->what,
-                        (long long)p);
+                        row_of(search, p));
         }
         int64_t before = worker->list.count;
         TRY(support_find(search, p, worker, &lists->widen[p], &serves, error));

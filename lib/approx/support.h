@@ -14,7 +14,10 @@ struct support_options {
     bool widen;            /* widen where the moment matrix is unfit or a gradient too large */
     double gradient_bound; /* largest |grad phi| h admitted, h the mean spacing within the support */
     enum reach_rule reach; /* what else a neighbour must be, besides near */
-    struct mls mls;        /* what the lists are for */
+    const int32_t
+        *side;      /* by cells: of each cell, from 0, on which side of the interfaces it is, at which
+                       supports stop; NULL: no interfaces. See support_space.h, support_build ignores it */
+    struct mls mls; /* what the lists are for */
 };
 
 /* Factor 1.8 of the local spacing, in 3D 2; widening on, the default MLS. */

@@ -172,7 +172,7 @@ enum status support_find(const struct search *search, int64_t p, struct worker *
         double *image = NULL;
         if (search->reach != NULL) {
             if (*widen == 1.0) {
-                TRY(reach_list_facets(search->reach, x, index, count, &worker->reach, error));
+                TRY(reach_list_facets(search->reach, index, count, &worker->reach, error));
             }
             TRY(reach_filter(search->reach, *widen, index, &count, &worker->reach, error));
             image = worker->reach.around > 0 ? worker->reach.image : NULL;

@@ -2,23 +2,51 @@
 
 #include <stdlib.h>
 #include <string.h>
+#include <sys/mman.h>
+#include <unistd.h>
 
 static int bytes_of(int64_t count, size_t size, size_t *bytes)
 {
     return count >= 0 && !__builtin_mul_overflow((size_t)count, size, bytes) && *bytes <= SIZE_MAX / 2;
 }
 
-void *array_new(int64_t count, size_t size)
+/* Aligned memory of whole lines of 64 bytes; *rounded: how much. */
+static void *allocate(int64_t count, size_t size, size_t *rounded)
 {
     size_t bytes;
     if (!bytes_of(count, size, &bytes)) {
         return NULL;
     }
-    size_t rounded = (bytes + 63) / 64 * 64;
-    void *array = aligned_alloc(64, rounded > 0 ? rounded : 64);
+    *rounded = (bytes + 63) / 64 * 64;
+    return aligned_alloc(64, *rounded > 0 ? *rounded : 64);
+}
+
+void *array_new(int64_t count, size_t size)
+{
+    size_t bytes;
+    void *array = allocate(count, size, &bytes);
     if (array != NULL) {
-        memset(array, 0, rounded);
+        memset(array, 0, bytes);
     }
+    return array;
+}
+
+void *array_new_untouched(int64_t count, size_t size)
+{
+    size_t bytes, page = (size_t)sysconf(_SC_PAGESIZE);
+    char *array = allocate(count, size, &bytes);
+    if (array == NULL) {
+        return NULL;
+    }
+    /* Private pages that are given back are zeros when they are next looked at. */
+    size_t before = (page - (uintptr_t)array % page) % page,
+           pages = bytes > before ? (bytes - before) / page : 0;
+    if (pages == 0 || madvise(array + before, pages * page, MADV_DONTNEED) != 0) {
+        memset(array, 0, bytes);
+        return array;
+    }
+    memset(array, 0, before);
+    memset(array + before + pages * page, 0, bytes - before - pages * page);
     return array;
 }
 

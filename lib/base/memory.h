@@ -10,6 +10,9 @@
  * count < 0, or count * size overflows). A count of 0 gives a valid pointer. Release with free(). */
 void *array_new(int64_t count, size_t size);
 
+/* The same, where most pages may never be written: memory is taken when they are. */
+void *array_new_untouched(int64_t count, size_t size);
+
 /* Resize an array from malloc, array_grow or NULL to `count` elements; new bytes are not zeroed. On failure
  * returns NULL and the old array stays valid. The result is not 64-byte aligned. */
 void *array_grow(void *array, int64_t count, size_t size);
@@ -18,6 +21,11 @@ void *array_grow(void *array, int64_t count, size_t size);
 #define NEW_ARRAY(pointer, count, error)                                                                     \
     ((*(pointer) = array_new((count), sizeof **(pointer))) != NULL ? STATUS_OK                               \
                                                                    : fail_memory((error), #pointer))
+
+#define NEW_ARRAY_UNTOUCHED(pointer, count, error)                                                           \
+    ((*(pointer) = array_new_untouched((count), sizeof **(pointer))) != NULL                                 \
+         ? STATUS_OK                                                                                         \
+         : fail_memory((error), #pointer))
 
 /* Evaluate a status expression; on failure, leave through the label `done` with `status` set.
  * The functions of lib/ have one exit path, which frees. */

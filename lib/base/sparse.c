@@ -76,12 +76,27 @@ apply_rows(const struct sparse *matrix, int64_t begin, int64_t end, int64_t widt
     }
 }
 
+enum status sparse_rows_used(const struct sparse *matrix, bool **used, struct error *error)
+{
+    enum status status = NEW_ARRAY(used, matrix->row_count, error);
+    for (int64_t r = 0; status == STATUS_OK && r < matrix->row_count; r++) {
+        (*used)[r] = matrix->ptr[r + 1] > matrix->ptr[r];
+    }
+    return status;
+}
+
 void sparse_apply(const struct sparse *matrix, int64_t width, const double *x, double *y)
 {
-    struct chunks chunks = chunks_of(matrix->row_count, ROWS_FOR_THREAD);
+    sparse_apply_rows(matrix, 0, matrix->row_count, width, x, y);
+}
+
+void sparse_apply_rows(const struct sparse *matrix, int64_t first, int64_t last, int64_t width,
+                       const double *x, double *y)
+{
+    struct chunks chunks = chunks_of(last - first, ROWS_FOR_THREAD);
 #pragma omp parallel for schedule(static) num_threads(chunks.threads)
     for (int64_t c = 0; c < chunks.count; c++) {
-        int64_t begin = chunks_begin(&chunks, c), end = chunks_begin(&chunks, c + 1);
+        int64_t begin = first + chunks_begin(&chunks, c), end = first + chunks_begin(&chunks, c + 1);
         if (width == 2) {
             apply_rows(matrix, begin, end, 2, x, y);
         } else if (width == 3) {

@@ -7,6 +7,7 @@
 
 #include "base/status.h"
 
+#include <stdbool.h>
 #include <stdint.h>
 
 struct sparse {
@@ -25,7 +26,14 @@ MUST_CHECK enum status sparse_transpose(const struct sparse *matrix, struct spar
                                         struct error *error);
 void sparse_free(struct sparse *matrix);
 
+/* (*used)[row_count], to be freed: rows that have entries. */
+MUST_CHECK enum status sparse_rows_used(const struct sparse *matrix, bool **used, struct error *error);
+
 /* y[row_count * width] = A x of x[column_count * width], another array. Threaded. */
 void sparse_apply(const struct sparse *matrix, int64_t width, const double *x, double *y);
+
+/* The same of the rows from `first` to before `last`. */
+void sparse_apply_rows(const struct sparse *matrix, int64_t first, int64_t last, int64_t width,
+                       const double *x, double *y);
 
 #endif

@@ -50,7 +50,7 @@ static const char *foreign_hint(const char *bytes, size_t size)
         {"<VTKFile", ": a VTU file: " BY_MESHIO WITH_REGIONS},
         {"solid", stl_hint},
         {"MeshVersionFormatted", ": a MEDIT mesh: " BY_GMSH("FILE.mesh")},
-        {"*", ": an Abaqus deck: " BY_GMSH("FILE.inp")},
+        {"*", ": an Abaqus deck: " BY_MESHIO},
         {"ply",
          ": a PLY surface: make it STL (gmsh FILE.ply -save -o body.stl); nodes -h tells how to fill that"},
         {"ISO-10303-21", ": a STEP geometry: gmsh -3 FILE.step -o body.msh makes a mesh of it"},

@@ -90,7 +90,8 @@ static enum status build_body(struct assembly *input, struct solid_system *syste
                               .group = materials->section,
                               .hat_node = hat_node,
                               .hat_value = hat_value,
-                              .smoothed = input->smoothed ? &smoothed : NULL};
+                              .smoothed = input->smoothed ? &smoothed : NULL,
+                              .ranks = input->ranks};
     TRY(body_build(&body, &system->body, error));
 done:
     free(hat_node);
@@ -135,7 +136,8 @@ void assembly_complete(struct assembly *input)
                                             .faces = &input->boundary,
                                             .per_face = quadrature_face_rule(dim).points,
                                             .lists = &input->boundary_lists,
-                                            .phi = input->boundary_phi};
+                                            .phi = input->boundary_phi,
+                                            .cell_side = input->cell_side};
 }
 
 enum status assembly_build(struct assembly *input, struct solid_system *system, struct error *note,

@@ -60,6 +60,10 @@ struct assembly {
     void (*copied)(void *context);
     void *context;
 
+    const int32_t *cell_side; /* the side of each cell of the interfaces at which supports stop; NULL: none */
+    const struct ranks *ranks; /* processes that compute the body together; NULL: one. Of several `copied` is
+                                  not called */
+
     struct material_list materials; /* the caller's to free; assembly adds softer ones, once */
     bool pointwise_volume;          /* no nodal volumes */
 

@@ -59,8 +59,8 @@ static enum status copy_points(const struct body_input *input, struct body *body
     TRY(NEW_ARRAY(&body->material, points + BODY_POINT_PADDING, error));
     TRY(NEW_ARRAY(&body->u, body->node_count * VECTOR_STRIDE(dim), error));
     TRY(NEW_ARRAY(&body->force, body->node_count * VECTOR_STRIDE(dim), error));
-    TRY(NEW_ARRAY(&body->F, points * dim * dim + BODY_POINT_PADDING, error));
-    TRY(NEW_ARRAY(&body->J, points + BODY_POINT_PADDING, error));
+    TRY(NEW_ARRAY_UNTOUCHED(&body->F, points * dim * dim + BODY_POINT_PADDING, error));
+    TRY(NEW_ARRAY_UNTOUCHED(&body->J, points + BODY_POINT_PADDING, error));
     TRY(NEW_ARRAY(&body->materials, input->material_count, error));
     memcpy(body->materials, input->materials, (size_t)input->material_count * sizeof *body->materials);
     for (int64_t q = 0; q < points; q++) {
@@ -99,29 +99,69 @@ done:
     return status;
 }
 
-/* The table of gradients at points. */
-static enum status copy_gradients(const struct body_input *input, struct body *body, struct error *error)
+/* Rows of the table of gradients: those of the points from `begin` to before `end`, with the nodes from
+ * `first` to before `last` in the body's order. */
+static enum status copy_rows(const struct body_input *input, const struct body *body, int64_t begin,
+                             int64_t end, int64_t first, int64_t last, struct sparse *matrix,
+                             struct error *error)
 {
     enum status status;
     int dim = body->dim;
     int64_t rows = body->point_count * dim, at = 0;
-    struct sparse *matrix = &body->gradients;
-    if (rows > INT32_MAX) {
-        return fail(error, STATUS_INPUT, "points.x: %lld points: too many", (long long)body->point_count);
+    for (int64_t q = begin; q < end; q++) {
+        int64_t from = body->order[q];
+        for (int64_t i = input->ptr[from]; i < input->ptr[from + 1]; i++) {
+            int32_t node = body->node_place[input->idx[i]];
+            at += node >= first && node < last;
+        }
     }
-    TRY(sparse_new(rows, body->node_count, input->ptr[body->point_count] * dim, matrix, error));
+    TRY(sparse_new(rows, body->node_count, at * dim, matrix, error));
+    at = 0;
     for (int64_t r = 0; r < rows; r++) {
         int64_t from = body->order[r / dim];
-        for (int64_t i = input->ptr[from]; i < input->ptr[from + 1]; i++, at++) {
-            matrix->idx[at] = body->node_place[input->idx[i]];
-            matrix->value[at] = input->dphi[i * dim + r % dim];
+        for (int64_t i = input->ptr[from]; i < input->ptr[from + 1] && r >= begin * dim && r < end * dim;
+             i++) {
+            int32_t node = body->node_place[input->idx[i]];
+            if (node >= first && node < last) {
+                matrix->idx[at] = node;
+                matrix->value[at++] = input->dphi[i * dim + r % dim];
+            }
         }
         matrix->ptr[r + 1] = at;
     }
-    TRY(sparse_transpose(matrix, &body->transposed, error));
-    TRY(NEW_ARRAY(&body->derivative, rows * VECTOR_STRIDE(dim), error));
-    body->pair_count = at / dim;
 done:
+    return status;
+}
+
+/* The table of gradients at points. */
+static enum status copy_gradients(const struct body_input *input, struct body *body, struct error *error)
+{
+    enum status status;
+    struct body_share *share = &body->share;
+    struct sparse columns = {0};
+    int64_t rows = body->point_count * body->dim;
+    bool *wanted = NULL;
+    if (rows > INT32_MAX) {
+        return fail(error, STATUS_INPUT, "points.x: %lld points: too many", (long long)body->point_count);
+    }
+    TRY(copy_rows(input, body, share->begin_point, share->end_point, 0, body->node_count, &body->gradients,
+                  error));
+    if (share->ranks == NULL) {
+        TRY(sparse_transpose(&body->gradients, &body->transposed, error));
+    } else {
+        TRY(copy_rows(input, body, 0, body->point_count, share->begin_node, share->end_node, &columns,
+                      error));
+        TRY(sparse_transpose(&columns, &body->transposed, error));
+        TRY(sparse_rows_used(&columns, &wanted, error));
+    }
+    TRY(body_share_rows(body, wanted, error));
+    TRY(stretches_of(share->begin_point * body->dim, share->end_point * body->dim, NULL, &share->values,
+                     error));
+    TRY(NEW_ARRAY_UNTOUCHED(&body->derivative, rows * VECTOR_STRIDE(body->dim), error));
+    body->pair_count = input->ptr[body->point_count];
+done:
+    sparse_free(&columns);
+    free(wanted);
     return status;
 }
 
@@ -150,6 +190,7 @@ enum status body_build(const struct body_input *input, struct body *body, struct
     }
     TRY(order_all(input, body, error));
     TRY(cut_blocks(input, body, error));
+    TRY(body_share_cut(input, body, error));
     TRY(copy_points(input, body, error));
     if (body->averaged) {
         TRY(nodal_volumes_build(input, body, error));
@@ -157,8 +198,9 @@ enum status body_build(const struct body_input *input, struct body *body, struct
     if (!body->smoothed) {
         TRY(copy_gradients(input, body, error));
     } else {
-        TRY(smoothed_cells_build(input->smoothed, body, &body->cells, error));
-        body->pair_count = body->cells.averages.matrix.ptr[body->cells.averages.matrix.row_count];
+        body->pair_count = input->smoothed->face_ptr[input->smoothed->face_count] +
+                           input->smoothed->node_ptr[body->node_count];
+        TRY(smoothed_cells_build(input->smoothed, body, error));
     }
     body->threads = worthwhile_threads(body);
     TRY(body_make_bounds(body, error));
@@ -172,6 +214,7 @@ done:
 void body_free(struct body *body)
 {
     body_free_bounds(body);
+    body_share_free(&body->share);
     sparse_free(&body->gradients);
     sparse_free(&body->transposed);
     smoothed_cells_free(&body->cells);

@@ -8,6 +8,7 @@
 
 #include "base/chunks.h"
 #include "base/status.h"
+#include "solid/body_share.h"
 #include "solid/smoothed_cells.h"
 #include "solid/material.h"
 
@@ -33,6 +34,7 @@ struct body_input {
     const int32_t *hat_node; /* point_count * (dim + 1): vertices of the background cell of each point */
     const double *hat_value; /* point_count * (dim + 1): their hat functions at the point, sum 1 */
     const struct smoothed_cells_input *smoothed; /* the points are cells, in their order; NULL: any points */
+    const struct ranks *ranks;                   /* processes that compute the body together; NULL: one */
 };
 
 /* Points are worked on so many at a time; weight, material, J and F have as many entries more, which are
@@ -97,6 +99,7 @@ struct body {
     int32_t *material; /* point_count */
     int64_t block_count;
     struct block *blocks;
+    struct body_share share; /* what this process computes of several; rows that others do are empty */
     bool smoothed;
     struct sparse gradients, transposed; /* of the shape functions: row q dim + k has the derivatives along k
                                             at point q; and the transpose; */
@@ -112,6 +115,7 @@ struct body {
     struct chunks bound_parts;           /* of the blocks, by each of which body_diagonal sums; */
     double *bound;                       /* node_count for each: scratch */
     struct cell_functions *bound_work;   /* for each part */
+    int64_t *bound_first;                /* of each process: the parts whose sums end with it */
 };
 
 /* Lay out a body; the arrays are copied. STATUS_INPUT for a point without neighbours

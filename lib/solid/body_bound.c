@@ -10,6 +10,12 @@
  * blocks than that are one part. */
 enum { MOST_PARTS = 4, LEAST_BLOCKS = 50 };
 
+/* Who has a block. */
+static int owner_of_block(const struct body_share *share, int64_t block)
+{
+    return ranks_owner(share->ranks, share->block_first, block);
+}
+
 enum status body_make_bounds(struct body *body, struct error *error)
 {
     enum status status;
@@ -17,6 +23,13 @@ enum status body_make_bounds(struct body *body, struct error *error)
     body->bound_parts = chunks_of(body->block_count, least > LEAST_BLOCKS ? least : LEAST_BLOCKS);
     TRY(NEW_ARRAY(&body->bound, body->bound_parts.count * body->node_count, error));
     TRY(NEW_ARRAY(&body->bound_work, MOST_PARTS, error));
+    TRY(NEW_ARRAY(&body->bound_first, ranks_count(body->share.ranks) + 1, error));
+    for (int64_t p = 0; p < body->bound_parts.count; p++) {
+        int64_t last = chunks_begin(&body->bound_parts, p + 1) - 1;
+        for (int r = owner_of_block(&body->share, last); r < ranks_count(body->share.ranks); r++) {
+            body->bound_first[r + 1] = p + 1;
+        }
+    }
     for (int64_t p = 0; p < body->bound_parts.count; p++) {
         TRY(cell_functions_make(body, &body->bound_work[p], error));
     }
@@ -30,6 +43,7 @@ void body_free_bounds(struct body *body)
         cell_functions_free(&body->bound_work[p]);
     }
     free(body->bound_work);
+    free(body->bound_first);
     free(body->bound);
 }
 
@@ -128,26 +142,70 @@ static void add_cell(const struct body *body, int64_t q, const double F[9], doub
     add_functions(body, &bound, body->dim + 1, node, gradient, to->of_node);
 }
 
+/* Add what the blocks of part p add that are this process's. */
+static void add_part(struct body *body, int64_t p, body_visitor *add, bool rest)
+{
+    const struct body_share *share = &body->share;
+    int64_t begin = chunks_begin(&body->bound_parts, p), end = chunks_begin(&body->bound_parts, p + 1);
+    struct bound_sum to = {body->bound + p * body->node_count, &body->bound_work[p], rest};
+    begin = begin > share->begin_block ? begin : share->begin_block;
+    end = end < share->end_block ? end : share->end_block;
+    body_visit(body, begin, end, add, &to);
+}
+
+/* The part that a block is in. */
+static int64_t part_of(const struct chunks *parts, int64_t block)
+{
+    int64_t p = 0;
+    while (chunks_begin(parts, p + 1) <= block) {
+        p++;
+    }
+    return p;
+}
+
+/* A part whose blocks several processes have goes from one to the next, so that it is summed in the order of
+ * the blocks; then all get all parts. */
+static void sum_parts_of_ranks(struct body *body, int64_t taken, body_visitor *add, bool rest)
+{
+    const struct body_share *share = &body->share;
+    const struct chunks *parts = &body->bound_parts;
+    int64_t nodes = body->node_count;
+    if (taken >= 0) {
+        share->ranks->receive(share->ranks, owner_of_block(share, share->begin_block - 1),
+                              body->bound + taken * nodes, nodes);
+        add_part(body, taken, add, rest);
+    }
+    int64_t last = share->begin_block < share->end_block ? part_of(parts, share->end_block - 1) : -1;
+    if (last >= 0 && chunks_begin(parts, last + 1) > share->end_block) {
+        share->ranks->send(share->ranks, owner_of_block(share, share->end_block), body->bound + last * nodes,
+                           nodes);
+    }
+    ranks_gather(share->ranks, body->bound, (size_t)nodes * sizeof *body->bound, body->bound_first);
+}
+
 static void sum_bounds(struct body *body, body_visitor *add, bool rest, double *stiffness)
 {
+    const struct body_share *share = &body->share;
     const struct chunks *parts = &body->bound_parts;
-#pragma omp parallel num_threads(parts->threads)
-    {
-#pragma omp for schedule(static)
-        for (int64_t p = 0; p < parts->count; p++) {
-            double *sum = body->bound + p * body->node_count;
-            memset(sum, 0, (size_t)body->node_count * sizeof *sum);
-            struct bound_sum to = {sum, &body->bound_work[p], rest};
-            body_visit(body, chunks_begin(parts, p), chunks_begin(parts, p + 1), add, &to);
+    int64_t first = share->begin_block < share->end_block ? part_of(parts, share->begin_block) : -1;
+    int64_t taken = first >= 0 && chunks_begin(parts, first) < share->begin_block ? first : -1;
+#pragma omp parallel for schedule(static) num_threads(parts->threads)
+    for (int64_t p = 0; p < parts->count; p++) {
+        if (p != taken) {
+            memset(body->bound + p * body->node_count, 0, (size_t)body->node_count * sizeof *body->bound);
+            add_part(body, p, add, rest);
         }
-#pragma omp for schedule(static)
-        for (int64_t n = 0; n < body->node_count; n++) {
-            double sum = body->bound[n];
-            for (int64_t p = 1; p < parts->count; p++) {
-                sum += body->bound[p * body->node_count + n];
-            }
-            stiffness[body->node_order[n]] = sum;
+    }
+    if (share->ranks != NULL) {
+        sum_parts_of_ranks(body, taken, add, rest);
+    }
+#pragma omp parallel for schedule(static) num_threads(parts->threads)
+    for (int64_t n = 0; n < body->node_count; n++) {
+        double sum = body->bound[n];
+        for (int64_t p = 1; p < parts->count; p++) {
+            sum += body->bound[p * body->node_count + n];
         }
+        stiffness[body->node_order[n]] = sum;
     }
 }
 

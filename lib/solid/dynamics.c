@@ -101,7 +101,8 @@ static void accept(struct dynamics *d)
 
 static bool is_interrupted(const struct dynamics *d)
 {
-    return d->options->interrupted != NULL && *d->options->interrupted != 0;
+    return d->options->interrupted != NULL &&
+           ranks_most(d->system->body.share.ranks, *d->options->interrupted) != 0;
 }
 
 /* Step until something ends the run. */

@@ -4,18 +4,51 @@
 
 #include <stdlib.h>
 
-/* The rows of a table, from number `first` on; *at counts the entries. */
-static void copy_rows(const struct average_table *table, const int32_t *place, int64_t first, int64_t *at,
+/* Rows of a table, from number `first_row` on; *at counts the entries. Without the matrix's arrays nothing
+ * else is done. */
+static void copy_rows(const struct field_averages_input *input, const struct average_table *table,
+                      const bool *wanted, int64_t first, int64_t last, int64_t first_row, int64_t *at,
                       struct sparse *matrix)
 {
     for (int64_t r = 0; r < table->row_count; r++) {
         int64_t from = table->order[r];
-        for (int64_t i = table->ptr[from]; i < table->ptr[from + 1]; i++, ++*at) {
-            matrix->idx[*at] = place[table->idx[i]];
-            matrix->value[*at] = table->phi[i];
+        bool copied = wanted == NULL || wanted[first_row + r];
+        for (int64_t i = table->ptr[from]; copied && i < table->ptr[from + 1]; i++) {
+            int32_t node = input->place[table->idx[i]];
+            if (node < first || node >= last) {
+                continue;
+            }
+            if (matrix->ptr != NULL) {
+                matrix->idx[*at] = node;
+                matrix->value[*at] = table->phi[i];
+            }
+            ++*at;
         }
-        matrix->ptr[first + r + 1] = *at;
+        if (matrix->ptr != NULL) {
+            matrix->ptr[first_row + r + 1] = *at;
+        }
     }
+}
+
+enum status field_averages_copy(const struct field_averages_input *input, const bool *wanted, int64_t first,
+                                int64_t last, struct sparse *matrix, struct error *error)
+{
+    enum status status;
+    const struct average_table *faces = &input->tables[0], *nodes = &input->tables[1];
+    int64_t at = 0, rows = faces->row_count + nodes->row_count;
+    *matrix = (struct sparse){0};
+    if (wanted == NULL && first == 0 && last == input->node_count) {
+        at = faces->ptr[faces->row_count] + nodes->ptr[nodes->row_count];
+    } else {
+        copy_rows(input, faces, wanted, first, last, 0, &at, matrix);
+        copy_rows(input, nodes, wanted, first, last, faces->row_count, &at, matrix);
+    }
+    TRY(sparse_new(rows, input->node_count, at, matrix, error));
+    at = 0;
+    copy_rows(input, faces, wanted, first, last, 0, &at, matrix);
+    copy_rows(input, nodes, wanted, first, last, faces->row_count, &at, matrix);
+done:
+    return status;
 }
 
 /* Which row each corner looks at, as of_corner has it. */
@@ -46,7 +79,7 @@ done:
 static enum status list_corners(int dim, struct field_averages *averages, struct error *error)
 {
     enum status status;
-    int64_t rows = averages->matrix.row_count, corners = 2 * averages->corner_count;
+    int64_t rows = averages->row_count, corners = 2 * averages->corner_count;
     TRY(NEW_ARRAY(&averages->corner_ptr, rows + 2, error));
     TRY(NEW_ARRAY(&averages->corner, corners, error));
     for (int64_t i = 0; i < corners; i++) {
@@ -68,19 +101,15 @@ enum status field_averages_build(const struct field_averages_input *input, struc
 {
     enum status status;
     const struct average_table *faces = &input->tables[0], *nodes = &input->tables[1];
-    int64_t rows = faces->row_count + nodes->row_count, at = 0, stride = VECTOR_STRIDE(input->dim);
-    *averages = (struct field_averages){.corner_count = input->corner_count};
+    int64_t rows = faces->row_count + nodes->row_count, stride = VECTOR_STRIDE(input->dim);
+    *averages = (struct field_averages){.corner_count = input->corner_count, .row_count = rows};
     if (rows > INT32_MAX / stride || input->corner_count > INT32_MAX / 2) {
         return fail(error, STATUS_INPUT, "%lld faces and nodes: too many", (long long)rows);
     }
-    TRY(sparse_new(rows, input->node_count, faces->ptr[faces->row_count] + nodes->ptr[nodes->row_count],
-                   &averages->matrix, error));
-    copy_rows(faces, input->place, 0, &at, &averages->matrix);
-    copy_rows(nodes, input->place, faces->row_count, &at, &averages->matrix);
-    TRY(NEW_ARRAY(&averages->value, rows * stride, error));
-    TRY(NEW_ARRAY(&averages->force, rows * stride, error));
+    TRY(NEW_ARRAY_UNTOUCHED(&averages->value, rows * stride, error));
+    TRY(NEW_ARRAY_UNTOUCHED(&averages->force, rows * stride, error));
     TRY(NEW_ARRAY(&averages->of_corner, 2 * input->corner_count, error));
-    TRY(NEW_ARRAY(&averages->corner_force, 2 * input->corner_count * stride, error));
+    TRY(NEW_ARRAY_UNTOUCHED(&averages->corner_force, 2 * input->corner_count * stride, error));
     TRY(match_corners(input, averages, error));
     TRY(list_corners(input->dim, averages, error));
 done:
@@ -88,11 +117,6 @@ done:
         field_averages_free(averages);
     }
     return status;
-}
-
-enum status field_averages_transpose(struct field_averages *averages, struct error *error)
-{
-    return sparse_transpose(&averages->matrix, &averages->transposed, error);
 }
 
 void field_averages_free(struct field_averages *averages)
@@ -105,5 +129,6 @@ void field_averages_free(struct field_averages *averages)
     free(averages->corner_force);
     free(averages->corner_ptr);
     free(averages->corner);
+    free(averages->face_order);
     *averages = (struct field_averages){0};
 }

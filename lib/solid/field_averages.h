@@ -9,19 +9,10 @@
 
 #include "base/sparse.h"
 
+#include <stdbool.h>
+
 /* Displacements and forces stand so many doubles apart in the force loop: 2, or 3 padded to 4. */
 #define VECTOR_STRIDE(dim) ((dim) == 2 ? 2 : 4)
-
-struct field_averages {
-    struct sparse matrix, transposed; /* B: a row for each face, then one for each node; and its transpose */
-    double *value;                    /* of each row at the last evaluation, m: VECTOR_STRIDE(dim) for each */
-    double *force;                    /* on each row, likewise, N (2D: N/m) */
-    int64_t corner_count;             /* of faces; as many of nodes follow */
-    int32_t *of_corner;               /* 2 corner_count: where the value begins that each corner looks at */
-    double *corner_force;             /* 2 corner_count, likewise: what each corner puts on its row */
-    int64_t *corner_ptr;              /* row_count + 1: the corners of each row, */
-    int32_t *corner;                  /* 2 corner_count: by rows, ascending */
-};
 
 /* One of the caller's tables: averages over the faces, or values at the nodes. */
 struct average_table {
@@ -33,6 +24,21 @@ struct average_table {
     const int32_t *row_of_corner; /* corner_count */
 };
 
+struct field_averages {
+    int64_t row_count;
+    struct sparse matrix, transposed; /* B: a row for each face, then one for each node; and its transpose.
+                                         Of several processes: rows that are not computed here are empty */
+    double *value;                    /* of each row at the last evaluation, m: VECTOR_STRIDE(dim) for each */
+    double *force;                    /* on each row, likewise, N (2D: N/m) */
+    int64_t corner_count;             /* of faces; as many of nodes follow */
+    int32_t *of_corner;               /* 2 corner_count: where the value begins that each corner looks at */
+    double *corner_force;             /* 2 corner_count, likewise: what each corner puts on its row */
+    int64_t *corner_ptr;              /* row_count + 1: the corners of each row, */
+    int32_t *corner;                  /* 2 corner_count: by rows, ascending */
+    struct average_table told[2];     /* of several processes: the tables, the caller's, */
+    int64_t *face_order;              /* with this order of the faces */
+};
+
 struct field_averages_input {
     int dim;
     int64_t node_count, corner_count;
@@ -40,10 +46,15 @@ struct field_averages_input {
     struct average_table tables[2]; /* faces, nodes */
 };
 
-/* Lay out the tables but for the transpose; the arrays are copied. */
+/* Lay out which corner looks at which row. */
 MUST_CHECK enum status field_averages_build(const struct field_averages_input *input,
                                             struct field_averages *averages, struct error *error);
-MUST_CHECK enum status field_averages_transpose(struct field_averages *averages, struct error *error);
+
+/* The rows that are wanted (NULL: all) of the tables, whose arrays are copied, with the nodes from `first` to
+ * before `last` in the body's order; other rows are empty. */
+MUST_CHECK enum status field_averages_copy(const struct field_averages_input *input, const bool *wanted,
+                                           int64_t first, int64_t last, struct sparse *matrix,
+                                           struct error *error);
 void field_averages_free(struct field_averages *averages);
 
 #endif

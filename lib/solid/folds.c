@@ -252,7 +252,15 @@ enum status folds_build(const struct fold_input *input, struct folds *folds, str
     TRY(find_rims(folds, sides, error));
     TRY(NEW_ARRAY(&u, size, error));
     TRY(NEW_ARRAY(&stopped, input->node_count, error));
-    folds->crosses_at_rest = folds_find(folds, u, stopped).kind == FOLD_CROSSING;
+    TRY(folds_find_bodies(folds, error));
+    struct fold at_rest = folds_find(folds, u, stopped);
+    if (at_rest.kind != FOLD_CROSSING && at_rest.kind != FOLD_WITHIN) {
+        at_rest = (struct fold){.cell = -1, .facet = {-1, -1}};
+        TRY(folds_find_overlaps(folds, &at_rest, error));
+    }
+    if (at_rest.kind == FOLD_CROSSING || at_rest.kind == FOLD_WITHIN) {
+        folds->at_rest = at_rest;
+    }
 done:
     free(sides);
     free(u);
@@ -272,6 +280,8 @@ void folds_free(struct folds *folds)
     free(folds->rims);
     free(folds->support);
     free(folds->is_held);
+    free(folds->part);
+    free(folds->bodies);
     free(folds->y);
     free(folds->boxes);
     free(folds->plane);

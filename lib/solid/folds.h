@@ -25,6 +25,7 @@ enum fold_kind {
     FOLD_CREASE, /* the facets that meet at a node (2D) or an edge (3D) have passed through each other */
     FOLD_CROSSING, /* two parts of the boundary have passed through each other: by a twentieth of their facets
                     */
+    FOLD_WITHIN,   /* a body lies within another one, at rest: or a cell of it */
     FOLD_FLAT,     /* cells are inverted between their nodes, but by less: of a sliver, that is soon said */
     FOLD_SUPPORT   /* a free facet at the rim of a plane support has gone through its plane */
 };
@@ -32,7 +33,7 @@ enum fold_kind {
 struct fold {
     enum fold_kind kind;
     int64_t count;    /* of that kind */
-    int64_t cell;     /* FOLD_CELL, FOLD_FLAT: the first one; else -1 */
+    int64_t cell;     /* FOLD_CELL, FOLD_FLAT: the first one; FOLD_WITHIN: one of the inner body; else -1 */
     int64_t facet[2]; /* else: facets of the input, those of the first one, -1 where there is none;
                          FOLD_SUPPORT: the free one, then that of the support */
     double place[3];  /* at rest, m: middle of the cell or of the first facet */
@@ -63,6 +64,12 @@ struct fold_rim {
     int32_t node, on_rim;  /* a node of the free one off the support, and one that both have */
 };
 
+/* A cell of a connected body (see cells_parts). */
+struct fold_body {
+    int64_t cell;
+    double middle[3]; /* scratch */
+};
+
 /* The extent of a facet along each axis. */
 struct fold_box {
     double low[3], high[3];
@@ -78,10 +85,14 @@ struct folds {
     int32_t *ring_cell;    /* by their dim + 1 nodes, those of the ring first */
     struct fold_rim *rims; /* rim_count */
     int64_t rim_count;
-    bool *is_held;        /* node_count: of a held facet */
-    int64_t *support;     /* facet_count: the first facet of the plane support that it is in; -1: free */
-    double extent;        /* diagonal of the box around the nodes, m */
-    bool crosses_at_rest; /* then crossings are not looked for */
+    bool *is_held;            /* node_count: of a held facet */
+    int64_t *support;         /* facet_count: the first facet of the plane support that it is in; -1: free */
+    double extent;            /* diagonal of the box around the nodes, m */
+    int32_t *part;            /* cell_count: the connected body of each cell */
+    struct fold_body *bodies; /* body_count */
+    int64_t body_count;
+    struct fold at_rest; /* FOLD_CROSSING or FOLD_WITHIN: bodies, or parts of one, interpenetrate at rest;
+                            these kinds are not looked for, then */
     /* Scratch. */
     double *y;              /* node_count * dim: positions */
     double largest;         /* of their coordinates, m */

@@ -18,20 +18,6 @@ static const double *at(const struct folds *folds, int32_t node)
     return folds->y + (int64_t)node * folds->input.dim;
 }
 
-/* Area (2D: twice) or volume (3D: six times) of the simplex of these corners. */
-static double signed_volume(int dim, const double *a, const double *b, const double *c, const double *d)
-{
-    double u[3], v[3], w[3];
-    fold_way(dim, a, b, u);
-    fold_way(dim, a, c, v);
-    if (dim == 2) {
-        return u[0] * v[1] - u[1] * v[0];
-    }
-    fold_way(dim, a, d, w);
-    return u[0] * (v[1] * w[2] - v[2] * w[1]) + u[1] * (v[2] * w[0] - v[0] * w[2]) +
-           u[2] * (v[0] * w[1] - v[1] * w[0]);
-}
-
 /* Take `facet` for the first one found, with its middle. */
 static void name_facets(const struct folds *folds, int64_t facet, int64_t other, struct fold *fold)
 {
@@ -56,12 +42,12 @@ static bool is_flattened(const struct folds *folds, const int32_t *node, const b
     return all && any;
 }
 
-/* The volume of a cell as signed_volume has it. */
+/* The volume of a cell as fold_volume has it. */
 static double cell_size(const struct folds *folds, const int32_t *node)
 {
     int dim = folds->input.dim;
-    return signed_volume(dim, at(folds, node[0]), at(folds, node[1]), at(folds, node[2]),
-                         dim == 3 ? at(folds, node[3]) : NULL);
+    return fold_volume(dim, at(folds, node[0]), at(folds, node[1]), at(folds, node[2]),
+                       dim == 3 ? at(folds, node[3]) : NULL);
 }
 
 /* Whether a cell of that volume < 0 is turned over: its least height is more than a tenth of its longest
@@ -155,8 +141,8 @@ static bool pierces(const struct folds *folds, int32_t p, int32_t q, int64_t f)
     const int32_t *node = folds->input.facet + f * dim;
     const double *x = at(folds, p), *y = at(folds, q), *a = at(folds, node[0]), *b = at(folds, node[1]);
     const double *c = dim == 3 ? at(folds, node[2]) : NULL;
-    double before = dim == 2 ? signed_volume(2, a, b, x, NULL) : signed_volume(3, a, b, c, x);
-    double after = dim == 2 ? signed_volume(2, a, b, y, NULL) : signed_volume(3, a, b, c, y);
+    double before = dim == 2 ? fold_volume(2, a, b, x, NULL) : fold_volume(3, a, b, c, x);
+    double after = dim == 2 ? fold_volume(2, a, b, y, NULL) : fold_volume(3, a, b, c, y);
     double size = 0.0, side[3] = {0.0, 0.0, 0.0}, way[3];
     fold_way(dim, x, y, way);
     size = sqrt(fold_dot(dim, way, way));
@@ -169,13 +155,13 @@ static bool pierces(const struct folds *folds, int32_t p, int32_t q, int64_t f)
         return false;
     }
     if (dim == 2) {
-        side[0] = signed_volume(2, x, y, a, NULL);
-        side[1] = -signed_volume(2, x, y, b, NULL);
+        side[0] = fold_volume(2, x, y, a, NULL);
+        side[1] = -fold_volume(2, x, y, b, NULL);
         side[2] = side[0];
     } else {
-        side[0] = signed_volume(3, x, y, a, b);
-        side[1] = signed_volume(3, x, y, b, c);
-        side[2] = signed_volume(3, x, y, c, a);
+        side[0] = fold_volume(3, x, y, a, b);
+        side[1] = fold_volume(3, x, y, b, c);
+        side[2] = fold_volume(3, x, y, c, a);
     }
     return (side[0] > least && side[1] > least && side[2] > least) ||
            (side[0] < -least && side[1] < -least && side[2] < -least);
@@ -363,8 +349,11 @@ struct fold folds_find(struct folds *folds, const double *u, const bool *stopped
     if (cells.kind == FOLD_CELL) {
         return cells;
     }
-    if (!find_creases(folds, &fold) && !folds->crosses_at_rest) {
+    if (!find_creases(folds, &fold) && folds->at_rest.kind == FOLD_NONE) {
         find_crossings(folds, &fold);
+        if (fold.kind == FOLD_NONE) {
+            folds_find_within(folds, &fold);
+        }
     }
     return fold.kind != FOLD_NONE ? fold : cells;
 }

@@ -38,6 +38,30 @@ static inline void fold_area_vector(int dim, const double *y, const int32_t *fac
     }
 }
 
+/* Area (2D: twice) or volume (3D: six times) of the simplex of these corners. */
+static inline double fold_volume(int dim, const double *a, const double *b, const double *c, const double *d)
+{
+    double u[3], v[3], w[3];
+    fold_way(dim, a, b, u);
+    fold_way(dim, a, c, v);
+    if (dim == 2) {
+        return u[0] * v[1] - u[1] * v[0];
+    }
+    fold_way(dim, a, d, w);
+    return u[0] * (v[1] * w[2] - v[2] * w[1]) + u[1] * (v[2] * w[0] - v[0] * w[2]) +
+           u[2] * (v[0] * w[1] - v[1] * w[0]);
+}
+
+/* Find the parts and bodies of the cells. */
+MUST_CHECK enum status folds_find_bodies(struct folds *folds, struct error *error);
+
+/* Look for a body within another, where boundaries do not cross. */
+void folds_find_within(struct folds *folds, struct fold *fold);
+
+/* The same at rest for each cell: whether its middle is deep in a cell of another body. Boundaries that go
+ * through each other at nodes do not show as crossed. */
+MUST_CHECK enum status folds_find_overlaps(struct folds *folds, struct fold *fold, struct error *error);
+
 /* Sums over the facets of each plane support, into folds->plane. */
 void folds_fill_planes(struct folds *folds, const double *y);
 

@@ -60,35 +60,29 @@ void body_visit(const struct body *body, int64_t first, int64_t last, body_visit
     }
 }
 
-/* What threads share: loops over rows, blocks and nodes. Rows of one unit of work: */
-enum { ROWS_AT_ONCE = 256 };
-
-static int64_t stretch_end(int64_t first, int64_t count)
-{
-    return first + ROWS_AT_ONCE < count ? first + ROWS_AT_ONCE : count;
-}
-
-static void apply(const struct body *body, const struct sparse *matrix, const double *x, double *y)
+/* What threads share: loops over rows, blocks and nodes. */
+static void apply(const struct body *body, const struct sparse *matrix, const struct stretches *rows,
+                  const double *x, double *y)
 {
 #pragma omp for schedule(static)
-    for (int64_t first = 0; first < matrix->row_count; first += ROWS_AT_ONCE) {
-        body->kernels->apply(matrix, first, stretch_end(first, matrix->row_count), x, y);
+    for (int64_t i = 0; i < rows->count; i++) {
+        body->kernels->apply(matrix, rows->items[i].begin, rows->items[i].end, x, y);
     }
 }
 
 static void sum_corners(struct body *body)
 {
-    struct field_averages *averages = &body->cells.averages;
+    const struct stretches *rows = &body->share.sums;
 #pragma omp for schedule(static)
-    for (int64_t first = 0; first < averages->matrix.row_count; first += ROWS_AT_ONCE) {
-        body->kernels->sum_corners(averages, first, stretch_end(first, averages->matrix.row_count));
+    for (int64_t i = 0; i < rows->count; i++) {
+        body->kernels->sum_corners(&body->cells.averages, rows->items[i].begin, rows->items[i].end);
     }
 }
 
 static void for_blocks(struct body *body, void (*work)(struct body *body, int64_t block))
 {
 #pragma omp for schedule(static)
-    for (int64_t b = 0; b < body->block_count; b++) {
+    for (int64_t b = body->share.begin_block; b < body->share.end_block; b++) {
         work(body, b);
     }
 }
@@ -120,10 +114,10 @@ static void set_state(struct body *body, const double *u)
 {
     place_nodes(body, u);
     if (body->smoothed) {
-        apply(body, &body->cells.averages.matrix, body->u, body->cells.averages.value);
+        apply(body, &body->cells.averages.matrix, &body->share.values, body->u, body->cells.averages.value);
         for_blocks(body, body->kernels->cell_gradients);
     } else {
-        apply(body, &body->gradients, body->u, body->derivative);
+        apply(body, &body->gradients, &body->share.values, body->u, body->derivative);
         for_blocks(body, body->kernels->point_gradients);
     }
     if (body->averaged) {
@@ -134,17 +128,25 @@ static void set_state(struct body *body, const double *u)
 /* Internal forces at u. */
 static void evaluate(struct body *body, const double *u, double *force)
 {
+    struct body_share *share = &body->share;
+    struct field_averages *averages = &body->cells.averages;
+    int stride = VECTOR_STRIDE(body->dim);
 #pragma omp parallel num_threads(body->threads)
     {
         set_state(body, u);
         if (body->smoothed) {
             for_blocks(body, stress_cell_block);
+            body_share_exchange(share, &share->corners, stride, averages->corner_force);
             sum_corners(body);
-            apply(body, &body->cells.averages.transposed, body->cells.averages.force, body->force);
+            body_share_exchange(share, &share->rows, stride, averages->force);
+            apply(body, &averages->transposed, &share->nodes, averages->force, body->force);
         } else {
             for_blocks(body, stress_point_block);
-            apply(body, &body->transposed, body->derivative, body->force);
+            body_share_exchange(share, &share->rows, stride, body->derivative);
+            apply(body, &body->transposed, &share->nodes, body->derivative, body->force);
         }
+        body_share_gather(share, body->force, (size_t)stride * sizeof *body->force, share->node_first);
+        body_share_gather(share, body->blocks, sizeof *body->blocks, share->block_first);
         return_forces(body, force);
     }
 }
@@ -192,10 +194,11 @@ double body_energy(struct body *body, const double *u)
 #pragma omp parallel num_threads(body->threads)
     set_state(body, u);
 #pragma omp parallel for schedule(static) num_threads(body->threads)
-    for (int64_t b = 0; b < body->block_count; b++) {
+    for (int64_t b = body->share.begin_block; b < body->share.end_block; b++) {
         body->blocks[b].energy = 0.0;
         body_visit(body, b, b + 1, add_energy, &body->blocks[b].energy);
     }
+    ranks_gather(body->share.ranks, body->blocks, sizeof *body->blocks, body->share.block_first);
     for (int64_t b = 0; b < body->block_count; b++) {
         energy += body->blocks[b].energy;
     }

@@ -2,6 +2,7 @@
 
 #include "base/dense.h"
 #include "base/memory.h"
+#include "solid/lower_stiffness.h"
 #include "solid/scalar_stiffness.h"
 #include "solid/system.h"
 
@@ -12,76 +13,7 @@
 /* Entries of a row of L: with 12, 24 and 40 the ratio of the frequencies of a bar is 26, 22, 22; of a ball of
  * flat cells 119, 79, 52. */
 enum { MOST_ENTRIES = 24 };
-static const double ridge = 1e-9;       /* on the diagonal of S_pp, by itself */
-static const double least_share = 1e-6; /* of the mean diagonal entry, that nodes without stiffness have */
-
-/* S up to its diagonal, by rows. */
-struct lower {
-    int64_t *ptr;
-    int32_t *idx;
-    double *value;
-    int64_t capacity;
-    double least; /* on the diagonal */
-};
-
-static enum status keep_row(const struct scalar_row *row, int64_t i, struct lower *lower, struct error *error)
-{
-    int64_t at = lower->ptr[i];
-    if (at + row->count > lower->capacity) {
-        int64_t capacity = (at + row->count) / 4 * 5 + 4096;
-        int32_t *idx = array_grow(lower->idx, capacity, sizeof *idx);
-        lower->idx = idx != NULL ? idx : lower->idx;
-        double *value = array_grow(lower->value, capacity, sizeof *value);
-        lower->value = value != NULL ? value : lower->value;
-        if (idx == NULL || value == NULL) {
-            return fail_memory(error, "preconditioner");
-        }
-        lower->capacity = capacity;
-    }
-    if (row->count > 0) {
-        memcpy(lower->idx + at, row->node, (size_t)row->count * sizeof *row->node);
-        memcpy(lower->value + at, row->value, (size_t)row->count * sizeof *row->value);
-    }
-    lower->ptr[i + 1] = at + row->count;
-    return STATUS_OK;
-}
-
-static enum status make_lower(const struct solid_system *system, struct lower *lower, struct error *error)
-{
-    enum status status;
-    struct scalar_stiffness stiffness = {0};
-    struct scalar_row row = {0};
-    double sum = 0.0;
-    TRY(scalar_stiffness_make(system, &stiffness, error));
-    TRY(scalar_row_make(&stiffness, &row, error));
-    TRY(NEW_ARRAY(&lower->ptr, system->node_count + 1, error));
-    for (int64_t i = 0; i < system->node_count; i++) {
-        scalar_stiffness_row(&stiffness, i, &row);
-        sum += row.count > 0 ? row.value[row.count - 1] : 0.0;
-        TRY(keep_row(&row, i, lower, error));
-    }
-    lower->least = least_share * sum / (double)system->node_count;
-done:
-    scalar_row_free(&row);
-    scalar_stiffness_free(&stiffness);
-    return status;
-}
-
-/* S_ij, j <= i; 0 where there is no such entry. */
-static double entry(const struct lower *lower, int32_t i, int32_t j)
-{
-    int64_t low = lower->ptr[i], high = lower->ptr[i + 1];
-    while (low < high) {
-        int64_t middle = (low + high) / 2;
-        if (lower->idx[middle] < j) {
-            low = middle + 1;
-        } else {
-            high = middle;
-        }
-    }
-    double value = low < lower->ptr[i + 1] && lower->idx[low] == j ? lower->value[low] : 0.0;
-    return i == j ? fmax(value, lower->least) : value;
-}
+static const double ridge = 1e-9; /* on the diagonal of S_pp, by itself */
 
 struct near {
     double distance2;
@@ -109,7 +41,7 @@ static int64_t choose(const struct solid_system *system, const struct lower *low
 {
     int dim = system->dim;
     int64_t count = 0, kept = 0;
-    for (int64_t k = lower->ptr[i]; k < lower->ptr[i + 1]; k++) {
+    for (int64_t k = lower->begin[i]; k < lower->end[i]; k++) {
         int32_t node = lower->idx[k];
         double distance2 = 0.0;
         for (int a = 0; a < dim && node < i; a++) {
@@ -135,7 +67,7 @@ static void solve_row(const struct lower *lower, int64_t count, const int32_t *l
     double matrix[MOST_ENTRIES * MOST_ENTRIES];
     for (int64_t a = 0; a < count; a++) {
         for (int64_t b = 0; b <= a; b++) {
-            matrix[a * count + b] = entry(lower, list[a], list[b]) * (a == b ? 1.0 + ridge : 1.0);
+            matrix[a * count + b] = lower_entry(lower, list[a], list[b]) * (a == b ? 1.0 + ridge : 1.0);
         }
     }
     memset(value, 0, (size_t)count * sizeof *value);
@@ -143,7 +75,7 @@ static void solve_row(const struct lower *lower, int64_t count, const int32_t *l
     if (dense_factorise(count, matrix)) {
         dense_solve(count, matrix, value);
     } else {
-        value[count - 1] = 1.0 / entry(lower, list[count - 1], list[count - 1]);
+        value[count - 1] = 1.0 / lower_entry(lower, list[count - 1], list[count - 1]);
     }
     double scale = 1.0 / sqrt(value[count - 1]);
     for (int64_t k = 0; k < count; k++) {
@@ -151,29 +83,83 @@ static void solve_row(const struct lower *lower, int64_t count, const int32_t *l
     }
 }
 
-static enum status make_rows(const struct solid_system *system, const struct lower *lower,
-                             struct sparse *factor, struct error *error)
+/* Rows of own nodes, one behind the other from the begin of the factor's arrays on; length[node]: how long
+ * each is. */
+static enum status make_rows(const struct solid_system *system, struct lower *lower,
+                             struct inverse_factor *factor, int64_t *length, struct error *error)
 {
     enum status status;
     struct near *near = NULL;
-    int64_t most = 0;
-    for (int64_t i = 0; i < system->node_count; i++) {
-        int64_t length = lower->ptr[i + 1] - lower->ptr[i];
-        most = length > most ? length : most;
-        factor->ptr[i + 1] = factor->ptr[i] + (length < MOST_ENTRIES ? length : MOST_ENTRIES);
+    bool *wanted = NULL;
+    int64_t most = 0, at = 0, begin = factor->first[ranks_rank(factor->ranks)],
+            end = factor->first[ranks_rank(factor->ranks) + 1];
+    int32_t list[MOST_ENTRIES];
+    for (int64_t i = begin; i < end; i++) {
+        int64_t entries = lower->end[i] - lower->begin[i];
+        most = entries > most ? entries : most;
     }
     TRY(NEW_ARRAY(&near, most, error));
-    int64_t at = 0;
-    for (int64_t i = 0; i < system->node_count; i++) {
-        int32_t list[MOST_ENTRIES];
-        int64_t count = choose(system, lower, (int32_t)i, near, list);
-        memcpy(factor->idx + at, list, (size_t)count * sizeof *list);
-        solve_row(lower, count, list, factor->value + at);
-        at += count;
-        factor->ptr[i + 1] = at;
+    if (factor->ranks != NULL) {
+        TRY(NEW_ARRAY(&wanted, system->node_count, error));
+        for (int64_t i = begin; i < end; i++) {
+            int64_t count = choose(system, lower, (int32_t)i, near, list);
+            for (int64_t k = 0; k < count; k++) {
+                wanted[list[k]] = true;
+            }
+        }
+        TRY(lower_fetch(factor, wanted, system->node_count, lower, error));
+    }
+    for (int64_t i = begin; i < end; i++) {
+        length[i] = choose(system, lower, (int32_t)i, near, list);
+        memcpy(factor->rows.idx + at, list, (size_t)length[i] * sizeof *list);
+        solve_row(lower, length[i], list, factor->rows.value + at);
+        at += length[i];
     }
 done:
     free(near);
+    free(wanted);
+    return status;
+}
+
+/* All rows to all: each process's go where they belong, and then to the others. */
+static enum status gather_rows(struct inverse_factor *factor, int64_t *length, struct error *error)
+{
+    enum status status;
+    const struct ranks *ranks = factor->ranks;
+    struct sparse *rows = &factor->rows;
+    int rank = ranks_rank(ranks), count = ranks_count(ranks);
+    int64_t *first = NULL;
+    ranks_gather(ranks, length, sizeof *length, factor->first);
+    for (int64_t i = 0; i < rows->row_count; i++) {
+        rows->ptr[i + 1] = rows->ptr[i] + length[i];
+    }
+    TRY(NEW_ARRAY(&first, count + 1, error));
+    for (int r = 0; r <= count; r++) {
+        first[r] = rows->ptr[factor->first[r]];
+    }
+    size_t own = (size_t)(first[rank + 1] - first[rank]);
+    memmove(rows->idx + first[rank], rows->idx, own * sizeof *rows->idx);
+    memmove(rows->value + first[rank], rows->value, own * sizeof *rows->value);
+    ranks_gather(ranks, rows->idx, sizeof *rows->idx, first);
+    ranks_gather(ranks, rows->value, sizeof *rows->value, first);
+done:
+    free(first);
+    return status;
+}
+
+/* Stretches of nodes of about the same work, most of which is that of making S. */
+static enum status share_nodes(const struct solid_system *system, struct inverse_factor *factor,
+                               struct error *error)
+{
+    enum status status;
+    double *work = NULL;
+    TRY(NEW_ARRAY(&work, system->node_count, error));
+    if (factor->ranks != NULL) {
+        scalar_stiffness_work(system, work);
+    }
+    TRY(ranks_share(factor->ranks, system->node_count, work, &factor->first, error));
+done:
+    free(work);
     return status;
 }
 
@@ -182,16 +168,18 @@ enum status inverse_factor_build(const struct solid_system *system, struct inver
 {
     enum status status;
     struct lower lower = {0};
-    int64_t nodes = system->node_count;
-    *factor = (struct inverse_factor){0};
-    TRY(make_lower(system, &lower, error));
+    int64_t nodes = system->node_count, *length = NULL;
+    *factor = (struct inverse_factor){.ranks = system->body.share.ranks};
+    TRY(share_nodes(system, factor, error));
+    TRY(lower_make(system, factor, &lower, error));
     TRY(sparse_new(nodes, nodes, nodes * MOST_ENTRIES, &factor->rows, error));
-    TRY(make_rows(system, &lower, &factor->rows, error));
+    TRY(NEW_ARRAY(&length, nodes, error));
+    TRY(make_rows(system, &lower, factor, length, error));
+    TRY(gather_rows(factor, length, error));
     TRY(sparse_transpose(&factor->rows, &factor->transposed, error));
 done:
-    free(lower.ptr);
-    free(lower.idx);
-    free(lower.value);
+    free(length);
+    lower_free(&lower);
     if (status != STATUS_OK) {
         inverse_factor_free(factor);
     }
@@ -202,16 +190,27 @@ void inverse_factor_free(struct inverse_factor *factor)
 {
     sparse_free(&factor->rows);
     sparse_free(&factor->transposed);
+    free(factor->first);
+    factor->first = NULL;
+}
+
+/* The rows of own nodes, and those of the others. */
+static void apply(const struct inverse_factor *factor, const struct sparse *matrix, int dim, const double *x,
+                  double *y)
+{
+    int rank = ranks_rank(factor->ranks);
+    sparse_apply_rows(matrix, factor->first[rank], factor->first[rank + 1], dim, x, y);
+    ranks_gather(factor->ranks, y, (size_t)dim * sizeof *y, factor->first);
 }
 
 void inverse_factor_apply(const struct inverse_factor *factor, int dim, const double *x, double *y)
 {
-    sparse_apply(&factor->rows, dim, x, y);
+    apply(factor, &factor->rows, dim, x, y);
 }
 
 void inverse_factor_apply_transposed(const struct inverse_factor *factor, int dim, const double *x, double *y)
 {
-    sparse_apply(&factor->transposed, dim, x, y);
+    apply(factor, &factor->transposed, dim, x, y);
 }
 
 void inverse_factor_solve_transposed(const struct inverse_factor *factor, int dim, double *x)

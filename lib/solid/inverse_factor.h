@@ -14,6 +14,7 @@
 #ifndef SOLID_INVERSE_FACTOR_H
 #define SOLID_INVERSE_FACTOR_H
 
+#include "base/ranks.h"
 #include "base/sparse.h"
 #include "solid/constraint.h"
 
@@ -24,6 +25,8 @@ struct solid_system;
 struct inverse_factor {
     struct sparse rows, transposed; /* L, the diagonal last in each row, and L^T, the diagonal first; without
                                        rows there is none */
+    const struct ranks *ranks;      /* NULL: one process; else all have all of L, */
+    int64_t *first;                 /* and each applies the rows of its own nodes */
 };
 
 /* For a system whose body is made of smoothed cells and that knows the values at its nodes. */

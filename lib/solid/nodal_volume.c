@@ -67,6 +67,7 @@ enum status nodal_volumes_build(const struct body_input *input, struct body *bod
         volumes->share[s] = carries ? input->hat_value[from] * body->weight[q] : 0.0;
     }
     TRY(number_volumes(volumes, keys, slots, error));
+    TRY(body_share_volumes(body, error));
     TRY(nodal_pressures_build(body, error));
     TRY(NEW_ARRAY(&volumes->content, volumes->pressures.slices * NODAL_PRESSURE_ROWS, error));
     TRY(NEW_ARRAY(&volumes->pressure, volumes->pressures.slices * NODAL_PRESSURE_ROWS, error));
@@ -94,12 +95,15 @@ double nodal_pressure_compliance(const struct material *material)
 static inline __attribute__((always_inline)) void sum_content(struct body *body, int vertices)
 {
     struct nodal_volumes *volumes = &body->volumes;
+    struct body_share *share = &body->share;
+    int rank = ranks_rank(share->ranks);
 #pragma omp for schedule(static)
-    for (int64_t q = 0; q < body->point_count; q++) {
+    for (int64_t q = share->begin_point; q < share->end_point; q++) {
         volumes->strain[q] = material_volume_strain(&body->materials[body->material[q]], body->J[q]);
     }
+    body_share_exchange(share, &share->strains, 1, volumes->strain);
 #pragma omp for schedule(static)
-    for (int64_t a = 0; a < volumes->count; a++) {
+    for (int64_t a = share->volume_first[rank]; a < share->volume_first[rank + 1]; a++) {
         double sum = 0.0;
         for (int64_t i = volumes->ptr[a]; i < volumes->ptr[a + 1]; i++) {
             int32_t slot = volumes->slot[i];
@@ -107,6 +111,7 @@ static inline __attribute__((always_inline)) void sum_content(struct body *body,
         }
         volumes->content[a] = sum;
     }
+    body_share_gather(share, volumes->content, sizeof *volumes->content, share->volume_first);
 }
 
 void nodal_volumes_evaluate(struct body *body)

@@ -20,9 +20,12 @@ static int64_t centre_count(const struct solid_system *system)
 static enum status transform_fields(struct preconditioner *preconditioner, struct error *error)
 {
     enum status status;
-    int64_t nodes = preconditioner->node_count;
+    const struct ranks *ranks = preconditioner->factor.ranks;
+    int64_t nodes = preconditioner->node_count, *first = NULL;
     int field[COARSE_MOST_AT_NODE];
     double value[COARSE_MOST_AT_NODE];
+    TRY(ranks_share(ranks, preconditioner->coarse.count, NULL, &preconditioner->field_first, error));
+    first = preconditioner->field_first;
     TRY(NEW_ARRAY(&preconditioner->inverse_fields, preconditioner->coarse.count * nodes, error));
     for (int64_t n = 0; n < nodes; n++) {
         int count = coarse_space_at_node(&preconditioner->coarse, n, field, value);
@@ -30,10 +33,11 @@ static enum status transform_fields(struct preconditioner *preconditioner, struc
             preconditioner->inverse_fields[field[k] * nodes + n] = value[k];
         }
     }
-    for (int64_t k = 0; k < preconditioner->coarse.count; k++) {
+    for (int64_t k = first[ranks_rank(ranks)]; k < first[ranks_rank(ranks) + 1]; k++) {
         inverse_factor_solve_transposed(&preconditioner->factor, 1,
                                         preconditioner->inverse_fields + k * nodes);
     }
+    ranks_gather(ranks, preconditioner->inverse_fields, (size_t)nodes * sizeof(double), first);
 done:
     return status;
 }
@@ -95,6 +99,7 @@ void preconditioner_free(struct preconditioner *preconditioner)
     inverse_factor_free(&preconditioner->factor);
     constraint_rows_free(&preconditioner->factor_rows);
     free(preconditioner->inverse_fields);
+    free(preconditioner->field_first);
     free(preconditioner->on_inverse);
     free(preconditioner->at_rest);
     free(preconditioner->stiffness);
@@ -228,8 +233,10 @@ static void restrict_move(const struct preconditioner *preconditioner, const dou
         coarse_space_restrict(&preconditioner->coarse, preconditioner->mass, moved, amount);
         return;
     }
+    const struct ranks *ranks = preconditioner->factor.ranks;
+    const int64_t *first = preconditioner->field_first;
     memset(amount, 0, (size_t)preconditioner->size * sizeof *amount);
-    for (int64_t k = 0; k < preconditioner->coarse.count; k++) {
+    for (int64_t k = first[ranks_rank(ranks)]; k < first[ranks_rank(ranks) + 1]; k++) {
         const double *field = preconditioner->inverse_fields + k * nodes;
         for (int64_t n = 0; n < nodes; n++) {
             double weight = preconditioner->mass[n] * field[n];
@@ -238,6 +245,7 @@ static void restrict_move(const struct preconditioner *preconditioner, const dou
             }
         }
     }
+    ranks_gather(ranks, amount, (size_t)dim * sizeof *amount, first);
 }
 
 /* Both moves in terms of L. */

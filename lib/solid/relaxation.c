@@ -254,7 +254,8 @@ static bool ends(struct relaxation *r, enum relaxation_outcome *outcome, struct 
 
 static bool is_interrupted(const struct relaxation *r)
 {
-    return r->options->interrupted != NULL && *r->options->interrupted != 0;
+    return r->options->interrupted != NULL &&
+           ranks_most(r->system->body.share.ranks, *r->options->interrupted) != 0;
 }
 
 static enum relaxation_outcome iterate(struct relaxation *r, struct error *error)
@@ -359,6 +360,7 @@ enum status relaxation_run(struct solid_system *system, const struct relaxation_
     report->outcome = iterate(&r, error);
     TRY(r.failure);
     report->largest_frequency = r.frequency;
+    report->largest_move = r.largest_move;
     if (report->outcome == RELAXATION_INVERTED) {
         r.load = r.older.load;
         memcpy(r.u, r.older.u, (size_t)r.size * sizeof *r.u);

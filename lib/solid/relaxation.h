@@ -49,6 +49,7 @@ struct relaxation_report {
     int64_t force_evaluations;
     double error;             /* estimated remaining error, relative to the largest displacement of the run:
                                * the larger of those on the whole and at the worst node */
+    double largest_move;      /* the largest displacement of a node of the run, m */
     double largest_frequency; /* in the fictitious mass's units */
     double lowest_frequency;
     double penetration, penetration_allowed; /* of contacts, m: see contact_miss */

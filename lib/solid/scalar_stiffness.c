@@ -34,6 +34,39 @@ static struct average bond_at(const struct solid_system *system, int64_t b, doub
     return average_of_boundary(system->contacts[c].points, b);
 }
 
+/* Field or bond f; (*place)[]: the body's index of each of its nodes, NULL where they are such. Of several
+ * processes the body has not all rows here, but their tables are. */
+static struct average field_at(const struct scalar_stiffness *stiffness, int64_t f, const int32_t **place)
+{
+    const struct body *body = &stiffness->system->body;
+    const struct field_averages *averages = &body->cells.averages;
+    double unused;
+    *place = body->node_place;
+    if (f >= stiffness->field_count) {
+        return bond_at(stiffness->system, f - stiffness->field_count, &unused);
+    }
+    if (body->share.ranks == NULL) {
+        int64_t at = averages->matrix.ptr[f];
+        *place = NULL;
+        return (struct average){averages->matrix.ptr[f + 1] - at, averages->matrix.idx + at,
+                                averages->matrix.value + at};
+    }
+    int64_t faces = averages->told[0].row_count;
+    const struct average_table *table = &averages->told[f < faces ? 0 : 1];
+    int64_t row = table->order[f < faces ? f : f - faces], at = table->ptr[row];
+    return (struct average){table->ptr[row + 1] - at, table->idx + at, table->phi + at};
+}
+
+/* The fields that node i is in, and its shares there. */
+static struct average fields_of(const struct scalar_stiffness *stiffness, int64_t i)
+{
+    const struct body *body = &stiffness->system->body;
+    bool listed = body->share.ranks != NULL;
+    const struct sparse *fields = listed ? &stiffness->fields : &body->cells.averages.transposed;
+    int64_t row = listed ? i : body->node_place[i], at = fields->ptr[row];
+    return (struct average){fields->ptr[row + 1] - at, fields->idx + at, fields->value + at};
+}
+
 /* The field that corner k of cell q looks at: its face, or with `vertex` its node. */
 static int64_t field_of_corner(const struct scalar_stiffness *stiffness, int64_t q, int k, bool vertex)
 {
@@ -41,6 +74,40 @@ static int64_t field_of_corner(const struct scalar_stiffness *stiffness, int64_t
     const struct field_averages *averages = &body->cells.averages;
     int64_t corner = q * (body->dim + 1) + k + (vertex ? averages->corner_count : 0);
     return averages->of_corner[corner] / VECTOR_STRIDE(body->dim);
+}
+
+/* Of several processes the body has the transpose for other nodes than those of these rows. */
+static enum status list_fields(struct scalar_stiffness *stiffness, struct error *error)
+{
+    enum status status;
+    int64_t nodes = stiffness->system->node_count, begin = stiffness->begin, end = stiffness->end;
+    const int32_t *unused;
+    int64_t *next = NULL;
+    TRY(NEW_ARRAY(&next, nodes + 1, error));
+    for (int64_t f = 0; f < stiffness->field_count; f++) {
+        struct average field = field_at(stiffness, f, &unused);
+        for (int64_t i = 0; i < field.length; i++) {
+            next[field.idx[i] + 1] += field.idx[i] >= begin && field.idx[i] < end;
+        }
+    }
+    for (int64_t n = 0; n < nodes; n++) {
+        next[n + 1] += next[n];
+    }
+    TRY(sparse_new(nodes, stiffness->field_count, next[nodes], &stiffness->fields, error));
+    memcpy(stiffness->fields.ptr, next, (size_t)(nodes + 1) * sizeof *next);
+    for (int64_t f = 0; f < stiffness->field_count; f++) {
+        struct average field = field_at(stiffness, f, &unused);
+        for (int64_t i = 0; i < field.length; i++) {
+            if (field.idx[i] >= begin && field.idx[i] < end) {
+                int64_t at = next[field.idx[i]]++;
+                stiffness->fields.idx[at] = (int32_t)f;
+                stiffness->fields.value[at] = field.phi[i];
+            }
+        }
+    }
+done:
+    free(next);
+    return status;
 }
 
 static enum status list_bonds(struct scalar_stiffness *stiffness, struct error *error)
@@ -68,12 +135,13 @@ done:
     return status;
 }
 
-enum status scalar_stiffness_make(const struct solid_system *system, struct scalar_stiffness *stiffness,
-                                  struct error *error)
+enum status scalar_stiffness_make(const struct solid_system *system, int64_t begin, int64_t end,
+                                  struct scalar_stiffness *stiffness, struct error *error)
 {
     enum status status;
     const struct body *body = &system->body;
-    *stiffness = (struct scalar_stiffness){.system = system, .bond_count = count_bonds(system)};
+    *stiffness = (struct scalar_stiffness){
+        .system = system, .begin = begin, .end = end, .bond_count = count_bonds(system)};
     stiffness->field_count = body->cells.averages.matrix.row_count;
     if (stiffness->field_count + stiffness->bond_count > INT32_MAX) {
         status = fail(error, STATUS_SYSTEM, "preconditioner: more than 2^31 faces, nodes and conditions");
@@ -81,6 +149,9 @@ enum status scalar_stiffness_make(const struct solid_system *system, struct scal
     }
     TRY(NEW_ARRAY(&stiffness->bond_stiffness, stiffness->bond_count, error));
     TRY(list_bonds(stiffness, error));
+    if (body->share.ranks != NULL) {
+        TRY(list_fields(stiffness, error));
+    }
 done:
     if (status != STATUS_OK) {
         scalar_stiffness_free(stiffness);
@@ -91,8 +162,27 @@ done:
 void scalar_stiffness_free(struct scalar_stiffness *stiffness)
 {
     sparse_free(&stiffness->bonds);
+    sparse_free(&stiffness->fields);
     free(stiffness->bond_stiffness);
     *stiffness = (struct scalar_stiffness){0};
+}
+
+void scalar_stiffness_work(const struct solid_system *system, double *work)
+{
+    for (int k = 0; k < 2; k++) {
+        const struct average_table *table = &system->body.cells.averages.told[k];
+        for (int64_t i = 0; i < table->ptr[table->row_count]; i++) {
+            work[table->idx[i]] += 1.0;
+        }
+    }
+    const struct neighbours *lists = system->node_lists;
+    for (int64_t n = 0; n < system->node_count; n++) {
+        int64_t length = lists->ptr[n + 1] - lists->ptr[n], lower = 0;
+        for (int64_t i = lists->ptr[n]; i < lists->ptr[n + 1]; i++) {
+            lower += lists->idx[i] <= n;
+        }
+        work[n] *= 1.0 + (double)lower / (double)(length > 0 ? length : 1);
+    }
 }
 
 enum status scalar_row_make(const struct scalar_stiffness *stiffness, struct scalar_row *row,
@@ -197,22 +287,15 @@ static void spread(const struct scalar_stiffness *stiffness, int64_t touched, in
                    struct scalar_row *row)
 {
     const struct body *body = &stiffness->system->body;
-    const struct sparse *matrix = &body->cells.averages.matrix;
+    const int32_t *place;
     int64_t kept = 0;
-    double unused;
     row->count = 0;
     for (int64_t t = 0; t < touched; t++) {
-        int64_t f = row->touched[t];
-        double force = row->on_field[f];
-        for (int64_t k = f < stiffness->field_count ? matrix->ptr[f] : 0;
-             f < stiffness->field_count && k < matrix->ptr[f + 1]; k++) {
-            add_to_node(matrix->idx[k], force * matrix->value[k], i, row);
-        }
-        if (f >= stiffness->field_count) {
-            struct average bond = bond_at(stiffness->system, f - stiffness->field_count, &unused);
-            for (int64_t k = 0; k < bond.length; k++) {
-                add_to_node(body->node_place[bond.idx[k]], force * bond.phi[k], i, row);
-            }
+        struct average field = field_at(stiffness, row->touched[t], &place);
+        double force = row->on_field[row->touched[t]];
+        for (int64_t k = 0; k < field.length; k++) {
+            int32_t node = place != NULL ? place[field.idx[k]] : field.idx[k];
+            add_to_node(node, force * field.phi[k], i, row);
         }
     }
     for (int64_t k = 0; k < row->count; k++) {
@@ -245,23 +328,22 @@ static void add_cells(const struct scalar_stiffness *stiffness, int64_t f, int64
 
 void scalar_stiffness_row(const struct scalar_stiffness *stiffness, int64_t i, struct scalar_row *row)
 {
-    const struct body *body = &stiffness->system->body;
-    const struct sparse *fields = &body->cells.averages.transposed, *bonds = &stiffness->bonds;
-    int64_t first = fields->ptr[body->node_place[i]], last = fields->ptr[body->node_place[i] + 1];
+    const struct sparse *bonds = &stiffness->bonds;
+    struct average fields = fields_of(stiffness, i);
     int64_t touched = 0;
-    for (int64_t k = first; k < last; k++) {
-        row->at_field[fields->idx[k]] = fields->value[k];
+    for (int64_t k = 0; k < fields.length; k++) {
+        row->at_field[fields.idx[k]] = fields.phi[k];
     }
-    for (int64_t k = first; k < last; k++) {
-        add_cells(stiffness, fields->idx[k], i, row, &touched);
+    for (int64_t k = 0; k < fields.length; k++) {
+        add_cells(stiffness, fields.idx[k], i, row, &touched);
     }
     for (int64_t k = bonds->ptr[i]; k < bonds->ptr[i + 1]; k++) {
         int64_t bond = bonds->idx[k];
         put(stiffness->bond_stiffness[bond] * bonds->value[k], stiffness->field_count + bond, i, row,
             &touched);
     }
-    for (int64_t k = first; k < last; k++) {
-        row->at_field[fields->idx[k]] = 0.0;
+    for (int64_t k = 0; k < fields.length; k++) {
+        row->at_field[fields.idx[k]] = 0.0;
     }
     spread(stiffness, touched, i, row);
 }

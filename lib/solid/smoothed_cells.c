@@ -126,12 +126,37 @@ static enum status check_table(const struct told *table, int64_t rows, int dim, 
     return STATUS_OK;
 }
 
-/* A row for each face, whose corners are those opposite it, and for each node, whose corners are the vertices
- * of the cells there. */
-static enum status build_averages(const struct smoothed_cells_input *input, const struct body *body,
-                                  struct smoothed_cells *smoothed, struct error *error)
+/* Of several processes: the rows that cells of this one look at, and the transpose of the columns of its
+ * nodes. */
+static enum status copy_shares(const struct field_averages_input *tables, struct body *body,
+                               struct error *error)
 {
     enum status status;
+    struct body_share *share = &body->share;
+    struct field_averages *averages = &body->cells.averages;
+    struct sparse columns = {0};
+    bool *looked_at = NULL, *used = NULL;
+    TRY(body_share_values(body, &looked_at, error));
+    TRY(stretches_of(0, averages->row_count, looked_at, &share->values, error));
+    TRY(field_averages_copy(tables, looked_at, 0, body->node_count, &averages->matrix, error));
+    TRY(field_averages_copy(tables, NULL, share->begin_node, share->end_node, &columns, error));
+    TRY(sparse_transpose(&columns, &averages->transposed, error));
+    TRY(sparse_rows_used(&columns, &used, error));
+    TRY(body_share_rows(body, used, error));
+done:
+    sparse_free(&columns);
+    free(looked_at);
+    free(used);
+    return status;
+}
+
+/* A row for each face, whose corners are those opposite it, and for each node, whose corners are the vertices
+ * of the cells there. */
+static enum status build_averages(const struct smoothed_cells_input *input, struct body *body,
+                                  struct error *error)
+{
+    enum status status;
+    struct field_averages *averages = &body->cells.averages;
     int dim = body->dim, corners = dim + 1;
     int64_t *order = NULL;
     int32_t *node_of_corner = NULL, *face_of_corner = NULL;
@@ -157,7 +182,7 @@ static enum status build_averages(const struct smoothed_cells_input *input, cons
         memcpy(node_of_corner + q * corners, input->cell_node + body->order[q] * corners,
                (size_t)corners * sizeof *node_of_corner);
     }
-    const struct field_averages_input averages = {
+    const struct field_averages_input tables = {
         .dim = dim,
         .node_count = body->node_count,
         .corner_count = body->point_count * corners,
@@ -166,11 +191,21 @@ static enum status build_averages(const struct smoothed_cells_input *input, cons
             {input->face_count, order, input->face_ptr, input->face_idx, input->face_phi, face_of_corner},
             {body->node_count, body->node_order, input->node_ptr, input->node_idx, input->node_phi,
              node_of_corner}}};
-    TRY(field_averages_build(&averages, &smoothed->averages, error));
+    TRY(field_averages_build(&tables, averages, error));
+    if (body->share.ranks != NULL) {
+        TRY(copy_shares(&tables, body, error));
+        memcpy(averages->told, tables.tables, sizeof averages->told);
+        averages->face_order = order;
+        order = NULL;
+        goto done;
+    }
+    TRY(field_averages_copy(&tables, NULL, 0, body->node_count, &averages->matrix, error));
     if (input->copied != NULL) {
         input->copied(input->context);
     }
-    status = field_averages_transpose(&smoothed->averages, error);
+    TRY(sparse_transpose(&averages->matrix, &averages->transposed, error));
+    TRY(body_share_rows(body, NULL, error));
+    TRY(stretches_of(0, averages->row_count, NULL, &body->share.values, error));
 done:
     free(node_of_corner);
     free(face_of_corner);
@@ -179,15 +214,16 @@ done:
     return status;
 }
 
-enum status smoothed_cells_build(const struct smoothed_cells_input *input, const struct body *body,
-                                 struct smoothed_cells *smoothed, struct error *error)
+enum status smoothed_cells_build(const struct smoothed_cells_input *input, struct body *body,
+                                 struct error *error)
 {
     enum status status;
+    struct smoothed_cells *smoothed = &body->cells;
     int64_t entries = body->point_count * body->dim * body->dim + BODY_POINT_PADDING;
     *smoothed = (struct smoothed_cells){0};
     TRY(set_hats(input, body->dim, body->point_count, body->order, smoothed, error));
-    TRY(NEW_ARRAY(&smoothed->interpolant, entries, error));
-    TRY(build_averages(input, body, smoothed, error));
+    TRY(NEW_ARRAY_UNTOUCHED(&smoothed->interpolant, entries, error));
+    TRY(build_averages(input, body, error));
 done:
     if (status != STATUS_OK) {
         smoothed_cells_free(smoothed);

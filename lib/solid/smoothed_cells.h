@@ -52,7 +52,8 @@ struct smoothed_cells_input {
     const int64_t *node_ptr; /* and their values at the nodes: node_count + 1 */
     const int32_t *node_idx;
     const double *node_phi;
-    void (*copied)(void *context); /* when face_ptr, face_idx and face_phi are not needed any more; or NULL */
+    void (*copied)(void *context); /* when face_ptr, face_idx and face_phi are not needed any more; or NULL.
+                                      Of several processes: not before the body's end */
     void *context;
 };
 
@@ -64,10 +65,10 @@ struct smoothed_cells {
                     vanish together, 1/m */
 };
 
-/* Lay out the cells of a body whose sizes and orders are known. STATUS_INPUT when a cell lacks a face, or the
- * values are not those at the faces and nodes. */
-MUST_CHECK enum status smoothed_cells_build(const struct smoothed_cells_input *input, const struct body *body,
-                                            struct smoothed_cells *smoothed, struct error *error);
+/* Lay out the cells of a body whose sizes, orders and shares are known. STATUS_INPUT when a cell lacks a
+ * face, or the values are not those at the faces and nodes. */
+MUST_CHECK enum status smoothed_cells_build(const struct smoothed_cells_input *input, struct body *body,
+                                            struct error *error);
 void smoothed_cells_free(struct smoothed_cells *smoothed);
 
 /* Gradients of the hat functions of cell q, in the body's order: gradient[(dim + 1) * dim], 1/m. */

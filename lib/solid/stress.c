@@ -125,6 +125,7 @@ static void put_stress(const struct body *body, int64_t q, const double F[9], do
 
 void body_stress(struct body *body, double *stress)
 {
+    body_share_collect(body);
     body_visit(body, 0, body->block_count, put_stress, stress);
 }
 
@@ -136,6 +137,7 @@ static void put_gradient(const struct body *body, int64_t q, const double F[9], 
 
 void body_gradient(struct body *body, double *gradient)
 {
+    body_share_collect(body);
     body_visit(body, 0, body->block_count, put_gradient, gradient);
 }
 
@@ -147,5 +149,6 @@ static void put_volume_ratio(const struct body *body, int64_t q, const double F[
 
 void body_volume_ratio(struct body *body, double *ratio)
 {
+    body_share_collect(body);
     body_visit(body, 0, body->block_count, put_volume_ratio, ratio);
 }

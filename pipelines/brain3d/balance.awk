@@ -1,6 +1,6 @@
 # A line of balance.tsv: awk -f pipelines/stream.awk -f balance.awk -v scheme=NAME -v field=STREAM -v report=LOG
 #
-# field: u.dat as mtled or calculix/field.awk write it, with the reactions; LOG: what they report. Forces on the body, N: that
+# field: u.dat as mtled or mixed/solve.sh write it, with the reactions; LOG: what they report. Forces on the body, N: that
 # of the prescribed displacement, that of the contact, and what is missing to their balance; then the deepest of the contact
 # gaps, and how many contact nodes (or nodes) touch. "-" where it is not told. J is that of the integration points, from the strains.
 

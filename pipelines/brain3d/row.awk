@@ -1,7 +1,6 @@
-# A line of compare.tsv: awk -f row.awk -v scheme=NAME -v field=STREAM LOG [ERRORS [BESIDE]]
+# A line of compare.tsv: awk -f row.awk -v scheme=NAME -v field=STREAM LOG [ERRORS]
 #
-# LOG is what the tools report with -v, ERRORS and BESIDE what fieldcmp prints of the distances from the reference and from
-# CalculiX; without them the distances are "-".
+# LOG is what the tools report with -v, ERRORS what fieldcmp prints of the distance from the reference; without it the distances are "-".
 
 BEGIN {
     FS = OFS = "\t"
@@ -27,7 +26,7 @@ END {
         exit 1
     }
     print scheme, nodes, value[1, "points"], millimetres(2, "avg"), millimetres(2, "max"), value[1, "steps"],
-        sprintf("%.1f", value[1, "solve seconds"]), millimetres(3, "avg"), millimetres(3, "max")
+        sprintf("%.1f", (1, "solve seconds") in value ? value[1, "solve seconds"] : value[1, "assembly seconds"] + value[1, "solver seconds"])
 }
 
 function millimetres(from, name) {

@@ -1,11 +1,11 @@
 # The input deck of a scene for CalculiX, with one of deck2d.awk and deck3d.awk for the conditions in that dimension:
 #
-#     awk -f pipelines/stream.awk -f pipelines/scene.awk -f deck.awk -f deck3d.awk -v scene=FILE -v mesh=STREAM [-v increment=PART] [-v solver=NAME] > FILE.inp
+#     awk -f pipelines/stream.awk -f pipelines/scene.awk -f pipelines/table.awk -f deck.awk -f deck3d.awk -v scene=FILE -v mesh=STREAM [-v increment=PART] [-v solver=NAME] > FILE.inp
 #
 # STREAM (text) holds what `nodes` writes. Its triangles become quadratic plane strain elements (CPE6), its tetrahedra
 # quadratic ones (C3D10), with the mid-nodes on the straight edges, so that nodes 1..N are those of the stream and the
 # geometry is the same. Understood of a scene: neo-Hookean materials of one region each, displacements by table or by
-# components on one group of facets, contact of one group with a rigid surface, in 2D tractions; anything else in it is an error. SI units, in
+# components on one group of facets, in 2D contact of one group with a rigid curve, and tractions; anything else in it is an error. SI units, in
 # 2D per metre of thickness. The load is applied in increments of at most PART of it (0.1).
 
 BEGIN {
@@ -40,25 +40,6 @@ BEGIN {
         print "RF"
     }
     print "*END STEP"
-}
-
-# ---- tables of the scene -----------------------------------------------------------------------------------------------
-
-# Rows of a table of the scene: table[row, column], in metres, rows from 1; returns their number. Blank lines and
-# comments are skipped.
-function read_table(k, key, width,    file, line, field, count, n, i) {
-    file = folder scene_value[k, key]
-    while ((getline line < file) > 0) {
-        sub(/#.*/, "", line)
-        count = split(line, field)
-        if (count == 0) continue
-        n++
-        if (count != width) die(file ": not rows of " width " numbers")
-        for (i = 1; i <= count; i++) table[n, i] = field[i] * metres(scene_value[k, "unit"])
-    }
-    close(file)
-    if (n < 2) die(file ": no table")
-    return n
 }
 
 # ---- mesh ------------------------------------------------------------------------------------------------------------

@@ -2,22 +2,6 @@
 
 function deck_dim() { return 2 }
 
-# u at node i by the table of n points along a curve: linear between the ends of the nearest segment.
-function table_at(i, n, u,    s, best, distance2, t, dx, dy) {
-    best = -1
-    for (s = 1; s < n; s++) {
-        dx = table[s + 1, 1] - table[s, 1]
-        dy = table[s + 1, 2] - table[s, 2]
-        t = ((x[i, 1] - table[s, 1]) * dx + (x[i, 2] - table[s, 2]) * dy) / (dx^2 + dy^2)
-        t = t < 0 ? 0 : t > 1 ? 1 : t
-        distance2 = (x[i, 1] - table[s, 1] - t * dx)^2 + (x[i, 2] - table[s, 2] - t * dy)^2
-        if (best >= 0 && distance2 >= best) continue
-        best = distance2
-        u[1] = table[s, 3] + t * (table[s + 1, 3] - table[s, 3])
-        u[2] = table[s, 4] + t * (table[s + 1, 4] - table[s, 4])
-    }
-}
-
 # The rigid curve as a strip of quadrilaterals 6 mm wide, all its nodes fixed, behind the face that the body touches.
 function print_contact(k,    n, i, f, dx, dy, length_, sign, first_node, first_element, next_node, name, thickness) {
     n = read_table(k, "rigid", 2)

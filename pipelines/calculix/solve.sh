@@ -16,7 +16,7 @@ trap 'rm -rf "$work"' EXIT
 
 dim=$(awk '$2 == "nodes.x" { print $5; exit }' "$mesh")
 [ -n "$dim" ] || { echo "solve.sh: $mesh: no section nodes.x in text: run nodes -t" >&2; exit 2; }
-awk -f "$here/../stream.awk" -f "$here/../scene.awk" -f "$here/deck.awk" -f "$here/deck${dim}d.awk" -v scene="$scene" -v mesh="$mesh" \
+awk -f "$here/../stream.awk" -f "$here/../scene.awk" -f "$here/../table.awk" -f "$here/deck.awk" -f "$here/deck${dim}d.awk" -v scene="$scene" -v mesh="$mesh" \
     -v increment="$increment" -v solver="${SOLVER:-}" > "$work/deck.inp"
 TIMEFORMAT='%R %U %S'
 if ! { time (cd "$work" && ccx deck > log 2>&1); } 2> "$work/time"; then

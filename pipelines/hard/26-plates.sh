@@ -82,8 +82,11 @@ for part in '50 0.025' '70 0.035'; do
     row 26 "block, $percent %, plates: balance of the forces" \
         "$(calc "$(reaction "$work/fine.dat" middle 2) / ($(force 2 fine)) - 1")" 0 balance-plates
 done
-# On a mesh that is graded to the rim.
-for part in '50 0.025' '60 0.03' '70 0.035'; do
+# On a mesh that is graded to the rim. A crease beside the plate was told here at 69 % while contacts acted on the nodes; they act
+# on quadrature points now, the side lies on the plate up to the end, and the force is judged as on even meshes. At 20 % it is
+# the plate that makes the problem one with a solution: without it mixed elements on this graded mesh find no equilibrium beyond .78 of the
+# load, and here a cell turns over at .87.
+for part in '20 0.01' '50 0.025' '60 0.03' '70 0.035'; do
     read -r percent push <<< "$part"
     press 2 fine fine "$push"
     press 2 graded graded "$push"

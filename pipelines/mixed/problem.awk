@@ -1,12 +1,13 @@
 # A scene and its mesh for solve2d.edp and solve3d.edp:
 #
-#     awk -f pipelines/stream.awk -f pipelines/scene.awk -f problem.awk -v scene=FILE -v mesh=STREAM -v out=DIR
+#     awk -f pipelines/stream.awk -f pipelines/scene.awk -f pipelines/table.awk -f problem.awk -v scene=FILE -v mesh=STREAM -v out=DIR
 #
 # STREAM (text) holds what `nodes` writes. Writes DIR/body.msh (2D, FreeFEM's own format) or DIR/body.mesh (3D), with the
 # number of the group of a facet, from 1, as label and that of the region of a cell, from 1, as region; DIR/problem, which the
-# programs read; and DIR/names, the groups of each displacement. Understood of a scene: neo-Hookean materials of one region
-# each, displacements by components, or along the normal of a flat face across an axis, dead tractions; anything else in it
-# is an error. SI units, in 2D per metre of thickness.
+# programs read; and DIR/given, how many rows, and a row A B u.. for the nodes, A = B from 0, and the edges of the facets that a table displaces. Understood of
+# a scene: neo-Hookean materials of one region each, displacements by components, by a table, or along the normal of a flat
+# face across an axis, dead tractions, in 2D one contact with a rigid curve that stays, which goes to DIR/rigid; anything
+# else in it is an error. SI units, in 2D per metre of thickness.
 
 BEGIN {
     read_scene(scene)
@@ -22,7 +23,11 @@ BEGIN {
     for (k = 1; k <= section_count; k++) if (kind[k] == "material") take_material(k)
     else if (kind[k] == "displacement") take_displacement(k)
     else if (kind[k] == "traction") take_traction(k)
+    else if (kind[k] == "contact" && dim == 2) take_contact(k)
     else if (kind[k] !~ /^(solver|output)$/) die(scene ": section [" kind[k] "] is not understood")
+    for (k = 1; k <= section_count; k++) if ((k, "table") in scene_value) give(k)
+    print_given(out "/given")
+    print_rigid(out "/rigid")
     print_mesh(out "/body." (dim == 2 ? "msh" : "mesh"))
     print_problem(out "/problem")
 }
@@ -38,16 +43,47 @@ function take_material(k,    E, nu, region) {
 }
 
 function take_displacement(k,    names, count, i, label, value_, d) {
+    if ((k, "curve") in scene_value) die(scene ": only displacements without a curve")
     moved[++moved_count] = k
     count = split(scene_value[k, "facets"], names, /[ \t]*,[ \t]*/)
     for (i = 1; i <= count; i++) {
         label = name_index("facets.set", names[i]) + 1
         group[k] = group[k] " " label
-        if ((k, "normal") in scene_value) hold(label, axis_of(label), sign_of_axis * scene_value[k, "normal"])
-        else if (split(scene_value[k, "components"], value_, /[ \t]*,[ \t]*/) != dim || (k, "curve") in scene_value)
-            die(scene ": only displacements by components, or along a normal")
+        if ((k, "table") in scene_value) for (d = 1; d <= dim; d++) hold(label, d, 0)
+        else if ((k, "normal") in scene_value) hold(label, axis_of(label), sign_of_axis * scene_value[k, "normal"])
+        else if (split(scene_value[k, "components"], value_, /[ \t]*,[ \t]*/) != dim)
+            die(scene ": only displacements by components, by a table, or along a normal")
         else for (d = 1; d <= dim; d++) if (value_[d] != "free") hold(label, d, value_[d])
     }
+}
+
+# What the table of displacement k gives at the nodes and in the middle of the edges of its facets.
+function give(k,    n, labels, count, i, f, a, b, set) {
+    n = read_table(k, "table", 2 * dim)
+    count = split(scene_value[k, "facets"], labels, /[ \t]*,[ \t]*/)
+    for (i = 1; i <= count; i++) {
+        set = name_index("facets.set", labels[i])
+        for (f = 0; f < rows["facets"]; f++) {
+            if (value["facets.set", f, 0] != set) continue
+            for (a = 0; a < dim; a++) for (b = 0; b <= a; b++) give_at(value["facets", f, a], value["facets", f, b], n)
+        }
+    }
+}
+
+# Between nodes a and b; the first table that reaches them counts, as in mtled.
+function give_at(a, b, n,    d, u, line) {
+    if ((a, b) in given) return
+    given[a, b] = given[b, a] = 1
+    for (d = 1; d <= dim; d++) x[0, d] = (value["nodes.x", a, d - 1] + value["nodes.x", b, d - 1]) / 2
+    table_at(0, n, u)
+    for (d = 1; d <= dim; d++) line = line sprintf(" %.17g", u[d])
+    given_row[++given_count] = a " " b line
+}
+
+function print_given(file,    i) {
+    print given_count + 0 > file
+    for (i = 1; i <= given_count; i++) print given_row[i] > file
+    close(file)
 }
 
 function hold(label, d, displacement) {
@@ -97,6 +133,27 @@ function take_traction(k,    names, count, i, d, value_, label) {
         label = name_index("facets.set", names[i]) + 1
         for (d = 1; d <= dim; d++) traction[label, d] += value_[d]
     }
+}
+
+# One rigid curve, the body on its left, and the labels that it may touch.
+function take_contact(k,    n, i, j, names, count) {
+    if (rigid_count || (k, "translation") in scene_value || (k, "angle") in scene_value)
+        die(scene ": only one contact, with a curve that stays")
+    n = read_table(k, "rigid", 2)
+    for (i = 1; i <= n; i++) {
+        j = scene_value[k, "side"] == "left" ? i : n + 1 - i
+        rigid_row[i] = sprintf("%.17g %.17g", table[j, 1], table[j, 2])
+    }
+    rigid_count = n
+    count = split(scene_value[k, "facets"], names, /[ \t]*,[ \t]*/)
+    for (i = 1; i <= count; i++) touching[++touching_count] = name_index("facets.set", names[i]) + 1
+}
+
+function print_rigid(file,    i) {
+    print touching_count + 0, rigid_count + 0 > file
+    for (i = 1; i <= touching_count; i++) print touching[i] > file
+    for (i = 1; i <= rigid_count; i++) print rigid_row[i] > file
+    close(file)
 }
 
 function print_mesh(file,    i, d, c, line) {

@@ -17,10 +17,11 @@ trap 'rm -rf "$work"' EXIT
 
 command -v FreeFem++-nw > /dev/null || { echo "solve.sh: no FreeFem++-nw: run make deps" >&2; exit 1; }
 # Debian's FreeFEM does not look where Debian puts its modules.
-export FF_LOADPATH=${FF_LOADPATH-/usr/lib/freefem++}
+export FF_LOADPATH=${FF_LOADPATH-/usr/lib/freefem++} FF_INCLUDEPATH=$here
 dim=$(awk '$2 == "nodes.x" { print $5; exit }' "$mesh")
 [ -n "$dim" ] || { echo "solve.sh: $mesh: no section nodes.x in text: run nodes -t" >&2; exit 2; }
-awk -f "$here/../stream.awk" -f "$here/../scene.awk" -f "$here/problem.awk" -v scene="$scene" -v mesh="$mesh" -v out="$work"
+awk -f "$here/../stream.awk" -f "$here/../scene.awk" -f "$here/../table.awk" \
+    -f "$here/problem.awk" -v scene="$scene" -v mesh="$mesh" -v out="$work"
 TIMEFORMAT='%U %S'
 if ! { time (cd "$work" && FreeFem++-nw -nw -v 0 "$here/solve${dim}d.edp" > log 2>&1); } 2> "$work/time"; then
     [ ! -s "$work/failure" ] || { echo "solve.sh: $scene: $(cat "$work/failure")" >&2; exit 1; }

@@ -8,10 +8,14 @@ set ylabel "mean error, mm"
 set key right bottom
 set grid
 set xrange [2.2:18]
-set yrange [0.01:0.12]
+set yrange [0.004:0.12]
 set xtics (2.6, 3.65, 5.2, 7.3, 10.3, 14.6)
-set ytics (0.01, 0.015, 0.02, 0.03, 0.05, 0.07, 0.1)
-part(list, i) = real(system(sprintf("echo %s | cut -d / -f %d", list, i)))
-plot for [i = 1:3] data every ::1 using 1:(part(strcol(3), i)) with points pt 6 lc 1 title i == 1 ? "three meshes" : "", \
-    data every ::1 using 1:4 with linespoints pt 7 lw 2 lc 1 title "median", \
-    data every ::1 using 1:6 with lines dt 2 lc 2 title "median, against the reference on an even mesh"
+set ytics (0.005, 0.007, 0.01, 0.015, 0.02, 0.03, 0.05, 0.07, 0.1)
+range(list, i) = real(system(sprintf("echo %s | cut -d - -f %d", list, i)))
+of(kind) = sprintf("< awk -F '\\t' 'NR > 1 && $1 == \"%s\"' '%s'", kind, data)
+set datafile separator tab
+plot for [i = 1:2] of(word("even fine", i)) using 2:5:(range(strcol(4), 1)):(range(strcol(4), 2)) with yerrorbars pt 7 lc i notitle, \
+    for [i = 1:2] of(word("even fine", i)) using 2:5 with lines lw 2 lc i \
+        title i == 1 ? "even triangles: median of seven, least to largest" : "eight times finer at the ends of the craniotomy", \
+    for [i = 1:2] of(word("even fine", i)) using 2:7 with lines dt 2 lc i notitle, \
+    NaN with lines dt 2 lc "black" title "against the reference on an even mesh"

@@ -1,6 +1,7 @@
 # Data for difference.gp: awk -f pipelines/stream.awk -f difference.awk -v mesh=STREAM -v field=STREAM > FILE
 #
-# mesh: what `nodes -t` writes; field: a text stream with the section `difference` (m, one column) at its nodes. Lengths in mm.
+# mesh: what `nodes -t` writes; field: a text stream with the section `difference` (m, one column) at its nodes, or at these and, behind
+# them, those in the middle of edges. Lengths in mm.
 # The first block is the outline (x y dx dy; the facets, and the edges between two regions); each further one a triangle
 # (x y difference; a grid of 2 x 2 points, the last one doubled, as pm3d takes it).
 
@@ -9,7 +10,9 @@ BEGIN {
     read_stream(field, "field ")
     need_section("cells", "run nodes")
     need_section("field difference", "run fieldcmp")
-    if (rows["nodes.x"] != rows["field difference"]) die(field ": not a field on the nodes of " mesh)
+    if (rows["nodes.x"] > rows["field difference"]) die(field ": not a field on the nodes of " mesh)
+    for (i = 0; i < rows["nodes.x"]; i++) for (d = 0; d < 2; d++)
+        if ((value["field nodes.x", i, d] - value["nodes.x", i, d]) ^ 2 > 1e-18) die(field ": not a field on the nodes of " mesh)
 
     print "# outline"
     for (f = 0; f < rows["facets"]; f++) edge(value["facets", f, 0], value["facets", f, 1])

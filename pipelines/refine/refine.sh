@@ -8,7 +8,7 @@
 #   round, gmsh and the coarser mesh as well)
 #
 # Environment: UNIT of the geometry (default mm), NODES at most (default 20000), ROUNDS at most (default 8), GMSH more arguments for gmsh,
-# START a factor for the sizes of the first round (default 1), LEAST a length with unit below which no size goes (sizefield), GRADED=no: all sizes
+# SUPPORT arguments for support (-i tumour), START a factor for the sizes of the first round (default 1), LEAST a length with unit below which no size goes (sizefield), GRADED=no: all sizes
 # made smaller alike.
 #
 # Exit status: 0 below TOL; 1 the budget of nodes or rounds is spent, or a round failed: the last good one is kept; 2 wrong usage.
@@ -72,12 +72,13 @@ mesh() {
 
 # solve MESH FILE
 solve() {
-    nodes -u "$unit" "$1" 2> "$work/log" | shapefn 2>> "$work/log" | mtled -q "$scene" -o "$2" 2>> "$work/log"
+    # shellcheck disable=SC2086 # several arguments
+    nodes -u "$unit" "$1" 2> "$work/log" | ipoints 2>> "$work/log" | support ${SUPPORT-} 2>> "$work/log" | shapefn 2>> "$work/log" | mtled -q "$scene" -o "$2" 2>> "$work/log"
 }
 
 # What the last command said, in a line.
 said() {
-    grep -v 'ran with defaults' "$work/log" | tail -n 1
+    tail -n 1 "$work/log"
 }
 
 # The processor seconds in a file of `time`.

@@ -8,6 +8,13 @@
 #   - one sum over all parts: 2 log2(parts) messages.
 # A message takes `latency` s and its bytes over `bandwidth` bytes/s. Strong: the body of PARTS. Weak: 50 000 nodes a part, with the depth of the
 # halo as measured, the largest of all rows: of a cube of m^3 own nodes, with neighbours on all sides, (m + 2 depth)^3 - m^3 are needed.
+#
+# These are bodies whose vectors are cut as well. mtled-mpi (rows "mtled-mpi, strong" and "mtled-mpi, weak") keeps them whole. It sends
+#   - to each neighbour 3 messages: volume ratios, forces of corners, forces on faces and vertices; for each node that is needed that is
+#     `row_bytes`, 13 faces and vertices of 32 bytes, and half as much for the corners;
+#   - to all others the forces (32 bytes a node), nodal volumes (8), and L and L^T of the preconditioner (24 each), log2(parts) messages each;
+# and `replicated` of the computing, vectors, conditions and the coarse space, is done by all: twice the processor time of two processes by that
+# of one, less 1, of a quasi-static cube of 15 625 nodes held on two sides.
 
 BEGIN {
     FS = OFS = "\t"
@@ -15,6 +22,10 @@ BEGIN {
     bandwidth = 10e9
     passes = 7
     each = 50000
+    row_bytes = 1.5 * 13 * 32
+    gathered_bytes = 32 + 8 + 24 + 24
+    gathers = 4
+    replicated = 0.2
 }
 FNR == NR { if ($1 == "mtled, an evaluation" && $2 > largest) { largest = $2; kernel = 1e-6 * $3 } next }
 /^parts/ { next }
@@ -32,12 +43,26 @@ END {
     m = each^(1 / 3)
     halo = (m + 2 * depth)^3 - m^3
     for (p = 2; p <= 1024; p *= 2) row("weak", p, each, halo, 26, 48 * halo, 0.03, p * each * kernel)
+    for (i = 1; i <= n && parts[i] <= 64; i++) if (parts[i] > 1) whole_vectors("strong", parts[i], own[i], needed[i], others[i], imbalance[i])
+    for (p = 2; p <= 64; p *= 2) whole_vectors("weak", p, each, halo, 26, 0.03)
+}
+
+function whole_vectors(kind, p, own_nodes, halo_nodes, beside, uneven,    computing, waiting, alone) {
+    alone = p * own_nodes * kernel
+    computing = own_nodes * kernel * (1 - replicated) * (1 + uneven) + alone * replicated
+    waiting = 3 * beside * latency + row_bytes * halo_nodes / bandwidth + gathers * log(p) / log(2) * latency \
+        + gathered_bytes * (p - 1) * own_nodes / bandwidth
+    tell("mtled-mpi, " kind, p, own_nodes, halo_nodes, computing, waiting, alone)
+}
+
+function tell(kind, p, own_nodes, halo_nodes, computing, waiting, alone) {
+    printf "%s\t%d\t%.0f\t%.0f\t%.1f\t%.1f\t%.1f\t%.1f\t%.0f\n", kind, p, own_nodes, halo_nodes, 1e6 * computing, 1e6 * waiting, \
+        100 * waiting / (computing + waiting), alone / (computing + waiting), 100 * alone / (computing + waiting) / p
 }
 
 function row(kind, p, own_nodes, halo_nodes, beside, amount, uneven, alone,    computing, waiting) {
     computing = own_nodes * kernel * (1 + uneven)
     waiting = (2 + passes + 1) * beside * latency + (amount + (passes + 1) * 8 * halo_nodes / 2) / bandwidth \
         + 2 * log(p) / log(2) * latency
-    printf "%s\t%d\t%.0f\t%.0f\t%.1f\t%.1f\t%.1f\t%.1f\t%.0f\n", kind, p, own_nodes, halo_nodes, 1e6 * computing, 1e6 * waiting, \
-        100 * waiting / (computing + waiting), alone / (computing + waiting), 100 * alone / (computing + waiting) / p
+    tell(kind, p, own_nodes, halo_nodes, computing, waiting, alone)
 }

@@ -17,6 +17,7 @@ struct setup {
     bool faces;      /* smoothed cells: by averages over faces, not by the table of gradients */
     int model_count; /* points take the models in turn, by their place */
     struct material material[MATERIALS];
+    const struct ranks *ranks; /* NULL: one process */
 };
 
 static inline struct material make_material(enum material_model model, double youngs_modulus)
@@ -71,7 +72,8 @@ static inline struct body make_body(const struct sample *sample, const struct se
                                .material = material,
                                .material_count = setup->model_count,
                                .hat_node = setup->averaged ? sample->hat_node : NULL,
-                               .hat_value = sample->hat_value};
+                               .hat_value = sample->hat_value,
+                               .ranks = setup->ranks};
     GOOD(body_build(&input, &body, &error));
     free(material);
     return body;

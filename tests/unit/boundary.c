@@ -310,7 +310,7 @@ static void gentle_and_sharp_turns(void **state)
             }
         }
         struct neighbours lists = {.count = faces.count * 2, .ptr = ptr, .idx = idx, .widen = widen};
-        struct face_table table = {2, corners + 1, x, &faces, 2, &lists, phi};
+        struct face_table table = {2, corners + 1, x, &faces, 2, &lists, phi, NULL};
         struct facet_set set = {corners, facets};
         GOOD(boundary_averages_build(&table, &set, &averages, &error));
         assert_int_equal(averages.count,

@@ -366,11 +366,66 @@ static void through_the_plane(void **state)
     }
 }
 
+/* A grid, and a smaller one that is `away` from its middle along x: another body. */
+static void make_two(struct shape *shape, int dim, double away)
+{
+    make_grid(shape, dim, 4, 4);
+    folds_free(&shape->folds);
+    int64_t nodes = shape->nodes, cells = shape->cells;
+    int corners = dim + 1;
+    for (int64_t k = 0; k < nodes; k++) {
+        for (int a = 0; a < dim; a++) {
+            shape->x[(nodes + k) * dim + a] = 0.3 + 0.4 * shape->x[k * dim + a] + (a == 0 ? away : 0.0);
+        }
+        if (dim == 3) {
+            shape->x[(nodes + k) * 3 + 2] = 0.05 + 0.5 * shape->x[k * 3 + 2];
+        }
+    }
+    for (int64_t i = 0; i < cells * corners; i++) {
+        shape->cell[cells * corners + i] = shape->cell[i] + (int32_t)nodes;
+    }
+    shape->nodes *= 2;
+    shape->cells *= 2;
+    finish(shape, -1, 0.0);
+}
+
+/* Bodies that interpenetrate: at rest, and when one is moved; a boundary crosses only where one is not wholly
+ * within. */
+static void another_body(void **state)
+{
+    (void)state;
+    static struct shape shape;
+    double y[MOST_NODES * 3];
+    for (int dim = 2; dim <= 3; dim++) {
+        make_two(&shape, dim, 0.013);
+        assert_int_equal(shape.folds.at_rest.kind, FOLD_WITHIN);
+        assert_true(shape.folds.at_rest.cell >= shape.cells / 2);
+        assert_true(fabs(shape.folds.at_rest.place[0] - 0.513) < 0.2);
+        folds_free(&shape.folds);
+        make_two(&shape, dim, 0.413);
+        assert_int_equal(shape.folds.at_rest.kind, FOLD_CROSSING);
+        folds_free(&shape.folds);
+        make_two(&shape, dim, 0.713);
+        assert_int_equal(shape.folds.at_rest.kind, FOLD_NONE);
+        for (int i = 0; i < 3; i++) {
+            static const double by[] = {-0.011, -0.3, -0.7};
+            static const enum fold_kind expected[] = {FOLD_NONE, FOLD_CROSSING, FOLD_WITHIN};
+            memcpy(y, shape.x, sizeof y);
+            for (int64_t k = shape.nodes / 2; k < shape.nodes; k++) {
+                y[k * dim] += by[i];
+            }
+            assert_int_equal(found(&shape, y).kind, expected[i]);
+        }
+        folds_free(&shape.folds);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(one_to_one), cmocka_unit_test(crossing),          cmocka_unit_test(crease),
-        cmocka_unit_test(inverted),   cmocka_unit_test(through_the_plane), cmocka_unit_test(barely_through),
+        cmocka_unit_test(one_to_one),   cmocka_unit_test(crossing),          cmocka_unit_test(crease),
+        cmocka_unit_test(inverted),     cmocka_unit_test(through_the_plane), cmocka_unit_test(barely_through),
+        cmocka_unit_test(another_body),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

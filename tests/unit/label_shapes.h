@@ -89,6 +89,9 @@ static inline int shape_label(const char *name, const struct shape_seeds *seeds,
         int upper = x[1] > 0.3 * x[2] ? 1 : 4, lower = x[2] + 0.2 * x[0] > 3 ? 2 : 3;
         return r > 24 ? 0 : x[0] + 0.3 * x[1] < 2.2 ? upper : lower;
     }
+    if (strcmp(name, "shell") == 0) { /* two voxels of another label round a ball */
+        return r > 24 ? 0 : r > 22 ? 2 : 1;
+    }
     if (strcmp(name, "thin") == 0) { /* two voxels of another label amid a cylinder */
         return axial > 22 || fabs(x[2]) > 15 ? 0 : fabs(tilted) < 1 ? 2 : 1;
     }

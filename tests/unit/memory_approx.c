@@ -6,6 +6,7 @@
 #include "approx/field_error.h"
 #include "approx/quadrature.h"
 #include "approx/size_field.h"
+#include "approx/support_space.h"
 #include "approx/ways.h"
 #include "base/memory.h"
 
@@ -121,6 +122,36 @@ done:
     return status;
 }
 
+/* An interface across a square: the lists of its nodes, and of points whose cells are to be found. */
+static enum status try_sides(struct error *error)
+{
+    enum status status;
+    struct cloud_options wanted = {.kind = CLOUD_REGULAR, .dim = 2, .count = {7, 7}, .high = {1.0, 1.0}};
+    struct support_options options = support_defaults(2);
+    struct reach_places nodes = {.nodes = true};
+    struct support_space space = {0};
+    struct support_lists of_nodes = {0}, found = {0};
+    struct cloud cloud = {0};
+    double radius[49];
+    int32_t side[72] = {[10] = 1, [11] = 1, [20] = 1, [21] = 1};
+    TRY(cloud_make(&wanted, &cloud, error));
+    for (int n = 0; n < 49; n++) {
+        radius[n] = 0.4;
+    }
+    struct cells cells = {2, cloud.node_count, cloud.x, cloud.cell_count, cloud.cells};
+    options.side = side;
+    TRY(support_space_build(&options, &cells, radius, &space, error));
+    TRY(support_space_lists(&options, &space, &nodes, 49, cloud.x, "nodes", &of_nodes, error));
+    TRY(support_space_lists(&options, &space, NULL, 49, cloud.x, "nodes", &found, error));
+    status = found.around_count > 0 ? STATUS_OK : STATUS_INPUT;
+done:
+    support_free(&of_nodes);
+    support_free(&found);
+    support_space_free(&space);
+    cloud_free(&cloud);
+    return status;
+}
+
 /* Adaptive points with a subdivision or two. */
 static enum status try_adaptive(struct error *error)
 {
@@ -205,6 +236,14 @@ static void around_corners(void **state)
     fail_each(try_reach, 30);
 }
 
+static void sides(void **state)
+{
+    (void)state;
+    struct error error;
+    assert_int_equal(try_sides(&error), STATUS_OK);
+    fail_each(try_sides, 60);
+}
+
 static void adaptive(void **state)
 {
     (void)state;
@@ -233,7 +272,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(tables),      cmocka_unit_test(around_corners), cmocka_unit_test(adaptive),
-        cmocka_unit_test(comparisons), cmocka_unit_test(sizes),
+        cmocka_unit_test(comparisons), cmocka_unit_test(sizes),          cmocka_unit_test(sides),
     };
     gsl_set_error_handler_off(); /* as the tools do */
     omp_set_num_threads(1);

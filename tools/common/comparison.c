@@ -179,6 +179,14 @@ void print_relative(const struct findings *findings)
     print_quantity("max_relative", NULL, relative(all->largest, findings->reference));
 }
 
+double iteration_error(const struct side *side)
+{
+    const struct section *section = stream_find(&side->stream, "iteration");
+    bool known = section != NULL && section->type == TYPE_F8 && section->rows == 1 && section->cols == 1 &&
+                 strcmp(side->section->name, "u") == 0;
+    return known ? *(const double *)section->data : -1.0;
+}
+
 enum status print_regions(const struct findings *findings, struct error *error)
 {
     const struct field_comparison *comparison = &findings->comparison;

@@ -67,6 +67,9 @@ void print_findings(const struct findings *findings, const struct cells *cells, 
 /* And relative to the reference. */
 void print_relative(const struct findings *findings);
 
+/* The error that the iteration of a result has left, m, as mtled estimates it; negative: not known. */
+double iteration_error(const struct side *side);
+
 /* Statistics of the nodes of each region. */
 MUST_CHECK enum status print_regions(const struct findings *findings, struct error *error);
 

@@ -50,6 +50,9 @@ static void check_groups(const struct cut_body *whole)
     if (stream_find(whole->stream, "cells.region") != NULL) {
         check_rows(whole, "cells.region", "cells");
     }
+    if (stream_find(whole->stream, "parameters.side") != NULL) {
+        check_rows(whole, "parameters.side", "cells");
+    }
     check_rows(whole, "facets.set", "facets");
     if (stream_find(whole->stream, "facets") != NULL) {
         check_nodes(whole, "facets", whole->cells.dim);
@@ -76,8 +79,8 @@ static void check_groups(const struct cut_body *whole)
 /* Take out what cannot be cut, and keep what the rest was. */
 void cut_body_keep_sections(struct cut_body *whole)
 {
-    static const char *const known[] = {"cells",      "cells.region", "facets",
-                                        "facets.set", "sets.ptr",     "sets.idx"};
+    static const char *const known[] = {"cells",    "cells.region", "facets",         "facets.set",
+                                        "sets.ptr", "sets.idx",     "parameters.side"};
     struct error error;
     struct stream *stream = whole->stream;
     char dropped[256] = "";
@@ -249,7 +252,7 @@ void cut_body_make_part(const struct cut_body *whole, int32_t number, const stru
         const struct section *section = &whole->sections[i];
         if (is_nodal(whole, section)) {
             put_rows(whole, section, body->node, body->node_count, NULL);
-        } else if (strncmp(section->name, "cells", 5) == 0) {
+        } else if (strncmp(section->name, "cells", 5) == 0 || strcmp(section->name, "parameters.side") == 0) {
             put_rows(whole, section, body->cell, body->cell_count, section->cols > 1 ? place : NULL);
         }
     }

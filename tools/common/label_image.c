@@ -13,7 +13,7 @@ static const double largest_diagonal = 10, smallest_diagonal = 1e-3;
 
 int32_t label_image_find(const struct label_image *image, const char *name)
 {
-    for (int32_t l = 1; l < image->labels.count; l++) {
+    for (int32_t l = 1; l <= image->table.name_count; l++) {
         if (strcmp(label_image_name(image, l), name) == 0) {
             return l;
         }
@@ -23,7 +23,8 @@ int32_t label_image_find(const struct label_image *image, const char *name)
 
 const char *label_image_name(const struct label_image *image, int32_t label)
 {
-    return label == 0 ? "outside" : image->table.name[label - 1].text;
+    int32_t region = label > image->table.name_count ? image->region[label] : label;
+    return region == 0 ? "outside" : image->table.name[region - 1].text;
 }
 
 /* ---- values ---- */
@@ -149,6 +150,12 @@ static void set_labels(const struct tool *tool, const struct image *source, stru
     image->labels.count = image->table.name_count + 1;
     tool_check(tool, NEW_ARRAY(&image->keep, image->labels.count, &error), &error);
     tool_check(tool, NEW_ARRAY(&image->volume, image->labels.count, &error), &error);
+    tool_check(tool, NEW_ARRAY(&image->region, image->labels.count, &error), &error);
+    tool_check(tool, NEW_ARRAY(&image->part_of, image->labels.count, &error), &error);
+    for (int32_t l = 0; l < image->labels.count; l++) {
+        image->region[l] = l;
+        image->part_of[l] = -1;
+    }
     tool_check(tool, NEW_ARRAY(&image->voxel, count, &error), &error);
     label_values(tool, values, image, table);
     int32_t at = 0;
@@ -275,6 +282,7 @@ static void set_space(const struct tool *tool, const struct image *image, struct
         labels->size[d] = (int64_t)image->size[d];
     }
     image_to_voxel(image, labels->to_voxel);
+    memcpy(result->to_world, image->to_world, sizeof result->to_world);
     labels->dim = 3;
     set_plane(tool, image, labels);
     const double(*m)[4] = image->to_world;
@@ -352,6 +360,12 @@ void label_image_free(struct label_image *image)
     free(image->voxel);
     free(image->keep);
     free(image->volume);
+    free(image->region);
+    free(image->part_of);
+    for (int32_t p = 0; p < image->part_count; p++) {
+        free(image->part[p]);
+    }
+    free(image->part);
     label_table_free(&image->table);
     *image = (struct label_image){0};
 }

@@ -17,9 +17,14 @@ struct label_image_options {
 struct label_image {
     struct labels labels;
     uint16_t *voxel;          /* what labels.label points to */
-    struct label_table table; /* label l, at least 1, is table.name[l - 1] */
-    bool *keep;               /* labels.count */
-    double *volume;           /* labels.count: of its voxels, m3 (2D: m2) */
+    double to_world[3][4];    /* voxel index to world, m */
+    struct label_table table; /* label l, at least 1, is table.name[l - 1]; higher ones are parts: */
+    int32_t *region;          /* labels.count: the label whose region it is of */
+    int32_t *part_of;         /* labels.count: number of its part, -1: none */
+    int32_t part_count;
+    char **part;    /* part_count: names */
+    bool *keep;     /* labels.count */
+    double *volume; /* labels.count: of its voxels, m3 (2D: m2) */
     double voxel_volume;
 };
 
@@ -30,7 +35,7 @@ void label_image_read(const struct tool *tool, const char *file, const struct la
                       struct label_image *image);
 void label_image_free(struct label_image *image);
 
-/* The name of a label; "outside" for 0. */
+/* The name of a label, of a part that of its region; "outside" for 0. */
 const char *label_image_name(const struct label_image *image, int32_t label);
 
 /* The label of that name; -1: none. */

@@ -53,16 +53,16 @@ static enum status make_regions(const struct label_image *image, const struct st
     TRY(NEW_ARRAY(&region, image->labels.count, error));
     TRY(NEW_ARRAY(&mesh->cell_region, stuffing->cell_count, error));
     for (int64_t c = 0; c < stuffing->cell_count; c++) {
-        region[stuffing->label[c]] = 1;
+        region[image->region[stuffing->label[c]]] = 1;
     }
-    for (int32_t l = 1; l < image->labels.count; l++) {
+    for (int32_t l = 1; l <= image->table.name_count; l++) {
         if (region[l] != 0) {
             region[l] = mesh->regions.count;
             TRY(add_name(&mesh->regions, label_image_name(image, l), NULL, error));
         }
     }
     for (int64_t c = 0; c < stuffing->cell_count; c++) {
-        mesh->cell_region[c] = region[stuffing->label[c]];
+        mesh->cell_region[c] = region[image->region[stuffing->label[c]]];
     }
 done:
     free(region);
@@ -79,13 +79,19 @@ static enum status make_facets(const struct label_image *image, const struct stu
     TRY(NEW_ARRAY(&mesh->facets, stuffing->facet_count * dim, error));
     TRY(NEW_ARRAY(&mesh->facet_set, stuffing->facet_count, error));
     for (int32_t f = 0; f < (int32_t)stuffing->facet_count; f++) {
-        member[f] = (struct member){stuffing->side[2 * f], stuffing->side[2 * f + 1], f};
+        int32_t inner = stuffing->side[2 * f], part = image->part_of[inner];
+        member[f] = (struct member){inner, stuffing->side[2 * f + 1], f};
+        if (part >= 0 && stuffing->side[2 * f + 1] == 0) {
+            member[f] = (struct member){image->labels.count + part, 0, f};
+        }
     }
     qsort(member, (size_t)stuffing->facet_count, sizeof *member, compare_members);
     for (int64_t f = 0; f < stuffing->facet_count; f++) {
         if (f == 0 || !same_group(&member[f], &member[f - 1])) {
-            TRY(add_name(&mesh->facet_sets, label_image_name(image, member[f].inner),
-                         label_image_name(image, member[f].outer), error));
+            int32_t part = member[f].inner - image->labels.count;
+            TRY(add_name(&mesh->facet_sets,
+                         part >= 0 ? image->part[part] : label_image_name(image, member[f].inner),
+                         part >= 0 ? NULL : label_image_name(image, member[f].outer), error));
         }
         mesh->facet_set[f] = mesh->facet_sets.count - 1;
         memcpy(mesh->facets + f * dim, stuffing->facet + (int64_t)member[f].item * dim,
@@ -99,14 +105,14 @@ done:
 
 /* Nodes of faces between two regions, a face once for each of its nodes: counted or, where there is room,
  * stored. */
-static int64_t find_interfaces(const struct cells *cells, const int32_t *label, const int32_t *across,
+static int64_t find_interfaces(const struct cells *cells, const int32_t *region, const int32_t *across,
                                struct member *member)
 {
     int corners = cells->dim + 1;
     int64_t count = 0;
     for (int64_t i = 0; i < cells->count * corners; i++) {
         int64_t c = i / corners;
-        if (across[i] < 0 || label[across[i]] <= label[c]) {
+        if (across[i] < 0 || region[across[i]] <= region[c]) {
             continue;
         }
         for (int k = 0; k < corners; k++) {
@@ -114,7 +120,7 @@ static int64_t find_interfaces(const struct cells *cells, const int32_t *label, 
                 continue;
             }
             if (member != NULL) {
-                member[count] = (struct member){label[c], label[across[i]], cells->node[c * corners + k]};
+                member[count] = (struct member){region[c], region[across[i]], cells->node[c * corners + k]};
             }
             count++;
         }
@@ -130,14 +136,19 @@ static enum status make_sets(const struct label_image *image, const struct stuff
                           stuffing->cell};
     int32_t *across = NULL;
     struct member *member = NULL;
+    int32_t *region = NULL;
     int64_t kept = 0;
     TRY(NEW_ARRAY(&across, cells.count * (cells.dim + 1), error));
     TRY(cells_across(&cells, across, error));
-    int64_t count = find_interfaces(&cells, stuffing->label, across, NULL);
+    TRY(NEW_ARRAY(&region, cells.count, error));
+    for (int64_t c = 0; c < cells.count; c++) {
+        region[c] = image->region[stuffing->label[c]];
+    }
+    int64_t count = find_interfaces(&cells, region, across, NULL);
     TRY(NEW_ARRAY(&member, count, error));
     TRY(NEW_ARRAY(&mesh->set_idx, count, error));
     TRY(NEW_ARRAY(&mesh->set_ptr, count + 1, error));
-    find_interfaces(&cells, stuffing->label, across, member);
+    find_interfaces(&cells, region, across, member);
     qsort(member, (size_t)count, sizeof *member, compare_members);
     for (int64_t i = 0; i < count; i++) {
         if (i > 0 && compare_members(&member[i], &member[i - 1]) == 0) {
@@ -153,6 +164,7 @@ static enum status make_sets(const struct label_image *image, const struct stuff
     mesh->set_ptr[mesh->node_sets.count] = kept;
 done:
     free(across);
+    free(region);
     free(member);
     return status;
 }

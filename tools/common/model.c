@@ -1,5 +1,7 @@
 #include "model.h"
 
+#include "process.h"
+
 #include "approx/quadrature.h"
 #include "base/box.h"
 
@@ -119,10 +121,13 @@ enum status model_build(struct stream *stream, const struct scene *scene, struct
     }
     TRY(read_points(stream, input, error));
     TRY(read_tables(stream, input, error));
+    TRY(stage_sides(stream, "support", &input->cell_side, error));
     assembly_complete(input);
     TRY(model_materials(model, error));
+    TRY(model_interfaces(model, error));
     TRY(check_moments(model, error));
     TRY(model_conditions(model, error));
+    input->ranks = process_ranks();
     input->copied = drop_copied;
     input->context = stream;
     TRY(assembly_build(input, &model->system, &model->note, error));

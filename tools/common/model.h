@@ -14,7 +14,8 @@ struct model {
     int64_t owned_count;
     void **owned; /* owned_count: these */
     struct solid_system system;
-    struct error note; /* a remark on the scene that is no error; empty text: none */
+    struct error note;       /* a remark on the scene that is no error; empty text: none */
+    struct error interfaces; /* another, on interfaces between materials */
     double *row_force; /* system.rows.count: force of each constraint along its direction, N (2D: N/m), once
                           solved */
 };
@@ -29,6 +30,9 @@ void model_free(struct model *model);
  * contacts, with their curves, facets, nodes and tables. */
 MUST_CHECK enum status model_materials(struct model *model, struct error *error);
 MUST_CHECK enum status model_conditions(struct model *model, struct error *error);
+/* Set model->interfaces: where supports reach across an interface between materials of unequal stiffness and
+ * stress is asked for, or where what lies on the interface belongs to the softer side. */
+MUST_CHECK enum status model_interfaces(struct model *model, struct error *error);
 /* Measured points: what is read of them, and the field there; compared and added by the assembly. */
 MUST_CHECK enum status model_points(struct model *model, const struct scene_displacement *section,
                                     struct condition *condition, struct error *error);

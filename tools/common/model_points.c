@@ -109,7 +109,7 @@ static enum status find_field(struct point_section *p, struct error *error)
         }
     }
     TRY(stream_need(p->model->stream, "support.radius", TYPE_F8, 1, "support", &radius, error));
-    TRY(stage_recorded(radius, cells->dim, &recorded, error));
+    TRY(stage_recorded(p->model->stream, "support", cells->dim, &recorded, error));
     if (radius->rows != cells->node_count) {
         status = fail(error, STATUS_INPUT, "support.radius: does not fit the nodes: run support again");
         goto done;

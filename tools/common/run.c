@@ -67,6 +67,7 @@ void run_fail(struct run *run, enum status status, const char *format, ...)
     /* One line, whatever the names in it contain. */
     fail(&reason, status, "%s%s%s", text, folds[0] != '\0' ? "; " : "", folds);
     tool_note(run->tool, "%s", reason.text);
+    (void)process_fails_alone(); /* the others wait while the first one writes */
     if (output->frames > 0 || output->interval > 0.0) {
         if (run->last_good >= 0.0) {
             run_put_frame(run, next_frame(run->stream), run->last_good, run->u);

@@ -3,6 +3,7 @@
 #define TOOLS_RUN_H
 
 #include "model.h"
+#include "process.h"
 #include "run_checkpoint.h"
 #include "run_folds.h"
 #include "run_stability.h"
@@ -25,9 +26,10 @@ struct run {
     struct run_folds folds;
     struct run_stability stability;
     bool verbose;
-    bool text;        /* the form of what is written */
-    double *u;        /* parameters, node_count * dim, m */
-    double last_good; /* the time, as in struct progress, of which u is the state; negative: none */
+    bool text;           /* the form of what is written */
+    double *u;           /* parameters, node_count * dim, m */
+    double last_good;    /* the time, as in struct progress, of which u is the state; negative: none */
+    int64_t evaluations; /* of forces */
     double read_seconds, prepare_seconds, solve_seconds, write_seconds;
 };
 

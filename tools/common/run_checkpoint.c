@@ -2,6 +2,8 @@
 
 #include "interrupt.h"
 
+#include "base/processor.h"
+
 #include <string.h>
 #include <unistd.h>
 
@@ -27,18 +29,47 @@ static void take_frames(struct run *run)
     }
 }
 
+/* Whether all processes have the same number. */
+static bool agree(int64_t number)
+{
+    const struct ranks *ranks = process_ranks();
+    return ranks_most(ranks, number) == number && ranks_most(ranks, -number) == -number;
+}
+
+/* Exits where several processes do not have the same before them: they would not do the same. */
+static void compare_processes(const struct run *run)
+{
+    const struct run_checkpoint *checkpoint = &run->checkpoint;
+    int64_t set = 0;
+    for (const char *letter = processor_best_set(); *letter != '\0'; letter++) {
+        set = 256 * set + *letter;
+    }
+    bool same[] = {agree(checkpoint->identity.scene), agree(checkpoint->identity.input),
+                   agree(checkpoint->file != NULL), agree(set)};
+    if (!same[0] || !same[1] || !same[2]) {
+        tool_fail(run->tool, STATUS_INPUT,
+                  "the processes do not read the same: give all the same scene, tables, stream and options");
+    }
+    if (!same[3]) {
+        tool_fail(run->tool, STATUS_INPUT,
+                  "the processes run on processors with different instructions: take machines of one kind");
+    }
+}
+
 static void resume(struct run *run)
 {
     struct run_checkpoint *checkpoint = &run->checkpoint;
     struct error error;
     enum checkpoint_source source;
     int64_t step = 0;
-    tool_check(run->tool, checkpoint_identify(run->scene, run->stream, &checkpoint->identity, &error),
-               &error);
     tool_check(run->tool,
                checkpoint_read(checkpoint->file, &checkpoint->identity, &checkpoint->restored, &source, &step,
                                &error),
                &error);
+    if (!agree(step) || !agree((int64_t)source)) {
+        tool_fail(run->tool, STATUS_INPUT, "%s: not the same file for all processes: put it where all see it",
+                  checkpoint->file);
+    }
     if (source == CHECKPOINT_NONE) {
         return;
     }
@@ -53,7 +84,13 @@ static void resume(struct run *run)
 void run_checkpoint_begin(struct run *run)
 {
     struct run_checkpoint *checkpoint = &run->checkpoint;
+    struct error error;
     stream_init(&checkpoint->restored);
+    if (checkpoint->file != NULL || process_ranks() != NULL) {
+        tool_check(run->tool, checkpoint_identify(run->scene, run->stream, &checkpoint->identity, &error),
+                   &error);
+        compare_processes(run);
+    }
     if (checkpoint->file != NULL) {
         resume(run);
     }
@@ -126,8 +163,8 @@ done:
 bool run_checkpoint_tell(struct run *run, const struct progress *progress)
 {
     struct run_checkpoint *checkpoint = &run->checkpoint;
-    bool interrupted = *checkpoint->interrupted != 0;
-    if (checkpoint->file == NULL ||
+    bool interrupted = ranks_most(process_ranks(), *checkpoint->interrupted) != 0;
+    if (checkpoint->file == NULL || !process_speaks() ||
         (!interrupted && clock_seconds() - checkpoint->last < checkpoint->interval && checkpoint->is_ours)) {
         return !interrupted;
     }
@@ -153,7 +190,7 @@ void run_checkpoint_end(struct run *run)
 void run_checkpoint_stop(struct run *run, int64_t steps)
 {
     const struct run_checkpoint *checkpoint = &run->checkpoint;
-    int number = (int)*checkpoint->interrupted;
+    int number = (int)ranks_most(process_ranks(), *checkpoint->interrupted);
     const char *name = sigabbrev_np(number);
     enum status status = (enum status)(128 + number);
     if (checkpoint->file == NULL) {
@@ -172,7 +209,7 @@ void run_checkpoint_remove(struct run *run)
 {
     struct run_checkpoint *checkpoint = &run->checkpoint;
     stream_free(&checkpoint->restored);
-    if (checkpoint->file != NULL) {
+    if (checkpoint->file != NULL && process_speaks()) {
         struct error error;
         tool_check(run->tool, checkpoint_remove(checkpoint->file, &error), &error);
     }

@@ -115,6 +115,7 @@ void run_dynamic(struct run *run)
         put_energy(run, &log);
     }
     run->last_good = report.last_good;
+    run->evaluations = report.force_evaluations;
     run_folds_look(run, run->u, report.time, true);
     judge(run, &report);
     energy_log_free(&log);

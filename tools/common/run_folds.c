@@ -28,11 +28,67 @@ done:
     return status;
 }
 
+/* The names of the groups that a facet of the boundary is in, or "unnamed". */
+static void name_facet(const struct run *run, int64_t f, char *name, size_t size)
+{
+    const struct stream *stream = run->stream;
+    const struct section *facets = stream_find(stream, "facets"), *set = stream_find(stream, "facets.set");
+    int dim = run->scene->dim;
+    char *names = NULL;
+    struct error error;
+    int32_t key[3], other[3];
+    snprintf(name, size, "the boundary");
+    if (facets == NULL || set == NULL || names_of_section(set, &names, &error) != STATUS_OK) {
+        return;
+    }
+    face_key(dim, run->folds.folds.input.facet + f * dim, key);
+    for (int64_t i = 0; i < facets->rows && i < set->rows; i++) {
+        face_key(dim, (const int32_t *)facets->data + i * dim, other);
+        if (memcmp(key, other, sizeof key) == 0) {
+            const char *at = names;
+            for (int32_t k = ((const int32_t *)set->data)[i]; k > 0; k--) {
+                at += strcspn(at, ",");
+                at += *at == ',';
+            }
+            snprintf(name, size, "%.*s", (int)strcspn(at, ","), at);
+            break;
+        }
+    }
+    free(names);
+}
+
+/* Bodies that interpenetrate at rest are an error, unless the scene allows folds. */
+static void tell_at_rest(const struct run *run)
+{
+    const struct fold *fold = &run->folds.folds.at_rest;
+    char place[96], text[300], one[64];
+    if (fold->kind == FOLD_NONE) {
+        return;
+    }
+    point_text(run->scene->dim, fold->place, place);
+    if (fold->kind == FOLD_WITHIN) {
+        snprintf(text, sizeof text, "bodies interpenetrate at rest: cell %lld at %s lies within another body",
+                 (long long)fold->cell, place);
+    } else {
+        name_facet(run, fold->facet[0], one, sizeof one);
+        snprintf(text, sizeof text,
+                 "bodies, or parts of one, interpenetrate at rest: %s at %s goes through the boundary", one,
+                 place);
+    }
+    if (!run->scene->output.folds_allowed) {
+        tool_fail(run->tool, STATUS_INPUT,
+                  "%s: %s: set them apart in the mesh, or allow it ([output] folds = allowed)",
+                  run->scene->path, text);
+    }
+    tool_note(run->tool, "%s: %s; whether others do later is not looked for", run->scene->path, text);
+}
+
 void run_folds_begin(struct run *run)
 {
     struct error error;
     const struct state *restored = run_checkpoint_state(run);
     tool_check(run->tool, build(&run->model->assembly, &run->folds, &error), &error);
+    tell_at_rest(run);
     if (restored != NULL) {
         tool_check(run->tool, run_folds_state(run, restored, &error), &error);
     }
@@ -135,35 +191,6 @@ done:
     return status;
 }
 
-/* The names of the groups that a facet of the boundary is in, or "unnamed". */
-static void name_facet(const struct run *run, int64_t f, char *name, size_t size)
-{
-    const struct stream *stream = run->stream;
-    const struct section *facets = stream_find(stream, "facets"), *set = stream_find(stream, "facets.set");
-    int dim = run->scene->dim;
-    char *names = NULL;
-    struct error error;
-    int32_t key[3], other[3];
-    snprintf(name, size, "the boundary");
-    if (facets == NULL || set == NULL || names_of_section(set, &names, &error) != STATUS_OK) {
-        return;
-    }
-    face_key(dim, run->folds.folds.input.facet + f * dim, key);
-    for (int64_t i = 0; i < facets->rows && i < set->rows; i++) {
-        face_key(dim, (const int32_t *)facets->data + i * dim, other);
-        if (memcmp(key, other, sizeof key) == 0) {
-            const char *at = names;
-            for (int32_t k = ((const int32_t *)set->data)[i]; k > 0; k--) {
-                at += strcspn(at, ",");
-                at += *at == ',';
-            }
-            snprintf(name, size, "%.*s", (int)strcspn(at, ","), at);
-            break;
-        }
-    }
-    free(names);
-}
-
 void run_folds_describe(const struct run *run, int which, char *text, size_t size)
 {
     const struct run_folds *folds = &run->folds;
@@ -202,6 +229,10 @@ void run_folds_describe(const struct run *run, int which, char *text, size_t siz
         return;
     case FOLD_CROSSING:
         snprintf(text, size, "the body folds %s: %s at %s goes through %s", when, one, place, other);
+        return;
+    case FOLD_WITHIN:
+        snprintf(text, size, "the body folds %s: the body of cell %lld at %s is within another", when,
+                 (long long)fold->cell, place);
         return;
     case FOLD_FLAT:
         snprintf(text, size,

@@ -61,6 +61,20 @@ static void judge(struct run *run, const struct relaxation_report *report)
              scene->path, (long long)report->steps, load, report->error, creases);
 }
 
+/* How far the iteration may have left the field from where it would end, m: the relaxation, and contacts that
+ * still give way. */
+static double iteration_error(const struct relaxation_report *report)
+{
+    return report->error * report->largest_move + report->penetration;
+}
+
+static void put_error(const struct run *run, const struct relaxation_report *report)
+{
+    double *error = run_new_values(run, 1);
+    *error = iteration_error(report);
+    run_put(run, "iteration", 1, 1, "unit=m cols=error", error);
+}
+
 void run_quasi_static(struct run *run)
 {
     const struct scene_solver *solver = &run->scene->solver;
@@ -85,14 +99,18 @@ void run_quasi_static(struct run *run)
     run_clear_progress(&run->display);
     tool_check(run->tool, status, &error);
     run->last_good = report.load;
+    run->evaluations = report.force_evaluations;
     run_folds_look(run, run->u, report.load, true);
     run_stability_look(run, report.load);
     judge(run, &report);
+    put_error(run, &report);
     if (run->verbose) {
         fprintf(stderr,
                 "points\t%lld\npairs\t%lld\nsteps\t%lld\nloading steps\t%lld\nforce evaluations\t%lld\n",
                 (long long)body->point_count, (long long)body->pair_count, (long long)report.steps,
                 (long long)report.loading_steps, (long long)report.force_evaluations);
+        fprintf(stderr, "iteration error, m\t%.3g\ndiscretisation error, m\tsee fielderr\n",
+                iteration_error(&report));
         fprintf(stderr, "estimated error\t%.3g\nfrequency ratio\t%.5g\nleast J\t%.4g\n", report.error,
                 report.largest_frequency / report.lowest_frequency, report.least_jacobian);
         run_report_springs(run);

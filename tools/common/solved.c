@@ -7,16 +7,18 @@ static const char prefix[] = "parameters";
 
 enum status solved_read(const struct stream *stream, struct solved *solved, struct error *error)
 {
-    return supports_read(stream, "parameters.radius", solved, error);
+    return supports_read(stream, "parameters", solved, error);
 }
 
-enum status supports_read(const struct stream *stream, const char *name, struct solved *solved,
+enum status supports_read(const struct stream *stream, const char *of, struct solved *solved,
                           struct error *error)
 {
     enum status status = STATUS_OK;
     int dim;
     int64_t node_count;
     const double *x;
+    char name[64];
+    snprintf(name, sizeof name, "%s.radius", of);
     const struct section *radius = stream_find(stream, name);
     *solved = (struct solved){0};
     if (radius == NULL) {
@@ -24,7 +26,7 @@ enum status supports_read(const struct stream *stream, const char *name, struct 
     }
     TRY(stream_nodes(stream, &dim, &node_count, &x, error));
     TRY(stream_need(stream, radius->name, TYPE_F8, 1, "mtled", &radius, error));
-    TRY(stage_recorded(radius, dim, &solved->recorded, error));
+    TRY(stage_recorded(stream, of, dim, &solved->recorded, error));
     if (radius->rows != node_count) {
         return fail(error, STATUS_INPUT, "%s: %lld rows for %lld nodes", radius->name,
                     (long long)radius->rows, (long long)node_count);

@@ -14,8 +14,8 @@ struct solved {
 /* Zeros where the stream has no section parameters.radius. The view is the stream's. */
 MUST_CHECK enum status solved_read(const struct stream *stream, struct solved *solved, struct error *error);
 
-/* The same of a section of radii, with what is recorded there. */
-MUST_CHECK enum status supports_read(const struct stream *stream, const char *name, struct solved *solved,
+/* The same of the supports that the sections PREFIX.radius and PREFIX.side tell of. */
+MUST_CHECK enum status supports_read(const struct stream *stream, const char *prefix, struct solved *solved,
                                      struct error *error);
 
 /* The section to evaluate for a field: the parameters of u and u.frame.K, where they are there and fit; else

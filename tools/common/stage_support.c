@@ -2,6 +2,7 @@
 
 #include "mls_options.h"
 
+#include "approx/support_space.h"
 #include "io/sections.h"
 
 #include <stdlib.h>
@@ -88,10 +89,43 @@ static enum status read_mls(const struct section *section, const char *prefix, s
     return status == STATUS_OK ? status : fail(error, status, "%s: %s", section->name, own.text);
 }
 
-enum status stage_recorded(const struct section *radius, int dim, struct recorded *recorded,
-                           struct error *error)
+enum status stage_sides(const struct stream *stream, const char *prefix, const int32_t **side,
+                        struct error *error)
+{
+    char name[64];
+    struct cells cells;
+    const struct section *section;
+    snprintf(name, sizeof name, "%s.side", prefix);
+    *side = NULL;
+    if (stream_find(stream, name) == NULL) {
+        return STATUS_OK;
+    }
+    enum status status = stream_need(stream, name, TYPE_I4, 1, "support", &section, error);
+    if (status == STATUS_OK) {
+        status = stream_cells(stream, true, &cells, error);
+    }
+    if (status != STATUS_OK) {
+        return status;
+    }
+    *side = section->data;
+    for (int64_t c = 0; c < section->rows; c++) {
+        if ((*side)[c] < 0 || (*side)[c] >= cells.count) {
+            return fail(error, STATUS_INPUT, "%s: row %lld: no side %d", name, (long long)c, (*side)[c]);
+        }
+    }
+    return section->rows == cells.count
+               ? STATUS_OK
+               : fail(error, STATUS_INPUT, "%s: %lld rows for %lld cells: run support again", name,
+                      (long long)section->rows, (long long)cells.count);
+}
+
+enum status stage_recorded(const struct stream *stream, const char *prefix, int dim,
+                           struct recorded *recorded, struct error *error)
 {
     enum status status = STATUS_OK;
+    char name[64];
+    snprintf(name, sizeof name, "%s.radius", prefix);
+    const struct section *radius = stream_find(stream, name);
     struct support_options *options = &recorded->support;
     char value[64], what[96];
     int choice = REACH_CELLS;
@@ -101,6 +135,7 @@ enum status stage_recorded(const struct section *radius, int dim, struct recorde
     if (radius == NULL) {
         return STATUS_OK;
     }
+    TRY(stage_sides(stream, prefix, &options->side, error));
     TRY(read_mls(radius, "", &options->mls, error));
     recorded->shapes = options->mls;
     TRY(read_mls(radius, "shape_", &recorded->shapes, error));
@@ -143,6 +178,21 @@ done:
     return status;
 }
 
+static enum status put_sides(struct stream *stream, const struct cells *cells, const int32_t *side,
+                             struct error *error)
+{
+    enum status status;
+    int32_t *copy = NULL;
+    if (side == NULL) {
+        return STATUS_OK;
+    }
+    TRY(NEW_ARRAY(&copy, cells->count, error));
+    memcpy(copy, side, (size_t)cells->count * sizeof *copy);
+    return stream_put(stream, "support.side", TYPE_I4, cells->count, 1, "", copy, true, error);
+done:
+    return status;
+}
+
 /* Sections PREFIX.around and .image of the neighbours that are seen around corners; the stream takes them. */
 static enum status put_around(struct stream *stream, int dim, const char *prefix, struct support_lists *lists,
                               struct error *error)
@@ -167,8 +217,8 @@ struct listed {
 };
 
 static enum status put_lists(struct stream *stream, const struct support_options *options,
-                             const struct point_grid *grid, const struct reach *reach,
-                             const struct listed *listed, struct support_report *report, struct error *error)
+                             const struct support_space *space, const struct listed *listed,
+                             struct support_report *report, struct error *error)
 {
     const struct section *points = listed->points;
     const char *prefix = listed->prefix;
@@ -176,8 +226,8 @@ static enum status put_lists(struct stream *stream, const struct support_options
     struct support_lists lists = {0};
     char name[64];
     int64_t count = points->rows;
-    TRY(support_build_within(options, grid, reach, &listed->places, count, points->data, points->name, &lists,
-                             error));
+    TRY(support_space_lists(options, space, &listed->places, count, points->data, points->name, &lists,
+                            error));
     int64_t pairs = lists.ptr[count];
     int entry = report->lists++;
     report->list[entry].what = listed->called;
@@ -240,13 +290,12 @@ enum status stage_support(struct stream *stream, const struct support_options *o
                           struct support_report *report, struct error *error)
 {
     enum status status;
-    struct point_grid grid = {0};
+    struct support_space space = {0};
     int dim;
     int64_t node_count;
     const double *x;
     const struct section *points, *facepoints;
     struct support_options actual = *options;
-    struct reach reach = {0};
     struct cells cells;
     struct listed listed;
     *report = (struct support_report){0};
@@ -259,30 +308,26 @@ enum status stage_support(struct stream *stream, const struct support_options *o
     }
     report->reach = actual.reach;
     TRY(put_radii(stream, &actual, node_count, x, error));
-    TRY(point_grid_build(&grid, dim, node_count, x, stream_find(stream, "support.radius")->data, error));
-    if (actual.reach == REACH_CELLS) {
-        TRY(reach_build(&cells, &grid, &reach, error));
-    }
-    const struct reach *within = actual.reach == REACH_CELLS ? &reach : NULL;
+    TRY(put_sides(stream, &cells, actual.side, error));
+    TRY(support_space_build(&actual, &cells, stream_find(stream, "support.radius")->data, &space, error));
     bool smoothed = points_are_smoothed(points); /* gradients come from the faces alone */
     if (!smoothed) {
         listed = (struct listed){.points = points, .prefix = "nbr", .called = "integration points"};
         TRY(places_of(stream, &cells, "points.cell", 1, points->rows, &listed.places, error));
-        TRY(put_lists(stream, &actual, &grid, within, &listed, report, error));
+        TRY(put_lists(stream, &actual, &space, &listed, report, error));
     }
     if (stream_find(stream, "faces") != NULL || smoothed) {
         TRY(stream_need(stream, "facepoints.x", TYPE_F8, dim, "ipoints", &facepoints, error));
         listed = (struct listed){.points = facepoints, .prefix = "facepoint", .called = "points on faces"};
         TRY(places_of(stream, &cells, "faces.cell", 2, facepoints->rows, &listed.places, error));
-        TRY(put_lists(stream, &actual, &grid, within, &listed, report, error));
+        TRY(put_lists(stream, &actual, &space, &listed, report, error));
     }
     listed = (struct listed){.points = stream_find(stream, "nodes.x"),
                              .places = {.nodes = true},
                              .prefix = "node",
                              .called = "nodes"};
-    TRY(put_lists(stream, &actual, &grid, within, &listed, report, error));
+    TRY(put_lists(stream, &actual, &space, &listed, report, error));
 done:
-    reach_free(&reach);
-    point_grid_free(&grid);
+    support_space_free(&space);
     return status;
 }

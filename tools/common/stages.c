@@ -21,7 +21,7 @@ static void fill_one(const struct tool *tool, struct stream *stream, const char 
         status = stage_support(stream, &options, &report, &error);
     } else {
         struct recorded recorded;
-        status = stage_recorded(stream_find(stream, "support.radius"), dim, &recorded, &error);
+        status = stage_recorded(stream, "support", dim, &recorded, &error);
         if (status == STATUS_OK) {
             status = stage_shapefn(stream, &recorded.support.mls, &error);
         }

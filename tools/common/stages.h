@@ -45,7 +45,13 @@ struct support_report {
     } list[3];
 };
 
-/* Add the sections of support: support.radius, and the lists nbr, facepoint and node. */
+/* side[cells], allocated: the place of each cell's region in the list of names, with commas between, or
+ * behind it. Errors: a region that is not there, or stands twice; no cells. */
+MUST_CHECK enum status stage_interfaces(const struct stream *stream, const char *names, int32_t **side,
+                                        struct error *error);
+
+/* Add the sections of support: support.radius, support.side where options->side is given, and the lists nbr,
+ * facepoint and node. */
 MUST_CHECK enum status stage_support(struct stream *stream, const struct support_options *options,
                                      struct support_report *report, struct error *error);
 
@@ -58,9 +64,14 @@ struct recorded {
     struct mls shapes;              /* what the shape functions are made with, if it is not support.mls */
 };
 
-/* As the section tells; support_defaults() where there is none (NULL), or for what it does not tell. */
-MUST_CHECK enum status stage_recorded(const struct section *radius, int dim, struct recorded *recorded,
-                                      struct error *error);
+/* A view of PREFIX.side, the sides of interfaces that supports stop at; NULL: the stream has none. */
+MUST_CHECK enum status stage_sides(const struct stream *stream, const char *prefix, const int32_t **side,
+                                   struct error *error);
+
+/* As the stream's section of radii tells, PREFIX.radius, and PREFIX.side where there is one, whose view
+ * recorded->support.side is; support_defaults() where there is none, or for what it does not tell. */
+MUST_CHECK enum status stage_recorded(const struct stream *stream, const char *prefix, int dim,
+                                      struct recorded *recorded, struct error *error);
 
 /* Put radius[node_count], which the stream takes, as support.radius with the settings. */
 MUST_CHECK enum status stage_record(struct stream *stream, const struct recorded *recorded,

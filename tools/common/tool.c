@@ -1,6 +1,7 @@
 #include "tool.h"
 
 #include "output.h"
+#include "process.h"
 
 #include <assert.h>
 #include <errno.h>
@@ -33,24 +34,34 @@ static void print_message(const struct tool *tool, const char *format, va_list v
 _Noreturn void tool_fail(const struct tool *tool, enum status status, const char *format, ...)
 {
     va_list values;
-    va_start(values, format);
-    print_message(tool, format, values);
-    va_end(values);
+    bool said = process_speaks();
+    for (int turn = 0; turn < 2;
+         turn++) { /* of several processes the first one speaks, or one that fails alone */
+        if (turn == 0 ? said : process_fails_alone() && !said) {
+            va_start(values, format);
+            print_message(tool, format, values);
+            va_end(values);
+        }
+    }
     tool_exit(status);
 }
 
 void tool_exit(enum status status)
 {
     ending = true;
+    (void)process_fails_alone();
+    process_end();
     exit((int)status);
 }
 
 void tool_note(const struct tool *tool, const char *format, ...)
 {
     va_list values;
-    va_start(values, format);
-    print_message(tool, format, values);
-    va_end(values);
+    if (process_speaks()) {
+        va_start(values, format);
+        print_message(tool, format, values);
+        va_end(values);
+    }
 }
 
 void tool_check(const struct tool *tool, enum status status, const struct error *error)
@@ -73,7 +84,9 @@ static void fill_descriptors(void)
 
 static _Noreturn void print_and_exit(const struct tool *tool, const char *text)
 {
-    fputs(text, stdout);
+    if (process_speaks()) {
+        fputs(text, stdout);
+    }
     exit(tool_end(tool));
 }
 
@@ -98,8 +111,9 @@ static void parse_options(struct tool *tool, struct option options[], int option
         print_and_exit(tool, tool->usage);
     }
     if (all[option_count + 1].given) {
-        printf("%s ", tool->name);
-        print_and_exit(tool, MTS_VERSION "\n");
+        char text[128];
+        snprintf(text, sizeof text, "%s %s\n", tool->name, MTS_VERSION);
+        print_and_exit(tool, text);
     }
     for (int i = 0; i < option_count; i++) {
         options[i] = all[i];
@@ -275,28 +289,45 @@ void tool_write(const struct tool *tool, struct stream *stream, bool text)
     tool_copy(tool, stream, text);
 }
 
-void tool_copy(const struct tool *tool, const struct stream *stream, bool text)
+static enum status write_stdout(const struct stream *stream, bool text, struct error *error)
 {
-    struct error error;
+    enum status status;
+    if (!text && isatty(STDOUT_FILENO)) {
+        return fail(error, STATUS_INPUT, "no binary to a terminal: ask for text with -t, or redirect it");
+    }
+    status = stream_write(stream, STDOUT_FILENO, text, error);
+    if (status != STATUS_OK) {
+        return fail_in(error, status, "standard output");
+    }
+    stdout_closed = close(STDOUT_FILENO) == 0;
+    return stdout_closed ? STATUS_OK : fail(error, STATUS_SYSTEM, "standard output: %s", strerror(errno));
+}
+
+static enum status write_output(const struct tool *tool, const struct stream *stream, bool text,
+                                struct error *error)
+{
+    enum status status;
     struct output output;
     if (tool->output == NULL) {
-        if (!text && isatty(STDOUT_FILENO)) {
-            tool_fail(tool, STATUS_INPUT, "no binary to a terminal: ask for text with -t, or redirect it");
-        }
-        enum status status = stream_write(stream, STDOUT_FILENO, text, &error);
-        if (status != STATUS_OK) {
-            tool_fail(tool, status, "standard output: %s", error.text);
-        }
-        close_stdout(tool);
-        return;
+        return write_stdout(stream, text, error);
     }
-    tool_check(tool, output_open(&output, tool->output, &error), &error);
-    enum status status = stream_write(stream, output.descriptor, text, &error);
+    TRY(output_open(&output, tool->output, error));
+    status = stream_write(stream, output.descriptor, text, error);
     if (status != STATUS_OK) {
         output_abandon(&output);
-        tool_fail(tool, status, "%s: %s", tool->output, error.text);
+        return fail_in(error, status, "%s", tool->output);
     }
-    tool_check(tool, output_commit(&output, &error), &error);
+    status = output_commit(&output, error);
+done:
+    return status;
+}
+
+/* Of several processes the first one writes, and all know how that went. */
+void tool_copy(const struct tool *tool, const struct stream *stream, bool text)
+{
+    struct error error = {""};
+    enum status status = process_speaks() ? write_output(tool, stream, text, &error) : STATUS_OK;
+    tool_check(tool, (enum status)ranks_most(process_ranks(), (int64_t)status), &error);
 }
 
 /* Where what there is may go: NAME.part beside a file that is there or could be; not beside a device. */
@@ -316,6 +347,9 @@ static int open_part(const char *output)
 void tool_write_stopped(const struct tool *tool, struct stream *stream, const char *reason, bool text)
 {
     struct error ignored;
+    if (!process_speaks()) {
+        return;
+    }
     int descriptor = tool->output != NULL ? open_part(tool->output) : STDOUT_FILENO;
     if (descriptor < 0 || (tool->output == NULL && !text && isatty(STDOUT_FILENO))) {
         return;
@@ -332,6 +366,7 @@ int tool_end(const struct tool *tool)
 {
     ending = true;
     if (stdout_closed) {
+        process_end();
         return (int)STATUS_OK;
     }
     bool failed = ferror(stdout) != 0;
@@ -340,5 +375,6 @@ int tool_end(const struct tool *tool)
         tool_fail(tool, STATUS_SYSTEM, "standard output: %s", errno != 0 ? strerror(errno) : "write error");
     }
     close_stdout(tool);
+    process_end();
     return (int)STATUS_OK;
 }

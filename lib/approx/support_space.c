@@ -1,0 +1,369 @@
+#include "approx/support_space.h"
+
+#include "approx/reach_private.h"
+#include "base/memory.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* Nodes and cells of one side; local_node[node_count]: scratch, -1 at first and at the end. */
+static enum status cut_out(const struct support_space *space, const int32_t *cell, struct support_side *side,
+                           int32_t *local_node, struct error *error)
+{
+    enum status status;
+    int dim = space->cells.dim, corners = dim + 1;
+    int64_t slots = side->cell_count * corners;
+    TRY(NEW_ARRAY(&side->local, slots, error));
+    TRY(NEW_ARRAY(&side->node, space->cells.node_count, error));
+    for (int64_t i = 0; i < slots; i++) {
+        local_node[space->cells.node[(int64_t)cell[i / corners] * corners + i % corners]] = 0;
+    }
+    for (int64_t n = 0; n < space->cells.node_count; n++) {
+        if (local_node[n] == 0) {
+            local_node[n] = (int32_t)side->node_count;
+            side->node[side->node_count++] = (int32_t)n;
+        }
+    }
+    for (int64_t i = 0; i < slots; i++) {
+        side->local[i] = local_node[space->cells.node[(int64_t)cell[i / corners] * corners + i % corners]];
+        space->place[cell[i / corners]] = (int32_t)(i / corners);
+    }
+    TRY(NEW_ARRAY(&side->x, side->node_count * dim, error));
+    TRY(NEW_ARRAY(&side->radius, side->node_count, error));
+    for (int64_t n = 0; n < side->node_count; n++) {
+        int64_t whole = side->node[n];
+        memcpy(side->x + n * dim, space->cells.x + whole * dim, (size_t)dim * sizeof *side->x);
+        side->radius[n] = space->radius[whole];
+        local_node[whole] = -1;
+    }
+done:
+    return status;
+}
+
+/* Cut the body along its interfaces. */
+static enum status cut(struct support_space *space, struct error *error)
+{
+    enum status status;
+    int64_t *first = NULL;
+    int32_t *cell = NULL, *local_node = NULL, sides = 0;
+    const struct cells *cells = &space->cells;
+    for (int64_t c = 0; c < cells->count; c++) {
+        sides = space->cell_side[c] >= sides ? space->cell_side[c] + 1 : sides;
+    }
+    TRY(NEW_ARRAY(&first, (int64_t)sides + 2, error));
+    TRY(NEW_ARRAY(&cell, cells->count, error));
+    TRY(NEW_ARRAY(&local_node, cells->node_count, error));
+    TRY(NEW_ARRAY(&space->place, cells->count, error));
+    TRY(NEW_ARRAY(&space->side, sides, error));
+    space->side_count = sides;
+    for (int64_t c = 0; c < cells->count; c++) {
+        first[space->cell_side[c] + 2]++;
+    }
+    for (int32_t s = 0; s < sides; s++) {
+        space->side[s].cell_count = first[s + 2];
+        first[s + 2] += first[s + 1];
+    }
+    for (int64_t c = 0; c < cells->count; c++) {
+        cell[first[space->cell_side[c] + 1]++] = (int32_t)c;
+    }
+    memset(local_node, -1, (size_t)cells->node_count * sizeof *local_node);
+    for (int32_t s = 0; s < sides; s++) {
+        TRY(cut_out(space, cell + first[s], &space->side[s], local_node, error));
+    }
+done:
+    free(first);
+    free(cell);
+    free(local_node);
+    return status;
+}
+
+enum status support_space_build(const struct support_options *options, const struct cells *cells,
+                                const double *radius, struct support_space *space, struct error *error)
+{
+    enum status status = STATUS_OK;
+    *space = (struct support_space){
+        .cells = *cells, .radius = radius, .by_cells = options->reach == REACH_CELLS && cells->count > 0};
+    space->cell_side = space->by_cells ? options->side : NULL;
+    if (space->cell_side != NULL) {
+        TRY(cut(space, error));
+    } else {
+        TRY(NEW_ARRAY(&space->side, 1, error));
+        space->side_count = 1;
+        space->side[0].node_count = cells->node_count;
+    }
+    for (int64_t s = 0; s < space->side_count; s++) {
+        struct support_side *side = &space->side[s];
+        struct cells own = *cells;
+        if (side->node != NULL) {
+            own = (struct cells){cells->dim, side->node_count, side->x, side->cell_count, side->local};
+        }
+        if (own.node_count == 0) {
+            continue;
+        }
+        TRY(point_grid_build(&side->grid, cells->dim, own.node_count, own.x,
+                             side->node != NULL ? side->radius : radius, error));
+        if (space->by_cells) {
+            TRY(reach_build(&own, &side->grid, &side->reach, error));
+        }
+    }
+done:
+    if (status != STATUS_OK) {
+        support_space_free(space);
+    }
+    return status;
+}
+
+void support_space_free(struct support_space *space)
+{
+    for (int64_t s = 0; s < space->side_count; s++) {
+        struct support_side *side = &space->side[s];
+        reach_free(&side->reach);
+        point_grid_free(&side->grid);
+        free(side->node);
+        free(side->local);
+        free(side->x);
+        free(side->radius);
+    }
+    free(space->side);
+    free(space->place);
+    *space = (struct support_space){0};
+}
+
+/* The side of each point whose cells are known, and its cells there; -1: none known. */
+static void sides_of_cells(const struct support_space *space, const struct reach_places *places,
+                           int64_t count, int32_t *side)
+{
+    for (int64_t p = 0; p < count; p++) {
+        side[p] = -1;
+        for (int64_t i = 0; places->cell != NULL && i < places->per_row; i++) {
+            const int32_t *cell = places->cell + p / places->points_per_row * places->per_row;
+            if (cell[i] >= 0 && (side[p] < 0 || space->cell_side[cell[i]] < side[p])) {
+                side[p] = space->cell_side[cell[i]];
+            }
+        }
+    }
+}
+
+static void sides_of_nodes(const struct support_space *space, int64_t count, int32_t *side)
+{
+    memset(side, -1, (size_t)count * sizeof *side);
+    for (int64_t s = space->side_count - 1; s >= 0; s--) {
+        for (int64_t n = 0; n < space->side[s].node_count; n++) {
+            side[space->side[s].node[n]] = (int32_t)s;
+        }
+    }
+}
+
+/* The side of each point that has none yet: that of the nearest cell. */
+static enum status locate_sides(const struct support_space *space, int64_t count, const double *x,
+                                int32_t *side, struct error *error)
+{
+    enum status status;
+    struct reach whole = {0};
+    struct reach_work work = {0};
+    struct point_grid grid = {0};
+    const struct cells *cells = &space->cells;
+    bool all_known = true;
+    for (int64_t p = 0; p < count; p++) {
+        all_known = all_known && side[p] >= 0;
+    }
+    if (all_known) {
+        return STATUS_OK;
+    }
+    TRY(reach_build_cells(cells, &whole, error));
+    TRY(point_grid_build(&grid, cells->dim, cells->node_count, cells->x, space->radius, error));
+    whole.grid = &grid;
+    for (int64_t p = 0; p < count; p++) {
+        if (side[p] >= 0) {
+            continue;
+        }
+        TRY(reach_locate(&whole, x + p * cells->dim, &work, error));
+        side[p] = work.cell_count > 0 ? space->cell_side[work.cell[0]] : 0;
+        for (int64_t i = 1; i < work.cell_count; i++) {
+            int32_t other = space->cell_side[work.cell[i]];
+            side[p] = other < side[p] ? other : side[p];
+        }
+    }
+done:
+    reach_work_free(&work);
+    reach_free(&whole);
+    point_grid_free(&grid);
+    return status;
+}
+
+/* The points of one side. */
+struct own_points {
+    int64_t count, *row; /* which of all */
+    double *x;
+    int32_t *item; /* the node of each on the side, or its cells there, -1: none */
+    struct support_lists lists;
+};
+
+static void own_points_free(struct own_points *own)
+{
+    free(own->row);
+    free(own->x);
+    free(own->item);
+    support_free(&own->lists);
+}
+
+/* Choose the points on side s. */
+static enum status own_points_build(const struct support_space *space, const struct reach_places *places,
+                                    int32_t s, int64_t count, const double *x, const int32_t *side,
+                                    struct own_points *own, struct error *error)
+{
+    enum status status;
+    int dim = space->cells.dim;
+    int64_t per_row = places->nodes ? 1 : places->cell != NULL ? places->per_row : 0, node = 0;
+    for (int64_t p = 0; p < count; p++) {
+        own->count += side[p] == s;
+    }
+    TRY(NEW_ARRAY(&own->row, own->count, error));
+    TRY(NEW_ARRAY(&own->x, own->count * dim, error));
+    TRY(NEW_ARRAY(&own->item, own->count * per_row, error));
+    for (int64_t p = 0, i = 0; p < count; p++) {
+        if (side[p] != s) {
+            continue;
+        }
+        for (int64_t k = 0; k < per_row; k++) {
+            if (places->nodes) {
+                while (space->side[s].node[node] < p) {
+                    node++;
+                }
+                own->item[i] = (int32_t)node;
+            } else {
+                int32_t cell = places->cell[p / places->points_per_row * per_row + k];
+                own->item[i * per_row + k] =
+                    cell >= 0 && space->cell_side[cell] == s ? space->place[cell] : -1;
+            }
+        }
+        memcpy(own->x + i * dim, x + p * dim, (size_t)dim * sizeof *x);
+        own->row[i++] = p;
+    }
+done:
+    return status;
+}
+
+/* Their lists, by nodes of the side. */
+static enum status own_points_list(const struct support_options *options, const struct support_side *side,
+                                   const struct reach_places *places, const char *what,
+                                   struct own_points *own, struct error *error)
+{
+    struct reach_places within = {.row = own->row};
+    if (places->nodes) {
+        within.nodes = true;
+        within.node = own->item;
+    } else if (places->cell != NULL) {
+        within.cell = own->item;
+        within.per_row = places->per_row;
+        within.points_per_row = 1;
+    }
+    return support_build_within(options, &side->grid, &side->reach, &within, own->count, own->x, what,
+                                &own->lists, error);
+}
+
+/* Copy the list of point i of a side to that of all, with those around corners. *around: how many of the
+ * side's there were before. */
+static void copy_list(const struct support_side *side, int dim, const struct own_points *own, int64_t i,
+                      int64_t *around, struct support_lists *lists)
+{
+    int64_t first = own->lists.ptr[i], end = own->lists.ptr[i + 1], to = lists->ptr[own->row[i]];
+    lists->widen[own->row[i]] = own->lists.widen[i];
+    for (int64_t k = first; k < end; k++) {
+        lists->idx[to + k - first] = side->node[own->lists.idx[k]];
+    }
+    for (; *around < own->lists.around_count && own->lists.around_pair[*around] < end; ++*around) {
+        lists->around_pair[lists->around_count] = own->lists.around_pair[*around] - first + to;
+        memcpy(lists->around_offset + lists->around_count++ * dim, own->lists.around_offset + *around * dim,
+               (size_t)dim * sizeof(double));
+    }
+}
+
+/* Put the lists of all sides together, in the order of the points. */
+static enum status join(const struct support_space *space, const struct own_points *own, const int32_t *side,
+                        int64_t count, struct support_lists *lists, struct error *error)
+{
+    enum status status;
+    int64_t *next = NULL, *around = NULL, around_count = 0;
+    *lists = (struct support_lists){.count = count, .widest = 1.0};
+    TRY(NEW_ARRAY(&next, space->side_count, error));
+    TRY(NEW_ARRAY(&around, space->side_count, error));
+    TRY(NEW_ARRAY(&lists->ptr, count + 1, error));
+    TRY(NEW_ARRAY(&lists->widen, count, error));
+    for (int64_t s = 0; s < space->side_count; s++) {
+        const struct support_lists *of = &own[s].lists;
+        if (own[s].count == 0) {
+            continue;
+        }
+        for (int64_t i = 0; i < own[s].count; i++) {
+            lists->ptr[own[s].row[i] + 1] = of->ptr[i + 1] - of->ptr[i];
+        }
+        lists->fewest = lists->fewest == 0 || of->fewest < lists->fewest ? of->fewest : lists->fewest;
+        lists->most = of->most > lists->most ? of->most : lists->most;
+        lists->widest = of->widest > lists->widest ? of->widest : lists->widest;
+        lists->widened += of->widened;
+        around_count += of->around_count;
+    }
+    for (int64_t p = 0; p < count; p++) {
+        lists->ptr[p + 1] += lists->ptr[p];
+    }
+    TRY(NEW_ARRAY(&lists->idx, lists->ptr[count], error));
+    TRY(NEW_ARRAY(&lists->around_pair, around_count, error));
+    TRY(NEW_ARRAY(&lists->around_offset, around_count * space->cells.dim, error));
+    for (int64_t p = 0; p < count; p++) {
+        int32_t s = side[p];
+        copy_list(&space->side[s], space->cells.dim, &own[s], next[s]++, &around[s], lists);
+    }
+done:
+    free(next);
+    free(around);
+    if (status != STATUS_OK) {
+        support_free(lists);
+    }
+    return status;
+}
+
+static enum status lists_of_sides(const struct support_options *options, const struct support_space *space,
+                                  const struct reach_places *places, int64_t count, const double *x,
+                                  const char *what, struct support_lists *lists, struct error *error)
+{
+    enum status status;
+    int32_t *side = NULL;
+    struct own_points *own = NULL;
+    TRY(NEW_ARRAY(&side, count, error));
+    TRY(NEW_ARRAY(&own, space->side_count, error));
+    if (places->nodes) {
+        sides_of_nodes(space, count, side);
+    } else {
+        sides_of_cells(space, places, count, side);
+    }
+    TRY(locate_sides(space, count, x, side, error));
+    for (int32_t s = 0; s < space->side_count; s++) {
+        TRY(own_points_build(space, places, s, count, x, side, &own[s], error));
+        if (own[s].count > 0) {
+            TRY(own_points_list(options, &space->side[s], places, what, &own[s], error));
+        }
+    }
+    TRY(join(space, own, side, count, lists, error));
+done:
+    for (int64_t s = 0; own != NULL && s < space->side_count; s++) {
+        own_points_free(&own[s]);
+    }
+    free(own);
+    free(side);
+    return status;
+}
+
+enum status support_space_lists(const struct support_options *options, const struct support_space *space,
+                                const struct reach_places *places, int64_t count, const double *x,
+                                const char *what, struct support_lists *lists, struct error *error)
+{
+    static const struct reach_places unknown = {0};
+    const struct support_side *side = &space->side[0];
+    if (side->node != NULL) {
+        return lists_of_sides(options, space, places != NULL ? places : &unknown, count, x, what, lists,
+                              error);
+    }
+    return support_build_within(options, &side->grid, space->by_cells ? &side->reach : NULL, places, count, x,
+                                what, lists, error);
+}

@@ -1,0 +1,141 @@
+#include "approx/thin.h"
+
+#include "base/memory.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+/* A facet faces the other way where its normal's product with the way to it is more. */
+static const double facing = 0.5;
+/* So many cells are gone through at most: round-off may lead in a circle. */
+enum { MOST_CELLS = 1000 };
+
+/* Mean length of the edges of a facet. */
+static double facet_width(int dim, const double *x, const int32_t *node)
+{
+    double sum = 0.0;
+    int edges = dim == 2 ? 1 : 3;
+    for (int k = 0; k < edges; k++) {
+        double length2 = 0.0;
+        for (int a = 0; a < dim; a++) {
+            double way = x[(int64_t)node[(k + 1) % dim] * dim + a] - x[(int64_t)node[k] * dim + a];
+            length2 += way * way;
+        }
+        sum += sqrt(length2) / edges;
+    }
+    return sum;
+}
+
+static double dot(int dim, const double *a, const double *b)
+{
+    double sum = 0.0;
+    for (int i = 0; i < dim; i++) {
+        sum += a[i] * b[i];
+    }
+    return sum;
+}
+
+/* The face, opposite vertex *face, through which the ray from x along `way` leaves a cell: how far that is.
+ * The face that it came in by does not count. normal[]: outward there, as long as the face is large. */
+static double leave_cell(const struct cells *cells, int64_t cell, int entered, const double *x,
+                         const double *way, int *face, double *normal)
+{
+    int dim = cells->dim, corners = dim + 1;
+    const int32_t *node = cells->node + cell * corners;
+    double nearest = INFINITY;
+    for (int k = 0; k < corners; k++) {
+        int32_t side[3] = {0, 0, 0};
+        double area[3] = {0.0, 0.0, 0.0}, to_face[3], to_vertex[3];
+        for (int i = 0; i < dim; i++) {
+            side[i] = node[(k + 1 + i) % corners];
+        }
+        face_area_vector(dim, cells->x, side, area);
+        for (int a = 0; a < dim; a++) {
+            to_face[a] = cells->x[(int64_t)side[0] * dim + a] - x[a];
+            to_vertex[a] = cells->x[(int64_t)node[k] * dim + a] - cells->x[(int64_t)side[0] * dim + a];
+        }
+        double sign = dot(dim, area, to_vertex) > 0.0 ? -1.0 : 1.0, slope = sign * dot(dim, area, way);
+        double distance = sign * dot(dim, area, to_face) / slope;
+        if (k != entered && slope > 0.0 && distance < nearest) {
+            nearest = distance;
+            *face = k;
+            for (int a = 0; a < dim; a++) {
+                normal[a] = sign * area[a];
+            }
+        }
+    }
+    return nearest;
+}
+
+/* The thickness at a facet of a cell, its vertex opposite `face`; INFINITY if it is not less than `most`, m.
+ */
+static double thickness(const struct cells *cells, const int32_t *across, int64_t cell, int face,
+                        const double *middle, const double *inward, double most)
+{
+    int dim = cells->dim, corners = dim + 1, out = face;
+    for (int step = 0; step < MOST_CELLS; step++) {
+        double normal[3];
+        double distance = leave_cell(cells, cell, face, middle, inward, &out, normal);
+        if (!(distance < most)) {
+            return INFINITY;
+        }
+        int32_t next = across[cell * corners + out];
+        if (next < 0) {
+            return dot(dim, normal, inward) > facing * sqrt(dot(dim, normal, normal)) ? distance : INFINITY;
+        }
+        for (face = 0; across[(int64_t)next * corners + face] != cell; face++) {
+        }
+        cell = next;
+    }
+    return INFINITY;
+}
+
+enum status cells_find_thin(const struct cells *cells, double bound, struct thin_report *report,
+                            struct error *error)
+{
+    enum status status;
+    int dim = cells->dim, corners = dim + 1;
+    int32_t *across = NULL;
+    double whole = 0.0, thin = 0.0;
+    *report = (struct thin_report){.least = bound};
+    TRY(NEW_ARRAY(&across, cells->count * corners, error));
+    TRY(cells_across(cells, across, error));
+    for (int64_t i = 0; i < cells->count * corners; i++) {
+        int64_t cell = i / corners;
+        int face = (int)(i % corners);
+        if (across[i] >= 0) {
+            continue;
+        }
+        int32_t node[3] = {0, 0, 0};
+        double area[3] = {0.0, 0.0, 0.0}, middle[3] = {0.0, 0.0, 0.0}, inward[3] = {0.0, 0.0, 0.0};
+        for (int k = 0; k < dim; k++) {
+            node[k] = cells->node[cell * corners + (face + 1 + k) % corners];
+            for (int a = 0; a < dim; a++) {
+                middle[a] += cells->x[(int64_t)node[k] * dim + a] / dim;
+            }
+        }
+        face_area_vector(dim, cells->x, node, area);
+        double size = sqrt(dot(dim, area, area)), height = 0.0;
+        for (int a = 0; a < dim; a++) {
+            int64_t vertex = cells->node[cell * corners + face];
+            height += area[a] * (cells->x[vertex * dim + a] - middle[a]);
+        }
+        for (int a = 0; a < dim; a++) {
+            inward[a] = (height > 0.0 ? area[a] : -area[a]) / size;
+        }
+        double width = facet_width(dim, cells->x, node);
+        double ratio = thickness(cells, across, cell, face, middle, inward, bound * width) / width;
+        whole += size;
+        thin += ratio < bound ? size : 0.0;
+        if (ratio < report->least) {
+            report->least = ratio;
+            for (int a = 0; a < dim; a++) {
+                report->place[a] = middle[a];
+            }
+        }
+    }
+    report->share = whole > 0.0 ? thin / whole : 0.0;
+done:
+    free(across);
+    return status;
+}

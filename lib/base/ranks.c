@@ -1,0 +1,203 @@
+#include "base/ranks.h"
+
+#include "base/memory.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+int ranks_count(const struct ranks *ranks)
+{
+    return ranks != NULL ? ranks->count : 1;
+}
+
+int ranks_rank(const struct ranks *ranks)
+{
+    return ranks != NULL ? ranks->rank : 0;
+}
+
+void ranks_gather(const struct ranks *ranks, void *items, size_t size, const int64_t *first)
+{
+    if (ranks != NULL) {
+        ranks->gather(ranks, items, size, first);
+    }
+}
+
+int64_t ranks_most(const struct ranks *ranks, int64_t value)
+{
+    return ranks != NULL ? ranks->most(ranks, value) : value;
+}
+
+enum status ranks_share(const struct ranks *ranks, int64_t items, const double *work, int64_t **first,
+                        struct error *error)
+{
+    enum status status;
+    int count = ranks_count(ranks);
+    double all = 0.0, sum = 0.0;
+    int64_t item = 0;
+    TRY(NEW_ARRAY(first, count + 1, error));
+    for (int64_t i = 0; i < items; i++) {
+        all += work != NULL ? work[i] : 1.0;
+    }
+    for (int r = 1; r < count; r++) {
+        for (; item < items && sum < all * r / count; item++) {
+            sum += work != NULL ? work[item] : 1.0;
+        }
+        (*first)[r] = item;
+    }
+    (*first)[count] = items;
+done:
+    return status;
+}
+
+int ranks_owner(const struct ranks *ranks, const int64_t *first, int64_t item)
+{
+    int low = 0, high = ranks_count(ranks) - 1;
+    while (low < high) {
+        int middle = (low + high) / 2;
+        if (first[middle + 1] > item) {
+            high = middle;
+        } else {
+            low = middle + 1;
+        }
+    }
+    return low;
+}
+
+enum status stretches_of(int64_t begin, int64_t end, const bool *wanted, struct stretches *stretches,
+                         struct error *error)
+{
+    enum status status;
+    int64_t most = 0;
+    *stretches = (struct stretches){0};
+    for (int pass = 0; pass < 2; pass++) {
+        stretches->count = 0;
+        for (int64_t r = begin; r < end;) {
+            int64_t last = r;
+            while (last < end && last - r < STRETCH_MOST && (wanted == NULL || wanted[last])) {
+                last++;
+            }
+            if (last > r && pass == 1) {
+                stretches->items[stretches->count] = (struct stretch){r, last};
+            }
+            stretches->count += last > r;
+            r = last > r ? last : r + 1;
+        }
+        if (pass == 0) {
+            most = stretches->count;
+            TRY(NEW_ARRAY(&stretches->items, most, error));
+        }
+    }
+done:
+    return status;
+}
+
+void stretches_free(struct stretches *stretches)
+{
+    free(stretches->items);
+    *stretches = (struct stretches){0};
+}
+
+/* The list of what is wanted of each process. */
+static enum status list_wanted(struct halo *halo, int64_t items, const bool *wanted,
+                               int (*owner)(const void *context, int64_t item), const void *context,
+                               struct error *error)
+{
+    enum status status;
+    int count = halo->ranks->count, rank = halo->ranks->rank;
+    int64_t *next = NULL;
+    TRY(NEW_ARRAY(&halo->receive_first, count + 1, error));
+    TRY(NEW_ARRAY(&next, count, error));
+    for (int64_t i = 0; i < items; i++) {
+        int from = wanted[i] ? owner(context, i) : rank;
+        halo->receive_first[from + 1] += from != rank;
+    }
+    for (int r = 0; r < count; r++) {
+        halo->receive_first[r + 1] += halo->receive_first[r];
+        next[r] = halo->receive_first[r];
+    }
+    TRY(NEW_ARRAY(&halo->receive, halo->receive_first[count], error));
+    for (int64_t i = 0; i < items; i++) {
+        int from = wanted[i] ? owner(context, i) : rank;
+        if (from != rank) {
+            halo->receive[next[from]++] = i;
+        }
+    }
+done:
+    free(next);
+    return status;
+}
+
+/* What the others want from here: they are told how much, then which. */
+static enum status exchange_lists(struct halo *halo, struct error *error)
+{
+    enum status status;
+    const struct ranks *ranks = halo->ranks;
+    int count = ranks->count;
+    int64_t *each = NULL, *in_turn = NULL, *many = NULL;
+    TRY(NEW_ARRAY(&each, count, error));
+    TRY(NEW_ARRAY(&many, count, error));
+    TRY(NEW_ARRAY(&in_turn, count + 1, error));
+    TRY(NEW_ARRAY(&halo->send_first, count + 1, error));
+    for (int r = 0; r < count; r++) {
+        in_turn[r + 1] = r + 1;
+        each[r] = halo->receive_first[r + 1] - halo->receive_first[r];
+    }
+    ranks->exchange(ranks, sizeof *each, each, in_turn, many, in_turn);
+    for (int r = 0; r < count; r++) {
+        halo->send_first[r + 1] = halo->send_first[r] + many[r];
+    }
+    TRY(NEW_ARRAY(&halo->send, halo->send_first[count], error));
+    ranks->exchange(ranks, sizeof *halo->send, halo->receive, halo->receive_first, halo->send,
+                    halo->send_first);
+done:
+    free(each);
+    free(many);
+    free(in_turn);
+    return status;
+}
+
+enum status halo_build(const struct ranks *ranks, int64_t items, const bool *wanted, int width,
+                       int (*owner)(const void *context, int64_t item), const void *context,
+                       struct halo *halo, struct error *error)
+{
+    enum status status;
+    *halo = (struct halo){.ranks = ranks};
+    if (ranks == NULL) {
+        return STATUS_OK;
+    }
+    TRY(list_wanted(halo, items, wanted, owner, context, error));
+    TRY(exchange_lists(halo, error));
+    TRY(NEW_ARRAY(&halo->sent, halo->send_first[ranks->count] * width, error));
+    TRY(NEW_ARRAY(&halo->received, halo->receive_first[ranks->count] * width, error));
+done:
+    if (status != STATUS_OK) {
+        halo_free(halo);
+    }
+    return status;
+}
+
+void halo_free(struct halo *halo)
+{
+    void *arrays[] = {halo->send_first, halo->receive_first, halo->send,
+                      halo->receive,    halo->sent,          halo->received};
+    for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) {
+        free(arrays[i]);
+    }
+    *halo = (struct halo){0};
+}
+
+void halo_exchange(struct halo *halo, int width, double *x)
+{
+    const struct ranks *ranks = halo->ranks;
+    size_t size = (size_t)width * sizeof *x;
+    if (ranks == NULL) {
+        return;
+    }
+    for (int64_t i = 0; i < halo->send_first[ranks->count]; i++) {
+        memcpy(halo->sent + i * width, x + halo->send[i] * width, size);
+    }
+    ranks->exchange(ranks, size, halo->sent, halo->send_first, halo->received, halo->receive_first);
+    for (int64_t i = 0; i < halo->receive_first[ranks->count]; i++) {
+        memcpy(x + halo->receive[i] * width, halo->received + i * width, size);
+    }
+}

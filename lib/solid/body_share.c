@@ -1,0 +1,256 @@
+#include "solid/body_share.h"
+
+#include "base/memory.h"
+#include "solid/body.h"
+
+#include <stdlib.h>
+
+/* Work of each block: entries of the lists of its points, or of the vertices of its cells. */
+static void measure_blocks(const struct body_input *input, const struct body *body, double *work)
+{
+    const struct smoothed_cells_input *cells = input->smoothed;
+    int corners = body->dim + 1;
+    for (int64_t b = 0; b < body->block_count; b++) {
+        const struct block *block = &body->blocks[b];
+        for (int64_t q = block->first_point; q < block->first_point + block->point_count; q++) {
+            int64_t from = body->order[q];
+            if (cells == NULL) {
+                work[b] += (double)(input->ptr[from + 1] - input->ptr[from]);
+            }
+            for (int64_t k = from * corners; cells != NULL && k < (from + 1) * corners; k++) {
+                int32_t node = cells->cell_node[k];
+                work[b] += (double)(cells->node_ptr[node + 1] - cells->node_ptr[node]);
+            }
+        }
+    }
+}
+
+/* Work of each node in the body's order: in how many rows it is, or of cells, about in proportion, how many
+ * nodes are in its own. */
+static void measure_nodes(const struct body_input *input, const struct body *body, double *work)
+{
+    if (input->smoothed != NULL) {
+        const int64_t *ptr = input->smoothed->node_ptr;
+        for (int64_t n = 0; n < body->node_count; n++) {
+            work[n] = (double)(ptr[body->node_order[n] + 1] - ptr[body->node_order[n]]);
+        }
+        return;
+    }
+    for (int64_t i = 0; i < input->ptr[body->point_count]; i++) {
+        work[body->node_place[input->idx[i]]] += 1.0;
+    }
+}
+
+/* The points of the blocks. */
+static enum status list_points(struct body *body, struct error *error)
+{
+    enum status status;
+    struct body_share *share = &body->share;
+    int count = ranks_count(share->ranks);
+    TRY(NEW_ARRAY(&share->point_first, count + 1, error));
+    for (int r = 0; r <= count; r++) {
+        int64_t b = share->block_first[r];
+        share->point_first[r] = b < body->block_count ? body->blocks[b].first_point : body->point_count;
+    }
+done:
+    return status;
+}
+
+enum status body_share_cut(const struct body_input *input, struct body *body, struct error *error)
+{
+    enum status status;
+    struct body_share *share = &body->share;
+    double *work = NULL, *node_work = NULL;
+    int rank = ranks_rank(input->ranks);
+    share->ranks = input->ranks;
+    TRY(NEW_ARRAY(&work, body->block_count, error));
+    TRY(NEW_ARRAY(&node_work, body->node_count, error));
+    if (share->ranks != NULL) {
+        measure_blocks(input, body, work);
+        measure_nodes(input, body, node_work);
+    }
+    TRY(ranks_share(share->ranks, body->block_count, work, &share->block_first, error));
+    TRY(ranks_share(share->ranks, body->node_count, node_work, &share->node_first, error));
+    TRY(list_points(body, error));
+    share->begin_block = share->block_first[rank];
+    share->end_block = share->block_first[rank + 1];
+    share->begin_point = share->point_first[rank];
+    share->end_point = share->point_first[rank + 1];
+    share->begin_node = share->node_first[rank];
+    share->end_node = share->node_first[rank + 1];
+    TRY(stretches_of(share->begin_node, share->end_node, NULL, &share->nodes, error));
+done:
+    free(work);
+    free(node_work);
+    return status;
+}
+
+static int owner_of_point(const void *body, int64_t point)
+{
+    const struct body_share *share = &((const struct body *)body)->share;
+    return ranks_owner(share->ranks, share->point_first, point);
+}
+
+enum status body_share_volumes(struct body *body, struct error *error)
+{
+    enum status status;
+    struct body_share *share = &body->share;
+    const struct nodal_volumes *volumes = &body->volumes;
+    int rank = ranks_rank(share->ranks), vertices = body->dim + 1;
+    bool *wanted = NULL;
+    TRY(ranks_share(share->ranks, volumes->count, NULL, &share->volume_first, error));
+    if (share->ranks != NULL) {
+        TRY(NEW_ARRAY(&wanted, body->point_count, error));
+        int64_t begin = volumes->ptr[share->volume_first[rank]];
+        int64_t end = volumes->ptr[share->volume_first[rank + 1]];
+        for (int64_t i = begin; i < end; i++) {
+            wanted[volumes->slot[i] / vertices] = true;
+        }
+        TRY(halo_build(share->ranks, body->point_count, wanted, 1, owner_of_point, body, &share->strains,
+                       error));
+    }
+done:
+    free(wanted);
+    return status;
+}
+
+static int64_t row_count(const struct body *body)
+{
+    return body->smoothed ? body->cells.averages.row_count : body->point_count * body->dim;
+}
+
+/* Corners, those of the faces and then those of the nodes, are by points. */
+static int64_t point_of_corner(const struct body *body, int64_t corner)
+{
+    return corner % body->cells.averages.corner_count / (body->dim + 1);
+}
+
+enum status body_share_values(const struct body *body, bool **wanted, struct error *error)
+{
+    enum status status;
+    const struct body_share *share = &body->share;
+    const struct field_averages *averages = &body->cells.averages;
+    int64_t rows = row_count(body);
+    int per_point = body->smoothed ? body->dim + 1 : body->dim;
+    TRY(NEW_ARRAY(wanted, rows, error));
+    for (int64_t i = share->begin_point * per_point; i < share->end_point * per_point; i++) {
+        for (int half = 0; half < 2 && body->smoothed; half++) {
+            int32_t at = averages->of_corner[half * averages->corner_count + i];
+            (*wanted)[at / VECTOR_STRIDE(body->dim)] = true;
+        }
+        if (!body->smoothed) {
+            (*wanted)[i] = true;
+        }
+    }
+done:
+    return status;
+}
+
+/* Who has the forces on a row. One without corners has none. */
+static int owner_of_row(const void *context, int64_t row)
+{
+    const struct body *body = context;
+    const struct field_averages *averages = &body->cells.averages;
+    if (!body->smoothed) {
+        return owner_of_point(body, row / body->dim);
+    }
+    int64_t at = averages->corner_ptr[row];
+    return at < averages->corner_ptr[row + 1]
+               ? owner_of_point(body, point_of_corner(body, averages->corner[at]))
+               : 0;
+}
+
+static int owner_of_corner(const void *body, int64_t corner)
+{
+    return owner_of_point(body, point_of_corner(body, corner));
+}
+
+/* The rows that are summed here, and the corners that this takes. */
+static enum status share_corners(struct body *body, struct error *error)
+{
+    enum status status;
+    struct body_share *share = &body->share;
+    const struct field_averages *averages = &body->cells.averages;
+    int64_t rows = row_count(body);
+    bool *sums = NULL, *corners = NULL;
+    TRY(NEW_ARRAY(&sums, rows, error));
+    TRY(NEW_ARRAY(&corners, 2 * averages->corner_count, error));
+    for (int64_t r = 0; r < rows; r++) {
+        sums[r] = owner_of_row(body, r) == share->ranks->rank;
+        for (int64_t i = averages->corner_ptr[r]; i < averages->corner_ptr[r + 1] && sums[r]; i++) {
+            corners[averages->corner[i]] = true;
+        }
+    }
+    TRY(stretches_of(0, rows, sums, &share->sums, error));
+    TRY(halo_build(share->ranks, 2 * averages->corner_count, corners, VECTOR_STRIDE(body->dim),
+                   owner_of_corner, body, &share->corners, error));
+done:
+    free(sums);
+    free(corners);
+    return status;
+}
+
+enum status body_share_rows(struct body *body, const bool *wanted, struct error *error)
+{
+    enum status status;
+    struct body_share *share = &body->share;
+    if (share->ranks == NULL) {
+        return stretches_of(0, row_count(body), NULL, &share->sums, error);
+    }
+    if (body->smoothed) {
+        TRY(share_corners(body, error));
+    }
+    TRY(halo_build(share->ranks, row_count(body), wanted, VECTOR_STRIDE(body->dim), owner_of_row, body,
+                   &share->rows, error));
+done:
+    return status;
+}
+
+void body_share_free(struct body_share *share)
+{
+    free(share->block_first);
+    free(share->point_first);
+    free(share->node_first);
+    free(share->volume_first);
+    stretches_free(&share->values);
+    stretches_free(&share->sums);
+    stretches_free(&share->nodes);
+    halo_free(&share->strains);
+    halo_free(&share->corners);
+    halo_free(&share->rows);
+}
+
+void body_share_gather(const struct body_share *share, void *items, size_t size, const int64_t *first)
+{
+    if (share->ranks != NULL) {
+#pragma omp master
+        ranks_gather(share->ranks, items, size, first);
+#pragma omp barrier
+    }
+}
+
+void body_share_exchange(const struct body_share *share, struct halo *halo, int width, double *x)
+{
+    if (share->ranks != NULL) {
+#pragma omp master
+        halo_exchange(halo, width, x);
+#pragma omp barrier
+    }
+}
+
+void body_share_collect(struct body *body)
+{
+    const struct body_share *share = &body->share;
+    int components = body->dim * body->dim;
+    for (int k = 0; k < components; k++) {
+        ranks_gather(share->ranks, body->F + k * body->point_count, sizeof *body->F, share->point_first);
+        if (body->smoothed) {
+            ranks_gather(share->ranks, body->cells.interpolant + k * body->point_count, sizeof *body->F,
+                         share->point_first);
+        }
+    }
+    ranks_gather(share->ranks, body->J, sizeof *body->J, share->point_first);
+    if (body->averaged) {
+        ranks_gather(share->ranks, body->volumes.strain, sizeof *body->volumes.strain, share->point_first);
+    }
+}

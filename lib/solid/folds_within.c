@@ -1,0 +1,161 @@
+/* A body within another one: boundaries that do not cross do not show it. */
+#include "solid/folds_private.h"
+
+#include "approx/parts.h"
+#include "approx/point_grid.h"
+#include "base/memory.h"
+
+#include <stdlib.h>
+
+/* A point less far inside a cell than this, barycentric, is on a face; or not deep in it. */
+static const double on_face = 1e-6, not_deep = 0.05;
+/* Lengths below this share of the body are round-off. */
+static const double round_off = 1e-12;
+
+enum status folds_find_bodies(struct folds *folds, struct error *error)
+{
+    enum status status;
+    const struct fold_input *input = &folds->input;
+    struct cells cells = {input->dim, input->node_count, input->x, input->cell_count, input->cell};
+    int32_t count;
+    TRY(NEW_ARRAY(&folds->part, input->cell_count, error));
+    TRY(cells_parts(&cells, folds->part, &count, error));
+    TRY(NEW_ARRAY(&folds->bodies, count, error));
+    folds->body_count = count;
+    for (int64_t c = input->cell_count; c-- > 0;) {
+        folds->bodies[folds->part[c]].cell = c;
+    }
+done:
+    return status;
+}
+
+static int compare_bodies(const void *left, const void *right)
+{
+    const struct fold_body *a = left, *b = right;
+    if (a->middle[0] != b->middle[0]) {
+        return a->middle[0] < b->middle[0] ? -1 : 1;
+    }
+    return (a->cell > b->cell) - (a->cell < b->cell);
+}
+
+static void find_middle(const struct folds *folds, const double *x, int64_t cell, double *middle)
+{
+    int dim = folds->input.dim, corners = dim + 1;
+    for (int i = 0; i < dim; i++) {
+        middle[i] = 0.0;
+        for (int k = 0; k < corners; k++) {
+            middle[i] += x[(int64_t)folds->input.cell[cell * corners + k] * dim + i] / corners;
+        }
+    }
+}
+
+/* Whether a cell contains a point, barycentric coordinates being larger than `least`. */
+static bool contains(const struct folds *folds, int64_t cell, const double *point, double least)
+{
+    int dim = folds->input.dim, corners = dim + 1;
+    const double *vertex[4] = {NULL, NULL, NULL, NULL};
+    for (int k = 0; k < corners; k++) {
+        vertex[k] = folds->y + (int64_t)folds->input.cell[cell * corners + k] * dim;
+    }
+    double whole = fold_volume(dim, vertex[0], vertex[1], vertex[2], vertex[3]);
+    for (int k = 0; k < corners; k++) {
+        const double *kept = vertex[k];
+        vertex[k] = point;
+        double part = fold_volume(dim, vertex[0], vertex[1], vertex[2], vertex[3]);
+        vertex[k] = kept;
+        if (!(part / whole > least)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+void folds_find_within(struct folds *folds, struct fold *fold)
+{
+    int dim = folds->input.dim, corners = dim + 1;
+    int64_t count = folds->body_count;
+    if (count < 2) {
+        return;
+    }
+    for (int64_t b = 0; b < count; b++) {
+        find_middle(folds, folds->y, folds->bodies[b].cell, folds->bodies[b].middle);
+    }
+    qsort(folds->bodies, (size_t)count, sizeof *folds->bodies, compare_bodies);
+    for (int64_t c = 0; c < folds->input.cell_count; c++) {
+        double low = INFINITY, high = -INFINITY;
+        for (int k = 0; k < corners; k++) {
+            double place = folds->y[(int64_t)folds->input.cell[c * corners + k] * dim];
+            low = fmin(low, place);
+            high = fmax(high, place);
+        }
+        int64_t first = 0;
+        for (int64_t last = count; first < last;) { /* the first body from `low` on */
+            int64_t middle = first + (last - first) / 2;
+            if (folds->bodies[middle].middle[0] < low) {
+                first = middle + 1;
+            } else {
+                last = middle;
+            }
+        }
+        for (int64_t b = first; b < count && folds->bodies[b].middle[0] <= high; b++) {
+            const struct fold_body *body = &folds->bodies[b];
+            if (folds->part[c] == folds->part[body->cell] || !contains(folds, c, body->middle, on_face)) {
+                continue;
+            }
+            if (fold->count++ == 0) {
+                fold->kind = FOLD_WITHIN;
+                fold->cell = body->cell;
+                find_middle(folds, folds->input.x, body->cell, fold->place);
+            }
+        }
+    }
+}
+
+enum status folds_find_overlaps(struct folds *folds, struct fold *fold, struct error *error)
+{
+    enum status status = STATUS_OK;
+    int dim = folds->input.dim, corners = dim + 1;
+    int64_t count = folds->input.cell_count;
+    struct point_grid grid = {0};
+    struct index_list near = {0};
+    double *middle = NULL, *radius = NULL;
+    if (folds->body_count < 2) {
+        return STATUS_OK;
+    }
+    TRY(NEW_ARRAY(&middle, count * dim, error));
+    TRY(NEW_ARRAY(&radius, count, error));
+    for (int64_t c = 0; c < count; c++) {
+        find_middle(folds, folds->input.x, c, middle + c * dim);
+        radius[c] = round_off * folds->extent;
+    }
+    TRY(point_grid_build(&grid, dim, count, middle, radius, error));
+    for (int64_t c = 0; c < count; c++) {
+        double low[3], high[3];
+        for (int i = 0; i < dim; i++) {
+            low[i] = INFINITY;
+            high[i] = -INFINITY;
+            for (int k = 0; k < corners; k++) {
+                double place = folds->input.x[(int64_t)folds->input.cell[c * corners + k] * dim + i];
+                low[i] = fmin(low[i], place);
+                high[i] = fmax(high[i], place);
+            }
+        }
+        near.count = 0;
+        TRY(point_grid_query_box(&grid, low, high, 1.0, &near, error));
+        for (int64_t i = 0; i < near.count; i++) {
+            int32_t other = near.index[i];
+            if (folds->part[other] != folds->part[c] &&
+                contains(folds, c, middle + (int64_t)other * dim, not_deep) && fold->count++ == 0) {
+                fold->kind = FOLD_WITHIN;
+                fold->cell = other;
+                find_middle(folds, folds->input.x, other, fold->place);
+            }
+        }
+    }
+done:
+    point_grid_free(&grid);
+    free(near.index);
+    free(middle);
+    free(radius);
+    return status;
+}

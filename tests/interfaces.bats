@@ -1,0 +1,183 @@
+# Interfaces between materials of unequal stiffness: supports stop there (support -i), and the stress is right on both sides.
+# The figures, in 2D and 3D and on a ball of three layers: pipelines/hard/31-interfaces.sh.
+
+bats_require_minimum_version 1.5.0
+
+setup() {
+    cd "$BATS_TEST_TMPDIR"
+    set -o pipefail
+    source "$BATS_TEST_DIRNAME/common.bash"
+    top=$BATS_TEST_DIRNAME/..
+}
+
+# The layers of examples/hard, as body.mts.
+layers() {
+    gmsh -2 -v 1 -setnumber h 9 "$top/examples/hard/layers.geo" -o layers.msh
+    nodes -u mm layers.msh > body.mts
+}
+
+# scene SLIDING PUSHED PUSH
+scene() {
+    printf '[scene]\ndim = 2\nanalysis = quasi-static\n'
+    printf '[material %s]\nregion = %s\nE = %s\nnu = %s\nrho = 1000\n' left left 3000 0.49 middle middle 30000 0.3 right right 9000 0.45
+    printf '[displacement sliding]\nfacets = %s\nnormal = 0\n[displacement pushed]\nfacets = %s\nnormal = %s\n' "$1" "$2" "$3"
+    printf '[output]\nstress = yes\nstrain = yes\nreactions = yes\n[solver]\ntolerance = 1e-10\n'
+}
+
+# through OPTIONS OF support: body.mts to u.dat
+through() {
+    ipoints body.mts | support "$@" | shapefn | mtled -q body.scene > u.dat 2> note
+}
+
+# even SECTION LIMIT: its largest deviation from the mean over a region, relative to the largest value of the region, is at most LIMIT.
+even() {
+    paste <(mts print cells.region u.dat) <(mts print "$1" u.dat) | awk -v limit="$2" '
+        {
+            n[$1]++
+            for (k = 2; k <= NF; k++) {
+                sum[$1, k] += $k
+                if (n[$1] == 1 || $k < least[$1, k]) least[$1, k] = $k
+                if (n[$1] == 1 || $k > most[$1, k]) most[$1, k] = $k
+            }
+        }
+        END {
+            for (r in n) {
+                size = 0
+                for (k = 2; k <= NF; k++) if ((sum[r, k] / n[r]) ^ 2 > size) size = (sum[r, k] / n[r]) ^ 2
+                for (k = 2; k <= NF; k++) {
+                    spread = (most[r, k] - least[r, k]) / sqrt(size)
+                    if (!(spread <= worst)) worst = spread
+                }
+            }
+            print worst
+            exit !(NR > 100 && worst <= limit)
+        }'
+}
+
+@test "in series and side by side: exact in every cell, and not so across the interfaces" {
+    layers
+    for case in xmin,ymin,ymax:xmax:-0.01 xmin,ymin:ymax:-0.006; do
+        IFS=: read -r sliding pushed push <<< "$case"
+        scene "$sliding" "$pushed" "$push" > body.scene
+        through -i middle,right
+        mts check u.dat
+        even stress 1e-9
+        even strain 1e-9
+        # Whichever side owns the nodes of the interface.
+        through -i left,middle
+        even stress 1e-9
+        through
+        run ! even stress 1e-2
+    done
+}
+
+@test "one stress on both sides of an interface across the load, one displacement" {
+    layers
+    scene xmin,ymin,ymax xmax -0.01 > body.scene
+    through -i middle,right
+    mts print stress u.dat | awk '
+        NR == 1 || $1 < least { least = $1 } NR == 1 || $1 > most { most = $1 }
+        END { print least, most; exit !(most < 0 && most - least < -1e-9 * most) }'
+    # On the way from one to the other side: values next to each other, with a kink.
+    printf '%s\n' "29.9999 33" "30 33" "30.0001 33" "49.9999 33" "50 33" "50.0001 33" > points
+    interp -f u -p points -u mm u.dat | mts print u - | awk '
+        { x[NR] = $1 }
+        END {
+            for (i = 2; i <= 5; i += 3) {
+                before = x[i] - x[i - 1]; after = x[i + 1] - x[i]
+                if (!(before < 0 && after < 0 && before > -1e-7 && after > -1e-7)) exit 1
+                ratio = before / after
+                if (ratio > 0.9 && ratio < 1.1) { print i, before, after; exit 1 }
+            }
+        }'
+}
+
+@test "results say at which interfaces supports stop: evaluated at the nodes they are what they say" {
+    layers
+    scene xmin,ymin ymax -0.006 > body.scene
+    through -i middle
+    [ "$(mts print parameters.side u.dat | sort -u | tr '\n' ' ')" = "0 1 " ]
+    interp -f u -p u.dat u.dat | mts print u - > at
+    mts print u u.dat > given
+    paste at given | awk '{ for (k = 1; k <= 2; k++) { d = $k - $(k + 2); if (d * d > 1e-26) bad = 1 } } END { exit bad || NR < 50 }'
+    # Without that it is another field.
+    mts drop parameters.side u.dat | interp -f u -p u.dat | mts print u - > other
+    run cmp -s at other
+    [ "$status" -eq 1 ]
+}
+
+@test "any number of threads, a stream or a file, parts and whole: the same bytes; no -i: none of it" {
+    layers
+    ipoints body.mts > points.mts
+    OMP_NUM_THREADS=1 support -i middle,right points.mts | mts text | bare > one.txt
+    OMP_NUM_THREADS=3 support -i middle,right < points.mts | mts text | bare > three.txt
+    cmp one.txt three.txt
+    part -k 2 -o part.%d.mts body.mts
+    for k in 0 1; do
+        ipoints part.$k.mts | support -i middle,right > cut.$k.mts
+        mts check cut.$k.mts
+    done
+    unpart cut.?.mts | mts text | bare > joined.txt
+    cmp one.txt joined.txt
+    support points.mts | mts text | bare > plain.txt
+    [ "$(rows support.side plain.txt | wc -l)" -eq 0 ]
+    support -i middle,right points.mts | support | mts text | bare | cmp - plain.txt
+    # A result keeps its sides in parts.
+    scene xmin,ymin ymax -0.006 > body.scene
+    through -i middle
+    part -k 2 -o result.%d.mts u.dat 2> left_out
+    unpart result.?.mts | mts print parameters.side - | cmp - <(mts print parameters.side u.dat)
+}
+
+@test "Gauss points see one side as well" {
+    layers
+    scene xmin,ymin,ymax xmax -0.01 | sed 's/^nu = .*/nu = 0.3/' > body.scene
+    ipoints -g 3 body.mts | support -i middle,right | shapefn | mtled -q body.scene > u.dat
+    mts check u.dat
+    mts print strain u.dat > with
+    ipoints -g 3 body.mts | support | shapefn | mtled -q body.scene 2> note | mts print strain - > without
+    # The strain along x is -.1 in the mean; unevenness of it within a region, in the mean.
+    unevenness() {
+        paste <(mts print points.cell points.mts) "$1" | awk -v regions="$(mts print cells.region body.mts | tr '\n' ' ')" '
+            BEGIN { split(regions, region, " ") }
+            { r = region[$1 + 1]; n[r]++; s[r] += $2; q[r] += $2 ^ 2 }
+            END { for (r in n) sum += sqrt(q[r] / n[r] - (s[r] / n[r]) ^ 2); print sum }'
+    }
+    ipoints -g 3 body.mts > points.mts
+    awk -v a="$(unevenness with)" -v b="$(unevenness without)" 'BEGIN { print a, b; exit !(a > 0 && a < 0.8 * b) }'
+}
+
+@test "mtled says where supports reach across, and where the softer side comes first" {
+    layers
+    scene xmin,ymin ymax -0.006 > body.scene
+    through
+    grep -q '^mtled: supports reach across the boundary of middle and left, where the shear modulus jumps .* : 1: .*: support -i middle,right$' note
+    through -i left,right
+    grep -q '^mtled: the interface of .* has the shape functions of left, the softer: .*: support -i middle,right$' note
+    through -i middle,right
+    [ ! -s note ]
+    # Without stresses there is nothing to say; nor without a jump.
+    sed '/^stress/d; /^strain/d' body.scene > quiet.scene
+    ipoints body.mts | support | shapefn | mtled -q quiet.scene 2> note > u.dat
+    [ ! -s note ]
+    sed 's/^E = .*/E = 3000/; s/^nu = .*/nu = 0.3/' body.scene > same.scene
+    ipoints body.mts | support | shapefn | mtled -q same.scene 2> note > u.dat
+    [ ! -s note ]
+}
+
+@test "bad input: regions, options, damaged sides" {
+    layers
+    refused 2 "--interface: no region 'centre'; there are: left,middle,right" support -i left,centre body.mts
+    refused 2 "--interface: region 'left' stands twice" support -i left,left body.mts
+    refused 2 "--interface: no region ''" support -i '' body.mts
+    refused 2 "--reach distance acts across the interfaces of -i" support --reach distance -i left body.mts
+    cloud -d 2 -k halton -n 50 --box 0,1,0,1 > bare.mts
+    refused 2 "no section cells" support -i left bare.mts
+    ipoints body.mts | support -t -i middle > lists.txt
+    shortened support.side lists.txt > short.txt
+    refused 2 "support.side: " shapefn short.txt
+    awk '/^# /{ on = $2 == "support.side" } on && /^[0-9]/ && !done { $0 = "-3"; done = 1 } { print }' lists.txt > damaged.txt
+    refused 2 "support.side: row 0: no side -3" shapefn damaged.txt
+    run -1 mts check damaged.txt
+    [[ $output == *"support.side: row 0: index -3"* ]]
+}

@@ -1,0 +1,192 @@
+# mtled-mpi: several processes under mpirun give the bytes of one; one message, one status; a process that dies loses little.
+
+bats_require_minimum_version 1.5.0
+
+load common.bash
+
+setup() {
+    [ -x "$BUILD/bin/mtled-mpi" ] || skip "MPI is not installed (make deps)"
+    cd "$BATS_TEST_TMPDIR"
+    set -o pipefail
+    export OMP_NUM_THREADS=1
+    # Root in a container, more processes than cores, and none of mpirun's own words.
+    export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
+}
+
+processes() { # COUNT ARGUMENTS OF mtled
+    local count=$1
+    shift
+    mpirun --quiet --oversubscribe --bind-to none -n "$count" mtled-mpi "$@"
+}
+
+# The same in the background; what is said goes to `said`, and the processes are the children of $!.
+begin() {
+    local count=$1
+    shift
+    mpirun --quiet --oversubscribe --bind-to none -n "$count" mtled-mpi "$@" 2> said 3>&- &
+    for ((tries = 0; tries < 3000; tries++)); do
+        [ ! -e run.ckpt.old ] || break
+        sleep 0.02
+    done
+}
+
+cube() { cloud -d 3 -k jittered -n "$1" --box 0,0.1,0,0.1,0,0.1 --jitter 0.2; }
+
+# same COUNTS SCENE: what so many processes write is what one does, on table.mts; and what they say.
+same() {
+    mtled -q -o one.dat "$2" table.mts 2> one.said
+    for count in $1; do
+        processes "$count" -q -o many.dat "$2" table.mts 2> many.said
+        cmp one.dat many.dat
+        cmp one.said many.said
+        rm many.dat
+    done
+}
+
+# A cube with every kind of load and condition, and all outputs.
+every_load() {
+    cat << 'SCENE'
+[scene]
+dim = 3
+analysis = quasi-static
+gravity = 0, 0, -9.81
+[material body]
+region = body
+model = ogden
+alpha = 3
+E = 3000
+nu = 0.4995
+rho = 1000
+[displacement bottom]
+facets = zmin
+components = 0, 0, 0
+[displacement needles]
+points = needles.tsv
+unit = m
+[contact floor]
+facets = xmin
+rigid = wall.tsv
+unit = m
+side = front
+translation = 0.004, 0, 0
+curve = smooth
+[pressure side]
+facets = xmax
+value = 100
+[pressure fluid]
+facets = ymin
+density = 1000
+level = 0.05, 0.05, 0.06
+[traction top]
+facets = zmax
+components = 20, 0, -50
+[output]
+frames = 2
+stress = yes
+strain = yes
+pressure = yes
+volume_ratio = yes
+energy = yes
+reactions = yes
+moments = yes
+gaps = yes
+[solver]
+tolerance = 1e-3
+SCENE
+    printf '0.05 0.05 0.05 0.001 0 -0.001 0.0005\n0.06 0.03 0.07 0.001 0 -0.002 0\n' > needles.tsv
+    printf -- '0 -1 -1 0 2 -1 0 0 2\n' > wall.tsv
+}
+
+@test "2, 3 and 7 processes: the same bytes as one, in 2D with contact and frames" {
+    cloud -d 2 -k jittered -n 9 --box 0,0.1,0,0.1 --jitter 0.2 | shapefn > table.mts 2> note
+    { pressed_block; printf '[contact wall]\nfacets = xmax\nrigid = wall.tsv\nunit = m\nside = left\n[output]\nframes = 2\nstress = yes\nreactions = yes\ngaps = yes\n'; } > run.scene
+    printf '0.1005 -1\n0.1005 1\n' > wall.tsv
+    same '1 2 3 7' run.scene
+}
+
+@test "the same in 3D with every load, near incompressibility" {
+    cube 6 | shapefn > table.mts 2> note
+    every_load > run.scene
+    same '2 4' run.scene
+}
+
+@test "the same in time; with Gauss points; in threads" {
+    cube 5 | shapefn > table.mts 2> note
+    { swinging_block | sed 's/^dim = 2/dim = 3/; s/^gravity.*/gravity = 0, 0, -9.81/; s/ymin/zmin/; s/components = 0, 0/&, 0/'
+        printf '[output]\nframes = 3\nenergy = yes\nstrain = yes\n'; } > run.scene
+    same '3' run.scene
+    cube 5 | ipoints -g 4 | shapefn > table.mts 2> note
+    OMP_NUM_THREADS=2 same '2' run.scene
+}
+
+@test "one message and the status of one process; nothing half-written" {
+    cloud -d 2 -k jittered -n 8 --box 0,0.1,0,0.1 --jitter 0.2 | shapefn > table.mts 2> note
+    pressed_block > block.scene
+    one_line() { # STATUS TEXT COMMAND...
+        local expected=$1 text=$2
+        shift 2
+        run --separate-stderr "$@"
+        [ "$status" -eq "$expected" ] && [ -z "$output" ] && [ "$(wc -l <<< "$stderr")" -eq 1 ] && [[ $stderr == "mtled: "*"$text"* ]]
+    }
+    one_line 2 'none.scene: No such file' processes 3 none.scene table.mts
+    one_line 2 "cannot share standard input: name the stream's file" processes 2 block.scene
+    with 's/^region.*/region = bone/'
+    one_line 2 "edited.scene:" processes 3 edited.scene table.mts
+    { cat block.scene; printf '[solver]\nmax_steps = 20\n[output]\nframes = 2\n'; } > short.scene
+    one_line 1 'not converged after 20 steps' processes 3 -o out.dat short.scene table.mts
+    mts recover out.dat.part > frames.dat
+    one_line 3 'No space left on device' processes 3 -o /dev/full block.scene table.mts
+    [ ! -e out.dat ]
+    run -0 processes 2 --version
+    [ "$(wc -l <<< "$output")" -eq 1 ]
+}
+
+@test "processes that do not read the same are refused" {
+    for n in 6 7; do cloud -d 2 -k regular -n $n --box 0,0.1,0,0.1 | shapefn > $n.mts 2> note; done
+    pressed_block > block.scene
+    run -2 --separate-stderr mpirun --quiet --oversubscribe -n 1 mtled-mpi block.scene 6.mts : -n 1 mtled-mpi block.scene 7.mts
+    [ "$stderr" = "mtled: the processes do not read the same: give all the same scene, tables, stream and options" ]
+}
+
+@test "a process that is killed ends the run; it goes on from the last checkpoint, by any number of processes, to the same bytes" {
+    cloud -d 2 -k jittered -n 8 --box 0,0.1,0,0.1 --jitter 0.2 | shapefn > table.mts 2> note
+    { pressed_block; printf '[solver]\nramp_steps = 4000\n[output]\nframes = 2\n'; } > run.scene
+    mtled -q -o whole.dat run.scene table.mts
+    for victim in 1 2; do
+        rm -f run.ckpt.old
+        begin 2 -q -c run.ckpt -e 0 -o out.dat run.scene table.mts
+        kill -KILL "$(pgrep -P $! | sed -n ${victim}p)"
+        status=0
+        wait $! || status=$?
+        [ $status -eq 137 ]
+        [ ! -e out.dat ]
+        [ -e run.ckpt ]
+    done
+    processes 3 -q -c run.ckpt -o out.dat run.scene table.mts 2> said
+    grep -qx 'mtled: going on from step [0-9]*, kept in run.ckpt\(.old\)\?' said
+    cmp whole.dat out.dat
+    [ -z "$(find . -name 'run.ckpt*')" ]
+}
+
+@test "SIGTERM to any process ends all after the same step, with a checkpoint from which one process goes on" {
+    cloud -d 2 -k jittered -n 8 --box 0,0.1,0,0.1 --jitter 0.2 | shapefn > table.mts 2> note
+    { pressed_block; printf '[solver]\nramp_steps = 4000\n'; } > run.scene
+    mtled -q -o whole.dat run.scene table.mts
+    begin 2 -q -c run.ckpt -e 0 -o out.dat run.scene table.mts
+    kill -TERM "$(pgrep -P $! | sed -n 2p)"
+    status=0
+    wait $! || status=$?
+    [ $status -eq 143 ]
+    [ "$(wc -l < said)" -eq 1 ]
+    grep -qx 'mtled: ended by SIGTERM after step [0-9]*: the same command goes on from run.ckpt' said
+    mtled -q -c run.ckpt -o out.dat run.scene table.mts 2> said
+    cmp whole.dat out.dat
+}
+
+@test "the report tells what was sent" {
+    cube 6 | shapefn > table.mts 2> note
+    { pressed_block | sed 's/^dim = 2/dim = 3/; s/ymin/zmin/; s/ymax/zmax/; s/^components = 0, /&0, /'; } > run.scene
+    processes 2 -v -o out.dat run.scene table.mts 2> report
+    awk -F '\t' '$1 == "processes" { n = $2 } $1 == "bytes sent by a process in an evaluation" { b = $2; m = $4 }
+        END { exit !(n == 2 && b > 1000 && b < 1e6 && m >= b) }' report
+}

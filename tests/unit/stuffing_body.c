@@ -1,0 +1,218 @@
+/* Cells from labels: the surface and the parts of a body. */
+#include "approx/parts.h"
+
+#include "stuffing_fixture.h"
+
+/* The surface of a body stays where it is, wherever its labels meet beneath, or are too thin for the lattice:
+ * nodes on the boundary of a sphere of 24 mm. Voxels of 1 mm know it to half a voxel, and the volumes of
+ * labels move it by as much. */
+static void surface_over_labels(void **state)
+{
+    static const struct {
+        const char *name;
+        double spacing, most; /* mm */
+    } cases[] = {{"sphere", 4, 0.6}, {"sphere", 6, 0.6}, {"two", 4, 1},  {"two", 5, 1},   {"two", 6, 1},
+                 {"four", 4, 1},     {"four", 5, 1},     {"four", 6, 1}, {"shell", 4, 1}, {"shell", 5, 1.3}};
+    (void)state;
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        struct label_shape shape;
+        assert_true(label_shape_make(cases[i].name, 1, millimetre, &shape));
+        struct labels labels = labels_of(&shape);
+        struct stuffing_options options = {.spacing = 1e-3 * cases[i].spacing, .keep = all_kept};
+        struct stuffing stuffing = make(&labels, &options);
+        check_cells(&stuffing);
+        for (int64_t k = 0; k < stuffing.facet_count * 3; k++) {
+            const double *x = stuffing.x + 3 * (int64_t)stuffing.facet[k];
+            double r = sqrt(x[0] * x[0] + x[1] * x[1] + x[2] * x[2]);
+            assert_true(fabs(r - 24e-3) < 1e-3 * cases[i].most);
+        }
+        stuffing_free(&stuffing);
+        free(shape.label);
+    }
+}
+
+/* Nodes at which the cells of the body fall into parts without a common face. */
+static int64_t count_hinges(const struct stuffing *stuffing)
+{
+    struct cells cells = cells_of(stuffing);
+    struct error error;
+    int64_t hinges = 0;
+    int32_t *across = calloc((size_t)cells.count * 4, sizeof *across);
+    int32_t *part =
+        calloc((size_t)cells.count * 4, sizeof *part); /* of each corner: the least cell reached */
+    assert_true(across != NULL && part != NULL);
+    assert_int_equal(cells_across(&cells, across, &error), STATUS_OK);
+    for (int64_t i = 0; i < cells.count * 4; i++) {
+        part[i] = (int32_t)(i / 4);
+    }
+    for (bool changed = true; changed;) {
+        changed = false;
+        for (int64_t i = 0; i < cells.count * 16; i++) {
+            int64_t corner = i / 4, face = i / 16 * 4 + i % 4, next = across[face];
+            for (int64_t k = 4 * next; next >= 0 && face != corner && k < 4 * next + 4; k++) {
+                if (cells.node[k] == cells.node[corner] && part[k] < part[corner]) {
+                    part[corner] = part[k];
+                    changed = true;
+                }
+            }
+        }
+    }
+    int32_t *least = calloc((size_t)cells.node_count, sizeof *least);
+    assert_non_null(least);
+    for (int64_t i = 0; i < cells.count * 4; i++) {
+        int32_t *of_node = &least[cells.node[i]];
+        hinges += *of_node != 0 && *of_node != part[i] + 1 && part[i] == i / 4;
+        *of_node = *of_node == 0 ? part[i] + 1 : *of_node;
+    }
+    free(across);
+    free(part);
+    free(least);
+    return hinges;
+}
+
+/* Gaps narrower than the lattice are filled where parts of one body would hang together by nodes alone. */
+static void parts_are_joined(void **state)
+{
+    int64_t hinges = 0;
+    (void)state;
+    for (uint64_t seed = 1; seed <= 20; seed++) {
+        struct label_shape shape;
+        assert_true(label_shape_make("blobs", seed, millimetre, &shape));
+        struct labels labels = labels_of(&shape);
+        struct stuffing_options options = {.spacing = 5e-3, .keep = all_kept, .largest = true};
+        struct stuffing stuffing = make(&labels, &options);
+        check_cells(&stuffing);
+        assert_int_equal(count_hinges(&stuffing), stuffing.hinges);
+        hinges += stuffing.hinges;
+        stuffing_free(&stuffing);
+        free(shape.label);
+    }
+    assert_true(hinges <= 2);
+}
+
+static int32_t count_bodies(const struct stuffing *stuffing)
+{
+    struct cells cells = cells_of(stuffing);
+    struct error error;
+    int32_t count = 0, *part = calloc((size_t)cells.count, sizeof *part);
+    assert_non_null(part);
+    assert_int_equal(cells_parts(&cells, part, &count, &error), STATUS_OK);
+    free(part);
+    return count;
+}
+
+/* No node is shared by cells of two connected bodies. */
+static void check_apart(const struct stuffing *stuffing)
+{
+    struct cells cells = cells_of(stuffing);
+    struct error error;
+    int32_t count = 0, *part = calloc((size_t)cells.count, sizeof *part);
+    int32_t *of_node = calloc((size_t)cells.node_count, sizeof *of_node);
+    assert_true(part != NULL && of_node != NULL);
+    assert_int_equal(cells_parts(&cells, part, &count, &error), STATUS_OK);
+    for (int64_t i = 0; i < 4 * cells.count; i++) {
+        int32_t *body = &of_node[cells.node[i]];
+        assert_true(*body == 0 || *body == part[i / 4] + 1);
+        *body = part[i / 4] + 1;
+    }
+    free(part);
+    free(of_node);
+}
+
+static void parts_that_hang_by_an_edge(void **state)
+{
+    struct label_shape shape;
+    int64_t cut = 0;
+    (void)state;
+    assert_true(label_shape_make("boxes", 1, millimetre, &shape));
+    struct labels labels = labels_of(&shape);
+    for (int h = 2; h <= 6; h++) {
+        struct stuffing_options options = {.spacing = 1e-3 * h, .keep = all_kept};
+        struct stuffing stuffing = make(&labels, &options);
+        check_cells(&stuffing);
+        check_apart(&stuffing);
+        cut += stuffing.pinched;
+        stuffing_free(&stuffing);
+    }
+    assert_true(cut > 0);
+    for (uint64_t seed = 1; seed <= 20; seed++) {
+        struct label_shape blobs;
+        assert_true(label_shape_make("blobs", seed, millimetre, &blobs));
+        struct labels of_blobs = labels_of(&blobs);
+        struct stuffing_options options = {.spacing = 5e-3, .keep = all_kept};
+        struct stuffing stuffing = make(&of_blobs, &options);
+        check_apart(&stuffing);
+        stuffing_free(&stuffing);
+        free(blobs.label);
+    }
+    free(shape.label);
+}
+
+static void specks_and_the_largest_body(void **state)
+{
+    struct label_shape shape;
+    (void)state;
+    assert_true(label_shape_make("sphere", 1, millimetre, &shape));
+    struct labels labels = labels_of(&shape);
+    /* A cube of 5 voxels about a point of the lattice, and one of 10. */
+    for (int64_t v = 0; v < shape.size[0] * shape.size[1] * shape.size[2]; v++) {
+        double x[3] = {shape.first[0] + (double)(v % shape.size[0]),
+                       shape.first[1] + (double)(v / shape.size[0] % shape.size[1]),
+                       shape.first[2] + (double)(v / shape.size[0] / shape.size[1])};
+        bool speck = fabs(x[0] + 24) < 2.5 && fabs(x[1] + 24) < 2.5 && fabs(x[2] + 24) < 2.5;
+        bool cube = fabs(x[0] - 24) < 5 && fabs(x[1] - 24) < 5 && fabs(x[2] - 24) < 5;
+        shape.label[v] = speck || cube ? 1 : shape.label[v];
+    }
+    struct stuffing_options options = {.spacing = 6e-3, .keep = all_kept};
+    struct stuffing stuffing = make(&labels, &options);
+    check_cells(&stuffing);
+    assert_int_equal(stuffing.specks, 1);
+    assert_true(stuffing.speck_volume > 20e-9 && stuffing.speck_volume < 200e-9);
+    assert_int_equal(count_bodies(&stuffing), 2);
+    stuffing_free(&stuffing);
+    options.largest = true;
+    stuffing = make(&labels, &options);
+    assert_int_equal(count_bodies(&stuffing), 1);
+    /* The sphere does not grow to make up for the cube. */
+    struct cells cells = cells_of(&stuffing);
+    double volume = 0;
+    for (int64_t c = 0; c < cells.count; c++) {
+        volume += cell_volume(&cells, c);
+    }
+    assert_true(fabs(volume / (4.0 / 3 * M_PI * pow(24e-3, 3)) - 1) < 0.01);
+    stuffing_free(&stuffing);
+    free(shape.label);
+}
+
+/* A label that is left out leaves a cavity, whose wall knows it. */
+static void cavities(void **state)
+{
+    struct label_shape shape;
+    const bool keep[5] = {false, true, false, true, true};
+    int64_t walls = 0;
+    (void)state;
+    assert_true(label_shape_make("four", 1, millimetre, &shape));
+    struct labels labels = labels_of(&shape);
+    struct stuffing_options options = {.spacing = 5e-3, .keep = keep};
+    struct stuffing stuffing = make(&labels, &options);
+    check_cells(&stuffing);
+    for (int64_t f = 0; f < stuffing.facet_count; f++) {
+        assert_true(keep[stuffing.side[2 * f]] && !keep[stuffing.side[2 * f + 1]]);
+        walls += stuffing.side[2 * f + 1] == 2;
+    }
+    assert_true(walls > 50);
+    stuffing_free(&stuffing);
+    free(shape.label);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(surface_over_labels),
+        cmocka_unit_test(parts_are_joined),
+        cmocka_unit_test(parts_that_hang_by_an_edge),
+        cmocka_unit_test(specks_and_the_largest_body),
+        cmocka_unit_test(cavities),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

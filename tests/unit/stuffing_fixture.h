@@ -1,0 +1,86 @@
+/* Cells made of label images, and what holds of all. */
+#ifndef STUFFING_FIXTURE_H
+#define STUFFING_FIXTURE_H
+
+#include "approx/cells.h"
+#include "approx/stuffing.h"
+
+#include "label_shapes.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <cmocka.h>
+
+static const double millimetre[3] = {1, 1, 1};
+static const bool all_kept[64] = {
+    false, true, true, true, true, true, true, true, true, true, true, true, true, true, true, true,
+    true,  true, true, true, true, true, true, true, true, true, true, true, true, true, true, true,
+    true,  true, true, true, true, true, true, true, true, true, true, true, true, true, true, true,
+    true,  true, true, true, true, true, true, true, true, true, true, true, true, true, true, true};
+
+static inline struct labels labels_of(const struct label_shape *shape)
+{
+    struct labels labels = {.label = shape->label, .count = shape->count, .dim = 3};
+    for (int d = 0; d < 3; d++) {
+        labels.size[d] = shape->size[d];
+        labels.to_voxel[d][d] = 1e3 / shape->voxel[d];
+        labels.to_voxel[d][3] = -shape->first[d] / shape->voxel[d];
+    }
+    return labels;
+}
+
+static inline struct stuffing make(const struct labels *labels, const struct stuffing_options *options)
+{
+    struct stuffing stuffing;
+    struct error error = {""};
+    enum status status = stuffing_make(labels, options, &stuffing, &error);
+    assert_string_equal(error.text, "");
+    assert_int_equal(status, STATUS_OK);
+    return stuffing;
+}
+
+static inline struct cells cells_of(const struct stuffing *stuffing)
+{
+    return (struct cells){stuffing->dim, stuffing->node_count, stuffing->x, stuffing->cell_count,
+                          stuffing->cell};
+}
+
+/* Positive, conforming, within the bounds of the angles; the facets are the boundary and look outward: the
+ * flux of x through them is dim times the volume. */
+static inline void check_cells(const struct stuffing *stuffing)
+{
+    struct cells cells = cells_of(stuffing);
+    struct faces faces;
+    struct error error = {""};
+    int dim = stuffing->dim;
+    double volume = 0, flux = 0;
+    assert_true(stuffing->cell_count > 0);
+    assert_int_equal(cells_check(&cells, &error), STATUS_OK);
+    for (int64_t c = 0; c < cells.count; c++) {
+        const double *x[4];
+        double angles[2];
+        for (int k = 0; k <= dim; k++) {
+            x[k] = cells.x + (int64_t)cells.node[c * (dim + 1) + k] * dim;
+        }
+        simplex_angles(dim, x, angles);
+        assert_true(angles[0] >= 8 && angles[1] <= 165);
+        volume += cell_volume(&cells, c);
+    }
+    assert_int_equal(faces_build(&cells, true, &faces, &error), STATUS_OK);
+    assert_int_equal(faces.count, stuffing->facet_count);
+    faces_free(&faces);
+    for (int64_t f = 0; f < stuffing->facet_count; f++) {
+        const int32_t *node = stuffing->facet + f * dim;
+        double normal[3];
+        face_area_vector(dim, stuffing->x, node, normal);
+        for (int d = 0; d < dim; d++) {
+            for (int k = 0; k < dim; k++) {
+                flux += normal[d] * stuffing->x[(int64_t)node[k] * dim + d] / dim;
+            }
+        }
+    }
+    assert_true(fabs(flux / dim / volume - 1) < 1e-9);
+}
+
+#endif

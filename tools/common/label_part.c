@@ -1,0 +1,181 @@
+#include "label_part.h"
+
+#include "images.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* A ball, or the voxels of a mask that are not 0. */
+struct place {
+    bool is_ball;
+    double centre[3], radius; /* m */
+    struct image mask;
+    double to_voxel[3][4]; /* of the mask */
+};
+
+/* World coordinates of a voxel centre, m. */
+static void world_of(const struct label_image *image, int64_t voxel, double world[3])
+{
+    const int64_t *size = image->labels.size;
+    const double at[3] = {(double)(voxel % size[0]), (double)(voxel / size[0] % size[1]),
+                          (double)(voxel / size[0] / size[1])};
+    for (int d = 0; d < 3; d++) {
+        const double *row = image->to_world[d];
+        world[d] = row[0] * at[0] + row[1] * at[1] + row[2] * at[2] + row[3];
+    }
+}
+
+static bool is_within(const struct place *place, const struct labels *labels, const double world[3])
+{
+    double square = 0, index[3], value[4];
+    for (int d = 0; d < labels->dim && place->is_ball; d++) {
+        double step = world[labels->dim == 3 ? d : labels->axis[d]] - place->centre[d];
+        square += step * step;
+    }
+    if (place->is_ball) {
+        return square <= place->radius * place->radius;
+    }
+    for (int d = 0; d < 3; d++) {
+        const double *row = place->to_voxel[d];
+        index[d] = row[0] * world[0] + row[1] * world[1] + row[2] * world[2] + row[3];
+    }
+    return image_sample(&place->mask, IMAGE_NEAREST, index, value) && value[0] != 0;
+}
+
+/* "X,Y,Z,RADIUS", in 2D "X,Y,RADIUS". */
+static void parse_ball(const struct tool *tool, const char *text, int dim, struct place *place)
+{
+    struct error error;
+    double value[4] = {0};
+    char *copy = strdup(text), *rest = copy;
+    int count = 0;
+    if (copy == NULL) {
+        tool_fail(tool, STATUS_SYSTEM, "out of memory");
+    }
+    for (const char *word = strsep(&rest, ","); word != NULL; word = strsep(&rest, ",")) {
+        bool negative = word[0] == '-';
+        if (count == dim + 1) {
+            tool_fail(tool, STATUS_INPUT, "--part: ball:%s: %d lengths are wanted", text, dim + 1);
+        }
+        if (strchr(word, '0') != NULL && strspn(word, "+-0.") == strcspn(word, "cmu")) {
+            value[count++] = 0; /* 0 and 0mm, which is no length above 0 */
+            continue;
+        }
+        tool_check(tool, parse_length(word + negative, "--part", &value[count], &error), &error);
+        value[count] = negative ? -value[count] : value[count];
+        count++;
+    }
+    if (count != dim + 1 || !(value[dim] > 0)) {
+        tool_fail(tool, STATUS_INPUT, "--part: ball:%s: %d lengths are wanted, the radius above 0", text,
+                  dim + 1);
+    }
+    memcpy(place->centre, value, sizeof place->centre);
+    place->radius = value[dim];
+    place->is_ball = true;
+    free(copy);
+}
+
+static void check_name(const struct tool *tool, const struct label_image *image, const char *name)
+{
+    bool taken = strcmp(name, "outside") == 0 || label_image_find(image, name) >= 0;
+    for (int32_t p = 0; p < image->part_count; p++) {
+        taken = taken || strcmp(image->part[p], name) == 0;
+    }
+    if (name[0] == '\0' || strpbrk(name, "|,:\" \t") != NULL) {
+        tool_fail(tool, STATUS_INPUT,
+                  "--part: '%.60s': a name without commas, colons, bars and blanks is wanted", name);
+    }
+    if (taken) {
+        tool_fail(tool, STATUS_INPUT, "--part: '%.60s' is the name of a label or of another part", name);
+    }
+}
+
+/* The label of voxels of a region in the last part, added where it is new. */
+static int32_t part_label(const struct tool *tool, struct label_image *image, int32_t region)
+{
+    int32_t count = image->labels.count;
+    for (int32_t l = image->table.name_count + 1; l < count; l++) {
+        if (image->part_of[l] == image->part_count - 1 && image->region[l] == region) {
+            return l;
+        }
+    }
+    struct error error;
+    bool grown = count < UINT16_MAX;
+    int32_t **indices[2] = {&image->region, &image->part_of};
+    for (int i = 0; i < 2; i++) {
+        int32_t *array = array_grow(*indices[i], count + 1, sizeof *array);
+        grown = grown && array != NULL;
+        *indices[i] = array != NULL ? array : *indices[i];
+    }
+    bool *keep = array_grow(image->keep, count + 1, sizeof *keep);
+    double *volume = array_grow(image->volume, count + 1, sizeof *volume);
+    if (!grown || keep == NULL || volume == NULL) {
+        tool_check(tool, fail_memory(&error, "labels"), &error);
+    }
+    image->keep = keep;
+    image->volume = volume;
+    image->keep[count] = true;
+    image->volume[count] = 0;
+    image->region[count] = region;
+    image->part_of[count] = image->part_count - 1;
+    image->labels.count++;
+    return count;
+}
+
+static void make_part(const struct tool *tool, const struct place *place, struct label_image *image)
+{
+    const int64_t *size = image->labels.size;
+    int64_t voxels = 0;
+    for (int64_t v = 0; v < size[0] * size[1] * size[2]; v++) {
+        double world[3];
+        world_of(image, v, world);
+        if (image->keep[image->voxel[v]] && is_within(place, &image->labels, world)) {
+            int32_t label = part_label(tool, image, image->region[image->voxel[v]]);
+            image->volume[image->voxel[v]] -= image->voxel_volume;
+            image->volume[label] += image->voxel_volume;
+            image->voxel[v] = (uint16_t)label;
+            voxels++;
+        }
+    }
+    if (voxels == 0) {
+        tool_fail(tool, STATUS_INPUT, "--part %s: no voxel of a label that is kept lies in it",
+                  image->part[image->part_count - 1]);
+    }
+}
+
+static void add_part(const struct tool *tool, const char *text, struct label_image *image)
+{
+    struct place place = {.is_ball = false};
+    struct error error;
+    size_t length = strcspn(text, "=");
+    if (text[length] == '\0') {
+        tool_fail(tool, STATUS_INPUT, "--part: '%.60s' is not NAME=ball:X,Y,Z,RADIUS or NAME=IMAGE", text);
+    }
+    const char *expression = text + length + 1;
+    char *name = strndup(text, length);
+    char **part = array_grow(image->part, image->part_count + 1, sizeof *part);
+    tool_check(tool, name == NULL || part == NULL ? fail_memory(&error, "a part") : STATUS_OK, &error);
+    image->part = part;
+    check_name(tool, image, name);
+    image->part[image->part_count++] = name;
+    if (strncmp(expression, "ball:", 5) == 0) {
+        parse_ball(tool, expression + 5, image->labels.dim, &place);
+    } else {
+        tool_read_image(tool, expression, &place.mask);
+        if (place.mask.components > 1) {
+            tool_fail(tool, STATUS_INPUT, "--part %s: %zu values at each voxel: not a mask", name,
+                      place.mask.components);
+        }
+        image_to_voxel(&place.mask, place.to_voxel);
+    }
+    make_part(tool, &place, image);
+    image_free(&place.mask);
+}
+
+void label_parts_make(const struct tool *tool, const struct option_uses *uses, struct label_image *image)
+{
+    for (int i = 0; i < uses->count; i++) {
+        add_part(tool, uses->use[i].value, image);
+    }
+}

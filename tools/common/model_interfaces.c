@@ -1,0 +1,114 @@
+/* Interfaces between materials, and whether supports stop there. */
+#include "model.h"
+#include "names.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* The most regions that a remedy spells out. */
+enum { MOST_NAMED = 8 };
+
+/* The interface where supports do worst: the regions, the stiffer one first, and the ratio of the moduli. */
+struct worst {
+    double ratio;
+    int32_t region[2];
+};
+
+static double modulus_of(const struct material_list *materials, int32_t cell)
+{
+    return materials->items[materials->of_cell[cell]].shear_modulus;
+}
+
+/* The largest jump at which supports do not stop, and at which what lies there belongs to the softer side. */
+static void look(const struct assembly *input, const int32_t *region, struct worst *crossed,
+                 struct worst *softer)
+{
+    const int32_t *side = input->cell_side;
+    for (int64_t f = input->faces.boundary_count; f < input->faces.count; f++) {
+        int32_t stiff = input->faces.cell[2 * f], soft = input->faces.cell[2 * f + 1];
+        double ratio = modulus_of(&input->materials, stiff) / modulus_of(&input->materials, soft);
+        if (ratio < 1.0) {
+            int32_t swap = stiff;
+            stiff = soft;
+            soft = swap;
+            ratio = 1.0 / ratio;
+        }
+        struct worst *worst = side == NULL || side[stiff] == side[soft] ? crossed : softer;
+        if (ratio > worst->ratio && (worst == crossed || side[soft] < side[stiff])) {
+            *worst = (struct worst){ratio, {region[stiff], region[soft]}};
+        }
+    }
+}
+
+/* The name of region `index` of the list. */
+static void name_of(const char *names, int32_t index, char name[64])
+{
+    for (; index > 0; index--) {
+        names += strcspn(names, ",") + 1;
+    }
+    snprintf(name, 64, "%.*s", (int)strcspn(names, ","), names);
+}
+
+/* What to say to support: the regions by falling modulus, without the last. */
+static void remedy(const char *names, const double *modulus, int64_t count, char text[256])
+{
+    bool done[MOST_NAMED + 1] = {false};
+    text[0] = '\0';
+    if (count > MOST_NAMED + 1) {
+        snprintf(text, 256, "the regions, the stiffest first");
+    }
+    for (int64_t k = 0; count <= MOST_NAMED + 1 && k + 1 < count; k++) {
+        int32_t stiffest = -1;
+        char name[64];
+        for (int32_t r = 0; r < count; r++) {
+            stiffest = !done[r] && (stiffest < 0 || modulus[r] > modulus[stiffest]) ? r : stiffest;
+        }
+        done[stiffest] = true;
+        name_of(names, stiffest, name);
+        size_t length = strlen(text);
+        snprintf(text + length, 256 - length, "%s%s", k > 0 ? "," : "", name);
+    }
+}
+
+enum status model_interfaces(struct model *model, struct error *error)
+{
+    enum status status;
+    const struct assembly *input = &model->assembly;
+    const struct scene_output *output = &model->scene->output;
+    const struct section *section;
+    char *names = NULL, first[64], second[64], regions[256];
+    double *modulus = NULL;
+    int64_t count = 1;
+    struct worst crossed = {.ratio = 1.0}, softer = {.ratio = 1.0};
+    TRY(stream_need(model->stream, "cells.region", TYPE_I4, 1, "nodes", &section, error));
+    TRY(names_of_section(section, &names, error));
+    for (const char *at = names; *at != '\0'; at++) {
+        count += *at == ',';
+    }
+    TRY(NEW_ARRAY(&modulus, count, error));
+    const int32_t *region = section->data;
+    for (int32_t c = 0; c < input->cells.count; c++) {
+        modulus[region[c]] = modulus_of(&input->materials, c);
+    }
+    look(input, region, &crossed, &softer);
+    remedy(names, modulus, count, regions);
+    const struct worst *worst = softer.ratio > 1.0 ? &softer : &crossed;
+    name_of(names, worst->region[0], first);
+    name_of(names, worst->region[1], second);
+    if (softer.ratio > 1.0) {
+        (void)fail(
+            &model->interfaces, STATUS_OK,
+            "the interface of %s and %s has the shape functions of %s, the softer: the stress in %s is "
+            "less exact: support -i %s",
+            first, second, second, first, regions);
+    } else if (crossed.ratio > 1.0 && (output->stress || output->strain || output->pressure)) {
+        (void)fail(&model->interfaces, STATUS_OK,
+                   "supports reach across the boundary of %s and %s, where the shear modulus jumps %.3g : 1: "
+                   "the stress there is smoothed: support -i %s",
+                   first, second, crossed.ratio, regions);
+    }
+done:
+    free(names);
+    free(modulus);
+    return status;
+}

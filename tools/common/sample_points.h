@@ -1,0 +1,25 @@
+/* Where images are sampled: the points of a table or of a stream. */
+#ifndef TOOLS_SAMPLE_POINTS_H
+#define TOOLS_SAMPLE_POINTS_H
+
+#include "tool.h"
+
+/* The points, and what comes of them. */
+struct sample_points {
+    const char *what; /* the points in messages */
+    int dim;
+    int64_t count;
+    double *x;     /* count * dim, m; owned */
+    int64_t cols;  /* values at a point */
+    double *value; /* count * cols; owned */
+};
+
+/* The rows of a table of coordinates in a unit, m; exits on failure. */
+void sample_points_table(const struct tool *tool, const char *file, double unit, struct sample_points *rows);
+
+/* The points of a section of a stream, which is read into *stream; regions: of integration points only those
+ * in cells of these, names with commas between, NULL: all. Exits on failure. */
+void sample_points_section(const struct tool *tool, const char *file, const char *name, const char *regions,
+                           struct stream *stream, struct sample_points *rows);
+
+#endif

@@ -1,0 +1,238 @@
+/* The processes of a run under mpirun; see process.h. */
+#include "process.h"
+
+#include "base/clock.h"
+
+#include <mpi.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+#include <time.h>
+#include <unistd.h>
+
+/* Seconds that a process which fails waits for the others to fail as well. */
+static const double most_wait = 10.0;
+
+/* Of the whole process. */
+static struct {
+    struct ranks ranks;
+    int *count, *place;        /* scratch: of each process */
+    MPI_Request *requests;     /* 2 of each */
+    MPI_Comm ends;             /* on which processes tell that they fail */
+    double sent, waited, spun; /* bytes; seconds of sending and waiting, and of the processor in these */
+    bool patient;              /* waiting processes sleep, else they spin */
+    bool failing, alone, ended;
+    MPI_Request failed;
+} own;
+
+static _Noreturn void fail_memory_now(void)
+{
+    fprintf(stderr, "mtled: out of memory\n");
+    _exit((int)STATUS_SYSTEM);
+}
+
+static double processor_seconds(clockid_t clock)
+{
+    struct timespec now;
+    clock_gettime(clock, &now);
+    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+/* What a message costs, with the waiting for it, goes to own.waited and own.spun. */
+struct cost_of_message {
+    double started, processor;
+};
+
+static struct cost_of_message begin_message(void)
+{
+    return (struct cost_of_message){clock_seconds(), processor_seconds(CLOCK_THREAD_CPUTIME_ID)};
+}
+
+static void end_message(const struct cost_of_message *message)
+{
+    own.waited += clock_seconds() - message->started;
+    own.spun += processor_seconds(CLOCK_THREAD_CPUTIME_ID) - message->processor;
+}
+
+static MPI_Datatype type_of(size_t size)
+{
+    MPI_Datatype type;
+    MPI_Type_contiguous((int)size, MPI_BYTE, &type);
+    MPI_Type_commit(&type);
+    return type;
+}
+
+/* Until these requests are done. */
+static void wait_for(int count, MPI_Request *requests)
+{
+    static const int spins = 200, most_nap = 200; /* us */
+    int done = 0, nap = 10;
+    if (!own.patient) {
+        MPI_Waitall(count, requests, MPI_STATUSES_IGNORE);
+        return;
+    }
+    for (int i = 0; !done; i++) {
+        MPI_Testall(count, requests, &done, MPI_STATUSES_IGNORE);
+        if (!done && i > spins) {
+            usleep((useconds_t)nap);
+            nap = 2 * nap < most_nap ? 2 * nap : most_nap;
+        }
+    }
+}
+
+static void gather(const struct ranks *ranks, void *items, size_t size, const int64_t *first)
+{
+    struct cost_of_message message = begin_message();
+    MPI_Datatype type = type_of(size);
+    for (int r = 0; r < ranks->count; r++) {
+        own.count[r] = (int)(first[r + 1] - first[r]);
+        own.place[r] = (int)first[r];
+    }
+    MPI_Iallgatherv(MPI_IN_PLACE, 0, type, items, own.count, own.place, type, MPI_COMM_WORLD, own.requests);
+    wait_for(1, own.requests);
+    MPI_Type_free(&type);
+    own.sent += (double)own.count[ranks->rank] * (double)size * (ranks->count - 1);
+    end_message(&message);
+}
+
+static void exchange(const struct ranks *ranks, size_t size, const void *send, const int64_t *send_first,
+                     void *receive, const int64_t *receive_first)
+{
+    struct cost_of_message message = begin_message();
+    MPI_Datatype type = type_of(size);
+    int requests = 0;
+    for (int r = 0; r < ranks->count; r++) {
+        int count = (int)(receive_first[r + 1] - receive_first[r]);
+        char *to = (char *)receive + receive_first[r] * (int64_t)size;
+        if (r != ranks->rank && count > 0) {
+            MPI_Irecv(to, count, type, r, 0, MPI_COMM_WORLD, &own.requests[requests++]);
+        }
+    }
+    for (int r = 0; r < ranks->count; r++) {
+        int count = (int)(send_first[r + 1] - send_first[r]);
+        const char *from = (const char *)send + send_first[r] * (int64_t)size;
+        if (r == ranks->rank) {
+            memmove((char *)receive + receive_first[r] * (int64_t)size, from, (size_t)count * size);
+        } else if (count > 0) {
+            MPI_Isend(from, count, type, r, 0, MPI_COMM_WORLD, &own.requests[requests++]);
+            own.sent += (double)count * (double)size;
+        }
+    }
+    wait_for(requests, own.requests);
+    MPI_Type_free(&type);
+    end_message(&message);
+}
+
+static void send_to(const struct ranks *ranks, int to, const double *x, int64_t count)
+{
+    struct cost_of_message message = begin_message();
+    (void)ranks;
+    MPI_Isend(x, (int)count, MPI_DOUBLE, to, 1, MPI_COMM_WORLD, own.requests);
+    wait_for(1, own.requests);
+    own.sent += (double)count * sizeof *x;
+    end_message(&message);
+}
+
+static void receive_from(const struct ranks *ranks, int from, double *x, int64_t count)
+{
+    struct cost_of_message message = begin_message();
+    (void)ranks;
+    MPI_Irecv(x, (int)count, MPI_DOUBLE, from, 1, MPI_COMM_WORLD, own.requests);
+    wait_for(1, own.requests);
+    end_message(&message);
+}
+
+static int64_t most(const struct ranks *ranks, int64_t value)
+{
+    struct cost_of_message message = begin_message();
+    int64_t largest = value;
+    (void)ranks;
+    MPI_Iallreduce(&value, &largest, 1, MPI_INT64_T, MPI_MAX, MPI_COMM_WORLD, own.requests);
+    wait_for(1, own.requests);
+    end_message(&message);
+    return largest;
+}
+
+void process_begin(int *argc, char ***argv)
+{
+    static char name[] = "mtled"; /* what is computed, and what is said of it, is the same */
+    int provided;
+    struct ranks *ranks = &own.ranks;
+    *ranks = (struct ranks){
+        .gather = gather, .exchange = exchange, .send = send_to, .receive = receive_from, .most = most};
+    const char *policy = getenv("OMP_WAIT_POLICY");
+    own.patient = policy != NULL && strcasecmp(policy, "passive") == 0;
+    MPI_Init_thread(argc, argv, MPI_THREAD_FUNNELED, &provided);
+    MPI_Comm_size(MPI_COMM_WORLD, &ranks->count);
+    MPI_Comm_rank(MPI_COMM_WORLD, &ranks->rank);
+    MPI_Comm_dup(MPI_COMM_WORLD, &own.ends);
+    own.count = calloc((size_t)ranks->count, sizeof *own.count);
+    own.place = calloc((size_t)ranks->count, sizeof *own.place);
+    own.requests = calloc(2 * (size_t)ranks->count, sizeof(MPI_Request));
+    if (own.count == NULL || own.place == NULL || own.requests == NULL) {
+        fail_memory_now();
+    }
+    if (*argc > 0) {
+        (*argv)[0] = name;
+    }
+}
+
+const struct ranks *process_ranks(void)
+{
+    return own.ranks.count > 1 ? &own.ranks : NULL;
+}
+
+bool process_speaks(void)
+{
+    return own.ranks.rank == 0;
+}
+
+bool process_fails_alone(void)
+{
+    int all = 0;
+    double started = clock_seconds();
+    if (own.failing || own.ended) {
+        return own.alone;
+    }
+    own.failing = true;
+    MPI_Ibarrier(own.ends, &own.failed);
+    MPI_Test(&own.failed, &all, MPI_STATUS_IGNORE);
+    while (!all && clock_seconds() - started < most_wait) {
+        usleep(1000);
+        MPI_Test(&own.failed, &all, MPI_STATUS_IGNORE);
+    }
+    own.alone = !all;
+    return own.alone;
+}
+
+/* mpirun ends the others when a process ends without this. */
+void process_end(void)
+{
+    if (!own.ended && !own.alone) {
+        own.ended = true;
+        MPI_Finalize();
+    }
+}
+
+void process_report(int64_t evaluations)
+{
+    enum { SENT, COMPUTING, WAITING, VALUES };
+    double mine[VALUES] = {own.sent, processor_seconds(CLOCK_PROCESS_CPUTIME_ID) - own.spun, own.waited};
+    double all[VALUES], largest[VALUES];
+    int count = own.ranks.count;
+    if (count == 1) {
+        return;
+    }
+    MPI_Allreduce(mine, all, VALUES, MPI_DOUBLE, MPI_SUM, MPI_COMM_WORLD);
+    MPI_Allreduce(mine, largest, VALUES, MPI_DOUBLE, MPI_MAX, MPI_COMM_WORLD);
+    if (process_speaks()) {
+        fprintf(stderr, "processes\t%d\n", count);
+        fprintf(stderr, "bytes sent by a process in an evaluation\t%.0f\tmost\t%.0f\n",
+                all[SENT] / count / (double)evaluations, largest[SENT] / (double)evaluations);
+        fprintf(stderr, "processor seconds of a process but for waiting\t%.3f\tmost\t%.3f\n",
+                all[COMPUTING] / count, largest[COMPUTING]);
+        fprintf(stderr, "seconds of sending and waiting\t%.3f\tmost\t%.3f\n", all[WAITING] / count,
+                largest[WAITING]);
+    }
+}
