@@ -13,7 +13,7 @@ static const double least_share = 1e-6; /* of the mean diagonal entry, that node
 static enum status make_room(struct lower *lower, int64_t more, struct error *error)
 {
     if (lower->count + more > lower->capacity) {
-        int64_t capacity = 2 * (lower->count + more) + 4096;
+        int64_t capacity = (lower->count + more) / 4 * 5 + 4096;
         int32_t *idx = array_grow(lower->idx, capacity, sizeof *idx);
         lower->idx = idx != NULL ? idx : lower->idx;
         double *value = array_grow(lower->value, capacity, sizeof *value);

@@ -34,33 +34,37 @@ static struct average bond_at(const struct solid_system *system, int64_t b, doub
     return average_of_boundary(system->contacts[c].points, b);
 }
 
-/* Field or bond f; of nodes of the body's order or the system's. Of several processes the body has not all
- * rows here, but their tables are. */
-static struct average field_at(const struct scalar_stiffness *stiffness, int64_t f)
+/* Field or bond f; (*place)[]: the body's index of each of its nodes, NULL where they are such. Of several
+ * processes the body has not all rows here, but their tables are. */
+static struct average field_at(const struct scalar_stiffness *stiffness, int64_t f, const int32_t **place)
 {
-    const struct field_averages *averages = &stiffness->system->body.cells.averages;
+    const struct body *body = &stiffness->system->body;
+    const struct field_averages *averages = &body->cells.averages;
     double unused;
+    *place = body->node_place;
     if (f >= stiffness->field_count) {
         return bond_at(stiffness->system, f - stiffness->field_count, &unused);
     }
-    if (averages->face_order == NULL) {
+    if (body->share.ranks == NULL) {
         int64_t at = averages->matrix.ptr[f];
+        *place = NULL;
         return (struct average){averages->matrix.ptr[f + 1] - at, averages->matrix.idx + at,
                                 averages->matrix.value + at};
     }
     int64_t faces = averages->told[0].row_count;
     const struct average_table *table = &averages->told[f < faces ? 0 : 1];
-    int64_t row = f < faces ? averages->face_order[f] : stiffness->system->body.node_order[f - faces];
-    int64_t at = table->ptr[row];
+    int64_t row = table->order[f < faces ? f : f - faces], at = table->ptr[row];
     return (struct average){table->ptr[row + 1] - at, table->idx + at, table->phi + at};
 }
 
-/* Node k of field or bond f, as the system counts nodes. */
-static int64_t node_of(const struct scalar_stiffness *stiffness, int64_t f, const struct average *field,
-                       int64_t k)
+/* The fields that node i is in, and its shares there. */
+static struct average fields_of(const struct scalar_stiffness *stiffness, int64_t i)
 {
-    bool in_body = f < stiffness->field_count && stiffness->system->body.cells.averages.face_order == NULL;
-    return in_body ? stiffness->system->body.node_order[field->idx[k]] : field->idx[k];
+    const struct body *body = &stiffness->system->body;
+    bool listed = body->share.ranks != NULL;
+    const struct sparse *fields = listed ? &stiffness->fields : &body->cells.averages.transposed;
+    int64_t row = listed ? i : body->node_place[i], at = fields->ptr[row];
+    return (struct average){fields->ptr[row + 1] - at, fields->idx + at, fields->value + at};
 }
 
 /* The field that corner k of cell q looks at: its face, or with `vertex` its node. */
@@ -72,36 +76,62 @@ static int64_t field_of_corner(const struct scalar_stiffness *stiffness, int64_t
     return averages->of_corner[corner] / VECTOR_STRIDE(body->dim);
 }
 
-static enum status list_nodes(struct scalar_stiffness *stiffness, struct error *error)
+/* Of several processes the body has the transpose for other nodes than those of these rows. */
+static enum status list_fields(struct scalar_stiffness *stiffness, struct error *error)
 {
     enum status status;
-    int64_t nodes = stiffness->system->node_count, all = stiffness->field_count + stiffness->bond_count;
-    TRY(NEW_ARRAY(&stiffness->node_ptr, nodes + 2, error));
-    int64_t *start = stiffness->node_ptr;
-    for (int64_t f = 0; f < all; f++) {
-        struct average field = field_at(stiffness, f);
+    int64_t nodes = stiffness->system->node_count, begin = stiffness->begin, end = stiffness->end;
+    const int32_t *unused;
+    int64_t *next = NULL;
+    TRY(NEW_ARRAY(&next, nodes + 1, error));
+    for (int64_t f = 0; f < stiffness->field_count; f++) {
+        struct average field = field_at(stiffness, f, &unused);
         for (int64_t i = 0; i < field.length; i++) {
-            int64_t node = node_of(stiffness, f, &field, i);
-            start[node + 2] += node >= stiffness->begin && node < stiffness->end;
+            next[field.idx[i] + 1] += field.idx[i] >= begin && field.idx[i] < end;
         }
     }
     for (int64_t n = 0; n < nodes; n++) {
-        start[n + 2] += start[n + 1];
+        next[n + 1] += next[n];
     }
-    TRY(NEW_ARRAY(&stiffness->node_field, start[nodes + 1], error));
-    TRY(NEW_ARRAY(&stiffness->node_phi, start[nodes + 1], error));
-    for (int64_t f = 0; f < all; f++) {
-        struct average field = field_at(stiffness, f);
+    TRY(sparse_new(nodes, stiffness->field_count, next[nodes], &stiffness->fields, error));
+    memcpy(stiffness->fields.ptr, next, (size_t)(nodes + 1) * sizeof *next);
+    for (int64_t f = 0; f < stiffness->field_count; f++) {
+        struct average field = field_at(stiffness, f, &unused);
         for (int64_t i = 0; i < field.length; i++) {
-            int64_t node = node_of(stiffness, f, &field, i);
-            if (node >= stiffness->begin && node < stiffness->end) {
-                int64_t at = start[node + 1]++;
-                stiffness->node_field[at] = (int32_t)f;
-                stiffness->node_phi[at] = field.phi[i];
+            if (field.idx[i] >= begin && field.idx[i] < end) {
+                int64_t at = next[field.idx[i]]++;
+                stiffness->fields.idx[at] = (int32_t)f;
+                stiffness->fields.value[at] = field.phi[i];
             }
         }
     }
 done:
+    free(next);
+    return status;
+}
+
+static enum status list_bonds(struct scalar_stiffness *stiffness, struct error *error)
+{
+    enum status status;
+    const struct solid_system *system = stiffness->system;
+    struct sparse by_bond = {0};
+    double unused;
+    int64_t entries = 0, at = 0;
+    for (int64_t b = 0; b < stiffness->bond_count; b++) {
+        entries += bond_at(system, b, &unused).length;
+    }
+    TRY(sparse_new(stiffness->bond_count, system->node_count, entries, &by_bond, error));
+    for (int64_t b = 0; b < stiffness->bond_count; b++) {
+        struct average bond = bond_at(system, b, &stiffness->bond_stiffness[b]);
+        for (int64_t i = 0; i < bond.length; i++, at++) {
+            by_bond.idx[at] = bond.idx[i];
+            by_bond.value[at] = bond.phi[i];
+        }
+        by_bond.ptr[b + 1] = at;
+    }
+    TRY(sparse_transpose(&by_bond, &stiffness->bonds, error));
+done:
+    sparse_free(&by_bond);
     return status;
 }
 
@@ -118,10 +148,10 @@ enum status scalar_stiffness_make(const struct solid_system *system, int64_t beg
         goto done;
     }
     TRY(NEW_ARRAY(&stiffness->bond_stiffness, stiffness->bond_count, error));
-    for (int64_t b = 0; b < stiffness->bond_count; b++) {
-        (void)bond_at(system, b, &stiffness->bond_stiffness[b]);
+    TRY(list_bonds(stiffness, error));
+    if (body->share.ranks != NULL) {
+        TRY(list_fields(stiffness, error));
     }
-    TRY(list_nodes(stiffness, error));
 done:
     if (status != STATUS_OK) {
         scalar_stiffness_free(stiffness);
@@ -131,21 +161,18 @@ done:
 
 void scalar_stiffness_free(struct scalar_stiffness *stiffness)
 {
-    free(stiffness->node_ptr);
-    free(stiffness->node_field);
-    free(stiffness->node_phi);
+    sparse_free(&stiffness->bonds);
+    sparse_free(&stiffness->fields);
     free(stiffness->bond_stiffness);
     *stiffness = (struct scalar_stiffness){0};
 }
 
 void scalar_stiffness_work(const struct solid_system *system, double *work)
 {
-    const struct scalar_stiffness fields = {.system = system,
-                                            .field_count = system->body.cells.averages.row_count};
-    for (int64_t f = 0; f < fields.field_count; f++) {
-        struct average field = field_at(&fields, f);
-        for (int64_t i = 0; i < field.length; i++) {
-            work[node_of(&fields, f, &field, i)] += 1.0;
+    for (int k = 0; k < 2; k++) {
+        const struct average_table *table = &system->body.cells.averages.told[k];
+        for (int64_t i = 0; i < table->ptr[table->row_count]; i++) {
+            work[table->idx[i]] += 1.0;
         }
     }
     const struct neighbours *lists = system->node_lists;
@@ -172,7 +199,6 @@ enum status scalar_row_make(const struct scalar_stiffness *stiffness, struct sca
     TRY(NEW_ARRAY(&row->touched, fields, error));
     TRY(NEW_ARRAY(&row->cell_seen, stiffness->system->body.point_count, error));
     TRY(NEW_ARRAY(&row->field_seen, fields, error));
-    TRY(NEW_ARRAY(&row->node_seen, nodes, error));
 done:
     if (status != STATUS_OK) {
         scalar_row_free(row);
@@ -182,8 +208,8 @@ done:
 
 void scalar_row_free(struct scalar_row *row)
 {
-    void *arrays[] = {row->node,    row->value,     row->at_field,   row->on_field, row->sum,
-                      row->touched, row->cell_seen, row->field_seen, row->node_seen};
+    void *arrays[] = {row->node, row->value,   row->at_field,  row->on_field,
+                      row->sum,  row->touched, row->cell_seen, row->field_seen};
     for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) {
         free(arrays[i]);
     }
@@ -245,57 +271,79 @@ static int compare_nodes(const void *left, const void *right)
     return (a > b) - (a < b);
 }
 
+/* Force on a node of the body's order, listed in row->node. */
+static inline void add_to_node(int32_t node, double amount, int64_t i, struct scalar_row *row)
+{
+    struct scalar_sum *at = &row->sum[node];
+    if (at->row != i + 1) {
+        *at = (struct scalar_sum){.row = i + 1};
+        row->node[row->count++] = node;
+    }
+    at->sum += amount;
+}
+
 /* The forces on the nodes up to i. */
 static void spread(const struct scalar_stiffness *stiffness, int64_t touched, int64_t i,
                    struct scalar_row *row)
 {
+    const struct body *body = &stiffness->system->body;
+    const int32_t *place;
+    int64_t kept = 0;
     row->count = 0;
     for (int64_t t = 0; t < touched; t++) {
-        struct average field = field_at(stiffness, row->touched[t]);
+        struct average field = field_at(stiffness, row->touched[t], &place);
         double force = row->on_field[row->touched[t]];
         for (int64_t k = 0; k < field.length; k++) {
-            int32_t node = (int32_t)node_of(stiffness, row->touched[t], &field, k);
-            if (node > i) {
-                continue;
-            }
-            if (row->node_seen[node] != i + 1) {
-                row->node_seen[node] = i + 1;
-                row->node[row->count++] = node;
-                row->sum[node] = 0.0;
-            }
-            row->sum[node] += force * field.phi[k];
+            int32_t node = place != NULL ? place[field.idx[k]] : field.idx[k];
+            add_to_node(node, force * field.phi[k], i, row);
         }
     }
+    for (int64_t k = 0; k < row->count; k++) {
+        int64_t node = body->node_order[row->node[k]];
+        if (node <= i) {
+            row->node[kept++] = (int32_t)node;
+        }
+    }
+    row->count = kept;
     qsort(row->node, (size_t)row->count, sizeof *row->node, compare_nodes);
     for (int64_t k = 0; k < row->count; k++) {
-        row->value[k] = row->sum[row->node[k]];
+        row->value[k] = row->sum[body->node_place[row->node[k]]].sum;
+    }
+}
+
+/* The cells whose corners look at field f. */
+static void add_cells(const struct scalar_stiffness *stiffness, int64_t f, int64_t i, struct scalar_row *row,
+                      int64_t *touched)
+{
+    const struct body *body = &stiffness->system->body;
+    const struct field_averages *averages = &body->cells.averages;
+    for (int64_t c = averages->corner_ptr[f]; c < averages->corner_ptr[f + 1]; c++) {
+        int64_t q = averages->corner[c] % averages->corner_count / (body->dim + 1);
+        if (row->cell_seen[q] != i + 1) {
+            row->cell_seen[q] = i + 1;
+            add_cell(stiffness, q, i, row, touched);
+        }
     }
 }
 
 void scalar_stiffness_row(const struct scalar_stiffness *stiffness, int64_t i, struct scalar_row *row)
 {
-    const struct field_averages *averages = &stiffness->system->body.cells.averages;
-    int dim = stiffness->system->body.dim;
-    int64_t first = stiffness->node_ptr[i], last = stiffness->node_ptr[i + 1], touched = 0;
-    for (int64_t n = first; n < last; n++) {
-        row->at_field[stiffness->node_field[n]] = stiffness->node_phi[n];
+    const struct sparse *bonds = &stiffness->bonds;
+    struct average fields = fields_of(stiffness, i);
+    int64_t touched = 0;
+    for (int64_t k = 0; k < fields.length; k++) {
+        row->at_field[fields.idx[k]] = fields.phi[k];
     }
-    for (int64_t n = first; n < last; n++) {
-        int64_t f = stiffness->node_field[n], bond = f - stiffness->field_count;
-        if (bond >= 0) {
-            put(stiffness->bond_stiffness[bond] * stiffness->node_phi[n], f, i, row, &touched);
-            continue;
-        }
-        for (int64_t c = averages->corner_ptr[f]; c < averages->corner_ptr[f + 1]; c++) {
-            int64_t q = averages->corner[c] % averages->corner_count / (dim + 1);
-            if (row->cell_seen[q] != i + 1) {
-                row->cell_seen[q] = i + 1;
-                add_cell(stiffness, q, i, row, &touched);
-            }
-        }
+    for (int64_t k = 0; k < fields.length; k++) {
+        add_cells(stiffness, fields.idx[k], i, row, &touched);
     }
-    for (int64_t n = first; n < last; n++) {
-        row->at_field[stiffness->node_field[n]] = 0.0;
+    for (int64_t k = bonds->ptr[i]; k < bonds->ptr[i + 1]; k++) {
+        int64_t bond = bonds->idx[k];
+        put(stiffness->bond_stiffness[bond] * bonds->value[k], stiffness->field_count + bond, i, row,
+            &touched);
+    }
+    for (int64_t k = 0; k < fields.length; k++) {
+        row->at_field[fields.idx[k]] = 0.0;
     }
     spread(stiffness, touched, i, row);
 }
