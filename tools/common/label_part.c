@@ -18,8 +18,8 @@ struct place {
 static void world_of(const struct label_image *image, int64_t voxel, double world[3])
 {
     const int64_t *size = image->labels.size;
-    const double at[3] = {(double)(voxel % size[0]), (double)(voxel / size[0] % size[1]),
-                          (double)(voxel / size[0] / size[1])};
+    int64_t line = voxel / size[0], slice = line / size[1];
+    const double at[3] = {(double)(voxel % size[0]), (double)(line % size[1]), (double)slice};
     for (int d = 0; d < 3; d++) {
         const double *row = image->to_world[d];
         world[d] = row[0] * at[0] + row[1] * at[1] + row[2] * at[2] + row[3];
