@@ -73,7 +73,7 @@ $(NEURO)/%.scene: $(NEURO_INPUT)/%.scene
 
 $(NEURO)/skull.tsv: $(NEURO_LABELS) $(NEURO_INPUT)/brain.tsv $(NEURO_PROGRAMS)
 	@mkdir -p $(@D)
-	voxels $< -h 3mm -l $(NEURO_INPUT)/brain.tsv --surface 'brain|outside' --gap 2mm > $@
+	voxels $< -h 5mm -l $(NEURO_INPUT)/brain.tsv --surface 'brain|outside' --gap 2mm > $@
 
 $(NEURO)/true.u.dat: $(NEURO_LABELS) $(NEURO_NAMES) $(NEURO)/$(NEURO_TRUTH).scene $(NEURO)/skull.tsv $(NEURO_PROGRAMS)
 	(voxels $< -h $(NEURO_TRUE_SPACING) -l $(NEURO_NAMES) $(NEURO_PART) | groups $(NEURO_GROUPS) | shapefn | \

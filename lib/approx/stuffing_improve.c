@@ -200,8 +200,8 @@ static void settle(const struct labels *labels, const bool *keep, struct stuffin
     int dim = stuffing->dim;
     double most = last_slack * labels_voxel(labels);
     for (int64_t n = 0; n < stuffing->node_count; n++) {
-        double *x = stuffing->x + n * dim, from[3] = {0}, target[3] = {0}, off;
-        if (star->labels[n] < 2 || !((off = distance(labels, keep, stuffing, star, n)) > most)) {
+        double *x = stuffing->x + n * dim, from[3] = {0}, target[3] = {0};
+        if (star->labels[n] < 2 || !(distance(labels, keep, stuffing, star, n) > most)) {
             continue;
         }
         double score = fmin(star_score(stuffing, star, n), last_score);
