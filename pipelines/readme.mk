@@ -5,6 +5,8 @@
 README_TEXTS := README.md examples/README.md examples/neurosurgery/README.md pipelines/README.md
 README_PICTURES := brain2d/section brain2d/difference table1/surface speed-error/speed-error brain3d/brain3d convergence/convergence uncertainty/uncertainty adaptive/refinement \
     brain2d-convergence/brain2d-convergence
+# Others, and what they are called there.
+NEURO_PICTURES := slices=slices resection/slices=resection
 RESULTS := pipelines/results
 # Tables of the studies, and what they are called there.
 RESULT_TABLES := brain2d/compare=brain2d brain2d-convergence/convergence=brain2d-convergence brain3d/compare=brain3d table1/beside=table1 speed-error/speed-error=speed-error \
@@ -32,7 +34,8 @@ readme: all results
 	    KEEP=1 bash pipelines/readme.sh < $$text > $(BUILD)/$$text; \
 	    cp $(BUILD)/$$text $$text; \
 	done
-	for picture in $(README_PICTURES); do \
+	for picture in $(README_PICTURES) $(NEURO_PICTURES); do \
 	    made=$(OUT)/$$picture.png; kept=examples/brain2d/pictures/$$(basename $$picture).png; \
+	    case $$picture in *=*) made=$(OUT)/neurosurgery/$${picture%=*}.png; kept=examples/neurosurgery/pictures/$${picture#*=}.png ;; esac; \
 	    [ ! $$made -nt $$kept ] || ! command -v convert > /dev/null || convert $$made -resize 70% -colors 64 -strip PNG8:$$kept; \
 	done
