@@ -70,9 +70,23 @@ static bool contains(const struct folds *folds, int64_t cell, const double *poin
     return true;
 }
 
+/* The box around a cell. */
+static void bound(const struct folds *folds, int64_t cell, double *low, double *high)
+{
+    int dim = folds->input.dim;
+    for (int i = 0; i < dim; i++) {
+        low[i] = INFINITY;
+        high[i] = -INFINITY;
+        for (int k = 0; k <= dim; k++) {
+            double place = folds->y[(int64_t)folds->input.cell[cell * (dim + 1) + k] * dim + i];
+            low[i] = fmin(low[i], place);
+            high[i] = fmax(high[i], place);
+        }
+    }
+}
+
 void folds_find_within(struct folds *folds, struct fold *fold)
 {
-    int dim = folds->input.dim, corners = dim + 1;
     int64_t count = folds->body_count;
     if (count < 2) {
         return;
@@ -82,22 +96,18 @@ void folds_find_within(struct folds *folds, struct fold *fold)
     }
     qsort(folds->bodies, (size_t)count, sizeof *folds->bodies, compare_bodies);
     for (int64_t c = 0; c < folds->input.cell_count; c++) {
-        double low = INFINITY, high = -INFINITY;
-        for (int k = 0; k < corners; k++) {
-            double place = folds->y[(int64_t)folds->input.cell[c * corners + k] * dim];
-            low = fmin(low, place);
-            high = fmax(high, place);
-        }
+        double low[3], high[3];
         int64_t first = 0;
-        for (int64_t last = count; first < last;) { /* the first body from `low` on */
+        bound(folds, c, low, high);
+        for (int64_t last = count; first < last;) { /* the first body from low[0] on */
             int64_t middle = first + (last - first) / 2;
-            if (folds->bodies[middle].middle[0] < low) {
+            if (folds->bodies[middle].middle[0] < low[0]) {
                 first = middle + 1;
             } else {
                 last = middle;
             }
         }
-        for (int64_t b = first; b < count && folds->bodies[b].middle[0] <= high; b++) {
+        for (int64_t b = first; b < count && folds->bodies[b].middle[0] <= high[0]; b++) {
             const struct fold_body *body = &folds->bodies[b];
             if (folds->part[c] == folds->part[body->cell] || !contains(folds, c, body->middle, on_face)) {
                 continue;
@@ -122,21 +132,6 @@ static bool are_neighbours(const struct folds *folds, int64_t c, int64_t other)
         }
     }
     return false;
-}
-
-/* The box around a cell. */
-static void bound(const struct folds *folds, int64_t cell, double *low, double *high)
-{
-    int dim = folds->input.dim;
-    for (int i = 0; i < dim; i++) {
-        low[i] = INFINITY;
-        high[i] = -INFINITY;
-        for (int k = 0; k <= dim; k++) {
-            double place = folds->y[(int64_t)folds->input.cell[cell * (dim + 1) + k] * dim + i];
-            low[i] = fmin(low[i], place);
-            high[i] = fmax(high[i], place);
-        }
-    }
 }
 
 enum status folds_look_for_overlaps(struct folds *folds, bool of_bodies, struct fold *fold,

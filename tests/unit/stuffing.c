@@ -81,11 +81,8 @@ static void smooth_shapes(void **state)
     (void)state;
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         struct label_shape shape;
-        assert_true(label_shape_make(cases[i].name, 1, millimetre, &shape));
-        struct labels labels = labels_of(&shape);
-        struct stuffing_options options = {.spacing = 1e-3 * cases[i].spacing, .keep = all_kept};
-        struct stuffing stuffing = make(&labels, &options);
-        check_cells(&stuffing);
+        struct labels labels;
+        struct stuffing stuffing = make_of_shape(cases[i].name, 1, cases[i].spacing, &shape, &labels);
         check_volumes(&labels, &shape, &stuffing, 0.01);
         assert_int_equal(count_astray(&labels, &stuffing), 0);
         stuffing_free(&stuffing);
@@ -100,11 +97,8 @@ static void random_blobs(void **state)
     for (uint64_t seed = 1; seed <= 20; seed++) {
         for (int h = 3; h <= 5; h += 2) {
             struct label_shape shape;
-            assert_true(label_shape_make("blobs", seed, millimetre, &shape));
-            struct labels labels = labels_of(&shape);
-            struct stuffing_options options = {.spacing = 1e-3 * h, .keep = all_kept};
-            struct stuffing stuffing = make(&labels, &options);
-            check_cells(&stuffing);
+            struct labels labels;
+            struct stuffing stuffing = make_of_shape("blobs", seed, h, &shape, &labels);
             check_volumes(&labels, &shape, &stuffing, 0.01);
             int64_t astray = count_astray(&labels, &stuffing);
             assert_true((double)astray <= 0.01 * (double)stuffing.node_count);

@@ -16,11 +16,8 @@ static void surface_over_labels(void **state)
     (void)state;
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         struct label_shape shape;
-        assert_true(label_shape_make(cases[i].name, 1, millimetre, &shape));
-        struct labels labels = labels_of(&shape);
-        struct stuffing_options options = {.spacing = 1e-3 * cases[i].spacing, .keep = all_kept};
-        struct stuffing stuffing = make(&labels, &options);
-        check_cells(&stuffing);
+        struct labels labels;
+        struct stuffing stuffing = make_of_shape(cases[i].name, 1, cases[i].spacing, &shape, &labels);
         for (int64_t k = 0; k < stuffing.facet_count * 3; k++) {
             const double *x = stuffing.x + 3 * (int64_t)stuffing.facet[k];
             double r = sqrt(x[0] * x[0] + x[1] * x[1] + x[2] * x[2]);

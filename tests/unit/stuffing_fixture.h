@@ -83,4 +83,17 @@ static inline void check_cells(const struct stuffing *stuffing)
     assert_true(fabs(flux / dim / volume - 1) < 1e-9);
 }
 
+/* Cells of a shape of one-millimetre voxels, all labels kept, at a spacing in mm, checked. *labels is a view
+ * of *shape, whose label[] is to be freed. */
+static inline struct stuffing make_of_shape(const char *name, uint64_t seed, double spacing,
+                                            struct label_shape *shape, struct labels *labels)
+{
+    assert_true(label_shape_make(name, seed, millimetre, shape));
+    *labels = labels_of(shape);
+    struct stuffing_options options = {.spacing = 1e-3 * spacing, .keep = all_kept};
+    struct stuffing stuffing = make(labels, &options);
+    check_cells(&stuffing);
+    return stuffing;
+}
+
 #endif
