@@ -41,8 +41,8 @@ done:
     return status;
 }
 
-/* The largest angle of a facet, degrees, once all corners are where the labels meet; 0 where there is no such
- * place. */
+/* The largest angle of a facet, degrees, once all corners are where the labels meet; 180 where one cannot be
+ * put there. */
 static double angle_on_line(const struct labels *labels, const struct stuffing_options *options,
                             const struct stuffing *stuffing, int64_t facet, const uint16_t label[3])
 {
@@ -51,7 +51,7 @@ static double angle_on_line(const struct labels *labels, const struct stuffing_o
         int64_t node = stuffing->facet[facet * 3 + k];
         memcpy(x[k], stuffing->x + node * 3, sizeof x[k]);
         if (!line_project(labels, options->keep, 3, label, x[k])) {
-            return 0.0;
+            return 180.0;
         }
     }
     for (int k = 0; k < 3; k++) {
