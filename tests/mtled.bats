@@ -383,7 +383,7 @@ END
         refused 2 "no section $section: run shapefn" mtled block.scene none.mts
     done
     refused 2 "" mtled block.scene /dev/null
-    for section in cells.region points.weight points.cell faces.cell facets.set face.phi face.idx boundary.phi boundary.ptr node.phi node.ptr; do
+    for section in cells.region points.weight points.cell faces.cell faces.row facets.set face.phi face.idx boundary.phi boundary.ptr node.phi node.ptr; do
         shortened $section table.mts > short.mts
         refused 2 "fit" mtled block.scene short.mts
     done

@@ -204,9 +204,9 @@ violates() {
     run -1 mts check damaged
     [ "${lines[0]}" = "nbr.ptr: 2 rows, but points.x has 2: need one more" ]
     square | sed '/^# u /,$d' > damaged
-    printf '# faces.cell i4 2 2\n0 -1\n0 1\n\n\n# facepoints.x f8 3 2\n0 0\n0 0\n0 0\n\n\n# end 18\n' >> damaged
+    printf '# faces.cell i4 2 2\n0 -1\n0 1\n\n\n# faces.row i4 2 1\n0\n1\n\n\n# facepoints.x f8 3 2\n0 0\n0 0\n0 0\n\n\n# end 19\n' >> damaged
     run -1 mts check damaged
-    [[ $output == *"facepoints.x: 3 points on 2 faces"* ]]
+    [[ $output == *"facepoints.x: 3 points on 2 rows of faces"* ]]
     sed 's/^0 -1$/0 1 /;/^0 1$/s/1/-1/' damaged > swapped
     run -1 mts check swapped
     [[ $output == *"faces.cell: row 1: on the boundary, after faces between cells"* ]]
@@ -217,7 +217,13 @@ violates() {
     [[ $output == *"boundary.ptr: 15 points on 8 faces of the boundary"* ]]
     shortened face.ptr whole > damaged
     run -1 mts check damaged
-    [[ $output == *"face.ptr: 16 rows, but faces has 16: need one more"* ]]
+    [[ $output == *"face.ptr: 16 rows, but faces.row has 16: need one more"* ]]
+    awk '$2 == "faces.row" { print; getline; print 2; next } { print }' whole > damaged
+    run -1 mts check damaged
+    [[ $output == *"faces.row: row 0: 2: not numbered as they come"* ]]
+    awk '/^#/ { at = $2 == "faces.row"; if (at) $5 = 2 } at && /^[0-9]/ { $0 = $0 " " $0 } { print }' whole > damaged
+    run -1 mts check damaged
+    [[ $output == *"faces.row: not 1 columns of i4 and a row for each of faces"* ]]
     printf '# mts 1\n# nodes.x f8 1 1\n0\n\n\n# end 1\n' > damaged
     run -1 mts check damaged
     [ "${lines[0]}" = "nodes.x: 1 columns instead of 2 or 3" ]

@@ -157,9 +157,14 @@ setup() {
         run -2 --separate-stderr "$tool" table.mts
         [ "$stderr" = "$tool: no section facepoints.x: run ipoints" ]
     done
-    ipoints square.mts | mts drop faces.cell | support > lists.mts
-    run -2 --separate-stderr shapefn lists.mts
-    [ "$stderr" = "shapefn: no section faces.cell: run ipoints" ]
+    for section in faces.cell faces.row; do
+        ipoints square.mts | mts drop $section > part.mts
+        run -2 --separate-stderr support part.mts
+        [ "$stderr" = "support: no section $section: run ipoints" ]
+        ipoints square.mts | support | mts drop $section > lists.mts
+        run -2 --separate-stderr shapefn lists.mts
+        [ "$stderr" = "shapefn: no section $section: run ipoints" ]
+    done
 }
 
 # hostile STATUS TOOL STREAM WORDS: refused with that status and words, without output.
@@ -209,6 +214,12 @@ edit() {
         edit faces.cell 1 "$cell 3" lists.txt > bad.txt
         hostile 2 shapefn bad.txt "faces.cell: row 1"
     done
+    for row in 200 -1; do
+        edit faces.row 3 "$row" lists.txt > bad.txt
+        hostile 2 shapefn bad.txt "faces.row: row 3: no row $row of face.phi"
+    done
+    edit faces.row 3 1 lists.txt > bad.txt
+    hostile 2 shapefn bad.txt "faces.row: row 4: no row 4 of face.phi"
     edit facepoint.ptr 0 1 lists.txt > bad.txt
     hostile 2 shapefn bad.txt "facepoint.ptr"
     edit facepoint.ptr 4 0 lists.txt > bad.txt

@@ -82,7 +82,7 @@ static enum status sample_leaves(const struct refinement *refinement, struct lea
         }
     }
     bool by_cells = refinement->options->support.reach == REACH_CELLS;
-    struct reach_places places = {.cell = sample->cell, .per_row = 1, .points_per_row = sample->per_leaf};
+    struct reach_places places = {.cell = sample->cell, .points_per_row = sample->per_leaf};
     TRY(support_build_within(&refinement->options->support, &refinement->grid,
                              by_cells ? &refinement->reach : NULL, &places, points, sample->x,
                              "adaptive points", &sample->lists, error));

@@ -4,6 +4,7 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 /* Faces opposite each vertex's complement, outward from a positively oriented simplex. */
 static const int triangle_faces[3][2] = {{0, 1}, {1, 2}, {2, 0}};
@@ -187,6 +188,42 @@ static void add_face(const struct cells *cells, int64_t s, int64_t beyond, struc
     faces->count++;
 }
 
+/* Rows in the order of the faces: of its own, or of edges. */
+static enum status number_rows(int64_t node_count, struct faces *faces, struct error *error)
+{
+    enum status status;
+    int dim = faces->dim, rows = FACE_ROWS(dim);
+    int64_t own = (dim == 2 ? faces->count : faces->boundary_count) * rows;
+    int32_t *last = NULL, *before = NULL, *higher = NULL; /* edges by their lower node, latest first */
+    TRY(NEW_ARRAY(&faces->row, faces->count * rows, error));
+    TRY(NEW_ARRAY(&last, node_count, error));
+    TRY(NEW_ARRAY(&before, faces->count * rows, error));
+    TRY(NEW_ARRAY(&higher, faces->count * rows, error));
+    for (; faces->row_count < own; faces->row_count++) {
+        faces->row[faces->row_count] = (int32_t)faces->row_count;
+    }
+    for (int64_t i = own; i < faces->count * rows; i++) {
+        const int32_t *node = faces->node + i / rows * dim;
+        int32_t a = node[i % rows], b = node[(i + 1) % rows];
+        int32_t low = a < b ? a : b, high = a < b ? b : a, r = last[low] - 1;
+        while (r >= 0 && higher[r] != high) {
+            r = before[r];
+        }
+        if (r < 0) {
+            r = (int32_t)faces->row_count++;
+            before[r] = last[low] - 1;
+            higher[r] = high;
+            last[low] = r + 1;
+        }
+        faces->row[i] = r;
+    }
+done:
+    free(last);
+    free(before);
+    free(higher);
+    return status;
+}
+
 enum status faces_build(const struct cells *cells, bool boundary_only, struct faces *faces,
                         struct error *error)
 {
@@ -214,6 +251,7 @@ enum status faces_build(const struct cells *cells, bool boundary_only, struct fa
             add_face(cells, s, partner[s] / (dim + 1), faces);
         }
     }
+    status = number_rows(cells->node_count, faces, error);
 done:
     free(partner);
     if (status != STATUS_OK) {
@@ -242,7 +280,47 @@ void faces_free(struct faces *faces)
 {
     free(faces->node);
     free(faces->cell);
+    free(faces->row);
     *faces = (struct faces){0};
+}
+
+enum status faces_row_cells(const struct faces *faces, int64_t **ptr, int32_t **cell, struct error *error)
+{
+    enum status status;
+    int rows = FACE_ROWS(faces->dim);
+    int64_t *start = NULL;
+    *cell = NULL;
+    TRY(NEW_ARRAY(&start, faces->row_count + 2, error));
+    for (int64_t i = 0; i < faces->count * rows; i++) {
+        start[faces->row[i] + 2] += 2;
+    }
+    for (int64_t r = 0; r < faces->row_count; r++) {
+        start[r + 2] += start[r + 1];
+    }
+    TRY(NEW_ARRAY(cell, start[faces->row_count + 1], error));
+    for (int64_t i = 0; i < faces->count * rows; i++) {
+        memcpy(*cell + start[faces->row[i] + 1], faces->cell + i / rows * 2, 2 * sizeof **cell);
+        start[faces->row[i] + 1] += 2;
+    }
+    /* Each once, without what is beyond the boundary. */
+    int64_t kept = 0, from = 0;
+    for (int64_t r = 0; r < faces->row_count; r++) {
+        int64_t first = kept, end = start[r + 1];
+        start[r] = first;
+        for (; from < end; from++) {
+            bool is_new = (*cell)[from] >= 0;
+            for (int64_t i = first; i < kept && is_new; i++) {
+                is_new = (*cell)[i] != (*cell)[from];
+            }
+            if (is_new) {
+                (*cell)[kept++] = (*cell)[from];
+            }
+        }
+    }
+    start[faces->row_count] = kept;
+done:
+    *ptr = start;
+    return status;
 }
 
 enum status cells_node_spacing(const struct cells *cells, double *spacing, struct error *error)

@@ -1,5 +1,7 @@
 #include "approx/quadrature.h"
 
+#include <string.h>
+
 /* Dunavant 1985 (triangles of 6, 7, 12 points: degrees 4, 5, 6); Hammer and Stroud 1956 and Walkington 2000
  * (tetrahedra of 4, 8, 14 points: degrees 2, 3, 5); triangle4: the centroids of the four sub-triangles. */
 static const double triangle1_points[] = {1.0 / 3.0, 1.0 / 3.0, 1.0 / 3.0};
@@ -13,6 +15,7 @@ static const double triangle3_points[] = {
     0.66666666666666674, 0.16666666666666666, 0.16666666666666666, 0.16666666666666666, 0.66666666666666674,
     0.16666666666666666, 0.16666666666666666, 0.16666666666666666, 0.66666666666666674,
 };
+static const double midpoints_points[] = {0.5, 0.5, 0.0, 0.0, 0.5, 0.5, 0.5, 0.0, 0.5};
 static const double triangle3_weights[] = {0.33333333333333331, 0.33333333333333331, 0.33333333333333331};
 static const double triangle4_points[] = {
     0.33333333333333331, 0.33333333333333331, 0.33333333333333331, 0.66666666666666674,
@@ -113,6 +116,7 @@ static const struct quadrature_rule tetrahedron_rules[] = {
 };
 static const struct quadrature_rule edge_rule = RULE(2, 2, edge2);
 static const struct quadrature_rule face_rule = RULE(3, 3, triangle3);
+static const struct quadrature_rule inner_rule = {3, 3, midpoints_points, triangle3_weights};
 
 enum status quadrature_cell_rule(int dim, int points, struct quadrature_rule *rule, struct error *error)
 {
@@ -134,6 +138,11 @@ struct quadrature_rule quadrature_face_rule(int dim)
     return dim == 2 ? edge_rule : face_rule;
 }
 
+struct quadrature_rule quadrature_inner_rule(int dim)
+{
+    return dim == 2 ? edge_rule : inner_rule;
+}
+
 void quadrature_positions(const struct quadrature_rule *rule, int dim, const double *nodes,
                           const int32_t *vertex, double *x)
 {
@@ -144,6 +153,21 @@ void quadrature_positions(const struct quadrature_rule *rule, int dim, const dou
                 sum += rule->barycentric[q * rule->vertices + k] * nodes[(int64_t)vertex[k] * dim + a];
             }
             x[q * dim + a] = sum;
+        }
+    }
+}
+
+void quadrature_face_points(const struct faces *faces, const double *nodes, double *x)
+{
+    int dim = faces->dim, per_row = ROW_POINTS(dim);
+    double place[9];
+    for (int64_t f = 0; f < faces->count; f++) {
+        struct quadrature_rule rule =
+            f < faces->boundary_count ? quadrature_face_rule(dim) : quadrature_inner_rule(dim);
+        quadrature_positions(&rule, dim, nodes, faces->node + f * dim, place);
+        for (int g = 0; g < rule.points; g++) {
+            int64_t point = (int64_t)faces->row[f * FACE_ROWS(dim) + g / per_row] * per_row + g % per_row;
+            memcpy(x + point * dim, place + g * dim, (size_t)dim * sizeof *x);
         }
     }
 }

@@ -17,9 +17,16 @@ struct quadrature_rule {
 MUST_CHECK enum status quadrature_cell_rule(int dim, int points, struct quadrature_rule *rule,
                                             struct error *error);
 
-/* The rule on faces: 2 Gauss points on an edge (cubics exact), 3 interior points on a triangle (quadratics
- * exact). */
+/* The rule on faces of the boundary: 2 Gauss points on an edge (cubics exact), 3 interior points on a
+ * triangle (quadratics exact). */
 struct quadrature_rule quadrature_face_rule(int dim);
+
+/* The rule on faces between cells: in 2D the same; in 3D the middles of the edges (quadratics exact). */
+struct quadrature_rule quadrature_inner_rule(int dim);
+
+/* The points that rows of faces are made of: x[row_count * ROW_POINTS * dim], those of each row in turn. The
+ * mean over a face is that over its points. */
+void quadrature_face_points(const struct faces *faces, const double *nodes, double *x);
 
 /* Position of each of a rule's points in a simplex of node indices `vertex`: x[points * dim]. */
 void quadrature_positions(const struct quadrature_rule *rule, int dim, const double *nodes,

@@ -80,15 +80,10 @@ enum status reach_begin(const struct reach *reach, const struct reach_places *pl
         work->cell = reach->star + reach->star_ptr[p];
         work->cell_count = reach->star_ptr[p + 1] - reach->star_ptr[p];
     } else if (places->cell != NULL) {
-        int64_t count = 0;
-        for (int64_t i = 0; i < places->per_row; i++) {
-            int32_t cell = places->cell[p / places->points_per_row * places->per_row + i];
-            if (cell >= 0) {
-                work->given[count++] = cell;
-            }
-        }
-        work->cell = work->given;
-        work->cell_count = count > 0 ? count : -1;
+        int64_t row = p / places->points_per_row, first = places->ptr != NULL ? places->ptr[row] : row;
+        int64_t end = places->ptr != NULL ? places->ptr[row + 1] : row + 1;
+        work->cell = places->cell + first;
+        work->cell_count = end > first && work->cell[0] >= 0 ? end - first : -1;
     }
     return STATUS_OK;
 }

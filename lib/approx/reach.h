@@ -59,8 +59,8 @@ void reach_free(struct reach *reach);
  * nearest place in a cell sees; far from all cells, all that is near enough. */
 struct reach_places {
     bool nodes;             /* point p is node p */
-    const int32_t *cell;    /* else, unless NULL: cells, -1 for none, per_row for each row */
-    int64_t per_row;        /* 1 or 2 */
+    const int32_t *cell;    /* else, unless NULL: a cell for each row, -1 for none; */
+    const int64_t *ptr;     /* or, unless NULL, the cells of row r from ptr[r] to ptr[r + 1] */
     int64_t points_per_row; /* row of point p: p / points_per_row */
 };
 
@@ -71,8 +71,7 @@ struct reach_work {
     bool outside;
     const int32_t *cell;            /* the cells that it lies in */
     int64_t cell_count;             /* -1: not looked for yet */
-    int32_t given[2];               /* what `cell` may view */
-    struct index_list own;          /* likewise */
+    struct index_list own;          /* what `cell` may view */
     uint32_t serial;                /* of the point */
     uint32_t *mark;                 /* node_count: 2 serial, and 1 more for a node that is hidden */
     uint32_t pass;                  /* serial of the search for paths */

@@ -20,7 +20,7 @@ static const struct list_rule {
     {"sets.ptr", "sets.idx", "names", NULL, NULL},
     {"nbr.ptr", "nbr.idx", "points.x", "shape.phi", "nbr.around"},
     {"facepoint.ptr", "facepoint.idx", "facepoints.x", NULL, "facepoint.around"},
-    {"face.ptr", "face.idx", "faces", "face.phi", NULL},
+    {"face.ptr", "face.idx", NULL, "face.phi", NULL},
     {"boundary.ptr", "boundary.idx", NULL, "boundary.phi", NULL},
     {"node.ptr", "node.idx", "nodes.x", "node.phi", "node.around"},
 };
@@ -287,20 +287,48 @@ static void check_lists(struct check *check, const struct list_rule *rule)
     }
 }
 
-static void check_multiple(struct check *check, const struct section *points, int64_t count, int64_t faces,
-                           const char *which)
+static void check_multiple(struct check *check, const struct section *points, int64_t count, int64_t of,
+                           const char *what)
 {
-    if (points != NULL && (faces == 0 ? count != 0 : count % faces != 0)) {
-        violation(check, points, "%" PRId64 " points on %" PRId64 " faces%s", count, faces, which);
+    if (points != NULL && (of == 0 ? count != 0 : count % of != 0)) {
+        violation(check, points, "%" PRId64 " points on %" PRId64 " %s", count, of, what);
     }
 }
 
-/* Faces on the boundary come first; facepoints.x has equally many points on each face, boundary.ptr on each
- * of these. */
+/* Rows of faces are numbered as they come; facepoints.x has equally many points for each. */
+static void check_face_rows(struct check *check)
+{
+    const struct section *faces = stream_find(check->stream, "faces");
+    const struct section *rows = stream_find(check->stream, "faces.row");
+    const struct section *points = stream_find(check->stream, "facepoints.x");
+    const struct section *ptr = stream_find(check->stream, "face.ptr");
+    int64_t count = 0, cols = check->dim == 2 ? 1 : 3;
+    if (rows == NULL) {
+        return;
+    }
+    if (rows->type != TYPE_I4 || rows->cols != cols || (faces != NULL && faces->rows != rows->rows)) {
+        violation(check, rows, "not %" PRId64 " columns of i4 and a row for each of faces", cols);
+        return;
+    }
+    const int32_t *row = rows->data;
+    for (int64_t i = 0; i < rows->rows * cols; i++) {
+        if (row[i] < 0 || row[i] > count) {
+            violation(check, rows, "row %" PRId64 ": %d: not numbered as they come", i / cols, row[i]);
+            return;
+        }
+        count += row[i] == count;
+    }
+    check_multiple(check, points, points != NULL ? points->rows : 0, count, "rows of faces");
+    if (ptr != NULL && ptr->rows != count + 1) {
+        violation(check, ptr, "%" PRId64 " rows, but faces.row has %" PRId64 ": need one more", ptr->rows,
+                  count);
+    }
+}
+
+/* Faces on the boundary come first; boundary.ptr has equally many points on each of these. */
 static void check_faces(struct check *check)
 {
     const struct section *faces = stream_find(check->stream, "faces.cell");
-    const struct section *points = stream_find(check->stream, "facepoints.x");
     const struct section *boundary = stream_find(check->stream, "boundary.ptr");
     int64_t outer = 0;
     if (faces == NULL || faces->type != TYPE_I4 || faces->cols != 2) {
@@ -313,8 +341,8 @@ static void check_faces(struct check *check)
             return;
         }
     }
-    check_multiple(check, points, points != NULL ? points->rows : 0, faces->rows, "");
-    check_multiple(check, boundary, boundary != NULL ? boundary->rows - 1 : 0, outer, " of the boundary");
+    check_multiple(check, boundary, boundary != NULL ? boundary->rows - 1 : 0, outer,
+                   "faces of the boundary");
 }
 
 /* A field at the nodes, of any number of components. */
@@ -368,6 +396,7 @@ int64_t stream_check(const struct stream *stream, violation_function *tell, void
         check_lists(&check, &list_rules[i]);
     }
     check_faces(&check);
+    check_face_rows(&check);
     for (int64_t i = 0; i < stream->section_count; i++) {
         const struct section *section = &stream->sections[i];
         if (strcmp(section->name, "u") == 0 || strncmp(section->name, "u.frame.", 8) == 0 ||

@@ -53,15 +53,6 @@ static int64_t node_of(const struct scalar_stiffness *stiffness, int64_t f, cons
     return f < stiffness->field_count ? stiffness->system->body.node_order[field->idx[k]] : field->idx[k];
 }
 
-/* The field that corner k of cell q looks at: its face, or with `vertex` its node. */
-static int64_t field_of_corner(const struct scalar_stiffness *stiffness, int64_t q, int k, bool vertex)
-{
-    const struct body *body = &stiffness->system->body;
-    const struct field_averages *averages = &body->cells.averages;
-    int64_t corner = q * (body->dim + 1) + k + (vertex ? averages->corner_count : 0);
-    return averages->of_corner[corner] / VECTOR_STRIDE(body->dim);
-}
-
 static enum status list_nodes(struct scalar_stiffness *stiffness, struct error *error)
 {
     enum status status;
@@ -182,12 +173,18 @@ static void add_cell(const struct scalar_stiffness *stiffness, int64_t q, int64_
 {
     const struct body *body = &stiffness->system->body;
     int dim = body->dim;
+    int rows = FACE_ROWS(dim);
+    int64_t nodes = stiffness->field_count - body->node_count;
     double hat[12], smooth[3] = {0.0, 0.0, 0.0}, off[3] = {0.0, 0.0, 0.0};
     double modulus = modulus_of(body, q), k_off = SMOOTHING_STIFFNESS(dim);
     smoothed_cells_hat_gradients(body, q, hat);
     for (int k = 0; k <= dim; k++) {
-        double mean = row->at_field[field_of_corner(stiffness, q, k, false)];
-        double value = row->at_field[field_of_corner(stiffness, q, k, true)];
+        int32_t own[3];
+        const int32_t *of_face = smoothed_cells_face(body, q, k, own);
+        double mean = 0.0, value = row->at_field[nodes + smoothed_cells_node(body, q, k)];
+        for (int r = 0; r < rows; r++) {
+            mean += row->at_field[of_face[r]] / rows;
+        }
         for (int a = 0; a < dim; a++) {
             smooth[a] -= dim * mean * hat[k * dim + a];
             off[a] += (value + dim * mean) * hat[k * dim + a];
@@ -199,8 +196,12 @@ static void add_cell(const struct scalar_stiffness *stiffness, int64_t q, int64_
             on_mean -= dim * modulus * (smooth[a] - k_off * off[a]) * hat[k * dim + a];
             on_value += modulus * k_off * off[a] * hat[k * dim + a];
         }
-        put(on_mean, field_of_corner(stiffness, q, k, false), i, row, touched);
-        put(on_value, field_of_corner(stiffness, q, k, true), i, row, touched);
+        int32_t own[3];
+        const int32_t *of_face = smoothed_cells_face(body, q, k, own);
+        for (int r = 0; r < rows; r++) {
+            put(on_mean / rows, of_face[r], i, row, touched);
+        }
+        put(on_value, nodes + smoothed_cells_node(body, q, k), i, row, touched);
     }
 }
 
@@ -237,10 +238,24 @@ static void spread(const struct scalar_stiffness *stiffness, int64_t touched, in
     }
 }
 
+/* The cells whose corners look at a value of the averages. */
+static void add_cells(const struct scalar_stiffness *stiffness, int64_t value, int64_t i,
+                      struct scalar_row *row, int64_t *touched)
+{
+    const struct body *body = &stiffness->system->body;
+    const struct field_averages *averages = &body->cells.averages;
+    for (int64_t c = averages->corner_ptr[value]; c < averages->corner_ptr[value + 1]; c++) {
+        int64_t q = averages->corner[c] % averages->corner_count / (body->dim + 1);
+        if (row->cell_seen[q] != i + 1) {
+            row->cell_seen[q] = i + 1;
+            add_cell(stiffness, q, i, row, touched);
+        }
+    }
+}
+
 void scalar_stiffness_row(const struct scalar_stiffness *stiffness, int64_t i, struct scalar_row *row)
 {
-    const struct field_averages *averages = &stiffness->system->body.cells.averages;
-    int dim = stiffness->system->body.dim;
+    const struct sparse *of_faces = &stiffness->system->body.cells.averages.spread;
     int64_t first = stiffness->node_ptr[i], last = stiffness->node_ptr[i + 1], touched = 0;
     for (int64_t n = first; n < last; n++) {
         row->at_field[stiffness->node_field[n]] = stiffness->node_phi[n];
@@ -251,12 +266,10 @@ void scalar_stiffness_row(const struct scalar_stiffness *stiffness, int64_t i, s
             put(stiffness->bond_stiffness[bond] * stiffness->node_phi[n], f, i, row, &touched);
             continue;
         }
-        for (int64_t c = averages->corner_ptr[f]; c < averages->corner_ptr[f + 1]; c++) {
-            int64_t q = averages->corner[c] % averages->corner_count / (dim + 1);
-            if (row->cell_seen[q] != i + 1) {
-                row->cell_seen[q] = i + 1;
-                add_cell(stiffness, q, i, row, &touched);
-            }
+        add_cells(stiffness, f, i, row, &touched);
+        for (int64_t k = f < of_faces->row_count ? of_faces->ptr[f] : 0;
+             f < of_faces->row_count && k < of_faces->ptr[f + 1]; k++) {
+            add_cells(stiffness, stiffness->field_count + of_faces->idx[k], i, row, &touched);
         }
     }
     for (int64_t n = first; n < last; n++) {

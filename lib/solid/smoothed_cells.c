@@ -1,5 +1,6 @@
 #include "solid/smoothed_cells.h"
 
+#include "approx/quadrature.h"
 #include "approx/renumber.h"
 #include "base/memory.h"
 #include "solid/body.h"
@@ -70,11 +71,11 @@ static enum status match_corners(const struct smoothed_cells_input *input, int d
     for (int64_t i = 0; i < cell_count * (dim + 1); i++) {
         face_of_corner[i] = -1;
     }
-    for (int64_t i = 0; i < input->face_count * 2; i++) {
-        int64_t face = i / 2, cell = input->face_cell[i];
+    for (int64_t i = 0; i < input->faces->count * 2; i++) {
+        int64_t face = i / 2, cell = input->faces->cell[i];
         if (cell >= 0 && cell < cell_count) {
             int corner =
-                opposite_corner(dim, input->cell_node + cell * (dim + 1), input->face_node + face * dim);
+                opposite_corner(dim, input->cell_node + cell * (dim + 1), input->faces->node + face * dim);
             face_of_corner[cell_place[cell] * (dim + 1) + corner] = (int32_t)face;
         }
     }
@@ -88,6 +89,43 @@ static enum status match_corners(const struct smoothed_cells_input *input, int d
     }
 done:
     free(cell_place);
+    return status;
+}
+
+/* x[row_count * dim]: the places of the rows; middle[faces->count * dim]: those of the faces, which their
+ * rows must be around. */
+static enum status place_rows(const struct faces *faces, const double *nodes, double *x, double *middle,
+                              struct error *error)
+{
+    enum status status;
+    int dim = faces->dim, rows = FACE_ROWS(dim), points = ROW_POINTS(dim);
+    double *at_points = NULL;
+    TRY(NEW_ARRAY(&at_points, faces->row_count * points * dim, error));
+    quadrature_face_points(faces, nodes, at_points);
+    for (int64_t i = 0; i < faces->row_count * points * dim; i++) {
+        x[i / (points * dim) * dim + i % dim] += at_points[i] / points;
+    }
+    for (int64_t f = 0; f < faces->count; f++) {
+        double off = 0.0, size = 0.0;
+        for (int a = 0; a < dim; a++) {
+            double mean = 0.0, first = nodes[(int64_t)faces->node[f * dim] * dim + a];
+            for (int i = 0; i < dim; i++) {
+                middle[f * dim + a] += nodes[(int64_t)faces->node[f * dim + i] * dim + a] / dim;
+            }
+            for (int k = 0; k < rows; k++) {
+                mean += x[(int64_t)faces->row[f * rows + k] * dim + a] / rows;
+            }
+            off = fmax(off, fabs(mean - middle[f * dim + a]));
+            size = fmax(size, fabs(middle[f * dim + a] - first));
+        }
+        if (!(off <= 1e-6 * size)) {
+            status = fail(error, STATUS_INPUT,
+                          "faces.row: row %lld: not those of this face: run ipoints again", (long long)f);
+            goto done;
+        }
+    }
+done:
+    free(at_points);
     return status;
 }
 
@@ -126,32 +164,31 @@ static enum status check_table(const struct told *table, int64_t rows, int dim, 
     return STATUS_OK;
 }
 
-/* A row for each face, whose corners are those opposite it, and for each node, whose corners are the vertices
- * of the cells there. */
+/* Rows of the faces, whose corners are those opposite, and of each node, whose corners are the vertices of
+ * the cells there. */
 static enum status build_averages(const struct smoothed_cells_input *input, const struct body *body,
                                   struct smoothed_cells *smoothed, struct error *error)
 {
     enum status status;
     int dim = body->dim, corners = dim + 1;
-    int64_t *order = NULL;
+    const struct faces *faces = input->faces;
+    int64_t *order = NULL, *face_order = NULL;
     int32_t *node_of_corner = NULL, *face_of_corner = NULL;
-    double *x = NULL;
+    double *x = NULL, *middle = NULL;
     TRY(NEW_ARRAY(&face_of_corner, body->point_count * corners, error));
     TRY(match_corners(input, dim, body->point_count, body->order, face_of_corner, error));
-    TRY(NEW_ARRAY(&x, input->face_count * dim, error));
-    for (int64_t f = 0; f < input->face_count; f++) {
-        for (int i = 0; i < dim * dim; i++) {
-            x[f * dim + i % dim] +=
-                input->x[(int64_t)input->face_node[f * dim + i / dim] * dim + i % dim] / dim;
-        }
-    }
-    const struct told faces = {"face.phi", "face", input->face_ptr, input->face_idx, input->face_phi, x};
+    TRY(NEW_ARRAY(&x, faces->row_count * dim, error));
+    TRY(NEW_ARRAY(&middle, faces->count * dim, error));
+    TRY(place_rows(faces, input->x, x, middle, error));
+    const struct told rows = {"face.phi", "row", input->face_ptr, input->face_idx, input->face_phi, x};
     const struct told nodes = {"node.phi",      "node",          input->node_ptr,
                                input->node_idx, input->node_phi, input->x};
-    TRY(check_table(&faces, input->face_count, dim, input->x, error));
+    TRY(check_table(&rows, faces->row_count, dim, input->x, error));
     TRY(check_table(&nodes, body->node_count, dim, input->x, error));
-    TRY(NEW_ARRAY(&order, input->face_count, error));
-    TRY(renumber_morton(dim, input->face_count, x, NULL, order, error));
+    TRY(NEW_ARRAY(&order, faces->row_count, error));
+    TRY(renumber_morton(dim, faces->row_count, x, NULL, order, error));
+    TRY(NEW_ARRAY(&face_order, faces->count, error));
+    TRY(renumber_morton(dim, faces->count, middle, NULL, face_order, error));
     TRY(NEW_ARRAY(&node_of_corner, body->point_count * corners, error));
     for (int64_t q = 0; q < body->point_count; q++) {
         memcpy(node_of_corner + q * corners, input->cell_node + body->order[q] * corners,
@@ -162,10 +199,12 @@ static enum status build_averages(const struct smoothed_cells_input *input, cons
         .node_count = body->node_count,
         .corner_count = body->point_count * corners,
         .place = body->node_place,
-        .tables = {
-            {input->face_count, order, input->face_ptr, input->face_idx, input->face_phi, face_of_corner},
-            {body->node_count, body->node_order, input->node_ptr, input->node_idx, input->node_phi,
-             node_of_corner}}};
+        .tables = {{faces->row_count, order, input->face_ptr, input->face_idx, input->face_phi},
+                   {body->node_count, body->node_order, input->node_ptr, input->node_idx, input->node_phi}},
+        .faces = faces,
+        .face_order = face_order,
+        .face_of_corner = face_of_corner,
+        .node_of_corner = node_of_corner};
     TRY(field_averages_build(&averages, &smoothed->averages, error));
     if (input->copied != NULL) {
         input->copied(input->context);
@@ -175,7 +214,9 @@ done:
     free(node_of_corner);
     free(face_of_corner);
     free(order);
+    free(face_order);
     free(x);
+    free(middle);
     return status;
 }
 
@@ -215,18 +256,29 @@ void smoothed_cells_hat_gradients(const struct body *body, int64_t q, double *gr
     }
 }
 
-/* The row of the averages that corner k of a cell looks at, of its faces (which = 0) or nodes. */
-static int64_t row_of_corner(const struct body *body, int64_t q, int which, int k)
+/* The value that corner k of a cell looks at, of its faces (which = 0) or nodes. */
+static int32_t value_of_corner(const struct body *body, int64_t q, int which, int k)
 {
     const struct field_averages *averages = &body->cells.averages;
     return averages->of_corner[which * averages->corner_count + q * (body->dim + 1) + k] /
            VECTOR_STRIDE(body->dim);
 }
 
+const int32_t *smoothed_cells_face(const struct body *body, int64_t q, int k, int32_t row[3])
+{
+    const struct sparse *means = &body->cells.averages.means;
+    int64_t value = value_of_corner(body, q, 0, k), face = value - body->cells.averages.matrix.row_count;
+    if (face < 0) {
+        row[0] = (int32_t)value;
+        return row;
+    }
+    return means->idx + means->ptr[face];
+}
+
 int32_t smoothed_cells_node(const struct body *body, int64_t q, int k)
 {
-    int64_t faces = body->cells.averages.matrix.row_count - body->node_count;
-    return (int32_t)(row_of_corner(body, q, 1, k) - faces);
+    int64_t rows = body->cells.averages.matrix.row_count - body->node_count;
+    return (int32_t)(value_of_corner(body, q, 1, k) - rows);
 }
 
 enum status cell_functions_make(const struct body *body, struct cell_functions *functions,
@@ -239,8 +291,11 @@ enum status cell_functions_make(const struct body *body, struct cell_functions *
     for (int64_t q = 0; q < body->point_count; q++) {
         int64_t sum = body->smoothed ? 0 : matrix->ptr[q * body->dim + 1] - matrix->ptr[q * body->dim];
         for (int k = 0; k <= body->dim && body->smoothed; k++) {
-            int64_t row = row_of_corner(body, q, 0, k);
-            sum += matrix->ptr[row + 1] - matrix->ptr[row];
+            int32_t own[3];
+            const int32_t *row = smoothed_cells_face(body, q, k, own);
+            for (int r = 0; r < FACE_ROWS(body->dim); r++) {
+                sum += matrix->ptr[row[r] + 1] - matrix->ptr[row[r]];
+            }
         }
         most = sum > most ? sum : most;
     }
@@ -262,17 +317,44 @@ void cell_functions_free(struct cell_functions *functions)
     *functions = (struct cell_functions){0};
 }
 
+/* The rows that the averages over the faces of cell q are made of, each once, and what its gradient is by the
+ * value of each: gradient[12 * dim]. Returns how many there are. */
+static int list_rows(const struct body *body, int64_t q, int32_t row[12], double *gradient)
+{
+    int dim = body->dim, rows = FACE_ROWS(dim), count = 0;
+    double hat[12];
+    smoothed_cells_hat_gradients(body, q, hat);
+    for (int k = 0; k <= dim; k++) {
+        int32_t own[3];
+        const int32_t *of_face = smoothed_cells_face(body, q, k, own);
+        for (int i = 0; i < rows; i++) {
+            int at = 0;
+            while (at < count && row[at] != of_face[i]) {
+                at++;
+            }
+            if (at == count) {
+                row[count++] = of_face[i];
+                memset(gradient + at * dim, 0, (size_t)dim * sizeof *gradient);
+            }
+            for (int a = 0; a < dim; a++) {
+                gradient[at * dim + a] -= (double)dim / rows * hat[k * dim + a];
+            }
+        }
+    }
+    return count;
+}
+
 /* A set by two arrays that need no clearing: Briggs and Torczon 1993. */
 void cell_functions_list(const struct body *body, int64_t q, struct cell_functions *functions)
 {
     const struct sparse *matrix = &body->cells.averages.matrix;
-    int dim = body->dim;
-    double hat[12];
-    smoothed_cells_hat_gradients(body, q, hat);
+    int dim = body->dim, count;
+    int32_t row[12];
+    double gradient[12 * 3];
+    count = list_rows(body, q, row, gradient);
     functions->count = 0;
-    for (int k = 0; k <= dim; k++) {
-        int64_t row = row_of_corner(body, q, 0, k);
-        for (int64_t i = matrix->ptr[row]; i < matrix->ptr[row + 1]; i++) {
+    for (int r = 0; r < count; r++) {
+        for (int64_t i = matrix->ptr[row[r]]; i < matrix->ptr[row[r] + 1]; i++) {
             int32_t node = matrix->idx[i], at = functions->place[node];
             if (at >= functions->count || functions->node[at] != node) {
                 at = functions->place[node] = (int32_t)functions->count++;
@@ -280,7 +362,7 @@ void cell_functions_list(const struct body *body, int64_t q, struct cell_functio
                 memset(functions->gradient + at * dim, 0, (size_t)dim * sizeof *functions->gradient);
             }
             for (int a = 0; a < dim; a++) {
-                functions->gradient[at * dim + a] -= dim * matrix->value[i] * hat[k * dim + a];
+                functions->gradient[at * dim + a] += matrix->value[i] * gradient[r * dim + a];
             }
         }
     }

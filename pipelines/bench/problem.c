@@ -128,14 +128,10 @@ enum status problem_points_on_faces(struct problem *problem, struct error *error
 {
     enum status status;
     int dim = problem->cells.dim;
-    struct quadrature_rule rule = quadrature_face_rule(dim);
     TRY(faces_build(&problem->cells, false, &problem->faces, error));
-    problem->point_count = problem->faces.count * rule.points;
+    problem->point_count = problem->faces.row_count * ROW_POINTS(dim);
     TRY(NEW_ARRAY(&problem->points, problem->point_count * dim, error));
-    for (int64_t f = 0; f < problem->faces.count; f++) {
-        quadrature_positions(&rule, dim, problem->cells.x, problem->faces.node + f * dim,
-                             problem->points + f * rule.points * dim);
-    }
+    quadrature_face_points(&problem->faces, problem->cells.x, problem->points);
 done:
     return status;
 }

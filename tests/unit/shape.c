@@ -209,7 +209,7 @@ struct smoothed {
     struct cloud cloud;
     struct cells cells;
     struct faces faces;
-    int per_face;
+    int per_face; /* points of each face on the boundary */
     double *points;
     struct table table;
     struct neighbours lists;
@@ -226,13 +226,10 @@ static void smoothed_build(struct smoothed *s, int dim, int64_t per_axis, enum b
     s->cells = cells_of(&s->cloud);
     s->per_face = rule.points;
     good(faces_build(&s->cells, false, &s->faces, &error), &error);
-    int64_t count = s->faces.count * rule.points;
+    int64_t count = s->faces.row_count * ROW_POINTS(dim);
     s->points = malloc((size_t)(count * dim) * sizeof(double));
     assert_non_null(s->points);
-    for (int64_t f = 0; f < s->faces.count; f++) {
-        quadrature_positions(&rule, dim, s->cells.x, s->faces.node + f * dim,
-                             s->points + f * rule.points * dim);
-    }
+    quadrature_face_points(&s->faces, s->cells.x, s->points);
     good(tabulate(&options, s->cells.node_count, s->cells.x, count, s->points, &s->table, &error), &error);
     s->lists = support_view(&s->table.lists);
     good(shape_average_faces(&options.mls, s->cells.x, s->table.radius, &s->lists, s->points, "points.x",
@@ -338,8 +335,8 @@ static void smoothing_threads(void **state)
         struct smoothed s;
         omp_set_num_threads(numbers[i]);
         smoothed_build(&s, 2, 20, BASIS_MODIFIED, 0.0);
-        size_t pairs = (size_t)s.averages.ptr[s.faces.count];
-        assert_int_equal(pairs, first.averages.ptr[s.faces.count]);
+        size_t pairs = (size_t)s.averages.ptr[s.faces.row_count];
+        assert_int_equal(pairs, first.averages.ptr[s.faces.row_count]);
         assert_memory_equal(s.averages.idx, first.averages.idx, pairs * sizeof(int32_t));
         assert_memory_equal(s.averages.phi, first.averages.phi, pairs * sizeof(double));
         smoothed_free(&s);
@@ -348,15 +345,15 @@ static void smoothing_threads(void **state)
     smoothed_free(&first);
 }
 
-/* Each average is the mean of the values at the points of its face, and those at points on the boundary,
- * whose faces come first, are kept. */
+/* Each row is the mean of the values at its points, and those at points on the boundary, whose faces come
+ * first, are kept. */
 static void averages_of_values(void **state)
 {
     (void)state;
     for (int dim = 2; dim <= 3; dim++) {
         struct smoothed s;
         smoothed_build(&s, dim, dim == 2 ? 9 : 6, BASIS_MODIFIED, 0.0);
-        struct quadrature_rule rule = quadrature_face_rule(dim);
+        int per_row = ROW_POINTS(dim);
         double *row = calloc((size_t)s.cells.node_count, sizeof *row);
         int64_t outer = 0;
         struct error error;
@@ -368,27 +365,92 @@ static void averages_of_values(void **state)
         for (int64_t f = 0; f < s.faces.count; f++) {
             outer += s.faces.cell[2 * f + 1] < 0;
             assert_true(s.faces.cell[2 * f + 1] >= 0 || outer == f + 1);
-            for (int64_t p = f * s.per_face; p < (f + 1) * s.per_face; p++) {
+        }
+        for (int64_t r = 0; r < s.faces.row_count; r++) {
+            for (int64_t p = r * per_row; p < (r + 1) * per_row; p++) {
                 for (int64_t i = s.lists.ptr[p]; i < s.lists.ptr[p + 1]; i++) {
-                    row[s.lists.idx[i]] += rule.weight[p % s.per_face] * s.table.phi[i];
+                    row[s.lists.idx[i]] += s.table.phi[i] / per_row;
                 }
             }
-            for (int64_t i = s.averages.ptr[f]; i < s.averages.ptr[f + 1]; i++) {
-                assert_true(i == s.averages.ptr[f] || s.averages.idx[i] > s.averages.idx[i - 1]);
+            for (int64_t i = s.averages.ptr[r]; i < s.averages.ptr[r + 1]; i++) {
+                assert_true(i == s.averages.ptr[r] || s.averages.idx[i] > s.averages.idx[i - 1]);
                 at_most(fabs(s.averages.phi[i] - row[s.averages.idx[i]]), 1e-15, "average");
                 row[s.averages.idx[i]] = 0.0;
             }
-            for (int64_t p = f * s.per_face; p < (f + 1) * s.per_face; p++) {
+            for (int64_t p = r * per_row; p < (r + 1) * per_row; p++) {
                 for (int64_t i = s.lists.ptr[p]; i < s.lists.ptr[p + 1]; i++) {
                     assert_true(row[s.lists.idx[i]] == 0.0); /* nobody is left out */
                 }
             }
         }
-        assert_int_equal(outer, s.averages.boundary_count);
+        assert_int_equal(outer * FACE_ROWS(dim), s.averages.boundary_count);
         assert_memory_equal(s.averages.boundary_phi, s.table.phi,
                             (size_t)s.lists.ptr[outer * s.per_face] * sizeof(double));
         free(row);
         smoothed_free(&s);
+    }
+}
+
+/* Rows of faces: of the boundary, and in 2D of all, each face its own; else one for each edge inside, at its
+ * middle. The cells at each are those that have all of its nodes. */
+static void rows_of_faces(void **state)
+{
+    (void)state;
+    for (int dim = 2; dim <= 3; dim++) {
+        struct cloud cloud = box_cloud(dim, 5, 0.1, 0.0);
+        struct cells cells = cells_of(&cloud);
+        struct faces faces;
+        struct error error;
+        int rows = FACE_ROWS(dim);
+        int64_t *ptr, edges = 0, outer_edges = 0;
+        int32_t *cell, last = -1;
+        good(faces_build(&cells, false, &faces, &error), &error);
+        if (dim ==
+            3) { /* Euler's formula for a ball, and for its surface; all edges of a box have inner faces */
+            edges = cells.node_count + faces.count - cells.count - 1;
+            outer_edges = faces.boundary_count * 3 / 2;
+            assert_true(outer_edges < edges);
+        }
+        assert_true(faces.row_count <= (dim == 2 ? faces.count : faces.boundary_count * rows + edges));
+        assert_true(faces.row_count >= faces.boundary_count * rows + edges - outer_edges);
+        good(faces_row_cells(&faces, &ptr, &cell, &error), &error);
+        double *x = malloc((size_t)(faces.row_count * ROW_POINTS(dim) * dim) * sizeof *x);
+        assert_non_null(x);
+        quadrature_face_points(&faces, cells.x, x);
+        for (int64_t i = 0; i < faces.count * rows; i++) {
+            const int32_t *node = faces.node + i / rows * dim;
+            int32_t row = faces.row[i];
+            bool inner = i >= faces.boundary_count * rows, edge = inner && dim == 3;
+            assert_true(inner ? row <= last + 1 : row == i);
+            int64_t with_all = 0, wanted = edge ? 2 : dim;
+            int32_t of[3] = {node[edge ? i % 3 : 0], node[edge ? (i + 1) % 3 : 1], node[dim - 1]};
+            for (int a = 0; a < dim && edge; a++) {
+                double middle = 0.5 * (cells.x[(int64_t)of[0] * dim + a] + cells.x[(int64_t)of[1] * dim + a]);
+                at_most(fabs(x[(int64_t)row * dim + a] - middle), 1e-16, "middle of an edge");
+            }
+            for (int64_t c = 0; c < cells.count && row > last; c++) {
+                bool has_all = true, listed = false;
+                for (int64_t n = 0; n < wanted; n++) {
+                    bool has = false;
+                    for (int k = 0; k <= dim; k++) {
+                        has = has || cells.node[c * (dim + 1) + k] == of[n];
+                    }
+                    has_all = has_all && has;
+                }
+                for (int64_t k = ptr[row]; k < ptr[row + 1]; k++) {
+                    listed = listed || cell[k] == c;
+                }
+                assert_true(listed == has_all);
+                with_all += has_all;
+            }
+            assert_true(row <= last || with_all == ptr[row + 1] - ptr[row]);
+            last = row > last ? row : last;
+        }
+        free(x);
+        free(ptr);
+        free(cell);
+        faces_free(&faces);
+        cloud_free(&cloud);
     }
 }
 
@@ -413,7 +475,8 @@ int main(void)
         cmocka_unit_test(quadrature_degrees),   cmocka_unit_test(cells_and_faces),
         cmocka_unit_test(wrong_cells),          cmocka_unit_test(smoothing_is_consistent),
         cmocka_unit_test(smoothing_telescopes), cmocka_unit_test(smoothing_threads),
-        cmocka_unit_test(averages_of_values),   cmocka_unit_test(spacing_of_cells),
+        cmocka_unit_test(averages_of_values),   cmocka_unit_test(rows_of_faces),
+        cmocka_unit_test(spacing_of_cells),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

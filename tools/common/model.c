@@ -66,8 +66,8 @@ static enum status read_tables(const struct stream *stream, struct assembly *inp
     int64_t nodes = input->cells.node_count, points = input->point_count;
     TRY(stream_faces(stream, &input->cells, &input->faces, error));
     if (input->smoothed) {
-        TRY(read_table(stream, "face", "face.phi", 1, input->faces.count, nodes, &input->lists, &input->phi,
-                       error));
+        TRY(read_table(stream, "face", "face.phi", 1, input->faces.row_count, nodes, &input->lists,
+                       &input->phi, error));
     } else {
         TRY(read_table(stream, "nbr", "shape.phi", 1, points, nodes, &input->lists, &input->phi, error));
         TRY(read_table(stream, "nbr", "shape.dphi", dim, points, nodes, &input->lists, &input->dphi, error));

@@ -313,17 +313,30 @@ static int64_t find_face(const struct rejoin *rejoin, const struct rejoin_part *
               part->file, (long long)local);
 }
 
-/* Points on faces follow their faces. */
-static void map_face_points(struct rejoin *rejoin, struct rejoin_part *part, int64_t per_face)
+/* A row that faces share belongs to the part that owns the first of them, and its points with it. */
+static void map_face_rows(struct rejoin *rejoin, struct rejoin_part *part, const int32_t *first_face)
 {
-    int64_t faces = part->faces.count, boundary = part->faces.boundary_count;
-    int32_t *to = new_rows(rejoin, part, ROWS_FACEPOINTS, faces * per_face);
-    for (int64_t i = 0; i < faces * per_face; i++) {
-        int32_t face = part->to[ROWS_FACES][i / per_face];
-        to[i] = face < 0 ? -1 : (int32_t)(face * per_face + i % per_face);
+    int rows = FACE_ROWS(rejoin->dim), per_row = ROW_POINTS(rejoin->dim), per_face = rows * per_row;
+    const int32_t *face = part->to[ROWS_FACES];
+    int32_t *to = new_rows(rejoin, part, ROWS_OF_FACES, part->faces.row_count);
+    int32_t *points = new_rows(rejoin, part, ROWS_FACEPOINTS, part->faces.row_count * per_row);
+    int32_t *boundary = new_rows(rejoin, part, ROWS_BOUNDARY, part->faces.boundary_count * per_face);
+    for (int64_t r = 0; r < part->faces.row_count; r++) {
+        to[r] = -1;
     }
-    int32_t *at = new_rows(rejoin, part, ROWS_BOUNDARY, boundary * per_face);
-    memcpy(at, to, (size_t)(boundary * per_face) * sizeof *at);
+    for (int64_t i = 0; i < part->faces.count * rows; i++) {
+        int64_t whole = face[i / rows];
+        int32_t row = whole < 0 ? -1 : rejoin->faces.row[whole * rows + i % rows];
+        if (row >= 0 && first_face[row] == whole) {
+            to[part->faces.row[i]] = row;
+        }
+    }
+    for (int64_t i = 0; i < part->faces.row_count * per_row; i++) {
+        points[i] = to[i / per_row] < 0 ? -1 : (int32_t)(to[i / per_row] * per_row + i % per_row);
+    }
+    for (int64_t i = 0; i < part->faces.boundary_count * per_face; i++) {
+        boundary[i] = face[i / per_face] < 0 ? -1 : (int32_t)(face[i / per_face] * per_face + i % per_face);
+    }
 }
 
 static void map_faces(struct rejoin *rejoin)
@@ -332,8 +345,8 @@ static void map_faces(struct rejoin *rejoin)
     const struct tool *tool = rejoin->tool;
     const struct section *points = stream_find(&rejoin->part[0].stream, "points.x");
     bool boundary_only = points != NULL && !points_are_smoothed(points);
-    int64_t *begin, per_face = quadrature_face_rule(rejoin->dim).points;
-    int32_t *face;
+    int64_t *begin;
+    int32_t *face, *first_face;
     const struct cells whole = {.dim = rejoin->dim,
                                 .node_count = rejoin->rows[ROWS_NODES],
                                 .x = rejoin->x,
@@ -350,6 +363,10 @@ static void map_faces(struct rejoin *rejoin)
     const struct faces *faces = &rejoin->faces;
     tool_check(tool, NEW_ARRAY(&begin, whole.count + 2, &error), &error);
     tool_check(tool, NEW_ARRAY(&face, faces->count, &error), &error);
+    tool_check(tool, NEW_ARRAY(&first_face, faces->row_count, &error), &error);
+    for (int64_t i = faces->count * FACE_ROWS(rejoin->dim) - 1; i >= 0; i--) {
+        first_face[faces->row[i]] = (int32_t)(i / FACE_ROWS(rejoin->dim));
+    }
     for (int64_t f = 0; f < faces->count; f++) {
         begin[faces->cell[2 * f] + 2]++;
     }
@@ -366,14 +383,17 @@ static void map_faces(struct rejoin *rejoin)
             bool own = part->to[ROWS_CELLS][part->faces.cell[2 * f]] >= 0;
             to[f] = own ? (int32_t)find_face(rejoin, part, begin, face, f) : -1;
         }
-        map_face_points(rejoin, part, per_face);
+        map_face_rows(rejoin, part, first_face);
     }
     free(begin);
     free(face);
+    free(first_face);
     rejoin->rows[ROWS_FACES] = faces->count;
-    rejoin->rows[ROWS_FACEPOINTS] = faces->count * per_face;
-    rejoin->rows[ROWS_BOUNDARY] = faces->boundary_count * per_face;
+    rejoin->rows[ROWS_OF_FACES] = faces->row_count;
+    rejoin->rows[ROWS_FACEPOINTS] = faces->row_count * ROW_POINTS(rejoin->dim);
+    rejoin->rows[ROWS_BOUNDARY] = faces->boundary_count * quadrature_face_rule(rejoin->dim).points;
     check_rows(rejoin, ROWS_FACES, "faces");
+    check_rows(rejoin, ROWS_OF_FACES, "faces.row");
 }
 
 void rejoin_begin(struct rejoin *rejoin, const struct tool *tool, char *const files[], int64_t count)

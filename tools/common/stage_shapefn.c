@@ -118,13 +118,13 @@ static enum status put_faces(struct stream *stream, const struct mls *mls, bool 
     TRY(stream_cells(stream, true, &cells, error));
     TRY(stream_faces(stream, &cells, &faces, error));
     TRY(view_points(stream, "facepoints.x", "facepoint", &of, error));
-    if (of.lists.count != faces.count * per_face) {
-        status = fail(error, STATUS_INPUT, "facepoints.x: does not fit faces: run ipoints again");
+    if (of.lists.count != faces.row_count * ROW_POINTS(mls->dim)) {
+        status = fail(error, STATUS_INPUT, "facepoints.x: does not fit faces.row: run ipoints again");
         goto done;
     }
     TRY(shape_average_faces(mls, of.nodes, of.radius, &of.lists, of.x, of.section, &faces, &averages, error));
     if (smoothed) {
-        status = put_table(stream, "face", faces.count, averages.ptr, averages.idx, averages.phi, error);
+        status = put_table(stream, "face", faces.row_count, averages.ptr, averages.idx, averages.phi, error);
         averages.ptr = NULL;
         averages.idx = NULL;
         averages.phi = NULL;

@@ -71,12 +71,15 @@ enum status stream_faces(const struct stream *stream, const struct cells *cells,
                          struct error *error)
 {
     enum status status;
-    const struct section *node, *cell;
+    const struct section *node, *cell, *row;
+    int rows = FACE_ROWS(cells->dim);
     TRY(stream_need(stream, "faces", TYPE_I4, cells->dim, "ipoints", &node, error));
     TRY(stream_need(stream, "faces.cell", TYPE_I4, 2, "ipoints", &cell, error));
-    *faces = (struct faces){.dim = cells->dim, .count = node->rows, .node = node->data, .cell = cell->data};
-    if (cell->rows != faces->count) {
-        return fail(error, STATUS_INPUT, "faces.cell: does not fit faces: run ipoints again");
+    TRY(stream_need(stream, "faces.row", TYPE_I4, rows, "ipoints", &row, error));
+    *faces = (struct faces){
+        .dim = cells->dim, .count = node->rows, .node = node->data, .cell = cell->data, .row = row->data};
+    if (cell->rows != faces->count || row->rows != faces->count) {
+        return fail(error, STATUS_INPUT, "faces.cell, faces.row: do not fit faces: run ipoints again");
     }
     for (int64_t i = 0; i < faces->count * faces->dim; i++) {
         if (faces->node[i] < 0 || faces->node[i] >= cells->node_count) {
@@ -96,6 +99,14 @@ enum status stream_faces(const struct stream *stream, const struct cells *cells,
                         "faces.cell: row %lld: on the boundary, after faces between cells: run ipoints again",
                         (long long)f);
         }
+    }
+    /* Rows are numbered as they come. */
+    for (int64_t i = 0; i < faces->count * rows; i++) {
+        if (faces->row[i] < 0 || faces->row[i] > faces->row_count) {
+            return fail(error, STATUS_INPUT, "faces.row: row %lld: no row %d of face.phi: run ipoints again",
+                        (long long)(i / rows), faces->row[i]);
+        }
+        faces->row_count += faces->row[i] == faces->row_count;
     }
 done:
     return status;
