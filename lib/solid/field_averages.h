@@ -1,6 +1,6 @@
 /* Face averages and node values of the displacement field, which the corners of smoothed cells use: corner k
- * of a cell stands for the face opposite vertex k (its average, equation (6) of lib/README.md), and for
- * vertex k (its value).
+ * of a cell stands for the face opposite vertex k (its average, equation (6) of lib/README.md: the mean of
+ * FACE_ROWS(dim) rows of the operator), and for vertex k (its value).
  *
  * An evaluation computes the averages (apply), evaluates the cells, sums the forces of the corners on each
  * average, and adds these to the nodes (transposed apply), equation (12) of lib/README.md. */
@@ -14,27 +14,25 @@
 #define VECTOR_STRIDE(dim) ((dim) == 2 ? 2 : 4)
 
 struct field_averages {
-    struct sparse matrix, transposed; /* B: rows that faces are averaged over, then one for each node; and its
-                                         transpose */
-    struct sparse means, spread;      /* 3D: the faces' averages of these rows, and the transpose; in 2D none,
-                                         as a row is the average over its face */
-    int64_t count;                    /* of values: those of the rows, and the faces' averages behind them */
-    double *value;                    /* at the last evaluation, m: VECTOR_STRIDE(dim) for each */
-    double *force;                    /* on each value, likewise, N (2D: N/m) */
+    struct sparse matrix, transposed; /* B: the rows of faces, then one for each node; and its transpose */
+    double *value;                    /* of each row at the last evaluation, m: VECTOR_STRIDE(dim) for each */
+    double *force;                    /* on each row, likewise, N (2D: N/m) */
     int64_t corner_count;             /* of faces; as many of nodes follow */
-    int32_t *of_corner;               /* 2 corner_count: where the value begins that each corner looks at */
-    double *corner_force;             /* 2 corner_count, likewise: what each corner puts on its value */
-    int64_t *corner_ptr;              /* count + 1: the corners of each value, */
-    int32_t *corner;                  /* 2 corner_count: by values, ascending */
+    int32_t *of_corner;               /* where the values begin that each corner looks at: FACE_ROWS(dim) for
+                                         each of faces, then one for each of nodes */
+    double *corner_force; /* 2 corner_count, likewise: what each corner puts on each of its rows */
+    int64_t *corner_ptr;  /* row_count + 1: the corners of each row, */
+    int32_t *corner;      /* as many as of_corner: by rows, ascending */
 };
 
-/* One of the caller's tables: rows of faces, or values at the nodes. */
+/* One of the caller's tables: averages over the faces, or values at the nodes. */
 struct average_table {
     int64_t row_count;
     const int64_t *order; /* row_count: the rows in an order that keeps near ones near */
     const int64_t *ptr;   /* row_count + 1 */
     const int32_t *idx;
     const double *phi;
+    const int32_t *row_of_corner; /* of faces FACE_ROWS(dim) for each corner */
 };
 
 struct field_averages_input {
@@ -42,10 +40,6 @@ struct field_averages_input {
     int64_t node_count, corner_count;
     const int32_t *place; /* node_count: the number by which each of the caller's nodes goes in the body */
     struct average_table tables[2]; /* faces, nodes */
-    const struct faces *faces;
-    const int64_t *face_order;     /* of the faces, likewise */
-    const int32_t *face_of_corner; /* corner_count */
-    const int32_t *node_of_corner; /* corner_count */
 };
 
 /* Lay out the tables but for the transpose; the arrays are copied. */

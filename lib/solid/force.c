@@ -76,37 +76,13 @@ static void apply(const struct body *body, const struct sparse *matrix, const do
     }
 }
 
-static void sum_corners(struct body *body, int64_t first, int64_t count)
+static void sum_corners(struct body *body)
 {
     struct field_averages *averages = &body->cells.averages;
 #pragma omp for schedule(static)
-    for (int64_t at = first; at < first + count; at += ROWS_AT_ONCE) {
-        body->kernels->sum_corners(averages, at, stretch_end(at, first + count));
+    for (int64_t first = 0; first < averages->matrix.row_count; first += ROWS_AT_ONCE) {
+        body->kernels->sum_corners(averages, first, stretch_end(first, averages->matrix.row_count));
     }
-}
-
-/* Rows, and from them the averages over faces. */
-static void average_field(struct body *body)
-{
-    const struct field_averages *averages = &body->cells.averages;
-    apply(body, &averages->matrix, body->u, averages->value);
-    apply(body, &averages->means, averages->value,
-          averages->value + averages->matrix.row_count * VECTOR_STRIDE(body->dim));
-}
-
-/* The transpose: the forces of the corners on faces and nodes, those of faces on their rows, and all on the
- * parameters. */
-static void spread_forces(struct body *body)
-{
-    struct field_averages *averages = &body->cells.averages;
-    int64_t rows = averages->matrix.row_count, nodes = rows - body->node_count;
-    if (averages->means.row_count > 0) {
-        sum_corners(body, nodes, averages->count - nodes);
-        apply(body, &averages->spread, averages->force + rows * VECTOR_STRIDE(body->dim), averages->force);
-    } else {
-        sum_corners(body, 0, rows);
-    }
-    apply(body, &averages->transposed, averages->force, body->force);
 }
 
 static void for_blocks(struct body *body, void (*work)(struct body *body, int64_t block))
@@ -144,7 +120,7 @@ static void set_state(struct body *body, const double *u)
 {
     place_nodes(body, u);
     if (body->smoothed) {
-        average_field(body);
+        apply(body, &body->cells.averages.matrix, body->u, body->cells.averages.value);
         for_blocks(body, body->kernels->cell_gradients);
     } else {
         apply(body, &body->gradients, body->u, body->derivative);
@@ -163,7 +139,8 @@ static void evaluate(struct body *body, const double *u, double *force)
         set_state(body, u);
         if (body->smoothed) {
             for_blocks(body, stress_cell_block);
-            spread_forces(body);
+            sum_corners(body);
+            apply(body, &body->cells.averages.transposed, body->cells.averages.force, body->force);
         } else {
             for_blocks(body, stress_point_block);
             apply(body, &body->transposed, body->derivative, body->force);

@@ -179,11 +179,9 @@ static void add_cell(const struct scalar_stiffness *stiffness, int64_t q, int64_
     double modulus = modulus_of(body, q), k_off = SMOOTHING_STIFFNESS(dim);
     smoothed_cells_hat_gradients(body, q, hat);
     for (int k = 0; k <= dim; k++) {
-        int32_t own[3];
-        const int32_t *of_face = smoothed_cells_face(body, q, k, own);
         double mean = 0.0, value = row->at_field[nodes + smoothed_cells_node(body, q, k)];
         for (int r = 0; r < rows; r++) {
-            mean += row->at_field[of_face[r]] / rows;
+            mean += row->at_field[smoothed_cells_row(body, q, k, r)] / rows;
         }
         for (int a = 0; a < dim; a++) {
             smooth[a] -= dim * mean * hat[k * dim + a];
@@ -196,10 +194,8 @@ static void add_cell(const struct scalar_stiffness *stiffness, int64_t q, int64_
             on_mean -= dim * modulus * (smooth[a] - k_off * off[a]) * hat[k * dim + a];
             on_value += modulus * k_off * off[a] * hat[k * dim + a];
         }
-        int32_t own[3];
-        const int32_t *of_face = smoothed_cells_face(body, q, k, own);
         for (int r = 0; r < rows; r++) {
-            put(on_mean / rows, of_face[r], i, row, touched);
+            put(on_mean / rows, smoothed_cells_row(body, q, k, r), i, row, touched);
         }
         put(on_value, nodes + smoothed_cells_node(body, q, k), i, row, touched);
     }
@@ -238,24 +234,10 @@ static void spread(const struct scalar_stiffness *stiffness, int64_t touched, in
     }
 }
 
-/* The cells whose corners look at a value of the averages. */
-static void add_cells(const struct scalar_stiffness *stiffness, int64_t value, int64_t i,
-                      struct scalar_row *row, int64_t *touched)
-{
-    const struct body *body = &stiffness->system->body;
-    const struct field_averages *averages = &body->cells.averages;
-    for (int64_t c = averages->corner_ptr[value]; c < averages->corner_ptr[value + 1]; c++) {
-        int64_t q = averages->corner[c] % averages->corner_count / (body->dim + 1);
-        if (row->cell_seen[q] != i + 1) {
-            row->cell_seen[q] = i + 1;
-            add_cell(stiffness, q, i, row, touched);
-        }
-    }
-}
-
 void scalar_stiffness_row(const struct scalar_stiffness *stiffness, int64_t i, struct scalar_row *row)
 {
-    const struct sparse *of_faces = &stiffness->system->body.cells.averages.spread;
+    const struct field_averages *averages = &stiffness->system->body.cells.averages;
+    int dim = stiffness->system->body.dim;
     int64_t first = stiffness->node_ptr[i], last = stiffness->node_ptr[i + 1], touched = 0;
     for (int64_t n = first; n < last; n++) {
         row->at_field[stiffness->node_field[n]] = stiffness->node_phi[n];
@@ -266,10 +248,12 @@ void scalar_stiffness_row(const struct scalar_stiffness *stiffness, int64_t i, s
             put(stiffness->bond_stiffness[bond] * stiffness->node_phi[n], f, i, row, &touched);
             continue;
         }
-        add_cells(stiffness, f, i, row, &touched);
-        for (int64_t k = f < of_faces->row_count ? of_faces->ptr[f] : 0;
-             f < of_faces->row_count && k < of_faces->ptr[f + 1]; k++) {
-            add_cells(stiffness, stiffness->field_count + of_faces->idx[k], i, row, &touched);
+        for (int64_t c = averages->corner_ptr[f]; c < averages->corner_ptr[f + 1]; c++) {
+            int64_t q = averages->corner[c] % averages->corner_count / (dim + 1);
+            if (row->cell_seen[q] != i + 1) {
+                row->cell_seen[q] = i + 1;
+                add_cell(stiffness, q, i, row, &touched);
+            }
         }
     }
     for (int64_t n = first; n < last; n++) {

@@ -58,9 +58,9 @@ static int opposite_corner(int dim, const int32_t *vertex, const int32_t *face)
     return dim;
 }
 
-/* The face opposite each corner. */
+/* The rows of the face opposite each corner. */
 static enum status match_corners(const struct smoothed_cells_input *input, int dim, int64_t cell_count,
-                                 const int64_t *order, int32_t *face_of_corner, struct error *error)
+                                 const int64_t *order, int32_t *row_of_corner, struct error *error)
 {
     enum status status;
     int64_t *cell_place = NULL;
@@ -68,19 +68,21 @@ static enum status match_corners(const struct smoothed_cells_input *input, int d
     for (int64_t q = 0; q < cell_count; q++) {
         cell_place[order[q]] = q;
     }
-    for (int64_t i = 0; i < cell_count * (dim + 1); i++) {
-        face_of_corner[i] = -1;
+    int rows = FACE_ROWS(dim);
+    for (int64_t i = 0; i < cell_count * (dim + 1) * rows; i++) {
+        row_of_corner[i] = -1;
     }
     for (int64_t i = 0; i < input->faces->count * 2; i++) {
         int64_t face = i / 2, cell = input->faces->cell[i];
         if (cell >= 0 && cell < cell_count) {
             int corner =
                 opposite_corner(dim, input->cell_node + cell * (dim + 1), input->faces->node + face * dim);
-            face_of_corner[cell_place[cell] * (dim + 1) + corner] = (int32_t)face;
+            memcpy(row_of_corner + (cell_place[cell] * (dim + 1) + corner) * rows,
+                   input->faces->row + face * rows, (size_t)rows * sizeof *row_of_corner);
         }
     }
     for (int64_t i = 0; i < cell_count * (dim + 1); i++) {
-        if (face_of_corner[i] < 0) {
+        if (row_of_corner[i * rows] < 0) {
             status = fail(error, STATUS_INPUT,
                           "faces.cell: cell %lld lacks a face: run ipoints for smoothed cells",
                           (long long)order[i / (dim + 1)]);
@@ -92,10 +94,8 @@ done:
     return status;
 }
 
-/* x[row_count * dim]: the places of the rows; middle[faces->count * dim]: those of the faces, which their
- * rows must be around. */
-static enum status place_rows(const struct faces *faces, const double *nodes, double *x, double *middle,
-                              struct error *error)
+/* x[row_count * dim]: the places of the rows, which those of a face must be around. */
+static enum status place_rows(const struct faces *faces, const double *nodes, double *x, struct error *error)
 {
     enum status status;
     int dim = faces->dim, rows = FACE_ROWS(dim), points = ROW_POINTS(dim);
@@ -108,15 +108,15 @@ static enum status place_rows(const struct faces *faces, const double *nodes, do
     for (int64_t f = 0; f < faces->count; f++) {
         double off = 0.0, size = 0.0;
         for (int a = 0; a < dim; a++) {
-            double mean = 0.0, first = nodes[(int64_t)faces->node[f * dim] * dim + a];
+            double mean = 0.0, middle = 0.0, first = nodes[(int64_t)faces->node[f * dim] * dim + a];
             for (int i = 0; i < dim; i++) {
-                middle[f * dim + a] += nodes[(int64_t)faces->node[f * dim + i] * dim + a] / dim;
+                middle += nodes[(int64_t)faces->node[f * dim + i] * dim + a] / dim;
             }
             for (int k = 0; k < rows; k++) {
                 mean += x[(int64_t)faces->row[f * rows + k] * dim + a] / rows;
             }
-            off = fmax(off, fabs(mean - middle[f * dim + a]));
-            size = fmax(size, fabs(middle[f * dim + a] - first));
+            off = fmax(off, fabs(mean - middle));
+            size = fmax(size, fabs(middle - first));
         }
         if (!(off <= 1e-6 * size)) {
             status = fail(error, STATUS_INPUT,
@@ -172,14 +172,13 @@ static enum status build_averages(const struct smoothed_cells_input *input, cons
     enum status status;
     int dim = body->dim, corners = dim + 1;
     const struct faces *faces = input->faces;
-    int64_t *order = NULL, *face_order = NULL;
-    int32_t *node_of_corner = NULL, *face_of_corner = NULL;
-    double *x = NULL, *middle = NULL;
-    TRY(NEW_ARRAY(&face_of_corner, body->point_count * corners, error));
-    TRY(match_corners(input, dim, body->point_count, body->order, face_of_corner, error));
+    int64_t *order = NULL;
+    int32_t *node_of_corner = NULL, *row_of_corner = NULL;
+    double *x = NULL;
+    TRY(NEW_ARRAY(&row_of_corner, body->point_count * corners * FACE_ROWS(dim), error));
+    TRY(match_corners(input, dim, body->point_count, body->order, row_of_corner, error));
     TRY(NEW_ARRAY(&x, faces->row_count * dim, error));
-    TRY(NEW_ARRAY(&middle, faces->count * dim, error));
-    TRY(place_rows(faces, input->x, x, middle, error));
+    TRY(place_rows(faces, input->x, x, error));
     const struct told rows = {"face.phi", "row", input->face_ptr, input->face_idx, input->face_phi, x};
     const struct told nodes = {"node.phi",      "node",          input->node_ptr,
                                input->node_idx, input->node_phi, input->x};
@@ -187,8 +186,6 @@ static enum status build_averages(const struct smoothed_cells_input *input, cons
     TRY(check_table(&nodes, body->node_count, dim, input->x, error));
     TRY(NEW_ARRAY(&order, faces->row_count, error));
     TRY(renumber_morton(dim, faces->row_count, x, NULL, order, error));
-    TRY(NEW_ARRAY(&face_order, faces->count, error));
-    TRY(renumber_morton(dim, faces->count, middle, NULL, face_order, error));
     TRY(NEW_ARRAY(&node_of_corner, body->point_count * corners, error));
     for (int64_t q = 0; q < body->point_count; q++) {
         memcpy(node_of_corner + q * corners, input->cell_node + body->order[q] * corners,
@@ -199,12 +196,10 @@ static enum status build_averages(const struct smoothed_cells_input *input, cons
         .node_count = body->node_count,
         .corner_count = body->point_count * corners,
         .place = body->node_place,
-        .tables = {{faces->row_count, order, input->face_ptr, input->face_idx, input->face_phi},
-                   {body->node_count, body->node_order, input->node_ptr, input->node_idx, input->node_phi}},
-        .faces = faces,
-        .face_order = face_order,
-        .face_of_corner = face_of_corner,
-        .node_of_corner = node_of_corner};
+        .tables = {
+            {faces->row_count, order, input->face_ptr, input->face_idx, input->face_phi, row_of_corner},
+            {body->node_count, body->node_order, input->node_ptr, input->node_idx, input->node_phi,
+             node_of_corner}}};
     TRY(field_averages_build(&averages, &smoothed->averages, error));
     if (input->copied != NULL) {
         input->copied(input->context);
@@ -212,11 +207,9 @@ static enum status build_averages(const struct smoothed_cells_input *input, cons
     status = field_averages_transpose(&smoothed->averages, error);
 done:
     free(node_of_corner);
-    free(face_of_corner);
+    free(row_of_corner);
     free(order);
-    free(face_order);
     free(x);
-    free(middle);
     return status;
 }
 
@@ -256,29 +249,18 @@ void smoothed_cells_hat_gradients(const struct body *body, int64_t q, double *gr
     }
 }
 
-/* The value that corner k of a cell looks at, of its faces (which = 0) or nodes. */
-static int32_t value_of_corner(const struct body *body, int64_t q, int which, int k)
+int32_t smoothed_cells_row(const struct body *body, int64_t q, int k, int i)
 {
-    const struct field_averages *averages = &body->cells.averages;
-    return averages->of_corner[which * averages->corner_count + q * (body->dim + 1) + k] /
-           VECTOR_STRIDE(body->dim);
-}
-
-const int32_t *smoothed_cells_face(const struct body *body, int64_t q, int k, int32_t row[3])
-{
-    const struct sparse *means = &body->cells.averages.means;
-    int64_t value = value_of_corner(body, q, 0, k), face = value - body->cells.averages.matrix.row_count;
-    if (face < 0) {
-        row[0] = (int32_t)value;
-        return row;
-    }
-    return means->idx + means->ptr[face];
+    int64_t corner = q * (body->dim + 1) + k;
+    return body->cells.averages.of_corner[corner * FACE_ROWS(body->dim) + i] / VECTOR_STRIDE(body->dim);
 }
 
 int32_t smoothed_cells_node(const struct body *body, int64_t q, int k)
 {
-    int64_t rows = body->cells.averages.matrix.row_count - body->node_count;
-    return (int32_t)(value_of_corner(body, q, 1, k) - rows);
+    const struct field_averages *averages = &body->cells.averages;
+    int64_t first = averages->corner_count * FACE_ROWS(body->dim);
+    int32_t row = averages->of_corner[first + q * (body->dim + 1) + k] / VECTOR_STRIDE(body->dim);
+    return row - (int32_t)(averages->matrix.row_count - body->node_count);
 }
 
 enum status cell_functions_make(const struct body *body, struct cell_functions *functions,
@@ -291,10 +273,9 @@ enum status cell_functions_make(const struct body *body, struct cell_functions *
     for (int64_t q = 0; q < body->point_count; q++) {
         int64_t sum = body->smoothed ? 0 : matrix->ptr[q * body->dim + 1] - matrix->ptr[q * body->dim];
         for (int k = 0; k <= body->dim && body->smoothed; k++) {
-            int32_t own[3];
-            const int32_t *row = smoothed_cells_face(body, q, k, own);
-            for (int r = 0; r < FACE_ROWS(body->dim); r++) {
-                sum += matrix->ptr[row[r] + 1] - matrix->ptr[row[r]];
+            for (int i = 0; i < FACE_ROWS(body->dim); i++) {
+                int32_t row = smoothed_cells_row(body, q, k, i);
+                sum += matrix->ptr[row + 1] - matrix->ptr[row];
             }
         }
         most = sum > most ? sum : most;
@@ -325,15 +306,14 @@ static int list_rows(const struct body *body, int64_t q, int32_t row[12], double
     double hat[12];
     smoothed_cells_hat_gradients(body, q, hat);
     for (int k = 0; k <= dim; k++) {
-        int32_t own[3];
-        const int32_t *of_face = smoothed_cells_face(body, q, k, own);
         for (int i = 0; i < rows; i++) {
+            int32_t of_face = smoothed_cells_row(body, q, k, i);
             int at = 0;
-            while (at < count && row[at] != of_face[i]) {
+            while (at < count && row[at] != of_face) {
                 at++;
             }
             if (at == count) {
-                row[count++] = of_face[i];
+                row[count++] = of_face;
                 memset(gradient + at * dim, 0, (size_t)dim * sizeof *gradient);
             }
             for (int a = 0; a < dim; a++) {

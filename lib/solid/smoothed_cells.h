@@ -74,9 +74,9 @@ void smoothed_cells_free(struct smoothed_cells *smoothed);
 /* Gradients of the hat functions of cell q, in the body's order: gradient[(dim + 1) * dim], 1/m. */
 void smoothed_cells_hat_gradients(const struct body *body, int64_t q, double *gradient);
 
-/* The FACE_ROWS(dim) rows of the averages' matrix whose mean is the average over the face opposite vertex k
- * of cell q; the array may be `row`. */
-const int32_t *smoothed_cells_face(const struct body *body, int64_t q, int k, int32_t row[3]);
+/* Row i of the FACE_ROWS(dim) of the averages' matrix whose mean is the average over the face opposite vertex
+ * k of cell q. */
+int32_t smoothed_cells_row(const struct body *body, int64_t q, int k, int i);
 
 /* Vertex k of cell q, as a number in the body's order. */
 int32_t smoothed_cells_node(const struct body *body, int64_t q, int k);
