@@ -20,7 +20,7 @@ static const struct list_rule {
     {"sets.ptr", "sets.idx", "names", NULL, NULL},
     {"nbr.ptr", "nbr.idx", "points.x", "shape.phi", "nbr.around"},
     {"facepoint.ptr", "facepoint.idx", "facepoints.x", NULL, "facepoint.around"},
-    {"face.ptr", "face.idx", "faces", "face.phi", NULL},
+    {"face.ptr", "face.idx", NULL, "face.phi", NULL},
     {"boundary.ptr", "boundary.idx", NULL, "boundary.phi", NULL},
     {"node.ptr", "node.idx", "nodes.x", "node.phi", "node.around"},
 };
@@ -295,12 +295,63 @@ static void check_multiple(struct check *check, const struct section *points, in
     }
 }
 
-/* Faces on the boundary come first; facepoints.x has equally many points on each face, boundary.ptr on each
- * of these. */
+/* Counts the points of faces by their rows: three of a row that is one face's own, which stand first, one of
+ * others, which are numbered as they come; -1: they do not. *count: of the rows. */
+static int64_t count_face_points(struct check *check, const struct section *rows, int64_t *count)
+{
+    int64_t own = 0, bad = -1;
+    const int32_t *row = rows->data;
+    for (int64_t f = 0; f < rows->rows && bad < 0; f++) {
+        if (row[3 * f] == row[3 * f + 2]) {
+            bad = row[3 * f] == own && row[3 * f + 1] == own ? -1 : f;
+            own++;
+        }
+    }
+    *count = own;
+    for (int64_t i = 0; i < 3 * rows->rows && bad < 0; i++) {
+        if (row[i / 3 * 3] != row[i / 3 * 3 + 2]) {
+            bad = row[i] >= own && row[i] <= *count ? -1 : i / 3;
+            *count += row[i] == *count;
+        }
+    }
+    if (bad >= 0) {
+        violation(check, rows, "row %" PRId64 ": %d %d %d: not numbered as they come", bad, row[3 * bad],
+                  row[3 * bad + 1], row[3 * bad + 2]);
+        return -1;
+    }
+    return *count + 2 * own;
+}
+
+/* face.ptr has a row for each row of the faces, facepoints.x equally many points for each face where they
+ * share none. */
+static void check_face_rows(struct check *check)
+{
+    const struct section *faces = stream_find(check->stream, "faces.cell");
+    const struct section *rows = stream_find(check->stream, "faces.row");
+    const struct section *points = stream_find(check->stream, "facepoints.x");
+    const struct section *ptr = stream_find(check->stream, "face.ptr");
+    if (faces == NULL || (rows != NULL && (rows->type != TYPE_I4 || rows->cols != 3))) {
+        return;
+    }
+    int64_t count = faces->rows, wanted = rows != NULL ? count_face_points(check, rows, &count) : 0;
+    if (wanted < 0) {
+        return;
+    }
+    if (rows == NULL) {
+        check_multiple(check, points, points != NULL ? points->rows : 0, count, "");
+    } else if (points != NULL && points->rows != wanted) {
+        violation(check, points, "%" PRId64 " points, but faces.row asks for %" PRId64, points->rows, wanted);
+    }
+    if (ptr != NULL && ptr->rows != count + 1) {
+        violation(check, ptr, "%" PRId64 " rows, but faces%s has %" PRId64 ": need one more", ptr->rows,
+                  rows != NULL ? ".row" : "", count);
+    }
+}
+
+/* Faces on the boundary come first; boundary.ptr has equally many points on each of these. */
 static void check_faces(struct check *check)
 {
     const struct section *faces = stream_find(check->stream, "faces.cell");
-    const struct section *points = stream_find(check->stream, "facepoints.x");
     const struct section *boundary = stream_find(check->stream, "boundary.ptr");
     int64_t outer = 0;
     if (faces == NULL || faces->type != TYPE_I4 || faces->cols != 2) {
@@ -313,7 +364,6 @@ static void check_faces(struct check *check)
             return;
         }
     }
-    check_multiple(check, points, points != NULL ? points->rows : 0, faces->rows, "");
     check_multiple(check, boundary, boundary != NULL ? boundary->rows - 1 : 0, outer, " of the boundary");
 }
 
@@ -368,6 +418,7 @@ int64_t stream_check(const struct stream *stream, violation_function *tell, void
         check_lists(&check, &list_rules[i]);
     }
     check_faces(&check);
+    check_face_rows(&check);
     for (int64_t i = 0; i < stream->section_count; i++) {
         const struct section *section = &stream->sections[i];
         if (strcmp(section->name, "u") == 0 || strncmp(section->name, "u.frame.", 8) == 0 ||
