@@ -109,8 +109,8 @@ consistency() {
                 load("face.phi", phi, 1)
                 faces = load("faces", face, dim)
                 load("faces.cell", cell, 2)
-                rows = dim == 2 ? 1 : 3
-                load("faces.row", of_face, rows)
+                rows = load("faces.row", of_face, 3) ? 3 : 1
+                for (f = 0; f < faces && rows == 1; f++) of_face[f, 1] = f
                 for (f = 0; f < faces; f++) {
                     from_face(f, cell[f, 1], 1)
                     if (cell[f, 2] >= 0) from_face(f, cell[f, 2], -1)
