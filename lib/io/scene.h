@@ -79,7 +79,7 @@ struct scene_material {
     enum scene_model model;
     double youngs_modulus; /* Pa, > 0; 0 with a table */
     double poisson_ratio;  /* -1 < nu < .5; 0 with a table */
-    double density;        /* kg/m3, > 0 */
+    double density;        /* kg/m3, > 0; not given: 1000, which has no effect at rest without gravity */
     double mooney_ratio;   /* C01/C10 >= 0, mooney-rivlin only */
     double ogden_alpha;    /* not 0, ogden only */
     char *table;       /* NULL, or rows (dim coordinates, E in Pa, nu), one per integration point in order */

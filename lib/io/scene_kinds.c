@@ -76,6 +76,15 @@ done:
     return status;
 }
 
+/* Without motion and weight the density has no effect. */
+static const double no_matter = 1000.0; /* kg/m3, where it is not given */
+
+static bool is_density_felt(const struct scene *scene)
+{
+    return scene->analysis == SCENE_DYNAMIC || fabs(scene->gravity[0]) > 0.0 ||
+           fabs(scene->gravity[1]) > 0.0 || fabs(scene->gravity[2]) > 0.0;
+}
+
 static enum status read_material(const struct place *place, struct scene *scene)
 {
     struct scene_material *material = &scene->materials[scene->material_count - 1];
@@ -83,7 +92,10 @@ static enum status read_material(const struct place *place, struct scene *scene)
     TRY(place_require(place, "region", "name the regions made of it"));
     TRY(place_names(place, "region", &material->regions));
     TRY(read_model(place, material));
-    TRY(place_require(place, "rho", "give the density in kg/m3"));
+    if (is_density_felt(scene)) {
+        TRY(place_require(place, "rho", "give the density in kg/m3"));
+    }
+    material->density = no_matter;
     TRY(place_number(place, "rho", range_positive, &material->density));
     TRY(place_table(place, "table", &material->table, &material->table_unit));
     if (material->table != NULL) {

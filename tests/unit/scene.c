@@ -293,12 +293,28 @@ static void material_values(void **state)
     }
 }
 
+/* At rest without weight nobody need give a density. */
+static void density_that_is_not_felt(void **state)
+{
+    (void)state;
+    static const char text[] = HEAD "[material m]\nregion = r\nE = 3\nnu = .3\n";
+    struct scene scene;
+    struct error error = {""};
+    write_bytes(text, sizeof text - 1);
+    assert_int_equal(scene_read(path, &scene, &error), STATUS_OK);
+    assert_true(scene.materials[0].density > 0);
+    scene_free(&scene);
+}
+
 static void material_keys(void **state)
 {
     (void)state;
     fails(HEAD "[material m]\nregion = r\nnu = .3\nrho = 1\n", 4, "E: missing: give Young's modulus in Pa");
     fails(HEAD "[material m]\nregion = r\nE = 3\nrho = 1\n", 4, "nu: missing");
-    fails(HEAD "[material m]\nregion = r\nE = 3\nnu = .3\n", 4, "rho: missing: give the density in kg/m3");
+    fails(HEAD "gravity = 0, -9.81\n[material m]\nregion = r\nE = 3\nnu = .3\n", 5,
+          "rho: missing: give the density in kg/m3");
+    fails("[scene]\ndim = 2\nanalysis = dynamic\n[material m]\nregion = r\nE = 3\nnu = .3\n", 4,
+          "rho: missing: give the density in kg/m3");
     fails(HEAD "[material m]\nE = 3\nnu = .3\nrho = 1\n", 4, "region: missing");
     fails(HEAD BODY "model = hooke\n", 9, "model: 'hooke' is none of neo-hookean, neo-hookean-log");
     fails(HEAD BODY "model = ogden\n", 4, "alpha: missing");
