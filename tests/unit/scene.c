@@ -432,11 +432,12 @@ static int remove_folder(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(reads_everything), cmocka_unit_test(defaults),
-        cmocka_unit_test(strict_form),      cmocka_unit_test(line_length),
-        cmocka_unit_test(material_values),  cmocka_unit_test(material_keys),
-        cmocka_unit_test(conditions),       cmocka_unit_test(solver_and_output),
-        cmocka_unit_test(wrong_files),      cmocka_unit_test(truncation),
+        cmocka_unit_test(reads_everything),  cmocka_unit_test(defaults),
+        cmocka_unit_test(strict_form),       cmocka_unit_test(line_length),
+        cmocka_unit_test(material_values),   cmocka_unit_test(density_that_is_not_felt),
+        cmocka_unit_test(material_keys),     cmocka_unit_test(conditions),
+        cmocka_unit_test(solver_and_output), cmocka_unit_test(wrong_files),
+        cmocka_unit_test(truncation),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }
