@@ -106,6 +106,7 @@ int main(int argc, char *argv[])
     struct stream stream;
     struct scene scene;
     struct model model;
+    struct parts_input parts = {.given = false};
     struct error error;
     struct option options[OPTION_COUNT] = {
         [VERBOSE] = {.letter = 'v', .name = "verbose"},
@@ -123,10 +124,14 @@ int main(int argc, char *argv[])
                   "several processes cannot share standard input: name the stream's file");
     }
     tool_check(&tool, scene_read(tool.operands[0], &scene, &error), &error);
-    tool_read(&tool, tool.operand_count > 1 ? tool.operands[1] : NULL, &stream);
+    if (parts_are_named(tool.operands[1])) {
+        parts_read(&tool, tool.operands[1], &stream, &parts);
+    } else {
+        tool_read(&tool, tool.operand_count > 1 ? tool.operands[1] : NULL, &stream);
+    }
     drop_results(&stream);
     if (stream_find(&stream, "part.node") != NULL) {
-        tool_fail(&tool, STATUS_INPUT, "the input is one part of a body: put all parts together by unpart");
+        tool_fail(&tool, STATUS_INPUT, "the input is one part of a body: name all, as part.%%d.mts");
     }
     double read = clock_seconds() - started;
     stage_fill(&tool, &stream, "shapefn");
@@ -135,6 +140,7 @@ int main(int argc, char *argv[])
                       .scene = &scene,
                       .model = &model,
                       .stream = &stream,
+                      .parts = &parts,
                       .verbose = options[VERBOSE].given && process_speaks(),
                       .text = !options[BINARY].given,
                       .checkpoint = {.file = options[CHECKPOINT].value, .interval = every},
@@ -143,7 +149,7 @@ int main(int argc, char *argv[])
                                   .started = clock_seconds()}};
     run_put_supports(&run);
     run_checkpoint_begin(&run);
-    tool_check(&tool, model_build(&stream, &scene, &model, &error), &error);
+    tool_check(&tool, model_build(&stream, parts.face_reader, &scene, &model, &error), &error);
     if (model.note.text[0] != '\0') {
         tool_note(&tool, "%s", model.note.text);
     }
@@ -176,6 +182,7 @@ int main(int argc, char *argv[])
     run_stability_free(&run);
     model_free(&model);
     free(run.u);
+    parts_free(&parts);
     scene_free(&scene);
     stream_free(&stream);
     return tool_end(&tool);

@@ -123,6 +123,7 @@ void field_averages_free(struct field_averages *averages)
 {
     sparse_free(&averages->matrix);
     sparse_free(&averages->transposed);
+    sparse_free(&averages->fetched);
     free(averages->value);
     free(averages->force);
     free(averages->of_corner);

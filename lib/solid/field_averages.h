@@ -36,7 +36,8 @@ struct field_averages {
     int64_t *corner_ptr;              /* row_count + 1: the corners of each row, */
     int32_t *corner;                  /* 2 corner_count: by rows, ascending */
     struct average_table told[2];     /* of several processes: the tables, the caller's, */
-    int64_t *face_order;              /* with this order of the faces */
+    int64_t *face_order;              /* with this order of the faces; */
+    struct sparse fetched; /* where no process has all of that over the faces, the rows needed here */
 };
 
 struct field_averages_input {

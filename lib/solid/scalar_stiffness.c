@@ -80,14 +80,15 @@ static int64_t field_of_corner(const struct scalar_stiffness *stiffness, int64_t
 static enum status list_fields(struct scalar_stiffness *stiffness, struct error *error)
 {
     enum status status;
-    int64_t nodes = stiffness->system->node_count, begin = stiffness->begin, end = stiffness->end;
+    const struct body *body = &stiffness->system->body;
+    int64_t nodes = stiffness->system->node_count;
     const int32_t *unused;
     int64_t *next = NULL;
     TRY(NEW_ARRAY(&next, nodes + 1, error));
     for (int64_t f = 0; f < stiffness->field_count; f++) {
         struct average field = field_at(stiffness, f, &unused);
         for (int64_t i = 0; i < field.length; i++) {
-            next[field.idx[i] + 1] += field.idx[i] >= begin && field.idx[i] < end;
+            next[field.idx[i] + 1] += body_share_has_node(body, field.idx[i]);
         }
     }
     for (int64_t n = 0; n < nodes; n++) {
@@ -98,7 +99,7 @@ static enum status list_fields(struct scalar_stiffness *stiffness, struct error 
     for (int64_t f = 0; f < stiffness->field_count; f++) {
         struct average field = field_at(stiffness, f, &unused);
         for (int64_t i = 0; i < field.length; i++) {
-            if (field.idx[i] >= begin && field.idx[i] < end) {
+            if (body_share_has_node(body, field.idx[i])) {
                 int64_t at = next[field.idx[i]]++;
                 stiffness->fields.idx[at] = (int32_t)f;
                 stiffness->fields.value[at] = field.phi[i];
@@ -135,13 +136,12 @@ done:
     return status;
 }
 
-enum status scalar_stiffness_make(const struct solid_system *system, int64_t begin, int64_t end,
-                                  struct scalar_stiffness *stiffness, struct error *error)
+enum status scalar_stiffness_make(const struct solid_system *system, struct scalar_stiffness *stiffness,
+                                  struct error *error)
 {
     enum status status;
     const struct body *body = &system->body;
-    *stiffness = (struct scalar_stiffness){
-        .system = system, .begin = begin, .end = end, .bond_count = count_bonds(system)};
+    *stiffness = (struct scalar_stiffness){.system = system, .bond_count = count_bonds(system)};
     stiffness->field_count = body->cells.averages.matrix.row_count;
     if (stiffness->field_count + stiffness->bond_count > INT32_MAX) {
         status = fail(error, STATUS_SYSTEM, "preconditioner: more than 2^31 faces, nodes and conditions");
@@ -165,24 +165,6 @@ void scalar_stiffness_free(struct scalar_stiffness *stiffness)
     sparse_free(&stiffness->fields);
     free(stiffness->bond_stiffness);
     *stiffness = (struct scalar_stiffness){0};
-}
-
-void scalar_stiffness_work(const struct solid_system *system, double *work)
-{
-    for (int k = 0; k < 2; k++) {
-        const struct average_table *table = &system->body.cells.averages.told[k];
-        for (int64_t i = 0; i < table->ptr[table->row_count]; i++) {
-            work[table->idx[i]] += 1.0;
-        }
-    }
-    const struct neighbours *lists = system->node_lists;
-    for (int64_t n = 0; n < system->node_count; n++) {
-        int64_t length = lists->ptr[n + 1] - lists->ptr[n], lower = 0;
-        for (int64_t i = lists->ptr[n]; i < lists->ptr[n + 1]; i++) {
-            lower += lists->idx[i] <= n;
-        }
-        work[n] *= 1.0 + (double)lower / (double)(length > 0 ? length : 1);
-    }
 }
 
 enum status scalar_row_make(const struct scalar_stiffness *stiffness, struct scalar_row *row,

@@ -89,6 +89,9 @@ void run_checkpoint_begin(struct run *run)
     if (checkpoint->file != NULL || process_ranks() != NULL) {
         tool_check(run->tool, checkpoint_identify(run->scene, run->stream, &checkpoint->identity, &error),
                    &error);
+        if (run->parts->given) {
+            checkpoint->identity.input = run->parts->identity;
+        }
         compare_processes(run);
     }
     if (checkpoint->file != NULL) {
