@@ -31,9 +31,15 @@ static char *file_of(const struct tool *tool, const char *operand, int64_t numbe
     return file;
 }
 
-static enum status read_file(const char *file, struct stream *stream, struct error *error)
+/* Part `number`, of `count` if that is known. */
+static enum status read_file(const char *file, int64_t number, int64_t count, struct stream *stream,
+                             struct error *error)
 {
     int descriptor = open(file, O_RDONLY | O_CLOEXEC);
+    if (descriptor < 0 && errno == ENOENT && count > 0) {
+        return fail(error, STATUS_INPUT, "%s: part %lld of %lld is missing", file, (long long)number,
+                    (long long)count);
+    }
     if (descriptor < 0) {
         return fail(error, STATUS_INPUT, "%s: %s", file, strerror(errno));
     }
@@ -63,7 +69,7 @@ static int64_t begin(const struct tool *tool, char *file, struct stream *stream)
     const struct ranks *ranks = process_ranks();
     int64_t count = 0;
     if (ranks_rank(ranks) == 0) {
-        status = read_file(file, stream, &error);
+        status = read_file(file, 0, 0, stream, &error);
         if (status == STATUS_OK) {
             status = count_parts(file, stream, &count, &error);
         }
@@ -139,7 +145,7 @@ void parts_read(const struct tool *tool, const char *operand, struct stream *str
         if (k == 0 && !part->elsewhere) {
             part->stream = start;
         } else if (!part->elsewhere && status == STATUS_OK) {
-            status = read_file(part->file, &part->stream, &error);
+            status = read_file(part->file, k, rejoin.part_count, &part->stream, &error);
         }
     }
     tool_check(tool, ranks_agree(ranks, status, &error), &error);
