@@ -14,9 +14,8 @@ struct solid_system;
 struct scalar_stiffness {
     const struct solid_system *system;
     int64_t field_count, bond_count;
-    struct sparse bonds;    /* a row for each node: the bonds that it is in, and its shares there; */
-    struct sparse fields;   /* likewise the fields, of several processes, of own nodes. Of one process empty:
-                               the transpose that the body has tells them */
+    struct sparse bonds; /* a row for each node: the bonds that it is in, and its shares there. The fields it
+                            is in are told by the transpose that the body has */
     double *bond_stiffness; /* N/m (2D: N/m2) */
 };
 
