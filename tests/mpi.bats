@@ -191,6 +191,10 @@ one_line() {
     }
     rm part.2.mts
     refused_part "part.2.mts: part 2 of 4 is missing"
+    cp part.0.mts first.mts
+    mts text first.mts | sed 's/parts=4/parts=1000000/' > part.0.mts
+    refused_part "part.999999.mts: part 999999 of 1000000 is missing"
+    mv first.mts part.0.mts
     cp part.1.mts part.2.mts
     refused_part "part.1.mts and part.2.mts are the same part, 1"
     head -c 5000 whole.mts > part.2.mts

@@ -56,6 +56,9 @@ MUST_CHECK enum status field_averages_build(const struct field_averages_input *i
 MUST_CHECK enum status field_averages_copy(const struct field_averages_input *input, const bool *wanted,
                                            int64_t first, int64_t last, struct sparse *matrix,
                                            struct error *error);
+
+/* Of the rows that were fetched those alone stay that the matrix has not. */
+MUST_CHECK enum status field_averages_drop_copied(struct field_averages *averages, struct error *error);
 void field_averages_free(struct field_averages *averages);
 
 #endif

@@ -2,6 +2,7 @@
  * together has the bits of one process, whatever their number. */
 #include "body_setup.h"
 
+#include "base/envelope.h"
 #include "base/memory.h"
 #include "base/ranks.h"
 
@@ -336,11 +337,85 @@ static void agreement(void **state)
     assert_int_equal(ranks_agree(NULL, (fail)(&error, STATUS_VERDICT, "alone"), &error), STATUS_VERDICT);
 }
 
+enum { SOLVED = 90, BLOCKS = 3 }; /* rows; row i is of block i % BLOCKS */
+
+/* A chain in each of some blocks that do not couple. */
+static void make_chains(struct envelope *factor)
+{
+    struct error error;
+    int64_t ptr[SOLVED + 1] = {0}, column[3 * SOLVED], at = 0;
+    double value[3 * SOLVED];
+    for (int64_t i = 0; i < SOLVED; i++) {
+        for (int64_t k = i - BLOCKS; k <= i + BLOCKS; k += BLOCKS) {
+            if (k >= 0 && k < SOLVED) {
+                column[at] = k;
+                value[at++] = k == i ? 2.5 + 0.01 * (double)i : -1.0;
+            }
+        }
+        ptr[i + 1] = at;
+    }
+    GOOD(envelope_factorise(SOLVED, ptr, column, value, 1e-10, factor, &error));
+}
+
+static void *solve_member(void *context)
+{
+    struct member *member = context;
+    const struct ranks *ranks = &member->ranks;
+    struct error error;
+    struct envelope factor;
+    int64_t *first;
+    double *x = member->results + ranks->rank * SOLVED;
+    make_chains(&factor);
+    GOOD(envelope_share(&factor, ranks, &first, &error));
+    assert_int_equal(first[0], 0);
+    assert_int_equal(first[ranks->count], SOLVED);
+    if (ranks->count <= BLOCKS) { /* each has some */
+        assert_true(first[ranks->rank + 1] - first[ranks->rank] >= SOLVED / BLOCKS);
+    }
+    for (int64_t i = 0; i < SOLVED; i++) {
+        x[i] = member->u[i];
+    }
+    envelope_solve_shared(&factor, ranks, first, x);
+    free(first);
+    envelope_free(&factor);
+    return NULL;
+}
+
+/* Blocks are solved by several processes to the bits of one. */
+static void solving(void **state)
+{
+    (void)state;
+    double right[SOLVED], alone[SOLVED], results[MOST * SOLVED];
+    struct envelope factor;
+    make_chains(&factor);
+    for (int i = 0; i < SOLVED; i++) {
+        alone[i] = right[i] = 1.0 / (1.0 + i);
+    }
+    envelope_solve(&factor, alone);
+    /* The matrix times the solution. */
+    for (int i = BLOCKS; i < SOLVED - BLOCKS; i++) {
+        double sum = (2.5 + 0.01 * i) * alone[i] - alone[i - BLOCKS] - alone[i + BLOCKS];
+        AT_MOST(fabs(sum - right[i]), 1e-14);
+    }
+    envelope_free(&factor);
+    for (int count = 2; count <= MOST; count += count == 3 ? MOST - 3 : 1) {
+        struct member members[MOST];
+        for (int r = 0; r < count; r++) {
+            members[r] = (struct member){.u = right, .results = results};
+        }
+        run_team(count, members, solve_member);
+        for (int r = 0; r < count; r++) {
+            assert_memory_equal(results + r * SOLVED, alone, sizeof alone);
+        }
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(shares), cmocka_unit_test(rows_in_stretches), cmocka_unit_test(agreement),
-        cmocka_unit_test(bodies), cmocka_unit_test(large_body),
+        cmocka_unit_test(shares),    cmocka_unit_test(rows_in_stretches),
+        cmocka_unit_test(agreement), cmocka_unit_test(solving),
+        cmocka_unit_test(bodies),    cmocka_unit_test(large_body),
     };
     return cmocka_run_group_tests(tests, make_samples, free_samples);
 }

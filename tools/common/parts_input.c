@@ -31,14 +31,19 @@ static char *file_of(const struct tool *tool, const char *operand, int64_t numbe
     return file;
 }
 
+static enum status fail_missing(const char *file, int64_t number, int64_t count, struct error *error)
+{
+    return fail(error, STATUS_INPUT, "%s: part %lld of %lld is missing", file, (long long)number,
+                (long long)count);
+}
+
 /* Part `number`, of `count` if that is known. */
 static enum status read_file(const char *file, int64_t number, int64_t count, struct stream *stream,
                              struct error *error)
 {
     int descriptor = open(file, O_RDONLY | O_CLOEXEC);
     if (descriptor < 0 && errno == ENOENT && count > 0) {
-        return fail(error, STATUS_INPUT, "%s: part %lld of %lld is missing", file, (long long)number,
-                    (long long)count);
+        return fail_missing(file, number, count, error);
     }
     if (descriptor < 0) {
         return fail(error, STATUS_INPUT, "%s: %s", file, strerror(errno));
@@ -61,18 +66,33 @@ static enum status count_parts(const char *file, const struct stream *stream, in
     return status != STATUS_OK ? fail_in(error, status, "%s", file) : status;
 }
 
+/* A head that promises parts that are not there is found out before memory is asked for. */
+static enum status look_for_last(const struct tool *tool, const char *operand, int64_t count,
+                                 struct error *error)
+{
+    char *last = file_of(tool, operand, count - 1);
+    enum status status = access(last, F_OK) != 0 ? fail_missing(last, count - 1, count, error) : STATUS_OK;
+    free(last);
+    return status;
+}
+
 /* The first part is read by the first process, and all learn how many there are. */
-static int64_t begin(const struct tool *tool, char *file, struct stream *stream)
+static int64_t begin(const struct tool *tool, const char *operand, struct stream *stream)
 {
     struct error error;
     enum status status = STATUS_OK;
     const struct ranks *ranks = process_ranks();
     int64_t count = 0;
     if (ranks_rank(ranks) == 0) {
+        char *file = file_of(tool, operand, 0);
         status = read_file(file, 0, 0, stream, &error);
         if (status == STATUS_OK) {
             status = count_parts(file, stream, &count, &error);
         }
+        if (status == STATUS_OK) {
+            status = look_for_last(tool, operand, count, &error);
+        }
+        free(file);
     }
     tool_check(tool, ranks_agree(ranks, status, &error), &error);
     count = ranks_most(ranks, count);
@@ -116,16 +136,45 @@ static void list_readers(const struct tool *tool, const struct rejoin *rejoin, c
     }
 }
 
+/* Read the files of the parts that are this process's, the first one as it was read already. */
+static enum status read_own(struct rejoin *rejoin, const char *operand, const int64_t *first,
+                            const struct stream *start, struct error *error)
+{
+    enum status status = STATUS_OK;
+    const struct ranks *ranks = process_ranks();
+    for (int64_t k = 0; k < rejoin->part_count; k++) {
+        struct rejoin_part *part = &rejoin->part[k];
+        part->file = file_of(rejoin->tool, operand, k);
+        part->read_as = k;
+        part->elsewhere = ranks_owner(ranks, first, k) != ranks_rank(ranks);
+        if (k == 0 && !part->elsewhere) {
+            part->stream = *start;
+        } else if (!part->elsewhere && status == STATUS_OK) {
+            status = read_file(part->file, k, rejoin->part_count, &part->stream, error);
+        }
+    }
+    return status;
+}
+
+/* How the first part was made. */
+static void take_provenance(struct rejoin *rejoin, struct stream *stream)
+{
+    struct stream *from = &rejoin->part[0].stream;
+    stream->provenance = from->provenance;
+    stream->provenance_count = from->provenance_count;
+    from->provenance = NULL;
+    from->provenance_count = 0;
+}
+
 void parts_read(const struct tool *tool, const char *operand, struct stream *stream,
                 struct parts_input *parts)
 {
     struct error error;
-    enum status status = STATUS_OK;
     const struct ranks *ranks = process_ranks();
     struct rejoin rejoin = {.tool = tool};
     struct stream start;
     int64_t *first;
-    char *file = file_of(tool, operand, 0);
+    void *packed;
     *parts = (struct parts_input){.given = true};
     if (strstr(strstr(operand, "%d") + 1, "%d") != NULL) {
         tool_fail(tool, STATUS_INPUT, "%s: has to have one %%d, where the number of the part goes", operand);
@@ -133,24 +182,11 @@ void parts_read(const struct tool *tool, const char *operand, struct stream *str
     tool_names_input(operand);
     stream_init(stream);
     stream_init(&start);
-    rejoin.part_count = begin(tool, file, &start);
-    free(file);
+    rejoin.part_count = begin(tool, operand, &start);
     tool_check(tool, NEW_ARRAY(&rejoin.part, rejoin.part_count, &error), &error);
     tool_check(tool, ranks_share(ranks, rejoin.part_count, NULL, &first, &error), &error);
-    for (int64_t k = 0; k < rejoin.part_count; k++) {
-        struct rejoin_part *part = &rejoin.part[k];
-        part->file = file_of(tool, operand, k);
-        part->read_as = k;
-        part->elsewhere = ranks_owner(ranks, first, k) != ranks_rank(ranks);
-        if (k == 0 && !part->elsewhere) {
-            part->stream = start;
-        } else if (!part->elsewhere && status == STATUS_OK) {
-            status = read_file(part->file, k, rejoin.part_count, &part->stream, &error);
-        }
-    }
-    tool_check(tool, ranks_agree(ranks, status, &error), &error);
+    tool_check(tool, ranks_agree(ranks, read_own(&rejoin, operand, first, &start, &error), &error), &error);
     parts->identity = identify(tool, &rejoin, first);
-    void *packed = NULL;
     tool_check(tool, parts_share_small(&rejoin, first, &packed, &error), &error);
     rejoin_streams(&rejoin);
     tool_check(tool, ranks_agree(ranks, rejoin_check_large(&rejoin, &error), &error), &error);
@@ -158,10 +194,7 @@ void parts_read(const struct tool *tool, const char *operand, struct stream *str
     if (ranks != NULL && stream_find(stream, "face.ptr") != NULL) {
         list_readers(tool, &rejoin, first, parts);
     }
-    stream->provenance = rejoin.part[0].stream.provenance; /* how the first part was made */
-    stream->provenance_count = rejoin.part[0].stream.provenance_count;
-    rejoin.part[0].stream.provenance = NULL;
-    rejoin.part[0].stream.provenance_count = 0;
+    take_provenance(&rejoin, stream);
     for (int64_t k = 0; k < rejoin.part_count; k++) {
         free((char *)rejoin.part[k].file);
     }
