@@ -208,7 +208,7 @@ cut_and_compute() {
     part -k 2 -o part.%d.mts square.mts
     refused 2 "the input is a part already" part -k 2 -v part.0.mts
     pressed_block > block.scene
-    refused 2 "the input is one part of a body: put all parts together by unpart" mtled block.scene part.0.mts
+    refused 2 "the input is one part of a body: name all, as part.%d.mts" mtled block.scene part.0.mts
     refused 2 "the input is one part of a body: make groups before it is cut" groups -f 'a=all' part.0.mts
     # One part is the whole; tables are left out.
     shapefn square.mts 2> note | part -k 1 -o one.%d.mts 2> said

@@ -8,7 +8,8 @@ static const char usage[] =
     "of the mesh (see mtled-scene(5)). Writes the nodes, the cells and u (m), the displacement\n"
     "field at the nodes, a row for each as in the mesh, as text; its parameters and supports, for\n"
     "interp and fieldcmp; and what else the scene's [output] asks for. Without earlier sections the\n"
-    "defaults of ipoints, support and shapefn are run first, with the same result.\n"
+    "defaults of ipoints, support and shapefn are run first, with the same result. A FILE with\n"
+    "%d in its name is all parts of a body (see part), with the same result as well.\n"
     "\n"
     "Quasi-static scenes are relaxed until the estimated remaining error, relative to the\n"
     "displacement, is below the scene's tolerance. Dynamic scenes are stepped to their end time by\n"
@@ -31,18 +32,16 @@ static const char usage[] =
     "internal and contact.\n"
     "\n"
     "And of frames, states on the way: u.frame.K, the field u at time=, K = 0, the begin, 1, 2, ...,\n"
-    "evenly up to the final state. In a quasi-static scene time goes from 0 to\n"
-    "1 over the load, which is held at each frame until the estimated error is below the\n"
-    "tolerance. What else the scene asks for is there of each of these frames, too:\n"
-    "stress.frame.K and so on, and tables with a row for each frame, time first, reactions.frames,\n"
-    "moments.frames, energy.frames: a load curve.\n"
+    "evenly. In a quasi-static scene time goes from 0 to 1 over the load, which is held at each\n"
+    "frame until the error is below the tolerance. What else the scene asks for is there of each\n"
+    "frame, too: stress.frame.K and so on, and tables with a row for each frame, time first,\n"
+    "reactions.frames, moments.frames, energy.frames: a load curve.\n"
     "\n"
     "With -c, the state of the run is kept in a file, from time to time and when SIGINT, SIGTERM\n"
-    "or SIGHUP end it. The same command then goes on where it was, and ends with the same bytes\n"
-    "as if nothing had happened; with another scene, cloud or version it is refused. FILE is\n"
-    "replaced as a whole, and the one before is FILE.old: one of them is whole whatever happens.\n"
-    "It is a stream (see mts list) with the last field as u.last and the frames so far; when the\n"
-    "results are written, both go.\n"
+    "or SIGHUP end it. The same command then goes on where it was, and ends with the same bytes;\n"
+    "with another scene, cloud, cut or version it is refused. FILE is replaced as a whole, and the\n"
+    "one before is FILE.old: one of them is whole whatever happens. It is a stream with the last\n"
+    "field as u.last and the frames so far; when the results are written, both go.\n"
     "\n"
     "Options:\n"
     "  -v, --verbose        end with a report on standard error: steps, error, cost of each part\n"
@@ -62,11 +61,11 @@ static const char usage[] =
     "\n"
     "Environment:\n"
     "  OMP_WAIT_POLICY=passive  for cores that other programs use: waiting threads sleep, else they\n"
-    "                           spin, and a run takes up to four times as long\n"
+    "                           spin: up to four times as long\n"
     "\n"
     "Examples:\n"
     "  nodes -u mm body.msh | shapefn | mtled brain2d.scene > u.dat\n"
-    "  mpirun -n 4 mtled-mpi -o u.dat brain2d.scene table.mts    by processes (make mpi); same bytes\n";
+    "  mpirun -n 4 mtled-mpi -o u.dat brain2d.scene part.%d.mts    by processes (make mpi); same bytes\n";
 
 #include "process.h"
 #include "run.h"
@@ -90,6 +89,7 @@ int main(int argc, char *argv[])
     struct stream stream;
     struct scene scene;
     struct model model;
+    struct parts_input parts = {.given = false};
     struct error error;
     process_begin(&argc, &argv);
     tool_begin(&tool, usage, 1, 2, argc, argv);
@@ -103,10 +103,14 @@ int main(int argc, char *argv[])
                   "several processes cannot share standard input: name the stream's file");
     }
     tool_check(&tool, scene_read(tool.operands[0], &scene, &error), &error);
-    tool_read(&tool, tool.operand_count > 1 ? tool.operands[1] : NULL, &stream);
+    if (parts_are_named(tool.operands[1])) {
+        parts_read(&tool, tool.operands[1], &stream, &parts);
+    } else {
+        tool_read(&tool, tool.operand_count > 1 ? tool.operands[1] : NULL, &stream);
+    }
     drop_results(&stream);
     if (stream_find(&stream, "part.node") != NULL) {
-        tool_fail(&tool, STATUS_INPUT, "the input is one part of a body: put all parts together by unpart");
+        tool_fail(&tool, STATUS_INPUT, "the input is one part of a body: name all, as part.%%d.mts");
     }
     double read = clock_seconds() - started;
     stage_fill(&tool, &stream, "shapefn");
@@ -116,6 +120,7 @@ int main(int argc, char *argv[])
         .scene = &scene,
         .model = &model,
         .stream = &stream,
+        .parts = &parts,
         .verbose = tool_given(&tool, "verbose") && process_speaks(),
         .text = !tool_given(&tool, "binary"),
         .checkpoint = {.file = tool_value(&tool, "checkpoint"), .interval = every},
@@ -124,7 +129,7 @@ int main(int argc, char *argv[])
                     .started = clock_seconds()}};
     run_put_supports(&run);
     run_checkpoint_begin(&run);
-    tool_check(&tool, model_build(&stream, &scene, &model, &error), &error);
+    tool_check(&tool, model_build(&stream, parts.face_reader, &scene, &model, &error), &error);
     if (model.note.text[0] != '\0') {
         tool_note(&tool, "%s", model.note.text);
     }
@@ -157,6 +162,7 @@ int main(int argc, char *argv[])
     run_stability_free(&run);
     model_free(&model);
     free(run.u);
+    parts_free(&parts);
     scene_free(&scene);
     stream_free(&stream);
     return tool_end(&tool);

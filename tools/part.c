@@ -8,7 +8,8 @@ static const char usage[] =
     "in which %d is its number, from 0. It has the nodes and cells of the part, and a halo of those of\n"
     "others that supports reach over, so that ipoints, support and shapefn compute on it what they\n"
     "compute on the whole body: run the three, with the same options, on each part, side by side or on\n"
-    "several machines, and unpart puts tables and fields together again, to the same bytes.\n"
+    "several machines. mtled takes all parts as they are, and unpart puts tables and fields together\n"
+    "again; both to the same bytes.\n"
     "\n"
     "Nodes and cells keep their order. part.node and part.cell have their numbers in the body, part.owner\n"
     "the part that each node belongs to; a cell belongs to the part with most of its vertices. Sections\n"
@@ -31,7 +32,9 @@ static const char usage[] =
     "\n"
     "Examples:\n"
     "  nodes -u mm body.msh | part -k 8 -o part.%d.mts\n"
-    "  ls part.?.mts | xargs -P 8 -I {} shapefn -o {}.table {} && unpart part.?.mts.table > table.mts\n";
+    "  ls part.?.mts | xargs -P 8 -I {} shapefn -o {}.table {}\n"
+    "  mpirun -n 4 mtled-mpi -o u.dat body.scene part.%d.mts.table\n"
+    "  unpart part.?.mts.table > table.mts\n";
 
 #include "cut_body.h"
 #include "mls_options.h"

@@ -298,15 +298,15 @@ void envelope_free(struct envelope *factor)
     *factor = (struct envelope){0};
 }
 
-void envelope_solve(const struct envelope *factor, double *x)
+/* y[begin .. end): rows that no others couple to, nor they to others. */
+static void solve_rows(const struct envelope *factor, int64_t begin, int64_t end, const double *x, double *y)
 {
-    double *y = factor->scratch;
-    for (int64_t i = 0; i < factor->n; i++) {
+    for (int64_t i = begin; i < end; i++) {
         const double *row = factor->value + factor->start[i];
         int64_t first = factor->first[i];
         y[i] = (x[factor->order[i]] - product(i - first, row, y + first)) / row[i - first];
     }
-    for (int64_t i = factor->n - 1; i >= 0; i--) {
+    for (int64_t i = end - 1; i >= begin; i--) {
         const double *row = factor->value + factor->start[i];
         int64_t first = factor->first[i];
         double *restrict before = y + first, last = y[i] / row[i - first];
@@ -315,7 +315,52 @@ void envelope_solve(const struct envelope *factor, double *x)
             before[k] -= row[k] * last;
         }
     }
+}
+
+void envelope_solve(const struct envelope *factor, double *x)
+{
+    envelope_solve_shared(factor, NULL, NULL, x);
+}
+
+void envelope_solve_shared(const struct envelope *factor, const struct ranks *ranks, const int64_t *first,
+                           double *x)
+{
+    double *y = factor->scratch;
+    int rank = ranks_rank(ranks);
+    solve_rows(factor, ranks != NULL ? first[rank] : 0, ranks != NULL ? first[rank + 1] : factor->n, x, y);
+    ranks_gather(ranks, y, sizeof *y, first);
     for (int64_t i = 0; i < factor->n; i++) {
         x[factor->order[i]] = y[i];
     }
+}
+
+enum status envelope_share(const struct envelope *factor, const struct ranks *ranks, int64_t **first,
+                           struct error *error)
+{
+    enum status status;
+    int64_t *begin = NULL, blocks = 0, least = factor->n;
+    double *work = NULL;
+    TRY(NEW_ARRAY(&begin, factor->n + 1, error));
+    TRY(NEW_ARRAY(&work, factor->n, error));
+    /* From the end: a row begins a block when none behind it reaches before it. */
+    begin[factor->n] = factor->n;
+    for (int64_t i = factor->n - 1; i >= 0; i--) {
+        least = factor->first[i] < least ? factor->first[i] : least;
+        if (least == i) {
+            blocks++;
+            begin[factor->n - blocks] = i;
+        }
+    }
+    memmove(begin, begin + factor->n - blocks, (size_t)(blocks + 1) * sizeof *begin);
+    for (int64_t b = 0; b < blocks; b++) {
+        work[b] = (double)(factor->start[begin[b + 1]] - factor->start[begin[b]]);
+    }
+    TRY(ranks_share(ranks, blocks, work, first, error));
+    for (int r = 0; r <= ranks_count(ranks); r++) {
+        (*first)[r] = begin[(*first)[r]];
+    }
+done:
+    free(begin);
+    free(work);
+    return status;
 }

@@ -4,7 +4,7 @@
 #ifndef BASE_ENVELOPE_H
 #define BASE_ENVELOPE_H
 
-#include "base/status.h"
+#include "base/ranks.h"
 
 #include <stdint.h>
 
@@ -28,6 +28,15 @@ void envelope_free(struct envelope *factor);
 
 /* row[factor->dropped]: the caller's rows that were dropped. */
 void envelope_dropped(const struct envelope *factor, int64_t *row);
+
+/* Cut the rows into stretches that are solved apart, of about the same work for each process, as far as there
+ * are such: (*first)[count + 1], places, to be freed. */
+MUST_CHECK enum status envelope_share(const struct envelope *factor, const struct ranks *ranks,
+                                      int64_t **first, struct error *error);
+
+/* envelope_solve by several processes, each its stretch, to the same bits. All call this together. */
+void envelope_solve_shared(const struct envelope *factor, const struct ranks *ranks, const int64_t *first,
+                           double *x);
 
 /* Solve in place: x[n] holds the right-hand side, then the solution. */
 void envelope_solve(const struct envelope *factor, double *x);

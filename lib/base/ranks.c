@@ -27,6 +27,50 @@ int64_t ranks_most(const struct ranks *ranks, int64_t value)
     return ranks != NULL ? ranks->most(ranks, value) : value;
 }
 
+enum status ranks_agree(const struct ranks *ranks, enum status status, struct error *error)
+{
+    enum { NUMBERS = sizeof *error / sizeof(double) };
+    _Static_assert(NUMBERS * sizeof(double) == sizeof *error, "a message is sent as numbers");
+    double text[NUMBERS];
+    int64_t first = status != STATUS_OK ? ranks_rank(ranks) : ranks_count(ranks);
+    if (ranks == NULL) {
+        return status;
+    }
+    first = -ranks->most(ranks, -first);
+    if (first == ranks->count) {
+        return STATUS_OK;
+    }
+    if (first != ranks->rank) {
+        status = STATUS_OK;
+        ranks->receive(ranks, (int)first, text, NUMBERS);
+        memcpy(error, text, sizeof *error);
+    }
+    memcpy(text, error, sizeof *error);
+    for (int r = 0; r < ranks->count && first == ranks->rank; r++) {
+        if (r != ranks->rank) {
+            ranks->send(ranks, r, text, NUMBERS);
+        }
+    }
+    return (enum status)ranks->most(ranks, (int64_t)status);
+}
+
+enum status ranks_list(const struct ranks *ranks, int64_t value, int64_t **each, struct error *error)
+{
+    enum status status;
+    int count = ranks_count(ranks);
+    int64_t *first = NULL;
+    TRY(NEW_ARRAY(each, count, error));
+    TRY(NEW_ARRAY(&first, count + 1, error));
+    for (int r = 0; r < count; r++) {
+        first[r + 1] = r + 1;
+    }
+    (*each)[ranks_rank(ranks)] = value;
+    ranks_gather(ranks, *each, sizeof **each, first);
+done:
+    free(first);
+    return status;
+}
+
 enum status ranks_share(const struct ranks *ranks, int64_t items, const double *work, int64_t **first,
                         struct error *error)
 {

@@ -37,6 +37,14 @@ int ranks_rank(const struct ranks *ranks);  /* 0 for NULL */
 void ranks_gather(const struct ranks *ranks, void *items, size_t size, const int64_t *first);
 int64_t ranks_most(const struct ranks *ranks, int64_t value);
 
+/* What the first process that failed has to say, to all: its status and message, or STATUS_OK. All call this
+ * together, and go on or fail alike; of one process it is its own status. */
+MUST_CHECK enum status ranks_agree(const struct ranks *ranks, enum status status, struct error *error);
+
+/* each[count]: the values that the processes have, in turn; to be freed. */
+MUST_CHECK enum status ranks_list(const struct ranks *ranks, int64_t value, int64_t **each,
+                                  struct error *error);
+
 /* Cut a list of items into stretches of about the same work, one for each process: first[count + 1], to be
  * freed. work[items] is not negative; NULL: all alike. */
 MUST_CHECK enum status ranks_share(const struct ranks *ranks, int64_t items, const double *work,

@@ -22,6 +22,9 @@ struct checkpoint_identity {
 MUST_CHECK enum status checkpoint_identify(const struct scene *scene, const struct stream *input,
                                            struct checkpoint_identity *identity, struct error *error);
 
+/* The checksum of a stream's sections: identity->input. */
+uint32_t checkpoint_identify_input(const struct stream *input);
+
 /* Add the section `checkpoint` and the state that `function` goes through in `owner` to a stream. The values
  * are not copied but where they change their form: write the stream before the run goes on. */
 MUST_CHECK enum status checkpoint_fill(struct stream *stream, const struct checkpoint_identity *identity,

@@ -80,15 +80,21 @@ static uLong add_section(uLong crc, const struct section *section)
     return bytes > 0 ? crc32_z(crc, section->data, bytes) : crc;
 }
 
-enum status checkpoint_identify(const struct scene *scene, const struct stream *input,
-                                struct checkpoint_identity *identity, struct error *error)
+uint32_t checkpoint_identify_input(const struct stream *input)
 {
-    uLong crc = scene->checksum, sections = crc32_z(0, NULL, 0);
+    uLong sections = crc32_z(0, NULL, 0);
     for (int64_t i = 0; i < input->section_count; i++) {
         sections = add_section(sections, &input->sections[i]);
     }
+    return (uint32_t)sections;
+}
+
+enum status checkpoint_identify(const struct scene *scene, const struct stream *input,
+                                struct checkpoint_identity *identity, struct error *error)
+{
+    uLong crc = scene->checksum;
     enum status status = add_scene(scene, &crc, error);
     identity->scene = (uint32_t)crc;
-    identity->input = (uint32_t)sections;
+    identity->input = checkpoint_identify_input(input);
     return status;
 }

@@ -68,6 +68,7 @@ static enum status build_body(struct assembly *input, struct solid_system *syste
                                             .face_ptr = input->lists.ptr,
                                             .face_idx = input->lists.idx,
                                             .face_phi = input->phi,
+                                            .face_reader = input->face_reader,
                                             .node_ptr = input->node_lists.ptr,
                                             .node_idx = input->node_lists.idx,
                                             .node_phi = input->node_phi,
@@ -158,6 +159,8 @@ enum status assembly_build(struct assembly *input, struct solid_system *system, 
     TRY(lump_mass(input, system, error));
     TRY(assembly_add_loads(input, system, error));
     TRY(build_body(input, system, error));
+    TRY(assembly_complete_gravity(input, system, error));
+    TRY(field_averages_drop_copied(&system->body.cells.averages, error));
     TRY(assembly_add_conditions(input, system, note, error));
     TRY(assembly_add_points(input, system, note, error));
     TRY(assembly_add_contacts(input, system, error));

@@ -56,13 +56,15 @@ struct assembly {
     struct neighbours lists, boundary_lists, node_lists;
     const double *phi, *dphi; /* dphi NULL: averages over faces */
     const double *boundary_phi, *node_phi;
+    const int32_t *face_reader; /* of smoothed cells: the process that has read each row of `lists`, which is
+                                   empty in others; NULL: all have all */
     /* Called, unless NULL, when `lists`, phi and dphi are not needed any more: the larger part of memory. */
     void (*copied)(void *context);
     void *context;
 
     const int32_t *cell_side; /* the side of each cell of the interfaces at which supports stop; NULL: none */
-    const struct ranks *ranks; /* processes that compute the body together; NULL: one. Of several `copied` is
-                                  not called */
+    const struct ranks *ranks; /* processes that compute the body together; NULL: one. Of several that have
+                                  all `copied` is not called */
 
     struct material_list materials; /* the caller's to free; assembly adds softer ones, once */
     bool pointwise_volume;          /* no nodal volumes */
@@ -104,6 +106,9 @@ MUST_CHECK enum status assembly_add_points(const struct assembly *input, struct 
                                            struct error *note, struct error *error);
 MUST_CHECK enum status assembly_add_loads(const struct assembly *input, struct solid_system *system,
                                           struct error *error);
+/* The weight of the body where face_reader is given: after the body is built, which has what is needed. */
+MUST_CHECK enum status assembly_complete_gravity(const struct assembly *input, struct solid_system *system,
+                                                 struct error *error);
 MUST_CHECK enum status assembly_add_contacts(const struct assembly *input, struct solid_system *system,
                                              struct error *error);
 MUST_CHECK enum status assembly_soften_ends(const struct assembly *input, struct material_list *list,

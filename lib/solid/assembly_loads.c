@@ -46,6 +46,12 @@ done:
     return status;
 }
 
+/* Whether each process has but some rows of what the weight is summed over. */
+static bool weighs_later(const struct assembly *input)
+{
+    return input->face_reader != NULL && !input->in_time;
+}
+
 static enum status add_gravity(const struct assembly *input, struct solid_system *system, struct error *error)
 {
     enum status status;
@@ -56,8 +62,11 @@ static enum status add_gravity(const struct assembly *input, struct solid_system
     for (int64_t i = 0; input->in_time && i < system->node_count * dim; i++) {
         force[i] = system->lumped_mass[i / dim] * input->gravity[i % dim];
     }
+    if (input->in_time || weighs_later(input)) {
+        goto done;
+    }
     TRY(share_mass(input, &mass, error));
-    for (int64_t r = 0; !input->in_time && r < input->lists.count; r++) {
+    for (int64_t r = 0; r < input->lists.count; r++) {
         for (int64_t i = input->lists.ptr[r]; i < input->lists.ptr[r + 1]; i++) {
             for (int a = 0; a < dim; a++) {
                 force[(int64_t)input->lists.idx[i] * dim + a] += mass[r] * input->phi[i] * input->gravity[a];
@@ -66,6 +75,38 @@ static enum status add_gravity(const struct assembly *input, struct solid_system
     }
 done:
     free(mass);
+    return status;
+}
+
+enum status assembly_complete_gravity(const struct assembly *input, struct solid_system *system,
+                                      struct error *error)
+{
+    enum status status = STATUS_OK;
+    const struct body *body = &system->body;
+    const struct average_table *faces = &body->cells.averages.told[0];
+    int dim = system->dim;
+    double *force, *mass = NULL, *by_place = NULL;
+    if (!assembly_has_gravity(input) || !weighs_later(input)) {
+        return STATUS_OK;
+    }
+    force = system->loads[0].force;
+    TRY(share_mass(input, &mass, error));
+    TRY(NEW_ARRAY(&by_place, system->node_count * dim, error));
+    for (int64_t r = 0; r < faces->row_count; r++) {
+        for (int64_t i = faces->ptr[r]; i < faces->ptr[r + 1]; i++) {
+            int64_t place = body->node_place[faces->idx[i]];
+            for (int a = 0; a < dim && body_share_has_node(body, faces->idx[i]); a++) {
+                by_place[place * dim + a] += mass[r] * faces->phi[i] * input->gravity[a];
+            }
+        }
+    }
+    ranks_gather(body->share.ranks, by_place, (size_t)dim * sizeof *by_place, body->share.node_first);
+    for (int64_t i = 0; i < system->node_count * dim; i++) {
+        force[i] = by_place[body->node_place[i / dim] * dim + i % dim];
+    }
+done:
+    free(mass);
+    free(by_place);
     return status;
 }
 

@@ -174,6 +174,27 @@ static int worthwhile_threads(const struct body *body)
     return (int)(by_work < available ? by_work : available);
 }
 
+/* Pairs of face or node and neighbour; where each process has but some rows over the faces, of all of them.
+ */
+static enum status count_pairs(const struct body_input *input, struct body *body, struct error *error)
+{
+    enum status status = STATUS_OK;
+    const struct smoothed_cells_input *cells = input->smoothed;
+    int64_t of_faces = cells->face_ptr[cells->faces->row_count], *each = NULL;
+    body->pair_count = cells->node_ptr[body->node_count];
+    if (cells->face_reader != NULL) {
+        TRY(ranks_list(input->ranks, of_faces, &each, error));
+        of_faces = 0;
+        for (int r = 0; r < input->ranks->count; r++) {
+            of_faces += each[r];
+        }
+    }
+    body->pair_count += of_faces;
+done:
+    free(each);
+    return status;
+}
+
 enum status body_build(const struct body_input *input, struct body *body, struct error *error)
 {
     enum status status;
@@ -198,8 +219,7 @@ enum status body_build(const struct body_input *input, struct body *body, struct
     if (!body->smoothed) {
         TRY(copy_gradients(input, body, error));
     } else {
-        body->pair_count = input->smoothed->face_ptr[input->smoothed->faces->row_count] +
-                           input->smoothed->node_ptr[body->node_count];
+        TRY(count_pairs(input, body, error));
         TRY(smoothed_cells_build(input->smoothed, body, error));
     }
     body->threads = worthwhile_threads(body);

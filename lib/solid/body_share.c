@@ -209,6 +209,12 @@ done:
     return status;
 }
 
+bool body_share_has_node(const struct body *body, int64_t node)
+{
+    int64_t place = body->node_place[node];
+    return place >= body->share.begin_node && place < body->share.end_node;
+}
+
 void body_share_free(struct body_share *share)
 {
     free(share->block_first);

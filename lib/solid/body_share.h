@@ -42,6 +42,9 @@ MUST_CHECK enum status body_share_values(const struct body *body, bool **wanted,
 /* The halos of rows, when operator and transpose are there; wanted[rows]: those that own nodes are in. */
 MUST_CHECK enum status body_share_rows(struct body *body, const bool *wanted, struct error *error);
 
+/* Is this node, the caller's number, of this process? */
+bool body_share_has_node(const struct body *body, int64_t node);
+
 void body_share_free(struct body_share *share);
 
 /* To be called by all threads of a parallel region together: all have all items; and halos. */

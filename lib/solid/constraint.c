@@ -133,9 +133,11 @@ static double along(const struct constraint_rows *rows, int64_t r, const double 
     return sum;
 }
 
-void constraint_rows_values(const struct constraint_rows *rows, const double *u, double *value)
+/* Of the lists from `begin` to before `end`. */
+static void take_values(const struct constraint_rows *rows, int64_t begin, int64_t end, const double *u,
+                        double *value)
 {
-    for (int64_t l = 0; l < rows->list_count; l++) {
+    for (int64_t l = begin; l < end; l++) {
         struct average average = average_of_list(rows, l);
         double mean[3];
         average_take(&average, rows->dim, u, mean);
@@ -143,6 +145,11 @@ void constraint_rows_values(const struct constraint_rows *rows, const double *u,
             value[r] = along(rows, r, mean);
         }
     }
+}
+
+void constraint_rows_values(const struct constraint_rows *rows, const double *u, double *value)
+{
+    take_values(rows, 0, rows->list_count, u, value);
 }
 
 double constraint_rows_value(const struct constraint_rows *rows, int64_t r, const double *u)
@@ -153,13 +160,19 @@ double constraint_rows_value(const struct constraint_rows *rows, int64_t r, cons
     return along(rows, r, mean);
 }
 
+/* What is missing where the rows have these values. */
+static void subtract_from_targets(const struct constraint_rows *rows, const double *factor, double *missing)
+{
+    for (int64_t r = 0; r < rows->count; r++) {
+        missing[r] = (factor != NULL ? rows->target[r] * factor[rows->curve[r]] : 0.0) - missing[r];
+    }
+}
+
 void constraint_rows_missing(const struct constraint_rows *rows, const double *factor, const double *u,
                              double *missing)
 {
     constraint_rows_values(rows, u, missing);
-    for (int64_t r = 0; r < rows->count; r++) {
-        missing[r] = (factor != NULL ? rows->target[r] * factor[rows->curve[r]] : 0.0) - missing[r];
-    }
+    subtract_from_targets(rows, factor, missing);
 }
 
 void constraint_rows_spread(const struct constraint_rows *rows, const double *amount, const double *mass,
@@ -248,6 +261,32 @@ done:
     return status;
 }
 
+/* Of several processes: what each does, of about the same work. */
+static enum status share(struct constraint *constraint, struct error *error)
+{
+    enum status status;
+    const struct constraint_rows *rows = constraint->rows;
+    const struct ranks *ranks = constraint->inverse->ranks;
+    double *work = NULL;
+    if (ranks == NULL) {
+        return STATUS_OK;
+    }
+    TRY(NEW_ARRAY(&work, rows->list_count, error));
+    for (int64_t l = 0; l < rows->list_count; l++) {
+        work[l] = (double)(rows->ptr[l + 1] - rows->ptr[l]);
+    }
+    TRY(ranks_share(ranks, rows->list_count, work, &constraint->list_first, error));
+    TRY(NEW_ARRAY(&constraint->row_first, ranks->count + 1, error));
+    for (int r = 0; r <= ranks->count; r++) {
+        constraint->row_first[r] = rows->first[constraint->list_first[r]];
+    }
+    TRY(envelope_share(&constraint->factor, ranks, &constraint->place_first, error));
+    constraint->ranks = ranks;
+done:
+    free(work);
+    return status;
+}
+
 enum status constraint_build(const struct constraint_rows *rows, int64_t node_count, const double *mass,
                              const struct inverse_factor *inverse, const struct constraint_rows *inverse_rows,
                              struct constraint *constraint, struct error *error)
@@ -267,6 +306,7 @@ enum status constraint_build(const struct constraint_rows *rows, int64_t node_co
         rows = inverse_rows;
     }
     TRY(constraint_factorise(rows, node_count, mass, least_pivot, &constraint->factor, error));
+    TRY(inverse != NULL ? share(constraint, error) : STATUS_OK);
 done:
     if (status != STATUS_OK) {
         constraint_free(constraint);
@@ -278,8 +318,28 @@ void constraint_free(struct constraint *constraint)
 {
     free(constraint->multiplier);
     free(constraint->scratch);
+    free(constraint->list_first);
+    free(constraint->row_first);
+    free(constraint->place_first);
     envelope_free(&constraint->factor);
     *constraint = (struct constraint){0};
+}
+
+void constraint_values(const struct constraint *constraint, const double *u, double *value)
+{
+    const struct ranks *ranks = constraint->ranks;
+    if (ranks == NULL) {
+        constraint_rows_values(constraint->rows, u, value);
+        return;
+    }
+    const int64_t *first = constraint->list_first + ranks->rank;
+    take_values(constraint->rows, first[0], first[1], u, value);
+    ranks_gather(ranks, value, sizeof *value, constraint->row_first);
+}
+
+void constraint_solve(const struct constraint *constraint, double *x)
+{
+    envelope_solve_shared(&constraint->factor, constraint->ranks, constraint->place_first, x);
 }
 
 void constraint_spread(const struct constraint *constraint, const double *amount, double *u)
@@ -306,8 +366,9 @@ void constraint_project(struct constraint *constraint, const double *factor, dou
         return;
     }
     double *multiplier = constraint->multiplier;
-    constraint_rows_missing(rows, factor, u, multiplier);
-    envelope_solve(&constraint->factor, multiplier);
+    constraint_values(constraint, u, multiplier);
+    subtract_from_targets(rows, factor, multiplier);
+    constraint_solve(constraint, multiplier);
     constraint_spread(constraint, multiplier, u);
 }
 

@@ -66,7 +66,12 @@ struct constraint {
     const struct constraint_rows *inverse_rows; /* and the rows G L^T; both the caller's */
     double *scratch;                            /* 2 * node_count * dim, with these */
     struct envelope factor;
-    double *multiplier; /* count: of the last projection, N s2 in the step's scaling */
+    const struct ranks
+        *ranks;           /* processes that share `inverse`, and what follows; NULL: one. Of each process */
+    int64_t *list_first;  /* the lists whose averages it takes, */
+    int64_t *row_first;   /* their rows, */
+    int64_t *place_first; /* and the stretch of the factor that it solves with */
+    double *multiplier;   /* count: of the last projection, N s2 in the step's scaling */
 };
 
 /* Factor G M^-1 G^T; `inverse` and `inverse_rows` NULL: M is diagonal. Rows that depend on others are dropped
@@ -77,6 +82,10 @@ MUST_CHECK enum status constraint_build(const struct constraint_rows *rows, int6
                                         const struct constraint_rows *inverse_rows,
                                         struct constraint *constraint, struct error *error);
 void constraint_free(struct constraint *constraint);
+
+/* value[rows->count] = G u, and x := (G M^-1 G^T)^-1 x. Of several processes all call these together. */
+void constraint_values(const struct constraint *constraint, const double *u, double *value);
+void constraint_solve(const struct constraint *constraint, double *x);
 
 /* u += M^-1 G^T amount[rows->count] */
 void constraint_spread(const struct constraint *constraint, const double *amount, double *u);

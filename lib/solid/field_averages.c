@@ -3,6 +3,7 @@
 #include "base/memory.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 /* Rows of a table, from number `first_row` on; *at counts the entries. Without the matrix's arrays nothing
  * else is done. */
@@ -122,10 +123,44 @@ done:
     return status;
 }
 
+enum status field_averages_drop_copied(struct field_averages *averages, struct error *error)
+{
+    enum status status = STATUS_OK;
+    struct sparse *fetched = &averages->fetched;
+    struct average_table *faces = &averages->told[0];
+    const int64_t *ptr = averages->matrix.ptr;
+    int64_t at = 0, begin = 0;
+    bool *kept = NULL;
+    if (fetched->ptr == NULL) {
+        return STATUS_OK;
+    }
+    TRY(NEW_ARRAY(&kept, fetched->row_count, error));
+    for (int64_t r = 0; r < fetched->row_count; r++) {
+        kept[faces->order[r]] = ptr[r] == ptr[r + 1];
+    }
+    for (int64_t f = 0; f < fetched->row_count; f++) {
+        int64_t end = fetched->ptr[f + 1], length = kept[f] ? end - begin : 0;
+        memmove(fetched->idx + at, fetched->idx + begin, (size_t)length * sizeof *fetched->idx);
+        memmove(fetched->value + at, fetched->value + begin, (size_t)length * sizeof *fetched->value);
+        begin = end;
+        fetched->ptr[f + 1] = at += length;
+    }
+    int32_t *idx = array_grow(fetched->idx, at + 1, sizeof *idx);
+    fetched->idx = idx != NULL ? idx : fetched->idx;
+    double *value = array_grow(fetched->value, at + 1, sizeof *value);
+    fetched->value = value != NULL ? value : fetched->value;
+    faces->idx = fetched->idx;
+    faces->phi = fetched->value;
+done:
+    free(kept);
+    return status;
+}
+
 void field_averages_free(struct field_averages *averages)
 {
     sparse_free(&averages->matrix);
     sparse_free(&averages->transposed);
+    sparse_free(&averages->fetched);
     free(averages->value);
     free(averages->force);
     free(averages->of_corner);

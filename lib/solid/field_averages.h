@@ -38,7 +38,8 @@ struct field_averages {
     int64_t *corner_ptr;          /* row_count + 1: the corners of each row, */
     int32_t *corner;              /* as many as of_corner: by rows, ascending */
     struct average_table told[2]; /* of several processes: the tables, the caller's, */
-    int64_t *face_order;          /* with this order of the rows of faces */
+    int64_t *face_order;          /* with this order of the rows of faces; */
+    struct sparse fetched;        /* where no process has all of that over the faces, the rows needed here */
 };
 
 struct field_averages_input {
@@ -57,6 +58,9 @@ MUST_CHECK enum status field_averages_build(const struct field_averages_input *i
 MUST_CHECK enum status field_averages_copy(const struct field_averages_input *input, const bool *wanted,
                                            int64_t first, int64_t last, struct sparse *matrix,
                                            struct error *error);
+
+/* Of the rows that were fetched those alone stay that the matrix has not. */
+MUST_CHECK enum status field_averages_drop_copied(struct field_averages *averages, struct error *error);
 void field_averages_free(struct field_averages *averages);
 
 #endif

@@ -83,37 +83,37 @@ static void solve_row(const struct lower *lower, int64_t count, const int32_t *l
     }
 }
 
-/* Rows of own nodes, one behind the other from the begin of the factor's arrays on; length[node]: how long
- * each is. */
-static enum status make_rows(const struct solid_system *system, struct lower *lower,
-                             struct inverse_factor *factor, int64_t *length, struct error *error)
+/* Rows of own nodes in the body's order, one behind the other; length[]: how long each is. */
+static enum status make_rows(const struct solid_system *system, struct lower *lower, struct sparse *rows,
+                             int64_t *length, struct error *error)
 {
     enum status status;
+    const struct body_share *share = &system->body.share;
+    const int64_t *node = system->body.node_order;
     struct near *near = NULL;
     bool *wanted = NULL;
-    int64_t most = 0, at = 0, begin = factor->first[ranks_rank(factor->ranks)],
-            end = factor->first[ranks_rank(factor->ranks) + 1];
+    int64_t most = 0, at = 0;
     int32_t list[MOST_ENTRIES];
-    for (int64_t i = begin; i < end; i++) {
-        int64_t entries = lower->end[i] - lower->begin[i];
+    for (int64_t p = share->begin_node; p < share->end_node; p++) {
+        int64_t entries = lower->end[node[p]] - lower->begin[node[p]];
         most = entries > most ? entries : most;
     }
     TRY(NEW_ARRAY(&near, most, error));
-    if (factor->ranks != NULL) {
+    if (share->ranks != NULL) {
         TRY(NEW_ARRAY(&wanted, system->node_count, error));
-        for (int64_t i = begin; i < end; i++) {
-            int64_t count = choose(system, lower, (int32_t)i, near, list);
+        for (int64_t p = share->begin_node; p < share->end_node; p++) {
+            int64_t count = choose(system, lower, (int32_t)node[p], near, list);
             for (int64_t k = 0; k < count; k++) {
                 wanted[list[k]] = true;
             }
         }
-        TRY(lower_fetch(factor, wanted, system->node_count, lower, error));
+        TRY(lower_fetch(system, wanted, lower, error));
     }
-    for (int64_t i = begin; i < end; i++) {
-        length[i] = choose(system, lower, (int32_t)i, near, list);
-        memcpy(factor->rows.idx + at, list, (size_t)length[i] * sizeof *list);
-        solve_row(lower, length[i], list, factor->rows.value + at);
-        at += length[i];
+    for (int64_t p = share->begin_node; p < share->end_node; p++) {
+        length[p] = choose(system, lower, (int32_t)node[p], near, list);
+        memcpy(rows->idx + at, list, (size_t)length[p] * sizeof *list);
+        solve_row(lower, length[p], list, rows->value + at);
+        at += length[p];
     }
 done:
     free(near);
@@ -121,45 +121,46 @@ done:
     return status;
 }
 
-/* All rows to all: each process's go where they belong, and then to the others. */
-static enum status gather_rows(struct inverse_factor *factor, int64_t *length, struct error *error)
+/* All rows to all, by the processes' stretches of the body's order: rows->ptr[] is of that order. */
+static enum status gather_rows(const struct body_share *share, int64_t *length, struct sparse *rows,
+                               struct error *error)
 {
     enum status status;
-    const struct ranks *ranks = factor->ranks;
-    struct sparse *rows = &factor->rows;
-    int rank = ranks_rank(ranks), count = ranks_count(ranks);
+    int rank = ranks_rank(share->ranks), count = ranks_count(share->ranks);
     int64_t *first = NULL;
-    ranks_gather(ranks, length, sizeof *length, factor->first);
-    for (int64_t i = 0; i < rows->row_count; i++) {
-        rows->ptr[i + 1] = rows->ptr[i] + length[i];
+    ranks_gather(share->ranks, length, sizeof *length, share->node_first);
+    for (int64_t p = 0; p < rows->row_count; p++) {
+        rows->ptr[p + 1] = rows->ptr[p] + length[p];
     }
     TRY(NEW_ARRAY(&first, count + 1, error));
     for (int r = 0; r <= count; r++) {
-        first[r] = rows->ptr[factor->first[r]];
+        first[r] = rows->ptr[share->node_first[r]];
     }
     size_t own = (size_t)(first[rank + 1] - first[rank]);
     memmove(rows->idx + first[rank], rows->idx, own * sizeof *rows->idx);
     memmove(rows->value + first[rank], rows->value, own * sizeof *rows->value);
-    ranks_gather(ranks, rows->idx, sizeof *rows->idx, first);
-    ranks_gather(ranks, rows->value, sizeof *rows->value, first);
+    ranks_gather(share->ranks, rows->idx, sizeof *rows->idx, first);
+    ranks_gather(share->ranks, rows->value, sizeof *rows->value, first);
 done:
     free(first);
     return status;
 }
 
-/* Stretches of nodes of about the same work, most of which is that of making S. */
-static enum status share_nodes(const struct solid_system *system, struct inverse_factor *factor,
-                               struct error *error)
+/* The rows by the nodes' numbers. */
+static enum status sort_rows(const struct body *body, const struct sparse *by_place, struct sparse *rows,
+                             struct error *error)
 {
     enum status status;
-    double *work = NULL;
-    TRY(NEW_ARRAY(&work, system->node_count, error));
-    if (factor->ranks != NULL) {
-        scalar_stiffness_work(system, work);
+    int64_t nodes = by_place->row_count;
+    TRY(sparse_new(nodes, nodes, by_place->ptr[nodes], rows, error));
+    for (int64_t i = 0; i < nodes; i++) {
+        int64_t from = by_place->ptr[body->node_place[i]], to = rows->ptr[i];
+        int64_t length = by_place->ptr[body->node_place[i] + 1] - from;
+        memcpy(rows->idx + to, by_place->idx + from, (size_t)length * sizeof *rows->idx);
+        memcpy(rows->value + to, by_place->value + from, (size_t)length * sizeof *rows->value);
+        rows->ptr[i + 1] = to + length;
     }
-    TRY(ranks_share(factor->ranks, system->node_count, work, &factor->first, error));
 done:
-    free(work);
     return status;
 }
 
@@ -168,17 +169,22 @@ enum status inverse_factor_build(const struct solid_system *system, struct inver
 {
     enum status status;
     struct lower lower = {0};
+    struct sparse by_place = {0};
+    const struct body_share *share = &system->body.share;
     int64_t nodes = system->node_count, *length = NULL;
-    *factor = (struct inverse_factor){.ranks = system->body.share.ranks};
-    TRY(share_nodes(system, factor, error));
-    TRY(lower_make(system, factor, &lower, error));
-    TRY(sparse_new(nodes, nodes, nodes * MOST_ENTRIES, &factor->rows, error));
+    *factor = (struct inverse_factor){.ranks = share->ranks};
+    TRY(ranks_share(factor->ranks, nodes, NULL, &factor->first, error));
+    TRY(lower_make(system, &lower, error));
+    TRY(sparse_new(nodes, nodes, nodes * MOST_ENTRIES, &by_place, error));
     TRY(NEW_ARRAY(&length, nodes, error));
-    TRY(make_rows(system, &lower, factor, length, error));
-    TRY(gather_rows(factor, length, error));
+    TRY(make_rows(system, &lower, &by_place, length, error));
+    TRY(gather_rows(share, length, &by_place, error));
+    lower_free(&lower);
+    TRY(sort_rows(&system->body, &by_place, &factor->rows, error));
     TRY(sparse_transpose(&factor->rows, &factor->transposed, error));
 done:
     free(length);
+    sparse_free(&by_place);
     lower_free(&lower);
     if (status != STATUS_OK) {
         inverse_factor_free(factor);

@@ -41,28 +41,28 @@ done:
     return status;
 }
 
-enum status lower_make(const struct solid_system *system, const struct inverse_factor *factor,
-                       struct lower *lower, struct error *error)
+enum status lower_make(const struct solid_system *system, struct lower *lower, struct error *error)
 {
     enum status status;
     struct scalar_stiffness stiffness = {0};
     struct scalar_row row = {0};
-    double sum = 0.0, *diagonal = NULL;
-    int64_t nodes = system->node_count, begin = factor->first[ranks_rank(factor->ranks)],
-            end = factor->first[ranks_rank(factor->ranks) + 1];
-    TRY(scalar_stiffness_make(system, begin, end, &stiffness, error));
+    const struct body_share *share = &system->body.share;
+    double sum = 0.0, *diagonal = NULL; /* in the body's order */
+    int64_t nodes = system->node_count;
+    TRY(scalar_stiffness_make(system, &stiffness, error));
     TRY(scalar_row_make(&stiffness, &row, error));
     TRY(NEW_ARRAY(&lower->begin, nodes, error));
     TRY(NEW_ARRAY(&lower->end, nodes, error));
     TRY(NEW_ARRAY(&diagonal, nodes, error));
-    for (int64_t i = begin; i < end; i++) {
+    for (int64_t p = share->begin_node; p < share->end_node; p++) {
+        int64_t i = system->body.node_order[p];
         scalar_stiffness_row(&stiffness, i, &row);
-        diagonal[i] = row.count > 0 ? row.value[row.count - 1] : 0.0;
+        diagonal[p] = row.count > 0 ? row.value[row.count - 1] : 0.0;
         TRY(keep_row(&row, i, lower, error));
     }
-    ranks_gather(factor->ranks, diagonal, sizeof *diagonal, factor->first);
+    ranks_gather(share->ranks, diagonal, sizeof *diagonal, share->node_first);
     for (int64_t i = 0; i < nodes; i++) {
-        sum += diagonal[i];
+        sum += diagonal[system->body.node_place[i]];
     }
     lower->least = least_share * sum / (double)nodes;
 done:
@@ -87,22 +87,23 @@ double lower_entry(const struct lower *lower, int32_t i, int32_t j)
     return i == j ? fmax(value, lower->least) : value;
 }
 
-static int owner_of_node(const void *factor, int64_t node)
+static int owner_of_node(const void *context, int64_t node)
 {
-    const struct inverse_factor *of = factor;
-    return ranks_owner(of->ranks, of->first, node);
+    const struct body *body = context;
+    return ranks_owner(body->share.ranks, body->share.node_first, body->node_place[node]);
 }
 
-enum status lower_fetch(const struct inverse_factor *factor, const bool *wanted, int64_t nodes,
-                        struct lower *lower, struct error *error)
+enum status lower_fetch(const struct solid_system *system, const bool *wanted, struct lower *lower,
+                        struct error *error)
 {
     enum status status;
-    const struct ranks *ranks = factor->ranks;
+    const struct ranks *ranks = system->body.share.ranks;
+    int64_t nodes = system->node_count;
     struct halo halo = {0};
     double *length = NULL, *value = NULL;
     int32_t *idx = NULL;
     int64_t *send_first = NULL, *receive_first = NULL, at = 0, first = lower->count;
-    TRY(halo_build(ranks, nodes, wanted, 1, owner_of_node, factor, &halo, error));
+    TRY(halo_build(ranks, nodes, wanted, 1, owner_of_node, &system->body, &halo, error));
     TRY(NEW_ARRAY(&length, nodes, error));
     TRY(NEW_ARRAY(&send_first, ranks->count + 1, error));
     TRY(NEW_ARRAY(&receive_first, ranks->count + 1, error));

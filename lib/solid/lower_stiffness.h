@@ -13,14 +13,14 @@ struct lower {
     double least; /* on the diagonal */
 };
 
-/* The rows of the nodes that are the factor's here. */
-MUST_CHECK enum status lower_make(const struct solid_system *system, const struct inverse_factor *factor,
-                                  struct lower *lower, struct error *error);
+/* The rows of this process's nodes (body_share.h). */
+MUST_CHECK enum status lower_make(const struct solid_system *system, struct lower *lower,
+                                  struct error *error);
 void lower_free(struct lower *lower);
 
-/* Of several processes: the rows of S that are wanted (wanted[nodes]) and that others have. */
-MUST_CHECK enum status lower_fetch(const struct inverse_factor *factor, const bool *wanted, int64_t nodes,
-                                   struct lower *lower, struct error *error);
+/* Of several processes: the rows of S that are wanted (wanted[node_count]) and that others have. */
+MUST_CHECK enum status lower_fetch(const struct solid_system *system, const bool *wanted, struct lower *lower,
+                                   struct error *error);
 
 /* S_ij, j <= i; 0 where there is no such entry. */
 double lower_entry(const struct lower *lower, int32_t i, int32_t j);

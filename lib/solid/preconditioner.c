@@ -85,6 +85,8 @@ enum status preconditioner_build(struct solid_system *system, bool coarse,
     if (coarse && system_has_inverse(system)) {
         TRY(build_inverse(system, preconditioner, error));
     }
+    TRY(ranks_share(preconditioner->factor.ranks, preconditioner->size, NULL, &preconditioner->column_first,
+                    error));
 done:
     if (status != STATUS_OK) {
         preconditioner_free(preconditioner);
@@ -100,6 +102,7 @@ void preconditioner_free(struct preconditioner *preconditioner)
     constraint_rows_free(&preconditioner->factor_rows);
     free(preconditioner->inverse_fields);
     free(preconditioner->field_first);
+    free(preconditioner->column_first);
     free(preconditioner->on_inverse);
     free(preconditioner->at_rest);
     free(preconditioner->stiffness);
@@ -163,13 +166,16 @@ void preconditioner_restrict_force(struct preconditioner *preconditioner, const 
     if (rows == NULL) {
         return;
     }
-    constraint_rows_values(rows, acceleration, seen);
+    constraint_values(&preconditioner->constraint, acceleration, seen);
+    const struct ranks *ranks = preconditioner->factor.ranks;
+    const int64_t *first = preconditioner->column_first + ranks_rank(ranks);
     for (int64_t r = 0; r < rows->count; r++) {
         const double *held = preconditioner->held + r * preconditioner->size;
-        for (int64_t k = 0; k < preconditioner->size && seen[r] != 0.0; k++) {
+        for (int64_t k = first[0]; k < first[1] && seen[r] != 0.0; k++) {
             amount[k] -= held[k] * seen[r];
         }
     }
+    ranks_gather(ranks, amount, sizeof *amount, preconditioner->column_first);
 }
 
 void preconditioner_apply(struct preconditioner *preconditioner, const double *force, double *acceleration)
@@ -185,7 +191,7 @@ void preconditioner_apply(struct preconditioner *preconditioner, const double *f
     if (rows == NULL || rows->count == 0) {
         return;
     }
-    envelope_solve(&constraint->factor, multiplier);
+    constraint_solve(constraint, multiplier);
     for (int64_t r = 0; r < rows->count; r++) {
         const double *held = preconditioner->held + r * preconditioner->size;
         double sum = multiplier[r];

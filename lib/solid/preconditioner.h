@@ -37,7 +37,8 @@ struct preconditioner {
     struct inverse_factor factor;       /* node_count 0: none */
     struct constraint_rows factor_rows; /* G L^T */
     double *inverse_fields;             /* coarse.count rows of node_count: L^-T of the coarse fields */
-    int64_t *field_first;               /* of several processes: the fields that each multiplies with */
+    int64_t *field_first;               /* of several processes: the fields that each multiplies with, */
+    int64_t *column_first;              /* and the columns of the matrices that it computes */
     double *on_inverse;                 /* 2 * node_count * dim: scratch */
     struct constraint constraint;       /* with D */
     struct coarse_space coarse;         /* count 0: none, M = D */

@@ -72,33 +72,43 @@ void preconditioner_add_row(const struct preconditioner *preconditioner, const s
     }
 }
 
-/* free_weight = Z^T B^-1 P Z = Z^T B^-1 Z - (G Z)^T (G B G^T)^-1 G Z: without what the conditions forbid. */
+/* free_weight = Z^T B^-1 P Z = Z^T B^-1 Z - (G Z)^T (G B G^T)^-1 G Z: without what the conditions forbid.
+ * Each process computes some columns. */
 static enum status weigh_conditions(struct preconditioner *preconditioner, struct error *error)
 {
     enum status status;
+    const struct ranks *ranks = preconditioner->factor.ranks;
     const struct constraint_rows *rows = preconditioner->constraint.rows;
+    const int64_t *first = preconditioner->column_first;
     int64_t size = preconditioner->size;
-    double *conditions = NULL, *solved = NULL;
+    double *conditions = NULL, *solved = NULL; /* solved: by columns */
     memcpy(preconditioner->free_weight, preconditioner->weight,
            (size_t)(size * size) * sizeof *preconditioner->weight);
     TRY(NEW_ARRAY(&conditions, rows->count * size, error));
-    TRY(NEW_ARRAY(&solved, rows->count, error));
+    TRY(NEW_ARRAY(&solved, rows->count * size, error));
     for (int64_t r = 0; r < rows->count; r++) {
         struct average average = constraint_rows_average(rows, r);
         preconditioner_add_row(preconditioner, &average, rows->direction + r * preconditioner->dim,
                                conditions + r * size);
     }
-    for (int64_t k = 0; k < size; k++) {
-        double *column = preconditioner->free_weight + k * size; /* or row: symmetric */
+    for (int64_t k = first[ranks_rank(ranks)]; k < first[ranks_rank(ranks) + 1]; k++) {
+        double *weight = preconditioner->free_weight + k * size; /* or row: symmetric */
+        double *column = solved + k * rows->count;
         for (int64_t r = 0; r < rows->count; r++) {
-            solved[r] = conditions[r * size + k];
+            column[r] = conditions[r * size + k];
         }
-        envelope_solve(&preconditioner->constraint.factor, solved);
+        envelope_solve(&preconditioner->constraint.factor, column);
         for (int64_t r = 0; r < rows->count; r++) {
-            preconditioner->held[r * size + k] = solved[r];
-            for (int64_t i = 0; i < size && solved[r] != 0.0; i++) {
-                column[i] -= solved[r] * conditions[r * size + i];
+            for (int64_t i = 0; i < size && column[r] != 0.0; i++) {
+                weight[i] -= column[r] * conditions[r * size + i];
             }
+        }
+    }
+    ranks_gather(ranks, preconditioner->free_weight, (size_t)size * sizeof(double), first);
+    ranks_gather(ranks, solved, (size_t)rows->count * sizeof(double), first);
+    for (int64_t r = 0; r < rows->count; r++) {
+        for (int64_t k = 0; k < size; k++) {
+            preconditioner->held[r * size + k] = solved[k * rows->count + r];
         }
     }
 done:

@@ -35,7 +35,7 @@ static struct average bond_at(const struct solid_system *system, int64_t b, doub
 }
 
 /* Field or bond f; (*place)[]: the body's index of each of its nodes, NULL where they are such. Of several
- * processes the body has not all rows here, but their tables are. */
+ * processes the body lacks rows that its cells do not look at, but their tables are here. */
 static struct average field_at(const struct scalar_stiffness *stiffness, int64_t f, const int32_t **place)
 {
     const struct body *body = &stiffness->system->body;
@@ -45,11 +45,11 @@ static struct average field_at(const struct scalar_stiffness *stiffness, int64_t
     if (f >= stiffness->field_count) {
         return bond_at(stiffness->system, f - stiffness->field_count, &unused);
     }
-    if (body->share.ranks == NULL) {
+    int64_t length = averages->matrix.ptr[f + 1] - averages->matrix.ptr[f];
+    if (length > 0 || body->share.ranks == NULL) {
         int64_t at = averages->matrix.ptr[f];
         *place = NULL;
-        return (struct average){averages->matrix.ptr[f + 1] - at, averages->matrix.idx + at,
-                                averages->matrix.value + at};
+        return (struct average){length, averages->matrix.idx + at, averages->matrix.value + at};
     }
     int64_t faces = averages->told[0].row_count;
     const struct average_table *table = &averages->told[f < faces ? 0 : 1];
@@ -61,44 +61,9 @@ static struct average field_at(const struct scalar_stiffness *stiffness, int64_t
 static struct average fields_of(const struct scalar_stiffness *stiffness, int64_t i)
 {
     const struct body *body = &stiffness->system->body;
-    bool listed = body->share.ranks != NULL;
-    const struct sparse *fields = listed ? &stiffness->fields : &body->cells.averages.transposed;
-    int64_t row = listed ? i : body->node_place[i], at = fields->ptr[row];
+    const struct sparse *fields = &body->cells.averages.transposed;
+    int64_t row = body->node_place[i], at = fields->ptr[row];
     return (struct average){fields->ptr[row + 1] - at, fields->idx + at, fields->value + at};
-}
-
-/* Of several processes the body has the transpose for other nodes than those of these rows. */
-static enum status list_fields(struct scalar_stiffness *stiffness, struct error *error)
-{
-    enum status status;
-    int64_t nodes = stiffness->system->node_count, begin = stiffness->begin, end = stiffness->end;
-    const int32_t *unused;
-    int64_t *next = NULL;
-    TRY(NEW_ARRAY(&next, nodes + 1, error));
-    for (int64_t f = 0; f < stiffness->field_count; f++) {
-        struct average field = field_at(stiffness, f, &unused);
-        for (int64_t i = 0; i < field.length; i++) {
-            next[field.idx[i] + 1] += field.idx[i] >= begin && field.idx[i] < end;
-        }
-    }
-    for (int64_t n = 0; n < nodes; n++) {
-        next[n + 1] += next[n];
-    }
-    TRY(sparse_new(nodes, stiffness->field_count, next[nodes], &stiffness->fields, error));
-    memcpy(stiffness->fields.ptr, next, (size_t)(nodes + 1) * sizeof *next);
-    for (int64_t f = 0; f < stiffness->field_count; f++) {
-        struct average field = field_at(stiffness, f, &unused);
-        for (int64_t i = 0; i < field.length; i++) {
-            if (field.idx[i] >= begin && field.idx[i] < end) {
-                int64_t at = next[field.idx[i]]++;
-                stiffness->fields.idx[at] = (int32_t)f;
-                stiffness->fields.value[at] = field.phi[i];
-            }
-        }
-    }
-done:
-    free(next);
-    return status;
 }
 
 static enum status list_bonds(struct scalar_stiffness *stiffness, struct error *error)
@@ -126,13 +91,12 @@ done:
     return status;
 }
 
-enum status scalar_stiffness_make(const struct solid_system *system, int64_t begin, int64_t end,
-                                  struct scalar_stiffness *stiffness, struct error *error)
+enum status scalar_stiffness_make(const struct solid_system *system, struct scalar_stiffness *stiffness,
+                                  struct error *error)
 {
     enum status status;
     const struct body *body = &system->body;
-    *stiffness = (struct scalar_stiffness){
-        .system = system, .begin = begin, .end = end, .bond_count = count_bonds(system)};
+    *stiffness = (struct scalar_stiffness){.system = system, .bond_count = count_bonds(system)};
     stiffness->field_count = body->cells.averages.matrix.row_count;
     if (stiffness->field_count + stiffness->bond_count > INT32_MAX) {
         status = fail(error, STATUS_SYSTEM, "preconditioner: more than 2^31 faces, nodes and conditions");
@@ -140,9 +104,6 @@ enum status scalar_stiffness_make(const struct solid_system *system, int64_t beg
     }
     TRY(NEW_ARRAY(&stiffness->bond_stiffness, stiffness->bond_count, error));
     TRY(list_bonds(stiffness, error));
-    if (body->share.ranks != NULL) {
-        TRY(list_fields(stiffness, error));
-    }
 done:
     if (status != STATUS_OK) {
         scalar_stiffness_free(stiffness);
@@ -153,27 +114,8 @@ done:
 void scalar_stiffness_free(struct scalar_stiffness *stiffness)
 {
     sparse_free(&stiffness->bonds);
-    sparse_free(&stiffness->fields);
     free(stiffness->bond_stiffness);
     *stiffness = (struct scalar_stiffness){0};
-}
-
-void scalar_stiffness_work(const struct solid_system *system, double *work)
-{
-    for (int k = 0; k < 2; k++) {
-        const struct average_table *table = &system->body.cells.averages.told[k];
-        for (int64_t i = 0; i < table->ptr[table->row_count]; i++) {
-            work[table->idx[i]] += 1.0;
-        }
-    }
-    const struct neighbours *lists = system->node_lists;
-    for (int64_t n = 0; n < system->node_count; n++) {
-        int64_t length = lists->ptr[n + 1] - lists->ptr[n], lower = 0;
-        for (int64_t i = lists->ptr[n]; i < lists->ptr[n + 1]; i++) {
-            lower += lists->idx[i] <= n;
-        }
-        work[n] *= 1.0 + (double)lower / (double)(length > 0 ? length : 1);
-    }
 }
 
 enum status scalar_row_make(const struct scalar_stiffness *stiffness, struct scalar_row *row,

@@ -13,11 +13,9 @@ struct solid_system;
  * that penalties act on. */
 struct scalar_stiffness {
     const struct solid_system *system;
-    int64_t begin, end; /* rows that can be asked for */
     int64_t field_count, bond_count;
-    struct sparse bonds;    /* a row for each node: the bonds that it is in, and its shares there; */
-    struct sparse fields;   /* likewise the fields, of several processes, from `begin` to before `end`. Of one
-                               process empty: the transpose that the body has tells them */
+    struct sparse bonds; /* a row for each node: the bonds that it is in, and its shares there. The fields it
+                            is in are told by the transpose that the body has */
     double *bond_stiffness; /* N/m (2D: N/m2) */
 };
 
@@ -27,14 +25,10 @@ struct scalar_sum {
     int64_t row;
 };
 
-/* For the rows from `begin` to before `end`. */
-MUST_CHECK enum status scalar_stiffness_make(const struct solid_system *system, int64_t begin, int64_t end,
+/* For the rows of this process's nodes (body_share.h). */
+MUST_CHECK enum status scalar_stiffness_make(const struct solid_system *system,
                                              struct scalar_stiffness *stiffness, struct error *error);
 void scalar_stiffness_free(struct scalar_stiffness *stiffness);
-
-/* Of several processes: work[node_count]: about how much work each row is, as the fields that the node is in;
- * what lies beyond the diagonal is looked at only, and takes half the time. `work` has zeros. */
-void scalar_stiffness_work(const struct solid_system *system, double *work);
 
 /* A row, and scratch for it: zeros between calls, where nothing else is said. */
 struct scalar_row {

@@ -2,6 +2,7 @@
 
 #include "approx/renumber.h"
 #include "base/memory.h"
+#include "base/read_rows.h"
 #include "solid/body.h"
 
 #include <math.h>
@@ -133,9 +134,11 @@ done:
     return status;
 }
 
-/* A table of shape functions that tools made from cloud and cells: its name, and the points of its rows. */
+/* A table of shape functions that tools made from cloud and cells: its name, and the points of its rows. Of
+ * several processes rows may be empty that others have. */
 struct told {
     const char *section, *of;
+    bool is_shared;
     const int64_t *ptr;
     const int32_t *idx;
     const double *phi, *x;
@@ -148,6 +151,9 @@ static enum status check_table(const struct told *table, int64_t rows, int dim, 
 {
     for (int64_t r = 0; r < rows; r++) {
         double sum[4] = {-1.0}, size = 0.0, extent = 0.0;
+        if (table->is_shared && table->ptr[r] == table->ptr[r + 1]) {
+            continue;
+        }
         for (int64_t i = table->ptr[r]; i < table->ptr[r + 1]; i++) {
             sum[0] += table->phi[i];
             size += fabs(table->phi[i]);
@@ -192,6 +198,84 @@ done:
     return status;
 }
 
+/* The rows that share cells with those that own nodes are in, touched[rows]: the stiffness of own nodes. */
+static void add_beside(const struct body *body, const bool *touched, bool *wanted)
+{
+    const struct field_averages *averages = &body->cells.averages;
+    int corners = body->dim + 1, rows = FACE_ROWS(body->dim);
+    for (int64_t r = 0; r < averages->row_count; r++) {
+        for (int64_t i = averages->corner_ptr[r]; i < averages->corner_ptr[r + 1] && touched[r]; i++) {
+            int64_t q = averages->corner[i] % averages->corner_count / corners;
+            for (int64_t c = q * corners * rows; c < (q + 1) * corners * rows; c++) {
+                wanted[averages->of_corner[c] / VECTOR_STRIDE(body->dim)] = true;
+            }
+        }
+    }
+}
+
+static int owner_of_node(const void *context, int64_t node)
+{
+    const struct body *body = context;
+    return ranks_owner(body->share.ranks, body->share.node_first, body->node_place[node]);
+}
+
+/* wanted[rows of faces]: the averages that own cells look at, those that own nodes are in, and those beside.
+ */
+static enum status list_faces(const struct smoothed_cells_input *input, const struct read_rows *rows,
+                              const struct body *body, const int64_t *order, bool *wanted,
+                              struct error *error)
+{
+    enum status status;
+    const struct field_averages *averages = &body->cells.averages;
+    bool *touched = NULL, *in_order = NULL;
+    TRY(NEW_ARRAY(&touched, averages->row_count, error));
+    TRY(body_share_values(body, &in_order, error));
+    TRY(read_rows_with(rows, owner_of_node, body, wanted, error));
+    for (int64_t r = 0; r < averages->row_count; r++) {
+        int64_t n = r < input->faces->row_count ? -1 : body->node_order[r - input->faces->row_count];
+        touched[r] = n < 0 && wanted[order[r]];
+        for (int64_t i = n < 0 ? 0 : input->node_ptr[n]; n >= 0 && i < input->node_ptr[n + 1]; i++) {
+            touched[r] = touched[r] || owner_of_node(body, input->node_idx[i]) == rows->ranks->rank;
+        }
+    }
+    add_beside(body, touched, in_order);
+    for (int64_t f = 0; f < input->faces->row_count; f++) {
+        wanted[order[f]] = wanted[order[f]] || in_order[f];
+    }
+done:
+    free(touched);
+    free(in_order);
+    return status;
+}
+
+/* The table over the faces where no process has read all of it: the rows that are needed here. */
+static enum status fetch_faces(const struct smoothed_cells_input *input, struct body *body,
+                               struct average_table *faces, struct error *error)
+{
+    enum status status;
+    struct sparse *fetched = &body->cells.averages.fetched;
+    const struct read_rows rows = {.ranks = body->share.ranks,
+                                   .row_count = input->faces->row_count,
+                                   .column_count = body->node_count,
+                                   .ptr = input->face_ptr,
+                                   .idx = input->face_idx,
+                                   .value = input->face_phi,
+                                   .reader = input->face_reader};
+    bool *wanted = NULL;
+    TRY(NEW_ARRAY(&wanted, input->faces->row_count, error));
+    TRY(list_faces(input, &rows, body, faces->order, wanted, error));
+    TRY(read_rows_fetch(&rows, wanted, fetched, error));
+    faces->ptr = fetched->ptr;
+    faces->idx = fetched->idx;
+    faces->phi = fetched->value;
+    if (input->copied != NULL) {
+        input->copied(input->context);
+    }
+done:
+    free(wanted);
+    return status;
+}
+
 /* Rows of the faces, whose corners are those opposite, and of each node, whose corners are the vertices of
  * the cells there. */
 static enum status build_averages(const struct smoothed_cells_input *input, struct body *body,
@@ -208,10 +292,12 @@ static enum status build_averages(const struct smoothed_cells_input *input, stru
     TRY(match_corners(input, dim, body->point_count, body->order, row_of_corner, error));
     TRY(NEW_ARRAY(&x, faces->row_count * dim, error));
     TRY(place_rows(faces, input->x, x, error));
-    const struct told rows = {"face.phi", "row", input->face_ptr, input->face_idx, input->face_phi, x};
-    const struct told nodes = {"node.phi",      "node",          input->node_ptr,
+    const struct told rows = {
+        "face.phi", "row", input->face_reader != NULL, input->face_ptr, input->face_idx, input->face_phi, x};
+    const struct told nodes = {"node.phi",      "node",          false,   input->node_ptr,
                                input->node_idx, input->node_phi, input->x};
-    TRY(check_table(&rows, faces->row_count, dim, input->x, error));
+    status = check_table(&rows, faces->row_count, dim, input->x, error);
+    TRY(input->face_reader != NULL ? ranks_agree(body->share.ranks, status, error) : status);
     TRY(check_table(&nodes, body->node_count, dim, input->x, error));
     TRY(NEW_ARRAY(&order, faces->row_count, error));
     TRY(renumber_morton(dim, faces->row_count, x, NULL, order, error));
@@ -220,17 +306,19 @@ static enum status build_averages(const struct smoothed_cells_input *input, stru
         memcpy(node_of_corner + q * corners, input->cell_node + body->order[q] * corners,
                (size_t)corners * sizeof *node_of_corner);
     }
-    const struct field_averages_input tables = {
-        .dim = dim,
-        .node_count = body->node_count,
-        .corner_count = body->point_count * corners,
-        .place = body->node_place,
-        .tables = {
-            {faces->row_count, order, input->face_ptr, input->face_idx, input->face_phi, row_of_corner},
-            {body->node_count, body->node_order, input->node_ptr, input->node_idx, input->node_phi,
-             node_of_corner}}};
+    struct field_averages_input tables = {.dim = dim,
+                                          .node_count = body->node_count,
+                                          .corner_count = body->point_count * corners,
+                                          .place = body->node_place,
+                                          .tables = {{faces->row_count, order, input->face_ptr,
+                                                      input->face_idx, input->face_phi, row_of_corner},
+                                                     {body->node_count, body->node_order, input->node_ptr,
+                                                      input->node_idx, input->node_phi, node_of_corner}}};
     TRY(field_averages_build(&tables, averages, error));
     if (body->share.ranks != NULL) {
+        if (input->face_reader != NULL) {
+            TRY(fetch_faces(input, body, &tables.tables[0], error));
+        }
         TRY(copy_shares(&tables, body, error));
         memcpy(averages->told, tables.tables, sizeof averages->told);
         averages->face_order = order;

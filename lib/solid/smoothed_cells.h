@@ -52,8 +52,10 @@ struct smoothed_cells_input {
     const int64_t *node_ptr; /* and their values at the nodes: node_count + 1 */
     const int32_t *node_idx;
     const double *node_phi;
+    const int32_t *face_reader;    /* row_count: the process that has read each row of these averages, which
+                                      in others is empty; NULL: all have all */
     void (*copied)(void *context); /* when face_ptr, face_idx and face_phi are not needed any more; or NULL.
-                                      Of several processes: not before the body's end */
+                                      Of several processes that all have all: not before the body's end */
     void *context;
 };
 

@@ -27,6 +27,7 @@ struct sample {
     struct support_lists face_lists;
     struct neighbours face_neighbours;
     struct face_averages averages;
+    const int32_t *face_reader; /* as in struct smoothed_cells_input */
     /* Integration points. */
     int64_t point_count;
     double *x, *weight, *hat_value, *phi, *dphi;
@@ -131,6 +132,7 @@ static inline struct smoothed_cells_input sample_smoothed(const struct sample *s
                                          .face_ptr = sample->averages.ptr,
                                          .face_idx = sample->averages.idx,
                                          .face_phi = sample->averages.phi,
+                                         .face_reader = sample->face_reader,
                                          .node_ptr = sample->node_lists.ptr,
                                          .node_idx = sample->node_lists.idx,
                                          .node_phi = sample->node_phi};

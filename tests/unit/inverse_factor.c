@@ -33,7 +33,7 @@ static void build(struct cube *cube, bool bonded)
     }
     cube->n = system->node_count;
     ARRAY(cube->S, cube->n * cube->n);
-    GOOD(scalar_stiffness_make(system, 0, cube->n, &stiffness, &error));
+    GOOD(scalar_stiffness_make(system, &stiffness, &error));
     GOOD(scalar_row_make(&stiffness, &row, &error));
     for (int64_t i = 0; i < cube->n; i++) {
         scalar_stiffness_row(&stiffness, i, &row);

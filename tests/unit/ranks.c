@@ -2,6 +2,7 @@
  * together has the bits of one process, whatever their number. */
 #include "body_setup.h"
 
+#include "base/envelope.h"
 #include "base/memory.h"
 #include "base/ranks.h"
 
@@ -26,6 +27,7 @@ struct member {
     const struct sample *sample;
     const struct setup *setup;
     const double *u;
+    bool reads_some; /* of the averages over the faces; else all of them */
     double *results; /* of the team's member 0 .. count - 1 in turn */
     int64_t *count;  /* of results */
 };
@@ -161,13 +163,45 @@ static int64_t room(const struct sample *sample)
     return 8 * sample->cloud.node_count * sample->dim + 20 * sample->point_count + 8;
 }
 
+/* Of the averages over the faces every so manieth row, as if the others were another process's. */
+static void keep_some(const struct ranks *ranks, struct face_averages *averages, int32_t *reader,
+                      int64_t faces)
+{
+    struct face_averages all = *averages;
+    averages->boundary_phi = NULL;
+    averages->ptr = sample_array(faces + 1, sizeof *averages->ptr);
+    averages->idx = sample_array(all.ptr[faces], sizeof *averages->idx);
+    averages->phi = sample_array(all.ptr[faces], sizeof *averages->phi);
+    for (int64_t f = 0; f < faces; f++) {
+        int64_t at = averages->ptr[f], from = all.ptr[f], length = 0;
+        reader[f] = (int32_t)(f * f % ranks->count);
+        if (reader[f] == ranks->rank) {
+            length = all.ptr[f + 1] - from;
+            memcpy(averages->idx + at, all.idx + from, (size_t)length * sizeof *all.idx);
+            memcpy(averages->phi + at, all.phi + from, (size_t)length * sizeof *all.phi);
+        }
+        averages->ptr[f + 1] = at + length;
+    }
+}
+
 static void *evaluate_member(void *context)
 {
     struct member *member = context;
     struct setup setup = *member->setup;
+    struct sample sample = *member->sample;
+    bool reads_some = member->reads_some && setup.faces;
+    int32_t *reader = sample_array(sample.faces.count, sizeof *reader);
     setup.ranks = &member->ranks;
     omp_set_num_threads(1); /* of this thread's regions */
-    struct body body = make_body(member->sample, &setup);
+    if (reads_some) {
+        keep_some(&member->ranks, &sample.averages, reader, sample.faces.count);
+        sample.face_reader = reader;
+    }
+    struct body body = make_body(&sample, &setup);
+    if (reads_some) {
+        face_averages_free(&sample.averages); /* the body has fetched what it needs */
+    }
+    free(reader);
     member->count[member->ranks.rank] =
         evaluate(&body, member->u, member->results + member->ranks.rank * room(member->sample));
     body_free(&body);
@@ -184,15 +218,21 @@ static void check_body(const struct sample *sample, const struct setup *setup, s
     double *u = deformed_field(sample, &body, force, random);
     int64_t count = evaluate(&body, u, alone);
     assert_true(count > 0 && count <= some && largest(alone, count) > 0.0);
-    for (size_t i = 0; i < sizeof counts / sizeof *counts; i++) {
+    for (size_t i = 0; i < 2 * sizeof counts / sizeof *counts; i++) {
         struct member members[MOST];
         int64_t have[MOST];
-        for (int r = 0; r < counts[i]; r++) {
-            members[r] =
-                (struct member){.sample = sample, .setup = setup, .u = u, .results = results, .count = have};
+        int team = counts[i / 2];
+        for (int r = 0; r < team; r++) {
+            members[r] = (struct member){.sample = sample,
+                                         .setup = setup,
+                                         .u = u,
+                                         .reads_some = i % 2 == 1,
+                                         .results = results,
+                                         .count = have};
         }
-        run_team(counts[i], members, evaluate_member);
-        for (int r = 0; r < counts[i]; r++) {
+        memset(results, 0, (size_t)(some * MOST) * sizeof *results);
+        run_team(team, members, evaluate_member);
+        for (int r = 0; r < team; r++) {
             assert_int_equal(have[r], count);
             assert_memory_equal(results + r * some, alone, (size_t)count * sizeof *alone);
         }
@@ -268,13 +308,114 @@ static void rows_in_stretches(void **state)
     stretches_free(&stretches);
 }
 
+/* What the first that fails says, all know; the values of all, in turn. */
+static void *agree_member(void *context)
+{
+    struct member *member = context;
+    const struct ranks *ranks = &member->ranks;
+    struct error error = {"?"};
+    int64_t *each;
+    assert_int_equal(ranks_agree(ranks, STATUS_OK, &error), STATUS_OK);
+    enum status status =
+        ranks->rank > 0 ? (fail)(&error, STATUS_INPUT + (ranks->rank > 1), "by %d", ranks->rank) : STATUS_OK;
+    assert_int_equal(ranks_agree(ranks, status, &error), STATUS_INPUT);
+    assert_string_equal(error.text, "by 1");
+    GOOD(ranks_list(ranks, 10 + ranks->rank, &each, &error));
+    for (int r = 0; r < ranks->count; r++) {
+        assert_int_equal(each[r], 10 + r);
+    }
+    free(each);
+    return NULL;
+}
+
+static void agreement(void **state)
+{
+    (void)state;
+    struct member members[3] = {{.sample = NULL}};
+    struct error error;
+    run_team(3, members, agree_member);
+    assert_int_equal(ranks_agree(NULL, (fail)(&error, STATUS_VERDICT, "alone"), &error), STATUS_VERDICT);
+}
+
+enum { SOLVED = 90, BLOCKS = 3 }; /* rows; row i is of block i % BLOCKS */
+
+/* A chain in each of some blocks that do not couple. */
+static void make_chains(struct envelope *factor)
+{
+    struct error error;
+    int64_t ptr[SOLVED + 1] = {0}, column[3 * SOLVED], at = 0;
+    double value[3 * SOLVED];
+    for (int64_t i = 0; i < SOLVED; i++) {
+        for (int64_t k = i - BLOCKS; k <= i + BLOCKS; k += BLOCKS) {
+            if (k >= 0 && k < SOLVED) {
+                column[at] = k;
+                value[at++] = k == i ? 2.5 + 0.01 * (double)i : -1.0;
+            }
+        }
+        ptr[i + 1] = at;
+    }
+    GOOD(envelope_factorise(SOLVED, ptr, column, value, 1e-10, factor, &error));
+}
+
+static void *solve_member(void *context)
+{
+    struct member *member = context;
+    const struct ranks *ranks = &member->ranks;
+    struct error error;
+    struct envelope factor;
+    int64_t *first;
+    double *x = member->results + ranks->rank * SOLVED;
+    make_chains(&factor);
+    GOOD(envelope_share(&factor, ranks, &first, &error));
+    assert_int_equal(first[0], 0);
+    assert_int_equal(first[ranks->count], SOLVED);
+    if (ranks->count <= BLOCKS) { /* each has some */
+        assert_true(first[ranks->rank + 1] - first[ranks->rank] >= SOLVED / BLOCKS);
+    }
+    for (int64_t i = 0; i < SOLVED; i++) {
+        x[i] = member->u[i];
+    }
+    envelope_solve_shared(&factor, ranks, first, x);
+    free(first);
+    envelope_free(&factor);
+    return NULL;
+}
+
+/* Blocks are solved by several processes to the bits of one. */
+static void solving(void **state)
+{
+    (void)state;
+    double right[SOLVED], alone[SOLVED], results[MOST * SOLVED];
+    struct envelope factor;
+    make_chains(&factor);
+    for (int i = 0; i < SOLVED; i++) {
+        alone[i] = right[i] = 1.0 / (1.0 + i);
+    }
+    envelope_solve(&factor, alone);
+    /* The matrix times the solution. */
+    for (int i = BLOCKS; i < SOLVED - BLOCKS; i++) {
+        double sum = (2.5 + 0.01 * i) * alone[i] - alone[i - BLOCKS] - alone[i + BLOCKS];
+        AT_MOST(fabs(sum - right[i]), 1e-14);
+    }
+    envelope_free(&factor);
+    for (int count = 2; count <= MOST; count += count == 3 ? MOST - 3 : 1) {
+        struct member members[MOST];
+        for (int r = 0; r < count; r++) {
+            members[r] = (struct member){.u = right, .results = results};
+        }
+        run_team(count, members, solve_member);
+        for (int r = 0; r < count; r++) {
+            assert_memory_equal(results + r * SOLVED, alone, sizeof alone);
+        }
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(shares),
-        cmocka_unit_test(rows_in_stretches),
-        cmocka_unit_test(bodies),
-        cmocka_unit_test(large_body),
+        cmocka_unit_test(shares),    cmocka_unit_test(rows_in_stretches),
+        cmocka_unit_test(agreement), cmocka_unit_test(solving),
+        cmocka_unit_test(bodies),    cmocka_unit_test(large_body),
     };
     return cmocka_run_group_tests(tests, make_samples, free_samples);
 }

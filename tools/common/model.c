@@ -107,8 +107,8 @@ static void drop_copied(void *stream)
     }
 }
 
-enum status model_build(struct stream *stream, const struct scene *scene, struct model *model,
-                        struct error *error)
+enum status model_build(struct stream *stream, const int32_t *face_reader, const struct scene *scene,
+                        struct model *model, struct error *error)
 {
     enum status status;
     struct assembly *input = &model->assembly;
@@ -128,6 +128,7 @@ enum status model_build(struct stream *stream, const struct scene *scene, struct
     TRY(check_moments(model, error));
     TRY(model_conditions(model, error));
     input->ranks = process_ranks();
+    input->face_reader = face_reader;
     input->copied = drop_copied;
     input->context = stream;
     TRY(assembly_build(input, &model->system, &model->note, error));

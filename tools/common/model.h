@@ -21,9 +21,10 @@ struct model {
 };
 
 /* Build the whole system; the stream and the scene must outlive the model, which stays where it is. Regions
- * without a material are an error that names them. Tables that the body copies leave the stream. */
-MUST_CHECK enum status model_build(struct stream *stream, const struct scene *scene, struct model *model,
-                                   struct error *error);
+ * without a material are an error that names them. Tables that the body copies leave the stream. face_reader
+ * as in struct parts_input. */
+MUST_CHECK enum status model_build(struct stream *stream, const int32_t *face_reader,
+                                   const struct scene *scene, struct model *model, struct error *error);
 void model_free(struct model *model);
 
 /* The parts of the scene, in their own files: materials of regions and points; and displacements, loads and

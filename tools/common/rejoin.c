@@ -51,11 +51,10 @@ static const int32_t *numbers(const struct rejoin *rejoin, const struct rejoin_p
     return value;
 }
 
-static void read_part(struct rejoin *rejoin, struct rejoin_part *part, const char *file)
+static void view_part(struct rejoin *rejoin, struct rejoin_part *part)
 {
     struct error error;
-    tool_read(rejoin->tool, file, &part->stream);
-    part->file = file;
+    const char *file = part->file;
     const struct section *node = stream_find(&part->stream, "part.node");
     if (node == NULL) {
         tool_fail(rejoin->tool, STATUS_INPUT, "%s: no section part.node: not a part of a body", file);
@@ -92,6 +91,36 @@ static void check_numbers(const struct rejoin *rejoin)
     }
 }
 
+/* The version in a line of provenance, where that is of this program: "PROGRAM VERSION ...". */
+static const char *version_of(const char *line, const char *program, size_t *length)
+{
+    size_t name = strcspn(program, " ");
+    if (strncmp(line, program, name) != 0 || line[name] != ' ') {
+        return NULL;
+    }
+    *length = strcspn(line + name + 1, " ");
+    return line + name + 1;
+}
+
+/* Two parts must not have been made by different versions of a program. */
+static void check_versions(const struct rejoin *rejoin, const struct rejoin_part *part)
+{
+    const struct rejoin_part *first = &rejoin->part[0];
+    for (int64_t i = 0; i < part->stream.provenance_count; i++) {
+        const char *line = part->stream.provenance[i];
+        size_t size, other_size;
+        const char *version = version_of(line, line, &size);
+        for (int64_t k = 0; k < first->stream.provenance_count && version != NULL; k++) {
+            const char *other = version_of(first->stream.provenance[k], line, &other_size);
+            if (other != NULL && (size != other_size || strncmp(version, other, size) != 0)) {
+                tool_fail(rejoin->tool, STATUS_INPUT,
+                          "%s and %s were made by different versions of %.*s: make them again", first->file,
+                          part->file, (int)(version - line - 1), line);
+            }
+        }
+    }
+}
+
 /* Each part once, in the order of their numbers. */
 static void sort_parts(struct rejoin *rejoin)
 {
@@ -107,6 +136,13 @@ static void sort_parts(struct rejoin *rejoin)
             tool_fail(tool, STATUS_INPUT, "%s and %s are parts of different cuts: cut again", first->file,
                       part->file);
         }
+        check_versions(rejoin, part);
+        for (int64_t i = 0; i < k; i++) {
+            if (rejoin->part[i].number == part->number) {
+                tool_fail(tool, STATUS_INPUT, "%s and %s are the same part, %lld", file_of(rejoin, i),
+                          part->file, (long long)part->number);
+            }
+        }
         if (part->number >= part->parts) {
             tool_fail(tool, STATUS_INPUT, "%s: part.node: part %lld of %lld", part->file,
                       (long long)part->number, (long long)part->parts);
@@ -115,12 +151,7 @@ static void sort_parts(struct rejoin *rejoin)
     check_numbers(rejoin);
     tool_check(tool, NEW_ARRAY(&sorted, first->parts, &error), &error);
     for (int64_t k = 0; k < rejoin->part_count; k++) {
-        const struct rejoin_part *part = &rejoin->part[k];
-        if (sorted[part->number].file != NULL) {
-            tool_fail(tool, STATUS_INPUT, "%s and %s are the same part, %lld", sorted[part->number].file,
-                      part->file, (long long)part->number);
-        }
-        sorted[part->number] = *part;
+        sorted[rejoin->part[k].number] = rejoin->part[k];
     }
     free(rejoin->part);
     rejoin->part = sorted;
@@ -441,7 +472,17 @@ void rejoin_begin(struct rejoin *rejoin, const struct tool *tool, char *const fi
     *rejoin = (struct rejoin){.tool = tool, .part_count = count};
     tool_check(tool, NEW_ARRAY(&rejoin->part, count, &error), &error);
     for (int64_t k = 0; k < count; k++) {
-        read_part(rejoin, &rejoin->part[k], files[k]);
+        rejoin->part[k].file = files[k];
+        tool_read(tool, files[k], &rejoin->part[k].stream);
+    }
+    rejoin_streams(rejoin);
+}
+
+void rejoin_streams(struct rejoin *rejoin)
+{
+    const struct tool *tool = rejoin->tool;
+    for (int64_t k = 0; k < rejoin->part_count; k++) {
+        view_part(rejoin, &rejoin->part[k]);
     }
     sort_parts(rejoin);
     rejoin->part_count = rejoin->part[0].parts;

@@ -24,6 +24,8 @@ enum rows_of {
 struct rejoin_part {
     const char *file;
     struct stream stream;
+    bool elsewhere;  /* another process has its large tables: here they have no rows, but their heads */
+    int64_t read_as; /* the number of its file, where files have numbers */
     int64_t number, parts;
     char cut[16];
     struct cells cells;
@@ -50,7 +52,18 @@ struct rejoin {
 /* The parts in these files, checked to be all parts of one cut. Exits with a message on failure. */
 void rejoin_begin(struct rejoin *rejoin, const struct tool *tool, char *const files[], int64_t count);
 
-/* Put all sections that can be put together into the stream, in the order of part 0. */
+/* The same of parts that have been read: part_count, and of each part file, stream and elsewhere are set. */
+void rejoin_streams(struct rejoin *rejoin);
+
+/* Is that a section of a large table? */
+bool rejoin_is_large(const char *name);
+
+/* Whether the large tables of the parts that are here can be put together. Several processes do not have the
+ * same, and have to agree on it; all else they find out alike. */
+MUST_CHECK enum status rejoin_check_large(const struct rejoin *rejoin, struct error *error);
+
+/* Put all sections that can be put together into the stream, in the order of part 0. Of large tables rows of
+ * parts that are elsewhere are empty. */
 void rejoin_sections(const struct rejoin *rejoin, struct stream *stream);
 
 void rejoin_free(struct rejoin *rejoin);

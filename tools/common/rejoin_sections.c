@@ -130,18 +130,58 @@ struct joined_lists {
     int64_t *ptr;          /* of the whole, rows + 1; the stream's from put_lists on */
 };
 
-/* A list that reaches where the part ends is not that of the whole body. */
-static void check_reach(const struct rejoin *rejoin, const struct rejoin_part *part, const char *prefix,
-                        const struct neighbours *of, int64_t row)
+bool rejoin_is_large(const char *name)
 {
-    for (int64_t i = of->ptr[row]; i < of->ptr[row + 1]; i++) {
-        if (part->at_edge[of->idx[i]]) {
-            tool_fail(rejoin->tool, STATUS_INPUT,
-                      "%s: %s.idx: row %lld: a neighbour at the edge of the halo: cut again with a wider one "
-                      "(part -w, now %g)",
-                      part->file, prefix, (long long)i, rejoin->widen);
+    return strncmp(name, "face.", 5) == 0;
+}
+
+/* The lists of part k, none where these are large and elsewhere. A list that reaches where the part ends is
+ * not that of the whole body. */
+static enum status view_part(const struct rejoin *rejoin, int64_t k, const char *prefix, enum rows_of rows,
+                             struct neighbours *of, struct error *error)
+{
+    enum status status;
+    char name[64];
+    const struct rejoin_part *part = &rejoin->part[k];
+    *of = (struct neighbours){0};
+    snprintf(name, sizeof name, "%s.ptr", prefix);
+    if (part->elsewhere && rejoin_is_large(name)) {
+        return STATUS_OK;
+    }
+    status = stream_neighbours(&part->stream, prefix, part->count[rows], part->cells.node_count, of, error);
+    if (status != STATUS_OK) {
+        return fail_in(error, status, "%s", part->file);
+    }
+    for (int64_t r = 0; r < of->count; r++) {
+        for (int64_t i = of->ptr[r]; i < of->ptr[r + 1] && part->to[rows][r] >= 0; i++) {
+            if (part->at_edge[of->idx[i]]) {
+                return fail(error, STATUS_INPUT,
+                            "%s: %s.idx: row %lld: a neighbour at the edge of the halo: cut again with a "
+                            "wider one (part -w, now %g)",
+                            part->file, prefix, (long long)i, rejoin->widen);
+            }
         }
     }
+    return STATUS_OK;
+}
+
+enum status rejoin_check_large(const struct rejoin *rejoin, struct error *error)
+{
+    enum status status = STATUS_OK;
+    for (int64_t k = 0; k < rejoin->part_count; k++) {
+        struct neighbours of;
+        const struct rejoin_part *part = &rejoin->part[k];
+        const struct section *values = stream_find(&part->stream, "face.phi");
+        if (stream_find(&part->stream, "face.ptr") == NULL || values == NULL) {
+            continue; /* all find out alike */
+        }
+        TRY(view_part(rejoin, k, "face", ROWS_OF_FACES, &of, error));
+        if (!part->elsewhere && values->rows != of.ptr[of.count]) {
+            return fail(error, STATUS_INPUT, "%s: face.phi: does not fit face.idx", part->file);
+        }
+    }
+done:
+    return status;
 }
 
 static void view_lists(const struct rejoin *rejoin, struct joined_lists *joined)
@@ -152,16 +192,11 @@ static void view_lists(const struct rejoin *rejoin, struct joined_lists *joined)
     for (int64_t k = 0; k < rejoin->part_count; k++) {
         const struct rejoin_part *part = &rejoin->part[k];
         struct neighbours *of = &joined->of[k];
-        enum status status = stream_neighbours(&part->stream, joined->prefix, part->count[joined->rows],
-                                               part->cells.node_count, of, &error);
-        if (status != STATUS_OK) {
-            tool_fail(rejoin->tool, status, "%s: %s", part->file, error.text);
-        }
+        tool_check(rejoin->tool, view_part(rejoin, k, joined->prefix, joined->rows, of, &error), &error);
         for (int64_t i = 0; i < of->count; i++) {
             int32_t to = part->to[joined->rows][i];
             if (to >= 0) {
                 joined->ptr[to + 1] = of->ptr[i + 1] - of->ptr[i];
-                check_reach(rejoin, part, joined->prefix, of, i);
             }
         }
     }
@@ -182,6 +217,9 @@ static void put_pairs(const struct rejoin *rejoin, struct stream *stream, const 
         const struct rejoin_part *part = &rejoin->part[k];
         const struct neighbours *of = &joined->of[k];
         const struct section *section = section_of(rejoin, k, name, first);
+        if (part->elsewhere && rejoin_is_large(name)) {
+            continue;
+        }
         if (section->rows != of->ptr[of->count]) {
             tool_fail(rejoin->tool, STATUS_INPUT, "%s: %s: does not fit %s.idx", part->file, name,
                       joined->prefix);

@@ -3,6 +3,7 @@
 #define TOOLS_RUN_H
 
 #include "model.h"
+#include "parts_input.h"
 #include "process.h"
 #include "run_checkpoint.h"
 #include "run_folds.h"
@@ -20,6 +21,7 @@ struct run {
     const struct tool *tool;
     const struct scene *scene;
     struct model *model;
+    const struct parts_input *parts;
     struct stream *stream; /* receives what the scene's [output] asks for */
     struct display display;
     struct run_checkpoint checkpoint;

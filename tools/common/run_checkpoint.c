@@ -89,6 +89,9 @@ void run_checkpoint_begin(struct run *run)
     if (checkpoint->file != NULL || process_ranks() != NULL) {
         tool_check(run->tool, checkpoint_identify(run->scene, run->stream, &checkpoint->identity, &error),
                    &error);
+        if (run->parts->given) {
+            checkpoint->identity.input = run->parts->identity;
+        }
         compare_processes(run);
     }
     if (checkpoint->file != NULL) {
@@ -160,23 +163,35 @@ done:
     return status;
 }
 
-bool run_checkpoint_tell(struct run *run, const struct progress *progress)
+/* The first process writes, when it is time. A failure that is to end the run. */
+static enum status keep(struct run *run, const struct progress *progress, bool interrupted)
 {
     struct run_checkpoint *checkpoint = &run->checkpoint;
-    bool interrupted = ranks_most(process_ranks(), *checkpoint->interrupted) != 0;
-    if (checkpoint->file == NULL || !process_speaks() ||
-        (!interrupted && clock_seconds() - checkpoint->last < checkpoint->interval && checkpoint->is_ours)) {
-        return !interrupted;
-    }
     bool is_first = !checkpoint->is_ours;
+    if (!process_speaks() ||
+        (!interrupted && clock_seconds() - checkpoint->last < checkpoint->interval && !is_first)) {
+        return STATUS_OK;
+    }
     checkpoint->status = write_now(run, progress, &checkpoint->error);
     if (checkpoint->status != STATUS_OK && !interrupted) {
         run_clear_progress(&run->display);
         if (is_first) { /* better now than when it is needed */
-            tool_fail(run->tool, checkpoint->status, "%s", checkpoint->error.text);
+            return checkpoint->status;
         }
         tool_note(run->tool, "no checkpoint at step %lld: %s; the one before stays",
                   (long long)progress->step, checkpoint->error.text);
+    }
+    return STATUS_OK;
+}
+
+bool run_checkpoint_tell(struct run *run, const struct progress *progress)
+{
+    struct run_checkpoint *checkpoint = &run->checkpoint;
+    const struct ranks *ranks = process_ranks();
+    bool interrupted = ranks_most(ranks, *checkpoint->interrupted) != 0;
+    if (checkpoint->file != NULL) {
+        enum status status = keep(run, progress, interrupted);
+        tool_check(run->tool, ranks_agree(ranks, status, &checkpoint->error), &checkpoint->error);
     }
     return !interrupted;
 }

@@ -172,7 +172,7 @@ int tool_open(const struct tool *tool, const char *file, const char **name)
         if (descriptor < 0) {
             tool_fail(tool, STATUS_INPUT, "%s: %s", file, strerror(errno));
         }
-        main_input = main_input == NULL && !stdin_read ? file : main_input;
+        tool_names_input(file);
         return descriptor;
     }
     if (stdin_read) {
@@ -184,6 +184,11 @@ int tool_open(const struct tool *tool, const char *file, const char **name)
     main_input = main_input == NULL ? file : main_input;
     stdin_read = true;
     return STDIN_FILENO;
+}
+
+void tool_names_input(const char *operand)
+{
+    main_input = main_input == NULL && !stdin_read ? operand : main_input;
 }
 
 void tool_read(const struct tool *tool, const char *file, struct stream *stream)

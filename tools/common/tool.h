@@ -74,6 +74,9 @@ void tool_note(const struct tool *tool, const char *format, ...) __attribute__((
  * *name receives what to call it in messages. Exits on failure. */
 int tool_open(const struct tool *tool, const char *file, const char **name);
 
+/* This operand names what is read in place of standard input, by other means than tool_open. */
+void tool_names_input(const char *operand);
+
 /* Read a stream from a file (NULL or "-": standard input); exits on failure with a message naming it. */
 void tool_read(const struct tool *tool, const char *file, struct stream *stream);
 

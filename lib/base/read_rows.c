@@ -1,0 +1,196 @@
+#include "base/read_rows.h"
+
+#include "base/memory.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* Numbers of rows for each process. */
+struct row_lists {
+    int64_t *first; /* count + 1 */
+    int64_t *row;
+};
+
+static void free_lists(struct row_lists *lists)
+{
+    free(lists->first);
+    free(lists->row);
+}
+
+/* Of the rows read here those that have a column of each process. */
+static enum status list_rows(const struct read_rows *rows, int (*owner)(const void *, int64_t),
+                             const void *context, struct row_lists *lists, struct error *error)
+{
+    enum status status;
+    int count = rows->ranks->count;
+    int64_t *seen = NULL, *next = NULL; /* of each process: 1 + the last row that was listed */
+    TRY(NEW_ARRAY(&seen, count, error));
+    TRY(NEW_ARRAY(&next, count, error));
+    TRY(NEW_ARRAY(&lists->first, count + 1, error));
+    for (int pass = 0; pass < 2; pass++) {
+        memset(seen, 0, (size_t)count * sizeof *seen);
+        for (int64_t f = 0; f < rows->row_count; f++) {
+            for (int64_t i = rows->ptr[f]; i < rows->ptr[f + 1]; i++) {
+                int to = owner(context, rows->idx[i]);
+                if (seen[to] != f + 1) {
+                    seen[to] = f + 1;
+                    if (pass == 1) {
+                        lists->row[next[to]] = f;
+                    }
+                    next[to]++;
+                }
+            }
+        }
+        if (pass == 0) {
+            for (int r = 0; r < count; r++) {
+                lists->first[r + 1] = lists->first[r] + next[r];
+            }
+            memcpy(next, lists->first, (size_t)count * sizeof *next);
+            TRY(NEW_ARRAY(&lists->row, lists->first[count], error));
+        }
+    }
+done:
+    free(seen);
+    free(next);
+    return status;
+}
+
+enum status read_rows_with(const struct read_rows *rows, int (*owner)(const void *context, int64_t column),
+                           const void *context, bool *wanted, struct error *error)
+{
+    enum status status;
+    const struct ranks *ranks = rows->ranks;
+    struct row_lists sent = {0}, got = {0};
+    int64_t *each = NULL, *many = NULL, *in_turn = NULL;
+    TRY(list_rows(rows, owner, context, &sent, error));
+    TRY(NEW_ARRAY(&each, ranks->count, error));
+    TRY(NEW_ARRAY(&many, ranks->count, error));
+    TRY(NEW_ARRAY(&in_turn, ranks->count + 1, error));
+    TRY(NEW_ARRAY(&got.first, ranks->count + 1, error));
+    for (int r = 0; r < ranks->count; r++) {
+        in_turn[r + 1] = r + 1;
+        each[r] = sent.first[r + 1] - sent.first[r];
+    }
+    ranks->exchange(ranks, sizeof *each, each, in_turn, many, in_turn);
+    for (int r = 0; r < ranks->count; r++) {
+        got.first[r + 1] = got.first[r] + many[r];
+    }
+    TRY(NEW_ARRAY(&got.row, got.first[ranks->count], error));
+    ranks->exchange(ranks, sizeof *got.row, sent.row, sent.first, got.row, got.first);
+    for (int64_t i = 0; i < got.first[ranks->count]; i++) {
+        wanted[got.row[i]] = true;
+    }
+done:
+    free_lists(&sent);
+    free_lists(&got);
+    free(each);
+    free(many);
+    free(in_turn);
+    return status;
+}
+
+static int reader_of(const void *context, int64_t row)
+{
+    return ((const struct read_rows *)context)->reader[row];
+}
+
+static int64_t length_of(const struct read_rows *rows, int64_t row)
+{
+    return rows->ptr[row + 1] - rows->ptr[row];
+}
+
+/* fetched->ptr, and room for the rows; the halo lists what others have. */
+static enum status lay_out(const struct read_rows *rows, const bool *wanted, struct halo *halo,
+                           struct sparse *fetched, struct error *error)
+{
+    enum status status;
+    double *length = NULL;
+    int64_t at = 0;
+    TRY(NEW_ARRAY(&length, rows->row_count, error));
+    for (int64_t f = 0; f < rows->row_count; f++) {
+        length[f] = (double)length_of(rows, f);
+    }
+    halo_exchange(halo, 1, length);
+    for (int64_t f = 0; f < rows->row_count; f++) {
+        length[f] = wanted[f] ? length[f] : 0.0;
+        at += (int64_t)length[f];
+    }
+    TRY(sparse_new(rows->row_count, rows->column_count, at, fetched, error));
+    for (int64_t f = 0; f < rows->row_count; f++) {
+        fetched->ptr[f + 1] = fetched->ptr[f] + (int64_t)length[f];
+    }
+done:
+    free(length);
+    return status;
+}
+
+/* Entries of so many bytes: own rows from `from`, and those of others, to their rows of `to`. */
+static enum status send_entries(const struct read_rows *rows, const bool *wanted, const struct halo *halo,
+                                const struct sparse *fetched, size_t size, const char *from, char *to,
+                                struct error *error)
+{
+    enum status status;
+    const struct ranks *ranks = rows->ranks;
+    int64_t *send_first = NULL, *first = NULL;
+    char *sent = NULL, *got = NULL, *at;
+    TRY(NEW_ARRAY(&send_first, ranks->count + 1, error));
+    TRY(NEW_ARRAY(&first, ranks->count + 1, error));
+    for (int r = 0; r < ranks->count; r++) {
+        send_first[r + 1] = send_first[r];
+        first[r + 1] = first[r];
+        for (int64_t i = halo->send_first[r]; i < halo->send_first[r + 1]; i++) {
+            send_first[r + 1] += length_of(rows, halo->send[i]);
+        }
+        for (int64_t i = halo->receive_first[r]; i < halo->receive_first[r + 1]; i++) {
+            first[r + 1] += fetched->ptr[halo->receive[i] + 1] - fetched->ptr[halo->receive[i]];
+        }
+    }
+    TRY(NEW_ARRAY(&sent, send_first[ranks->count] * (int64_t)size, error));
+    TRY(NEW_ARRAY(&got, first[ranks->count] * (int64_t)size, error));
+    at = sent;
+    for (int64_t i = 0; i < halo->send_first[ranks->count]; i++) {
+        size_t bytes = (size_t)length_of(rows, halo->send[i]) * size;
+        memcpy(at, from + (size_t)rows->ptr[halo->send[i]] * size, bytes);
+        at += bytes;
+    }
+    ranks->exchange(ranks, size, sent, send_first, got, first);
+    at = got;
+    for (int64_t i = 0; i < halo->receive_first[ranks->count]; i++) {
+        int64_t row = halo->receive[i], begin = fetched->ptr[row];
+        size_t bytes = (size_t)(fetched->ptr[row + 1] - begin) * size;
+        memcpy(to + (size_t)begin * size, at, bytes);
+        at += bytes;
+    }
+    for (int64_t f = 0; f < rows->row_count; f++) {
+        if (wanted[f] && rows->reader[f] == ranks->rank) {
+            memcpy(to + (size_t)fetched->ptr[f] * size, from + (size_t)rows->ptr[f] * size,
+                   (size_t)length_of(rows, f) * size);
+        }
+    }
+done:
+    free(send_first);
+    free(first);
+    free(sent);
+    free(got);
+    return status;
+}
+
+enum status read_rows_fetch(const struct read_rows *rows, const bool *wanted, struct sparse *fetched,
+                            struct error *error)
+{
+    enum status status;
+    struct halo halo = {0};
+    *fetched = (struct sparse){0};
+    TRY(halo_build(rows->ranks, rows->row_count, wanted, 1, reader_of, rows, &halo, error));
+    TRY(lay_out(rows, wanted, &halo, fetched, error));
+    TRY(send_entries(rows, wanted, &halo, fetched, sizeof *rows->idx, (const char *)rows->idx,
+                     (char *)fetched->idx, error));
+    TRY(send_entries(rows, wanted, &halo, fetched, sizeof *rows->value, (const char *)rows->value,
+                     (char *)fetched->value, error));
+done:
+    halo_free(&halo);
+    if (status != STATUS_OK) {
+        sparse_free(fetched);
+    }
+    return status;
+}

@@ -1,0 +1,13 @@
+/* What is small of the parts that processes have read, given to all. */
+#ifndef TOOLS_PARTS_PACK_H
+#define TOOLS_PARTS_PACK_H
+
+#include "rejoin.h"
+
+/* Fill in the streams of the parts that are elsewhere: their sections, of large tables the heads without
+ * rows, and provenance. Process r has the parts from first[r] to before first[r + 1]; all call this together.
+ * *packed holds what they consist of: to be freed behind them. One process: nothing, and NULL. */
+MUST_CHECK enum status parts_share_small(struct rejoin *rejoin, const int64_t *first, void **packed,
+                                         struct error *error);
+
+#endif
