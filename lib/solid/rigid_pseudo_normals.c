@@ -5,10 +5,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* At a smooth vertex every facet's normal makes at least this product with the mean: its facets turn by less
- * than 45 degrees there (a little less, so that round-off does not decide on chamfers). */
-static const double smooth_cosine = 0.9239;
-
 /* The facets meet, but walk along the place where they do in the same direction. */
 static enum status fail_sides(int64_t one, int64_t other, struct error *error)
 {
@@ -134,7 +130,6 @@ enum status rigid_join_facets(struct rigid_surface *surface, struct error *error
     enum status status;
     TRY(NEW_ARRAY(&surface->vertex_normal, surface->vertex_count * surface->dim, error));
     TRY(NEW_ARRAY(&surface->is_rim, surface->vertex_count, error));
-    TRY(NEW_ARRAY(&surface->is_smooth, surface->vertex_count, error));
     TRY(NEW_ARRAY(&surface->turn, surface->vertex_count, error));
     if (surface->dim == 2) {
         TRY(join_segments(surface, error));
@@ -147,17 +142,12 @@ enum status rigid_join_facets(struct rigid_surface *surface, struct error *error
     }
     for (int64_t v = 0; v < surface->vertex_count; v++) {
         normalise(surface->dim, surface->vertex_normal + v * surface->dim);
-        surface->is_smooth[v] = true;
     }
     for (int64_t c = 0; c < surface->facet_count * surface->dim; c++) {
         int64_t vertex = surface->facet[c];
         const double *mean = surface->vertex_normal + vertex * surface->dim;
         const double *normal = surface->normal + c / surface->dim * surface->dim;
-        double cosine = 0.0, half = 0.5 * sqrt(distance2(surface->dim, mean, normal));
-        for (int a = 0; a < surface->dim; a++) {
-            cosine += mean[a] * normal[a];
-        }
-        surface->is_smooth[vertex] = surface->is_smooth[vertex] && cosine >= smooth_cosine;
+        double half = 0.5 * sqrt(distance2(surface->dim, mean, normal));
         surface->turn[vertex] = fmax(surface->turn[vertex], 2.0 * asin(fmin(half, 1.0)));
     }
 done:
