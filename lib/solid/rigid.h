@@ -35,8 +35,8 @@ struct rigid_surface {
 /* Build from corner coordinates: corners[facet_count * dim * dim], m. Each facet's normal is (dy, -dx) of its
  * direction in 2D - to the right, walking along it - and right-handed in 3D; `flip` turns all of them. After
  * that they must point to the body's side. Corners closer than 1e-9 of the surface's extent are one vertex.
- * STATUS_INPUT for no facets, facets of no size, coordinates that are not finite, and two facets that meet
- * but disagree on the side. */
+ * STATUS_INPUT for no facets, facets of no size, coordinates that are not finite, facets that stand twice,
+ * and two facets that meet but disagree on the side. */
 MUST_CHECK enum status rigid_build(int dim, int64_t facet_count, const double *corners, bool flip,
                                    struct rigid_surface *surface, struct error *error);
 void rigid_free(struct rigid_surface *surface);
