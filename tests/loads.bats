@@ -243,24 +243,3 @@ immersed() {
     printf -- '-1 -0.005\n2 -0.005\n' > floor.tsv
     refused 2 "sets.ptr" mtled block.scene none.mts
 }
-
-@test "contact: a node that is pressed into a crease of the rigid surface chatters: named, with what helps" {
-    cat > tip.geo << 'END'
-Mesh.MeshSizeMax = 10;
-Point(1) = {0, 0, 0}; Point(2) = {40, 16.1, 0}; Point(3) = {40, 80, 0}; Point(4) = {-40, 80, 0}; Point(5) = {-40, 16.1, 0};
-Line(1) = {1, 2}; Line(2) = {2, 3}; Line(3) = {3, 4}; Line(4) = {4, 5}; Line(5) = {5, 1};
-Curve Loop(1) = {1:5}; Plane Surface(1) = {1};
-Physical Surface("body") = {1}; Physical Curve("tip") = {1, 5}; Physical Curve("top") = {3};
-END
-    gmsh -v 1 -2 tip.geo -o tip.msh
-    nodes -u mm tip.msh | shapefn > tip.mts 2> note
-    printf -- '-200 86\n0 0\n200 86\n' > v.tsv
-    { block quasi-static; printf '[displacement top]\nfacets = top\ncomponents = 0.001, -0.004\n[contact v]\nfacets = tip\nrigid = v.tsv\nunit = mm\nside = left\n'
-        printf '[solver]\ntolerance = 1e-4\n'; } > tip.scene
-    refused 1 "[contact v]: node 0 at (0, 0) is pressed into a crease of the rigid surface, where the closest facet changes and turns by 4" \
-        mtled tip.scene tip.mts
-    [[ "$stderr" == *": make the surface smoother there"* ]]
-    # rounded off: a curve of many chords
-    awk 'BEGIN { for (x = -200; x <= 200; x += 5) printf "%g %.6f\n", x, sqrt((0.43 * x) ^ 2 + 20 ^ 2) - 20 }' > v.tsv
-    mtled tip.scene tip.mts > u.dat
-}

@@ -9,6 +9,8 @@
 
 /* Depths below this part of a point's width are none. */
 static const double round_off = 1e-6;
+/* Unit normals that differ by less are the same. */
+static const double same_normal = 1e-6;
 enum { POINTS_FOR_THREAD = 1000 }; /* see chunks_of */
 
 /* The width of the facets at point p, m. A point of a facet is half or a third of it. */
@@ -43,19 +45,20 @@ static double facing(const struct contact *contact, int64_t p, const struct rigi
     return cosine;
 }
 
-/* No point may start far behind the surface, or behind it with its back to it: shallow, as around a body that
- * fills a shell, but on the other side. */
+/* No point may start far behind the surface, or on it or behind it with its back to it: shallow, as around a
+ * body that fills a shell, but on the other side. */
 static enum status check_side(const struct contact *contact, struct error *error)
 {
     for (int64_t p = 0; p < contact->count; p++) {
         struct rigid_contact closest =
             rigid_closest(&contact->surface, contact->rest + p * contact->dim, INFINITY);
-        double depth = closest.found ? -closest.gap : 0.0, length = most_depth(contact, p);
-        if (depth > length || (depth > round_off * length && facing(contact, p, &closest) > 0.5)) {
+        double depth = closest.found ? -closest.gap : -INFINITY, length = most_depth(contact, p);
+        bool back = closest.found && facing(contact, p, &closest) > 0.5;
+        if (depth > length || (depth > -round_off * length && back)) {
             return fail(error, STATUS_INPUT,
                         "contact: node %d starts %.3g m behind the rigid surface: state its other side, or "
                         "leave the node's facets out",
-                        contact->points->node[p], depth);
+                        contact->points->node[p], fmax(depth, 0.0));
         }
     }
     return STATUS_OK;
@@ -104,12 +107,12 @@ static enum status allocate(double stiffness, struct contact *contact, struct er
     int64_t count = contact->count, dim = contact->dim;
     TRY(NEW_ARRAY(&contact->stiffness, count, error));
     TRY(NEW_ARRAY(&contact->rest, count * dim, error));
-    TRY(NEW_ARRAY(&contact->multiplier, contact_nodes(contact)->count, error));
+    TRY(NEW_ARRAY(&contact->multiplier, contact_nodes(contact)->count * dim, error));
     TRY(NEW_ARRAY(&contact->behind, count, error));
     TRY(NEW_ARRAY(&contact->checked_x, count * dim, error));
     TRY(NEW_ARRAY(&contact->checked_distance, count, error));
     TRY(NEW_ARRAY(&contact->checked_normal, count * dim, error));
-    TRY(NEW_ARRAY(&contact->held, count, error));
+    TRY(NEW_ARRAY(&contact->held, count * dim, error));
     TRY(NEW_ARRAY(&contact->gap, count, error));
     TRY(NEW_ARRAY(&contact->pressure, count, error));
     TRY(NEW_ARRAY(&contact->normal, count * dim, error));
@@ -173,7 +176,7 @@ enum status contact_state(struct contact *contact, const char *prefix, const str
 {
     int64_t count = contact->count, dim = contact->dim;
     const struct state_value values[] = {
-        {"multiplier", STATE_NUMBERS, contact->multiplier, contact_nodes(contact)->count},
+        {"multiplier", STATE_NUMBERS, contact->multiplier, contact_nodes(contact)->count * dim},
         {"behind", STATE_FLAGS, contact->behind, count},
         {"checked_x", STATE_NUMBERS, contact->checked_x, count * dim},
         {"checked_distance", STATE_NUMBERS, contact->checked_distance, count},
@@ -193,29 +196,45 @@ static bool was_in_front(const struct contact *contact, int64_t a, const double 
     for (int c = 0; c < contact->dim; c++) {
         height += (contact->checked_x[a * contact->dim + c] - x[c]) * closest->normal[c];
     }
-    return height >= 0.0;
+    return height >= -round_off * width_of(contact, a);
+}
+
+/* Whether what is seen presses on another place of the surface's corners and facets than at the last step. */
+static bool has_turned(const struct contact *contact, int64_t p, const struct rigid_contact *closest)
+{
+    double turn2 = 0.0;
+    for (int c = 0; c < contact->dim; c++) {
+        double d = closest->normal[c] - contact->checked_normal[p * contact->dim + c];
+        turn2 += d * d;
+    }
+    return closest->on_edge || (contact->checked_distance[p] < 0.0 && turn2 > same_normal * same_normal);
 }
 
 /* Find the surface at point p. */
 static void look(struct contact *contact, int64_t p, struct contact_view *view)
 {
-    struct rigid_contact closest = rigid_closest(&contact->surface, view->x, INFINITY);
+    struct rigid_contact closest = rigid_closest(&contact->surface, view->sought, INFINITY);
     bool was_inside = contact->checked_distance[p] < 0.0 && !contact->behind[p];
     double gap = closest.found ? closest.gap : INFINITY;
     view->looked = true;
     view->behind = gap < 0.0 && (contact->behind[p] || (!was_inside && -gap > most_depth(contact, p) &&
-                                                        !was_in_front(contact, p, view->x, &closest)));
+                                                        !was_in_front(contact, p, view->sought, &closest)));
+    view->turned = gap < 0.0 && !view->behind && has_turned(contact, p, &closest);
     view->distance = fmin(gap, closest.distance);
-    memcpy(view->normal, closest.smooth, sizeof view->normal);
+    memcpy(view->normal, closest.normal, sizeof view->normal);
+    contact->pressure[p] = view->behind ? 0.0 : fmax(0.0, -contact->stiffness[p] * gap);
     contact->gap[p] = view->behind ? INFINITY : gap;
+    for (int c = 0; c < contact->dim; c++) {
+        contact->gap[p] += view->normal[c] * contact->held[p * contact->dim + c] / contact->stiffness[p];
+    }
 }
 
-/* How near point p, where it is seen, may have come to the surface since it was looked at, m. */
+/* How near the place that is sought of point p may have come to the surface since it was looked at, m. */
 static double least_distance(const struct contact *contact, int64_t p, const struct contact_view *view)
 {
     double moved2 = 0.0;
     for (int c = 0; c < contact->dim; c++) {
-        double step = view->x[c] - contact->checked_x[p * contact->dim + c];
+        double step = view->sought[c] - contact->checked_x[p * contact->dim + c];
         moved2 += step * step;
     }
     return contact->checked_distance[p] - sqrt(moved2);
@@ -234,15 +253,18 @@ static void measure_points(struct contact *contact, int64_t begin, int64_t end, 
             x[c] += contact->rest[p * dim + c];
         }
         rigid_place_to_rest(&contact->place, dim, x, view->x);
-        view->looked = false;
-        contact->gap[p] = contact->checked_distance[p];
-        memcpy(normal, contact->checked_normal + p * dim, (size_t)dim * sizeof *normal);
-        if (all || !(least_distance(contact, p, view) > contact->held[p] / contact->stiffness[p])) {
-            look(contact, p, view);
-            memcpy(normal, view->normal, (size_t)dim * sizeof *normal);
+        for (int c = 0; c < dim; c++) {
+            view->sought[c] = view->x[c] - contact->held[p * dim + c] / contact->stiffness[p];
         }
+        view->looked = view->turned = false;
+        contact->gap[p] = contact->checked_distance[p];
+        contact->pressure[p] = 0.0;
+        memcpy(view->normal, contact->checked_normal + p * dim, (size_t)dim * sizeof *normal);
+        if (all || !(least_distance(contact, p, view) > 0.0)) {
+            look(contact, p, view);
+        }
+        memcpy(normal, view->normal, (size_t)dim * sizeof *normal);
         rigid_place_turn(&contact->place, dim, normal);
-        contact->pressure[p] = fmax(0.0, contact->held[p] - contact->stiffness[p] * contact->gap[p]);
     }
 }
 
@@ -268,7 +290,7 @@ void contact_accept(struct contact *contact)
         if (view->looked) {
             contact->behind[a] = view->behind;
             contact->checked_distance[a] = view->distance;
-            memcpy(contact->checked_x + a * dim, view->x, (size_t)dim * sizeof *view->x);
+            memcpy(contact->checked_x + a * dim, view->sought, (size_t)dim * sizeof *view->sought);
             memcpy(contact->checked_normal + a * dim, view->normal, (size_t)dim * sizeof *view->normal);
         }
     }
@@ -300,8 +322,12 @@ double contact_energy(const struct contact *contact)
 {
     double sum = 0.0;
     for (int64_t a = 0; a < contact->count; a++) {
-        double p = contact->pressure[a], held = contact->held[a];
-        sum += contact->points->area[a] * (p * p - held * held) / (2.0 * contact->stiffness[a]);
+        double difference = contact->pressure[a] * contact->pressure[a];
+        for (int c = 0; c < contact->dim; c++) {
+            double held = contact->held[a * contact->dim + c];
+            difference -= held * held;
+        }
+        sum += contact->points->area[a] * difference / (2.0 * contact->stiffness[a]);
     }
     return sum;
 }

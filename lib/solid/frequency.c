@@ -72,6 +72,9 @@ double system_largest_frequency(struct solid_system *system, struct precondition
         double top = 0.0;
         for (int64_t i = 0; i < size; i++) {
             displaced[i] = (residual[i] - response[i]) / epsilon;
+        }
+        preconditioner_resist_open(preconditioner, system, mode, displaced);
+        for (int64_t i = 0; i < size; i++) {
             top += mode[i] * displaced[i];
         }
         eigenvalue = top / preconditioner_product(preconditioner, mode, mode);

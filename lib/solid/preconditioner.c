@@ -75,6 +75,8 @@ enum status preconditioner_build(struct solid_system *system, bool coarse,
     cells = preconditioner->size * preconditioner->size;
     TRY(NEW_ARRAY(&preconditioner->active, preconditioner->contact_node_count, error));
     TRY(NEW_ARRAY(&preconditioner->normal, preconditioner->contact_node_count * preconditioner->dim, error));
+    TRY(NEW_ARRAY(&preconditioner->creased, preconditioner->contact_node_count, error));
+    TRY(NEW_ARRAY(&preconditioner->turned, preconditioner->contact_node_count, error));
     TRY(NEW_ARRAY(&preconditioner->body, cells, error));
     TRY(NEW_ARRAY(&preconditioner->weight, cells, error));
     TRY(NEW_ARRAY(&preconditioner->free_weight, cells, error));
@@ -110,6 +112,8 @@ void preconditioner_free(struct preconditioner *preconditioner)
     free(preconditioner->body);
     free(preconditioner->active);
     free(preconditioner->normal);
+    free(preconditioner->creased);
+    free(preconditioner->turned);
     free(preconditioner->weight);
     free(preconditioner->free_weight);
     free(preconditioner->held);
@@ -300,6 +304,8 @@ enum status preconditioner_state(struct preconditioner *preconditioner, const st
         {"touching", STATE_FLAGS, preconditioner->active, preconditioner->contact_node_count},
         {"normal", STATE_NUMBERS, preconditioner->normal,
          preconditioner->contact_node_count * preconditioner->dim},
+        {"creased", STATE_FLAGS, preconditioner->creased, preconditioner->contact_node_count},
+        {"turned", STATE_FLAGS, preconditioner->turned, preconditioner->contact_node_count},
     };
     return state_visit(state, "inertia", values, sizeof values / sizeof *values, error);
 }

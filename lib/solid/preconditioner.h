@@ -47,8 +47,10 @@ struct preconditioner {
                      N/m2) */
     double measured_mass; /* sum of D when it was measured */
     bool has_rigid_mode;  /* the conditions leave the body free to move as a whole */
-    bool *active;         /* contact nodes of all contacts: those that A counts in, */
-    double *normal;       /* hat_count * dim: and the surface's normals there */
+    bool *active;         /* contact nodes of all contacts: those that A counts in (NULL: none), */
+    double *normal;       /* contact_node_count * dim: and the surface's normals there */
+    bool *creased; /* contact_node_count: held in all directions, as it lies in a crease of the surface */
+    bool *turned;  /* contact_node_count: it has turned (contact.h) since it was last looked at */
     int64_t contact_node_count;
     double *weight;      /* Z^T D Z */
     double *free_weight; /* Z^T D P Z */
@@ -76,6 +78,12 @@ MUST_CHECK enum status preconditioner_measure(struct preconditioner *preconditio
 
 /* Whether D has changed so much that the coarse fields should be measured again. */
 bool preconditioner_is_stale(const struct preconditioner *preconditioner);
+
+/* force += what the contact nodes that A counts in may add to K at the last evaluation, against `move`: the
+ * stiffness of those that do not press and may close, and that along the surface of those in a crease. move,
+ * force: node_count * dim. */
+void preconditioner_resist_open(const struct preconditioner *preconditioner,
+                                const struct solid_system *system, const double *move, double *force);
 
 /* Let A follow the contacts' last evaluation: contact nodes that begin to touch are counted in at once, those
  * that are no longer near are left out when `leave`. True when M has changed. */

@@ -32,6 +32,17 @@ static bool invert(int64_t n, double *matrix)
     return good;
 }
 
+/* matrix += stiffness row row^T */
+static void add_square(int64_t size, double stiffness, const double *row, double *matrix)
+{
+    for (int64_t i = 0; i < size; i++) {
+        double part = stiffness * row[i];
+        for (int64_t k = 0; k < size && part != 0.0; k++) {
+            matrix[i * size + k] += part * row[k];
+        }
+    }
+}
+
 /* matrix += the stiffness along the coarse fields of the contact nodes that count as active. */
 static void add_contacts(const struct preconditioner *preconditioner, const struct solid_system *system,
                          double *matrix)
@@ -47,15 +58,47 @@ static void add_contacts(const struct preconditioner *preconditioner, const stru
             }
             struct average average = average_of_boundary(averages, a);
             double stiffness = contact_node(contact, a).stiffness * averages->area[a];
-            memset(row, 0, (size_t)size * sizeof *row);
-            preconditioner_add_row(preconditioner, &average,
-                                   preconditioner->normal + at * preconditioner->dim, row);
-            for (int64_t i = 0; i < size; i++) {
-                double part = stiffness * row[i];
-                for (int64_t k = 0; k < size && part != 0.0; k++) {
-                    matrix[i * size + k] += part * row[k];
-                }
+            bool creased = preconditioner->creased[at];
+            for (int64_t d = 0; d < (creased ? preconditioner->dim : 1); d++) {
+                const double axis[3] = {d == 0, d == 1, d == 2};
+                memset(row, 0, (size_t)size * sizeof *row);
+                preconditioner_add_row(preconditioner, &average,
+                                       creased ? axis : preconditioner->normal + at * preconditioner->dim,
+                                       row);
+                add_square(size, stiffness, row, matrix);
             }
+        }
+    }
+}
+
+void preconditioner_resist_open(const struct preconditioner *preconditioner,
+                                const struct solid_system *system, const double *move, double *force)
+{
+    int64_t dim = preconditioner->dim, at = 0;
+    if (preconditioner->active == NULL) {
+        return;
+    }
+    for (int64_t c = 0; c < system->contact_count; c++) {
+        const struct contact *contact = &system->contacts[c];
+        const struct boundary_averages *averages = contact_nodes(contact);
+        for (int64_t a = 0; a < averages->count; a++, at++) {
+            if (!preconditioner->active[at]) {
+                continue;
+            }
+            struct contact_node node = contact_node(contact, a);
+            struct average average = average_of_boundary(averages, a);
+            const double *normal = preconditioner->normal + at * dim;
+            double mean[3], on_node[3], along = 0.0, stiffness = node.stiffness * averages->area[a];
+            average_take(&average, (int)dim, move, mean);
+            for (int64_t i = 0; i < dim; i++) {
+                along += mean[i] * normal[i];
+            }
+            for (int64_t i = 0; i < dim; i++) {
+                double aside =
+                    preconditioner->creased[at] && !node.turned ? mean[i] - along * normal[i] : 0.0;
+                on_node[i] = stiffness * ((1.0 - node.pressed) * along * normal[i] + aside);
+            }
+            average_spread(&average, (int)dim, on_node, NULL, force);
         }
     }
 }
@@ -161,6 +204,20 @@ static bool has_turned(const struct contact_node *node, int dim, const double *c
     return cosine < least_cosine;
 }
 
+/* Whether contact node `at` lies in a crease, where it is held in all directions, or goes from side to side
+ * of one, as it is about to. One that slides from facet to facet turns but once for long. True when that is a
+ * change. */
+static bool follow_crease(struct preconditioner *preconditioner, const struct contact_node *node, int64_t at,
+                          bool leave)
+{
+    bool *turned = &preconditioner->turned[at], *creased = &preconditioner->creased[at], was = *creased;
+    bool again = *turned && node->turned;
+    *turned = *turned || node->turned;
+    *creased = again || (*creased && (!leave || *turned));
+    *turned = *turned && !leave;
+    return *creased != was;
+}
+
 /* Count contact node a in or out; true when that is a change. A body that can move as a whole may come to
  * rest on contact nodes that are not near yet. */
 static bool follow_node(struct preconditioner *preconditioner, const struct contact *contact, int64_t a,
@@ -170,13 +227,14 @@ static bool follow_node(struct preconditioner *preconditioner, const struct cont
     double *normal = preconditioner->normal + at * contact->dim;
     struct contact_node node = contact_node(contact, a);
     bool *counts = &preconditioner->active[at], pressed = node.pressure > 0.0;
+    bool creased = follow_crease(preconditioner, &node, at, leave);
     if (!pressed && !preconditioner->has_rigid_mode && !(node.gap < near_share * length)) {
         bool left = *counts && leave;
         *counts = *counts && !leave;
-        return left;
+        return left || creased;
     }
     if (*counts ? !pressed || !has_turned(&node, contact->dim, normal) : !pressed && !leave) {
-        return false;
+        return creased;
     }
     *counts = true;
     memcpy(normal, node.normal, (size_t)contact->dim * sizeof *normal);

@@ -129,7 +129,7 @@ enum status relaxation_measure_preconditioner(struct relaxation *r, struct error
         return r->failure;
     }
     r->frequency = sqrt(fmax(spectrum.largest, 0.0));
-    r->time_step = relaxation_share(r) * 2.0 / r->frequency;
+    relaxation_update_time_step(r, r->residual_at, 1); /* contacts that may close are not in the spectrum */
     relaxation_damp_at_most(r, spectrum.lowest > 0.0 ? first_low2 * spectrum.lowest
                                                      : least_low2 * spectrum.largest);
     r->measured_frequency = r->frequency;

@@ -179,7 +179,6 @@ void rigid_free(struct rigid_surface *surface)
     free(surface->vertex_normal);
     free(surface->edge_normal);
     free(surface->is_rim);
-    free(surface->is_smooth);
     free(surface->edge_is_rim);
     free(surface->turn);
     free(surface->branch);

@@ -24,7 +24,6 @@ struct rigid_surface {
     double *normal;        /* facet_count * dim: unit normals, pointing to the body's side */
     double *vertex_normal; /* vertex_count * dim: angle-weighted mean, for the sign at vertices */
     double *edge_normal; /* 3D: facet_count * 3 * 3, mean of the facets at the edge from corner k to k + 1 */
-    bool *is_smooth;     /* vertex_count: no facet there turns 22.5 degrees or more from the mean normal */
     bool *is_rim;        /* vertex_count: 2D an end of a curve, 3D on an edge without neighbour */
     bool *edge_is_rim;   /* 3D: facet_count * 3, no neighbour */
     double *turn;        /* vertex_count: largest angle of a facet there with the mean normal, rad */
@@ -36,8 +35,8 @@ struct rigid_surface {
 /* Build from corner coordinates: corners[facet_count * dim * dim], m. Each facet's normal is (dy, -dx) of its
  * direction in 2D - to the right, walking along it - and right-handed in 3D; `flip` turns all of them. After
  * that they must point to the body's side. Corners closer than 1e-9 of the surface's extent are one vertex.
- * STATUS_INPUT for no facets, facets of no size, coordinates that are not finite, and two facets that meet
- * but disagree on the side. */
+ * STATUS_INPUT for no facets, facets of no size, coordinates that are not finite, facets that stand twice,
+ * and two facets that meet but disagree on the side. */
 MUST_CHECK enum status rigid_build(int dim, int64_t facet_count, const double *corners, bool flip,
                                    struct rigid_surface *surface, struct error *error);
 void rigid_free(struct rigid_surface *surface);
@@ -48,17 +47,16 @@ struct rigid_contact {
     double distance;  /* how far x may move before contact can begin: the unsigned distance to the closest
                          point; beyond a rim, that to being over the facets there or level with them,
                          whichever is less; `reach` when nothing is within */
+    bool on_edge;     /* the closest point is on an edge or a vertex */
     double gap;       /* signed distance: positive on the body's side, m */
     double normal[3]; /* unit, the direction in which the gap grows */
-    double smooth[3]; /* unit, the same, but turning evenly along facets between smooth vertices */
 };
 
 /* The sign is that of the pseudo-normal of the closest facet, edge or vertex (Baerentzen and Aanaes, IEEE
  * Trans. Vis. Comput. Graph. 11, 2005), right at convex and concave corners alike.
  *
- * `normal` jumps where two facets meet on their concave side, and a body held there by a pressure along it
- * would chatter; `smooth` interpolates the mean normals at the vertices, so that the facets of a curved
- * surface act as one. It is `normal` on flat parts and at sharp corners. */
+ * From behind, beyond a crease that is concave as the body sees it, the closest point and `normal` are
+ * continuous functions of x; the gap is minus the distance to a set that is convex there. */
 struct rigid_contact rigid_closest(const struct rigid_surface *surface, const double *x, double reach);
 
 #endif

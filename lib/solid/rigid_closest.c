@@ -19,7 +19,6 @@ struct nearest {
     int64_t facet;    /* -1: none yet */
     double distance2; /* INFINITY: none yet */
     double point[3];
-    double weight[3]; /* of the facet's corners in it, sum 1 */
     enum feature feature;
     bool rim;
 };
@@ -145,16 +144,16 @@ static void consider(const struct rigid_surface *surface, int64_t f, const doubl
 {
     struct nearest here = {.facet = f};
     int dim = surface->dim;
-    double away[3] = {0.0, 0.0, 0.0};
+    double away[3] = {0.0, 0.0, 0.0}, weight[3] = {0.0, 0.0, 0.0};
     const double *a = corner_of(surface, f, 0), *b = corner_of(surface, f, 1);
-    here.feature = dim == 2 ? closest_on_segment(a, b, x, here.weight)
-                            : closest_on_triangle(a, b, corner_of(surface, f, 2), x, here.weight);
+    here.feature = dim == 2 ? closest_on_segment(a, b, x, weight)
+                            : closest_on_triangle(a, b, corner_of(surface, f, 2), x, weight);
     /* From the first corner, so that an offset of the origin costs nothing. */
     scaled(dim, 1.0, a, here.point);
     for (int k = 1; k < dim; k++) {
         double side[3] = {0.0, 0.0, 0.0};
         difference(dim, corner_of(surface, f, k), a, side);
-        along(dim, here.point, here.weight[k], side, here.point);
+        along(dim, here.point, weight[k], side, here.point);
     }
     here.rim = on_rim(surface, f, here.feature);
     difference(dim, x, here.point, away);
@@ -243,30 +242,6 @@ static double beyond_rim(const struct rigid_surface *surface, const struct neare
     return beyond;
 }
 
-/* The mean normals of the facet's smooth vertices, interpolated; a sharp one stands in with the facet's
- * normal, or that of the edge on which the point is. Without smooth vertices, the plain normal. */
-static void smooth_normal(const struct rigid_surface *surface, const struct nearest *nearest,
-                          struct rigid_contact *contact)
-{
-    int dim = surface->dim;
-    bool any = false;
-    double sum[3] = {0.0, 0.0, 0.0};
-    const double *own = nearest->feature >= ON_EDGE_0 ? pseudo_normal(surface, nearest)
-                                                      : surface->normal + nearest->facet * dim;
-    for (int k = 0; k < dim; k++) {
-        int64_t vertex = surface->facet[nearest->facet * dim + k];
-        bool smooth = surface->is_smooth[vertex];
-        any = any || (smooth && nearest->weight[k] > 0.0);
-        along(dim, sum, nearest->weight[k], smooth ? surface->vertex_normal + vertex * dim : own, sum);
-    }
-    double length2 = dot(dim, sum, sum);
-    if (any && length2 > 0.0) {
-        scaled(dim, 1.0 / sqrt(length2), sum, contact->smooth);
-    } else {
-        scaled(dim, 1.0, contact->normal, contact->smooth);
-    }
-}
-
 struct rigid_contact rigid_closest(const struct rigid_surface *surface, const double *x, double reach)
 {
     int dim = surface->dim;
@@ -288,6 +263,7 @@ struct rigid_contact rigid_closest(const struct rigid_surface *surface, const do
         }
     }
     contact.found = true;
+    contact.on_edge = nearest.feature != ON_FACE;
     if (nearest.feature == ON_FACE) {
         /* From a corner: free of the cancellation in the distance to the point on the face. */
         difference(dim, x, corner_of(surface, nearest.facet, 0), away);
@@ -303,6 +279,5 @@ struct rigid_contact rigid_closest(const struct rigid_surface *surface, const do
             scaled(dim, 1.0, normal, contact.normal);
         }
     }
-    smooth_normal(surface, &nearest, &contact);
     return contact;
 }

@@ -7,7 +7,7 @@
 
 #include <math.h>
 
-/* Fill vertex_normal, edge_normal, is_smooth, turn and the rims of a surface whose facets and normals are
+/* Fill vertex_normal, edge_normal, turn and the rims of a surface whose facets and normals are
  * made. STATUS_INPUT where two facets disagree on the side. */
 MUST_CHECK enum status rigid_join_facets(struct rigid_surface *surface, struct error *error);
 

@@ -5,15 +5,18 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* At a smooth vertex every facet's normal makes at least this product with the mean: its facets turn by less
- * than 45 degrees there (a little less, so that round-off does not decide on chamfers). */
-static const double smooth_cosine = 0.9239;
-
 /* The facets meet, but walk along the place where they do in the same direction. */
 static enum status fail_sides(int64_t one, int64_t other, struct error *error)
 {
     return fail(error, STATUS_INPUT,
                 "rigid surface: facets %lld and %lld meet but disagree on the side: turn one around",
+                (long long)(one + 1), (long long)(other + 1));
+}
+
+/* A facet that stands twice weighs twice, and hides rims. */
+static enum status fail_twice(int64_t one, int64_t other, struct error *error)
+{
+    return fail(error, STATUS_INPUT, "rigid surface: facets %lld and %lld are the same: remove one",
                 (long long)(one + 1), (long long)(other + 1));
 }
 
@@ -32,6 +35,12 @@ static enum status join_segments(struct rigid_surface *surface, struct error *er
             add_scaled(2, 1.0, surface->normal + 2 * f, surface->vertex_normal + 2 * (int64_t)v);
             meetings[v].count++;
             meetings[v].turn += k == 0 ? -1 : 1;
+            const int32_t *last = surface->facet + 2 * meetings[v].last;
+            if (meetings[v].count > 1 && last[0] == surface->facet[2 * f] &&
+                last[1] == surface->facet[2 * f + 1]) {
+                status = fail_twice(meetings[v].last, f, error);
+                goto done;
+            }
             if (meetings[v].count == 2 && meetings[v].turn != 0) {
                 status = fail_sides(meetings[v].last, f, error);
                 goto done;
@@ -50,6 +59,7 @@ done:
 /* An edge of a triangle; it goes from corner k to k + 1. */
 struct half_edge {
     int32_t low, high; /* its vertices */
+    int32_t opposite;  /* the other vertex of the triangle */
     bool upward;       /* from low to high */
     int64_t slot;      /* facet * 3 + k */
 };
@@ -63,6 +73,12 @@ static int compare_edges(const void *left, const void *right)
     if (a->high != b->high) {
         return a->high < b->high ? -1 : 1;
     }
+    if (a->opposite != b->opposite) {
+        return a->opposite < b->opposite ? -1 : 1;
+    }
+    if (a->upward != b->upward) {
+        return b->upward ? -1 : 1;
+    }
     return (a->slot > b->slot) - (a->slot < b->slot);
 }
 
@@ -71,8 +87,14 @@ static enum status join_edge(struct rigid_surface *surface, const struct half_ed
                              struct error *error)
 {
     double normal[3] = {0.0, 0.0, 0.0};
+    for (int64_t i = 1; i < count; i++) {
+        if (edges[i].opposite == edges[i - 1].opposite && edges[i].upward == edges[i - 1].upward) {
+            return fail_twice(edges[i - 1].slot / 3, edges[i].slot / 3, error);
+        }
+    }
     if (count == 2 && edges[0].upward == edges[1].upward) {
-        return fail_sides(edges[0].slot / 3, edges[1].slot / 3, error);
+        int64_t one = edges[0].slot / 3, other = edges[1].slot / 3;
+        return fail_sides(one < other ? one : other, one < other ? other : one, error);
     }
     for (int64_t i = 0; i < count; i++) {
         add_scaled(3, 1.0, surface->normal + edges[i].slot / 3 * 3, normal);
@@ -100,7 +122,11 @@ static enum status join_edges(struct rigid_surface *surface, struct error *error
     for (int64_t slot = 0; slot < count; slot++) {
         int32_t from = surface->facet[slot], to = surface->facet[slot / 3 * 3 + (slot + 1) % 3];
         bool upward = from < to;
-        edges[slot] = (struct half_edge){upward ? from : to, upward ? to : from, upward, slot};
+        edges[slot] = (struct half_edge){.low = upward ? from : to,
+                                         .high = upward ? to : from,
+                                         .opposite = surface->facet[slot / 3 * 3 + (slot + 2) % 3],
+                                         .upward = upward,
+                                         .slot = slot};
     }
     qsort(edges, (size_t)count, sizeof *edges, compare_edges);
     for (int64_t first = 0, last; first < count; first = last) {
@@ -134,7 +160,6 @@ enum status rigid_join_facets(struct rigid_surface *surface, struct error *error
     enum status status;
     TRY(NEW_ARRAY(&surface->vertex_normal, surface->vertex_count * surface->dim, error));
     TRY(NEW_ARRAY(&surface->is_rim, surface->vertex_count, error));
-    TRY(NEW_ARRAY(&surface->is_smooth, surface->vertex_count, error));
     TRY(NEW_ARRAY(&surface->turn, surface->vertex_count, error));
     if (surface->dim == 2) {
         TRY(join_segments(surface, error));
@@ -147,17 +172,12 @@ enum status rigid_join_facets(struct rigid_surface *surface, struct error *error
     }
     for (int64_t v = 0; v < surface->vertex_count; v++) {
         normalise(surface->dim, surface->vertex_normal + v * surface->dim);
-        surface->is_smooth[v] = true;
     }
     for (int64_t c = 0; c < surface->facet_count * surface->dim; c++) {
         int64_t vertex = surface->facet[c];
         const double *mean = surface->vertex_normal + vertex * surface->dim;
         const double *normal = surface->normal + c / surface->dim * surface->dim;
-        double cosine = 0.0, half = 0.5 * sqrt(distance2(surface->dim, mean, normal));
-        for (int a = 0; a < surface->dim; a++) {
-            cosine += mean[a] * normal[a];
-        }
-        surface->is_smooth[vertex] = surface->is_smooth[vertex] && cosine >= smooth_cosine;
+        double half = 0.5 * sqrt(distance2(surface->dim, mean, normal));
         surface->turn[vertex] = fmax(surface->turn[vertex], 2.0 * asin(fmin(half, 1.0)));
     }
 done:

@@ -274,12 +274,13 @@ static void multipliers_of_hats(void **state)
     NEAR_TO(contact_miss(&contact), 0.05, 1e-15);
     contact_augment(&contact);
     for (int a = 0; a < HATS; a++) {
-        NEAR_TO(contact.multiplier[a], 5.0, 1e-13);
+        NEAR_TO(contact.multiplier[2 * a], 0.0, 1e-13);
+        NEAR_TO(contact.multiplier[2 * a + 1], -5.0, 1e-13);
         NEAR_TO(contact_node(&contact, a).gap, -0.05, 1e-15);
         NEAR_TO(contact_node(&contact, a).pressed, 1.0, 1e-15);
     }
     for (int p = 0; p < CONTACT_NODES; p++) { /* hats sum to 1; and both sides of the wall count */
-        NEAR_TO(contact.held[p], 5.0, 1e-13);
+        NEAR_TO(contact.held[2 * p + 1], -5.0, 1e-13);
         u[2 * p + 1] = p < 6 ? 0.05 : p == 6 ? 0.07 : 0.2 * (p > 8);
     }
     memset(force, 0, sizeof force);
@@ -289,9 +290,9 @@ static void multipliers_of_hats(void **state)
     NEAR_TO(contact.pressure[7], 0.0, 1e-13);
     NEAR_TO(force[1], -2.5, 1e-13);
     contact_augment(&contact);
-    NEAR_TO(contact.multiplier[0], 5.0, 1e-13);
+    NEAR_TO(contact.multiplier[1], -5.0, 1e-13);
     /* Hat 3: points 4 to 7 with shares 1/8, 3/8, 3/8, 1/8 press 5, 5, 7, 0, where 5 was held. */
-    NEAR_TO(contact.multiplier[3], 5.0 + 0.375 * 2.0 - 0.125 * 5.0, 1e-13);
+    NEAR_TO(contact.multiplier[7], -5.0 - 0.375 * 2.0 + 0.125 * 5.0, 1e-13);
     contact_free(&contact);
 }
 

@@ -504,6 +504,10 @@ static void faults(void **state)
           "rigid surface: facets 2 and 3 meet but disagree on the side: turn one around");
     fails(3, 2, (double[]){0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0.5},
           "rigid surface: facets 1 and 2 meet but disagree on the side: turn one around");
+    fails(2, 3, (double[]){0, 0, 1, 0, 1, 0, 2, 0, 0, 0, 1, 0},
+          "rigid surface: facets 1 and 3 are the same: remove one");
+    fails(3, 3, (double[]){0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0},
+          "rigid surface: facets 1 and 3 are the same: remove one");
 }
 
 /* Not a number is not found, and is looked at again. */

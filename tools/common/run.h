@@ -59,10 +59,6 @@ void run_quasi_static(struct run *run);
  */
 void run_contacts_judge(struct run *run, double slack);
 
-/* Of a run that stalled: ": ..." on the sharpest crease of a rigid surface that a contact node is pressed
- * into, which makes it chatter, and what helps; "" where there is none. */
-void run_creases_text(struct run *run, char text[512]);
-
 /* Dynamic: step to the end time. Exits with a verdict when it cannot; adds the section energy on request. */
 void run_dynamic(struct run *run);
 

@@ -7,7 +7,7 @@
 static void judge(struct run *run, const struct relaxation_report *report)
 {
     const struct scene *scene = run->scene;
-    char place[96] = "", load[48] = "", sliver[128] = "", creases[512];
+    char place[96] = "", load[48] = "", sliver[128] = "";
     if (report->load < 1.0) {
         snprintf(load, sizeof load, " (at %.3g of the load)", report->load);
     }
@@ -25,13 +25,10 @@ static void judge(struct run *run, const struct relaxation_report *report)
         return;
     }
     if (report->outcome == RELAXATION_STALLED) {
-        run_creases_text(run, creases);
-        run_fail(
-            run, STATUS_VERDICT, "%s: step %lld%s: the estimated error stays at %.2g of the displacement%s",
-            scene->path, (long long)report->steps, load, report->error,
-            creases[0] != '\0' ? creases
-                               : ": a larger tolerance, a finer cloud at the contacts, or supports against "
-                                 "rigid motion may help");
+        run_fail(run, STATUS_VERDICT,
+                 "%s: step %lld%s: the estimated error stays at %.2g of the displacement: a larger "
+                 "tolerance, a finer cloud at the contacts, or supports against rigid motion may help",
+                 scene->path, (long long)report->steps, load, report->error);
     }
     if (report->outcome == RELAXATION_STOPPED) {
         run_checkpoint_stop(run, report->steps);
@@ -54,11 +51,10 @@ static void judge(struct run *run, const struct relaxation_report *report)
                  scene->path, (long long)report->steps, (long long)report->inverted_point, place,
                  report->least_jacobian, (long long)report->ramp_steps, sliver);
     }
-    run_creases_text(run, creases);
     run_fail(run, STATUS_VERDICT,
              "%s: not converged after %lld steps%s: estimated remaining error %.2g of the displacement: "
-             "allow more (max_steps), or hold the body against rigid motion%s",
-             scene->path, (long long)report->steps, load, report->error, creases);
+             "allow more (max_steps), or hold the body against rigid motion",
+             scene->path, (long long)report->steps, load, report->error);
 }
 
 /* How far the iteration may have left the field from where it would end, m: the relaxation, and contacts that
