@@ -5,10 +5,9 @@ static const char usage[] =
     "                 [-v] [-b | -t] [-o FILE] [FILE]\n"
     "\n"
     "Reads a result of mtled and writes sizes of cells for a mesh whose error is SHARE of the present\n"
-    "one, as a view of gmsh (.pos): a background field, in the unit of the geometry; or, for voxels "
-    "--sizes,\n"
-    "as a stream of nodes.x, cells and size (m). Both reach a little beyond the boundary, as no size is\n"
-    "taken from places outside of them.\n"
+    "one, as a view of gmsh (.pos): a background field, in the unit of the geometry; or, for\n"
+    "voxels --sizes, as a stream of nodes.x, cells and size (m). Both reach a little beyond the\n"
+    "boundary, as no size is taken from places outside of them.\n"
     "\n"
     "Where cells are too large is seen from their gradients of u: in each cell the distance of the\n"
     "gradient from the one averaged at its nodes (recovery: Zienkiewicz and Zhu 1987), within each\n"
@@ -38,7 +37,7 @@ static const char usage[] =
     "  printf 'Merge \"sizes.pos\";\\nBackground Mesh View[0];\\n' | cat body.geo - > graded.geo\n"
     "  printf 'Mesh.MeshSize%s = 0;\\n' ExtendFromBoundary FromPoints FromCurvature >> graded.geo\n"
     "  gmsh -2 graded.geo -o graded.msh\n"
-    "  sizefield -b -s 0.3 u.dat -o sizes.mts && voxels -h 8mm --sizes sizes.mts labels.nii.gz > finer.mts\n";
+    "  sizefield -b u.dat | voxels -h 6mm --sizes - labels.nii.gz > finer.mts\n";
 
 #include "output.h"
 #include "regions.h"

@@ -1,5 +1,6 @@
 #include "approx/support_space.h"
 
+#include "approx/partition.h"
 #include "approx/reach_private.h"
 #include "base/memory.h"
 
@@ -40,6 +41,12 @@ done:
     return status;
 }
 
+/* The sides, with the whole behind them where there is one. */
+static int64_t sides_in(const struct support_space *space)
+{
+    return space->side_count + (space->owner != NULL);
+}
+
 /* Cut the body along its interfaces. */
 static enum status cut(struct support_space *space, struct error *error)
 {
@@ -54,8 +61,9 @@ static enum status cut(struct support_space *space, struct error *error)
     TRY(NEW_ARRAY(&cell, cells->count, error));
     TRY(NEW_ARRAY(&local_node, cells->node_count, error));
     TRY(NEW_ARRAY(&space->place, cells->count, error));
-    TRY(NEW_ARRAY(&space->side, sides, error));
+    TRY(NEW_ARRAY(&space->side, (int64_t)sides + 1, error));
     space->side_count = sides;
+    space->side[sides].node_count = space->owner != NULL ? cells->node_count : 0;
     for (int64_t c = 0; c < cells->count; c++) {
         first[space->cell_side[c] + 2]++;
     }
@@ -85,13 +93,15 @@ enum status support_space_build(const struct support_options *options, const str
         .cells = *cells, .radius = radius, .by_cells = options->reach == REACH_CELLS && cells->count > 0};
     space->cell_side = space->by_cells ? options->side : NULL;
     if (space->cell_side != NULL) {
+        space->owner = options->owner;
+        space->part = options->part;
         TRY(cut(space, error));
     } else {
         TRY(NEW_ARRAY(&space->side, 1, error));
         space->side_count = 1;
         space->side[0].node_count = cells->node_count;
     }
-    for (int64_t s = 0; s < space->side_count; s++) {
+    for (int64_t s = 0; s < sides_in(space); s++) {
         struct support_side *side = &space->side[s];
         struct cells own = *cells;
         if (side->node != NULL) {
@@ -115,7 +125,7 @@ done:
 
 void support_space_free(struct support_space *space)
 {
-    for (int64_t s = 0; s < space->side_count; s++) {
+    for (int64_t s = 0; space->side != NULL && s < sides_in(space); s++) {
         struct support_side *side = &space->side[s];
         reach_free(&side->reach);
         point_grid_free(&side->grid);
@@ -151,6 +161,23 @@ static void sides_of_nodes(const struct support_space *space, int64_t count, int
         for (int64_t n = 0; n < space->side[s].node_count; n++) {
             side[space->side[s].node[n]] = (int32_t)s;
         }
+    }
+}
+
+/* Points that are not of the part have the whole for their side: nodes of others, and points of no cell of
+ * its own.
+ */
+static void sides_of_others(const struct support_space *space, const struct reach_places *places,
+                            int64_t count, int32_t *side)
+{
+    for (int64_t p = 0; p < count && space->owner != NULL; p++) {
+        bool own = places->nodes ? space->owner[p] == space->part : places->cell == NULL;
+        for (int64_t i = 0; !places->nodes && places->cell != NULL && i < places->per_row; i++) {
+            int32_t cell = places->cell[p / places->points_per_row * places->per_row + i];
+            own =
+                own || (cell >= 0 && partition_cell_owner(&space->cells, cell, space->owner) == space->part);
+        }
+        side[p] = own ? side[p] : (int32_t)space->side_count;
     }
 }
 
@@ -226,7 +253,10 @@ static enum status own_points_build(const struct support_space *space, const str
             continue;
         }
         for (int64_t k = 0; k < per_row; k++) {
-            if (places->nodes) {
+            if (s == space->side_count) {
+                own->item[i * per_row + k] =
+                    places->nodes ? (int32_t)p : places->cell[p / places->points_per_row * per_row + k];
+            } else if (places->nodes) {
                 while (space->side[s].node[node] < p) {
                     node++;
                 }
@@ -270,7 +300,8 @@ static void copy_list(const struct support_side *side, int dim, const struct own
     int64_t first = own->lists.ptr[i], end = own->lists.ptr[i + 1], to = lists->ptr[own->row[i]];
     lists->widen[own->row[i]] = own->lists.widen[i];
     for (int64_t k = first; k < end; k++) {
-        lists->idx[to + k - first] = side->node[own->lists.idx[k]];
+        int32_t node = own->lists.idx[k];
+        lists->idx[to + k - first] = side->node != NULL ? side->node[node] : node;
     }
     for (; *around < own->lists.around_count && own->lists.around_pair[*around] < end; ++*around) {
         lists->around_pair[lists->around_count] = own->lists.around_pair[*around] - first + to;
@@ -286,11 +317,11 @@ static enum status join(const struct support_space *space, const struct own_poin
     enum status status;
     int64_t *next = NULL, *around = NULL, around_count = 0;
     *lists = (struct support_lists){.count = count, .widest = 1.0};
-    TRY(NEW_ARRAY(&next, space->side_count, error));
-    TRY(NEW_ARRAY(&around, space->side_count, error));
+    TRY(NEW_ARRAY(&next, sides_in(space), error));
+    TRY(NEW_ARRAY(&around, sides_in(space), error));
     TRY(NEW_ARRAY(&lists->ptr, count + 1, error));
     TRY(NEW_ARRAY(&lists->widen, count, error));
-    for (int64_t s = 0; s < space->side_count; s++) {
+    for (int64_t s = 0; s < sides_in(space); s++) {
         const struct support_lists *of = &own[s].lists;
         if (own[s].count == 0) {
             continue;
@@ -331,14 +362,15 @@ static enum status lists_of_sides(const struct support_options *options, const s
     int32_t *side = NULL;
     struct own_points *own = NULL;
     TRY(NEW_ARRAY(&side, count, error));
-    TRY(NEW_ARRAY(&own, space->side_count, error));
+    TRY(NEW_ARRAY(&own, sides_in(space), error));
     if (places->nodes) {
         sides_of_nodes(space, count, side);
     } else {
         sides_of_cells(space, places, count, side);
     }
     TRY(locate_sides(space, count, x, side, error));
-    for (int32_t s = 0; s < space->side_count; s++) {
+    sides_of_others(space, places, count, side);
+    for (int32_t s = 0; s < sides_in(space); s++) {
         TRY(own_points_build(space, places, s, count, x, side, &own[s], error));
         if (own[s].count > 0) {
             TRY(own_points_list(options, &space->side[s], places, what, &own[s], error));
@@ -346,7 +378,7 @@ static enum status lists_of_sides(const struct support_options *options, const s
     }
     TRY(join(space, own, side, count, lists, error));
 done:
-    for (int64_t s = 0; own != NULL && s < space->side_count; s++) {
+    for (int64_t s = 0; own != NULL && s < sides_in(space); s++) {
         own_points_free(&own[s]);
     }
     free(own);
