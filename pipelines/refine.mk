@@ -8,5 +8,5 @@ REFINE_OUT = $(OUT)/refine/$(basename $(notdir $(SCENE)))
 
 .PHONY: refine
 refine: export PATH := $(abspath $(BUILD))/bin:$(PATH)
-refine: $(addprefix $(BUILD)/bin/,nodes voxels ipoints support shapefn mtled fielderr sizefield)
+refine: $(addprefix $(BUILD)/bin/,nodes voxels ipoints support shapefn mtled mts fielderr sizefield)
 	@bash pipelines/refine/refine.sh '$(SCENE)' '$(GEO)' '$(TOL)' '$(REFINE_OUT)'

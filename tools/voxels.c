@@ -67,8 +67,8 @@ static const char usage[] =
 
 #include "label_mesh.h"
 #include "label_part.h"
+#include "label_sizes.h"
 #include "label_surface.h"
-#include "views.h"
 
 #include "approx/cells.h"
 #include "approx/parts.h"
@@ -243,60 +243,6 @@ static void report(const struct tool *tool, const struct label_image *image, con
     }
 }
 
-/* "3mm" or "3mm:ventricles,tumour"; the array of labels, NULL: of all, is to be freed. */
-static bool *parse_fine(const struct tool *tool, const struct label_image *image, const char *text,
-                        double spacing, double *finest)
-{
-    struct error error;
-    bool *fine = NULL;
-    char *copy = strdup(text), *names = copy;
-    if (copy == NULL) {
-        tool_fail(tool, STATUS_SYSTEM, "out of memory");
-    }
-    const char *length = strsep(&names, ":");
-    tool_check(tool, parse_length(length, "--fine", finest, &error), &error);
-    if (*finest >= spacing) {
-        tool_fail(tool, STATUS_INPUT, "--fine: %s is not less than the spacing of -h", length);
-    }
-    if (names != NULL) {
-        tool_check(tool, NEW_ARRAY(&fine, image->labels.count, &error), &error);
-    }
-    while (names != NULL) {
-        const char *name = strsep(&names, ",");
-        int32_t label = label_image_find(image, name);
-        if (label < 0) {
-            tool_fail(tool, STATUS_INPUT, "--fine: no label '%.60s'", name);
-        }
-        for (int32_t l = 0; l < image->labels.count; l++) {
-            fine[l] = fine[l] || image->region[l] == label;
-        }
-    }
-    free(copy);
-    return fine;
-}
-
-/* A table of sizes: a view of *stream, which is to be freed. */
-static void read_sizes(const struct tool *tool, const char *file, struct stream *stream, struct cells *cells,
-                       const double **size)
-{
-    struct error error;
-    const struct section *section;
-    tool_read(tool, file, stream);
-    tool_check(tool, stream_cells(stream, true, cells, &error), &error);
-    tool_check(tool, stream_need(stream, "size", TYPE_F8, 1, "sizefield -b", &section, &error), &error);
-    *size = section->data;
-    if (section->rows != cells->node_count) {
-        tool_fail(tool, STATUS_INPUT, "--sizes: size: %lld rows for %lld nodes", (long long)section->rows,
-                  (long long)cells->node_count);
-    }
-    for (int64_t n = 0; n < section->rows; n++) {
-        if (!((*size)[n] > 0) || !isfinite((*size)[n])) {
-            tool_fail(tool, STATUS_INPUT, "--sizes: size: row %lld: %g is not a positive length, m",
-                      (long long)n, (*size)[n]);
-        }
-    }
-}
-
 static void write_stream(const struct tool *tool, const struct label_image *image,
                          const struct stuffing *stuffing, bool text)
 {
@@ -392,20 +338,13 @@ int main(int argc, char *argv[])
         .spacing = spacing, .keep = image.keep, .whole = image.region, .largest = options[LARGEST].given};
     bool *fine = NULL;
     if (options[FINE].given) {
-        fine = parse_fine(&tool, &image, options[FINE].value, spacing, &stuffing_options.finest);
+        fine = label_fine_parse(&tool, &image, options[FINE].value, spacing, &stuffing_options.finest);
         stuffing_options.fine = fine;
     }
-    struct stream sizes;
-    struct cells sized;
-    stream_init(&sizes);
-    if (options[SIZES].given) {
-        read_sizes(&tool, options[SIZES].value, &sizes, &sized, &stuffing_options.size);
-        stuffing_options.sized = &sized;
-        if (sized.dim != image.labels.dim) {
-            tool_fail(&tool, STATUS_INPUT, "--sizes: cells in %dD, the image is of a body in %dD", sized.dim,
-                      image.labels.dim);
-        }
-    }
+    struct label_sizes sizes;
+    label_sizes_read(&tool, &image, options[SIZES].value, &sizes);
+    stuffing_options.sized = &sizes.cells;
+    stuffing_options.size = sizes.size;
     tool_check(&tool, stuffing_make(&image.labels, &stuffing_options, &stuffing, &error), &error);
     report(&tool, &image, &stuffing, spacing, options[VERBOSE].given);
     if (options[SURFACE].given) {
@@ -414,7 +353,7 @@ int main(int argc, char *argv[])
         write_stream(&tool, &image, &stuffing, options[TEXT].given);
     }
     stuffing_free(&stuffing);
-    stream_free(&sizes);
+    label_sizes_free(&sizes);
     free(fine);
     label_image_free(&image);
     return tool_end(&tool);

@@ -164,9 +164,7 @@ static void sides_of_nodes(const struct support_space *space, int64_t count, int
     }
 }
 
-/* Points that are not of the part have the whole for their side: nodes of others, and points of no cell of
- * its own.
- */
+/* Nodes of others, and points of no cell of the part's own, have the whole for their side. */
 static void sides_of_others(const struct support_space *space, const struct reach_places *places,
                             int64_t count, int32_t *side)
 {

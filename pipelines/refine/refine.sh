@@ -128,9 +128,18 @@ lost() {
     fail 1 "round $round: $1: $(said); kept: $kept"
 }
 
+# turning: how far places move by an error of the body's shape, as a share of that: where it slides as far; elsewhere by the gradient of u,
+# about the largest displacement over the longest side of the body.
+turning() {
+    ! grep -q '^\[contact' "$scene" || { echo 1; return; }
+    mts print nodes.x "$out/u.dat" | awk -v u="$(quantity reference)" '
+        { for (k = 1; k <= NF; k++) { if (NR == 1 || $k < low[k]) low[k] = $k; if (NR == 1 || $k > high[k]) high[k] = $k } }
+        END { for (k = 1; k <= NF; k++) if (high[k] - low[k] > side) side = high[k] - low[k]; print (u < side ? u / side : 1) }'
+}
+
 # grade: the sizes, and graded.geo or the spacing, for the share of the error of the last good round.
 grade() {
-    local form=(-n "$budget" --sag "$(calc "$share * $estimate")" -u "$unit")
+    local form=(-n "$budget" --sag "$(calc "$share * $estimate / $(turning)")" -u "$unit")
     # The octree of voxels makes up to twice the nodes; the volumes that it keeps make up for chords.
     [ -z "$image" ] || form=(-n "$(calc "int($budget / 2)")" -t)
     sizefield -v -s "$share" ${least:+--least "$least"} "${form[@]}" -o "$work/$sizes" "$out/u.dat" 2> "$work/log" || lost sizefield
