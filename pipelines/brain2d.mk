@@ -90,8 +90,8 @@ $(BRAIN2D)/reference.dat: $(BRAIN2D_INPUT)/brain2d_graded.tsv pipelines/referenc
 $(BRAIN2D_SCHEMES:%=$(BRAIN2D)/%.errors): %.errors: %.dat $(BRAIN2D)/reference.dat $(BUILD)/bin/fieldcmp
 	fieldcmp -t -m $(@:.errors=.difference.dat) $< $(@D)/reference.dat > $@
 
-$(BRAIN2D_SCHEMES:%=$(BRAIN2D)/%.row): $(BRAIN2D)/%.row: $(BRAIN2D)/%.errors pipelines/brain2d-row.awk
-	awk -f pipelines/brain2d-row.awk -v scheme='$($*.name)' $< $(@:.row=.log) > $@
+$(BRAIN2D_SCHEMES:%=$(BRAIN2D)/%.row): $(BRAIN2D)/%.row: $(BRAIN2D)/%.dat $(BRAIN2D)/%.errors pipelines/row.awk
+	awk -f pipelines/row.awk -v scheme='$($*.name)' -v field=$< -v digits=2 $(@:.row=.log) $(@:.row=.errors) > $@
 
 $(BRAIN2D)/compare.tsv: $(BRAIN2D_SCHEMES:%=$(BRAIN2D)/%.row) pipelines/brain2d.mk
 	(printf 'scheme\tnodes\tpoints\tavg_mm\tmax_mm\tsteps\tseconds\n'; cat $(filter %.row,$^)) > $@

@@ -107,8 +107,8 @@ $(BRAIN3D_COMPARED:%=$(BRAIN3D)/%.errors):
 
 BRAIN3D_ROWS := $(BRAIN3D_COMPARED) large
 
-$(BRAIN3D_ROWS:%=$(BRAIN3D)/%.row): $(BRAIN3D)/%.row: $(BRAIN3D)/%.dat pipelines/brain3d/row.awk
-	awk -f pipelines/brain3d/row.awk -v scheme='$($*.name)' -v field=$< $(@:.row=.log) $(filter %.errors,$^) > $@
+$(BRAIN3D_ROWS:%=$(BRAIN3D)/%.row): $(BRAIN3D)/%.row: $(BRAIN3D)/%.dat pipelines/row.awk
+	awk -f pipelines/row.awk -v scheme='$($*.name)' -v field=$< $(@:.row=.log) $(filter %.errors,$^) > $@
 $(BRAIN3D_COMPARED:%=$(BRAIN3D)/%.row): $(BRAIN3D)/%.row: $(BRAIN3D)/%.errors
 
 $(BRAIN3D)/compare.tsv: $(BRAIN3D_ROWS:%=$(BRAIN3D)/%.row) pipelines/brain3d.mk

@@ -284,13 +284,16 @@ END
     run -1 awk -f "$pipelines/table1.awk" "$paper" empty.tsv
 }
 
-@test "brain2d: a row of the comparison from errors and log; none from half a log" {
-    printf 'avg\t0.00005\nmax\t0.0002\nn\t707\n' > errors
+@test "brain2d, brain3d: a row of the comparison from errors and log; none from half a log" {
+    printf 'avg\t0.00005\nmax\t0.0002\nn\t700\n' > errors
+    printf '# nodes.x f8 707 2 enc=text\n' > u.dat
     printf 'support: widened at 34 points, at most 1.2 times\npoints\t5052\nsteps\t3720\nsolve seconds\t2.446\n' > log
-    run -0 awk -f "$pipelines/brain2d-row.awk" -v scheme=MMLS errors log
+    run -0 awk -f "$pipelines/row.awk" -v scheme=MMLS -v field=u.dat -v digits=2 log errors
     [ "$output" = "$(printf 'MMLS, 34 points widened\t707\t5052\t0.0500\t0.2000\t3720\t2.45')" ]
+    run -0 awk -f "$pipelines/row.awk" -v scheme=MMLS -v field=u.dat log
+    [ "$output" = "$(printf 'MMLS, 34 points widened\t707\t5052\t-\t-\t3720\t2.4')" ]
     head -n 1 log > half
-    run -1 awk -f "$pipelines/brain2d-row.awk" -v scheme=MMLS errors half
+    run -1 awk -f "$pipelines/row.awk" -v scheme=MMLS -v field=u.dat half errors
 }
 
 @test "convergence: orders between sizes, and the slope over all" {

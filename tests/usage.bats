@@ -60,6 +60,14 @@ setup() {
     done
 }
 
+@test "every option that a usage text declares is one that the program looks at" {
+    for tool in "${tools[@]}"; do
+        for name in $("$tool" -h | sed -n '/^Options:/,/^$/s/^\(  -.,\|     \) --\([a-z-]*\).*/\2/p'); do
+            grep -rq "\"$name\"" "$top/tools" --include='*.[ch]' || { echo "$tool: --$name"; false; }
+        done
+    done
+}
+
 @test "man pages: the parts that make one, no blank paragraphs, and groff has no complaint where it is there" {
     for tool in "${tools[@]}"; do
         "$tool" -h | awk -f "$top/tools/man.awk" > "$tool.1"

@@ -315,7 +315,7 @@ rim() {
     refused 2 "--part a: no voxel of a label that is kept lies in it" voxels -h 5mm --part a=ball:1m,0,0,2mm sphere.nii.gz
     refused 2 "missing.nii.gz" voxels -h 5mm --part a=missing.nii.gz sphere.nii.gz
     refused 2 "--part: 'parsecs' is none of m, cm, mm, um" voxels -h 5mm --part a=ball:0,0,0,5parsecs sphere.nii.gz
-    refused 2 "--surface goes without --part" voxels -h 5mm --part a=torus.nii.gz --surface label_1 sphere.nii.gz
+    refused 2 "give one of --surface and --part" voxels -h 5mm --part a=torus.nii.gz --surface label_1 sphere.nii.gz
 }
 
 @test "the surface of a label as a table for contact, at a gap" {

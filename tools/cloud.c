@@ -47,28 +47,12 @@ static const char usage[] =
 
 #include <stdlib.h>
 
-enum { DIM, KIND, COUNT, BOX, JITTER, SEED, RATIO, FIELD, TEXT, OUTPUT, OPTION_COUNT };
-
-/* An option that goes with one kind. */
-static void check_kind(const struct tool *tool, const struct option *option, bool applies)
+/* Exits where an option that goes with another kind was given. */
+static void check_kind(const struct tool *tool, const char *option, bool applies)
 {
-    if (option->given && !applies) {
-        tool_fail(tool, STATUS_INPUT, "--%s goes with another kind", option->name);
+    if (tool_given(tool, option) && !applies) {
+        tool_fail(tool, STATUS_INPUT, "--%s goes with another kind", option);
     }
-}
-
-/* The number that such an option gives, or the value that holds without it. */
-static double parse_for(const struct tool *tool, const struct option *option, bool applies, double least,
-                        double most, double value)
-{
-    struct error error;
-    char what[32];
-    check_kind(tool, option, applies);
-    if (option->given) {
-        snprintf(what, sizeof what, "--%s", option->name);
-        tool_check(tool, parse_double(option->value, what, least, most, &value, &error), &error);
-    }
-    return value;
 }
 
 static void parse_box(const struct tool *tool, const char *text, struct cloud_options *cloud)
@@ -105,31 +89,26 @@ static void parse_count(const struct tool *tool, const char *text, struct cloud_
     }
 }
 
-static struct cloud_options parse(const struct tool *tool, const struct option options[])
+static struct cloud_options parse(const struct tool *tool)
 {
     static const char *const kinds[] = {"regular", "jittered", "halton", "graded"};
+    static const char *const required[] = {"dim", "kind", "count", "box"};
     struct cloud_options cloud = {0};
-    struct error error;
-    int64_t dim, seed = 1;
-    int kind;
-    for (int i = DIM; i <= BOX; i++) {
-        if (!options[i].given) {
-            tool_fail(tool, STATUS_INPUT, "--%s is missing (see -h)", options[i].name);
+    for (int i = 0; i < 4; i++) {
+        if (!tool_given(tool, required[i])) {
+            tool_fail(tool, STATUS_INPUT, "--%s is missing (see -h)", required[i]);
         }
     }
-    tool_check(tool, parse_integer(options[DIM].value, "-d", 2, 3, &dim, &error), &error);
-    cloud.dim = (int)dim;
-    tool_check(tool, parse_choice(options[KIND].value, "-k", kinds, 4, &kind, &error), &error);
-    cloud.kind = (enum cloud_kind)kind;
-    parse_count(tool, options[COUNT].value, &cloud);
-    parse_box(tool, options[BOX].value, &cloud);
-    cloud.jitter = parse_for(tool, &options[JITTER], cloud.kind == CLOUD_JITTERED, 0, 0.5, 0.5);
-    cloud.ratio = parse_for(tool, &options[RATIO], cloud.kind == CLOUD_GRADED, 1, 1e6, 4);
-    check_kind(tool, &options[SEED], cloud.kind == CLOUD_JITTERED);
-    if (options[SEED].given) {
-        tool_check(tool, parse_integer(options[SEED].value, "--seed", 0, UINT32_MAX, &seed, &error), &error);
-    }
-    cloud.seed = (uint32_t)seed;
+    cloud.dim = (int)tool_integer(tool, "dim", 2, 3, 2);
+    cloud.kind = (enum cloud_kind)tool_choice(tool, "kind", kinds, 4, 0);
+    parse_count(tool, tool_value(tool, "count"), &cloud);
+    parse_box(tool, tool_value(tool, "box"), &cloud);
+    check_kind(tool, "jitter", cloud.kind == CLOUD_JITTERED);
+    check_kind(tool, "ratio", cloud.kind == CLOUD_GRADED);
+    check_kind(tool, "seed", cloud.kind == CLOUD_JITTERED);
+    cloud.jitter = tool_number(tool, "jitter", 0, 0.5, 0.5);
+    cloud.ratio = tool_number(tool, "ratio", 1, 1e6, 4);
+    cloud.seed = (uint32_t)tool_integer(tool, "seed", 0, UINT32_MAX, 1);
     return cloud;
 }
 
@@ -175,25 +154,9 @@ int main(int argc, char *argv[])
     struct cloud cloud;
     struct stream stream;
     struct error error;
-    int function = 0;
-    struct option options[OPTION_COUNT] = {
-        [DIM] = {.letter = 'd', .name = "dim", .takes_value = true},
-        [KIND] = {.letter = 'k', .name = "kind", .takes_value = true},
-        [COUNT] = {.letter = 'n', .name = "count", .takes_value = true},
-        [BOX] = {.name = "box", .takes_value = true},
-        [JITTER] = {.name = "jitter", .takes_value = true},
-        [SEED] = {.name = "seed", .takes_value = true},
-        [RATIO] = {.name = "ratio", .takes_value = true},
-        [FIELD] = {.name = "field", .takes_value = true},
-        [TEXT] = {.letter = 't', .name = "text"},
-        [OUTPUT] = {.letter = 'o', .name = "output", .takes_value = true},
-    };
-    tool_begin(&tool, usage, options, OPTION_COUNT, 0, 0, argc, argv);
-    struct cloud_options wanted = parse(&tool, options);
-    if (options[FIELD].given) {
-        tool_check(&tool, parse_choice(options[FIELD].value, "--field", functions, 3, &function, &error),
-                   &error);
-    }
+    tool_begin(&tool, usage, 0, 0, argc, argv);
+    struct cloud_options wanted = parse(&tool);
+    int function = tool_choice(&tool, "field", functions, 3, 0);
     tool_check(&tool, cloud_make(&wanted, &cloud, &error), &error);
     if (wanted.kind != CLOUD_HALTON && cloud.cell_count == 0) {
         tool_note(&tool, "jitter %g turns tetrahedra over: cells and facets are left out", wanted.jitter);
@@ -202,10 +165,10 @@ int main(int argc, char *argv[])
     tool_check(&tool, NEW_ARRAY(&region, cloud.cell_count, &error), &error);
     stream_init(&stream);
     tool_check(&tool, put_cloud(&stream, &cloud, region, &error), &error);
-    if (options[FIELD].given) {
+    if (tool_given(&tool, "field")) {
         tool_check(&tool, put_field(&stream, &cloud, (enum cloud_function)function, &error), &error);
     }
-    tool_write(&tool, &stream, options[TEXT].given);
+    tool_write(&tool, &stream, tool_given(&tool, "text"));
     stream_free(&stream);
     cloud_free(&cloud);
     free(region);

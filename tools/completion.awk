@@ -22,7 +22,7 @@ function end_option(    words) {
     pattern = ""
 }
 
-# An item "-f, --format FORMAT  explanation" or "    --jitter FRACTION  explanation".
+# An item "-f, --format FORMAT  explanation" or "    --jitter FRACTION  explanation"; "..." behind a value: may be repeated.
 function begin_option(line,    item, rest, parts, count, i) {
     end_option()
     sub(/^ +/, "", line)

@@ -65,9 +65,8 @@ int main(int argc, char *argv[])
     struct side a, b;
     struct findings findings;
     struct error error;
-    struct option options[] = {COMPARISON_OPTIONS};
-    tool_begin(&tool, usage, options, COMPARISON_OPTION_COUNT, 2, 2, argc, argv);
-    struct comparison_request request = comparison_parse(&tool, options);
+    tool_begin(&tool, usage, 2, 2, argc, argv);
+    struct comparison_request request = comparison_parse(&tool);
     side_read(&tool, tool.operands[0], request.field, &a);
     side_read(&tool, tool.operands[1], request.field, &b);
     findings_make(&tool, &request, &a, &b, &findings);

@@ -64,8 +64,6 @@ static const char usage[] =
 #include <stdlib.h>
 #include <string.h>
 
-enum { ORDER = COMPARISON_OPTION_COUNT, RATIO, OPTION_COUNT };
-
 /* Cells per direction by the ratio that is used: outside of this it is noted. */
 static const double least_agreement = 0.65, most_agreement = 1.5;
 
@@ -76,20 +74,14 @@ struct request {
     struct comparison_request comparison;
 };
 
-static struct request parse(const struct tool *tool, const struct option *options)
+static struct request parse(const struct tool *tool)
 {
-    struct error error;
-    struct request request = {.ratio = 2.0, .comparison = comparison_parse(tool, options)};
-    if (options[ORDER].given) {
-        if (tool->operand_count > 2) {
-            tool_fail(tool, STATUS_INPUT, "-p: of three results the order is observed");
-        }
-        tool_check(tool, parse_double(options[ORDER].value, "-p", 0.01, 4.0, &request.order, &error), &error);
+    struct request request = {.comparison = comparison_parse(tool)};
+    if (tool_given(tool, "order") && tool->operand_count > 2) {
+        tool_fail(tool, STATUS_INPUT, "-p: of three results the order is observed");
     }
-    if (options[RATIO].given) {
-        tool_check(tool, parse_double(options[RATIO].value, "-r", 1.01, 100.0, &request.ratio, &error),
-                   &error);
-    }
+    request.order = tool_number(tool, "order", 0.01, 4.0, 0.0);
+    request.ratio = tool_number(tool, "ratio", 1.01, 100.0, 2.0);
     return request;
 }
 
@@ -263,13 +255,8 @@ int main(int argc, char *argv[])
     struct side fine, coarse;
     struct findings findings;
     struct error error;
-    struct option options[] = {
-        COMPARISON_OPTIONS,
-        [ORDER] = {.letter = 'p', .name = "order", .takes_value = true},
-        [RATIO] = {.letter = 'r', .name = "ratio", .takes_value = true},
-    };
-    tool_begin(&tool, usage, options, OPTION_COUNT, 2, 3, argc, argv);
-    struct request request = parse(&tool, options);
+    tool_begin(&tool, usage, 2, 3, argc, argv);
+    struct request request = parse(&tool);
     const struct comparison_request *asked = &request.comparison;
     side_read(&tool, tool.operands[0], asked->field, &fine);
     side_read(&tool, tool.operands[1], asked->field, &coarse);

@@ -41,12 +41,12 @@ static const char usage[] =
     "loses its name. When facets change, the sections of support and shapefn are left out.\n"
     "\n"
     "Options:\n"
-    "  -f, --facets NAME=EXPRESSION  a group of facets of the boundary\n"
-    "  -n, --nodes NAME=EXPRESSION   a set of nodes\n"
-    "  -r, --region NAME=EXPRESSION  a region of cells\n"
-    "  -m, --rename OLD=NEW    rename a group, if need be facets:OLD=NEW, ...\n"
-    "  -d, --delete NAME       delete a group of facets or nodes\n"
-    "      --replace           -f, -n and -r replace groups that exist\n"
+    "  -f, --facets NAME=EXPRESSION ...  a group of facets of the boundary\n"
+    "  -n, --nodes NAME=EXPRESSION ...   a set of nodes\n"
+    "  -r, --region NAME=EXPRESSION ...  a region of cells\n"
+    "  -m, --rename OLD=NEW ...  rename a group, if need be facets:OLD=NEW, ...\n"
+    "  -d, --delete NAME ...     delete a group of facets or nodes\n"
+    "      --replace             -f, -n and -r replace groups that exist\n"
     "  -u, --unit UNIT         unit of lengths in expressions and their files: m (default), cm, mm, um,\n"
     "                          or a number of metres\n"
     "  -v, --verbose           report each group on standard error: count, area, box, mean normal\n"
@@ -69,8 +69,6 @@ static const char usage[] =
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-
-enum { FACETS, NODES, REGION, RENAME, DELETE, REPLACE, UNIT, VERBOSE, TEXT, OUTPUT, OPTION_COUNT };
 
 /* ---- what the options ask for ---- */
 
@@ -219,16 +217,17 @@ static enum status delete_group(const struct request *request, struct error *err
 
 static enum status carry_out(const struct request *request, struct error *error)
 {
-    switch (request->use->name[0]) {
+    switch (request->use->option->letter) {
     case 'f':
         return make_group(request, GROUP_FACETS, error);
     case 'n':
         return make_group(request, GROUP_NODES, error);
-    case 'd':
-        return delete_group(request, error);
+    case 'r':
+        return make_group(request, GROUP_REGION, error);
+    case 'm':
+        return rename_group(request, error);
     default:
-        return strcmp(request->use->name, "region") == 0 ? make_group(request, GROUP_REGION, error)
-                                                         : rename_group(request, error);
+        return delete_group(request, error);
     }
 }
 
@@ -365,47 +364,34 @@ static void finish(const struct tool *tool, struct group_body *body, struct stre
     }
 }
 
+static const char *const changes[] = {"facets", "nodes", "region", "rename", "delete", NULL};
+
 int main(int argc, char *argv[])
 {
-    static struct option_uses uses; /* of -f, -n, -r, -m and -d, in their order */
     struct tool tool;
     struct stream stream;
     struct group_body body;
     struct error error;
-    double unit = 1;
-    struct option options[OPTION_COUNT] = {
-        [FACETS] = {.letter = 'f', .name = "facets", .takes_value = true, .uses = &uses},
-        [NODES] = {.letter = 'n', .name = "nodes", .takes_value = true, .uses = &uses},
-        [REGION] = {.letter = 'r', .name = "region", .takes_value = true, .uses = &uses},
-        [RENAME] = {.letter = 'm', .name = "rename", .takes_value = true, .uses = &uses},
-        [DELETE] = {.letter = 'd', .name = "delete", .takes_value = true, .uses = &uses},
-        [REPLACE] = {.name = "replace"},
-        [UNIT] = {.letter = 'u', .name = "unit", .takes_value = true},
-        [VERBOSE] = {.letter = 'v', .name = "verbose"},
-        [TEXT] = {.letter = 't', .name = "text"},
-        [OUTPUT] = {.letter = 'o', .name = "output", .takes_value = true},
-    };
-    tool_begin(&tool, usage, options, OPTION_COUNT, 0, 1, argc, argv);
-    if (uses.count == 0 && !options[VERBOSE].given) {
+    tool_begin(&tool, usage, 0, 1, argc, argv);
+    if (tool_first_given(&tool, changes) == NULL && !tool_given(&tool, "verbose")) {
         tool_fail(&tool, STATUS_INPUT, "nothing to do: give -f, -n, -r, -m, -d or -v (see -h)");
     }
-    if (options[UNIT].given) {
-        tool_check(&tool, parse_length_unit(options[UNIT].value, "-u", &unit, &error), &error);
-    }
+    double unit = tool_length_unit(&tool, "unit", 1);
     tool_read(&tool, tool.operands[0], &stream);
     if (stream_find(&stream, "part.node") != NULL) {
         tool_fail(&tool, STATUS_INPUT, "the input is one part of a body: make groups before it is cut");
     }
     tool_check(&tool, group_body_read(&stream, &body, &error), &error);
-    for (int i = 0; i < uses.count; i++) {
-        struct request request = {&body, &uses.use[i], unit, options[REPLACE].given};
-        enum status status = carry_out(&request, &error);
+    for (int i = 0; i < tool.options.use_count; i++) {
+        const struct option_use *use = &tool.options.use[i];
+        struct request request = {&body, use, unit, tool_given(&tool, "replace")};
+        enum status status = use->option->repeats ? carry_out(&request, &error) : STATUS_OK;
         if (status != STATUS_OK) {
-            tool_fail(&tool, status, "--%s %.80s: %s", request.use->name, request.use->value, error.text);
+            tool_fail(&tool, status, "--%s %.80s: %s", use->option->name, use->value, error.text);
         }
     }
-    finish(&tool, &body, &stream, options[VERBOSE].given);
-    tool_write(&tool, &stream, options[TEXT].given);
+    finish(&tool, &body, &stream, tool_given(&tool, "verbose"));
+    tool_write(&tool, &stream, tool_given(&tool, "text"));
     group_body_free(&body);
     stream_free(&stream);
     return tool_end(&tool);

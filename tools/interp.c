@@ -54,21 +54,6 @@ static const char usage[] =
 #include <string.h>
 #include <unistd.h>
 
-enum {
-    FIELD,
-    POINTS,
-    UNIT,
-    FACTOR,
-    RADIUS,
-    BASIS,
-    LAST_OF_MLS = BASIS + MLS_OPTION_COUNT - 1,
-    DEFORMED,
-    SKIP_OUTSIDE,
-    TEXT,
-    OUTPUT,
-    OPTION_COUNT
-};
-
 /* Points with the neighbours and the values of the shape functions at each. */
 struct points {
     struct solved solved; /* the field whose shape functions these are; none: others */
@@ -78,25 +63,22 @@ struct points {
     struct field_table table;
 };
 
-static struct support_options parse(const struct tool *tool, const struct option *options, int dim)
+/* Options that go with those of another file's points only. */
+static const char *const choose_supports[] = {RADIUS_OPTIONS, MLS_OPTIONS, NULL};
+
+static struct support_options parse(const struct tool *tool, int dim)
 {
     struct support_options support = support_defaults(dim);
-    struct error error;
-    for (int i = UNIT; i <= LAST_OF_MLS; i++) {
-        if (options[i].given && !options[POINTS].given) {
-            tool_fail(tool, STATUS_INPUT, "--%s needs -p (else the stream's own supports are used)",
-                      options[i].name);
-        }
+    const char *choice = tool_given(tool, "unit") ? "unit" : tool_first_given(tool, choose_supports);
+    if (choice != NULL && !tool_given(tool, "points")) {
+        tool_fail(tool, STATUS_INPUT, "--%s needs -p (else the stream's own supports are used)", choice);
     }
-    tool_check(tool, radius_apply_options(&options[FACTOR], &options[RADIUS], &support, &error), &error);
-    if (options[SKIP_OUTSIDE].given && !options[POINTS].given) {
+    if (tool_given(tool, "skip-outside") && !tool_given(tool, "points")) {
         tool_fail(tool, STATUS_INPUT, "--skip-outside needs -p (the stream's own points are in cells)");
     }
-    if (options[UNIT].given) {
-        double unit;
-        tool_check(tool, parse_length_unit(options[UNIT].value, "-u", &unit, &error), &error);
-    }
-    tool_check(tool, mls_apply_options(options + BASIS, &support.mls, &error), &error);
+    radius_parse(tool, &support);
+    (void)tool_length_unit(tool, "unit", 1.0);
+    mls_parse(tool, &support.mls);
     return support;
 }
 
@@ -319,24 +301,13 @@ static void put_deformed(const struct tool *tool, const struct stream *stream, i
                &error);
 }
 
-/* Whether the user asks for supports or shape functions. */
-static bool chooses_supports(const struct option *options)
-{
-    bool chooses = false;
-    for (int i = FACTOR; i <= LAST_OF_MLS; i++) {
-        chooses = chooses || options[i].given;
-    }
-    return chooses;
-}
-
 /* The points wanted: the stream's own, or those of a file; and supports and shape functions there. */
-static void find_points(const struct tool *tool, const struct option *options, struct stream *stream, int dim,
-                        struct points *points)
+static void find_points(const struct tool *tool, struct stream *stream, int dim, struct points *points)
 {
     struct error error;
-    const char *file = options[POINTS].value;
-    struct support_options support = parse(tool, options, dim);
-    if (!chooses_supports(options)) {
+    const char *file = tool_value(tool, "points");
+    struct support_options support = parse(tool, dim);
+    if (tool_first_given(tool, choose_supports) == NULL) {
         tool_check(tool, solved_read(stream, &points->solved, &error), &error);
     }
     struct solved known = points->solved;
@@ -347,14 +318,15 @@ static void find_points(const struct tool *tool, const struct option *options, s
         if (known.radius == NULL && radius != NULL) {
             tool_check(tool, supports_read(stream, "support", &known, &error), &error);
         }
-    } else if (options[UNIT].given) {
-        read_table(tool, file, options[UNIT].value, dim, points);
+    } else if (tool_given(tool, "unit")) {
+        read_table(tool, file, tool_value(tool, "unit"), dim, points);
     } else {
         read_nodes(tool, file, dim, points);
     }
-    tool_check(tool,
-               make_table(tool, &known, &support, stream, options[SKIP_OUTSIDE].given, file, points, &error),
-               &error);
+    tool_check(
+        tool,
+        make_table(tool, &known, &support, stream, tool_given(tool, "skip-outside"), file, points, &error),
+        &error);
 }
 
 /* A stream of the same descent that holds the points; it takes points->x. */
@@ -380,41 +352,29 @@ int main(int argc, char *argv[])
     struct stream stream, output;
     struct error error;
     struct points points = {0};
-    struct option options[OPTION_COUNT] = {
-        [FIELD] = {.letter = 'f', .name = "field", .takes_value = true},
-        [POINTS] = {.letter = 'p', .name = "points", .takes_value = true},
-        [UNIT] = {.letter = 'u', .name = "unit", .takes_value = true},
-        [FACTOR] = {.letter = 'k', .name = "factor", .takes_value = true},
-        [RADIUS] = {.letter = 'R', .name = "radius", .takes_value = true},
-        [BASIS] = MLS_OPTIONS,
-        [DEFORMED] = {.name = "deformed"},
-        [SKIP_OUTSIDE] = {.name = "skip-outside"},
-        [TEXT] = {.letter = 't', .name = "text"},
-        [OUTPUT] = {.letter = 'o', .name = "output", .takes_value = true},
-    };
     int dim;
     int64_t node_count;
     const double *nodes;
-    tool_begin(&tool, usage, options, OPTION_COUNT, 0, 1, argc, argv);
-    (void)parse(&tool, options, 0); /* usage errors before waiting for the input */
+    tool_begin(&tool, usage, 0, 1, argc, argv);
+    (void)parse(&tool, 0); /* usage errors before waiting for the input */
     tool_read(&tool, tool.operands[0], &stream);
     tool_check(&tool, stream_nodes(&stream, &dim, &node_count, &nodes, &error), &error);
-    find_points(&tool, options, &stream, dim, &points);
+    find_points(&tool, &stream, dim, &points);
     begin_output(&tool, &stream, dim, &points, &output);
-    if (options[FIELD].given) {
-        put_fields(&tool, &stream, node_count, options[FIELD].value, &points, &output);
+    if (tool_given(&tool, "field")) {
+        put_fields(&tool, &stream, node_count, tool_value(&tool, "field"), &points, &output);
     } else {
         put_all_fields(&tool, &stream, node_count, &points, &output);
     }
-    if (options[DEFORMED].given) {
+    if (tool_given(&tool, "deformed")) {
         put_deformed(&tool, &stream, dim, node_count, &points, &output);
     }
-    if (options[SKIP_OUTSIDE].given) {
+    if (tool_given(&tool, "skip-outside")) {
         tool_check(&tool,
                    stream_put(&output, "points.row", TYPE_I8, points.count, 1, "", points.row, false, &error),
                    &error);
     }
-    tool_write(&tool, &output, options[TEXT].given);
+    tool_write(&tool, &output, tool_given(&tool, "text"));
     field_table_free(&points.table);
     stream_free(&output);
     free(points.row);

@@ -47,22 +47,6 @@ static const char usage[] =
 #include "mls_options.h"
 #include "stages.h"
 
-enum {
-    CONFORMING,
-    GAUSS,
-    ADAPTIVE,
-    LEVELS,
-    FACTOR,
-    RADIUS,
-    BASIS,
-    LAST_OF_MLS = BASIS + MLS_OPTION_COUNT - 1,
-    LATTICE,
-    VERBOSE,
-    TEXT,
-    OUTPUT,
-    OPTION_COUNT
-};
-
 static void parse_lattice(const struct tool *tool, const char *text, int64_t lattice[3])
 {
     double numbers[3];
@@ -78,64 +62,45 @@ static void parse_lattice(const struct tool *tool, const char *text, int64_t lat
 }
 
 /* Adaptive integration by the shape functions `mls`, but for what the options say of them. */
-static struct adaptive_options parse_adaptive(const struct tool *tool, const struct option *options,
-                                              const struct mls *mls)
+static struct adaptive_options parse_adaptive(const struct tool *tool, const struct mls *mls)
 {
     struct adaptive_options adaptive = adaptive_defaults(mls->dim);
-    struct support_options *support = &adaptive.support;
-    struct error error;
-    int64_t number;
-    support->mls = *mls;
-    tool_check(tool, parse_double(options[ADAPTIVE].value, "-a", 1e-12, 10, &adaptive.tolerance, &error),
-               &error);
-    if (options[GAUSS].given) {
-        tool_check(tool, parse_integer(options[GAUSS].value, "-g", 1, 1000, &number, &error), &error);
-        adaptive.rule_points = (int)number;
-    }
-    if (options[LEVELS].given) {
-        tool_check(tool,
-                   parse_integer(options[LEVELS].value, "--levels", 0, ADAPTIVE_MOST_LEVELS, &number, &error),
-                   &error);
-        adaptive.levels = (int)number;
-    }
-    tool_check(tool, radius_apply_options(&options[FACTOR], &options[RADIUS], support, &error), &error);
-    tool_check(tool, mls_apply_options(options + BASIS, &support->mls, &error), &error);
+    adaptive.support.mls = *mls;
+    adaptive.tolerance = tool_number(tool, "adaptive", 1e-12, 10, adaptive.tolerance);
+    adaptive.rule_points = (int)tool_integer(tool, "gauss", 1, 1000, adaptive.rule_points);
+    adaptive.levels = (int)tool_integer(tool, "levels", 0, ADAPTIVE_MOST_LEVELS, adaptive.levels);
+    radius_parse(tool, &adaptive.support);
+    mls_parse(tool, &adaptive.support.mls);
     return adaptive;
 }
 
-static struct ipoints_options parse(const struct tool *tool, const struct option *options,
-                                    const struct mls *mls)
+static struct ipoints_options parse(const struct tool *tool, const struct mls *mls)
 {
+    static const char *const of_adaptive[] = {"levels", RADIUS_OPTIONS, MLS_OPTIONS, NULL};
     struct ipoints_options ipoints = ipoints_defaults();
-    struct error error;
-    if (options[CONFORMING].given + (options[GAUSS].given || options[ADAPTIVE].given) +
-            options[LATTICE].given >
-        1) {
+    bool gauss = tool_given(tool, "gauss"), adaptive = tool_given(tool, "adaptive");
+    const char *extra = tool_first_given(tool, of_adaptive);
+    if (tool_given(tool, "conforming") + (gauss || adaptive) + tool_given(tool, "lattice") > 1) {
         tool_fail(tool, STATUS_INPUT, "give one of -c, -g, -a and --lattice (-a may have its -g)");
     }
-    for (int i = LEVELS; i <= LAST_OF_MLS; i++) {
-        if (options[i].given && !options[ADAPTIVE].given) {
-            tool_fail(tool, STATUS_INPUT, "--%s is for adaptive integration: give -a too", options[i].name);
-        }
+    if (extra != NULL && !adaptive) {
+        tool_fail(tool, STATUS_INPUT, "--%s is for adaptive integration: give -a too", extra);
     }
-    ipoints.smoothed = !options[GAUSS].given && !options[ADAPTIVE].given;
-    ipoints.given_radius = options[FACTOR].given || options[RADIUS].given;
-    if (options[ADAPTIVE].given) {
+    ipoints.smoothed = !gauss && !adaptive;
+    ipoints.given_radius = tool_given(tool, "factor") || tool_given(tool, "radius");
+    if (adaptive) {
         ipoints.adaptive = true;
-        ipoints.refinement = parse_adaptive(tool, options, mls);
-    } else if (options[GAUSS].given) {
-        int64_t points;
-        tool_check(tool, parse_integer(options[GAUSS].value, "-g", 1, 1000, &points, &error), &error);
-        ipoints.gauss_points = (int)points;
-    } else if (options[LATTICE].given) {
-        parse_lattice(tool, options[LATTICE].value, ipoints.lattice);
+        ipoints.refinement = parse_adaptive(tool, mls);
+    } else if (gauss) {
+        ipoints.gauss_points = (int)tool_integer(tool, "gauss", 1, 1000, 1);
+    } else if (tool_given(tool, "lattice")) {
+        parse_lattice(tool, tool_value(tool, "lattice"), ipoints.lattice);
     }
     return ipoints;
 }
 
 /* The options for this stream: its dimension, the shape functions recorded in it. */
-static struct ipoints_options parse_for(const struct tool *tool, const struct option *options,
-                                        const struct stream *stream)
+static struct ipoints_options parse_for(const struct tool *tool, const struct stream *stream)
 {
     int dim;
     int64_t node_count;
@@ -144,7 +109,7 @@ static struct ipoints_options parse_for(const struct tool *tool, const struct op
     struct recorded recorded;
     tool_check(tool, stream_nodes(stream, &dim, &node_count, &x, &error), &error);
     tool_check(tool, stage_recorded(stream, "support", dim, &recorded, &error), &error);
-    struct ipoints_options ipoints = parse(tool, options, &recorded.support.mls);
+    struct ipoints_options ipoints = parse(tool, &recorded.support.mls);
     ipoints.refinement.support.reach = recorded.support.reach;
     return ipoints;
 }
@@ -154,34 +119,21 @@ int main(int argc, char *argv[])
     struct tool tool;
     struct stream stream;
     struct error error;
-    struct option options[OPTION_COUNT] = {
-        [CONFORMING] = {.letter = 'c', .name = "conforming"},
-        [GAUSS] = {.letter = 'g', .name = "gauss", .takes_value = true},
-        [ADAPTIVE] = {.letter = 'a', .name = "adaptive", .takes_value = true},
-        [LEVELS] = {.name = "levels", .takes_value = true},
-        [FACTOR] = {.letter = 'k', .name = "factor", .takes_value = true},
-        [RADIUS] = {.letter = 'R', .name = "radius", .takes_value = true},
-        [BASIS] = MLS_OPTIONS,
-        [LATTICE] = {.name = "lattice", .takes_value = true},
-        [VERBOSE] = {.letter = 'v', .name = "verbose"},
-        [TEXT] = {.letter = 't', .name = "text"},
-        [OUTPUT] = {.letter = 'o', .name = "output", .takes_value = true},
-    };
     struct mls any = mls_default(0);
     int64_t unresolved;
-    tool_begin(&tool, usage, options, OPTION_COUNT, 0, 1, argc, argv);
-    (void)parse(&tool, options, &any); /* usage errors before waiting for the input */
+    tool_begin(&tool, usage, 0, 1, argc, argv);
+    (void)parse(&tool, &any); /* usage errors before waiting for the input */
     tool_read(&tool, tool.operands[0], &stream);
-    struct ipoints_options ipoints = parse_for(&tool, options, &stream);
+    struct ipoints_options ipoints = parse_for(&tool, &stream);
     tool_check(&tool, stage_ipoints(&stream, &ipoints, &unresolved, &error), &error);
     if (unresolved > 0) {
         tool_note(&tool, "%lld cells change by more than the tolerance even at level %d",
                   (long long)unresolved, ipoints.refinement.levels);
     }
-    if (options[VERBOSE].given) {
+    if (tool_given(&tool, "verbose")) {
         tool_note(&tool, "%lld points", (long long)stream_find(&stream, "points.x")->rows);
     }
-    tool_write(&tool, &stream, options[TEXT].given);
+    tool_write(&tool, &stream, tool_given(&tool, "text"));
     stream_free(&stream);
     return tool_end(&tool);
 }

@@ -77,22 +77,6 @@ static const char usage[] =
 #include <string.h>
 #include <unistd.h>
 
-enum { VERBOSE, QUIET, BINARY, OUTPUT, CHECKPOINT, EVERY, OPTION_COUNT };
-
-/* Seconds between checkpoints. */
-static double parse_every(const struct tool *tool, const struct option *options)
-{
-    struct error error;
-    double every = 60.0;
-    if (options[EVERY].given && !options[CHECKPOINT].given) {
-        tool_fail(tool, STATUS_INPUT, "-e goes with -c");
-    }
-    if (options[EVERY].given) {
-        tool_check(tool, parse_double(options[EVERY].value, "-e", 0.0, 1e9, &every, &error), &error);
-    }
-    return every;
-}
-
 /* The results of an earlier run on the same stream. */
 static void drop_results(struct stream *stream)
 {
@@ -107,17 +91,13 @@ int main(int argc, char *argv[])
     struct scene scene;
     struct model model;
     struct error error;
-    struct option options[OPTION_COUNT] = {
-        [VERBOSE] = {.letter = 'v', .name = "verbose"},
-        [QUIET] = {.letter = 'q', .name = "quiet"},
-        [BINARY] = {.letter = 'b', .name = "binary"},
-        [OUTPUT] = {.letter = 'o', .name = "output", .takes_value = true},
-        [CHECKPOINT] = {.letter = 'c', .name = "checkpoint", .takes_value = true, .silent = true},
-        [EVERY] = {.letter = 'e', .name = "every", .takes_value = true, .silent = true},
-    };
     process_begin(&argc, &argv);
-    tool_begin(&tool, usage, options, OPTION_COUNT, 1, 2, argc, argv);
-    double every = parse_every(&tool, options), started = clock_seconds();
+    tool_begin(&tool, usage, 1, 2, argc, argv);
+    tool_requires(&tool, "every", "checkpoint");
+    tool_leave_out(&tool, "checkpoint");
+    tool_leave_out(&tool, "every");
+    double every = tool_number(&tool, "every", 0.0, 1e9, 60.0); /* seconds between checkpoints */
+    double started = clock_seconds();
     if (process_ranks() != NULL && (tool.operand_count < 2 || strcmp(tool.operands[1], "-") == 0)) {
         tool_fail(&tool, STATUS_INPUT,
                   "several processes cannot share standard input: name the stream's file");
@@ -131,16 +111,17 @@ int main(int argc, char *argv[])
     double read = clock_seconds() - started;
     stage_fill(&tool, &stream, "shapefn");
 
-    struct run run = {.tool = &tool,
-                      .scene = &scene,
-                      .model = &model,
-                      .stream = &stream,
-                      .verbose = options[VERBOSE].given && process_speaks(),
-                      .text = !options[BINARY].given,
-                      .checkpoint = {.file = options[CHECKPOINT].value, .interval = every},
-                      .read_seconds = read,
-                      .display = {.shown = !options[QUIET].given && process_speaks() && isatty(STDERR_FILENO),
-                                  .started = clock_seconds()}};
+    struct run run = {
+        .tool = &tool,
+        .scene = &scene,
+        .model = &model,
+        .stream = &stream,
+        .verbose = tool_given(&tool, "verbose") && process_speaks(),
+        .text = !tool_given(&tool, "binary"),
+        .checkpoint = {.file = tool_value(&tool, "checkpoint"), .interval = every},
+        .read_seconds = read,
+        .display = {.shown = !tool_given(&tool, "quiet") && process_speaks() && isatty(STDERR_FILENO),
+                    .started = clock_seconds()}};
     run_put_supports(&run);
     run_checkpoint_begin(&run);
     tool_check(&tool, model_build(&stream, &scene, &model, &error), &error);
@@ -169,7 +150,7 @@ int main(int argc, char *argv[])
     if (run.verbose) {
         run_report_cost(&run);
     }
-    if (options[VERBOSE].given) {
+    if (tool_given(&tool, "verbose")) {
         process_report(run.evaluations);
     }
     run_folds_free(&run);

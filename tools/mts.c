@@ -49,21 +49,19 @@ static const char usage[] =
 #include <string.h>
 #include <unistd.h>
 
-enum option_index { VERBOSE, TEXT, OUTPUT, OPTION_COUNT };
-
 /* One command: how many operands stand behind it and which options go with it. */
 struct command {
     const char *name;
     int least, most;
-    bool allows[OPTION_COUNT];
-    int (*run)(struct tool *tool, const struct option options[]);
+    const char *allows; /* letters of options */
+    int (*run)(struct tool *tool);
 };
 
-static int list(struct tool *tool, const struct option options[])
+static int list(struct tool *tool)
 {
     struct stream stream;
     tool_read(tool, tool->operands[1], &stream);
-    for (int64_t i = 0; options[VERBOSE].given && i < stream.provenance_count; i++) {
+    for (int64_t i = 0; tool_given(tool, "verbose") && i < stream.provenance_count; i++) {
         printf("# @ %s\n", stream.provenance[i]);
     }
     for (int64_t i = 0; i < stream.section_count; i++) {
@@ -75,9 +73,8 @@ static int list(struct tool *tool, const struct option options[])
     return tool_end(tool);
 }
 
-static int print(struct tool *tool, const struct option options[])
+static int print(struct tool *tool)
 {
-    (void)options;
     struct stream stream;
     struct error error;
     const char *name = tool->operands[1];
@@ -103,15 +100,13 @@ static int convert(struct tool *tool, bool text)
     return tool_end(tool);
 }
 
-static int to_text(struct tool *tool, const struct option options[])
+static int to_text(struct tool *tool)
 {
-    (void)options;
     return convert(tool, true);
 }
 
-static int to_binary(struct tool *tool, const struct option options[])
+static int to_binary(struct tool *tool)
 {
-    (void)options;
     return convert(tool, false);
 }
 
@@ -151,9 +146,8 @@ static int tell_cells(const struct tool *tool, const struct stream *stream)
     return 0;
 }
 
-static int check(struct tool *tool, const struct option options[])
+static int check(struct tool *tool)
 {
-    (void)options;
     struct stream stream;
     tool_read(tool, tool->operands[1], &stream);
     int64_t count = stream_check(&stream, print_violation, NULL);
@@ -163,7 +157,7 @@ static int check(struct tool *tool, const struct option options[])
     return count > 0 ? (int)STATUS_VERDICT : status;
 }
 
-static int recover(struct tool *tool, const struct option options[])
+static int recover(struct tool *tool)
 {
     struct stream stream;
     struct error why, error;
@@ -174,7 +168,7 @@ static int recover(struct tool *tool, const struct option options[])
         tool_note(tool, "%s: %s: took the %lld sections before", name, why.text,
                   (long long)stream.section_count);
     }
-    tool_write(tool, &stream, options[TEXT].given);
+    tool_write(tool, &stream, tool_given(tool, "text"));
     stream_free(&stream);
     return tool_end(tool);
 }
@@ -191,7 +185,7 @@ static bool matches(const char *name, char *const patterns[], int count, bool us
     return any;
 }
 
-static int select_sections(struct tool *tool, const struct option options[], bool keep)
+static int select_sections(struct tool *tool, bool keep)
 {
     enum { MOST = 64 };
     char *patterns[MOST];
@@ -220,36 +214,31 @@ static int select_sections(struct tool *tool, const struct option options[], boo
             tool_fail(tool, STATUS_INPUT, "no section matches '%s': see mts list", patterns[i]);
         }
     }
-    tool_write(tool, &stream, options[TEXT].given);
+    tool_write(tool, &stream, tool_given(tool, "text"));
     stream_free(&stream);
     free(list_of_patterns);
     return tool_end(tool);
 }
 
-static int keep(struct tool *tool, const struct option options[])
+static int keep(struct tool *tool)
 {
-    return select_sections(tool, options, true);
+    return select_sections(tool, true);
 }
 
-static int drop(struct tool *tool, const struct option options[])
+static int drop(struct tool *tool)
 {
-    return select_sections(tool, options, false);
+    return select_sections(tool, false);
 }
 
 static const struct command commands[] = {
-    {"list", 0, 1, {[VERBOSE] = true}, list},
-    {"print", 1, 2, {false}, print},
-    {"text", 0, 1, {[OUTPUT] = true}, to_text},
-    {"binary", 0, 1, {[OUTPUT] = true}, to_binary},
-    {"check", 0, 1, {false}, check},
-    {"recover", 0, 1, {[TEXT] = true, [OUTPUT] = true}, recover},
-    {"keep", 1, 2, {[TEXT] = true, [OUTPUT] = true}, keep},
-    {"drop", 1, 2, {[TEXT] = true, [OUTPUT] = true}, drop},
+    {"list", 0, 1, "v", list},        {"print", 1, 2, "", print}, {"text", 0, 1, "o", to_text},
+    {"binary", 0, 1, "o", to_binary}, {"check", 0, 1, "", check}, {"recover", 0, 1, "to", recover},
+    {"keep", 1, 2, "to", keep},       {"drop", 1, 2, "to", drop},
 };
 enum { COMMANDS = sizeof commands / sizeof *commands };
 
 /* The command named by the first operand, with its operands and options checked. */
-static const struct command *find_command(const struct tool *tool, const struct option options[])
+static const struct command *find_command(const struct tool *tool)
 {
     const char *names[COMMANDS];
     struct error error;
@@ -268,10 +257,10 @@ static const struct command *find_command(const struct tool *tool, const struct 
         tool_fail(tool, STATUS_INPUT, "%s: unexpected operand '%s' (see -h)", command->name,
                   tool->operands[command->most + 1]);
     }
-    for (int i = 0; i < OPTION_COUNT; i++) {
-        if (options[i].given && !command->allows[i]) {
-            tool_fail(tool, STATUS_INPUT, "%s: takes no option -%c (see -h)", command->name,
-                      options[i].letter);
+    for (int i = 0; i < tool->options.count; i++) {
+        const struct option *option = &tool->options.option[i];
+        if (option->given && strchr(command->allows, option->letter) == NULL) {
+            tool_fail(tool, STATUS_INPUT, "%s: takes no option -%c (see -h)", command->name, option->letter);
         }
     }
     return command;
@@ -280,11 +269,6 @@ static const struct command *find_command(const struct tool *tool, const struct 
 int main(int argc, char *argv[])
 {
     struct tool tool;
-    struct option options[OPTION_COUNT] = {
-        [VERBOSE] = {.letter = 'v', .name = "verbose"},
-        [TEXT] = {.letter = 't', .name = "text"},
-        [OUTPUT] = {.letter = 'o', .name = "output", .takes_value = true},
-    };
-    tool_begin(&tool, usage, options, OPTION_COUNT, 1, 3, argc, argv);
-    return find_command(&tool, options)->run(&tool, options);
+    tool_begin(&tool, usage, 1, 3, argc, argv);
+    return find_command(&tool)->run(&tool);
 }

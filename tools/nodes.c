@@ -65,8 +65,6 @@ static const char usage[] =
 #include <string.h>
 #include <unistd.h>
 
-enum { UNIT, REGIONS, MIDSIDE, VERBOSE, LIST, BINARY, TEXT, OUTPUT, OPTION_COUNT };
-
 static void read_mesh(const struct tool *tool, struct msh *msh)
 {
     struct error error;
@@ -157,32 +155,23 @@ static void report(const struct tool *tool, const struct mesh *mesh, bool verbos
     }
 }
 
-static double parse(const struct tool *tool, const struct option options[])
+/* Exits for options that do not go together. */
+static struct mesh_options parse(const struct tool *tool)
 {
-    struct error error;
-    double unit = 1;
-    int choice;
     static const char *const choices[] = {"drop", "use"};
-    if (options[MIDSIDE].given) {
-        tool_check(tool, parse_choice(options[MIDSIDE].value, "--midside", choices, 2, &choice, &error),
-                   &error);
+    static const char *const of_stream[] = {"unit",   "regions", "midside", "verbose",
+                                            "binary", "text",    "output",  NULL};
+    tool_excludes(tool, "binary", "text");
+    if (tool_given(tool, "list") && tool_first_given(tool, of_stream) != NULL) {
+        tool_fail(tool, STATUS_INPUT, "-l goes with no other option");
     }
-    if (options[BINARY].given && options[TEXT].given) {
-        tool_fail(tool, STATUS_INPUT, "give one of -b and -t");
-    }
-    if (options[LIST].given) {
-        for (int i = 0; i < OPTION_COUNT; i++) {
-            if (i != LIST && options[i].given) {
-                tool_fail(tool, STATUS_INPUT, "-l goes with no other option");
-            }
-        }
-    } else if (!options[UNIT].given) {
+    if (!tool_given(tool, "list") && !tool_given(tool, "unit")) {
         tool_fail(tool, STATUS_INPUT,
                   "the unit of the mesh is missing: give -u m, cm, mm or um, or a number");
-    } else {
-        tool_check(tool, parse_length_unit(options[UNIT].value, "-u", &unit, &error), &error);
     }
-    return unit;
+    return (struct mesh_options){.unit = tool_length_unit(tool, "unit", 1.0),
+                                 .regions = tool_value(tool, "regions"),
+                                 .midside = tool_choice(tool, "midside", choices, 2, 0) == 1};
 }
 
 int main(int argc, char *argv[])
@@ -192,26 +181,14 @@ int main(int argc, char *argv[])
     struct mesh mesh;
     struct stream stream;
     struct error error;
-    struct option options[OPTION_COUNT] = {
-        [UNIT] = {.letter = 'u', .name = "unit", .takes_value = true},
-        [REGIONS] = {.letter = 'r', .name = "regions", .takes_value = true},
-        [MIDSIDE] = {.name = "midside", .takes_value = true},
-        [VERBOSE] = {.letter = 'v', .name = "verbose"},
-        [LIST] = {.letter = 'l', .name = "list"},
-        [BINARY] = {.letter = 'b', .name = "binary"},
-        [TEXT] = {.letter = 't', .name = "text"},
-        [OUTPUT] = {.letter = 'o', .name = "output", .takes_value = true},
-    };
-    tool_begin(&tool, usage, options, OPTION_COUNT, 0, 1, argc, argv);
-    struct mesh_options wanted = {.unit = parse(&tool, options)};
+    tool_begin(&tool, usage, 0, 1, argc, argv);
+    struct mesh_options wanted = parse(&tool);
     read_mesh(&tool, &msh);
-    if (options[LIST].given) {
+    if (tool_given(&tool, "list")) {
         list_groups(&tool, &msh);
         msh_free(&msh);
         return tool_end(&tool);
     }
-    wanted.regions = options[REGIONS].value;
-    wanted.midside = options[MIDSIDE].given && strcmp(options[MIDSIDE].value, "use") == 0;
     tool_check(&tool, mesh_build(&mesh, &msh, &wanted, &error), &error);
     msh_free(&msh);
     for (int32_t i = 0; i < mesh.notes.count; i++) {
@@ -220,10 +197,10 @@ int main(int argc, char *argv[])
     if (mesh.facet_sets.count == 0) {
         tool_note(&tool, "no part of the boundary has a name: the program groups makes names");
     }
-    report(&tool, &mesh, options[VERBOSE].given);
+    report(&tool, &mesh, tool_given(&tool, "verbose"));
     stream_init(&stream);
     tool_check(&tool, mesh_put(&mesh, &stream, &error), &error);
-    tool_write(&tool, &stream, options[TEXT].given);
+    tool_write(&tool, &stream, tool_given(&tool, "text"));
     stream_free(&stream);
     mesh_free(&mesh);
     return tool_end(&tool);

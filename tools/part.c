@@ -40,8 +40,6 @@ static const char usage[] =
 #include <string.h>
 #include <zlib.h>
 
-enum { PARTS, WIDEN, FACTOR, RADIUS, VERBOSE, TEXT, OUTPUT, OPTION_COUNT };
-
 /* "NAME with %d" with a number in its place; to be freed. */
 static char *numbered(const struct tool *tool, const char *name, int32_t number)
 {
@@ -165,32 +163,18 @@ int main(int argc, char *argv[])
     struct tool tool;
     struct stream stream;
     struct error error;
-    struct option options[OPTION_COUNT] = {
-        [PARTS] = {.letter = 'k', .name = "parts", .takes_value = true},
-        [WIDEN] = {.letter = 'w', .name = "widen", .takes_value = true},
-        [FACTOR] = {.letter = 'f', .name = "factor", .takes_value = true},
-        [RADIUS] = {.letter = 'R', .name = "radius", .takes_value = true},
-        [VERBOSE] = {.letter = 'v', .name = "verbose"},
-        [TEXT] = {.letter = 't', .name = "text"},
-        [OUTPUT] = {.letter = 'o', .name = "output", .takes_value = true},
-    };
-    int64_t parts = 0;
-    struct cut_body whole = {.tool = &tool, .stream = &stream, .partition = {.widen = 1.5}};
+    struct cut_body whole = {.tool = &tool, .stream = &stream};
     struct support_options support = support_defaults(2);
-    tool_begin(&tool, usage, options, OPTION_COUNT, 0, 1, argc, argv);
-    if (!options[PARTS].given) {
+    tool_begin(&tool, usage, 0, 1, argc, argv);
+    if (!tool_given(&tool, "parts")) {
         tool_fail(&tool, STATUS_INPUT, "give -k PARTS (see -h)");
     }
-    tool_check(&tool, parse_integer(options[PARTS].value, "-k", 1, 1000000, &parts, &error), &error);
-    whole.partition.parts = (int32_t)parts;
-    if (options[WIDEN].given) {
-        tool_check(&tool, parse_double(options[WIDEN].value, "-w", 1.0, 8.0, &whole.partition.widen, &error),
-                   &error);
-    }
-    tool_check(&tool, radius_apply_options(&options[FACTOR], &options[RADIUS], &support, &error), &error);
+    whole.partition.parts = (int32_t)tool_integer(&tool, "parts", 1, 1000000, 1);
+    whole.partition.widen = tool_number(&tool, "widen", 1.0, 8.0, 1.5);
+    radius_parse(&tool, &support);
     if (tool.output != NULL) {
         free(numbered(&tool, tool.output, 0));
-    } else if (!options[VERBOSE].given) {
+    } else if (!tool_given(&tool, "verbose")) {
         tool_fail(&tool, STATUS_INPUT, "nothing to do: give -o NAME or -v (see -h)");
     }
     tool_read(&tool, tool.operands[0], &stream);
@@ -199,12 +183,12 @@ int main(int argc, char *argv[])
     }
     tool_check(&tool, stream_cells(&stream, true, &whole.cells, &error), &error);
     support = support_defaults(whole.cells.dim);
-    tool_check(&tool, radius_apply_options(&options[FACTOR], &options[RADIUS], &support, &error), &error);
+    radius_parse(&tool, &support);
     cut(&whole, &support);
     cut_body_keep_sections(&whole);
     struct report report = {0};
-    write_parts(&whole, tool.output != NULL, options[TEXT].given, &report);
-    if (options[VERBOSE].given) {
+    write_parts(&whole, tool.output != NULL, tool_given(&tool, "text"), &report);
+    if (tool_given(&tool, "verbose")) {
         print_report(&whole, &report);
     }
     stream_free(&stream);

@@ -35,7 +35,7 @@ static const char usage[] =
     "      --outside V       the image's value at points outside of it\n"
     "      --section NAME    write the stream with a section of this name that holds the values\n"
     "      --material TABLE  stiffness from the values of an image\n"
-    "      --tissue E,NU     stiffness from probabilities: E, Pa, and nu of an image's tissue\n"
+    "      --tissue E,NU ...  stiffness from probabilities: E, Pa, and nu of an image's tissue\n"
     "  -t, --text            write the stream as text instead of binary\n"
     "  -o, --output FILE     write to FILE, which appears only when whole\n"
     "\n"
@@ -60,8 +60,6 @@ static const char usage[] =
 #include <string.h>
 #include <unistd.h>
 
-enum { METHOD, AT, REGION, POINTS, UNIT, OUTSIDE, SECTION, MATERIAL, TISSUE, TEXT, OUTPUT, OPTION_COUNT };
-
 /* What was asked for. */
 struct request {
     enum image_method method;
@@ -72,25 +70,27 @@ struct request {
     int image_count;
 };
 
-static void parse(const struct tool *tool, const struct option *options, struct request *request)
+static void parse(const struct tool *tool, struct request *request)
 {
     struct error error;
-    *request = (struct request){.at = options[AT].value,
-                                .region = options[REGION].value,
-                                .points = options[POINTS].value,
-                                .section = options[SECTION].value,
-                                .unit = 1,
-                                .has_outside = options[OUTSIDE].given,
-                                .stiffness = options[MATERIAL].given || options[TISSUE].given,
-                                .text = options[TEXT].given,
-                                .image_count = options[TISSUE].given ? options[TISSUE].uses->count : 1};
-    static const int exclusive[][2] = {{MATERIAL, TISSUE}, {POINTS, AT},      {POINTS, REGION},
-                                       {POINTS, SECTION},  {SECTION, REGION}, {SECTION, UNIT}};
+    const char *tissue[OPTIONS_MOST_USES];
+    int tissue_count = tool_values(tool, "tissue", tissue);
+    *request = (struct request){.method = tool_image_method(tool),
+                                .at = tool_value(tool, "at"),
+                                .region = tool_value(tool, "region"),
+                                .points = tool_value(tool, "points"),
+                                .section = tool_value(tool, "section"),
+                                .unit = tool_length_unit(tool, "unit", 1),
+                                .outside = tool_number(tool, "outside", -DBL_MAX, DBL_MAX, 0),
+                                .has_outside = tool_given(tool, "outside"),
+                                .stiffness = tool_given(tool, "material") || tissue_count > 0,
+                                .text = tool_given(tool, "text"),
+                                .image_count = tissue_count > 0 ? tissue_count : 1};
+    static const char *const exclusive[][2] = {{"material", "tissue"}, {"points", "at"},
+                                               {"points", "region"},   {"points", "section"},
+                                               {"section", "region"},  {"section", "unit"}};
     for (size_t e = 0; e < sizeof exclusive / sizeof *exclusive; e++) {
-        if (options[exclusive[e][0]].given && options[exclusive[e][1]].given) {
-            tool_fail(tool, STATUS_INPUT, "--%s does not go with --%s", options[exclusive[e][1]].name,
-                      options[exclusive[e][0]].name);
-        }
+        tool_excludes(tool, exclusive[e][0], exclusive[e][1]);
     }
     if (request->text && request->section == NULL) {
         tool_fail(tool, STATUS_INPUT, "-t is for streams: it needs --section (a table is text)");
@@ -102,20 +102,10 @@ static void parse(const struct tool *tool, const struct option *options, struct 
         tool_fail(tool, STATUS_INPUT, "--region is for integration points (points.x), not for %s",
                   request->at);
     }
-    request->method = tool_image_method(tool, options[METHOD].value);
-    if (options[UNIT].given) {
-        tool_check(tool, parse_length_unit(options[UNIT].value, "-u", &request->unit, &error), &error);
-    }
-    if (request->has_outside) {
-        tool_check(
-            tool,
-            parse_double(options[OUTSIDE].value, "--outside", -DBL_MAX, DBL_MAX, &request->outside, &error),
-            &error);
-    }
-    if (options[MATERIAL].given) {
-        tool_check(tool, tissue_read(options[MATERIAL].value, &request->tissue, &error), &error);
-    } else if (options[TISSUE].given) {
-        tool_check(tool, tissue_parse(options[TISSUE].uses, &request->tissue, &error), &error);
+    if (tool_given(tool, "material")) {
+        tool_check(tool, tissue_read(tool_value(tool, "material"), &request->tissue, &error), &error);
+    } else if (tissue_count > 0) {
+        tool_check(tool, tissue_parse(tissue_count, tissue, &request->tissue, &error), &error);
     }
 }
 
@@ -269,22 +259,8 @@ int main(int argc, char *argv[])
     struct request request;
     struct sample_points rows;
     struct error error;
-    static struct option_uses uses; /* of --tissue */
-    struct option options[OPTION_COUNT] = {
-        [METHOD] = {.letter = 'i', .name = "interpolation", .takes_value = true},
-        [AT] = {.letter = 'a', .name = "at", .takes_value = true},
-        [REGION] = {.letter = 'r', .name = "region", .takes_value = true},
-        [POINTS] = {.letter = 'p', .name = "points", .takes_value = true},
-        [UNIT] = {.letter = 'u', .name = "unit", .takes_value = true},
-        [OUTSIDE] = {.name = "outside", .takes_value = true},
-        [SECTION] = {.name = "section", .takes_value = true},
-        [MATERIAL] = {.name = "material", .takes_value = true},
-        [TISSUE] = {.name = "tissue", .takes_value = true, .uses = &uses},
-        [TEXT] = {.letter = 't', .name = "text"},
-        [OUTPUT] = {.letter = 'o', .name = "output", .takes_value = true},
-    };
-    tool_begin(&tool, usage, options, OPTION_COUNT, 1, OPTION_MOST_USES + 1, argc, argv);
-    parse(&tool, options, &request);
+    tool_begin(&tool, usage, 1, OPTIONS_MOST_USES + 1, argc, argv);
+    parse(&tool, &request);
     int most = request.image_count + (request.points == NULL ? 1 : 0);
     if (tool.operand_count < request.image_count || tool.operand_count > most) {
         tool_fail(&tool, STATUS_INPUT, "%d operands: %d image%s%s (see -h)", tool.operand_count,

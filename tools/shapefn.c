@@ -35,8 +35,6 @@ static const char usage[] =
 
 #include <string.h>
 
-enum { BASIS, LAST_OF_MLS = BASIS + MLS_OPTION_COUNT - 1, TEXT, OUTPUT, OPTION_COUNT };
-
 /* What the shape functions are, for whoever evaluates them elsewhere. */
 static void record(const struct tool *tool, struct stream *stream, const struct recorded *recorded)
 {
@@ -53,27 +51,22 @@ int main(int argc, char *argv[])
     struct tool tool;
     struct stream stream;
     struct error error;
-    struct option options[OPTION_COUNT] = {
-        [BASIS] = MLS_OPTIONS,
-        [TEXT] = {.letter = 't', .name = "text"},
-        [OUTPUT] = {.letter = 'o', .name = "output", .takes_value = true},
-    };
     int dim;
     int64_t node_count;
     const double *x;
     struct mls mls = mls_default(0);
     struct recorded recorded;
-    tool_begin(&tool, usage, options, OPTION_COUNT, 0, 1, argc, argv);
-    tool_check(&tool, mls_apply_options(options + BASIS, &mls, &error), &error);
+    tool_begin(&tool, usage, 0, 1, argc, argv);
+    mls_parse(&tool, &mls);
     tool_read(&tool, tool.operands[0], &stream);
     tool_check(&tool, stream_nodes(&stream, &dim, &node_count, &x, &error), &error);
     stage_fill(&tool, &stream, "support");
     tool_check(&tool, stage_recorded(&stream, "support", dim, &recorded, &error), &error);
     recorded.shapes = recorded.support.mls;
-    tool_check(&tool, mls_apply_options(options + BASIS, &recorded.shapes, &error), &error);
+    mls_parse(&tool, &recorded.shapes);
     tool_check(&tool, stage_shapefn(&stream, &recorded.shapes, &error), &error);
     record(&tool, &stream, &recorded);
-    tool_write(&tool, &stream, options[TEXT].given);
+    tool_write(&tool, &stream, tool_given(&tool, "text"));
     stream_free(&stream);
     return tool_end(&tool);
 }

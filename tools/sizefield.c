@@ -52,8 +52,6 @@ static const char usage[] =
 #include <string.h>
 #include <unistd.h>
 
-enum { SHARE, NODES, SAG, LEAST, UNIT, FIELD, VERBOSE, BINARY, TEXT, OUTPUT, OPTION_COUNT };
-
 /* What the command line asks for. */
 struct request {
     struct size_field_request sizes;
@@ -62,32 +60,16 @@ struct request {
     bool verbose;
 };
 
-static struct request parse(const struct tool *tool, const struct option *options)
+static struct request parse(const struct tool *tool)
 {
-    struct error error;
-    struct request request = {.sizes = {.share = 0.25, .most_nodes = 100000.0},
-                              .unit = 1.0,
-                              .field = options[FIELD].given ? options[FIELD].value : "u",
-                              .verbose = options[VERBOSE].given};
-    if (options[SHARE].given) {
-        tool_check(tool, parse_double(options[SHARE].value, "-s", 1e-6, 1e6, &request.sizes.share, &error),
-                   &error);
-    }
-    if (options[NODES].given) {
-        int64_t nodes = 0;
-        tool_check(tool, parse_integer(options[NODES].value, "-n", 10, 100000000, &nodes, &error), &error);
-        request.sizes.most_nodes = (double)nodes;
-    }
-    if (options[SAG].given) {
-        tool_check(tool, parse_length(options[SAG].value, "--sag", &request.sizes.sag, &error), &error);
-    }
-    if (options[LEAST].given) {
-        tool_check(tool, parse_length(options[LEAST].value, "--least", &request.sizes.least, &error), &error);
-    }
-    if (options[UNIT].given) {
-        tool_check(tool, parse_length_unit(options[UNIT].value, "-u", &request.unit, &error), &error);
-    }
-    return request;
+    return (struct request){
+        .sizes = {.share = tool_number(tool, "share", 1e-6, 1e6, 0.25),
+                  .most_nodes = (double)tool_integer(tool, "nodes", 10, 100000000, 100000),
+                  .sag = tool_length(tool, "sag", 0.0),
+                  .least = tool_length(tool, "least", 0.0)},
+        .unit = tool_length_unit(tool, "unit", 1.0),
+        .field = tool_given(tool, "field") ? tool_value(tool, "field") : "u",
+        .verbose = tool_given(tool, "verbose")};
 }
 
 /* Errors of the cells of a field, from its recovered gradient. */
@@ -283,26 +265,12 @@ int main(int argc, char *argv[])
     struct size_field field;
     struct error error;
     double *squared = NULL;
-    struct option options[OPTION_COUNT] = {
-        [SHARE] = {.letter = 's', .name = "share", .takes_value = true},
-        [NODES] = {.letter = 'n', .name = "nodes", .takes_value = true},
-        [SAG] = {.name = "sag", .takes_value = true},
-        [LEAST] = {.name = "least", .takes_value = true},
-        [UNIT] = {.letter = 'u', .name = "unit", .takes_value = true},
-        [FIELD] = {.name = "field", .takes_value = true},
-        [VERBOSE] = {.letter = 'v', .name = "verbose"},
-        [BINARY] = {.letter = 'b', .name = "binary"},
-        [TEXT] = {.letter = 't', .name = "text"},
-        [OUTPUT] = {.letter = 'o', .name = "output", .takes_value = true},
-    };
-    tool_begin(&tool, usage, options, OPTION_COUNT, 0, 1, argc, argv);
-    struct request request = parse(&tool, options);
-    if (options[BINARY].given && options[TEXT].given) {
-        tool_fail(&tool, STATUS_INPUT, "give one of -b and -t");
-    }
-    if (options[UNIT].given && (options[BINARY].given || options[TEXT].given)) {
+    tool_begin(&tool, usage, 0, 1, argc, argv);
+    tool_excludes(&tool, "binary", "text");
+    if (tool_given(&tool, "unit") && (tool_given(&tool, "binary") || tool_given(&tool, "text"))) {
         tool_fail(&tool, STATUS_INPUT, "-u goes without -b and -t: a stream is in m");
     }
+    struct request request = parse(&tool);
     tool_read(&tool, tool.operands[0], &stream);
     tool_check(&tool, recover(&stream, request.field, &cells, &squared, &error), &error);
     tool_check(&tool, size_field_build(&cells, squared, &request.sizes, &field, &error), &error);
@@ -312,8 +280,8 @@ int main(int argc, char *argv[])
     }
     struct layered layered;
     tool_check(&tool, layered_make(&cells, &field, &layered, &error), &error);
-    if (options[BINARY].given || options[TEXT].given) {
-        write_sizes(&tool, &layered, options[TEXT].given);
+    if (tool_given(&tool, "binary") || tool_given(&tool, "text")) {
+        write_sizes(&tool, &layered, tool_given(&tool, "text"));
     } else {
         write_view(&tool, &layered, request.unit);
     }

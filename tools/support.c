@@ -56,56 +56,23 @@ static const char usage[] =
 
 #include <stdlib.h>
 
-enum {
-    FACTOR,
-    RADIUS,
-    LEAST,
-    MOST,
-    NO_WIDEN,
-    BOUND,
-    REACH,
-    INTERFACE,
-    BASIS,
-    LAST_OF_MLS = BASIS + MLS_OPTION_COUNT - 1,
-    VERBOSE,
-    TEXT,
-    OUTPUT,
-    OPTION_COUNT
-};
-
-static struct support_options parse(const struct tool *tool, const struct option *options, int dim)
+static struct support_options parse(const struct tool *tool, int dim)
 {
     struct support_options support = support_defaults(dim);
-    struct error error;
-    tool_check(tool, radius_apply_options(&options[FACTOR], &options[RADIUS], &support, &error), &error);
-    if (options[LEAST].given) {
-        tool_check(tool, parse_integer(options[LEAST].value, "-m", 1, 100000, &support.least, &error),
-                   &error);
-    }
-    if (options[MOST].given) {
-        tool_check(tool, parse_integer(options[MOST].value, "-n", 1, 100000, &support.most, &error), &error);
-    }
+    radius_parse(tool, &support);
+    support.least = tool_integer(tool, "least", 1, 100000, support.least);
+    support.most = tool_integer(tool, "most", 1, 100000, support.most);
     if (support.most > 0 && support.most < support.least) {
         tool_fail(tool, STATUS_INPUT, "-n is less than -m");
     }
-    if (options[BOUND].given) {
-        tool_check(tool,
-                   parse_double(options[BOUND].value, "--bound", 1.0, 1e6, &support.gradient_bound, &error),
-                   &error);
-    }
-    if (options[REACH].given) {
-        int choice;
-        tool_check(
-            tool,
-            parse_choice(options[REACH].value, "--reach", reach_names, REACH_RULE_COUNT, &choice, &error),
-            &error);
-        support.reach = (enum reach_rule)choice;
-    }
-    if (options[INTERFACE].given && support.reach == REACH_DISTANCE) {
+    support.gradient_bound = tool_number(tool, "bound", 1.0, 1e6, support.gradient_bound);
+    support.reach =
+        (enum reach_rule)tool_choice(tool, "reach", reach_names, REACH_RULE_COUNT, (int)support.reach);
+    if (tool_given(tool, "interface") && support.reach == REACH_DISTANCE) {
         tool_fail(tool, STATUS_INPUT, "--reach distance acts across the interfaces of -i");
     }
-    support.widen = !options[NO_WIDEN].given;
-    tool_check(tool, mls_apply_options(options + BASIS, &support.mls, &error), &error);
+    support.widen = !tool_given(tool, "no-widen");
+    mls_parse(tool, &support.mls);
     return support;
 }
 
@@ -140,43 +107,29 @@ int main(int argc, char *argv[])
     struct tool tool;
     struct stream stream;
     struct error error;
-    struct option options[OPTION_COUNT] = {
-        [FACTOR] = {.letter = 'k', .name = "factor", .takes_value = true},
-        [RADIUS] = {.letter = 'R', .name = "radius", .takes_value = true},
-        [LEAST] = {.letter = 'm', .name = "least", .takes_value = true},
-        [MOST] = {.letter = 'n', .name = "most", .takes_value = true},
-        [NO_WIDEN] = {.name = "no-widen"},
-        [BOUND] = {.name = "bound", .takes_value = true},
-        [REACH] = {.name = "reach", .takes_value = true},
-        [INTERFACE] = {.letter = 'i', .name = "interface", .takes_value = true},
-        [BASIS] = MLS_OPTIONS,
-        [VERBOSE] = {.letter = 'v', .name = "verbose"},
-        [TEXT] = {.letter = 't', .name = "text"},
-        [OUTPUT] = {.letter = 'o', .name = "output", .takes_value = true},
-    };
     int dim;
     int64_t node_count;
     const double *x;
     struct support_report report;
-    tool_begin(&tool, usage, options, OPTION_COUNT, 0, 1, argc, argv);
-    (void)parse(&tool, options, 0); /* usage errors before waiting for the input */
+    tool_begin(&tool, usage, 0, 1, argc, argv);
+    (void)parse(&tool, 0); /* usage errors before waiting for the input */
     tool_read(&tool, tool.operands[0], &stream);
     tool_check(&tool, stream_nodes(&stream, &dim, &node_count, &x, &error), &error);
-    struct support_options support = parse(&tool, options, dim);
+    struct support_options support = parse(&tool, dim);
     stage_fill(&tool, &stream, "ipoints");
     int32_t *side = NULL;
-    if (options[INTERFACE].given) {
-        tool_check(&tool, stage_interfaces(&stream, options[INTERFACE].value, &side, &error), &error);
+    if (tool_given(&tool, "interface")) {
+        tool_check(&tool, stage_interfaces(&stream, tool_value(&tool, "interface"), &side, &error), &error);
         support.side = side;
     }
     tool_check(&tool, stage_support(&stream, &support, &report, &error), &error);
-    if (options[REACH].given && report.reach != support.reach) {
+    if (tool_given(&tool, "reach") && report.reach != support.reach) {
         tool_fail(&tool, STATUS_INPUT, "--reach cells: the input has no cells: --reach distance");
     }
-    if (options[VERBOSE].given) {
+    if (tool_given(&tool, "verbose")) {
         note_report(&tool, &report);
     }
-    tool_write(&tool, &stream, options[TEXT].given);
+    tool_write(&tool, &stream, tool_given(&tool, "text"));
     stream_free(&stream);
     free(side);
     return tool_end(&tool);

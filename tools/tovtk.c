@@ -50,8 +50,6 @@ static const char usage[] =
 #include <string.h>
 #include <unistd.h>
 
-enum { TEXT, OUTPUT, OPTION_COUNT };
-
 static bool is_named(const char *path, const char *ending)
 {
     size_t length = strlen(path), tail = strlen(ending);
@@ -157,27 +155,23 @@ int main(int argc, char *argv[])
 {
     struct tool tool;
     struct error error;
-    struct option options[OPTION_COUNT] = {
-        [TEXT] = {.letter = 't', .name = "text"},
-        [OUTPUT] = {.letter = 'o', .name = "output", .takes_value = true},
-    };
     struct plot plot = {0};
     struct target target;
-    tool_begin(&tool, usage, options, OPTION_COUNT, 0, 1, argc, argv);
+    tool_begin(&tool, usage, 0, 1, argc, argv);
     check_ending(&tool);
     bool is_series = tool.output != NULL && is_named(tool.output, ".pvd");
     tool_read(&tool, tool.operands[0], &plot.stream);
     tool_check(&tool, plot_find(&plot, &error), &error);
     if (is_series) {
-        write_series(&tool, &plot, options[TEXT].given);
+        write_series(&tool, &plot, tool_given(&tool, "text"));
     } else {
         if (plot.frame_count > 0) {
             tool_note(&tool, "only the final state is written: name a .pvd file for all %lld frames",
                       (long long)plot.frame_count);
         }
         target_open(&tool, &target, tool.output);
-        target_close(&tool, &target, write_vtu(&plot, FRAME_NONE, options[TEXT].given, target.file, &error),
-                     &error);
+        target_close(&tool, &target,
+                     write_vtu(&plot, FRAME_NONE, tool_given(&tool, "text"), target.file, &error), &error);
     }
     plot_free(&plot);
     return tool_end(&tool);

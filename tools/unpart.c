@@ -24,18 +24,12 @@ static const char usage[] =
 
 #include <limits.h>
 
-enum { TEXT, OUTPUT, OPTION_COUNT };
-
 int main(int argc, char *argv[])
 {
     struct tool tool;
     struct rejoin rejoin;
     struct stream stream;
-    struct option options[OPTION_COUNT] = {
-        [TEXT] = {.letter = 't', .name = "text"},
-        [OUTPUT] = {.letter = 'o', .name = "output", .takes_value = true},
-    };
-    tool_begin(&tool, usage, options, OPTION_COUNT, 1, INT_MAX, argc, argv);
+    tool_begin(&tool, usage, 1, INT_MAX, argc, argv);
     rejoin_begin(&rejoin, &tool, tool.operands, tool.operand_count);
     stream_init(&stream);
     rejoin_sections(&rejoin, &stream);
@@ -44,7 +38,7 @@ int main(int argc, char *argv[])
     stream.provenance_count = rejoin.part[0].stream.provenance_count;
     rejoin.part[0].stream.provenance = NULL;
     rejoin.part[0].stream.provenance_count = 0;
-    tool_write(&tool, &stream, options[TEXT].given);
+    tool_write(&tool, &stream, tool_given(&tool, "text"));
     stream_free(&stream);
     rejoin_free(&rejoin);
     return tool_end(&tool);

@@ -47,13 +47,13 @@ static const char usage[] =
     "                          only where that lies beyond it\n"
     "      --gap LENGTH        move it outward by LENGTH\n"
     "  -l, --labels TABLE      names of labels\n"
-    "      --part NAME=PLACE   name of the boundary in ball:X,Y,Z,RADIUS, lengths with units, or in the\n"
+    "      --part NAME=PLACE ...  name of the boundary in ball:X,Y,Z,RADIUS, lengths with units, or in the\n"
     "                          voxels of a mask image; the later of two that overlap\n"
     "  -s, --slice AXIS=PLACE  the slice nearest to PLACE on a world axis, as z=12mm\n"
     "      --largest           the largest connected body only\n"
     "  -u, --unit UNIT         unit of the file's lengths, instead of what it says: m, cm, mm, um, or a\n"
     "                          number of metres\n"
-    "  -v, --verbose           report on standard error: volumes in voxels and in cells, nodes, angles\n"
+    "  -v, --verbose           report on standard error: volumes in voxels and cells, nodes, angles\n"
     "  -b, --binary            write binary (default)\n"
     "  -t, --text              write text\n"
     "  -o, --output FILE       write to FILE, which appears only when whole\n"
@@ -76,24 +76,6 @@ static const char usage[] =
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-
-enum {
-    SPACING,
-    FINE,
-    SIZES,
-    SURFACE,
-    GAP,
-    LABELS,
-    PART,
-    SLICE,
-    LARGEST,
-    UNIT,
-    VERBOSE,
-    BINARY,
-    TEXT,
-    OUTPUT,
-    OPTION_COUNT
-};
 
 /* Volumes are told where they are off by more than this share, and what lies beyond the sizes where it is
  * more. */
@@ -266,91 +248,63 @@ static void write_stream(const struct tool *tool, const struct label_image *imag
     label_mesh_free(&mesh);
 }
 
-static void check_options(const struct tool *tool, const struct option options[])
+static void check_options(const struct tool *tool)
 {
-    if (!options[SPACING].given) {
+    if (!tool_given(tool, "spacing")) {
         tool_fail(tool, STATUS_INPUT, "the spacing is missing: give -h LENGTH, as -h 6mm");
     }
-    if (options[BINARY].given && options[TEXT].given) {
-        tool_fail(tool, STATUS_INPUT, "give one of -b and -t");
-    }
-    if (options[SURFACE].given && (options[BINARY].given || options[TEXT].given)) {
+    tool_excludes(tool, "binary", "text");
+    if (tool_given(tool, "surface") && (tool_given(tool, "binary") || tool_given(tool, "text"))) {
         tool_fail(tool, STATUS_INPUT, "--surface goes without -b and -t: it writes a table");
     }
-    if (options[SURFACE].given && options[PART].given) {
-        tool_fail(tool, STATUS_INPUT, "--surface goes without --part");
-    }
-    if (options[GAP].given && !options[SURFACE].given) {
-        tool_fail(tool, STATUS_INPUT, "--gap goes with --surface");
-    }
+    tool_excludes(tool, "surface", "part");
+    tool_requires(tool, "gap", "surface");
 }
 
 int main(int argc, char *argv[])
 {
     static char help[] = "--help";
-    static struct option_uses parts;
     struct tool tool;
     struct label_image image;
     struct stuffing stuffing;
     struct error error;
-    double spacing;
-    struct label_image_options wanted = {NULL, 0, NULL};
-    struct option options[OPTION_COUNT] = {
-        [SPACING] = {.letter = 'h', .name = "spacing", .takes_value = true},
-        [FINE] = {.name = "fine", .takes_value = true},
-        [SIZES] = {.name = "sizes", .takes_value = true},
-        [SURFACE] = {.name = "surface", .takes_value = true},
-        [GAP] = {.name = "gap", .takes_value = true},
-        [LABELS] = {.letter = 'l', .name = "labels", .takes_value = true},
-        [PART] = {.name = "part", .takes_value = true, .uses = &parts},
-        [SLICE] = {.letter = 's', .name = "slice", .takes_value = true},
-        [LARGEST] = {.name = "largest"},
-        [UNIT] = {.letter = 'u', .name = "unit", .takes_value = true},
-        [VERBOSE] = {.letter = 'v', .name = "verbose"},
-        [BINARY] = {.letter = 'b', .name = "binary"},
-        [TEXT] = {.letter = 't', .name = "text"},
-        [OUTPUT] = {.letter = 'o', .name = "output", .takes_value = true},
-    };
     if (argc > 1 && strcmp(argv[argc - 1], "-h") == 0) {
         argv[argc - 1] = help;
     }
-    tool_begin(&tool, usage, options, OPTION_COUNT, 0, 1, argc, argv);
-    check_options(&tool, options);
-    tool_check(&tool, parse_length(options[SPACING].value, "-h", &spacing, &error), &error);
-    if (options[UNIT].given) {
-        tool_check(&tool, parse_length_unit(options[UNIT].value, "-u", &wanted.unit, &error), &error);
-    }
-    wanted.table = options[LABELS].value;
-    wanted.slice = options[SLICE].value;
+    tool_begin(&tool, usage, 0, 1, argc, argv);
+    check_options(&tool);
+    double spacing = tool_length(&tool, "spacing", 0);
+    struct label_image_options wanted = {.table = tool_value(&tool, "labels"),
+                                         .unit = tool_length_unit(&tool, "unit", 0),
+                                         .slice = tool_value(&tool, "slice")};
     label_image_read(&tool, tool.operands[0], &wanted, &image);
-    label_parts_make(&tool, &parts, &image);
-    struct label_surface_options surface = {.gap = 0};
-    if (options[GAP].given) {
-        tool_check(&tool, parse_length(options[GAP].value, "--gap", &surface.gap, &error), &error);
-    }
-    if (options[SURFACE].given) {
-        label_surface_parse(&tool, &image, options[SURFACE].value, &surface);
+    label_parts_make(&tool, &image);
+    struct label_surface_options surface = {.gap = tool_length(&tool, "gap", 0)};
+    if (tool_given(&tool, "surface")) {
+        label_surface_parse(&tool, &image, tool_value(&tool, "surface"), &surface);
         for (int32_t l = 0; l < image.labels.count; l++) {
             image.keep[l] = l == surface.inner;
         }
     }
-    struct stuffing_options stuffing_options = {
-        .spacing = spacing, .keep = image.keep, .whole = image.region, .largest = options[LARGEST].given};
+    struct stuffing_options stuffing_options = {.spacing = spacing,
+                                                .keep = image.keep,
+                                                .whole = image.region,
+                                                .largest = tool_given(&tool, "largest")};
     bool *fine = NULL;
-    if (options[FINE].given) {
-        fine = label_fine_parse(&tool, &image, options[FINE].value, spacing, &stuffing_options.finest);
+    if (tool_given(&tool, "fine")) {
+        fine = label_fine_parse(&tool, &image, tool_value(&tool, "fine"), spacing, &stuffing_options.finest);
         stuffing_options.fine = fine;
     }
     struct label_sizes sizes;
-    label_sizes_read(&tool, &image, options[SIZES].value, &sizes);
+    label_sizes_read(&tool, &image, tool_value(&tool, "sizes"), &sizes);
     stuffing_options.sized = &sizes.cells;
     stuffing_options.size = sizes.size;
     tool_check(&tool, stuffing_make(&image.labels, &stuffing_options, &stuffing, &error), &error);
-    report(&tool, &image, &stuffing, spacing, options[VERBOSE].given);
-    if (options[SURFACE].given) {
+    report(&tool, &image, &stuffing, spacing, tool_given(&tool, "verbose"));
+    if (tool_given(&tool, "surface")) {
         label_surface_write(&tool, &stuffing, &surface);
     } else {
-        write_stream(&tool, &image, &stuffing, options[TEXT].given);
+        write_stream(&tool, &image, &stuffing, tool_given(&tool, "text"));
     }
     stuffing_free(&stuffing);
     label_sizes_free(&sizes);

@@ -62,41 +62,27 @@ static const char usage[] =
 #include <stdlib.h>
 #include <string.h>
 
-enum { METHOD, LIKE, FILL, VACATED, FIELD, INVERSE, FRAME, VERBOSE, OUTPUT, OPTION_COUNT };
-
 static const double tolerance = 1e-4; /* of the places, in voxels */
 
-static void parse(const struct tool *tool, const struct option *options, struct warp_request *request)
+static void parse(const struct tool *tool, struct warp_request *request)
 {
-    struct error error;
-    int64_t frame = 0;
-    *request = (struct warp_request){.fills = options[FILL].given,
-                                     .marks_vacated = options[VACATED].given,
-                                     .field = options[FIELD].given,
-                                     .inverse = options[INVERSE].given,
-                                     .verbose = options[VERBOSE].given,
+    static const char *const of_images[] = {"interpolation", "like", "fill", "vacated", NULL};
+    const char *of_image = tool_first_given(tool, of_images);
+    *request = (struct warp_request){.method = tool_image_method(tool),
+                                     .fills = tool_given(tool, "fill"),
+                                     .fill = tool_number(tool, "fill", -DBL_MAX, DBL_MAX, 0),
+                                     .marks_vacated = tool_given(tool, "vacated"),
+                                     .vacated = tool_number(tool, "vacated", -DBL_MAX, DBL_MAX, 0),
+                                     .field = tool_given(tool, "field"),
+                                     .inverse = tool_given(tool, "inverse"),
+                                     .verbose = tool_given(tool, "verbose"),
                                      .section = "u"};
-    for (int i = METHOD; i <= VACATED; i++) {
-        if (request->field && options[i].given) {
-            tool_fail(tool, STATUS_INPUT, "--%s is for images, not for --field", options[i].name);
-        }
+    if (request->field && of_image != NULL) {
+        tool_fail(tool, STATUS_INPUT, "--%s is for images, not for --field", of_image);
     }
-    request->method = tool_image_method(tool, options[METHOD].value);
-    if (request->fills) {
-        tool_check(tool,
-                   parse_double(options[FILL].value, "--fill", -DBL_MAX, DBL_MAX, &request->fill, &error),
-                   &error);
-    }
-    if (request->marks_vacated) {
-        tool_check(
-            tool,
-            parse_double(options[VACATED].value, "--vacated", -DBL_MAX, DBL_MAX, &request->vacated, &error),
-            &error);
-    }
-    if (options[FRAME].given) {
-        tool_check(tool, parse_integer(options[FRAME].value, "--frame", 0, INT32_MAX, &frame, &error),
-                   &error);
-        snprintf(request->section, sizeof request->section, "u.frame.%lld", (long long)frame);
+    if (tool_given(tool, "frame")) {
+        snprintf(request->section, sizeof request->section, "u.frame.%lld",
+                 (long long)tool_integer(tool, "frame", 0, INT32_MAX, 0));
     }
     tool_check_image_output(tool);
 }
@@ -227,33 +213,22 @@ int main(int argc, char *argv[])
     struct cells cells;
     struct motion motion;
     struct image_axes axes; /* of the grid */
-    struct option options[OPTION_COUNT] = {
-        [METHOD] = {.letter = 'i', .name = "interpolation", .takes_value = true},
-        [LIKE] = {.name = "like", .takes_value = true},
-        [FILL] = {.name = "fill", .takes_value = true},
-        [VACATED] = {.name = "vacated", .takes_value = true},
-        [FIELD] = {.name = "field"},
-        [INVERSE] = {.name = "inverse"},
-        [FRAME] = {.name = "frame", .takes_value = true},
-        [VERBOSE] = {.letter = 'v', .name = "verbose"},
-        [OUTPUT] = {.letter = 'o', .name = "output", .takes_value = true},
-    };
-    tool_begin(&tool, usage, options, OPTION_COUNT, 1, 2, argc, argv);
-    parse(&tool, options, &request);
+    tool_begin(&tool, usage, 1, 2, argc, argv);
+    parse(&tool, &request);
     tool_read_image(&tool, tool.operands[0], &image);
-    if (options[LIKE].given) {
-        tool_read_image(&tool, options[LIKE].value, &like);
+    if (tool_given(&tool, "like")) {
+        tool_read_image(&tool, tool_value(&tool, "like"), &like);
     }
     tool_read(&tool, tool.operands[1], &stream);
     const double *u = find_field(&tool, &stream, request.section, &cells);
-    const struct image *grid = options[LIKE].given ? &like : &image;
+    const struct image *grid = tool_given(&tool, "like") ? &like : &image;
     image_to_body(&tool, &image, cells.dim, &axes);
-    if (options[LIKE].given) {
+    if (tool_given(&tool, "like")) {
         int across = axes.world[2];
         image_to_body(&tool, &like, cells.dim, &axes);
         if (across != axes.world[2]) {
-            tool_fail(&tool, STATUS_INPUT, "--like %s: lies in another plane than %s", options[LIKE].value,
-                      tool.operands[0]);
+            tool_fail(&tool, STATUS_INPUT, "--like %s: lies in another plane than %s",
+                      tool_value(&tool, "like"), tool.operands[0]);
         }
     }
     build_motion(&tool, &stream, request.section, &cells, u, &motion);

@@ -1,66 +1,130 @@
 #include "base/options.h"
 
+#include <assert.h>
 #include <errno.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-static struct option *find_letter(struct option options[], int count, char letter)
+static void declare(struct options *options, char letter, const char *name, size_t length, bool takes_value,
+                    bool repeats)
 {
-    for (int i = 0; i < count; i++) {
-        if (options[i].letter != 0 && options[i].letter == letter) {
-            return &options[i];
+    struct option *option = &options->option[options->count++];
+    assert(options->count <= OPTIONS_MOST && length > 0 && length < sizeof option->name);
+    *option = (struct option){.letter = letter, .takes_value = takes_value, .repeats = repeats};
+    memcpy(option->name, name, length);
+}
+
+/* The option that a line declares, if it does. */
+static void declare_line(struct options *options, const char *line)
+{
+    bool has_letter = strncmp(line, "  -", 3) == 0 && strncmp(line + 4, ", --", 4) == 0;
+    if (!has_letter && strncmp(line, "      --", 8) != 0) {
+        return;
+    }
+    const char *name = line + 8;
+    size_t length = strcspn(name, " \n");
+    const char *value = name + length, *end = value;
+    while (*end != '\0' && *end != '\n' && strncmp(end, "  ", 2) != 0) {
+        end++;
+    }
+    bool repeats = end - value > 4 && strncmp(end - 4, " ...", 4) == 0;
+    declare(options, has_letter ? line[3] : '\0', name, length, end > value, repeats);
+}
+
+static struct option *find_letter(struct options *options, char letter)
+{
+    for (int i = 0; i < options->count; i++) {
+        if (options->option[i].letter == letter) {
+            return &options->option[i];
         }
     }
     return NULL;
 }
 
-static struct option *find_name(struct option options[], int count, const char *name, size_t length)
+void options_declare(struct options *options, const char *usage)
 {
-    for (int i = 0; i < count; i++) {
-        const char *candidate = options[i].name;
-        if (candidate != NULL && strlen(candidate) == length && strncmp(candidate, name, length) == 0) {
-            return &options[i];
+    static const char heading[] = "\nOptions:\n";
+    const char *line = strstr(usage, heading);
+    *options = (struct options){.count = 0};
+    line = line != NULL ? line + strlen(heading) : "";
+    while (*line != '\0' && *line != '\n') {
+        declare_line(options, line);
+        line += strcspn(line, "\n");
+        line += *line == '\n' ? 1 : 0;
+    }
+    declare(options, find_letter(options, 'h') == NULL ? 'h' : '\0', "help", strlen("help"), false, false);
+    declare(options, '\0', "version", strlen("version"), false, false);
+}
+
+/* The index of the option of that name, or -1. */
+static int find_name(const struct options *options, const char *name, size_t length)
+{
+    for (int i = 0; i < options->count; i++) {
+        const char *candidate = options->option[i].name;
+        if (strlen(candidate) == length && strncmp(candidate, name, length) == 0) {
+            return i;
         }
     }
-    return NULL;
+    return -1;
+}
+
+bool options_has(const struct options *options, const char *name)
+{
+    return find_name(options, name, strlen(name)) >= 0;
+}
+
+const struct option *options_find(const struct options *options, const char *name)
+{
+    int index = find_name(options, name, strlen(name));
+    assert(index >= 0);
+    return &options->option[index];
+}
+
+const char *option_text(const struct option *option, char text[32])
+{
+    if (option->letter != '\0') {
+        snprintf(text, 32, "-%c", option->letter);
+    } else {
+        snprintf(text, 32, "--%s", option->name);
+    }
+    return text;
 }
 
 static enum status mark_given(struct option *option, const char *shown, struct error *error)
 {
-    if (option->given && option->uses == NULL) {
+    if (option->given && !option->repeats) {
         return fail(error, STATUS_INPUT, "option %s given twice", shown);
     }
     option->given = true;
     return STATUS_OK;
 }
 
-static enum status take_value(struct option *option, const char *value, struct error *error)
+static enum status take_value(struct options *options, struct option *option, const char *value,
+                              struct error *error)
 {
-    option->value = value;
-    if (option->uses != NULL) {
-        if (option->uses->count == OPTION_MOST_USES) {
-            return fail(error, STATUS_INPUT, "more than %d options --%s and the like: run it twice",
-                        OPTION_MOST_USES, option->name);
-        }
-        option->uses->use[option->uses->count++] = (struct option_use){option->name, value};
+    if (options->use_count == OPTIONS_MOST_USES) {
+        return fail(error, STATUS_INPUT, "more than %d options --%s and the like: run it twice",
+                    OPTIONS_MOST_USES, option->name);
     }
+    option->value = value;
+    options->use[options->use_count++] = (struct option_use){option, value};
     return STATUS_OK;
 }
 
 /* --name, --name=VALUE or --name VALUE at argv[*at]. */
-static enum status parse_long(struct option options[], int count, int argc, char *argv[], int *at,
-                              struct error *error)
+static enum status parse_long(struct options *options, int argc, char *argv[], int *at, struct error *error)
 {
     const char *shown = argv[*at];
     const char *name = shown + 2;
     const char *equals = strchr(name, '=');
     size_t length = equals != NULL ? (size_t)(equals - name) : strlen(name);
-    struct option *option = find_name(options, count, name, length);
-    if (option == NULL) {
+    int index = find_name(options, name, length);
+    if (index < 0) {
         return fail(error, STATUS_INPUT, "unknown option %s (see -h)", shown);
     }
+    struct option *option = &options->option[index];
     enum status status = mark_given(option, shown, error);
     if (status != STATUS_OK) {
         return status;
@@ -69,21 +133,20 @@ static enum status parse_long(struct option options[], int count, int argc, char
         return equals == NULL ? STATUS_OK : fail(error, STATUS_INPUT, "option %s takes no value", shown);
     }
     if (equals != NULL) {
-        return take_value(option, equals + 1, error);
+        return take_value(options, option, equals + 1, error);
     }
     if (*at + 1 >= argc) {
         return fail(error, STATUS_INPUT, "option %s lacks its value", shown);
     }
-    return take_value(option, argv[++*at], error);
+    return take_value(options, option, argv[++*at], error);
 }
 
 /* -abc (flags joined), -kVALUE or -k VALUE at argv[*at]. */
-static enum status parse_short(struct option options[], int count, int argc, char *argv[], int *at,
-                               struct error *error)
+static enum status parse_short(struct options *options, int argc, char *argv[], int *at, struct error *error)
 {
     for (const char *letter = argv[*at] + 1; *letter != '\0'; letter++) {
         char shown[3] = {'-', *letter, '\0'};
-        struct option *option = find_letter(options, count, *letter);
+        struct option *option = find_letter(options, *letter);
         if (option == NULL) {
             return fail(error, STATUS_INPUT, "unknown option %s in %s (see -h)", shown, argv[*at]);
         }
@@ -97,13 +160,13 @@ static enum status parse_short(struct option options[], int count, int argc, cha
         if (letter[1] == '\0' && *at + 1 >= argc) {
             return fail(error, STATUS_INPUT, "option %s lacks its value", shown);
         }
-        return take_value(option, letter[1] != '\0' ? letter + 1 : argv[++*at], error);
+        return take_value(options, option, letter[1] != '\0' ? letter + 1 : argv[++*at], error);
     }
     return STATUS_OK;
 }
 
-enum status options_parse(struct option options[], int option_count, int argc, char *argv[],
-                          int *operand_count, struct error *error)
+enum status options_parse(struct options *options, int argc, char *argv[], int *operand_count,
+                          struct error *error)
 {
     bool options_ended = false;
     *operand_count = 0;
@@ -114,9 +177,9 @@ enum status options_parse(struct option options[], int option_count, int argc, c
         } else if (strcmp(argv[at], "--") == 0) {
             options_ended = true;
         } else if (argv[at][1] == '-') {
-            status = parse_long(options, option_count, argc, argv, &at, error);
+            status = parse_long(options, argc, argv, &at, error);
         } else {
-            status = parse_short(options, option_count, argc, argv, &at, error);
+            status = parse_short(options, argc, argv, &at, error);
         }
         if (status != STATUS_OK) {
             return status;

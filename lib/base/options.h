@@ -7,32 +7,50 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-/* The uses of options that may be given more than once, in the order of the command line. */
-#define OPTION_MOST_USES 256
-struct option_uses {
-    int count;
-    struct option_use {
-        const char *name; /* of the option */
-        const char *value;
-    } use[OPTION_MOST_USES];
+/* One option of a tool. */
+struct option {
+    char letter;       /* 'k' for -k; 0: long form only */
+    char name[24];     /* "tolerance" for --tolerance */
+    bool takes_value;  /* -k VALUE, -kVALUE, --tolerance VALUE, --tolerance=VALUE */
+    bool repeats;      /* may be given more than once */
+    bool given;        /* set by options_parse, as is value */
+    const char *value; /* the last one given; NULL: not given */
 };
 
-/* One option of a tool. `letter` may be 0 (long form only) and `name` NULL (short form only). */
-struct option {
-    char letter;              /* 'k' for -k */
-    const char *name;         /* "tolerance" for --tolerance */
-    bool takes_value;         /* -k VALUE, -kVALUE, --tolerance VALUE, --tolerance=VALUE */
-    bool silent;              /* with a value that changes nothing in the result: no provenance */
-    struct option_uses *uses; /* with a value and a name: may be repeated; each use is appended here, where
-                                 several options may share a list */
-    const char *value;        /* set by options_parse: the (last) value, NULL when not given */
-    bool given;               /* set by options_parse */
+/* One use of an option that takes a value. */
+struct option_use {
+    const struct option *option;
+    const char *value;
 };
+
+/* The options of a tool and, once parsed, their uses in the order of the command line. */
+#define OPTIONS_MOST 32
+#define OPTIONS_MOST_USES 256
+struct options {
+    int count, use_count;
+    struct option option[OPTIONS_MOST];
+    struct option_use use[OPTIONS_MOST_USES];
+};
+
+/* The options that a usage text declares in its block "Options:", and behind them --help (-h, unless a tool's
+ * own option has that letter) and --version:
+ *   "  -k, --factor FACTOR  text"        takes a value
+ *   "      --no-widen  text"             does not, and has no letter
+ *   "      --part NAME=PLACE ...  text"  may be given more than once
+ * Two blanks end a declaration. A text that declares an option otherwise is a fault of the program. */
+void options_declare(struct options *options, const char *usage);
 
 /* Parse argv[1..]; options may stand before and after operands, "--" ends them, "-" is an operand.
  * Operands are moved, in order, to argv[1 .. *operand_count]. */
-MUST_CHECK enum status options_parse(struct option options[], int option_count, int argc, char *argv[],
-                                     int *operand_count, struct error *error);
+MUST_CHECK enum status options_parse(struct options *options, int argc, char *argv[], int *operand_count,
+                                     struct error *error);
+
+/* Whether an option of that name has been declared, and the option, which has been. */
+bool options_has(const struct options *options, const char *name);
+const struct option *options_find(const struct options *options, const char *name);
+
+/* "-k", or "--no-widen" without a letter: what to call it in messages. */
+const char *option_text(const struct option *option, char text[32]);
 
 /* Parse a whole text as a number within [least, most]; NaN, infinities, an empty text, leading space,
  * hexadecimal and trailing junk are errors. `what` names it in the message, e.g. "-k". */

@@ -7,36 +7,24 @@
 
 /* The value of a tolerance: a length, or a number of the field's own unit; 0 is allowed. Infinite when it is
  * not given. */
-static double tolerance_of(const struct tool *tool, const struct option *option)
+static double tolerance_of(const struct tool *tool, const char *option)
 {
-    struct error error;
-    double value = INFINITY;
-    char what[32];
-    if (!option->given) {
-        return value;
-    }
-    snprintf(what, sizeof what, "--%s", option->name);
-    bool plain = strspn(option->value, "+-.0123456789eE") == strlen(option->value);
-    tool_check(tool,
-               plain ? parse_double(option->value, what, 0.0, 1e300, &value, &error)
-                     : parse_length(option->value, what, &value, &error),
-               &error);
-    return value;
+    const char *text = tool_value(tool, option);
+    bool is_plain = text != NULL && strspn(text, "+-.0123456789eE") == strlen(text);
+    return is_plain ? tool_number(tool, option, 0.0, 1e300, INFINITY) : tool_length(tool, option, INFINITY);
 }
 
-struct comparison_request comparison_parse(const struct tool *tool, const struct option *options)
+struct comparison_request comparison_parse(const struct tool *tool)
 {
-    if (options[TEXT].given && !options[MAP].given) {
-        tool_fail(tool, STATUS_INPUT, "-t goes with -m");
-    }
-    return (struct comparison_request){.tol_avg = tolerance_of(tool, &options[TOL_AVG]),
-                                       .tol_max = tolerance_of(tool, &options[TOL_MAX]),
-                                       .field = options[FIELD].given ? options[FIELD].value : "u",
-                                       .region = options[REGION].value,
-                                       .map = options[MAP].value,
-                                       .skip_outside = options[SKIP_OUTSIDE].given,
-                                       .percentiles = options[PERCENTILES].given,
-                                       .text = options[TEXT].given};
+    tool_requires(tool, "text", "map");
+    return (struct comparison_request){.tol_avg = tolerance_of(tool, "tol-avg"),
+                                       .tol_max = tolerance_of(tool, "tol-max"),
+                                       .field = tool_given(tool, "field") ? tool_value(tool, "field") : "u",
+                                       .region = tool_value(tool, "region"),
+                                       .map = tool_value(tool, "map"),
+                                       .skip_outside = tool_given(tool, "skip-outside"),
+                                       .percentiles = tool_given(tool, "percentiles"),
+                                       .text = tool_given(tool, "text")};
 }
 
 void side_read(const struct tool *tool, const char *file, const char *field, struct side *side)

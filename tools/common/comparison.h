@@ -26,15 +26,7 @@ struct findings {
     double reference;                   /* largest norm of B's field */
 };
 
-/* The options of both programs, and what they ask for. */
-enum { TOL_AVG, TOL_MAX, FIELD, REGION, SKIP_OUTSIDE, PERCENTILES, MAP, TEXT, COMPARISON_OPTION_COUNT };
-#define COMPARISON_OPTIONS                                                                                   \
-    [TOL_AVG] = {.name = "tol-avg", .takes_value = true},                                                    \
-    [TOL_MAX] = {.name = "tol-max", .takes_value = true}, [FIELD] = {.name = "field", .takes_value = true},  \
-    [REGION] = {.name = "region", .takes_value = true}, [SKIP_OUTSIDE] = {.name = "skip-outside"},           \
-    [PERCENTILES] = {.name = "percentiles"}, [MAP] = {.letter = 'm', .name = "map", .takes_value = true},    \
-    [TEXT] = {.letter = 't', .name = "text"}
-
+/* What the options that both programs have ask for. */
 struct comparison_request {
     double tol_avg, tol_max; /* a length, or in the field's own unit; infinite: any */
     const char *field;
@@ -44,7 +36,7 @@ struct comparison_request {
 };
 
 /* Exits for values that cannot be. */
-struct comparison_request comparison_parse(const struct tool *tool, const struct option *options);
+struct comparison_request comparison_parse(const struct tool *tool);
 
 /* Read a stream and its field; exits on failure. */
 void side_read(const struct tool *tool, const char *file, const char *field, struct side *side);

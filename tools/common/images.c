@@ -26,15 +26,10 @@ void tool_read_image(const struct tool *tool, const char *file, struct image *im
     }
 }
 
-enum image_method tool_image_method(const struct tool *tool, const char *name)
+enum image_method tool_image_method(const struct tool *tool)
 {
-    struct error error;
-    int method = IMAGE_LINEAR;
-    if (name != NULL) {
-        tool_check(tool, parse_choice(name, "-i", image_method_names, IMAGE_METHOD_COUNT, &method, &error),
-                   &error);
-    }
-    return (enum image_method)method;
+    return (enum image_method)tool_choice(tool, "interpolation", image_method_names, IMAGE_METHOD_COUNT,
+                                          IMAGE_LINEAR);
 }
 
 void tool_check_image_output(const struct tool *tool)

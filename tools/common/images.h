@@ -9,8 +9,8 @@
 /* Read an image from a file ("-": standard input), tell what was assumed; exits on failure. */
 void tool_read_image(const struct tool *tool, const char *file, struct image *image);
 
-/* The value of the option -i; NULL: linear. Exits on another name. */
-enum image_method tool_image_method(const struct tool *tool, const char *name);
+/* The value of the option -i, or linear. Exits on another name. */
+enum image_method tool_image_method(const struct tool *tool);
 
 /* Exits when the name of tool->output ends neither in .nii nor in .nii.gz, or standard output is a terminal:
  * to be called before long work. */

@@ -173,9 +173,11 @@ static void add_part(const struct tool *tool, const char *text, struct label_ima
     image_free(&place.mask);
 }
 
-void label_parts_make(const struct tool *tool, const struct option_uses *uses, struct label_image *image)
+void label_parts_make(const struct tool *tool, struct label_image *image)
 {
-    for (int i = 0; i < uses->count; i++) {
-        add_part(tool, uses->use[i].value, image);
+    const char *part[OPTIONS_MOST_USES];
+    int count = tool_values(tool, "part", part);
+    for (int i = 0; i < count; i++) {
+        add_part(tool, part[i], image);
     }
 }

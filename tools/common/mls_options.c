@@ -23,54 +23,51 @@ static enum status apply_mu(const char *text, struct mls *mls, struct error *err
     return STATUS_OK;
 }
 
-enum status mls_apply_options(const struct option options[MLS_OPTION_COUNT], struct mls *mls,
-                              struct error *error)
+enum status mls_apply(const struct mls_texts *texts, struct mls *mls, struct error *error)
 {
     enum status status = STATUS_OK;
     int choice;
-    if (options[0].given) {
-        status = parse_choice(options[0].value, "-b", basis_names, BASIS_COUNT, &choice, error);
-        if (status != STATUS_OK) {
-            return status;
-        }
+    if (texts->basis != NULL) {
+        TRY(parse_choice(texts->basis, "-b", basis_names, BASIS_COUNT, &choice, error));
         mls->basis = (enum basis)choice;
     }
-    if (options[1].given) {
-        status = parse_choice(options[1].value, "-w", weight_names, WEIGHT_COUNT, &choice, error);
-        if (status != STATUS_OK) {
-            return status;
-        }
+    if (texts->weight != NULL) {
+        TRY(parse_choice(texts->weight, "-w", weight_names, WEIGHT_COUNT, &choice, error));
         mls->weight = (enum weight_function)choice;
     }
-    if (options[2].given) {
+    if (texts->mu != NULL) {
         mls->mu_absolute = false;
-        status = apply_mu(options[2].value, mls, error);
+        TRY(apply_mu(texts->mu, mls, error));
     }
-    if (status == STATUS_OK && options[3].given) {
+    if (texts->mu_unit != NULL) {
         double unit;
-        if (!options[2].given) {
+        if (texts->mu == NULL) {
             return fail(error, STATUS_INPUT, "--mu-unit: needs --mu");
         }
-        status = parse_length_unit(options[3].value, "--mu-unit", &unit, error);
+        TRY(parse_length_unit(texts->mu_unit, "--mu-unit", &unit, error));
         /* mu enters as mu / s^4 with s in that unit. */
-        for (int k = 0; status == STATUS_OK && k < MLS_MAX_SECOND; k++) {
+        for (int k = 0; k < MLS_MAX_SECOND; k++) {
             mls->mu[k] *= unit * unit * unit * unit;
         }
         mls->mu_absolute = true;
     }
+done:
     return status;
 }
 
-enum status radius_apply_options(const struct option *factor, const struct option *radius,
-                                 struct support_options *support, struct error *error)
+void mls_parse(const struct tool *tool, struct mls *mls)
 {
-    if (factor->given && radius->given) {
-        return fail(error, STATUS_INPUT, "give one of -k and -R");
-    }
-    if (factor->given) {
-        return parse_double(factor->value, "-k", 0.1, 100, &support->factor, error);
-    }
-    return radius->given ? parse_length(radius->value, "-R", &support->radius, error) : STATUS_OK;
+    struct error error;
+    const struct mls_texts texts = {tool_value(tool, "basis"), tool_value(tool, "weight"),
+                                    tool_value(tool, "mu"), tool_value(tool, "mu-unit")};
+    tool_check(tool, mls_apply(&texts, mls, &error), &error);
+}
+
+void radius_parse(const struct tool *tool, struct support_options *support)
+{
+    tool_excludes(tool, "factor", "radius");
+    support->factor = tool_number(tool, "factor", 0.1, 100, support->factor);
+    support->radius = tool_length(tool, "radius", support->radius);
 }
 
 void mls_describe(const struct mls *mls, const char *prefix, char *text, size_t size)

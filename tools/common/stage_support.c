@@ -73,7 +73,6 @@ static enum status read_mls(const struct section *section, const char *prefix, s
                             struct error *error)
 {
     static const char *const keys[] = {"basis", "weight", "mu", "mu_absolute"};
-    struct option options[MLS_OPTION_COUNT] = {0};
     char value[4][256], key[32];
     struct error own;
     bool is_told[4];
@@ -81,10 +80,10 @@ static enum status read_mls(const struct section *section, const char *prefix, s
         snprintf(key, sizeof key, "%s%s", prefix, keys[k]);
         is_told[k] = section_attribute(section, key, value[k], sizeof value[k]);
     }
-    for (int k = 0; k < 3; k++) {
-        options[k] = (struct option){.given = is_told[k], .value = value[k]};
-    }
-    enum status status = mls_apply_options(options, mls, &own);
+    const struct mls_texts texts = {.basis = is_told[0] ? value[0] : NULL,
+                                    .weight = is_told[1] ? value[1] : NULL,
+                                    .mu = is_told[2] ? value[2] : NULL};
+    enum status status = mls_apply(&texts, mls, &own);
     mls->mu_absolute = is_told[3] ? strcmp(value[3], "0") != 0 : mls->mu_absolute;
     return status == STATUS_OK ? status : fail(error, status, "%s: %s", section->name, own.text);
 }

@@ -42,17 +42,16 @@ done:
     return status;
 }
 
-enum status tissue_parse(const struct option_uses *uses, struct tissue *tissue, struct error *error)
+enum status tissue_parse(int count, const char *const text[], struct tissue *tissue, struct error *error)
 {
     enum status status = STATUS_OK;
-    *tissue = (struct tissue){.count = uses->count};
-    TRY(NEW_ARRAY(&tissue->moduli, uses->count, error));
-    for (int i = 0; i < uses->count; i++) {
+    *tissue = (struct tissue){.count = count};
+    TRY(NEW_ARRAY(&tissue->moduli, count, error));
+    for (int i = 0; i < count; i++) {
         int numbers;
-        TRY(parse_double_list(uses->use[i].value, "--tissue", -DBL_MAX, DBL_MAX, 2, tissue->moduli[i],
-                              &numbers, error));
+        TRY(parse_double_list(text[i], "--tissue", -DBL_MAX, DBL_MAX, 2, tissue->moduli[i], &numbers, error));
         if (numbers != 2) {
-            TRY(fail(error, STATUS_INPUT, "--tissue %s: two numbers, E (Pa) and nu", uses->use[i].value));
+            TRY(fail(error, STATUS_INPUT, "--tissue %s: two numbers, E (Pa) and nu", text[i]));
         }
         TRY(check_moduli(tissue->moduli[i], "--tissue", error));
     }

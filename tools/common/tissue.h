@@ -17,8 +17,8 @@ struct tissue {
  * be. */
 MUST_CHECK enum status tissue_read(const char *path, struct tissue *tissue, struct error *error);
 
-/* From uses of an option "E,NU". */
-MUST_CHECK enum status tissue_parse(const struct option_uses *uses, struct tissue *tissue,
+/* From the values "E,NU" of an option, one for each tissue. */
+MUST_CHECK enum status tissue_parse(int count, const char *const text[], struct tissue *tissue,
                                     struct error *error);
 
 /* moduli[2]: E and nu. By the table: linear between the values of its rows, constant beyond them (*beyond is

@@ -3,7 +3,6 @@
 #include "output.h"
 #include "process.h"
 
-#include <assert.h>
 #include <errno.h>
 #include <fcntl.h>
 #include <gsl/gsl_errno.h>
@@ -90,42 +89,24 @@ static _Noreturn void print_and_exit(const struct tool *tool, const char *text)
     exit(tool_end(tool));
 }
 
-/* The options of the tool, and behind them those that every tool has. */
-static void parse_options(struct tool *tool, struct option options[], int option_count)
+static void parse_options(struct tool *tool)
 {
-    static const struct option common[] = {{.letter = 'h', .name = "help"}, {.name = "version"}};
-    enum { COMMON = sizeof common / sizeof *common };
     struct error error;
-    struct option *all = array_new(option_count + COMMON, sizeof *all);
-    if (all == NULL) {
-        tool_fail(tool, STATUS_SYSTEM, "out of memory");
-    }
-    if (option_count > 0) {
-        memcpy(all, options, (size_t)option_count * sizeof *all);
-    }
-    memcpy(all + option_count, common, sizeof common);
-    tool_check(tool,
-               options_parse(all, option_count + COMMON, tool->argc, arguments, &tool->operand_count, &error),
+    options_declare(&tool->options, tool->usage);
+    tool_check(tool, options_parse(&tool->options, tool->argc, arguments, &tool->operand_count, &error),
                &error);
-    if (all[option_count].given) {
+    if (tool_given(tool, "help")) {
         print_and_exit(tool, tool->usage);
     }
-    if (all[option_count + 1].given) {
+    if (tool_given(tool, "version")) {
         char text[128];
         snprintf(text, sizeof text, "%s %s\n", tool->name, MTS_VERSION);
         print_and_exit(tool, text);
     }
-    for (int i = 0; i < option_count; i++) {
-        options[i] = all[i];
-        if (options[i].letter == 'o') {
-            tool->output = options[i].value;
-        }
-        if (options[i].value != NULL && (options[i].silent || options[i].letter == 'o')) {
-            assert(tool->silent_count < TOOL_MOST_SILENT);
-            tool->silent[tool->silent_count++] = options[i].value;
-        }
+    if (options_has(&tool->options, "output")) {
+        tool->output = tool_value(tool, "output");
+        tool_leave_out(tool, "output");
     }
-    free(all);
 }
 
 /* Mapped input that another program cuts short while we read it has no end line either. */
@@ -149,8 +130,7 @@ static void on_foreign_exit(int status, void *unused)
     }
 }
 
-void tool_begin(struct tool *tool, const char *usage, struct option options[], int option_count, int least,
-                int most, int argc, char *argv[])
+void tool_begin(struct tool *tool, const char *usage, int least, int most, int argc, char *argv[])
 {
     const char *slash = argc > 0 ? strrchr(argv[0], '/') : NULL;
     *tool = (struct tool){.name = slash != NULL ? slash + 1
@@ -172,7 +152,7 @@ void tool_begin(struct tool *tool, const char *usage, struct option options[], i
         tool_fail(tool, STATUS_SYSTEM, "out of memory");
     }
     memcpy(arguments, argv, (size_t)argc * sizeof *arguments);
-    parse_options(tool, options, option_count);
+    parse_options(tool);
     tool->operands = arguments + 1;
     tool->operands[tool->operand_count] = NULL;
     if (tool->operand_count > most) {

@@ -13,22 +13,49 @@
 #define TOOL_MOST_SILENT 4
 
 struct tool {
-    const char *name;  /* argv[0] without folders */
-    const char *usage; /* the text at the top of the tool's file */
-    int argc;          /* the command line as given, for provenance */
+    const char *name;       /* argv[0] without folders */
+    const char *usage;      /* the text at the top of the tool's file, which declares the options */
+    struct options options; /* as given */
+    int argc;               /* the command line as given, for provenance */
     char **argv;
     char **operands; /* operand_count operands, and NULL */
     int operand_count;
     const char *output;                   /* value of -o, NULL: standard output */
-    const char *silent[TOOL_MOST_SILENT]; /* values of -o and of silent options, as they stand in argv */
+    const char *silent[TOOL_MOST_SILENT]; /* values of -o and those left out, as they stand in argv */
     int silent_count;
 };
 
-/* Parse the command line. `options` need not list -h, --help, --version: they are handled here (text on
- * stdout, exit 0). On a usage error prints one line and exits 2. If `options` has letter 'o', its value
- * becomes tool->output. Operand counts outside [least, most] are usage errors. */
-void tool_begin(struct tool *tool, const char *usage, struct option options[], int option_count, int least,
-                int most, int argc, char *argv[]);
+/* Parse the command line by the options that the usage text declares (options_declare). --help and --version
+ * are handled here (text on stdout, exit 0). On a usage error prints one line and exits 2. The value of
+ * --output becomes tool->output. Operand counts outside [least, most] are usage errors. */
+void tool_begin(struct tool *tool, const char *usage, int least, int most, int argc, char *argv[]);
+
+/* Whether an option was given; its value, or NULL. */
+bool tool_given(const struct tool *tool, const char *option);
+const char *tool_value(const struct tool *tool, const char *option);
+
+/* The value of an option as a number or length (m), or as an index among `count` choices; `otherwise` where
+ * it was not given. Exits where the value is not within [least, most], no length, or none of the choices. */
+double tool_number(const struct tool *tool, const char *option, double least, double most, double otherwise);
+int64_t tool_integer(const struct tool *tool, const char *option, int64_t least, int64_t most,
+                     int64_t otherwise);
+double tool_length(const struct tool *tool, const char *option, double otherwise);
+double tool_length_unit(const struct tool *tool, const char *option, double otherwise);
+int tool_choice(const struct tool *tool, const char *option, const char *const choices[], int count,
+                int otherwise);
+
+/* The name of the first option given among a list that ends with NULL; NULL: none was. */
+const char *tool_first_given(const struct tool *tool, const char *const options[]);
+
+/* The values of an option that repeats, in the order of the command line; returns how many. */
+int tool_values(const struct tool *tool, const char *option, const char *values[OPTIONS_MOST_USES]);
+
+/* Exits where both options were given, or the first one without the second. */
+void tool_excludes(const struct tool *tool, const char *option, const char *other);
+void tool_requires(const struct tool *tool, const char *option, const char *other);
+
+/* Leave an option out of the provenance: its value changes nothing in the result. */
+void tool_leave_out(struct tool *tool, const char *option);
 
 /* Print "name: message" on standard error and exit with `status`; returns when the status is STATUS_OK. */
 void tool_check(const struct tool *tool, enum status status, const struct error *error);

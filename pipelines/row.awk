@@ -1,9 +1,11 @@
-# A line of compare.tsv: awk -f row.awk -v scheme=NAME -v field=STREAM LOG [ERRORS]
+# A line of compare.tsv: awk -f row.awk -v scheme=NAME -v field=STREAM [-v digits=N] LOG [ERRORS]
 #
 # LOG is what the tools report with -v, ERRORS what fieldcmp prints of the distance from the reference; without it the distances are "-".
+# Seconds have N digits (1) behind the point. Where supports were widened, the name says so.
 
 BEGIN {
     FS = OFS = "\t"
+    if (digits == "") digits = 1
     while ((getline line < field) > 0) if (line ~ /^# nodes.x /) {
         split(line, word, " ")
         nodes = word[4]
@@ -26,7 +28,7 @@ END {
         exit 1
     }
     print scheme, nodes, value[1, "points"], millimetres(2, "avg"), millimetres(2, "max"), value[1, "steps"],
-        sprintf("%.1f", (1, "solve seconds") in value ? value[1, "solve seconds"] : value[1, "assembly seconds"] + value[1, "solver seconds"])
+        sprintf("%.*f", digits, (1, "solve seconds") in value ? value[1, "solve seconds"] : value[1, "assembly seconds"] + value[1, "solver seconds"])
 }
 
 function millimetres(from, name) {

@@ -1,0 +1,131 @@
+#include "tool.h"
+
+#include <assert.h>
+
+bool tool_given(const struct tool *tool, const char *option)
+{
+    return options_find(&tool->options, option)->given;
+}
+
+const char *tool_value(const struct tool *tool, const char *option)
+{
+    return options_find(&tool->options, option)->value;
+}
+
+double tool_number(const struct tool *tool, const char *option, double least, double most, double otherwise)
+{
+    struct error error;
+    char what[32];
+    const struct option *found = options_find(&tool->options, option);
+    double value = otherwise;
+    if (found->given) {
+        tool_check(tool, parse_double(found->value, option_text(found, what), least, most, &value, &error),
+                   &error);
+    }
+    return value;
+}
+
+int64_t tool_integer(const struct tool *tool, const char *option, int64_t least, int64_t most,
+                     int64_t otherwise)
+{
+    struct error error;
+    char what[32];
+    const struct option *found = options_find(&tool->options, option);
+    int64_t value = otherwise;
+    if (found->given) {
+        tool_check(tool, parse_integer(found->value, option_text(found, what), least, most, &value, &error),
+                   &error);
+    }
+    return value;
+}
+
+double tool_length(const struct tool *tool, const char *option, double otherwise)
+{
+    struct error error;
+    char what[32];
+    const struct option *found = options_find(&tool->options, option);
+    double value = otherwise;
+    if (found->given) {
+        tool_check(tool, parse_length(found->value, option_text(found, what), &value, &error), &error);
+    }
+    return value;
+}
+
+double tool_length_unit(const struct tool *tool, const char *option, double otherwise)
+{
+    struct error error;
+    char what[32];
+    const struct option *found = options_find(&tool->options, option);
+    double value = otherwise;
+    if (found->given) {
+        tool_check(tool, parse_length_unit(found->value, option_text(found, what), &value, &error), &error);
+    }
+    return value;
+}
+
+int tool_choice(const struct tool *tool, const char *option, const char *const choices[], int count,
+                int otherwise)
+{
+    struct error error;
+    char what[32];
+    const struct option *found = options_find(&tool->options, option);
+    int choice = otherwise;
+    if (found->given) {
+        tool_check(tool,
+                   parse_choice(found->value, option_text(found, what), choices, count, &choice, &error),
+                   &error);
+    }
+    return choice;
+}
+
+const char *tool_first_given(const struct tool *tool, const char *const options[])
+{
+    for (int i = 0; options[i] != NULL; i++) {
+        if (tool_given(tool, options[i])) {
+            return options[i];
+        }
+    }
+    return NULL;
+}
+
+int tool_values(const struct tool *tool, const char *option, const char *values[OPTIONS_MOST_USES])
+{
+    const struct option *found = options_find(&tool->options, option);
+    int count = 0;
+    for (int i = 0; i < tool->options.use_count; i++) {
+        if (tool->options.use[i].option == found) {
+            values[count++] = tool->options.use[i].value;
+        }
+    }
+    return count;
+}
+
+void tool_excludes(const struct tool *tool, const char *option, const char *other)
+{
+    char one[32], two[32];
+    const struct option *first = options_find(&tool->options, option);
+    const struct option *second = options_find(&tool->options, other);
+    if (first->given && second->given) {
+        tool_fail(tool, STATUS_INPUT, "give one of %s and %s", option_text(first, one),
+                  option_text(second, two));
+    }
+}
+
+void tool_requires(const struct tool *tool, const char *option, const char *other)
+{
+    char one[32], two[32];
+    const struct option *first = options_find(&tool->options, option);
+    const struct option *second = options_find(&tool->options, other);
+    if (first->given && !second->given) {
+        tool_fail(tool, STATUS_INPUT, "%s goes with %s", option_text(first, one), option_text(second, two));
+    }
+}
+
+void tool_leave_out(struct tool *tool, const char *option)
+{
+    const char *value = tool_value(tool, option);
+    if (value != NULL) {
+        assert(tool->silent_count < TOOL_MOST_SILENT);
+        tool->silent[tool->silent_count++] = value;
+    }
+}
