@@ -62,7 +62,7 @@ cube.mixed := 7000
 cylinder_49.mixed := 3000
 brain3d.mixed := 20000
 # Errors, mm, for reach.tsv: of the blocks, 0.1 % of the largest displacement last, of the cube 0.3 %.
-ADAPTIVE_LEVELS := block10:0.02 block10:0.01 block20:0.04 block20:0.02 cook:1 cook:0.5 brain:0.03 brain:0.02 brain:0.015 cube:0.2 cube:0.12 \
+ADAPTIVE_LEVELS := block10:0.02 block10:0.01 block20:0.04 block20:0.02 cook:1 cook:0.5 brain:0.03 brain:0.02 brain:0.01 cube:0.2 cube:0.12 \
     cube:0.06 cylinder_49:1e-7 cylinder_49:3e-8 brain3d:0.1
 ADAPTIVE_BUDGET := 6000
 
@@ -85,8 +85,9 @@ $(ADAPTIVE)/brain.ref: examples/brain2d/brain2d_graded.tsv pipelines/reference.a
 $(ADAPTIVE)/cylinder_%.ref: pipelines/adaptive/cylinder.awk
 	@mkdir -p $(@D)
 	awk -v nu=0.$* -f $< > $@
-$(ADAPTIVE)/brain.even: $(ADAPTIVE)/brain.ref $(CONVERGENCE)/brain.reference.dat | $(ADAPTIVE_PROGRAMS)
-	interp -f u --skip-outside -p $(word 2,$^) $< > $@
+# The brain's places are those of a mesh that is not finer at the ends of the craniotomy, as the reference is.
+$(ADAPTIVE)/brain.even: $(ADAPTIVE)/brain.ref examples/brain2d/brain2d_reference.tsv pipelines/reference.awk | $(ADAPTIVE_PROGRAMS)
+	awk -f pipelines/reference.awk $(word 2,$^) | interp -f u --skip-outside -p - $< > $@
 $(ADAPTIVE)/cube.even: $(CONVERGENCE)/cube.reference.dat | $(ADAPTIVE_PROGRAMS)
 	@mkdir -p $(@D)
 	cloud -d 3 -k regular -n 17 --box 0,0.1,0,0.1,0,0.1 | interp -f u -p - $< > $@

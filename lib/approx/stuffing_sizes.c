@@ -62,8 +62,8 @@ enum status sizes_wish(const struct stuffing_options *options, int levels, const
     TRY(raster_cells(&scaled, 1, count, owner, &doubly, error));
 #pragma omp parallel for schedule(static) reduction(+ : within, beyond)
     for (int64_t c = 0; c < total; c++) {
-        const double at[3] = {(double)(c % count[0]), (double)(c / count[0] % count[1]),
-                              (double)(c / count[0] / count[1])};
+        const int64_t cube[3] = {c % count[0], c / count[0] % count[1], c / count[0] / count[1]};
+        const double at[3] = {(double)cube[0], (double)cube[1], (double)cube[2]};
         within += inside[c];
         beyond += inside[c] && owner[c] < 0;
         if (owner[c] >= 0) {
