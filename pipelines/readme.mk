@@ -16,7 +16,7 @@ RESULT_TABLES := brain2d/compare=brain2d brain2d-convergence/convergence=brain2d
     adaptive/refinement=refinement adaptive/reach=refinement-reach adaptive/unattended=unattended neurosurgery/neurosurgery=neurosurgery neurosurgery/volumes=neurosurgery-volumes \
     neurosurgery/seconds=neurosurgery-seconds uncertainty/uncertainty=uncertainty scale/stages=scale \
     scale/parts=scale-parts scale/model=scale-model \
-    voxels/voxels=voxels neurosurgery/resection/neurosurgery=neurosurgery-resection neurosurgery/electrodes/neurosurgery=neurosurgery-electrodes
+    voxels/voxels=voxels voxels/meshes=voxels-meshes neurosurgery/resection/neurosurgery=neurosurgery-resection neurosurgery/electrodes/neurosurgery=neurosurgery-electrodes
 
 .PHONY: readme results
 # Only what is newer than the file that is kept.

@@ -3,7 +3,7 @@
 # A row for each image: nodes, cells, whether mts check finds fault, least and largest dihedral angle, the volume of the label that is
 # farthest off, what is lost in thin parts, how far the nodes of interfaces are from them, seconds of the processor; then the
 # compression's status, steps and least J, and what is told of crevices that it closes (folds are allowed), and from which share of the load
-# on. Bodies of random blobs have crevices of some voxels, beside which parts of the body meet: contact of a body with itself is not modelled.
+# on. Then one body, meshed by gmsh and from an image: meshes.sh. Bodies of random blobs have crevices of some voxels, beside which parts of the body meet: contact of a body with itself is not modelled.
 VOXELS := $(OUT)/voxels
 VOXELS_SHAPES ?= sphere torus two four thin layer boxes atlas aniso flipped colin27 $(VOXELS_SEEDS:%=blobs-%)
 VOXELS_SEEDS ?= 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19 20
@@ -18,10 +18,13 @@ atlas.options = -h 4mm -l pipelines/voxels/atlas.txt
 colin27.options = -h 8mm --fine 4mm:label_2
 
 .PHONY: voxels
-voxels: $(VOXELS)/voxels.tsv
+voxels: $(VOXELS)/voxels.tsv $(VOXELS)/meshes.tsv
 	@awk -F '\t' '{ printf "%-9s %6s %7s %5s %6s %6s %7s %7s %6s %4s %6s %6s %5s %7s %10s  %s\n", $$1, $$2, $$3, $$4, $$5, $$6, $$7, $$8, $$9, $$10, $$11, $$12, $$13, $$14, $$15, $$16 }' $<
 	@awk -F '\t' 'NR > 1 { n++; good += $$4 == "yes" && $$5 >= 8 && $$6 <= 165; near += $$7 < 1 && $$7 > -1; ran += $$12 == 0; folds += $$15 != "-" } \
 	    END { printf "\nof %d: valid, angles within 8 to 165 degrees: %d; volumes within 1 %%: %d; compressed: %d, of which fold: %d\n", n, good, near, ran, folds }' $<
+	@echo
+	@awk -F '\t' '{ printf "%-10s %6s %8s %8s\n", $$1, $$2, $$3, $$4 } /^gmsh/ { of_gmsh += $$4 / 3 } /^image/ { of_image += $$4 / 3 } \
+	    END { printf "\nfrom meshes of gmsh, by how far they are from each other: %.2f\n", of_image / of_gmsh }' $(VOXELS)/meshes.tsv
 
 $(VOXELS)/%: export PATH := $(abspath $(BUILD))/bin:$(PATH)
 
@@ -48,3 +51,11 @@ $(VOXELS)/voxels.tsv: $(VOXELS_SHAPES:%=$(VOXELS)/%.row) pipelines/voxels.mk
 	(printf 'image\tnodes\tcells\tvalid\tleast_angle\tlargest_angle\tvolume_error_percent\tlost_ml\tfarthest_voxels\tastray\tseconds\tstatus\tsteps\tleast_J\tfolds_from\tmessage\n'; \
 	    awk -F '\t' -v OFS='\t' '{ from = "-"; if (match($$15, /folds from [0-9.]+/)) from = substr($$15, RSTART + 11, RLENGTH - 11); $$15 = from OFS $$15; print }' \
 	    $(filter %.row,$^)) > $@
+
+# Small voxels, so that it is the ball of ball.geo.
+$(VOXELS)/ball.nii.gz: $(VOXELS_PHANTOM)
+	@mkdir -p $(@D)
+	$< sphere 1 0.75 > $@
+
+$(VOXELS)/meshes.tsv: $(VOXELS)/ball.nii.gz pipelines/voxels/meshes.sh pipelines/voxels/ball.geo $(VOXELS_TOOLS) $(addprefix $(BUILD)/bin/,nodes fieldcmp)
+	bash pipelines/voxels/meshes.sh $< > $@

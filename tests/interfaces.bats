@@ -181,3 +181,38 @@ even() {
     run -1 mts check damaged.txt
     [[ $output == *"support.side: row 0: index -3"* ]]
 }
+
+# In 3D faces between cells share points at the middles of edges; those at an interface do not.
+@test "in 3D: layers in series, exact in every cell; parts and whole, again and anew: the same bytes" {
+    cloud -d 3 -k jittered -n 8,5,5 --jitter 0.15 --seed 2 --box 0,0.14,0,0.08,0,0.08 > cloud.mts
+    mts text cloud.mts | awk '
+        # cells on either side of the lattice plane x = 0.06
+        /^# nodes.x / { print; on = 1; next }
+        /^# / { on = 0 }
+        on && NF { if ($1 > 0.05 && $1 < 0.07) $1 = 0.06; x[n++] = $1 }
+        /^# cells / { cells = 1; print; next }
+        /^# / { cells = 0 }
+        cells && NF { side[c++] = x[$1] + x[$2] + x[$3] + x[$4] > 0.24 }
+        /^# cells.region / { sub(/names=[^ ]*/, "names=soft,stiff"); print; while ((getline line) > 0 && line != "") ; for (i = 0; i < c; i++) print side[i]; print ""; next }
+        { print }' > body.mts
+    mts check body.mts
+    printf '[scene]\ndim = 3\nanalysis = quasi-static\n' > body.scene
+    printf '[material %s]\nregion = %s\nE = %s\nnu = %s\nrho = 1000\n' soft soft 3000 0.3 stiff stiff 30000 0.3 >> body.scene
+    printf '[displacement sliding]\nfacets = xmin,ymin,ymax,zmin,zmax\nnormal = 0\n[displacement pushed]\nfacets = xmax\nnormal = -0.01\n' >> body.scene
+    printf '[output]\nstress = yes\nstrain = yes\n[solver]\ntolerance = 1e-10\n' >> body.scene
+    through -i stiff
+    even stress 1e-8
+    through -i soft
+    even stress 1e-8
+    through
+    run ! even stress 1e-2
+    ipoints body.mts > points.mts
+    support -i stiff points.mts | mts text | bare > one.txt
+    support points.mts | mts text | bare > plain.txt
+    [ "$(rows facepoints.x one.txt | wc -l)" -gt "$(rows facepoints.x plain.txt | wc -l)" ]
+    support -i stiff points.mts | support | mts text | bare | cmp - plain.txt
+    support points.mts | support -i stiff | mts text | bare | cmp - one.txt
+    part -k 2 -o part.%d.mts body.mts
+    for k in 0 1; do ipoints part.$k.mts | support -i stiff > cut.$k.mts; done
+    unpart cut.?.mts | mts text | bare | cmp - one.txt
+}

@@ -218,6 +218,22 @@ violates() {
     shortened face.ptr whole > damaged
     run -1 mts check damaged
     [[ $output == *"face.ptr: 16 rows, but faces has 16: need one more"* ]]
+    cloud -d 3 -k regular -n 4 --box 0,1,0,1,0,1 | ipoints | mts text > box
+    mts check box
+    shapefn <(ipoints box) 2> note | mts text > whole
+    mts check whole
+    awk '$2 == "faces.row" { print; getline; print 0, 1, 0; next } { print }' whole > damaged
+    run -1 mts check damaged
+    [[ $output == *"faces.row: row 0: 0 1 0: not numbered as they come"* ]]
+    shortened facepoints.x box > damaged
+    run -1 mts check damaged
+    [[ $output == *"facepoints.x: "*" points, but faces.row asks for "* ]]
+    shortened face.ptr whole > damaged
+    run -1 mts check damaged
+    [[ $output == *"face.ptr: "*" rows, but faces.row has "*": need one more"* ]]
+    shortened faces.row whole > damaged
+    run -1 mts check damaged
+    [[ $output == *"faces.row: "*" rows, but faces has "* ]]
     printf '# mts 1\n# nodes.x f8 1 1\n0\n\n\n# end 1\n' > damaged
     run -1 mts check damaged
     [ "${lines[0]}" = "nodes.x: 1 columns instead of 2 or 3" ]

@@ -160,6 +160,14 @@ setup() {
     ipoints square.mts | mts drop faces.cell | support > lists.mts
     run -2 --separate-stderr shapefn lists.mts
     [ "$stderr" = "shapefn: no section faces.cell: run ipoints" ]
+    # in 3D faces share points: of a stream from before they did
+    cloud -d 3 -k regular -n 4 --box 0,1,0,1,0,1 | ipoints > box.mts
+    support box.mts > lists.mts
+    for stream in 'support box.mts' 'shapefn lists.mts'; do
+        mts drop faces.row "${stream#* }" > old.mts
+        run -2 --separate-stderr "${stream% *}" old.mts
+        [ "$stderr" = "${stream% *}: no section faces.row: run ipoints" ]
+    done
 }
 
 # hostile STATUS TOOL STREAM WORDS: refused with that status and words, without output.
@@ -209,6 +217,23 @@ edit() {
         edit faces.cell 1 "$cell 3" lists.txt > bad.txt
         hostile 2 shapefn bad.txt "faces.cell: row 1"
     done
+    cloud -d 3 -k regular -n 4 --box 0,1,0,1,0,1 | ipoints | support -t > box.txt
+    mts print faces.row box.txt | awk '$1 == $3 { own++ } { if ($1 != $3 && !first) first = NR } END { print own, first - 1 }' > shared
+    read -r own first < shared
+    while read -r row text; do
+        edit faces.row "$row" "$text" box.txt > bad.txt
+        hostile 2 shapefn bad.txt "faces.row: row $row: not rows of this face: run ipoints again"
+    done << END
+0 1 1 1
+4 4 3 4
+5 $own $((own + 1)) $((own + 2))
+$first $own $((own + 2)) $((own + 1))
+$first $own -1 $((own + 1))
+$first 0 $own $((own + 1))
+$first 2147483647 $own $((own + 1))
+END
+    mts text box.txt | awk '/^# facepoints.x / { sub(" " $4 " ", " " $4 - 1 " "); on = 1 } /^#/ && !/facepoints.x/ { on = 0 } on && NF && !/^#/ && !cut { cut = 1; next } { print }' > bad.txt
+    hostile 2 shapefn bad.txt "facepoint"
     edit facepoint.ptr 0 1 lists.txt > bad.txt
     hostile 2 shapefn bad.txt "facepoint.ptr"
     edit facepoint.ptr 4 0 lists.txt > bad.txt

@@ -1,5 +1,6 @@
 #include "approx/cells.h"
 
+#include "approx/face_rows.h"
 #include "base/memory.h"
 
 #include <math.h>
@@ -214,6 +215,7 @@ enum status faces_build(const struct cells *cells, bool boundary_only, struct fa
             add_face(cells, s, partner[s] / (dim + 1), faces);
         }
     }
+    status = face_rows_number(cells->node_count, NULL, faces, error);
 done:
     free(partner);
     if (status != STATUS_OK) {
@@ -242,6 +244,7 @@ void faces_free(struct faces *faces)
 {
     free(faces->node);
     free(faces->cell);
+    free(faces->row);
     *faces = (struct faces){0};
 }
 

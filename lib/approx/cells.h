@@ -23,6 +23,10 @@ struct faces {
     int64_t boundary_count; /* those on the boundary come first */
     int32_t *node;          /* count * dim, oriented outward from the first cell */
     int32_t *cell; /* count * 2: the cell it is oriented by (the lower index), and the one beyond or -1 */
+    int64_t row_count, own_count; /* rows that averages over the faces are made of, see face_rows.h, and how
+                                     many of them are of a face of its own */
+    int32_t *row; /* count * FACE_ROWS: equal where they are the face's own, else that of the edge from each
+                     node to the next one; NULL: face f has row f */
 };
 
 /* Check indices and that every volume is positive; the message names the first bad cell. */

@@ -144,20 +144,17 @@ enum status reach_begin(const struct reach *reach, const struct reach_places *pl
         work->cell = reach->star + reach->star_ptr[node];
         work->cell_count = reach->star_ptr[node + 1] - reach->star_ptr[node];
     } else if (places->cell != NULL) {
-        int64_t count = 0;
-        for (int64_t i = 0; i < places->per_row; i++) {
-            int32_t cell = places->cell[p / places->points_per_row * places->per_row + i];
-            if (cell >= 0) {
-                work->given[count++] = cell;
-            }
-        }
-        work->cell = work->given;
-        work->cell_count = count > 0 ? count : -1;
+        work->cell = reach_places_cells(places, p, &work->cell_count);
+        work->cell_count = work->cell_count > 0 && work->cell[0] >= 0 ? work->cell_count : -1;
     }
-    int64_t per_row = places->nodes || places->cell == NULL ? 1 : places->points_per_row;
-    if (per_row == 1 || work->row != p / per_row || work->row_serial == 0) {
-        work->row = p / per_row;
-        reach_begin_row(reach, x - p % per_row * reach->cells.dim, per_row, work);
+    int64_t first = p, row = p, points = 1;
+    if (!places->nodes && places->cell != NULL) {
+        row = reach_places_row(places, p, &first);
+        points = places->long_rows == 0 || row < places->long_rows ? places->points_per_row : 1;
+    }
+    if (points == 1 || work->row != row || work->row_serial == 0) {
+        work->row = row;
+        reach_begin_row(reach, x - (p - first) * reach->cells.dim, points, work);
     }
     return STATUS_OK;
 }

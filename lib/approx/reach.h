@@ -60,11 +60,37 @@ void reach_free(struct reach *reach);
 struct reach_places {
     bool nodes;             /* point p is node p, */
     const int32_t *node;    /* or, unless NULL, that node */
-    const int32_t *cell;    /* else, unless NULL: cells, -1 for none, per_row for each row */
-    int64_t per_row;        /* 1 or 2 */
-    int64_t points_per_row; /* row of point p: p / points_per_row */
+    const int32_t *cell;    /* else, unless NULL: a cell for each row, -1 for none; */
+    const int64_t *ptr;     /* or, unless NULL, the cells of row r from ptr[r] to ptr[r + 1] */
+    int64_t points_per_row; /* of rows of points, */
+    int64_t long_rows;      /* of the first so many, others have one point; 0: of all */
     const int64_t *row;     /* the number of each point in messages; NULL: p */
 };
+
+/* The row of point p; *first: its first point. */
+static inline int64_t reach_places_row(const struct reach_places *places, int64_t p, int64_t *first)
+{
+    int64_t row = p / places->points_per_row, rest = p - places->long_rows * places->points_per_row;
+    if (places->long_rows > 0 && rest >= 0) {
+        *first = p;
+        return places->long_rows + rest;
+    }
+    *first = row * places->points_per_row;
+    return row;
+}
+
+/* The cells of point p that are known: *count of them. */
+static inline const int32_t *reach_places_cells(const struct reach_places *places, int64_t p, int64_t *count)
+{
+    *count = 0;
+    if (places->nodes || places->cell == NULL) {
+        return NULL;
+    }
+    int64_t unused, row = reach_places_row(places, p, &unused);
+    int64_t first = places->ptr != NULL ? places->ptr[row] : row;
+    *count = (places->ptr != NULL ? places->ptr[row + 1] : row + 1) - first;
+    return places->cell + first;
+}
 
 /* Scratch space for one thread, all zero at first; grows on demand. */
 struct reach_work {
@@ -73,8 +99,7 @@ struct reach_work {
     bool outside;
     const int32_t *cell;   /* the cells that it lies in */
     int64_t cell_count;    /* -1: not looked for yet */
-    int32_t given[2];      /* what `cell` may view */
-    struct index_list own; /* likewise */
+    struct index_list own; /* what `cell` may view */
     uint32_t serial;       /* of the point */
     uint32_t *mark;        /* node_count: 2 serial, and 1 more for a node that is hidden */
     uint32_t pass;         /* serial of the search for paths */

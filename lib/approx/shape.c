@@ -152,31 +152,47 @@ enum status shape_table(const struct mls *mls, const double *nodes, const double
     return failure.status;
 }
 
-/* The most points of a face. */
-enum { MOST_ON_FACE = 3 };
+/* Points of a row of averages: where they begin in the lists, and the weights of their values. */
+struct row_points {
+    int64_t first;
+    int count;
+    double weight[OWN_POINTS(3)];
+};
 
-/* Merge the lists of the points of face f, ascending, into idx, and the values phi of its pairs, weighted,
- * into mean; or, where idx is NULL, count only. Returns the length. */
-static int64_t merge_face(const struct neighbours *lists, const struct quadrature_rule *rule, int64_t f,
-                          const double *phi, int32_t *idx, double *mean)
+static struct row_points points_of_row(const struct faces *faces, int64_t r)
 {
-    int64_t first = lists->ptr[f * rule->points], at[MOST_ON_FACE], count = 0;
-    const int64_t *end = lists->ptr + f * rule->points + 1;
-    for (int g = 0; g < rule->points; g++) {
-        at[g] = lists->ptr[f * rule->points + g];
+    const struct quadrature_rule rule = quadrature_face_rule(faces->dim);
+    struct row_points row = {.first = face_row_point(faces, r), .count = 1, .weight = {1.0}};
+    if (r < faces->own_count) {
+        row.count = rule.points;
+        memcpy(row.weight, rule.weight, (size_t)rule.points * sizeof *rule.weight);
+    }
+    return row;
+}
+
+/* Merge the lists of the points of row r, ascending, into idx, and the values phi of its pairs, weighted,
+ * into mean; or, where idx is NULL, count only. Returns the length. */
+static int64_t merge_row(const struct neighbours *lists, const struct faces *faces, int64_t r,
+                         const double *phi, int32_t *idx, double *mean)
+{
+    const struct row_points row = points_of_row(faces, r);
+    int64_t first = lists->ptr[row.first], at[OWN_POINTS(3)], count = 0;
+    const int64_t *end = lists->ptr + row.first + 1;
+    for (int g = 0; g < row.count; g++) {
+        at[g] = lists->ptr[row.first + g];
     }
     for (;; count++) {
         int32_t node = INT32_MAX;
         double sum = 0.0;
-        for (int g = 0; g < rule->points; g++) {
+        for (int g = 0; g < row.count; g++) {
             node = at[g] < end[g] && lists->idx[at[g]] < node ? lists->idx[at[g]] : node;
         }
         if (node == INT32_MAX) {
             return count;
         }
-        for (int g = 0; g < rule->points; g++) {
+        for (int g = 0; g < row.count; g++) {
             if (at[g] < end[g] && lists->idx[at[g]] == node) {
-                sum += idx != NULL ? rule->weight[g] * phi[at[g] - first] : 0.0;
+                sum += idx != NULL ? row.weight[g] * phi[at[g] - first] : 0.0;
                 at[g]++;
             }
         }
@@ -187,26 +203,26 @@ static int64_t merge_face(const struct neighbours *lists, const struct quadratur
     }
 }
 
-/* Faces [first, last): their values into a scratch array, from there their averages, and a copy of what is
- * on the boundary. */
-static enum status average_faces(const struct tabulation *table, const struct quadrature_rule *rule,
-                                 int64_t first, int64_t last, struct face_averages *averages,
-                                 struct error *error)
+/* Rows [first, last): their values into a scratch array, from there their averages, and a copy of what is on
+ * the boundary. */
+static enum status average_rows(const struct tabulation *table, const struct faces *faces, int64_t first,
+                                int64_t last, struct face_averages *averages, struct error *error)
 {
     enum status status;
     const int64_t *ptr = table->lists->ptr;
-    int64_t point = first * rule->points, pair = ptr[point];
+    int64_t point = face_row_point(faces, first), pair = ptr[point];
     double *phi = NULL;
-    TRY(NEW_ARRAY(&phi, ptr[last * rule->points] - pair, error));
-    TRY(tabulate(table, point, last * rule->points, phi, NULL, error));
-    for (int64_t f = first; f < last; f++) {
-        int64_t at = averages->ptr[f];
-        (void)merge_face(table->lists, rule, f, phi + (ptr[f * rule->points] - pair), averages->idx + at,
-                         averages->phi + at);
+    TRY(NEW_ARRAY(&phi, ptr[face_row_point(faces, last)] - pair, error));
+    TRY(tabulate(table, point, face_row_point(faces, last), phi, NULL, error));
+    for (int64_t r = first; r < last; r++) {
+        int64_t at = averages->ptr[r];
+        (void)merge_row(table->lists, faces, r, phi + (ptr[face_row_point(faces, r)] - pair),
+                        averages->idx + at, averages->phi + at);
     }
-    int64_t end = last < averages->boundary_count ? last : averages->boundary_count;
+    int64_t end = last < faces->boundary_count ? last : faces->boundary_count;
     if (first < end) {
-        memcpy(averages->boundary_phi + pair, phi, (size_t)(ptr[end * rule->points] - pair) * sizeof *phi);
+        memcpy(averages->boundary_phi + pair, phi,
+               (size_t)(ptr[face_row_point(faces, end)] - pair) * sizeof *phi);
     }
 done:
     free(phi);
@@ -220,26 +236,26 @@ enum status shape_average_faces(const struct mls *mls, const double *nodes, cons
 {
     enum status status;
     const struct tabulation table = {mls, nodes, radius, neighbours, x, what};
-    const struct quadrature_rule rule = quadrature_face_rule(faces->dim);
-    const int64_t chunk = chunk_points / rule.points;
+    const int64_t chunk = chunk_points / OWN_POINTS(faces->dim), count = faces->row_count;
     struct failure failure = {0, STATUS_OK};
-    *averages = (struct face_averages){.count = faces->count, .boundary_count = faces->boundary_count};
-    TRY(NEW_ARRAY(&averages->ptr, faces->count + 1, error));
+    *averages = (struct face_averages){.count = count};
+    TRY(NEW_ARRAY(&averages->ptr, count + 1, error));
 #pragma omp parallel for schedule(static)
-    for (int64_t f = 0; f < faces->count; f++) {
-        averages->ptr[f + 1] = merge_face(neighbours, &rule, f, NULL, NULL, NULL);
+    for (int64_t r = 0; r < count; r++) {
+        averages->ptr[r + 1] = merge_row(neighbours, faces, r, NULL, NULL, NULL);
     }
-    for (int64_t f = 0; f < faces->count; f++) {
-        averages->ptr[f + 1] += averages->ptr[f];
+    for (int64_t r = 0; r < count; r++) {
+        averages->ptr[r + 1] += averages->ptr[r];
     }
-    TRY(NEW_ARRAY(&averages->idx, averages->ptr[faces->count], error));
-    TRY(NEW_ARRAY(&averages->phi, averages->ptr[faces->count], error));
-    TRY(NEW_ARRAY(&averages->boundary_phi, neighbours->ptr[faces->boundary_count * rule.points], error));
+    TRY(NEW_ARRAY(&averages->idx, averages->ptr[count], error));
+    TRY(NEW_ARRAY(&averages->phi, averages->ptr[count], error));
+    TRY(NEW_ARRAY(&averages->boundary_phi, neighbours->ptr[face_row_point(faces, faces->boundary_count)],
+                  error));
 #pragma omp parallel for schedule(dynamic, 1)
-    for (int64_t first = 0; first < faces->count; first += chunk) {
+    for (int64_t first = 0; first < count; first += chunk) {
         struct error own;
-        int64_t last = first + chunk < faces->count ? first + chunk : faces->count;
-        note_failure(&failure, first, average_faces(&table, &rule, first, last, averages, &own), &own, error);
+        int64_t last = first + chunk < count ? first + chunk : count;
+        note_failure(&failure, first, average_rows(&table, faces, first, last, averages, &own), &own, error);
     }
     status = failure.status;
 done:

@@ -3,7 +3,7 @@
 #ifndef APPROX_SHAPE_H
 #define APPROX_SHAPE_H
 
-#include "approx/cells.h"
+#include "approx/face_rows.h"
 #include "approx/mls.h"
 #include "approx/support.h"
 
@@ -33,17 +33,18 @@ MUST_CHECK enum status shape_table(const struct mls *mls, const double *nodes, c
                                    const struct neighbours *neighbours, const double *x, const char *what,
                                    double *phi, double *dphi, struct error *error);
 
-/* Averages of the shape functions over faces of cells, on lists of their own. */
+/* Rows that averages of the shape functions over faces of cells are made of (face_rows.h), on lists of their
+ * own. */
 struct face_averages {
-    int64_t count, boundary_count; /* of faces, and how many of them are on the boundary */
-    int64_t *ptr;                  /* count + 1 */
-    int32_t *idx;                  /* union of the lists of the face's points, ascending */
-    double *phi;                   /* means over the face, by its quadrature */
-    double *boundary_phi;          /* values at the points of faces on the boundary, following their lists */
+    int64_t count;        /* of rows */
+    int64_t *ptr;         /* count + 1 */
+    int32_t *idx;         /* union of the lists of the row's points, ascending */
+    double *phi;          /* means over these points */
+    double *boundary_phi; /* values at the points of faces on the boundary, following their lists */
 };
 
-/* Averages of the shape functions over faces, whose quadrature points x are, those of face f in rows f n ...
- * (f + 1) n. By the divergence theorem the mean gradient over a cell is the sum over its faces of such an
+/* The rows of the averages of the shape functions over faces, with the points x (face_rows_points). By
+ * the divergence theorem the mean gradient over a cell is the sum over its faces of such an
  * average times the outward normal, per volume: gradients that are smoothed over smoothed cells, for which
  * the linear patch test holds to round-off (Chen et al. 2001, on background cells). Errors and threads as
  * shape_table. */

@@ -110,10 +110,10 @@ static void move_there(double voxel, struct stuffing *stuffing, const struct stu
     }
 }
 
-/* Nodes where three labels meet, and others that are off their interface. In a gap between labels that no
- * cell fills, the label there counts as well. */
-static void fit(const struct labels *labels, const bool *keep, struct stuffing *stuffing,
-                const struct stuffing_star *star)
+/* Nodes on the rim of a part, where three labels meet, and others that are off their interface. In a gap
+ * between labels that no cell fills, the label there counts as well. */
+static void fit(const struct labels *labels, const struct labels *parts, uint16_t (*rim)[3], const bool *keep,
+                struct stuffing *stuffing, const struct stuffing_star *star)
 {
     int dim = labels->dim;
     double voxel = labels_voxel(labels);
@@ -121,18 +121,22 @@ static void fit(const struct labels *labels, const bool *keep, struct stuffing *
         double target[3] = {0};
         uint16_t label[STUFFING_MOST_LABELS + 1];
         int count = star->labels[n];
+        bool on_rim = rim[n][0] != 0;
         if (count < 2) {
             continue;
         }
         memcpy(target, stuffing->x + n * dim, (size_t)dim * sizeof *target);
         memcpy(label, star->label[n], sizeof star->label[n]);
-        if (!line_project(labels, keep, count, label, target)) {
+        if (!(on_rim && line_project(parts, keep, 3, rim[n], target)) &&
+            !line_project(labels, keep, count, label, target)) {
             label[count] = label_at(labels, stuffing, n);
             if (meets(star, n, label[count]) || !interface_project(labels, count + 1, label, target)) {
                 memcpy(target, stuffing->x + n * dim, (size_t)dim * sizeof *target);
             }
         }
-        move_there(voxel, stuffing, star, n, target);
+        if (!(on_rim && star_make_room(labels, keep, goal, stuffing, star, n, target))) {
+            move_there(voxel, stuffing, star, n, target);
+        }
         /* Where the line on which labels meet cannot be reached, the surface counts, or the interface. */
         memcpy(target, stuffing->x + n * dim, (size_t)dim * sizeof *target);
         if (node_project(labels, keep, star, n, target)) {
@@ -193,23 +197,41 @@ static double distance(const struct labels *labels, const bool *keep, const stru
     return least;
 }
 
-/* Bring nodes that are still off their interface as near as cells within the bounds of the angles allow. */
-static void settle(const struct labels *labels, const bool *keep, struct stuffing *stuffing,
-                   const struct stuffing_star *star)
+/* Where a node that is still off its rim or interface belongs; false where it is near or there is none. */
+static bool find_astray(const struct labels *labels, const struct labels *parts, const uint16_t rim[3],
+                        const bool *keep, const struct stuffing *stuffing, const struct stuffing_star *star,
+                        int64_t node, double target[3])
+{
+    double most = last_slack * labels_voxel(labels), square = 0;
+    const double *x = stuffing->x + node * labels->dim;
+    memcpy(target, x, (size_t)labels->dim * sizeof *target);
+    if (rim[0] != 0 && line_project(parts, keep, 3, rim, target)) {
+        for (int d = 0; d < labels->dim; d++) {
+            square += (target[d] - x[d]) * (target[d] - x[d]);
+        }
+        if (sqrt(square) > most) {
+            return true;
+        }
+        memcpy(target, x, (size_t)labels->dim * sizeof *target);
+    }
+    return star->labels[node] >= 2 && distance(labels, keep, stuffing, star, node) > most &&
+           node_project(labels, keep, star, node, target);
+}
+
+/* Bring nodes that are still off their rim or interface as near as cells within the bounds of the angles
+ * allow. */
+static void settle(const struct labels *labels, const struct labels *parts, uint16_t (*rim)[3],
+                   const bool *keep, struct stuffing *stuffing, const struct stuffing_star *star)
 {
     int dim = stuffing->dim;
-    double most = last_slack * labels_voxel(labels);
     for (int64_t n = 0; n < stuffing->node_count; n++) {
         double *x = stuffing->x + n * dim, from[3] = {0}, target[3] = {0};
-        if (star->labels[n] < 2 || !(distance(labels, keep, stuffing, star, n) > most)) {
+        if (!find_astray(labels, parts, rim[n], keep, stuffing, star, n, target) ||
+            (rim[n][0] != 0 && star_make_room(labels, keep, last_score, stuffing, star, n, target))) {
             continue;
         }
         double score = fmin(star_score(stuffing, star, n), last_score);
         memcpy(from, x, (size_t)dim * sizeof *x);
-        memcpy(target, x, (size_t)dim * sizeof *x);
-        if (!node_project(labels, keep, star, n, target)) {
-            continue;
-        }
         for (int step = 8; step >= 0; step--) {
             for (int d = 0; d < dim; d++) {
                 x[d] = from[d] + step / 8.0 * (target[d] - from[d]);
@@ -231,25 +253,32 @@ static void measure(const struct labels *labels, const bool *keep, struct stuffi
     }
 }
 
-enum status stuffing_improve(const struct labels *labels, const struct stuffing_options *options,
+enum status stuffing_improve(const struct labels *parts, const struct stuffing_options *options,
                              const bool *apart, const double *dropped, struct stuffing *stuffing,
                              struct error *error)
 {
     enum status status;
     struct stuffing_star star = {0};
-    TRY(star_make(stuffing, &star, error));
+    struct labels labels = {.label = NULL};
+    uint16_t(*rim)[3] = NULL;
+    TRY(labels_without_parts(parts, options->whole, &labels, error));
+    TRY(stuffing_straighten_rims(parts, options, stuffing, error));
+    TRY(stuffing_find_rims(options, stuffing, &rim, error));
+    TRY(star_make(stuffing, options->whole, &star, error));
     for (int sweep = 0; sweep < FIT_SWEEPS; sweep++) {
-        fit(labels, options->keep, stuffing, &star);
-        stuffing_repair(labels, options->keep, least_score, 0, stuffing, &star);
+        fit(&labels, parts, rim, options->keep, stuffing, &star);
+        stuffing_repair(&labels, options->keep, least_score, 0, stuffing, &star);
     }
-    separate(labels, stuffing, &star, apart);
-    TRY(stuffing_volumes(labels, options, apart, dropped, &star, stuffing, error));
-    stuffing_repair(labels, options->keep, last_score, last_slack * labels_voxel(labels), stuffing, &star);
+    separate(&labels, stuffing, &star, apart);
+    TRY(stuffing_volumes(&labels, options, apart, dropped, &star, stuffing, error));
+    stuffing_repair(&labels, options->keep, last_score, last_slack * labels_voxel(&labels), stuffing, &star);
     for (int sweep = 0; sweep < FIT_SWEEPS; sweep++) {
-        settle(labels, options->keep, stuffing, &star);
+        settle(&labels, parts, rim, options->keep, stuffing, &star);
     }
-    measure(labels, options->keep, stuffing, &star);
+    measure(&labels, options->keep, stuffing, &star);
 done:
+    free((void *)labels.label);
+    free(rim);
     star_free(&star);
     return status;
 }

@@ -22,7 +22,8 @@ static void add_label(struct stuffing_star *star, int64_t node, int32_t label)
     }
 }
 
-enum status star_make(const struct stuffing *stuffing, struct stuffing_star *star, struct error *error)
+enum status star_make(const struct stuffing *stuffing, const int32_t *whole, struct stuffing_star *star,
+                      struct error *error)
 {
     enum status status;
     int corners = stuffing->dim + 1;
@@ -33,7 +34,8 @@ enum status star_make(const struct stuffing *stuffing, struct stuffing_star *sta
     TRY(NEW_ARRAY(&star->labels, stuffing->node_count, error));
     for (int64_t i = 0; i < stuffing->cell_count * corners; i++) {
         star->ptr[stuffing->cell[i] + 2]++;
-        add_label(star, stuffing->cell[i], stuffing->label[i / corners]);
+        int32_t label = stuffing->label[i / corners];
+        add_label(star, stuffing->cell[i], whole != NULL ? whole[label] : label);
     }
     for (int64_t n = 0; n < stuffing->node_count; n++) {
         star->ptr[n + 2] += star->ptr[n + 1];
@@ -42,7 +44,8 @@ enum status star_make(const struct stuffing *stuffing, struct stuffing_star *sta
         star->cell[star->ptr[stuffing->cell[i] + 1]++] = (int32_t)(i / corners);
     }
     for (int64_t i = 0; i < stuffing->facet_count * stuffing->dim; i++) {
-        add_label(star, stuffing->facet[i], stuffing->side[2 * (i / stuffing->dim) + 1]);
+        int32_t label = stuffing->side[2 * (i / stuffing->dim) + 1];
+        add_label(star, stuffing->facet[i], whole != NULL ? whole[label] : label);
     }
 done:
     if (status != STATUS_OK) {
@@ -208,7 +211,7 @@ enum status stuffing_keep(const struct stuffing_options *options, const bool *be
     TRY(NEW_ARRAY(&keeping.stack, count + 1, error));
     TRY(NEW_ARRAY(&keeping.from, count, error));
     TRY(cells_across(&keeping.cells, keeping.across, error));
-    TRY(star_make(stuffing, &star, error));
+    TRY(star_make(stuffing, NULL, &star, error));
     for (int64_t c = 0; c < count; c++) {
         keeping.wanted[c] = options->keep[stuffing->label[c]];
         keeping.group[c] = -1;

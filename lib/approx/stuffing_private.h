@@ -94,9 +94,26 @@ struct stuffing_star {
     uint16_t (*label)[STUFFING_MOST_LABELS];
     uint8_t *labels; /* node_count: labels that meet; 1: not on an interface */
 };
-MUST_CHECK enum status star_make(const struct stuffing *stuffing, struct stuffing_star *star,
-                                 struct error *error);
+/* With whole[] in place of each label; NULL: as they are. */
+MUST_CHECK enum status star_make(const struct stuffing *stuffing, const int32_t *whole,
+                                 struct stuffing_star *star, struct error *error);
 void star_free(struct stuffing_star *star);
+
+/* Name facets anew, stuffing->side, where the rim of a part turns so sharply at a node that no cell has room
+ * behind it: where a facet is the only one of its part at a node, and flat on the rim. */
+MUST_CHECK enum status stuffing_straighten_rims(const struct labels *labels,
+                                                const struct stuffing_options *options,
+                                                struct stuffing *stuffing, struct error *error);
+
+/* (*rim)[node_count], allocated: the two parts whose facets meet at a node, and what lies beyond; zeros where
+ * no rim is. */
+MUST_CHECK enum status stuffing_find_rims(const struct stuffing_options *options,
+                                          const struct stuffing *stuffing, uint16_t (**rim)[3],
+                                          struct error *error);
+
+/* The labels with whole[] in place of each; NULL: as they are. result->label is allocated. */
+MUST_CHECK enum status labels_without_parts(const struct labels *labels, const int32_t *whole,
+                                            struct labels *result, struct error *error);
 
 /* Keep the cells of labels that are wanted, without specks, join or cut apart what hangs together by nodes or
  * edges alone, and find the boundary. between[cell_count]: cells all of whose nodes lie on interfaces.
@@ -131,6 +148,12 @@ MUST_CHECK enum status stuffing_cut_apart(struct stuffing_keeping *keeping, cons
  * bounds, and negative where it is inverted. */
 double star_score(const struct stuffing *stuffing, const struct stuffing_star *star, int64_t node);
 double stuffing_score(const struct stuffing *stuffing, int64_t cell);
+
+/* Move a node to a place where the cells at it would score less than before and than `least`, by moving the
+ * nodes around it that are on no interface out of the way. False, and all as it was, where that does not
+ * help. */
+bool star_make_room(const struct labels *labels, const bool *keep, double least, struct stuffing *stuffing,
+                    const struct stuffing_star *star, int64_t node, const double target[]);
 
 /* Move x onto the interface of the labels, at most four; false where there is none near. */
 bool interface_project(const struct labels *labels, int count, const uint16_t label[], double x[]);

@@ -101,3 +101,72 @@ void stuffing_repair(const struct labels *labels, const bool *keep, double least
         }
     }
 }
+
+/* ---- room for a node ---- */
+
+enum { ROOM_MOST = 64, ROOM_SWEEPS = 3 };
+
+/* The nodes around a node that are on no interface, and their places. */
+struct room {
+    int count;
+    int64_t node[ROOM_MOST];
+    double x[ROOM_MOST][3];
+};
+
+static void find_room(const struct stuffing *stuffing, const struct stuffing_star *star, int64_t node,
+                      struct room *room)
+{
+    int dim = stuffing->dim;
+    room->count = 0;
+    for (int64_t i = star->ptr[node]; i < star->ptr[node + 1]; i++) {
+        for (int k = 0; k <= dim; k++) {
+            int64_t other = stuffing->cell[(int64_t)star->cell[i] * (dim + 1) + k];
+            bool listed = other == node || star->labels[other] > 1 || room->count == ROOM_MOST;
+            for (int r = 0; r < room->count && !listed; r++) {
+                listed = room->node[r] == other;
+            }
+            if (!listed) {
+                memcpy(room->x[room->count], stuffing->x + other * dim, (size_t)dim * sizeof(double));
+                room->node[room->count++] = other;
+            }
+        }
+    }
+}
+
+/* The poorest cell at the node and at those around it. */
+static double room_score(const struct stuffing *stuffing, const struct stuffing_star *star, int64_t node,
+                         const struct room *room)
+{
+    double least = star_score(stuffing, star, node);
+    for (int r = 0; r < room->count; r++) {
+        least = fmin(least, star_score(stuffing, star, room->node[r]));
+    }
+    return least;
+}
+
+bool star_make_room(const struct labels *labels, const bool *keep, double least, struct stuffing *stuffing,
+                    const struct stuffing_star *star, int64_t node, const double target[])
+{
+    int dim = stuffing->dim;
+    double *x = stuffing->x + node * dim, before[3] = {0};
+    struct room room;
+    find_room(stuffing, star, node, &room);
+    double wanted = fmin(least, room_score(stuffing, star, node, &room));
+    memcpy(before, x, (size_t)dim * sizeof *x);
+    memcpy(x, target, (size_t)dim * sizeof *x);
+    for (int sweep = 0; sweep < ROOM_SWEEPS; sweep++) {
+        for (int r = 0; r < room.count; r++) {
+            if (star_score(stuffing, star, room.node[r]) < wanted) {
+                (void)search(labels, keep, 0, stuffing, star, room.node[r]);
+            }
+        }
+        if (room_score(stuffing, star, node, &room) >= wanted) {
+            return true;
+        }
+    }
+    memcpy(x, before, (size_t)dim * sizeof *x);
+    for (int r = 0; r < room.count; r++) {
+        memcpy(stuffing->x + room.node[r] * dim, room.x[r], (size_t)dim * sizeof *x);
+    }
+    return false;
+}

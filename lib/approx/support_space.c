@@ -144,9 +144,10 @@ static void sides_of_cells(const struct support_space *space, const struct reach
                            int64_t count, int32_t *side)
 {
     for (int64_t p = 0; p < count; p++) {
+        int64_t cells;
+        const int32_t *cell = reach_places_cells(places, p, &cells);
         side[p] = -1;
-        for (int64_t i = 0; places->cell != NULL && i < places->per_row; i++) {
-            const int32_t *cell = places->cell + p / places->points_per_row * places->per_row;
+        for (int64_t i = 0; i < cells; i++) {
             if (cell[i] >= 0 && (side[p] < 0 || space->cell_side[cell[i]] < side[p])) {
                 side[p] = space->cell_side[cell[i]];
             }
@@ -169,11 +170,12 @@ static void sides_of_others(const struct support_space *space, const struct reac
                             int64_t count, int32_t *side)
 {
     for (int64_t p = 0; p < count && space->owner != NULL; p++) {
+        int64_t cells;
+        const int32_t *cell = reach_places_cells(places, p, &cells);
         bool own = places->nodes ? space->owner[p] == space->part : places->cell == NULL;
-        for (int64_t i = 0; !places->nodes && places->cell != NULL && i < places->per_row; i++) {
-            int32_t cell = places->cell[p / places->points_per_row * places->per_row + i];
-            own =
-                own || (cell >= 0 && partition_cell_owner(&space->cells, cell, space->owner) == space->part);
+        for (int64_t i = 0; i < cells && !places->nodes; i++) {
+            own = own ||
+                  (cell[i] >= 0 && partition_cell_owner(&space->cells, cell[i], space->owner) == space->part);
         }
         side[p] = own ? side[p] : (int32_t)space->side_count;
     }
@@ -220,7 +222,8 @@ done:
 struct own_points {
     int64_t count, *row; /* which of all */
     double *x;
-    int32_t *item; /* the node of each on the side, or its cells there, -1: none */
+    int32_t *item; /* the node of each on the side, or its cells there: */
+    int64_t *ptr;  /* those of point i from ptr[i] to ptr[i + 1] */
     struct support_lists lists;
 };
 
@@ -229,6 +232,7 @@ static void own_points_free(struct own_points *own)
     free(own->row);
     free(own->x);
     free(own->item);
+    free(own->ptr);
     support_free(&own->lists);
 }
 
@@ -239,34 +243,39 @@ static enum status own_points_build(const struct support_space *space, const str
 {
     enum status status;
     int dim = space->cells.dim;
-    int64_t per_row = places->nodes ? 1 : places->cell != NULL ? places->per_row : 0, node = 0;
+    int64_t items = 0, cells, node = 0;
     for (int64_t p = 0; p < count; p++) {
-        own->count += side[p] == s;
+        if (side[p] == s) {
+            (void)reach_places_cells(places, p, &cells);
+            items += places->nodes ? 1 : cells;
+            own->count++;
+        }
     }
     TRY(NEW_ARRAY(&own->row, own->count, error));
     TRY(NEW_ARRAY(&own->x, own->count * dim, error));
-    TRY(NEW_ARRAY(&own->item, own->count * per_row, error));
+    TRY(NEW_ARRAY(&own->ptr, own->count + 1, error));
+    TRY(NEW_ARRAY(&own->item, items, error));
+    items = 0;
     for (int64_t p = 0, i = 0; p < count; p++) {
         if (side[p] != s) {
             continue;
         }
-        for (int64_t k = 0; k < per_row; k++) {
-            if (s == space->side_count) {
-                own->item[i * per_row + k] =
-                    places->nodes ? (int32_t)p : places->cell[p / places->points_per_row * per_row + k];
-            } else if (places->nodes) {
-                while (space->side[s].node[node] < p) {
-                    node++;
-                }
-                own->item[i] = (int32_t)node;
-            } else {
-                int32_t cell = places->cell[p / places->points_per_row * per_row + k];
-                own->item[i * per_row + k] =
-                    cell >= 0 && space->cell_side[cell] == s ? space->place[cell] : -1;
+        bool whole = s == space->side_count;
+        if (places->nodes) {
+            while (!whole && space->side[s].node[node] < p) {
+                node++;
+            }
+            own->item[items++] = (int32_t)(whole ? p : node);
+        }
+        const int32_t *cell = reach_places_cells(places, p, &cells);
+        for (int64_t k = 0; k < cells; k++) {
+            if (cell[k] >= 0 && (whole || space->cell_side[cell[k]] == s)) {
+                own->item[items++] = whole ? cell[k] : space->place[cell[k]];
             }
         }
         memcpy(own->x + i * dim, x + p * dim, (size_t)dim * sizeof *x);
         own->row[i++] = p;
+        own->ptr[i] = items;
     }
 done:
     return status;
@@ -283,7 +292,7 @@ static enum status own_points_list(const struct support_options *options, const 
         within.node = own->item;
     } else if (places->cell != NULL) {
         within.cell = own->item;
-        within.per_row = places->per_row;
+        within.ptr = own->ptr;
         within.points_per_row = 1;
     }
     return support_build_within(options, &side->grid, &side->reach, &within, own->count, own->x, what,

@@ -1,4 +1,4 @@
-#include "io/invariants.h"
+#include "io/invariants_private.h"
 
 #include "io/sections.h"
 
@@ -14,27 +14,19 @@ static const double unity_tolerance = 1e-9;
  * to 1 over each; AROUND holds rows of IDX, ascending. */
 static const struct list_rule {
     const char *ptr, *idx;
-    const char *rows_of; /* a section, or "names": the list in the attributes of PTR; NULL: check_faces */
+    const char
+        *rows_of; /* a section, or "names": the list in the attributes of PTR; NULL: invariants_check_faces */
     const char *phi, *around;
 } list_rules[] = {
     {"sets.ptr", "sets.idx", "names", NULL, NULL},
     {"nbr.ptr", "nbr.idx", "points.x", "shape.phi", "nbr.around"},
     {"facepoint.ptr", "facepoint.idx", "facepoints.x", NULL, "facepoint.around"},
-    {"face.ptr", "face.idx", "faces", "face.phi", NULL},
+    {"face.ptr", "face.idx", NULL, "face.phi", NULL},
     {"boundary.ptr", "boundary.idx", NULL, "boundary.phi", NULL},
     {"node.ptr", "node.idx", "nodes.x", "node.phi", "node.around"},
 };
 
-struct check {
-    const struct stream *stream;
-    int dim; /* columns of nodes.x or points.x; 0: unknown */
-    violation_function *tell;
-    void *context;
-    int64_t count;
-};
-
-__attribute__((format(printf, 3, 4))) static void
-violation(struct check *check, const struct section *section, const char *format, ...)
+void invariants_violation(struct check *check, const struct section *section, const char *format, ...)
 {
     char text[512];
     int length = snprintf(text, sizeof text, "%s: ", section->name);
@@ -82,18 +74,18 @@ static bool shape_is_right(struct check *check, const struct section *section,
                : rule->cols == COLS_DIM_PLUS_1 ? check->dim + 1
                                                : rule->cols;
     if (section->type != rule->type) {
-        violation(check, section, "type %s instead of %s", element_type_name(section->type),
-                  element_type_name(rule->type));
+        invariants_violation(check, section, "type %s instead of %s", element_type_name(section->type),
+                             element_type_name(rule->type));
         return false;
     }
     if (section->cols != cols) {
-        violation(check, section, "%" PRId64 " columns instead of %d", section->cols, cols);
+        invariants_violation(check, section, "%" PRId64 " columns instead of %d", section->cols, cols);
         return false;
     }
     int64_t rows = rule->rows_of != NULL ? rows_of(check, section, rule->rows_of) : -1;
     if (rows >= 0 && section->rows != rows) {
-        violation(check, section, "%" PRId64 " rows, but %s has %" PRId64, section->rows, rule->rows_of,
-                  rows);
+        invariants_violation(check, section, "%" PRId64 " rows, but %s has %" PRId64, section->rows,
+                             rule->rows_of, rows);
         return false;
     }
     return true;
@@ -118,8 +110,8 @@ static void check_values(struct check *check, const struct section *section, con
     const double *values = section->data;
     for (int64_t i = 0; i < section->rows * section->cols; i++) {
         if (!value_is_right(values[i], rule->content)) {
-            violation(check, section, "row %" PRId64 ": %.17g is not %s", i / section->cols, values[i],
-                      required[rule->content]);
+            invariants_violation(check, section, "row %" PRId64 ": %.17g is not %s", i / section->cols,
+                                 values[i], required[rule->content]);
             return;
         }
     }
@@ -132,14 +124,15 @@ static void check_indices(struct check *check, const struct section *section, co
     int32_t least = rule->content == INDEX_OR_NONE ? -1 : 0;
     if (bound < 0) {
         if (strcmp(rule->index_of, "names") == 0) {
-            violation(check, section, "no attribute names=");
+            invariants_violation(check, section, "no attribute names=");
         }
         bound = INT32_MAX;
     }
     for (int64_t i = 0; i < section->rows * section->cols; i++) {
         if (values[i] < least || values[i] >= bound) {
-            violation(check, section, "row %" PRId64 ": index %d is not within the %" PRId64 " of %s",
-                      i / section->cols, values[i], bound, rule->index_of);
+            invariants_violation(check, section,
+                                 "row %" PRId64 ": index %d is not within the %" PRId64 " of %s",
+                                 i / section->cols, values[i], bound, rule->index_of);
             return;
         }
     }
@@ -172,7 +165,7 @@ static void check_volumes(struct check *check, const struct section *cells)
     }
     for (int64_t i = 0; i < cells->rows; i++) {
         if (!(simplex_determinant(nodes->data, node + i * cells->cols, check->dim) > 0)) {
-            violation(check, cells, "row %" PRId64 ": no positive volume", i);
+            invariants_violation(check, cells, "row %" PRId64 ": no positive volume", i);
             return;
         }
     }
@@ -186,8 +179,8 @@ static void check_ascending(struct check *check, const struct section *ptr, cons
     for (int64_t row = 0; row + 1 < ptr->rows; row++) {
         for (int64_t i = begin[row] + 1; i < begin[row + 1]; i++) {
             if (index[i - 1] >= index[i]) {
-                violation(check, idx, "list %" PRId64 ": %d does not ascend to %d", row, index[i - 1],
-                          index[i]);
+                invariants_violation(check, idx, "list %" PRId64 ": %d does not ascend to %d", row,
+                                     index[i - 1], index[i]);
                 return;
             }
         }
@@ -205,7 +198,7 @@ static void check_unity(struct check *check, const struct section *ptr, const st
             sum += value[i];
         }
         if (!(fabs(sum - 1) <= unity_tolerance)) {
-            violation(check, phi, "list %" PRId64 ": sums to 1 %+.3g", row, sum - 1);
+            invariants_violation(check, phi, "list %" PRId64 ": sums to 1 %+.3g", row, sum - 1);
             return;
         }
     }
@@ -216,19 +209,19 @@ static bool beginnings_are_right(struct check *check, const struct section *ptr,
 {
     const int64_t *begin = ptr->data;
     if (ptr->rows < 1 || begin[0] != 0) {
-        violation(check, ptr, "row 0: does not begin with 0");
+        invariants_violation(check, ptr, "row 0: does not begin with 0");
         return false;
     }
     for (int64_t row = 0; row + 1 < ptr->rows; row++) {
         if (begin[row] > begin[row + 1]) {
-            violation(check, ptr, "row %" PRId64 ": falls from %" PRId64 " to %" PRId64, row + 1, begin[row],
-                      begin[row + 1]);
+            invariants_violation(check, ptr, "row %" PRId64 ": falls from %" PRId64 " to %" PRId64, row + 1,
+                                 begin[row], begin[row + 1]);
             return false;
         }
     }
     if (begin[ptr->rows - 1] != length) {
-        violation(check, ptr, "row %" PRId64 ": ends with %" PRId64 ", the list has %" PRId64, ptr->rows - 1,
-                  begin[ptr->rows - 1], length);
+        invariants_violation(check, ptr, "row %" PRId64 ": ends with %" PRId64 ", the list has %" PRId64,
+                             ptr->rows - 1, begin[ptr->rows - 1], length);
         return false;
     }
     return true;
@@ -239,14 +232,15 @@ static void check_around(struct check *check, const struct section *around, int6
 {
     const int64_t *row = around->data;
     if (around->type != TYPE_I8 || around->cols != 1) {
-        violation(check, around, "%" PRId64 " columns of %s instead of 1 of i8", around->cols,
-                  element_type_name(around->type));
+        invariants_violation(check, around, "%" PRId64 " columns of %s instead of 1 of i8", around->cols,
+                             element_type_name(around->type));
         return;
     }
     for (int64_t i = 0; i < around->rows; i++) {
         if (row[i] < (i > 0 ? row[i - 1] + 1 : 0) || row[i] >= length) {
-            violation(check, around, "row %" PRId64 ": %" PRId64 " is no row of the list, or not ascending",
-                      i, row[i]);
+            invariants_violation(check, around,
+                                 "row %" PRId64 ": %" PRId64 " is no row of the list, or not ascending", i,
+                                 row[i]);
             return;
         }
     }
@@ -260,20 +254,20 @@ static void check_lists(struct check *check, const struct list_rule *rule)
     const struct section *phi = rule->phi != NULL ? stream_find(check->stream, rule->phi) : NULL;
     if (ptr == NULL || idx == NULL) {
         if (ptr != idx) {
-            violation(check, ptr != NULL ? ptr : idx, "stands without %s",
-                      ptr != NULL ? rule->idx : rule->ptr);
+            invariants_violation(check, ptr != NULL ? ptr : idx, "stands without %s",
+                                 ptr != NULL ? rule->idx : rule->ptr);
         }
         return;
     }
     if (ptr->type != TYPE_I8 || ptr->cols != 1) {
-        violation(check, ptr, "%" PRId64 " columns of %s instead of 1 of i8", ptr->cols,
-                  element_type_name(ptr->type));
+        invariants_violation(check, ptr, "%" PRId64 " columns of %s instead of 1 of i8", ptr->cols,
+                             element_type_name(ptr->type));
         return;
     }
     int64_t rows = rule->rows_of != NULL ? rows_of(check, ptr, rule->rows_of) : -1;
     if (rows >= 0 && ptr->rows != rows + 1) {
-        violation(check, ptr, "%" PRId64 " rows, but %s has %" PRId64 ": need one more", ptr->rows,
-                  rule->rows_of, rows);
+        invariants_violation(check, ptr, "%" PRId64 " rows, but %s has %" PRId64 ": need one more", ptr->rows,
+                             rule->rows_of, rows);
     }
     if (idx->type != TYPE_I4 || idx->cols != 1 || !beginnings_are_right(check, ptr, idx->rows)) {
         return;
@@ -285,36 +279,6 @@ static void check_lists(struct check *check, const struct list_rule *rule)
     if (phi != NULL && phi->type == TYPE_F8 && phi->cols == 1 && phi->rows == idx->rows) {
         check_unity(check, ptr, phi);
     }
-}
-
-static void check_multiple(struct check *check, const struct section *points, int64_t count, int64_t faces,
-                           const char *which)
-{
-    if (points != NULL && (faces == 0 ? count != 0 : count % faces != 0)) {
-        violation(check, points, "%" PRId64 " points on %" PRId64 " faces%s", count, faces, which);
-    }
-}
-
-/* Faces on the boundary come first; facepoints.x has equally many points on each face, boundary.ptr on each
- * of these. */
-static void check_faces(struct check *check)
-{
-    const struct section *faces = stream_find(check->stream, "faces.cell");
-    const struct section *points = stream_find(check->stream, "facepoints.x");
-    const struct section *boundary = stream_find(check->stream, "boundary.ptr");
-    int64_t outer = 0;
-    if (faces == NULL || faces->type != TYPE_I4 || faces->cols != 2) {
-        return;
-    }
-    const int32_t *cell = faces->data;
-    for (int64_t f = 0; f < faces->rows; f++) {
-        if (cell[2 * f + 1] < 0 && outer++ < f) {
-            violation(check, faces, "row %" PRId64 ": on the boundary, after faces between cells", f);
-            return;
-        }
-    }
-    check_multiple(check, points, points != NULL ? points->rows : 0, faces->rows, "");
-    check_multiple(check, boundary, boundary != NULL ? boundary->rows - 1 : 0, outer, " of the boundary");
 }
 
 /* A field at the nodes, of any number of components. */
@@ -337,7 +301,7 @@ static int find_dimension(struct check *check)
             return (int)section->cols;
         }
         if (section != NULL) {
-            violation(check, section, "%" PRId64 " columns instead of 2 or 3", section->cols);
+            invariants_violation(check, section, "%" PRId64 " columns instead of 2 or 3", section->cols);
         }
     }
     return 0;
@@ -367,7 +331,7 @@ int64_t stream_check(const struct stream *stream, violation_function *tell, void
     for (size_t i = 0; i < sizeof list_rules / sizeof *list_rules; i++) {
         check_lists(&check, &list_rules[i]);
     }
-    check_faces(&check);
+    invariants_check_faces(&check);
     for (int64_t i = 0; i < stream->section_count; i++) {
         const struct section *section = &stream->sections[i];
         if (strcmp(section->name, "u") == 0 || strncmp(section->name, "u.frame.", 8) == 0 ||

@@ -19,6 +19,7 @@ const struct section_kind section_kinds[SECTION_KINDS] = {
     {"points.cell", TYPE_I4, 1, "points.x", INDEX_OR_NONE, "cells", MADE_WITH_POINTS},
     {"faces", TYPE_I4, COLS_DIM, NULL, INDEX, "nodes.x", MADE_WITH_POINTS},
     {"faces.cell", TYPE_I4, 2, "faces", INDEX_OR_NONE, "cells", MADE_WITH_POINTS},
+    {"faces.row", TYPE_I4, 3, "faces", INDEX, "face.ptr", MADE_WITH_POINTS},
     {"facepoints.x", TYPE_F8, COLS_DIM, NULL, FINITE, NULL, MADE_WITH_POINTS},
     {"support.radius", TYPE_F8, 1, "nodes.x", POSITIVE, NULL, MADE_WITH_SUPPORT},
     {"support.side", TYPE_I4, 1, "cells", INDEX, "cells", MADE_WITH_SUPPORT},

@@ -31,7 +31,7 @@ struct section_kind {
     enum section_stage stage;
 };
 
-enum { SECTION_KINDS = 57 };
+enum { SECTION_KINDS = 58 };
 extern const struct section_kind section_kinds[SECTION_KINDS];
 
 /* The stage of a section; one before the results also of a section that the table lacks, by the part of its

@@ -64,9 +64,7 @@ static enum status build_body(struct assembly *input, struct solid_system *syste
     }
     struct smoothed_cells_input smoothed = {.x = input->cells.x,
                                             .cell_node = input->cells.node,
-                                            .face_count = input->faces.count,
-                                            .face_node = input->faces.node,
-                                            .face_cell = input->faces.cell,
+                                            .faces = &input->faces,
                                             .face_ptr = input->lists.ptr,
                                             .face_idx = input->lists.idx,
                                             .face_phi = input->phi,

@@ -1,5 +1,6 @@
 #include "solid/assembly.h"
 
+#include "approx/face_rows.h"
 #include "base/memory.h"
 
 #include <stdlib.h>
@@ -22,21 +23,23 @@ static enum status new_load(struct solid_system *system, int32_t curve, double *
     return status;
 }
 
-/* The mass that each row of the table over points or faces stands for: of a face, its cells' in equal parts.
- */
+/* The mass that each row of the table over points or faces stands for: of a face, its cells' in equal parts,
+ * and of a row its share of the faces. */
 static enum status share_mass(const struct assembly *input, double **mass, struct error *error)
 {
     enum status status;
     const struct material_list *materials = &input->materials;
+    int rows = FACE_ROWS(input->cells.dim);
     TRY(NEW_ARRAY(mass, input->lists.count, error));
     for (int64_t i = 0; i < input->lists.count && !input->smoothed; i++) {
         (*mass)[i] = input->weight[i] * materials->items[materials->of_cell[input->point_cell[i]]].density;
     }
-    for (int64_t i = 0; i < 2 * input->lists.count && input->smoothed; i++) {
+    for (int64_t i = 0; i < 2 * input->faces.count && input->smoothed; i++) {
         int32_t q = input->faces.cell[i];
-        if (q >= 0) {
-            (*mass)[i / 2] +=
-                input->weight[q] * materials->items[materials->of_cell[q]].density / (input->cells.dim + 1);
+        for (int k = 0; k < rows && q >= 0; k++) {
+            (*mass)[face_row(&input->faces, i / 2, k)] += input->weight[q] *
+                                                          materials->items[materials->of_cell[q]].density /
+                                                          ((input->cells.dim + 1) * rows);
         }
     }
 done:

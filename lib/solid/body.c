@@ -198,7 +198,7 @@ enum status body_build(const struct body_input *input, struct body *body, struct
     if (!body->smoothed) {
         TRY(copy_gradients(input, body, error));
     } else {
-        body->pair_count = input->smoothed->face_ptr[input->smoothed->face_count] +
+        body->pair_count = input->smoothed->face_ptr[input->smoothed->faces->row_count] +
                            input->smoothed->node_ptr[body->node_count];
         TRY(smoothed_cells_build(input->smoothed, body, error));
     }

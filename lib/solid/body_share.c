@@ -130,16 +130,19 @@ enum status body_share_values(const struct body *body, bool **wanted, struct err
     enum status status;
     const struct body_share *share = &body->share;
     const struct field_averages *averages = &body->cells.averages;
-    int64_t rows = row_count(body);
-    int per_point = body->smoothed ? body->dim + 1 : body->dim;
-    TRY(NEW_ARRAY(wanted, rows, error));
-    for (int64_t i = share->begin_point * per_point; i < share->end_point * per_point; i++) {
-        for (int half = 0; half < 2 && body->smoothed; half++) {
-            int32_t at = averages->of_corner[half * averages->corner_count + i];
-            (*wanted)[at / VECTOR_STRIDE(body->dim)] = true;
-        }
-        if (!body->smoothed) {
+    int dim = body->dim;
+    TRY(NEW_ARRAY(wanted, row_count(body), error));
+    if (!body->smoothed) {
+        for (int64_t i = share->begin_point * dim; i < share->end_point * dim; i++) {
             (*wanted)[i] = true;
+        }
+        goto done;
+    }
+    for (int half = 0; half < 2; half++) {
+        int64_t per_point = (dim + 1) * (half == 0 ? FACE_ROWS(dim) : 1);
+        const int32_t *at = averages->of_corner + half * averages->corner_count * FACE_ROWS(dim);
+        for (int64_t i = share->begin_point * per_point; i < share->end_point * per_point; i++) {
+            (*wanted)[at[i] / VECTOR_STRIDE(dim)] = true;
         }
     }
 done:

@@ -57,6 +57,7 @@ static enum status match_corners(const struct field_averages_input *input, struc
 {
     enum status status = STATUS_OK;
     int64_t *place_of = NULL; /* of each of the caller's rows */
+    int32_t *of_corner = averages->of_corner;
     for (int k = 0; k < 2; k++) {
         const struct average_table *table = &input->tables[k];
         int64_t first = k * input->tables[0].row_count;
@@ -64,9 +65,9 @@ static enum status match_corners(const struct field_averages_input *input, struc
         for (int64_t r = 0; r < table->row_count; r++) {
             place_of[table->order[r]] = first + r;
         }
-        for (int64_t i = 0; i < input->corner_count; i++) {
-            averages->of_corner[k * input->corner_count + i] =
-                (int32_t)(place_of[table->row_of_corner[i]] * VECTOR_STRIDE(input->dim));
+        int64_t count = input->corner_count * (k == 0 ? FACE_ROWS(input->dim) : 1);
+        for (int64_t i = 0; i < count; i++) {
+            *of_corner++ = (int32_t)(place_of[table->row_of_corner[i]] * VECTOR_STRIDE(input->dim));
         }
         free(place_of);
         place_of = NULL;
@@ -79,18 +80,19 @@ done:
 static enum status list_corners(int dim, struct field_averages *averages, struct error *error)
 {
     enum status status;
-    int64_t rows = averages->row_count, corners = 2 * averages->corner_count;
+    int64_t rows = averages->row_count, of_faces = averages->corner_count * FACE_ROWS(dim);
+    int64_t looks = of_faces + averages->corner_count;
     TRY(NEW_ARRAY(&averages->corner_ptr, rows + 2, error));
-    TRY(NEW_ARRAY(&averages->corner, corners, error));
-    for (int64_t i = 0; i < corners; i++) {
+    TRY(NEW_ARRAY(&averages->corner, looks, error));
+    for (int64_t i = 0; i < looks; i++) {
         averages->corner_ptr[averages->of_corner[i] / VECTOR_STRIDE(dim) + 2]++;
     }
     for (int64_t r = 0; r < rows; r++) {
         averages->corner_ptr[r + 2] += averages->corner_ptr[r + 1];
     }
-    for (int64_t i = 0; i < corners; i++) {
+    for (int64_t i = 0; i < looks; i++) {
         averages->corner[averages->corner_ptr[averages->of_corner[i] / VECTOR_STRIDE(dim) + 1]++] =
-            (int32_t)i;
+            (int32_t)(i < of_faces ? i / FACE_ROWS(dim) : i - of_faces + averages->corner_count);
     }
 done:
     return status;
@@ -102,13 +104,14 @@ enum status field_averages_build(const struct field_averages_input *input, struc
     enum status status;
     const struct average_table *faces = &input->tables[0], *nodes = &input->tables[1];
     int64_t rows = faces->row_count + nodes->row_count, stride = VECTOR_STRIDE(input->dim);
+    int64_t looks = input->corner_count * (FACE_ROWS(input->dim) + 1);
     *averages = (struct field_averages){.corner_count = input->corner_count, .row_count = rows};
-    if (rows > INT32_MAX / stride || input->corner_count > INT32_MAX / 2) {
+    if (rows > INT32_MAX / stride || looks > INT32_MAX) {
         return fail(error, STATUS_INPUT, "%lld faces and nodes: too many", (long long)rows);
     }
     TRY(NEW_ARRAY_UNTOUCHED(&averages->value, rows * stride, error));
     TRY(NEW_ARRAY_UNTOUCHED(&averages->force, rows * stride, error));
-    TRY(NEW_ARRAY(&averages->of_corner, 2 * input->corner_count, error));
+    TRY(NEW_ARRAY(&averages->of_corner, looks, error));
     TRY(NEW_ARRAY_UNTOUCHED(&averages->corner_force, 2 * input->corner_count * stride, error));
     TRY(match_corners(input, averages, error));
     TRY(list_corners(input->dim, averages, error));

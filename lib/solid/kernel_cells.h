@@ -5,23 +5,29 @@
 
 #include "solid/kernel_points.h"
 
-/* What the corners of a block's cells look at, faces or nodes, whose corners begin at `first`: component a of
- * corner k in row k dim + a, cells along it. */
+/* What the corners of a block's cells look at, faces or nodes: component a of corner k in row k dim + a,
+ * cells along it; the sum over the rows of each, which begin in of_corner at `first`. */
 typedef double block_corners[12][BLOCK_MOST_POINTS];
 
-KERNEL_INLINE void read_corners(const struct field_averages *averages, int64_t first,
+KERNEL_INLINE void read_corners(const struct field_averages *averages, int64_t first, int rows,
                                 const struct block *block, int dim, block_corners corners)
 {
-    const int32_t *of_corner = averages->of_corner + first + block->first_point * (dim + 1);
+    const int32_t *of_corner = averages->of_corner + first + block->first_point * (dim + 1) * rows;
     int64_t last = block->point_count - 1;
     for (int64_t i = 0; i <= last; i += 4) {
         for (int k = 0; k <= dim; k++) {
             const double *from[4];
-            quad4 value[4];
-            for (int r = 0; r < 4; r++) { /* the last one again where there are no more */
-                from[r] = averages->value + of_corner[(i + r < last ? i + r : last) * (dim + 1) + k];
+            quad4 value[4], next[4];
+            for (int j = 0; j < rows; j++) {
+                for (int r = 0; r < 4; r++) { /* the last one again where there are no more */
+                    int64_t cell = i + r < last ? i + r : last;
+                    from[r] = averages->value + of_corner[(cell * (dim + 1) + k) * rows + j];
+                }
+                load_components(from, dim, next);
+                for (int a = 0; a < dim; a++) {
+                    value[a] = j == 0 ? next[a] : value[a] + next[a];
+                }
             }
-            load_components(from, dim, value);
             for (int a = 0; a < dim; a++) {
                 STORE(corners[k * dim + a] + i, value[a]);
             }
@@ -121,8 +127,9 @@ KERNEL_INLINE void kernel_cell_gradients(struct body *body, struct block *block,
     block_corners mean, value;
     block_rows F, interpolant;
     double determinant[BLOCK_MOST_POINTS], J[BLOCK_MOST_POINTS];
-    read_corners(averages, 0, block, dim, mean);
-    read_corners(averages, averages->corner_count, block, dim, value);
+    const double face_factor = (double)dim / FACE_ROWS(dim);
+    read_corners(averages, 0, FACE_ROWS(dim), block, dim, mean);
+    read_corners(averages, averages->corner_count * FACE_ROWS(dim), 1, block, dim, value);
     for (int64_t i = 0; i < block->point_count; i += LANES) {
         lanes hat[9], f[9], h[9], C[9], volume;
         load_hats(body, block->first_point + i, dim, hat);
@@ -130,7 +137,7 @@ KERNEL_INLINE void kernel_cell_gradients(struct body *body, struct block *block,
         corner_gradient((const double(*)[BLOCK_MOST_POINTS])value, i, dim, hat, h);
         for (int k = 0; k < dim * dim; k++) {
             double unit = k % (dim + 1) == 0 ? 1.0 : 0.0;
-            f[k] = unit - (double)dim * f[k];
+            f[k] = unit - face_factor * f[k];
             h[k] += unit;
             STORE(F[k] + i, f[k]);
             STORE(interpolant[k] + i, h[k]);
@@ -205,7 +212,8 @@ KERNEL_INLINE void kernel_cell_neo_hookean(const struct body *body, const struct
     }
 }
 
-/* Forces of the corners on the face averages, -dim P grad N_k, and on the node values, T grad N_k. */
+/* Forces of the corners on each row of the face averages, -dim / FACE_ROWS(dim) P grad N_k, and on the node
+ * values, T grad N_k. */
 KERNEL_INLINE void kernel_cell_forces(struct body *body, const struct block *block, int dim,
                                       const block_rows P, const block_rows T)
 {
@@ -217,7 +225,7 @@ KERNEL_INLINE void kernel_cell_forces(struct body *body, const struct block *blo
         for (int k = 0; k < dim * dim; k++) {
             LOAD(stress[k], P[k] + i);
         }
-        corner_forces(stress, i, dim, hat, -(double)dim, at_faces);
+        corner_forces(stress, i, dim, hat, -(double)dim / FACE_ROWS(dim), at_faces);
         for (int k = 0; k < dim * dim; k++) {
             LOAD(stress[k], T[k] + i);
         }

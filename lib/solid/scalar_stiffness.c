@@ -67,15 +67,6 @@ static struct average fields_of(const struct scalar_stiffness *stiffness, int64_
     return (struct average){fields->ptr[row + 1] - at, fields->idx + at, fields->value + at};
 }
 
-/* The field that corner k of cell q looks at: its face, or with `vertex` its node. */
-static int64_t field_of_corner(const struct scalar_stiffness *stiffness, int64_t q, int k, bool vertex)
-{
-    const struct body *body = &stiffness->system->body;
-    const struct field_averages *averages = &body->cells.averages;
-    int64_t corner = q * (body->dim + 1) + k + (vertex ? averages->corner_count : 0);
-    return averages->of_corner[corner] / VECTOR_STRIDE(body->dim);
-}
-
 /* Of several processes the body has the transpose for other nodes than those of these rows. */
 static enum status list_fields(struct scalar_stiffness *stiffness, struct error *error)
 {
@@ -243,12 +234,16 @@ static void add_cell(const struct scalar_stiffness *stiffness, int64_t q, int64_
 {
     const struct body *body = &stiffness->system->body;
     int dim = body->dim;
+    int rows = FACE_ROWS(dim);
+    int64_t nodes = stiffness->field_count - body->node_count;
     double hat[12], smooth[3] = {0.0, 0.0, 0.0}, off[3] = {0.0, 0.0, 0.0};
     double modulus = modulus_of(body, q), k_off = SMOOTHING_STIFFNESS(dim);
     smoothed_cells_hat_gradients(body, q, hat);
     for (int k = 0; k <= dim; k++) {
-        double mean = row->at_field[field_of_corner(stiffness, q, k, false)];
-        double value = row->at_field[field_of_corner(stiffness, q, k, true)];
+        double mean = 0.0, value = row->at_field[nodes + smoothed_cells_node(body, q, k)];
+        for (int r = 0; r < rows; r++) {
+            mean += row->at_field[smoothed_cells_row(body, q, k, r)] / rows;
+        }
         for (int a = 0; a < dim; a++) {
             smooth[a] -= dim * mean * hat[k * dim + a];
             off[a] += (value + dim * mean) * hat[k * dim + a];
@@ -260,8 +255,10 @@ static void add_cell(const struct scalar_stiffness *stiffness, int64_t q, int64_
             on_mean -= dim * modulus * (smooth[a] - k_off * off[a]) * hat[k * dim + a];
             on_value += modulus * k_off * off[a] * hat[k * dim + a];
         }
-        put(on_mean, field_of_corner(stiffness, q, k, false), i, row, touched);
-        put(on_value, field_of_corner(stiffness, q, k, true), i, row, touched);
+        for (int r = 0; r < rows; r++) {
+            put(on_mean / rows, smoothed_cells_row(body, q, k, r), i, row, touched);
+        }
+        put(on_value, nodes + smoothed_cells_node(body, q, k), i, row, touched);
     }
 }
 

@@ -9,8 +9,8 @@
 
 struct solid_system;
 
-/* Fields are the averages over the faces, then the values at the nodes. Bonds are the averages that penalties
- * act on. */
+/* Fields are the rows of the averages over the faces, then the values at the nodes. Bonds are the averages
+ * that penalties act on. */
 struct scalar_stiffness {
     const struct solid_system *system;
     int64_t begin, end; /* rows that can be asked for */

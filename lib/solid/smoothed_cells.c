@@ -57,9 +57,9 @@ static int opposite_corner(int dim, const int32_t *vertex, const int32_t *face)
     return dim;
 }
 
-/* The face opposite each corner. */
+/* The rows of the face opposite each corner. */
 static enum status match_corners(const struct smoothed_cells_input *input, int dim, int64_t cell_count,
-                                 const int64_t *order, int32_t *face_of_corner, struct error *error)
+                                 const int64_t *order, int32_t *row_of_corner, struct error *error)
 {
     enum status status;
     int64_t *cell_place = NULL;
@@ -67,19 +67,23 @@ static enum status match_corners(const struct smoothed_cells_input *input, int d
     for (int64_t q = 0; q < cell_count; q++) {
         cell_place[order[q]] = q;
     }
-    for (int64_t i = 0; i < cell_count * (dim + 1); i++) {
-        face_of_corner[i] = -1;
+    int rows = FACE_ROWS(dim);
+    for (int64_t i = 0; i < cell_count * (dim + 1) * rows; i++) {
+        row_of_corner[i] = -1;
     }
-    for (int64_t i = 0; i < input->face_count * 2; i++) {
-        int64_t face = i / 2, cell = input->face_cell[i];
+    for (int64_t i = 0; i < input->faces->count * 2; i++) {
+        int64_t face = i / 2, cell = input->faces->cell[i];
         if (cell >= 0 && cell < cell_count) {
             int corner =
-                opposite_corner(dim, input->cell_node + cell * (dim + 1), input->face_node + face * dim);
-            face_of_corner[cell_place[cell] * (dim + 1) + corner] = (int32_t)face;
+                opposite_corner(dim, input->cell_node + cell * (dim + 1), input->faces->node + face * dim);
+            for (int k = 0; k < rows; k++) {
+                row_of_corner[(cell_place[cell] * (dim + 1) + corner) * rows + k] =
+                    (int32_t)face_row(input->faces, face, k);
+            }
         }
     }
     for (int64_t i = 0; i < cell_count * (dim + 1); i++) {
-        if (face_of_corner[i] < 0) {
+        if (row_of_corner[i * rows] < 0) {
             status = fail(error, STATUS_INPUT,
                           "faces.cell: cell %lld lacks a face: run ipoints for smoothed cells",
                           (long long)order[i / (dim + 1)]);
@@ -88,6 +92,44 @@ static enum status match_corners(const struct smoothed_cells_input *input, int d
     }
 done:
     free(cell_place);
+    return status;
+}
+
+/* x[row_count * dim]: the places of the rows, which those of a face must be around. */
+static enum status place_rows(const struct faces *faces, const double *nodes, double *x, struct error *error)
+{
+    enum status status;
+    int dim = faces->dim, rows = FACE_ROWS(dim);
+    double *points = NULL;
+    TRY(NEW_ARRAY(&points, face_row_point(faces, faces->row_count) * dim, error));
+    face_rows_points(faces, nodes, points);
+    for (int64_t r = 0; r < faces->row_count; r++) {
+        int64_t first = face_row_point(faces, r), count = face_row_point(faces, r + 1) - first;
+        for (int64_t i = 0; i < count * dim; i++) {
+            x[r * dim + i % dim] += points[first * dim + i] / (double)count;
+        }
+    }
+    for (int64_t f = 0; f < faces->count; f++) {
+        double off = 0.0, size = 0.0;
+        for (int a = 0; a < dim; a++) {
+            double mean = 0.0, middle = 0.0, first = nodes[(int64_t)faces->node[f * dim] * dim + a];
+            for (int i = 0; i < dim; i++) {
+                middle += nodes[(int64_t)faces->node[f * dim + i] * dim + a] / dim;
+            }
+            for (int k = 0; k < rows; k++) {
+                mean += x[face_row(faces, f, k) * dim + a] / rows;
+            }
+            off = fmax(off, fabs(mean - middle));
+            size = fmax(size, fabs(middle - first));
+        }
+        if (!(off <= 1e-6 * size)) {
+            status = fail(error, STATUS_INPUT,
+                          "faces.row: row %lld: not those of this face: run ipoints again", (long long)f);
+            goto done;
+        }
+    }
+done:
+    free(points);
     return status;
 }
 
@@ -150,33 +192,29 @@ done:
     return status;
 }
 
-/* A row for each face, whose corners are those opposite it, and for each node, whose corners are the vertices
- * of the cells there. */
+/* Rows of the faces, whose corners are those opposite, and of each node, whose corners are the vertices of
+ * the cells there. */
 static enum status build_averages(const struct smoothed_cells_input *input, struct body *body,
                                   struct error *error)
 {
     enum status status;
     struct field_averages *averages = &body->cells.averages;
     int dim = body->dim, corners = dim + 1;
+    const struct faces *faces = input->faces;
     int64_t *order = NULL;
-    int32_t *node_of_corner = NULL, *face_of_corner = NULL;
+    int32_t *node_of_corner = NULL, *row_of_corner = NULL;
     double *x = NULL;
-    TRY(NEW_ARRAY(&face_of_corner, body->point_count * corners, error));
-    TRY(match_corners(input, dim, body->point_count, body->order, face_of_corner, error));
-    TRY(NEW_ARRAY(&x, input->face_count * dim, error));
-    for (int64_t f = 0; f < input->face_count; f++) {
-        for (int i = 0; i < dim * dim; i++) {
-            x[f * dim + i % dim] +=
-                input->x[(int64_t)input->face_node[f * dim + i / dim] * dim + i % dim] / dim;
-        }
-    }
-    const struct told faces = {"face.phi", "face", input->face_ptr, input->face_idx, input->face_phi, x};
+    TRY(NEW_ARRAY(&row_of_corner, body->point_count * corners * FACE_ROWS(dim), error));
+    TRY(match_corners(input, dim, body->point_count, body->order, row_of_corner, error));
+    TRY(NEW_ARRAY(&x, faces->row_count * dim, error));
+    TRY(place_rows(faces, input->x, x, error));
+    const struct told rows = {"face.phi", "row", input->face_ptr, input->face_idx, input->face_phi, x};
     const struct told nodes = {"node.phi",      "node",          input->node_ptr,
                                input->node_idx, input->node_phi, input->x};
-    TRY(check_table(&faces, input->face_count, dim, input->x, error));
+    TRY(check_table(&rows, faces->row_count, dim, input->x, error));
     TRY(check_table(&nodes, body->node_count, dim, input->x, error));
-    TRY(NEW_ARRAY(&order, input->face_count, error));
-    TRY(renumber_morton(dim, input->face_count, x, NULL, order, error));
+    TRY(NEW_ARRAY(&order, faces->row_count, error));
+    TRY(renumber_morton(dim, faces->row_count, x, NULL, order, error));
     TRY(NEW_ARRAY(&node_of_corner, body->point_count * corners, error));
     for (int64_t q = 0; q < body->point_count; q++) {
         memcpy(node_of_corner + q * corners, input->cell_node + body->order[q] * corners,
@@ -188,7 +226,7 @@ static enum status build_averages(const struct smoothed_cells_input *input, stru
         .corner_count = body->point_count * corners,
         .place = body->node_place,
         .tables = {
-            {input->face_count, order, input->face_ptr, input->face_idx, input->face_phi, face_of_corner},
+            {faces->row_count, order, input->face_ptr, input->face_idx, input->face_phi, row_of_corner},
             {body->node_count, body->node_order, input->node_ptr, input->node_idx, input->node_phi,
              node_of_corner}}};
     TRY(field_averages_build(&tables, averages, error));
@@ -208,7 +246,7 @@ static enum status build_averages(const struct smoothed_cells_input *input, stru
     TRY(stretches_of(0, averages->row_count, NULL, &body->share.values, error));
 done:
     free(node_of_corner);
-    free(face_of_corner);
+    free(row_of_corner);
     free(order);
     free(x);
     return status;
@@ -251,18 +289,18 @@ void smoothed_cells_hat_gradients(const struct body *body, int64_t q, double *gr
     }
 }
 
-/* The row of the averages that corner k of a cell looks at, of its faces (which = 0) or nodes. */
-static int64_t row_of_corner(const struct body *body, int64_t q, int which, int k)
+int32_t smoothed_cells_row(const struct body *body, int64_t q, int k, int i)
 {
-    const struct field_averages *averages = &body->cells.averages;
-    return averages->of_corner[which * averages->corner_count + q * (body->dim + 1) + k] /
-           VECTOR_STRIDE(body->dim);
+    int64_t corner = q * (body->dim + 1) + k;
+    return body->cells.averages.of_corner[corner * FACE_ROWS(body->dim) + i] / VECTOR_STRIDE(body->dim);
 }
 
 int32_t smoothed_cells_node(const struct body *body, int64_t q, int k)
 {
-    int64_t faces = body->cells.averages.matrix.row_count - body->node_count;
-    return (int32_t)(row_of_corner(body, q, 1, k) - faces);
+    const struct field_averages *averages = &body->cells.averages;
+    int64_t first = averages->corner_count * FACE_ROWS(body->dim);
+    int32_t row = averages->of_corner[first + q * (body->dim + 1) + k] / VECTOR_STRIDE(body->dim);
+    return row - (int32_t)(averages->matrix.row_count - body->node_count);
 }
 
 enum status cell_functions_make(const struct body *body, struct cell_functions *functions,
@@ -275,8 +313,10 @@ enum status cell_functions_make(const struct body *body, struct cell_functions *
     for (int64_t q = 0; q < body->point_count; q++) {
         int64_t sum = body->smoothed ? 0 : matrix->ptr[q * body->dim + 1] - matrix->ptr[q * body->dim];
         for (int k = 0; k <= body->dim && body->smoothed; k++) {
-            int64_t row = row_of_corner(body, q, 0, k);
-            sum += matrix->ptr[row + 1] - matrix->ptr[row];
+            for (int i = 0; i < FACE_ROWS(body->dim); i++) {
+                int32_t row = smoothed_cells_row(body, q, k, i);
+                sum += matrix->ptr[row + 1] - matrix->ptr[row];
+            }
         }
         most = sum > most ? sum : most;
     }
@@ -298,17 +338,43 @@ void cell_functions_free(struct cell_functions *functions)
     *functions = (struct cell_functions){0};
 }
 
+/* The rows that the averages over the faces of cell q are made of, each once, and what its gradient is by the
+ * value of each: gradient[12 * dim]. Returns how many there are. */
+static int list_rows(const struct body *body, int64_t q, int32_t row[12], double *gradient)
+{
+    int dim = body->dim, rows = FACE_ROWS(dim), count = 0;
+    double hat[12];
+    smoothed_cells_hat_gradients(body, q, hat);
+    for (int k = 0; k <= dim; k++) {
+        for (int i = 0; i < rows; i++) {
+            int32_t of_face = smoothed_cells_row(body, q, k, i);
+            int at = 0;
+            while (at < count && row[at] != of_face) {
+                at++;
+            }
+            if (at == count) {
+                row[count++] = of_face;
+                memset(gradient + at * dim, 0, (size_t)dim * sizeof *gradient);
+            }
+            for (int a = 0; a < dim; a++) {
+                gradient[at * dim + a] -= (double)dim / rows * hat[k * dim + a];
+            }
+        }
+    }
+    return count;
+}
+
 /* A set by two arrays that need no clearing: Briggs and Torczon 1993. */
 void cell_functions_list(const struct body *body, int64_t q, struct cell_functions *functions)
 {
     const struct sparse *matrix = &body->cells.averages.matrix;
-    int dim = body->dim;
-    double hat[12];
-    smoothed_cells_hat_gradients(body, q, hat);
+    int dim = body->dim, count;
+    int32_t row[12];
+    double gradient[12 * 3];
+    count = list_rows(body, q, row, gradient);
     functions->count = 0;
-    for (int k = 0; k <= dim; k++) {
-        int64_t row = row_of_corner(body, q, 0, k);
-        for (int64_t i = matrix->ptr[row]; i < matrix->ptr[row + 1]; i++) {
+    for (int r = 0; r < count; r++) {
+        for (int64_t i = matrix->ptr[row[r]]; i < matrix->ptr[row[r] + 1]; i++) {
             int32_t node = matrix->idx[i], at = functions->place[node];
             if (at >= functions->count || functions->node[at] != node) {
                 at = functions->place[node] = (int32_t)functions->count++;
@@ -316,7 +382,7 @@ void cell_functions_list(const struct body *body, int64_t q, struct cell_functio
                 memset(functions->gradient + at * dim, 0, (size_t)dim * sizeof *functions->gradient);
             }
             for (int a = 0; a < dim; a++) {
-                functions->gradient[at * dim + a] -= dim * matrix->value[i] * hat[k * dim + a];
+                functions->gradient[at * dim + a] += matrix->value[i] * gradient[r * dim + a];
             }
         }
     }

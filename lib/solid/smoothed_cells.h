@@ -4,8 +4,10 @@
  *
  * For a simplex the normal of the face opposite vertex k, times its area, is -dim V grad N_k, N_k the hat
  * function of the vertex. So F = I - dim sum_k m_k (x) grad N_k, where m_k is the field's mean on the face: a
- * sparse operator of face averages, one value for each pair of face and node, replaces a table of gradients
- * of dim values for each pair of cell and node, and two cells share each face.
+ * sparse operator replaces a table of gradients of dim values for each pair of cell and node. In 2D it has a
+ * row for each face, which two cells share. In 3D, away from the boundary, m_k is the mean of the values at
+ * the middles of the face's edges (approx/face_rows.h): there are 1.2 edges for each cell, but two faces, and
+ * rows for points are shorter than those for faces.
  *
  * F is the gradient of no continuous piecewise linear map, so that sum V det F is not the volume within the
  * boundary: under a pressure the field would buckle within the cells at no cost of volume. With F_h, the
@@ -41,12 +43,10 @@ struct body;
 
 /* What they are made of, in the caller's arrays. One integration point per cell. */
 struct smoothed_cells_input {
-    const double *x;          /* nodes, node_count * dim, m */
-    const int32_t *cell_node; /* cells * (dim + 1) */
-    int64_t face_count;
-    const int32_t *face_node; /* face_count * dim */
-    const int32_t *face_cell; /* face_count * 2, or -1 beyond the boundary */
-    const int64_t *face_ptr;  /* averages of the shape functions over the faces: face_count + 1 */
+    const double *x;           /* nodes, node_count * dim, m */
+    const int32_t *cell_node;  /* cells * (dim + 1) */
+    const struct faces *faces; /* all of them */
+    const int64_t *face_ptr;   /* rows that the shape functions are averaged over faces by: row_count + 1 */
     const int32_t *face_idx;
     const double *face_phi;
     const int64_t *node_ptr; /* and their values at the nodes: node_count + 1 */
@@ -73,6 +73,10 @@ void smoothed_cells_free(struct smoothed_cells *smoothed);
 
 /* Gradients of the hat functions of cell q, in the body's order: gradient[(dim + 1) * dim], 1/m. */
 void smoothed_cells_hat_gradients(const struct body *body, int64_t q, double *gradient);
+
+/* Row i of the FACE_ROWS(dim) of the averages' matrix whose mean is the average over the face opposite vertex
+ * k of cell q. */
+int32_t smoothed_cells_row(const struct body *body, int64_t q, int k, int i);
 
 /* Vertex k of cell q, as a number in the body's order. */
 int32_t smoothed_cells_node(const struct body *body, int64_t q, int k);

@@ -86,9 +86,7 @@ static struct smoothed_cells_input smoothed_cells_input(const struct problem *pr
     const struct cells *cells = &problem->cells;
     return (struct smoothed_cells_input){.x = cells->x,
                                          .cell_node = cells->node,
-                                         .face_count = problem->faces.count,
-                                         .face_node = problem->faces.node,
-                                         .face_cell = problem->faces.cell,
+                                         .faces = &problem->faces,
                                          .face_ptr = problem->averages.ptr,
                                          .face_idx = problem->averages.idx,
                                          .face_phi = problem->averages.phi,

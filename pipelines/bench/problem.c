@@ -1,7 +1,7 @@
 #include "problem.h"
 
 #include "bench.h"
-#include "approx/quadrature.h"
+#include "approx/face_rows.h"
 #include "base/memory.h"
 
 #include <malloc.h>
@@ -128,14 +128,10 @@ enum status problem_points_on_faces(struct problem *problem, struct error *error
 {
     enum status status;
     int dim = problem->cells.dim;
-    struct quadrature_rule rule = quadrature_face_rule(dim);
     TRY(faces_build(&problem->cells, false, &problem->faces, error));
-    problem->point_count = problem->faces.count * rule.points;
+    problem->point_count = face_row_point(&problem->faces, problem->faces.row_count);
     TRY(NEW_ARRAY(&problem->points, problem->point_count * dim, error));
-    for (int64_t f = 0; f < problem->faces.count; f++) {
-        quadrature_positions(&rule, dim, problem->cells.x, problem->faces.node + f * dim,
-                             problem->points + f * rule.points * dim);
-    }
+    face_rows_points(&problem->faces, problem->cells.x, problem->points);
 done:
     return status;
 }

@@ -180,7 +180,7 @@ static void fault_of_smoothing(void)
     *changed += 0.01;
     assert_int_equal(body_build(&input, &body, &error), STATUS_INPUT);
     assert_string_equal(error.text,
-                        "face.phi: face 7: not the shape functions at this face: run shapefn again");
+                        "face.phi: row 7: not the shape functions at this row: run shapefn again");
     *changed = before;
     changed = &sample->node_phi[sample->node_lists.ptr[5]];
     before = *changed;
@@ -189,9 +189,20 @@ static void fault_of_smoothing(void)
     assert_string_equal(error.text,
                         "node.phi: node 5: not the shape functions at this node: run shapefn again");
     *changed = before;
-    smoothed.face_count--;
+    struct faces fewer = sample->faces;
+    fewer.count--;
+    smoothed.faces = &fewer;
     assert_int_equal(body_build(&input, &body, &error), STATUS_INPUT);
     assert_non_null(strstr(error.text, "lacks a face: run ipoints for smoothed cells"));
+    struct faces wrong = sample->faces;
+    wrong.row = sample_array(wrong.count, sizeof *wrong.row);
+    for (int64_t f = 0; f < wrong.count; f++) {
+        wrong.row[f] = (int32_t)(f == 4 ? 2 : f);
+    }
+    smoothed.faces = &wrong;
+    assert_int_equal(body_build(&input, &body, &error), STATUS_INPUT);
+    assert_non_null(strstr(error.text, "faces.row: row "));
+    free(wrong.row);
     free(material);
 }
 

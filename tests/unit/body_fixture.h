@@ -21,7 +21,7 @@ struct sample {
     struct support_options options;
     double *radius;
     struct point_grid grid;
-    /* Quadrature points of the faces. */
+    /* Points of the faces: those of the boundary face by face. */
     struct quadrature_rule face_rule;
     double *face_x, *face_phi;
     struct support_lists face_lists;
@@ -53,12 +53,9 @@ static inline void sample_faces(struct sample *sample)
     int dim = sample->dim;
     sample->face_rule = quadrature_face_rule(dim);
     GOOD(faces_build(&sample->cells, !sample->smoothed, &sample->faces, &error));
-    int64_t count = sample->faces.count * sample->face_rule.points;
+    int64_t count = face_row_point(&sample->faces, sample->faces.row_count);
     sample->face_x = sample_array(count * dim, sizeof(double));
-    for (int64_t f = 0; f < sample->faces.count; f++) {
-        quadrature_positions(&sample->face_rule, dim, sample->cloud.x, sample->faces.node + f * dim,
-                             sample->face_x + f * sample->face_rule.points * dim);
-    }
+    face_rows_points(&sample->faces, sample->cloud.x, sample->face_x);
     GOOD(support_build(&sample->options, &sample->grid, count, sample->face_x, "faces", &sample->face_lists,
                        &error));
     sample->face_neighbours = support_view(&sample->face_lists);
@@ -130,9 +127,7 @@ static inline struct smoothed_cells_input sample_smoothed(const struct sample *s
 {
     return (struct smoothed_cells_input){.x = sample->cloud.x,
                                          .cell_node = sample->cells.node,
-                                         .face_count = sample->faces.count,
-                                         .face_node = sample->faces.node,
-                                         .face_cell = sample->faces.cell,
+                                         .faces = &sample->faces,
                                          .face_ptr = sample->averages.ptr,
                                          .face_idx = sample->averages.idx,
                                          .face_phi = sample->averages.phi,

@@ -19,7 +19,7 @@ static inline struct cell_table cell_table_make(const struct cells *cells, const
 {
     int dim = cells->dim;
     int64_t nodes = cells->node_count, count = 0;
-    size_t most = (size_t)(averages->ptr[averages->count] * 2);
+    size_t most = (size_t)(averages->ptr[averages->count] * 6);
     struct cell_table table = {calloc((size_t)cells->count + 1, sizeof(int64_t)),
                                calloc(most, sizeof(int32_t)), calloc(most, sizeof(double)),
                                calloc(most * (size_t)dim, sizeof(double))};
@@ -37,14 +37,18 @@ static inline struct cell_table cell_table_make(const struct cells *cells, const
             int64_t s = side[c * (dim + 1) + k];
             double area[3] = {0.0, 0.0, 0.0}, sign = s % 2 == 0 ? 1.0 : -1.0, volume = cell_volume(cells, c);
             face_area_vector(dim, cells->x, faces->node + s / 2 * dim, area);
-            for (int64_t i = averages->ptr[s / 2]; i < averages->ptr[s / 2 + 1]; i++) {
-                double *of_node = sum + 4 * (int64_t)averages->idx[i];
-                seen[averages->idx[i]] = 1;
-                low = averages->idx[i] < low ? averages->idx[i] : low;
-                high = averages->idx[i] > high ? averages->idx[i] : high;
-                of_node[0] += averages->phi[i] / (dim + 1);
-                for (int a = 0; a < dim; a++) {
-                    of_node[1 + a] += sign * area[a] / volume * averages->phi[i];
+            for (int r = 0; r < FACE_ROWS(dim); r++) {
+                int64_t row = face_row(faces, s / 2, r);
+                for (int64_t i = averages->ptr[row]; i < averages->ptr[row + 1]; i++) {
+                    double *of_node = sum + 4 * (int64_t)averages->idx[i];
+                    double share = averages->phi[i] / FACE_ROWS(dim);
+                    seen[averages->idx[i]] = 1;
+                    low = averages->idx[i] < low ? averages->idx[i] : low;
+                    high = averages->idx[i] > high ? averages->idx[i] : high;
+                    of_node[0] += share / (dim + 1);
+                    for (int a = 0; a < dim; a++) {
+                        of_node[1 + a] += sign * area[a] / volume * share;
+                    }
                 }
             }
         }

@@ -79,15 +79,12 @@ static inline void lattice_faces(struct lattice *l)
 {
     struct error error;
     int dim = l->options.dim;
-    struct quadrature_rule rule = quadrature_face_rule(dim);
     struct support_options support = support_defaults(dim);
     GOOD(faces_build(&l->cells, l->options.gauss_points > 0, &l->faces, &error));
-    ARRAY(l->face_x, l->faces.count * rule.points * dim);
-    for (int64_t f = 0; f < l->faces.count; f++) {
-        quadrature_positions(&rule, dim, l->cells.x, l->faces.node + f * dim,
-                             l->face_x + f * rule.points * dim);
-    }
-    lattice_tabulate(l, l->faces.count * rule.points, l->face_x, &l->face_lists, &l->face_phi, NULL);
+    int64_t count = face_row_point(&l->faces, l->faces.row_count);
+    ARRAY(l->face_x, count * dim);
+    face_rows_points(&l->faces, l->cells.x, l->face_x);
+    lattice_tabulate(l, count, l->face_x, &l->face_lists, &l->face_phi, NULL);
     struct neighbours lists = support_view(&l->face_lists);
     GOOD(shape_average_faces(&support.mls, l->cells.x, l->radius, &lists, l->face_x, "faces", &l->faces,
                              &l->averages, &error));

@@ -40,7 +40,6 @@ static enum status try_table(struct error *error)
     struct cloud_options wanted = {
         .kind = CLOUD_JITTERED, .dim = 2, .count = {5, 5}, .high = {1.0, 1.0}, .jitter = 0.2};
     struct support_options options = support_defaults(2);
-    struct quadrature_rule rule = quadrature_face_rule(2);
     struct cloud cloud = {0};
     struct faces faces = {0};
     struct point_grid grid = {0};
@@ -52,9 +51,7 @@ static enum status try_table(struct error *error)
     TRY(cells_node_spacing(&cells, spacing, error));
     TRY(support_radii(&options, cells.node_count, spacing, radius, error));
     TRY(faces_build(&cells, false, &faces, error));
-    for (int64_t f = 0; f < faces.count; f++) {
-        quadrature_positions(&rule, 2, cloud.x, faces.node + 2 * f, points + 4 * f);
-    }
+    face_rows_points(&faces, cloud.x, points);
     TRY(point_grid_build(&grid, 2, cells.node_count, cloud.x, radius, error));
     TRY(support_build(&options, &grid, 2 * faces.count, points, "points", &lists, error));
     TRY(NEW_ARRAY(&phi, lists.ptr[lists.count], error));

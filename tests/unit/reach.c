@@ -130,7 +130,7 @@ static void find(double radius, bool widen)
     }
     good(point_grid_build(&found.grid, dim, body.node_count, body.x, found.radius, &error), &error);
     good(reach_build(&body.cells, &found.grid, &found.reach, &error), &error);
-    struct reach_places inside = {.cell = found.cell, .per_row = 1, .points_per_row = 1};
+    struct reach_places inside = {.cell = found.cell, .points_per_row = 1};
     good(support_build_within(&found.options, &found.grid, &found.reach, &inside, found.count, found.x,
                               "points", &found.lists, &error),
          &error);
@@ -426,7 +426,7 @@ static void gradients(void **state)
         struct support_lists lists[2];
         struct error error;
         const double step = 1e-5;
-        struct reach_places inside = {.cell = found.cell, .per_row = 1, .points_per_row = 1};
+        struct reach_places inside = {.cell = found.cell, .points_per_row = 1};
         assert_non_null(phi);
         assert_non_null(dphi);
         assert_non_null(moved);

@@ -1,8 +1,8 @@
 /* Quadrature, faces of cells, tables of shape functions and their smoothing over smoothed cells. */
-#include "approx_fixture.h"
+#include "box_fixture.h"
 #include "cell_table.h"
 
-#include "approx/cloud.h"
+#include "approx/face_rows.h"
 #include "approx/quadrature.h"
 
 #include <omp.h>
@@ -83,30 +83,6 @@ static void quadrature_degrees(void **state)
     check_rule(&rule, 2);
     assert_int_equal(quadrature_cell_rule(2, 5, &rule, &error), STATUS_INPUT);
     assert_int_equal(quadrature_cell_rule(3, 3, &rule, &error), STATUS_INPUT);
-}
-
-static struct cloud box_cloud(int dim, int64_t per_axis, double jitter, double offset)
-{
-    struct cloud_options options = {.kind = CLOUD_JITTERED, .dim = dim, .jitter = jitter, .seed = 5};
-    struct cloud cloud;
-    struct error error;
-    for (int a = 0; a < dim; a++) {
-        options.count[a] = per_axis;
-        options.low[a] = offset;
-        options.high[a] = offset + 0.1;
-    }
-    good(cloud_make(&options, &cloud, &error), &error);
-    assert_true(cloud.cell_count > 0);
-    return cloud;
-}
-
-static struct cells cells_of(const struct cloud *cloud)
-{
-    return (struct cells){.dim = cloud->dim,
-                          .node_count = cloud->node_count,
-                          .x = cloud->x,
-                          .count = cloud->cell_count,
-                          .node = cloud->cells};
 }
 
 /* Volumes fill the box; the faces of each cell close; each face stands once, outward from its first cell. */
@@ -209,7 +185,7 @@ struct smoothed {
     struct cloud cloud;
     struct cells cells;
     struct faces faces;
-    int per_face;
+    int per_face; /* points of each face on the boundary */
     double *points;
     struct table table;
     struct neighbours lists;
@@ -226,13 +202,10 @@ static void smoothed_build(struct smoothed *s, int dim, int64_t per_axis, enum b
     s->cells = cells_of(&s->cloud);
     s->per_face = rule.points;
     good(faces_build(&s->cells, false, &s->faces, &error), &error);
-    int64_t count = s->faces.count * rule.points;
+    int64_t count = face_row_point(&s->faces, s->faces.row_count);
     s->points = malloc((size_t)(count * dim) * sizeof(double));
     assert_non_null(s->points);
-    for (int64_t f = 0; f < s->faces.count; f++) {
-        quadrature_positions(&rule, dim, s->cells.x, s->faces.node + f * dim,
-                             s->points + f * rule.points * dim);
-    }
+    face_rows_points(&s->faces, s->cells.x, s->points);
     good(tabulate(&options, s->cells.node_count, s->cells.x, count, s->points, &s->table, &error), &error);
     s->lists = support_view(&s->table.lists);
     good(shape_average_faces(&options.mls, s->cells.x, s->table.radius, &s->lists, s->points, "points.x",
@@ -338,8 +311,8 @@ static void smoothing_threads(void **state)
         struct smoothed s;
         omp_set_num_threads(numbers[i]);
         smoothed_build(&s, 2, 20, BASIS_MODIFIED, 0.0);
-        size_t pairs = (size_t)s.averages.ptr[s.faces.count];
-        assert_int_equal(pairs, first.averages.ptr[s.faces.count]);
+        size_t pairs = (size_t)s.averages.ptr[s.faces.row_count];
+        assert_int_equal(pairs, first.averages.ptr[s.faces.row_count]);
         assert_memory_equal(s.averages.idx, first.averages.idx, pairs * sizeof(int32_t));
         assert_memory_equal(s.averages.phi, first.averages.phi, pairs * sizeof(double));
         smoothed_free(&s);
@@ -348,15 +321,14 @@ static void smoothing_threads(void **state)
     smoothed_free(&first);
 }
 
-/* Each average is the mean of the values at the points of its face, and those at points on the boundary,
- * whose faces come first, are kept. */
+/* Each row is the mean of the values at its points, and those at points on the boundary, whose faces come
+ * first, are kept. */
 static void averages_of_values(void **state)
 {
     (void)state;
     for (int dim = 2; dim <= 3; dim++) {
         struct smoothed s;
         smoothed_build(&s, dim, dim == 2 ? 9 : 6, BASIS_MODIFIED, 0.0);
-        struct quadrature_rule rule = quadrature_face_rule(dim);
         double *row = calloc((size_t)s.cells.node_count, sizeof *row);
         int64_t outer = 0;
         struct error error;
@@ -368,23 +340,26 @@ static void averages_of_values(void **state)
         for (int64_t f = 0; f < s.faces.count; f++) {
             outer += s.faces.cell[2 * f + 1] < 0;
             assert_true(s.faces.cell[2 * f + 1] >= 0 || outer == f + 1);
-            for (int64_t p = f * s.per_face; p < (f + 1) * s.per_face; p++) {
+        }
+        for (int64_t r = 0; r < s.faces.row_count; r++) {
+            int64_t first = face_row_point(&s.faces, r), end = face_row_point(&s.faces, r + 1);
+            for (int64_t p = first; p < end; p++) {
                 for (int64_t i = s.lists.ptr[p]; i < s.lists.ptr[p + 1]; i++) {
-                    row[s.lists.idx[i]] += rule.weight[p % s.per_face] * s.table.phi[i];
+                    row[s.lists.idx[i]] += s.table.phi[i] / (double)(end - first);
                 }
             }
-            for (int64_t i = s.averages.ptr[f]; i < s.averages.ptr[f + 1]; i++) {
-                assert_true(i == s.averages.ptr[f] || s.averages.idx[i] > s.averages.idx[i - 1]);
+            for (int64_t i = s.averages.ptr[r]; i < s.averages.ptr[r + 1]; i++) {
+                assert_true(i == s.averages.ptr[r] || s.averages.idx[i] > s.averages.idx[i - 1]);
                 at_most(fabs(s.averages.phi[i] - row[s.averages.idx[i]]), 1e-15, "average");
                 row[s.averages.idx[i]] = 0.0;
             }
-            for (int64_t p = f * s.per_face; p < (f + 1) * s.per_face; p++) {
+            for (int64_t p = first; p < end; p++) {
                 for (int64_t i = s.lists.ptr[p]; i < s.lists.ptr[p + 1]; i++) {
                     assert_true(row[s.lists.idx[i]] == 0.0); /* nobody is left out */
                 }
             }
         }
-        assert_int_equal(outer, s.averages.boundary_count);
+        assert_int_equal(outer, s.faces.boundary_count);
         assert_memory_equal(s.averages.boundary_phi, s.table.phi,
                             (size_t)s.lists.ptr[outer * s.per_face] * sizeof(double));
         free(row);

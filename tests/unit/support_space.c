@@ -115,16 +115,14 @@ static void places_tell_the_side(void **state)
         struct error error;
         int64_t nodes = halves.cells.node_count, cells = halves.cells.count;
         double *middle = calloc((size_t)(cells * dim), sizeof *middle);
-        int32_t *cell = calloc((size_t)(2 * cells), sizeof *cell);
+        int32_t *cell = calloc((size_t)cells, sizeof *cell);
         assert_true(middle != NULL && cell != NULL);
         options.side = halves.side;
         good(support_space_build(&options, &halves.cells, halves.radius, &space, &error), &error);
-        struct reach_places at_nodes = {.nodes = true},
-                            in_cells = {.cell = cell, .per_row = 2, .points_per_row = 1};
+        struct reach_places at_nodes = {.nodes = true}, in_cells = {.cell = cell, .points_per_row = 1};
         for (int64_t c = 0; c < cells; c++) {
             cell_centroid(&halves.cells, c, middle + c * dim);
-            cell[2 * c] = (int32_t)c;
-            cell[2 * c + 1] = -1;
+            cell[c] = (int32_t)c;
         }
         for (int kind = 0; kind < 2; kind++) {
             int64_t count = kind == 0 ? nodes : cells;

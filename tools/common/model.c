@@ -64,12 +64,12 @@ done:
 static enum status read_tables(const struct stream *stream, struct assembly *input, struct error *error)
 {
     enum status status;
-    int dim = input->cells.dim, per_face = quadrature_face_rule(dim).points;
+    int dim = input->cells.dim, per_face = OWN_POINTS(dim);
     int64_t nodes = input->cells.node_count, points = input->point_count;
     TRY(stream_faces(stream, &input->cells, &input->faces, error));
     if (input->smoothed) {
-        TRY(read_table(stream, "face", "face.phi", 1, input->faces.count, nodes, &input->lists, &input->phi,
-                       error));
+        TRY(read_table(stream, "face", "face.phi", 1, input->faces.row_count, nodes, &input->lists,
+                       &input->phi, error));
     } else {
         TRY(read_table(stream, "nbr", "shape.phi", 1, points, nodes, &input->lists, &input->phi, error));
         TRY(read_table(stream, "nbr", "shape.dphi", dim, points, nodes, &input->lists, &input->dphi, error));

@@ -1,7 +1,9 @@
 #include "rejoin.h"
 
+#include "stages.h"
+
+#include "approx/face_rows.h"
 #include "approx/partition.h"
-#include "approx/quadrature.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -313,27 +315,71 @@ static int64_t find_face(const struct rejoin *rejoin, const struct rejoin_part *
               part->file, (long long)local);
 }
 
-/* Points on faces follow their faces. */
-static void map_face_points(struct rejoin *rejoin, struct rejoin_part *part, int64_t per_face)
+/* A row that faces share belongs to the part that owns the first of them, and its points with it. */
+static void map_face_rows(struct rejoin *rejoin, struct rejoin_part *part, const int32_t *first_face)
 {
-    int64_t faces = part->faces.count, boundary = part->faces.boundary_count;
-    int32_t *to = new_rows(rejoin, part, ROWS_FACEPOINTS, faces * per_face);
-    for (int64_t i = 0; i < faces * per_face; i++) {
-        int32_t face = part->to[ROWS_FACES][i / per_face];
-        to[i] = face < 0 ? -1 : (int32_t)(face * per_face + i % per_face);
+    int rows = FACE_ROWS(rejoin->dim), per_face = OWN_POINTS(rejoin->dim);
+    const struct faces *whole_faces = &rejoin->faces;
+    const int32_t *face = part->to[ROWS_FACES];
+    int64_t row_count = part->faces.row_count, point_count = face_row_point(&part->faces, row_count);
+    int32_t *to = new_rows(rejoin, part, ROWS_OF_FACES, row_count);
+    int32_t *points = new_rows(rejoin, part, ROWS_FACEPOINTS, point_count);
+    int32_t *boundary = new_rows(rejoin, part, ROWS_BOUNDARY, part->faces.boundary_count * per_face);
+    for (int64_t r = 0; r < row_count; r++) {
+        to[r] = -1;
     }
-    int32_t *at = new_rows(rejoin, part, ROWS_BOUNDARY, boundary * per_face);
-    memcpy(at, to, (size_t)(boundary * per_face) * sizeof *at);
+    for (int64_t i = 0; i < part->faces.count * rows; i++) {
+        int64_t whole = face[i / rows];
+        int32_t row = whole < 0 ? -1 : (int32_t)face_row(&rejoin->faces, whole, (int)(i % rows));
+        if (row >= 0 && face_has_own_row(whole_faces, whole) != face_has_own_row(&part->faces, i / rows)) {
+            tool_fail(rejoin->tool, STATUS_INPUT,
+                      "%s: faces.row: row %lld: at the edge of the halo: cut again with a wider one "
+                      "(part -w, now %g)",
+                      part->file, (long long)(i / rows), rejoin->widen);
+        }
+        if (row >= 0 && first_face[row] == whole) {
+            to[face_row(&part->faces, i / rows, (int)(i % rows))] = row;
+        }
+    }
+    for (int64_t r = 0; r < row_count; r++) {
+        int64_t first = face_row_point(&part->faces, r);
+        for (int64_t p = first; p < face_row_point(&part->faces, r + 1); p++) {
+            points[p] = to[r] < 0 ? -1 : (int32_t)(face_row_point(whole_faces, to[r]) + p - first);
+        }
+    }
+    for (int64_t i = 0; i < part->faces.boundary_count * per_face; i++) {
+        boundary[i] = face[i / per_face] < 0 ? -1 : (int32_t)(face[i / per_face] * per_face + i % per_face);
+    }
+}
+
+/* The side of each cell of the whole, for the caller to free; NULL where supports stop at no interfaces. */
+static int32_t *whole_sides(const struct rejoin *rejoin)
+{
+    struct error error;
+    int32_t *side = NULL;
+    for (int64_t k = 0; k < rejoin->part_count; k++) {
+        const struct rejoin_part *part = &rejoin->part[k];
+        const int32_t *of_part;
+        tool_check(rejoin->tool, stage_sides(&part->stream, "support", &of_part, &error), &error);
+        if (of_part != NULL && side == NULL) {
+            tool_check(rejoin->tool, NEW_ARRAY(&side, rejoin->rows[ROWS_CELLS], &error), &error);
+        }
+        for (int64_t c = 0; of_part != NULL && c < part->cells.count; c++) {
+            side[part->cell[c]] = of_part[c];
+        }
+    }
+    return side;
 }
 
 static void map_faces(struct rejoin *rejoin)
 {
     struct error error;
+    int32_t *side = whole_sides(rejoin);
     const struct tool *tool = rejoin->tool;
     const struct section *points = stream_find(&rejoin->part[0].stream, "points.x");
     bool boundary_only = points != NULL && !points_are_smoothed(points);
-    int64_t *begin, per_face = quadrature_face_rule(rejoin->dim).points;
-    int32_t *face;
+    int64_t *begin;
+    int32_t *face, *first_face;
     const struct cells whole = {.dim = rejoin->dim,
                                 .node_count = rejoin->rows[ROWS_NODES],
                                 .x = rejoin->x,
@@ -347,9 +393,19 @@ static void map_faces(struct rejoin *rejoin)
         }
     }
     tool_check(tool, faces_build(&whole, boundary_only, &rejoin->faces, &error), &error);
+    if (side != NULL) {
+        free(rejoin->faces.row);
+        tool_check(tool, face_rows_number(whole.node_count, side, &rejoin->faces, &error), &error);
+        free(side);
+    }
     const struct faces *faces = &rejoin->faces;
     tool_check(tool, NEW_ARRAY(&begin, whole.count + 2, &error), &error);
     tool_check(tool, NEW_ARRAY(&face, faces->count, &error), &error);
+    tool_check(tool, NEW_ARRAY(&first_face, faces->row_count, &error), &error);
+    int rows = FACE_ROWS(rejoin->dim);
+    for (int64_t i = faces->count * rows - 1; i >= 0; i--) {
+        first_face[face_row(faces, i / rows, (int)(i % rows))] = (int32_t)(i / rows);
+    }
     for (int64_t f = 0; f < faces->count; f++) {
         begin[faces->cell[2 * f] + 2]++;
     }
@@ -366,14 +422,17 @@ static void map_faces(struct rejoin *rejoin)
             bool own = part->to[ROWS_CELLS][part->faces.cell[2 * f]] >= 0;
             to[f] = own ? (int32_t)find_face(rejoin, part, begin, face, f) : -1;
         }
-        map_face_points(rejoin, part, per_face);
+        map_face_rows(rejoin, part, first_face);
     }
     free(begin);
     free(face);
+    free(first_face);
     rejoin->rows[ROWS_FACES] = faces->count;
-    rejoin->rows[ROWS_FACEPOINTS] = faces->count * per_face;
-    rejoin->rows[ROWS_BOUNDARY] = faces->boundary_count * per_face;
+    rejoin->rows[ROWS_OF_FACES] = faces->row_count;
+    rejoin->rows[ROWS_FACEPOINTS] = face_row_point(faces, faces->row_count);
+    rejoin->rows[ROWS_BOUNDARY] = faces->boundary_count * OWN_POINTS(rejoin->dim);
     check_rows(rejoin, ROWS_FACES, "faces");
+    check_rows(rejoin, ROWS_OF_FACES, "faces.row");
 }
 
 void rejoin_begin(struct rejoin *rejoin, const struct tool *tool, char *const files[], int64_t count)

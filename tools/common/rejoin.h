@@ -14,6 +14,7 @@ enum rows_of {
     ROWS_SETS, /* members of node sets */
     ROWS_POINTS,
     ROWS_FACES,
+    ROWS_OF_FACES, /* that faces are averaged over */
     ROWS_FACEPOINTS,
     ROWS_BOUNDARY, /* points on faces on the boundary */
     ROWS_KINDS

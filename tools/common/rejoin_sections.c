@@ -1,6 +1,8 @@
 /* The sections of the whole from the rows that the parts own. */
 #include "rejoin.h"
 
+#include "approx/face_rows.h"
+
 #include <stdlib.h>
 #include <string.h>
 
@@ -36,7 +38,7 @@ static const struct {
     {"nbr", ROWS_POINTS, {"shape.phi", "shape.dphi"}},
     {"facepoint", ROWS_FACEPOINTS, {NULL, NULL}},
     {"node", ROWS_NODES, {"node.phi", NULL}},
-    {"face", ROWS_FACES, {"face.phi", NULL}},
+    {"face", ROWS_OF_FACES, {"face.phi", NULL}},
     {"boundary", ROWS_BOUNDARY, {"boundary.phi", NULL}},
 };
 
@@ -313,17 +315,25 @@ static bool put_following(const struct rejoin *rejoin, struct stream *stream, co
 /* Faces come from the whole body. */
 static bool put_faces(const struct rejoin *rejoin, struct stream *stream, const char *name)
 {
-    bool of_nodes = strcmp(name, "faces") == 0;
-    if (!of_nodes && strcmp(name, "faces.cell") != 0) {
-        return false;
+    const struct faces *faces = &rejoin->faces;
+    const struct {
+        const char *name;
+        int64_t cols;
+        const int32_t *values;
+    } sections[] = {{"faces", rejoin->dim, faces->node},
+                    {"faces.cell", 2, faces->cell},
+                    {"faces.row", FACE_ROWS(rejoin->dim), faces->row}};
+    for (int i = 0; i < 3; i++) {
+        if (strcmp(sections[i].name, name) == 0 && sections[i].values != NULL) {
+            int64_t cols = sections[i].cols;
+            int32_t *data = new_rows(rejoin, name, faces->count * cols, sizeof *data);
+            memcpy(data, sections[i].values, (size_t)(faces->count * cols) * sizeof *data);
+            put(rejoin, stream, name, TYPE_I4, faces->count, cols,
+                section_of(rejoin, 0, name, NULL)->attributes, data);
+            return true;
+        }
     }
-    int64_t cols = of_nodes ? rejoin->dim : 2;
-    int32_t *data = new_rows(rejoin, name, rejoin->faces.count * cols, sizeof *data);
-    memcpy(data, of_nodes ? rejoin->faces.node : rejoin->faces.cell,
-           (size_t)(rejoin->faces.count * cols) * sizeof *data);
-    put(rejoin, stream, name, TYPE_I4, rejoin->faces.count, cols,
-        section_of(rejoin, 0, name, NULL)->attributes, data);
-    return true;
+    return false;
 }
 
 /* Where each set ends, from the members that the parts own. */

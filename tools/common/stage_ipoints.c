@@ -1,5 +1,6 @@
 #include "stages.h"
 
+#include "approx/face_rows.h"
 #include "approx/quadrature.h"
 #include "base/box.h"
 #include "io/sections.h"
@@ -63,21 +64,23 @@ static enum status put_faces(struct stream *stream, const struct cells *cells, b
     struct faces faces = {0};
     double *x = NULL;
     char attributes[64];
-    struct quadrature_rule rule = quadrature_face_rule(dim);
     TRY(faces_build(cells, boundary_only, &faces, error));
-    int64_t count = faces.count;
-    TRY(NEW_ARRAY(&x, count * rule.points * dim, error));
-    for (int64_t f = 0; f < count; f++) {
-        quadrature_positions(&rule, dim, cells->x, faces.node + f * dim, x + f * rule.points * dim);
-    }
+    int64_t count = faces.count, points = face_row_point(&faces, faces.row_count);
+    TRY(NEW_ARRAY(&x, points * dim, error));
+    face_rows_points(&faces, cells->x, x);
     status = stream_put(stream, "faces", TYPE_I4, count, dim, "", faces.node, true, error);
     faces.node = NULL;
     TRY(status);
     status = stream_put(stream, "faces.cell", TYPE_I4, count, 2, "", faces.cell, true, error);
     faces.cell = NULL;
     TRY(status);
-    status = stream_put(stream, "facepoints.x", TYPE_F8, count * rule.points, dim,
-                        vector_attributes(dim, "m", attributes), x, true, error);
+    if (faces.row != NULL) {
+        status = stream_put(stream, "faces.row", TYPE_I4, count, FACE_ROWS(dim), "", faces.row, true, error);
+        faces.row = NULL;
+        TRY(status);
+    }
+    status = stream_put(stream, "facepoints.x", TYPE_F8, points, dim, vector_attributes(dim, "m", attributes),
+                        x, true, error);
     x = NULL;
 done:
     faces_free(&faces);

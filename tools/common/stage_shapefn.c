@@ -1,6 +1,6 @@
 #include "stages.h"
 
-#include "approx/quadrature.h"
+#include "approx/face_rows.h"
 #include "io/sections.h"
 
 #include <math.h>
@@ -114,23 +114,22 @@ static enum status put_faces(struct stream *stream, const struct mls *mls, bool 
     struct face_averages averages = {0};
     int64_t *ptr = NULL;
     int32_t *idx = NULL;
-    int per_face = quadrature_face_rule(mls->dim).points;
     TRY(stream_cells(stream, true, &cells, error));
     TRY(stream_faces(stream, &cells, &faces, error));
     TRY(view_points(stream, "facepoints.x", "facepoint", &of, error));
-    if (of.lists.count != faces.count * per_face) {
-        status = fail(error, STATUS_INPUT, "facepoints.x: does not fit faces: run ipoints again");
+    if (of.lists.count != face_row_point(&faces, faces.row_count)) {
+        status = fail(error, STATUS_INPUT, "facepoints.x: does not fit faces.row: run ipoints again");
         goto done;
     }
     TRY(shape_average_faces(mls, of.nodes, of.radius, &of.lists, of.x, of.section, &faces, &averages, error));
     if (smoothed) {
-        status = put_table(stream, "face", faces.count, averages.ptr, averages.idx, averages.phi, error);
+        status = put_table(stream, "face", faces.row_count, averages.ptr, averages.idx, averages.phi, error);
         averages.ptr = NULL;
         averages.idx = NULL;
         averages.phi = NULL;
         TRY(status);
     }
-    int64_t rows = faces.boundary_count * per_face, pairs = of.lists.ptr[rows];
+    int64_t rows = face_row_point(&faces, faces.boundary_count), pairs = of.lists.ptr[rows];
     TRY(NEW_ARRAY(&ptr, rows + 1, error));
     TRY(NEW_ARRAY(&idx, pairs, error));
     memcpy(ptr, of.lists.ptr, (size_t)(rows + 1) * sizeof *ptr);

@@ -2,6 +2,7 @@
 
 #include "mls_options.h"
 
+#include "approx/face_rows.h"
 #include "approx/support_space.h"
 #include "io/sections.h"
 
@@ -256,31 +257,28 @@ done:
     return status;
 }
 
-/* The cells of points from a section of `per_row` of them for as many rows as share the points evenly; to be
- * found by place where there is no such section. */
-static enum status places_of(const struct stream *stream, const struct cells *cells, const char *name,
-                             int per_row, int64_t points, struct reach_places *places, struct error *error)
+/* The cells of the integration points; to be found by place where there is no such section. */
+static enum status places_of_points(const struct stream *stream, const struct cells *cells, int64_t points,
+                                    struct reach_places *places, struct error *error)
 {
     enum status status = STATUS_OK;
-    const struct section *section = stream_find(stream, name);
+    const struct section *section = stream_find(stream, "points.cell");
     *places = (struct reach_places){0};
-    if (section == NULL || points == 0) {
+    if (section == NULL) {
         return STATUS_OK;
     }
-    TRY(stream_need(stream, name, TYPE_I4, per_row, "ipoints", &section, error));
-    if (section->rows == 0 || points % section->rows != 0) {
-        return fail(error, STATUS_INPUT, "%s: %lld rows for %lld points: run ipoints again", name,
+    TRY(stream_need(stream, "points.cell", TYPE_I4, 1, "ipoints", &section, error));
+    if (section->rows != points) {
+        return fail(error, STATUS_INPUT, "points.cell: %lld rows for %lld points: run ipoints again",
                     (long long)section->rows, (long long)points);
     }
     const int32_t *cell = section->data;
-    for (int64_t i = 0; i < section->rows * per_row; i++) {
+    for (int64_t i = 0; i < points; i++) {
         if (cell[i] < -1 || (cells->count > 0 && cell[i] >= cells->count)) {
-            return fail(error, STATUS_INPUT, "%s: row %lld: no cell %d", name, (long long)(i / per_row),
-                        cell[i]);
+            return fail(error, STATUS_INPUT, "points.cell: row %lld: no cell %d", (long long)i, cell[i]);
         }
     }
-    *places =
-        (struct reach_places){.cell = cell, .per_row = per_row, .points_per_row = points / section->rows};
+    *places = (struct reach_places){.cell = cell, .points_per_row = 1};
 done:
     return status;
 }
@@ -311,6 +309,61 @@ done:
     return status;
 }
 
+/* The cells at the points of faces, in arrays of the caller's; to be found by place where faces.cell is not
+ * there. */
+static enum status places_of_face_points(const struct stream *stream, const struct cells *cells,
+                                         int64_t points, int64_t **ptr, int32_t **cell,
+                                         struct reach_places *places, struct error *error)
+{
+    enum status status = STATUS_OK;
+    struct faces faces;
+    *places = (struct reach_places){0};
+    if (cells->count == 0 || stream_find(stream, "faces.cell") == NULL) {
+        return STATUS_OK;
+    }
+    TRY(stream_faces(stream, cells, &faces, error));
+    if (face_row_point(&faces, faces.row_count) != points) {
+        status = fail(error, STATUS_INPUT, "facepoints.x: does not fit faces.row: run ipoints again");
+        goto done;
+    }
+    TRY(face_rows_cells(cells->node_count, &faces, ptr, cell, error));
+    *places = (struct reach_places){
+        .ptr = *ptr, .cell = *cell, .points_per_row = OWN_POINTS(cells->dim), .long_rows = faces.own_count};
+done:
+    return status;
+}
+
+/* The rows of faces, and their points, as the sides have them. */
+static enum status renew_rows(struct stream *stream, const struct cells *cells, const int32_t *side,
+                              struct error *error)
+{
+    enum status status;
+    struct faces faces;
+    int32_t *row = NULL;
+    double *x = NULL;
+    char attributes[64];
+    int dim = cells->dim;
+    TRY(stream_faces(stream, cells, &faces, error));
+    if (!faces_may_share(&faces)) {
+        return STATUS_OK;
+    }
+    TRY(face_rows_number(cells->node_count, side, &faces, error));
+    row = faces.row;
+    int64_t points = face_row_point(&faces, faces.row_count);
+    TRY(NEW_ARRAY(&x, points * dim, error));
+    face_rows_points(&faces, cells->x, x);
+    status = stream_put(stream, "faces.row", TYPE_I4, faces.count, dim, "", row, true, error);
+    row = NULL;
+    TRY(status);
+    status = stream_put(stream, "facepoints.x", TYPE_F8, points, dim, vector_attributes(dim, "m", attributes),
+                        x, true, error);
+    x = NULL;
+done:
+    free(row);
+    free(x);
+    return status;
+}
+
 enum status stage_support(struct stream *stream, const struct support_options *options,
                           struct support_report *report, struct error *error)
 {
@@ -323,7 +376,10 @@ enum status stage_support(struct stream *stream, const struct support_options *o
     struct support_options actual = *options;
     struct cells cells;
     struct listed listed;
+    int64_t *face_ptr = NULL;
+    int32_t *face_cell = NULL;
     *report = (struct support_report){0};
+    bool had_sides = stream_find(stream, "support.side") != NULL;
     sections_remove(stream, MADE_WITH_SUPPORT, MADE_WITH_SHAPES);
     TRY(stream_nodes(stream, &dim, &node_count, &x, error));
     TRY(stream_need(stream, "points.x", TYPE_F8, dim, "ipoints", &points, error));
@@ -339,13 +395,18 @@ enum status stage_support(struct stream *stream, const struct support_options *o
     bool smoothed = points_are_smoothed(points); /* gradients come from the faces alone */
     if (!smoothed) {
         listed = (struct listed){.points = points, .prefix = "nbr", .called = "integration points"};
-        TRY(places_of(stream, &cells, "points.cell", 1, points->rows, &listed.places, error));
+        TRY(places_of_points(stream, &cells, points->rows, &listed.places, error));
         TRY(put_lists(stream, &actual, &space, &listed, report, error));
     }
     if (stream_find(stream, "faces") != NULL || smoothed) {
         TRY(stream_need(stream, "facepoints.x", TYPE_F8, dim, "ipoints", &facepoints, error));
+        if (had_sides || actual.side != NULL) {
+            TRY(renew_rows(stream, &cells, actual.side, error));
+            facepoints = stream_find(stream, "facepoints.x");
+        }
         listed = (struct listed){.points = facepoints, .prefix = "facepoint", .called = "points on faces"};
-        TRY(places_of(stream, &cells, "faces.cell", 2, facepoints->rows, &listed.places, error));
+        TRY(places_of_face_points(stream, &cells, facepoints->rows, &face_ptr, &face_cell, &listed.places,
+                                  error));
         TRY(put_lists(stream, &actual, &space, &listed, report, error));
     }
     listed = (struct listed){.points = stream_find(stream, "nodes.x"),
@@ -354,6 +415,8 @@ enum status stage_support(struct stream *stream, const struct support_options *o
                              .called = "nodes"};
     TRY(put_lists(stream, &actual, &space, &listed, report, error));
 done:
+    free(face_ptr);
+    free(face_cell);
     support_space_free(&space);
     return status;
 }

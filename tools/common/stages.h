@@ -51,7 +51,8 @@ MUST_CHECK enum status stage_interfaces(const struct stream *stream, const char 
                                         struct error *error);
 
 /* Add the sections of support: support.radius, support.side where options->side is given, and the lists nbr,
- * facepoint and node. */
+ * facepoint and node. With sides faces.row and facepoints.x are made anew, as faces at interfaces have points
+ * of their own; likewise without, where there were sides before. */
 MUST_CHECK enum status stage_support(struct stream *stream, const struct support_options *options,
                                      struct support_report *report, struct error *error);
 

@@ -1,5 +1,6 @@
 #include "views.h"
 
+#include "approx/face_rows.h"
 #include "base/memory.h"
 
 #include <math.h>
@@ -67,6 +68,46 @@ done:
     return status;
 }
 
+/* Own rows of faces stand first, which those on the boundary have; then those of edges, as they come. */
+static enum status view_rows(const struct stream *stream, struct faces *faces, struct error *error)
+{
+    enum status status = STATUS_OK;
+    const struct section *row;
+    int64_t bad = -1;
+    faces->own_count = faces->row_count = faces->count;
+    if (!faces_may_share(faces)) {
+        return STATUS_OK;
+    }
+    TRY(stream_need(stream, "faces.row", TYPE_I4, FACE_ROWS(faces->dim), "ipoints", &row, error));
+    if (row->rows != faces->count) {
+        return fail(error, STATUS_INPUT, "faces.row: does not fit faces: run ipoints again");
+    }
+    faces->row = row->data;
+    faces->own_count = 0;
+    for (int64_t f = 0; f < faces->count && bad < 0; f++) {
+        const int32_t *of = faces->row + f * 3;
+        if (face_has_own_row(faces, f)) {
+            bad = of[0] == faces->own_count && of[1] == of[0] ? -1 : f;
+            faces->own_count++;
+        } else if (f < faces->boundary_count) {
+            bad = f;
+        }
+    }
+    faces->row_count = faces->own_count;
+    for (int64_t i = 0; i < faces->count * 3 && bad < 0; i++) {
+        if (!face_has_own_row(faces, i / 3)) {
+            bad = faces->row[i] >= faces->own_count && faces->row[i] <= faces->row_count ? -1 : i / 3;
+            faces->row_count += faces->row[i] == faces->row_count;
+        }
+    }
+    if (bad >= 0) {
+        return fail(error, STATUS_INPUT, "faces.row: row %lld: not rows of this face: run ipoints again",
+                    (long long)bad);
+    }
+done:
+    return status;
+}
+
 enum status stream_faces(const struct stream *stream, const struct cells *cells, struct faces *faces,
                          struct error *error)
 {
@@ -97,6 +138,7 @@ enum status stream_faces(const struct stream *stream, const struct cells *cells,
                         (long long)f);
         }
     }
+    TRY(view_rows(stream, faces, error));
 done:
     return status;
 }

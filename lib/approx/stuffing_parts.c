@@ -1,0 +1,180 @@
+/* Parts of a label, which are there for the names of facets: their rims are lines on the boundary, and within
+ * the body there is nothing of them. */
+#include "approx/stuffing_private.h"
+#include "base/memory.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* A facet that is alone at a node turns the rim there; beyond this angle, degrees, once the nodes are on
+ * their line, it is too flat for the cell behind it. */
+static const double most_angle = 120.0;
+
+static bool is_part_of(const struct stuffing_options *options, int32_t a, int32_t b)
+{
+    return a != b && options->whole != NULL && options->whole[a] == options->whole[b];
+}
+
+/* The facets at each node. */
+struct facets_at {
+    int64_t *ptr;   /* node_count + 2 */
+    int32_t *facet; /* facet_count * dim */
+};
+
+static enum status find_facets_at(const struct stuffing *stuffing, struct facets_at *at, struct error *error)
+{
+    enum status status;
+    int dim = stuffing->dim;
+    TRY(NEW_ARRAY(&at->ptr, stuffing->node_count + 2, error));
+    TRY(NEW_ARRAY(&at->facet, stuffing->facet_count * dim, error));
+    for (int64_t i = 0; i < stuffing->facet_count * dim; i++) {
+        at->ptr[stuffing->facet[i] + 2]++;
+    }
+    for (int64_t n = 0; n < stuffing->node_count; n++) {
+        at->ptr[n + 2] += at->ptr[n + 1];
+    }
+    for (int64_t i = 0; i < stuffing->facet_count * dim; i++) {
+        at->facet[at->ptr[stuffing->facet[i] + 1]++] = (int32_t)(i / dim);
+    }
+done:
+    return status;
+}
+
+/* The largest angle of a facet, degrees, once all corners are where the labels meet; 180 where one cannot be
+ * put there. */
+static double angle_on_line(const struct labels *labels, const struct stuffing_options *options,
+                            const struct stuffing *stuffing, int64_t facet, const uint16_t label[3])
+{
+    double x[3][3], most = 0.0;
+    for (int k = 0; k < 3; k++) {
+        int64_t node = stuffing->facet[facet * 3 + k];
+        memcpy(x[k], stuffing->x + node * 3, sizeof x[k]);
+        if (!line_project(labels, options->keep, 3, label, x[k])) {
+            return 180.0;
+        }
+    }
+    for (int k = 0; k < 3; k++) {
+        double product = 0.0, square[2] = {0.0, 0.0};
+        for (int d = 0; d < 3; d++) {
+            double one = x[(k + 1) % 3][d] - x[k][d], other = x[(k + 2) % 3][d] - x[k][d];
+            product += one * other;
+            square[0] += one * one;
+            square[1] += other * other;
+        }
+        most = fmax(most, acos(fmax(-1.0, product / sqrt(square[0] * square[1]))) * 180.0 / M_PI);
+    }
+    return most;
+}
+
+/* The facet that is alone at a node among facets of one other part of the same label, whose label *beyond
+ * receives; -1 where there is none. */
+static int64_t find_lone(const struct stuffing_options *options, const struct stuffing *stuffing,
+                         const struct facets_at *at, int64_t node, int32_t *beyond)
+{
+    int64_t first = at->ptr[node], last = at->ptr[node + 1], lone = -1;
+    if (last - first < 3) {
+        return -1;
+    }
+    /* Of three facets two have the label of all the others. */
+    int32_t label[3];
+    for (int k = 0; k < 3; k++) {
+        label[k] = stuffing->side[2 * (int64_t)at->facet[first + k]];
+    }
+    *beyond = label[0] == label[1] ? label[0] : label[2];
+    for (int64_t i = first; i < last; i++) {
+        int32_t own = stuffing->side[2 * (int64_t)at->facet[i]];
+        if (own != *beyond && (lone >= 0 || !is_part_of(options, own, *beyond))) {
+            return -1;
+        }
+        lone = own != *beyond ? at->facet[i] : lone;
+    }
+    return lone;
+}
+
+/* With each change two edges of the rim give way to one, so there is an end. */
+static void straighten(const struct labels *labels, const struct stuffing_options *options,
+                       const struct facets_at *at, struct stuffing *stuffing)
+{
+    bool changes = true;
+    while (changes) {
+        changes = false;
+        for (int64_t n = 0; n < stuffing->node_count; n++) {
+            int32_t beyond = 0;
+            int64_t facet = find_lone(options, stuffing, at, n, &beyond);
+            if (facet < 0) {
+                continue;
+            }
+            int32_t *side = stuffing->side + 2 * facet;
+            const uint16_t label[3] = {(uint16_t)side[0], (uint16_t)beyond, (uint16_t)side[1]};
+            if (angle_on_line(labels, options, stuffing, facet, label) > most_angle) {
+                side[0] = beyond;
+                changes = true;
+            }
+        }
+    }
+}
+
+enum status stuffing_straighten_rims(const struct labels *labels, const struct stuffing_options *options,
+                                     struct stuffing *stuffing, struct error *error)
+{
+    enum status status = STATUS_OK;
+    struct facets_at at = {0};
+    if (options->whole != NULL && stuffing->dim == 3) {
+        TRY(find_facets_at(stuffing, &at, error));
+        straighten(labels, options, &at, stuffing);
+    }
+done:
+    free(at.ptr);
+    free(at.facet);
+    return status;
+}
+
+/* The two parts whose facets meet at a node, and what lies beyond. */
+static void find_rim(const struct stuffing_options *options, const struct stuffing *stuffing,
+                     const struct facets_at *at, int64_t node, uint16_t rim[3])
+{
+    for (int64_t i = at->ptr[node]; i < at->ptr[node + 1]; i++) {
+        const int32_t *side = stuffing->side + 2 * (int64_t)at->facet[i];
+        for (int64_t j = at->ptr[node]; j < i; j++) {
+            int32_t other = stuffing->side[2 * (int64_t)at->facet[j]];
+            if (is_part_of(options, side[0], other)) {
+                rim[0] = (uint16_t)side[0];
+                rim[1] = (uint16_t)other;
+                rim[2] = (uint16_t)side[1];
+            }
+        }
+    }
+}
+
+enum status stuffing_find_rims(const struct stuffing_options *options, const struct stuffing *stuffing,
+                               uint16_t (**rim)[3], struct error *error)
+{
+    enum status status;
+    struct facets_at at = {0};
+    TRY(NEW_ARRAY(rim, stuffing->node_count, error));
+    TRY(find_facets_at(stuffing, &at, error));
+    for (int64_t n = 0; n < stuffing->node_count; n++) {
+        find_rim(options, stuffing, &at, n, (*rim)[n]);
+    }
+done:
+    free(at.ptr);
+    free(at.facet);
+    return status;
+}
+
+enum status labels_without_parts(const struct labels *labels, const int32_t *whole, struct labels *result,
+                                 struct error *error)
+{
+    enum status status;
+    uint16_t *label = NULL;
+    int64_t count = labels->size[0] * labels->size[1] * labels->size[2];
+    TRY(NEW_ARRAY(&label, count, error));
+    for (int64_t v = 0; v < count; v++) {
+        label[v] = whole != NULL ? (uint16_t)whole[labels->label[v]] : labels->label[v];
+    }
+    *result = *labels;
+    result->label = label;
+done:
+    return status;
+}
