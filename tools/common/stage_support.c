@@ -283,32 +283,6 @@ done:
     return status;
 }
 
-/* What tells a part of a body: whose each node is, and which part it is. */
-static enum status own_part(const struct stream *stream, int64_t node_count, struct support_options *options,
-                            struct error *error)
-{
-    enum status status = STATUS_OK;
-    const struct section *node = stream_find(stream, "part.node"), *owner;
-    char value[64];
-    int64_t part = 0;
-    if (node == NULL) {
-        return STATUS_OK;
-    }
-    TRY(stream_need(stream, "part.owner", TYPE_I4, 1, "part", &owner, error));
-    if (owner->rows != node_count) {
-        TRY(fail(error, STATUS_INPUT, "part.owner: %lld rows for %lld nodes: cut again",
-                 (long long)owner->rows, (long long)node_count));
-    }
-    if (!section_attribute(node, "part", value, sizeof value)) {
-        TRY(fail(error, STATUS_INPUT, "part.node: no part=: not written by part"));
-    }
-    TRY(parse_integer(value, "part.node: part", 0, INT32_MAX, &part, error));
-    options->owner = owner->data;
-    options->part = (int32_t)part;
-done:
-    return status;
-}
-
 /* The cells at the points of faces, in arrays of the caller's; to be found by place where faces.cell is not
  * there. */
 static enum status places_of_face_points(const struct stream *stream, const struct cells *cells,
@@ -390,7 +364,7 @@ enum status stage_support(struct stream *stream, const struct support_options *o
     report->reach = actual.reach;
     TRY(put_radii(stream, &actual, node_count, x, error));
     TRY(put_sides(stream, &cells, actual.side, error));
-    TRY(own_part(stream, node_count, &actual, error));
+    TRY(stage_own_part(stream, node_count, &actual, error));
     TRY(support_space_build(&actual, &cells, stream_find(stream, "support.radius")->data, &space, error));
     bool smoothed = points_are_smoothed(points); /* gradients come from the faces alone */
     if (!smoothed) {
