@@ -278,17 +278,17 @@ field() {
     run -2 bash "$top/pipelines/refine/refine.sh" press.scene sphere.nii.gz 0.1mm out
     [[ $output == "refine: SPACING: '' is not a positive length, such as 6mm" ]]
     export SPACING=8mm VOXELS=$parts
-    run -0 bash "$top/pipelines/refine/refine.sh" press.scene sphere.nii.gz 0.04mm out
+    run -0 bash "$top/pipelines/refine/refine.sh" press.scene sphere.nii.gz 0.025mm out
     mts check out/u.dat
     mts check out/body.mts
     mts check out/sizes.mts
     [ "$(wc -l < out/rounds.tsv)" -ge 3 ]
-    awk -F '\t' 'NR > 1 { if (NR > 2 && !($2 > nodes)) exit 1; nodes = $2; mean = $3 } END { exit !(mean <= 0.04) }' out/rounds.tsv
+    awk -F '\t' 'NR > 1 { if (NR > 2 && !($2 > nodes)) exit 1; nodes = $2; mean = $3 } END { exit !(mean <= 0.025) }' out/rounds.tsv
     [ "$(mts print nodes.x out/u.dat | wc -l)" -eq "$(tail -n 1 out/rounds.tsv | cut -f 2)" ]
     # The estimate holds against an even, finer lattice.
     # shellcheck disable=SC2086 # several arguments
     voxels -h 3mm $parts sphere.nii.gz | shapefn 2> log | mtled -q press.scene -o fine.dat
-    fieldcmp --skip-outside --tol-avg 0.08mm fine.dat out/u.dat
+    fieldcmp --skip-outside --tol-avg 0.05mm fine.dat out/u.dat
     run -1 --separate-stderr env VOXELS= bash "$top/pipelines/refine/refine.sh" press.scene sphere.nii.gz 0.04mm none
     [[ $stderr == "refine: round 1: the scene: mtled: "*"kept: none" ]]
     run -1 --separate-stderr env VOXELS=--wrong bash "$top/pipelines/refine/refine.sh" press.scene sphere.nii.gz 0.04mm none
