@@ -13,7 +13,7 @@ RESULT_TABLES := brain2d/compare=brain2d brain2d-convergence/convergence=brain2d
     speed-error/reach=reach convergence/convergence=convergence hard/hard=hard hard/summary=hard-summary hard/misses=hard-misses \
     estimate/estimate=estimate estimate/summary=estimate-summary foreign/foreign=foreign gallery/phantom=phantom \
     gallery/indentation=indentation adaptive/effectivity=effectivity adaptive/effectivity-summary=effectivity-summary \
-    adaptive/refinement=refinement neurosurgery/neurosurgery=neurosurgery neurosurgery/volumes=neurosurgery-volumes \
+    adaptive/refinement=refinement adaptive/reach=refinement-reach adaptive/unattended=unattended neurosurgery/neurosurgery=neurosurgery neurosurgery/volumes=neurosurgery-volumes \
     neurosurgery/seconds=neurosurgery-seconds uncertainty/uncertainty=uncertainty scale/stages=scale \
     scale/parts=scale-parts scale/model=scale-model \
     voxels/voxels=voxels voxels/meshes=voxels-meshes neurosurgery/resection/neurosurgery=neurosurgery-resection neurosurgery/electrodes/neurosurgery=neurosurgery-electrodes

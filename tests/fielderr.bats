@@ -267,3 +267,45 @@ field() {
     [[ $stderr == "refine: round 1: the scene: mtled: "*"kept: none" ]]
     cmp out/u.dat before/u.dat
 }
+
+@test "make refine: of a label image, by voxels" {
+    "$BUILD/tests/helper/phantom" sphere > sphere.nii.gz
+    {
+        printf '[scene]\ndim = 3\nanalysis = quasi-static\n[material body]\nregion = label_1\nE = 3000\nnu = 0.49\nrho = 1000\n'
+        printf '[displacement held]\nfacets = held\ncomponents = 0, 0, 0\n[displacement pushed]\nfacets = pushed\ncomponents = 0, 0, -0.002\n'
+    } > press.scene
+    parts='--part held=ball:0,0,-24mm,14mm --part pushed=ball:0,0,24mm,12mm'
+    run -2 bash "$top/pipelines/refine/refine.sh" press.scene sphere.nii.gz 0.1mm out
+    [[ $output == "refine: SPACING: '' is not a positive length, such as 6mm" ]]
+    export SPACING=8mm VOXELS=$parts
+    run -0 bash "$top/pipelines/refine/refine.sh" press.scene sphere.nii.gz 0.025mm out
+    mts check out/u.dat
+    mts check out/body.mts
+    mts check out/sizes.mts
+    [ "$(wc -l < out/rounds.tsv)" -ge 3 ]
+    awk -F '\t' 'NR > 1 { if (NR > 2 && !($2 > nodes)) exit 1; nodes = $2; mean = $3 } END { exit !(mean <= 0.025) }' out/rounds.tsv
+    [ "$(mts print nodes.x out/u.dat | wc -l)" -eq "$(tail -n 1 out/rounds.tsv | cut -f 2)" ]
+    # The estimate holds against an even, finer lattice.
+    # shellcheck disable=SC2086 # several arguments
+    voxels -h 3mm $parts sphere.nii.gz | shapefn 2> log | mtled -q press.scene -o fine.dat
+    fieldcmp --skip-outside --tol-avg 0.05mm fine.dat out/u.dat
+    run -1 --separate-stderr env VOXELS= bash "$top/pipelines/refine/refine.sh" press.scene sphere.nii.gz 0.04mm none
+    [[ $stderr == "refine: round 1: the scene: mtled: "*"kept: none" ]]
+    run -1 --separate-stderr env VOXELS=--wrong bash "$top/pipelines/refine/refine.sh" press.scene sphere.nii.gz 0.04mm none
+    [[ $stderr == "refine: round 1: voxels: voxels: "*"kept: none" ]]
+}
+
+@test "sizefield: the same sizes as a stream" {
+    cloud -d 3 -k regular -n 4 --box 0,0.1,0,0.1,0,0.1 --field quadratic -o cube.mts
+    sizefield -t cube.mts > sizes.dat
+    mts list sizes.dat | cut -f 1 | tr '\n' ' ' | grep -qx 'nodes.x cells size '
+    mts print cells sizes.dat | wc -l > count
+    [ "$(cat count)" -eq $(($(mts print cells cube.mts | wc -l) + 3 * 6 * 3 * 3 * 2)) ]
+    # Corners and sizes of the simplices of the view, but for the order.
+    sizefield cube.mts | sed -n 's/^SS([^)]*){\([^}]*\)};/\1/p' | tr , '\n' | sort -g > of_view
+    awk 'NR == FNR { size[FNR - 1] = $1; next } { for (k = 1; k <= 4; k++) printf "%.6g\n", size[$k] }' \
+        <(mts print size sizes.dat) <(mts print cells sizes.dat) | sort -g | cmp - of_view
+    sizefield -b cube.mts | mts text | grep -v '^# @' | cmp - <(grep -v '^# @' sizes.dat)
+    refused 2 "one of -b and -t" sizefield -b -t cube.mts
+    refused 2 "-u goes without -b and -t" sizefield -b -u mm cube.mts
+}

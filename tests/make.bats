@@ -125,7 +125,7 @@ few_solutions=(CONVERGENCE_CASES=block20 SPEED_ERROR_CASES=cube square.sizes=0.0
 @test "adaptive: whichever program fails" {
     few_rounds=(ADAPTIVE_CASES=block20 ADAPTIVE_EFFECTIVITY=block20 square.sizes=0.03)
     for tool in gmsh nodes ipoints support shapefn mtled fielderr; do
-        fails $tool adaptive "${few_rounds[@]}" -- adaptive/block20-{0.03,even,graded}.row adaptive/{effectivity,refinement}.tsv
+        fails $tool adaptive "${few_rounds[@]}" -- adaptive/block20-{0.03,even,graded}.row adaptive/{effectivity,refinement,reach,unattended}.tsv
     done
     # A comparison, of rounds that there are.
     for tool in gmsh nodes ipoints support shapefn mtled fielderr sizefield; do ln -sf "$(command -v $tool)" build/bin/$tool; done

@@ -70,6 +70,23 @@ cut_and_compute() {
     cut_and_compute graded.mts 3
 }
 
+@test "interfaces at which supports stop: 2 to 13 parts, to the byte, also where a halo has only a corner of a side" {
+    gmsh -2 -v 1 "$top/examples/block/block.geo" -o block.msh
+    nodes -u mm block.msh > block.mts
+    support=(-i lump)
+    for parts in 2 3 8; do cut_and_compute block.mts $parts; done
+    support=(-i tissue,lump)
+    cut_and_compute block.mts 13
+    gmsh -2 -v 1 "$top/examples/brain2d/brain2d.geo" -setnumber lc 9 -o brain.msh
+    nodes -u mm brain.msh > brain.mts
+    support=(-i tumour)
+    for parts in 5 13; do cut_and_compute brain.mts $parts; done
+    "$BUILD/tests/helper/phantom" two > two.nii.gz
+    voxels -h 9mm two.nii.gz > two.mts
+    support=(-i label_2)
+    for parts in 3 8; do cut_and_compute two.mts $parts; done
+}
+
 @test "Gauss points, other supports, a field that travels along" {
     cloud -d 2 -k jittered --jitter 0.3 -n 14,6 --box 0,0.2,0,0.1 --field quadratic > field.mts
     ipoints=(-g 3)

@@ -155,6 +155,47 @@ END
         END { if (NR != 125) exit 1 }'
 }
 
+@test "mixed elements: their field at places, quadratic within an element, beyond the mesh that at the nearest place" {
+    make_patch
+    # A bar that its weight of tractions bends: a field that is not linear in an element.
+    {
+        sed '/^\[displacement/,$d' patch.scene
+        printf '[displacement foot]\nfacets = ymin\ncomponents = 0, 0\n[traction pull]\nfacets = ymax\ncomponents = 30, 0\n'
+    } > pull.scene
+    bash "$pipelines/mixed/solve.sh" pull.scene square.dat > u.dat 2> log
+    bash "$pipelines/mixed/solve.sh" pull.scene square.dat u.dat > at.dat 2> log
+    mts check at.dat
+    run -0 cmp <(mts print nodes.x u.dat) <(mts print nodes.x at.dat)
+    paste <(mts print u u.dat) <(mts print u at.dat) | awk '
+        { a = $3 - $1; b = $4 - $2; if (!(a * a + b * b < 1e-20)) { print; exit 1 } } END { if (NR != 49) exit 1 }'
+    grep -q '^processor seconds	[0-9]' log
+    run ! grep -q places log
+    printf '# mts 1\n# nodes.x f8 2 2 enc=text unit=m\n0.1 0.1\n0.1 0.1001\n\n\n# end 1\n' > beyond.dat
+    bash "$pipelines/mixed/solve.sh" pull.scene square.dat beyond.dat 2> log | mts print u |
+        awk '{ u[NR] = $1 } END { exit !(NR == 2 && u[1] > 0 && (u[2] / u[1] - 1) ^ 2 < 1e-4) }'
+    make_cube
+    bash "$pipelines/mixed/solve.sh" cube.scene cube.dat cube.dat 2> log > at.dat
+    paste <(mts print nodes.x at.dat) <(mts print u at.dat) | awk '
+        { a = $4 - .05 * $1 - .02 * $2; b = $5 + .03 * $2 - .01 * $3; c = $6 - .02 * $1 + .04 * $3 }
+        !(a * a + b * b + c * c < 1e-14) { print; exit 1 }
+        END { if (NR != 27) exit 1 }'
+}
+
+@test "adaptive: what each mesh needs to an error, and what is a bound only" {
+    {
+        printf 'case\tmesh\tnodes\tseconds\tall_seconds\testimate_mm\terror_mm\teffectivity\n'
+        printf 'c\teven\t100\t1\t1\t1\t4\t1\nc\teven\t1600\t16\t1\t1\t1\t1\n'
+        printf 'c\tgraded\t100\t1\t1\t1\t4\t1\nc\tgraded\t400\t4\t1\t1\t1\t1\nc\tgraded\t800\t8\t1\t1\t0.5\t1\n'
+        printf 'c\tmixed even\t500\t20\t1\t-\t1\t-\nc\tmixed graded\t100\t2\t1\t-\t4\t-\nc\tmixed graded\t400\t8\t1\t-\t1\t-\n'
+        printf 'd\teven\t100\t1\t1\t1\t4\t1\nd\tgraded\t100\t3\t1\t1\t4\t1\n'
+    } > table
+    awk -v levels='c:2 c:0.5 c:0.1 d:8' -f "$pipelines/adaptive/reach.awk" table > reach
+    [ "$(sed -n 2p reach)" = "c	2	400	200	0.50	4	2	<20	4	0.50" ]
+    [ "$(sed -n 3p reach)" = "c	0.5	>1.6e+03	800	<0.50	>16	8	>20	>8	<0.40" ]
+    [ "$(sed -n 4p reach)" = "c	0.1	>1.6e+03	>800	-	>16	>8	>20	>8	-" ]
+    [ "$(sed -n 5p reach)" = "d	8	<100	<100	-	<1	<3	-	-	-" ]
+}
+
 @test "mixed elements: a block that lies on a curve, a gap below it at first" {
     make_confined 2
     # Held at its sides and pushed down by 3 mm, of which 2 mm are the gap: as a block that is pressed by 1 mm on what it slides on.

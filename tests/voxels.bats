@@ -161,6 +161,69 @@ END
     refused 2 "is not less than the spacing" voxels -h 6mm --fine 6mm thin.nii.gz
 }
 
+# sizes LEAST GRADATION X Y Z: a stream of sizes over 100 mm about the origin, LEAST at a place, growing with the distance (mm)
+sizes() {
+    cloud -d 3 -k regular -n 21 --box -0.05,0.05,-0.05,0.05,-0.05,0.05 -t -o cloud.dat
+    sed '/^# end/d' cloud.dat
+    echo "# size f8 9261 1 enc=text unit=m"
+    mts print nodes.x cloud.dat | awk -v s="$1" -v g="$2" -v x="$3" -v y="$4" -v z="$5" \
+        '{ print s / 1e3 + g * sqrt(($1 - x / 1e3) ^ 2 + ($2 - y / 1e3) ^ 2 + ($3 - z / 1e3) ^ 2) }'
+    printf '\n\n# end %d\n' $(($(grep -c '^# [a-z].* enc=' cloud.dat) + 1))
+}
+
+@test "--sizes: finer where they ask for it; valid, angles and volumes within their bounds" {
+    while read -r shape seed spacing least gradation place; do
+        phantom "$shape" "$seed" > image.nii.gz
+        # shellcheck disable=SC2086 # three coordinates
+        sizes "$least" "$gradation" $place > sizes.dat
+        voxels -h "$spacing" -v --sizes sizes.dat image.nii.gz > body.mts 2> said
+        [ -z "$(mts check body.mts | grep -v 'connected bodies$')" ]
+        awk '/degrees/ { if ($(NF - 3) >= 8 && $(NF - 1) <= 165) good = 1 } END { exit !good }' said
+        grep -E ' ml of voxels' said > volumes
+        awk '{ sub(/%.*/, ""); sub(/.*\(/, ""); x = $0 + 0; if (!(x < 1 && x > -1)) exit 1 }' volumes
+        voxels -h "$spacing" image.nii.gz > even.mts 2> said
+        [ "$(mts print nodes.x body.mts | wc -l)" -gt $((3 * $(mts print nodes.x even.mts | wc -l) / 2)) ]
+    done << 'END'
+sphere 1 8mm 1 0.3 24 0 0
+torus 1 5mm 1 0.2 -10 5 10
+two 1 5mm 1 0.3 10 5 0
+four 1 5mm 1 0.2 -10 5 10
+blobs 1 5mm 0.7 0.25 -10 0 8
+blobs 4 5mm 1.2 0.15 0 -12 0
+blobs 9 5mm 1 0.2 -10 0 8
+END
+    for threads in 1 2 3; do OMP_NUM_THREADS=$threads voxels -h 5mm --sizes sizes.dat image.nii.gz -o $threads.mts 2> said; done
+    cmp 1.mts 2.mts
+    cmp 1.mts 3.mts
+}
+
+@test "--sizes: bad ones are refused in a line" {
+    phantom sphere > image.nii.gz
+    phantom sphere@slice > slice.nii.gz
+    sizes 2 0.3 0 0 0 > sizes.dat
+    refused 2 "for bodies in space" voxels -h 4mm --sizes <(cloud -d 2 -k regular -n 3 --box 0,1,0,1 -t |
+        awk '/^# end/ { print "# size f8 9 1 enc=text unit=m"; for (i = 0; i < 9; i++) print 1; print "\n"; $3++ } { print }') slice.nii.gz
+    refused 2 "cells in 3D, the image is of a body in 2D" voxels -h 4mm --sizes sizes.dat slice.nii.gz
+    refused 2 "run sizefield -b" voxels -h 4mm --sizes <(mts drop size sizes.dat) image.nii.gz
+    refused 2 "cells" voxels -h 4mm --sizes <(mts drop cells sizes.dat) image.nii.gz
+    refused 2 "9260 rows for 9261 nodes" voxels -h 4mm --sizes <(shortened size sizes.dat) image.nii.gz
+    for bad in 0 -1e-3 nan inf; do
+        awk -v bad=$bad '/^# / { on = $2 == "size"; n = 0 } on && NF == 1 && ++n == 8 { $1 = bad } { print }' sizes.dat > bad.dat
+        refused 2 "size: row 7: " voxels -h 4mm --sizes bad.dat image.nii.gz
+        [[ "$stderr" == *"is not a positive length"* ]]
+    done
+    refused 2 "the sizes lie elsewhere" voxels -h 4mm --sizes <(cloud -d 3 -k regular -n 3 --box 1,2,1,2,1,2 -t |
+        awk '/^# end/ { print "# size f8 27 1 enc=text unit=m"; for (i = 0; i < 27; i++) print 0.002; print "\n"; $3++ } { print }') image.nii.gz
+    sizes 0.05 0.3 0 0 0 > many.dat
+    refused 2 "more than 67108864 lattice points" voxels -h 4mm --sizes many.dat image.nii.gz
+    sizes 0.001 0.3 0 0 0 > tiny.dat
+    refused 2 "a size of 1e-06 m: at least 1/128 of the spacing" voxels -h 4mm --sizes tiny.dat image.nii.gz
+    # What sizes leave out is told.
+    sizes 2 0.3 0 0 0 | awk '/^# / { on = $2 == "nodes.x" } on && NF == 3 { $1 += 0.05 } { print }' > aside.dat
+    voxels -h 8mm --sizes aside.dat image.nii.gz 2> said > body.mts
+    grep -qE "voxels: [45][0-9.]* % of the body lie beyond the sizes" said
+}
+
 @test "a slice, its own or chosen from a body" {
     phantom two@slice > slice.nii.gz
     voxels -h 4mm -v slice.nii.gz > flat.mts 2> said

@@ -2,11 +2,12 @@ static const char usage[] =
     "sizefield - sizes for a graded mesh, finer where a solution needs it\n"
     "\n"
     "usage: sizefield [-s SHARE] [-n NODES] [--sag LENGTH] [--least LENGTH] [-u UNIT] [--field NAME]\n"
-    "                 [-v] [-o FILE] [FILE]\n"
+    "                 [-v] [-b | -t] [-o FILE] [FILE]\n"
     "\n"
     "Reads a result of mtled and writes sizes of cells for a mesh whose error is SHARE of the present\n"
-    "one, as a view of gmsh (.pos): a background field, in the unit of the geometry. It reaches a little\n"
-    "beyond the boundary, as gmsh takes no size from places outside of a view.\n"
+    "one, as a view of gmsh (.pos): a background field, in the unit of the geometry; or, for\n"
+    "voxels --sizes, as a stream of nodes.x, cells and size (m). Both reach a little beyond the\n"
+    "boundary, as no size is taken from places outside of them.\n"
     "\n"
     "Where cells are too large is seen from their gradients of u: in each cell the distance of the\n"
     "gradient from the one averaged at its nodes (recovery: Zienkiewicz and Zhu 1987), within each\n"
@@ -26,6 +27,8 @@ static const char usage[] =
     "  -u, --unit UNIT        unit of the sizes and their places: m (default), cm, mm, um or so many\n"
     "                         metres\n"
     "      --field NAME       the field, of 1 to 3 columns (default u)\n"
+    "  -b, --binary           write a stream, binary\n"
+    "  -t, --text             write a stream, as text\n"
     "  -v, --verbose          report on standard error: least and largest size, nodes\n"
     "  -o, --output FILE      write to FILE, which appears only when whole\n"
     "\n"
@@ -33,7 +36,8 @@ static const char usage[] =
     "  sizefield -s 0.3 -u mm -o sizes.pos u.dat\n"
     "  printf 'Merge \"sizes.pos\";\\nBackground Mesh View[0];\\n' | cat body.geo - > graded.geo\n"
     "  printf 'Mesh.MeshSize%s = 0;\\n' ExtendFromBoundary FromPoints FromCurvature >> graded.geo\n"
-    "  gmsh -2 graded.geo -o graded.msh\n";
+    "  gmsh -2 graded.geo -o graded.msh\n"
+    "  sizefield -b u.dat | voxels -h 6mm --sizes - labels.nii.gz > finer.mts\n";
 
 #include "output.h"
 #include "regions.h"
@@ -95,58 +99,91 @@ done:
     return status;
 }
 
-/* A simplex of a view of gmsh, ST or SS: its corners and the sizes there. */
-static void print_simplex(FILE *file, int dim, const double *const x[], const double size[], double unit)
+/* The cells with their sizes, and a layer beyond the boundary: between each facet and its nodes moved outward
+ * dim simplices. */
+struct layered {
+    struct cells cells;
+    double *x;     /* cells.node_count * dim, m: the nodes, and those of the boundary moved outward */
+    int32_t *node; /* cells.count * (dim + 1) */
+    double *size;  /* cells.node_count, m */
+};
+
+static void layered_free(struct layered *layered)
 {
-    fprintf(file, "%s(", dim == 2 ? "ST" : "SS");
-    for (int k = 0; k <= dim; k++) {
-        fprintf(file, "%s%.9g,%.9g,%.9g", k > 0 ? "," : "", x[k][0] / unit, x[k][1] / unit,
-                dim == 3 ? x[k][2] / unit : 0.0);
-    }
-    for (int k = 0; k <= dim; k++) {
-        fprintf(file, "%s%.6g", k > 0 ? "," : "){", size[k] / unit);
-    }
-    fprintf(file, "};\n");
+    free(layered->x);
+    free(layered->node);
+    free(layered->size);
 }
 
-/* The cells, and a layer beyond the boundary: between each facet and its nodes moved outward dim simplices.
- */
-static void print_view(FILE *file, const struct cells *cells, const struct size_field *field, double unit)
+static enum status layered_make(const struct cells *cells, const struct size_field *field,
+                                struct layered *layered, struct error *error)
 {
+    enum status status;
     int dim = cells->dim;
-    const double *x[4];
-    double size[4];
-    fprintf(file, "View \"size\" {\n");
-    for (int64_t q = 0; q < cells->count; q++) {
-        for (int k = 0; k <= dim; k++) {
-            int32_t n = cells->node[q * (dim + 1) + k];
-            x[k] = cells->x + n * dim;
-            size[k] = field->size[n];
+    int32_t *outer = NULL; /* node_count: the node moved outward, 0: of none */
+    const struct faces *boundary = &field->boundary;
+    *layered = (struct layered){.cells = {.dim = dim, .node_count = cells->node_count}};
+    TRY(NEW_ARRAY(&outer, cells->node_count, error));
+    TRY(NEW_ARRAY(&layered->x, 2 * cells->node_count * dim, error));
+    TRY(NEW_ARRAY(&layered->size, 2 * cells->node_count, error));
+    TRY(NEW_ARRAY(&layered->node, (cells->count + boundary->boundary_count * dim) * (dim + 1), error));
+    memcpy(layered->x, cells->x, (size_t)(cells->node_count * dim) * sizeof(double));
+    memcpy(layered->size, field->size, (size_t)cells->node_count * sizeof(double));
+    memcpy(layered->node, cells->node, (size_t)(cells->count * (dim + 1)) * sizeof(int32_t));
+    for (int64_t i = 0; i < boundary->boundary_count * dim; i++) {
+        int64_t n = boundary->node[i], made = layered->cells.node_count;
+        if (outer[n] == 0) {
+            memcpy(layered->x + made * dim, field->outer + n * dim, (size_t)dim * sizeof(double));
+            layered->size[made] = field->size[n];
+            outer[n] = (int32_t)made;
+            layered->cells.node_count++;
         }
-        print_simplex(file, dim, x, size, unit);
     }
-    for (int64_t f = 0; f < field->boundary.boundary_count; f++) {
-        const int32_t *node = field->boundary.node + f * dim;
-        for (int part = 0; part < dim; part++) {
+    int32_t *simplex = layered->node + cells->count * (dim + 1);
+    for (int64_t f = 0; f < boundary->boundary_count; f++) {
+        const int32_t *node = boundary->node + f * dim;
+        for (int part = 0; part < dim; part++, simplex += dim + 1) {
             /* Nodes up to `part` moved outward, those from `part` on at their places. */
             for (int k = 0; k <= dim; k++) {
-                int32_t n = node[k <= part ? k : k - 1];
-                x[k] = (k <= part ? field->outer : cells->x) + n * dim;
-                size[k] = field->size[n];
+                simplex[k] = k <= part ? outer[node[k]] : node[k - 1];
             }
-            print_simplex(file, dim, x, size, unit);
         }
+    }
+    layered->cells.count = cells->count + boundary->boundary_count * dim;
+    layered->cells.x = layered->x;
+    layered->cells.node = layered->node;
+done:
+    free(outer);
+    return status;
+}
+
+/* Simplices of a view of gmsh, ST or SS: corners and the sizes there. */
+static void print_view(FILE *file, const struct layered *layered, double unit)
+{
+    int dim = layered->cells.dim;
+    fprintf(file, "View \"size\" {\n");
+    for (int64_t q = 0; q < layered->cells.count; q++) {
+        const int32_t *node = layered->node + q * (dim + 1);
+        fprintf(file, "%s(", dim == 2 ? "ST" : "SS");
+        for (int k = 0; k <= dim; k++) {
+            const double *x = layered->x + (int64_t)node[k] * dim;
+            fprintf(file, "%s%.9g,%.9g,%.9g", k > 0 ? "," : "", x[0] / unit, x[1] / unit,
+                    dim == 3 ? x[2] / unit : 0.0);
+        }
+        for (int k = 0; k <= dim; k++) {
+            fprintf(file, "%s%.6g", k > 0 ? "," : "){", layered->size[node[k]] / unit);
+        }
+        fprintf(file, "};\n");
     }
     fprintf(file, "};\n");
 }
 
-static void write_view(const struct tool *tool, const struct cells *cells, const struct size_field *field,
-                       double unit)
+static void write_view(const struct tool *tool, const struct layered *layered, double unit)
 {
     struct output output;
     struct error error;
     if (tool->output == NULL) {
-        print_view(stdout, cells, field, unit);
+        print_view(stdout, layered, unit);
         return;
     }
     tool_check(tool, output_open(&output, tool->output, &error), &error);
@@ -155,7 +192,7 @@ static void write_view(const struct tool *tool, const struct cells *cells, const
     int reason = errno;
     if (file != NULL) {
         errno = 0;
-        print_view(file, cells, field, unit);
+        print_view(file, layered, unit);
         reason = ferror(file) != 0 ? errno : 0;
         reason = fclose(file) != 0 && reason == 0 ? errno : reason;
     }
@@ -163,6 +200,50 @@ static void write_view(const struct tool *tool, const struct cells *cells, const
         tool_fail(tool, STATUS_SYSTEM, "%s: %s", tool->output, strerror(reason));
     }
     tool_check(tool, output_commit(&output, &error), &error);
+}
+
+/* Cells of a stream are positively oriented: those of the layer are turned where need be, or left out where
+ * they have no volume. */
+static void orient(struct layered *layered)
+{
+    int corners = layered->cells.dim + 1;
+    int64_t kept = 0;
+    for (int64_t q = 0; q < layered->cells.count; q++) {
+        int32_t *node = layered->node + q * corners, first = node[0];
+        double volume = cell_volume(&layered->cells, q);
+        if (volume < 0) {
+            node[0] = node[1];
+            node[1] = first;
+        }
+        if (volume != 0) {
+            memmove(layered->node + kept++ * corners, node, (size_t)corners * sizeof *node);
+        }
+    }
+    layered->cells.count = kept;
+}
+
+static void write_sizes(const struct tool *tool, struct layered *layered, bool text)
+{
+    struct stream stream;
+    struct error error;
+    char attributes[64];
+    const struct cells *cells = &layered->cells;
+    orient(layered);
+    stream_init(&stream);
+    tool_check(tool,
+               stream_put(&stream, "nodes.x", TYPE_F8, cells->node_count, cells->dim,
+                          vector_attributes(cells->dim, "m", attributes), layered->x, false, &error),
+               &error);
+    tool_check(
+        tool,
+        stream_put(&stream, "cells", TYPE_I4, cells->count, cells->dim + 1, "", layered->node, false, &error),
+        &error);
+    tool_check(
+        tool,
+        stream_put(&stream, "size", TYPE_F8, cells->node_count, 1, "unit=m", layered->size, false, &error),
+        &error);
+    tool_write(tool, &stream, text);
+    stream_free(&stream);
 }
 
 static void report(const struct request *request, const struct cells *cells, const struct size_field *field)
@@ -185,6 +266,10 @@ int main(int argc, char *argv[])
     struct error error;
     double *squared = NULL;
     tool_begin(&tool, usage, 0, 1, argc, argv);
+    tool_excludes(&tool, "binary", "text");
+    if (tool_given(&tool, "unit") && (tool_given(&tool, "binary") || tool_given(&tool, "text"))) {
+        tool_fail(&tool, STATUS_INPUT, "-u goes without -b and -t: a stream is in m");
+    }
     struct request request = parse(&tool);
     tool_read(&tool, tool.operands[0], &stream);
     tool_check(&tool, recover(&stream, request.field, &cells, &squared, &error), &error);
@@ -193,10 +278,17 @@ int main(int argc, char *argv[])
         tool_note(&tool, "these sizes ask for %.3g nodes: made larger for %.0f (-n)", field.unbound,
                   request.sizes.most_nodes);
     }
-    write_view(&tool, &cells, &field, request.unit);
+    struct layered layered;
+    tool_check(&tool, layered_make(&cells, &field, &layered, &error), &error);
+    if (tool_given(&tool, "binary") || tool_given(&tool, "text")) {
+        write_sizes(&tool, &layered, tool_given(&tool, "text"));
+    } else {
+        write_view(&tool, &layered, request.unit);
+    }
     if (request.verbose) {
         report(&request, &cells, &field);
     }
+    layered_free(&layered);
     size_field_free(&field);
     free(squared);
     stream_free(&stream);

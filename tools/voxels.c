@@ -1,8 +1,9 @@
 static const char usage[] =
     "voxels - label image to node cloud, background cells, facets and node sets\n"
     "\n"
-    "usage: voxels -h LENGTH [--fine LENGTH[:NAME,...]] [-l TABLE] [--part NAME=PLACE]...\n"
-    "              [-s AXIS=PLACE] [--largest] [-u UNIT] [-v] [-b | -t] [-o FILE] [IMAGE]\n"
+    "usage: voxels -h LENGTH [--fine LENGTH[:NAME,...]] [--sizes FILE] [-l TABLE]\n"
+    "              [--part NAME=PLACE]... [-s AXIS=PLACE] [--largest] [-u UNIT] [-v] [-b | -t] [-o FILE]\n"
+    "              [IMAGE]\n"
     "       voxels -h LENGTH --surface NAME[|NAME] [--gap LENGTH] [--fine LENGTH[:NAME,...]] [-l TABLE]\n"
     "              [-s AXIS=PLACE] [--largest] [-u UNIT] [-v] [-o FILE] [IMAGE]\n"
     "\n"
@@ -12,47 +13,47 @@ static const char usage[] =
     "lies beyond, B: 'outside' or a label that is left out; and as node sets A|B the interfaces between\n"
     "regions.\n"
     "\n"
-    "A body-centred cubic lattice of cubes of LENGTH (2D: one of equilateral triangles) is cut where\n"
-    "labels meet (isosurface stuffing, Labelle and Shewchuk 2007). Interfaces are smooth: where two\n"
-    "labels, smoothed by cubic B-splines, have equal shares. Their nodes are moved by at most .55 voxels\n"
-    "to keep the volume of each label. Angles of cells are between 8 and 165 degrees.\n"
+    "A body-centred cubic lattice of cubes of LENGTH (2D: equilateral triangles) is cut where labels meet\n"
+    "(isosurface stuffing, Labelle and Shewchuk 2007): where two, smoothed by cubic B-splines, have equal\n"
+    "shares. Their nodes are moved by at most .55 voxels to keep the volume of each label. Angles of cells\n"
+    "are between 8 and 165 degrees.\n"
     "\n"
-    "Parts of a label that are thinner than LENGTH may be lost, and bodies about a single lattice point\n"
-    "are left out; both is told: --fine keeps more. Bodies that hang together by a node or an edge are\n"
-    "cut apart; between parts of one body a gap is filled there, and crevices are at their tips.\n"
+    "Parts of a label thinner than LENGTH may be lost, and bodies about a single lattice point are left\n"
+    "out; both is told: --fine keeps more. Bodies that hang together by a node or an edge are cut apart;\n"
+    "between parts of one body a gap is filled there, and crevices are at their tips.\n"
     "\n"
-    "A part of the outer boundary gets a name by --part, with nodes on its rim; others, of whole facets, by\n"
+    "A part of the boundary gets a name by --part, with nodes on its rim; others, of whole facets, by\n"
     "groups.\n"
     "\n"
-    "A slice, which is an image of one slice or one chosen by -s, makes a body in the plane: x and y of\n"
-    "the stream are then the two world axes in the slice, in their order.\n"
+    "A slice (an image of one, or chosen by -s) makes a body in the plane: x and y of the stream are then\n"
+    "the two world axes in the slice, in their order.\n"
     "\n"
     "The table has rows LABELS NAME: LABELS is a number, a range 3-5, a list 1,3-5, or * for all others but\n"
     "0. Labels of one name are one region. A NAME - makes labels part of the outside; a third word - leaves\n"
     "cells out, and NAME stands in the names of the walls around. Text behind # is a comment. Without a\n"
     "table all labels but 0 are regions label_1, label_2, ...\n"
     "\n"
-    "With --surface the program writes a table for [contact] of a scene instead (unit = m): the triangles\n"
-    "of the surface of a label (2D: curves, the label on their left). Normals point out of the label, so a\n"
-    "body within has side = back (2D: left).\n"
+    "--surface writes a table for [contact] of a scene instead (unit = m): the triangles of the surface of\n"
+    "a label (2D: curves, the label on their left). Normals point out of the label: a body within has\n"
+    "side = back (2D: left).\n"
     "\n"
     "Options:\n"
     "  -h, --spacing LENGTH    of the lattice, with a unit: 6mm; without one in m (required; -h at the end\n"
     "                          of the line prints this text)\n"
     "      --fine LENGTH[:NAME,...]  spacing at all interfaces, with names at those of these labels only:\n"
     "                          that of -h is halved until it is no larger\n"
-    "      --surface NAME[|NAME]  write the surface of the first label; with a second name only where\n"
-    "                          that label, which may be outside, lies beyond it\n"
-    "      --gap LENGTH        move that surface outward by LENGTH\n"
+    "      --sizes FILE        lengths of edges, by sizefield -b: the spacing is halved where they ask so\n"
+    "      --surface NAME[|NAME]  write the surface of the first label; with a second name (or outside)\n"
+    "                          only where that lies beyond it\n"
+    "      --gap LENGTH        move it outward by LENGTH\n"
     "  -l, --labels TABLE      names of labels\n"
     "      --part NAME=PLACE ...  name of the boundary in ball:X,Y,Z,RADIUS, lengths with units, or in the\n"
-    "                          voxels of a mask image; of two that overlap the later one has it\n"
+    "                          voxels of a mask image; the later of two that overlap\n"
     "  -s, --slice AXIS=PLACE  the slice nearest to PLACE on a world axis, as z=12mm\n"
     "      --largest           the largest connected body only\n"
     "  -u, --unit UNIT         unit of the file's lengths, instead of what it says: m, cm, mm, um, or a\n"
     "                          number of metres\n"
-    "  -v, --verbose           report on standard error: volumes of labels in voxels and in cells, spacing,\n"
-    "                          nodes, cells, least and largest angle\n"
+    "  -v, --verbose           report on standard error: volumes in voxels and cells, nodes, angles\n"
     "  -b, --binary            write binary (default)\n"
     "  -t, --text              write text\n"
     "  -o, --output FILE       write to FILE, which appears only when whole\n"
@@ -61,10 +62,12 @@ static const char usage[] =
     "  voxels labels.nii.gz -h 6mm | shapefn | mtled craniotomy.scene > u.dat\n"
     "  printf '1 parenchyma\\n2 ventricles -\\n3,10-12 tumour\\n* -\\n' > names\n"
     "  voxels -l names -h 4mm -v < labels.nii.gz > body.mts\n"
+    "  sizefield -b u.dat | voxels -h 6mm --sizes - labels.nii.gz > finer.mts\n"
     "  voxels -h 4mm -l names --surface 'parenchyma|outside' --gap 1mm labels.nii.gz > skull.tsv\n";
 
 #include "label_mesh.h"
 #include "label_part.h"
+#include "label_sizes.h"
 #include "label_surface.h"
 
 #include "approx/cells.h"
@@ -74,7 +77,8 @@ static const char usage[] =
 #include <stdlib.h>
 #include <string.h>
 
-/* Volumes are told where they are off by more than this share. */
+/* Volumes are told where they are off by more than this share, and what lies beyond the sizes where it is
+ * more. */
 static const double told_share = 0.01;
 
 /* Volume of the cells of each label with its parts, m3 (2D: m2). */
@@ -192,6 +196,10 @@ static void report(const struct tool *tool, const struct label_image *image, con
 {
     struct cells cells = {stuffing->dim, stuffing->node_count, stuffing->x, stuffing->cell_count,
                           stuffing->cell};
+    if (stuffing->unsized > told_share) {
+        tool_note(tool, "%.3g %% of the body lie beyond the sizes: cells there are of the spacing of -h",
+                  100 * stuffing->unsized);
+    }
     if (stuffing->specks > 0) {
         tool_note(tool, "%lld bodies no larger than the spacing, %.3g %s in all, are left out",
                   (long long)stuffing->specks, shown(cells.dim, stuffing->speck_volume),
@@ -215,38 +223,6 @@ static void report(const struct tool *tool, const struct label_image *image, con
                   stuffing->farthest / labels_voxel(&image->labels), (long long)stuffing->astray,
                   STUFFING_MOST_ASTRAY);
     }
-}
-
-/* "3mm" or "3mm:ventricles,tumour"; the array of labels, NULL: of all, is to be freed. */
-static bool *parse_fine(const struct tool *tool, const struct label_image *image, const char *text,
-                        double spacing, double *finest)
-{
-    struct error error;
-    bool *fine = NULL;
-    char *copy = strdup(text), *names = copy;
-    if (copy == NULL) {
-        tool_fail(tool, STATUS_SYSTEM, "out of memory");
-    }
-    const char *length = strsep(&names, ":");
-    tool_check(tool, parse_length(length, "--fine", finest, &error), &error);
-    if (*finest >= spacing) {
-        tool_fail(tool, STATUS_INPUT, "--fine: %s is not less than the spacing of -h", length);
-    }
-    if (names != NULL) {
-        tool_check(tool, NEW_ARRAY(&fine, image->labels.count, &error), &error);
-    }
-    while (names != NULL) {
-        const char *name = strsep(&names, ",");
-        int32_t label = label_image_find(image, name);
-        if (label < 0) {
-            tool_fail(tool, STATUS_INPUT, "--fine: no label '%.60s'", name);
-        }
-        for (int32_t l = 0; l < image->labels.count; l++) {
-            fine[l] = fine[l] || image->region[l] == label;
-        }
-    }
-    free(copy);
-    return fine;
 }
 
 static void write_stream(const struct tool *tool, const struct label_image *image,
@@ -316,9 +292,13 @@ int main(int argc, char *argv[])
                                                 .largest = tool_given(&tool, "largest")};
     bool *fine = NULL;
     if (tool_given(&tool, "fine")) {
-        fine = parse_fine(&tool, &image, tool_value(&tool, "fine"), spacing, &stuffing_options.finest);
+        fine = label_fine_parse(&tool, &image, tool_value(&tool, "fine"), spacing, &stuffing_options.finest);
         stuffing_options.fine = fine;
     }
+    struct label_sizes sizes;
+    label_sizes_read(&tool, &image, tool_value(&tool, "sizes"), &sizes);
+    stuffing_options.sized = &sizes.cells;
+    stuffing_options.size = sizes.size;
     tool_check(&tool, stuffing_make(&image.labels, &stuffing_options, &stuffing, &error), &error);
     report(&tool, &image, &stuffing, spacing, tool_given(&tool, "verbose"));
     if (tool_given(&tool, "surface")) {
@@ -327,6 +307,7 @@ int main(int argc, char *argv[])
         write_stream(&tool, &image, &stuffing, tool_given(&tool, "text"));
     }
     stuffing_free(&stuffing);
+    label_sizes_free(&sizes);
     free(fine);
     label_image_free(&image);
     return tool_end(&tool);

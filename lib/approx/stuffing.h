@@ -10,6 +10,7 @@
 #ifndef APPROX_STUFFING_H
 #define APPROX_STUFFING_H
 
+#include "approx/cells.h"
 #include "approx/labels.h"
 #include "base/status.h"
 
@@ -20,7 +21,10 @@ struct stuffing_options {
     double spacing; /* of the lattice, m: edge of its cubes (2D: of its triangles) */
     double finest;  /* 3D: edge of the cubes at interfaces, m: the spacing is halved until it is no larger; 0:
                        as  elsewhere */
-    const bool *fine;     /* labels->count: at interfaces of these labels; NULL: at all */
+    const bool *fine;          /* labels->count: at interfaces of these labels; NULL: at all */
+    const struct cells *sized; /* 3D: cells over the body, at whose nodes */
+    const double *size;   /* sized->node_count: the wanted length of edges, m, positive, linear within cells;
+                             where   it asks for smaller cubes than `spacing` these are halved; NULL: nowhere */
     const bool *keep;     /* labels->count: cells of this label are wanted; never of label 0 */
     const int32_t *whole; /* labels->count: the label whose part each is: the volume of a whole is kept; NULL:
                              of each label */
@@ -50,11 +54,13 @@ struct stuffing {
     int64_t specks;  /* bodies about a single point of the lattice: they are left out, */
     double speck_volume; /* m3 */
     int64_t astray;  /* nodes of interfaces farther than STUFFING_MOST_ASTRAY voxels from where labels meet */
+    double unsized;  /* the share of the body's cubes that lies beyond the cells of the sizes */
     double farthest; /* largest of these distances of all nodes, m */
 };
 
-/* Make the cells. STATUS_INPUT: no voxel of a label that is kept, a spacing for which the lattice has more
- * than 2^28 points, or no cell at that spacing. */
+/* Make the cells. STATUS_INPUT: no voxel of a label that is kept, a spacing, or sizes, for which the lattice
+ * would have more than 2^26 points all over at its finest, sizes of less than 1/128 of the spacing, sizes
+ * that all lie elsewhere, or no cell at that spacing. */
 MUST_CHECK enum status stuffing_make(const struct labels *labels, const struct stuffing_options *options,
                                      struct stuffing *stuffing, struct error *error);
 void stuffing_free(struct stuffing *stuffing);

@@ -251,7 +251,7 @@ enum status lattice_cells(const struct lattice *lattice, struct stuffing *stuffi
 {
     struct cutting cutting = {.lattice = lattice, .stuffing = stuffing};
     enum status status;
-    *stuffing = (struct stuffing){.dim = lattice->dim};
+    *stuffing = (struct stuffing){.dim = lattice->dim, .unsized = lattice->unsized};
     TRY(set_nodes(&cutting, error));
     TRY(find_seconds(&cutting, error));
     for (int64_t c = 0; c < lattice->cell_count; c++) {

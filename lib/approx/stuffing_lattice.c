@@ -11,7 +11,7 @@ static const int64_t most_points = (int64_t)1 << 26;
  * in 2D rows of points, odd ones shifted by half a spacing. */
 struct points {
     struct lattice *lattice;
-    int levels;
+    int levels, fine;       /* fine: the level of cubes at interfaces */
     double spacing, low[3]; /* of the finest level */
     int64_t count[3], corners, total;
     uint16_t *label; /* total */
@@ -72,8 +72,8 @@ static enum status size_points(struct points *points, struct error *error)
         if (!(total < (double)most_points)) {
             return fail(
                 error, STATUS_INPUT,
-                "spacing %g m: more than %lld lattice points over the labels: larger, or another unit?",
-                points->spacing, (long long)most_points);
+                "spacing %g m%s: more than %lld lattice points over the labels: larger, or another unit?",
+                points->spacing, points->levels > 1 ? " where it is least" : "", (long long)most_points);
         }
         points->low[d] = first * step;
         points->count[d] = (int64_t)(last - first) * coarse + 1;
@@ -194,21 +194,47 @@ static void find_wanted(const struct points *points, const bool *fine, const int
     }
 }
 
-static enum status add_tetrahedra(struct points *points, const bool *fine)
+/* The centres of the finest cubes that lie in the body. */
+static void find_inside(const struct points *points, const int64_t cubes[3], bool *inside)
+{
+#pragma omp parallel for schedule(static)
+    for (int64_t c = 0; c < cubes[0] * cubes[1] * cubes[2]; c++) {
+        const int32_t centre[3] = {(int32_t)(2 * (c % cubes[0]) + 1),
+                                   (int32_t)(2 * (c / cubes[0] % cubes[1]) + 1),
+                                   (int32_t)(2 * (c / cubes[0] / cubes[1]) + 1)};
+        inside[c] = points->lattice->keep[points->label[point_at(points, centre)]];
+    }
+}
+
+static enum status add_tetrahedra(struct points *points, const struct stuffing_options *options)
 {
     enum status status;
-    bool *wanted = NULL;
+    bool *marked = NULL;
+    uint8_t *wish = NULL;
     struct octree octree = {0};
     const int64_t cubes[3] = {points->count[0] - 1, points->count[1] - 1, points->count[2] - 1};
-    TRY(NEW_ARRAY(&wanted, cubes[0] * cubes[1] * cubes[2], points->error));
-    if (points->levels > 1) {
-        find_wanted(points, fine, cubes, wanted);
+    int64_t total = cubes[0] * cubes[1] * cubes[2];
+    TRY(NEW_ARRAY(&marked, total, points->error));
+    TRY(NEW_ARRAY(&wish, total, points->error));
+    if (points->fine > 0) {
+        find_wanted(points, options->fine, cubes, marked);
+        for (int64_t c = 0; c < total; c++) {
+            wish[c] = marked[c] ? OCTREE_WISH(points->fine, true) : 0;
+        }
     }
-    TRY(octree_make(points->levels, cubes, wanted, &octree, points->error));
+    if (options->size != NULL) {
+        const double first[3] = {points->low[0] + points->spacing / 2, points->low[1] + points->spacing / 2,
+                                 points->low[2] + points->spacing / 2};
+        find_inside(points, cubes, marked);
+        TRY(sizes_wish(options, points->levels, cubes, first, points->spacing, marked, wish,
+                       &points->lattice->unsized, points->error));
+    }
+    TRY(octree_make(points->levels, cubes, wish, &octree, points->error));
     TRY(octree_cells(&octree, add_tetrahedron, points));
 done:
     octree_free(&octree);
-    free(wanted);
+    free(marked);
+    free(wish);
     return status;
 }
 
@@ -243,27 +269,45 @@ done:
     return status;
 }
 
+/* The levels that the finest cubes need, at interfaces and for sizes. */
+static enum status count_levels(const struct stuffing_options *options, struct points *points,
+                                struct error *error)
+{
+    double least = INFINITY;
+    while (options->finest > 0 && ldexp(points->spacing, -points->fine) > options->finest * (1 + 1e-9)) {
+        if (++points->fine == OCTREE_MOST_LEVELS) {
+            return fail(error, STATUS_INPUT,
+                        "spacing %g m at interfaces: at least 1/%d of the spacing inside, %g m",
+                        options->finest, 1 << (OCTREE_MOST_LEVELS - 1), options->spacing);
+        }
+    }
+    for (int64_t n = 0; options->size != NULL && n < options->sized->node_count; n++) {
+        least = fmin(least, options->size[n]);
+    }
+    int level = least < INFINITY ? size_level(points->spacing, least) : 0;
+    if (level >= OCTREE_MOST_LEVELS) {
+        return fail(error, STATUS_INPUT, "a size of %g m: at least 1/%d of the spacing, %g m", least,
+                    1 << (OCTREE_MOST_LEVELS - 1), options->spacing);
+    }
+    points->levels = 1 + (level > points->fine ? level : points->fine);
+    points->spacing = ldexp(points->spacing, 1 - points->levels);
+    return STATUS_OK;
+}
+
 enum status lattice_make(const struct labels *labels, const struct stuffing_options *options,
                          struct lattice *lattice, struct error *error)
 {
     enum status status;
     struct points points = {.lattice = lattice, .levels = 1, .spacing = options->spacing, .error = error};
     *lattice = (struct lattice){.labels = labels, .keep = options->keep, .dim = labels->dim};
-    if (options->finest > 0 && labels->dim == 2) {
-        TRY(fail(error, STATUS_INPUT, "finer interfaces are for bodies in space, not for slices"));
+    if ((options->finest > 0 || options->size != NULL) && labels->dim == 2) {
+        TRY(fail(error, STATUS_INPUT, "%s are for bodies in space, not for slices",
+                 options->finest > 0 ? "finer interfaces" : "sizes"));
     }
-    while (options->finest > 0 && points.spacing > options->finest * (1 + 1e-9)) {
-        if (points.levels == OCTREE_MOST_LEVELS) {
-            TRY(fail(error, STATUS_INPUT,
-                     "spacing %g m at interfaces: at least 1/%d of the spacing inside, %g m", options->finest,
-                     1 << (OCTREE_MOST_LEVELS - 1), options->spacing));
-        }
-        points.spacing /= 2;
-        points.levels++;
-    }
+    TRY(count_levels(options, &points, error));
     TRY(size_points(&points, error));
     TRY(label_points(&points, error));
-    TRY(labels->dim == 3 ? add_tetrahedra(&points, options->fine) : add_triangles(&points));
+    TRY(labels->dim == 3 ? add_tetrahedra(&points, options) : add_triangles(&points));
     TRY(make_nodes(&points, error));
 done:
     free(points.label);

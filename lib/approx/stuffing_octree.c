@@ -38,11 +38,24 @@ static enum status dilate(const int64_t count[3], bool *marked, struct error *er
     return status;
 }
 
-enum status octree_make(int levels, const int64_t count[3], bool *wanted, struct octree *octree,
+/* The wishes of the cubes of a level become those of their parents, in place: a parent's index is never
+ * larger than that of a child. */
+static void hand_up(const int64_t fine[3], const int64_t coarse[3], uint8_t *wish)
+{
+    for (int64_t i = 0; i < cubes(fine); i++) {
+        const int64_t at[3] = {i % fine[0], i / fine[0] % fine[1], i / fine[0] / fine[1]};
+        const int64_t parent[3] = {at[0] / 2, at[1] / 2, at[2] / 2};
+        bool first = at[0] % 2 == 0 && at[1] % 2 == 0 && at[2] % 2 == 0;
+        int64_t p = index_of(coarse, parent);
+        wish[p] = first || wish[i] > wish[p] ? wish[i] : wish[p];
+    }
+}
+
+enum status octree_make(int levels, const int64_t count[3], uint8_t *wish, struct octree *octree,
                         struct error *error)
 {
     enum status status = STATUS_OK;
-    bool *marked = wanted, *fresh = NULL;
+    bool *marked = NULL;
     *octree = (struct octree){.levels = levels};
     for (int l = levels - 1; l >= 0; l--) {
         for (int d = 0; d < 3; d++) {
@@ -50,27 +63,27 @@ enum status octree_make(int levels, const int64_t count[3], bool *wanted, struct
         }
     }
     for (int l = levels - 1; l > 0; l--) {
-        /* Cubes that touch one that is split, or wanted, are of this level at least: their parents are split.
-         */
+        /* Cubes that touch one that is split, or a wish that says so, are of this level at least: their
+         * parents are split. */
         const int64_t *fine = octree->count[l], *coarse = octree->count[l - 1];
-        if (l < levels - 1) {
-            TRY(NEW_ARRAY(&fresh, cubes(fine), error));
-            memcpy(fresh, octree->split[l], (size_t)cubes(fine) * sizeof *fresh);
-            marked = fresh;
+        TRY(NEW_ARRAY(&marked, cubes(fine), error));
+        for (int64_t i = 0; i < cubes(fine); i++) {
+            marked[i] = (l < levels - 1 && octree->split[l][i]) || wish[i] == OCTREE_WISH(l, true);
         }
         TRY(dilate(fine, marked, error));
         TRY(NEW_ARRAY(&octree->split[l - 1], cubes(coarse), error));
         for (int64_t i = 0; i < cubes(fine); i++) {
             const int64_t parent[3] = {i % fine[0] / 2, i / fine[0] % fine[1] / 2, i / fine[0] / fine[1] / 2};
-            if (marked[i]) {
+            if (marked[i] || wish[i] >= OCTREE_WISH(l, false)) {
                 octree->split[l - 1][index_of(coarse, parent)] = true;
             }
         }
-        free(fresh);
-        fresh = NULL;
+        free(marked);
+        marked = NULL;
+        hand_up(fine, coarse, wish);
     }
 done:
-    free(fresh);
+    free(marked);
     if (status != STATUS_OK) {
         octree_free(octree);
     }

@@ -24,7 +24,8 @@ struct lattice {
         *cut; /* edge_count: where it is cut, as a fraction from its first end; 0: it is not, as an end is */
     int64_t *edge_ptr; /* node_count + 1: the edges at each node, */
     int32_t *edge_idx;
-    bool *on; /* node_count: moved onto an interface */
+    bool *on;       /* node_count: moved onto an interface */
+    double unsized; /* as of struct stuffing */
 };
 
 /* Lay the lattice over the labels and find the label of each point. */
@@ -59,10 +60,13 @@ struct octree {
                                         NULL for the finest */
 };
 
-/* Split the cubes of an octree so that cubes for which wanted[] holds are of the finest level, with all that
- * touch them, and cubes that touch differ by one level at most. count[] are multiples of 2^(levels - 1);
- * wanted[] is changed. */
-MUST_CHECK enum status octree_make(int levels, const int64_t count[3], bool *wanted, struct octree *octree,
+/* What a cube of the finest level is to be of: a level at least, and whether all that touch a cube of that
+ * level there are to be as well. */
+#define OCTREE_WISH(level, around) ((uint8_t)(2 * (level) + (around)))
+
+/* Split the cubes of an octree so that the wishes of the finest cubes hold, and cubes that touch differ by
+ * one level at most. count[] are multiples of 2^(levels - 1); wish[] is changed. */
+MUST_CHECK enum status octree_make(int levels, const int64_t count[3], uint8_t *wish, struct octree *octree,
                                    struct error *error);
 void octree_free(struct octree *octree);
 
@@ -70,6 +74,17 @@ void octree_free(struct octree *octree);
  * the finest cube's edge. Stops when tell fails. */
 typedef enum status octree_tell(void *context, const int32_t corner[4][3]);
 MUST_CHECK enum status octree_cells(const struct octree *octree, octree_tell *tell, void *context);
+
+/* The level of an octree, 0 for cubes of edge `spacing`, whose cells' edges are nearest to `size` by ratio.
+ */
+int size_level(double spacing, double size);
+
+/* Raise wish[] of the finest cubes (count[3], the first one's centre at low[3], their edge, m) to the levels
+ * that the sizes ask for; cubes beyond the sizes' cells keep theirs. inside[cubes]: whether the centre lies
+ * in the body. *unsized: the share of these that lies beyond, of which there must be less than all. */
+MUST_CHECK enum status sizes_wish(const struct stuffing_options *options, int levels, const int64_t count[3],
+                                  const double low[3], double edge, const bool *inside, uint8_t *wish,
+                                  double *unsized, struct error *error);
 
 /* Cells at each node and the labels that meet there. */
 enum { STUFFING_MOST_LABELS = 4 };

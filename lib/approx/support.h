@@ -15,8 +15,11 @@ struct support_options {
     double gradient_bound; /* largest |grad phi| h admitted, h the mean spacing within the support */
     enum reach_rule reach; /* what else a neighbour must be, besides near */
     const int32_t
-        *side;      /* by cells: of each cell, from 0, on which side of the interfaces it is, at which
-                       supports stop; NULL: no interfaces. See support_space.h, support_build ignores it */
+        *side;            /* by cells: of each cell, from 0, on which side of the interfaces it is, at which
+                             supports stop; NULL: no interfaces. See support_space.h, support_build ignores it */
+    const int32_t *owner; /* by cells, with sides: of each node, the part that it belongs to (partition.h); */
+    int32_t part;   /* supports of what is not of this part do not stop at interfaces, as its halo may hold
+                       too little of a side for them; NULL: a whole body. support_build ignores it */
     struct mls mls; /* what the lists are for */
 };
 

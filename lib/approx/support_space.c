@@ -1,5 +1,6 @@
 #include "approx/support_space.h"
 
+#include "approx/partition.h"
 #include "approx/reach_private.h"
 #include "base/memory.h"
 
@@ -40,6 +41,12 @@ done:
     return status;
 }
 
+/* The sides, with the whole behind them where there is one. */
+static int64_t sides_in(const struct support_space *space)
+{
+    return space->side_count + (space->owner != NULL);
+}
+
 /* Cut the body along its interfaces. */
 static enum status cut(struct support_space *space, struct error *error)
 {
@@ -54,8 +61,9 @@ static enum status cut(struct support_space *space, struct error *error)
     TRY(NEW_ARRAY(&cell, cells->count, error));
     TRY(NEW_ARRAY(&local_node, cells->node_count, error));
     TRY(NEW_ARRAY(&space->place, cells->count, error));
-    TRY(NEW_ARRAY(&space->side, sides, error));
+    TRY(NEW_ARRAY(&space->side, (int64_t)sides + 1, error));
     space->side_count = sides;
+    space->side[sides].node_count = space->owner != NULL ? cells->node_count : 0;
     for (int64_t c = 0; c < cells->count; c++) {
         first[space->cell_side[c] + 2]++;
     }
@@ -85,13 +93,15 @@ enum status support_space_build(const struct support_options *options, const str
         .cells = *cells, .radius = radius, .by_cells = options->reach == REACH_CELLS && cells->count > 0};
     space->cell_side = space->by_cells ? options->side : NULL;
     if (space->cell_side != NULL) {
+        space->owner = options->owner;
+        space->part = options->part;
         TRY(cut(space, error));
     } else {
         TRY(NEW_ARRAY(&space->side, 1, error));
         space->side_count = 1;
         space->side[0].node_count = cells->node_count;
     }
-    for (int64_t s = 0; s < space->side_count; s++) {
+    for (int64_t s = 0; s < sides_in(space); s++) {
         struct support_side *side = &space->side[s];
         struct cells own = *cells;
         if (side->node != NULL) {
@@ -115,7 +125,7 @@ done:
 
 void support_space_free(struct support_space *space)
 {
-    for (int64_t s = 0; s < space->side_count; s++) {
+    for (int64_t s = 0; space->side != NULL && s < sides_in(space); s++) {
         struct support_side *side = &space->side[s];
         reach_free(&side->reach);
         point_grid_free(&side->grid);
@@ -152,6 +162,22 @@ static void sides_of_nodes(const struct support_space *space, int64_t count, int
         for (int64_t n = 0; n < space->side[s].node_count; n++) {
             side[space->side[s].node[n]] = (int32_t)s;
         }
+    }
+}
+
+/* Nodes of others, and points of no cell of the part's own, have the whole for their side. */
+static void sides_of_others(const struct support_space *space, const struct reach_places *places,
+                            int64_t count, int32_t *side)
+{
+    for (int64_t p = 0; p < count && space->owner != NULL; p++) {
+        int64_t cells;
+        const int32_t *cell = reach_places_cells(places, p, &cells);
+        bool own = places->nodes ? space->owner[p] == space->part : places->cell == NULL;
+        for (int64_t i = 0; i < cells && !places->nodes; i++) {
+            own = own ||
+                  (cell[i] >= 0 && partition_cell_owner(&space->cells, cell[i], space->owner) == space->part);
+        }
+        side[p] = own ? side[p] : (int32_t)space->side_count;
     }
 }
 
@@ -234,16 +260,17 @@ static enum status own_points_build(const struct support_space *space, const str
         if (side[p] != s) {
             continue;
         }
+        bool whole = s == space->side_count;
         if (places->nodes) {
-            while (space->side[s].node[node] < p) {
+            while (!whole && space->side[s].node[node] < p) {
                 node++;
             }
-            own->item[items++] = (int32_t)node;
+            own->item[items++] = (int32_t)(whole ? p : node);
         }
         const int32_t *cell = reach_places_cells(places, p, &cells);
         for (int64_t k = 0; k < cells; k++) {
-            if (cell[k] >= 0 && space->cell_side[cell[k]] == s) {
-                own->item[items++] = space->place[cell[k]];
+            if (cell[k] >= 0 && (whole || space->cell_side[cell[k]] == s)) {
+                own->item[items++] = whole ? cell[k] : space->place[cell[k]];
             }
         }
         memcpy(own->x + i * dim, x + p * dim, (size_t)dim * sizeof *x);
@@ -280,7 +307,8 @@ static void copy_list(const struct support_side *side, int dim, const struct own
     int64_t first = own->lists.ptr[i], end = own->lists.ptr[i + 1], to = lists->ptr[own->row[i]];
     lists->widen[own->row[i]] = own->lists.widen[i];
     for (int64_t k = first; k < end; k++) {
-        lists->idx[to + k - first] = side->node[own->lists.idx[k]];
+        int32_t node = own->lists.idx[k];
+        lists->idx[to + k - first] = side->node != NULL ? side->node[node] : node;
     }
     for (; *around < own->lists.around_count && own->lists.around_pair[*around] < end; ++*around) {
         lists->around_pair[lists->around_count] = own->lists.around_pair[*around] - first + to;
@@ -296,11 +324,11 @@ static enum status join(const struct support_space *space, const struct own_poin
     enum status status;
     int64_t *next = NULL, *around = NULL, around_count = 0;
     *lists = (struct support_lists){.count = count, .widest = 1.0};
-    TRY(NEW_ARRAY(&next, space->side_count, error));
-    TRY(NEW_ARRAY(&around, space->side_count, error));
+    TRY(NEW_ARRAY(&next, sides_in(space), error));
+    TRY(NEW_ARRAY(&around, sides_in(space), error));
     TRY(NEW_ARRAY(&lists->ptr, count + 1, error));
     TRY(NEW_ARRAY(&lists->widen, count, error));
-    for (int64_t s = 0; s < space->side_count; s++) {
+    for (int64_t s = 0; s < sides_in(space); s++) {
         const struct support_lists *of = &own[s].lists;
         if (own[s].count == 0) {
             continue;
@@ -341,14 +369,15 @@ static enum status lists_of_sides(const struct support_options *options, const s
     int32_t *side = NULL;
     struct own_points *own = NULL;
     TRY(NEW_ARRAY(&side, count, error));
-    TRY(NEW_ARRAY(&own, space->side_count, error));
+    TRY(NEW_ARRAY(&own, sides_in(space), error));
     if (places->nodes) {
         sides_of_nodes(space, count, side);
     } else {
         sides_of_cells(space, places, count, side);
     }
     TRY(locate_sides(space, count, x, side, error));
-    for (int32_t s = 0; s < space->side_count; s++) {
+    sides_of_others(space, places, count, side);
+    for (int32_t s = 0; s < sides_in(space); s++) {
         TRY(own_points_build(space, places, s, count, x, side, &own[s], error));
         if (own[s].count > 0) {
             TRY(own_points_list(options, &space->side[s], places, what, &own[s], error));
@@ -356,7 +385,7 @@ static enum status lists_of_sides(const struct support_options *options, const s
     }
     TRY(join(space, own, side, count, lists, error));
 done:
-    for (int64_t s = 0; own != NULL && s < space->side_count; s++) {
+    for (int64_t s = 0; own != NULL && s < sides_in(space); s++) {
         own_points_free(&own[s]);
     }
     free(own);

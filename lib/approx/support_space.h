@@ -27,7 +27,10 @@ struct support_space {
     bool by_cells;            /* neighbours are within reach through the cells; else by distance */
     const int32_t *cell_side; /* the caller's: cells.count, or NULL: one side */
     int64_t side_count;
-    struct support_side *side;
+    struct support_side *side; /* side_count, and behind them, of a part with sides, the whole: for points
+                                  that are not its own */
+    const int32_t *owner;      /* the caller's: cells.node_count, or NULL: no part, or no sides */
+    int32_t part;
     int32_t *place; /* cells.count, with several sides: the number of each cell on its side */
 };
 

@@ -1,13 +1,14 @@
 #!/bin/bash
-# Solve a scene with mixed elements, quadratic triangles or tetrahedra with linear pressure, by FreeFEM: solve.sh SCENE MESH_STREAM > u.dat
+# Solve a scene with mixed elements, quadratic triangles or tetrahedra with linear pressure, by FreeFEM: solve.sh SCENE MESH_STREAM [PLACES] > u.dat
 #
 # MESH_STREAM is what `nodes -t` writes. Writes a text stream of nodes.x and u, of all nodes of the elements, those of the mesh first
-# and in its order, and of reactions. Prints on standard error, in the form of `mtled -v`: nodes and integration points, load
-# steps and Newton iterations, and processor seconds of one thread: of assembly, of the direct solver, and of the whole process.
+# and in its order, and of reactions; with PLACES, a stream of nodes.x, u is the elements' field there instead, beyond the mesh that at the
+# nearest place of it. Prints on standard error, in the form of `mtled -v`: nodes and integration points, load
+# steps and Newton iterations, and processor seconds of one thread: of assembly, of the direct solver, and of the whole process without the values at PLACES.
 set -euo pipefail
 export LC_ALL=C OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1
-if [ $# -ne 2 ]; then
-    echo "usage: solve.sh SCENE MESH_STREAM > u.dat" >&2
+if [ $# -ne 2 ] && [ $# -ne 3 ]; then
+    echo "usage: solve.sh SCENE MESH_STREAM [PLACES] > u.dat" >&2
     exit 2
 fi
 here=$(cd "$(dirname "$0")" && pwd)
@@ -22,6 +23,7 @@ dim=$(awk '$2 == "nodes.x" { print $5; exit }' "$mesh")
 [ -n "$dim" ] || { echo "solve.sh: $mesh: no section nodes.x in text: run nodes -t" >&2; exit 2; }
 awk -f "$here/../stream.awk" -f "$here/../scene.awk" -f "$here/../table.awk" \
     -f "$here/problem.awk" -v scene="$scene" -v mesh="$mesh" -v out="$work"
+{ [ -z "${3-}" ] || mts print nodes.x "$3"; } | awk '{ row[NR] = $0 } END { print NR; for (i = 1; i <= NR; i++) print row[i] }' > "$work/places"
 TIMEFORMAT='%U %S'
 if ! { time (cd "$work" && FreeFem++-nw -nw -v 0 "$here/solve${dim}d.edp" > log 2>&1); } 2> "$work/time"; then
     [ ! -s "$work/failure" ] || { echo "solve.sh: $scene: $(cat "$work/failure")" >&2; exit 1; }
@@ -42,6 +44,7 @@ awk -v dim="$dim" '
         printf "\n\n# u f8 %d %d enc=text unit=m cols=%s\n", n, dim, axes
         for (i = 1; i <= n; i++) print u[i]
         print "\n\n# end 3"
-    }' "$work/forces" "$work/field"
-cat "$work/report" >&2
-awk '{ printf "processor seconds\t%.3f\n", $1 + $2 }' <(tail -n 1 "$work/time") >&2
+    }' "$work/forces" "$work/$([ -n "${3-}" ] && echo at_places || echo field)"
+grep -v ^places "$work/report" >&2
+awk -F '[ \t]+' '$1 == "places" { places = $3; next } NF == 2 { seconds = $1 + $2 } END { printf "processor seconds\t%.3f\n", seconds - places }' \
+    "$work/report" <(tail -n 1 "$work/time") >&2

@@ -1,13 +1,14 @@
 #!/bin/bash
 # A scene on meshes that are refined where it must be: refine.sh SCENE GEO TOL OUT
 #
-# Each round meshes the geometry by gmsh at sizes s and 2 s, solves the scene on both, and estimates the error of the finer solution
+# Each round meshes the geometry by gmsh, or a label image (GEO ends in .nii or .nii.gz) by voxels, at sizes s and 2 s, solves the scene on both, and estimates the error of the finer solution
 # (fielderr). While its mean is above TOL (0.2mm; m without a unit), the next round's sizes come from sizefield. In the folder OUT stay
-# those of the last good round: body.msh, sizes.pos, u.dat, coarse.dat, errors.tsv; and rounds.tsv, a row for each round:
+# those of the last good round: body.msh, sizes.pos (of an image body.mts, sizes.mts), u.dat, coarse.dat, errors.tsv; and rounds.tsv, a row for each round:
 #   round, nodes, mean_mm over the body and max_mm of the nodes (estimated), seconds (processor time: nodes to mtled on the finer mesh), all_seconds (all of the
 #   round, gmsh and the coarser mesh as well)
 #
 # Environment: UNIT of the geometry (default mm), NODES at most (default 20000), ROUNDS at most (default 8), GMSH more arguments for gmsh,
+# of an image SPACING of the first round's lattice (6mm) and VOXELS more arguments for voxels (-l labels.tsv; not -h),
 # SUPPORT arguments for support (-i tumour), START a factor for the sizes of the first round (default 1), LEAST a length with unit below which no size goes (sizefield), GRADED=no: all sizes
 # made smaller alike.
 #
@@ -48,6 +49,15 @@ metres() {
 [ -n "$out" ] || fail 2 "usage: make refine SCENE=FILE GEO=FILE TOL=LENGTH"
 [ -f "$scene" ] || fail 2 "SCENE: no file $scene"
 [ -f "$geometry" ] || fail 2 "GEO: no file $geometry"
+case $geometry in
+    *.nii | *.nii.gz)
+        image=yes unit=m body=body.mts sizes=sizes.mts
+        if ! spacing=$(metres "${SPACING-}") || ! holds "$spacing > 0"; then
+            fail 2 "SPACING: '${SPACING-}' is not a positive length, such as 6mm"
+        fi
+        ;;
+    *) image='' body=body.msh sizes=sizes.pos ;;
+esac
 if ! wanted=$(metres "$tolerance") || ! holds "$wanted > 0"; then
     fail 2 "TOL: '$tolerance' is not a positive length, such as 0.2mm"
 fi
@@ -65,15 +75,25 @@ trap 'rm -rf "$work"' EXIT
 # mesh FACTOR FILE: the geometry with the sizes of the last round, or its own, times FACTOR.
 mesh() {
     local from=$geometry
-    [ ! -s "$work/graded.geo" ] || from=$work/graded.geo
+    if [ "$image" ]; then
+        # shellcheck disable=SC2086 # several arguments
+        voxels -h "$(calc "$1 * $spacing")" ${graded:+--sizes <(scaled "$1")} ${VOXELS-} "$geometry" -o "$2" 2> "$work/log"
+        return
+    fi
+    [ -z "$graded" ] || from=$work/graded.geo
     # shellcheck disable=SC2086 # several arguments
     gmsh -v 1 "-$dim" ${GMSH-} -setnumber Mesh.RandomSeed 1 -clscale "$1" "$from" -o "$2" > "$work/log" 2>&1
+}
+
+# scaled FACTOR: the sizes of an image's cells times FACTOR.
+scaled() {
+    awk -v factor="$1" '/^# / { on = $2 == "size" } on && NF == 1 { $1 = sprintf("%.17g", factor * $1) } { print }' "$work/$sizes"
 }
 
 # solve MESH FILE
 solve() {
     # shellcheck disable=SC2086 # several arguments
-    nodes -u "$unit" "$1" 2> "$work/log" | ipoints 2>> "$work/log" | support ${SUPPORT-} 2>> "$work/log" | shapefn 2>> "$work/log" | mtled -q "$scene" -o "$2" 2>> "$work/log"
+    if [ "$image" ]; then cat "$1"; else nodes -u "$unit" "$1" 2> "$work/log"; fi | ipoints 2>> "$work/log" | support ${SUPPORT-} 2>> "$work/log" | shapefn 2>> "$work/log" | mtled -q "$scene" -o "$2" 2>> "$work/log"
 }
 
 # What the last command said, in a line.
@@ -93,26 +113,43 @@ quantity() {
 # keep: what a later round that fails leaves alone.
 keep() {
     local file
-    for file in body.msh u.dat coarse.dat errors.tsv sizes.pos; do
+    for file in "$body" u.dat coarse.dat errors.tsv "$sizes"; do
         [ ! -e "$work/$file" ] || cp "$work/$file" "$out/.$file.new"
     done
-    rm -f "$out/sizes.pos"
-    for file in body.msh u.dat coarse.dat errors.tsv sizes.pos; do
+    rm -f "$out/$sizes"
+    for file in "$body" u.dat coarse.dat errors.tsv "$sizes"; do
         [ ! -e "$out/.$file.new" ] || mv "$out/.$file.new" "$out/$file"
     done
 }
 
-kept=none what=''
+kept=none what='' graded=''
 # lost WHAT: a round that failed.
 lost() {
     fail 1 "round $round: $1: $(said); kept: $kept"
 }
 
-# grade: sizes.pos and graded.geo for the share of the error of the last good round.
+# turning: how far places move by an error of the body's shape, as a share of that: where it slides as far; elsewhere by the gradient of u,
+# about the largest displacement over the longest side of the body.
+turning() {
+    ! grep -q '^\[contact' "$scene" || { echo 1; return; }
+    mts print nodes.x "$out/u.dat" | awk -v u="$(quantity reference)" '
+        { for (k = 1; k <= NF; k++) { if (NR == 1 || $k < low[k]) low[k] = $k; if (NR == 1 || $k > high[k]) high[k] = $k } }
+        END { for (k = 1; k <= NF; k++) if (high[k] - low[k] > side) side = high[k] - low[k]; print (u < side ? u / side : 1) }'
+}
+
+# grade: the sizes, and graded.geo or the spacing, for the share of the error of the last good round.
 grade() {
-    sizefield -v -s "$share" -n "$budget" --sag "$(calc "$share * $estimate")" ${least:+--least "$least"} -u "$unit" -o "$work/sizes.pos" \
-        "$out/u.dat" 2> "$work/log" || lost sizefield
+    local form=(-n "$budget" --sag "$(calc "$share * $estimate / $(turning)")" -u "$unit")
+    # The octree of voxels makes up to twice the nodes; the volumes that it keeps make up for chords.
+    [ -z "$image" ] || form=(-n "$(calc "int($budget / 2)")" -t)
+    sizefield -v -s "$share" ${least:+--least "$least"} "${form[@]}" -o "$work/$sizes" "$out/u.dat" 2> "$work/log" || lost sizefield
     smallest=$(awk -F '\t' '$1 == "least size" { print $2 }' "$work/log")
+    graded=yes
+    if [ "$image" ]; then
+        # The mean edge of a lattice's cells is .911 of its spacing.
+        spacing=$(awk -F '\t' '$1 == "largest size" { printf "%.9g", $2 / 0.911 }' "$work/log")
+        return
+    fi
     # Whatever else the geometry says of sizes does not count.
     {
         printf 'Include "%s";\nMerge "%s";\nBackground Mesh View[0];\n' "$(realpath "$geometry")" "$(realpath "$work/sizes.pos")"
@@ -123,13 +160,13 @@ grade() {
 # attempt: a round's meshes, solutions and estimate; where it fails $what says at what.
 attempt() {
     rm -f "$work"/*.time
-    what=gmsh
-    { time mesh "$factor" "$work/body.msh"; } 2> "$work/mesh.time" || return 1
-    { time mesh "$(calc "2 * $factor")" "$work/coarse.msh"; } 2> "$work/coarse_mesh.time" || return 1
+    what=$([ "$image" ] && echo voxels || echo gmsh)
+    { time mesh "$factor" "$work/$body"; } 2> "$work/mesh.time" || return 1
+    { time mesh "$(calc "2 * $factor")" "$work/coarse_$body"; } 2> "$work/coarse_mesh.time" || return 1
     what="the scene"
-    { time solve "$work/body.msh" "$work/u.dat"; } 2> "$work/solve.time" || return 1
+    { time solve "$work/$body" "$work/u.dat"; } 2> "$work/solve.time" || return 1
     what="the scene at twice the size"
-    { time solve "$work/coarse.msh" "$work/coarse.dat"; } 2> "$work/coarse.time" || return 1
+    { time solve "$work/coarse_$body" "$work/coarse.dat"; } 2> "$work/coarse.time" || return 1
     what=fielderr
     { time fielderr --skip-outside "$work/u.dat" "$work/coarse.dat" > "$work/errors.tsv" 2> "$work/log"; } 2> "$work/estimate.time" || return 1
 }
@@ -138,10 +175,10 @@ printf 'round\tnodes\tmean_mm\tmax_mm\tseconds\tall_seconds\n' | tee "$out/round
 factor=$start least=${LEAST-} again=0 stuck=0
 for ((round = 1; round <= rounds; round++)); do
     if ! attempt; then
-        if [ ! -s "$work/graded.geo" ] || [[ $what != "the scene"* ]] || ((again++ == 3)); then
+        if [ -z "$graded" ] || [[ $what != "the scene"* && $what != voxels ]] || ((again++ == 3)); then
             lost "$what"
         fi
-        # Small cells at a corner may fold where larger ones do not.
+        # Small cells at a corner may fold where larger ones do not, and voxels may refuse so fine a lattice.
         least=$(calc "2 * $smallest")$([[ $unit =~ ^(m|cm|mm|um)$ ]] && echo "$unit")
         echo "refine: round $round: $what: $(said): once more with no size below $least" >&2
         grade

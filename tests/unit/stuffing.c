@@ -211,6 +211,111 @@ static void finer_at_interfaces(void **state)
     }
 }
 
+/* Six tetrahedra about a cube of half edge `half`, m, and the sizes at its corners: `least` at the one where
+ * x, y and z are largest, six times as much at the others. */
+struct sized_cube {
+    struct cells cells;
+    double x[24], size[8];
+    int32_t node[24];
+};
+
+static void sized_cube(double half, double least, struct sized_cube *cube)
+{
+    static const int32_t node[24] = {0, 1, 3, 7, 0, 3, 2, 7, 0, 2, 6, 7, 0, 6, 4, 7, 0, 4, 5, 7, 0, 5, 1, 7};
+    memcpy(cube->node, node, sizeof node);
+    for (int n = 0; n < 8; n++) {
+        for (int d = 0; d < 3; d++) {
+            cube->x[3 * n + d] = n >> d & 1 ? half : -half;
+        }
+        cube->size[n] = n == 7 ? least : 6 * least;
+    }
+    cube->cells = (struct cells){3, 8, cube->x, 6, cube->node};
+}
+
+static void by_sizes(void **state)
+{
+    struct label_shape shape;
+    struct sized_cube cube;
+    struct error error;
+    (void)state;
+    assert_true(label_shape_make("sphere", 1, millimetre, &shape));
+    struct labels labels = labels_of(&shape);
+    struct stuffing_options options = {.spacing = 8e-3, .keep = all_kept, .sized = &cube.cells};
+    struct stuffing plain, stuffing;
+    options.size = NULL;
+    plain = make(&labels, &options);
+
+    /* Sizes of about those there are, and larger ones, change nothing. */
+    options.size = cube.size;
+    for (double least = 7e-3; least < 1; least *= 5) {
+        sized_cube(30e-3, least, &cube);
+        stuffing = make(&labels, &options);
+        assert_int_equal(stuffing.cell_count, plain.cell_count);
+        assert_memory_equal(stuffing.x, plain.x, (size_t)plain.node_count * 3 * sizeof(double));
+        assert_true(stuffing.unsized == 0);
+        stuffing_free(&stuffing);
+    }
+
+    /* Everywhere half: the lattice of half the spacing. */
+    sized_cube(30e-3, 0.91 * 1e-3, &cube);
+    for (int n = 0; n < 8; n++) {
+        cube.size[n] = 0.91 * 4e-3;
+    }
+    stuffing = make(&labels, &options);
+    struct stuffing_options half = {.spacing = 4e-3, .keep = all_kept};
+    struct stuffing halved = make(&labels, &half);
+    assert_int_equal(stuffing.node_count, halved.node_count);
+    assert_int_equal(stuffing.cell_count, halved.cell_count);
+    stuffing_free(&halved);
+    stuffing_free(&stuffing);
+
+    /* Finer to one side: mean edges about the sizes there. */
+    for (int shape_at = 0; shape_at < 4; shape_at++) {
+        static const char *const names[] = {"sphere", "two", "four", "atlas"};
+        struct label_shape other;
+        assert_true(label_shape_make(names[shape_at], 1, millimetre, &other));
+        struct labels others = labels_of(&other);
+        sized_cube(32e-3, 1.2e-3, &cube);
+        options.spacing = 0.006;
+        stuffing = make(&others, &options);
+        check_cells(&stuffing);
+        double volume[2] = {0};
+        int64_t count[2] = {0};
+        struct cells cells = cells_of(&stuffing);
+        for (int64_t c = 0; c < cells.count; c++) {
+            double middle[3];
+            cell_centroid(&cells, c, middle);
+            bool fine = middle[0] > 0 && middle[1] > 0 && middle[2] > 0;
+            volume[fine] += cell_volume(&cells, c);
+            count[fine]++;
+        }
+        assert_true(volume[0] / (double)count[0] > 3 * volume[1] / (double)count[1]);
+        stuffing_free(&stuffing);
+        free(other.label);
+    }
+
+    /* Sizes over a part of the body, elsewhere, or far too small. */
+    options.spacing = 8e-3;
+    sized_cube(10e-3, 2e-3, &cube);
+    stuffing = make(&labels, &options);
+    check_cells(&stuffing);
+    assert_true(stuffing.unsized > 0.5 && stuffing.unsized < 1);
+    stuffing_free(&stuffing);
+    for (int i = 0; i < 24; i++) {
+        cube.x[i] += 1;
+    }
+    assert_int_equal(stuffing_make(&labels, &options, &stuffing, &error), STATUS_INPUT);
+    assert_non_null(strstr(error.text, "elsewhere"));
+    sized_cube(30e-3, 1e-6, &cube);
+    assert_int_equal(stuffing_make(&labels, &options, &stuffing, &error), STATUS_INPUT);
+    assert_non_null(strstr(error.text, "a size of 1e-06 m"));
+    sized_cube(30e-3, 0.1e-3, &cube);
+    assert_int_equal(stuffing_make(&labels, &options, &stuffing, &error), STATUS_INPUT);
+    assert_non_null(strstr(error.text, "lattice points"));
+    stuffing_free(&plain);
+    free(shape.label);
+}
+
 /* A slice: triangles. */
 static void slices(void **state)
 {
@@ -358,6 +463,7 @@ int main(void)
         cmocka_unit_test(random_blobs),
         cmocka_unit_test(orders_of_voxels),
         cmocka_unit_test(finer_at_interfaces),
+        cmocka_unit_test(by_sizes),
         cmocka_unit_test(slices),
         cmocka_unit_test(threads),
         cmocka_unit_test(what_is_lost),

@@ -33,7 +33,11 @@ static enum status try_stuffing(struct error *error)
     static uint16_t label[16 * 16 * 16];
     static const bool keep[3] = {false, true, true};
     struct labels labels = {.size = {16, 16, 16}, .label = label, .count = 3, .dim = 3};
-    struct stuffing_options options = {.spacing = 4, .finest = 2, .keep = keep, .largest = true};
+    static const double x[12] = {0, 0, 0, 40, 0, 0, 0, 40, 0, 0, 0, 40}, size[4] = {4, 4, 4, 2};
+    static const int32_t corner[4] = {0, 1, 2, 3};
+    const struct cells sized = {3, 4, x, 1, corner};
+    struct stuffing_options options = {
+        .spacing = 4, .finest = 2, .sized = &sized, .size = size, .keep = keep, .largest = true};
     struct stuffing stuffing = {0};
     int64_t lost[3];
     for (int v = 0; v < 16 * 16 * 16; v++) {

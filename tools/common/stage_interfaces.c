@@ -74,3 +74,28 @@ done:
     }
     return status;
 }
+
+enum status stage_own_part(const struct stream *stream, int64_t node_count, struct support_options *options,
+                           struct error *error)
+{
+    enum status status = STATUS_OK;
+    const struct section *node = stream_find(stream, "part.node"), *owner;
+    char value[64];
+    int64_t part = 0;
+    if (node == NULL) {
+        return STATUS_OK;
+    }
+    TRY(stream_need(stream, "part.owner", TYPE_I4, 1, "part", &owner, error));
+    if (owner->rows != node_count) {
+        TRY(fail(error, STATUS_INPUT, "part.owner: %lld rows for %lld nodes: cut again",
+                 (long long)owner->rows, (long long)node_count));
+    }
+    if (!section_attribute(node, "part", value, sizeof value)) {
+        TRY(fail(error, STATUS_INPUT, "part.node: no part=: not written by part"));
+    }
+    TRY(parse_integer(value, "part.node: part", 0, INT32_MAX, &part, error));
+    options->owner = owner->data;
+    options->part = (int32_t)part;
+done:
+    return status;
+}

@@ -364,6 +364,7 @@ enum status stage_support(struct stream *stream, const struct support_options *o
     report->reach = actual.reach;
     TRY(put_radii(stream, &actual, node_count, x, error));
     TRY(put_sides(stream, &cells, actual.side, error));
+    TRY(stage_own_part(stream, node_count, &actual, error));
     TRY(support_space_build(&actual, &cells, stream_find(stream, "support.radius")->data, &space, error));
     bool smoothed = points_are_smoothed(points); /* gradients come from the faces alone */
     if (!smoothed) {

@@ -50,6 +50,11 @@ struct support_report {
 MUST_CHECK enum status stage_interfaces(const struct stream *stream, const char *names, int32_t **side,
                                         struct error *error);
 
+/* Of a part of a body (part.node), whose each node is and which part it is, for support_options: where
+ * supports stop at interfaces, those of what belongs to others do not. */
+MUST_CHECK enum status stage_own_part(const struct stream *stream, int64_t node_count,
+                                      struct support_options *options, struct error *error);
+
 /* Add the sections of support: support.radius, support.side where options->side is given, and the lists nbr,
  * facepoint and node. With sides faces.row and facepoints.x are made anew, as faces at interfaces have points
  * of their own; likewise without, where there were sides before. */
