@@ -163,7 +163,7 @@ static int64_t room(const struct sample *sample)
     return 8 * sample->cloud.node_count * sample->dim + 20 * sample->point_count + 8;
 }
 
-/* Of the averages over the faces every so manieth row, as if the others were another process's. */
+/* Of the rows that faces are averaged over every so manieth, as if the others were another process's. */
 static void keep_some(const struct ranks *ranks, struct face_averages *averages, int32_t *reader,
                       int64_t faces)
 {
@@ -190,11 +190,11 @@ static void *evaluate_member(void *context)
     struct setup setup = *member->setup;
     struct sample sample = *member->sample;
     bool reads_some = member->reads_some && setup.faces;
-    int32_t *reader = sample_array(sample.faces.count, sizeof *reader);
+    int32_t *reader = sample_array(sample.faces.row_count, sizeof *reader);
     setup.ranks = &member->ranks;
     omp_set_num_threads(1); /* of this thread's regions */
     if (reads_some) {
-        keep_some(&member->ranks, &sample.averages, reader, sample.faces.count);
+        keep_some(&member->ranks, &sample.averages, reader, sample.faces.row_count);
         sample.face_reader = reader;
     }
     struct body body = make_body(&sample, &setup);
