@@ -36,6 +36,9 @@ MUST_CHECK enum status body_share_cut(const struct body_input *input, struct bod
 /* Share out the nodal volumes, and list the strains that they need. */
 MUST_CHECK enum status body_share_volumes(struct body *body, struct error *error);
 
+/* The process whose node that is; `body` as ranks and halos want it. */
+int body_share_owner(const void *body, int64_t node);
+
 /* wanted[rows of the operator]: those that own points or cells look at. Corners of cells are known. */
 MUST_CHECK enum status body_share_values(const struct body *body, bool **wanted, struct error *error);
 

@@ -117,7 +117,7 @@ void contact_accept(struct contact *contact);
  * press, that is lambda_a - k g_a n, g_a being their mean gap. */
 void contact_augment(struct contact *contact);
 
-/* The pressures held at the points, from the multipliers. */
+/* The tractions held at the points, from the multipliers. */
 void contact_spread_multipliers(struct contact *contact);
 
 /* What contact nodes penetrate, or are kept away from the surface, at the last evaluation: the largest change

@@ -133,12 +133,6 @@ double lower_entry(const struct lower *lower, int32_t i, int32_t j)
     return i == j ? fmax(value, lower->least) : value;
 }
 
-static int owner_of_node(const void *context, int64_t node)
-{
-    const struct body *body = context;
-    return ranks_owner(body->share.ranks, body->share.node_first, body->node_place[node]);
-}
-
 enum status lower_fetch(const struct solid_system *system, const bool *wanted, struct lower *lower,
                         struct error *error)
 {
@@ -150,7 +144,7 @@ enum status lower_fetch(const struct solid_system *system, const bool *wanted, s
     int32_t *idx = NULL;
     int64_t *send_first = NULL, *receive_first = NULL, at = 0;
     struct lower_piece *fetched = &lower->piece[lower->piece_count - 1];
-    TRY(halo_build(ranks, nodes, wanted, 1, owner_of_node, &system->body, &halo, error));
+    TRY(halo_build(ranks, nodes, wanted, 1, body_share_owner, &system->body, &halo, error));
     TRY(NEW_ARRAY(&length, nodes, error));
     TRY(NEW_ARRAY(&send_first, ranks->count + 1, error));
     TRY(NEW_ARRAY(&receive_first, ranks->count + 1, error));
