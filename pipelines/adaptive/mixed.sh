@@ -54,7 +54,7 @@ for ((round = 1; round <= 12; round++)); do
     if [ "$status" -ne 0 ]; then
         cp "$folder/report" "$folder/log"
         # Status 4: no equilibrium is found. As of these programs, larger cells at the corners may do.
-        [ "$status" -eq 4 ] && [ "$round" -gt 1 ] || lost solve.sh
+        if [ "$status" -ne 4 ] || [ "$round" -eq 1 ]; then lost solve.sh; fi
         echo "mixed.sh: $name, $kind, round $round: $(tail -n 1 "$folder/report")" >&2
         if [ "$kind" = even ] || ((again++ == 3)); then break; fi
         least=$(awk -v s="$smallest" -v unit="$UNIT" 'BEGIN { print 2 * s unit }')
