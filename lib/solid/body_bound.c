@@ -127,7 +127,7 @@ static void add_point(const struct body *body, int64_t q, const double F[9], dou
     add_functions(body, &bound, count, matrix->idx + at, work->gradient, to->of_node);
 }
 
-/* The same with the hat functions of the cell. */
+/* The same with the linear shape functions of the cell. */
 static void add_cell(const struct body *body, int64_t q, const double F[9], double J, void *context)
 {
     (void)J;

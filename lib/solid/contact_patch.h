@@ -1,4 +1,4 @@
-/* Whether the averages of a contact resolve where it presses. */
+/* Whether the contact nodes resolve the contact area. */
 #ifndef SOLID_CONTACT_PATCH_H
 #define SOLID_CONTACT_PATCH_H
 

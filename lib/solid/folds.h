@@ -57,11 +57,11 @@ struct fold_ring {
     int64_t facet;   /* one of those that meet */
 };
 
-/* A free facet beside a plane support that it does not go on from: it is turned back by more than 22.5
- * degrees at rest. */
+/* A free facet that shares a node or an edge with a plane support and is turned back from its plane by more
+ * than 22.5 degrees at rest. */
 struct fold_rim {
-    int64_t facet, beside; /* the free one, and that of the support */
-    int32_t node, on_rim;  /* a node of the free one off the support, and one that both have */
+    int64_t facet, support_facet; /* the free one, and that of the support */
+    int32_t node, on_rim;         /* a node of the free one off the support, and one that both have */
 };
 
 /* A cell of a connected body (see cells_parts). */
