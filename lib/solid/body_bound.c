@@ -61,7 +61,8 @@ static struct bound bound_at(const struct body *body, int64_t q, const double *F
     struct bound bound = {.smoothing = 0.0};
     double C[9], I1 = 0.0;
     double J = determinant(F);
-    if (!(J > 0.0 && isfinite(J))) { /* as at rest: its bounds stay positive until the run is told */
+    if (!(J > 0.0 &&
+          isfinite(J))) { /* inverted: use F = I, so that the bounds stay positive until the run stops */
         J = 1.0;
         F = at_rest;
     }
