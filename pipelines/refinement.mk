@@ -59,7 +59,6 @@ cook.mixed := 6000
 brain.mixed := 9000
 brain.sag := 0.01mm
 cube.mixed := 7000
-cylinder_49.mixed := 3000
 brain3d.mixed := 20000
 # Errors, mm, for reach.tsv: of the blocks, 0.1 % of the largest displacement last, of the cube 0.3 %.
 ADAPTIVE_LEVELS := block10:0.02 block10:0.01 block20:0.04 block20:0.02 cook:1 cook:0.5 brain:0.03 brain:0.02 brain:0.01 cube:0.2 cube:0.12 \

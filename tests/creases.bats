@@ -24,7 +24,7 @@ END
     awk -v s="$1" 'BEGIN { printf "-200 %.9g\n0 0\n200 %.9g\n", 200 * s, 200 * s }' > groove.tsv
 }
 
-# press DIM SIDEWAYS: contact.scene, and held.scene, where each side of the keel is kept on its plane by a condition.
+# press DIM SIDEWAYS [SIDE]: contact.scene, and held.scene, where each side of the keel is kept on its plane by a condition.
 press() {
     { block quasi-static | sed "s/dim = 2/dim = $1/"
         printf '[displacement top]\nfacets = top\ncomponents = %s, -0.003%s\n[output]\nreactions = yes\n[solver]\ntolerance = 1e-4\n' \

@@ -60,10 +60,18 @@ setup() {
     done
 }
 
+# Options are asked for by name in the program's own file, or where several programs share them: of supports and shape functions, of
+# comparisons, of images; those of the parts of labels, too.
 @test "every option that a usage text declares is one that the program looks at" {
     for tool in "${tools[@]}"; do
+        shared=()
+        grep -qE 'radius_parse|mls_parse' "$top/tools/$tool.c" && shared+=("$top/tools/common/mls_options.c")
+        grep -q comparison_parse "$top/tools/$tool.c" && shared+=("$top/tools/common/comparison.c")
+        grep -q tool_image_method "$top/tools/$tool.c" && shared+=("$top/tools/common/images.c")
+        grep -q label_parts_make "$top/tools/$tool.c" && shared+=("$top/tools/common/label_part.c")
         for name in $("$tool" -h | sed -n '/^Options:/,/^$/s/^\(  -.,\|     \) --\([a-z-]*\).*/\2/p'); do
-            grep -rq "\"$name\"" "$top/tools" --include='*.[ch]' || { echo "$tool: --$name"; false; }
+            [ "$name" = output ] || sed '/^static const char usage/,/;$/d' "$top/tools/$tool.c" "${shared[@]}" | grep -q "\"$name\"" ||
+                { echo "$tool: --$name"; false; }
         done
     done
 }

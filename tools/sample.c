@@ -86,11 +86,16 @@ static void parse(const struct tool *tool, struct request *request)
                                 .stiffness = tool_given(tool, "material") || tissue_count > 0,
                                 .text = tool_given(tool, "text"),
                                 .image_count = tissue_count > 0 ? tissue_count : 1};
-    static const char *const exclusive[][2] = {{"material", "tissue"}, {"points", "at"},
-                                               {"points", "region"},   {"points", "section"},
-                                               {"section", "region"},  {"section", "unit"}};
+    static const char *const exclusive[][2] = {{"material", "tissue"},
+                                               {"points", "at"},
+                                               {"points", "region"},
+                                               {"points", "section"},
+                                               {"section", "region"}};
     for (size_t e = 0; e < sizeof exclusive / sizeof *exclusive; e++) {
         tool_excludes(tool, exclusive[e][0], exclusive[e][1]);
+    }
+    if (request->section != NULL && tool_given(tool, "unit")) {
+        tool_fail(tool, STATUS_INPUT, "-u is for tables: it does not go with --section");
     }
     if (request->text && request->section == NULL) {
         tool_fail(tool, STATUS_INPUT, "-t is for streams: it needs --section (a table is text)");

@@ -210,12 +210,11 @@ static void orient(struct layered *layered)
     int64_t kept = 0;
     for (int64_t q = 0; q < layered->cells.count; q++) {
         int32_t *node = layered->node + q * corners, first = node[0];
-        double volume = cell_volume(&layered->cells, q);
-        if (volume < 0) {
+        if (cell_volume(&layered->cells, q) < 0) {
             node[0] = node[1];
             node[1] = first;
         }
-        if (volume != 0) {
+        if (cell_volume(&layered->cells, q) > 0) {
             memmove(layered->node + kept++ * corners, node, (size_t)corners * sizeof *node);
         }
     }

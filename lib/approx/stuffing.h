@@ -20,7 +20,7 @@
 struct stuffing_options {
     double spacing; /* of the lattice, m: edge of its cubes (2D: of its triangles) */
     double finest;  /* 3D: edge of the cubes at interfaces, m: the spacing is halved until it is no larger; 0:
-                       as  elsewhere */
+                       as elsewhere */
     const bool *fine;          /* labels->count: at interfaces of these labels; NULL: at all */
     const struct cells *sized; /* 3D: cells over the body, at whose nodes */
     const double *size;   /* sized->node_count: the wanted length of edges, m, positive, linear within cells;
@@ -59,8 +59,8 @@ struct stuffing {
 };
 
 /* Make the cells. STATUS_INPUT: no voxel of a label that is kept, a spacing, or sizes, for which the lattice
- * would have more than 2^26 points all over at its finest, sizes of less than 1/128 of the spacing, sizes
- * that all lie elsewhere, or no cell at that spacing. */
+ * would have more than 2^26 points all over at its finest, sizes that ask for more than seven halvings of it,
+ * sizes that all lie elsewhere, or no cell at that spacing. */
 MUST_CHECK enum status stuffing_make(const struct labels *labels, const struct stuffing_options *options,
                                      struct stuffing *stuffing, struct error *error);
 void stuffing_free(struct stuffing *stuffing);

@@ -259,7 +259,7 @@ enum status stuffing_improve(const struct labels *parts, const struct stuffing_o
 {
     enum status status;
     struct stuffing_star star = {0};
-    struct labels labels = {.label = NULL};
+    struct labels labels = *parts;
     uint16_t(*rim)[3] = NULL;
     TRY(labels_without_parts(parts, options->whole, &labels, error));
     TRY(stuffing_straighten_rims(parts, options, stuffing, error));
@@ -277,7 +277,9 @@ enum status stuffing_improve(const struct labels *parts, const struct stuffing_o
     }
     measure(&labels, options->keep, stuffing, &star);
 done:
-    free((void *)labels.label);
+    if (labels.label != parts->label) {
+        free((void *)labels.label);
+    }
     free(rim);
     star_free(&star);
     return status;

@@ -166,15 +166,21 @@ done:
 enum status labels_without_parts(const struct labels *labels, const int32_t *whole, struct labels *result,
                                  struct error *error)
 {
-    enum status status;
+    enum status status = STATUS_OK;
     uint16_t *label = NULL;
+    bool has_parts = false;
     int64_t count = labels->size[0] * labels->size[1] * labels->size[2];
-    TRY(NEW_ARRAY(&label, count, error));
-    for (int64_t v = 0; v < count; v++) {
-        label[v] = whole != NULL ? (uint16_t)whole[labels->label[v]] : labels->label[v];
-    }
     *result = *labels;
-    result->label = label;
+    for (int32_t l = 0; l < labels->count && whole != NULL; l++) {
+        has_parts = has_parts || whole[l] != l;
+    }
+    if (has_parts) {
+        TRY(NEW_ARRAY(&label, count, error));
+        for (int64_t v = 0; v < count; v++) {
+            label[v] = (uint16_t)whole[labels->label[v]];
+        }
+        result->label = label;
+    }
 done:
     return status;
 }

@@ -111,7 +111,8 @@ MUST_CHECK enum status stuffing_find_rims(const struct stuffing_options *options
                                           const struct stuffing *stuffing, uint16_t (**rim)[3],
                                           struct error *error);
 
-/* The labels with whole[] in place of each; NULL: as they are. result->label is allocated. */
+/* The labels with whole[] in place of each: result->label is allocated, or that of `labels` where there are
+ * no parts. */
 MUST_CHECK enum status labels_without_parts(const struct labels *labels, const int32_t *whole,
                                             struct labels *result, struct error *error);
 

@@ -12,6 +12,10 @@ static void declare(struct options *options, char letter, const char *name, size
 {
     struct option *option = &options->option[options->count++];
     assert(options->count <= OPTIONS_MOST && length > 0 && length < sizeof option->name);
+    for (const struct option *other = options->option; other < option; other++) {
+        assert(letter == '\0' || other->letter != letter); /* else the later one could not be given */
+        assert(strlen(other->name) != length || strncmp(other->name, name, length) != 0);
+    }
     *option = (struct option){.letter = letter, .takes_value = takes_value, .repeats = repeats};
     memcpy(option->name, name, length);
 }

@@ -125,6 +125,12 @@ static int64_t point_of_corner(const struct body *body, int64_t corner)
     return corner % body->cells.averages.corner_count / (body->dim + 1);
 }
 
+int body_share_owner(const void *body, int64_t node)
+{
+    const struct body *of = body;
+    return ranks_owner(of->share.ranks, of->share.node_first, of->node_place[node]);
+}
+
 enum status body_share_values(const struct body *body, bool **wanted, struct error *error)
 {
     enum status status;

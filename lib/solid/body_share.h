@@ -36,6 +36,9 @@ MUST_CHECK enum status body_share_cut(const struct body_input *input, struct bod
 /* Share out the nodal volumes, and list the strains that they need. */
 MUST_CHECK enum status body_share_volumes(struct body *body, struct error *error);
 
+/* The process that owns a node, the caller's number. `body`: a struct body, untyped for use as a callback. */
+int body_share_owner(const void *body, int64_t node);
+
 /* wanted[rows of the operator]: those that own points or cells need. Needs of_corner of smoothed cells. */
 MUST_CHECK enum status body_share_values(const struct body *body, bool **wanted, struct error *error);
 

@@ -13,6 +13,8 @@
 /* Entries of a row of L: with 12, 24 and 40 the ratio of the frequencies of a bar is 26, 22, 22; of a ball of
  * flat cells 119, 79, 52. */
 enum { MOST_ENTRIES = 24 };
+/* Rows that are worth the while of a thread. */
+static const int64_t worthwhile = 500;
 static const double ridge = 1e-9; /* on the diagonal of S_pp, by itself */
 
 struct near {
@@ -41,14 +43,15 @@ static int64_t choose(const struct solid_system *system, const struct lower *low
 {
     int dim = system->dim;
     int64_t count = 0, kept = 0;
-    for (int64_t k = lower->begin[i]; k < lower->end[i]; k++) {
-        int32_t node = lower->idx[k];
+    struct lower_row row = lower_row(lower, i);
+    for (int64_t k = 0; k < row.count; k++) {
+        int32_t node = row.idx[k];
         double distance2 = 0.0;
         for (int a = 0; a < dim && node < i; a++) {
             double step = system->X[(int64_t)node * dim + a] - system->X[(int64_t)i * dim + a];
             distance2 += step * step;
         }
-        if (node < i && fpclassify(lower->value[k]) != FP_ZERO) {
+        if (node < i && fpclassify(row.value[k]) != FP_ZERO) {
             near[count++] = (struct near){distance2, node};
         }
     }
@@ -83,6 +86,27 @@ static void solve_row(const struct lower *lower, int64_t count, const int32_t *l
     }
 }
 
+/* The rows of S that own rows of L are made of, of several processes. */
+static enum status fetch_rows(const struct solid_system *system, struct lower *lower, struct near *near,
+                              struct error *error)
+{
+    enum status status;
+    const struct body_share *share = &system->body.share;
+    bool *wanted = NULL;
+    int32_t list[MOST_ENTRIES];
+    TRY(NEW_ARRAY(&wanted, system->node_count, error));
+    for (int64_t p = share->begin_node; p < share->end_node; p++) {
+        int64_t count = choose(system, lower, (int32_t)system->body.node_order[p], near, list);
+        for (int64_t k = 0; k < count; k++) {
+            wanted[list[k]] = true;
+        }
+    }
+    TRY(lower_fetch(system, wanted, lower, error));
+done:
+    free(wanted);
+    return status;
+}
+
 /* Rows of own nodes in the body's order, one behind the other; length[]: how long each is. */
 static enum status make_rows(const struct solid_system *system, struct lower *lower, struct sparse *rows,
                              int64_t *length, struct error *error)
@@ -90,34 +114,33 @@ static enum status make_rows(const struct solid_system *system, struct lower *lo
     enum status status;
     const struct body_share *share = &system->body.share;
     const int64_t *node = system->body.node_order;
+    const struct chunks chunks = chunks_of(share->end_node - share->begin_node, worthwhile);
     struct near *near = NULL;
-    bool *wanted = NULL;
-    int64_t most = 0, at = 0;
-    int32_t list[MOST_ENTRIES];
-    for (int64_t p = share->begin_node; p < share->end_node; p++) {
-        int64_t entries = lower->end[node[p]] - lower->begin[node[p]];
+    int64_t most = 0, at = 0, first = share->begin_node;
+    for (int64_t p = first; p < share->end_node; p++) {
+        int64_t entries = lower_row(lower, node[p]).count;
         most = entries > most ? entries : most;
     }
-    TRY(NEW_ARRAY(&near, most, error));
+    TRY(NEW_ARRAY(&near, most * chunks.count, error));
     if (share->ranks != NULL) {
-        TRY(NEW_ARRAY(&wanted, system->node_count, error));
-        for (int64_t p = share->begin_node; p < share->end_node; p++) {
-            int64_t count = choose(system, lower, (int32_t)node[p], near, list);
-            for (int64_t k = 0; k < count; k++) {
-                wanted[list[k]] = true;
-            }
-        }
-        TRY(lower_fetch(system, wanted, lower, error));
+        TRY(fetch_rows(system, lower, near, error));
     }
-    for (int64_t p = share->begin_node; p < share->end_node; p++) {
-        length[p] = choose(system, lower, (int32_t)node[p], near, list);
-        memcpy(rows->idx + at, list, (size_t)length[p] * sizeof *list);
-        solve_row(lower, length[p], list, rows->value + at);
-        at += length[p];
+#pragma omp parallel for schedule(dynamic) num_threads(chunks.threads)
+    for (int64_t c = 0; c < chunks.count; c++) {
+        for (int64_t q = chunks_begin(&chunks, c); q < chunks_begin(&chunks, c + 1); q++) {
+            int32_t *list = rows->idx + q * MOST_ENTRIES;
+            length[first + q] = choose(system, lower, (int32_t)node[first + q], near + c * most, list);
+            solve_row(lower, length[first + q], list, rows->value + q * MOST_ENTRIES);
+        }
+    }
+    for (int64_t q = 0; q < chunks.items; q++) {
+        int64_t count = length[first + q];
+        memmove(rows->idx + at, rows->idx + q * MOST_ENTRIES, (size_t)count * sizeof *rows->idx);
+        memmove(rows->value + at, rows->value + q * MOST_ENTRIES, (size_t)count * sizeof *rows->value);
+        at += count;
     }
 done:
     free(near);
-    free(wanted);
     return status;
 }
 

@@ -10,34 +10,84 @@
 
 static const double least_share = 1e-6; /* of the mean diagonal entry, that nodes without stiffness have */
 
-static enum status make_room(struct lower *lower, int64_t more, struct error *error)
+/* Nodes that are worth the while of a thread. */
+static const int64_t worthwhile = 200;
+
+static enum status make_room(struct lower_piece *piece, int64_t more, struct error *error)
 {
-    if (lower->count + more > lower->capacity) {
-        int64_t capacity = (lower->count + more) / 4 * 5 + 4096;
-        int32_t *idx = array_grow(lower->idx, capacity, sizeof *idx);
-        lower->idx = idx != NULL ? idx : lower->idx;
-        double *value = array_grow(lower->value, capacity, sizeof *value);
-        lower->value = value != NULL ? value : lower->value;
+    if (piece->count + more > piece->capacity) {
+        int64_t capacity = (piece->count + more) / 4 * 5 + 4096;
+        int32_t *idx = array_grow(piece->idx, capacity, sizeof *idx);
+        piece->idx = idx != NULL ? idx : piece->idx;
+        double *value = array_grow(piece->value, capacity, sizeof *value);
+        piece->value = value != NULL ? value : piece->value;
         if (idx == NULL || value == NULL) {
             return fail_memory(error, "preconditioner");
         }
-        lower->capacity = capacity;
+        piece->capacity = capacity;
     }
     return STATUS_OK;
 }
 
-static enum status keep_row(const struct scalar_row *row, int64_t i, struct lower *lower, struct error *error)
+static enum status keep_row(const struct scalar_row *row, int64_t i, int number, struct lower *lower,
+                            struct error *error)
 {
     enum status status;
-    int64_t at = lower->count;
-    TRY(make_room(lower, row->count, error));
+    struct lower_piece *piece = &lower->piece[number];
+    int64_t at = piece->count;
+    TRY(make_room(piece, row->count, error));
     if (row->count > 0) {
-        memcpy(lower->idx + at, row->node, (size_t)row->count * sizeof *row->node);
-        memcpy(lower->value + at, row->value, (size_t)row->count * sizeof *row->value);
+        memcpy(piece->idx + at, row->node, (size_t)row->count * sizeof *row->node);
+        memcpy(piece->value + at, row->value, (size_t)row->count * sizeof *row->value);
     }
+    lower->piece_of[i] = (uint8_t)number;
     lower->begin[i] = at;
-    lower->end[i] = lower->count = at + row->count;
+    lower->end[i] = piece->count = at + row->count;
 done:
+    return status;
+}
+
+/* The rows of a stretch of nodes as a piece, and their diagonal entries, in the body's order. */
+static enum status make_piece(const struct scalar_stiffness *stiffness, int64_t first, int64_t last,
+                              int number, struct scalar_row *row, struct lower *lower, double *diagonal,
+                              struct error *error)
+{
+    enum status status = STATUS_OK;
+    for (int64_t p = first; p < last; p++) {
+        int64_t i = stiffness->system->body.node_order[p];
+        scalar_stiffness_row(stiffness, i, row);
+        diagonal[p] = row->count > 0 ? row->value[row->count - 1] : 0.0;
+        TRY(keep_row(row, i, number, lower, error));
+    }
+done:
+    return status;
+}
+
+/* All pieces, each by one thread. */
+static enum status make_pieces(const struct scalar_stiffness *stiffness, const struct chunks *chunks,
+                               struct lower *lower, double *diagonal, struct error *error)
+{
+    enum status status = STATUS_OK;
+    int64_t first = stiffness->system->body.share.begin_node;
+#pragma omp parallel num_threads(chunks->threads)
+    {
+        struct scalar_row row;
+        struct error own;
+        enum status made = scalar_row_make(stiffness, &row, &own);
+#pragma omp for schedule(dynamic)
+        for (int64_t c = 0; c < chunks->count; c++) {
+            if (made == STATUS_OK) {
+                made = make_piece(stiffness, first + chunks_begin(chunks, c),
+                                  first + chunks_begin(chunks, c + 1), (int)c, &row, lower, diagonal, &own);
+            }
+        }
+        scalar_row_free(&row);
+#pragma omp critical
+        if (made != STATUS_OK) {
+            status = made;
+            *error = own;
+        }
+    }
     return status;
 }
 
@@ -45,21 +95,17 @@ enum status lower_make(const struct solid_system *system, struct lower *lower, s
 {
     enum status status;
     struct scalar_stiffness stiffness = {0};
-    struct scalar_row row = {0};
     const struct body_share *share = &system->body.share;
+    const struct chunks chunks = chunks_of(share->end_node - share->begin_node, worthwhile);
     double sum = 0.0, *diagonal = NULL; /* in the body's order */
     int64_t nodes = system->node_count;
+    lower->piece_count = (int)chunks.count + 1;
     TRY(scalar_stiffness_make(system, &stiffness, error));
-    TRY(scalar_row_make(&stiffness, &row, error));
     TRY(NEW_ARRAY(&lower->begin, nodes, error));
     TRY(NEW_ARRAY(&lower->end, nodes, error));
+    TRY(NEW_ARRAY(&lower->piece_of, nodes, error));
     TRY(NEW_ARRAY(&diagonal, nodes, error));
-    for (int64_t p = share->begin_node; p < share->end_node; p++) {
-        int64_t i = system->body.node_order[p];
-        scalar_stiffness_row(&stiffness, i, &row);
-        diagonal[p] = row.count > 0 ? row.value[row.count - 1] : 0.0;
-        TRY(keep_row(&row, i, lower, error));
-    }
+    TRY(make_pieces(&stiffness, &chunks, lower, diagonal, error));
     ranks_gather(share->ranks, diagonal, sizeof *diagonal, share->node_first);
     for (int64_t i = 0; i < nodes; i++) {
         sum += diagonal[system->body.node_place[i]];
@@ -67,30 +113,24 @@ enum status lower_make(const struct solid_system *system, struct lower *lower, s
     lower->least = least_share * sum / (double)nodes;
 done:
     free(diagonal);
-    scalar_row_free(&row);
     scalar_stiffness_free(&stiffness);
     return status;
 }
 
 double lower_entry(const struct lower *lower, int32_t i, int32_t j)
 {
-    int64_t low = lower->begin[i], high = lower->end[i];
+    struct lower_row row = lower_row(lower, i);
+    int64_t low = 0, high = row.count;
     while (low < high) {
         int64_t middle = (low + high) / 2;
-        if (lower->idx[middle] < j) {
+        if (row.idx[middle] < j) {
             low = middle + 1;
         } else {
             high = middle;
         }
     }
-    double value = low < lower->end[i] && lower->idx[low] == j ? lower->value[low] : 0.0;
+    double value = low < row.count && row.idx[low] == j ? row.value[low] : 0.0;
     return i == j ? fmax(value, lower->least) : value;
-}
-
-static int owner_of_node(const void *context, int64_t node)
-{
-    const struct body *body = context;
-    return ranks_owner(body->share.ranks, body->share.node_first, body->node_place[node]);
 }
 
 enum status lower_fetch(const struct solid_system *system, const bool *wanted, struct lower *lower,
@@ -102,8 +142,9 @@ enum status lower_fetch(const struct solid_system *system, const bool *wanted, s
     struct halo halo = {0};
     double *length = NULL, *value = NULL;
     int32_t *idx = NULL;
-    int64_t *send_first = NULL, *receive_first = NULL, at = 0, first = lower->count;
-    TRY(halo_build(ranks, nodes, wanted, 1, owner_of_node, &system->body, &halo, error));
+    int64_t *send_first = NULL, *receive_first = NULL, at = 0;
+    struct lower_piece *fetched = &lower->piece[lower->piece_count - 1];
+    TRY(halo_build(ranks, nodes, wanted, 1, body_share_owner, &system->body, &halo, error));
     TRY(NEW_ARRAY(&length, nodes, error));
     TRY(NEW_ARRAY(&send_first, ranks->count + 1, error));
     TRY(NEW_ARRAY(&receive_first, ranks->count + 1, error));
@@ -119,23 +160,24 @@ enum status lower_fetch(const struct solid_system *system, const bool *wanted, s
         receive_first[r + 1] = receive_first[r];
         for (int64_t i = halo.receive_first[r]; i < halo.receive_first[r + 1]; i++) {
             int64_t node = halo.receive[i];
-            lower->begin[node] = first + receive_first[r + 1];
+            lower->piece_of[node] = (uint8_t)(lower->piece_count - 1);
+            lower->begin[node] = receive_first[r + 1];
             receive_first[r + 1] += (int64_t)length[node];
-            lower->end[node] = first + receive_first[r + 1];
+            lower->end[node] = receive_first[r + 1];
         }
     }
-    TRY(make_room(lower, receive_first[ranks->count], error));
+    TRY(make_room(fetched, receive_first[ranks->count], error));
     TRY(NEW_ARRAY(&idx, send_first[ranks->count], error));
     TRY(NEW_ARRAY(&value, send_first[ranks->count], error));
     for (int64_t i = 0; i < halo.send_first[ranks->count]; i++) {
-        int64_t from = lower->begin[halo.send[i]], count = lower->end[halo.send[i]] - from;
-        memcpy(idx + at, lower->idx + from, (size_t)count * sizeof *idx);
-        memcpy(value + at, lower->value + from, (size_t)count * sizeof *value);
-        at += count;
+        struct lower_row row = lower_row(lower, halo.send[i]);
+        memcpy(idx + at, row.idx, (size_t)row.count * sizeof *idx);
+        memcpy(value + at, row.value, (size_t)row.count * sizeof *value);
+        at += row.count;
     }
-    ranks->exchange(ranks, sizeof *idx, idx, send_first, lower->idx + first, receive_first);
-    ranks->exchange(ranks, sizeof *value, value, send_first, lower->value + first, receive_first);
-    lower->count += receive_first[ranks->count];
+    ranks->exchange(ranks, sizeof *idx, idx, send_first, fetched->idx, receive_first);
+    ranks->exchange(ranks, sizeof *value, value, send_first, fetched->value, receive_first);
+    fetched->count = receive_first[ranks->count];
 done:
     halo_free(&halo);
     free(length);
@@ -150,7 +192,10 @@ void lower_free(struct lower *lower)
 {
     free(lower->begin);
     free(lower->end);
-    free(lower->idx);
-    free(lower->value);
+    free(lower->piece_of);
+    for (int k = 0; k < lower->piece_count; k++) {
+        free(lower->piece[k].idx);
+        free(lower->piece[k].value);
+    }
     *lower = (struct lower){0};
 }

@@ -17,7 +17,7 @@ static int64_t centre_count(const struct solid_system *system)
 }
 
 /* L^-T Z of the scalar coarse fields, by rows. */
-static enum status transform_fields(struct preconditioner *preconditioner, struct error *error)
+static enum status transform_fields(struct preconditioner *preconditioner, int threads, struct error *error)
 {
     enum status status;
     const struct ranks *ranks = preconditioner->factor.ranks;
@@ -33,7 +33,9 @@ static enum status transform_fields(struct preconditioner *preconditioner, struc
             preconditioner->inverse_fields[field[k] * nodes + n] = value[k];
         }
     }
-    for (int64_t k = first[ranks_rank(ranks)]; k < first[ranks_rank(ranks) + 1]; k++) {
+    int64_t begin = first[ranks_rank(ranks)], end = first[ranks_rank(ranks) + 1];
+#pragma omp parallel for schedule(static) num_threads(threads)
+    for (int64_t k = begin; k < end; k++) {
         inverse_factor_solve_transposed(&preconditioner->factor, 1,
                                         preconditioner->inverse_fields + k * nodes);
     }
@@ -52,7 +54,7 @@ static enum status build_inverse(struct solid_system *system, struct preconditio
     TRY(NEW_ARRAY(&preconditioner->at_rest, system->node_count, error));
     TRY(NEW_ARRAY(&preconditioner->on_inverse, 2 * system->node_count * system->dim, error));
     system_relaxation_mass(system, true, preconditioner->at_rest);
-    TRY(transform_fields(preconditioner, error));
+    TRY(transform_fields(preconditioner, system->body.threads, error));
 done:
     return status;
 }

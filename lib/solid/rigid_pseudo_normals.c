@@ -20,6 +20,45 @@ static enum status fail_twice(int64_t one, int64_t other, struct error *error)
                 (long long)(one + 1), (long long)(other + 1));
 }
 
+/* A segment by its vertices. */
+struct segment {
+    int32_t first, second;
+    int64_t facet;
+};
+
+static int compare_segments(const void *left, const void *right)
+{
+    const struct segment *a = left, *b = right;
+    if (a->first != b->first) {
+        return a->first < b->first ? -1 : 1;
+    }
+    if (a->second != b->second) {
+        return a->second < b->second ? -1 : 1;
+    }
+    return (a->facet > b->facet) - (a->facet < b->facet);
+}
+
+static enum status check_segments(const struct rigid_surface *surface, struct error *error)
+{
+    enum status status;
+    struct segment *segments = NULL;
+    TRY(NEW_ARRAY(&segments, surface->facet_count, error));
+    for (int64_t f = 0; f < surface->facet_count; f++) {
+        segments[f] = (struct segment){surface->facet[2 * f], surface->facet[2 * f + 1], f};
+    }
+    qsort(segments, (size_t)surface->facet_count, sizeof *segments, compare_segments);
+    for (int64_t i = 1; i < surface->facet_count; i++) {
+        const struct segment *one = &segments[i - 1], *other = &segments[i];
+        if (one->first == other->first && one->second == other->second) {
+            status = fail_twice(one->facet, other->facet, error);
+            goto done;
+        }
+    }
+done:
+    free(segments);
+    return status;
+}
+
 /* 2D: normals and rims at the vertices. */
 static enum status join_segments(struct rigid_surface *surface, struct error *error)
 {
@@ -28,6 +67,7 @@ static enum status join_segments(struct rigid_surface *surface, struct error *er
         int64_t count, last;
         int turn; /* segments that end here less those that begin here */
     } *meetings = NULL;
+    TRY(check_segments(surface, error));
     TRY(NEW_ARRAY(&meetings, surface->vertex_count, error));
     for (int64_t f = 0; f < surface->facet_count; f++) {
         for (int k = 0; k < 2; k++) {
@@ -35,12 +75,6 @@ static enum status join_segments(struct rigid_surface *surface, struct error *er
             add_scaled(2, 1.0, surface->normal + 2 * f, surface->vertex_normal + 2 * (int64_t)v);
             meetings[v].count++;
             meetings[v].turn += k == 0 ? -1 : 1;
-            const int32_t *last = surface->facet + 2 * meetings[v].last;
-            if (meetings[v].count > 1 && last[0] == surface->facet[2 * f] &&
-                last[1] == surface->facet[2 * f + 1]) {
-                status = fail_twice(meetings[v].last, f, error);
-                goto done;
-            }
             if (meetings[v].count == 2 && meetings[v].turn != 0) {
                 status = fail_sides(meetings[v].last, f, error);
                 goto done;

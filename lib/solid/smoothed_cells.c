@@ -135,11 +135,12 @@ done:
     return status;
 }
 
-/* A given table of shape functions: its section, what a row stands for, and the points of the rows. Where it
- * is shared among processes, rows that others have are empty. */
+/* A given table of shape functions: its section, what a row stands for, and the points of the rows. With
+ * several processes, rows that others have read are empty. */
 struct given_table {
     const char *section, *of;
-    bool is_shared;
+    const int32_t *reader; /* of each row, as in smoothed_cells_input; NULL: all rows are here */
+    int rank;
     const int64_t *ptr;
     const int32_t *idx;
     const double *phi, *x;
@@ -152,7 +153,7 @@ static enum status check_table(const struct given_table *table, int64_t rows, in
 {
     for (int64_t r = 0; r < rows; r++) {
         double sum[4] = {-1.0}, size = 0.0, extent = 0.0;
-        if (table->is_shared && table->ptr[r] == table->ptr[r + 1]) {
+        if (table->reader != NULL && table->reader[r] != table->rank) {
             continue;
         }
         for (int64_t i = table->ptr[r]; i < table->ptr[r + 1]; i++) {
@@ -214,12 +215,6 @@ static void add_rows_of_cells(const struct body *body, const bool *touched, bool
     }
 }
 
-static int owner_of_node(const void *context, int64_t node)
-{
-    const struct body *body = context;
-    return ranks_owner(body->share.ranks, body->share.node_first, body->node_place[node]);
-}
-
 /* wanted[rows of faces]: the averages that own cells need, those with own nodes in them, and all other rows
  * of the cells that these belong to. */
 static enum status list_faces(const struct smoothed_cells_input *input, const struct read_rows *rows,
@@ -231,12 +226,12 @@ static enum status list_faces(const struct smoothed_cells_input *input, const st
     bool *touched = NULL, *in_order = NULL;
     TRY(NEW_ARRAY(&touched, averages->row_count, error));
     TRY(body_share_values(body, &in_order, error));
-    TRY(read_rows_with(rows, owner_of_node, body, wanted, error));
+    TRY(read_rows_with(rows, body_share_owner, body, wanted, error));
     for (int64_t r = 0; r < averages->row_count; r++) {
         int64_t n = r < input->faces->row_count ? -1 : body->node_order[r - input->faces->row_count];
         touched[r] = n < 0 && wanted[order[r]];
         for (int64_t i = n < 0 ? 0 : input->node_ptr[n]; n >= 0 && i < input->node_ptr[n + 1]; i++) {
-            touched[r] = touched[r] || owner_of_node(body, input->node_idx[i]) == rows->ranks->rank;
+            touched[r] = touched[r] || body_share_owner(body, input->node_idx[i]) == rows->ranks->rank;
         }
     }
     add_rows_of_cells(body, touched, in_order);
@@ -294,8 +289,9 @@ static enum status build_averages(const struct smoothed_cells_input *input, stru
     TRY(NEW_ARRAY(&x, faces->row_count * dim, error));
     TRY(place_rows(faces, input->x, x, error));
     const struct given_table rows = {
-        "face.phi", "row", input->face_reader != NULL, input->face_ptr, input->face_idx, input->face_phi, x};
-    const struct given_table nodes = {"node.phi",      "node",          false,   input->node_ptr,
+        "face.phi",      "row",           input->face_reader, ranks_rank(body->share.ranks),
+        input->face_ptr, input->face_idx, input->face_phi,    x};
+    const struct given_table nodes = {"node.phi",      "node",          NULL,    0, input->node_ptr,
                                       input->node_idx, input->node_phi, input->x};
     status = check_table(&rows, faces->row_count, dim, input->x, error);
     TRY(input->face_reader != NULL ? ranks_agree(body->share.ranks, status, error) : status);

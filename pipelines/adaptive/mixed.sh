@@ -3,7 +3,7 @@
 #
 # Each round meshes the geometry by gmsh, solves the scene, and takes the sizes of the next mesh from the gradients of the solution between
 # the vertices of the elements (sizefield), as pipelines/refine does; KIND even: all sizes are made smaller alike. Prints a row for each round as rounds.sh
-# does: case, kind, nodes (of vertices and edges), processor seconds of the solution and of all rounds so far, no estimate, the true mean
+# does: case, kind, nodes (of vertices and edges), processor seconds of the solution and of all rounds so far (but those without an equilibrium), no estimate, the true mean
 # error by REFERENCE at its places (mm), no effectivity.
 #
 # Environment: UNIT of the geometry, GMSH more arguments for gmsh, BUDGET: the nodes at which it ends, SHARE of the present error wanted of a
@@ -27,9 +27,15 @@ vertices() {
     printf '\n\n# end %d\n' $(($(grep -c '^# [a-z].* enc=' "$1") + 1))
 }
 
+# lost NAME: that failed; its message.
+lost() {
+    echo "mixed.sh: $name, $kind, round $round: $1: $(tail -n 1 "$folder/log")" >&2
+    exit 1
+}
+
 # grade: graded.geo, with sizes from the last solution.
 grade() {
-    sizefield -v -s "$SHARE" -n 1000000 ${sag:+--sag "$sag"} ${least:+--least "$least"} -u "$UNIT" -o "$folder/sizes.pos" "$folder/u.dat" 2> "$folder/log"
+    sizefield -v -s "$SHARE" -n 1000000 ${sag:+--sag "$sag"} ${least:+--least "$least"} -u "$UNIT" -o "$folder/sizes.pos" "$folder/u.dat" 2> "$folder/log" || lost sizefield
     smallest=$(awk -F '\t' '$1 == "least size" { print $2 }' "$folder/log")
     {
         printf 'Include "%s";\nMerge "%s";\nBackground Mesh View[0];\n' "$geometry" "$(realpath "$folder/sizes.pos")"
@@ -41,12 +47,15 @@ grade() {
 from=$geometry factor=1 total=0 least=${LEAST-} sag=${SAG-} again=0
 for ((round = 1; round <= 12; round++)); do
     # shellcheck disable=SC2086 # several arguments
-    { time gmsh -v 1 "-$dim" ${GMSH-} -setnumber Mesh.RandomSeed 1 -clscale "$factor" "$from" -o "$folder/body.msh" > "$folder/log" 2>&1; } 2> "$folder/time"
-    nodes -u "$UNIT" -t "$folder/body.msh" > "$folder/mesh.dat" 2> "$folder/log"
-    if ! bash "$here/../mixed/solve.sh" "$scene" "$folder/mesh.dat" "$reference" > "$folder/places.dat" 2> "$folder/report"; then
+    { time gmsh -v 1 "-$dim" ${GMSH-} -setnumber Mesh.RandomSeed 1 -clscale "$factor" "$from" -o "$folder/body.msh" > "$folder/log" 2>&1; } 2> "$folder/time" || lost gmsh
+    nodes -u "$UNIT" -t "$folder/body.msh" > "$folder/mesh.dat" 2> "$folder/log" || lost nodes
+    status=0
+    bash "$here/../mixed/solve.sh" "$scene" "$folder/mesh.dat" "$reference" > "$folder/places.dat" 2> "$folder/report" || status=$?
+    if [ "$status" -ne 0 ]; then
+        cp "$folder/report" "$folder/log"
+        # Status 4: no equilibrium is found. As of these programs, larger cells at the corners may do.
+        if [ "$status" -ne 4 ] || [ "$round" -eq 1 ]; then lost solve.sh; fi
         echo "mixed.sh: $name, $kind, round $round: $(tail -n 1 "$folder/report")" >&2
-        [ "$round" -gt 1 ]
-        # As of these programs, larger cells at the corners may do.
         if [ "$kind" = even ] || ((again++ == 3)); then break; fi
         least=$(awk -v s="$smallest" -v unit="$UNIT" 'BEGIN { print 2 * s unit }')
         grade
@@ -63,7 +72,7 @@ for ((round = 1; round <= 12; round++)); do
         factor=$(awk -v f="$factor" 'BEGIN { print f / sqrt(2) }')
         continue
     fi
-    bash "$here/../mixed/solve.sh" "$scene" "$folder/mesh.dat" > "$folder/field.dat" 2> "$folder/log"
+    bash "$here/../mixed/solve.sh" "$scene" "$folder/mesh.dat" > "$folder/field.dat" 2> "$folder/log" || lost solve.sh
     vertices "$folder/mesh.dat" "$folder/field.dat" > "$folder/u.dat"
     grade
 done

@@ -5,6 +5,7 @@
 # and in its order, and of reactions; with PLACES, a stream of nodes.x, u is the elements' field there instead, beyond the mesh that at the
 # nearest place of it. Prints on standard error, in the form of `mtled -v`: nodes and integration points, load
 # steps and Newton iterations, and processor seconds of one thread: of assembly, of the direct solver, and of the whole process without the values at PLACES.
+# Exit status: 0; 4 where Newton's method finds no equilibrium; 1 other failures, 2 wrong usage.
 set -euo pipefail
 export LC_ALL=C OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1
 if [ $# -ne 2 ] && [ $# -ne 3 ]; then
@@ -26,7 +27,7 @@ awk -f "$here/../stream.awk" -f "$here/../scene.awk" -f "$here/../table.awk" \
 { [ -z "${3-}" ] || mts print nodes.x "$3"; } | awk '{ row[NR] = $0 } END { print NR; for (i = 1; i <= NR; i++) print row[i] }' > "$work/places"
 TIMEFORMAT='%U %S'
 if ! { time (cd "$work" && FreeFem++-nw -nw -v 0 "$here/solve${dim}d.edp" > log 2>&1); } 2> "$work/time"; then
-    [ ! -s "$work/failure" ] || { echo "solve.sh: $scene: $(cat "$work/failure")" >&2; exit 1; }
+    [ ! -s "$work/failure" ] || { echo "solve.sh: $scene: $(cat "$work/failure")" >&2; exit 4; }
     tail -n 20 "$work/log" >&2
     echo "solve.sh: FreeFEM failed on $scene" >&2
     exit 1

@@ -8,7 +8,7 @@
 #   round, gmsh and the coarser mesh as well)
 #
 # Environment: UNIT of the geometry (default mm), NODES at most (default 20000), ROUNDS at most (default 8), GMSH more arguments for gmsh,
-# of an image SPACING of the first round's lattice (6mm) and VOXELS more arguments for voxels (-l labels.tsv; not -h),
+# of an image SPACING of the first round's lattice, such as 6mm, and VOXELS more arguments for voxels (-l labels.tsv; not -h),
 # SUPPORT arguments for support (-i tumour), START a factor for the sizes of the first round (default 1), LEAST a length with unit below which no size goes (sizefield), GRADED=no: all sizes
 # made smaller alike.
 #

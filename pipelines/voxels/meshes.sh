@@ -44,13 +44,19 @@ of_image() {
     voxels -h "$2mm" --part top=ball:0,0,28mm,14mm --part bottom=ball:0,0,-28mm,16mm "$image" > "$1.mts"
     solve "$1"
 }
-mean() { fieldcmp --skip-outside "$1.dat" "$2.dat" | awk -F '\t' '$1 == "avg" { print 1e3 * $2 }'; }
+mean() { fieldcmp --skip-outside "$1.dat" "$2.dat" | awk -F '\t' '$1 == "avg" { print 1e3 * $2; found = 1 } END { exit !found }'; }
 
 of_gmsh fine 1.8
 for size in 4.8 5 5.2; do of_gmsh "gmsh-$size" $size; done
 for spacing in 6.2 6.4 6.6; do of_image "image-$spacing" $spacing; done
 printf 'mesh\tnodes\toff_mm\tapart_mm\n'
 for name in gmsh-{4.8,5,5.2} image-{6.2,6.4,6.6}; do
-    apart=$(for other in gmsh-{4.8,5,5.2}; do [ $name = $other ] || mean $name $other; done | awk '{ sum += $1 } END { printf "%.4f", sum / NR }')
-    printf '%s\t%s\t%.4f\t%s\n' "$name" "$(mts list $name.dat | awk -F '\t' '$1 == "nodes.x" { print $3 }')" "$(mean $name fine)" "$apart"
+    apart=()
+    for other in gmsh-{4.8,5,5.2}; do
+        [ "$name" = "$other" ] || { one=$(mean "$name" "$other"); apart+=("$one"); }
+    done
+    off=$(mean "$name" fine)
+    nodes=$(mts list "$name.dat" | awk -F '\t' '$1 == "nodes.x" { print $3 }')
+    printf '%s\n' "${apart[@]}" | awk -v OFS='\t' -v name="$name" -v nodes="$nodes" -v off="$off" '
+        { sum += $1 } END { print name, nodes, sprintf("%.4f", off), sprintf("%.4f", sum / NR) }'
 done

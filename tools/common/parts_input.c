@@ -71,7 +71,11 @@ static enum status look_for_last(const struct tool *tool, const char *operand, i
                                  struct error *error)
 {
     char *last = file_of(tool, operand, count - 1);
-    enum status status = access(last, F_OK) != 0 ? fail_missing(last, count - 1, count, error) : STATUS_OK;
+    enum status status = STATUS_OK;
+    if (access(last, F_OK) != 0) {
+        status = errno == ENOENT ? fail_missing(last, count - 1, count, error)
+                                 : fail(error, STATUS_INPUT, "%s: %s", last, strerror(errno));
+    }
     free(last);
     return status;
 }

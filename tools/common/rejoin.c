@@ -1,8 +1,5 @@
-#include "rejoin.h"
+#include "rejoin_private.h"
 
-#include "stages.h"
-
-#include "approx/face_rows.h"
 #include "approx/partition.h"
 
 #include <stdlib.h>
@@ -157,7 +154,7 @@ static void sort_parts(struct rejoin *rejoin)
     rejoin->part = sorted;
 }
 
-static int32_t *new_rows(const struct rejoin *rejoin, struct rejoin_part *part, enum rows_of kind,
+int32_t *rejoin_new_rows(const struct rejoin *rejoin, struct rejoin_part *part, enum rows_of kind,
                          int64_t count)
 {
     struct error error;
@@ -166,8 +163,7 @@ static int32_t *new_rows(const struct rejoin *rejoin, struct rejoin_part *part, 
     return part->to[kind];
 }
 
-/* Every row of the whole must come from one part. */
-static void check_rows(const struct rejoin *rejoin, enum rows_of kind, const char *called)
+void rejoin_check_rows(const struct rejoin *rejoin, enum rows_of kind, const char *called)
 {
     struct error error;
     bool *found;
@@ -206,8 +202,8 @@ static void map_body(struct rejoin *rejoin)
     int vertices = rejoin->dim + 1;
     for (int64_t k = 0; k < rejoin->part_count; k++) {
         struct rejoin_part *part = &rejoin->part[k];
-        int32_t *node = new_rows(rejoin, part, ROWS_NODES, part->cells.node_count);
-        int32_t *cell = new_rows(rejoin, part, ROWS_CELLS, part->cells.count);
+        int32_t *node = rejoin_new_rows(rejoin, part, ROWS_NODES, part->cells.node_count);
+        int32_t *cell = rejoin_new_rows(rejoin, part, ROWS_CELLS, part->cells.count);
         for (int64_t i = 0; i < part->cells.node_count; i++) {
             node[i] = part->owner[i] == k ? part->node[i] : -1;
         }
@@ -217,8 +213,8 @@ static void map_body(struct rejoin *rejoin)
     }
     rejoin->rows[ROWS_NODES] = attribute(rejoin, &rejoin->part[0], "nodes");
     rejoin->rows[ROWS_CELLS] = attribute(rejoin, &rejoin->part[0], "cells");
-    check_rows(rejoin, ROWS_NODES, "part.node");
-    check_rows(rejoin, ROWS_CELLS, "part.cell");
+    rejoin_check_rows(rejoin, ROWS_NODES, "part.node");
+    rejoin_check_rows(rejoin, ROWS_CELLS, "part.cell");
     tool_check(rejoin->tool, NEW_ARRAY(&rejoin->x, rejoin->rows[ROWS_NODES] * rejoin->dim, &error), &error);
     tool_check(rejoin->tool, NEW_ARRAY(&rejoin->cell, rejoin->rows[ROWS_CELLS] * vertices, &error), &error);
     for (int64_t k = 0; k < rejoin->part_count; k++) {
@@ -271,7 +267,7 @@ static void map_listed(struct rejoin *rejoin, enum rows_of kind, const char *nam
         }
         const int32_t *node = section->data;
         const int32_t *number = numbers(rejoin, part, numbered, section->rows, 0, INT32_MAX, true);
-        int32_t *to = new_rows(rejoin, part, kind, section->rows);
+        int32_t *to = rejoin_new_rows(rejoin, part, kind, section->rows);
         for (int64_t i = 0; i < section->rows; i++) {
             int32_t first = node[i * section->cols];
             if (first < 0 || first >= part->cells.node_count) {
@@ -282,7 +278,7 @@ static void map_listed(struct rejoin *rejoin, enum rows_of kind, const char *nam
             rejoin->rows[kind] += to[i] >= 0;
         }
     }
-    check_rows(rejoin, kind, name);
+    rejoin_check_rows(rejoin, kind, name);
 }
 
 /* Integration points follow their cells. */
@@ -300,7 +296,7 @@ static void map_points(struct rejoin *rejoin)
             }
             const int32_t *cell = points->data;
             int32_t *to =
-                pass == 0 ? new_rows(rejoin, part, ROWS_POINTS, points->rows) : part->to[ROWS_POINTS];
+                pass == 0 ? rejoin_new_rows(rejoin, part, ROWS_POINTS, points->rows) : part->to[ROWS_POINTS];
             for (int64_t i = 0; i < points->rows; i++) {
                 if (cell[i] < 0 || cell[i] >= part->cells.count) {
                     tool_fail(
@@ -323,147 +319,6 @@ static void map_points(struct rejoin *rejoin)
         rejoin->rows[ROWS_POINTS] = pass == 0 ? begin[cells + 1] : rejoin->rows[ROWS_POINTS];
     }
     free(begin);
-}
-
-/* The face of the whole that is a part's face, whose first cell is its own; they have the same nodes in the
- * same order. */
-static int64_t find_face(const struct rejoin *rejoin, const struct rejoin_part *part, const int64_t *begin,
-                         const int32_t *face, int64_t local)
-{
-    int dim = rejoin->dim;
-    int32_t cell = part->cell[part->faces.cell[2 * local]];
-    for (int64_t i = begin[cell]; i < begin[cell + 1]; i++) {
-        int same = 0;
-        for (int a = 0; a < dim; a++) {
-            same += rejoin->faces.node[(int64_t)face[i] * dim + a] ==
-                    part->node[part->faces.node[local * dim + a]];
-        }
-        if (same == dim) {
-            return face[i];
-        }
-    }
-    tool_fail(rejoin->tool, STATUS_INPUT, "%s: faces: row %lld: not a face of the body: run ipoints again",
-              part->file, (long long)local);
-}
-
-/* A row that faces share belongs to the part that owns the first of them, and its points with it. */
-static void map_face_rows(struct rejoin *rejoin, struct rejoin_part *part, const int32_t *first_face)
-{
-    int rows = FACE_ROWS(rejoin->dim), per_face = OWN_POINTS(rejoin->dim);
-    const struct faces *whole_faces = &rejoin->faces;
-    const int32_t *face = part->to[ROWS_FACES];
-    int64_t row_count = part->faces.row_count, point_count = face_row_point(&part->faces, row_count);
-    int32_t *to = new_rows(rejoin, part, ROWS_OF_FACES, row_count);
-    int32_t *points = new_rows(rejoin, part, ROWS_FACEPOINTS, point_count);
-    int32_t *boundary = new_rows(rejoin, part, ROWS_BOUNDARY, part->faces.boundary_count * per_face);
-    for (int64_t r = 0; r < row_count; r++) {
-        to[r] = -1;
-    }
-    for (int64_t i = 0; i < part->faces.count * rows; i++) {
-        int64_t whole = face[i / rows];
-        int32_t row = whole < 0 ? -1 : (int32_t)face_row(&rejoin->faces, whole, (int)(i % rows));
-        if (row >= 0 && face_has_own_row(whole_faces, whole) != face_has_own_row(&part->faces, i / rows)) {
-            tool_fail(rejoin->tool, STATUS_INPUT,
-                      "%s: faces.row: row %lld: at the edge of the halo: cut again with a wider one "
-                      "(part -w, now %g)",
-                      part->file, (long long)(i / rows), rejoin->widen);
-        }
-        if (row >= 0 && first_face[row] == whole) {
-            to[face_row(&part->faces, i / rows, (int)(i % rows))] = row;
-        }
-    }
-    for (int64_t r = 0; r < row_count; r++) {
-        int64_t first = face_row_point(&part->faces, r);
-        for (int64_t p = first; p < face_row_point(&part->faces, r + 1); p++) {
-            points[p] = to[r] < 0 ? -1 : (int32_t)(face_row_point(whole_faces, to[r]) + p - first);
-        }
-    }
-    for (int64_t i = 0; i < part->faces.boundary_count * per_face; i++) {
-        boundary[i] = face[i / per_face] < 0 ? -1 : (int32_t)(face[i / per_face] * per_face + i % per_face);
-    }
-}
-
-/* The side of each cell of the whole, for the caller to free; NULL where supports stop at no interfaces. */
-static int32_t *whole_sides(const struct rejoin *rejoin)
-{
-    struct error error;
-    int32_t *side = NULL;
-    for (int64_t k = 0; k < rejoin->part_count; k++) {
-        const struct rejoin_part *part = &rejoin->part[k];
-        const int32_t *of_part;
-        tool_check(rejoin->tool, stage_sides(&part->stream, "support", &of_part, &error), &error);
-        if (of_part != NULL && side == NULL) {
-            tool_check(rejoin->tool, NEW_ARRAY(&side, rejoin->rows[ROWS_CELLS], &error), &error);
-        }
-        for (int64_t c = 0; of_part != NULL && c < part->cells.count; c++) {
-            side[part->cell[c]] = of_part[c];
-        }
-    }
-    return side;
-}
-
-static void map_faces(struct rejoin *rejoin)
-{
-    struct error error;
-    int32_t *side = whole_sides(rejoin);
-    const struct tool *tool = rejoin->tool;
-    const struct section *points = stream_find(&rejoin->part[0].stream, "points.x");
-    bool boundary_only = points != NULL && !points_are_smoothed(points);
-    int64_t *begin;
-    int32_t *face, *first_face;
-    const struct cells whole = {.dim = rejoin->dim,
-                                .node_count = rejoin->rows[ROWS_NODES],
-                                .x = rejoin->x,
-                                .count = rejoin->rows[ROWS_CELLS],
-                                .node = rejoin->cell};
-    for (int64_t k = 0; k < rejoin->part_count; k++) {
-        struct rejoin_part *part = &rejoin->part[k];
-        enum status status = stream_faces(&part->stream, &part->cells, &part->faces, &error);
-        if (status != STATUS_OK) {
-            tool_fail(tool, status, "%s: %s", part->file, error.text);
-        }
-    }
-    tool_check(tool, faces_build(&whole, boundary_only, &rejoin->faces, &error), &error);
-    if (side != NULL) {
-        free(rejoin->faces.row);
-        tool_check(tool, face_rows_number(whole.node_count, side, &rejoin->faces, &error), &error);
-        free(side);
-    }
-    const struct faces *faces = &rejoin->faces;
-    tool_check(tool, NEW_ARRAY(&begin, whole.count + 2, &error), &error);
-    tool_check(tool, NEW_ARRAY(&face, faces->count, &error), &error);
-    tool_check(tool, NEW_ARRAY(&first_face, faces->row_count, &error), &error);
-    int rows = FACE_ROWS(rejoin->dim);
-    for (int64_t i = faces->count * rows - 1; i >= 0; i--) {
-        first_face[face_row(faces, i / rows, (int)(i % rows))] = (int32_t)(i / rows);
-    }
-    for (int64_t f = 0; f < faces->count; f++) {
-        begin[faces->cell[2 * f] + 2]++;
-    }
-    for (int64_t c = 1; c <= whole.count; c++) {
-        begin[c + 1] += begin[c];
-    }
-    for (int64_t f = 0; f < faces->count; f++) {
-        face[begin[faces->cell[2 * f] + 1]++] = (int32_t)f;
-    }
-    for (int64_t k = 0; k < rejoin->part_count; k++) {
-        struct rejoin_part *part = &rejoin->part[k];
-        int32_t *to = new_rows(rejoin, part, ROWS_FACES, part->faces.count);
-        for (int64_t f = 0; f < part->faces.count; f++) {
-            bool own = part->to[ROWS_CELLS][part->faces.cell[2 * f]] >= 0;
-            to[f] = own ? (int32_t)find_face(rejoin, part, begin, face, f) : -1;
-        }
-        map_face_rows(rejoin, part, first_face);
-    }
-    free(begin);
-    free(face);
-    free(first_face);
-    rejoin->rows[ROWS_FACES] = faces->count;
-    rejoin->rows[ROWS_OF_FACES] = faces->row_count;
-    rejoin->rows[ROWS_FACEPOINTS] = face_row_point(faces, faces->row_count);
-    rejoin->rows[ROWS_BOUNDARY] = faces->boundary_count * OWN_POINTS(rejoin->dim);
-    check_rows(rejoin, ROWS_FACES, "faces");
-    check_rows(rejoin, ROWS_OF_FACES, "faces.row");
 }
 
 void rejoin_begin(struct rejoin *rejoin, const struct tool *tool, char *const files[], int64_t count)
@@ -508,7 +363,7 @@ void rejoin_streams(struct rejoin *rejoin)
     map_listed(rejoin, ROWS_SETS, "sets.idx", "part.set");
     map_points(rejoin);
     if (stream_find(&rejoin->part[0].stream, "faces") != NULL) {
-        map_faces(rejoin);
+        rejoin_map_faces(rejoin);
     }
 }
 
