@@ -125,7 +125,7 @@ static int tell_cells(const struct tool *tool, const struct stream *stream)
     char text[128];
     if (stream_find(stream, "nodes.x") == NULL || stream_find(stream, "cells") == NULL ||
         stream_cells(stream, true, &cells, &error) != STATUS_OK) {
-        return 0; /* what is wrong has been told */
+        return 0; /* the error has been reported */
     }
     enum status status = cell_report_make(&cells, POOR_QUALITY, &report, &error);
     if (status == STATUS_INPUT) { /* a face of three cells */

@@ -100,7 +100,7 @@ static void list_groups(const struct tool *tool, const struct msh *msh)
 #define SMALLEST_DIAGONAL 1e-3
 
 /* A body is thin where its thickness is less than this, in lengths of cells: bending of a plate of one cell
- * is too stiff by 40 %, of two cells by 5 %. So much of the boundary is told. */
+ * is too stiff by 40 %, of two cells by 5 %. Reported from this share of the boundary on. */
 #define THIN 1.5
 #define THIN_SHARE 0.1
 

@@ -77,9 +77,9 @@ static const char usage[] =
 #include <stdlib.h>
 #include <string.h>
 
-/* Volumes are told where they are off by more than this share, and what lies beyond the sizes where it is
- * more. */
-static const double told_share = 0.01;
+/* Errors of volume above this share are reported, and so is a share of the body above it that lies beyond the
+ * cells of the sizes. */
+static const double reported_share = 0.01;
 
 /* Volume of the cells of each label with its parts, m3 (2D: m2). */
 static void cell_volumes(const struct cells *cells, const struct label_image *image, const int32_t *label,
@@ -128,11 +128,11 @@ static void report_labels(const struct tool *tool, const struct label_image *ima
         if (after == 0) {
             tool_note(tool, "%s: all %.4g %s are lost: no part of it is as thick as the spacing", name,
                       before, unit);
-        } else if (verbose || fabs(after - before) > told_share * before) {
+        } else if (verbose || fabs(after - before) > reported_share * before) {
             tool_note(tool, "%s: %.4g %s of voxels, %.4g %s of cells (%+.2f %%)", name, before, unit, after,
                       unit, 100 * (after / before - 1));
         }
-        if (after > 0 && missing > told_share * before) {
+        if (after > 0 && missing > reported_share * before) {
             tool_note(
                 tool,
                 "%s: %.3g %s are lost in parts thinner than the spacing, and at sharp edges: see --fine",
@@ -196,7 +196,7 @@ static void report(const struct tool *tool, const struct label_image *image, con
 {
     struct cells cells = {stuffing->dim, stuffing->node_count, stuffing->x, stuffing->cell_count,
                           stuffing->cell};
-    if (stuffing->unsized > told_share) {
+    if (stuffing->unsized > reported_share) {
         tool_note(tool, "%.3g %% of the body lie beyond the sizes: cells there are of the spacing of -h",
                   100 * stuffing->unsized);
     }

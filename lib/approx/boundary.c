@@ -102,21 +102,21 @@ static enum status add_corner(const struct face_table *table, const struct facet
     boundary_unit_normal(table, set->facet + corner->facet * dim, normal, &size);
     quadrature_positions(&rule, dim, table->x, face, x);
     for (int g = 0; g < rule.points; g++) {
-        double hat = rule.weight[g] * size * rule.barycentric[g * dim + vertex];
+        double weight = rule.weight[g] * size * rule.barycentric[g * dim + vertex];
         int64_t point = face_of[corner->facet] * table->per_face + g;
         for (int64_t i = table->lists->ptr[point]; row != NULL && i < table->lists->ptr[point + 1]; i++) {
-            enum status status = row_add(row, table->lists->idx[i], hat * table->phi[i], error);
+            enum status status = row_add(row, table->lists->idx[i], weight * table->phi[i], error);
             if (status != STATUS_OK) {
                 return status;
             }
         }
-        averages->area[part] += hat;
+        averages->area[part] += weight;
         int64_t sample = averages->sample_ptr[part + 1]++;
-        averages->sample_share[sample] = hat;
+        averages->sample_share[sample] = weight;
         averages->sample_point[sample] = corner->facet * table->per_face + g;
         for (int a = 0; a < dim; a++) {
-            averages->normal[part * dim + a] += hat * normal[a];
-            averages->position[part * dim + a] += hat * x[g * dim + a];
+            averages->normal[part * dim + a] += weight * normal[a];
+            averages->position[part * dim + a] += weight * x[g * dim + a];
             averages->sample_x[sample * dim + a] = x[g * dim + a];
         }
     }

@@ -44,8 +44,8 @@ double field_error_mean(const struct cells *cells, const double *value)
     return volume > 0.0 ? sum / volume : NAN;
 }
 
-/* hat[(dim + 1) * dim]: gradients of the hat functions of a cell, 1/m. */
-static double hat_gradients(const struct cells *cells, int64_t cell, double *hat)
+/* grad_N[(dim + 1) * dim]: gradients of the linear shape functions of a cell, 1/m. Returns its volume. */
+static double linear_gradients(const struct cells *cells, int64_t cell, double *grad_N)
 {
     int dim = cells->dim;
     const int32_t *node = cells->node + cell * (dim + 1);
@@ -59,15 +59,15 @@ static double hat_gradients(const struct cells *cells, int64_t cell, double *hat
                 face[at++] = node[i];
             }
         }
-        face_area_vector(dim, cells->x, face, hat + k * dim);
+        face_area_vector(dim, cells->x, face, grad_N + k * dim);
         double across = 0.0;
         for (int a = 0; a < dim; a++) {
-            across += hat[k * dim + a] * (cells->x[node[k] * dim + a] - cells->x[face[0] * dim + a]);
+            across += grad_N[k * dim + a] * (cells->x[node[k] * dim + a] - cells->x[face[0] * dim + a]);
         }
         /* The gradient is normal to the face, and 1 over the height. */
         double sign = across > 0.0 ? 1.0 : -1.0;
         for (int a = 0; a < dim; a++) {
-            hat[k * dim + a] *= sign / (dim * volume);
+            grad_N[k * dim + a] *= sign / (dim * volume);
         }
     }
     return volume;
@@ -78,13 +78,13 @@ static double cell_gradient(const struct cells *cells, int64_t cell, int64_t col
                             double *gradient)
 {
     int dim = cells->dim;
-    double hat[12], volume = hat_gradients(cells, cell, hat);
+    double grad_N[12], volume = linear_gradients(cells, cell, grad_N);
     memset(gradient, 0, (size_t)(cols * dim) * sizeof *gradient);
     for (int k = 0; k <= dim; k++) {
         const double *value = values + cells->node[cell * (dim + 1) + k] * cols;
         for (int64_t c = 0; c < cols; c++) {
             for (int a = 0; a < dim; a++) {
-                gradient[c * dim + a] += value[c] * hat[k * dim + a];
+                gradient[c * dim + a] += value[c] * grad_N[k * dim + a];
             }
         }
     }

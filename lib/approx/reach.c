@@ -159,7 +159,7 @@ enum status reach_begin(const struct reach *reach, const struct reach_places *pl
     return STATUS_OK;
 }
 
-/* Mark the candidates that are out of sight; *hidden counts them. A node looked at before is as it was. */
+/* Mark the candidates that are out of sight; *hidden counts them. A node checked before keeps its mark. */
 static enum status mark_hidden(const struct reach *reach, double widen, const int32_t *index, int64_t count,
                                struct reach_work *work, int64_t *hidden, struct error *error)
 {

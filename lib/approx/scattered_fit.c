@@ -124,7 +124,7 @@ done:
     return status;
 }
 
-/* The nearest points within reach: looks at the ways to the nearest, until all of them are. */
+/* The nearest points within reach: checks the ways to the nearest, until all of them are. */
 static enum status find_reached(const struct scattered_fit *fit, int32_t from, const double *x,
                                 struct nearest *nearest, struct error *error)
 {

@@ -144,9 +144,9 @@ static void limit_sag(const struct cells *cells, const struct faces *faces, cons
     int dim = cells->dim;
     for (int64_t f = 0; f < faces->boundary_count; f++) {
         const int32_t *node = faces->node + f * dim;
-        double beside = 0.0; /* the least angle at a node of the facet: small beside a corner of flat sides */
+        double least_angle = 0.0; /* at the nodes of the facet; small next to a corner of flat sides */
         for (int k = 0; k < dim; k++) {
-            beside = k == 0 ? angle[node[k]] : fmin(beside, angle[node[k]]);
+            least_angle = k == 0 ? angle[node[k]] : fmin(least_angle, angle[node[k]]);
         }
         for (int k = 0; k < dim; k++) {
             double distance = 0.0;
@@ -158,7 +158,7 @@ static void limit_sag(const struct cells *cells, const struct faces *faces, cons
                 distance = hypot(distance, middle - cells->x[node[k] * dim + a]);
             }
             if (angle[node[k]] > 0.0 && angle[node[k]] < corner_angle &&
-                beside > corner_share * angle[node[k]]) {
+                least_angle > corner_share * angle[node[k]]) {
                 size[node[k]] = fmin(size[node[k]], sqrt(8.0 * sag * distance / angle[node[k]]));
             }
         }

@@ -111,7 +111,7 @@ static bool exists(const struct octree *octree, int level, const int64_t at[3])
     return within(octree->count[level], at) && (level == 0 || is_split(octree, level - 1, parent));
 }
 
-/* A leaf, one of its sides, and who is told. */
+/* A leaf, one of its sides, and the callback for its tetrahedra. */
 struct side {
     const struct octree *octree;
     int level;
@@ -180,9 +180,9 @@ static enum status between_equals(const struct side *side, const int64_t beyond[
     return STATUS_OK;
 }
 
-/* A leaf beside a larger one: its side is cut along the diagonal from the middle of the larger side; a
- * tetrahedron of each triangle with each of the two centres. */
-static enum status beside_larger(const struct side *side, const int64_t beyond[3])
+/* The neighbour of the leaf is larger: the side is cut along the diagonal from the middle of the larger side;
+ * a tetrahedron of each triangle with each of the two centres. */
+static enum status join_larger(const struct side *side, const int64_t beyond[3])
 {
     const int64_t larger[3] = {beyond[0] / 2, beyond[1] / 2, beyond[2] / 2};
     int32_t corner[4][3], middle[3];
@@ -232,7 +232,7 @@ enum status octree_cells(const struct octree *octree, octree_tell *tell, void *c
                     continue;
                 }
                 if (!exists(octree, level, beyond)) {
-                    status = beside_larger(&side, beyond);
+                    status = join_larger(&side, beyond);
                 } else if (side.upper && !is_split(octree, level, beyond)) {
                     status = between_equals(&side, beyond);
                 }

@@ -3,8 +3,8 @@
  * Where cells have sides (support_options.side), each side is a body of its own, with the nodes of the
  * interface: a neighbour of a point is a node of the cells on the point's side. So shape functions have a
  * kink at an interface, as a displacement has where the stiffness jumps. What lies on an interface, a point
- * of a face or a node, takes the lowest of the sides that meet there: the field there is one, whichever side
- * it is looked at from. */
+ * of a face or a node, takes the lowest of the sides that meet there: the field there has the same value from
+ * every side. */
 #ifndef APPROX_SUPPORT_SPACE_H
 #define APPROX_SUPPORT_SPACE_H
 

@@ -1,4 +1,4 @@
-/* Parts of a body that are thin beside its cells: bending is too stiff there. */
+/* Parts of a body that are thin compared with its cells: they are too stiff in bending. */
 #ifndef APPROX_THIN_H
 #define APPROX_THIN_H
 

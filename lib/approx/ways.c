@@ -159,7 +159,7 @@ enum status ways_reach(struct ways *ways, int64_t place, bool *reached, struct e
                        reach->star_ptr[from + 1] - reach->star_ptr[from], node, &ways->work, &sees, error));
         double limit = most_detour * reach_distance(dim, x, reach->cells.x + (int64_t)node * dim);
         if (!sees && ways->searched < limit) {
-            TRY(search(ways, 1.5 * limit, error)); /* for the places that are asked for next, too */
+            TRY(search(ways, 1.5 * limit, error)); /* farther than needed here, for the next queries */
         }
         ways->verdict[place] = sees || ways->length[node] <= limit ? WAY_GOOD : WAY_NONE;
     }

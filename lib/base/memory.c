@@ -38,7 +38,7 @@ void *array_new_untouched(int64_t count, size_t size)
     if (array == NULL) {
         return NULL;
     }
-    /* Private pages that are given back are zeros when they are next looked at. */
+    /* Private pages that are given back read as zeros afterwards. */
     size_t before = (page - (uintptr_t)array % page) % page,
            pages = bytes > before ? (bytes - before) / page : 0;
     if (pages == 0 || madvise(array + before, pages * page, MADV_DONTNEED) != 0) {

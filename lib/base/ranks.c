@@ -171,7 +171,7 @@ done:
     return status;
 }
 
-/* What the others want from here: they are told how much, then which. */
+/* Exchange what each process wants from each other one: first the counts, then the lists. */
 static enum status exchange_lists(struct halo *halo, struct error *error)
 {
     enum status status;

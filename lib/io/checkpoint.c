@@ -134,7 +134,7 @@ static enum status fail_file(const char *file, struct error *error)
     return fail(error, STATUS_SYSTEM, "%s: %s", file, strerror(errno));
 }
 
-static enum status beside(const char *file, const char *ending, char **name, struct error *error)
+static enum status sibling_name(const char *file, const char *ending, char **name, struct error *error)
 {
     return asprintf(name, "%s%s", file, ending) < 0 ? (*name = NULL, fail_memory(error, file)) : STATUS_OK;
 }
@@ -195,8 +195,8 @@ enum status checkpoint_write(const char *file, bool keep_old, const struct strea
 {
     enum status status;
     char *new = NULL, *old = NULL;
-    TRY(beside(file, ".new", &new, error));
-    TRY(beside(file, ".old", &old, error));
+    TRY(sibling_name(file, ".new", &new, error));
+    TRY(sibling_name(file, ".old", &old, error));
     TRY(check_regular(file, error));
     TRY(write_new(new, stream, error));
     if ((keep_old && rename(file, old) != 0 && errno != ENOENT) || rename(new, file) != 0) {
@@ -218,7 +218,7 @@ enum status checkpoint_remove(const char *file, struct error *error)
     enum status status = STATUS_OK;
     for (size_t i = 0; i < sizeof endings / sizeof *endings; i++) {
         char *name;
-        TRY(beside(file, endings[i], &name, error));
+        TRY(sibling_name(file, endings[i], &name, error));
         if (unlink(name) != 0 && errno != ENOENT) {
             status = fail_file(name, error);
         }
@@ -254,7 +254,7 @@ enum status checkpoint_read(const char *file, const struct checkpoint_identity *
     *source = CHECKPOINT_NEWEST;
     stream_init(stream);
     TRY(check_regular(file, error));
-    TRY(beside(file, ".old", &old, error));
+    TRY(sibling_name(file, ".old", &old, error));
     status = read_one(file, stream, &exists, error);
     if (status != STATUS_OK) {
         *source = CHECKPOINT_OLD;

@@ -1,4 +1,4 @@
-/* What sections of known names promise to those who read them (lib/README.md), checked. */
+/* Check of the sections with known names against their definitions in lib/README.md. */
 #ifndef IO_INVARIANTS_H
 #define IO_INVARIANTS_H
 
@@ -9,8 +9,8 @@ typedef void violation_function(void *context, const char *text);
 
 /* Check every section whose name is known, whatever else the stream holds: types and shapes that agree with
  * each other, indices in range, ascending lists, finite coordinates, positive weights, radii and cell
- * volumes, partition of unity within 1e-9. At most one violation of each kind is told per section, the first;
- * the number told is returned. Sections that are absent break nothing. */
+ * volumes, partition of unity within 1e-9. Of each kind of violation the first in a section is reported;
+ * returns the number of reports. Absent sections are no violation. */
 int64_t stream_check(const struct stream *stream, violation_function *tell, void *context);
 
 #endif

@@ -50,7 +50,7 @@ struct msh_type {
 struct msh_type msh_type(int64_t number);
 
 /* Read a mesh from its bytes. STATUS_INPUT for whatever is not a whole, sound mesh file, with a message that
- * names section and record; a file of another program is told with the command that converts it.
+ * names section and record; for a file of another program the message states the command that converts it.
  * STATUS_SYSTEM where memory is short. Time and memory are in proportion to the size, whatever the file says
  * of its own. On failure *msh is empty. */
 MUST_CHECK enum status msh_parse(struct msh *msh, const char *bytes, size_t size, struct error *error);

@@ -101,8 +101,8 @@ static void key_cell(const struct msh *msh, int64_t element, struct keyed_cell *
     }
 }
 
-/* is_cell[element]: it is of the mesh's dimension, and the first of those with its nodes. The rest is told,
- * and so are cells in two groups. */
+/* is_cell[element]: it is of the mesh's dimension, and the first element with its nodes. Repeated elements
+ * and cells in two groups are reported. */
 static enum status find_cells(struct mesh_draft *draft, bool is_cell[])
 {
     enum status status;

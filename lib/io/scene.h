@@ -54,7 +54,7 @@ enum scene_curve_kind { SCENE_CURVE_SMOOTH, SCENE_CURVE_LINEAR, SCENE_CURVE_STEP
 enum scene_side { SCENE_LEFT, SCENE_RIGHT, SCENE_FRONT, SCENE_BACK };
 
 enum scene_constraints { SCENE_EBCIEM, SCENE_DIRECT };
-enum scene_constraint_points { SCENE_HAT_AVERAGES, SCENE_NODE_VALUES };
+enum scene_constraint_points { SCENE_NODAL_AVERAGES, SCENE_NODE_VALUES };
 enum scene_volume { SCENE_NODAL_VOLUME, SCENE_POINTWISE_VOLUME };
 
 /* Names of groups, each different; the key is absent when count == 0. */

@@ -12,7 +12,7 @@
 enum { FILE_LIMIT = 64 << 10, HEADER_LIMIT = 49 }; /* libinih cuts headers beyond 49 bytes silently */
 
 /* libinih reports neither lines, nor empty sections, nor anything repeated or cut. So we hand it one cleaned
- * line at a time, which tells the line of each entry, and look at the headers ourselves. */
+ * line at a time, so that the line of each entry is known, and check the headers ourselves. */
 struct reading {
     struct ini_file *file;
     const char *at; /* rest of the text */

@@ -30,21 +30,21 @@ static void barycentric(const struct cells *cells, int64_t cell, const double *x
     }
 }
 
-/* node, value[point_count * (dim + 1)]: the vertices of the cell of each point, and their hat functions
- * there. */
-static enum status list_hats(const struct assembly *input, int32_t **node, double **value,
-                             struct error *error)
+/* vertex, coordinate[point_count * (dim + 1)]: the vertices of the cell of each point, and the point's
+ * barycentric coordinates. */
+static enum status list_vertices(const struct assembly *input, int32_t **vertex, double **coordinate,
+                                 struct error *error)
 {
     enum status status;
     const struct cells *cells = &input->cells;
     const int32_t *cell = input->point_cell;
     int corners = cells->dim + 1;
-    TRY(NEW_ARRAY(node, input->point_count * corners, error));
-    TRY(NEW_ARRAY(value, input->point_count * corners, error));
+    TRY(NEW_ARRAY(vertex, input->point_count * corners, error));
+    TRY(NEW_ARRAY(coordinate, input->point_count * corners, error));
     for (int64_t q = 0; q < input->point_count; q++) {
-        memcpy(*node + q * corners, cells->node + (int64_t)cell[q] * corners,
-               (size_t)corners * sizeof **node);
-        barycentric(cells, cell[q], input->x + q * cells->dim, *value + q * corners);
+        memcpy(*vertex + q * corners, cells->node + (int64_t)cell[q] * corners,
+               (size_t)corners * sizeof **vertex);
+        barycentric(cells, cell[q], input->x + q * cells->dim, *coordinate + q * corners);
     }
 done:
     return status;
@@ -54,13 +54,13 @@ static enum status build_body(struct assembly *input, struct solid_system *syste
 {
     enum status status;
     struct material_list *materials = &input->materials;
-    int32_t *hat_node = NULL;
-    double *hat_value = NULL;
+    int32_t *vertex = NULL;
+    double *coordinate = NULL;
     if (input->smoothed && assembly_holds_averages(input)) {
         TRY(assembly_soften_ends(input, materials, error));
     }
     if (!input->pointwise_volume) {
-        TRY(list_hats(input, &hat_node, &hat_value, error));
+        TRY(list_vertices(input, &vertex, &coordinate, error));
     }
     struct smoothed_cells_input smoothed = {.x = input->cells.x,
                                             .cell_node = input->cells.node,
@@ -87,14 +87,14 @@ static enum status build_body(struct assembly *input, struct solid_system *syste
                               .material = materials->of_point,
                               .material_count = materials->count,
                               .group = materials->section,
-                              .hat_node = hat_node,
-                              .hat_value = hat_value,
+                              .vertex = vertex,
+                              .barycentric = coordinate,
                               .smoothed = input->smoothed ? &smoothed : NULL,
                               .ranks = input->ranks};
     TRY(body_build(&body, &system->body, error));
 done:
-    free(hat_node);
-    free(hat_value);
+    free(vertex);
+    free(coordinate);
     return status;
 }
 

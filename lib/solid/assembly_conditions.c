@@ -167,11 +167,12 @@ static enum status add_side(const struct prescription *p, const struct boundary_
     return status;
 }
 
-/* Boundary averages for a condition. Split, two for each node of an edge, they carry a traction that jumps
- * there; not split they leave the field beside the edge as free as elsewhere. A displacement that is constant
- * makes no linear field but rest, whose traction could jump; and on curved sides none is exact anyway. */
-static enum status build_hats(const struct prescription *p, struct boundary_averages *averages,
-                              struct boundary_sides *sides, struct error *error)
+/* Boundary averages for a condition. With a split, a node on an edge has one average for each side, and the
+ * traction may jump there. Without, the field near the edge is as free as elsewhere. No split is needed for a
+ * constant displacement, as the only linear field that it admits is rest, without tractions. On curved sides
+ * no linear field is exact in either way. */
+static enum status build_averages(const struct prescription *p, struct boundary_averages *averages,
+                                  struct boundary_sides *sides, struct error *error)
 {
     const struct facet_set *set = &p->condition->facets;
     bool split = p->condition->kind == CONDITION_NORMAL;
@@ -190,13 +191,13 @@ static enum status build_hats(const struct prescription *p, struct boundary_aver
     return boundary_sides_build(&p->input->face_table, set, true, averages, sides, error);
 }
 
-/* Rows on boundary averages, then means over flat sides. */
-static enum status add_hats(struct prescription *p, struct error *error)
+/* Constraint rows on boundary averages, then on means over flat sides. */
+static enum status add_averages(struct prescription *p, struct error *error)
 {
     enum status status;
     struct boundary_averages averages = {0};
     struct boundary_sides sides = {0};
-    TRY(build_hats(p, &averages, &sides, error));
+    TRY(build_averages(p, &averages, &sides, error));
     TRY(NEW_ARRAY(&p->shared, sides.group_count * p->input->cells.dim, error));
     TRY(add_all(p, &averages, &sides, sides.node_average_count, error));
     for (int64_t a = sides.node_average_count; a < averages.count; a++) {
@@ -251,7 +252,7 @@ static enum status add_condition(struct prescription *p, struct error *error)
         TRY(scattered_fit_build(&p->fit, error));
     }
     if (condition->facets.count > 0 && assembly_holds_averages(p->input)) {
-        TRY(add_hats(p, error));
+        TRY(add_averages(p, error));
         TRY(add_penalties(p, error));
     } else {
         TRY(add_nodes(p, error));

@@ -5,12 +5,12 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* By the shear modulus: that of pressure waves at Poisson's ratio .49. */
+/* Penalty modulus by the shear modulus: the P-wave modulus at Poisson's ratio .49. */
 static const double penalty_factor = 50.0;
 
-/* At points so many times as much. A surface that multipliers alone press on, of which the pressure is some
- * ten shear moduli, is not stable: it buckles away from what presses unless the penalty is stiffer than that.
- */
+/* At quadrature points so many times as much. Under a pressure of some ten shear moduli that multipliers
+ * alone exert, the boundary is unstable: it buckles between the nodes unless the penalty is stiffer than the
+ * pressure. */
 static const double points_share = 8.0;
 
 /* A curve that takes more than half of its largest factor in this share of the scene's time jumps. */
@@ -56,14 +56,16 @@ done:
     return status;
 }
 
-/* Whether the facets are flat about each node, to a thousandth: else they are chords of a curved boundary. */
-static bool is_flat(const struct boundary_averages *points, const struct boundary_averages *hats, int dim)
+/* Whether the facets around each node are flat, to 1e-3 in the normals. Else they are chords of a curved
+ * boundary. */
+static bool is_flat(const struct boundary_averages *points, const struct boundary_averages *averages, int dim)
 {
-    for (int64_t a = 0; a < hats->count; a++) {
-        for (int64_t s = hats->sample_ptr[a]; s < hats->sample_ptr[a + 1]; s++) {
+    for (int64_t a = 0; a < averages->count; a++) {
+        for (int64_t s = averages->sample_ptr[a]; s < averages->sample_ptr[a + 1]; s++) {
             double away2 = 0.0;
             for (int c = 0; c < dim; c++) {
-                double d = hats->normal[a * dim + c] - points->normal[hats->sample_point[s] * dim + c];
+                double d =
+                    averages->normal[a * dim + c] - points->normal[averages->sample_point[s] * dim + c];
                 away2 += d * d;
             }
             if (away2 > 1e-6) {
@@ -74,24 +76,25 @@ static bool is_flat(const struct boundary_averages *points, const struct boundar
     return true;
 }
 
-/* What the contact acts on. In a relaxation the quadrature points of flat facets, with multipliers at the
- * nodes. Those of chords lie beneath the boundary, each by another amount: then boundary averages, which are
- * raised to their nodes; and in dynamics, where each point costs. */
+/* The points that the contact acts on. On flat facets a relaxation uses the quadrature points, with
+ * multipliers at the nodes. On chords of a curved boundary these lie below it, each by another amount: there
+ * boundary averages, raised to their nodes, are the points. Dynamics uses boundary averages too, as each
+ * point costs time in every step. */
 static enum status build_points(const struct assembly *input, const struct facet_set *set,
-                                struct boundary_averages *points, struct boundary_averages *hats,
+                                struct boundary_averages *points, struct boundary_averages *averages,
                                 struct error *error)
 {
     enum status status;
     const struct face_table *table = &input->face_table;
-    TRY(boundary_averages_build(table, set, hats, error));
+    TRY(boundary_averages_build(table, set, averages, error));
     TRY(boundary_points_build(table, set, points, error));
-    if (input->in_time || !is_flat(points, hats, table->dim)) {
+    if (input->in_time || !is_flat(points, averages, table->dim)) {
         boundary_averages_free(points);
-        *points = *hats;
-        *hats = (struct boundary_averages){0};
+        *points = *averages;
+        *averages = (struct boundary_averages){0};
         return STATUS_OK;
     }
-    for (int64_t p = 0; p < points->count; p++) { /* each stands for another corner of its facet */
+    for (int64_t p = 0; p < points->count; p++) { /* each point of a facet gets another corner of it */
         points->node[p] = set->facet[p / table->per_face * table->dim + p % table->dim];
     }
 done:
@@ -104,16 +107,17 @@ static enum status add_contact(const struct assembly *input, int32_t number, str
     enum status status;
     const struct contact_condition *condition = &input->contacts[number];
     struct rigid_surface surface = {0};
-    struct boundary_averages *points = &system->contact_points[number], *hats = &system->contact_hats[number];
+    struct boundary_averages *points = &system->contact_points[number],
+                             *averages = &system->contact_averages[number];
     struct contact *contact = &system->contacts[number];
     system->contact_count++;
-    TRY(build_points(input, &condition->facets, points, hats, error));
+    TRY(build_points(input, &condition->facets, points, averages, error));
     TRY(rigid_build(system->dim, condition->rigid_count, condition->corners, condition->flip, &surface,
                     error));
-    TRY(contact_build(points, hats->count > 0 ? hats : NULL, system->X, system->dim, &surface,
+    TRY(contact_build(points, averages->count > 0 ? averages : NULL, system->X, system->dim, &surface,
                       condition->stiffness, contact, error));
     if (condition->stiffness == 0.0) {
-        contact_set_stiffness(contact, (hats->count > 0 ? points_share : 1.0) *
+        contact_set_stiffness(contact, (averages->count > 0 ? points_share : 1.0) *
                                            assembly_penalty_modulus(system, penalty_factor));
     }
     contact->section = number;
@@ -132,7 +136,7 @@ enum status assembly_add_contacts(const struct assembly *input, struct solid_sys
     }
     TRY(NEW_ARRAY(&system->contacts, sections, error));
     TRY(NEW_ARRAY(&system->contact_points, sections, error));
-    TRY(NEW_ARRAY(&system->contact_hats, sections, error));
+    TRY(NEW_ARRAY(&system->contact_averages, sections, error));
     for (int64_t i = 0; i < sections; i++) {
         TRY(add_contact(input, (int32_t)i, system, error));
     }

@@ -31,11 +31,12 @@ static const double end_stiffness = 0.85;
  * large without. Triangles of the same size are right to .2 % as they are. */
 static const double edge_bulk = 15.0;
 
-/* What a cell is beside, as bits. */
-enum { AT_SMOOTH_END = 1, AT_EDGE = 2, SIDES = 4 };
+/* The kinds of end that a cell has a node on, as bits; and how many sets of them there are. */
+enum { AT_SMOOTH_END = 1, AT_EDGE = 2, KIND_SETS = 4 };
 
-/* Set the bit `at` of the cells that touch ends of one kind. */
-static enum status mark_cells(const struct assembly *input, enum boundary_end kind, int at, int *beside,
+/* Set the bit `at` of the cells that have a node on an end of this kind. Cells beneath held facets do not get
+ * the bit of smooth ends. */
+static enum status mark_cells(const struct assembly *input, enum boundary_end kind, int at, int *end_kinds,
                               struct error *error)
 {
     enum status status;
@@ -46,12 +47,12 @@ static enum status mark_cells(const struct assembly *input, enum boundary_end ki
     TRY(boundary_find_ends(&input->face_table, kind, held, end, error));
     for (int64_t c = 0; c < input->cells.count; c++) {
         for (int k = 0; k < corners; k++) {
-            beside[c] |= end[input->cells.node[c * corners + k]] ? at : 0;
+            end_kinds[c] |= end[input->cells.node[c * corners + k]] ? at : 0;
         }
     }
     for (int64_t f = 0; f < input->boundary.count; f++) {
         if (held[f] && kind == BOUNDARY_END_SMOOTH) {
-            beside[input->boundary.cell[2 * f]] &= ~at;
+            end_kinds[input->boundary.cell[2 * f]] &= ~at;
         }
     }
 done:
@@ -60,16 +61,16 @@ done:
     return status;
 }
 
-/* Append the material m as it is in cells beside ends. */
-static void add_softened(struct material_list *list, int32_t m, int beside)
+/* Append the material m with the moduli of cells at these kinds of end. */
+static void add_softened(struct material_list *list, int32_t m, int end_kinds)
 {
     struct material *material = &list->items[list->count];
     *material = list->items[m];
-    if (beside & AT_SMOOTH_END) {
+    if (end_kinds & AT_SMOOTH_END) {
         material->shear_modulus *= end_stiffness;
         material->bulk_modulus *= end_stiffness;
     }
-    if (beside & AT_EDGE) {
+    if (end_kinds & AT_EDGE) {
         material->bulk_modulus = fmin(material->bulk_modulus, edge_bulk * material->shear_modulus);
     }
     list->section[list->count++] = list->section[m];
@@ -80,35 +81,36 @@ enum status assembly_soften_ends(const struct assembly *input, struct material_l
 {
     enum status status;
     const int32_t *cell = input->point_cell;
-    int *beside = NULL;
-    int64_t *softened = NULL; /* of each material and SIDES, 0 if there is none yet */
-    struct material *items = array_grow(list->items, SIDES * list->count, sizeof *items);
+    int *end_kinds = NULL;
+    int64_t *softened =
+        NULL; /* of each material and set of kinds: its softened material, 0 if there is none yet */
+    struct material *items = array_grow(list->items, KIND_SETS * list->count, sizeof *items);
     list->items = items != NULL ? items : list->items;
-    int32_t *section = array_grow(list->section, SIDES * list->count, sizeof *section);
+    int32_t *section = array_grow(list->section, KIND_SETS * list->count, sizeof *section);
     list->section = section != NULL ? section : list->section;
     if (items == NULL || section == NULL) {
         return fail_memory(error, "materials");
     }
-    TRY(NEW_ARRAY(&beside, input->cells.count, error));
-    TRY(NEW_ARRAY(&softened, SIDES * list->count, error));
-    TRY(mark_cells(input, BOUNDARY_END_SMOOTH, AT_SMOOTH_END, beside, error));
+    TRY(NEW_ARRAY(&end_kinds, input->cells.count, error));
+    TRY(NEW_ARRAY(&softened, KIND_SETS * list->count, error));
+    TRY(mark_cells(input, BOUNDARY_END_SMOOTH, AT_SMOOTH_END, end_kinds, error));
     if (input->cells.dim == 3) {
-        TRY(mark_cells(input, BOUNDARY_END_SHARP, AT_EDGE, beside, error));
+        TRY(mark_cells(input, BOUNDARY_END_SHARP, AT_EDGE, end_kinds, error));
     }
     for (int64_t q = 0; q < input->point_count; q++) {
         int32_t m = list->of_point[q];
-        int64_t variant = (int64_t)SIDES * m + beside[cell[q]];
-        if (beside[cell[q]] == 0) {
+        int64_t variant = (int64_t)KIND_SETS * m + end_kinds[cell[q]];
+        if (end_kinds[cell[q]] == 0) {
             continue;
         }
         if (softened[variant] == 0) {
             softened[variant] = list->count;
-            add_softened(list, m, beside[cell[q]]);
+            add_softened(list, m, end_kinds[cell[q]]);
         }
         list->of_point[q] = (int32_t)softened[variant];
     }
 done:
-    free(beside);
+    free(end_kinds);
     free(softened);
     return status;
 }

@@ -31,8 +31,8 @@ struct body_input {
     const int32_t *group; /* material_count: volumes are averaged over the materials of a group, such as those
                              of a region with a table; NULL: each by itself */
     /* For nodal volumes; NULL: the pointwise volumetric law throughout. */
-    const int32_t *hat_node; /* point_count * (dim + 1): vertices of the background cell of each point */
-    const double *hat_value; /* point_count * (dim + 1): their hat functions at the point, sum 1 */
+    const int32_t *vertex;     /* point_count * (dim + 1): vertices of the background cell of each point */
+    const double *barycentric; /* point_count * (dim + 1): its barycentric coordinates there, sum 1 */
     const struct smoothed_cells_input *smoothed; /* the points are cells, in their order; NULL: any points */
     const struct ranks *ranks;                   /* processes that compute the body together; NULL: one */
 };
@@ -63,7 +63,7 @@ struct nodal_pressures {
     double *held;    /* pressure held since an augmentation, Pa; */
     double *weight;  /* by which it counts, m3/Pa (2D: m2/Pa): 0 without a limit */
     bool limited;    /* some weights are not 0 */
-    int64_t *place;  /* scratch, as */
+    int64_t *entry;  /* scratch, as */
     double *scratch; /* 3 of each row */
     int iterations;
     double centre, half, scale; /* of the interval of eigenvalues of S^-1 A; of the sum */
@@ -165,7 +165,8 @@ void body_volume_ratio(struct body *body, double *ratio);
  * limit of the bulk modulus (body_limit_bulk) counts. */
 void body_diagonal(struct body *body, double *stiffness);
 
-/* The same of smoothed cells with the hat functions of the cells for phi, which is quicker; or with F = I. */
+/* The same of smoothed cells, with the linear shape functions of the cells in place of phi, which is faster.
+ * `rest`: with F = I. */
 void body_nodal_diagonal(struct body *body, bool rest, double *stiffness);
 
 #endif

@@ -61,7 +61,8 @@ static struct bound bound_at(const struct body *body, int64_t q, const double *F
     struct bound bound = {.smoothing = 0.0};
     double C[9], I1 = 0.0;
     double J = determinant(F);
-    if (!(J > 0.0 && isfinite(J))) { /* as at rest: its bounds stay positive until the run is told */
+    if (!(J > 0.0 &&
+          isfinite(J))) { /* inverted: use F = I, so that the bounds stay positive until the run stops */
         J = 1.0;
         F = at_rest;
     }
@@ -127,7 +128,7 @@ static void add_point(const struct body *body, int64_t q, const double F[9], dou
     add_functions(body, &bound, count, matrix->idx + at, work->gradient, to->of_node);
 }
 
-/* The same with the hat functions of the cell. */
+/* The same with the linear shape functions of the cell. */
 static void add_cell(const struct body *body, int64_t q, const double F[9], double J, void *context)
 {
     (void)J;

@@ -1,12 +1,12 @@
-/* What of a body this process computes, of several that compute it together (base/ranks.h): stretches of its
- * points and of its nodes, in the body's order, which is along a curve, so that they are compact. One process
- * computes all.
+/* The part of a body that this process computes, where several compute it together (base/ranks.h): intervals
+ * of its points and of its nodes in the body's order. This order follows a Morton curve, so that the parts
+ * are compact. A single process computes all.
  *
- * An evaluation takes whole displacements, and computes the rows of the operator that own points or cells
- * look at, their stresses, and by the rows of the transposed operator the forces on own nodes, which are
- * gathered. In between a few rows at the borders are exchanged: those that own nodes are in and others have
- * computed. Of smoothed cells a row has forces from all cells around it; it is summed by the process of the
- * first of these. */
+ * An evaluation takes the displacements of all nodes. It computes the rows of the operator that own points or
+ * cells need, the stresses there, and, with the rows of the transposed operator, the forces on own nodes.
+ * These are gathered. In between, processes exchange rows at their borders: those with own nodes in them that
+ * others have computed. With smoothed cells a row has forces from all cells around it; the process of the
+ * first of these cells sums them. */
 #ifndef SOLID_BODY_SHARE_H
 #define SOLID_BODY_SHARE_H
 
@@ -36,10 +36,10 @@ MUST_CHECK enum status body_share_cut(const struct body_input *input, struct bod
 /* Share out the nodal volumes, and list the strains that they need. */
 MUST_CHECK enum status body_share_volumes(struct body *body, struct error *error);
 
-/* The process whose node that is; `body` as ranks and halos want it. */
+/* The process that owns a node, the caller's number. `body`: a struct body, untyped for use as a callback. */
 int body_share_owner(const void *body, int64_t node);
 
-/* wanted[rows of the operator]: those that own points or cells look at. Corners of cells are known. */
+/* wanted[rows of the operator]: those that own points or cells need. Needs of_corner of smoothed cells. */
 MUST_CHECK enum status body_share_values(const struct body *body, bool **wanted, struct error *error);
 
 /* The halos of rows, when operator and transpose are there; wanted[rows]: those that own nodes are in. */

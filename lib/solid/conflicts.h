@@ -24,8 +24,8 @@ void nodal_constraints_free(struct nodal_constraints *nodal_constraints);
 
 /* Two conditions that prescribe values of one node along one direction, further apart than a tenth of the
  * largest value that either prescribes, are an error that names them. Of those that are nearer, as measured
- * values at a rim may be, the first is told in `note`, which is empty when all agree; the one that holds
- * fewer directions decides, or the one that comes first. */
+ * values at a rim may be, the first is reported in `note`, which is empty when all agree. The condition with
+ * fewer directions takes precedence, or else the one that comes first. */
 MUST_CHECK enum status nodal_constraints_check(const struct assembly *input,
                                                struct nodal_constraints *nodal_constraints,
                                                struct error *note, struct error *error);

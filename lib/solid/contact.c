@@ -16,12 +16,12 @@ enum { POINTS_FOR_THREAD = 1000 }; /* see chunks_of */
 /* The width of the facets at point p, m. A point of a facet is half or a third of it. */
 static double width_of(const struct contact *contact, int64_t p)
 {
-    int points = contact->hats == NULL ? 1 : contact->dim;
+    int points = contact->averages == NULL ? 1 : contact->dim;
     double area = contact->points->area[p] * points;
     return contact->dim == 2 ? area : sqrt(area);
 }
 
-/* How deep a point may be when it is first seen behind the surface without having gone through, m. */
+/* Largest depth at which a point that is found behind the surface counts as having gone through it, m. */
 static double most_depth(const struct contact *contact, int64_t p)
 {
     return 0.5 * width_of(contact, p);
@@ -34,8 +34,8 @@ static void take_mean(const struct contact *contact, int64_t p, const double *v,
     average_take(&average, contact->dim, v, x);
 }
 
-/* Cosine between the body's outward normal at point p and the direction in which the surface's side lies: at
- * a place where they can touch, it is about -1. */
+/* Cosine between the body's outward normal at point p and the surface's normal. Where they can touch it is
+ * about -1. */
 static double facing(const struct contact *contact, int64_t p, const struct rigid_contact *closest)
 {
     double cosine = 0.0;
@@ -45,8 +45,8 @@ static double facing(const struct contact *contact, int64_t p, const struct rigi
     return cosine;
 }
 
-/* No point may start far behind the surface, or on it or behind it with its back to it: shallow, as around a
- * body that fills a shell, but on the other side. */
+/* No point may start far behind the surface. No point may start on it or behind it while the body faces away
+ * from it, as a body on the wrong side of a shell does at a small depth. */
 static enum status check_side(const struct contact *contact, struct error *error)
 {
     for (int64_t p = 0; p < contact->count; p++) {
@@ -77,26 +77,26 @@ static void raise(int dim, double share, const double *from, const double *node,
     }
 }
 
-/* Where the points are at rest. The facets are chords of a curved boundary. A quadratic one with the normals
- * n_a at the nodes lies above point p by sum_a N_a(p) (x_a - x_p) . n_a / 2; a boundary average, which lies
- * beneath its node, is raised to it. Zero on flats. */
+/* Positions of the points at rest. The facets are chords of a curved boundary. A quadratic boundary with the
+ * normals n_a at the nodes lies above point p by sum_a N_a(p) (x_a - x_p) . n_a / 2. A boundary average lies
+ * below its node and is raised to it. Both offsets are zero on flat facets. */
 static void place_at_rest(struct contact *contact, const double *X)
 {
     int dim = contact->dim;
-    const struct boundary_averages *points = contact->points, *hats = contact->hats;
+    const struct boundary_averages *points = contact->points, *averages = contact->averages;
     for (int64_t p = 0; p < contact->count; p++) {
         double *x = contact->rest + p * dim;
         take_mean(contact, p, X, x);
-        if (hats == NULL) {
+        if (averages == NULL) {
             raise(dim, 1.0, x, X + (int64_t)points->node[p] * dim, points->normal + p * dim, x);
         }
     }
-    for (int64_t a = 0; hats != NULL && a < hats->count; a++) {
-        for (int64_t s = hats->sample_ptr[a]; s < hats->sample_ptr[a + 1]; s++) {
-            int64_t p = hats->sample_point[s];
-            double hat = hats->sample_share[s] * hats->area[a] / points->area[p];
-            raise(dim, 0.5 * hat, points->position + p * dim, X + (int64_t)hats->node[a] * dim,
-                  hats->normal + a * dim, contact->rest + p * dim);
+    for (int64_t a = 0; averages != NULL && a < averages->count; a++) {
+        for (int64_t s = averages->sample_ptr[a]; s < averages->sample_ptr[a + 1]; s++) {
+            int64_t p = averages->sample_point[s];
+            double weight = averages->sample_share[s] * averages->area[a] / points->area[p];
+            raise(dim, 0.5 * weight, points->position + p * dim, X + (int64_t)averages->node[a] * dim,
+                  averages->normal + a * dim, contact->rest + p * dim);
         }
     }
 }
@@ -122,19 +122,19 @@ static enum status allocate(double stiffness, struct contact *contact, struct er
         contact->stiffness[p] = stiffness;
     }
     for (int64_t i = 0; i < count * dim; i++) {
-        contact->checked_x[i] = INFINITY; /* never looked at: it may be in contact from the start */
+        contact->checked_x[i] = INFINITY; /* no search yet: it may be in contact from the start */
     }
 done:
     return status;
 }
 
-enum status contact_build(const struct boundary_averages *points, const struct boundary_averages *hats,
+enum status contact_build(const struct boundary_averages *points, const struct boundary_averages *averages,
                           const double *X, int dim, struct rigid_surface *surface, double stiffness,
                           struct contact *contact, struct error *error)
 {
     enum status status;
     *contact = (struct contact){
-        .dim = dim, .count = points->count, .points = points, .hats = hats, .surface = *surface};
+        .dim = dim, .count = points->count, .points = points, .averages = averages, .surface = *surface};
     *surface = (struct rigid_surface){0};
     TRY(allocate(stiffness, contact, error));
     place_at_rest(contact, X);
@@ -183,23 +183,23 @@ enum status contact_state(struct contact *contact, const char *prefix, const str
         {"checked_normal", STATE_NUMBERS, contact->checked_normal, count * dim},
     };
     enum status status = state_visit(state, prefix, values, sizeof values / sizeof *values, error);
-    contact_spread_multipliers(contact); /* whichever way the visit goes */
+    contact_spread_multipliers(contact); /* needed after reading, harmless after writing */
     return status;
 }
 
-/* Whether contact node a, when it was last looked at, was in front of the plane that touches the surface
- * closest to x, where it now is. */
-static bool was_in_front(const struct contact *contact, int64_t a, const double *x,
+/* Whether point p was, at its last search, in front of the tangent plane of the surface at the point closest
+ * to x, its present position. */
+static bool was_in_front(const struct contact *contact, int64_t p, const double *x,
                          const struct rigid_contact *closest)
 {
     double height = closest->gap;
     for (int c = 0; c < contact->dim; c++) {
-        height += (contact->checked_x[a * contact->dim + c] - x[c]) * closest->normal[c];
+        height += (contact->checked_x[p * contact->dim + c] - x[c]) * closest->normal[c];
     }
-    return height >= -round_off * width_of(contact, a);
+    return height >= -round_off * width_of(contact, p);
 }
 
-/* Whether what is seen presses on another place of the surface's corners and facets than at the last step. */
+/* Whether the point presses on a corner or an edge, or on another facet than at the last step. */
 static bool has_turned(const struct contact *contact, int64_t p, const struct rigid_contact *closest)
 {
     double turn2 = 0.0;
@@ -210,13 +210,13 @@ static bool has_turned(const struct contact *contact, int64_t p, const struct ri
     return closest->on_edge || (contact->checked_distance[p] < 0.0 && turn2 > same_normal * same_normal);
 }
 
-/* Find the surface at point p. */
-static void look(struct contact *contact, int64_t p, struct contact_view *view)
+/* Search for the surface at point p. */
+static void search(struct contact *contact, int64_t p, struct contact_view *view)
 {
     struct rigid_contact closest = rigid_closest(&contact->surface, view->sought, INFINITY);
     bool was_inside = contact->checked_distance[p] < 0.0 && !contact->behind[p];
     double gap = closest.found ? closest.gap : INFINITY;
-    view->looked = true;
+    view->searched = true;
     view->behind = gap < 0.0 && (contact->behind[p] || (!was_inside && -gap > most_depth(contact, p) &&
                                                         !was_in_front(contact, p, view->sought, &closest)));
     view->turned = gap < 0.0 && !view->behind && has_turned(contact, p, &closest);
@@ -229,7 +229,7 @@ static void look(struct contact *contact, int64_t p, struct contact_view *view)
     }
 }
 
-/* How near the place that is sought of point p may have come to the surface since it was looked at, m. */
+/* Lower bound of the distance of y_p from the surface, from that at the last search, m. */
 static double least_distance(const struct contact *contact, int64_t p, const struct contact_view *view)
 {
     double moved2 = 0.0;
@@ -240,8 +240,8 @@ static double least_distance(const struct contact *contact, int64_t p, const str
     return contact->checked_distance[p] - sqrt(moved2);
 }
 
-/* Gaps and pressures of the points from `begin` to before `end`. The surface is not looked for where it is
- * too far away for a pressure: the gap is then that of the last look. */
+/* Gaps and pressures of the points from `begin` to before `end`. Where the surface is too far away for a
+ * pressure it is not searched for, and the gap is that of the last search. */
 static void measure_points(struct contact *contact, int64_t begin, int64_t end, const double *u, bool all)
 {
     int dim = contact->dim;
@@ -256,12 +256,12 @@ static void measure_points(struct contact *contact, int64_t begin, int64_t end, 
         for (int c = 0; c < dim; c++) {
             view->sought[c] = view->x[c] - contact->held[p * dim + c] / contact->stiffness[p];
         }
-        view->looked = view->turned = false;
+        view->searched = view->turned = false;
         contact->gap[p] = contact->checked_distance[p];
         contact->pressure[p] = 0.0;
         memcpy(view->normal, contact->checked_normal + p * dim, (size_t)dim * sizeof *normal);
         if (all || !(least_distance(contact, p, view) > 0.0)) {
-            look(contact, p, view);
+            search(contact, p, view);
         }
         memcpy(normal, view->normal, (size_t)dim * sizeof *normal);
         rigid_place_turn(&contact->place, dim, normal);
@@ -275,45 +275,45 @@ void contact_move(struct contact *contact, const double *factor)
 
 void contact_measure(struct contact *contact, const double *u, bool all)
 {
-    struct chunks nodes = chunks_of(contact->count, POINTS_FOR_THREAD);
-#pragma omp parallel for schedule(static) num_threads(nodes.threads)
-    for (int64_t c = 0; c < nodes.count; c++) {
-        measure_points(contact, chunks_begin(&nodes, c), chunks_begin(&nodes, c + 1), u, all);
+    struct chunks points = chunks_of(contact->count, POINTS_FOR_THREAD);
+#pragma omp parallel for schedule(static) num_threads(points.threads)
+    for (int64_t c = 0; c < points.count; c++) {
+        measure_points(contact, chunks_begin(&points, c), chunks_begin(&points, c + 1), u, all);
     }
 }
 
 void contact_accept(struct contact *contact)
 {
     int dim = contact->dim;
-    for (int64_t a = 0; a < contact->count; a++) {
-        const struct contact_view *view = &contact->view[a];
-        if (view->looked) {
-            contact->behind[a] = view->behind;
-            contact->checked_distance[a] = view->distance;
-            memcpy(contact->checked_x + a * dim, view->sought, (size_t)dim * sizeof *view->sought);
-            memcpy(contact->checked_normal + a * dim, view->normal, (size_t)dim * sizeof *view->normal);
+    for (int64_t p = 0; p < contact->count; p++) {
+        const struct contact_view *view = &contact->view[p];
+        if (view->searched) {
+            contact->behind[p] = view->behind;
+            contact->checked_distance[p] = view->distance;
+            memcpy(contact->checked_x + p * dim, view->sought, (size_t)dim * sizeof *view->sought);
+            memcpy(contact->checked_normal + p * dim, view->normal, (size_t)dim * sizeof *view->normal);
         }
     }
 }
 
-/* Force on contact node a at the last evaluation. */
-static void force_on_node(const struct contact *contact, int64_t a, double force[3])
+/* Force on point p at the last evaluation. */
+static void force_on_point(const struct contact *contact, int64_t p, double force[3])
 {
-    double strength = contact->pressure[a] * contact->points->area[a];
+    double strength = contact->pressure[p] * contact->points->area[p];
     for (int c = 0; c < contact->dim; c++) {
-        force[c] = strength * contact->normal[a * contact->dim + c];
+        force[c] = strength * contact->normal[p * contact->dim + c];
     }
 }
 
 void contact_force(struct contact *contact, const double *u, double *force)
 {
     contact_measure(contact, u, false);
-    for (int64_t a = 0; a < contact->count; a++) {
-        if (contact->pressure[a] > 0.0) {
-            struct average average = average_of_boundary(contact->points, a);
-            double on_node[3];
-            force_on_node(contact, a, on_node);
-            average_spread(&average, contact->dim, on_node, NULL, force);
+    for (int64_t p = 0; p < contact->count; p++) {
+        if (contact->pressure[p] > 0.0) {
+            struct average average = average_of_boundary(contact->points, p);
+            double on_point[3];
+            force_on_point(contact, p, on_point);
+            average_spread(&average, contact->dim, on_point, NULL, force);
         }
     }
 }
@@ -321,13 +321,13 @@ void contact_force(struct contact *contact, const double *u, double *force)
 double contact_energy(const struct contact *contact)
 {
     double sum = 0.0;
-    for (int64_t a = 0; a < contact->count; a++) {
-        double difference = contact->pressure[a] * contact->pressure[a];
+    for (int64_t p = 0; p < contact->count; p++) {
+        double difference = contact->pressure[p] * contact->pressure[p];
         for (int c = 0; c < contact->dim; c++) {
-            double held = contact->held[a * contact->dim + c];
+            double held = contact->held[p * contact->dim + c];
             difference -= held * held;
         }
-        sum += contact->points->area[a] * difference / (2.0 * contact->stiffness[a]);
+        sum += contact->points->area[p] * difference / (2.0 * contact->stiffness[p]);
     }
     return sum;
 }
@@ -335,10 +335,10 @@ double contact_energy(const struct contact *contact)
 void contact_total(const struct contact *contact, double *total)
 {
     memset(total, 0, (size_t)contact->dim * sizeof *total);
-    for (int64_t a = 0; a < contact->count; a++) {
+    for (int64_t p = 0; p < contact->count; p++) {
         for (int c = 0; c < contact->dim; c++) {
             total[c] +=
-                contact->pressure[a] * contact->points->area[a] * contact->normal[a * contact->dim + c];
+                contact->pressure[p] * contact->points->area[p] * contact->normal[p * contact->dim + c];
         }
     }
 }
@@ -347,15 +347,15 @@ void contact_moment(const struct contact *contact, const double *point, double m
 {
     int dim = contact->dim;
     memset(moment, 0, 3 * sizeof *moment);
-    for (int64_t a = 0; a < contact->count; a++) {
+    for (int64_t p = 0; p < contact->count; p++) {
         double arm[3] = {0.0, 0.0, 0.0}, force[3] = {0.0, 0.0, 0.0};
-        if (!(contact->pressure[a] > 0.0)) {
+        if (!(contact->pressure[p] > 0.0)) {
             continue;
         }
-        force_on_node(contact, a, force);
-        rigid_place_from_rest(&contact->place, dim, contact->view[a].x, arm);
+        force_on_point(contact, p, force);
+        rigid_place_from_rest(&contact->place, dim, contact->view[p].x, arm);
         for (int c = 0; c < dim; c++) {
-            double raised = contact->rest[a * dim + c] - contact->points->position[a * dim + c];
+            double raised = contact->rest[p * dim + c] - contact->points->position[p * dim + c];
             arm[c] -= raised + point[c];
         }
         for (int c = 0; c < 3; c++) {
@@ -375,18 +375,18 @@ struct contact_work contact_work(const struct contact *contact, const double *fa
     }
     struct rigid_place from = rigid_place_at(&contact->motion, factor_from);
     struct rigid_place to = rigid_place_at(&contact->motion, factor_to);
-    for (int64_t a = 0; a < contact->count; a++) {
+    for (int64_t p = 0; p < contact->count; p++) {
         double before[3], after[3], force[3];
-        if (!(contact->pressure[a] > 0.0)) {
+        if (!(contact->pressure[p] > 0.0)) {
             continue;
         }
-        force_on_node(contact, a, force);
-        rigid_place_from_rest(&from, dim, contact->view[a].x, before);
-        rigid_place_from_rest(&to, dim, contact->view[a].x, after);
+        force_on_point(contact, p, force);
+        rigid_place_from_rest(&from, dim, contact->view[p].x, before);
+        rigid_place_from_rest(&to, dim, contact->view[p].x, after);
         for (int c = 0; c < dim; c++) {
             double way = after[c] - before[c];
             sum.work += force[c] * way;
-            sum.unresolved += contact->stiffness[a] * contact->points->area[a] * way * way;
+            sum.unresolved += contact->stiffness[p] * contact->points->area[p] * way * way;
         }
     }
     return sum;

@@ -1,4 +1,4 @@
-/* The boundary nodes of a contact: their multipliers, and means over their hat functions. */
+/* Contact nodes: their multipliers, and nodal averages of gap, pressure and normal. */
 #include "solid/contact.h"
 
 #include <math.h>
@@ -6,20 +6,20 @@
 
 void contact_spread_multipliers(struct contact *contact)
 {
-    const struct boundary_averages *hats = contact->hats;
+    const struct boundary_averages *averages = contact->averages;
     size_t size = (size_t)(contact->count * contact->dim) * sizeof *contact->held;
-    if (hats == NULL) {
+    if (averages == NULL) {
         memcpy(contact->held, contact->multiplier, size);
         return;
     }
     memset(contact->held, 0, size);
-    for (int64_t a = 0; a < hats->count; a++) {
+    for (int64_t a = 0; a < averages->count; a++) {
         const double *multiplier = contact->multiplier + a * contact->dim;
-        for (int64_t s = hats->sample_ptr[a]; s < hats->sample_ptr[a + 1]; s++) {
-            int64_t p = hats->sample_point[s];
-            double hat = hats->sample_share[s] * hats->area[a] / contact->points->area[p];
+        for (int64_t s = averages->sample_ptr[a]; s < averages->sample_ptr[a + 1]; s++) {
+            int64_t p = averages->sample_point[s];
+            double weight = averages->sample_share[s] * averages->area[a] / contact->points->area[p];
             for (int c = 0; c < contact->dim; c++) {
-                contact->held[p * contact->dim + c] += hat * multiplier[c];
+                contact->held[p * contact->dim + c] += weight * multiplier[c];
             }
         }
     }
@@ -27,11 +27,11 @@ void contact_spread_multipliers(struct contact *contact)
 
 const struct boundary_averages *contact_nodes(const struct contact *contact)
 {
-    return contact->hats != NULL ? contact->hats : contact->points;
+    return contact->averages != NULL ? contact->averages : contact->points;
 }
 
-/* Add to the means of a node what point p has, which takes that share of its hat function. Returns the share
- * where there is a gap. */
+/* Add the values at point p to the averages of a node, with the weight `share`. Returns the share where the
+ * point has a gap, else 0. */
 static double add_point(const struct contact *contact, int64_t p, double share, struct contact_node *node)
 {
     bool within = contact->gap[p] < INFINITY;
@@ -48,12 +48,12 @@ static double add_point(const struct contact *contact, int64_t p, double share, 
 
 struct contact_node contact_node(const struct contact *contact, int64_t a)
 {
-    const struct boundary_averages *hats = contact->hats;
+    const struct boundary_averages *averages = contact->averages;
     struct contact_node node = {0};
-    double length2 = 0.0, within = hats == NULL ? add_point(contact, a, 1.0, &node) : 0.0;
-    for (int64_t s = hats != NULL ? hats->sample_ptr[a] : 0; hats != NULL && s < hats->sample_ptr[a + 1];
-         s++) {
-        within += add_point(contact, hats->sample_point[s], hats->sample_share[s], &node);
+    double length2 = 0.0, within = averages == NULL ? add_point(contact, a, 1.0, &node) : 0.0;
+    for (int64_t s = averages != NULL ? averages->sample_ptr[a] : 0;
+         averages != NULL && s < averages->sample_ptr[a + 1]; s++) {
+        within += add_point(contact, averages->sample_point[s], averages->sample_share[s], &node);
     }
     node.gap = within > 0.0 ? node.gap / within : INFINITY;
     for (int c = 0; c < contact->dim; c++) {
@@ -65,9 +65,10 @@ struct contact_node contact_node(const struct contact *contact, int64_t a)
     return node;
 }
 
-/* Add to sum[dim] and to direction[dim] what point p, of that weight, lacks of its traction and has as a
- * normal. */
-static void add_lack(const struct contact *contact, int64_t p, double weight, double *sum, double *direction)
+/* Add to sum[dim] the traction of point p that its multiplier does not hold yet, and to direction[dim] its
+ * normal, both with that weight. */
+static void add_difference(const struct contact *contact, int64_t p, double weight, double *sum,
+                           double *direction)
 {
     for (int c = 0; c < contact->dim; c++) {
         double normal = contact->view[p].normal[c];
@@ -76,23 +77,23 @@ static void add_lack(const struct contact *contact, int64_t p, double weight, do
     }
 }
 
-/* next[dim]: the multiplier of node a after an augmentation, Pa. Returns by how much the penalty gives way
- * for the change, m. */
+/* next[dim]: the multiplier of node a after an augmentation, Pa. Returns the change divided by the penalty
+ * stiffness, m. */
 static double augmented(const struct contact *contact, int64_t a, double next[3])
 {
-    const struct boundary_averages *hats = contact->hats;
+    const struct boundary_averages *averages = contact->averages;
     const double *multiplier = contact->multiplier + a * contact->dim;
     double sum[3] = {0.0, 0.0, 0.0}, direction[3] = {0.0, 0.0, 0.0}, compliance = 0.0, along = 0.0;
-    if (hats == NULL) {
+    if (averages == NULL) {
         compliance = 1.0 / contact->stiffness[a];
-        add_lack(contact, a, compliance, sum, direction);
+        add_difference(contact, a, compliance, sum, direction);
     }
-    for (int64_t s = hats != NULL ? hats->sample_ptr[a] : 0; hats != NULL && s < hats->sample_ptr[a + 1];
-         s++) {
-        int64_t p = hats->sample_point[s];
-        double part = hats->sample_share[s] / contact->stiffness[p];
+    for (int64_t s = averages != NULL ? averages->sample_ptr[a] : 0;
+         averages != NULL && s < averages->sample_ptr[a + 1]; s++) {
+        int64_t p = averages->sample_point[s];
+        double part = averages->sample_share[s] / contact->stiffness[p];
         compliance += part;
-        add_lack(contact, p, part, sum, direction);
+        add_difference(contact, p, part, sum, direction);
     }
     for (int c = 0; c < contact->dim; c++) {
         next[c] = multiplier[c] + sum[c] / compliance;

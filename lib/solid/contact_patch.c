@@ -6,10 +6,10 @@
 #include <stdlib.h>
 
 struct marks {
-    double *force;    /* node_count: of the node's contact nodes, and of the points beneath, N */
-    bool *presses;    /* node_count: a contact node of it does */
-    bool *surrounded; /* node_count: it presses, as its neighbours do */
-    bool *near;       /* node_count: that, or beside one that is; only nodes that press */
+    double *force;    /* node_count: contact force of the node, N */
+    bool *presses;    /* node_count: one of its contact nodes presses */
+    bool *surrounded; /* node_count: it presses, and so do all its neighbours */
+    bool *near;       /* node_count: it presses, and it or a neighbour of it is surrounded */
 };
 
 static void mark_nodes(int dim, const struct facet_set *set, int64_t node_count, struct marks *marks)
@@ -34,7 +34,7 @@ static void mark_nodes(int dim, const struct facet_set *set, int64_t node_count,
             any = any || marks->surrounded[node[k]];
         }
         for (int k = 0; k < dim && any; k++) {
-            marks->near[node[k]] = true; /* it presses, beside one that is surrounded */
+            marks->near[node[k]] = true; /* all nodes of this facet press, and one is surrounded */
         }
     }
 }

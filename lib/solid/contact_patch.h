@@ -1,12 +1,12 @@
-/* Whether the averages of a contact resolve where it presses. */
+/* Whether the contact nodes resolve the contact area. */
 #ifndef SOLID_CONTACT_PATCH_H
 #define SOLID_CONTACT_PATCH_H
 
 #include "solid/contact.h"
 
-/* A node presses where its contact node does, or the points beneath more than half of its contact node. A
- * patch of them is resolved about a node that presses with all its neighbours on the contact's facets: then
- * it is three nodes across, or more beside the facets' rim, where a plane of symmetry may be. */
+/* A contact node presses where the points that press have more than half of its weight. The contact area is
+ * resolved around a node that presses together with all its neighbours on the contact's facets: it is then
+ * three nodes across, or wider at the rim of the facets, where a plane of symmetry may be. */
 struct contact_patch {
     int64_t pressing; /* nodes */
     double force;     /* sum p A over contact nodes and points, N (2D: N/m) */

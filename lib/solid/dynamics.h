@@ -55,7 +55,7 @@ struct dynamics_report {
     double first_step, least_step;    /* s */
     double critical_step;             /* at the begin, s */
     double largest_drift, last_drift; /* |error| of the energy balance, relative */
-    double least_jacobian;            /* over the body when last looked at */
+    double least_jacobian;            /* over the body, at the last check */
     int64_t point;                    /* where: the caller's index */
     int64_t
         node; /* DYNAMICS_COLLAPSED: where the fastest mode moves most; DYNAMICS_DRIFTED: the fastest one */

@@ -52,26 +52,26 @@ done:
     return status;
 }
 
-/* Which row each corner looks at, as of_corner has it. */
+/* Set of_corner: the rows that each corner uses. */
 static enum status match_corners(const struct field_averages_input *input, struct field_averages *averages,
                                  struct error *error)
 {
     enum status status = STATUS_OK;
-    int64_t *place_of = NULL; /* of each of the caller's rows */
+    int64_t *index_of = NULL; /* the body's index of each of the caller's rows */
     int32_t *of_corner = averages->of_corner;
     for (int k = 0; k < 2; k++) {
         const struct average_table *table = &input->tables[k];
         int64_t first = k * input->tables[0].row_count;
-        TRY(NEW_ARRAY(&place_of, table->row_count, error));
+        TRY(NEW_ARRAY(&index_of, table->row_count, error));
         for (int64_t r = 0; r < table->row_count; r++) {
-            place_of[table->order[r]] = first + r;
+            index_of[table->order[r]] = first + r;
         }
         int64_t count = input->corner_count * (k == 0 ? FACE_ROWS(input->dim) : 1);
         for (int64_t i = 0; i < count; i++) {
-            *of_corner++ = (int32_t)(place_of[table->row_of_corner[i]] * VECTOR_STRIDE(input->dim));
+            *of_corner++ = (int32_t)(index_of[table->row_of_corner[i]] * VECTOR_STRIDE(input->dim));
         }
-        free(place_of);
-        place_of = NULL;
+        free(index_of);
+        index_of = NULL;
     }
 done:
     return status;

@@ -202,11 +202,12 @@ done:
 }
 
 /* Add the rim between a free facet and a support, which meet in a node or an edge. */
-static void add_rim(struct folds *folds, const struct side *side, int64_t facet, int64_t beside)
+static void add_rim(struct folds *folds, const struct side *side, int64_t facet, int64_t support_facet)
 {
     int dim = folds->input.dim;
     double reach;
-    struct fold_rim rim = {.facet = facet, .beside = beside, .node = -1, .on_rim = side->node[0]};
+    struct fold_rim rim = {
+        .facet = facet, .support_facet = support_facet, .node = -1, .on_rim = side->node[0]};
     for (int k = 0; k < dim; k++) {
         int32_t node = folds->input.facet[facet * dim + k];
         rim.node = node == side->node[0] || node == side->node[1] ? rim.node : node;

@@ -1,11 +1,11 @@
-/* Where a body folds: the positions of its nodes, joined by the background cells, are a map of the body that
- * should be one-to-one.
+/* Folds of a body: the piecewise linear map from the reference to the deformed background cells should be
+ * one-to-one.
  *
- * It is when all cells keep their orientation and the boundary does not cross itself (Meisters and Olech,
- * Duke Math. J. 30, 1963); so both are looked at. Cells: the sign of the
- * volume of each, which is that of det F of the linear interpolant; it also changes where a facet of the
- * boundary is turned over against the cell behind it. Slivers turn over within the error of the field at the
- * nodes, so that the depth is measured. Boundary: facets that share no node are crossed, or pierced by edges;
+ * It is one-to-one when all cells keep their orientation and the boundary does not cross itself (Meisters and
+ * Olech, Duke Math. J. 30, 1963). Both are checked. Cells: the sign of the volume of each, which is that of
+ * det F of the linear interpolant; it also changes where a facet of the boundary is turned over against the
+ * cell behind it. Slivers turn over within the error of the field at the nodes; so the depth is measured.
+ * Boundary: facets that share no node are crossed, or pierced by edges;
  * those that meet have passed through each other when the angles of the cells around the place where they
  * meet add up to more than a full turn.
  *
@@ -57,11 +57,11 @@ struct fold_ring {
     int64_t facet;   /* one of those that meet */
 };
 
-/* A free facet beside a plane support that it does not go on from: it is turned back by more than 22.5
- * degrees at rest. */
+/* A free facet that shares a node or an edge with a plane support and is turned back from its plane by more
+ * than 22.5 degrees at rest. */
 struct fold_rim {
-    int64_t facet, beside; /* the free one, and that of the support */
-    int32_t node, on_rim;  /* a node of the free one off the support, and one that both have */
+    int64_t facet, support_facet; /* the free one, and that of the support */
+    int32_t node, on_rim;         /* a node of the free one off the support, and one that both have */
 };
 
 /* A cell of a connected body (see cells_parts). */

@@ -206,13 +206,13 @@ static double reach_behind(const struct folds *folds, int64_t f, int64_t g, doub
 static double apart_across_edges(const struct folds *folds, int64_t f, int64_t g)
 {
     const int32_t *one = folds->input.facet + f * 3, *other = folds->input.facet + g * 3;
-    double least = INFINITY, side[3], beside[3];
+    double least = INFINITY, side[3], other_side[3];
     for (int k = 0; k < 9; k++) {
         fold_way(3, at(folds, one[k / 3]), at(folds, one[(k / 3 + 1) % 3]), side);
-        fold_way(3, at(folds, other[k % 3]), at(folds, other[(k % 3 + 1) % 3]), beside);
-        double axis[3] = {side[1] * beside[2] - side[2] * beside[1],
-                          side[2] * beside[0] - side[0] * beside[2],
-                          side[0] * beside[1] - side[1] * beside[0]};
+        fold_way(3, at(folds, other[k % 3]), at(folds, other[(k % 3 + 1) % 3]), other_side);
+        double axis[3] = {side[1] * other_side[2] - side[2] * other_side[1],
+                          side[2] * other_side[0] - side[0] * other_side[2],
+                          side[0] * other_side[1] - side[1] * other_side[0]};
         double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
         double size2 = fold_dot(3, axis, axis);
         for (int i = 0; i < 6; i++) {
@@ -220,7 +220,7 @@ static double apart_across_edges(const struct folds *folds, int64_t f, int64_t g
             low[i / 3] = fmin(low[i / 3], place);
             high[i / 3] = fmax(high[i / 3], place);
         }
-        if (size2 > round_off * fold_dot(3, side, side) * fold_dot(3, beside, beside)) {
+        if (size2 > round_off * fold_dot(3, side, side) * fold_dot(3, other_side, other_side)) {
             least = fmin(least, fmin(high[0] - low[1], high[1] - low[0]) / sqrt(size2));
         }
     }
@@ -321,7 +321,7 @@ void folds_fill_planes(struct folds *folds, const double *y)
 double folds_rim_beyond(const struct folds *folds, const struct fold_rim *rim, const double *y, double *reach)
 {
     int dim = folds->input.dim;
-    const double *plane = folds->plane + folds->support[rim->beside] * 7;
+    const double *plane = folds->plane + folds->support[rim->support_facet] * 7;
     const double *node = y + (int64_t)rim->node * dim;
     double depth = 0.0, way[3];
     for (int i = 0; i < dim; i++) {
@@ -368,7 +368,7 @@ struct fold folds_find_beyond(struct folds *folds, const double *u, const bool *
         double reach, depth = folds_rim_beyond(folds, rim, folds->y, &reach);
         if (!stopped[rim->node] && depth > fmax(beyond_body * folds->extent, beyond_facet * reach) &&
             fold.count++ == 0) {
-            name_facets(folds, rim->facet, rim->beside, &fold);
+            name_facets(folds, rim->facet, rim->support_facet, &fold);
         }
     }
     fold.kind = fold.count > 0 ? FOLD_SUPPORT : FOLD_NONE;

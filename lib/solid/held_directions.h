@@ -1,6 +1,6 @@
-/* Which directions earlier displacement sections hold at each node. Where sections meet, a node's averages on
- * either side of the edge nearly depend on each other: so each section holds only what is not held yet, and
- * the means of its sides carry what the traction on the side has beyond that. */
+/* Directions that earlier displacement sections hold at each node. Where sections meet, a node's averages on
+ * the two sides of the edge are nearly linearly dependent. So each section holds only the directions that are
+ * not held yet, and the means over its sides carry the rest of the traction. */
 #ifndef SOLID_HELD_DIRECTIONS_H
 #define SOLID_HELD_DIRECTIONS_H
 

@@ -5,8 +5,9 @@
 
 #include "solid/kernel_points.h"
 
-/* What the corners of a block's cells look at, faces or nodes: component a of corner k in row k dim + a,
- * cells along it; the sum over the rows of each, which begin in of_corner at `first`. */
+/* Values at the corners of a block's cells, of faces or of nodes: component a of corner k in row k dim + a,
+ * one column for each cell. read_corners sums over the rows of each corner, which begin in of_corner at
+ * `first`. */
 typedef double block_corners[12][BLOCK_MOST_POINTS];
 
 KERNEL_INLINE void read_corners(const struct field_averages *averages, int64_t first, int rows,
@@ -63,14 +64,14 @@ KERNEL_INLINE void write_corners(struct field_averages *averages, int64_t first,
     }
 }
 
-/* Hat gradients of the cells from q on. */
-KERNEL_INLINE void load_hats(const struct body *body, int64_t q, int dim, lanes hat[9])
+/* Gradients of the linear shape functions N_1 .. N_dim in the cells from q on. */
+KERNEL_INLINE void load_linear_gradients(const struct body *body, int64_t q, int dim, lanes grad_N[9])
 {
-    load_matrix(body->cells.hat + q, body->point_count, dim, hat);
+    load_matrix(body->cells.linear_gradient + q, body->point_count, dim, grad_N);
 }
 
 /* gradient = sum_k v_k (x) grad N_k for corner values v of the cells i .. of a block. */
-KERNEL_INLINE void corner_gradient(const block_corners v, int64_t i, int dim, const lanes hat[9],
+KERNEL_INLINE void corner_gradient(const block_corners v, int64_t i, int dim, const lanes grad_N[9],
                                    lanes gradient[9])
 {
     for (int a = 0; a < dim; a++) {
@@ -84,22 +85,22 @@ KERNEL_INLINE void corner_gradient(const block_corners v, int64_t i, int dim, co
             LOAD(value, v[k * dim + a] + i);
             value -= origin;
             for (int b = 0; b < dim; b++) {
-                gradient[a * dim + b] += value * hat[(k - 1) * dim + b];
+                gradient[a * dim + b] += value * grad_N[(k - 1) * dim + b];
             }
         }
     }
 }
 
 /* The transpose: v_k = scale P grad N_k. */
-KERNEL_INLINE void corner_forces(const lanes P[9], int64_t i, int dim, const lanes hat[9], double scale,
+KERNEL_INLINE void corner_forces(const lanes P[9], int64_t i, int dim, const lanes grad_N[9], double scale,
                                  block_corners v)
 {
     for (int a = 0; a < dim; a++) {
         lanes all = {0.0};
         for (int k = 1; k <= dim; k++) {
-            lanes sum = P[a * dim] * hat[(k - 1) * dim];
+            lanes sum = P[a * dim] * grad_N[(k - 1) * dim];
             for (int b = 1; b < dim; b++) {
-                sum += P[a * dim + b] * hat[(k - 1) * dim + b];
+                sum += P[a * dim + b] * grad_N[(k - 1) * dim + b];
             }
             sum *= scale;
             all -= sum;
@@ -131,10 +132,10 @@ KERNEL_INLINE void kernel_cell_gradients(struct body *body, struct block *block,
     read_corners(averages, 0, FACE_ROWS(dim), block, dim, mean);
     read_corners(averages, averages->corner_count * FACE_ROWS(dim), 1, block, dim, value);
     for (int64_t i = 0; i < block->point_count; i += LANES) {
-        lanes hat[9], f[9], h[9], C[9], volume;
-        load_hats(body, block->first_point + i, dim, hat);
-        corner_gradient((const double(*)[BLOCK_MOST_POINTS])mean, i, dim, hat, f);
-        corner_gradient((const double(*)[BLOCK_MOST_POINTS])value, i, dim, hat, h);
+        lanes grad_N[9], f[9], h[9], C[9], volume;
+        load_linear_gradients(body, block->first_point + i, dim, grad_N);
+        corner_gradient((const double(*)[BLOCK_MOST_POINTS])mean, i, dim, grad_N, f);
+        corner_gradient((const double(*)[BLOCK_MOST_POINTS])value, i, dim, grad_N, h);
         for (int k = 0; k < dim * dim; k++) {
             double unit = k % (dim + 1) == 0 ? 1.0 : 0.0;
             f[k] = unit - face_factor * f[k];
@@ -220,16 +221,16 @@ KERNEL_INLINE void kernel_cell_forces(struct body *body, const struct block *blo
     struct field_averages *averages = &body->cells.averages;
     block_corners at_faces, at_nodes;
     for (int64_t i = 0; i < block->point_count; i += LANES) {
-        lanes hat[9], stress[9];
-        load_hats(body, block->first_point + i, dim, hat);
+        lanes grad_N[9], stress[9];
+        load_linear_gradients(body, block->first_point + i, dim, grad_N);
         for (int k = 0; k < dim * dim; k++) {
             LOAD(stress[k], P[k] + i);
         }
-        corner_forces(stress, i, dim, hat, -(double)dim / FACE_ROWS(dim), at_faces);
+        corner_forces(stress, i, dim, grad_N, -(double)dim / FACE_ROWS(dim), at_faces);
         for (int k = 0; k < dim * dim; k++) {
             LOAD(stress[k], T[k] + i);
         }
-        corner_forces(stress, i, dim, hat, 1.0, at_nodes);
+        corner_forces(stress, i, dim, grad_N, 1.0, at_nodes);
     }
     write_corners(averages, 0, block, dim, (const double(*)[BLOCK_MOST_POINTS])at_faces);
     write_corners(averages, averages->corner_count, block, dim, (const double(*)[BLOCK_MOST_POINTS])at_nodes);

@@ -43,7 +43,7 @@ static int64_t list_neighbours(const struct nodal_volumes *volumes, int vertices
     return count;
 }
 
-/* Add the parts of A and S that volume a has from the points around it; pressures->place[b]: where row a has
+/* Add the parts of A and S that volume a has from the points around it; pressures->entry[b]: where row a has
  * b. */
 static void add_points(const struct body *body, int64_t a, struct nodal_pressures *pressures, double *bound)
 {
@@ -60,11 +60,11 @@ static void add_points(const struct body *body, int64_t a, struct nodal_pressure
         double limited = fmin(rest, pressures->most * material->shear_modulus);
         compliance /= body->dim + 2;
         pressures->weight[a] += share * (1.0 / limited - 1.0 / rest);
-        pressures->value[pressures->place[a]] += share * (1.0 / limited + compliance);
+        pressures->value[pressures->entry[a]] += share * (1.0 / limited + compliance);
         *bound += share * (1.0 / limited + compliance);
         for (int k = 0; k < vertices; k++) {
             int64_t other = q * vertices + k;
-            pressures->value[pressures->place[volumes->of_point[other]]] -=
+            pressures->value[pressures->entry[volumes->of_point[other]]] -=
                 compliance * share * volumes->share[other] / body->weight[q];
         }
     }
@@ -129,7 +129,7 @@ enum status nodal_pressures_build(struct body *body, struct error *error)
     TRY(NEW_ARRAY(&pressures->held, rows, error));
     TRY(NEW_ARRAY(&pressures->weight, rows, error));
     TRY(NEW_ARRAY(&pressures->scratch, 3 * rows, error));
-    TRY(NEW_ARRAY(&pressures->place, count, error));
+    TRY(NEW_ARRAY(&pressures->entry, count, error));
     memset(seen, -1, (size_t)count * sizeof *seen);
     set_columns(body, seen, pressures);
     body_limit_bulk(body, INFINITY);
@@ -149,7 +149,7 @@ static void set_values(struct body *body, struct nodal_pressures *pressures)
         int64_t first = pressures->ptr[a / ROWS] * ROWS, end = pressures->ptr[a / ROWS + 1] * ROWS;
         /* From the end, as what is beyond a row's end has the column of its own. */
         for (int64_t at = end - ROWS + a % ROWS; at >= first; at -= ROWS) {
-            pressures->place[pressures->idx[at]] = at;
+            pressures->entry[pressures->idx[at]] = at;
         }
         add_points(body, a, pressures, &bound);
         pressures->inverse[a] = bound > 0.0 ? 1.0 / bound : 0.0;
@@ -243,7 +243,7 @@ void nodal_pressures_solve(const struct nodal_pressures *pressures, const double
 void nodal_pressures_free(struct nodal_pressures *pressures)
 {
     void *arrays[] = {pressures->ptr,  pressures->idx,    pressures->value, pressures->inverse,
-                      pressures->held, pressures->weight, pressures->place, pressures->scratch};
+                      pressures->held, pressures->weight, pressures->entry, pressures->scratch};
     for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) {
         free(arrays[i]);
     }

@@ -63,8 +63,8 @@ enum status nodal_volumes_build(const struct body_input *input, struct body *bod
         int64_t q = s / vertices, from = body->order[q] * vertices + s % vertices;
         int32_t material = body->material[q];
         bool carries = nodal_pressure_modulus(&body->materials[material]) > 0.0;
-        keys[s] = (struct key){input->hat_node[from], input->group ? input->group[material] : material, s};
-        volumes->share[s] = carries ? input->hat_value[from] * body->weight[q] : 0.0;
+        keys[s] = (struct key){input->vertex[from], input->group ? input->group[material] : material, s};
+        volumes->share[s] = carries ? input->barycentric[from] * body->weight[q] : 0.0;
     }
     TRY(number_volumes(volumes, keys, slots, error));
     TRY(body_share_volumes(body, error));

@@ -84,7 +84,7 @@ enum status preconditioner_build(struct solid_system *system, bool coarse,
     TRY(NEW_ARRAY(&preconditioner->free_weight, cells, error));
     TRY(NEW_ARRAY(&preconditioner->held, system->rows.count * preconditioner->size, error));
     TRY(NEW_ARRAY(&preconditioner->inverse, cells, error));
-    TRY(NEW_ARRAY(&preconditioner->beside, cells, error));
+    TRY(NEW_ARRAY(&preconditioner->capacitance_inverse, cells, error));
     TRY(NEW_ARRAY(&preconditioner->amount, 2 * preconditioner->size, error));
     if (coarse && system_has_inverse(system)) {
         TRY(build_inverse(system, preconditioner, error));
@@ -120,7 +120,7 @@ void preconditioner_free(struct preconditioner *preconditioner)
     free(preconditioner->free_weight);
     free(preconditioner->held);
     free(preconditioner->inverse);
-    free(preconditioner->beside);
+    free(preconditioner->capacitance_inverse);
     free(preconditioner->amount);
     *preconditioner = (struct preconditioner){0};
 }
@@ -284,7 +284,7 @@ double preconditioner_product(struct preconditioner *preconditioner, const doubl
     double sum = weighted_product(preconditioner, x, y);
     if (preconditioner->size > 0) {
         restrict_move(preconditioner, x, amount);
-        multiply(preconditioner->size, preconditioner->beside, amount, solved);
+        multiply(preconditioner->size, preconditioner->capacitance_inverse, amount, solved);
         if (y != x) {
             restrict_move(preconditioner, y, amount);
         }

@@ -8,8 +8,8 @@
  *
  *   M^-1 = P (B + Z A^-1 Z^T) P^T
  *
- * where, with the conditions' rows G and S = G B G^T, P^T f = f - G^T S^-1 G B f; so one look at G B f tells
- * both the coarse fields' amounts and the conditions' forces. Also
+ * where, with the constraint rows G and S = G B G^T, P^T f = f - G^T S^-1 G B f: one product G B f gives both
+ * the amounts of the coarse fields and the constraint forces. By the Woodbury formula
  *
  *   x . M y = x . B^-1 y - (Z^T B^-1 x) . (A + Z^T B^-1 P Z)^-1 (Z^T B^-1 y)
  *
@@ -50,14 +50,14 @@ struct preconditioner {
     bool *active;         /* contact nodes of all contacts: those that A counts in (NULL: none), */
     double *normal;       /* contact_node_count * dim: and the surface's normals there */
     bool *creased; /* contact_node_count: held in all directions, as it lies in a crease of the surface */
-    bool *turned;  /* contact_node_count: it has turned (contact.h) since it was last looked at */
+    bool *turned;  /* contact_node_count: it has turned (contact.h) since A last left nodes out */
     int64_t contact_node_count;
     double *weight;      /* Z^T D Z */
     double *free_weight; /* Z^T D P Z */
     double *held; /* rows of the conditions * size: (G D^-1 G^T)^-1 G Z, what they put against each field */
-    double *inverse; /* A^-1 */
-    double *beside;  /* (A + Z^T D P Z)^-1 */
-    double *amount;  /* 2 * size: scratch */
+    double *inverse;             /* A^-1 */
+    double *capacitance_inverse; /* (A + Z^T D P Z)^-1, of the capacitance matrix of the Woodbury formula */
+    double *amount;              /* 2 * size: scratch */
 };
 
 /* Memory, coarse fields and inverse factor for a system; `coarse` false: none of both, M = D. */

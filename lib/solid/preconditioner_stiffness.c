@@ -117,13 +117,13 @@ static double free_part(const struct preconditioner *preconditioner)
 void preconditioner_invert(struct preconditioner *preconditioner, const struct solid_system *system)
 {
     int64_t cells = preconditioner->size * preconditioner->size;
-    double *stiffness = preconditioner->beside;
+    double *stiffness = preconditioner->capacitance_inverse;
     bool good = false;
     memcpy(stiffness, preconditioner->body, (size_t)cells * sizeof *stiffness);
     add_contacts(preconditioner, system, stiffness);
     bool useful = free_part(preconditioner) > least_free;
     for (double keep = kept; useful && !good && keep < 1e8;
-         keep *= 10.0) { /* unstable bodies have no definite one */
+         keep *= 10.0) { /* of an unstable body the stiffness is indefinite */
         for (int64_t i = 0; i < cells; i++) {
             preconditioner->inverse[i] = stiffness[i] / share + keep * preconditioner->weight[i];
         }
@@ -133,9 +133,11 @@ void preconditioner_invert(struct preconditioner *preconditioner, const struct s
                 stiffness[i] / share + keep * preconditioner->weight[i] + preconditioner->free_weight[i];
         }
     }
-    if (!good || !invert(preconditioner->size, preconditioner->beside)) { /* no coarse fields, then */
+    if (!good ||
+        !invert(preconditioner->size, preconditioner->capacitance_inverse)) { /* then no coarse space */
         memset(preconditioner->inverse, 0, (size_t)cells * sizeof *preconditioner->inverse);
-        memset(preconditioner->beside, 0, (size_t)cells * sizeof *preconditioner->beside);
+        memset(preconditioner->capacitance_inverse, 0,
+               (size_t)cells * sizeof *preconditioner->capacitance_inverse);
     }
 }
 
@@ -194,7 +196,7 @@ done:
     return status;
 }
 
-/* Whether the surface has turned from what it was when a contact node was counted in. */
+/* Whether the normal has turned since the contact node was counted in. */
 static bool has_turned(const struct contact_node *node, int dim, const double *counted_normal)
 {
     double cosine = 0.0;
@@ -204,9 +206,9 @@ static bool has_turned(const struct contact_node *node, int dim, const double *c
     return cosine < least_cosine;
 }
 
-/* Whether contact node `at` lies in a crease, where it is held in all directions, or goes from side to side
- * of one, as it is about to. One that slides from facet to facet turns but once for long. True when that is a
- * change. */
+/* Set whether contact node `at` is taken to lie in a crease, where it is held in all directions: it has
+ * turned twice in a short time. A node that slides from facet to facet turns only once. Returns whether this
+ * has changed. */
 static bool follow_crease(struct preconditioner *preconditioner, const struct contact_node *node, int64_t at,
                           bool leave)
 {
@@ -218,8 +220,8 @@ static bool follow_crease(struct preconditioner *preconditioner, const struct co
     return *creased != was;
 }
 
-/* Count contact node a in or out; true when that is a change. A body that can move as a whole may come to
- * rest on contact nodes that are not near yet. */
+/* Count contact node a in or out; returns whether A changes. In a body with free rigid-body modes nodes far
+ * from the surface stay counted in, as it may come to rest on them. */
 static bool follow_node(struct preconditioner *preconditioner, const struct contact *contact, int64_t a,
                         int64_t at, bool leave)
 {

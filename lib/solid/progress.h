@@ -1,4 +1,4 @@
-/* What a run tells while it lasts: how far it is, and the states asked for on the way. */
+/* Callbacks during a run: its progress, and the intermediate states that were requested. */
 #ifndef SOLID_PROGRESS_H
 #define SOLID_PROGRESS_H
 

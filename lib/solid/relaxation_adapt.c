@@ -23,7 +23,7 @@ static const double least_low2 =
 static const int64_t most_backtracks = 8;                        /* from inverted points */
 static const double most_stiffening = 1.1, most_softening = 0.5; /* of a node since its mass was set */
 static const int calm_iterations = 5;       /* of the power iteration on a mode that may be unstable */
-static const double most_mass_checks = 5.0; /* from one look at that to the next */
+static const double most_mass_checks = 5.0; /* between checks of the mass */
 
 /* What contacts may penetrate at an equilibrium, by the largest motion; and augmentations until they do. */
 static const double penetration_share = 1e-3;

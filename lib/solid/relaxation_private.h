@@ -8,7 +8,7 @@
 
 enum { CHECK_INTERVAL = 10 };   /* steps between estimates */
 enum { FIRST_ITERATIONS = 30 }; /* of Lanczos, where the preconditioner was measured */
-enum { WINDOWS = 8 };           /* recent Rayleigh quotients that the error estimate looks at */
+enum { WINDOWS = 8 };           /* recent Rayleigh quotients that the error estimate uses */
 
 /* Between augmentations, of contacts and of nodal pressures: damping times time. Modes that swing are stable
  * above 2 ln 3. */
@@ -67,7 +67,7 @@ struct relaxation {
         at_full_load; /* steps since the load that is held, that of a frame or the full one, was reached */
     int64_t converged_checks; /* checks in a row with a small error */
     double mass_change;       /* of the stiffness since the mass was set: 1 where it is set anew */
-    int64_t last_mass_check, next_mass_check; /* checks: when that was looked at, and is again */
+    int64_t last_mass_check, next_mass_check; /* numbers of the last check of the mass and of the next */
 };
 
 /* ---- relaxation_error.c: how far from equilibrium ---- */

@@ -9,8 +9,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Gradients of the hat functions 1 .. dim of a simplex, dim x dim. */
-static void hat_gradients(int dim, const double *x, const int32_t *vertex, double *gradient)
+/* Gradients of the linear shape functions 1 .. dim of a simplex, dim x dim. */
+static void linear_gradients(int dim, const double *x, const int32_t *vertex, double *gradient)
 {
     double F[9] = {1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0}, C[9];
     for (int k = 0; k < dim; k++) {
@@ -19,7 +19,7 @@ static void hat_gradients(int dim, const double *x, const int32_t *vertex, doubl
         }
     }
     double J = determinant(F);
-    cofactor(F, C); /* C / J = F^-T: its columns are the gradients of hats 1 .. dim */
+    cofactor(F, C); /* C / J = F^-T: its columns are the gradients of N_1 .. N_dim */
     for (int k = 0; k < dim; k++) {
         for (int a = 0; a < dim; a++) {
             gradient[k * dim + a] = C[3 * a + k] / J;
@@ -27,16 +27,17 @@ static void hat_gradients(int dim, const double *x, const int32_t *vertex, doubl
     }
 }
 
-static enum status set_hats(const struct smoothed_cells_input *input, int dim, int64_t cell_count,
-                            const int64_t *order, struct smoothed_cells *smoothed, struct error *error)
+static enum status set_linear_gradients(const struct smoothed_cells_input *input, int dim, int64_t cell_count,
+                                        const int64_t *order, struct smoothed_cells *smoothed,
+                                        struct error *error)
 {
     enum status status;
-    TRY(NEW_ARRAY(&smoothed->hat, cell_count * dim * dim + BODY_POINT_PADDING, error));
+    TRY(NEW_ARRAY(&smoothed->linear_gradient, cell_count * dim * dim + BODY_POINT_PADDING, error));
     for (int64_t q = 0; q < cell_count; q++) {
         double gradient[9];
-        hat_gradients(dim, input->x, input->cell_node + order[q] * (dim + 1), gradient);
+        linear_gradients(dim, input->x, input->cell_node + order[q] * (dim + 1), gradient);
         for (int k = 0; k < dim * dim; k++) {
-            smoothed->hat[k * cell_count + q] = gradient[k];
+            smoothed->linear_gradient[k * cell_count + q] = gradient[k];
         }
     }
 done:
@@ -96,7 +97,7 @@ done:
     return status;
 }
 
-/* x[row_count * dim]: the places of the rows, which those of a face must be around. */
+/* x[row_count * dim]: the points of the rows. STATUS_INPUT where the mean of a face's is not its centroid. */
 static enum status place_rows(const struct faces *faces, const double *nodes, double *x, struct error *error)
 {
     enum status status;
@@ -134,9 +135,9 @@ done:
     return status;
 }
 
-/* A table of shape functions that tools made from cloud and cells: its name, and the points of its rows. Of
- * several processes rows are empty that others have read. */
-struct told {
+/* A given table of shape functions: its section, what a row stands for, and the points of the rows. With
+ * several processes, rows that others have read are empty. */
+struct given_table {
     const char *section, *of;
     const int32_t *reader; /* of each row, as in smoothed_cells_input; NULL: all rows are here */
     int rank;
@@ -145,9 +146,9 @@ struct told {
     const double *phi, *x;
 };
 
-/* Values of the shape functions must be those at x, or their averages with the centroid there: they reproduce
- * 1 and x. */
-static enum status check_table(const struct told *table, int64_t rows, int dim, const double *nodes,
+/* Check that the rows reproduce 1 and x: they are values of the shape functions at x, or averages with the
+ * centroid x. */
+static enum status check_table(const struct given_table *table, int64_t rows, int dim, const double *nodes,
                                struct error *error)
 {
     for (int64_t r = 0; r < rows; r++) {
@@ -175,8 +176,7 @@ static enum status check_table(const struct told *table, int64_t rows, int dim, 
     return STATUS_OK;
 }
 
-/* Of several processes: the rows that cells of this one look at, and the transpose of the columns of its
- * nodes. */
+/* For several processes: copy the rows that this one's cells need, and transpose the columns of its nodes. */
 static enum status copy_shares(const struct field_averages_input *tables, struct body *body,
                                struct error *error)
 {
@@ -184,23 +184,24 @@ static enum status copy_shares(const struct field_averages_input *tables, struct
     struct body_share *share = &body->share;
     struct field_averages *averages = &body->cells.averages;
     struct sparse columns = {0};
-    bool *looked_at = NULL, *used = NULL;
-    TRY(body_share_values(body, &looked_at, error));
-    TRY(stretches_of(0, averages->row_count, looked_at, &share->values, error));
-    TRY(field_averages_copy(tables, looked_at, 0, body->node_count, &averages->matrix, error));
+    bool *needed = NULL, *used = NULL;
+    TRY(body_share_values(body, &needed, error));
+    TRY(stretches_of(0, averages->row_count, needed, &share->values, error));
+    TRY(field_averages_copy(tables, needed, 0, body->node_count, &averages->matrix, error));
     TRY(field_averages_copy(tables, NULL, share->begin_node, share->end_node, &columns, error));
     TRY(sparse_transpose(&columns, &averages->transposed, error));
     TRY(sparse_rows_used(&columns, &used, error));
     TRY(body_share_rows(body, used, error));
 done:
     sparse_free(&columns);
-    free(looked_at);
+    free(needed);
     free(used);
     return status;
 }
 
-/* The rows that share cells with those that own nodes are in, touched[rows]: the stiffness of own nodes. */
-static void add_beside(const struct body *body, const bool *touched, bool *wanted)
+/* Mark in wanted[] all rows of the cells that have a row in touched[]: the stiffness of own nodes needs them.
+ */
+static void add_rows_of_cells(const struct body *body, const bool *touched, bool *wanted)
 {
     const struct field_averages *averages = &body->cells.averages;
     int corners = body->dim + 1, rows = FACE_ROWS(body->dim);
@@ -214,8 +215,8 @@ static void add_beside(const struct body *body, const bool *touched, bool *wante
     }
 }
 
-/* wanted[rows of faces]: the averages that own cells look at, those that own nodes are in, and those beside.
- */
+/* wanted[rows of faces]: the averages that own cells need, those with own nodes in them, and all other rows
+ * of the cells that these belong to. */
 static enum status list_faces(const struct smoothed_cells_input *input, const struct read_rows *rows,
                               const struct body *body, const int64_t *order, bool *wanted,
                               struct error *error)
@@ -233,7 +234,7 @@ static enum status list_faces(const struct smoothed_cells_input *input, const st
             touched[r] = touched[r] || body_share_owner(body, input->node_idx[i]) == rows->ranks->rank;
         }
     }
-    add_beside(body, touched, in_order);
+    add_rows_of_cells(body, touched, in_order);
     for (int64_t f = 0; f < input->faces->row_count; f++) {
         wanted[order[f]] = wanted[order[f]] || in_order[f];
     }
@@ -243,7 +244,7 @@ done:
     return status;
 }
 
-/* The table over the faces where no process has read all of it: the rows that are needed here. */
+/* Fetch the rows of the face table that this process needs, where none has read all of it. */
 static enum status fetch_faces(const struct smoothed_cells_input *input, struct body *body,
                                struct average_table *faces, struct error *error)
 {
@@ -271,8 +272,8 @@ done:
     return status;
 }
 
-/* Rows of the faces, whose corners are those opposite, and of each node, whose corners are the vertices of
- * the cells there. */
+/* Build the rows of the faces and of the nodes. The corners of a face's row are those opposite the face; the
+ * corners of a node's row are the vertices of cells at the node. */
 static enum status build_averages(const struct smoothed_cells_input *input, struct body *body,
                                   struct error *error)
 {
@@ -287,11 +288,11 @@ static enum status build_averages(const struct smoothed_cells_input *input, stru
     TRY(match_corners(input, dim, body->point_count, body->order, row_of_corner, error));
     TRY(NEW_ARRAY(&x, faces->row_count * dim, error));
     TRY(place_rows(faces, input->x, x, error));
-    const struct told rows = {
+    const struct given_table rows = {
         "face.phi",      "row",           input->face_reader, ranks_rank(body->share.ranks),
         input->face_ptr, input->face_idx, input->face_phi,    x};
-    const struct told nodes = {"node.phi",      "node",          NULL,    0, input->node_ptr,
-                               input->node_idx, input->node_phi, input->x};
+    const struct given_table nodes = {"node.phi",      "node",          NULL,    0, input->node_ptr,
+                                      input->node_idx, input->node_phi, input->x};
     status = check_table(&rows, faces->row_count, dim, input->x, error);
     TRY(input->face_reader != NULL ? ranks_agree(body->share.ranks, status, error) : status);
     TRY(check_table(&nodes, body->node_count, dim, input->x, error));
@@ -343,7 +344,7 @@ enum status smoothed_cells_build(const struct smoothed_cells_input *input, struc
     struct smoothed_cells *smoothed = &body->cells;
     int64_t entries = body->point_count * body->dim * body->dim + BODY_POINT_PADDING;
     *smoothed = (struct smoothed_cells){0};
-    TRY(set_hats(input, body->dim, body->point_count, body->order, smoothed, error));
+    TRY(set_linear_gradients(input, body->dim, body->point_count, body->order, smoothed, error));
     TRY(NEW_ARRAY_UNTOUCHED(&smoothed->interpolant, entries, error));
     TRY(build_averages(input, body, error));
 done:
@@ -357,7 +358,7 @@ void smoothed_cells_free(struct smoothed_cells *smoothed)
 {
     field_averages_free(&smoothed->averages);
     free(smoothed->interpolant);
-    free(smoothed->hat);
+    free(smoothed->linear_gradient);
     *smoothed = (struct smoothed_cells){0};
 }
 
@@ -367,7 +368,7 @@ void smoothed_cells_hat_gradients(const struct body *body, int64_t q, double *gr
     memset(gradient, 0, (size_t)dim * sizeof *gradient);
     for (int k = 1; k <= dim; k++) {
         for (int b = 0; b < dim; b++) {
-            gradient[k * dim + b] = body->cells.hat[((k - 1) * dim + b) * body->point_count + q];
+            gradient[k * dim + b] = body->cells.linear_gradient[((k - 1) * dim + b) * body->point_count + q];
             gradient[b] -= gradient[k * dim + b];
         }
     }
@@ -404,7 +405,7 @@ enum status cell_functions_make(const struct body *body, struct cell_functions *
         }
         most = sum > most ? sum : most;
     }
-    TRY(NEW_ARRAY(&functions->place, body->node_count, error));
+    TRY(NEW_ARRAY(&functions->slot, body->node_count, error));
     TRY(NEW_ARRAY(&functions->node, most, error));
     TRY(NEW_ARRAY(&functions->gradient, most * body->dim, error));
 done:
@@ -416,7 +417,7 @@ done:
 
 void cell_functions_free(struct cell_functions *functions)
 {
-    free(functions->place);
+    free(functions->slot);
     free(functions->node);
     free(functions->gradient);
     *functions = (struct cell_functions){0};
@@ -427,8 +428,8 @@ void cell_functions_free(struct cell_functions *functions)
 static int list_rows(const struct body *body, int64_t q, int32_t row[12], double *gradient)
 {
     int dim = body->dim, rows = FACE_ROWS(dim), count = 0;
-    double hat[12];
-    smoothed_cells_hat_gradients(body, q, hat);
+    double grad_N[12];
+    smoothed_cells_hat_gradients(body, q, grad_N);
     for (int k = 0; k <= dim; k++) {
         for (int i = 0; i < rows; i++) {
             int32_t of_face = smoothed_cells_row(body, q, k, i);
@@ -441,7 +442,7 @@ static int list_rows(const struct body *body, int64_t q, int32_t row[12], double
                 memset(gradient + at * dim, 0, (size_t)dim * sizeof *gradient);
             }
             for (int a = 0; a < dim; a++) {
-                gradient[at * dim + a] -= (double)dim / rows * hat[k * dim + a];
+                gradient[at * dim + a] -= (double)dim / rows * grad_N[k * dim + a];
             }
         }
     }
@@ -459,9 +460,9 @@ void cell_functions_list(const struct body *body, int64_t q, struct cell_functio
     functions->count = 0;
     for (int r = 0; r < count; r++) {
         for (int64_t i = matrix->ptr[row[r]]; i < matrix->ptr[row[r] + 1]; i++) {
-            int32_t node = matrix->idx[i], at = functions->place[node];
+            int32_t node = matrix->idx[i], at = functions->slot[node];
             if (at >= functions->count || functions->node[at] != node) {
-                at = functions->place[node] = (int32_t)functions->count++;
+                at = functions->slot[node] = (int32_t)functions->count++;
                 functions->node[at] = node;
                 memset(functions->gradient + at * dim, 0, (size_t)dim * sizeof *functions->gradient);
             }

@@ -2,12 +2,12 @@
  * of a cell is the mean of the field's over the cell, by the divergence theorem the sum over its faces of the
  * field's mean on the face times the outward normal, per volume.
  *
- * For a simplex the normal of the face opposite vertex k, times its area, is -dim V grad N_k, N_k the hat
- * function of the vertex. So F = I - dim sum_k m_k (x) grad N_k, where m_k is the field's mean on the face: a
- * sparse operator replaces a table of gradients of dim values for each pair of cell and node. In 2D it has a
- * row for each face, which two cells share. In 3D, away from the boundary, m_k is the mean of the values at
- * the middles of the face's edges (approx/face_rows.h): there are 1.2 edges for each cell, but two faces, and
- * rows for points are shorter than those for faces.
+ * For a simplex the normal of the face opposite vertex k, times its area, is -dim V grad N_k, N_k the
+ * linear shape function of the vertex. So F = I - dim sum_k m_k (x) grad N_k, where m_k is the field's mean
+ * on the face: a sparse operator replaces a table of gradients of dim values for each pair of cell and node.
+ * In 2D it has a row for each face, which two cells share. In 3D, away from the boundary, m_k is the mean of
+ * the values at the middles of the face's edges (approx/face_rows.h): there are 1.2 edges for each cell, but
+ * two faces, and rows for points are shorter than those for faces.
  *
  * F is the gradient of no continuous piecewise linear map, so that sum V det F is not the volume within the
  * boundary: under a pressure the field would buckle within the cells at no cost of volume. With F_h, the
@@ -41,30 +41,32 @@
 
 struct body;
 
-/* What they are made of, in the caller's arrays. One integration point per cell. */
+/* Input, in the caller's arrays. One integration point per cell. */
 struct smoothed_cells_input {
     const double *x;           /* nodes, node_count * dim, m */
     const int32_t *cell_node;  /* cells * (dim + 1) */
     const struct faces *faces; /* all of them */
-    const int64_t *face_ptr;   /* rows that the shape functions are averaged over faces by: row_count + 1 */
+    const int64_t *face_ptr;   /* row_count + 1: the rows of face averages of the shape functions */
     const int32_t *face_idx;
     const double *face_phi;
-    const int64_t *node_ptr; /* and their values at the nodes: node_count + 1 */
+    const int64_t *node_ptr; /* node_count + 1: values of the shape functions at the nodes */
     const int32_t *node_idx;
     const double *node_phi;
-    const int32_t *face_reader;    /* row_count: the process that has read each row of these averages, which
-                                      in others is empty; NULL: all have all */
-    void (*copied)(void *context); /* when face_ptr, face_idx and face_phi are not needed any more; or NULL.
-                                      Of several processes that all have all: not before the body's end */
+    const int32_t *face_reader;    /* row_count: the process that has read each row of the face averages;
+                                      the row is empty in others. NULL: every process has all */
+    void (*copied)(void *context); /* called when face_ptr, face_idx and face_phi are no longer needed; or
+                                      NULL. Where each of several processes has all rows, they are needed
+                                      until the body is freed, and it is not called */
     void *context;
 };
 
 struct smoothed_cells {
     struct field_averages averages; /* over the faces, and values at the nodes */
     double *interpolant;            /* F_h at the last evaluation, as body->F */
-    double *hat; /* dim * dim rows of as many as there are cells, and BODY_POINT_PADDING more: row (k - 1) dim
-                    + b holds component b of the gradient of hat k = 1 .. dim in each cell; those of all
-                    vanish together, 1/m */
+    double *linear_gradient; /* dim * dim rows of as many as there are cells, and BODY_POINT_PADDING more: row
+                    (k - 1) dim
+                    + b holds component b of the gradient of N_k, k = 1 .. dim, in each cell, 1/m; the
+                    gradients of all N_k sum to zero */
 };
 
 /* Lay out the cells of a body whose sizes, orders and shares are known. STATUS_INPUT when a cell lacks a
@@ -73,7 +75,7 @@ MUST_CHECK enum status smoothed_cells_build(const struct smoothed_cells_input *i
                                             struct error *error);
 void smoothed_cells_free(struct smoothed_cells *smoothed);
 
-/* Gradients of the hat functions of cell q, in the body's order: gradient[(dim + 1) * dim], 1/m. */
+/* gradient[(dim + 1) * dim]: gradients of the linear shape functions of cell q, in the body's order, 1/m. */
 void smoothed_cells_hat_gradients(const struct body *body, int64_t q, double *gradient);
 
 /* Row i of the FACE_ROWS(dim) of the averages' matrix whose mean is the average over the face opposite vertex
@@ -83,13 +85,12 @@ int32_t smoothed_cells_row(const struct body *body, int64_t q, int k, int i);
 /* Vertex k of cell q, as a number in the body's order. */
 int32_t smoothed_cells_node(const struct body *body, int64_t q, int k);
 
-/* The shape functions that are not zero on a cell, and their mean gradients over it; nodes are numbers in the
- * body's order. Of other points only the room for the gradients. */
+/* The nodes whose shape functions are not zero on a cell, in the body's order, and the mean gradients of
+ * these over the cell. For bodies without smoothed cells only the room for the gradients. */
 struct cell_functions {
-    int32_t
-        *place;    /* node_count: where a node stands in the list, if it is there; stale entries do no harm */
-    int32_t *node; /* the list, of as many as a cell of the body has at most */
-    double *gradient; /* dim for each of the list, 1/m */
+    int32_t *slot;    /* node_count: index of a node in the list, valid where node[slot] is that node */
+    int32_t *node;    /* the list, with room for the most nodes that a cell has */
+    double *gradient; /* dim for each node of the list, 1/m */
     int64_t count;
 };
 MUST_CHECK enum status cell_functions_make(const struct body *body, struct cell_functions *functions,

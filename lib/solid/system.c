@@ -24,8 +24,8 @@ void system_free(struct solid_system *system)
     for (int64_t i = 0; i < system->contact_count; i++) {
         contact_free(&system->contacts[i]);
         boundary_averages_free(&system->contact_points[i]);
-        if (system->contact_hats != NULL) {
-            boundary_averages_free(&system->contact_hats[i]);
+        if (system->contact_averages != NULL) {
+            boundary_averages_free(&system->contact_averages[i]);
         }
     }
     for (int64_t i = 0; i < system->curve_count; i++) {
@@ -35,7 +35,7 @@ void system_free(struct solid_system *system)
     free(system->pressures);
     free(system->contacts);
     free(system->contact_points);
-    free(system->contact_hats);
+    free(system->contact_averages);
     free(system->curves);
     free(system->lumped_mass);
     free(system->factor);

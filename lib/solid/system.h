@@ -31,7 +31,7 @@ struct pressure_load {
     double pressure;  /* Pa, positive pushes inward */
     bool is_fluid;    /* then instead: */
     double weight[3]; /* of a fluid, density times gravity, N/m3: the pressure grows along it, */
-    double level[3];  /* from 0 at the level of this place, m */
+    double level[3];  /* from 0 at the level of this point, m */
     enum fluid_part part;
     int32_t curve;
 };
@@ -62,7 +62,8 @@ struct solid_system {
     struct pressure_load *pressures;
     int64_t pressure_count;
     struct contact *contacts;
-    struct boundary_averages *contact_points, *contact_hats; /* contact_count: what the contacts act on */
+    struct boundary_averages *contact_points, *contact_averages; /* contact_count: what the contacts act on,
+                                                                    and their nodal averages (may be empty) */
     int64_t contact_count;
     struct constraint_rows rows;
     const struct condition *conditions; /* of the rows, for messages; the caller's; NULL: not known */
@@ -108,7 +109,7 @@ void system_add_loads(const struct solid_system *system, const double *u, double
 /* residual[node_count * dim] = loads at system->factor + contact - internal forces, at parameters u. */
 struct deformation system_residual(struct solid_system *system, const double *u, double *residual);
 
-/* The step whose state was evaluated last is taken: see contact_accept. Evaluations alone change no state. */
+/* Take the step whose state was evaluated last: see contact_accept. Evaluations alone change no state. */
 void system_accept(struct solid_system *system);
 
 /* contact_augment, and the largest contact_miss, of all contacts. */

@@ -30,8 +30,8 @@ struct sample {
     const int32_t *face_reader; /* as in struct smoothed_cells_input */
     /* Integration points. */
     int64_t point_count;
-    double *x, *weight, *hat_value, *phi, *dphi;
-    int32_t *hat_node;
+    double *x, *weight, *barycentric, *phi, *dphi;
+    int32_t *vertex;
     int64_t *ptr;
     int32_t *idx;
     /* Values at the nodes. */
@@ -77,8 +77,8 @@ static inline void sample_points(struct sample *sample, int per_cell)
     sample->point_count = sample->cells.count * per_cell;
     sample->x = sample_array(sample->point_count * dim, sizeof(double));
     sample->weight = sample_array(sample->point_count, sizeof(double));
-    sample->hat_node = sample_array(sample->point_count * (dim + 1), sizeof(int32_t));
-    sample->hat_value = sample_array(sample->point_count * (dim + 1), sizeof(double));
+    sample->vertex = sample_array(sample->point_count * (dim + 1), sizeof(int32_t));
+    sample->barycentric = sample_array(sample->point_count * (dim + 1), sizeof(double));
     for (int64_t c = 0; c < sample->cells.count; c++) {
         const int32_t *vertex = sample->cells.node + c * (dim + 1);
         quadrature_positions(&rule, dim, sample->cloud.x, vertex, sample->x + c * per_cell * dim);
@@ -86,8 +86,8 @@ static inline void sample_points(struct sample *sample, int per_cell)
             int64_t q = c * per_cell + g;
             sample->weight[q] = rule.weight[g] * cell_volume(&sample->cells, c);
             for (int k = 0; k <= dim; k++) {
-                sample->hat_node[q * (dim + 1) + k] = vertex[k];
-                sample->hat_value[q * (dim + 1) + k] = rule.barycentric[g * (dim + 1) + k];
+                sample->vertex[q * (dim + 1) + k] = vertex[k];
+                sample->barycentric[q * (dim + 1) + k] = rule.barycentric[g * (dim + 1) + k];
             }
         }
     }
@@ -180,8 +180,8 @@ static inline void sample_free(struct sample *sample)
     face_averages_free(&sample->averages);
     free(sample->x);
     free(sample->weight);
-    free(sample->hat_node);
-    free(sample->hat_value);
+    free(sample->vertex);
+    free(sample->barycentric);
     free(sample->phi);
     free(sample->dphi);
     free(sample->ptr);

@@ -224,8 +224,8 @@ static void empty_volumes(void **state)
                                .material = (int32_t[]){0, 1},
                                .material_count = 2,
                                .group = (int32_t[]){0, 0},
-                               .hat_node = (int32_t[]){0, 1, 2, 0, 3, 2},
-                               .hat_value = (double[]){0.5, 0.5, 0.0, 0.4, 0.6, 0.0}};
+                               .vertex = (int32_t[]){0, 1, 2, 0, 3, 2},
+                               .barycentric = (double[]){0.5, 0.5, 0.0, 0.4, 0.6, 0.0}};
     double u[8] = {0.0, 0.0, 0.1, 0.0, 0.0, 0.2, 0.0, 0.1}, force[8];
     GOOD(body_build(&input, &body, &error));
     (void)body_force(&body, u, force);

@@ -71,8 +71,8 @@ static inline struct body make_body(const struct sample *sample, const struct se
                                .materials = setup->material,
                                .material = material,
                                .material_count = setup->model_count,
-                               .hat_node = setup->averaged ? sample->hat_node : NULL,
-                               .hat_value = sample->hat_value,
+                               .vertex = setup->averaged ? sample->vertex : NULL,
+                               .barycentric = sample->barycentric,
                                .ranks = setup->ranks};
     GOOD(body_build(&input, &body, &error));
     free(material);

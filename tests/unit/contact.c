@@ -105,7 +105,7 @@ static void skipping(void **state)
             assert_memory_equal(force, expected, sizeof force);
             contacts += touching(&contact);
             for (int a = 0; a < CONTACT_NODES; a++) {
-                skipped += !contact.view[a].looked;
+                skipped += !contact.view[a].searched;
             }
             steps++;
         }

@@ -193,7 +193,8 @@ static void moment(void **state)
     }
 }
 
-/* Contact nodes that are too far away to be looked at have the gaps of this state where all are measured. */
+/* For points too far from the surface the search is skipped. Measured with `all` they have the gaps of this
+ * state. */
 static void gaps_of_this_state(void **state)
 {
     (void)state;
@@ -221,23 +222,23 @@ static void gaps_of_this_state(void **state)
 /* Points in pairs on edges of a line of nodes: multipliers are at the nodes, and an augmentation makes them
  * the mean of what points beneath them press. Where all press the next one closes the gap of a wall that
  * yields. */
-static void multipliers_of_hats(void **state)
+static void multipliers_of_nodes(void **state)
 {
     (void)state;
-    enum { HATS = CONTACT_NODES / 2 + 1 };
+    enum { AVERAGES = CONTACT_NODES / 2 + 1 };
     struct contact_nodes points;
     struct error error;
     double place[CONTACT_NODES * 2], u[NODES * 3] = {0.0}, force[NODES * 3] = {0.0};
-    double area[HATS], normal[HATS * 2] = {0.0}, share[HATS * 4];
-    int32_t node[HATS];
-    int64_t sample_ptr[HATS + 1] = {0}, sample_point[HATS * 4];
-    struct boundary_averages hats = {.count = HATS,
-                                     .node = node,
-                                     .area = area,
-                                     .normal = normal,
-                                     .sample_ptr = sample_ptr,
-                                     .sample_point = sample_point,
-                                     .sample_share = share};
+    double area[AVERAGES], normal[AVERAGES * 2] = {0.0}, share[AVERAGES * 4];
+    int32_t node[AVERAGES];
+    int64_t sample_ptr[AVERAGES + 1] = {0}, sample_point[AVERAGES * 4];
+    struct boundary_averages averages = {.count = AVERAGES,
+                                         .node = node,
+                                         .area = area,
+                                         .normal = normal,
+                                         .sample_ptr = sample_ptr,
+                                         .sample_point = sample_point,
+                                         .sample_share = share};
     make_particles(&points, 2, 0.5);
     points.averages.position = place;
     for (int p = 0; p < CONTACT_NODES; p++) { /* each edge is 1 long, its points at 1/4 and 3/4 */
@@ -246,7 +247,7 @@ static void multipliers_of_hats(void **state)
         points.normal[2 * p + 1] = 1.0;
         u[2 * p + 1] = 0.1;
     }
-    for (int a = 0; a < HATS; a++) {
+    for (int a = 0; a < AVERAGES; a++) {
         int64_t at = sample_ptr[a];
         node[a] = CONTACT_NODES + a;
         area[a] = 0.0;
@@ -269,17 +270,17 @@ static void multipliers_of_hats(void **state)
     struct rigid_surface wall;
     struct contact contact;
     GOOD(rigid_build(2, 1, corners, true, &wall, &error));
-    GOOD(contact_build(&points.averages, &hats, points.X, 2, &wall, 100.0, &contact, &error));
+    GOOD(contact_build(&points.averages, &averages, points.X, 2, &wall, 100.0, &contact, &error));
     contact_force(&contact, u, force);
     NEAR_TO(contact_miss(&contact), 0.05, 1e-15);
     contact_augment(&contact);
-    for (int a = 0; a < HATS; a++) {
+    for (int a = 0; a < AVERAGES; a++) {
         NEAR_TO(contact.multiplier[2 * a], 0.0, 1e-13);
         NEAR_TO(contact.multiplier[2 * a + 1], -5.0, 1e-13);
         NEAR_TO(contact_node(&contact, a).gap, -0.05, 1e-15);
         NEAR_TO(contact_node(&contact, a).pressed, 1.0, 1e-15);
     }
-    for (int p = 0; p < CONTACT_NODES; p++) { /* hats sum to 1; and both sides of the wall count */
+    for (int p = 0; p < CONTACT_NODES; p++) { /* the hat functions sum to 1; both sides of the wall count */
         NEAR_TO(contact.held[2 * p + 1], -5.0, 1e-13);
         u[2 * p + 1] = p < 6 ? 0.05 : p == 6 ? 0.07 : 0.2 * (p > 8);
     }
@@ -291,7 +292,7 @@ static void multipliers_of_hats(void **state)
     NEAR_TO(force[1], -2.5, 1e-13);
     contact_augment(&contact);
     NEAR_TO(contact.multiplier[1], -5.0, 1e-13);
-    /* Hat 3: points 4 to 7 with shares 1/8, 3/8, 3/8, 1/8 press 5, 5, 7, 0, where 5 was held. */
+    /* Node 3: points 4 to 7 with shares 1/8, 3/8, 3/8, 1/8 press 5, 5, 7, 0, where 5 was held. */
     NEAR_TO(contact.multiplier[7], -5.0 - 0.375 * 2.0 + 0.125 * 5.0, 1e-13);
     contact_free(&contact);
 }
@@ -304,7 +305,7 @@ int main(void)
         cmocka_unit_test(work_of_the_surface),
         cmocka_unit_test(moment),
         cmocka_unit_test(gaps_of_this_state),
-        cmocka_unit_test(multipliers_of_hats),
+        cmocka_unit_test(multipliers_of_nodes),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -40,8 +40,8 @@ static enum status try_body_of(const struct smoothed_cells_input *smoothed, stru
                                .materials = materials,
                                .material = material,
                                .material_count = 2,
-                               .hat_node = sample.hat_node,
-                               .hat_value = sample.hat_value,
+                               .vertex = sample.vertex,
+                               .barycentric = sample.barycentric,
                                .node_x = sample.cloud.x,
                                .smoothed = smoothed};
     enum status status = body_build(&input, &body, error);

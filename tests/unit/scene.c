@@ -161,7 +161,7 @@ static void defaults(void **state)
     assert_string_equal(scene.title, "");
     assert_int_equal(scene.materials[0].model, SCENE_NEO_HOOKEAN);
     assert_int_equal(scene.solver.constraints, SCENE_EBCIEM);
-    assert_int_equal(scene.solver.constraint_points, SCENE_HAT_AVERAGES);
+    assert_int_equal(scene.solver.constraint_points, SCENE_NODAL_AVERAGES);
     assert_int_equal(scene.solver.volume, SCENE_NODAL_VOLUME);
     same(scene.solver.tolerance, 1e-5);
     same(scene.solver.time_step_margin, .9);

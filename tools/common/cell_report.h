@@ -1,11 +1,11 @@
-/* What is told of the background cells of a body: connected bodies and poor cells. */
+/* Report on the background cells of a body: connected bodies and poor cells. */
 #ifndef TOOLS_CELL_REPORT_H
 #define TOOLS_CELL_REPORT_H
 
 #include "approx/cells.h"
 #include "approx/quality.h"
 
-/* The most cells that are told one by one. */
+/* The most cells that are reported one by one. */
 #define CELL_REPORT_MOST 10
 
 struct cell_report {

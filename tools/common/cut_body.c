@@ -42,7 +42,7 @@ static void check_rows(const struct cut_body *whole, const char *name, const cha
     }
 }
 
-/* What is cut here, and has not been looked at before. */
+/* Check the groups of a body that is cut here and has not been checked before. */
 static void check_groups(const struct cut_body *whole)
 {
     struct error error;

@@ -1,4 +1,4 @@
-/* Fields that follow from the sections of a stream, for those who look at it. */
+/* Fields derived from the sections of a stream, for viewing. */
 #ifndef TOOLS_DERIVED_H
 #define TOOLS_DERIVED_H
 

@@ -58,7 +58,7 @@ done:
     return status;
 }
 
-/* The model owns what the condition looks at. */
+/* The model owns the arrays that the condition points to. */
 static enum status keep_field(struct point_section *p, struct field_table *field, struct error *error)
 {
     enum status status = STATUS_OK;

@@ -66,7 +66,7 @@ static enum status count_parts(const char *file, const struct stream *stream, in
     return status != STATUS_OK ? fail_in(error, status, "%s", file) : status;
 }
 
-/* A head that promises parts that are not there is found out before memory is asked for. */
+/* Check that the last part stated in the header exists, before memory is allocated for all. */
 static enum status look_for_last(const struct tool *tool, const char *operand, int64_t count,
                                  struct error *error)
 {

@@ -61,7 +61,7 @@ void run_fail(struct run *run, enum status status, const char *format, ...)
     va_start(values, format);
     vsnprintf(text, sizeof text, format, values);
     va_end(values);
-    if (status == STATUS_VERDICT && !run->folds.told) {
+    if (status == STATUS_VERDICT && !run->folds.reported) {
         run_folds_describe(run, FOLDED, folds, sizeof folds);
     }
     /* One line, whatever the names in it contain. */

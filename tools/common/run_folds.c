@@ -266,7 +266,7 @@ void run_folds_judge(struct run *run)
         remedy = "press less, hold it there";
     }
     if (text[0] != '\0' && !run->scene->output.folds_allowed) {
-        run->folds.told = true;
+        run->folds.reported = true;
         run->last_good = -1.0; /* the frames are all there */
         run_fail(run, STATUS_VERDICT, "%s: %s: %s, or allow it ([output] folds = allowed)", run->scene->path,
                  text, remedy);

@@ -1,4 +1,4 @@
-/* Folds of a run (see solid/folds.h): looked for while it lasts, told at its end. */
+/* Folds of a run (see solid/folds.h): searched for while it lasts, reported at its end. */
 #ifndef TOOLS_RUN_FOLDS_H
 #define TOOLS_RUN_FOLDS_H
 
@@ -7,12 +7,12 @@
 
 struct run;
 
-/* Looks in a row that show a fold. */
+/* Consecutive searches that find a fold. */
 struct fold_spell {
     bool seen;
     double since, until; /* times as in struct progress; until: INFINITY while it lasts */
-    struct fold fold;    /* at the first look */
-    bool counts;         /* also when it ends: a frame shows it, or it is of a dynamic run */
+    struct fold fold;    /* at the first of them */
+    bool counts;         /* reported also when it has ended: a frame shows it, or the run is dynamic */
     int64_t kept[5];     /* the fold's whole numbers, as they are kept in a checkpoint: never negative */
 };
 
@@ -26,7 +26,7 @@ struct run_folds {
     bool *held;    /* whether the displacement is prescribed at each face of the boundary */
     double *field; /* scratch: node_count * dim */
     bool *stopped; /* scratch: node_count */
-    bool told;     /* in the message that ends the run */
+    bool reported; /* in the message that ends the run */
     struct fold_spell now[FOLD_SPELLS];
     struct fold_spell past[FOLD_SPELLS]; /* the first one that ended and counts */
 };

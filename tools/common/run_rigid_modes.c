@@ -1,4 +1,4 @@
-/* Bodies that nothing holds: told before the first step. */
+/* Free rigid-body modes: reported before the first step. */
 #include "names.h"
 #include "run.h"
 

@@ -1,6 +1,6 @@
 /* Whether the equilibria of a quasi-static run are stable: a body that is compressed far enough buckles,
- * wrinkles or creases, and then either the state that was found is one that no body stays in, or the body has
- * gone over to another. Looked at while the run lasts, told at its end. */
+ * wrinkles or creases. Then either the state that was found is unstable, or the body has gone over to another
+ * state. Checked while the run lasts, reported at its end. */
 #ifndef TOOLS_RUN_STABILITY_H
 #define TOOLS_RUN_STABILITY_H
 

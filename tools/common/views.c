@@ -127,9 +127,9 @@ enum status stream_faces(const struct stream *stream, const struct cells *cells,
     }
     for (int64_t f = 0; f < faces->count; f++) {
         for (int k = 0; k < 2; k++) {
-            int32_t beside = faces->cell[2 * f + k];
-            if (beside < -k || beside >= cells->count) {
-                return fail(error, STATUS_INPUT, "faces.cell: row %lld: no cell %d", (long long)f, beside);
+            int32_t at = faces->cell[2 * f + k];
+            if (at < -k || at >= cells->count) {
+                return fail(error, STATUS_INPUT, "faces.cell: row %lld: no cell %d", (long long)f, at);
             }
         }
         if (faces->cell[2 * f + 1] < 0 && faces->boundary_count++ < f) {

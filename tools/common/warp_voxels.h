@@ -24,7 +24,7 @@ struct warp_report {
     double inconsistency;    /* |place(X) - x|, m */
 };
 
-/* Everything that the loop over voxels looks at. */
+/* Everything that the loop over voxels reads. */
 struct warp_job {
     const struct warp_request *request;
     const struct image *source; /* NULL: the field is written */
