@@ -34,7 +34,8 @@ static void declare_line(struct options *options, const char *line)
         end++;
     }
     bool repeats = end - value > 4 && strncmp(end - 4, " ...", 4) == 0;
-    declare(options, has_letter ? line[3] : '\0', name, length, end > value, repeats);
+    const char letter = (char)(has_letter ? line[3] : '\0');
+    declare(options, letter, name, length, end > value, repeats);
 }
 
 static struct option *find_letter(struct options *options, char letter)
@@ -58,7 +59,8 @@ void options_declare(struct options *options, const char *usage)
         line += strcspn(line, "\n");
         line += *line == '\n' ? 1 : 0;
     }
-    declare(options, find_letter(options, 'h') == NULL ? 'h' : '\0', "help", strlen("help"), false, false);
+    const char letter = (char)(find_letter(options, 'h') == NULL ? 'h' : '\0');
+    declare(options, letter, "help", strlen("help"), false, false);
     declare(options, '\0', "version", strlen("version"), false, false);
 }
 

@@ -83,7 +83,7 @@ enum status assembly_complete_gravity(const struct assembly *input, struct solid
 {
     enum status status = STATUS_OK;
     const struct body *body = &system->body;
-    const struct average_table *faces = &body->cells.averages.told[0];
+    const struct average_table *faces = &body->cells.averages.given[0];
     int dim = system->dim;
     double *force, *mass = NULL, *by_place = NULL;
     if (!assembly_has_gravity(input) || !weighs_later(input)) {

@@ -139,7 +139,7 @@ static void add_cell(const struct body *body, int64_t q, const double F[9], doub
     for (int k = 0; k <= body->dim; k++) {
         node[k] = smoothed_cells_node(body, q, k);
     }
-    smoothed_cells_hat_gradients(body, q, gradient);
+    smoothed_cells_linear_gradients(body, q, gradient);
     add_functions(body, &bound, body->dim + 1, node, gradient, to->of_node);
 }
 

@@ -127,7 +127,7 @@ enum status field_averages_drop_copied(struct field_averages *averages, struct e
 {
     enum status status = STATUS_OK;
     struct sparse *fetched = &averages->fetched;
-    struct average_table *faces = &averages->told[0];
+    struct average_table *faces = &averages->given[0];
     const int64_t *ptr = averages->matrix.ptr;
     int64_t at = 0, begin = 0;
     bool *kept = NULL;

@@ -37,9 +37,9 @@ struct field_averages {
     double *corner_force; /* 2 corner_count, with that stride: force of each corner on each of its rows */
     int64_t *corner_ptr;  /* row_count + 1: the corners that use each row, */
     int32_t *corner;      /* as many as of_corner has, ascending in each row */
-    struct average_table told[2]; /* with several processes: the caller's tables, faces and nodes, */
-    int64_t *face_order;          /* and the order of the rows of faces; */
-    struct sparse fetched;        /* where none has read all rows of faces: those that this process needs */
+    struct average_table given[2]; /* with several processes: the caller's tables, faces and nodes, */
+    int64_t *face_order;           /* and the order of the rows of faces; */
+    struct sparse fetched;         /* where none has read all rows of faces: those that this process needs */
 };
 
 struct field_averages_input {

@@ -125,7 +125,7 @@ static enum status make_rows(const struct solid_system *system, struct lower *lo
     if (share->ranks != NULL) {
         TRY(fetch_rows(system, lower, near, error));
     }
-#pragma omp parallel for schedule(dynamic) num_threads(chunks.threads)
+#pragma omp parallel for schedule(static, 1) num_threads(chunks.threads)
     for (int64_t c = 0; c < chunks.count; c++) {
         for (int64_t q = chunks_begin(&chunks, c); q < chunks_begin(&chunks, c + 1); q++) {
             int32_t *list = rows->idx + q * MOST_ENTRIES;

@@ -74,7 +74,7 @@ static enum status make_pieces(const struct scalar_stiffness *stiffness, const s
         struct scalar_row row;
         struct error own;
         enum status made = scalar_row_make(stiffness, &row, &own);
-#pragma omp for schedule(dynamic)
+#pragma omp for schedule(static, 1)
         for (int64_t c = 0; c < chunks->count; c++) {
             if (made == STATUS_OK) {
                 made = make_piece(stiffness, first + chunks_begin(chunks, c),

@@ -51,8 +51,8 @@ static struct average field_at(const struct scalar_stiffness *stiffness, int64_t
         *place = NULL;
         return (struct average){length, averages->matrix.idx + at, averages->matrix.value + at};
     }
-    int64_t faces = averages->told[0].row_count;
-    const struct average_table *table = &averages->told[f < faces ? 0 : 1];
+    int64_t faces = averages->given[0].row_count;
+    const struct average_table *table = &averages->given[f < faces ? 0 : 1];
     int64_t row = table->order[f < faces ? f : f - faces], at = table->ptr[row];
     return (struct average){table->ptr[row + 1] - at, table->idx + at, table->phi + at};
 }
@@ -178,24 +178,24 @@ static void add_cell(const struct scalar_stiffness *stiffness, int64_t q, int64_
     int dim = body->dim;
     int rows = FACE_ROWS(dim);
     int64_t nodes = stiffness->field_count - body->node_count;
-    double hat[12], smooth[3] = {0.0, 0.0, 0.0}, off[3] = {0.0, 0.0, 0.0};
+    double grad_N[12], smooth[3] = {0.0, 0.0, 0.0}, off[3] = {0.0, 0.0, 0.0};
     double modulus = modulus_of(body, q), k_off = SMOOTHING_STIFFNESS(dim);
-    smoothed_cells_hat_gradients(body, q, hat);
+    smoothed_cells_linear_gradients(body, q, grad_N);
     for (int k = 0; k <= dim; k++) {
         double mean = 0.0, value = row->at_field[nodes + smoothed_cells_node(body, q, k)];
         for (int r = 0; r < rows; r++) {
             mean += row->at_field[smoothed_cells_row(body, q, k, r)] / rows;
         }
         for (int a = 0; a < dim; a++) {
-            smooth[a] -= dim * mean * hat[k * dim + a];
-            off[a] += (value + dim * mean) * hat[k * dim + a];
+            smooth[a] -= dim * mean * grad_N[k * dim + a];
+            off[a] += (value + dim * mean) * grad_N[k * dim + a];
         }
     }
     for (int k = 0; k <= dim; k++) {
         double on_mean = 0.0, on_value = 0.0;
         for (int a = 0; a < dim; a++) {
-            on_mean -= dim * modulus * (smooth[a] - k_off * off[a]) * hat[k * dim + a];
-            on_value += modulus * k_off * off[a] * hat[k * dim + a];
+            on_mean -= dim * modulus * (smooth[a] - k_off * off[a]) * grad_N[k * dim + a];
+            on_value += modulus * k_off * off[a] * grad_N[k * dim + a];
         }
         for (int r = 0; r < rows; r++) {
             put(on_mean / rows, smoothed_cells_row(body, q, k, r), i, row, touched);

@@ -317,7 +317,7 @@ static enum status build_averages(const struct smoothed_cells_input *input, stru
             TRY(fetch_faces(input, body, &tables.tables[0], error));
         }
         TRY(copy_shares(&tables, body, error));
-        memcpy(averages->told, tables.tables, sizeof averages->told);
+        memcpy(averages->given, tables.tables, sizeof averages->given);
         averages->face_order = order;
         order = NULL;
         goto done;
@@ -362,7 +362,7 @@ void smoothed_cells_free(struct smoothed_cells *smoothed)
     *smoothed = (struct smoothed_cells){0};
 }
 
-void smoothed_cells_hat_gradients(const struct body *body, int64_t q, double *gradient)
+void smoothed_cells_linear_gradients(const struct body *body, int64_t q, double *gradient)
 {
     int dim = body->dim;
     memset(gradient, 0, (size_t)dim * sizeof *gradient);
@@ -429,7 +429,7 @@ static int list_rows(const struct body *body, int64_t q, int32_t row[12], double
 {
     int dim = body->dim, rows = FACE_ROWS(dim), count = 0;
     double grad_N[12];
-    smoothed_cells_hat_gradients(body, q, grad_N);
+    smoothed_cells_linear_gradients(body, q, grad_N);
     for (int k = 0; k <= dim; k++) {
         for (int i = 0; i < rows; i++) {
             int32_t of_face = smoothed_cells_row(body, q, k, i);

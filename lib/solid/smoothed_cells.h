@@ -76,7 +76,7 @@ MUST_CHECK enum status smoothed_cells_build(const struct smoothed_cells_input *i
 void smoothed_cells_free(struct smoothed_cells *smoothed);
 
 /* gradient[(dim + 1) * dim]: gradients of the linear shape functions of cell q, in the body's order, 1/m. */
-void smoothed_cells_hat_gradients(const struct body *body, int64_t q, double *gradient);
+void smoothed_cells_linear_gradients(const struct body *body, int64_t q, double *gradient);
 
 /* Row i of the FACE_ROWS(dim) of the averages' matrix whose mean is the average over the face opposite vertex
  * k of cell q. */
