@@ -262,8 +262,7 @@ enum status stuffing_improve(const struct labels *parts, const struct stuffing_o
     struct labels labels = *parts;
     uint16_t(*rim)[3] = NULL;
     TRY(labels_without_parts(parts, options->whole, &labels, error));
-    TRY(stuffing_straighten_rims(parts, options, stuffing, error));
-    TRY(stuffing_find_rims(options, stuffing, &rim, error));
+    TRY(stuffing_rims(parts, options, stuffing, &rim, error));
     TRY(star_make(stuffing, options->whole, &star, error));
     for (int sweep = 0; sweep < FIT_SWEEPS; sweep++) {
         fit(&labels, parts, rim, options->keep, stuffing, &star);

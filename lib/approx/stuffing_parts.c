@@ -13,7 +13,7 @@ static const double most_angle = 120.0;
 
 static bool is_part_of(const struct stuffing_options *options, int32_t a, int32_t b)
 {
-    return a != b && options->whole != NULL && options->whole[a] == options->whole[b];
+    return a != b && options->whole[a] == options->whole[b];
 }
 
 /* The facets at each node. */
@@ -115,21 +115,6 @@ static void straighten(const struct labels *labels, const struct stuffing_option
     }
 }
 
-enum status stuffing_straighten_rims(const struct labels *labels, const struct stuffing_options *options,
-                                     struct stuffing *stuffing, struct error *error)
-{
-    enum status status = STATUS_OK;
-    struct facets_at at = {0};
-    if (options->whole != NULL && stuffing->dim == 3) {
-        TRY(find_facets_at(stuffing, &at, error));
-        straighten(labels, options, &at, stuffing);
-    }
-done:
-    free(at.ptr);
-    free(at.facet);
-    return status;
-}
-
 /* The two parts whose facets meet at a node, and what lies beyond. */
 static void find_rim(const struct stuffing_options *options, const struct stuffing *stuffing,
                      const struct facets_at *at, int64_t node, uint16_t rim[3])
@@ -147,13 +132,19 @@ static void find_rim(const struct stuffing_options *options, const struct stuffi
     }
 }
 
-enum status stuffing_find_rims(const struct stuffing_options *options, const struct stuffing *stuffing,
-                               uint16_t (**rim)[3], struct error *error)
+enum status stuffing_rims(const struct labels *labels, const struct stuffing_options *options,
+                          struct stuffing *stuffing, uint16_t (**rim)[3], struct error *error)
 {
     enum status status;
     struct facets_at at = {0};
     TRY(NEW_ARRAY(rim, stuffing->node_count, error));
+    if (options->whole == NULL) {
+        goto done;
+    }
     TRY(find_facets_at(stuffing, &at, error));
+    if (stuffing->dim == 3) {
+        straighten(labels, options, &at, stuffing);
+    }
     for (int64_t n = 0; n < stuffing->node_count; n++) {
         find_rim(options, stuffing, &at, n, (*rim)[n]);
     }

@@ -99,17 +99,11 @@ MUST_CHECK enum status star_make(const struct stuffing *stuffing, const int32_t 
                                  struct stuffing_star *star, struct error *error);
 void star_free(struct stuffing_star *star);
 
-/* Name facets anew, stuffing->side, where the rim of a part turns so sharply at a node that no cell has room
- * behind it: where a facet is the only one of its part at a node, and flat on the rim. */
-MUST_CHECK enum status stuffing_straighten_rims(const struct labels *labels,
-                                                const struct stuffing_options *options,
-                                                struct stuffing *stuffing, struct error *error);
-
 /* (*rim)[node_count], allocated: the two parts whose facets meet at a node, and what lies beyond; zeros where
- * no rim is. */
-MUST_CHECK enum status stuffing_find_rims(const struct stuffing_options *options,
-                                          const struct stuffing *stuffing, uint16_t (**rim)[3],
-                                          struct error *error);
+ * no rim is. In 3D facets are first named anew, stuffing->side, where the rim turns so sharply at a node that
+ * no cell has room behind it: where a facet is the only one of its part there, and flat on the rim. */
+MUST_CHECK enum status stuffing_rims(const struct labels *labels, const struct stuffing_options *options,
+                                     struct stuffing *stuffing, uint16_t (**rim)[3], struct error *error);
 
 /* The labels with whole[] in place of each: result->label is allocated, or that of `labels` where there are
  * no parts. */
