@@ -266,6 +266,8 @@ field() {
     [ "$(wc -l <<< "$stderr")" -eq 1 ]
     [[ $stderr == "refine: round 1: the scene: mtled: "*"kept: none" ]]
     cmp out/u.dat before/u.dat
+    run -1 --separate-stderr env UNIT=parsec bash "$top/pipelines/refine/refine.sh" "$scene" "$geometry" 0.1mm out
+    [[ $stderr == "refine: round 1: the scene: nodes: "*"kept: none" ]]
 }
 
 @test "make refine: of a label image, by voxels" {

@@ -90,15 +90,16 @@ scaled() {
     awk -v factor="$1" '/^# / { on = $2 == "size" } on && NF == 1 { $1 = sprintf("%.17g", factor * $1) } { print }' "$work/$sizes"
 }
 
-# solve MESH FILE
+# solve MESH FILE: the stages start together, and all of them append to an empty log.
 solve() {
+    : > "$work/log"
     # shellcheck disable=SC2086 # several arguments
-    if [ "$image" ]; then cat "$1"; else nodes -u "$unit" "$1" 2> "$work/log"; fi | ipoints 2>> "$work/log" | support ${SUPPORT-} 2>> "$work/log" | shapefn 2>> "$work/log" | mtled -q "$scene" -o "$2" 2>> "$work/log"
+    if [ "$image" ]; then cat "$1"; else nodes -u "$unit" "$1" 2>> "$work/log"; fi | ipoints 2>> "$work/log" | support ${SUPPORT-} 2>> "$work/log" | shapefn 2>> "$work/log" | mtled -q "$scene" -o "$2" 2>> "$work/log"
 }
 
-# What the last command said, in a line.
+# What the last command said, in a line: of a pipe not what stages say of one before them that failed.
 said() {
-    tail -n 1 "$work/log"
+    grep -v 'did an earlier stage fail?' "$work/log" | tail -n 1
 }
 
 # The processor seconds in a file of `time`.
