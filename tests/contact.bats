@@ -28,7 +28,21 @@ ball() {
     [ "$status" -eq 1 ]
     [ -z "$output" ]
     [[ "$stderr" == *'ball.scene: [contact ball]: the rigid surface is 0.00'* ]]
-    [[ "$stderr" == *' m inside the body at ('*'), between its nodes, and nothing presses: refine the body there'* ]]
+    [[ "$stderr" == *' m inside the body at ('*'), between its nodes, and nothing presses: begin with the surface outside, and refine the body there'* ]]
+}
+
+@test "a rigid box that lies wholly in the body is a verdict, quasi-static and dynamic" {
+    printf '0.04 0.04\n0.06 0.04\n0.06 0.06\n0.04 0.06\n0.04 0.04\n' > box.tsv
+    cloud -d 2 -k regular -n 11 --box 0,0.1,0,0.1 | shapefn > block.mts 2> note
+    for analysis in quasi-static dynamic; do
+        { block "$analysis"
+            printf '[displacement far]\nfacets = ymin\ncomponents = 0, 0\n[contact box]\nfacets = ymax\nrigid = box.tsv\nunit = m\nside = right\n'
+            [ "$analysis" = quasi-static ] || printf '[solver]\nend_time = 1e-4\n'; } > box.scene
+        run --separate-stderr mtled box.scene block.mts
+        [ "$status" -eq 1 ]
+        [ -z "$output" ]
+        [[ "$stderr" == *'box.scene: [contact box]: the rigid surface is 0.06 m inside the body at (0.0'*'begin with the surface outside'* ]]
+    done
 }
 
 @test "a ball that presses on one node is told; where the force is not asked for, it is not" {

@@ -1,5 +1,6 @@
 #include "solid/contact_patch.h"
 
+#include "approx/field.h"
 #include "base/memory.h"
 
 #include <math.h>
@@ -39,49 +40,57 @@ static void mark_nodes(int dim, const struct facet_set *set, int64_t node_count,
     }
 }
 
-/* The vertex of the surface that is deepest inside the body, by no more than a facet of the body is wide. */
-static enum status find_inside(const struct contact *contact, const struct facet_set *set, const double *x,
-                               struct contact_patch *patch, struct error *error)
+/* The vertex of the surface that lies in a cell of the body, farthest from the contact's facets. */
+static enum status find_inside(const struct contact *contact, const struct facet_set *set,
+                               const struct cells *cells, struct contact_patch *patch, struct error *error)
 {
     enum status status;
     int dim = contact->dim;
-    struct rigid_surface body = {0};
-    const struct boundary_averages *nodes = contact_nodes(contact);
-    double *corners = NULL, area = 0.0;
+    int64_t count = contact->surface.vertex_count;
+    struct rigid_surface facets = {0};
+    double *corners = NULL, *place = NULL, *spacing = NULL;
+    bool *outside = NULL;
+    TRY(NEW_ARRAY(&place, count * dim, error));
+    TRY(NEW_ARRAY(&outside, count, error));
+    for (int64_t v = 0; v < count; v++) {
+        rigid_place_from_rest(&contact->place, dim, contact->surface.vertex + v * dim, place + v * dim);
+    }
+    TRY(NEW_ARRAY(&spacing, cells->node_count, error));
+    TRY(field_spacing(cells, spacing, error));
+    TRY(field_outside(cells, spacing, 0.0, count, place, outside, error));
     TRY(NEW_ARRAY(&corners, set->count * dim * dim, error));
     for (int64_t i = 0; i < set->count * dim; i++) {
         for (int a = 0; a < dim; a++) {
-            corners[i * dim + a] = x[(int64_t)set->facet[i] * dim + a];
+            corners[i * dim + a] = cells->x[(int64_t)set->facet[i] * dim + a];
         }
     }
-    for (int64_t a = 0; a < nodes->count; a++) {
-        area += nodes->area[a] / (double)nodes->count;
-    }
-    TRY(rigid_build(dim, set->count, corners, false, &body, error));
-    for (int64_t v = 0; v < contact->surface.vertex_count; v++) {
-        double place[3];
-        rigid_place_from_rest(&contact->place, dim, contact->surface.vertex + v * dim, place);
-        struct rigid_contact closest = rigid_closest(&body, place, dim == 2 ? area : sqrt(area));
-        if (closest.found && -closest.gap > patch->inside) {
-            patch->inside = -closest.gap;
+    TRY(rigid_build(dim, set->count, corners, false, &facets, error));
+    for (int64_t v = 0; v < count; v++) {
+        double depth = outside[v] ? 0.0 : rigid_closest(&facets, place + v * dim, INFINITY).distance;
+        if (depth > patch->inside) {
+            patch->inside = depth;
             for (int a = 0; a < dim; a++) {
-                patch->place[a] = place[a];
+                patch->place[a] = place[v * dim + a];
             }
         }
     }
 done:
-    rigid_free(&body);
+    rigid_free(&facets);
     free(corners);
+    free(place);
+    free(spacing);
+    free(outside);
     return status;
 }
 
-enum status contact_patch_find(const struct contact *contact, const struct facet_set *set, int64_t node_count,
-                               const double *x, struct contact_patch *patch, struct error *error)
+enum status contact_patch_find(const struct contact *contact, const struct facet_set *set,
+                               const struct cells *cells, struct contact_patch *patch, struct error *error)
 {
     enum status status;
+    int64_t node_count = cells->node_count;
     struct marks marks = {0};
     const struct boundary_averages *nodes = contact_nodes(contact);
-    double resolved = 0.0, largest = 0.0;
+    double resolved = 0.0, largest = 0.0, area = 0.0;
     *patch = (struct contact_patch){.node = -1};
     TRY(NEW_ARRAY(&marks.force, node_count, error));
     TRY(NEW_ARRAY(&marks.presses, node_count, error));
@@ -91,7 +100,10 @@ enum status contact_patch_find(const struct contact *contact, const struct facet
         struct contact_node node = contact_node(contact, a);
         marks.force[nodes->node[a]] += node.pressure * nodes->area[a];
         marks.presses[nodes->node[a]] |= node.pressed > 0.5;
+        area += nodes->area[a];
     }
+    area /= (double)nodes->count;
+    patch->width = contact->dim == 2 ? area : sqrt(area);
     mark_nodes(contact->dim, set, node_count, &marks);
     for (int64_t n = 0; n < node_count; n++) {
         patch->pressing += marks.presses[n];
@@ -105,7 +117,7 @@ enum status contact_patch_find(const struct contact *contact, const struct facet
     if (patch->force > 0.0) {
         patch->thin = 1.0 - resolved / patch->force;
     } else {
-        status = find_inside(contact, set, x, patch, error);
+        status = find_inside(contact, set, cells, patch, error);
     }
 done:
     free(marks.force);

@@ -2,6 +2,7 @@
 #ifndef SOLID_CONTACT_PATCH_H
 #define SOLID_CONTACT_PATCH_H
 
+#include "approx/cells.h"
 #include "solid/contact.h"
 
 /* A contact node presses where the points that press have more than half of its weight. The contact area is
@@ -12,15 +13,16 @@ struct contact_patch {
     double force;     /* sum p A over contact nodes and points, N (2D: N/m) */
     double thin;      /* part of it that is not at the nodes of a resolved patch, 0 to 1 */
     int32_t node;     /* with the largest force in that part; -1: none */
-    double inside;    /* how far a vertex of the surface is inside of the body, m, 0: none is. Only looked for
-                         when nothing presses */
-    double place[3];  /* of that vertex, m */
+    double inside; /* how far from the facets a vertex of the surface lies in a cell of the body, at most, m;
+                      0: none does. Only looked for when nothing presses */
+    double place[3]; /* of that vertex, m */
+    double width;    /* of a facet that a contact node stands for, on average, m */
 };
 
-/* The contact of contact nodes as it was evaluated last, on facets set, and the nodes' positions x[node_count
- * * dim], m. STATUS_SYSTEM for memory. */
+/* The contact as it was evaluated last, on facets set; the body's cells where it has moved to.
+ * STATUS_SYSTEM for memory. */
 MUST_CHECK enum status contact_patch_find(const struct contact *contact, const struct facet_set *set,
-                                          int64_t node_count, const double *x, struct contact_patch *patch,
+                                          const struct cells *cells, struct contact_patch *patch,
                                           struct error *error);
 
 #endif

@@ -35,8 +35,10 @@ static void across(void **state)
                  {"000111000000", 3, -1, 0.0}, {"110000000000", 2, -1, 0.0}, {"011100000300", 4, 9, 0.5},
                  {"111111111111", 12, -1, 0.0}};
     struct contact_nodes contact_nodes;
-    int32_t facet[2 * CONTACT_NODES];
+    static const int32_t node[] = {13, 14, 15}; /* a cell far away */
     double x[2 * NODES] = {0.0};
+    struct cells cells = {2, NODES, x, 1, node};
+    int32_t facet[2 * CONTACT_NODES];
     make_particles(&contact_nodes, 2, 0.5);
     make_samples(&contact_nodes);
     for (int32_t a = 0; a < CONTACT_NODES; a++) {
@@ -45,6 +47,8 @@ static void across(void **state)
         facet[2 * a] = a + 1;
         facet[2 * a + 1] = a;
     }
+    x[26] = x[30] = 5.0;
+    x[28] = x[31] = 6.0;
     struct facet_set set = {CONTACT_NODES - 1, facet};
     struct contact contact = built(&contact_nodes, make_shell(2, 4, 0.5, false), 1.0);
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
@@ -53,7 +57,7 @@ static void across(void **state)
         for (int a = 0; a < CONTACT_NODES; a++) {
             contact.pressure[a] = cases[i].presses[a] - '0';
         }
-        GOOD(contact_patch_find(&contact, &set, NODES, x, &patch, &error));
+        GOOD(contact_patch_find(&contact, &set, &cells, &patch, &error));
         assert_int_equal(patch.pressing, cases[i].pressing);
         assert_int_equal(patch.node, cases[i].node);
         NEAR_TO(patch.thin, cases[i].thin, 1e-15);
@@ -61,24 +65,30 @@ static void across(void **state)
     contact_free(&contact);
 }
 
-/* The corner of a square 0.1 below the line of the nodes: the body is below, its facets' normals up. */
+/* A square with corners at (0, +-.5) and (+-.5, 0), and bodies from y = low to high whose upper side is in
+ * contact: how far its corners are inside of them. */
 static void inside(void **state)
 {
     (void)state;
+    static const struct {
+        double low, high, inside, corner;
+    } bodies[] = {
+        {-0.6, -0.4, 0.1, -0.5}, {-0.9, -0.6, 0.0, 0.0}, {-2.0, -0.4, 0.1, -0.5}, {-2.0, 2.0, 2.5, -0.5}};
+    static const int32_t node[] = {0, 1, 2, 0, 2, 3}, up[] = {2, 3};
     struct contact_nodes contact_nodes;
-    struct contact_patch patch;
-    struct error error;
-    double x[2 * NODES] = {-2.0, -0.4, 2.0, -0.4, 2.0, -0.6, -2.0, -0.6};
-    static const int32_t up[] = {1, 0}, down[] = {0, 1};
     make_particles(&contact_nodes, 2, 0.5);
     make_samples(&contact_nodes);
-    struct contact contact =
-        built(&contact_nodes, make_shell(2, 4, 0.5, false), 1.0); /* corners at (0, +-.5), (+-.5, 0) */
-    GOOD(contact_patch_find(&contact, &(struct facet_set){1, up}, NODES, x, &patch, &error));
-    NEAR_TO(patch.inside, 0.1, 1e-12);
-    NEAR_TO(patch.place[1], -0.5, 1e-12);
-    GOOD(contact_patch_find(&contact, &(struct facet_set){1, down}, NODES, x + 4, &patch, &error));
-    NEAR_TO(patch.inside, 0.0, 0.0);
+    struct contact contact = built(&contact_nodes, make_shell(2, 4, 0.5, false), 1.0);
+    for (size_t i = 0; i < sizeof bodies / sizeof *bodies; i++) {
+        struct contact_patch patch;
+        struct error error;
+        double low = bodies[i].low, high = bodies[i].high;
+        double x[2 * NODES] = {-2.0, low, 2.0, low, 2.0, high, -2.0, high};
+        struct cells cells = {2, NODES, x, 2, node};
+        GOOD(contact_patch_find(&contact, &(struct facet_set){1, up}, &cells, &patch, &error));
+        NEAR_TO(patch.inside, bodies[i].inside, 1e-12);
+        NEAR_TO(patch.place[1], bodies[i].corner, 1e-12);
+    }
     contact_free(&contact);
 }
 

@@ -54,10 +54,10 @@ void run_check_rigid_modes(struct run *run);
 /* Quasi-static: relax to the full load. Exits with a verdict when it does not converge. */
 void run_quasi_static(struct run *run);
 
-/* Of the final state: exits with a verdict where a rigid surface has gone into the body by more than `slack`,
- * m, between its nodes, none of which presses; and notes contacts that press on less than three nodes across.
- */
-void run_contacts_judge(struct run *run, double slack);
+/* Of the final state: exits with a verdict where a rigid surface is in the body by more than `slack`, m, and
+ * `share` of a facet's width, and no node presses; and notes contacts that press on less than three nodes
+ * across. */
+void run_contacts_judge(struct run *run, double slack, double share);
 
 /* Dynamic: step to the end time. Exits with a verdict when it cannot; adds the section energy on request. */
 void run_dynamic(struct run *run);

@@ -3,6 +3,7 @@
 
 #include "solid/contact_patch.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -40,7 +41,8 @@ static void judge_patch(struct run *run, const struct contact *contact, const st
         run_fail(
             run, STATUS_VERDICT,
             "%s: [contact %s]: the rigid surface is %.2g m inside the body at %s, between its nodes, and "
-            "nothing presses: refine the body there until its facets are smaller than the contact",
+            "nothing presses: begin with the surface outside, and refine the body there until its facets are "
+            "smaller than the contact",
             run->scene->path, name, patch->inside, place);
     }
     if (patch->thin > most_thin && wants_forces(&run->scene->output)) {
@@ -54,18 +56,19 @@ static void judge_patch(struct run *run, const struct contact *contact, const st
     }
 }
 
-void run_contacts_judge(struct run *run, double slack)
+void run_contacts_judge(struct run *run, double slack, double share)
 {
     struct solid_system *system = &run->model->system;
     struct error error;
     double *x = system->contact_count > 0 ? deformed(run) : NULL;
+    struct cells cells = run->model->assembly.cells;
+    cells.x = x;
     for (int64_t c = 0; c < system->contact_count; c++) {
         const struct contact *contact = &system->contacts[c];
         const struct facet_set *set = &run->model->assembly.contacts[contact->section].facets;
         struct contact_patch patch;
-        tool_check(run->tool, contact_patch_find(contact, set, system->node_count, x, &patch, &error),
-                   &error);
-        judge_patch(run, contact, &patch, slack);
+        tool_check(run->tool, contact_patch_find(contact, set, &cells, &patch, &error), &error);
+        judge_patch(run, contact, &patch, fmax(slack, share * patch.width));
     }
     free(x);
 }

@@ -5,6 +5,10 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* A surface that has left the body again is within the chords of a curved boundary by less than this share of
+ * a facet's width. */
+static const double most_inside = 0.1;
+
 /* Coordinates of row `row` of points or nodes, as text. */
 static void place_of(const struct run *run, const double *x, int64_t row, char place[96])
 {
@@ -19,6 +23,7 @@ static void judge(struct run *run, const struct dynamics_report *report)
     switch (report->outcome) {
     case DYNAMICS_DONE:
         run_folds_judge(run);
+        run_contacts_judge(run, 0.0, most_inside);
         return;
     case DYNAMICS_INVERTED:
         place_of(run, run->model->assembly.x, report->point, place);

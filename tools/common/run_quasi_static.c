@@ -21,7 +21,7 @@ static void judge(struct run *run, const struct relaxation_report *report)
                       scene->path, report->penetration, report->penetration_allowed);
         }
         run_folds_judge(run);
-        run_contacts_judge(run, report->penetration_allowed);
+        run_contacts_judge(run, report->penetration_allowed, 0.0);
         return;
     }
     if (report->outcome == RELAXATION_STALLED) {
