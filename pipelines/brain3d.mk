@@ -1,5 +1,5 @@
 # make brain3d: the whole brain: several schemes and mixed elements (FreeFEM) without the skull, compared with mixed elements on a finer mesh;
-# then the default sliding on the skull, coarse and fine. make brain3d-fine adds the default on 61 700 nodes: half an hour.
+# the default and mixed elements on three meshes a size; then the default sliding on the skull, coarse and fine. make brain3d-fine adds the default on 61 700 nodes: half an hour.
 #
 # Everything lies in build/out/brain3d. A scheme S has S.dat (the displacements, a text stream), S.log (what the tools
 # report), S.errors (its distance from the reference), S.row (its line of compare.tsv) and S.balance (that of balance.tsv).
@@ -10,6 +10,10 @@ BRAIN3D_TABLES := $(BRAIN3D_INPUT)/load.tsv $(BRAIN3D_INPUT)/skull.tsv
 BRAIN3D_AT_NODES := mls1-at-nodes mmls-at-nodes
 BRAIN3D_FREE := $(BRAIN3D_AT_NODES) small-free mixed-free
 BRAIN3D_COMPARED := $(BRAIN3D_FREE) large-free small
+# More meshes of the sizes of small and large: gmsh makes others of sizes that hardly differ.
+BRAIN3D_SMALL := small small-2 small-3
+BRAIN3D_LARGE := large large-2 large-3
+BRAIN3D_MIXED := mixed mixed-2 mixed-3
 
 # What each is called in compare.tsv.
 mls1-at-nodes.name := linear MLS, 4 points, k = 1.4, conditions at nodes, pointwise volume
@@ -21,18 +25,24 @@ small.name := sliding on the skull: default
 large.name := sliding on the skull: the default on a finer mesh (reference)
 
 .PHONY: brain3d brain3d-fine
-brain3d: $(BRAIN3D)/compare.tsv $(BRAIN3D)/balance.tsv $(BRAIN3D)/brain3d.png $(BRAIN3D)/brain3d.vtu
+brain3d: $(BRAIN3D)/compare.tsv $(BRAIN3D)/balance.tsv $(BRAIN3D)/meshes.tsv $(BRAIN3D)/brain3d.png $(BRAIN3D)/brain3d.vtu
 	@awk -F '\t' '{ printf "%-74s %6s %6s %8s %8s %6s %8s\n", $$1, $$2, $$3, $$4, $$5, $$6, $$7 }' $<
 	@echo
 	@awk -F '\t' '{ printf "%-74s %8s %7s %7s %9s %9s %9s %9s %7s %8s\n", $$1, $$2, $$3, $$4, $$5, $$6, $$7, $$8, $$9, $$10 }' \
 	    $(BRAIN3D)/balance.tsv
+	@echo
+	@awk -F '\t' '{ printf "%-74s %16s %8s %9s %8s %7s\n", $$1, $$2, $$3, $$4, $$5, $$6 }' $(BRAIN3D)/meshes.tsv
 
 $(BRAIN3D)/%: export PATH := $(abspath $(BUILD))/bin:$(PATH)
 
 # ---- mesh ------------------------------------------------------------------------------------------------------------
 
 $(BRAIN3D)/small.msh: BRAIN3D_SIZE := 13.8
+$(BRAIN3D)/small-2.msh: BRAIN3D_SIZE := 13.7
+$(BRAIN3D)/small-3.msh: BRAIN3D_SIZE := 13.9
 $(BRAIN3D)/large.msh: BRAIN3D_SIZE := 6.2
+$(BRAIN3D)/large-2.msh: BRAIN3D_SIZE := 6.15
+$(BRAIN3D)/large-3.msh: BRAIN3D_SIZE := 6.25
 $(BRAIN3D)/fine.msh: BRAIN3D_SIZE := 3.7
 
 $(BRAIN3D)/brain3d_surfaces.msh: $(BRAIN3D_INPUT)/brain3d_surfaces.msh.gz
@@ -44,17 +54,17 @@ $(BRAIN3D)/brain3d.geo: $(BRAIN3D_INPUT)/brain3d.geo
 	@mkdir -p $(@D)
 	cp $< $@
 
-$(BRAIN3D)/small.msh $(BRAIN3D)/large.msh $(BRAIN3D)/fine.msh: $(BRAIN3D)/brain3d.geo $(BRAIN3D)/brain3d_surfaces.msh
+$(addprefix $(BRAIN3D)/,$(addsuffix .msh,$(BRAIN3D_SMALL) $(BRAIN3D_LARGE) fine)): $(BRAIN3D)/brain3d.geo $(BRAIN3D)/brain3d_surfaces.msh
 	gmsh -3 -nt 1 -v 2 $< -setnumber lc $(BRAIN3D_SIZE) -o $@
 
 # The cloud is renewed only when it changes, so that a rebuilt tool does not call for a new solution by mixed elements.
-$(BRAIN3D)/small.made: $(BRAIN3D)/small.msh $(BUILD)/bin/nodes
+$(BRAIN3D_SMALL:%=$(BRAIN3D)/%.made): $(BRAIN3D)/%.made: $(BRAIN3D)/%.msh $(BUILD)/bin/nodes
 	nodes -u mm -t $< > $(@:.made=.new)
 	cmp -s $(@:.made=.new) $(@:.made=.cloud.dat) || cp $(@:.made=.new) $(@:.made=.cloud.dat)
 	rm $(@:.made=.new)
 	touch $@
 
-$(BRAIN3D)/small.cloud.dat: $(BRAIN3D)/small.made ;
+$(BRAIN3D_SMALL:%=$(BRAIN3D)/%.cloud.dat): $(BRAIN3D)/%.cloud.dat: $(BRAIN3D)/%.made ;
 
 # ---- solutions -------------------------------------------------------------------------------------------------------
 
@@ -74,7 +84,7 @@ $(BRAIN3D)/small.dat $(BRAIN3D)/large.dat $(BRAIN3D)/fine.dat: $(BRAIN3D)/%.dat:
         $(BRAIN3D_INPUT)/brain3d.scene $(BRAIN3D_TABLES) $(BRAIN3D_PROGRAMS)
 	$(BRAIN3D_SOLVE)
 
-$(BRAIN3D)/small-free.dat $(BRAIN3D)/large-free.dat: $(BRAIN3D)/%-free.dat: $(BRAIN3D)/%.msh \
+$(addprefix $(BRAIN3D)/,$(addsuffix -free.dat,$(BRAIN3D_SMALL) $(BRAIN3D_LARGE))): $(BRAIN3D)/%-free.dat: $(BRAIN3D)/%.msh \
         $(BRAIN3D_INPUT)/free.scene $(BRAIN3D_TABLES) $(BRAIN3D_PROGRAMS)
 	$(BRAIN3D_SOLVE)
 
@@ -87,7 +97,7 @@ $(BRAIN3D_AT_NODES:%=$(BRAIN3D)/%.dat): $(BRAIN3D)/%.dat: $(BRAIN3D)/small.msh $
 	(nodes -u mm $< | ipoints -g 4 | support -v $($*.support) | shapefn | \
 	    mtled -v $(BRAIN3D_INPUT)/paper.scene) > $@ $(BRAIN3D_LOG)
 
-$(BRAIN3D)/mixed-free.dat: $(BRAIN3D_INPUT)/free.scene $(BRAIN3D)/small.cloud.dat $(BRAIN3D_TABLES) $(wildcard pipelines/mixed/*) \
+$(BRAIN3D_MIXED:%=$(BRAIN3D)/%-free.dat): $(BRAIN3D)/mixed%-free.dat: $(BRAIN3D_INPUT)/free.scene $(BRAIN3D)/small%.cloud.dat $(BRAIN3D_TABLES) $(wildcard pipelines/mixed/*) \
         $(addprefix pipelines/,stream.awk scene.awk table.awk)
 	bash pipelines/mixed/solve.sh $(wordlist 1,2,$^) > $@ $(BRAIN3D_LOG)
 
@@ -110,6 +120,17 @@ BRAIN3D_ROWS := $(BRAIN3D_COMPARED) large
 $(BRAIN3D_ROWS:%=$(BRAIN3D)/%.row): $(BRAIN3D)/%.row: $(BRAIN3D)/%.dat pipelines/row.awk
 	awk -f pipelines/row.awk -v scheme='$($*.name)' -v field=$< $(@:.row=.log) $(filter %.errors,$^) > $@
 $(BRAIN3D_COMPARED:%=$(BRAIN3D)/%.row): $(BRAIN3D)/%.row: $(BRAIN3D)/%.errors
+
+# The body hangs on its craniotomy alone and turns about it: one mesh tells little.
+BRAIN3D_ALL_FREE := $(addsuffix -free,$(BRAIN3D_SMALL) $(BRAIN3D_MIXED) $(BRAIN3D_LARGE))
+BRAIN3D_MORE_FREE := $(filter-out small-free mixed-free large-free,$(BRAIN3D_ALL_FREE))
+$(BRAIN3D_MORE_FREE:%=$(BRAIN3D)/%.errors): $(BRAIN3D)/%.errors: $(BRAIN3D)/%.dat $(BRAIN3D)/reference.dat $(BUILD)/bin/fieldcmp
+	fieldcmp $< $(BRAIN3D)/reference.dat > $@
+$(BRAIN3D_MORE_FREE:%=$(BRAIN3D)/%.row): $(BRAIN3D)/%.row: $(BRAIN3D)/%.dat $(BRAIN3D)/%.errors pipelines/row.awk
+	awk -f pipelines/row.awk -v scheme=$* -v field=$< $(@:.row=.log) $(@:.row=.errors) > $@
+
+$(BRAIN3D)/meshes.tsv: pipelines/brain3d/meshes.awk $(BRAIN3D_ALL_FREE:%=$(BRAIN3D)/%.row)
+	awk -f $< -v names='$(small-free.name)	$(mixed-free.name)	$(large-free.name)' $(wordlist 2,99,$^) > $@
 
 $(BRAIN3D)/compare.tsv: $(BRAIN3D_ROWS:%=$(BRAIN3D)/%.row) pipelines/brain3d.mk
 	(printf 'scheme\tnodes\tpoints\tavg_mm\tmax_mm\tsteps\tseconds\n'; cat $(filter %.row,$^)) > $@

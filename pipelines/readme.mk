@@ -9,7 +9,7 @@ README_PICTURES := brain2d/section brain2d/difference table1/surface speed-error
 NEURO_PICTURES := slices=slices resection/slices=resection
 RESULTS := pipelines/results
 # Tables of the studies, and what they are called there.
-RESULT_TABLES := brain2d/compare=brain2d brain2d-convergence/convergence=brain2d-convergence brain3d/compare=brain3d table1/beside=table1 speed-error/speed-error=speed-error \
+RESULT_TABLES := brain2d/compare=brain2d brain2d-convergence/convergence=brain2d-convergence brain3d/compare=brain3d brain3d/meshes=brain3d-meshes table1/beside=table1 speed-error/speed-error=speed-error \
     speed-error/reach=reach convergence/convergence=convergence hard/hard=hard hard/summary=hard-summary hard/misses=hard-misses \
     estimate/estimate=estimate estimate/summary=estimate-summary foreign/foreign=foreign gallery/phantom=phantom \
     gallery/indentation=indentation adaptive/effectivity=effectivity adaptive/effectivity-summary=effectivity-summary \
