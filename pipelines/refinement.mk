@@ -21,6 +21,9 @@ cube.estimated := 0.021 0.0155 0.011
 cylinder.estimated := 8 16 32
 adaptive_sizes = $(or $($($(1).mesh).estimated),$($($(1).mesh).sizes))
 
+# The refinement begins with one size throughout: the geometry's own sizes, twice as large outside, are as good as graded.
+cylinder_49.uniform := -setnumber ratio 1
+
 # Of the refinement: the size that it begins with, the tolerance, about what the reference is uncertain by, the budget of nodes, and the
 # least size.
 block10.begin := 0.0113
@@ -28,7 +31,7 @@ block20.begin := 0.0113
 cook.begin := 5.6
 brain.begin := 14.6
 cube.begin := 0.03
-cylinder_49.begin := 8
+cylinder_49.begin := 5
 brain3d.begin := 13.8
 block10.until := 0.005mm
 block20.until := 0.02mm
@@ -110,7 +113,7 @@ define ADAPTIVE_REFINEMENT
 $(ADAPTIVE)/$(1)-$(2).row: $(call adaptive_scene,$(1)) $($($(1).mesh).geometry) $(call adaptive_even,$(1)) $(ADAPTIVE_SCRIPTS) $(if $(filter brain3d,$(1)),$(BRAIN3D)/brain3d_surfaces.msh) | $(ADAPTIVE_PROGRAMS)
 	@mkdir -p $$(@D)
 	UNIT=$($($(1).mesh).unit) GRADED=$(if $(filter even,$(2)),no,yes) NODES=$(or $($(1).budget),$(ADAPTIVE_BUDGET)) LEAST=$($(1).least) \
-	    GMSH='$(call adaptive_gmsh,$(1),$($(1).begin))' bash pipelines/adaptive/rounds.sh $(1) $(2) $$(wordlist 1,2,$$^) $($(1).until) \
+	    GMSH='$(call adaptive_gmsh,$(1),$($(1).begin)) $($(1).uniform)' bash pipelines/adaptive/rounds.sh $(1) $(2) $$(wordlist 1,2,$$^) $($(1).until) \
 	    $$(word 3,$$^) even $$(@:.row=) > $$@
 
 $(ADAPTIVE)/$(1)-mixed-$(2).row: $(call adaptive_scene,$(1)) $($($(1).mesh).geometry) $(call adaptive_even,$(1)) pipelines/adaptive/mixed.sh $(CONVERGENCE_MIXED) $(if $(filter brain3d,$(1)),$(BRAIN3D)/brain3d_surfaces.msh) | $(ADAPTIVE_PROGRAMS)

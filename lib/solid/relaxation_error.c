@@ -79,7 +79,9 @@ void relaxation_estimate(struct relaxation *r)
         sqrt(preconditioner_product_diagonal(&r->preconditioner, r->acceleration, r->acceleration)) / least2,
         r->largest_displacement);
     double at_worst = ratio(largest_of_nodes(r, r->acceleration) / least2, r->largest_move);
-    r->report->error = safety * fmax(on_the_whole, at_worst);
+    /* Moves below the round-off of positions are none. */
+    bool at_rest = r->largest_move <= DBL_EPSILON * r->body_size;
+    r->report->error = at_rest ? 0.0 : safety * fmax(on_the_whole, at_worst);
     r->report->lowest_frequency = sqrt(least2);
     r->mass_changed = false;
 }
