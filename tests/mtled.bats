@@ -241,6 +241,13 @@ frames_hold() {
     refused 2 "a quasi-static scene has no time" mtled edited.scene square.mts
 }
 
+@test "a quasi-static scene whose body is only held ends at rest, without a word" {
+    pressed_block | sed 's/^components = .*/components = 0, 0/' > held.scene
+    mtled held.scene square.mts 2> said | rows u > u
+    [ "$(cat said)" = "mtled: no sections of ipoints, support, shapefn in the input: ran with defaults" ]
+    awk '$1 > 1e-15 || $1 < -1e-15 || $2 > 1e-15 || $2 < -1e-15 { exit 1 } END { exit NR != 36 }' u
+}
+
 @test "a dynamic scene at rest stays at rest" {
     swinging_block | sed '/gravity/d' > block.scene
     mtled block.scene square.mts 2> note | rows u > u
