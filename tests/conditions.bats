@@ -68,6 +68,37 @@ patches() {
     paste <(mts print nodes.x v.dat) <(mts print u v.dat) | awk '{ d = $4 - 0.05 * $2; if (!(d < 1e-9 && -d < 1e-9)) exit 1 }'
 }
 
+# confined DIM NU: a body whose sides cannot move is pressed by 1 %; the force on the top by that of the closed form.
+confined() {
+    local walls='xmin xmax ymin' top=ymax
+    [ "$1" = 2 ] || walls="$walls ymax zmin" top=zmax
+    {
+        printf '[scene]\ndim = %s\nanalysis = quasi-static\n[material m]\nregion = body\nE = 3000\nnu = %s\n' "$1" "$2"
+        for wall in $walls; do printf '[displacement %s]\nfacets = %s\nnormal = 0\n' "$wall" "$wall"; done
+        printf '[displacement top]\nfacets = %s\n%s\n[output]\nreactions = yes\n' "$top" "$3"
+    } > confined.scene
+    mtled confined.scene "confined$1.mts" | rows reactions | awk -v nu="$2" -v dim="$1" '
+        { force = $dim }
+        END {
+            shear = 1500 / (1 + nu); bulk = 1000 / (1 - 2 * nu); s = 0.99
+            right = 0.1 ^ (dim - 1) * (2 / 3 * shear * s ^ (-5 / 3) * (s * s - 1) + bulk * (s - 1))
+            print dim, nu, force / right
+            exit !(NR == 2 * dim && force / right > 1 - 1e-4 && force / right < 1 + 1e-4)
+        }'
+}
+
+@test "confined bodies have their whole bulk modulus, also where relaxation meets less of it" {
+    cloud -d 2 -k jittered -n 8 --box 0,0.1,0,0.1 --jitter 0.1 | shapefn > confined2.mts 2> note
+    cloud -d 3 -k jittered -n 6 --box 0,0.1,0,0.1,0,0.1 --jitter 0.1 | shapefn > confined3.mts 2> note
+    for nu in 0.3 0.49 0.495 0.499 0.4999; do
+        confined 2 "$nu" 'normal = -0.001'
+    done
+    for nu in 0.49 0.495 0.499; do
+        confined 3 "$nu" 'normal = -0.001'
+        confined 3 "$nu" 'components = 0, 0, -0.001' # an edge to a side that slides is no end
+    done
+}
+
 @test "the same group in two sections: they share its force, and the result stays" {
     cloud -d 3 -k regular -n 4 --box 0,0.1,0,0.1,0,0.1 | shapefn > cube.mts 2> note
     { head3; printf '[displacement bottom]\nfacets = zmin\ncomponents = 0, 0, 0\n[displacement top]\nfacets = zmax\ncomponents = 0, 0, -0.005\n'; } > once.scene

@@ -89,10 +89,11 @@ MUST_CHECK enum status boundary_points_build(const struct face_table *table, con
 enum boundary_end { BOUNDARY_END_SMOOTH, BOUNDARY_END_SHARP };
 
 /* end[table->node_count] becomes true at the nodes where a held face of the boundary meets one that is not
- * held, across an edge (2D: a node) at which it turns by less than 45 degrees (smooth) or by more (sharp).
- * held[table->faces->count]. */
+ * touched, across an edge (2D: a node) at which it turns by less than 45 degrees (smooth) or by more (sharp).
+ * held[table->faces->count]; touched[the same]: held ones, and others that are not free. */
 MUST_CHECK enum status boundary_find_ends(const struct face_table *table, enum boundary_end kind,
-                                          const bool *held, bool *end, struct error *error);
+                                          const bool *held, const bool *touched, bool *end,
+                                          struct error *error);
 
 void boundary_averages_free(struct boundary_averages *averages);
 

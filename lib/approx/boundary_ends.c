@@ -21,7 +21,7 @@ static int compare_faces_at_nodes(const void *left, const void *right)
 }
 
 enum status boundary_find_ends(const struct face_table *table, enum boundary_end kind, const bool *held,
-                               bool *end, struct error *error)
+                               const bool *touched, bool *end, struct error *error)
 {
     enum status status;
     int dim = table->dim;
@@ -38,7 +38,8 @@ enum status boundary_find_ends(const struct face_table *table, enum boundary_end
     for (int64_t i = 0; i < count; i++) {
         for (int64_t k = i + 1; k < count && at[k].node == at[i].node; k++) {
             int64_t f = at[i].face, g = at[k].face;
-            if (held[f] != held[g] && boundary_share_edge(dim, node + f * dim, node + g * dim) &&
+            bool ends = (held[f] && !touched[g]) || (held[g] && !touched[f]);
+            if (ends && boundary_share_edge(dim, node + f * dim, node + g * dim) &&
                 boundary_same_side(table, node + f * dim, node + g * dim) == (kind == BOUNDARY_END_SMOOTH)) {
                 end[at[i].node] = true;
             }

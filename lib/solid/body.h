@@ -61,6 +61,7 @@ struct nodal_pressures {
     double *value;   /* and A there, m3/Pa (2D: m2/Pa) */
     double *inverse; /* of each row: S^-1; 0 where nothing carries pressure; */
     double *held;    /* pressure held since an augmentation, Pa; */
+    double *change;  /* what the last augmentation changed it by, Pa; */
     double *weight;  /* by which it counts, m3/Pa (2D: m2/Pa): 0 without a limit */
     bool limited;    /* some weights are not 0 */
     int64_t *entry;  /* scratch, as */
@@ -68,6 +69,8 @@ struct nodal_pressures {
     int iterations;
     double centre, half, scale; /* of the interval of eigenvalues of S^-1 A; of the sum */
     double most;                /* bulk modulus by shear modulus */
+    double slowest;             /* rate of augmentations where the body is confined: 1 - limited / bulk */
+    double least_shear;         /* of the materials, Pa */
 };
 
 /* Nodal volumes, whose pressures resist changes of volume: see nodal_volume.h. */
@@ -139,8 +142,15 @@ struct deformation body_force(struct body *body, const double *u, double *force)
 void body_limit_bulk(struct body *body, double most);
 bool body_is_limited(const struct body *body);
 
-/* Hold the nodal pressures of the last evaluation from here on. */
-void body_augment(struct body *body);
+/* Hold the nodal pressures of the last evaluation from here on. Where the body gives way these are right
+ * after few augmentations; where it is confined each takes on limited / bulk only of what they lack.
+ * `steady`: the load has been the same at the last two; where what these have changed is a geometric sequence
+ * its limit is held (Aitken's extrapolation). Returns what the pressures still lack, about, as a part of them
+ * or of the stress of shear by `strain`, whichever is more; INFINITY: not known yet. */
+double body_augment(struct body *body, bool steady, double strain);
+
+/* Pressures that lack less are right. */
+#define NODAL_PRESSURE_LACK 1e-3
 
 /* Volume at rest, the sum of the weights of the points, m3 (2D: m2). */
 double body_volume(const struct body *body);

@@ -21,6 +21,10 @@ static const double effect = 2e-5, most_inaccurate = 0.02;
 /* With augmentations what is missing of A^-1 counts by limited by whole bulk modulus; at most this. */
 static const double augmented_accuracy = 0.01;
 
+/* Changes of the pressures from augmentation to augmentation are of one rate where the angle between two has
+ * at least this cosine. */
+static const double aligned = 0.99;
+
 /* The volumes that share points with volume a, itself included, each once: every ROWS-th place of idx; NULL:
  * count only. seen: scratch, in which no entry is a before. Returns how many. */
 static int64_t list_neighbours(const struct nodal_volumes *volumes, int vertices, int64_t a, int64_t *seen,
@@ -127,6 +131,7 @@ enum status nodal_pressures_build(struct body *body, struct error *error)
     rows = pressures->slices * ROWS;
     TRY(NEW_ARRAY(&pressures->inverse, rows, error));
     TRY(NEW_ARRAY(&pressures->held, rows, error));
+    TRY(NEW_ARRAY(&pressures->change, rows, error));
     TRY(NEW_ARRAY(&pressures->weight, rows, error));
     TRY(NEW_ARRAY(&pressures->scratch, 3 * rows, error));
     TRY(NEW_ARRAY(&pressures->entry, count, error));
@@ -159,7 +164,7 @@ static void set_values(struct body *body, struct nodal_pressures *pressures)
 void body_limit_bulk(struct body *body, double most)
 {
     struct nodal_pressures *pressures = &body->volumes.pressures;
-    double largest = 0.0, bulk = 0.0, limited_bulk = 0.0;
+    double largest = 0.0, bulk = 0.0, limited_bulk = 0.0, least_share = 1.0, least_shear = INFINITY;
     if (!body->averaged) {
         return;
     }
@@ -170,13 +175,18 @@ void body_limit_bulk(struct body *body, double most)
         largest = fmax(largest, limited * nodal_pressure_compliance(material) / (body->dim + 2));
         bulk = fmax(bulk, rest / material->shear_modulus);
         limited_bulk = fmax(limited_bulk, limited / material->shear_modulus);
+        least_share = rest > 0.0 ? fmin(least_share, limited / rest) : least_share;
+        least_shear = fmin(least_shear, material->shear_modulus);
     }
+    pressures->least_shear = least_shear;
+    pressures->slowest = 1.0 - least_share;
     pressures->limited = bulk > limited_bulk;
     choose_iterations(pressures, largest,
                       pressures->limited ? augmented_accuracy * limited_bulk / bulk
                                          : fmin(most_inaccurate, effect * fmax(bulk, 1.0)));
     set_values(body, pressures);
     memset(pressures->held, 0, (size_t)(pressures->slices * ROWS) * sizeof *pressures->held);
+    memset(pressures->change, 0, (size_t)(pressures->slices * ROWS) * sizeof *pressures->change);
 }
 
 bool body_is_limited(const struct body *body)
@@ -184,11 +194,28 @@ bool body_is_limited(const struct body *body)
     return body->averaged && body->volumes.pressures.limited;
 }
 
-void body_augment(struct body *body)
+double body_augment(struct body *body, bool steady, double strain)
 {
     struct nodal_pressures *pressures = &body->volumes.pressures;
-    memcpy(pressures->held, body->volumes.pressure,
-           (size_t)(pressures->slices * ROWS) * sizeof *pressures->held);
+    const double *value = body->volumes.pressure, *weight = pressures->weight;
+    double now2 = 0.0, before2 = 0.0, both = 0.0, value2 = 0.0, least = strain * pressures->least_shear;
+    int64_t count = pressures->slices * ROWS;
+    for (int64_t a = 0; a < count; a++) {
+        double change = value[a] - pressures->held[a];
+        now2 += weight[a] * change * change;
+        before2 += weight[a] * pressures->change[a] * pressures->change[a];
+        both += weight[a] * change * pressures->change[a];
+        value2 += weight[a] * fmax(value[a] * value[a], least * least);
+    }
+    double rate = fmin(before2 > 0.0 ? sqrt(now2 / before2) : INFINITY, pressures->slowest);
+    double ahead = rate / (1.0 - rate), lack = now2 > 0.0 ? ahead * sqrt(now2 / value2) : 0.0;
+    bool jumps = steady && lack > NODAL_PRESSURE_LACK && both > aligned * sqrt(now2 * before2);
+    for (int64_t a = 0; a < count; a++) {
+        double change = value[a] - pressures->held[a];
+        pressures->held[a] = value[a] + (jumps ? ahead * change : 0.0);
+        pressures->change[a] = jumps ? 0.0 : change;
+    }
+    return jumps ? INFINITY : lack;
 }
 
 /* residual -= A move; next = keep move + add S^-1 residual; value += scale next; of some slices. */
@@ -242,8 +269,9 @@ void nodal_pressures_solve(const struct nodal_pressures *pressures, const double
 
 void nodal_pressures_free(struct nodal_pressures *pressures)
 {
-    void *arrays[] = {pressures->ptr,  pressures->idx,    pressures->value, pressures->inverse,
-                      pressures->held, pressures->weight, pressures->entry, pressures->scratch};
+    void *arrays[] = {pressures->ptr,     pressures->idx,   pressures->value,
+                      pressures->inverse, pressures->held,  pressures->change,
+                      pressures->weight,  pressures->entry, pressures->scratch};
     for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) {
         free(arrays[i]);
     }

@@ -44,7 +44,9 @@ static void augment(struct relaxation *r)
     }
     bool contacts = r->system->contact_count > 0 && relaxation_contacts_lack(r);
     if (pressures) {
-        body_augment(&r->system->body);
+        r->steady_augmentations = r->at_full_load > pause ? r->steady_augmentations + 1 : 0;
+        r->pressures_lack =
+            body_augment(&r->system->body, r->steady_augmentations > 1, r->largest_move / r->body_size);
     }
     if (contacts) {
         system_augment_contacts(r->system);
@@ -172,6 +174,7 @@ static void let_go(struct relaxation *r)
     r->spectrum2 = INFINITY;
     r->spectrum_known = false;
     r->augmentations = 0;
+    r->steady_augmentations = 0;
 }
 
 /* Set the load factors, and by how much they change. */
@@ -219,6 +222,13 @@ static bool follow(struct relaxation *r, struct error *error)
     return relaxation_update_preconditioner(r, error);
 }
 
+/* Whether multipliers carry what they must, of contacts and of nodal pressures. */
+static bool multipliers_hold(struct relaxation *r)
+{
+    bool pressures = !body_is_limited(&r->system->body) || r->pressures_lack <= NODAL_PRESSURE_LACK;
+    return pressures && relaxation_contacts_hold(r);
+}
+
 /* Whether the run ends at this check, and how. A failure ends it, too. */
 static bool ends(struct relaxation *r, enum relaxation_outcome *outcome, struct error *error)
 {
@@ -238,14 +248,14 @@ static bool ends(struct relaxation *r, enum relaxation_outcome *outcome, struct 
     }
     *outcome = RELAXATION_CONVERGED;
     if (r->converged_checks >= 2 && *error_now <= tolerance) {
-        if (relaxation_contacts_hold(r)) {
+        if (multipliers_hold(r)) {
             return true;
         }
         r->converged_checks = 0;
     }
     relaxation_note_best(r);
     if (whole && *error_now <= relaxation_round_off(r) && relaxation_stays(r, 2.0, 200) &&
-        relaxation_contacts_hold(r)) {
+        multipliers_hold(r)) {
         return true;
     }
     *outcome = RELAXATION_STALLED;
@@ -312,7 +322,7 @@ static enum status begin(struct relaxation *r, struct error *error)
     TRY(preconditioner_set_mass(&r->preconditioner, system, r->scratch, error));
     constraint_project(&r->preconditioner.constraint, system->factor, r->u);
     r->residual_at = r->u;
-    r->low2 = INFINITY;
+    r->low2 = r->pressures_lack = INFINITY;
     for (int i = 0; i < WINDOWS; i++) {
         r->window[i] = INFINITY;
     }

@@ -48,9 +48,11 @@ struct relaxation {
     bool unstable;                            /* it grew far above that in the last step */
     int64_t calmed_step;                      /* the last step at which that was mended */
     int64_t back_step;                        /* the last step that went back to a kept state */
-    bool mass_changed;      /* since the last check: increments of the acceleration mean nothing */
-    int64_t augmented_step; /* when multipliers took over last */
-    int64_t augmentations;  /* of contacts at the load that is held */
+    bool mass_changed;            /* since the last check: increments of the acceleration mean nothing */
+    int64_t augmented_step;       /* when multipliers took over last */
+    int64_t augmentations;        /* of contacts at the load that is held */
+    int64_t steady_augmentations; /* of pressures, all under the load that is held */
+    double pressures_lack;        /* part of the nodal pressures that is still to come; see body_augment */
     enum status failure;
     double load, load_rate;      /* steps of the ramp applied so far, and per step, at most top_rate */
     double top_rate;             /* 1 until an inversion */

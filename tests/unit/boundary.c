@@ -452,16 +452,17 @@ static void ends(void **state)
         struct face_table table = face_table(&sample);
         struct error error;
         bool *held = sample_array(sample.faces.count, sizeof *held);
+        bool *touched = sample_array(sample.faces.count, sizeof *touched);
         bool *end = sample_array(sample.cloud.node_count, sizeof *end);
-        GOOD(boundary_find_ends(&table, BOUNDARY_END_SMOOTH, held, end, &error));
+        GOOD(boundary_find_ends(&table, BOUNDARY_END_SMOOTH, held, held, end, &error));
         for (int64_t f = 0; f < sample.faces.count; f++) {
             held[f] = on_side_below(&sample, f, 2.0 * sample_size);
         }
-        GOOD(boundary_find_ends(&table, BOUNDARY_END_SMOOTH, held, end, &error));
+        GOOD(boundary_find_ends(&table, BOUNDARY_END_SMOOTH, held, held, end, &error));
         for (int64_t f = 0; f < sample.faces.count; f++) {
             held[f] = sample.faces.cell[2 * f + 1] < 0;
         }
-        GOOD(boundary_find_ends(&table, BOUNDARY_END_SMOOTH, held, end, &error));
+        GOOD(boundary_find_ends(&table, BOUNDARY_END_SMOOTH, held, held, end, &error));
         for (int64_t n = 0; n < sample.cloud.node_count; n++) {
             assert_false(end[n]);
         }
@@ -473,7 +474,7 @@ static void ends(void **state)
             }
         }
         assert_true(highest > 0.2 * sample_size);
-        GOOD(boundary_find_ends(&table, BOUNDARY_END_SMOOTH, held, end, &error));
+        GOOD(boundary_find_ends(&table, BOUNDARY_END_SMOOTH, held, held, end, &error));
         int64_t count = 0;
         for (int64_t n = 0; n < sample.cloud.node_count; n++) {
             const double *x = sample.cloud.x + n * dim;
@@ -488,7 +489,14 @@ static void ends(void **state)
         for (int64_t f = 0; f < sample.faces.count; f++) {
             held[f] = on_side_below(&sample, f, 2.0 * sample_size);
         }
-        GOOD(boundary_find_ends(&table, BOUNDARY_END_SHARP, held, end, &error));
+        for (int64_t f = 0; f < sample.faces.count; f++) {
+            touched[f] = sample.faces.cell[2 * f + 1] < 0;
+        }
+        GOOD(boundary_find_ends(&table, BOUNDARY_END_SHARP, held, touched, end, &error));
+        for (int64_t n = 0; n < sample.cloud.node_count; n++) {
+            assert_false(end[n]);
+        }
+        GOOD(boundary_find_ends(&table, BOUNDARY_END_SHARP, held, held, end, &error));
         for (int64_t n = 0; n < sample.cloud.node_count; n++) {
             const double *x = sample.cloud.x + n * dim;
             bool is_edge = false;
@@ -497,6 +505,7 @@ static void ends(void **state)
             }
             assert_int_equal(end[n], fabs(x[0]) < 1e-12 && is_edge);
         }
+        free(touched);
         free(held);
         free(end);
         sample_free(&sample);
