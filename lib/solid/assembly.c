@@ -190,33 +190,38 @@ bool assembly_holds_averages(const struct assembly *input)
     return !input->node_values && !input->direct;
 }
 
-/* Mark the faces whose nodes are all stamped with the condition's number. */
-static void hold_faces(const struct faces *faces, int dim, const int64_t *stamp, int64_t number, bool *held)
+/* Mark the faces of the boundary whose nodes are all those of a set of facets; stamp[node]: at most `number`
+ * - 1. */
+static void mark_faces(const struct assembly *input, const struct facet_set *set, int64_t number,
+                       int64_t *stamp, bool *marked)
 {
-    for (int64_t f = 0; f < faces->count; f++) {
-        bool is_held = true;
+    const struct faces *faces = &input->boundary;
+    int dim = input->cells.dim;
+    for (int64_t k = 0; k < set->count * dim; k++) {
+        stamp[set->facet[k]] = number;
+    }
+    for (int64_t f = 0; f < faces->count && set->count > 0; f++) {
+        bool is_of_set = true;
         for (int k = 0; k < dim; k++) {
-            is_held = is_held && stamp[faces->node[f * dim + k]] == number;
+            is_of_set = is_of_set && stamp[faces->node[f * dim + k]] == number;
         }
-        held[f] = held[f] || is_held;
+        marked[f] = marked[f] || is_of_set;
     }
 }
 
 enum status assembly_held_faces(const struct assembly *input, int least, bool **held, struct error *error)
 {
     enum status status;
-    int dim = input->cells.dim;
-    int64_t *stamp = NULL; /* of each node: the last condition that names it, from 1 on */
+    int64_t *stamp = NULL; /* of each node: the last set that it is of, from 1 on */
     TRY(NEW_ARRAY(held, input->boundary.count, error));
     TRY(NEW_ARRAY(&stamp, input->cells.node_count, error));
     for (int64_t i = 0; i < input->condition_count; i++) {
-        const struct facet_set *set = &input->conditions[i].facets;
-        for (int64_t k = 0; k < set->count * dim; k++) {
-            stamp[set->facet[k]] = i + 1;
+        if (prescription_directions(&input->conditions[i], input->cells.dim) >= least) {
+            mark_faces(input, &input->conditions[i].facets, i + 1, stamp, *held);
         }
-        if (set->count > 0 && prescription_directions(&input->conditions[i], dim) >= least) {
-            hold_faces(&input->boundary, dim, stamp, i + 1, *held);
-        }
+    }
+    for (int64_t i = 0; i < input->contact_count && least == 0; i++) {
+        mark_faces(input, &input->contacts[i].facets, input->condition_count + i + 1, stamp, *held);
     }
 done:
     free(stamp);

@@ -25,10 +25,10 @@ static const double end_stiffness = 0.85;
  * pressure, the more so the less the body is compressible: at nu = .3 the forces on clamped bodies are right
  * to .2 %, at .49 they are some per cent too large. There the bulk modulus is at most so many shear moduli.
  *
- * The value: with 8 the force on a slab in plane strain, clamped between plates .1 m apart and pressed by 10 %
- * at nu = .49, is 1.3 to 1.4 % above that of fine triangles on gmsh's tetrahedra of 11 to 15.5 mm, and .9 to
- * 1.7 % below it on prisms that are cut; without the limit 2.1 to 3.3 % and .6 % above. Triangles of the same
- * size are right to .2 % as they are. */
+ * The value: with 8 the force on a slab in plane strain, clamped between plates .1 m apart and pressed by 10
+ * % at nu = .49, is 1.3 to 1.4 % above that of fine triangles on gmsh's tetrahedra of 11 to 15.5 mm, and .9
+ * to 1.7 % below it on prisms that are cut; without the limit 2.1 to 3.3 % and .6 % above. Triangles of the
+ * same size are right to .2 % as they are. */
 static const double edge_bulk = 8.0;
 
 /* The kinds of end that a cell has a node on, as bits; and how many sets of them there are. */
@@ -43,7 +43,7 @@ static enum status mark_cells(const struct assembly *input, enum boundary_end ki
     int dim = input->cells.dim, corners = dim + 1;
     bool *held = NULL, *touched = NULL, *end = NULL;
     TRY(assembly_held_faces(input, kind == BOUNDARY_END_SHARP ? dim : 1, &held, error));
-    TRY(assembly_held_faces(input, 1, &touched, error));
+    TRY(assembly_held_faces(input, kind == BOUNDARY_END_SHARP ? 0 : 1, &touched, error));
     TRY(NEW_ARRAY(&end, input->cells.node_count, error));
     TRY(boundary_find_ends(&input->face_table, kind, held, touched, end, error));
     for (int64_t c = 0; c < input->cells.count; c++) {
