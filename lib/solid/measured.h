@@ -10,7 +10,7 @@
  * square of d, in an incompressible medium (Stokes 1851; in 2D a circle, to leading order, in a body of size
  * L):
  *
- *   e = k s^2 / N,   k = 6 pi mu l,   in 2D 4 pi mu / ln (L / l). (29)
+ *   e = k s^2 / N,   k = 6 pi mu l,   in 2D 4 pi mu / ln (L / l). (32)
  *
  * A point alone thus goes s^2 / (s^2 + sigma^2) of the way to what was measured (Wiener 1949); and where N
  * points hold a region, their springs together are that much stiffer than it. More points than nodes can
