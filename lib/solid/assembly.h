@@ -21,10 +21,13 @@ struct load {
     int32_t curve;
 };
 
-/* Contact of facets with a rigid surface. */
+/* Contact of facets with a rigid surface, or with others of the body. */
 struct contact_condition {
     const char *where; /* as of a condition */
     struct facet_set facets;
+    struct facet_set opposite; /* unless empty: they may touch these, or themselves where both are the same */
+    bool whole;                /* they are the whole boundary, of which nothing needs to face anything */
+    int sign;                  /* as of the contact, with opposite facets */
     const double *corners; /* rigid_count * dim * dim: facets of the surface, see rigid_build, m */
     int64_t rigid_count;
     bool flip;

@@ -3,6 +3,7 @@
 #include "names.h"
 
 #include "approx/cells.h"
+#include "solid/contact_between.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -105,7 +106,7 @@ void run_folds_free(struct run *run)
 /* A surface that is no further away than this share of a facet's size stands against it. */
 static const double near_share = 0.25;
 
-/* Nodes that a rigid surface stands against. */
+/* Nodes that a rigid surface, or another part of the body, stands against. */
 static void mark_stopped(const struct run *run, bool *stopped)
 {
     const struct solid_system *system = &run->model->system;
@@ -117,6 +118,7 @@ static void mark_stopped(const struct run *run, bool *stopped)
             double area = nodes->area[a], length = contact->dim == 2 ? area : sqrt(area);
             stopped[nodes->node[a]] |= contact_node(contact, a).gap < near_share * length;
         }
+        contact_between_mark(contact, near_share, stopped);
     }
 }
 
@@ -256,11 +258,28 @@ void run_folds_describe(const struct run *run, int which, char *text, size_t siz
     }
 }
 
+/* The remedy against a fold: where parts of the boundary have passed through each other, to let them touch.
+ */
+static const char *let_touch(const struct run *run, const char *otherwise)
+{
+    const struct run_folds *folds = &run->folds;
+    const struct fold_spell *spell = folds->now[FOLDED].seen ? &folds->now[FOLDED] : &folds->past[FOLDED];
+    enum fold_kind kind = spell->fold.kind;
+    for (int64_t c = 0; c < run->scene->contact_count; c++) {
+        if (run->scene->contacts[c].against.count > 0) {
+            return otherwise;
+        }
+    }
+    return kind == FOLD_CREASE || kind == FOLD_CROSSING || kind == FOLD_WITHIN
+               ? "let the boundary touch itself (a section [contact NAME] with facets = * and against = *)"
+               : otherwise;
+}
+
 void run_folds_judge(struct run *run)
 {
     char text[400];
     run_folds_describe(run, FOLDED, text, sizeof text);
-    const char *remedy = "press less, refine there";
+    const char *remedy = let_touch(run, "press less, refine there");
     if (text[0] == '\0') {
         run_stability_describe(run, text, sizeof text);
         remedy = "press less, hold it there";
