@@ -8,8 +8,8 @@
 #include <string.h>
 
 /* Facets further away from a point than so many of its widths are not opposite to it; for gaps that are told.
- */
-static const double reach_widths = 1.0, told_widths = 10.0;
+ * In two dimensions the mass of a relaxation counts all that have something opposite. */
+static const double reach_widths_2d = 1.0, reach_widths_3d = 0.5, told_widths = 10.0;
 enum { FACETS_FOR_THREAD = 300 }; /* see chunks_of */
 
 void contact_between_free(struct contact *contact)
@@ -116,13 +116,19 @@ static struct rigid_contact find_place(const struct contact *contact, int64_t p,
     return opposite_closest(&between->opposite, &seeker, reach, free_way);
 }
 
+/* How far a search looks, m. */
+static double reach_of(const struct contact *contact, int64_t p)
+{
+    return (contact->dim == 2 ? reach_widths_2d : reach_widths_3d) * contact_width(contact, p);
+}
+
 /* Search for what is opposite point p. */
 static void search(struct contact *contact, int64_t p, const double *normal, bool all)
 {
     struct contact_between *between = contact->between;
     struct contact_view *view = &contact->view[p];
     struct between_view *here = &between->view[p];
-    double reach = (all ? told_widths : reach_widths) * contact_width(contact, p);
+    double reach = all ? told_widths * contact_width(contact, p) : reach_of(contact, p);
     struct rigid_contact closest = find_place(contact, p, normal, reach, &here->free_way);
     memset(view->normal, 0, sizeof view->normal);
     view->distance = contact->gap[p] = INFINITY;
@@ -376,7 +382,7 @@ static bool begin(struct contact *contact, bool far)
         memcpy(contact->view[p].x, contact->rest + p * dim, (size_t)dim * sizeof *contact->rest);
     }
     for (int64_t p = 0; p < contact->count; p++) {
-        double reach = far && !any ? INFINITY : reach_widths * contact_width(contact, p);
+        double reach = far && !any ? INFINITY : reach_of(contact, p);
         struct rigid_contact closest =
             find_place(contact, p, contact->points->normal + p * dim, reach, &between->view[p].free_way);
         between->begin[p] = closest.found ? fmin(0.0, closest.gap) : 0.0;
