@@ -337,6 +337,7 @@ double contact_energy(const struct contact *contact)
             double held = contact->held[p * contact->dim + c];
             difference -= held * held;
         }
+        difference = contact_between_led(contact, p) ? 0.0 : difference;
         sum += contact->points->area[p] * difference / (2.0 * contact->stiffness[p]);
     }
     return sum;
