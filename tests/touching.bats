@@ -179,7 +179,7 @@ notch_scene() { # FACETS AGAINST [MORE OUTPUT]
 @test "bodies that go through each other are told with the section that lets them touch" {
     stack
     stack_scene | sed '/^\[contact/,/^against/d' > none.scene
-    refused 1 "let the boundary touch itself (a section [contact NAME] with facets = * and against = *), or allow it" mtled none.scene stack.mts
+    refused 1 ": let it touch itself ([contact NAME] facets = *, against = *), or allow it" mtled none.scene stack.mts
     stack_scene | sed 's/^facets = low/facets = */; s/^against.*/against = */' > all.scene
     mtled all.scene stack.mts > u.dat
     rows reactions u.dat | awk 'NR == 1 { exit !($2 > 20) }'

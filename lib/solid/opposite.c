@@ -322,10 +322,15 @@ static bool through_body(const struct opposite *opposite, const struct seeker *s
     }
     add_scaled(dim, 1.0, opposite->middle + f * dim, way);
     add_scaled(dim, -1.0, seeker->rest, way);
-    double away = sqrt(dot(dim, way, way)), least = behind_share * away;
-    return away < near_widths * fmax(seeker->width, opposite->width[f]) &&
-           dot(dim, way, seeker->rest_normal) < -least &&
-           dot(dim, way, opposite->rest_normal + f * dim) > least;
+    double width = seeker->width > opposite->width[f] ? seeker->width : opposite->width[f];
+    double away2 = dot(dim, way, way), least2 = behind_share * behind_share * away2;
+    if (!(away2 < near_widths * near_widths * width * width)) {
+        return false;
+    }
+    double facet_behind = -dot(dim, way, seeker->rest_normal);
+    double point_behind = dot(dim, way, opposite->rest_normal + f * dim);
+    return facet_behind > 0.0 && facet_behind * facet_behind > least2 && point_behind > 0.0 &&
+           point_behind * point_behind > least2;
 }
 
 /* Facets that face the point; of the others, how far things may move until they can: to turn by an angle a
@@ -336,11 +341,11 @@ static bool considers(void *context, int64_t f)
     const struct opposite *opposite = search->opposite;
     int dim = opposite->surface.dim;
     double cosine = dot(dim, opposite->surface.normal + f * dim, search->seeker->normal);
-    double width = fmin(search->seeker->width, opposite->width[f]);
-    double way = lever * width * fmax(0.0, cosine - least_opposed);
     if (cosine < least_opposed) {
         return !through_body(opposite, search->seeker, f);
     }
+    double own = search->seeker->width, width = opposite->width[f] < own ? opposite->width[f] : own;
+    double way = lever * width * (cosine - least_opposed);
     if (way < search->free_way && !through_body(opposite, search->seeker, f)) {
         search->free_way = way;
     }

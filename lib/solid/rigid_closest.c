@@ -174,8 +174,9 @@ static double box_distance2(int dim, const struct rigid_branch *branch, const do
 {
     double sum = 0.0;
     for (int a = 0; a < dim; a++) {
-        double out = fmax(fmax(branch->low[a] - x[a], x[a] - branch->high[a]), 0.0);
-        sum += out * out;
+        double below = branch->low[a] - x[a], above = x[a] - branch->high[a];
+        double out = below > above ? below : above;
+        sum += out > 0.0 ? out * out : 0.0;
     }
     return sum;
 }

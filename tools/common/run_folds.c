@@ -271,7 +271,7 @@ static const char *let_touch(const struct run *run, const char *otherwise)
         }
     }
     return kind == FOLD_CREASE || kind == FOLD_CROSSING || kind == FOLD_WITHIN
-               ? "let the boundary touch itself (a section [contact NAME] with facets = * and against = *)"
+               ? "let it touch itself ([contact NAME] facets = *, against = *)"
                : otherwise;
 }
 
