@@ -28,7 +28,7 @@ struct contact_condition {
     struct facet_set opposite; /* unless empty: they may touch these, or themselves where both are the same */
     bool whole;                /* they are the whole boundary, of which nothing needs to face anything */
     int sign;                  /* as of the contact, with opposite facets */
-    const double *corners; /* rigid_count * dim * dim: facets of the surface, see rigid_build, m */
+    const double *corners;     /* rigid_count * dim * dim: facets of the surface, see rigid_build, m */
     int64_t rigid_count;
     bool flip;
     double stiffness; /* Pa/m; 0: that of a layer of cells */
