@@ -78,6 +78,8 @@ struct fold_box {
 
 struct folds {
     struct fold_input input; /* the caller's arrays, which must outlive it */
+    const bool *touched; /* node_count, the caller's: nodes where a contact of the body with itself presses,
+                            and facets that meet may pass through each other by a twentieth; NULL: none */
     struct fold_ring *rings; /* ring_count, ordered by their nodes */
     int64_t ring_count;
     int64_t *ring_ptr;     /* ring_count + 1: the cells around each, */
@@ -108,9 +110,8 @@ void folds_free(struct folds *folds);
 /* Look for folds of the displacement field u[node_count * dim] at the nodes: where the map is not one-to-one.
  * Of
  * several kinds the one that comes first in the list of kinds is returned. Nodes that are `stopped`
- * [node_count] have a surface, or another part of the body, against them. A cell between such nodes and held
- * ones is pressed flat against a plate; as averages are held and no nodes, it may be turned over a little,
- * and does not count. Facets that meet at such nodes may pass through each other by a twentieth. */
+ * [node_count] have a surface against them. A cell between such nodes and held ones is pressed flat against a
+ * plate; as averages are held and no nodes, it may be turned over a little, and does not count. */
 struct fold folds_find(struct folds *folds, const double *u, const bool *stopped);
 
 /* Look for cells whose middle is within a cell that they share no node with: parts of the body that lie on

@@ -118,15 +118,16 @@ static double angle_around(const struct folds *folds, const int32_t *node, int8_
     return cell_size(folds, node) * turn > 0.0 ? angle : -angle;
 }
 
-/* The angle above which what meets at a ring has passed through itself. Where a contact is against it, which
- * holds averages, facets may do so by a twentieth of their length. */
-static double most_angle(const struct fold_ring *ring, const bool *stopped)
+/* The angle above which what meets at a ring has passed through itself. Where parts of the body press on each
+ * other by averages, facets may do so by a twentieth of their length. */
+static double most_angle(const struct folds *folds, const struct fold_ring *ring)
 {
-    bool touches = stopped[ring->node[0]] && (ring->node[1] < 0 || stopped[ring->node[1]]);
+    const bool *touched = folds->touched;
+    bool touches = touched != NULL && touched[ring->node[0]] && (ring->node[1] < 0 || touched[ring->node[1]]);
     return full_turn * (1.0 + 1e-6) + (touches ? beyond_facet : 0.0);
 }
 
-static bool find_creases(const struct folds *folds, const bool *stopped, struct fold *fold)
+static bool find_creases(const struct folds *folds, struct fold *fold)
 {
     int corners = folds->input.dim + 1;
     for (int64_t r = 0; r < folds->ring_count; r++) {
@@ -134,7 +135,7 @@ static bool find_creases(const struct folds *folds, const bool *stopped, struct 
         for (int64_t i = folds->ring_ptr[r]; i < folds->ring_ptr[r + 1]; i++) {
             sum += angle_around(folds, folds->ring_cell + i * corners, folds->ring_turn[i]);
         }
-        if (sum > most_angle(&folds->rings[r], stopped) && fold->count++ == 0) {
+        if (sum > most_angle(folds, &folds->rings[r]) && fold->count++ == 0) {
             name_facets(folds, folds->rings[r].facet, -1, fold);
         }
     }
@@ -357,7 +358,7 @@ struct fold folds_find(struct folds *folds, const double *u, const bool *stopped
     if (cells.kind == FOLD_CELL) {
         return cells;
     }
-    if (!find_creases(folds, stopped, &fold) && folds->at_rest.kind == FOLD_NONE) {
+    if (!find_creases(folds, &fold) && folds->at_rest.kind == FOLD_NONE) {
         find_crossings(folds, &fold);
         if (fold.kind == FOLD_NONE) {
             folds_find_within(folds, &fold);

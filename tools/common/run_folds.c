@@ -24,7 +24,9 @@ static enum status build(const struct assembly *input, struct run_folds *folds, 
     body.held = folds->held;
     TRY(NEW_ARRAY(&folds->field, cells->node_count * cells->dim, error));
     TRY(NEW_ARRAY(&folds->stopped, cells->node_count, error));
+    TRY(NEW_ARRAY(&folds->touched, cells->node_count, error));
     TRY(folds_build(&body, &folds->folds, error));
+    folds->folds.touched = folds->touched;
 done:
     return status;
 }
@@ -101,24 +103,27 @@ void run_folds_free(struct run *run)
     free(run->folds.held);
     free(run->folds.field);
     free(run->folds.stopped);
+    free(run->folds.touched);
 }
 
 /* A surface that is no further away than this share of a facet's size stands against it. */
 static const double near_share = 0.25;
 
-/* Nodes that a rigid surface, or another part of the body, stands against. */
-static void mark_stopped(const struct run *run, bool *stopped)
+/* Nodes that a rigid surface stands against, and those where parts of the body do. */
+static void mark_stopped(const struct run *run, bool *stopped, bool *touched)
 {
     const struct solid_system *system = &run->model->system;
     memset(stopped, 0, (size_t)system->node_count * sizeof *stopped);
+    memset(touched, 0, (size_t)system->node_count * sizeof *touched);
     for (int64_t c = 0; c < system->contact_count; c++) {
         const struct contact *contact = &system->contacts[c];
         const struct boundary_averages *nodes = contact_nodes(contact);
+        bool *marked = contact->between == NULL ? stopped : touched;
         for (int64_t a = 0; a < nodes->count; a++) {
             double area = nodes->area[a], length = contact->dim == 2 ? area : sqrt(area);
-            stopped[nodes->node[a]] |= contact_node(contact, a).gap < near_share * length;
+            marked[nodes->node[a]] |= contact_node(contact, a).gap < near_share * length;
         }
-        contact_between_mark(contact, near_share, stopped);
+        contact_between_mark(contact, near_share, touched);
     }
 }
 
@@ -145,7 +150,7 @@ void run_folds_look(struct run *run, const double *u, double time, bool is_frame
     struct run_folds *folds = &run->folds;
     bool counts = is_frame || run->scene->analysis == SCENE_DYNAMIC;
     assembly_nodal_field(&run->model->assembly, u, folds->field);
-    mark_stopped(run, folds->stopped);
+    mark_stopped(run, folds->stopped, folds->touched);
     struct fold fold = folds_find(&folds->folds, folds->field, folds->stopped);
     if (is_frame && (fold.kind == FOLD_NONE || fold.kind == FOLD_FLAT)) {
         struct fold overlap;
