@@ -86,10 +86,19 @@ static enum status row_finish(struct dense_row *row, double whole, int64_t part,
     return STATUS_OK;
 }
 
+/* The share of quadrature point g in the value at corner `vertex` of the linear function through the points
+ * of a facet (there are as many of these as corners, placed alike). */
+static double extrapolated(const struct quadrature_rule *rule, int dim, int g, int vertex)
+{
+    double own = rule->barycentric[0], other = (1.0 - own) / (dim - 1);
+    return ((g == vertex ? 1.0 : 0.0) - other) / (own - other);
+}
+
 /* Add one corner's facet to the part: its shape functions, area, normal, and samples. */
 static enum status add_corner(const struct face_table *table, const struct facet_set *set,
                               const int64_t *face_of, const struct corner *corner, int64_t part,
-                              struct dense_row *row, struct boundary_averages *averages, struct error *error)
+                              bool at_corner, struct dense_row *row, struct boundary_averages *averages,
+                              struct error *error)
 {
     int dim = table->dim;
     struct quadrature_rule rule = quadrature_face_rule(dim);
@@ -103,9 +112,10 @@ static enum status add_corner(const struct face_table *table, const struct facet
     quadrature_positions(&rule, dim, table->x, face, x);
     for (int g = 0; g < rule.points; g++) {
         double weight = rule.weight[g] * size * rule.barycentric[g * dim + vertex];
+        double in_row = at_corner ? size / dim * extrapolated(&rule, dim, g, vertex) : weight;
         int64_t point = face_of[corner->facet] * table->per_face + g;
         for (int64_t i = table->lists->ptr[point]; row != NULL && i < table->lists->ptr[point + 1]; i++) {
-            enum status status = row_add(row, table->lists->idx[i], weight * table->phi[i], error);
+            enum status status = row_add(row, table->lists->idx[i], in_row * table->phi[i], error);
             if (status != STATUS_OK) {
                 return status;
             }
@@ -179,7 +189,7 @@ done:
 
 /* All kinds of averages; node_lists == NULL: boundary averages. */
 static enum status build(const struct face_table *table, const struct facet_set *set, bool split,
-                         struct boundary_sides *sides, const struct neighbours *node_lists,
+                         bool at_corner, struct boundary_sides *sides, const struct neighbours *node_lists,
                          const double *node_phi, struct boundary_averages *averages, struct error *error)
 {
     enum status status;
@@ -200,8 +210,8 @@ static enum status build(const struct face_table *table, const struct facet_set 
         int32_t node = corners[next].node;
         averages->sample_ptr[part + 1] = averages->sample_ptr[part];
         for (; next < corner_count && corners[next].part == part; next++) {
-            TRY(add_corner(table, set, face_of, &corners[next], part, node_lists == NULL ? &row : NULL,
-                           averages, error));
+            TRY(add_corner(table, set, face_of, &corners[next], part, at_corner,
+                           node_lists == NULL ? &row : NULL, averages, error));
         }
         averages->node[part] = node;
         double whole = averages->area[part];
@@ -233,7 +243,13 @@ done:
 enum status boundary_averages_build(const struct face_table *table, const struct facet_set *set,
                                     struct boundary_averages *averages, struct error *error)
 {
-    return build(table, set, true, NULL, NULL, NULL, averages, error);
+    return build(table, set, true, false, NULL, NULL, NULL, averages, error);
+}
+
+enum status boundary_corners_build(const struct face_table *table, const struct facet_set *set,
+                                   struct boundary_averages *averages, struct error *error)
+{
+    return build(table, set, false, true, NULL, NULL, NULL, averages, error);
 }
 
 enum status boundary_sides_build(const struct face_table *table, const struct facet_set *set, bool split,
@@ -241,7 +257,7 @@ enum status boundary_sides_build(const struct face_table *table, const struct fa
                                  struct error *error)
 {
     *sides = (struct boundary_sides){0};
-    enum status status = build(table, set, split, sides, NULL, NULL, averages, error);
+    enum status status = build(table, set, split, false, sides, NULL, NULL, averages, error);
     if (status != STATUS_OK) {
         boundary_sides_free(sides);
     }
@@ -259,7 +275,7 @@ enum status boundary_nodes_build(const struct face_table *table, const struct fa
                                  const struct neighbours *node_lists, const double *node_phi,
                                  struct boundary_averages *averages, struct error *error)
 {
-    return build(table, set, false, NULL, node_lists, node_phi, averages, error);
+    return build(table, set, false, false, NULL, node_lists, node_phi, averages, error);
 }
 
 /* The values of one point, as they are, as average `a`. */

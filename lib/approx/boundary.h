@@ -68,6 +68,14 @@ MUST_CHECK enum status boundary_sides_build(const struct face_table *table, cons
                                             struct boundary_sides *sides, struct error *error);
 void boundary_sides_free(struct boundary_sides *sides);
 
+/* Values at the nodes by the boundary's own quadrature: the mean over the facets of the set at each node,
+ * weighted by their size, of the value there of the linear function through a facet's quadrature points. The
+ * surface with these corners is continuous, follows a linear field exactly, and what a uniform traction on it
+ * puts on the corners is passed on as the quadrature of (17) has it. One entry per node; areas, normals as
+ * above. */
+MUST_CHECK enum status boundary_corners_build(const struct face_table *table, const struct facet_set *set,
+                                              struct boundary_averages *averages, struct error *error);
+
 /* The same with node values, Phi_a u = u_h(x_a), from a table at the nodes: one entry per node of the set;
  * areas, normals as above. Splits where the boundary turns are not made. */
 MUST_CHECK enum status boundary_nodes_build(const struct face_table *table, const struct facet_set *set,

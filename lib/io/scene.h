@@ -14,7 +14,7 @@
  * - or, for measured points: points = FILE with unit; reach (m); model_error (m); curve
  * - [contact NAME]: facets = GROUPS; rigid = FILE; unit; side = left|right (2D), front|back (3D); stiffness
  *   (Pa/m); the motion of the surface: angle (degrees), axis_point (m), axis (3D), translation (m), curve,
- *   angle_curve
+ *   angle_curve; or instead of a rigid surface against = GROUPS; * is the whole boundary
  * - [pressure NAME]: facets = GROUPS; value (Pa, positive pushes inward), or of a fluid: density (kg/m3),
  * level = X,Y[,Z] (m), side = below (default)|above|both, gravity (m/s2); curve
  * - [traction NAME]: facets = GROUPS; components (Pa); curve
@@ -104,11 +104,12 @@ struct scene_displacement {
 
 struct scene_contact {
     struct scene_label label;
-    struct name_list facets; /* at least one */
-    char *rigid;             /* 2D: points of polylines; 3D: triangles (see surface_read) */
-    double rigid_unit;       /* m per unit of the file */
-    enum scene_side side;    /* left, right in 2D; front, back in 3D */
-    double stiffness;        /* Pa/m, > 0; 0: not given, chosen by the solver */
+    struct name_list facets;  /* at least one */
+    struct name_list against; /* facets of the body, instead of a rigid surface and its keys */
+    char *rigid;              /* 2D: points of polylines; 3D: triangles (see surface_read) */
+    double rigid_unit;        /* m per unit of the file */
+    enum scene_side side;     /* left, right in 2D; front, back in 3D */
+    double stiffness;         /* Pa/m, > 0; 0: not given, chosen by the solver */
     /* Motion of the surface: it is turned, then moved. */
     bool moves;            /* false: it stays, and there are no curves */
     double translation[3]; /* m, dim components */

@@ -46,6 +46,7 @@ void scene_free(struct scene *scene)
     for (int64_t i = 0; i < scene->contact_count; i++) {
         free_label(&scene->contacts[i].label);
         free_names(&scene->contacts[i].facets);
+        free_names(&scene->contacts[i].against);
         free(scene->contacts[i].rigid);
         free(scene->contacts[i].curve.file);
         free(scene->contacts[i].angle_curve.file);

@@ -203,6 +203,21 @@ done:
     return status;
 }
 
+/* Contact with other facets of the body. */
+static enum status read_against(const struct place *place, struct scene_contact *contact)
+{
+    static const char *const rigid[] = {"rigid",      "unit", "side",  "translation", "angle",
+                                        "axis_point", "axis", "curve", "angle_curve"};
+    enum status status;
+    for (size_t i = 0; i < sizeof rigid / sizeof *rigid; i++) {
+        TRY(place_forbid(place, rigid[i], "against names facets of the body, not a rigid surface"));
+    }
+    TRY(place_names(place, "against", &contact->against));
+    TRY(place_number(place, "stiffness", range_positive, &contact->stiffness));
+done:
+    return status;
+}
+
 static enum status read_contact(const struct place *place, struct scene *scene)
 {
     static const char *const sides[2][3] = {{"left", "right", NULL}, {"front", "back", NULL}};
@@ -210,11 +225,16 @@ static enum status read_contact(const struct place *place, struct scene *scene)
     int side = 0;
     enum status status = STATUS_OK;
     TRY(place_require(place, "facets", "name the facet groups that may touch"));
-    TRY(place_require(place, "rigid", "name the file of the rigid surface"));
+    TRY(place_names(place, "facets", &contact->facets));
+    if (place_has(place, "against")) {
+        return read_against(place, contact);
+    }
+    TRY(place_require(
+        place, "rigid",
+        "name the file of the rigid surface, or, of the body itself, facet groups by 'against'"));
     TRY(place_require(place, "side",
                       scene->dim == 2 ? "left or right of the rigid curve, where the body lies"
                                       : "front or back of the rigid triangles, where the body lies"));
-    TRY(place_names(place, "facets", &contact->facets));
     TRY(place_table(place, "rigid", &contact->rigid, &contact->rigid_unit));
     TRY(place_choice(place, "side", sides[scene->dim - 2], &side));
     TRY(place_number(place, "stiffness", range_positive, &contact->stiffness));
@@ -382,8 +402,8 @@ static const struct scene_kind kinds[] = {
           "curve", NULL},
      read_displacement, ITEMS(displacements, displacement_count)},
     {"contact",
-     KEYS{"facets", "rigid", "unit", "side", "stiffness", "translation", "angle", "axis_point", "axis",
-          "curve", "angle_curve", NULL},
+     KEYS{"facets", "against", "rigid", "unit", "side", "stiffness", "translation", "angle", "axis_point",
+          "axis", "curve", "angle_curve", NULL},
      read_contact, ITEMS(contacts, contact_count)},
     {"pressure", KEYS{"facets", "value", "density", "level", "side", "gravity", "curve", NULL}, read_pressure,
      ITEMS(pressures, pressure_count)},

@@ -21,11 +21,14 @@ struct load {
     int32_t curve;
 };
 
-/* Contact of facets with a rigid surface. */
+/* Contact of facets with a rigid surface, or with others of the body. */
 struct contact_condition {
     const char *where; /* as of a condition */
     struct facet_set facets;
-    const double *corners; /* rigid_count * dim * dim: facets of the surface, see rigid_build, m */
+    struct facet_set opposite; /* unless empty: they may touch these, or themselves where both are the same */
+    bool whole;                /* they are the whole boundary, of which nothing needs to face anything */
+    int sign;                  /* as of the contact, with opposite facets */
+    const double *corners;     /* rigid_count * dim * dim: facets of the surface, see rigid_build, m */
     int64_t rigid_count;
     bool flip;
     double stiffness; /* Pa/m; 0: that of a layer of cells */
@@ -98,8 +101,7 @@ MUST_CHECK enum status assembly_build(struct assembly *input, struct solid_syste
                                       struct error *error);
 
 /* The parts of assembly_build, in their own files: displacements, measured points, loads,
- * contacts, and softer cells at the
- * ends of what is held by averages (of smoothed cells). */
+ * contacts, and softer cells at the ends of what is held by averages (of smoothed cells). */
 MUST_CHECK enum status assembly_add_conditions(const struct assembly *input, struct solid_system *system,
                                                struct error *note, struct error *error);
 MUST_CHECK enum status assembly_add_points(const struct assembly *input, struct solid_system *system,
@@ -120,7 +122,8 @@ bool assembly_has_gravity(const struct assembly *input);
 bool assembly_holds_averages(const struct assembly *input);
 
 /* held[boundary.count]: whether all nodes of that face are those of facets that one condition names, which
- * prescribes at least so many directions; 0: or that a contact names. The caller's to free. */
+ * prescribes at least so many directions; 0: or that a contact with a rigid surface names. The caller's to
+ * free. */
 MUST_CHECK enum status assembly_held_faces(const struct assembly *input, int least, bool **held,
                                            struct error *error);
 

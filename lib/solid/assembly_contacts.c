@@ -1,6 +1,7 @@
 #include "solid/assembly.h"
 
 #include "base/memory.h"
+#include "solid/contact_between.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -79,8 +80,8 @@ static bool is_flat(const struct boundary_averages *points, const struct boundar
 /* The points that the contact acts on. On flat facets a relaxation uses the quadrature points, with
  * multipliers at the nodes. On chords of a curved boundary these lie below it, each by another amount: there
  * boundary averages, raised to their nodes, are the points. Dynamics uses boundary averages too, as each
- * point costs time in every step. */
-static enum status build_points(const struct assembly *input, const struct facet_set *set,
+ * point costs time in every step. `between` facets of the body the points are always the former. */
+static enum status build_points(const struct assembly *input, const struct facet_set *set, bool between,
                                 struct boundary_averages *points, struct boundary_averages *averages,
                                 struct error *error)
 {
@@ -88,7 +89,7 @@ static enum status build_points(const struct assembly *input, const struct facet
     const struct face_table *table = &input->face_table;
     TRY(boundary_averages_build(table, set, averages, error));
     TRY(boundary_points_build(table, set, points, error));
-    if (input->in_time || !is_flat(points, averages, table->dim)) {
+    if (!between && (input->in_time || !is_flat(points, averages, table->dim))) {
         boundary_averages_free(points);
         *points = *averages;
         *averages = (struct boundary_averages){0};
@@ -101,21 +102,53 @@ done:
     return status;
 }
 
+/* Contact between facets of the body. */
+static enum status add_between(const struct assembly *input, const struct contact_condition *condition,
+                               const struct boundary_averages *points,
+                               const struct boundary_averages *averages, struct contact *contact,
+                               struct error *error)
+{
+    enum status status;
+    struct opposite opposite = {0};
+    int32_t *part = NULL;
+    bool any;
+    bool itself = condition->facets.facet == condition->opposite.facet;
+    TRY(NEW_ARRAY(&part, input->cells.node_count, error));
+    TRY(opposite_parts(&input->cells, part, error));
+    TRY(opposite_build(&input->face_table, &condition->opposite, part, itself, &opposite, error));
+    TRY(contact_between_build(points, averages, input->cells.dim, input->cells.node_count,
+                              input->face_table.per_face, &opposite, part, itself ? 0 : condition->sign,
+                              condition->stiffness, !condition->whole, contact, &any, error));
+    if (!any && !condition->whole) {
+        status = fail(error, STATUS_INPUT,
+                      "%s: no facet faces another one at rest: name groups whose outsides look at each other",
+                      condition->where);
+    }
+done:
+    free(part);
+    return status;
+}
+
 static enum status add_contact(const struct assembly *input, int32_t number, struct solid_system *system,
                                struct error *error)
 {
     enum status status;
     const struct contact_condition *condition = &input->contacts[number];
+    bool between = condition->opposite.count > 0;
     struct rigid_surface surface = {0};
     struct boundary_averages *points = &system->contact_points[number],
                              *averages = &system->contact_averages[number];
     struct contact *contact = &system->contacts[number];
     system->contact_count++;
-    TRY(build_points(input, &condition->facets, points, averages, error));
-    TRY(rigid_build(system->dim, condition->rigid_count, condition->corners, condition->flip, &surface,
-                    error));
-    TRY(contact_build(points, averages->count > 0 ? averages : NULL, system->X, system->dim, &surface,
-                      condition->stiffness, contact, error));
+    TRY(build_points(input, &condition->facets, between, points, averages, error));
+    if (between) {
+        TRY(add_between(input, condition, points, averages, contact, error));
+    } else {
+        TRY(rigid_build(system->dim, condition->rigid_count, condition->corners, condition->flip, &surface,
+                        error));
+        TRY(contact_build(points, averages->count > 0 ? averages : NULL, system->X, system->dim, &surface,
+                          condition->stiffness, contact, error));
+    }
     if (condition->stiffness == 0.0) {
         contact_set_stiffness(contact, (averages->count > 0 ? points_share : 1.0) *
                                            assembly_penalty_modulus(system, penalty_factor));

@@ -1,4 +1,4 @@
-#include "solid/contact.h"
+#include "solid/contact_between.h"
 
 #include "base/chunks.h"
 #include "base/memory.h"
@@ -13,18 +13,17 @@ static const double round_off = 1e-6;
 static const double same_normal = 1e-6;
 enum { POINTS_FOR_THREAD = 1000 }; /* see chunks_of */
 
-/* The width of the facets at point p, m. A point of a facet is half or a third of it. */
-static double width_of(const struct contact *contact, int64_t p)
+/* A point of a facet is half or a third of it. */
+double contact_width(const struct contact *contact, int64_t p)
 {
     int points = contact->averages == NULL ? 1 : contact->dim;
     double area = contact->points->area[p] * points;
     return contact->dim == 2 ? area : sqrt(area);
 }
 
-/* Largest depth at which a point that is found behind the surface counts as having gone through it, m. */
-static double most_depth(const struct contact *contact, int64_t p)
+double contact_most_depth(const struct contact *contact, int64_t p)
 {
-    return 0.5 * width_of(contact, p);
+    return 0.5 * contact_width(contact, p);
 }
 
 /* sum_j Phi_pj v_j for node values v */
@@ -52,7 +51,7 @@ static enum status check_side(const struct contact *contact, struct error *error
     for (int64_t p = 0; p < contact->count; p++) {
         struct rigid_contact closest =
             rigid_closest(&contact->surface, contact->rest + p * contact->dim, INFINITY);
-        double depth = closest.found ? -closest.gap : -INFINITY, length = most_depth(contact, p);
+        double depth = closest.found ? -closest.gap : -INFINITY, length = contact_most_depth(contact, p);
         bool back = closest.found && facing(contact, p, &closest) > 0.5;
         if (depth > length || (depth > -round_off * length && back)) {
             return fail(error, STATUS_INPUT,
@@ -101,7 +100,7 @@ static void place_at_rest(struct contact *contact, const double *X)
     }
 }
 
-static enum status allocate(double stiffness, struct contact *contact, struct error *error)
+enum status contact_allocate(struct contact *contact, double stiffness, struct error *error)
 {
     enum status status;
     int64_t count = contact->count, dim = contact->dim;
@@ -136,7 +135,7 @@ enum status contact_build(const struct boundary_averages *points, const struct b
     *contact = (struct contact){
         .dim = dim, .count = points->count, .points = points, .averages = averages, .surface = *surface};
     *surface = (struct rigid_surface){0};
-    TRY(allocate(stiffness, contact, error));
+    TRY(contact_allocate(contact, stiffness, error));
     place_at_rest(contact, X);
     TRY(check_side(contact, error));
 done:
@@ -149,13 +148,15 @@ done:
 void contact_set_stiffness(struct contact *contact, double modulus)
 {
     for (int64_t p = 0; p < contact->count; p++) {
-        contact->stiffness[p] = modulus / width_of(contact, p);
+        contact->stiffness[p] = modulus / contact_width(contact, p);
     }
+    contact_between_stiffen(contact, modulus);
 }
 
 void contact_free(struct contact *contact)
 {
     rigid_free(&contact->surface);
+    contact_between_free(contact);
     free(contact->stiffness);
     free(contact->rest);
     free(contact->multiplier);
@@ -182,8 +183,11 @@ enum status contact_state(struct contact *contact, const char *prefix, const str
         {"checked_distance", STATE_NUMBERS, contact->checked_distance, count},
         {"checked_normal", STATE_NUMBERS, contact->checked_normal, count * dim},
     };
-    enum status status = state_visit(state, prefix, values, sizeof values / sizeof *values, error);
+    enum status status;
+    TRY(state_visit(state, prefix, values, sizeof values / sizeof *values, error));
+    TRY(contact_between_state(contact, prefix, state, error));
     contact_spread_multipliers(contact); /* needed after reading, harmless after writing */
+done:
     return status;
 }
 
@@ -196,7 +200,7 @@ static bool was_in_front(const struct contact *contact, int64_t p, const double 
     for (int c = 0; c < contact->dim; c++) {
         height += (contact->checked_x[p * contact->dim + c] - x[c]) * closest->normal[c];
     }
-    return height >= -round_off * width_of(contact, p);
+    return height >= -round_off * contact_width(contact, p);
 }
 
 /* Whether the point presses on a corner or an edge, or on another facet than at the last step. */
@@ -217,8 +221,9 @@ static void search(struct contact *contact, int64_t p, struct contact_view *view
     bool was_inside = contact->checked_distance[p] < 0.0 && !contact->behind[p];
     double gap = closest.found ? closest.gap : INFINITY;
     view->searched = true;
-    view->behind = gap < 0.0 && (contact->behind[p] || (!was_inside && -gap > most_depth(contact, p) &&
-                                                        !was_in_front(contact, p, view->sought, &closest)));
+    view->behind =
+        gap < 0.0 && (contact->behind[p] || (!was_inside && -gap > contact_most_depth(contact, p) &&
+                                             !was_in_front(contact, p, view->sought, &closest)));
     view->turned = gap < 0.0 && !view->behind && has_turned(contact, p, &closest);
     view->distance = fmin(gap, closest.distance);
     memcpy(view->normal, closest.normal, sizeof view->normal);
@@ -275,6 +280,10 @@ void contact_move(struct contact *contact, const double *factor)
 
 void contact_measure(struct contact *contact, const double *u, bool all)
 {
+    if (contact->between != NULL) {
+        contact_between_measure(contact, u, all);
+        return;
+    }
     struct chunks points = chunks_of(contact->count, POINTS_FOR_THREAD);
 #pragma omp parallel for schedule(static) num_threads(points.threads)
     for (int64_t c = 0; c < points.count; c++) {
@@ -285,6 +294,7 @@ void contact_measure(struct contact *contact, const double *u, bool all)
 void contact_accept(struct contact *contact)
 {
     int dim = contact->dim;
+    contact_between_accept(contact);
     for (int64_t p = 0; p < contact->count; p++) {
         const struct contact_view *view = &contact->view[p];
         if (view->searched) {
@@ -296,8 +306,7 @@ void contact_accept(struct contact *contact)
     }
 }
 
-/* Force on point p at the last evaluation. */
-static void force_on_point(const struct contact *contact, int64_t p, double force[3])
+void contact_point_force(const struct contact *contact, int64_t p, double force[3])
 {
     double strength = contact->pressure[p] * contact->points->area[p];
     for (int c = 0; c < contact->dim; c++) {
@@ -312,10 +321,11 @@ void contact_force(struct contact *contact, const double *u, double *force)
         if (contact->pressure[p] > 0.0) {
             struct average average = average_of_boundary(contact->points, p);
             double on_point[3];
-            force_on_point(contact, p, on_point);
+            contact_point_force(contact, p, on_point);
             average_spread(&average, contact->dim, on_point, NULL, force);
         }
     }
+    contact_between_react(contact, force);
 }
 
 double contact_energy(const struct contact *contact)
@@ -327,6 +337,7 @@ double contact_energy(const struct contact *contact)
             double held = contact->held[p * contact->dim + c];
             difference -= held * held;
         }
+        difference = contact_between_led(contact, p) ? 0.0 : difference;
         sum += contact->points->area[p] * difference / (2.0 * contact->stiffness[p]);
     }
     return sum;
@@ -334,11 +345,12 @@ double contact_energy(const struct contact *contact)
 
 void contact_total(const struct contact *contact, double *total)
 {
+    double sign = contact_between_sign(contact);
     memset(total, 0, (size_t)contact->dim * sizeof *total);
     for (int64_t p = 0; p < contact->count; p++) {
         for (int c = 0; c < contact->dim; c++) {
-            total[c] +=
-                contact->pressure[p] * contact->points->area[p] * contact->normal[p * contact->dim + c];
+            total[c] += sign * contact->pressure[p] * contact->points->area[p] *
+                        contact->normal[p * contact->dim + c];
         }
     }
 }
@@ -346,13 +358,14 @@ void contact_total(const struct contact *contact, double *total)
 void contact_moment(const struct contact *contact, const double *point, double moment[3])
 {
     int dim = contact->dim;
+    double sign = contact_between_sign(contact);
     memset(moment, 0, 3 * sizeof *moment);
     for (int64_t p = 0; p < contact->count; p++) {
         double arm[3] = {0.0, 0.0, 0.0}, force[3] = {0.0, 0.0, 0.0};
         if (!(contact->pressure[p] > 0.0)) {
             continue;
         }
-        force_on_point(contact, p, force);
+        contact_point_force(contact, p, force);
         rigid_place_from_rest(&contact->place, dim, contact->view[p].x, arm);
         for (int c = 0; c < dim; c++) {
             double raised = contact->rest[p * dim + c] - contact->points->position[p * dim + c];
@@ -360,7 +373,7 @@ void contact_moment(const struct contact *contact, const double *point, double m
         }
         for (int c = 0; c < 3; c++) {
             int i = (c + 1) % 3, j = (c + 2) % 3;
-            moment[c] += arm[i] * force[j] - arm[j] * force[i];
+            moment[c] += sign * (arm[i] * force[j] - arm[j] * force[i]);
         }
     }
 }
@@ -380,7 +393,7 @@ struct contact_work contact_work(const struct contact *contact, const double *fa
         if (!(contact->pressure[p] > 0.0)) {
             continue;
         }
-        force_on_point(contact, p, force);
+        contact_point_force(contact, p, force);
         rigid_place_from_rest(&from, dim, contact->view[p].x, before);
         rigid_place_from_rest(&to, dim, contact->view[p].x, after);
         for (int c = 0; c < dim; c++) {

@@ -1,5 +1,5 @@
-/* Frictionless contact of a boundary with a rigid surface, finite sliding, by an augmented Lagrangian:
- * equations (19) and (20) of lib/README.md.
+/* Frictionless contact of a boundary with a rigid surface, or with another part of the boundary
+ * (contact_between.h), finite sliding, by an augmented Lagrangian: equations (19) and (20) of lib/README.md.
  *
  * Contact points are quadrature points of the facets. Point p is at x_p = sum_j Phi_pj (X_j + u_j). It must
  * stay in the set C of positions in front of the surface. The multiplier is a vector, the traction that the
@@ -49,12 +49,15 @@ struct contact_view {
     double normal[3]; /* as checked_normal */
 };
 
+struct contact_between;
+
 struct contact {
     int dim;
     int64_t count;                            /* points */
     const struct boundary_averages *points;   /* the caller's, as the averages; must outlive the contact */
     const struct boundary_averages *averages; /* at the nodes; their samples are the points; NULL: none */
     struct rigid_surface surface;             /* owned; at rest */
+    struct contact_between *between;          /* owned: facets of the body instead of the surface; or NULL */
     struct rigid_motion motion;               /* of the surface */
     struct rigid_place place;                 /* placement of the surface: see contact_move */
     int32_t section;                          /* the caller's label */
@@ -86,6 +89,17 @@ MUST_CHECK enum status contact_build(const struct boundary_averages *points,
                                      struct rigid_surface *surface, double stiffness, struct contact *contact,
                                      struct error *error);
 void contact_free(struct contact *contact);
+
+/* The arrays of a contact whose dim, count, points and averages are set. */
+MUST_CHECK enum status contact_allocate(struct contact *contact, double stiffness, struct error *error);
+
+/* The width of the facets at point p, m; and the largest depth at which a point that is found behind the
+ * surface counts as having gone through it. */
+double contact_width(const struct contact *contact, int64_t p);
+double contact_most_depth(const struct contact *contact, int64_t p);
+
+/* Force on point p at the last evaluation, N (2D: N/m). */
+void contact_point_force(const struct contact *contact, int64_t p, double force[3]);
 
 /* k_p = modulus / width of the facets there: the stiffness of a layer of cells. */
 void contact_set_stiffness(struct contact *contact, double modulus);
@@ -140,10 +154,11 @@ struct contact_node contact_node(const struct contact *contact, int64_t a);
 /* Energy of the penalty at the last evaluation, sum A_p (|t_p|^2 - |held_p|^2) / (2 k_p), J (2D: J/m). */
 double contact_energy(const struct contact *contact);
 
-/* Total force on the body at the last evaluation, total[dim], N (2D: N/m). */
+/* Total force on the body at the last evaluation, total[dim], N (2D: N/m). Between facets of the body, see
+ * contact_between.h: that on the facets named first, or 0. */
 void contact_total(const struct contact *contact, double *total);
 
-/* Moment on the body about point[dim] at the last evaluation, N m (2D: N): that of the forces on the
+/* Moment of that about point[dim] at the last evaluation, N m (2D: N): that of the forces on the
  * parameters where their nodes' parameters have moved to. In 2D moment[2] alone is not 0. */
 void contact_moment(const struct contact *contact, const double *point, double moment[3]);
 

@@ -1,5 +1,5 @@
 /* Contact nodes: their multipliers, and nodal averages of gap, pressure and normal. */
-#include "solid/contact.h"
+#include "solid/contact_between.h"
 
 #include <math.h>
 #include <string.h>
@@ -71,7 +71,7 @@ static void add_difference(const struct contact *contact, int64_t p, double weig
                            double *direction)
 {
     for (int c = 0; c < contact->dim; c++) {
-        double normal = contact->view[p].normal[c];
+        double normal = contact->between == NULL ? contact->view[p].normal[c] : c == 0 ? 1.0 : 0.0;
         sum[c] += weight * (contact->pressure[p] * normal - contact->held[p * contact->dim + c]);
         direction[c] += weight * normal;
     }
@@ -84,6 +84,7 @@ static double augmented(const struct contact *contact, int64_t a, double next[3]
     const struct boundary_averages *averages = contact->averages;
     const double *multiplier = contact->multiplier + a * contact->dim;
     double sum[3] = {0.0, 0.0, 0.0}, direction[3] = {0.0, 0.0, 0.0}, compliance = 0.0, along = 0.0;
+    memcpy(next, multiplier, (size_t)contact->dim * sizeof *next);
     if (averages == NULL) {
         compliance = 1.0 / contact->stiffness[a];
         add_difference(contact, a, compliance, sum, direction);
@@ -91,12 +92,16 @@ static double augmented(const struct contact *contact, int64_t a, double next[3]
     for (int64_t s = averages != NULL ? averages->sample_ptr[a] : 0;
          averages != NULL && s < averages->sample_ptr[a + 1]; s++) {
         int64_t p = averages->sample_point[s];
-        double part = averages->sample_share[s] / contact->stiffness[p];
+        double part =
+            contact_between_led(contact, p) ? 0.0 : averages->sample_share[s] / contact->stiffness[p];
         compliance += part;
         add_difference(contact, p, part, sum, direction);
     }
+    if (!(compliance > 0.0)) { /* all of it is pressed on by others */
+        return 0.0;
+    }
     for (int c = 0; c < contact->dim; c++) {
-        next[c] = multiplier[c] + sum[c] / compliance;
+        next[c] += sum[c] / compliance;
         along += next[c] * direction[c];
     }
     double change2 = 0.0;

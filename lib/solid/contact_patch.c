@@ -116,7 +116,7 @@ enum status contact_patch_find(const struct contact *contact, const struct facet
     }
     if (patch->force > 0.0) {
         patch->thin = 1.0 - resolved / patch->force;
-    } else {
+    } else if (contact->between == NULL) {
         status = find_inside(contact, set, cells, patch, error);
     }
 done:

@@ -2,6 +2,7 @@
 #include "solid/dynamics_private.h"
 
 #include "base/clock.h"
+#include "solid/contact_between.h"
 #include "solid/frequency.h"
 
 #include <math.h>
@@ -25,15 +26,17 @@ static double contact_bound(const struct solid_system *system, double *stiffness
         stiffness[n] = 0.0;
     }
     for (int64_t c = 0; c < system->contact_count; c++) {
-        const struct boundary_averages *averages = system->contacts[c].points;
-        for (int64_t a = 0; a < averages->count; a++) {
-            double sum = 0.0;
-            for (int64_t i = averages->ptr[a]; i < averages->ptr[a + 1]; i++) {
-                sum += fabs(averages->phi[i]);
+        /* A point and what is opposite are one row; its square is no more than twice those of its parts. */
+        double parts = system->contacts[c].between != NULL ? 2.0 : 1.0;
+        for (int64_t b = 0; b < contact_bond_count(&system->contacts[c]); b++) {
+            double sum = 0.0, bond;
+            struct average average = contact_bond(&system->contacts[c], b, &bond);
+            for (int64_t i = 0; i < average.length; i++) {
+                sum += fabs(average.phi[i]);
             }
-            sum *= system->contacts[c].stiffness[a] * averages->area[a];
-            for (int64_t i = averages->ptr[a]; i < averages->ptr[a + 1]; i++) {
-                stiffness[averages->idx[i]] += sum * fabs(averages->phi[i]);
+            sum *= parts * bond;
+            for (int64_t i = 0; i < average.length; i++) {
+                stiffness[average.idx[i]] += sum * fabs(average.phi[i]);
             }
         }
     }

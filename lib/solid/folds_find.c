@@ -118,6 +118,15 @@ static double angle_around(const struct folds *folds, const int32_t *node, int8_
     return cell_size(folds, node) * turn > 0.0 ? angle : -angle;
 }
 
+/* The angle above which what meets at a ring has passed through itself. Where parts of the body press on each
+ * other by averages, facets may do so by a twentieth of their length. */
+static double most_angle(const struct folds *folds, const struct fold_ring *ring)
+{
+    const bool *touched = folds->touched;
+    bool touches = touched != NULL && touched[ring->node[0]] && (ring->node[1] < 0 || touched[ring->node[1]]);
+    return full_turn * (1.0 + 1e-6) + (touches ? beyond_facet : 0.0);
+}
+
 static bool find_creases(const struct folds *folds, struct fold *fold)
 {
     int corners = folds->input.dim + 1;
@@ -126,7 +135,7 @@ static bool find_creases(const struct folds *folds, struct fold *fold)
         for (int64_t i = folds->ring_ptr[r]; i < folds->ring_ptr[r + 1]; i++) {
             sum += angle_around(folds, folds->ring_cell + i * corners, folds->ring_turn[i]);
         }
-        if (sum > full_turn * (1.0 + 1e-6) && fold->count++ == 0) {
+        if (sum > most_angle(folds, &folds->rings[r]) && fold->count++ == 0) {
             name_facets(folds, folds->rings[r].facet, -1, fold);
         }
     }

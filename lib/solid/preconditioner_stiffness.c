@@ -4,6 +4,7 @@
 
 #include "base/dense.h"
 #include "base/memory.h"
+#include "solid/contact_between.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -43,6 +44,21 @@ static void add_square(int64_t size, double stiffness, const double *row, double
     }
 }
 
+/* row -= what is opposite contact node a along a direction. */
+static void subtract_opposite(const struct preconditioner *preconditioner, const struct contact *contact,
+                              int64_t a, const double *direction, double *row)
+{
+    struct average average;
+    double weight;
+    for (int64_t i = 0; contact_between_part(contact, a, i, &average, &weight); i++) {
+        const double less[3] = {-weight * direction[0], -weight * direction[1],
+                                contact->dim == 3 ? -weight * direction[2] : 0.0};
+        if (weight != 0.0) {
+            preconditioner_add_row(preconditioner, &average, less, row);
+        }
+    }
+}
+
 /* matrix += the stiffness along the coarse fields of the contact nodes that count as active. */
 static void add_contacts(const struct preconditioner *preconditioner, const struct solid_system *system,
                          double *matrix)
@@ -61,12 +77,45 @@ static void add_contacts(const struct preconditioner *preconditioner, const stru
             bool creased = preconditioner->creased[at];
             for (int64_t d = 0; d < (creased ? preconditioner->dim : 1); d++) {
                 const double axis[3] = {d == 0, d == 1, d == 2};
+                const double *direction = creased ? axis : preconditioner->normal + at * preconditioner->dim;
                 memset(row, 0, (size_t)size * sizeof *row);
-                preconditioner_add_row(preconditioner, &average,
-                                       creased ? axis : preconditioner->normal + at * preconditioner->dim,
-                                       row);
+                preconditioner_add_row(preconditioner, &average, direction, row);
+                subtract_opposite(preconditioner, contact, a, direction, row);
                 add_square(size, stiffness, row, matrix);
             }
+        }
+    }
+}
+
+/* mean[dim] += factor times the field opposite contact node a. */
+static void add_opposite(const struct contact *contact, int64_t a, double factor, const double *field,
+                         double *mean)
+{
+    struct average average;
+    double weight, there[3];
+    for (int64_t i = 0; contact_between_part(contact, a, i, &average, &weight); i++) {
+        if (weight != 0.0) {
+            average_take(&average, contact->dim, field, there);
+        }
+        for (int c = 0; c < contact->dim && weight != 0.0; c++) {
+            mean[c] += factor * weight * there[c];
+        }
+    }
+}
+
+/* The transpose. */
+static void spread_opposite(const struct contact *contact, int64_t a, double factor, const double *amount,
+                            double *field)
+{
+    struct average average;
+    double weight;
+    for (int64_t i = 0; contact_between_part(contact, a, i, &average, &weight); i++) {
+        double there[3] = {0.0, 0.0, 0.0};
+        for (int c = 0; c < contact->dim; c++) {
+            there[c] = factor * weight * amount[c];
+        }
+        if (weight != 0.0) {
+            average_spread(&average, contact->dim, there, NULL, field);
         }
     }
 }
@@ -90,6 +139,7 @@ void preconditioner_resist_open(const struct preconditioner *preconditioner,
             const double *normal = preconditioner->normal + at * dim;
             double mean[3], on_node[3], along = 0.0, stiffness = node.stiffness * averages->area[a];
             average_take(&average, (int)dim, move, mean);
+            add_opposite(contact, a, -1.0, move, mean);
             for (int64_t i = 0; i < dim; i++) {
                 along += mean[i] * normal[i];
             }
@@ -99,6 +149,7 @@ void preconditioner_resist_open(const struct preconditioner *preconditioner,
                 on_node[i] = stiffness * ((1.0 - node.pressed) * along * normal[i] + aside);
             }
             average_spread(&average, (int)dim, on_node, NULL, force);
+            spread_opposite(contact, a, -1.0, on_node, force);
         }
     }
 }
@@ -252,6 +303,9 @@ bool preconditioner_follow(struct preconditioner *preconditioner, const struct s
         for (int64_t a = 0; a < contact_nodes(&system->contacts[c])->count; a++) {
             changed = follow_node(preconditioner, &system->contacts[c], a, at++, leave) || changed;
         }
+    }
+    for (int64_t c = 0; c < system->contact_count && changed; c++) {
+        contact_between_take(&system->contacts[c]);
     }
     if (!changed || preconditioner->size == 0) {
         return false;

@@ -50,6 +50,16 @@ struct rigid_contact {
     bool on_edge;     /* the closest point is on an edge or a vertex */
     double gap;       /* signed distance: positive on the body's side, m */
     double normal[3]; /* unit, the direction in which the gap grows */
+    int64_t facet;    /* that of the closest point, */
+    double weight[3]; /* and the weights of its corners there, sum 1 */
+};
+
+/* What may be the closest facet: `considers` is asked for facets that may be within reach, and then `admits`
+ * for facet f whose closest point to x is x - away. */
+struct rigid_filter {
+    bool (*considers)(void *context, int64_t f);
+    bool (*admits)(void *context, int64_t f, const double *away);
+    void *context;
 };
 
 /* The sign is that of the pseudo-normal of the closest facet, edge or vertex (Baerentzen and Aanaes, IEEE
@@ -58,5 +68,9 @@ struct rigid_contact {
  * From behind, beyond a crease that is concave as the body sees it, the closest point and `normal` are
  * continuous functions of x; the gap is minus the distance to a set that is convex there. */
 struct rigid_contact rigid_closest(const struct rigid_surface *surface, const double *x, double reach);
+
+/* The same among the facets that the filter admits. */
+struct rigid_contact rigid_closest_among(const struct rigid_surface *surface, const double *x, double reach,
+                                         const struct rigid_filter *filter);
 
 #endif

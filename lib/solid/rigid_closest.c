@@ -18,7 +18,7 @@ enum { MOST_DEPTH = 64 }; /* of the tree: halves of at most INT32_MAX facets */
 struct nearest {
     int64_t facet;    /* -1: none yet */
     double distance2; /* INFINITY: none yet */
-    double point[3];
+    double point[3], weight[3];
     enum feature feature;
     bool rim;
 };
@@ -140,12 +140,16 @@ static bool on_rim(const struct rigid_surface *surface, int64_t f, enum feature 
 }
 
 /* Take the closest point of facet f if it is closer than the nearest so far. */
-static void consider(const struct rigid_surface *surface, int64_t f, const double *x, struct nearest *nearest)
+static void consider(const struct rigid_surface *surface, int64_t f, const double *x,
+                     const struct rigid_filter *filter, struct nearest *nearest)
 {
     struct nearest here = {.facet = f};
     int dim = surface->dim;
-    double away[3] = {0.0, 0.0, 0.0}, weight[3] = {0.0, 0.0, 0.0};
+    double away[3] = {0.0, 0.0, 0.0}, *weight = here.weight;
     const double *a = corner_of(surface, f, 0), *b = corner_of(surface, f, 1);
+    if (filter != NULL && !filter->considers(filter->context, f)) {
+        return;
+    }
     here.feature = dim == 2 ? closest_on_segment(a, b, x, weight)
                             : closest_on_triangle(a, b, corner_of(surface, f, 2), x, weight);
     /* From the first corner, so that an offset of the origin costs nothing. */
@@ -158,8 +162,9 @@ static void consider(const struct rigid_surface *surface, int64_t f, const doubl
     here.rim = on_rim(surface, f, here.feature);
     difference(dim, x, here.point, away);
     here.distance2 = dot(dim, away, away);
-    if (here.distance2 < nearest->distance2 * (1.0 - tie) ||
-        (here.distance2 <= nearest->distance2 * (1.0 + tie) && nearest->rim && !here.rim)) {
+    if ((here.distance2 < nearest->distance2 * (1.0 - tie) ||
+         (here.distance2 <= nearest->distance2 * (1.0 + tie) && nearest->rim && !here.rim)) &&
+        (filter == NULL || filter->admits(filter->context, f, away))) {
         *nearest = here;
     }
 }
@@ -169,15 +174,17 @@ static double box_distance2(int dim, const struct rigid_branch *branch, const do
 {
     double sum = 0.0;
     for (int a = 0; a < dim; a++) {
-        double out = fmax(fmax(branch->low[a] - x[a], x[a] - branch->high[a]), 0.0);
-        sum += out * out;
+        double below = branch->low[a] - x[a], above = x[a] - branch->high[a];
+        double out = below > above ? below : above;
+        sum += out > 0.0 ? out * out : 0.0;
     }
     return sum;
 }
 
 /* The nearest facet point within reach: branches in depth, the nearer of two first, but those whose boxes are
  * further away than what is found. */
-static struct nearest find_nearest(const struct rigid_surface *surface, const double *x, double reach)
+static struct nearest find_nearest(const struct rigid_surface *surface, const double *x, double reach,
+                                   const struct rigid_filter *filter)
 {
     struct nearest nearest = {.facet = -1, .distance2 = INFINITY};
     int64_t waiting[MOST_DEPTH] = {0};
@@ -190,7 +197,7 @@ static struct nearest find_nearest(const struct rigid_surface *surface, const do
         }
         if (branch->second == 0) {
             for (int64_t i = branch->first; i < branch->end; i++) {
-                consider(surface, surface->in_order[i], x, &nearest);
+                consider(surface, surface->in_order[i], x, filter, &nearest);
             }
             continue;
         }
@@ -244,9 +251,15 @@ static double beyond_rim(const struct rigid_surface *surface, const struct neare
 
 struct rigid_contact rigid_closest(const struct rigid_surface *surface, const double *x, double reach)
 {
+    return rigid_closest_among(surface, x, reach, NULL);
+}
+
+struct rigid_contact rigid_closest_among(const struct rigid_surface *surface, const double *x, double reach,
+                                         const struct rigid_filter *filter)
+{
     int dim = surface->dim;
     struct rigid_contact contact = {.distance = reach};
-    struct nearest nearest = find_nearest(surface, x, reach);
+    struct nearest nearest = find_nearest(surface, x, reach, filter);
     if (nearest.facet < 0 || !(nearest.distance2 < reach * reach)) {
         contact.distance = isnan(dot(dim, x, x)) ? 0.0 : reach;
         return contact;
@@ -263,6 +276,8 @@ struct rigid_contact rigid_closest(const struct rigid_surface *surface, const do
         }
     }
     contact.found = true;
+    contact.facet = nearest.facet;
+    scaled(3, 1.0, nearest.weight, contact.weight);
     contact.on_edge = nearest.feature != ON_FACE;
     if (nearest.feature == ON_FACE) {
         /* From a corner: free of the cancellation in the distance to the point on the face. */

@@ -7,12 +7,19 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* The points of a contact with a rigid surface. Where facets of the body will touch others is not known; the
+ * time step follows what they add. */
+static int64_t points_of(const struct contact *contact)
+{
+    return contact->between == NULL ? contact->points->count : 0;
+}
+
 /* The bonds: penalties of the conditions, one for each list of rows, then the points of the contacts. */
 static int64_t count_bonds(const struct solid_system *system)
 {
     int64_t count = system->penalties.list_count;
     for (int64_t c = 0; c < system->contact_count; c++) {
-        count += system->contacts[c].points->count;
+        count += points_of(&system->contacts[c]);
     }
     return count;
 }
@@ -27,8 +34,8 @@ static struct average bond_at(const struct solid_system *system, int64_t b, doub
     }
     b -= system->penalties.list_count;
     int64_t c = 0;
-    for (; b >= system->contacts[c].points->count; c++) {
-        b -= system->contacts[c].points->count;
+    for (; b >= points_of(&system->contacts[c]); c++) {
+        b -= points_of(&system->contacts[c]);
     }
     *stiffness = system->contacts[c].stiffness[b] * system->contacts[c].points->area[b];
     return average_of_boundary(system->contacts[c].points, b);

@@ -5,6 +5,7 @@
 #include "base/clock.h"
 #include "base/memory.h"
 #include "solid/condition.h"
+#include "solid/contact_between.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -322,12 +323,7 @@ static void add_to_bound(const struct average *average, double stiffness, double
 static void add_penalties_to_bound(const struct solid_system *system, double *mass)
 {
     for (int64_t c = 0; c < system->contact_count; c++) {
-        const struct contact *contact = &system->contacts[c];
-        const struct boundary_averages *averages = contact->points;
-        for (int64_t a = 0; a < averages->count; a++) {
-            struct average average = average_of_boundary(averages, a);
-            add_to_bound(&average, contact->stiffness[a] * averages->area[a], mass);
-        }
+        contact_add_to_bound(&system->contacts[c], mass);
     }
     for (int64_t r = 0; r < system->penalties.count; r++) {
         struct average average = constraint_rows_average(&system->penalties, r);

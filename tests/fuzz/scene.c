@@ -54,8 +54,12 @@ static void require_scene(const struct scene *scene)
     }
     for (int64_t i = 0; i < scene->contact_count; i++) {
         require_names(&scene->contacts[i].facets);
-        REQUIRE(scene->contacts[i].rigid != NULL && scene->contacts[i].rigid_unit > 0.0);
-        REQUIRE((scene->contacts[i].side <= SCENE_RIGHT) == (scene->dim == 2));
+        require_names(&scene->contacts[i].against);
+        REQUIRE((scene->contacts[i].against.count > 0) == (scene->contacts[i].rigid == NULL));
+        if (scene->contacts[i].rigid != NULL) {
+            REQUIRE(scene->contacts[i].rigid_unit > 0.0);
+            REQUIRE((scene->contacts[i].side <= SCENE_RIGHT) == (scene->dim == 2));
+        }
     }
     require_loads(scene->pressures, scene->pressure_count);
     require_loads(scene->tractions, scene->traction_count);

@@ -72,6 +72,7 @@ static void scenes(void **state)
                "[displacement d]\nfacets = f\ntable = t\nunit = m\ncurve = c\n"
                "[displacement e]\nnodes = f\ncomponents = 0,free\n"
                "[contact c]\nfacets = f\nrigid = r\nunit = m\nside = left\n"
+               "[contact b]\nfacets = f\nagainst = g, h\n"
                "[pressure p]\nfacets = f\nvalue = 1\ncurve = c\n"
                "[force p]\nnodes = f\ncomponents = 0,1\n");
     fail_each(try_scene, 90);

@@ -7,7 +7,7 @@
 #ifdef FAILING_ALLOCATOR
 
 #include "solid/body.h"
-#include "solid/contact.h"
+#include "solid/contact_between.h"
 #include "solid/folds.h"
 
 /* In place of libgomp's, which ends the program when it gets no memory: all work on this thread. */
@@ -122,6 +122,37 @@ static enum status try_contact(struct error *error)
     return status;
 }
 
+/* The boundary against itself. */
+static enum status try_between(struct error *error)
+{
+    struct face_table table = {.dim = 2,
+                               .node_count = sample.cloud.node_count,
+                               .x = sample.cloud.x,
+                               .faces = &sample.faces,
+                               .per_face = sample.face_rule.points,
+                               .lists = &sample.face_neighbours,
+                               .phi = sample.face_phi};
+    struct facet_set set = {sample.cloud.facet_count, sample.cloud.facets};
+    struct boundary_averages points = {0}, averages = {0};
+    struct opposite opposite = {0};
+    struct contact contact = {0};
+    int32_t part[64] = {0};
+    bool any;
+    enum status status = opposite_parts(&sample.cells, part, error);
+    status = status == STATUS_OK ? boundary_points_build(&table, &set, &points, error) : status;
+    status = status == STATUS_OK ? boundary_averages_build(&table, &set, &averages, error) : status;
+    status = status == STATUS_OK ? opposite_build(&table, &set, part, true, &opposite, error) : status;
+    if (status == STATUS_OK) {
+        status = contact_between_build(&points, &averages, 2, sample.cloud.node_count, table.per_face,
+                                       &opposite, part, 0, 1.0, true, &contact, &any, error);
+    }
+    opposite_free(&opposite);
+    contact_free(&contact);
+    boundary_averages_free(&points);
+    boundary_averages_free(&averages);
+    return status;
+}
+
 static enum status try_folds(struct error *error)
 {
     static const double x[] = {0, 0, 1, 0, 1, 1, 0, 1};
@@ -165,6 +196,7 @@ static void contacts(void **state)
 {
     (void)state;
     fail_each(try_contact, 30);
+    fail_each(try_between, 60);
 }
 
 static void folds_of_bodies(void **state)

@@ -50,6 +50,10 @@ MUST_CHECK enum status model_nodes(struct model *model, const struct scene_label
                                    const struct name_list *names, const int32_t **nodes, int64_t *count,
                                    struct error *error);
 
+/* Facets of the body that may touch others of it: what the section names, each once. */
+MUST_CHECK enum status model_between(struct model *model, const struct scene_contact *section,
+                                     struct contact_condition *contact, struct error *error);
+
 /* u, v[node_count * dim]: the state at the begin that the scene's [initial] gives, m and m/s, as parameters.
  */
 MUST_CHECK enum status model_initial(const struct model *model, double *u, double *v, struct error *error);

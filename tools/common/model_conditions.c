@@ -194,6 +194,9 @@ static enum status add_contact(struct model *model, const struct scene_contact *
     enum status status;
     struct rigid_motion *motion = &contact->motion;
     *contact = (struct contact_condition){.where = section->label.where, .stiffness = section->stiffness};
+    if (section->against.count > 0) {
+        return model_between(model, section, contact, error);
+    }
     TRY(model_facets(model, &section->label, &section->facets, &contact->facets, error));
     TRY(read_surface(model, section, contact, error));
     motion->moves = section->moves;

@@ -3,6 +3,7 @@
 #include "names.h"
 
 #include "approx/cells.h"
+#include "solid/contact_between.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -23,7 +24,9 @@ static enum status build(const struct assembly *input, struct run_folds *folds, 
     body.held = folds->held;
     TRY(NEW_ARRAY(&folds->field, cells->node_count * cells->dim, error));
     TRY(NEW_ARRAY(&folds->stopped, cells->node_count, error));
+    TRY(NEW_ARRAY(&folds->touched, cells->node_count, error));
     TRY(folds_build(&body, &folds->folds, error));
+    folds->folds.touched = folds->touched;
 done:
     return status;
 }
@@ -100,23 +103,27 @@ void run_folds_free(struct run *run)
     free(run->folds.held);
     free(run->folds.field);
     free(run->folds.stopped);
+    free(run->folds.touched);
 }
 
 /* A surface that is no further away than this share of a facet's size stands against it. */
 static const double near_share = 0.25;
 
-/* Nodes that a rigid surface stands against. */
-static void mark_stopped(const struct run *run, bool *stopped)
+/* Nodes that a rigid surface stands against, and those where parts of the body do. */
+static void mark_stopped(const struct run *run, bool *stopped, bool *touched)
 {
     const struct solid_system *system = &run->model->system;
     memset(stopped, 0, (size_t)system->node_count * sizeof *stopped);
+    memset(touched, 0, (size_t)system->node_count * sizeof *touched);
     for (int64_t c = 0; c < system->contact_count; c++) {
         const struct contact *contact = &system->contacts[c];
         const struct boundary_averages *nodes = contact_nodes(contact);
+        bool *marked = contact->between == NULL ? stopped : touched;
         for (int64_t a = 0; a < nodes->count; a++) {
             double area = nodes->area[a], length = contact->dim == 2 ? area : sqrt(area);
-            stopped[nodes->node[a]] |= contact_node(contact, a).gap < near_share * length;
+            marked[nodes->node[a]] |= contact_node(contact, a).gap < near_share * length;
         }
+        contact_between_mark(contact, near_share, touched);
     }
 }
 
@@ -143,7 +150,7 @@ void run_folds_look(struct run *run, const double *u, double time, bool is_frame
     struct run_folds *folds = &run->folds;
     bool counts = is_frame || run->scene->analysis == SCENE_DYNAMIC;
     assembly_nodal_field(&run->model->assembly, u, folds->field);
-    mark_stopped(run, folds->stopped);
+    mark_stopped(run, folds->stopped, folds->touched);
     struct fold fold = folds_find(&folds->folds, folds->field, folds->stopped);
     if (is_frame && (fold.kind == FOLD_NONE || fold.kind == FOLD_FLAT)) {
         struct fold overlap;
@@ -256,11 +263,28 @@ void run_folds_describe(const struct run *run, int which, char *text, size_t siz
     }
 }
 
+/* The remedy against a fold: where parts of the boundary have passed through each other, to let them touch.
+ */
+static const char *let_touch(const struct run *run, const char *otherwise)
+{
+    const struct run_folds *folds = &run->folds;
+    const struct fold_spell *spell = folds->now[FOLDED].seen ? &folds->now[FOLDED] : &folds->past[FOLDED];
+    enum fold_kind kind = spell->fold.kind;
+    for (int64_t c = 0; c < run->scene->contact_count; c++) {
+        if (run->scene->contacts[c].against.count > 0) {
+            return otherwise;
+        }
+    }
+    return kind == FOLD_CREASE || kind == FOLD_CROSSING || kind == FOLD_WITHIN
+               ? "let it touch itself ([contact NAME] facets = *, against = *)"
+               : otherwise;
+}
+
 void run_folds_judge(struct run *run)
 {
     char text[400];
     run_folds_describe(run, FOLDED, text, sizeof text);
-    const char *remedy = "press less, refine there";
+    const char *remedy = let_touch(run, "press less, refine there");
     if (text[0] == '\0') {
         run_stability_describe(run, text, sizeof text);
         remedy = "press less, hold it there";

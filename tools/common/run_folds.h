@@ -23,10 +23,10 @@ enum { FOLDED, NOTED, FOLD_SPELLS };
 
 struct run_folds {
     struct folds folds;
-    bool *held;    /* whether the displacement is prescribed at each face of the boundary */
-    double *field; /* scratch: node_count * dim */
-    bool *stopped; /* scratch: node_count */
-    bool reported; /* in the message that ends the run */
+    bool *held;              /* whether the displacement is prescribed at each face of the boundary */
+    double *field;           /* scratch: node_count * dim */
+    bool *stopped, *touched; /* scratch: node_count */
+    bool reported;           /* in the message that ends the run */
     struct fold_spell now[FOLD_SPELLS];
     struct fold_spell past[FOLD_SPELLS]; /* the first one that ended and counts */
 };

@@ -3,6 +3,7 @@
 #include "run.h"
 
 #include "approx/support.h"
+#include "solid/contact_between.h"
 #include "solid/rigid_modes.h"
 
 #include <math.h>
@@ -14,7 +15,8 @@ struct bodies {
     int64_t count;
     int32_t *of_node;          /* node_count */
     int64_t *cell;             /* count: one of its cells, whose region names it */
-    bool *touches;             /* count: a contact acts on it */
+    bool *touches;             /* count: a contact acts on it, with a rigid surface or a body that stays */
+    bool *stays;               /* count: it is held in some direction, or touches */
     struct rigid_modes *moves; /* count */
 };
 
@@ -50,6 +52,62 @@ static void join_cells(const struct cells *cells, struct bodies *bodies)
     }
 }
 
+/* Mark the bodies of nodes. */
+static void mark_bodies(const struct bodies *bodies, const struct boundary_averages *at, bool *marked)
+{
+    for (int64_t a = 0; a < at->count; a++) {
+        marked[bodies->of_node[at->node[a]]] = true;
+    }
+}
+
+/* Bodies of a contact between facets of bodies hold each other, when another one of them stays. Returns
+ * whether more bodies touch. */
+static bool hold_each_other(struct bodies *bodies, const struct contact *contact, bool *there)
+{
+    int64_t staying = 0;
+    bool more = false;
+    memset(there, 0, (size_t)bodies->count * sizeof *there);
+    mark_bodies(bodies, contact->points, there);
+    mark_bodies(bodies, &contact->between->opposite.rows, there);
+    for (int64_t b = 0; b < bodies->count; b++) {
+        staying += there[b] && bodies->stays[b];
+    }
+    for (int64_t b = 0; b < bodies->count; b++) {
+        if (there[b] && !bodies->touches[b] && staying > (bodies->stays[b] ? 1 : 0)) {
+            bodies->touches[b] = bodies->stays[b] = more = true;
+        }
+    }
+    return more;
+}
+
+/* The bodies that contacts act on. */
+static enum status find_touching(const struct solid_system *system, struct bodies *bodies,
+                                 struct error *error)
+{
+    enum status status;
+    bool *there = NULL, more = true;
+    int all = system->dim == 2 ? 3 : 6;
+    TRY(NEW_ARRAY(&there, bodies->count, error));
+    for (int64_t c = 0; c < system->contact_count; c++) {
+        if (system->contacts[c].between == NULL) {
+            mark_bodies(bodies, &system->contact_points[c], bodies->touches);
+        }
+    }
+    for (int64_t b = 0; b < bodies->count; b++) {
+        bodies->stays[b] = bodies->touches[b] || bodies->moves[b].translations + bodies->moves[b].turns < all;
+    }
+    while (more) {
+        more = false;
+        for (int64_t c = 0; c < system->contact_count; c++) {
+            const struct contact *contact = &system->contacts[c];
+            more = (contact->between != NULL && hold_each_other(bodies, contact, there)) || more;
+        }
+    }
+done:
+    free(there);
+    return status;
+}
+
 static enum status bodies_find(const struct model *model, struct bodies *bodies, struct error *error)
 {
     enum status status;
@@ -64,13 +122,9 @@ static enum status bodies_find(const struct model *model, struct bodies *bodies,
     for (int64_t c = 0; c < cells->count; c++) {
         bodies->cell[bodies->of_node[cells->node[c * (cells->dim + 1)]]] = c;
     }
-    for (int64_t c = 0; c < system->contact_count; c++) {
-        const struct boundary_averages *averages = &system->contact_points[c];
-        for (int64_t a = 0; a < averages->count; a++) {
-            bodies->touches[bodies->of_node[averages->node[a]]] = true;
-        }
-    }
+    TRY(NEW_ARRAY(&bodies->stays, bodies->count, error));
     TRY(system_rigid_modes(system, bodies->count, bodies->of_node, bodies->moves, error));
+    TRY(find_touching(system, bodies, error));
 done:
     return status;
 }
@@ -80,6 +134,7 @@ static void bodies_free(struct bodies *bodies)
     free(bodies->of_node);
     free(bodies->cell);
     free(bodies->touches);
+    free(bodies->stays);
     free(bodies->moves);
 }
 

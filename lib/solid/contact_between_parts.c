@@ -1,0 +1,95 @@
+/* What preconditioner, time steps and the search for folds need of a contact between facets of the body: the
+ * parts of its gaps, bounds of its stiffness, the nodes that are near. */
+#include "solid/contact_between.h"
+
+#include <math.h>
+#include <string.h>
+
+void contact_between_take(struct contact *contact)
+{
+    struct contact_between *between = contact->between;
+    for (int64_t p = 0; p < contact->count && between != NULL; p++) {
+        const struct between_view *here = &between->view[p];
+        if (contact->view[p].searched) {
+            between->taken_facet[p] = here->led ? 0 : here->facet + 1;
+            memcpy(between->taken_weight + p * 3, here->weight, sizeof here->weight);
+        }
+    }
+}
+
+bool contact_between_part(const struct contact *contact, int64_t a, int64_t i, struct average *average,
+                          double *weight)
+{
+    const struct boundary_averages *averages = contact->averages;
+    const struct contact_between *between = contact->between;
+    int dim = contact->dim;
+    *weight = 0.0;
+    if (between == NULL || i >= dim * (averages->sample_ptr[a + 1] - averages->sample_ptr[a])) {
+        return false;
+    }
+    int64_t s = averages->sample_ptr[a] + i / dim, p = averages->sample_point[s];
+    int64_t facet = between->taken_facet[p] - 1;
+    if (facet >= 0) {
+        *weight = averages->sample_share[s] * between->taken_weight[p * 3 + i % dim];
+        *average = average_of_boundary(&between->opposite.rows,
+                                       between->opposite.surface.facet[facet * dim + i % dim]);
+    }
+    return true;
+}
+
+void contact_between_mark(const struct contact *contact, double share, bool *marked)
+{
+    const struct contact_between *between = contact->between;
+    for (int64_t p = 0; p < contact->count && between != NULL; p++) {
+        int64_t facet = between->view[p].facet;
+        for (int k = 0; k < contact->dim && facet >= 0; k++) {
+            if (contact->gap[p] < share * contact_width(contact, p)) {
+                int32_t v = between->opposite.surface.facet[facet * contact->dim + k];
+                marked[between->opposite.rows.node[v]] = true;
+            }
+        }
+    }
+}
+
+int64_t contact_bond_count(const struct contact *contact)
+{
+    return contact->count + (contact->between != NULL ? contact->between->opposite.rows.count : 0);
+}
+
+struct average contact_bond(const struct contact *contact, int64_t b, double *stiffness)
+{
+    const struct boundary_averages *points = contact->points;
+    if (b < contact->count) {
+        *stiffness = contact->stiffness[b] * points->area[b];
+        return average_of_boundary(points, b);
+    }
+    const struct opposite *opposite = &contact->between->opposite;
+    *stiffness = opposite->stiffness[b - contact->count] * opposite->rows.area[b - contact->count];
+    return average_of_boundary(&opposite->rows, b - contact->count);
+}
+
+static void add_bond(const struct average *average, double stiffness, double *mass)
+{
+    for (int64_t i = 0; i < average->length; i++) {
+        mass[average->idx[i]] += stiffness * average->phi[i] * average->phi[i];
+    }
+}
+
+void contact_add_to_bound(const struct contact *contact, double *mass)
+{
+    const struct contact_between *between = contact->between;
+    int dim = contact->dim;
+    for (int64_t p = 0; p < contact->count; p++) {
+        double stiffness;
+        struct average average = contact_bond(contact, p, &stiffness);
+        bool near = between == NULL || contact->gap[p] < INFINITY;
+        if (near) {
+            add_bond(&average, stiffness, mass);
+        }
+        for (int k = 0; k < dim && near && between != NULL && between->view[p].facet >= 0; k++) {
+            int64_t v = between->opposite.surface.facet[between->view[p].facet * dim + k];
+            average = average_of_boundary(&between->opposite.rows, v);
+            add_bond(&average, stiffness * between->view[p].weight[k], mass);
+        }
+    }
+}

@@ -1,0 +1,387 @@
+#include "solid/opposite.h"
+
+#include "approx/parts.h"
+#include "base/chunks.h"
+#include "base/memory.h"
+#include "solid/rigid_private.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* Normals are opposed when their cosine is below this: 120 degrees. */
+static const double least_opposed = -0.5;
+/* Facets of one body nearer at rest than so many widths are neighbours through it, if each is behind the
+ * other by more than this part of their distance. A point may be behind another facet by half a width: what
+ * lies further apart in the body would have to be flattened to an eighth for that. */
+static const double near_widths = 4.0, behind_share = 1e-3;
+/* By how much of its width a facet that turns moves, by radians. */
+static const double lever = 0.3;
+enum { VERTICES_FOR_THREAD = 500 }; /* see chunks_of */
+
+static double dot(int dim, const double *a, const double *b)
+{
+    double sum = 0.0;
+    for (int i = 0; i < dim; i++) {
+        sum += a[i] * b[i];
+    }
+    return sum;
+}
+
+enum status opposite_parts(const struct cells *cells, int32_t *part, struct error *error)
+{
+    enum status status;
+    int corners = cells->dim + 1;
+    int32_t *of_cell = NULL, count;
+    bool *seen = NULL;
+    TRY(NEW_ARRAY(&of_cell, cells->count, error));
+    TRY(NEW_ARRAY(&seen, cells->node_count, error));
+    TRY(cells_parts(cells, of_cell, &count, error));
+    for (int64_t i = 0; i < cells->count * corners; i++) {
+        int32_t node = cells->node[i], here = of_cell[i / corners];
+        part[node] = !seen[node] || part[node] == here ? here : -1;
+        seen[node] = true;
+    }
+done:
+    free(of_cell);
+    free(seen);
+    return status;
+}
+
+/* An edge of a facet, from its lower vertex. */
+struct half_edge {
+    int32_t low, high;
+    int64_t slot; /* facet * 3 + k */
+};
+
+static int compare_edges(const void *left, const void *right)
+{
+    const struct half_edge *a = left, *b = right;
+    if (a->low != b->low) {
+        return a->low < b->low ? -1 : 1;
+    }
+    if (a->high != b->high) {
+        return a->high < b->high ? -1 : 1;
+    }
+    return (a->slot > b->slot) - (a->slot < b->slot);
+}
+
+/* 3D: what is beyond each edge, and the rims. Edges of more than two facets, where bodies meet, are none. */
+static enum status join_edges(struct opposite *opposite, struct error *error)
+{
+    enum status status;
+    struct rigid_surface *surface = &opposite->surface;
+    int64_t count = surface->facet_count * 3;
+    struct half_edge *edges = NULL;
+    TRY(NEW_ARRAY(&edges, count, error));
+    TRY(NEW_ARRAY(&opposite->across, count, error));
+    TRY(NEW_ARRAY(&surface->edge_normal, count * 3, error));
+    TRY(NEW_ARRAY(&surface->edge_is_rim, count, error));
+    for (int64_t slot = 0; slot < count; slot++) {
+        int32_t from = surface->facet[slot], to = surface->facet[slot / 3 * 3 + (slot + 1) % 3];
+        edges[slot] = (struct half_edge){from < to ? from : to, from < to ? to : from, slot};
+        opposite->across[slot] = slot;
+    }
+    qsort(edges, (size_t)count, sizeof *edges, compare_edges);
+    for (int64_t first = 0, last; first < count; first = last) {
+        for (last = first + 1;
+             last < count && edges[last].low == edges[first].low && edges[last].high == edges[first].high;) {
+            last++;
+        }
+        if (last - first == 1) {
+            opposite->across[edges[first].slot] = -1;
+            surface->edge_is_rim[edges[first].slot] = true;
+            surface->is_rim[edges[first].low] = surface->is_rim[edges[first].high] = true;
+        } else if (last - first == 2) {
+            opposite->across[edges[first].slot] = edges[first + 1].slot;
+            opposite->across[edges[first + 1].slot] = edges[first].slot;
+        }
+    }
+done:
+    free(edges);
+    return status;
+}
+
+/* 2D: ends of the curves. */
+static enum status find_ends(struct opposite *opposite, struct error *error)
+{
+    enum status status;
+    struct rigid_surface *surface = &opposite->surface;
+    int8_t *at = NULL;
+    TRY(NEW_ARRAY(&at, surface->vertex_count, error));
+    for (int64_t c = 0; c < surface->facet_count * 2; c++) {
+        at[surface->facet[c]] = (int8_t)(at[surface->facet[c]] < 2 ? at[surface->facet[c]] + 1 : 2);
+    }
+    for (int64_t v = 0; v < surface->vertex_count; v++) {
+        surface->is_rim[v] = at[v] < 2;
+    }
+done:
+    free(at);
+    return status;
+}
+
+/* Vertices in the order of the rows, and the facets by them. */
+static enum status number_vertices(struct opposite *opposite, const struct face_table *table,
+                                   const struct facet_set *set, struct error *error)
+{
+    enum status status;
+    struct rigid_surface *surface = &opposite->surface;
+    int dim = table->dim;
+    int32_t *number = NULL;
+    surface->vertex_count = opposite->rows.count;
+    TRY(NEW_ARRAY(&number, table->node_count, error));
+    TRY(NEW_ARRAY(&surface->vertex, surface->vertex_count * dim, error));
+    TRY(NEW_ARRAY(&surface->facet, surface->facet_count * dim, error));
+    TRY(NEW_ARRAY(&opposite->rest, surface->vertex_count * dim, error));
+    for (int64_t v = 0; v < surface->vertex_count; v++) {
+        const double *x = table->x + (int64_t)opposite->rows.node[v] * dim;
+        number[opposite->rows.node[v]] = (int32_t)v;
+        memcpy(surface->vertex + v * dim, x, (size_t)dim * sizeof *x);
+        memcpy(opposite->rest + v * dim, x, (size_t)dim * sizeof *x);
+    }
+    for (int64_t c = 0; c < surface->facet_count * dim; c++) {
+        surface->facet[c] = number[set->facet[c]];
+    }
+    struct box box = box_of(dim, surface->vertex_count, surface->vertex);
+    surface->extent = box_diagonal(&box);
+done:
+    free(number);
+    return status;
+}
+
+/* What is known of the facets at rest. */
+static enum status measure_rest(struct opposite *opposite, const struct facet_set *set, const int32_t *part,
+                                struct error *error)
+{
+    enum status status;
+    const struct rigid_surface *surface = &opposite->surface;
+    int dim = surface->dim;
+    TRY(NEW_ARRAY(&opposite->rest_normal, surface->facet_count * dim, error));
+    TRY(NEW_ARRAY(&opposite->middle, surface->facet_count * dim, error));
+    TRY(NEW_ARRAY(&opposite->width, surface->facet_count, error));
+    TRY(NEW_ARRAY(&opposite->part, surface->facet_count, error));
+    for (int64_t f = 0; f < surface->facet_count; f++) {
+        const int32_t *facet = surface->facet + f * dim;
+        double *normal = opposite->rest_normal + f * dim, zero[3] = {0.0, 0.0, 0.0};
+        face_area_vector(dim, opposite->rest, facet, normal);
+        double area = sqrt(distance2(dim, normal, zero));
+        opposite->width[f] = dim == 2 ? area : sqrt(area);
+        normalise(dim, normal);
+        opposite->part[f] = -1;
+        for (int k = 0; k < dim; k++) {
+            add_scaled(dim, 1.0 / dim, opposite->rest + (int64_t)facet[k] * dim, opposite->middle + f * dim);
+            int32_t known = part[set->facet[f * dim + k]];
+            opposite->part[f] = known >= 0 ? known : opposite->part[f];
+        }
+    }
+done:
+    return status;
+}
+
+/* The angle of a facet at its corner k; in 2D all weigh alike. */
+static double corner_angle(const struct rigid_surface *surface, const int32_t *facet, int k)
+{
+    if (surface->dim == 2) {
+        return 1.0;
+    }
+    const double *x = surface->vertex + (int64_t)facet[k] * 3;
+    double one[3], other[3], cross[3];
+    for (int a = 0; a < 3; a++) {
+        one[a] = surface->vertex[(int64_t)facet[(k + 1) % 3] * 3 + a] - x[a];
+        other[a] = surface->vertex[(int64_t)facet[(k + 2) % 3] * 3 + a] - x[a];
+    }
+    for (int a = 0; a < 3; a++) {
+        cross[a] = one[(a + 1) % 3] * other[(a + 2) % 3] - one[(a + 2) % 3] * other[(a + 1) % 3];
+    }
+    return atan2(sqrt(dot(3, cross, cross)), dot(3, one, other));
+}
+
+/* The boxes of the tree, which keeps its branches: those of a branch come behind it. */
+static void fit_boxes(struct rigid_surface *surface)
+{
+    int dim = surface->dim;
+    for (int64_t b = surface->branch_count; b-- > 0;) {
+        struct rigid_branch *branch = &surface->branch[b];
+        struct box box = box_of(dim, 0, NULL);
+        for (int64_t i = branch->first; i < branch->end && branch->second == 0; i++) {
+            for (int k = 0; k < dim; k++) {
+                box_add(&box, 1,
+                        surface->vertex + (int64_t)surface->facet[surface->in_order[i] * dim + k] * dim);
+            }
+        }
+        for (int i = 0; i < 2 && branch->second != 0; i++) {
+            const struct rigid_branch *half = i == 0 ? branch + 1 : &surface->branch[branch->second];
+            box_add(&box, 1, half->low);
+            box_add(&box, 1, half->high);
+        }
+        memcpy(branch->low, box.low, sizeof branch->low);
+        memcpy(branch->high, box.high, sizeof branch->high);
+    }
+}
+
+/* Normals and boxes of the facets where their vertices are. */
+static void refit(struct opposite *opposite)
+{
+    struct rigid_surface *surface = &opposite->surface;
+    int dim = surface->dim;
+    memset(surface->vertex_normal, 0, (size_t)(surface->vertex_count * dim) * sizeof(double));
+    for (int64_t f = 0; f < surface->facet_count; f++) {
+        const int32_t *facet = surface->facet + f * dim;
+        double *normal = surface->normal + f * dim;
+        face_area_vector(dim, surface->vertex, facet, normal);
+        normalise(dim, normal);
+        for (int k = 0; k < dim; k++) {
+            add_scaled(dim, corner_angle(surface, facet, k), normal,
+                       surface->vertex_normal + (int64_t)facet[k] * dim);
+        }
+    }
+    for (int64_t v = 0; v < surface->vertex_count; v++) {
+        normalise(dim, surface->vertex_normal + v * dim);
+    }
+    for (int64_t slot = 0; slot < surface->facet_count * 3 && dim == 3; slot++) {
+        double *normal = surface->edge_normal + slot * 3;
+        int64_t beyond = opposite->across[slot] >= 0 ? opposite->across[slot] : slot;
+        memcpy(normal, surface->normal + slot / 3 * 3, 3 * sizeof *normal);
+        add_scaled(3, 1.0, surface->normal + beyond / 3 * 3, normal);
+        normalise(3, normal);
+    }
+    fit_boxes(surface);
+}
+
+enum status opposite_build(const struct face_table *table, const struct facet_set *set, const int32_t *part,
+                           bool itself, struct opposite *opposite, struct error *error)
+{
+    enum status status;
+    *opposite = (struct opposite){.itself = itself};
+    struct rigid_surface *surface = &opposite->surface;
+    surface->dim = table->dim;
+    surface->facet_count = set->count;
+    TRY(boundary_corners_build(table, set, &opposite->rows, error));
+    TRY(number_vertices(opposite, table, set, error));
+    TRY(NEW_ARRAY(&opposite->stiffness, surface->vertex_count, error));
+    TRY(NEW_ARRAY(&opposite->load, surface->vertex_count * table->dim, error));
+    TRY(NEW_ARRAY(&surface->normal, set->count * table->dim, error));
+    TRY(NEW_ARRAY(&surface->vertex_normal, surface->vertex_count * table->dim, error));
+    TRY(NEW_ARRAY(&surface->is_rim, surface->vertex_count, error));
+    TRY(NEW_ARRAY(&surface->turn, surface->vertex_count, error));
+    TRY(table->dim == 2 ? find_ends(opposite, error) : join_edges(opposite, error));
+    TRY(measure_rest(opposite, set, part, error));
+    TRY(rigid_grow_tree(surface, error));
+    refit(opposite);
+done:
+    if (status != STATUS_OK) {
+        opposite_free(opposite);
+    }
+    return status;
+}
+
+void opposite_free(struct opposite *opposite)
+{
+    rigid_free(&opposite->surface);
+    boundary_averages_free(&opposite->rows);
+    free(opposite->stiffness);
+    free(opposite->rest);
+    free(opposite->rest_normal);
+    free(opposite->middle);
+    free(opposite->width);
+    free(opposite->part);
+    free(opposite->across);
+    free(opposite->load);
+    *opposite = (struct opposite){0};
+}
+
+void opposite_move(struct opposite *opposite, const double *u)
+{
+    struct rigid_surface *surface = &opposite->surface;
+    int dim = surface->dim;
+    struct chunks vertices = chunks_of(surface->vertex_count, VERTICES_FOR_THREAD);
+#pragma omp parallel for schedule(static) num_threads(vertices.threads)
+    for (int64_t c = 0; c < vertices.count; c++) {
+        for (int64_t v = chunks_begin(&vertices, c); v < chunks_begin(&vertices, c + 1); v++) {
+            struct average average = average_of_boundary(&opposite->rows, v);
+            double *x = surface->vertex + v * dim;
+            average_take(&average, dim, u, x);
+            add_scaled(dim, 1.0, opposite->rest + v * dim, x);
+        }
+    }
+    refit(opposite);
+}
+
+struct search {
+    const struct opposite *opposite;
+    const struct seeker *seeker;
+    double free_way; /* what facets that do not face the point leave it, m */
+};
+
+/* Whether facet f was a neighbour of the point through the body. */
+static bool through_body(const struct opposite *opposite, const struct seeker *seeker, int64_t f)
+{
+    int dim = opposite->surface.dim;
+    double way[3] = {0.0, 0.0, 0.0};
+    if (opposite->part[f] != seeker->part) {
+        return false;
+    }
+    add_scaled(dim, 1.0, opposite->middle + f * dim, way);
+    add_scaled(dim, -1.0, seeker->rest, way);
+    double width = seeker->width > opposite->width[f] ? seeker->width : opposite->width[f];
+    double away2 = dot(dim, way, way), least2 = behind_share * behind_share * away2;
+    if (!(away2 < near_widths * near_widths * width * width)) {
+        return false;
+    }
+    double facet_behind = -dot(dim, way, seeker->rest_normal);
+    double point_behind = dot(dim, way, opposite->rest_normal + f * dim);
+    return facet_behind > 0.0 && facet_behind * facet_behind > least2 && point_behind > 0.0 &&
+           point_behind * point_behind > least2;
+}
+
+/* Facets that face the point; of the others, how far things may move until they can: to turn by an angle a
+ * facet moves by more than the cosine changes, times the lever. */
+static bool considers(void *context, int64_t f)
+{
+    struct search *search = context;
+    const struct opposite *opposite = search->opposite;
+    int dim = opposite->surface.dim;
+    double cosine = dot(dim, opposite->surface.normal + f * dim, search->seeker->normal);
+    if (cosine < least_opposed) {
+        return !through_body(opposite, search->seeker, f);
+    }
+    double own = search->seeker->width, width = opposite->width[f] < own ? opposite->width[f] : own;
+    double way = lever * width * (cosine - least_opposed);
+    if (way < search->free_way && !through_body(opposite, search->seeker, f)) {
+        search->free_way = way;
+    }
+    return false;
+}
+
+static bool admits(void *context, int64_t f, const double *away)
+{
+    const struct search *search = context;
+    int dim = search->opposite->surface.dim;
+    double depth = search->seeker->depth;
+    return dot(dim, away, search->opposite->surface.normal + f * dim) > 0.0 ||
+           dot(dim, away, away) < depth * depth;
+}
+
+struct rigid_contact opposite_closest(const struct opposite *opposite, const struct seeker *seeker,
+                                      double reach, double *free_way)
+{
+    struct search search = {opposite, seeker, reach};
+    struct rigid_filter filter = {considers, admits, &search};
+    struct rigid_contact closest = rigid_closest_among(&opposite->surface, seeker->x, reach, &filter);
+    closest.found = closest.found && closest.gap > -seeker->depth;
+    *free_way = search.free_way;
+    return closest;
+}
+
+bool opposite_leads(const struct opposite *opposite, const double *rest_normal, int64_t own_facet, int64_t f)
+{
+    /* By the side that a facet faces at rest, along a direction in which few do alike, so that lips lead
+     * whole; else by number. */
+    static const double direction[3] = {0.5377, 0.6180, 0.5734};
+    int dim = opposite->surface.dim;
+    double own = dot(dim, direction, rest_normal),
+           other = dot(dim, direction, opposite->rest_normal + f * dim);
+    if (!opposite->itself || fabs(own - other) < 1e-9) {
+        return !opposite->itself || own_facet < f;
+    }
+    return own < other;
+}

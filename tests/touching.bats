@@ -1,0 +1,226 @@
+# Contact between facets of the body: two bodies, two lips, a boundary with itself.
+
+bats_require_minimum_version 1.5.0
+
+load common.bash
+
+setup() {
+    cd "$BATS_TEST_TMPDIR"
+    set -o pipefail
+    export OMP_NUM_THREADS=1
+}
+
+# gmsh_body DIM NAME: geometry on standard input, as NAME.mts with its tables.
+gmsh_body() {
+    cat > "$2.geo"
+    gmsh "-$1" -nt 1 -v 1 "$2.geo" -format msh22 -o "$2.msh"
+    nodes -u mm "$2.msh" 2> note | shapefn > "$2.mts" 2> note
+}
+
+# Two blocks, one on the other, whose meshes do not match.
+stack() {
+    gmsh_body 2 stack << 'END'
+Point(1) = {0, 0, 0, 14}; Point(2) = {100, 0, 0, 14}; Point(3) = {100, 50, 0, 14}; Point(4) = {0, 50, 0, 14};
+Point(5) = {0, 50, 0, 9}; Point(6) = {100, 50, 0, 9}; Point(7) = {100, 100, 0, 9}; Point(8) = {0, 100, 0, 9};
+Line(1) = {1, 2}; Line(2) = {2, 3}; Line(3) = {3, 4}; Line(4) = {4, 1};
+Line(5) = {5, 6}; Line(6) = {6, 7}; Line(7) = {7, 8}; Line(8) = {8, 5};
+Curve Loop(1) = {1:4}; Plane Surface(1) = {1}; Curve Loop(2) = {5:8}; Plane Surface(2) = {2};
+Physical Surface("body") = {1, 2};
+Physical Curve("ymin") = {1}; Physical Curve("low") = {3}; Physical Curve("up") = {5}; Physical Curve("ymax") = {7};
+Physical Curve("xmin") = {4, 8}; Physical Curve("xmax") = {2, 6};
+END
+}
+
+# Sliding supports below and on the left, the top pushed down.
+stack_scene() {
+    block quasi-static | sed "s/dim = 2/dim = ${1:-2}/"
+    printf '[displacement bottom]\nfacets = ymin\nnormal = 0\n[displacement top]\nfacets = ymax\nnormal = -0.005\n'
+    printf '[displacement left]\nfacets = xmin\nnormal = 0\n[contact pair]\nfacets = low\nagainst = up\n'
+    printf '[output]\nreactions = yes\nstress = yes\ngaps = yes\n'
+}
+
+# uniform COLUMN LARGEST MEAN: stresses of u.dat are uniform to that share, the largest and on average.
+uniform() {
+    rows stress u.dat | awk -v c="$1" -v most="$2" -v mean="$3" '
+        { s[NR] = $c; sum += $c }
+        END { m = sum / NR; for (i = 1; i <= NR; i++) { d = s[i] / m - 1; q += d * d; d = d < 0 ? -d : d; if (d > w) w = d }
+            print m, w, sqrt(q / NR); exit !(m < 0 && w < most && sqrt(q / NR) < mean) }'
+}
+
+@test "patch test: a uniform pressure goes through two blocks whose meshes do not match, in 2D and 3D" {
+    stack
+    stack_scene > stack.scene
+    mtled stack.scene stack.mts > u.dat
+    uniform 2 0.02 0.005
+    # The force on what facets names is downward; the plates take the same.
+    rows reactions u.dat | awk '{ f[NR] = $2 } END { s = f[2] / f[1] + 1; c = f[4] / f[2] - 1; print s, c
+        exit !(f[4] < -20 && s * s < 1e-12 && c * c < 1e-12) }'
+    gmsh_body 3 stack << 'END'
+SetFactory("OpenCASCADE");
+Box(1) = {0, 0, 0, 40, 40, 20}; Box(2) = {0, 0, 20, 40, 40, 20};
+MeshSize{ PointsOf{ Volume{1}; } } = 11; MeshSize{ PointsOf{ Volume{2}; } } = 8;
+Physical Volume("body") = {1, 2};
+Physical Surface("ymin") = {5}; Physical Surface("low") = {6}; Physical Surface("up") = {11}; Physical Surface("ymax") = {12};
+Physical Surface("xmin") = {1, 3, 7, 9};
+END
+    stack_scene 3 | sed 's/-0.005/-0.002/' > stack.scene
+    mtled stack.scene stack.mts > u.dat
+    uniform 3 0.015 0.003
+}
+
+@test "two equal cylinders: pressure and half-width of Hertz" {
+    gmsh_body 2 hertz << 'END'
+Point(1) = {0, 0, 0, 8}; Point(2) = {50, 0, 0, 8}; Point(3) = {0, 50, 0, .25};
+Point(4) = {0, 100, 0, 8}; Point(5) = {50, 100, 0, 8}; Point(6) = {0, 50, 0, .35};
+Line(1) = {1, 2}; Circle(2) = {2, 1, 3}; Line(3) = {3, 1};
+Line(4) = {4, 5}; Circle(5) = {5, 4, 6}; Line(6) = {6, 4};
+Curve Loop(1) = {1:3}; Plane Surface(1) = {1}; Curve Loop(2) = {-6, -5, -4}; Plane Surface(2) = {2};
+Physical Surface("body") = {1, 2};
+Physical Curve("ymin") = {1}; Physical Curve("low") = {2}; Physical Curve("ymax") = {4}; Physical Curve("up") = {5};
+Physical Curve("xmin") = {3, 6};
+END
+    stack_scene | sed 's/^nu = .*/nu = 0.3/; s/-0.005/-0.0008/' > hertz.scene
+    mtled hertz.scene hertz.mts > u.dat
+    force=$(rows reactions u.dat | awk 'NR == 1 { print 2 * $2 }')
+    rows gaps u.dat | sort -g | awk -v F="$force" '
+        BEGIN { pi = atan2(0, -1); R = 0.025; E = 3000 / (2 * (1 - 0.09)); a = sqrt(4 * F * R / (pi * E)); p0 = sqrt(F * E / (pi * R)) }
+        $1 < 0.75 * a { d = $4 / (p0 * sqrt(1 - ($1 / a) ^ 2)) - 1; print $1 / a, d; n++; if (d * d > 0.02 ^ 2) bad = 1 }
+        $1 < 0.95 * a && !($4 > 0) || $1 > 1.15 * a && $4 > 0 { bad = 1; print "half-width", $1 / a, $4 }
+        END { exit bad || n < 5 }'
+}
+
+# notch: half of a block with a V-shaped notch, as half.mts; and both halves, one the mirror image, as whole.mts.
+notch() {
+    gmsh_body 2 half << 'END'
+Point(1) = {0, 0, 0, 6}; Point(2) = {50, 0, 0, 6}; Point(3) = {50, 40, 0, 3}; Point(4) = {42, 100, 0, 6}; Point(5) = {0, 100, 0, 6};
+Line(1) = {1, 2}; Line(2) = {2, 3}; Line(3) = {3, 4}; Line(4) = {4, 5}; Line(5) = {5, 1};
+Curve Loop(1) = {1:5}; Plane Surface(1) = {1};
+Physical Curve("middle", 2) = {2}; Physical Curve("lip", 3) = {3}; Physical Curve("xmin", 5) = {5}; Physical Surface("body", 9) = {1};
+END
+    awk '
+        /^\$End/ { in_nodes = in_cells = 0 }
+        /^\$Nodes/ { in_nodes = 1; getline; count = $1; next }
+        /^\$Elements/ { in_cells = 1; getline; next }
+        in_nodes { x[$1] = $2; y[$1] = $3; mate[$1] = $2 > 50 - 1e-9 && $3 < 40 + 1e-9 ? $1 : ++more + count }
+        in_cells && $2 == 1 && ($4 == 3 || $4 == 5) {
+            cell[++cells] = "1 2 " $4 " " $4 " " $6 " " $7; cell[++cells] = "1 2 " $4 + 10 " 1 " mate[$7] " " mate[$6] }
+        in_cells && $2 == 2 { cell[++cells] = "2 2 9 1 " $6 " " $7 " " $8; cell[++cells] = "2 2 9 1 " mate[$6] " " mate[$8] " " mate[$7] }
+        END {
+            print "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n5\n1 3 \"lip\"\n1 5 \"xmin\"\n1 13 \"lip2\"\n1 15 \"xmax\"\n2 9 \"body\"\n$EndPhysicalNames"
+            print "$Nodes\n" count + more
+            for (n = 1; n <= count; n++) { print n, x[n], y[n], 0; if (mate[n] != n) print mate[n], 100 - x[n], y[n], 0 }
+            print "$EndNodes\n$Elements\n" cells
+            for (c = 1; c <= cells; c++) print c, cell[c]
+            print "$EndElements"
+        }' half.msh > whole.msh
+    nodes -u mm whole.msh | shapefn > whole.mts 2> note
+}
+
+notch_scene() { # FACETS AGAINST [MORE OUTPUT]
+    block quasi-static | sed 's/^nu = .*/nu = 0.49/'
+    printf '[displacement left]\nfacets = xmin\ncomponents = 0.008, 0\n[displacement right]\nfacets = xmax\ncomponents = -0.008, 0\n'
+    printf '[contact lips]\nfacets = %s\nagainst = %s\n[output]\nreactions = yes\ngaps = yes\n%s[solver]\ntolerance = 1e-6\n' "$1" "$2" "${3-}"
+}
+
+@test "lips of a notch close as half of it does on a plane, and do not cross, whichever way they are named" {
+    notch
+    printf '50 30\n50 120\n' > plane.tsv
+    { notch_scene x x | sed '/displacement right/,/against/d; /^\[output/,$d'
+        printf '[displacement middle]\nfacets = middle\nnormal = 0\n[contact plane]\nfacets = lip\nrigid = plane.tsv\nunit = mm\nside = left\n'
+        printf '[output]\nreactions = yes\n[solver]\ntolerance = 1e-6\n'; } > half.scene
+    mtled half.scene half.mts > half.dat
+    half=$(rows reactions half.dat | awk 'NR == 1 { print $1 }')
+    for names in 'lip:lip2' 'lip2:lip' 'lip, lip2:lip2, lip' '*:*'; do
+        notch_scene "${names%:*}" "${names#*:}" > whole.scene
+        mtled whole.scene whole.mts > u.dat # a fold would be a verdict
+        rows reactions u.dat | awk -v half="$half" -v names="$names" '{ f[NR] = $1 }
+            END { d = f[1] / half - 1; s = f[1] + f[2]; print names, d, s, f[3]
+                exit !(d * d < 0.002 ^ 2 && s * s < 1e-12 * half * half && (names ~ /lip:/ ? f[3] < -30 : names ~ /^lip2:/ ? f[3] > 30 : f[3] == 0)) }'
+        # The largest motion is some 8 mm, of which a thousandth may be left.
+        rows gaps u.dat | awk '$4 > 0 { n++; if ($3 < -1e-5) bad = 1 } END { exit bad || n < 8 }'
+    done
+}
+
+@test "the same bytes for any number of threads and processes, and after a run was ended" {
+    notch
+    notch_scene '*' '*' $'frames = 3\n' > run.scene
+    sed -i 's/tolerance = 1e-6/tolerance = 1e-4/' run.scene
+    cp whole.mts table.mts
+    mtled run.scene table.mts > one.dat
+    OMP_NUM_THREADS=3 mtled run.scene table.mts > many.dat
+    cmp one.dat many.dat
+    if [ -x "$BUILD/bin/mtled-mpi" ]; then
+        export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
+        mpirun --quiet --oversubscribe --bind-to none -n 2 mtled-mpi -q -o two.dat run.scene table.mts
+        cmp <(bare one.dat) <(bare two.dat)
+    fi
+    sed -i 's/^\[solver\]/&\nramp_steps = 6000/' run.scene
+    mtled run.scene table.mts > whole.dat
+    begin_and_end TERM run.scene
+    [ $status -eq 143 ]
+    mtled -c run.ckpt -o out.dat run.scene table.mts 2> said
+    grep -q '^mtled: going on from step' said
+    cmp whole.dat out.dat
+}
+
+@test "where nothing touches, a contact of the whole boundary changes no bit: a convex body, and a thin bent one" {
+    cloud -d 3 -k jittered -n 5 --box 0,0.1,0,0.1,0,0.1 --jitter 0.1 | shapefn > a.mts 2> note
+    pressed_block | sed 's/dim = 2/dim = 3/; s/0, -0.005/0, -0.01, 0/; s/components = 0, 0$/components = 0, 0, 0/; s/^nu = .*/nu = 0.4999/' > a.scene
+    cloud -d 2 -k regular -n 31,3 --box 0,0.1,0,0.004 | shapefn > b.mts 2> note
+    { block quasi-static | sed 's/^nu = .*/nu = 0.4999/' && printf '[displacement left]\nfacets = xmin\ncomponents = 0, 0\n[displacement right]\nfacets = xmax\ncomponents = -0.02, 0.03\n'; } > b.scene
+    for name in a b; do
+        mtled $name.scene $name.mts > without.dat
+        { cat $name.scene && printf '[contact all]\nfacets = *\nagainst = *\n'; } > with.scene
+        mtled with.scene $name.mts > with.dat
+        cmp <(rows u without.dat) <(rows u with.dat)
+    done
+}
+
+@test "bodies that go through each other are told with the section that lets them touch" {
+    stack
+    stack_scene | sed '/^\[contact/,/^against/d' > none.scene
+    refused 1 ": let it touch itself ([contact NAME] facets = *, against = *), or allow it" mtled none.scene stack.mts
+    stack_scene | sed 's/^facets = low/facets = */; s/^against.*/against = */' > all.scene
+    mtled all.scene stack.mts > u.dat
+    rows reactions u.dat | awk 'NR == 1 { exit !($2 > 20) }'
+}
+
+@test "a body that rests on another one is held by it where that is held; two that hold only each other are not" {
+    stack
+    stack_scene | sed '/displacement top/,/normal/d; s/^analysis.*/&\ngravity = 0, -9.81/' > rest.scene
+    run --separate-stderr mtled -v rest.scene stack.mts
+    [ "$status" -eq 0 ]
+    [[ "$stderr" == *"only contact holds body 2 (region body, near (0.05, 0.075)): it may move along (0, 1) otherwise"* ]]
+    rows reactions <<< "$output" | awk 'NR == 1 { low = $2 } NR == 3 { up = -$2 } END { print low, up; exit !(low / 98.1 - 1 < 1e-5 && 98.1 / low - 1 < 1e-5 && up / 49.05 - 1 < 1e-5 && 49.05 / up - 1 < 1e-5) }'
+    sed '/displacement bottom/,/normal/d; /displacement left/,/normal/d' rest.scene > free.scene
+    refused 1 'nothing holds body 1' mtled free.scene stack.mts
+    # A boundary that may touch itself holds no body.
+    sed 's/^facets = low/facets = */; s/^against.*/against = */' free.scene > free_all.scene
+    refused 1 'nothing holds body 1' mtled free_all.scene stack.mts
+}
+
+@test "in time: the energies of a block that swings on another one balance" {
+    stack
+    block dynamic 'gravity = 0, -9.81' | sed 's/^E = .*/E = 30000/' > swing.scene
+    printf '[displacement bottom]\nfacets = ymin\nnormal = 0\n[displacement left]\nfacets = xmin\nnormal = 0\n[contact pair]\nfacets = up\nagainst = low\n' >> swing.scene
+    printf '[output]\nenergy = yes\nreactions = yes\n[solver]\nend_time = 0.1\n' >> swing.scene
+    mtled swing.scene stack.mts > u.dat
+    rows energy u.dat | awk '{ if ($7 ^ 2 > 1e-6) bad = 1; if ($4 > most) most = $4 } END { print most; exit bad || !(most > 1e-5) }'
+}
+
+@test "groups that cannot touch are refused in one line" {
+    stack
+    stack_scene > stack.scene
+    try() { sed "$1" stack.scene > bad.scene && refused 2 "$2" mtled bad.scene stack.mts; }
+    try 's/^against.*/against = nothing/' "[contact pair]: the mesh has no facet group 'nothing'; present: "
+    try 's/^against.*/against = low, up/' '[contact pair]: facets and against have 8 facets in common: name the same groups in both'
+    try 's/^against.*/against = */' 'facets in common: name the same groups in both'
+    try 's/^against.*/against = low/' '[contact pair]: no facet faces another one at rest: name groups whose outsides look at each other'
+    try 's/^against.*/against = ymax/' 'no facet faces another one at rest'
+    try 's/^against.*/&\nrigid = floor.tsv/' 'rigid: not allowed: against names facets of the body'
+    try 's/^against.*/&\ncurve = linear/' 'curve: not allowed: against names facets of the body'
+    try '/^against/d' "rigid: missing: name the file of the rigid surface, or, of the body itself, facet groups by 'against'"
+    gmsh_body 2 bare < <(sed '/Physical Curve("low")/d' stack.geo)
+    sed 's/= ymin/= up/' stack.scene > bare.scene
+    refused 2 "[displacement bottom]" mtled stack.scene bare.mts
+}

@@ -1,0 +1,322 @@
+/* Contact between facets of the body: two boxes side by side, made of one sample, the other one moved along
+ * axis 0; they meet in its xmax and xmin. Forces are minus the gradient of the energy, without resultant and
+ * moment; gaps of linear fields are exact; looking only where that is needed changes nothing; of a boundary
+ * against itself one of two facets leads, and a box does not touch itself. */
+#include "body_setup.h"
+
+#include "solid/contact_between.h"
+
+enum { LOW_SIDE = 0, HIGH_SIDE = 1 }; /* xmin, xmax */
+
+struct pair {
+    const struct sample *sample;
+    int64_t nodes; /* of one box */
+    double *X;     /* of both */
+    struct boundary_averages points, averages;
+    int32_t *part;
+    struct contact contact;
+};
+
+static struct face_table face_table(const struct sample *sample)
+{
+    return (struct face_table){.dim = sample->dim,
+                               .node_count = sample->cloud.node_count,
+                               .x = sample->cloud.x,
+                               .faces = &sample->faces,
+                               .per_face = sample->face_rule.points,
+                               .lists = &sample->face_neighbours,
+                               .phi = sample->face_phi};
+}
+
+static struct facet_set facets_of_side(const struct sample *sample, int side)
+{
+    struct facet_set set = {0};
+    for (int64_t f = 0; f < sample->cloud.facet_count; f++) {
+        if (side < 0 || sample->cloud.facet_set[f] == side) {
+            set.facet = set.count++ == 0 ? sample->cloud.facets + f * sample->dim : set.facet;
+        }
+    }
+    assert_true(set.count > 0);
+    return set;
+}
+
+/* The opposite facets become those of the other box. */
+static void move_over(const struct pair *pair, struct opposite *opposite)
+{
+    int dim = pair->sample->dim;
+    for (int64_t v = 0; v < opposite->rows.count; v++) {
+        opposite->rows.node[v] += (int32_t)pair->nodes;
+        opposite->rest[v * dim] += sample_size;
+    }
+    for (int64_t i = 0; i < opposite->rows.ptr[opposite->rows.count]; i++) {
+        opposite->rows.idx[i] += (int32_t)pair->nodes;
+    }
+    for (int64_t f = 0; f < opposite->surface.facet_count; f++) {
+        opposite->middle[f * dim] += sample_size;
+        opposite->part[f] = 1;
+    }
+}
+
+/* Both boxes, or the whole boundary of one against itself. */
+static struct pair *make_pair(const struct sample *sample, bool itself, bool *any)
+{
+    struct pair *pair = sample_array(1, sizeof *pair);
+    *pair = (struct pair){.sample = sample, .nodes = sample->cloud.node_count};
+    struct face_table table = face_table(sample);
+    struct opposite opposite;
+    struct error error;
+    int dim = sample->dim;
+    struct facet_set points = facets_of_side(sample, itself ? -1 : HIGH_SIDE);
+    struct facet_set others = itself ? points : facets_of_side(sample, LOW_SIDE);
+    pair->X = sample_array(2 * pair->nodes * dim, sizeof *pair->X);
+    pair->part = sample_array(2 * pair->nodes, sizeof *pair->part);
+    for (int64_t i = 0; i < 2 * pair->nodes * dim; i++) {
+        bool second = i >= pair->nodes * dim;
+        pair->X[i] = sample->cloud.x[i % (pair->nodes * dim)] + (second && i % dim == 0 ? sample_size : 0.0);
+    }
+    GOOD(boundary_points_build(&table, &points, &pair->points, &error));
+    GOOD(boundary_averages_build(&table, &points, &pair->averages, &error));
+    GOOD(opposite_build(&table, &others, pair->part, itself, &opposite, &error));
+    if (!itself) {
+        move_over(pair, &opposite);
+        double *u = sample_array(2 * pair->nodes * dim, sizeof *u);
+        opposite_move(&opposite, u);
+        free(u);
+    }
+    GOOD(contact_between_build(&pair->points, &pair->averages, dim, 2 * pair->nodes, table.per_face,
+                               &opposite, pair->part, itself ? 0 : 1, 1e5, true, &pair->contact, any,
+                               &error));
+    return pair;
+}
+
+static void pair_free(struct pair *pair)
+{
+    contact_free(&pair->contact);
+    boundary_averages_free(&pair->points);
+    boundary_averages_free(&pair->averages);
+    free(pair->X);
+    free(pair->part);
+    free(pair);
+}
+
+static int64_t pressing(const struct contact *contact)
+{
+    int64_t count = 0;
+    for (int64_t p = 0; p < contact->count; p++) {
+        count += contact->pressure[p] > 0.0;
+    }
+    return count;
+}
+
+/* A field in which the boxes overlap by `depth` and are rough. */
+static void overlap(const struct pair *pair, double depth, double rough, struct random *random, double *u)
+{
+    int dim = pair->sample->dim;
+    for (int64_t i = 0; i < 2 * pair->nodes * dim; i++) {
+        double closer = i >= pair->nodes * dim && i % dim == 0 ? -depth : 0.0;
+        u[i] = closer + rough * uniform(random, -1.0, 1.0);
+    }
+}
+
+static void hold(struct contact *contact, struct random *random)
+{
+    for (int64_t a = 0; a < contact_nodes(contact)->count; a++) {
+        contact->multiplier[a * contact->dim] = uniform(random, 0.0, 200.0);
+    }
+    contact_spread_multipliers(contact);
+}
+
+static void force_is_gradient(void **state)
+{
+    (void)state;
+    struct random random = {1};
+    for (int s = 0; s < 4; s++) {
+        bool any;
+        struct pair *pair = make_pair(&samples[s], false, &any);
+        int64_t size = 2 * pair->nodes * samples[s].dim;
+        double *u = sample_array(size, sizeof *u), *force = sample_array(size, sizeof *force);
+        double *aside = sample_array(size, sizeof *aside), h = 1e-8, most = 0.0;
+        assert_true(any);
+        hold(&pair->contact, &random);
+        overlap(pair, 1e-3, 5e-4, &random, u);
+        contact_force(&pair->contact, u, force);
+        assert_true(pressing(&pair->contact) > pair->contact.count / 2);
+        for (int64_t i = 0; i < size; i++) {
+            most = fmax(most, fabs(force[i]));
+        }
+        for (int64_t i = 0; i < size; i += 1 + size / 150) {
+            double at = u[i], energy[2];
+            for (int side = 0; side < 2; side++) {
+                u[i] = at + (side ? h : -h);
+                contact_force(&pair->contact, u, aside);
+                energy[side] = contact_energy(&pair->contact);
+            }
+            u[i] = at;
+            NEAR_TO(force[i], -(energy[1] - energy[0]) / (2.0 * h), 2e-4 * most);
+        }
+        free(u);
+        free(force);
+        free(aside);
+        pair_free(pair);
+    }
+}
+
+static void forces_balance(void **state)
+{
+    (void)state;
+    struct random random = {2};
+    for (int round = 0; round < 12; round++) {
+        bool any;
+        struct pair *pair = make_pair(&samples[round % 4], false, &any);
+        int dim = pair->sample->dim;
+        int64_t size = 2 * pair->nodes * dim;
+        double *u = sample_array(size, sizeof *u), *force = sample_array(size, sizeof *force);
+        double sum[3] = {0.0}, moment[3] = {0.0}, total[3], scale = 0.0;
+        hold(&pair->contact, &random);
+        overlap(pair, 1e-3, 1e-3, &random, u);
+        contact_force(&pair->contact, u, force);
+        contact_total(&pair->contact, total);
+        for (int64_t n = 0; n < 2 * pair->nodes; n++) {
+            double x[3] = {0.0}, f[3] = {0.0};
+            for (int a = 0; a < dim; a++) {
+                x[a] = pair->X[n * dim + a] + u[n * dim + a];
+                f[a] = force[n * dim + a];
+                sum[a] += f[a];
+                scale += fabs(f[a]);
+            }
+            for (int a = 0; a < 3; a++) {
+                moment[a] += x[(a + 1) % 3] * f[(a + 2) % 3] - x[(a + 2) % 3] * f[(a + 1) % 3];
+            }
+        }
+        assert_true(total[0] < -1e-3 * scale); /* the points are on the left, and are pushed back */
+        for (int a = 0; a < 3; a++) {
+            NEAR_TO(sum[a], 0.0, 1e-14 * scale);
+            NEAR_TO(moment[a], 0.0, 1e-14 * sample_size * scale);
+        }
+        free(u);
+        free(force);
+        pair_free(pair);
+    }
+}
+
+/* A linear field that shifts the other box into the first: the same gap at all points. */
+static void linear_fields(void **state)
+{
+    (void)state;
+    static const double turned[9] = {0.8, -0.6, 0.0, 0.6, 0.8, 0.0, 0.0, 0.0, 1.0};
+    static const double stretch[3] = {0.9, 1.2, 0.95};
+    for (int s = 0; s < 4; s++) {
+        bool any;
+        struct pair *pair = make_pair(&samples[s], false, &any);
+        int dim = pair->sample->dim;
+        double *u = sample_array(2 * pair->nodes * dim, sizeof *u), depth = 1e-3;
+        for (int64_t n = 0; n < 2 * pair->nodes; n++) {
+            for (int a = 0; a < dim; a++) {
+                double x = 0.0;
+                for (int b = 0; b < dim; b++) {
+                    double away = n >= pair->nodes && b == 0 ? depth : 0.0;
+                    x += turned[3 * a + b] * (stretch[b] * pair->X[n * dim + b] - away);
+                }
+                u[n * dim + a] = x - pair->X[n * dim + a];
+            }
+        }
+        contact_measure(&pair->contact, u, true);
+        for (int64_t p = 0; p < pair->contact.count; p++) {
+            NEAR_TO(pair->contact.gap[p], -depth, 1e-12);
+            NEAR_TO(pair->contact.normal[p * dim], -turned[0], 1e-10);
+        }
+        free(u);
+        pair_free(pair);
+    }
+}
+
+/* Along walks in and out of contact the forces are the same bits as when every point always looks. */
+static void skipping(void **state)
+{
+    (void)state;
+    struct random random = {3};
+    int64_t touches = 0, skipped = 0, steps = 0;
+    for (int s = 0; s < 4; s++) {
+        bool any;
+        struct pair *pair = make_pair(&samples[s], false, &any),
+                    *always = make_pair(&samples[s], false, &any);
+        int64_t size = 2 * pair->nodes * samples[s].dim;
+        double *u = sample_array(size, sizeof *u), *force = sample_array(size, sizeof *force);
+        double *expected = sample_array(size, sizeof *expected);
+        for (int step = 0; step < 150; step++) {
+            double away = 1e-3 * sin(0.05 * step);
+            for (int64_t i = 0; i < size; i++) {
+                bool closer = i >= pair->nodes * samples[s].dim && i % samples[s].dim == 0;
+                u[i] = 0.98 * u[i] + uniform(&random, -1e-5, 1e-5) + (closer ? 0.02 * away : 0.0);
+            }
+            for (int64_t p = 0; p < always->contact.count; p++) {
+                always->contact.between->checked_free[p] = -INFINITY;
+            }
+            memset(force, 0, (size_t)size * sizeof *force);
+            memset(expected, 0, (size_t)size * sizeof *expected);
+            contact_force(&pair->contact, u, force);
+            contact_force(&always->contact, u, expected);
+            assert_memory_equal(force, expected, (size_t)size * sizeof *force);
+            contact_accept(&pair->contact);
+            contact_accept(&always->contact);
+            if (step % 40 == 39) {
+                contact_augment(&pair->contact);
+                contact_augment(&always->contact);
+            }
+            for (int64_t p = 0; p < pair->contact.count; p++) {
+                skipped += !pair->contact.view[p].searched;
+                steps++;
+            }
+            touches += pressing(&pair->contact);
+        }
+        free(u);
+        free(force);
+        free(expected);
+        pair_free(pair);
+        pair_free(always);
+    }
+    assert_true(touches > steps / 10 && skipped > steps / 5);
+}
+
+/* What faces a point through the body is not opposite to it, however the body is deformed. */
+static void box_against_itself(void **state)
+{
+    (void)state;
+    struct random random = {4};
+    for (int s = 0; s < 4; s++) {
+        bool any;
+        struct pair *pair = make_pair(&samples[s], true, &any);
+        const struct opposite *opposite = &pair->contact.between->opposite;
+        int dim = pair->sample->dim;
+        int64_t size = 2 * pair->nodes * dim;
+        double *u = sample_array(size, sizeof *u);
+        assert_false(any);
+        for (int round = 0; round < 20; round++) {
+            for (int64_t i = 0; i < size; i++) { /* flattened, sheared and rough */
+                double x = pair->X[i - i % dim + 1];
+                u[i] = uniform(&random, -3e-3, 3e-3) + (i % dim == 1   ? -0.5 * x
+                                                        : i % dim == 0 ? 0.8 * x
+                                                                       : 0.0);
+            }
+            contact_measure(&pair->contact, u, round % 2 == 0);
+            assert_int_equal(pressing(&pair->contact), 0);
+        }
+        for (int64_t f = 0; f < opposite->surface.facet_count; f++) {
+            for (int64_t g = 0; g < f; g++) {
+                bool one = opposite_leads(opposite, opposite->rest_normal + f * dim, f, g);
+                bool other = opposite_leads(opposite, opposite->rest_normal + g * dim, g, f);
+                assert_true(one != other);
+            }
+        }
+        free(u);
+        pair_free(pair);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {cmocka_unit_test(force_is_gradient), cmocka_unit_test(forces_balance),
+                                       cmocka_unit_test(linear_fields), cmocka_unit_test(skipping),
+                                       cmocka_unit_test(box_against_itself)};
+    return cmocka_run_group_tests(tests, make_samples, free_samples);
+}
