@@ -208,7 +208,8 @@ static void add_rows_of_cells(const struct body *body, const bool *touched, bool
     for (int64_t r = 0; r < averages->row_count; r++) {
         for (int64_t i = averages->corner_ptr[r]; i < averages->corner_ptr[r + 1] && touched[r]; i++) {
             int64_t q = averages->corner[i] % averages->corner_count / corners;
-            for (int64_t c = q * corners * rows; c < (q + 1) * corners * rows; c++) {
+            int64_t first = smoothed_cells_group(body, q), end = smoothed_cells_group_end(body, q);
+            for (int64_t c = first * corners * rows; c < end * corners * rows; c++) {
                 wanted[averages->of_corner[c] / VECTOR_STRIDE(body->dim)] = true;
             }
         }
@@ -343,7 +344,6 @@ enum status smoothed_cells_build(const struct smoothed_cells_input *input, struc
     enum status status;
     struct smoothed_cells *smoothed = &body->cells;
     int64_t entries = body->point_count * body->dim * body->dim + BODY_POINT_PADDING;
-    *smoothed = (struct smoothed_cells){0};
     TRY(set_linear_gradients(input, body->dim, body->point_count, body->order, smoothed, error));
     TRY(NEW_ARRAY_UNTOUCHED(&smoothed->interpolant, entries, error));
     TRY(build_averages(input, body, error));
@@ -359,6 +359,8 @@ void smoothed_cells_free(struct smoothed_cells *smoothed)
     field_averages_free(&smoothed->averages);
     free(smoothed->interpolant);
     free(smoothed->linear_gradient);
+    free(smoothed->group);
+    free(smoothed->group_end);
     *smoothed = (struct smoothed_cells){0};
 }
 
@@ -372,6 +374,16 @@ void smoothed_cells_linear_gradients(const struct body *body, int64_t q, double 
             gradient[b] -= gradient[k * dim + b];
         }
     }
+}
+
+int64_t smoothed_cells_group(const struct body *body, int64_t q)
+{
+    return body->cells.group != NULL ? body->cells.group[q] : q;
+}
+
+int64_t smoothed_cells_group_end(const struct body *body, int64_t q)
+{
+    return body->cells.group != NULL ? body->cells.group_end[q] : q + 1;
 }
 
 int32_t smoothed_cells_row(const struct body *body, int64_t q, int k, int i)
@@ -397,9 +409,10 @@ enum status cell_functions_make(const struct body *body, struct cell_functions *
     *functions = (struct cell_functions){0};
     for (int64_t q = 0; q < body->point_count; q++) {
         int64_t sum = body->smoothed ? 0 : matrix->ptr[q * body->dim + 1] - matrix->ptr[q * body->dim];
-        for (int k = 0; k <= body->dim && body->smoothed; k++) {
+        int64_t corners = body->dim + 1, end = smoothed_cells_group_end(body, q);
+        for (int64_t c = q * corners; c < end * corners && body->smoothed; c++) {
             for (int i = 0; i < FACE_ROWS(body->dim); i++) {
-                int32_t row = smoothed_cells_row(body, q, k, i);
+                int32_t row = smoothed_cells_row(body, c / corners, (int)(c % corners), i);
                 sum += matrix->ptr[row + 1] - matrix->ptr[row];
             }
         }
@@ -449,26 +462,60 @@ static int list_rows(const struct body *body, int64_t q, int32_t row[12], double
     return count;
 }
 
-/* A set by two arrays that need no clearing: Briggs and Torczon 1993. */
+/* Add to the gradient of the shape function of a node. A set by two arrays that need no clearing: Briggs and
+ * Torczon 1993. */
+static inline void add_function(int32_t node, int dim, double factor, const double *gradient,
+                                struct cell_functions *functions)
+{
+    int32_t at = functions->slot[node];
+    if (at >= functions->count || functions->node[at] != node) {
+        at = functions->slot[node] = (int32_t)functions->count++;
+        functions->node[at] = node;
+        memset(functions->gradient + at * dim, 0, (size_t)dim * sizeof *functions->gradient);
+    }
+    for (int a = 0; a < dim; a++) {
+        functions->gradient[at * dim + a] += factor * gradient[a];
+    }
+}
+
+double smoothed_cells_share(const struct body *body, int64_t q)
+{
+    double sum = 0.0;
+    for (int64_t i = smoothed_cells_group(body, q); i < smoothed_cells_group_end(body, q); i++) {
+        sum += body->weight[i];
+    }
+    return body->weight[q] / sum;
+}
+
 void cell_functions_list(const struct body *body, int64_t q, struct cell_functions *functions)
 {
     const struct sparse *matrix = &body->cells.averages.matrix;
-    int dim = body->dim, count;
-    int32_t row[12];
-    double gradient[12 * 3];
-    count = list_rows(body, q, row, gradient);
+    int dim = body->dim;
     functions->count = 0;
-    for (int r = 0; r < count; r++) {
-        for (int64_t i = matrix->ptr[row[r]]; i < matrix->ptr[row[r] + 1]; i++) {
-            int32_t node = matrix->idx[i], at = functions->slot[node];
-            if (at >= functions->count || functions->node[at] != node) {
-                at = functions->slot[node] = (int32_t)functions->count++;
-                functions->node[at] = node;
-                memset(functions->gradient + at * dim, 0, (size_t)dim * sizeof *functions->gradient);
+    for (int64_t c = smoothed_cells_group(body, q); c < smoothed_cells_group_end(body, q); c++) {
+        int32_t row[12];
+        double gradient[12 * 3], share = smoothed_cells_share(body, c);
+        int count = list_rows(body, c, row, gradient);
+        for (int k = 0; k < count * dim; k++) {
+            gradient[k] *= share;
+        }
+        for (int r = 0; r < count; r++) {
+            for (int64_t i = matrix->ptr[row[r]]; i < matrix->ptr[row[r] + 1]; i++) {
+                add_function(matrix->idx[i], dim, matrix->value[i], gradient + r * dim, functions);
             }
-            for (int a = 0; a < dim; a++) {
-                functions->gradient[at * dim + a] += matrix->value[i] * gradient[r * dim + a];
-            }
+        }
+    }
+}
+
+void cell_functions_list_linear(const struct body *body, int64_t q, struct cell_functions *functions)
+{
+    functions->count = 0;
+    for (int64_t c = smoothed_cells_group(body, q); c < smoothed_cells_group_end(body, q); c++) {
+        double gradient[12];
+        smoothed_cells_linear_gradients(body, c, gradient);
+        for (int k = 0; k <= body->dim; k++) {
+            add_function(smoothed_cells_node(body, c, k), body->dim, smoothed_cells_share(body, c),
+                         gradient + k * body->dim, functions);
         }
     }
 }
