@@ -4,6 +4,7 @@
 #include "base/memory.h"
 #include "solid/stress.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -20,19 +21,23 @@ static bool is_larger(const double *volume, int64_t a, int64_t b)
     return volume[a] > volume[b] || (!(volume[a] < volume[b]) && a < b);
 }
 
-/* Let b be the partner of a, where it is poor, if b is the largest one so far. */
-static void propose(const struct body_input *input, const bool *poor, int64_t a, int64_t b, int64_t *partner)
+/* Let b be the partner of a, if it is the largest one so far; a: none yet. */
+static void propose(const struct body_input *input, const double *volume, int64_t a, int64_t b,
+                    int64_t *partner)
 {
-    if (poor[a] && are_alike(input, a, b) && is_larger(input->weight, b, partner[a])) {
+    if (are_alike(input, a, b) && (partner[a] == a || is_larger(volume, b, partner[a]))) {
         partner[a] = b;
     }
 }
 
-/* The end of the way from a cell over ever larger partners. */
-static int64_t end_of(const int64_t *partner, int64_t cell)
+/* The end of the way from a cell over partners: one without, or the larger of two that are each other's.
+ * There are no other circles, as a cell is no larger than the partner of its partner. */
+static int64_t end_of(const double *volume, const int64_t *partner, int64_t cell)
 {
-    while (partner[cell] != cell) {
-        cell = partner[cell];
+    int64_t next = partner[cell];
+    while (next != cell && (partner[next] != cell || is_larger(volume, next, cell))) {
+        cell = next;
+        next = partner[cell];
     }
     return cell;
 }
@@ -45,29 +50,37 @@ enum status merged_cells_find(const struct body_input *input, int64_t *root, str
     const struct cells cells = {input->dim, input->node_count, smoothed->x, input->point_count,
                                 smoothed->cell_node};
     bool *poor = NULL;
+    double *volume = NULL;
     int64_t *partner = NULL, *size = NULL;
     TRY(NEW_ARRAY(&poor, cells.count, error));
+    TRY(NEW_ARRAY(&volume, cells.count, error));
     TRY(NEW_ARRAY(&partner, cells.count, error));
     TRY(NEW_ARRAY(&size, cells.count, error));
     for (int64_t c = 0; c < cells.count; c++) {
         partner[c] = c;
         size[c] = 1;
+        volume[c] = fmax(0.0, input->weight[c]); /* nan: 0 */
         poor[c] = cell_quality(&cells, c) < POOR_QUALITY;
     }
     for (int64_t f = 0; f < faces->count; f++) {
         int64_t first = faces->cell[2 * f], second = faces->cell[2 * f + 1];
         if (first >= 0 && second >= 0 && first < cells.count && second < cells.count) {
-            propose(input, poor, first, second, partner);
-            propose(input, poor, second, first, partner);
+            if (poor[first]) {
+                propose(input, volume, first, second, partner);
+            }
+            if (poor[second]) {
+                propose(input, volume, second, first, partner);
+            }
         }
     }
     for (int64_t c = 0; c < cells.count; c++) {
-        int64_t end = end_of(partner, c);
+        int64_t end = end_of(volume, partner, c);
         root[c] = end == c || size[end] < MERGED_MOST_CELLS ? end : c;
         size[end] += root[c] != c;
     }
 done:
     free(poor);
+    free(volume);
     free(partner);
     free(size);
     return status;
