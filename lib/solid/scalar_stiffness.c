@@ -1,6 +1,7 @@
 #include "solid/scalar_stiffness.h"
 
 #include "base/memory.h"
+#include "solid/merged_cells.h"
 #include "solid/system.h"
 
 #include <math.h>
@@ -179,30 +180,32 @@ static void add_group(const struct scalar_stiffness *stiffness, int64_t q, int64
     int rows = FACE_ROWS(dim);
     int64_t nodes = stiffness->field_count - body->node_count, end = smoothed_cells_group_end(body, q);
     double smooth[3] = {0.0, 0.0, 0.0}, off[3] = {0.0, 0.0, 0.0}, modulus = 0.0;
-    double k_off = SMOOTHING_STIFFNESS(dim);
+    double k_off = SMOOTHING_STIFFNESS(dim), gradients[MERGED_MOST_CELLS * 12];
     for (int64_t c = q; c < end; c++) {
-        double grad_N[12], share = smoothed_cells_share(body, c);
+        double *grad_N = gradients + (c - q) * 12, share = smoothed_cells_share(body, c);
         modulus += modulus_of(body, c);
         smoothed_cells_linear_gradients(body, c, grad_N);
+        for (int k = 0; k < (dim + 1) * dim; k++) {
+            grad_N[k] *= share;
+        }
         for (int k = 0; k <= dim; k++) {
             double mean = 0.0, value = row->at_field[nodes + smoothed_cells_node(body, c, k)];
             for (int r = 0; r < rows; r++) {
                 mean += row->at_field[smoothed_cells_row(body, c, k, r)] / rows;
             }
             for (int a = 0; a < dim; a++) {
-                smooth[a] -= share * dim * mean * grad_N[k * dim + a];
-                off[a] += share * (value + dim * mean) * grad_N[k * dim + a];
+                smooth[a] -= dim * mean * grad_N[k * dim + a];
+                off[a] += (value + dim * mean) * grad_N[k * dim + a];
             }
         }
     }
     for (int64_t c = q; c < end; c++) {
-        double grad_N[12], part = modulus * smoothed_cells_share(body, c);
-        smoothed_cells_linear_gradients(body, c, grad_N);
+        const double *grad_N = gradients + (c - q) * 12; /* times the share */
         for (int k = 0; k <= dim; k++) {
             double on_mean = 0.0, on_value = 0.0;
             for (int a = 0; a < dim; a++) {
-                on_mean -= dim * part * (smooth[a] - k_off * off[a]) * grad_N[k * dim + a];
-                on_value += part * k_off * off[a] * grad_N[k * dim + a];
+                on_mean -= dim * modulus * (smooth[a] - k_off * off[a]) * grad_N[k * dim + a];
+                on_value += modulus * k_off * off[a] * grad_N[k * dim + a];
             }
             for (int r = 0; r < rows; r++) {
                 put(on_mean / rows, smoothed_cells_row(body, c, k, r), i, row, touched);

@@ -481,6 +481,9 @@ static inline void add_function(int32_t node, int dim, double factor, const doub
 double smoothed_cells_share(const struct body *body, int64_t q)
 {
     double sum = 0.0;
+    if (body->cells.group == NULL) {
+        return 1.0;
+    }
     for (int64_t i = smoothed_cells_group(body, q); i < smoothed_cells_group_end(body, q); i++) {
         sum += body->weight[i];
     }
