@@ -21,7 +21,7 @@ static const char usage[] =
     "                ascending, shape functions that sum to 1 within 1e-9; a line on standard output for\n"
     "                each violation, and status 1 if there is one. Told without a verdict: cells of quality\n"
     "                (radius of the inscribed to that of the circumscribed sphere, 1 for the regular one)\n"
-    "                below 1e-3, the poorest first, and how many connected bodies, if several\n"
+    "                below .01, the poorest first, and how many connected bodies, if several\n"
     "  recover       the whole sections of a stream that was stopped, cut short or damaged, as a stream;\n"
     "                what is wrong with it on standard error\n"
     "  keep, drop    the stream with only, or without, the sections that match a PATTERN, in which * and ?\n"

@@ -9,8 +9,9 @@
  * between tetrahedron shape measures, BIT 34, 1994; gmsh calls it gamma.) Whatever nodes, finite or not. */
 double cell_quality(const struct cells *cells, int64_t cell);
 
-/* Below this a cell is called poor. */
-#define POOR_QUALITY 1e-3
+/* Below this a cell is called poor; smoothed cells are then merged with a neighbour (solid/merged_cells.h).
+ */
+#define POOR_QUALITY 1e-2
 
 struct poor_cell {
     int64_t cell;

@@ -3,6 +3,7 @@
 #include "approx/renumber.h"
 #include "base/memory.h"
 #include "solid/kernel.h"
+#include "solid/merged_cells.h"
 #include "solid/nodal_volume.h"
 
 #include <math.h>
@@ -27,6 +28,7 @@ static enum status order_all(const struct body_input *input, struct body *body, 
 {
     enum status status;
     int32_t *model = NULL;
+    int64_t *root = NULL;
     TRY(NEW_ARRAY(&model, input->point_count, error));
     TRY(NEW_ARRAY(&body->order, input->point_count, error));
     TRY(NEW_ARRAY(&body->node_order, input->node_count, error));
@@ -35,6 +37,11 @@ static enum status order_all(const struct body_input *input, struct body *body, 
         model[q] = (int32_t)model_of(input, q);
     }
     TRY(renumber_morton(input->dim, input->point_count, input->x, model, body->order, error));
+    if (body->smoothed) {
+        TRY(NEW_ARRAY(&root, input->point_count, error));
+        TRY(merged_cells_find(input, root, error));
+        TRY(merged_cells_order(root, body, error));
+    }
     for (int64_t n = 0; n < input->node_count; n++) {
         body->node_order[n] = n;
     }
@@ -46,6 +53,7 @@ static enum status order_all(const struct body_input *input, struct body *body, 
     }
 done:
     free(model);
+    free(root);
     return status;
 }
 
@@ -78,21 +86,25 @@ done:
     return status;
 }
 
-/* Cut the ordered points into blocks of one law. */
+/* Cut the ordered points into blocks of one law, merged cells together. */
 static enum status cut_blocks(const struct body_input *input, struct body *body, struct error *error)
 {
     enum status status;
     int64_t most = points_of_block(body->dim);
-    TRY(NEW_ARRAY(&body->blocks, body->point_count / most + MATERIAL_MODEL_COUNT + 1, error));
+    TRY(NEW_ARRAY(&body->blocks, body->point_count / (most - MERGED_MOST_CELLS) + MATERIAL_MODEL_COUNT + 1,
+                  error));
     for (int64_t q = 0; q < body->point_count;) {
         struct block *block = &body->blocks[body->block_count++];
         enum material_model model = model_of(input, body->order[q]);
         block->first_point = q;
         block->neo_hookean = model == MATERIAL_NEO_HOOKEAN;
-        while (q < body->point_count && block->point_count < most &&
-               model_of(input, body->order[q]) == model) {
-            block->point_count++;
-            q++;
+        while (q < body->point_count && model_of(input, body->order[q]) == model) {
+            int64_t next = smoothed_cells_group_end(body, q);
+            if (next - block->first_point > most) {
+                break;
+            }
+            block->point_count = next - block->first_point;
+            q = next;
         }
     }
 done:

@@ -134,13 +134,8 @@ static void add_cell(const struct body *body, int64_t q, const double F[9], doub
     (void)J;
     const struct bound_sum *to = context;
     struct bound bound = bound_at(body, q, to->at_rest ? at_rest : F);
-    double gradient[12];
-    int32_t node[4];
-    for (int k = 0; k <= body->dim; k++) {
-        node[k] = smoothed_cells_node(body, q, k);
-    }
-    smoothed_cells_linear_gradients(body, q, gradient);
-    add_functions(body, &bound, body->dim + 1, node, gradient, to->of_node);
+    cell_functions_list_linear(body, q, to->work);
+    add_functions(body, &bound, to->work->count, to->work->node, to->work->gradient, to->of_node);
 }
 
 /* Add what the blocks of part p add that are this process's. */

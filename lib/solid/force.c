@@ -1,6 +1,7 @@
 /* The force loop: deformation gradients from parameters (apply the operator), stresses, and forces on
  * the parameters (apply its transpose); equation (12) of lib/README.md. */
 #include "base/memory.h"
+#include "solid/merged_cells.h"
 #include "solid/nodal_volume.h"
 #include "solid/stress.h"
 
@@ -31,6 +32,9 @@ static void stress_cell_block(struct body *body, int64_t b)
     } else {
         stress_cells(body, &body->blocks[b], P, T);
         note_volumes(body, &body->blocks[b]);
+    }
+    if (body->cells.group != NULL) {
+        merged_cells_stresses(body, &body->blocks[b], P, T);
     }
     body->kernels->cell_forces(body, b, (const double(*)[BLOCK_MOST_POINTS])P,
                                (const double(*)[BLOCK_MOST_POINTS])T);

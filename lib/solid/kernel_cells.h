@@ -4,6 +4,7 @@
 #define SOLID_KERNEL_CELLS_H
 
 #include "solid/kernel_points.h"
+#include "solid/merged_cells.h"
 
 /* Values at the corners of a block's cells, of faces or of nodes: component a of corner k in row k dim + a,
  * one column for each cell. read_corners sums over the rows of each corner, which begin in of_corner at
@@ -152,6 +153,9 @@ KERNEL_INLINE void kernel_cell_gradients(struct body *body, struct block *block,
             volume -= C[k] * (h[k] - f[k]);
         }
         STORE(J + i, volume);
+    }
+    if (body->cells.group != NULL) {
+        merged_cells_gradients(body, block, F, interpolant, determinant, J);
     }
     keep_rows(body, block, dim * dim, (const double(*)[BLOCK_MOST_POINTS])F, body->F);
     keep_rows(body, block, dim * dim, (const double(*)[BLOCK_MOST_POINTS])interpolant,

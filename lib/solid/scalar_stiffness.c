@@ -1,6 +1,7 @@
 #include "solid/scalar_stiffness.h"
 
 #include "base/memory.h"
+#include "solid/merged_cells.h"
 #include "solid/system.h"
 
 #include <math.h>
@@ -177,37 +178,47 @@ static void put(const double amount, int64_t f, int64_t i, struct scalar_row *ro
     row->on_field[f] += amount;
 }
 
-/* The forces of cell q on the fields at its corners. */
-static void add_cell(const struct scalar_stiffness *stiffness, int64_t q, int64_t i, struct scalar_row *row,
-                     int64_t *touched)
+/* The forces of a group of cells, the first of which is q, on the fields at their corners. */
+static void add_group(const struct scalar_stiffness *stiffness, int64_t q, int64_t i, struct scalar_row *row,
+                      int64_t *touched)
 {
     const struct body *body = &stiffness->system->body;
     int dim = body->dim;
     int rows = FACE_ROWS(dim);
-    int64_t nodes = stiffness->field_count - body->node_count;
-    double grad_N[12], smooth[3] = {0.0, 0.0, 0.0}, off[3] = {0.0, 0.0, 0.0};
-    double modulus = modulus_of(body, q), k_off = SMOOTHING_STIFFNESS(dim);
-    smoothed_cells_linear_gradients(body, q, grad_N);
-    for (int k = 0; k <= dim; k++) {
-        double mean = 0.0, value = row->at_field[nodes + smoothed_cells_node(body, q, k)];
-        for (int r = 0; r < rows; r++) {
-            mean += row->at_field[smoothed_cells_row(body, q, k, r)] / rows;
+    int64_t nodes = stiffness->field_count - body->node_count, end = smoothed_cells_group_end(body, q);
+    double smooth[3] = {0.0, 0.0, 0.0}, off[3] = {0.0, 0.0, 0.0}, modulus = 0.0;
+    double k_off = SMOOTHING_STIFFNESS(dim), gradients[MERGED_MOST_CELLS * 12];
+    for (int64_t c = q; c < end; c++) {
+        double *grad_N = gradients + (c - q) * 12, share = smoothed_cells_share(body, c);
+        modulus += modulus_of(body, c);
+        smoothed_cells_linear_gradients(body, c, grad_N);
+        for (int k = 0; k < (dim + 1) * dim; k++) {
+            grad_N[k] *= share;
         }
-        for (int a = 0; a < dim; a++) {
-            smooth[a] -= dim * mean * grad_N[k * dim + a];
-            off[a] += (value + dim * mean) * grad_N[k * dim + a];
+        for (int k = 0; k <= dim; k++) {
+            double mean = 0.0, value = row->at_field[nodes + smoothed_cells_node(body, c, k)];
+            for (int r = 0; r < rows; r++) {
+                mean += row->at_field[smoothed_cells_row(body, c, k, r)] / rows;
+            }
+            for (int a = 0; a < dim; a++) {
+                smooth[a] -= dim * mean * grad_N[k * dim + a];
+                off[a] += (value + dim * mean) * grad_N[k * dim + a];
+            }
         }
     }
-    for (int k = 0; k <= dim; k++) {
-        double on_mean = 0.0, on_value = 0.0;
-        for (int a = 0; a < dim; a++) {
-            on_mean -= dim * modulus * (smooth[a] - k_off * off[a]) * grad_N[k * dim + a];
-            on_value += modulus * k_off * off[a] * grad_N[k * dim + a];
+    for (int64_t c = q; c < end; c++) {
+        const double *grad_N = gradients + (c - q) * 12; /* times the share */
+        for (int k = 0; k <= dim; k++) {
+            double on_mean = 0.0, on_value = 0.0;
+            for (int a = 0; a < dim; a++) {
+                on_mean -= dim * modulus * (smooth[a] - k_off * off[a]) * grad_N[k * dim + a];
+                on_value += modulus * k_off * off[a] * grad_N[k * dim + a];
+            }
+            for (int r = 0; r < rows; r++) {
+                put(on_mean / rows, smoothed_cells_row(body, c, k, r), i, row, touched);
+            }
+            put(on_value, nodes + smoothed_cells_node(body, c, k), i, row, touched);
         }
-        for (int r = 0; r < rows; r++) {
-            put(on_mean / rows, smoothed_cells_row(body, q, k, r), i, row, touched);
-        }
-        put(on_value, nodes + smoothed_cells_node(body, q, k), i, row, touched);
     }
 }
 
@@ -264,10 +275,11 @@ static void add_cells(const struct scalar_stiffness *stiffness, int64_t f, int64
     const struct body *body = &stiffness->system->body;
     const struct field_averages *averages = &body->cells.averages;
     for (int64_t c = averages->corner_ptr[f]; c < averages->corner_ptr[f + 1]; c++) {
-        int64_t q = averages->corner[c] % averages->corner_count / (body->dim + 1);
+        int64_t q =
+            smoothed_cells_group(body, averages->corner[c] % averages->corner_count / (body->dim + 1));
         if (row->cell_seen[q] != i + 1) {
             row->cell_seen[q] = i + 1;
-            add_cell(stiffness, q, i, row, touched);
+            add_group(stiffness, q, i, row, touched);
         }
     }
 }

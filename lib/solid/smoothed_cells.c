@@ -208,7 +208,8 @@ static void add_rows_of_cells(const struct body *body, const bool *touched, bool
     for (int64_t r = 0; r < averages->row_count; r++) {
         for (int64_t i = averages->corner_ptr[r]; i < averages->corner_ptr[r + 1] && touched[r]; i++) {
             int64_t q = averages->corner[i] % averages->corner_count / corners;
-            for (int64_t c = q * corners * rows; c < (q + 1) * corners * rows; c++) {
+            int64_t first = smoothed_cells_group(body, q), end = smoothed_cells_group_end(body, q);
+            for (int64_t c = first * corners * rows; c < end * corners * rows; c++) {
                 wanted[averages->of_corner[c] / VECTOR_STRIDE(body->dim)] = true;
             }
         }
@@ -343,7 +344,6 @@ enum status smoothed_cells_build(const struct smoothed_cells_input *input, struc
     enum status status;
     struct smoothed_cells *smoothed = &body->cells;
     int64_t entries = body->point_count * body->dim * body->dim + BODY_POINT_PADDING;
-    *smoothed = (struct smoothed_cells){0};
     TRY(set_linear_gradients(input, body->dim, body->point_count, body->order, smoothed, error));
     TRY(NEW_ARRAY_UNTOUCHED(&smoothed->interpolant, entries, error));
     TRY(build_averages(input, body, error));
@@ -359,6 +359,8 @@ void smoothed_cells_free(struct smoothed_cells *smoothed)
     field_averages_free(&smoothed->averages);
     free(smoothed->interpolant);
     free(smoothed->linear_gradient);
+    free(smoothed->group);
+    free(smoothed->group_end);
     *smoothed = (struct smoothed_cells){0};
 }
 
@@ -372,6 +374,16 @@ void smoothed_cells_linear_gradients(const struct body *body, int64_t q, double 
             gradient[b] -= gradient[k * dim + b];
         }
     }
+}
+
+int64_t smoothed_cells_group(const struct body *body, int64_t q)
+{
+    return body->cells.group != NULL ? body->cells.group[q] : q;
+}
+
+int64_t smoothed_cells_group_end(const struct body *body, int64_t q)
+{
+    return body->cells.group != NULL ? body->cells.group_end[q] : q + 1;
 }
 
 int32_t smoothed_cells_row(const struct body *body, int64_t q, int k, int i)
@@ -388,87 +400,14 @@ int32_t smoothed_cells_node(const struct body *body, int64_t q, int k)
     return row - (int32_t)(averages->matrix.row_count - body->node_count);
 }
 
-enum status cell_functions_make(const struct body *body, struct cell_functions *functions,
-                                struct error *error)
+double smoothed_cells_share(const struct body *body, int64_t q)
 {
-    enum status status;
-    const struct sparse *matrix = body->smoothed ? &body->cells.averages.matrix : &body->gradients;
-    int64_t most = 0;
-    *functions = (struct cell_functions){0};
-    for (int64_t q = 0; q < body->point_count; q++) {
-        int64_t sum = body->smoothed ? 0 : matrix->ptr[q * body->dim + 1] - matrix->ptr[q * body->dim];
-        for (int k = 0; k <= body->dim && body->smoothed; k++) {
-            for (int i = 0; i < FACE_ROWS(body->dim); i++) {
-                int32_t row = smoothed_cells_row(body, q, k, i);
-                sum += matrix->ptr[row + 1] - matrix->ptr[row];
-            }
-        }
-        most = sum > most ? sum : most;
+    double sum = 0.0;
+    if (body->cells.group == NULL) {
+        return 1.0;
     }
-    TRY(NEW_ARRAY(&functions->slot, body->node_count, error));
-    TRY(NEW_ARRAY(&functions->node, most, error));
-    TRY(NEW_ARRAY(&functions->gradient, most * body->dim, error));
-done:
-    if (status != STATUS_OK) {
-        cell_functions_free(functions);
+    for (int64_t i = smoothed_cells_group(body, q); i < smoothed_cells_group_end(body, q); i++) {
+        sum += body->weight[i];
     }
-    return status;
-}
-
-void cell_functions_free(struct cell_functions *functions)
-{
-    free(functions->slot);
-    free(functions->node);
-    free(functions->gradient);
-    *functions = (struct cell_functions){0};
-}
-
-/* The rows that the averages over the faces of cell q are made of, each once, and what its gradient is by the
- * value of each: gradient[12 * dim]. Returns how many there are. */
-static int list_rows(const struct body *body, int64_t q, int32_t row[12], double *gradient)
-{
-    int dim = body->dim, rows = FACE_ROWS(dim), count = 0;
-    double grad_N[12];
-    smoothed_cells_linear_gradients(body, q, grad_N);
-    for (int k = 0; k <= dim; k++) {
-        for (int i = 0; i < rows; i++) {
-            int32_t of_face = smoothed_cells_row(body, q, k, i);
-            int at = 0;
-            while (at < count && row[at] != of_face) {
-                at++;
-            }
-            if (at == count) {
-                row[count++] = of_face;
-                memset(gradient + at * dim, 0, (size_t)dim * sizeof *gradient);
-            }
-            for (int a = 0; a < dim; a++) {
-                gradient[at * dim + a] -= (double)dim / rows * grad_N[k * dim + a];
-            }
-        }
-    }
-    return count;
-}
-
-/* A set by two arrays that need no clearing: Briggs and Torczon 1993. */
-void cell_functions_list(const struct body *body, int64_t q, struct cell_functions *functions)
-{
-    const struct sparse *matrix = &body->cells.averages.matrix;
-    int dim = body->dim, count;
-    int32_t row[12];
-    double gradient[12 * 3];
-    count = list_rows(body, q, row, gradient);
-    functions->count = 0;
-    for (int r = 0; r < count; r++) {
-        for (int64_t i = matrix->ptr[row[r]]; i < matrix->ptr[row[r] + 1]; i++) {
-            int32_t node = matrix->idx[i], at = functions->slot[node];
-            if (at >= functions->count || functions->node[at] != node) {
-                at = functions->slot[node] = (int32_t)functions->count++;
-                functions->node[at] = node;
-                memset(functions->gradient + at * dim, 0, (size_t)dim * sizeof *functions->gradient);
-            }
-            for (int a = 0; a < dim; a++) {
-                functions->gradient[at * dim + a] += matrix->value[i] * gradient[r * dim + a];
-            }
-        }
-    }
+    return body->weight[q] / sum;
 }

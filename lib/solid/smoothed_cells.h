@@ -67,6 +67,9 @@ struct smoothed_cells {
                     (k - 1) dim
                     + b holds component b of the gradient of N_k, k = 1 .. dim, in each cell, 1/m; the
                     gradients of all N_k sum to zero */
+    int64_t merged_count;    /* cells that are merged with a larger one (merged_cells.h) */
+    int32_t *group,
+        *group_end; /* of each cell in the body's order: the cells of its group; NULL: all are alone */
 };
 
 /* Lay out the cells of a body whose sizes, orders and shares are known. STATUS_INPUT when a cell lacks a
@@ -78,6 +81,13 @@ void smoothed_cells_free(struct smoothed_cells *smoothed);
 /* gradient[(dim + 1) * dim]: gradients of the linear shape functions of cell q, in the body's order, 1/m. */
 void smoothed_cells_linear_gradients(const struct body *body, int64_t q, double *gradient);
 
+/* The cells that are one domain with cell q (merged_cells.h): from the first to before the last. */
+int64_t smoothed_cells_group(const struct body *body, int64_t q);
+int64_t smoothed_cells_group_end(const struct body *body, int64_t q);
+
+/* The part of these cells' volume that is cell q's. */
+double smoothed_cells_share(const struct body *body, int64_t q);
+
 /* Row i of the FACE_ROWS(dim) of the averages' matrix whose mean is the average over the face opposite vertex
  * k of cell q. */
 int32_t smoothed_cells_row(const struct body *body, int64_t q, int k, int i);
@@ -85,8 +95,8 @@ int32_t smoothed_cells_row(const struct body *body, int64_t q, int k, int i);
 /* Vertex k of cell q, as a number in the body's order. */
 int32_t smoothed_cells_node(const struct body *body, int64_t q, int k);
 
-/* The nodes whose shape functions are not zero on a cell, in the body's order, and the mean gradients of
- * these over the cell. For bodies without smoothed cells only the room for the gradients. */
+/* The nodes whose shape functions are not zero on a cell or its group, in the body's order, and the mean
+ * gradients of these over that. For bodies without smoothed cells only the room for the gradients. */
 struct cell_functions {
     int32_t *slot;    /* node_count: index of a node in the list, valid where node[slot] is that node */
     int32_t *node;    /* the list, with room for the most nodes that a cell has */
@@ -99,5 +109,8 @@ void cell_functions_free(struct cell_functions *functions);
 
 /* Those of cell q, in the body's order. */
 void cell_functions_list(const struct body *body, int64_t q, struct cell_functions *functions);
+
+/* The same of the linear shape functions of the cells. */
+void cell_functions_list_linear(const struct body *body, int64_t q, struct cell_functions *functions);
 
 #endif

@@ -138,19 +138,27 @@ static inline struct smoothed_cells_input sample_smoothed(const struct sample *s
                                          .node_phi = sample->node_phi};
 }
 
-/* factor: support radius over local spacing. */
-static inline struct sample make_wide_sample(int dim, bool smoothed, int64_t per_axis, double factor)
+/* The jittered lattice of a sample. */
+static inline struct cloud sample_cloud(int dim, int64_t per_axis)
 {
     struct error error;
-    struct sample sample = {.dim = dim, .smoothed = smoothed};
+    struct cloud made;
     struct cloud_options cloud = {.kind = CLOUD_JITTERED,
                                   .dim = dim,
                                   .count = {per_axis, per_axis, per_axis},
                                   .high = {sample_size, sample_size, sample_size},
                                   .jitter = dim == 2 ? 0.3 : 0.1,
                                   .seed = 7};
-    GOOD(cloud_make(&cloud, &sample.cloud, &error));
-    assert_true(sample.cloud.cell_count > 0);
+    GOOD(cloud_make(&cloud, &made, &error));
+    assert_true(made.cell_count > 0);
+    return made;
+}
+
+/* Of a cloud, which becomes the sample's; factor: support radius over local spacing. */
+static inline struct sample sample_of(int dim, bool smoothed, struct cloud cloud, double factor)
+{
+    struct error error;
+    struct sample sample = {.dim = dim, .smoothed = smoothed, .cloud = cloud};
     sample.cells = (struct cells){dim, sample.cloud.node_count, sample.cloud.x, sample.cloud.cell_count,
                                   sample.cloud.cells};
     double *spacing = sample_array(sample.cloud.node_count, sizeof *spacing);
@@ -165,6 +173,11 @@ static inline struct sample make_wide_sample(int dim, bool smoothed, int64_t per
     sample_points(&sample, smoothed ? 1 : dim == 2 ? 3 : 4);
     sample_nodes(&sample);
     return sample;
+}
+
+static inline struct sample make_wide_sample(int dim, bool smoothed, int64_t per_axis, double factor)
+{
+    return sample_of(dim, smoothed, sample_cloud(dim, per_axis), factor);
 }
 
 static inline struct sample make_sample(int dim, bool smoothed, int64_t per_axis)

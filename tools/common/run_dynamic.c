@@ -60,9 +60,9 @@ static void judge(struct run *run, const struct dynamics_report *report)
 static void tell_report(const struct run *run, const struct dynamics_report *report)
 {
     const struct body *body = &run->model->system.body;
-    fprintf(stderr, "points\t%lld\npairs\t%lld\nsteps\t%lld\nforce evaluations\t%lld\n",
-            (long long)body->point_count, (long long)body->pair_count, (long long)report->steps,
-            (long long)report->force_evaluations);
+    fprintf(stderr, "points\t%lld\nmerged cells\t%lld\npairs\t%lld\nsteps\t%lld\nforce evaluations\t%lld\n",
+            (long long)body->point_count, (long long)body->cells.merged_count, (long long)body->pair_count,
+            (long long)report->steps, (long long)report->force_evaluations);
     fprintf(stderr, "critical step, s\t%.6g\nfirst step, s\t%.6g\nleast step, s\t%.6g\nstep changes\t%lld\n",
             report->critical_step, report->first_step, report->least_step, (long long)report->step_changes);
     fprintf(stderr, "largest energy error\t%.3g\nleast J\t%.4g\n", report->largest_drift,

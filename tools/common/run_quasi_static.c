@@ -1,13 +1,12 @@
 #include "run.h"
 
-#include "approx/quality.h"
 #include "solid/relaxation.h"
 
 /* A verdict other than converged ends the run: nothing half-done passes for a result. */
 static void judge(struct run *run, const struct relaxation_report *report)
 {
     const struct scene *scene = run->scene;
-    char place[96] = "", load[48] = "", sliver[128] = "";
+    char place[96] = "", load[48] = "";
     if (report->load < 1.0) {
         snprintf(load, sizeof load, " (at %.3g of the load)", report->load);
     }
@@ -36,20 +35,11 @@ static void judge(struct run *run, const struct relaxation_report *report)
     if (report->outcome == RELAXATION_INVERTED) {
         const double *x = run->model->assembly.x + report->inverted_point * scene->dim;
         point_text(scene->dim, x, place);
-        if (run->model->assembly.smoothed) {
-            double quality = cell_quality(&run->model->assembly.cells, report->inverted_point);
-            if (quality < POOR_QUALITY) {
-                snprintf(sliver, sizeof sliver,
-                         "; its cell is a sliver of quality %.2g: improve the mesh, or take Gauss points "
-                         "(ipoints -g 1)",
-                         quality);
-            }
-        }
         run_fail(run, STATUS_VERDICT,
                  "%s: step %lld: integration point %lld at %s is inverted (J = %.3g): apply the load in "
-                 "more steps (ramp_steps > %lld), or a smaller one, or refine there%s",
+                 "more steps (ramp_steps > %lld), or a smaller one, or refine there",
                  scene->path, (long long)report->steps, (long long)report->inverted_point, place,
-                 report->least_jacobian, (long long)report->ramp_steps, sliver);
+                 report->least_jacobian, (long long)report->ramp_steps);
     }
     run_fail(run, STATUS_VERDICT,
              "%s: not converged after %lld steps%s: estimated remaining error %.2g of the displacement: "
@@ -102,9 +92,11 @@ void run_quasi_static(struct run *run)
     put_error(run, &report);
     if (run->verbose) {
         fprintf(stderr,
-                "points\t%lld\npairs\t%lld\nsteps\t%lld\nloading steps\t%lld\nforce evaluations\t%lld\n",
-                (long long)body->point_count, (long long)body->pair_count, (long long)report.steps,
-                (long long)report.loading_steps, (long long)report.force_evaluations);
+                "points\t%lld\nmerged cells\t%lld\npairs\t%lld\nsteps\t%lld\nloading steps\t%lld\nforce "
+                "evaluations\t%lld\n",
+                (long long)body->point_count, (long long)body->cells.merged_count,
+                (long long)body->pair_count, (long long)report.steps, (long long)report.loading_steps,
+                (long long)report.force_evaluations);
         fprintf(stderr, "iteration error, m\t%.3g\ndiscretisation error, m\tsee fielderr\n",
                 iteration_error(&report));
         fprintf(stderr, "estimated error\t%.3g\nfrequency ratio\t%.5g\nleast J\t%.4g\n", report.error,

@@ -1,0 +1,251 @@
+/* Poor cells, merged with a neighbour: nothing grows as they become flat, linear fields stay exact, and there
+ * is an energy. */
+#include "body_setup.h"
+
+#include "approx/quality.h"
+#include "solid/merged_cells.h"
+
+/* Height of vertex k of a cell above the opposite face, and that face's unit normal, toward the vertex. */
+static double height_of(const struct cells *cells, int64_t cell, int k, double normal[3])
+{
+    int dim = cells->dim;
+    int32_t face[3], vertex = cells->node[cell * (dim + 1) + k];
+    double length = 0.0, height = 0.0;
+    for (int i = 0; i < dim; i++) {
+        face[i] = cells->node[cell * (dim + 1) + (k + 1 + i) % (dim + 1)];
+    }
+    face_area_vector(dim, cells->x, face, normal);
+    for (int a = 0; a < dim; a++) {
+        length += normal[a] * normal[a];
+        height += normal[a] * (cells->x[(int64_t)vertex * dim + a] - cells->x[(int64_t)face[0] * dim + a]);
+    }
+    for (int a = 0; a < dim; a++) {
+        normal[a] *= copysign(1.0 / sqrt(length), height);
+    }
+    return fabs(height) / sqrt(length);
+}
+
+static bool has_node(const struct cells *cells, int64_t cell, int32_t node)
+{
+    int corners = cells->dim + 1;
+    for (int k = 0; k < corners; k++) {
+        if (cells->node[cell * corners + k] == node) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/* Move a node within the body so far toward the opposite face of a cell that this is nearly flat, if that
+ * leaves no other cell poor. Whether it does. */
+static bool flatten(const struct cells *cells, int64_t cell, int k, double thickness, double *x)
+{
+    int dim = cells->dim;
+    double normal[3], height = height_of(cells, cell, k, normal), worst = 1.0;
+    double *place = x + (int64_t)cells->node[cell * (dim + 1) + k] * dim, before[3];
+    for (int a = 0; a < dim; a++) {
+        before[a] = place[a];
+        place[a] -= (height - thickness) * normal[a];
+    }
+    for (int64_t c = 0; c < cells->count; c++) {
+        bool at_node = c != cell && has_node(cells, c, cells->node[cell * (dim + 1) + k]);
+        worst = at_node ? fmin(worst, cell_quality(cells, c)) : worst;
+    }
+    if (worst > POOR_QUALITY && cell_quality(cells, cell) > 0.0) {
+        return true;
+    }
+    memcpy(place, before, (size_t)dim * sizeof *place);
+    return false;
+}
+
+/* A sample with some slivers so thin, at nodes within the body. */
+static struct sample sliver_sample(int dim, double thickness)
+{
+    struct cloud cloud = sample_cloud(dim, dim == 2 ? 8 : 6);
+    const struct cells cells = {dim, cloud.node_count, cloud.x, cloud.cell_count, cloud.cells};
+    int slivers = 0;
+    bool *used = sample_array(cloud.node_count, sizeof *used);
+    for (int64_t i = 0; i < cells.count * (dim + 1) && slivers < 5; i++) {
+        int64_t cell = i / (dim + 1);
+        bool inside = true, fresh = true;
+        for (int a = 0; a < dim; a++) {
+            double place = cloud.x[(int64_t)cells.node[i] * dim + a];
+            inside = inside && place > 1e-3 * sample_size && place < 0.999 * sample_size;
+        }
+        for (int k = 0; k <= dim; k++) {
+            fresh = fresh && !used[cells.node[cell * (dim + 1) + k]];
+        }
+        if (inside && fresh && flatten(&cells, cell, (int)(i % (dim + 1)), thickness, cloud.x)) {
+            slivers++;
+            for (int64_t c = 0; c < cells.count; c++) { /* keep away from what touches it */
+                for (int k = 0; k <= dim && has_node(&cells, c, cells.node[i]); k++) {
+                    used[cells.node[c * (dim + 1) + k]] = true;
+                }
+            }
+        }
+    }
+    assert_true(slivers > 0);
+    free(used);
+    return sample_of(dim, true, cloud, dim == 2 ? 1.8 : 2.0);
+}
+
+/* A field with second derivatives at the nodes. */
+static double *quadratic_field(const struct sample *sample)
+{
+    int dim = sample->dim;
+    double *u = sample_array(sample->cloud.node_count * dim, sizeof *u);
+    for (int64_t n = 0; n < sample->cloud.node_count; n++) {
+        const double *x = sample->cloud.x + n * dim;
+        for (int a = 0; a < dim; a++) {
+            u[n * dim + a] = 0.5 * x[a] * x[(a + 1) % dim] + x[dim - 1] * x[0];
+        }
+    }
+    return u;
+}
+
+/* Energy of that field, largest bound of a node's stiffness, least det F. */
+static void measure(int dim, double thickness, double result[3])
+{
+    struct sample sample = sliver_sample(dim, thickness);
+    struct setup setup = one_material(MATERIAL_NEO_HOOKEAN, true);
+    setup.faces = true;
+    struct body body = make_body(&sample, &setup);
+    int64_t nodes = sample.cloud.node_count;
+    double *u = quadratic_field(&sample), *force = sample_array(nodes * dim, sizeof *force);
+    double *stiffness = sample_array(nodes, sizeof *stiffness);
+    assert_true(body.cells.merged_count > 0);
+    result[2] = body_force(&body, u, force).least_jacobian;
+    body_diagonal(&body, stiffness);
+    result[1] = largest(stiffness, nodes);
+    result[0] = body_energy(&body, u);
+    free(u);
+    free(force);
+    free(stiffness);
+    body_free(&body);
+    sample_free(&sample);
+}
+
+/* Slivers a thousand times thinner change nothing: without merging all three go with 1 / thickness. */
+static void flatness(void **state)
+{
+    (void)state;
+    for (int dim = 2; dim <= 3; dim++) {
+        double thick[3], thin[3];
+        measure(dim, 1e-4 * sample_size, thick);
+        measure(dim, 1e-7 * sample_size, thin);
+        for (int k = 0; k < 3; k++) {
+            NEAR_TO(thin[k], thick[k], 0.01 * thick[k]);
+        }
+    }
+}
+
+/* F is that of a linear field to round-off, and forces inside vanish. */
+static void linear(void **state)
+{
+    (void)state;
+    static const double A[9] = {1.1, 0.2, 0, 0.1, 0.95, 0, 0, 0, 1};
+    for (int dim = 2; dim <= 3; dim++) {
+        struct sample sample = sliver_sample(dim, 1e-6 * sample_size);
+        struct setup setup = one_material(MATERIAL_NEO_HOOKEAN, true);
+        setup.faces = true;
+        struct body body = make_body(&sample, &setup);
+        int64_t nodes = sample.cloud.node_count;
+        double *u = linear_field(&sample, A, NULL), *force = sample_array(nodes * dim, sizeof *force);
+        double *F = sample_array(sample.point_count * 9, sizeof *F), sum = 0.0, total = 0.0;
+        (void)body_force(&body, u, force);
+        body_gradient(&body, F);
+        for (int64_t i = 0; i < sample.point_count * 9; i++) {
+            NEAR_TO(F[i], A[i % 9], 1e-11);
+        }
+        for (int64_t q = 0; q < sample.point_count; q++) {
+            sum += body.weight[q] * body.J[q];
+            total += body.weight[q];
+        }
+        NEAR_TO(sum, determinant(A) * total, 1e-11 * total);
+        free(u);
+        free(force);
+        free(F);
+        body_free(&body);
+        sample_free(&sample);
+    }
+}
+
+/* Forces are the gradient of the energy, whatever the law, and of groups with cells of large volume. */
+static void gradient(void **state)
+{
+    (void)state;
+    struct random random = {5};
+    for (int i = 0; i < 8; i++) {
+        int dim = 2 + i % 2;
+        struct sample sample = sliver_sample(dim, 1e-3 * sample_size);
+        struct setup setup = i < 4 ? one_material(MATERIAL_NEO_HOOKEAN, i < 2) : three_materials(i < 6);
+        setup.faces = true;
+        struct body body = make_body(&sample, &setup);
+        int64_t count = sample.cloud.node_count * dim;
+        double *force = sample_array(count, sizeof *force), *at = sample_array(count, sizeof *at);
+        double *u = random_field(&sample, 0.005 * sample_size, &random),
+               *v = random_field(&sample, 1.0, &random);
+        double work = 0.0, all = 0.0, value[2], h = 1e-7;
+        assert_true(body.cells.merged_count > 0);
+        assert_true(body_force(&body, u, force).least_jacobian > 0.3);
+        for (int k = 0; k < 2; k++) {
+            for (int64_t n = 0; n < count; n++) {
+                at[n] = u[n] + (k == 0 ? -h : h) * v[n];
+            }
+            value[k] = body_energy(&body, at);
+        }
+        for (int64_t n = 0; n < count; n++) {
+            work -= force[n] * v[n];
+            all += fabs(force[n] * v[n]);
+        }
+        NEAR_TO(work, (value[0] - value[1]) / (2.0 * h), 1e-6 * all);
+        free(u);
+        free(v);
+        free(at);
+        free(force);
+        body_free(&body);
+        sample_free(&sample);
+    }
+}
+
+/* A group is of one material, in one block, and has a cell that is not poor. */
+static void groups(void **state)
+{
+    (void)state;
+    for (int dim = 2; dim <= 3; dim++) {
+        struct sample sample = sliver_sample(dim, 1e-5 * sample_size);
+        struct setup setup = three_materials(true);
+        setup.faces = true;
+        struct body body = make_body(&sample, &setup);
+        int64_t merged = 0;
+        for (int64_t b = 0; b < body.block_count; b++) {
+            const struct block *block = &body.blocks[b];
+            for (int64_t q = block->first_point; q < block->first_point + block->point_count; q++) {
+                int64_t first = smoothed_cells_group(&body, q);
+                assert_true(first >= block->first_point && first <= q);
+                assert_true(smoothed_cells_group_end(&body, q) <= block->first_point + block->point_count);
+                assert_int_equal(body.material[first], body.material[q]);
+                if (first != q) {
+                    assert_true(cell_quality(&sample.cells, body.order[q]) < POOR_QUALITY);
+                    assert_true(cell_quality(&sample.cells, body.order[first]) > POOR_QUALITY);
+                    merged++;
+                }
+            }
+        }
+        assert_int_equal(merged, body.cells.merged_count);
+        assert_true(merged > 0);
+        body_free(&body);
+        sample_free(&sample);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(flatness),
+        cmocka_unit_test(linear),
+        cmocka_unit_test(gradient),
+        cmocka_unit_test(groups),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
