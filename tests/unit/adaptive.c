@@ -7,8 +7,6 @@
 #include "approx/quadrature.h"
 #include "approx/sorted.h"
 
-#include <omp.h>
-
 /* A jittered box with its cells, radii of generous supports, and the options to integrate over it. */
 struct body {
     struct cloud cloud;
@@ -57,9 +55,8 @@ static struct adaptive_points integrate(const struct body *body, double toleranc
     return points;
 }
 
-static void lists(void **state)
+TEST(lists)
 {
-    (void)state;
     static const int32_t a[] = {1, 4, 5, 9}, b[] = {0, 4, 9, 12, 13}, both[] = {0, 1, 4, 5, 9, 12, 13};
     static const int32_t places_of_b[] = {0, 2, 4, 5, 6};
     int32_t united[9], place[5];
@@ -74,9 +71,8 @@ static void lists(void **state)
 }
 
 /* Each cell's weights sum to its volume, its points lie in it and in its order; quadratics come out exact. */
-static void fill_and_exactness(void **state)
+TEST(fill_and_exactness)
 {
-    (void)state;
     for (int dim = 2; dim <= 3; dim++) {
         struct body body = body_of(dim, dim == 2 ? 6 : 3);
         struct adaptive_points points = integrate(&body, dim == 2 ? 1e-3 : 2e-2, 4);
@@ -173,9 +169,8 @@ static struct adaptive_points brute(const struct body *body, int levels)
 }
 
 /* The whole body's K is within the tolerance of that of brute subdivision, with fewer points the looser. */
-static void convergence(void **state)
+TEST(convergence)
 {
-    (void)state;
     for (int dim = 2; dim <= 3; dim++) {
         struct body body = body_of(dim, dim == 2 ? 6 : 3);
         int64_t n = body.cells.node_count, before = 0;
@@ -206,9 +201,8 @@ static void convergence(void **state)
 
 /* A loose tolerance leaves the rule as it is on a fine cloud; one node whose support ends within its cells
  * calls for more there. */
-static void depth_where_needed(void **state)
+TEST(depth_where_needed)
 {
-    (void)state;
     struct body body = body_of(2, 8);
     struct adaptive_points loose = integrate(&body, 2.0, 5);
     assert_int_equal(loose.count, body.cells.count * 3);
@@ -240,9 +234,8 @@ static void depth_where_needed(void **state)
     body_free(&body);
 }
 
-static void threads(void **state)
+TEST(threads)
 {
-    (void)state;
     int before = omp_get_max_threads();
     for (int dim = 2; dim <= 3; dim++) {
         struct body body = body_of(dim, dim == 2 ? 9 : 3);
@@ -262,9 +255,8 @@ static void threads(void **state)
     omp_set_num_threads(before);
 }
 
-static void failures(void **state)
+TEST(failures)
 {
-    (void)state;
     struct body body = body_of(2, 4);
     struct adaptive_options options = body.options;
     struct adaptive_points points;
@@ -286,11 +278,4 @@ static void failures(void **state)
     body_free(&body);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(lists),   cmocka_unit_test(fill_and_exactness), cmocka_unit_test(convergence),
-        cmocka_unit_test(threads), cmocka_unit_test(depth_where_needed), cmocka_unit_test(failures),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

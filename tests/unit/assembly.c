@@ -33,9 +33,8 @@ static enum status assemble(struct lattice *l, const struct condition *condition
 }
 
 /* u = A x prescribed by a table on the whole boundary is u within. */
-static void linear_field_by_table(void **state)
+TEST(linear_field_by_table)
 {
-    (void)state;
     static const double A[3][3] = {{0.02, 0.01, -0.01}, {0.03, -0.02, 0.01}, {0.01, -0.01, 0.015}};
     for (int dim = 2; dim <= 3; dim++) {
         struct lattice l;
@@ -84,9 +83,8 @@ static void linear_field_by_table(void **state)
 }
 
 /* Only the faces within one condition are held; those of a corner between two are not. */
-static void held_faces(void **state)
+TEST(held_faces)
 {
-    (void)state;
     struct lattice l;
     struct error error;
     int32_t *low, *high;
@@ -114,9 +112,8 @@ static void held_faces(void **state)
 }
 
 /* Two conditions that share a corner: far apart an error that names both, a little apart a note. */
-static void shared_corners(void **state)
+TEST(shared_corners)
 {
-    (void)state;
     struct lattice l;
     struct error error, note;
     int32_t *low, *side;
@@ -141,9 +138,4 @@ static void shared_corners(void **state)
     lattice_free(&l);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {cmocka_unit_test(linear_field_by_table), cmocka_unit_test(held_faces),
-                                       cmocka_unit_test(shared_corners)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

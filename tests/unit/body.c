@@ -28,9 +28,8 @@ static void check_rigid_motion(const struct sample *sample, const struct setup *
     body_free(&body);
 }
 
-static void rigid_motion(void **state)
+TEST(rigid_motion)
 {
-    (void)state;
     for_all(check_rigid_motion);
 }
 
@@ -63,9 +62,8 @@ static void check_gradient(const struct sample *sample, const struct setup *setu
     body_free(&body);
 }
 
-static void force_is_gradient(void **state)
+TEST(force_is_gradient)
 {
-    (void)state;
     for_all(check_gradient);
 }
 
@@ -99,9 +97,8 @@ static void check_balance(const struct sample *sample, const struct setup *setup
     body_free(&body);
 }
 
-static void balance(void **state)
+TEST(balance)
 {
-    (void)state;
     for_all(check_balance);
 }
 
@@ -149,9 +146,8 @@ static void check_linear(const struct sample *sample, const struct setup *setup,
     body_free(&body);
 }
 
-static void linear_fields(void **state)
+TEST(linear_fields)
 {
-    (void)state;
     for_all(check_linear);
 }
 
@@ -206,9 +202,8 @@ static void fault_of_smoothing(void)
     free(material);
 }
 
-static void faults(void **state)
+TEST(faults)
 {
-    (void)state;
     struct body body;
     struct error error;
     static const struct material material = {.shear_modulus = 1.0, .bulk_modulus = 1.0};
@@ -245,9 +240,8 @@ static void faults(void **state)
 
 /* A body of many blocks: forces from the caller's
  * table and the stresses, one point after the other; of smoothed cells as the slope of the energy. */
-static void many_blocks(void **state)
+TEST(many_blocks)
 {
-    (void)state;
     struct random random = {7};
     for (int i = 0; i < 4; i++) {
         bool by_faces = i >= 2;
@@ -310,11 +304,4 @@ static void many_blocks(void **state)
     }
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(rigid_motion),  cmocka_unit_test(force_is_gradient), cmocka_unit_test(balance),
-        cmocka_unit_test(linear_fields), cmocka_unit_test(many_blocks),       cmocka_unit_test(faults),
-    };
-    return cmocka_run_group_tests(tests, make_samples, free_samples);
-}
+RUN_TESTS(make_samples, free_samples)

@@ -3,9 +3,8 @@
 #include "body_setup.h"
 
 /* A linear field of a body of one material is in equilibrium inside: with smoothed cells to round-off. */
-static void accumulation(void **state)
+TEST(accumulation)
 {
-    (void)state;
     static const double A[9] = {1.1, 0.2, 0, 0.1, 0.95, 0, 0, 0, 1};
     for (int dim = 2; dim <= 3; dim++) {
         struct sample sample = make_sample(dim, true, dim == 2 ? 9 : 7);
@@ -122,9 +121,8 @@ static double volume_below(const struct sample *sample, int64_t face, const doub
 }
 
 /* Whatever the field, the volume ratios of smoothed cells make up the volume within the boundary. */
-static void enclosed_volume(void **state)
+TEST(enclosed_volume)
 {
-    (void)state;
     struct random random = {17};
     for (int i = 0; i < 4; i += 2) {
         const struct sample *sample = &samples[i];
@@ -154,9 +152,8 @@ static void enclosed_volume(void **state)
 
 /* Smoothed cells by averages over their faces: the gradients of the table, but for round-off; and for a small
  * field, where J differs from det F by a square, its forces and energy. */
-static void faces(void **state)
+TEST(faces)
 {
-    (void)state;
     struct random random = {11};
     for (int i = 0; i < 4; i += 2) {
         for (int kind = 0; kind < 2; kind++) {
@@ -209,9 +206,8 @@ static void faces(void **state)
 }
 
 /* The kernels of the neo-Hookean law and what serves all laws, one cell at a time: the same forces. */
-static void general_law(void **state)
+TEST(general_law)
 {
-    (void)state;
     struct random random = {13};
     for (int i = 0; i < 8; i++) {
         const struct sample *sample = &samples[i % 4];
@@ -237,13 +233,4 @@ static void general_law(void **state)
     }
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(accumulation),
-        cmocka_unit_test(faces),
-        cmocka_unit_test(enclosed_volume),
-        cmocka_unit_test(general_law),
-    };
-    return cmocka_run_group_tests(tests, make_samples, free_samples);
-}
+RUN_TESTS(make_samples, free_samples)

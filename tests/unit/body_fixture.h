@@ -4,7 +4,7 @@
 #define TESTS_BODY_FIXTURE_H
 
 #include "cell_table.h"
-#include "solid_fixture.h"
+#include "unit.h"
 
 #include "approx/boundary.h"
 #include "approx/cloud.h"

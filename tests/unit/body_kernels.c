@@ -6,8 +6,6 @@
 #include "solid/kernel.h"
 #include "solid/nodal_volume.h"
 
-#include <omp.h>
-
 /* The same bits for 1, 2 and 3 threads, and from one call to the next. */
 static void check_threads(const struct sample *sample, const struct setup *setup, struct random *random)
 {
@@ -40,9 +38,8 @@ static void check_threads(const struct sample *sample, const struct setup *setup
     free(u);
 }
 
-static void threads(void **state)
+TEST(threads)
 {
-    (void)state;
     for_all(check_threads);
 }
 
@@ -73,16 +70,14 @@ static void check_instructions(const struct sample *sample, const struct setup *
     body_free(&body);
 }
 
-static void instructions(void **state)
+TEST(instructions)
 {
-    (void)state;
     for_all(check_instructions);
 }
 
 /* Averaging changes nothing where the bulk modulus is at most twice the shear modulus and U is a square. */
-static void compressible(void **state)
+TEST(compressible)
 {
-    (void)state;
     struct random random = {2};
     for (int i = 0; i < 4; i++) {
         const struct sample *sample = &samples[i];
@@ -110,9 +105,8 @@ static void compressible(void **state)
 }
 
 /* Nodal volumes share out the body, and its change of volume, among nodes and materials. */
-static void nodal_volumes(void **state)
+TEST(nodal_volumes)
 {
-    (void)state;
     struct random random = {3};
     for (int dim = 2; dim <= 3; dim++) {
         struct sample sample = make_sample(dim, false, 5);
@@ -158,9 +152,8 @@ static struct body make_alike(const struct sample *sample, double poisson_ratio)
 
 /* The pressures solve A pi = b to what is stated of Chebyshev's iterations; a uniform change of volume meets
  * the bulk modulus itself. */
-static void nodal_pressures(void **state)
+TEST(nodal_pressures)
 {
-    (void)state;
     const double poisson_ratio[3] = {0.49, 0.4999, 0.49999};
     for (int k = 0; k < 6; k++) {
         struct sample sample = make_sample(2 + k % 2, false, 5);
@@ -205,9 +198,8 @@ static void nodal_pressures(void **state)
 }
 
 /* Nodal volumes of no size, between two materials of a group, count for nothing. */
-static void empty_volumes(void **state)
+TEST(empty_volumes)
 {
-    (void)state;
     struct body body;
     struct error error;
     struct material material[2] = {make_material(MATERIAL_NEO_HOOKEAN, 3000.0),
@@ -238,9 +230,8 @@ static void empty_volumes(void **state)
 
 /* The bound of the stiffness, at rest and deformed: no diagonal entry exceeds it, and at rest, but for the
  * stabilisation of cells, the sum over the components is known. */
-static void diagonal(void **state)
+TEST(diagonal)
 {
-    (void)state;
     struct random random = {5};
     for (int i = 0; i < 6; i++) {
         /* the stabilisation of cells is bounded roughly */
@@ -327,18 +318,9 @@ static void check_inversion(const struct sample *sample, const struct setup *set
     body_free(&body);
 }
 
-static void inversion(void **state)
+TEST(inversion)
 {
-    (void)state;
     for_all(check_inversion);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(threads),       cmocka_unit_test(instructions),    cmocka_unit_test(compressible),
-        cmocka_unit_test(nodal_volumes), cmocka_unit_test(nodal_pressures), cmocka_unit_test(diagonal),
-        cmocka_unit_test(inversion),     cmocka_unit_test(empty_volumes),
-    };
-    return cmocka_run_group_tests(tests, make_samples, free_samples);
-}
+RUN_TESTS(make_samples, free_samples)

@@ -7,8 +7,6 @@
 
 #include "solid/body.h"
 
-#include <omp.h>
-
 enum { MATERIALS = 3 };
 
 /* How a body is made from a sample. */

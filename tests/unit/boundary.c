@@ -85,9 +85,8 @@ static void check_averages(const struct sample *sample, const struct boundary_av
 }
 
 /* The whole boundary in one set: a boundary average for each side that meets at a node. */
-static void averages_split_at_corners(void **state)
+TEST(averages_split_at_corners)
 {
-    (void)state;
     for (int dim = 2; dim <= 3; dim++) {
         for (int smoothed = 0; smoothed < 2; smoothed++) {
             struct sample sample = make_wide_sample(dim, smoothed == 1, dim == 2 ? 6 : 5, 2.6);
@@ -136,9 +135,8 @@ static void averages_split_at_corners(void **state)
 
 /* A side alone has one boundary average for each of its nodes, and that is the part of it in the whole
  * boundary. */
-static void sides(void **state)
+TEST(sides)
 {
-    (void)state;
     for (int dim = 2; dim <= 3; dim++) {
         struct sample sample = make_sample(dim, true, 4);
         struct boundary_averages whole = averages_of(&sample, all_facets(&sample));
@@ -177,9 +175,8 @@ static void sides(void **state)
 /* The mean gradient of any field over the body is its boundary's: for every node j,
  * sum_cells V dphi_j = sum_averages A Phi_j n, to round-off, since cells and boundary averages share their
  * quadrature. */
-static void divergence_theorem(void **state)
+TEST(divergence_theorem)
 {
-    (void)state;
     for (int dim = 2; dim <= 3; dim++) {
         struct sample sample = make_sample(dim, true, dim == 2 ? 7 : 4);
         struct boundary_averages averages = averages_of(&sample, all_facets(&sample));
@@ -214,9 +211,8 @@ static void divergence_theorem(void **state)
 }
 
 /* A facet is the same face whatever node it begins with; which way it is turned gives the normal. */
-static void other_vertex_orders(void **state)
+TEST(other_vertex_orders)
 {
-    (void)state;
     for (int dim = 2; dim <= 3; dim++) {
         struct sample sample = make_sample(dim, true, 4);
         struct facet_set set = all_facets(&sample);
@@ -254,9 +250,8 @@ static void other_vertex_orders(void **state)
 }
 
 /* In 3D two facets that touch at one node only do not share its boundary average. */
-static void touching_facets(void **state)
+TEST(touching_facets)
 {
-    (void)state;
     struct sample sample = make_sample(3, true, 4);
     struct facet_set side = facets_of_side(&sample, 0);
     int pairs[4] = {0};
@@ -278,9 +273,8 @@ static void touching_facets(void **state)
 }
 
 /* Boundary averages stay whole on a curve that turns gently. */
-static void gentle_and_sharp_turns(void **state)
+TEST(gentle_and_sharp_turns)
 {
-    (void)state;
     /* A fan of triangles about node 0; the outer nodes lie on a polygon. */
     enum { MOST = 24 };
     for (int corners = 4; corners <= MOST; corners += 4) {
@@ -336,9 +330,8 @@ static void gentle_and_sharp_turns(void **state)
 
 /* Boundary averages that are not split, and the mean over each side of the box: the boundary averages of a
  * side, split there, make its mean. Of split boundary averages the groups are the sides. */
-static void whole_sides(void **state)
+TEST(whole_sides)
 {
-    (void)state;
     for (int dim = 2; dim <= 3; dim++) {
         struct sample sample = make_sample(dim, true, 5);
         struct face_table table = face_table(&sample);
@@ -389,9 +382,8 @@ static void whole_sides(void **state)
 }
 
 /* Node values: one entry for each node, never split, with the table's row of the node. */
-static void node_values(void **state)
+TEST(node_values)
 {
-    (void)state;
     for (int dim = 2; dim <= 3; dim++) {
         struct error error;
         struct sample sample = make_sample(dim, true, 5);
@@ -444,9 +436,8 @@ static bool on_side_below(const struct sample *sample, int64_t face, double limi
 
 /* A side that is held in part ends where the held faces do; at the edges of the box, where the boundary
  * turns, and within a boundary that is held altogether nothing ends. */
-static void ends(void **state)
+TEST(ends)
 {
-    (void)state;
     for (int dim = 2; dim <= 3; dim++) {
         struct sample sample = make_sample(dim, true, 5);
         struct face_table table = face_table(&sample);
@@ -503,9 +494,8 @@ static void ends(void **state)
     }
 }
 
-static void faults(void **state)
+TEST(faults)
 {
-    (void)state;
     for (int dim = 2; dim <= 3; dim++) {
         struct sample sample = make_sample(dim, true, 4);
         struct face_table table = face_table(&sample);
@@ -538,19 +528,4 @@ static void faults(void **state)
     }
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(averages_split_at_corners),
-        cmocka_unit_test(sides),
-        cmocka_unit_test(divergence_theorem),
-        cmocka_unit_test(other_vertex_orders),
-        cmocka_unit_test(touching_facets),
-        cmocka_unit_test(gentle_and_sharp_turns),
-        cmocka_unit_test(whole_sides),
-        cmocka_unit_test(node_values),
-        cmocka_unit_test(ends),
-        cmocka_unit_test(faults),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

@@ -3,9 +3,9 @@
 #ifndef TESTS_CELL_TABLE_H
 #define TESTS_CELL_TABLE_H
 
-#include "approx/shape.h"
+#include "unit.h"
 
-#include <stdlib.h>
+#include "approx/shape.h"
 
 struct cell_table {
     int64_t *ptr;

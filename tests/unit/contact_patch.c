@@ -23,9 +23,8 @@ static void make_samples(struct contact_nodes *contact_nodes)
 }
 
 /* Nodes on a line, each with a contact node, that press in turn. */
-static void across(void **state)
+TEST(across)
 {
-    (void)state;
     static const struct {
         const char *presses;
         int64_t pressing;
@@ -62,9 +61,8 @@ static void across(void **state)
 }
 
 /* The corner of a square 0.1 below the line of the nodes: the body is below, its facets' normals up. */
-static void inside(void **state)
+TEST(inside)
 {
-    (void)state;
     struct contact_nodes contact_nodes;
     struct contact_patch patch;
     struct error error;
@@ -82,8 +80,4 @@ static void inside(void **state)
     contact_free(&contact);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {cmocka_unit_test(across), cmocka_unit_test(inside)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

@@ -5,7 +5,6 @@
 #include "solid/dynamics.h"
 
 #include <gsl/gsl_eigen.h>
-#include <omp.h>
 
 static const double x_axis[3] = {1, 0, 0}, y_axis[3] = {0, 1, 0};
 
@@ -70,9 +69,8 @@ static double fastest_mode(struct lattice *l, double *mode)
 
 /* A body released in one of its modes is one oscillator; central differences let it swing faster, by
  * asin(r) / r at the share r of the critical step. */
-static void one_oscillator(void **state)
+TEST(one_oscillator)
 {
-    (void)state;
     static const double shares[] = {0.1, 0.5, 0.9}, quicker[] = {1.001674, 1.047198, 1.244188};
     enum { STEPS = 8 };
     struct lattice_options options = lattice_defaults(2, 4);
@@ -170,23 +168,20 @@ static void vibrate(int axis, double expected)
     lattice_free(&l);
 }
 
-static void pressure_wave(void **state)
+TEST(pressure_wave)
 {
-    (void)state;
     vibrate(1, 17.91338);
 }
 
-static void shear_wave(void **state)
+TEST(shear_wave)
 {
-    (void)state;
     vibrate(0, 2.50838);
 }
 
 /* A block compressed to .8 of its height between sliding supports swings freely: its energy is that of the
  * closed form and stays. */
-static void release(void **state)
+TEST(release)
 {
-    (void)state;
     struct lattice_options options = lattice_defaults(3, 5);
     struct lattice l;
     struct energy_log log = {0};
@@ -244,9 +239,8 @@ static void momenta(const struct lattice *l, const double *u, const double *v, d
 }
 
 /* A free body, thrown and spinning, keeps its momenta to round-off however it swings. */
-static void free_spin(void **state)
+TEST(free_spin)
 {
-    (void)state;
     for (int dim = 2; dim <= 3; dim++) {
         struct lattice_options options = lattice_defaults(dim, dim == 2 ? 7 : 4);
         struct lattice l;
@@ -282,9 +276,8 @@ static void free_spin(void **state)
 
 /* A side pushed in and held: the work of the condition is what the energies hold, with and without damping,
  * and a damped body comes to the rest of the closed form for confined compression. */
-static void pushed(void **state)
+TEST(pushed)
 {
-    (void)state;
     static const double dampings[] = {0, 100};
     for (int k = 0; k < 2; k++) {
         struct lattice_options options = lattice_defaults(2, 7);
@@ -327,9 +320,8 @@ static void pushed(void **state)
 
 /* The end at the speed of a linear curve, without a jerk: balance and reaction stay right to the last row.
  * The begin at that speed is a blow, whose work counts. */
-static void moved_at_constant_speed(void **state)
+TEST(moved_at_constant_speed)
 {
-    (void)state;
     struct lattice_options options = lattice_defaults(2, 5);
     struct lattice l;
     struct energy_log log = {0};
@@ -358,9 +350,8 @@ static void moved_at_constant_speed(void **state)
 }
 
 /* Weight put on a confined column at once: it sinks to twice the depth of rest, and returns. */
-static void sudden_weight(void **state)
+TEST(sudden_weight)
 {
-    (void)state;
     struct lattice_options options = lattice_defaults(2, 3);
     struct lattice l;
     struct energy_log log = {0};
@@ -397,9 +388,8 @@ static void sudden_weight(void **state)
 }
 
 /* A block thrown at a rigid floor bounces: the penalty's energy comes back. */
-static void bounce(void **state)
+TEST(bounce)
 {
-    (void)state;
     struct lattice_options options = lattice_defaults(2, 6);
     struct lattice l;
     struct energy_log log = {0};
@@ -442,9 +432,8 @@ static void bounce(void **state)
 }
 
 /* What goes wrong has a name. */
-static void outcomes(void **state)
+TEST(outcomes)
 {
-    (void)state;
     struct lattice_options options = lattice_defaults(2, 5);
     struct lattice l;
     lattice_build(&l, &options);
@@ -490,9 +479,8 @@ static bool stop_at_once(void *context, const struct progress *progress)
     return false;
 }
 
-static void stopped_by_the_caller(void **state)
+TEST(stopped_by_the_caller)
 {
-    (void)state;
     struct lattice_options options = lattice_defaults(2, 4);
     struct lattice l;
     int calls = 0;
@@ -509,9 +497,8 @@ static void stopped_by_the_caller(void **state)
 }
 
 /* Conditions that say the same twice are one; ones that disagree are a verdict that names a node. */
-static void conditions_twice(void **state)
+TEST(conditions_twice)
 {
-    (void)state;
     struct lattice_options options = lattice_defaults(2, 4);
     struct lattice l;
     struct dynamics_report report;
@@ -532,9 +519,8 @@ static void conditions_twice(void **state)
 }
 
 /* The same bits for any number of threads. */
-static void any_number_of_threads(void **state)
+TEST(any_number_of_threads)
 {
-    (void)state;
     double *first = NULL;
     int most = omp_get_max_threads();
     size_t bytes = 0;
@@ -564,23 +550,4 @@ static void any_number_of_threads(void **state)
     free(first);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(one_oscillator),
-        cmocka_unit_test(pressure_wave),
-        cmocka_unit_test(shear_wave),
-        cmocka_unit_test(release),
-        cmocka_unit_test(free_spin),
-        cmocka_unit_test(pushed),
-        cmocka_unit_test(moved_at_constant_speed),
-        cmocka_unit_test(sudden_weight),
-        cmocka_unit_test(bounce),
-        cmocka_unit_test(outcomes),
-        cmocka_unit_test(stopped_by_the_caller),
-        cmocka_unit_test(conditions_twice),
-        cmocka_unit_test(any_number_of_threads),
-    };
-    omp_set_num_threads(1); /* small bodies, and a machine that may be busy */
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(one_thread, NULL)

@@ -3,8 +3,6 @@
 
 #include "approx/face_rows.h"
 
-#include <math.h>
-
 /* Whether a cell or a face of `corners` nodes has all of those. */
 static bool has_all(const int32_t *vertex, int corners, const int32_t *node, int count)
 {
@@ -136,9 +134,8 @@ static void check_rows(const struct faces *faces, const int32_t *side)
     assert_int_equal(next, faces->row_count);
 }
 
-static void rows_of_faces(void **state)
+TEST(rows_of_faces)
 {
-    (void)state;
     for (int dim = 2; dim <= 3; dim++) {
         struct cloud cloud = box_cloud(dim, 6, 0.1, 0.0);
         struct cells cells = cells_of(&cloud);
@@ -172,8 +169,4 @@ static void rows_of_faces(void **state)
     }
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {cmocka_unit_test(rows_of_faces)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

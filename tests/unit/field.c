@@ -27,9 +27,8 @@ static struct nodal_field view(const struct scattered *cloud, const double *valu
         .cells = {.dim = cloud->dim, .node_count = cloud->count, .x = cloud->x}, .cols = 2, .values = values};
 }
 
-static void linear_fields_are_exact(void **state)
+TEST(linear_fields_are_exact)
 {
-    (void)state;
     for (int dim = 2; dim <= 3; dim++) {
         for (int p = 0; p < PLACE_COUNT; p++) {
             struct scattered cloud = scatter(dim, dim == 2 ? 10 : 6, 80, &places[p], 0.3, 3);
@@ -60,9 +59,8 @@ static void linear_fields_are_exact(void **state)
 }
 
 /* Nodes of cells have the cells' spacing, others that of the nearest nodes. */
-static void spacing_with_and_without_cells(void **state)
+TEST(spacing_with_and_without_cells)
 {
-    (void)state;
     static const double x[] = {0, 0, 1, 0, 1, 1, 0, 1, 3, 0};
     static const int32_t node[] = {0, 1, 2, 0, 2, 3};
     struct cells cells = {2, 5, x, 2, node}, bare = {2, 5, x, 0, NULL};
@@ -77,9 +75,8 @@ static void spacing_with_and_without_cells(void **state)
 }
 
 /* A cloud of nodes alone: within twice a node's spacing. */
-static void outside_of_nodes(void **state)
+TEST(outside_of_nodes)
 {
-    (void)state;
     static const double x[] = {0, 0, 1, 0, 0, 1}, spacing[] = {1, 1, 1};
     static const double points[] = {0.5, 0.5, 2.9, 0, 0, -1.9, 3.1, 0, 0, -2.1, 0, 0};
     static const bool expected[] = {false, false, false, true, true, false};
@@ -91,9 +88,8 @@ static void outside_of_nodes(void **state)
 }
 
 /* Beyond a side, beyond a corner (an edge, in 3D), in a notch between cells; within 0 and within a margin. */
-static void outside_of_cells(void **state)
+TEST(outside_of_cells)
 {
-    (void)state;
     static const double x2[] = {0, 0, 1, 0, 1, 1, 0, 1, 2, 0, 2, 1}, spacing[] = {1, 1, 1, 1, 1, 1};
     static const int32_t triangle[] = {0, 1, 2, 0, 2, 3, 1, 4, 5};
     static const double points2[] = {0.5, 0.5,   1,   0.5,  1.2,  0.6,  -0.19,
@@ -121,9 +117,8 @@ static void outside_of_cells(void **state)
 }
 
 /* In order, in another order, with two nodes at one place, and moved by more than round-off. */
-static void matching(void **state)
+TEST(matching)
 {
-    (void)state;
     struct scattered cloud = scatter(2, 9, 1, &places[2], 0.3, 12);
     double *other = malloc((size_t)(cloud.count * 2) * sizeof *other);
     int32_t *match = malloc((size_t)cloud.count * sizeof *match);
@@ -164,9 +159,8 @@ static void matching(void **state)
     scattered_free(&cloud);
 }
 
-static void statistics_of_differences(void **state)
+TEST(statistics_of_differences)
 {
-    (void)state;
     double difference[] = {3.0, 0.0, 4.0, 100.0, 4.0, 1.0};
     static const int64_t index[] = {0, 1, 2, 4, 5};
     struct field_statistics statistics;
@@ -195,9 +189,8 @@ static void statistics_of_differences(void **state)
 }
 
 /* A field against itself, against itself on another cloud, and against one that differs at one node. */
-static void comparisons(void **state)
+TEST(comparisons)
 {
-    (void)state;
     for (int dim = 2; dim <= 3; dim++) {
         struct scattered coarse = scatter(dim, 5, 1, &places[0], 0.0, 3);
         struct scattered fine = scatter(dim, dim == 2 ? 12 : 8, 1, &places[0], 0.2, 4);
@@ -248,9 +241,8 @@ static void comparisons(void **state)
 }
 
 /* A cloud that cannot be interpolated is not comparable: an error, not a verdict. */
-static void not_comparable(void **state)
+TEST(not_comparable)
 {
-    (void)state;
     static const double line[] = {0, 0, 1, 1, 2, 2, 3, 3, 4, 4}, point[] = {1.5, 1.5}, values[10] = {0.0};
     struct nodal_field a = {.cells = {.dim = 2, .node_count = 1, .x = point}, .cols = 2, .values = values};
     struct nodal_field b = {.cells = {.dim = 2, .node_count = 5, .x = line}, .cols = 2, .values = values};
@@ -260,17 +252,4 @@ static void not_comparable(void **state)
     field_comparison_free(&comparison);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(linear_fields_are_exact),
-        cmocka_unit_test(spacing_with_and_without_cells),
-        cmocka_unit_test(outside_of_nodes),
-        cmocka_unit_test(outside_of_cells),
-        cmocka_unit_test(matching),
-        cmocka_unit_test(statistics_of_differences),
-        cmocka_unit_test(comparisons),
-        cmocka_unit_test(not_comparable),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

@@ -38,9 +38,8 @@ static double *array_of(int64_t count, double value)
 }
 
 /* An error c h^p on spacings h, 2 h, 4 h is found again, and its order. */
-static void extrapolation(void **state)
+TEST(extrapolation)
 {
-    (void)state;
     for (double p = 1.0; p <= 2.0; p += 0.25) {
         double fine = pow(2.0, p) - 1.0, coarse = pow(4.0, p) - pow(2.0, p); /* differences, c h^p = 1 */
         at_most(fabs(fine * field_error_share(2.0, p) - 1.0), 1e-14, "error");
@@ -53,9 +52,8 @@ static void extrapolation(void **state)
     assert_true(field_error_order(1.0, NAN, 2.0) == FIELD_ERROR_MOST_ORDER);
 }
 
-static void ratio_of_cells(void **state)
+TEST(ratio_of_cells)
 {
-    (void)state;
     for (int dim = 2; dim <= 3; dim++) {
         struct cloud fine = lattice(dim, 9, 0.0), coarse = lattice(dim, 5, 0.0);
         struct cells f = cells_of(&fine), c = cells_of(&coarse), nodes = c;
@@ -68,9 +66,8 @@ static void ratio_of_cells(void **state)
 }
 
 /* A mean over the body is no mean over its nodes, which a graded cloud has in one corner. */
-static void mean_over_body(void **state)
+TEST(mean_over_body)
 {
-    (void)state;
     for (int dim = 2; dim <= 3; dim++) {
         struct cloud_options wanted = {
             .kind = CLOUD_GRADED, .dim = dim, .count = {7, 7, 7}, .high = {1.0, 1.0, 1.0}, .ratio = 10.0};
@@ -97,9 +94,8 @@ static void mean_over_body(void **state)
 }
 
 /* Gradients of a linear field are recovered, also where its slope jumps between two regions. */
-static void linear_fields_have_no_error(void **state)
+TEST(linear_fields_have_no_error)
 {
-    (void)state;
     for (int dim = 2; dim <= 3; dim++) {
         struct cloud cloud = lattice(dim, 7, 0.0);
         struct cells cells = cells_of(&cloud);
@@ -144,9 +140,8 @@ static void linear_fields_have_no_error(void **state)
 /* Of a quadratic field the recovered error is about the true one of the interpolant, and halves with the
  * cells.
  */
-static void quadratic_fields_converge(void **state)
+TEST(quadratic_fields_converge)
 {
-    (void)state;
     for (int dim = 2; dim <= 3; dim++) {
         double total[2];
         for (int i = 0; i < 2; i++) {
@@ -174,9 +169,8 @@ static void quadratic_fields_converge(void **state)
 }
 
 /* Equal errors: all cells become smaller alike, by the root of the share, and so many more. */
-static void equal_errors_keep_a_mesh_even(void **state)
+TEST(equal_errors_keep_a_mesh_even)
 {
-    (void)state;
     for (int dim = 2; dim <= 3; dim++) {
         struct cloud cloud = lattice(dim, 6, 0.0);
         struct cells cells = cells_of(&cloud);
@@ -221,9 +215,8 @@ static void equal_errors_keep_a_mesh_even(void **state)
 
 /* Bad cells around one node: sizes are least there, change along no edge by more than the gradation, and keep
  * their bounds. */
-static void bad_cells(void **state)
+TEST(bad_cells)
 {
-    (void)state;
     for (int dim = 2; dim <= 3; dim++) {
         struct cloud cloud = lattice(dim, 9, 0.0);
         struct cells cells = cells_of(&cloud);
@@ -273,9 +266,8 @@ static void bad_cells(void **state)
 }
 
 /* A ring of radii 1 and 2: facets no farther than asked off the circles; a square's corners are no curves. */
-static void facets_near_their_curve(void **state)
+TEST(facets_near_their_curve)
 {
-    (void)state;
     struct cloud ring = lattice(2, 13, 0.0), square = lattice(2, 13, 0.0);
     struct size_field_request request = {.share = 1.0, .most_nodes = 1e9};
     struct size_field bent, straight, limited;
@@ -316,9 +308,8 @@ static void facets_near_their_curve(void **state)
     cloud_free(&square);
 }
 
-static void nodes_of_no_cell(void **state)
+TEST(nodes_of_no_cell)
 {
-    (void)state;
     static const double x[] = {0, 0, 1, 0, 0, 1, 5, 5}, squared[] = {1.0};
     static const int32_t node[] = {0, 1, 2};
     struct cells cells = {2, 4, x, 1, node};
@@ -330,18 +321,4 @@ static void nodes_of_no_cell(void **state)
     size_field_free(&field);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(extrapolation),
-        cmocka_unit_test(ratio_of_cells),
-        cmocka_unit_test(mean_over_body),
-        cmocka_unit_test(linear_fields_have_no_error),
-        cmocka_unit_test(quadratic_fields_converge),
-        cmocka_unit_test(equal_errors_keep_a_mesh_even),
-        cmocka_unit_test(bad_cells),
-        cmocka_unit_test(facets_near_their_curve),
-        cmocka_unit_test(nodes_of_no_cell),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

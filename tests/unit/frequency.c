@@ -54,9 +54,8 @@ static double least_of_all(struct lattice *l, struct constraint *constraint, con
     return least;
 }
 
-static void agrees_with_all_eigenvalues(void **state)
+TEST(agrees_with_all_eigenvalues)
 {
-    (void)state;
     for (int dim = 2; dim <= 3; dim++) {
         struct lattice l;
         struct preconditioner preconditioner;
@@ -101,9 +100,8 @@ static void agrees_with_all_eigenvalues(void **state)
 
 /* A block in plane strain between sliding ends, compressed along the first axis, its free side along it: a
  * half-space wrinkles at a stretch of .544 (Biot 1963). */
-static void a_block_compressed_beyond_biots_limit_is_not_stable(void **state)
+TEST(a_block_compressed_beyond_biots_limit_is_not_stable)
 {
-    (void)state;
     const double stretch[] = {0.8, 0.5}, across[] = {1.2379, 1.9123}; /* lateral: of no stress there */
     for (int k = 0; k < 2; k++) {
         struct lattice l;
@@ -149,9 +147,4 @@ static void a_block_compressed_beyond_biots_limit_is_not_stable(void **state)
     }
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {cmocka_unit_test(agrees_with_all_eigenvalues),
-                                       cmocka_unit_test(a_block_compressed_beyond_biots_limit_is_not_stable)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

@@ -65,9 +65,8 @@ static double energy(const struct cube *cube, const double *x)
 
 /* x . S x of a constant is 0 but for the bonds; of a linear field it is volume times modulus, as the shape
  * functions reproduce it. */
-static void linear_fields_have_their_energy(void **state)
+TEST(linear_fields_have_their_energy)
 {
-    (void)state;
     for (int bonded = 0; bonded < 2; bonded++) {
         struct cube cube;
         build(&cube, bonded);
@@ -94,9 +93,8 @@ static void linear_fields_have_their_energy(void **state)
 }
 
 /* L is lower triangular, the diagonal of L S L^T is 1. */
-static void the_diagonal_is_one(void **state)
+TEST(the_diagonal_is_one)
 {
-    (void)state;
     struct cube cube;
     build(&cube, true);
     const struct inverse_factor *factor = &cube.factor;
@@ -116,9 +114,8 @@ static void the_diagonal_is_one(void **state)
 }
 
 /* Solving undoes applying; rows of conditions act on y as they do on L^T y. */
-static void the_transpose_is_undone(void **state)
+TEST(the_transpose_is_undone)
 {
-    (void)state;
     struct cube cube;
     struct error error;
     struct constraint_rows rows;
@@ -153,10 +150,4 @@ static void the_transpose_is_undone(void **state)
     release(&cube);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {cmocka_unit_test(linear_fields_have_their_energy),
-                                       cmocka_unit_test(the_diagonal_is_one),
-                                       cmocka_unit_test(the_transpose_is_undone)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

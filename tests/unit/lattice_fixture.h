@@ -4,7 +4,7 @@
 #define TESTS_LATTICE_FIXTURE_H
 
 #include "cell_table.h"
-#include "solid_fixture.h"
+#include "unit.h"
 
 #include "approx/cloud.h"
 #include "approx/quadrature.h"
@@ -49,14 +49,6 @@ static inline struct lattice_options lattice_defaults(int dim, int64_t n)
                                     .poisson_ratio = 0.49,
                                     .density = 1000.0};
 }
-
-static inline void *array_or_fail(int64_t count, size_t size)
-{
-    void *array = calloc((size_t)count + 1, size);
-    assert_non_null(array);
-    return array;
-}
-#define ARRAY(pointer, count) ((pointer) = array_or_fail((count), sizeof *(pointer)))
 
 /* Values of phi at points; gradients too unless *dphi is to stay NULL. */
 static inline void lattice_tabulate(struct lattice *l, int64_t count, const double *x,

@@ -2,6 +2,7 @@
  * it with STATUS_SYSTEM and leave nothing allocated. */
 #include "body_fixture.h"
 
+#define WITHOUT_LIBGOMP
 #include "failing_allocator.h"
 
 #ifdef FAILING_ALLOCATOR
@@ -9,15 +10,6 @@
 #include "solid/body.h"
 #include "solid/contact.h"
 #include "solid/folds.h"
-
-/* In place of libgomp's, which ends the program when it gets no memory: all work on this thread. */
-void GOMP_parallel(void (*work)(void *), void *data, unsigned threads, unsigned flags);
-void GOMP_parallel(void (*work)(void *), void *data, unsigned threads, unsigned flags)
-{
-    (void)threads;
-    (void)flags;
-    work(data);
-}
 
 static struct sample sample; /* made before any allocation fails */
 
@@ -141,55 +133,49 @@ static enum status try_folds(struct error *error)
     return status;
 }
 
-static void bodies(void **state)
+TEST(bodies)
 {
-    (void)state;
     fail_each(try_body, 20);
     fail_each(try_cells, 40);
 }
 
-static void boundaries(void **state)
+TEST(boundaries)
 {
-    (void)state;
     fail_each(try_boundary, 12);
     fail_each(try_ends, 1);
 }
 
-static void rigid_surfaces(void **state)
+TEST(rigid_surfaces)
 {
-    (void)state;
     fail_each(try_rigid, 12);
 }
 
-static void contacts(void **state)
+TEST(contacts)
 {
-    (void)state;
     fail_each(try_contact, 30);
 }
 
-static void folds_of_bodies(void **state)
+TEST(folds_of_bodies)
 {
-    (void)state;
     fail_each(try_folds, 12);
 }
 
-int main(void)
+static int make(void **state)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(bodies),   cmocka_unit_test(boundaries),      cmocka_unit_test(rigid_surfaces),
-        cmocka_unit_test(contacts), cmocka_unit_test(folds_of_bodies),
-    };
+    (void)state;
     sample = make_sample(2, true, 3); /* so small that sorting allocates nothing */
-    int failed = cmocka_run_group_tests(tests, NULL, NULL);
-    sample_free(&sample);
-    return failed;
-}
-
-#else
-
-int main(void)
-{
     return 0;
 }
 
+static int drop(void **state)
+{
+    (void)state;
+    sample_free(&sample);
+    return 0;
+}
+
+RUN_TESTS(make, drop)
+
+#else
+RUN_TESTS(NULL, NULL)
 #endif

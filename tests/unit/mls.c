@@ -5,9 +5,8 @@
 #include "approx/mls_kernel.h"
 #include "approx/mls_solve.h"
 
-static void weights(void **state)
+TEST(weights)
 {
-    (void)state;
     for (int w = 0; w < WEIGHT_COUNT; w++) {
         double value, slope, before = 1.0;
         weight_evaluate((enum weight_function)w, 0.0, &value, &slope);
@@ -28,9 +27,8 @@ static void weights(void **state)
 }
 
 /* All bases, weights, dimensions and places. */
-static void reproduction(void **state)
+TEST(reproduction)
 {
-    (void)state;
     for (int dim = 2; dim <= 3; dim++) {
         for (int p = 0; p < PLACE_COUNT; p++) {
             struct scattered cloud = scatter(dim, dim == 2 ? 12 : 6, 100, &places[p], 0.3, 7);
@@ -79,9 +77,8 @@ static double quadratic(int dim, const double *x, double offset, double size, do
     return value;
 }
 
-static void quadratic_reproduction(void **state)
+TEST(quadratic_reproduction)
 {
-    (void)state;
     for (int dim = 2; dim <= 3; dim++) {
         for (int p = 0; p < PLACE_COUNT; p++) {
             struct scattered cloud = scatter(dim, dim == 2 ? 12 : 6, 100, &places[p], 0.3, 11);
@@ -133,9 +130,8 @@ enum { MOST = 1000 };
 
 /* Full gradients against central differences; nodes that leave or enter the support between the two points
  * have weights of zero to third order. */
-static void gradients(void **state)
+TEST(gradients)
 {
-    (void)state;
     for (int dim = 2; dim <= 3; dim++) {
         struct scattered cloud = scatter(dim, dim == 2 ? 10 : 6, 20, &places[2], 0.3, 3);
         for (int b = 0; b < BASIS_COUNT; b++) {
@@ -204,9 +200,8 @@ static struct mls with_mu(struct mls mls, double mu)
 }
 
 /* MMLS lies between linear MLS (mu huge) and quadratic MLS (mu nothing). */
-static void limits_of_modified(void **state)
+TEST(limits_of_modified)
 {
-    (void)state;
     for (int dim = 2; dim <= 3; dim++) {
         struct scattered cloud = scatter(dim, dim == 2 ? 10 : 6, 30, &places[0], 0.3, 5);
         struct support_options options = options_for(dim, BASIS_QUADRATIC, WEIGHT_QUARTIC);
@@ -227,9 +222,8 @@ static void limits_of_modified(void **state)
 }
 
 /* An absolute mu is the dimensionless mu s^4; one mu for each monomial acts on that one. */
-static void units_of_mu(void **state)
+TEST(units_of_mu)
 {
-    (void)state;
     for (int dim = 2; dim <= 3; dim++) {
         struct scattered cloud = scatter(dim, dim == 2 ? 10 : 6, 30, &places[1], 0.3, 6);
         struct support_options options = options_for(dim, BASIS_MODIFIED, WEIGHT_QUARTIC);
@@ -253,9 +247,8 @@ static void units_of_mu(void **state)
 }
 
 /* Scaling by a power of two changes no bit of phi; a translation changes round-off only. */
-static void invariance(void **state)
+TEST(invariance)
 {
-    (void)state;
     for (int dim = 2; dim <= 3; dim++) {
         for (int b = 0; b < BASIS_COUNT; b++) {
             const double factor = 1024.0;
@@ -301,9 +294,8 @@ static void invariance(void **state)
 
 /* All instruction sets give the same bits; where they leave a point to the careful way, all do. What they
  * decide agrees with the careful way to round-off. */
-static void instruction_sets(void **state)
+TEST(instruction_sets)
 {
-    (void)state;
     enum { STRIDE = MOST + MLS_PADDING };
     static const char *const sets[] = {"plain", "avx2", "avx512"};
     static double phi[4][MOST], dphi[4][3 * MOST];
@@ -413,9 +405,8 @@ static double fit_error(int dim, enum basis basis, int per_axis)
 }
 
 /* Order 2 for the linear basis, 3 for the quadratic and the modified. */
-static void convergence(void **state)
+TEST(convergence)
 {
-    (void)state;
     for (int dim = 2; dim <= 3; dim++) {
         for (int b = 0; b < BASIS_COUNT; b++) {
             int coarse = dim == 2 ? 13 : 7, fine = 2 * coarse - 1;
@@ -468,9 +459,8 @@ static double paper_error(enum basis basis, double mu, double radius)
 }
 
 /* Table 1 of the paper, regular cloud, R = 2.0, 1.5, 0.8. */
-static void paper_table(void **state)
+TEST(paper_table)
 {
-    (void)state;
     static const struct {
         enum basis basis;
         double mu, rmse[3];
@@ -493,14 +483,4 @@ static void paper_table(void **state)
     }
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(weights),     cmocka_unit_test(reproduction),
-        cmocka_unit_test(gradients),   cmocka_unit_test(quadratic_reproduction),
-        cmocka_unit_test(units_of_mu), cmocka_unit_test(limits_of_modified),
-        cmocka_unit_test(invariance),  cmocka_unit_test(convergence),
-        cmocka_unit_test(paper_table), cmocka_unit_test(instruction_sets),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

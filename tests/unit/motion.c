@@ -1,18 +1,9 @@
 /* The motion between the nodes, its inverse, and which cell each point of a grid lies in. */
+#include "unit.h"
+
 #include "approx/cloud.h"
 #include "approx/motion.h"
 #include "approx/raster.h"
-
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
-
-#include <math.h>
-#include <omp.h>
-#include <stdlib.h>
-#include <string.h>
 
 static struct error error;
 
@@ -138,9 +129,8 @@ static void check_polynomial(int dim, bool linear, field_function field, double 
     drop_body(&body);
 }
 
-static void polynomials_are_exact(void **state)
+TEST(polynomials_are_exact)
 {
-    (void)state;
     for (int dim = 2; dim <= 3; dim++) {
         check_polynomial(dim, false, linear_field, 1e-11);
         check_polynomial(dim, true, linear_field, 1e-11);
@@ -149,9 +139,8 @@ static void polynomials_are_exact(void **state)
 }
 
 /* Half the spacing: an eighth of the error, a quarter without gradients. */
-static void orders(void **state)
+TEST(orders)
 {
-    (void)state;
     for (int linear = 0; linear < 2; linear++) {
         double errors[2], ignored;
         for (int fine = 0; fine < 2; fine++) {
@@ -172,9 +161,8 @@ static void orders(void **state)
 }
 
 /* Places beside the cell that the search begins in are found through its faces. */
-static void walks(void **state)
+TEST(walks)
 {
-    (void)state;
     struct body body;
     struct motion motion;
     make_body(3, 6, smooth_field, &body);
@@ -196,9 +184,8 @@ static void walks(void **state)
 }
 
 /* A body turned inside out: told, and nothing is found that is none. */
-static void folds(void **state)
+TEST(folds)
 {
-    (void)state;
     static const double x[] = {0, 0, 1, 0, 1, 1, 0, 1}, u[] = {0, 0, 0, 0, -1.5, 0, 0, 0};
     static const int32_t node[] = {0, 1, 2, 0, 2, 3};
     struct cells cells = {2, 4, x, 2, node};
@@ -229,9 +216,8 @@ static bool holds(const struct cells *cells, int64_t cell, const double *y)
     return true;
 }
 
-static void owners(void **state)
+TEST(owners)
 {
-    (void)state;
     static const int64_t sizes[2][3] = {{37, 29, 1}, {13, 11, 17}};
     for (int dim = 2; dim <= 3; dim++) {
         struct body body;
@@ -271,9 +257,8 @@ static void owners(void **state)
     }
 }
 
-static void two_parts_at_one_place(void **state)
+TEST(two_parts_at_one_place)
 {
-    (void)state;
     static const double x[] = {0, 0, 10, 0, 0, 10, 1.5, 1.5, 8.5, 1.5, 1.5, 8.5};
     static const int32_t node[] = {0, 1, 2, 3, 4, 5};
     static const int64_t size[3] = {12, 12, 1};
@@ -285,15 +270,4 @@ static void two_parts_at_one_place(void **state)
     assert_int_equal(doubly, 6 + 5 + 4 + 3 + 2 + 1);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(polynomials_are_exact),
-        cmocka_unit_test(orders),
-        cmocka_unit_test(walks),
-        cmocka_unit_test(folds),
-        cmocka_unit_test(owners),
-        cmocka_unit_test(two_parts_at_one_place),
-    };
-    return cmocka_run_group_tests_name("motion", tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

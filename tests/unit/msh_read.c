@@ -3,14 +3,8 @@
 #include "io/msh.h"
 #include "msh_fixture.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdlib.h>
 #include <sys/mman.h>
 #include <unistd.h>
-
-#include <cmocka.h>
 
 /* Read a file of these bytes. */
 static enum status read_bytes(struct msh *msh, const char *bytes, size_t size, struct error *error)
@@ -53,9 +47,8 @@ static void require_sense(const char *bytes, size_t size)
     msh_free(&msh);
 }
 
-static void every_form_gives_the_same_mesh(void **state)
+TEST(every_form_gives_the_same_mesh)
 {
-    (void)state;
     for (int form = 0; form < FIXTURE_FORMS; form++) {
         struct fixture f = fixture_make(form);
         struct msh msh;
@@ -91,9 +84,8 @@ static void every_form_gives_the_same_mesh(void **state)
 }
 
 /* In MSH 2 the elements of one entity may be in different groups, one each. */
-static void groups_of_elements_not_of_entities(void **state)
+TEST(groups_of_elements_not_of_entities)
 {
-    (void)state;
     struct fixture f = fixture_make(ASCII_22);
     struct msh msh;
     struct mesh mesh;
@@ -110,9 +102,8 @@ static void groups_of_elements_not_of_entities(void **state)
 }
 
 /* Tags in any order, close together and far apart. */
-static void tags_in_any_order(void **state)
+TEST(tags_in_any_order)
 {
-    (void)state;
     static const char *const tags[] = {"30", "2147483647"};
     for (int i = 0; i < 2; i++) {
         struct fixture f = fixture_make(ASCII_22);
@@ -140,9 +131,8 @@ static void tags_in_any_order(void **state)
 }
 
 /* In MSH 4 a group may be of reversed orientation, and stand twice; it is the entity's. */
-static void groups_of_entities(void **state)
+TEST(groups_of_entities)
 {
-    (void)state;
     struct fixture f = fixture_make(ASCII_41);
     struct msh msh;
     struct error error = {""};
@@ -156,9 +146,8 @@ static void groups_of_entities(void **state)
     msh_free(&msh);
 }
 
-static void an_entity_stands_once(void **state)
+TEST(an_entity_stands_once)
 {
-    (void)state;
     struct fixture f = fixture_make(ASCII_41);
     struct msh msh;
     struct error error = {""};
@@ -169,9 +158,8 @@ static void an_entity_stands_once(void **state)
 }
 
 /* MSH 4 without $Entities, as meshio writes it: no groups. */
-static void entities_may_be_absent(void **state)
+TEST(entities_may_be_absent)
 {
-    (void)state;
     struct fixture f = fixture_make(ASCII_41);
     struct msh msh;
     struct error error = {""};
@@ -186,9 +174,8 @@ static void entities_may_be_absent(void **state)
     msh_free(&msh);
 }
 
-static void truncation_at_every_byte_is_found(void **state)
+TEST(truncation_at_every_byte_is_found)
 {
-    (void)state;
     for (int form = 0; form < FIXTURE_FORMS; form++) {
         struct fixture f = fixture_make(form);
         for (size_t size = 0; size + 1 < f.size; size++) {
@@ -205,9 +192,8 @@ static void truncation_at_every_byte_is_found(void **state)
     }
 }
 
-static void changed_bytes_do_no_harm(void **state)
+TEST(changed_bytes_do_no_harm)
 {
-    (void)state;
     static const unsigned char values[] = {0x00, 0x01, 0x02, 0x7f, 0xff, '$', '7', '9', '-', '\n'};
     for (int form = 0; form < FIXTURE_FORMS; form++) {
         struct fixture f = fixture_make(form);
@@ -224,9 +210,8 @@ static void changed_bytes_do_no_harm(void **state)
 
 /* MSH 1, partitioned files and second order, as gmsh writes them, treated in the same ways; in the folder
  * that holds the tests. */
-static void other_forms_are_read(void **state)
+TEST(other_forms_are_read)
 {
-    (void)state;
     static const struct {
         const char *name;
         int nodes, elements, groups, members; /* the parts of a body are in its group once each */
@@ -270,9 +255,8 @@ struct fault {
     const char *from, *to, *message;
 };
 
-static void each_fault_has_its_message(void **state)
+TEST(each_fault_has_its_message)
 {
-    (void)state;
     static const struct fault faults[] = {
         {ASCII_22, "$Nodes\n5\n", "$Nodes\n100000000000\n",
          "$Nodes: number of nodes: 100000000000 cannot be in"},
@@ -340,9 +324,8 @@ static void each_fault_has_its_message(void **state)
 }
 
 /* Sections that are not needed are stepped over, whatever is in them. */
-static void other_sections_are_left_out(void **state)
+TEST(other_sections_are_left_out)
 {
-    (void)state;
     struct fixture f = fixture_make(ASCII_22);
     struct msh msh;
     struct error error;
@@ -353,9 +336,8 @@ static void other_sections_are_left_out(void **state)
     msh_free(&msh);
 }
 
-static void lines_may_end_as_in_dos(void **state)
+TEST(lines_may_end_as_in_dos)
 {
-    (void)state;
     struct fixture f = fixture_make(ASCII_41);
     struct fixture dos = {.size = 0};
     struct msh msh;
@@ -371,9 +353,8 @@ static void lines_may_end_as_in_dos(void **state)
     msh_free(&msh);
 }
 
-static void pipes_are_read_whole(void **state)
+TEST(pipes_are_read_whole)
 {
-    (void)state;
     struct fixture f = fixture_make(BINARY_41);
     int ends[2];
     struct msh msh;
@@ -387,22 +368,4 @@ static void pipes_are_read_whole(void **state)
     close(ends[0]);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_form_gives_the_same_mesh),
-        cmocka_unit_test(groups_of_elements_not_of_entities),
-        cmocka_unit_test(groups_of_entities),
-        cmocka_unit_test(an_entity_stands_once),
-        cmocka_unit_test(entities_may_be_absent),
-        cmocka_unit_test(tags_in_any_order),
-        cmocka_unit_test(truncation_at_every_byte_is_found),
-        cmocka_unit_test(changed_bytes_do_no_harm),
-        cmocka_unit_test(other_forms_are_read),
-        cmocka_unit_test(each_fault_has_its_message),
-        cmocka_unit_test(other_sections_are_left_out),
-        cmocka_unit_test(lines_may_end_as_in_dos),
-        cmocka_unit_test(pipes_are_read_whole),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

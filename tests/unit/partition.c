@@ -6,9 +6,6 @@
 #include "approx/support.h"
 #include "base/memory.h"
 
-#include <math.h>
-#include <stdlib.h>
-
 struct body {
     struct cloud cloud;
     struct cells cells;
@@ -140,9 +137,8 @@ static void check_part(const struct body *body, int32_t part)
     body_part_work_free(&work);
 }
 
-static void parts_hold_what_reaches_them(void **unused)
+TEST(parts_hold_what_reaches_them)
 {
-    (void)unused;
     static const struct {
         int dim;
         double ratio, widen;
@@ -159,9 +155,8 @@ static void parts_hold_what_reaches_them(void **unused)
 }
 
 /* Work is shared to a tenth on a graded body, where equal numbers of nodes are not equal work. */
-static void work_is_balanced(void **unused)
+TEST(work_is_balanced)
 {
-    (void)unused;
     struct body body;
     double most = 0, sum = 0;
     body_setup(&body, 3, 2, 4, 1);
@@ -177,9 +172,8 @@ static void work_is_balanced(void **unused)
     body_teardown(&body);
 }
 
-static void cells_have_one_owner(void **unused)
+TEST(cells_have_one_owner)
 {
-    (void)unused;
     const double x[] = {0, 0, 1, 0, 0, 1};
     const int32_t node[] = {0, 1, 2, 1, 2, 0};
     const struct cells cells = {.dim = 2, .node_count = 3, .x = x, .count = 2, .node = node};
@@ -188,9 +182,8 @@ static void cells_have_one_owner(void **unused)
     assert_int_equal(partition_cell_owner(&cells, 1, (int32_t[]){3, 1, 2}), 1);
 }
 
-static void too_many_parts(void **unused)
+TEST(too_many_parts)
 {
-    (void)unused;
     struct error error;
     struct body body;
     body_setup(&body, 2, 1, 2, 1);
@@ -200,13 +193,4 @@ static void too_many_parts(void **unused)
     body_teardown(&body);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(parts_hold_what_reaches_them),
-        cmocka_unit_test(work_is_balanced),
-        cmocka_unit_test(cells_have_one_owner),
-        cmocka_unit_test(too_many_parts),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

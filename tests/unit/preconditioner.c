@@ -110,9 +110,8 @@ static void check_inverse(struct strained *s)
     free(force);
 }
 
-static void mass_and_inverse_agree(void **state)
+TEST(mass_and_inverse_agree)
 {
-    (void)state;
     for (int dim = 2; dim <= 3; dim++) {
         struct strained s;
         strain_bar(&s, dim, 0.0, true, true);
@@ -143,9 +142,8 @@ static void frequencies(struct strained *s, double *largest, double *lowest)
 
 /* The coarse fields carry the modes as large as the bar: the ratio of its frequencies, which is the number of
  * steps, falls by far, and the largest one hardly rises; in 3D the inverse factor leaves it below 2. */
-static void slow_modes_are_gone(void **state)
+TEST(slow_modes_are_gone)
 {
-    (void)state;
     for (int dim = 2; dim <= 3; dim++) {
         double largest[2], lowest[2];
         for (int coarse = 0; coarse < 2; coarse++) {
@@ -163,9 +161,8 @@ static void slow_modes_are_gone(void **state)
 
 /* With a limit of the bulk modulus nearly incompressible bodies have the frequencies of one that is less so;
  * otherwise their ratio would grow by the root of the bulk modulus, 100 times here. */
-static void bulk_modulus_is_limited(void **state)
+TEST(bulk_modulus_is_limited)
 {
-    (void)state;
     for (int dim = 2; dim <= 3; dim++) {
         double ratio[2];
         for (int k = 0; k < 2; k++) {
@@ -184,9 +181,8 @@ static void bulk_modulus_is_limited(void **state)
 
 /* Pressed against a plate, contact nodes are counted in at once: the largest frequency stays what it was,
  * where otherwise a stiff contact would move a body that weighs nothing. */
-static void contacts_are_followed(void **state)
+TEST(contacts_are_followed)
 {
-    (void)state;
     struct strained s;
     struct error error;
     struct rigid_surface plate;
@@ -224,10 +220,4 @@ static void contacts_are_followed(void **state)
     release(&s);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(mass_and_inverse_agree), cmocka_unit_test(slow_modes_are_gone),
-        cmocka_unit_test(bulk_modulus_is_limited), cmocka_unit_test(contacts_are_followed)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

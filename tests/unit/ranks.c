@@ -245,16 +245,14 @@ static void check_body(const struct sample *sample, const struct setup *setup, s
 }
 
 /* Every kind of body, by 2, 3 and 7 processes, of which some have nothing to do. */
-static void bodies(void **state)
+TEST(bodies)
 {
-    (void)state;
     for_all(check_body);
 }
 
 /* Larger: bodies of many blocks, whose bounds are summed in parts that go from process to process. */
-static void large_body(void **state)
+TEST(large_body)
 {
-    (void)state;
     struct random random = {3};
     struct sample sample = make_sample(2, true, 60);
     struct setup setup = three_materials(true);
@@ -264,9 +262,8 @@ static void large_body(void **state)
 }
 
 /* Stretches are of about the same work, cover all items in turn, and say whose an item is. */
-static void shares(void **state)
+TEST(shares)
 {
-    (void)state;
     struct error error;
     struct ranks ranks = {.count = 3};
     const double work[8] = {4.0, 0.0, 0.0, 1.0, 1.0, 1.0, 1.0, 4.0};
@@ -290,9 +287,8 @@ static void shares(void **state)
     assert_int_equal(ranks_most(NULL, 3), 3);
 }
 
-static void rows_in_stretches(void **state)
+TEST(rows_in_stretches)
 {
-    (void)state;
     struct error error;
     struct stretches stretches;
     const bool wanted[9] = {true, true, false, true, false, false, true, true, true};
@@ -328,9 +324,8 @@ static void *agree_member(void *context)
     return NULL;
 }
 
-static void agreement(void **state)
+TEST(agreement)
 {
-    (void)state;
     struct member members[3] = {{.sample = NULL}};
     struct error error;
     run_team(3, members, agree_member);
@@ -382,9 +377,8 @@ static void *solve_member(void *context)
 }
 
 /* Blocks are solved by several processes to the bits of one. */
-static void solving(void **state)
+TEST(solving)
 {
-    (void)state;
     double right[SOLVED], alone[SOLVED], results[MOST * SOLVED];
     struct envelope factor;
     make_chains(&factor);
@@ -410,12 +404,4 @@ static void solving(void **state)
     }
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(shares),    cmocka_unit_test(rows_in_stretches),
-        cmocka_unit_test(agreement), cmocka_unit_test(solving),
-        cmocka_unit_test(bodies),    cmocka_unit_test(large_body),
-    };
-    return cmocka_run_group_tests(tests, make_samples, free_samples);
-}
+RUN_TESTS(make_samples, free_samples)

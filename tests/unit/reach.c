@@ -164,9 +164,8 @@ static bool same_lists(const struct support_lists *a, const struct support_lists
 }
 
 /* Convex bodies: nothing changes, also where supports are widened. */
-static void convex(void **state)
+TEST(convex)
 {
-    (void)state;
     for (int dim = 2; dim <= 3; dim++) {
         for (int wide = 0; wide < 2; wide++) {
             struct support_lists plain;
@@ -194,9 +193,8 @@ static bool of_l(const int *cube)
     return cube[0] < 4 || cube[1] < 4;
 }
 
-static void located(void **state)
+TEST(located)
 {
-    (void)state;
     for (int dim = 2; dim <= 3; dim++) {
         struct support_lists other;
         struct error error;
@@ -241,9 +239,8 @@ static void check_apart(const struct support_lists *lists, const double *x)
     assert_int_equal(lists->around_count, 0);
 }
 
-static void apart(void **state)
+TEST(apart)
 {
-    (void)state;
     for (int dim = 2; dim <= 3; dim++) {
         for (second_from = 4; second_from <= 5; second_from++) {
             build(dim, (int[3]){9, 5, 3}, but_gap, sheet_of_side);
@@ -269,9 +266,8 @@ static bool of_lobes(const int *cube)
     return (cube[0] < 4) == (cube[1] < 4);
 }
 
-static void lobes(void **state)
+TEST(lobes)
 {
-    (void)state;
     for (int dim = 2; dim <= 3; dim++) {
         build(dim, (int[3]){8, 8, 3}, of_lobes, one_sheet);
         find(2.1, true);
@@ -317,9 +313,8 @@ static bool hidden_in_l(const double *p, const double *q)
 }
 
 /* Around the corner of an L the weights follow the true lengths of the paths. */
-static void around_corner(void **state)
+TEST(around_corner)
 {
-    (void)state;
     for (int dim = 2; dim <= 3; dim++) {
         int64_t hidden = 0;
         double radius = dim == 2 ? 3.2 : 2.2;
@@ -376,9 +371,8 @@ static int sheet_of_fissure(const int *cube, int i, int j, int k)
     return i == 5 && (body.dim == 2 ? j : k) > 5 ? 1 + (cube[0] >= 5) : 0;
 }
 
-static void fissure(void **state)
+TEST(fissure)
 {
-    (void)state;
     for (int dim = 2; dim <= 3; dim++) {
         build(dim, (int[3]){10, 10, 10}, of_ball, sheet_of_fissure);
         find(2.0, true);
@@ -410,9 +404,8 @@ static void fissure(void **state)
 }
 
 /* Gradients at points that see around the corner are those of the values, where the neighbours stay. */
-static void gradients(void **state)
+TEST(gradients)
 {
-    (void)state;
     for (int dim = 2; dim <= 3; dim++) {
         double worst = 0.0;
         int64_t compared = 0;
@@ -495,11 +488,10 @@ static bool reaches(struct ways *ways, int32_t from, int64_t place)
 
 /* Places, here the nodes themselves, are within reach round a corner and a fissure's end, not across a gap or
  * from one lip to the other. */
-static void ways(void **state)
+TEST(ways)
 {
     struct error error;
     struct ways ways;
-    (void)state;
     for (int dim = 2; dim <= 3; dim++) {
         build(dim, (int[3]){8, 8, 4}, of_l, one_sheet);
         good(ways_build(&body.cells, body.node_count, dim, body.x, 1.0, &ways, &error), &error);
@@ -533,12 +525,4 @@ static void ways(void **state)
     }
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(convex),    cmocka_unit_test(located),       cmocka_unit_test(apart),
-        cmocka_unit_test(lobes),     cmocka_unit_test(around_corner), cmocka_unit_test(fissure),
-        cmocka_unit_test(gradients), cmocka_unit_test(ways),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

@@ -4,8 +4,6 @@
 
 #include "solid/relaxation.h"
 
-#include <omp.h>
-
 static struct relaxation_options to(double tolerance)
 {
     return (struct relaxation_options){.tolerance = tolerance, .time_step_margin = 0.9};
@@ -87,9 +85,8 @@ static double patch(int dim, double jitter, int gauss_points, bool nodal_volume)
 }
 
 /* Smoothed cells with boundary averages split at corners pass to round-off; Gauss points do not, by far. */
-static void linear_patch(void **state)
+TEST(linear_patch)
 {
-    (void)state;
     for (int nodal = 0; nodal < 2; nodal++) {
         AT_MOST(patch(2, 0.0, 0, nodal), 1e-9);
         AT_MOST(patch(2, 0.3, 0, nodal), 1e-9);
@@ -97,9 +94,8 @@ static void linear_patch(void **state)
     }
 }
 
-static void linear_patch_at_gauss_points(void **state)
+TEST(linear_patch_at_gauss_points)
 {
-    (void)state;
     double worst2 = patch(2, 0.3, 3, true), worst3 = patch(3, 0.1, 4, true);
     print_message("patch test at Gauss points, largest relative error: 2D %.2g, 3D %.2g\n", worst2, worst3);
     AT_MOST(worst2, 4e-2);
@@ -108,9 +104,8 @@ static void linear_patch_at_gauss_points(void **state)
 }
 
 /* Simple shear by half: the stresses of the closed form in every cell. */
-static void simple_shear(void **state)
+TEST(simple_shear)
 {
-    (void)state;
     static const double A[9] = {0, 0.5, 0, 0, 0, 0, 0, 0, 0};
     struct lattice_options options = lattice_defaults(2, 7);
     struct lattice l;
@@ -161,16 +156,14 @@ static void squeeze(int dim, double stretch, bool confined, double expected, dou
     lattice_free(&l);
 }
 
-static void unconfined_compression(void **state)
+TEST(unconfined_compression)
 {
-    (void)state;
     squeeze(3, 0.8, false, -763.26922, 1.11574668);
 }
 
 /* Pressed further than to .6, free sides may fold: tests/folds.bats. */
-static void unconfined_extension(void **state)
+TEST(unconfined_extension)
 {
-    (void)state;
     struct material material = {.model = MATERIAL_NEO_HOOKEAN};
     material_set_moduli(&material, 3000, 0.49);
     static const double stretches[] = {0.7, 1.2, 1.5}, expected[] = {0, 504.78406, 1050.71532};
@@ -192,9 +185,8 @@ static void unconfined_extension(void **state)
     }
 }
 
-static void confined_compression(void **state)
+TEST(confined_compression)
 {
-    (void)state;
     double mu = 1006.711409, kappa = 50000, J = 0.95, I1 = 2 + J * J;
     double expected = mu * pow(J, -2.0 / 3) * (J - I1 / (3 * J)) + kappa * (J - 1);
     squeeze(2, J, true, expected, 1);
@@ -223,9 +215,8 @@ static void clamp(struct lattice *l, int64_t n, double down, double aside, bool 
 
 /* Small displacements: energy = reaction x displacement / 2. Large ones: reaction = d energy / d
  * displacement. */
-static void reaction_does_the_work(void **state)
+TEST(reaction_does_the_work)
 {
-    (void)state;
     for (int large = 0; large < 2; large++) {
         double energy[3], force[3], down = large ? -0.02 : -1e-7, change = large ? 1e-4 : 0;
         for (int k = 0; k < 3; k++) {
@@ -296,9 +287,8 @@ static void problem_of_bound(struct lattice *l, int problem)
 }
 
 /* What is estimated to remain is no less than what does, on the whole and at the worst node. */
-static void estimate_is_a_bound(void **state)
+TEST(estimate_is_a_bound)
 {
-    (void)state;
     static const double tolerances[] = {1e-2, 1e-3, 1e-4, 1e-6, 1e-8};
     for (int problem = 0; problem < 5; problem++) {
         struct lattice l;
@@ -340,9 +330,8 @@ static double largest_difference(const double *a, const double *b, int64_t size)
 }
 
 /* An elastic body at rest does not remember how it was loaded. */
-static void ramp_does_not_matter(void **state)
+TEST(ramp_does_not_matter)
 {
-    (void)state;
     static const int64_t ramps[] = {0, 150, 1000};
     double *first = NULL;
     for (int k = 0; k < 3; k++) {
@@ -365,9 +354,8 @@ static void ramp_does_not_matter(void **state)
     free(first);
 }
 
-static void any_number_of_threads(void **state)
+TEST(any_number_of_threads)
 {
-    (void)state;
     double *first = NULL;
     int most = omp_get_max_threads();
     for (int threads = 1; threads <= 3; threads++) {
@@ -396,9 +384,8 @@ static void any_number_of_threads(void **state)
 
 /* Augmentations reach the pressures that the bulk modulus itself makes of the volumes: the same forces
  * without a limit, for which a strain of 1e-9 counts by 500 000 shear moduli. */
-static void pressures_are_augmented(void **state)
+TEST(pressures_are_augmented)
 {
-    (void)state;
     for (int dim = 2; dim <= 3; dim++) {
         struct lattice l;
         struct lattice_options options = lattice_defaults(dim, 5);
@@ -430,9 +417,8 @@ static void pressures_are_augmented(void **state)
 }
 
 /* A condition stated twice changes nothing; one that disagrees is a verdict that names a node. */
-static void conditions_twice(void **state)
+TEST(conditions_twice)
 {
-    (void)state;
     struct lattice once, twice;
     struct error error;
     struct relaxation_report report;
@@ -452,9 +438,8 @@ static void conditions_twice(void **state)
 }
 
 /* A weight on a confined column of height .1: the top sinks as the closed form says. */
-static void column_under_gravity(void **state)
+TEST(column_under_gravity)
 {
-    (void)state;
     struct lattice_options options = lattice_defaults(2, 4);
     struct lattice l;
     options.count[1] = 25;
@@ -507,9 +492,8 @@ static bool stop_at_once(void *context, const struct progress *progress)
     return false;
 }
 
-static void frames_and_outcomes(void **state)
+TEST(frames_and_outcomes)
 {
-    (void)state;
     struct lattice l;
     clamp(&l, 5, -0.01, 0, true);
     double *u = lattice_vector(&l), *row_force = lattice_vector(&l);
@@ -567,17 +551,4 @@ static void frames_and_outcomes(void **state)
     lattice_free(&l);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(linear_patch),           cmocka_unit_test(linear_patch_at_gauss_points),
-        cmocka_unit_test(simple_shear),           cmocka_unit_test(unconfined_compression),
-        cmocka_unit_test(unconfined_extension),   cmocka_unit_test(confined_compression),
-        cmocka_unit_test(reaction_does_the_work), cmocka_unit_test(estimate_is_a_bound),
-        cmocka_unit_test(ramp_does_not_matter),   cmocka_unit_test(any_number_of_threads),
-        cmocka_unit_test(conditions_twice),       cmocka_unit_test(pressures_are_augmented),
-        cmocka_unit_test(column_under_gravity),   cmocka_unit_test(frames_and_outcomes),
-    };
-    omp_set_num_threads(1); /* small bodies, and a machine that may be busy */
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(one_thread, NULL)

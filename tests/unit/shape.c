@@ -5,8 +5,6 @@
 #include "approx/face_rows.h"
 #include "approx/quadrature.h"
 
-#include <omp.h>
-
 /* Integral of prod lambda_k^p_k over a simplex of volume 1: d! prod p_k! / (d + sum p_k)!. */
 static double exact_monomial(int vertices, const int *power)
 {
@@ -62,9 +60,8 @@ static void check_rule(const struct quadrature_rule *rule, int degree)
     assert_true(degree_error(rule, degree + 1) > 1e-6);
 }
 
-static void quadrature_degrees(void **state)
+TEST(quadrature_degrees)
 {
-    (void)state;
     static const int rules[][3] = {{2, 1, 1},  {2, 3, 2}, {2, 4, 1}, {2, 6, 4}, {2, 7, 5},
                                    {2, 12, 6}, {3, 1, 1}, {3, 4, 2}, {3, 8, 3}, {3, 14, 5}};
     struct quadrature_rule rule;
@@ -86,9 +83,8 @@ static void quadrature_degrees(void **state)
 }
 
 /* Volumes fill the box; the faces of each cell close; each face stands once, outward from its first cell. */
-static void cells_and_faces(void **state)
+TEST(cells_and_faces)
 {
-    (void)state;
     for (int dim = 2; dim <= 3; dim++) {
         struct cloud cloud = box_cloud(dim, 6, dim == 2 ? 0.4 : 0.1, 1.0);
         struct cells cells = cells_of(&cloud);
@@ -151,9 +147,8 @@ static void cells_and_faces(void **state)
     }
 }
 
-static void wrong_cells(void **state)
+TEST(wrong_cells)
 {
-    (void)state;
     static const double square[] = {0, 0, 1, 0, 1, 1, 0, 1, 0.5, 0.5};
     static const struct {
         int32_t node[9];
@@ -225,9 +220,8 @@ static void smoothed_free(struct smoothed *s)
 }
 
 /* sum phi = 1, sum phi x = centroid, sum grad phi = 0, sum grad phi x^T = I: so linear fields are exact. */
-static void smoothing_is_consistent(void **state)
+TEST(smoothing_is_consistent)
 {
-    (void)state;
     for (int dim = 2; dim <= 3; dim++) {
         for (int b = 0; b < BASIS_COUNT; b++) {
             for (double offset = 0.0; offset <= 1.0; offset += 1.0) {
@@ -262,9 +256,8 @@ static void smoothing_is_consistent(void **state)
 }
 
 /* The sum over cells of V grad phi_j is the integral of phi_j n over the boundary of the body. */
-static void smoothing_telescopes(void **state)
+TEST(smoothing_telescopes)
 {
-    (void)state;
     for (int dim = 2; dim <= 3; dim++) {
         struct smoothed s;
         smoothed_build(&s, dim, dim == 2 ? 9 : 6, BASIS_MODIFIED, 0.0);
@@ -300,9 +293,8 @@ static void smoothing_telescopes(void **state)
 }
 
 /* The same bits for any number of threads. */
-static void smoothing_threads(void **state)
+TEST(smoothing_threads)
 {
-    (void)state;
     static const int numbers[] = {1, 2, 5};
     struct smoothed first;
     int before = omp_get_max_threads();
@@ -323,9 +315,8 @@ static void smoothing_threads(void **state)
 
 /* Each row is the mean of the values at its points, and those at points on the boundary, whose faces come
  * first, are kept. */
-static void averages_of_values(void **state)
+TEST(averages_of_values)
 {
-    (void)state;
     for (int dim = 2; dim <= 3; dim++) {
         struct smoothed s;
         smoothed_build(&s, dim, dim == 2 ? 9 : 6, BASIS_MODIFIED, 0.0);
@@ -368,9 +359,8 @@ static void averages_of_values(void **state)
 }
 
 /* Spacing of nodes from their cells: edges of a unit square cut in two. */
-static void spacing_of_cells(void **state)
+TEST(spacing_of_cells)
 {
-    (void)state;
     static const double x[] = {0, 0, 1, 0, 1, 1, 0, 1, 9, 9};
     static const int32_t node[] = {0, 1, 2, 0, 2, 3};
     struct cells cells = {2, 5, x, 2, node};
@@ -382,13 +372,4 @@ static void spacing_of_cells(void **state)
     assert_true(spacing[4] == 0.0);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(quadrature_degrees),   cmocka_unit_test(cells_and_faces),
-        cmocka_unit_test(wrong_cells),          cmocka_unit_test(smoothing_is_consistent),
-        cmocka_unit_test(smoothing_telescopes), cmocka_unit_test(smoothing_threads),
-        cmocka_unit_test(averages_of_values),   cmocka_unit_test(spacing_of_cells),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

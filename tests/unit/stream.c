@@ -7,9 +7,8 @@
 
 #include <fcntl.h>
 
-static void round_trip(void **state)
+TEST(round_trip)
 {
-    (void)state;
     struct stream sample = sample_stream();
     for (int variant = 0; variant < 4; variant++) {
         bool text = variant % 2 == 0, from_pipe = variant / 2 == 1;
@@ -30,9 +29,8 @@ static void round_trip(void **state)
 }
 
 /* Large enough to need many blocks of the buffers and to grow, and to be mapped in place. */
-static void large_payload(void **state)
+TEST(large_payload)
 {
-    (void)state;
     enum { ROWS = 300000, COLS = 3 };
     struct stream stream, copy;
     struct error error;
@@ -76,9 +74,8 @@ static void assert_refused(const char *bytes, size_t size, bool from_pipe)
     assert_null(stream.mapping);
 }
 
-static void truncation_at_every_byte(void **state)
+TEST(truncation_at_every_byte)
 {
-    (void)state;
     struct stream sample = sample_stream();
     for (int text = 0; text < 2; text++) {
         size_t size;
@@ -92,9 +89,8 @@ static void truncation_at_every_byte(void **state)
     stream_free(&sample);
 }
 
-static void every_flipped_bit_of_a_binary_stream(void **state)
+TEST(every_flipped_bit_of_a_binary_stream)
 {
-    (void)state;
     struct stream sample = sample_stream();
     size_t size;
     char *bytes = written_bytes(&sample, false, &size);
@@ -110,9 +106,8 @@ static void every_flipped_bit_of_a_binary_stream(void **state)
 #define HEAD "# mts 1\n# x f8 2 2 enc=text unit=m\n"
 #define TAIL "\n\n# end 1\n"
 
-static void malformed_text(void **state)
+TEST(malformed_text)
 {
-    (void)state;
     static const struct {
         const char *bytes, *message; /* the message contains this */
     } cases[] = {
@@ -197,9 +192,8 @@ static void malformed_text(void **state)
 }
 
 /* Written by hand or by awk: blanks and tabs, any spelling of a number, no enc=, a checksum that is right. */
-static void tolerated_text(void **state)
+TEST(tolerated_text)
 {
-    (void)state;
     static const char bytes[] = "# mts 1\n# @ awk\n#  x  f8\t2 3 \tunit=m \n"
                                 " 1\t2.50  +.5e1 \n-inf NaN -nan\n \n\t\n# end 1\n";
     struct stream stream;
@@ -214,9 +208,8 @@ static void tolerated_text(void **state)
     stream_free(&stream);
 }
 
-static void sections_by_name(void **state)
+TEST(sections_by_name)
 {
-    (void)state;
     struct stream stream = sample_stream();
     struct error error;
     const struct section *section;
@@ -270,18 +263,16 @@ static void sections_by_name(void **state)
     stream_free(&stream);
 }
 
-static void provenance_is_quoted_for_a_shell(void **state)
+TEST(provenance_is_quoted_for_a_shell)
 {
-    (void)state;
     struct stream stream = sample_stream();
     assert_string_equal(stream.provenance[0],
                         "nodes " MTS_VERSION " nodes -u mm 'it'\\''s a file' '' $'line\\x0aend'");
     stream_free(&stream);
 }
 
-static void write_errors(void **state)
+TEST(write_errors)
 {
-    (void)state;
     struct stream stream = sample_stream();
     struct error error;
     int full = open("/dev/full", O_WRONLY);
@@ -295,9 +286,8 @@ static void write_errors(void **state)
 
 /* What each stage makes goes when it, or one before, is run again; what the table lacks goes with its family.
  */
-static void stages_of_sections(void **state)
+TEST(stages_of_sections)
 {
-    (void)state;
     static const char *const names[] = {
         "nodes.x", "cells.region",  "points.x", "faces.cell", "support.radius",
         "nbr.ptr", "facepoint.idx", "nbr.more", "node.phi",   "shape.dphi",
@@ -325,19 +315,4 @@ static void stages_of_sections(void **state)
     stream_free(&stream);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(stages_of_sections),
-        cmocka_unit_test(round_trip),
-        cmocka_unit_test(large_payload),
-        cmocka_unit_test(truncation_at_every_byte),
-        cmocka_unit_test(every_flipped_bit_of_a_binary_stream),
-        cmocka_unit_test(malformed_text),
-        cmocka_unit_test(tolerated_text),
-        cmocka_unit_test(sections_by_name),
-        cmocka_unit_test(provenance_is_quoted_for_a_shell),
-        cmocka_unit_test(write_errors),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

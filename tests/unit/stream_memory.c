@@ -52,9 +52,8 @@ done:
     return status;
 }
 
-static void read_text_and_binary(void **state)
+TEST(read_text_and_binary)
 {
-    (void)state;
     struct error error;
     for (int form = 0; form < 4; form++) {
         descriptor = memfd_create("stream", 0);
@@ -67,33 +66,32 @@ static void read_text_and_binary(void **state)
     }
 }
 
-static void written(void **state)
+TEST(written)
 {
-    (void)state;
     fail_each(try_write, 10);
 }
 
-static void changed(void **state)
+TEST(changed)
 {
-    (void)state;
     fail_each(try_change, 12);
 }
 
-int main(void)
+static int make(void **state)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(read_text_and_binary),
-        cmocka_unit_test(written),
-        cmocka_unit_test(changed),
-    };
+    (void)state;
     sample = sample_stream();
-    int failed = cmocka_run_group_tests(tests, NULL, NULL);
-    stream_free(&sample);
-    return failed;
-}
-#else
-int main(void)
-{
     return 0;
 }
+
+static int drop(void **state)
+{
+    (void)state;
+    stream_free(&sample);
+    return 0;
+}
+
+RUN_TESTS(make, drop)
+
+#else
+RUN_TESTS(NULL, NULL)
 #endif

@@ -2,15 +2,12 @@
 #ifndef STUFFING_FIXTURE_H
 #define STUFFING_FIXTURE_H
 
+#include "unit.h"
+
 #include "approx/cells.h"
 #include "approx/stuffing.h"
 
 #include "label_shapes.h"
-
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <cmocka.h>
 
 static const double millimetre[3] = {1, 1, 1};
 static const bool all_kept[64] = {

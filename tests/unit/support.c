@@ -4,12 +4,9 @@
 
 #include "approx/cloud.h"
 
-#include <omp.h>
-
 /* Radii over three decades, two nodes at one place. */
-static void grid_against_brute_force(void **state)
+TEST(grid_against_brute_force)
 {
-    (void)state;
     static const double factors[] = {1.0, 1.1, 2.5, 8.0};
     gsl_rng *random = gsl_rng_alloc(gsl_rng_mt19937);
     assert_non_null(random);
@@ -58,9 +55,8 @@ static void grid_against_brute_force(void **state)
 
 /* Lists of points in rows, which share their search in groups, and of points all over the place, where radii
  * are constant or graded. */
-static void lists_against_brute_force(void **state)
+TEST(lists_against_brute_force)
 {
-    (void)state;
     enum { POINTS = 700 };
     gsl_rng *random = gsl_rng_alloc(gsl_rng_mt19937);
     assert_non_null(random);
@@ -117,9 +113,8 @@ static void lists_against_brute_force(void **state)
 }
 
 /* Queries append; nodes all at one place, or on a line, need no special care; wrong radii are refused. */
-static void grid_odd_clouds(void **state)
+TEST(grid_odd_clouds)
 {
-    (void)state;
     double x[6] = {1.0, 2.0, 1.0, 2.0, 1.0, 2.0}, radius[3] = {0.5, 1e9, 1e-9}, at[2] = {1.1, 2.0};
     struct point_grid grid;
     struct index_list list = {0};
@@ -147,9 +142,8 @@ static int compare_doubles(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-static void spacing_against_brute_force(void **state)
+TEST(spacing_against_brute_force)
 {
-    (void)state;
     for (int dim = 2; dim <= 3; dim++) {
         struct scattered cloud = scatter(dim, dim == 2 ? 15 : 6, 1, &places[2], 0.4, 2);
         double *spacing = malloc((size_t)cloud.count * sizeof *spacing);
@@ -182,9 +176,8 @@ static void spacing_against_brute_force(void **state)
 }
 
 /* At most so many nearest neighbours: of equally distant ones the lower indices stay. */
-static void nearest_with_ties(void **state)
+TEST(nearest_with_ties)
 {
-    (void)state;
     double x[25 * 2];
     for (int n = 0; n < 25; n++) {
         x[2 * n] = n % 5;
@@ -210,9 +203,8 @@ static void nearest_with_ties(void **state)
     }
 }
 
-static void least_neighbours(void **state)
+TEST(least_neighbours)
 {
-    (void)state;
     struct scattered cloud = scatter(2, 12, 200, &places[0], 0.3, 4);
     struct support_options options = support_defaults(2);
     options.least = 15;
@@ -238,9 +230,8 @@ static void least_neighbours(void **state)
 }
 
 /* The same bytes for any number of threads; also the same error. */
-static void threads(void **state)
+TEST(threads)
 {
-    (void)state;
     static const int numbers[] = {1, 2, 5};
     struct scattered cloud = scatter(3, 7, 3000, &places[0], 0.3, 9);
     struct support_options options = support_defaults(3);
@@ -277,9 +268,8 @@ static void threads(void **state)
     scattered_free(&cloud);
 }
 
-static void not_finite(void **state)
+TEST(not_finite)
 {
-    (void)state;
     struct scattered cloud = scatter(2, 8, 10, &places[0], 0.3, 4);
     struct support_options options = support_defaults(2);
     struct table table;
@@ -347,9 +337,8 @@ static enum status spring(const struct trap *trap, enum basis basis, bool widen)
     return status;
 }
 
-static void trap_sphere(void **state)
+TEST(trap_sphere)
 {
-    (void)state;
     static struct trap trap = {.name = "50 nodes on a sphere", .dim = 3, .count = 50};
     for (int n = 0; n < 50; n++) {
         double z = 1.0 - 2.0 * (n + 0.5) / 50.0, angle = 2.399963229728653 * n, r = sqrt(1.0 - z * z);
@@ -382,9 +371,8 @@ static void trap_sphere(void **state)
     }
 }
 
-static void trap_slab(void **state)
+TEST(trap_slab)
 {
-    (void)state;
     static struct trap trap = {.name = "slab 4 x 4 x 2", .dim = 3, .count = 32};
     for (int n = 0; n < 32; n++) {
         trap.x[3 * n] = n % 4;
@@ -397,9 +385,8 @@ static void trap_slab(void **state)
     assert_int_equal(spring(&trap, BASIS_QUADRATIC, false), STATUS_VERDICT);
 }
 
-static void trap_coplanar(void **state)
+TEST(trap_coplanar)
 {
-    (void)state;
     static struct trap trap = {.name = "25 coplanar nodes", .dim = 3, .count = 25};
     for (int n = 0; n < 25; n++) {
         trap.x[3 * n] = n % 5;
@@ -412,9 +399,8 @@ static void trap_coplanar(void **state)
     }
 }
 
-static void trap_collinear(void **state)
+TEST(trap_collinear)
 {
-    (void)state;
     static struct trap trap = {.name = "12 collinear nodes", .dim = 2, .count = 12};
     for (int n = 0; n < 12; n++) {
         trap.x[2 * n] = 0.1 * n;
@@ -440,9 +426,8 @@ static void regular_trap(struct trap *trap, int dim, int per_axis)
     }
 }
 
-static void trap_coincident(void **state)
+TEST(trap_coincident)
 {
-    (void)state;
     for (int dim = 2; dim <= 3; dim++) {
         static struct trap trap = {.name = "two coincident nodes"};
         regular_trap(&trap, dim, dim == 2 ? 8 : 5);
@@ -469,9 +454,8 @@ static void trap_coincident(void **state)
 
 /* One node six spacings from the others: it and the points beside it either see enough of the others or are
  * named. */
-static void trap_isolated(void **state)
+TEST(trap_isolated)
 {
-    (void)state;
     for (int dim = 2; dim <= 3; dim++) {
         static struct trap trap = {.name = "one isolated node"};
         regular_trap(&trap, dim, dim == 2 ? 8 : 5);
@@ -489,9 +473,8 @@ static void trap_isolated(void **state)
     }
 }
 
-static void trap_graded(void **state)
+TEST(trap_graded)
 {
-    (void)state;
     for (int dim = 2; dim <= 3; dim++) {
         static struct trap trap = {.name = "cloud graded 20:1"};
         struct cloud_options graded = {
@@ -511,9 +494,8 @@ static void trap_graded(void **state)
 }
 
 /* Fewer nodes than any basis needs, down to one. */
-static void trap_few(void **state)
+TEST(trap_few)
 {
-    (void)state;
     for (int dim = 2; dim <= 3; dim++) {
         for (int64_t count = 1; count <= dim + 1; count++) {
             double x[4 * 3] = {0.0};
@@ -533,25 +515,4 @@ static void trap_few(void **state)
     }
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(grid_against_brute_force),
-        cmocka_unit_test(grid_odd_clouds),
-        cmocka_unit_test(lists_against_brute_force),
-        cmocka_unit_test(spacing_against_brute_force),
-        cmocka_unit_test(nearest_with_ties),
-        cmocka_unit_test(least_neighbours),
-        cmocka_unit_test(threads),
-        cmocka_unit_test(not_finite),
-        cmocka_unit_test(trap_sphere),
-        cmocka_unit_test(trap_slab),
-        cmocka_unit_test(trap_coplanar),
-        cmocka_unit_test(trap_collinear),
-        cmocka_unit_test(trap_coincident),
-        cmocka_unit_test(trap_isolated),
-        cmocka_unit_test(trap_graded),
-        cmocka_unit_test(trap_few),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

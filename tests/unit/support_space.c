@@ -59,9 +59,8 @@ static double *scatter_points(int dim, int64_t count)
 
 /* Each list holds nodes of its side only, those of the interface among them, and all that are within reach
  * there: the body is convex on either side. */
-static void lists_stop_at_the_interface(void **state)
+TEST(lists_stop_at_the_interface)
 {
-    (void)state;
     for (int dim = 2; dim <= 3; dim++) {
         enum { COUNT = 300 };
         struct support_options options = support_defaults(dim);
@@ -104,9 +103,8 @@ static void lists_stop_at_the_interface(void **state)
 }
 
 /* What is known of the points' cells changes nothing, nor that points are nodes. */
-static void places_tell_the_side(void **state)
+TEST(places_tell_the_side)
 {
-    (void)state;
     for (int dim = 2; dim <= 3; dim++) {
         struct support_options options = support_defaults(dim);
         struct halves halves = make_halves(dim, &options);
@@ -144,9 +142,8 @@ static void places_tell_the_side(void **state)
 }
 
 /* A field that is linear on either side, with a kink at the interface, is exact; across it, it is not. */
-static void kinks_are_exact(void **state)
+TEST(kinks_are_exact)
 {
-    (void)state;
     for (int dim = 2; dim <= 3; dim++) {
         enum { COUNT = 300 };
         struct support_options options = support_defaults(dim);
@@ -181,9 +178,8 @@ static void kinks_are_exact(void **state)
 }
 
 /* A region round which the supports of the rest must bend, and one that is a single cell. */
-static void inclusions(void **state)
+TEST(inclusions)
 {
-    (void)state;
     struct support_options options = support_defaults(2);
     struct halves halves = make_halves(2, &options);
     struct error error;
@@ -213,9 +209,8 @@ static void inclusions(void **state)
 }
 
 /* A point without a good support is named by its number among all. */
-static void failures_name_the_row(void **state)
+TEST(failures_name_the_row)
 {
-    (void)state;
     struct support_options options = support_defaults(2);
     struct halves halves = make_halves(2, &options);
     struct support_space space;
@@ -236,14 +231,4 @@ static void failures_name_the_row(void **state)
     halves_free(&halves);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(lists_stop_at_the_interface),
-        cmocka_unit_test(places_tell_the_side),
-        cmocka_unit_test(kinks_are_exact),
-        cmocka_unit_test(inclusions),
-        cmocka_unit_test(failures_name_the_row),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)
