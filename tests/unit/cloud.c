@@ -104,7 +104,7 @@ TEST(neighbours_conform)
         struct cells cells = {dim, cloud.node_count, cloud.x, cloud.cell_count, cloud.cells};
         struct faces boundary;
         struct error error;
-        assert_int_equal(faces_build(&cells, true, &boundary, &error), STATUS_OK);
+        GOOD(faces_build(&cells, true, &boundary, &error));
         assert_int_equal(boundary.count, cloud.facet_count);
         assert_int_equal(boundary.count, dim == 2 ? 14 : 2 * 2 * (12 + 8 + 6));
         faces_free(&boundary);

@@ -4,7 +4,6 @@
 
 #include "solid/curve.h"
 
-
 /* The derivative agrees with central differences of the value. */
 static void rate_is_derivative(const struct load_curve *curve)
 {
@@ -38,7 +37,7 @@ TEST(held_outside)
     static const double points[] = {-1, 5, 0, 1, 2, 3, 3, 9};
     struct load_curve table;
     struct error error;
-    assert_int_equal(curve_tabulate(&table, 4, points, 2, &error), STATUS_OK);
+    GOOD(curve_tabulate(&table, 4, points, 2, &error));
     for (int kind = CURVE_SMOOTH; kind <= CURVE_TABLE; kind++) {
         struct load_curve curve = kind < CURVE_TABLE ? curve_of_kind((enum curve_kind)kind) : table;
         NEAR_TO(curve_value(&curve, -.5), curve_value(&curve, 0), 0);
@@ -69,7 +68,7 @@ TEST(tabulated)
     static const double points[] = {0, 0, .2, 0, .3, 1, .5, 1, 1.2, -.5, 2, -.5, 4, 7};
     struct load_curve curve;
     struct error error;
-    assert_int_equal(curve_tabulate(&curve, 7, points, 4, &error), STATUS_OK);
+    GOOD(curve_tabulate(&curve, 7, points, 4, &error));
     for (int i = 0; i < 7; i++) {
         NEAR_TO(curve_value(&curve, points[2 * i] / 4), points[2 * i + 1], 1e-14);
     }
@@ -92,7 +91,7 @@ TEST(two_points)
     static const double points[] = {0, 1, 8, 5};
     struct load_curve curve;
     struct error error;
-    assert_int_equal(curve_tabulate(&curve, 2, points, 4, &error), STATUS_OK);
+    GOOD(curve_tabulate(&curve, 2, points, 4, &error));
     NEAR_TO(curve_value(&curve, .5), 2, 1e-15);
     NEAR_TO(curve_rate(&curve, .5), 2, 1e-15); /* per s, not per unit of time */
     curve_free(&curve);

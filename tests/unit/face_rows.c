@@ -71,7 +71,7 @@ static void check_cells(const struct cells *cells, const struct faces *faces)
     int32_t *cell;
     int dim = faces->dim;
     struct error error;
-    good(face_rows_cells(cells->node_count, faces, &ptr, &cell, &error), &error);
+    GOOD(face_rows_cells(cells->node_count, faces, &ptr, &cell, &error));
     for (int64_t i = 0; i < faces->count * FACE_ROWS(dim); i++) {
         int64_t f = i / FACE_ROWS(dim), k = i % FACE_ROWS(dim), row = face_row(faces, f, (int)k), with = 0;
         bool own = face_has_own_row(faces, f);
@@ -149,10 +149,10 @@ TEST(rows_of_faces)
             cell_centroid(&cells, c, middle);
             side[c] = middle[0] > 0.045;
         }
-        good(faces_build(&cells, false, &faces, &error), &error);
+        GOOD(faces_build(&cells, false, &faces, &error));
         for (int sides = 0; sides < 2; sides++) {
             free(faces.row);
-            good(face_rows_number(cells.node_count, sides ? side : NULL, &faces, &error), &error);
+            GOOD(face_rows_number(cells.node_count, sides ? side : NULL, &faces, &error));
             check_rows(&faces, sides ? side : NULL);
             check_points(&cells, &faces);
             check_cells(&cells, &faces);
@@ -160,7 +160,7 @@ TEST(rows_of_faces)
         }
         assert_true(dim == 2 ? own[0] == faces.count : own[0] < own[1] && own[1] < faces.count);
         faces_free(&faces);
-        good(faces_build(&cells, true, &faces, &error), &error);
+        GOOD(faces_build(&cells, true, &faces, &error));
         assert_null(faces.row);
         assert_int_equal(faces.row_count, faces.boundary_count);
         faces_free(&faces);

@@ -40,11 +40,10 @@ TEST(linear_fields_are_exact)
             double *values = linear_field(dim, cloud.count, cloud.x);
             double *expected = linear_field(dim, 80, cloud.points), got[160];
             assert_non_null(spacing);
-            good(field_spacing(&cells, spacing, &error), &error);
-            good(support_radii(&options, cells.node_count, spacing, spacing, &error), &error);
-            good(field_table_build(&options, NULL, &cells, spacing, 80, cloud.points, "points.x", &table,
-                                   &error),
-                 &error);
+            GOOD(field_spacing(&cells, spacing, &error));
+            GOOD(support_radii(&options, cells.node_count, spacing, spacing, &error));
+            GOOD(field_table_build(&options, NULL, &cells, spacing, 80, cloud.points, "points.x", &table,
+                                   &error));
             field_evaluate(80, table.lists.ptr, table.lists.idx, table.phi, 2, values, got);
             for (int i = 0; i < 160; i++) {
                 at_most(fabs(got[i] - expected[i]), 1e-11 * (places[p].size + 10.0), "a linear field");
@@ -66,9 +65,9 @@ TEST(spacing_with_and_without_cells)
     struct cells cells = {2, 5, x, 2, node}, bare = {2, 5, x, 0, NULL};
     double spacing[5], nearest[5], alone[5];
     struct error error;
-    good(field_spacing(&cells, spacing, &error), &error);
-    good(nodes_spacing(2, 5, x, nearest, &error), &error);
-    good(field_spacing(&bare, alone, &error), &error);
+    GOOD(field_spacing(&cells, spacing, &error));
+    GOOD(nodes_spacing(2, 5, x, nearest, &error));
+    GOOD(field_spacing(&bare, alone, &error));
     assert_memory_equal(alone, nearest, sizeof nearest);
     at_most(fabs(spacing[1] - 1.0), 1e-15, "spacing of cells");
     assert_true(spacing[4] == nearest[4]);
@@ -83,7 +82,7 @@ TEST(outside_of_nodes)
     struct cells cells = {2, 3, x, 0, NULL};
     bool got[6];
     struct error error;
-    good(field_outside(&cells, spacing, FIELD_MARGIN, 6, points, got, &error), &error);
+    GOOD(field_outside(&cells, spacing, FIELD_MARGIN, 6, points, got, &error));
     assert_memory_equal(got, expected, sizeof got);
 }
 
@@ -106,13 +105,13 @@ TEST(outside_of_cells)
     struct cells cells2 = {2, 6, x2, 3, triangle}, cells3 = {3, 4, x3, 1, tetrahedron};
     bool got[9];
     struct error error;
-    good(field_outside(&cells2, spacing, 0.0, 7, points2, got, &error), &error);
+    GOOD(field_outside(&cells2, spacing, 0.0, 7, points2, got, &error));
     assert_memory_equal(got, in2, sizeof in2);
-    good(field_outside(&cells2, spacing, 0.2, 7, points2, got, &error), &error);
+    GOOD(field_outside(&cells2, spacing, 0.2, 7, points2, got, &error));
     assert_memory_equal(got, near2, sizeof near2);
-    good(field_outside(&cells3, spacing, 0.0, 9, points3, got, &error), &error);
+    GOOD(field_outside(&cells3, spacing, 0.0, 9, points3, got, &error));
     assert_memory_equal(got, in3, sizeof in3);
-    good(field_outside(&cells3, spacing, 0.2, 9, points3, got, &error), &error);
+    GOOD(field_outside(&cells3, spacing, 0.2, 9, points3, got, &error));
     assert_memory_equal(got, near3, sizeof near3);
 }
 
@@ -132,12 +131,12 @@ TEST(matching)
         other[2 * (n * 31 % 81)] = cloud.x[2 * n] + 0.9e-10 * (n % 2 == 0 ? 1 : -1);
         other[2 * (n * 31 % 81) + 1] = cloud.x[2 * n + 1];
     }
-    good(field_match_nodes(2, 81, cloud.x, 81, cloud.x, match, &matched, &error), &error);
+    GOOD(field_match_nodes(2, 81, cloud.x, 81, cloud.x, match, &matched, &error));
     assert_true(matched);
     for (int32_t n = 0; n < 81; n++) {
         assert_int_equal(match[n], n);
     }
-    good(field_match_nodes(2, 81, cloud.x, 81, other, match, &matched, &error), &error);
+    GOOD(field_match_nodes(2, 81, cloud.x, 81, other, match, &matched, &error));
     assert_true(matched);
     for (int64_t n = 0; n < 81; n++) {
         assert_false(seen[match[n]]);
@@ -146,13 +145,13 @@ TEST(matching)
         at_most(fabs(other[2 * match[n] + 1] - cloud.x[2 * n + 1]), 1e-10, "a matched node");
     }
     other[5] += 1e-8;
-    good(field_match_nodes(2, 81, cloud.x, 81, other, match, &matched, &error), &error);
+    GOOD(field_match_nodes(2, 81, cloud.x, 81, other, match, &matched, &error));
     assert_false(matched);
-    good(field_match_nodes(2, 81, cloud.x, 80, cloud.x, match, &matched, &error), &error);
+    GOOD(field_match_nodes(2, 81, cloud.x, 80, cloud.x, match, &matched, &error));
     assert_false(matched);
     memcpy(other, cloud.x, 81 * 2 * sizeof *other); /* the same places, but not equally often */
     memcpy(other, cloud.x + 2 * 40, 2 * sizeof *other);
-    good(field_match_nodes(2, 81, cloud.x, 81, other, match, &matched, &error), &error);
+    GOOD(field_match_nodes(2, 81, cloud.x, 81, other, match, &matched, &error));
     assert_false(matched);
     free(other);
     free(match);
@@ -165,7 +164,7 @@ TEST(statistics_of_differences)
     static const int64_t index[] = {0, 1, 2, 4, 5};
     struct field_statistics statistics;
     struct error error;
-    good(field_statistics(5, index, difference, &statistics, &error), &error);
+    GOOD(field_statistics(5, index, difference, &statistics, &error));
     at_most(fabs(statistics.average - 2.4), 1e-15, "average");
     at_most(fabs(statistics.rmse - sqrt(42.0 / 5.0)), 1e-15, "rmse");
     assert_true(statistics.largest == 4.0 && statistics.largest_at == 2);
@@ -175,12 +174,12 @@ TEST(statistics_of_differences)
     at_most(fabs(field_percentile(&statistics, 12.5) - 0.5), 1e-15, "percentile between two");
     field_statistics_free(&statistics);
     difference[4] = NAN;
-    good(field_statistics(5, index, difference, &statistics, &error), &error);
+    GOOD(field_statistics(5, index, difference, &statistics, &error));
     assert_true(isnan(statistics.average) && isnan(statistics.largest) && isnan(statistics.rmse));
     assert_true(isnan(field_percentile(&statistics, 50)));
     assert_int_equal(statistics.largest_at, 4);
     field_statistics_free(&statistics);
-    good(field_statistics(0, index, difference, &statistics, &error), &error);
+    GOOD(field_statistics(0, index, difference, &statistics, &error));
     assert_true(isnan(statistics.average) && isnan(statistics.largest) && isnan(statistics.rmse));
     field_statistics_free(&statistics);
     static const double field[] = {3.0, 4.0, NAN, 0.0};
@@ -200,7 +199,7 @@ TEST(comparisons)
         struct error error;
         bool *chosen = calloc((size_t)coarse.count, sizeof *chosen);
         assert_non_null(chosen);
-        good(field_compare(&first, &first, NULL, false, &comparison, &error), &error);
+        GOOD(field_compare(&first, &first, NULL, false, &comparison, &error));
         assert_true(comparison.coincide && comparison.count == coarse.count && comparison.outside == 0);
         for (int64_t n = 0; n < coarse.count; n++) {
             assert_true(comparison.difference[n] == 0.0);
@@ -209,7 +208,7 @@ TEST(comparisons)
 
         a[2 * 7] += 3.0;
         a[2 * 7 + 1] += 4.0;
-        good(field_compare(&first, &second, NULL, false, &comparison, &error), &error);
+        GOOD(field_compare(&first, &second, NULL, false, &comparison, &error));
         assert_false(comparison.coincide);
         for (int64_t n = 0; n < coarse.count; n++) {
             at_most(fabs(comparison.difference[n] - (n == 7 ? 5.0 : 0.0)), 1e-11, "difference");
@@ -221,12 +220,12 @@ TEST(comparisons)
         assert_int_equal(comparison.outside, 1);
         assert_non_null(strstr(error.text, "row 9"));
         field_comparison_free(&comparison);
-        good(field_compare(&first, &second, NULL, true, &comparison, &error), &error);
+        GOOD(field_compare(&first, &second, NULL, true, &comparison, &error));
         assert_int_equal(comparison.count, coarse.count - 1);
         assert_true(isnan(comparison.difference[9]));
         field_comparison_free(&comparison);
         chosen[7] = chosen[8] = true;
-        good(field_compare(&first, &second, chosen, false, &comparison, &error), &error);
+        GOOD(field_compare(&first, &second, chosen, false, &comparison, &error));
         assert_int_equal(comparison.count, 2);
         assert_true(comparison.node[0] == 7 && comparison.node[1] == 8);
         assert_true(isnan(comparison.difference[0]));

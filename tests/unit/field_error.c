@@ -17,7 +17,7 @@ static struct cloud lattice(int dim, int n, double jitter)
                                    .seed = 1};
     struct cloud cloud;
     struct error error;
-    good(cloud_make(&wanted, &cloud, &error), &error);
+    GOOD(cloud_make(&wanted, &cloud, &error));
     assert_true(cloud.cell_count > 0);
     return cloud;
 }
@@ -73,7 +73,7 @@ TEST(mean_over_body)
             .kind = CLOUD_GRADED, .dim = dim, .count = {7, 7, 7}, .high = {1.0, 1.0, 1.0}, .ratio = 10.0};
         struct cloud cloud;
         struct error error;
-        good(cloud_make(&wanted, &cloud, &error), &error);
+        GOOD(cloud_make(&wanted, &cloud, &error));
         struct cells cells = cells_of(&cloud);
         double *value = array_of(cells.node_count, 0.0);
         for (int64_t n = 0; n < cells.node_count; n++) {
@@ -113,14 +113,14 @@ TEST(linear_fields_have_no_error)
             values[2 * n] = x > 0.5 ? 4.0 * x - 1.5 : x;
             values[2 * n + 1] = 1.0 - 2.0 * cells.x[n * dim + 1];
         }
-        good(field_error_recovered(&cells, region, 2, 2, values, squared, &error), &error);
+        GOOD(field_error_recovered(&cells, region, 2, 2, values, squared, &error));
         double largest = 0.0;
         for (int64_t q = 0; q < cells.count; q++) {
             assert_true(squared[q] >= 0.0);
             largest = fmax(largest, squared[q]);
         }
         at_most(largest, 1e-26, "error of linear fields");
-        good(field_error_recovered(&cells, NULL, 0, 2, values, squared, &error), &error);
+        GOOD(field_error_recovered(&cells, NULL, 0, 2, values, squared, &error));
         for (int64_t q = 0; q < cells.count; q++) {
             double middle[3];
             cell_centroid(&cells, q, middle);
@@ -128,8 +128,7 @@ TEST(linear_fields_have_no_error)
             assert_true(near ? squared[q] > 1e-6 : squared[q] < 1e-26);
         }
         values[5] = NAN;
-        assert_int_equal(field_error_recovered(&cells, NULL, 0, 2, values, squared, &error), STATUS_INPUT);
-        assert_non_null(strstr(error.text, "row 2"));
+        FAILS(field_error_recovered(&cells, NULL, 0, 2, values, squared, &error), STATUS_INPUT, "row 2");
         free(values);
         free(squared);
         free(region);
@@ -152,7 +151,7 @@ TEST(quadratic_fields_converge)
             for (int64_t n = 0; n < cells.node_count; n++) {
                 values[n] = cells.x[n * dim] * cells.x[n * dim];
             }
-            good(field_error_recovered(&cells, NULL, 0, 1, values, squared, &error), &error);
+            GOOD(field_error_recovered(&cells, NULL, 0, 1, values, squared, &error));
             total[i] = 0.0;
             for (int64_t q = 0; q < cells.count; q++) {
                 total[i] += squared[q];
@@ -178,8 +177,8 @@ TEST(equal_errors_keep_a_mesh_even)
         struct size_field field;
         struct error error;
         double *squared = array_of(cells.count, 3.0), *spacing = array_of(cells.node_count, 0.0);
-        good(cells_node_spacing(&cells, spacing, &error), &error);
-        good(size_field_build(&cells, squared, &request, &field, &error), &error);
+        GOOD(cells_node_spacing(&cells, spacing, &error));
+        GOOD(size_field_build(&cells, squared, &request, &field, &error));
         for (int64_t n = 0; n < cells.node_count; n++) {
             at_most(fabs(field.size[n] / spacing[n] - 0.5), 0.2, "size");
         }
@@ -190,7 +189,7 @@ TEST(equal_errors_keep_a_mesh_even)
 
         /* No more nodes than there may be: all sizes larger by one factor. */
         request.most_nodes = (double)cells.node_count;
-        good(size_field_build(&cells, squared, &request, &field, &error), &error);
+        GOOD(size_field_build(&cells, squared, &request, &field, &error));
         at_most(fabs(field.nodes - request.most_nodes), 0.0, "nodes");
         assert_true(field.unbound > field.nodes);
         size_field_free(&field);
@@ -198,7 +197,7 @@ TEST(equal_errors_keep_a_mesh_even)
         /* Without errors cells become larger, but not at the boundary. */
         request = (struct size_field_request){.share = 1.0, .most_nodes = 1e9};
         memset(squared, 0, (size_t)cells.count * sizeof *squared);
-        good(size_field_build(&cells, squared, &request, &field, &error), &error);
+        GOOD(size_field_build(&cells, squared, &request, &field, &error));
         for (int64_t n = 0; n < cells.node_count; n++) {
             bool inside = true;
             for (int a = 0; a < dim; a++) {
@@ -231,7 +230,7 @@ TEST(bad_cells)
             }
         }
         for (int pass = 0; pass < 2; pass++) {
-            good(size_field_build(&cells, squared, &request, &field, &error), &error);
+            GOOD(size_field_build(&cells, squared, &request, &field, &error));
             least = INFINITY;
             for (int64_t n = 0; n < cells.node_count; n++) {
                 least = fmin(least, field.size[n]);
@@ -287,7 +286,7 @@ TEST(facets_near_their_curve)
     }
     double *squared = array_of(cells.count, 1.0);
     request.sag = 1e-4;
-    good(size_field_build(&cells, squared, &request, &bent, &error), &error);
+    GOOD(size_field_build(&cells, squared, &request, &bent, &error));
     for (int64_t n = 0; n < cells.node_count; n++) {
         double x = cells.x[2 * n], y = cells.x[2 * n + 1], r = hypot(x, y), angle = atan2(y, x);
         bool on_circle = fabs(r - 1.0) < 1e-9 || fabs(r - 2.0) < 1e-9;
@@ -296,9 +295,9 @@ TEST(facets_near_their_curve)
             at_most(fabs(bent.size[n] / exact - 1.0), 0.05, "size for the sag of a circle");
         }
     }
-    good(size_field_build(&flat, squared, &request, &straight, &error), &error);
+    GOOD(size_field_build(&flat, squared, &request, &straight, &error));
     request.sag = 0.0;
-    good(size_field_build(&flat, squared, &request, &limited, &error), &error);
+    GOOD(size_field_build(&flat, squared, &request, &limited, &error));
     assert_memory_equal(straight.size, limited.size, (size_t)flat.node_count * sizeof(double));
     size_field_free(&bent);
     size_field_free(&straight);
@@ -316,8 +315,7 @@ TEST(nodes_of_no_cell)
     struct size_field_request request = {.share = 1.0, .most_nodes = 100.0};
     struct size_field field;
     struct error error;
-    assert_int_equal(size_field_build(&cells, squared, &request, &field, &error), STATUS_INPUT);
-    assert_non_null(strstr(error.text, "node 3"));
+    FAILS(size_field_build(&cells, squared, &request, &field, &error), STATUS_INPUT, "node 3");
     size_field_free(&field);
 }
 

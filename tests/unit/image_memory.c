@@ -39,7 +39,7 @@ TEST(images)
     put_dim(&file, 0, 5);
     put_dim(&file, 5, 3);
     file.size += 4 * 3 * 2 * 3 * 4;
-    assert_int_equal(read_and_write(&error), STATUS_OK); /* OpenMP has its teams then */
+    GOOD(read_and_write(&error)); /* OpenMP has its teams then */
     fail_each(read_and_write, 6);
 }
 
@@ -66,10 +66,10 @@ TEST(motions)
     struct cloud_options options = {.kind = CLOUD_REGULAR, .dim = 3, .count = {4, 4, 4}, .high = {3, 3, 3}};
     struct cloud cloud;
     static double none[4 * 4 * 4 * 3];
-    assert_int_equal(cloud_make(&options, &cloud, &error), STATUS_OK);
+    GOOD(cloud_make(&options, &cloud, &error));
     cells = (struct cells){3, cloud.node_count, cloud.x, cloud.cell_count, cloud.cells};
     u = none;
-    assert_int_equal(move(&error), STATUS_OK);
+    GOOD(move(&error));
     fail_each(move, 10);
     cloud_free(&cloud);
 }

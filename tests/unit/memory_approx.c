@@ -203,42 +203,42 @@ done:
 TEST(tables)
 {
     struct error error;
-    assert_int_equal(try_table(&error), STATUS_OK);
+    GOOD(try_table(&error));
     fail_each(try_table, 30);
 }
 
 TEST(around_corners)
 {
     struct error error;
-    assert_int_equal(try_reach(&error), STATUS_OK);
+    GOOD(try_reach(&error));
     fail_each(try_reach, 30);
 }
 
 TEST(sides)
 {
     struct error error;
-    assert_int_equal(try_sides(&error), STATUS_OK);
+    GOOD(try_sides(&error));
     fail_each(try_sides, 60);
 }
 
 TEST(adaptive)
 {
     struct error error;
-    assert_int_equal(try_adaptive(&error), STATUS_OK);
+    GOOD(try_adaptive(&error));
     fail_each(try_adaptive, 30);
 }
 
 TEST(comparisons)
 {
     struct error error;
-    assert_int_equal(try_compare(&error), STATUS_OK);
+    GOOD(try_compare(&error));
     fail_each(try_compare, 30);
 }
 
 TEST(sizes)
 {
     struct error error;
-    assert_int_equal(try_sizes(&error), STATUS_OK);
+    GOOD(try_sizes(&error));
     fail_each(try_sizes, 10);
 }
 

@@ -37,7 +37,7 @@ TEST(reproduction)
                     struct support_options options = options_for(dim, (enum basis)b, (enum weight_function)w);
                     struct table table;
                     struct error error;
-                    good(tabulate(&options, cloud.count, cloud.x, 100, cloud.points, &table, &error), &error);
+                    GOOD(tabulate(&options, cloud.count, cloud.x, 100, cloud.points, &table, &error));
                     struct defects worst =
                         table_defects(&table, dim, cloud.x, cloud.points, 2.0 * cloud.spacing);
                     if (getenv("SHOW")) {
@@ -85,7 +85,7 @@ TEST(quadratic_reproduction)
             struct support_options options = options_for(dim, BASIS_QUADRATIC, WEIGHT_QUARTIC);
             struct table table;
             struct error error;
-            good(tabulate(&options, cloud.count, cloud.x, 100, cloud.points, &table, &error), &error);
+            GOOD(tabulate(&options, cloud.count, cloud.x, 100, cloud.points, &table, &error));
             for (int64_t q = 0; q < 100; q++) {
                 double value = 0.0, slope[3] = {0.0}, expected[3], unused[3];
                 for (int64_t i = table.lists.ptr[q]; i < table.lists.ptr[q + 1]; i++) {
@@ -121,7 +121,7 @@ static void evaluate(const struct mls *mls, const struct scattered *cloud, const
                                   .widen = table->lists.widen[p],
                                   .neighbours = table->lists.idx + table->lists.ptr[p],
                                   .count = table->lists.ptr[p + 1] - table->lists.ptr[p]};
-    good(mls_evaluate(mls, &support, &work, phi, dphi, &verdict, &error), &error);
+    GOOD(mls_evaluate(mls, &support, &work, phi, dphi, &verdict, &error));
     assert_int_equal(verdict, MLS_GOOD);
     mls_work_free(&work);
 }
@@ -139,7 +139,7 @@ TEST(gradients)
                 struct support_options options = options_for(dim, (enum basis)b, (enum weight_function)w);
                 struct table table;
                 struct error error;
-                good(tabulate(&options, cloud.count, cloud.x, 20, cloud.points, &table, &error), &error);
+                GOOD(tabulate(&options, cloud.count, cloud.x, 20, cloud.points, &table, &error));
                 double h = 1e-5 * cloud.spacing;
                 for (int64_t p = 0; p < 20; p++) {
                     double plus[MOST], minus[MOST], x[3], largest = 0.0;
@@ -207,7 +207,7 @@ TEST(limits_of_modified)
         struct support_options options = options_for(dim, BASIS_QUADRATIC, WEIGHT_QUARTIC);
         struct table table;
         struct error error;
-        good(tabulate(&options, cloud.count, cloud.x, 30, cloud.points, &table, &error), &error);
+        GOOD(tabulate(&options, cloud.count, cloud.x, 30, cloud.points, &table, &error));
         struct mls linear = options_for(dim, BASIS_LINEAR, WEIGHT_QUARTIC).mls;
         struct mls modified = options_for(dim, BASIS_MODIFIED, WEIGHT_QUARTIC).mls;
         struct mls huge = with_mu(modified, 1e12), nothing = with_mu(modified, 1e-14);
@@ -231,7 +231,7 @@ TEST(units_of_mu)
         options.widen = false;
         struct table table;
         struct error error;
-        good(tabulate(&options, cloud.count, cloud.x, 30, cloud.points, &table, &error), &error);
+        GOOD(tabulate(&options, cloud.count, cloud.x, 30, cloud.points, &table, &error));
         double s4 = pow(options.radius, 4.0);
         struct mls relative = with_mu(options.mls, 1e-3), absolute = with_mu(options.mls, 1e-3 * s4);
         absolute.mu_absolute = true;
@@ -266,9 +266,9 @@ TEST(invariance)
             struct support_options options = options_for(dim, (enum basis)b, WEIGHT_QUARTIC);
             struct table one, two, three;
             struct error error;
-            good(tabulate(&options, cloud.count, cloud.x, 50, cloud.points, &one, &error), &error);
-            good(tabulate(&options, cloud.count, scaled.x, 50, scaled.points, &two, &error), &error);
-            good(tabulate(&options, cloud.count, moved.x, 50, moved.points, &three, &error), &error);
+            GOOD(tabulate(&options, cloud.count, cloud.x, 50, cloud.points, &one, &error));
+            GOOD(tabulate(&options, cloud.count, scaled.x, 50, scaled.points, &two, &error));
+            GOOD(tabulate(&options, cloud.count, moved.x, 50, moved.points, &three, &error));
             int64_t pairs = one.lists.ptr[50];
             assert_memory_equal(one.lists.ptr, two.lists.ptr, 51 * sizeof(int64_t));
             assert_memory_equal(one.lists.idx, two.lists.idx, (size_t)pairs * sizeof(int32_t));
@@ -309,7 +309,7 @@ TEST(instruction_sets)
                 struct support_options options = options_for(dim, (enum basis)b, (enum weight_function)w);
                 struct table table;
                 struct error error;
-                good(tabulate(&options, cloud.count, cloud.x, 100, cloud.points, &table, &error), &error);
+                GOOD(tabulate(&options, cloud.count, cloud.x, 100, cloud.points, &table, &error));
                 for (int64_t p = 0; p < 100; p++) {
                     struct mls_support support = {.x = cloud.points + p * dim,
                                                   .nodes = cloud.x,
@@ -391,7 +391,7 @@ static double fit_error(int dim, enum basis basis, int per_axis)
     struct table table;
     struct error error;
     double sum = 0.0;
-    good(tabulate(&options, cloud.count, cloud.x, 400, cloud.points, &table, &error), &error);
+    GOOD(tabulate(&options, cloud.count, cloud.x, 400, cloud.points, &table, &error));
     for (int64_t p = 0; p < 400; p++) {
         double value = -wave(dim, cloud.points + p * dim);
         for (int64_t i = table.lists.ptr[p]; i < table.lists.ptr[p + 1]; i++) {

@@ -45,7 +45,7 @@ static void make_body(int dim, int64_t along, field_function field, struct body 
                                     .high = {1, 1, 1},
                                     .jitter = dim == 2 ? 0.3 : 0.12,
                                     .seed = 7};
-    assert_int_equal(cloud_make(&options, &body->cloud, &error), STATUS_OK);
+    GOOD(cloud_make(&options, &body->cloud, &error));
     body->cells =
         (struct cells){dim, body->cloud.node_count, body->cloud.x, body->cloud.cell_count, body->cloud.cells};
     assert_true(body->cells.count > 0);
@@ -122,7 +122,7 @@ static void check_polynomial(int dim, bool linear, field_function field, double 
     struct motion motion;
     double inverse_error;
     make_body(dim, dim == 2 ? 9 : 6, field, &body);
-    assert_int_equal(motion_build(&body.cells, body.u, linear, NULL, &motion, &error), STATUS_OK);
+    GOOD(motion_build(&body.cells, body.u, linear, NULL, &motion, &error));
     assert_true(largest_error(&motion, field, &inverse_error) <= tolerance);
     assert_true(inverse_error <= 1e-10);
     motion_free(&motion);
@@ -147,7 +147,7 @@ TEST(orders)
             struct body body;
             struct motion motion;
             make_body(2, fine ? 41 : 21, smooth_field, &body);
-            assert_int_equal(motion_build(&body.cells, body.u, linear, NULL, &motion, &error), STATUS_OK);
+            GOOD(motion_build(&body.cells, body.u, linear, NULL, &motion, &error));
             errors[fine] = largest_error(&motion, smooth_field, &ignored);
             motion_free(&motion);
             drop_body(&body);
@@ -166,7 +166,7 @@ TEST(walks)
     struct body body;
     struct motion motion;
     make_body(3, 6, smooth_field, &body);
-    assert_int_equal(motion_build(&body.cells, body.u, false, NULL, &motion, &error), STATUS_OK);
+    GOOD(motion_build(&body.cells, body.u, false, NULL, &motion, &error));
     for (int64_t c = 0; c < body.cells.count; c++) {
         for (int a = 0; a <= 3; a++) {
             int64_t start = motion.across[4 * c + a];
@@ -191,7 +191,7 @@ TEST(folds)
     struct cells cells = {2, 4, x, 2, node};
     struct motion motion;
     int64_t first = -1;
-    assert_int_equal(motion_build(&cells, u, true, NULL, &motion, &error), STATUS_OK);
+    GOOD(motion_build(&cells, u, true, NULL, &motion, &error));
     assert_int_equal(motion_folded(&motion, &first), 1);
     assert_int_equal(first, 1);
     motion_free(&motion);
@@ -230,10 +230,10 @@ TEST(owners)
             body.cloud.x[i] = body.cloud.x[i] * 12 - 2;
         }
         omp_set_num_threads(1);
-        assert_int_equal(raster_cells(&body.cells, 1, size, owner, &doubly, &error), STATUS_OK);
+        GOOD(raster_cells(&body.cells, 1, size, owner, &doubly, &error));
         assert_int_equal(doubly, 0);
         omp_set_num_threads(3);
-        assert_int_equal(raster_cells(&body.cells, 1, size, again, &doubly, &error), STATUS_OK);
+        GOOD(raster_cells(&body.cells, 1, size, again, &doubly, &error));
         assert_memory_equal(owner, again, (size_t)count * sizeof *owner);
         for (int64_t v = 0; v < count; v++) {
             const double y[3] = {(double)(v % size[0]), (double)(v / size[0] % size[1]),
@@ -247,7 +247,7 @@ TEST(owners)
         }
         assert_true(found > (dim == 2 ? 100 : 1000));
         /* Seen in a mirror all cells are turned over. */
-        assert_int_equal(raster_cells(&body.cells, -1, size, owner, &doubly, &error), STATUS_OK);
+        GOOD(raster_cells(&body.cells, -1, size, owner, &doubly, &error));
         for (int64_t v = 0; v < count; v++) {
             assert_int_equal(owner[v], -1);
         }
@@ -265,7 +265,7 @@ TEST(two_parts_at_one_place)
     struct cells cells = {2, 6, x, 2, node};
     int32_t owner[144];
     int64_t doubly;
-    assert_int_equal(raster_cells(&cells, 1, size, owner, &doubly, &error), STATUS_OK);
+    GOOD(raster_cells(&cells, 1, size, owner, &doubly, &error));
     assert_int_equal(owner[2 + 12 * 2], 0);
     assert_int_equal(doubly, 6 + 5 + 4 + 3 + 2 + 1);
 }

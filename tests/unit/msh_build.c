@@ -120,7 +120,7 @@ static int64_t boundary_count(const struct mesh *mesh)
     struct cells cells = cells_of(mesh);
     struct faces faces;
     struct error error;
-    assert_int_equal(faces_build(&cells, true, &faces, &error), STATUS_OK);
+    GOOD(faces_build(&cells, true, &faces, &error));
     int64_t count = faces.count;
     faces_free(&faces);
     return count;
@@ -403,7 +403,7 @@ TEST(lengths_are_scaled)
     struct sketch *s = square();
     struct mesh mesh;
     struct error error;
-    assert_int_equal(mesh_build(&mesh, &s->msh, &(struct mesh_options){.unit = 1e-6}, &error), STATUS_OK);
+    GOOD(mesh_build(&mesh, &s->msh, &(struct mesh_options){.unit = 1e-6}, &error));
     assert_true(mesh.x[4] == 1e-6);
     assert_true(fabs(total_volume(&mesh) / 1e-12 - 1) < 1e-14);
     mesh_free(&mesh);

@@ -62,7 +62,7 @@ TEST(every_form_gives_the_same_mesh)
         assert_int_equal(msh.group_count, 3);
         assert_string_equal(msh.groups[0].name, "corner");
         assert_int_equal(msh.groups[2].element_count, 2);
-        assert_int_equal(mesh_build(&mesh, &msh, &(struct mesh_options){.unit = 1e-3}, &error), STATUS_OK);
+        GOOD(mesh_build(&mesh, &msh, &(struct mesh_options){.unit = 1e-3}, &error));
         assert_int_equal(mesh.dim, 2);
         assert_int_equal(mesh.node_count, 4);
         for (int n = 0; n < 4; n++) {
@@ -91,8 +91,8 @@ TEST(groups_of_elements_not_of_entities)
     struct mesh mesh;
     struct error error = {""};
     assert_true(fixture_replace(&f, "14 2 2 2 1", "14 2 2 8 1"));
-    assert_int_equal(read_bytes(&msh, f.bytes, f.size, &error), STATUS_OK);
-    assert_int_equal(mesh_build(&mesh, &msh, &(struct mesh_options){.unit = 1}, &error), STATUS_OK);
+    GOOD(read_bytes(&msh, f.bytes, f.size, &error));
+    GOOD(mesh_build(&mesh, &msh, &(struct mesh_options){.unit = 1}, &error));
     assert_int_equal(mesh.regions.count, 2);
     assert_string_equal(mesh.regions.name[1], "group_8");
     assert_int_equal(mesh.cell_region[0], 0);
@@ -122,7 +122,7 @@ TEST(tags_in_any_order)
             snprintf(to, sizeof to, "%.*s%s%s", (int)(at - lines[k][1]), lines[k][1], tags[i], at + 2);
             assert_true(fixture_replace(&f, lines[k][0], to));
         }
-        assert_int_equal(parse_copy(&msh, f.bytes, f.size, &error), STATUS_OK);
+        GOOD(parse_copy(&msh, f.bytes, f.size, &error));
         assert_int_equal(msh.node_tag[0], atoll(tags[i]));
         assert_memory_equal(msh.node_idx, ((int32_t[]){4, 0, 1, 0, 1, 2, 0, 2, 3}), 9 * sizeof(int32_t));
         assert_memory_equal(msh.node_ptr, ((int64_t[]){0, 1, 3, 6, 9}), 5 * sizeof(int64_t));
@@ -137,7 +137,7 @@ TEST(groups_of_entities)
     struct msh msh;
     struct error error = {""};
     assert_true(fixture_replace(&f, " 1 2 1 1\n", " 4 7 -2 -7 2 1 1\n"));
-    assert_int_equal(parse_copy(&msh, f.bytes, f.size, &error), STATUS_OK);
+    GOOD(parse_copy(&msh, f.bytes, f.size, &error));
     assert_string_equal(error.text, "");
     assert_int_equal(msh.group_count, 4);
     assert_string_equal(msh.groups[3].name, "group_7");
@@ -168,7 +168,7 @@ TEST(entities_may_be_absent)
     assert_true(from != NULL && to != NULL);
     memmove(from, to, (size_t)(f.bytes + f.size - to));
     f.size -= (size_t)(to - from);
-    assert_int_equal(parse_copy(&msh, f.bytes, f.size, &error), STATUS_OK);
+    GOOD(parse_copy(&msh, f.bytes, f.size, &error));
     assert_int_equal(msh.member_ptr[FIXTURE_ELEMENTS], 0);
     assert_int_equal(msh.groups[2].element_count, 0);
     msh_free(&msh);
@@ -227,7 +227,7 @@ TEST(other_forms_are_read)
         assert_non_null(file);
         size_t size = fread(bytes, 1, sizeof bytes, file);
         fclose(file);
-        assert_int_equal(parse_copy(&msh, bytes, size, &error), STATUS_OK);
+        GOOD(parse_copy(&msh, bytes, size, &error));
         assert_string_equal(error.text, "");
         assert_int_equal(msh.node_count, files[i].nodes);
         assert_int_equal(msh.element_count, files[i].elements);
@@ -331,7 +331,7 @@ TEST(other_sections_are_left_out)
     struct error error;
     assert_true(
         fixture_replace(&f, "$EndNodes\n", "$EndNodes\n$Comments\n$Nodes\n1 0 0\n$EndNodes\n$EndComments\n"));
-    assert_int_equal(parse_copy(&msh, f.bytes, f.size, &error), STATUS_OK);
+    GOOD(parse_copy(&msh, f.bytes, f.size, &error));
     assert_int_equal(msh.node_count, FIXTURE_NODES);
     msh_free(&msh);
 }
@@ -348,7 +348,7 @@ TEST(lines_may_end_as_in_dos)
         }
         dos.bytes[dos.size++] = f.bytes[i];
     }
-    assert_int_equal(parse_copy(&msh, dos.bytes, dos.size, &error), STATUS_OK);
+    GOOD(parse_copy(&msh, dos.bytes, dos.size, &error));
     assert_int_equal(msh.node_count, FIXTURE_NODES);
     msh_free(&msh);
 }
@@ -362,7 +362,7 @@ TEST(pipes_are_read_whole)
     assert_int_equal(pipe(ends), 0);
     assert_int_equal(write(ends[1], f.bytes, f.size), f.size);
     close(ends[1]);
-    assert_int_equal(msh_read(&msh, ends[0], "pipe", &error), STATUS_OK);
+    GOOD(msh_read(&msh, ends[0], "pipe", &error));
     assert_int_equal(msh.element_count, FIXTURE_ELEMENTS);
     msh_free(&msh);
     close(ends[0]);

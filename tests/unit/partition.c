@@ -25,23 +25,23 @@ static void body_setup(struct body *body, int dim, double ratio, int32_t parts, 
         .kind = CLOUD_GRADED, .dim = dim, .count = {16, 7, 6}, .high = {0.2, 0.1, 0.1}, .ratio = ratio};
     struct support_options options = support_defaults(dim);
     *body = (struct body){0};
-    good(cloud_make(&wanted, &body->cloud, &error), &error);
+    GOOD(cloud_make(&wanted, &body->cloud, &error));
     body->cells =
         (struct cells){dim, body->cloud.node_count, body->cloud.x, body->cloud.cell_count, body->cloud.cells};
     int64_t nodes = body->cells.node_count;
-    good(NEW_ARRAY(&spacing, nodes, &error), &error);
-    good(NEW_ARRAY(&body->radius, nodes, &error), &error);
-    good(NEW_ARRAY(&body->owner, nodes, &error), &error);
-    good(NEW_ARRAY(&body->work, body->cells.count, &error), &error);
-    good(cells_node_spacing(&body->cells, spacing, &error), &error);
-    good(support_radii(&options, nodes, spacing, body->radius, &error), &error);
-    good(point_grid_build(&body->grid, dim, nodes, body->cells.x, body->radius, &error), &error);
-    good(cell_stars_build(&body->cells, &body->stars, &error), &error);
-    good(partition_work(&body->cells, &body->grid, body->work, &error), &error);
-    good(partition_nodes(&body->cells, &body->stars, body->work, parts, body->owner, &error), &error);
+    GOOD(NEW_ARRAY(&spacing, nodes, &error));
+    GOOD(NEW_ARRAY(&body->radius, nodes, &error));
+    GOOD(NEW_ARRAY(&body->owner, nodes, &error));
+    GOOD(NEW_ARRAY(&body->work, body->cells.count, &error));
+    GOOD(cells_node_spacing(&body->cells, spacing, &error));
+    GOOD(support_radii(&options, nodes, spacing, body->radius, &error));
+    GOOD(point_grid_build(&body->grid, dim, nodes, body->cells.x, body->radius, &error));
+    GOOD(cell_stars_build(&body->cells, &body->stars, &error));
+    GOOD(partition_work(&body->cells, &body->grid, body->work, &error));
+    GOOD(partition_nodes(&body->cells, &body->stars, body->work, parts, body->owner, &error));
     body->partition =
         (struct partition){&body->cells, &body->stars, &body->grid, parts, body->owner, body->work, widen};
-    good(partition_own_cells(&body->partition, &body->own_ptr, &body->own_cell, &error), &error);
+    GOOD(partition_own_cells(&body->partition, &body->own_ptr, &body->own_cell, &error));
     free(spacing);
 }
 
@@ -96,7 +96,7 @@ static void check_part(const struct body *body, int32_t part)
     const int32_t *own = body->own_cell + body->own_ptr[part];
     int64_t own_count = body->own_ptr[part + 1] - body->own_ptr[part];
     uint32_t state = 7;
-    good(body_part_build(&body->partition, part, own, own_count, true, &work, &got, &error), &error);
+    GOOD(body_part_build(&body->partition, part, own, own_count, true, &work, &got, &error));
     bool *reached = calloc((size_t)cells->node_count, sizeof *reached);
     assert_non_null(reached);
     for (int64_t i = 0; i < own_count; i++) {

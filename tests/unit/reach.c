@@ -77,7 +77,7 @@ static void build(int dim, const int *size, solid_function *solid, sheet_functio
     }
     body.cells = (struct cells){
         .dim = dim, .node_count = body.node_count, .x = body.x, .count = body.cell_count, .node = body.cell};
-    good(cells_check(&body.cells, &error), &error);
+    GOOD(cells_check(&body.cells, &error));
 }
 
 static int one_sheet(const int *cube, int i, int j, int k)
@@ -128,16 +128,14 @@ static void find(double radius, bool widen)
             }
         }
     }
-    good(point_grid_build(&found.grid, dim, body.node_count, body.x, found.radius, &error), &error);
-    good(reach_build(&body.cells, &found.grid, &found.reach, &error), &error);
+    GOOD(point_grid_build(&found.grid, dim, body.node_count, body.x, found.radius, &error));
+    GOOD(reach_build(&body.cells, &found.grid, &found.reach, &error));
     struct reach_places inside = {.cell = found.cell, .points_per_row = 1};
-    good(support_build_within(&found.options, &found.grid, &found.reach, &inside, found.count, found.x,
-                              "points", &found.lists, &error),
-         &error);
+    GOOD(support_build_within(&found.options, &found.grid, &found.reach, &inside, found.count, found.x,
+                              "points", &found.lists, &error));
     inside = (struct reach_places){.nodes = true};
-    good(support_build_within(&found.options, &found.grid, &found.reach, &inside, body.node_count, body.x,
-                              "nodes", &found.nodes, &error),
-         &error);
+    GOOD(support_build_within(&found.options, &found.grid, &found.reach, &inside, body.node_count, body.x,
+                              "nodes", &found.nodes, &error));
 }
 
 static void lose(void)
@@ -173,13 +171,12 @@ TEST(convex)
             build(dim, (int[3]){7, 6, 5}, all_solid, one_sheet);
             find(wide ? 2.3 : 0.9, true);
             assert_true(wide || found.lists.widened > 0);
-            good(support_build(&found.options, &found.grid, found.count, found.x, "points", &plain, &error),
-                 &error);
+            GOOD(support_build(&found.options, &found.grid, found.count, found.x, "points", &plain, &error));
             assert_true(same_lists(&plain, &found.lists, dim));
             assert_int_equal(found.lists.around_count, 0);
             support_free(&plain);
-            good(support_build(&found.options, &found.grid, body.node_count, body.x, "nodes", &plain, &error),
-                 &error);
+            GOOD(
+                support_build(&found.options, &found.grid, body.node_count, body.x, "nodes", &plain, &error));
             assert_true(same_lists(&plain, &found.nodes, dim));
             support_free(&plain);
             lose();
@@ -200,9 +197,8 @@ TEST(located)
         struct error error;
         build(dim, (int[3]){8, 8, 4}, of_l, one_sheet);
         find(2.0, true);
-        good(support_build_within(&found.options, &found.grid, &found.reach, NULL, found.count, found.x,
-                                  "points", &other, &error),
-             &error);
+        GOOD(support_build_within(&found.options, &found.grid, &found.reach, NULL, found.count, found.x,
+                                  "points", &other, &error));
         assert_true(found.lists.around_count > 0);
         assert_true(same_lists(&other, &found.lists, dim));
         support_free(&other);
@@ -423,24 +419,21 @@ TEST(gradients)
         assert_non_null(phi);
         assert_non_null(dphi);
         assert_non_null(moved);
-        good(shape_table(&found.options.mls, body.x, found.radius, &view, found.x, "points", phi, dphi,
-                         &error),
-             &error);
+        GOOD(shape_table(&found.options.mls, body.x, found.radius, &view, found.x, "points", phi, dphi,
+                         &error));
         for (int a = 0; a < dim; a++) {
             for (int s = 0; s < 2; s++) {
                 for (int64_t i = 0; i < found.count * dim; i++) {
                     moved[i] = found.x[i] + (i % dim == a ? (s ? step : -step) : 0.0);
                 }
-                good(support_build_within(&found.options, &found.grid, &found.reach, &inside, found.count,
-                                          moved, "points", &lists[s], &error),
-                     &error);
+                GOOD(support_build_within(&found.options, &found.grid, &found.reach, &inside, found.count,
+                                          moved, "points", &lists[s], &error));
                 step_pairs[s] = lists[s].ptr[found.count];
                 stepped[s] = calloc((size_t)step_pairs[s], sizeof(double));
                 assert_non_null(stepped[s]);
                 view = support_view(&lists[s]);
-                good(shape_table(&found.options.mls, body.x, found.radius, &view, moved, "points", stepped[s],
-                                 NULL, &error),
-                     &error);
+                GOOD(shape_table(&found.options.mls, body.x, found.radius, &view, moved, "points", stepped[s],
+                                 NULL, &error));
             }
             int64_t next = 0;
             for (int64_t p = 0; p < found.count; p++) {
@@ -482,7 +475,7 @@ static bool reaches(struct ways *ways, int32_t from, int64_t place)
     struct error error;
     bool reached;
     ways_begin(ways, from);
-    good(ways_reach(ways, place, &reached, &error), &error);
+    GOOD(ways_reach(ways, place, &reached, &error));
     return reached;
 }
 
@@ -494,7 +487,7 @@ TEST(ways)
     struct ways ways;
     for (int dim = 2; dim <= 3; dim++) {
         build(dim, (int[3]){8, 8, 4}, of_l, one_sheet);
-        good(ways_build(&body.cells, body.node_count, dim, body.x, 1.0, &ways, &error), &error);
+        GOOD(ways_build(&body.cells, body.node_count, dim, body.x, 1.0, &ways, &error));
         for (int32_t n = 0; n < body.node_count; n += 5) {
             for (int64_t p = 0; p < body.node_count; p++) {
                 assert_true(reaches(&ways, n, p));
@@ -503,7 +496,7 @@ TEST(ways)
         ways_free(&ways);
         second_from = 5;
         build(dim, (int[3]){9, 5, 3}, but_gap, sheet_of_side);
-        good(ways_build(&body.cells, body.node_count, dim, body.x, 1.0, &ways, &error), &error);
+        GOOD(ways_build(&body.cells, body.node_count, dim, body.x, 1.0, &ways, &error));
         for (int32_t n = 0; n < body.node_count; n += 5) {
             for (int64_t p = 0; p < body.node_count; p++) {
                 assert_int_equal(reaches(&ways, n, p), body.key[n][3] == body.key[p][3]);
@@ -511,7 +504,7 @@ TEST(ways)
         }
         ways_free(&ways);
         build(dim, (int[3]){10, 10, 10}, of_ball, sheet_of_fissure);
-        good(ways_build(&body.cells, body.node_count, dim, body.x, 1.0, &ways, &error), &error);
+        GOOD(ways_build(&body.cells, body.node_count, dim, body.x, 1.0, &ways, &error));
         int other = dim == 3 ? 5 : 0;
         int32_t low_left = node_at(4, dim == 3 ? other : 6, dim == 3 ? 6 : 0, 0);
         int32_t low_right = node_at(6, dim == 3 ? other : 6, dim == 3 ? 6 : 0, 0);

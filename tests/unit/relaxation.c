@@ -429,8 +429,8 @@ TEST(conditions_twice)
     AT_MOST(largest_difference(u, v, once.system.node_count * 2), 1e-8 * 0.01);
     lattice_push(&twice, 3, -0.0101, 0);
     struct relaxation_options options = to(1e-6);
-    assert_int_equal(relaxation_run(&twice.system, &options, v, NULL, &report, &error), STATUS_VERDICT);
-    assert_non_null(strstr(error.text, "the conditions at node"));
+    FAILS(relaxation_run(&twice.system, &options, v, NULL, &report, &error), STATUS_VERDICT,
+          "the conditions at node");
     free(u);
     free(v);
     lattice_free(&once);

@@ -59,7 +59,7 @@ TEST(read_text_and_binary)
         descriptor = memfd_create("stream", 0);
         begin = form / 2;
         lseek(descriptor, begin, SEEK_SET);
-        assert_int_equal(stream_write(&sample, descriptor, form % 2 == 0, &error), STATUS_OK);
+        GOOD(stream_write(&sample, descriptor, form % 2 == 0, &error));
         lseek(descriptor, begin, SEEK_SET);
         fail_each(try_read, 12);
         close(descriptor);

@@ -37,7 +37,7 @@ static int64_t count_hinges(const struct stuffing *stuffing)
     int32_t *part =
         calloc((size_t)cells.count * 4, sizeof *part); /* of each corner: the least cell reached */
     assert_true(across != NULL && part != NULL);
-    assert_int_equal(cells_across(&cells, across, &error), STATUS_OK);
+    GOOD(cells_across(&cells, across, &error));
     for (int64_t i = 0; i < cells.count * 4; i++) {
         part[i] = (int32_t)(i / 4);
     }
@@ -91,7 +91,7 @@ static int32_t count_bodies(const struct stuffing *stuffing)
     struct error error;
     int32_t count = 0, *part = calloc((size_t)cells.count, sizeof *part);
     assert_non_null(part);
-    assert_int_equal(cells_parts(&cells, part, &count, &error), STATUS_OK);
+    GOOD(cells_parts(&cells, part, &count, &error));
     free(part);
     return count;
 }
@@ -104,7 +104,7 @@ static void check_apart(const struct stuffing *stuffing)
     int32_t count = 0, *part = calloc((size_t)cells.count, sizeof *part);
     int32_t *of_node = calloc((size_t)cells.node_count, sizeof *of_node);
     assert_true(part != NULL && of_node != NULL);
-    assert_int_equal(cells_parts(&cells, part, &count, &error), STATUS_OK);
+    GOOD(cells_parts(&cells, part, &count, &error));
     for (int64_t i = 0; i < 4 * cells.count; i++) {
         int32_t *body = &of_node[cells.node[i]];
         assert_true(*body == 0 || *body == part[i / 4] + 1);

@@ -50,8 +50,8 @@ static struct thin_report thin(const struct shape *shape, double bound)
     struct cells cells = {shape->dim, shape->nodes, shape->x, shape->cells, shape->cell};
     struct thin_report report;
     struct error error;
-    good(cells_check(&cells, &error), &error);
-    good(cells_find_thin(&cells, bound, &report, &error), &error);
+    GOOD(cells_check(&cells, &error));
+    GOOD(cells_find_thin(&cells, bound, &report, &error));
     return report;
 }
 
