@@ -141,7 +141,7 @@ up_to_date() {
 
 @test "the rooms of lib/ include only what lib/README.md lets them" {
     includes() { grep -rhoE '^#include "[a-z]+/' "$top/lib/$1" | sed 's/.*"//; s|/||' | sort -u; }
-    for room in base approx solid io; do
+    for room in base approx solid io stages; do
         awk -F '|' -v room=" \`$room\` " '$2 == room { gsub(/[`, ]+/, " ", $4); print room, $4; exit }' "$top/lib/README.md" > allowed
         [ -s allowed ]
         includes "$room" > found

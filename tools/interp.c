@@ -43,8 +43,9 @@ static const char usage[] =
     "  interp -p fine.mts coarse.dat | fieldcmp - fine.dat\n"
     "  interp -f u -p grid.tsv -u mm --skip-outside -t u.dat\n";
 
+#include "stage_fill.h"
 #include "mls_options.h"
-#include "solved.h"
+#include "stages/solved.h"
 
 #include "approx/field.h"
 #include "io/sections.h"

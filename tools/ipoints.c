@@ -46,7 +46,7 @@ static const char usage[] =
     "  cloud -d 2 -k regular -n 18 --box -4,4,-4,4 | ipoints --lattice 81,81 > lattice.mts\n";
 
 #include "mls_options.h"
-#include "stages.h"
+#include "stages/stages.h"
 
 static void parse_lattice(const struct tool *tool, const char *text, int64_t lattice[3])
 {

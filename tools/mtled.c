@@ -67,6 +67,7 @@ static const char usage[] =
     "  nodes -u mm body.msh | shapefn | mtled brain2d.scene > u.dat\n"
     "  mpirun -n 4 mtled-mpi -o u.dat brain2d.scene part.%d.mts    by processes (make mpi); same bytes\n";
 
+#include "stage_fill.h"
 #include "process.h"
 #include "run.h"
 

@@ -41,7 +41,7 @@ static const char usage[] =
 
 #include "cell_report.h"
 #include "io/invariants.h"
-#include "views.h"
+#include "stages/views.h"
 
 #include <fnmatch.h>
 #include <inttypes.h>

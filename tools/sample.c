@@ -49,7 +49,7 @@ static const char usage[] =
 #include "sample_points.h"
 #include "output.h"
 #include "tissue.h"
-#include "views.h"
+#include "stages/views.h"
 
 #include "io/image_sample.h"
 

@@ -30,20 +30,16 @@ static const char usage[] =
     "  nodes -u mm body.msh | shapefn | mtled scene > u.dat\n"
     "  nodes -u mm body.msh | ipoints -g 4 | support -R 9mm | shapefn --mu 1e-7 --mu-unit mm > table.mts\n";
 
+#include "stage_fill.h"
 #include "mls_options.h"
-#include "stages.h"
-
-#include <string.h>
+#include "stages/stages.h"
 
 /* What the shape functions are, for whoever evaluates them elsewhere. */
 static void record(const struct tool *tool, struct stream *stream, const struct recorded *recorded)
 {
     struct error error;
-    double *radius;
-    const struct section *section = stream_find(stream, "support.radius");
-    tool_check(tool, NEW_ARRAY(&radius, section->rows, &error), &error);
-    memcpy(radius, section->data, (size_t)section->rows * sizeof *radius);
-    tool_check(tool, stage_record(stream, recorded, section->rows, radius, &error), &error);
+    const struct section *radius = stream_find(stream, "support.radius");
+    tool_check(tool, stage_record(stream, recorded, radius->rows, radius->data, &error), &error);
 }
 
 int main(int argc, char *argv[])

@@ -40,9 +40,8 @@ static const char usage[] =
     "  sizefield -b u.dat | voxels -h 6mm --sizes - labels.nii.gz > finer.mts\n";
 
 #include "output.h"
-#include "regions.h"
 #include "tool.h"
-#include "views.h"
+#include "stages/views.h"
 
 #include "approx/field_error.h"
 #include "approx/size_field.h"
@@ -78,7 +77,7 @@ static enum status recover(const struct stream *stream, const char *field, struc
 {
     enum status status;
     const struct section *section;
-    struct regions regions = {0};
+    struct cell_regions regions = {0};
     TRY(stream_cells(stream, true, cells, error));
     TRY(stream_need(stream, field, TYPE_F8, 0, "mtled", &section, error));
     if (section->cols > 3 || section->rows != cells->node_count) {
@@ -86,16 +85,17 @@ static enum status recover(const struct stream *stream, const char *field, struc
                  "%s: %lld rows of %lld columns: not a field of 1 to 3 columns on %lld nodes", field,
                  (long long)section->rows, (long long)section->cols, (long long)cells->node_count));
     }
-    TRY(regions_read(stream, cells, &regions, error));
-    const struct section *region = regions.count > 0 ? stream_find(stream, "cells.region") : NULL;
+    if (stream_find(stream, "cells.region") != NULL) {
+        TRY(stream_regions(stream, cells, &regions, error));
+    }
     TRY(NEW_ARRAY(squared, cells->count, error));
-    status = field_error_recovered(cells, region != NULL ? region->data : NULL, regions.count, section->cols,
+    status = field_error_recovered(cells, regions.of_cell, (int32_t)regions.names.count, section->cols,
                                    section->data, *squared, error);
     if (status != STATUS_OK) {
         status = fail_in(error, status, "%s", field);
     }
 done:
-    regions_free(&regions);
+    names_free(&regions.names);
     return status;
 }
 

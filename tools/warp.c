@@ -50,8 +50,8 @@ static const char usage[] =
 
 #include "image_body.h"
 #include "images.h"
-#include "solved.h"
-#include "views.h"
+#include "stages/solved.h"
+#include "stages/views.h"
 #include "warp_voxels.h"
 
 #include "approx/motion.h"

@@ -182,21 +182,21 @@ enum status print_regions(const struct findings *findings, struct error *error)
     enum status status;
     int64_t *node = NULL;
     TRY(NEW_ARRAY(&node, comparison->count, error));
-    for (int r = 0; r < regions->count; r++) {
+    for (int64_t r = 0; r < regions->names.count; r++) {
         struct field_statistics statistics;
         int64_t count = 0;
         for (int64_t i = 0; i < comparison->count; i++) {
-            if (regions->member[comparison->node[i] * regions->count + r]) {
+            if (regions->member[comparison->node[i] * regions->names.count + r]) {
                 node[count++] = comparison->node[i];
             }
         }
-        printf("n.%s\t%lld\n", regions->name[r], (long long)count);
+        printf("n.%s\t%lld\n", regions->names.name[r], (long long)count);
         if (count > 0) {
             TRY(field_statistics(count, node, comparison->difference, &statistics, error));
-            print_quantity("avg", regions->name[r], statistics.average);
-            print_quantity("max", regions->name[r], statistics.largest);
-            print_quantity("rmse", regions->name[r], statistics.rmse);
-            print_quantity("p95", regions->name[r], field_percentile(&statistics, 95));
+            print_quantity("avg", regions->names.name[r], statistics.average);
+            print_quantity("max", regions->names.name[r], statistics.largest);
+            print_quantity("rmse", regions->names.name[r], statistics.rmse);
+            print_quantity("p95", regions->names.name[r], field_percentile(&statistics, 95));
             field_statistics_free(&statistics);
         }
     }

@@ -4,7 +4,7 @@
 #define TOOLS_COMPARISON_H
 
 #include "regions.h"
-#include "solved.h"
+#include "stages/solved.h"
 #include "tool.h"
 
 #include "approx/field_compare.h"

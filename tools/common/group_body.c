@@ -1,7 +1,6 @@
 #include "group_body.h"
 
-#include "names.h"
-#include "views.h"
+#include "stages/views.h"
 
 #include "base/box.h"
 #include "base/memory.h"
@@ -35,14 +34,14 @@ void group_remove(struct group_list *list, int64_t index)
 }
 
 /* Append an empty group. */
-static enum status add_group(struct group_list *list, const char *name, size_t length, struct error *error)
+static enum status add_group(struct group_list *list, const char *name, struct error *error)
 {
     struct group *grown = array_grow(list->group, list->count + 1, sizeof *grown);
     if (grown == NULL) {
         return fail_memory(error, "groups");
     }
     list->group = grown;
-    grown[list->count] = (struct group){.name = strndup(name, length)};
+    grown[list->count] = (struct group){.name = strdup(name)};
     if (grown[list->count].name == NULL) {
         return fail_memory(error, "groups");
     }
@@ -53,16 +52,12 @@ static enum status add_group(struct group_list *list, const char *name, size_t l
 /* The groups that a section names, all empty. */
 static enum status add_named(struct group_list *list, const struct section *section, struct error *error)
 {
-    enum status status;
-    char *names = NULL;
-    TRY(names_of_section(section, &names, error));
-    for (const char *at = names; *at != '\0';) {
-        size_t length = strcspn(at, ",");
-        TRY(add_group(list, at, length, error));
-        at += length + (at[length] == ',');
+    struct names names;
+    enum status status = names_read(section, &names, error);
+    for (int64_t i = 0; i < names.count && status == STATUS_OK; i++) {
+        status = add_group(list, names.name[i], error);
     }
-done:
-    free(names);
+    names_free(&names);
     return status;
 }
 
@@ -298,7 +293,7 @@ enum status group_put(struct group_body *body, enum group_kind kind, const char 
     }
     if (place < 0) {
         place = list->count;
-        TRY(add_group(list, name, strlen(name), error));
+        TRY(add_group(list, name, error));
     }
     if (kind == GROUP_REGION) {
         take_cells(list, chosen);

@@ -1,6 +1,6 @@
 #include "label_sizes.h"
 
-#include "views.h"
+#include "stages/views.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -2,8 +2,11 @@
 #ifndef TOOLS_MODEL_H
 #define TOOLS_MODEL_H
 
-#include "stages.h"
+#include "stages/tables.h"
+#include "stages/views.h"
 
+#include "base/memory.h"
+#include "base/options.h"
 #include "io/scene.h"
 #include "solid/assembly.h"
 

@@ -1,6 +1,8 @@
 /* Measured points of a section: what the table says of them, and the field there. */
 #include "model.h"
 
+#include "stages/stages.h"
+
 #include "approx/field.h"
 #include "io/table.h"
 

@@ -1,6 +1,6 @@
 #include "rejoin_private.h"
 
-#include "stages.h"
+#include "stages/stages.h"
 
 #include "approx/face_rows.h"
 

@@ -1,8 +1,8 @@
 #include "sample_points.h"
 
-#include "names.h"
-#include "stages.h"
-#include "views.h"
+#include "stage_fill.h"
+
+#include "stages/views.h"
 
 #include "io/table.h"
 
@@ -23,47 +23,33 @@ void sample_points_table(const struct tool *tool, const char *file, double unit,
     }
 }
 
-/* wanted[...]: for each region whether the list names it; allocated. */
-static bool *find_regions(const struct tool *tool, const struct section *region, const char *list,
-                          size_t *most)
-{
-    struct error error;
-    char *names, *copy = strdup(list), *name;
-    bool *wanted;
-    tool_check(tool, copy == NULL ? fail_memory(&error, "-r") : STATUS_OK, &error);
-    tool_check(tool, names_of_section(region, &names, &error), &error);
-    *most = strlen(names) + 1;
-    tool_check(tool, NEW_ARRAY(&wanted, (int64_t)*most, &error), &error);
-    for (char *rest = copy; (name = strsep(&rest, ",")) != NULL;) {
-        int64_t index = names_index(names, name);
-        if (index < 0) {
-            tool_fail(tool, STATUS_INPUT, "-r: no region '%s': there are %s", name, names);
-        }
-        wanted[index] = true;
-    }
-    free(copy);
-    free(names);
-    return wanted;
-}
-
-/* Keep the points in cells of the chosen regions. */
-static void choose_regions(const struct tool *tool, const struct stream *stream, const char *list,
+/* Keep the points in cells of the regions in a list, with commas between. */
+static void choose_regions(const struct tool *tool, const struct stream *stream, char *list,
                            struct sample_points *rows)
 {
     struct error error;
+    struct names names;
     const struct section *cell, *region;
+    bool *wanted;
     int64_t kept = 0;
-    size_t most;
     tool_check(tool, stream_need(stream, "points.cell", TYPE_I4, 1, "ipoints", &cell, &error), &error);
     tool_check(tool, stream_need(stream, "cells.region", TYPE_I4, 1, "nodes", &region, &error), &error);
     if (cell->rows != rows->count) {
         tool_fail(tool, STATUS_INPUT, "points.cell: not one row per point: run ipoints again");
     }
-    bool *wanted = find_regions(tool, region, list, &most);
+    tool_check(tool, names_read(region, &names, &error), &error);
+    tool_check(tool, NEW_ARRAY(&wanted, names.count, &error), &error);
+    for (char *name; (name = strsep(&list, ",")) != NULL;) {
+        int64_t index = names_find(&names, name);
+        if (index < 0) {
+            tool_fail(tool, STATUS_INPUT, "-r: no region '%s': there are %s", name, names.list);
+        }
+        wanted[index] = true;
+    }
     for (int64_t q = 0; q < rows->count; q++) {
         int64_t c = ((const int32_t *)cell->data)[q];
         int64_t r = c >= 0 && c < region->rows ? ((const int32_t *)region->data)[c] : -1;
-        if (r < 0 || (size_t)r >= most) {
+        if (r < 0 || r >= names.count) {
             tool_fail(tool, STATUS_INPUT, "points.cell: row %lld: no cell of a region", (long long)q);
         }
         if (wanted[r]) {
@@ -73,6 +59,7 @@ static void choose_regions(const struct tool *tool, const struct stream *stream,
     }
     rows->count = kept;
     free(wanted);
+    names_free(&names);
 }
 
 void sample_points_section(const struct tool *tool, const char *file, const char *name, const char *regions,
@@ -93,6 +80,9 @@ void sample_points_section(const struct tool *tool, const char *file, const char
     tool_check(tool, NEW_ARRAY(&rows->x, at->rows * at->cols, &error), &error);
     memcpy(rows->x, at->data, (size_t)(at->rows * at->cols) * sizeof *rows->x);
     if (regions != NULL) {
-        choose_regions(tool, stream, regions, rows);
+        char *list = strdup(regions);
+        tool_check(tool, list == NULL ? fail_memory(&error, "-r") : STATUS_OK, &error);
+        choose_regions(tool, stream, list, rows);
+        free(list);
     }
 }
