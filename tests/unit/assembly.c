@@ -44,12 +44,12 @@ TEST(linear_field_by_table)
         struct lattice_options options = lattice_defaults(dim, 5);
         options.jitter = 0.1;
         lattice_build(&l, &options);
-        ARRAY(rows, l.cells.node_count * 2 * dim);
-        for (int64_t n = 0; n < l.cells.node_count; n++) {
+        ARRAY(rows, l.assembly.cells.node_count * 2 * dim);
+        for (int64_t n = 0; n < l.assembly.cells.node_count; n++) {
             for (int i = 0; i < dim; i++) {
-                rows[n * 2 * dim + i] = l.cells.x[n * dim + i];
+                rows[n * 2 * dim + i] = l.assembly.cells.x[n * dim + i];
                 for (int k = 0; k < dim; k++) {
-                    rows[n * 2 * dim + dim + i] += A[i][k] * l.cells.x[n * dim + k];
+                    rows[n * 2 * dim + dim + i] += A[i][k] * l.assembly.cells.x[n * dim + k];
                 }
             }
         }
@@ -57,7 +57,7 @@ TEST(linear_field_by_table)
                                       .where = "scene:1: [displacement all]",
                                       .facets = side_facets(&l, 63u, &facet),
                                       .kind = CONDITION_TABLE,
-                                      .row_count = l.cells.node_count,
+                                      .row_count = l.assembly.cells.node_count,
                                       .rows = rows,
                                       .unit = 1.0,
                                       .table = "table"};
@@ -69,7 +69,7 @@ TEST(linear_field_by_table)
         GOOD(relaxation_run(&l.system, &relax, u, NULL, &report, &error));
         assert_int_equal(report.outcome, RELAXATION_CONVERGED);
         assembly_nodal_field(&l.assembly, u, field);
-        for (int64_t n = 0; n < l.cells.node_count; n++) {
+        for (int64_t n = 0; n < l.assembly.cells.node_count; n++) {
             for (int i = 0; i < dim; i++) {
                 NEAR_TO(field[n * dim + i], rows[n * 2 * dim + dim + i], 1e-9);
             }
@@ -98,8 +98,8 @@ TEST(held_faces)
     l.assembly.condition_count = 2;
     GOOD(assembly_held_faces(&l.assembly, 1, &held, &error));
     for (int64_t f = 0; f < l.assembly.boundary.count; f++) {
-        const double *a = l.cells.x + 2 * (int64_t)l.assembly.boundary.node[2 * f],
-                     *b = l.cells.x + 2 * (int64_t)l.assembly.boundary.node[2 * f + 1];
+        const double *a = l.assembly.cells.x + 2 * (int64_t)l.assembly.boundary.node[2 * f],
+                     *b = l.assembly.cells.x + 2 * (int64_t)l.assembly.boundary.node[2 * f + 1];
         bool flat = a[1] == b[1] && (a[1] < 1e-9 || a[1] > 0.1 - 1e-9);
         assert_int_equal(held[f], flat);
         count += held[f];

@@ -9,7 +9,7 @@ static void check_rigid_motion(const struct sample *sample, const struct setup *
 {
     int64_t count = sample->cloud.node_count * sample->dim;
     struct body body = make_body(sample, setup);
-    double *force = sample_array(count, sizeof *force);
+    double *force = array_or_fail(count, sizeof *force);
     double scale =
         50.0 * setup->material[0].shear_modulus * (sample->dim == 2 ? 1.0 : sample_size) * sample_size;
     for (int motion = 0; motion < 5; motion++) {
@@ -38,7 +38,7 @@ static void check_gradient(const struct sample *sample, const struct setup *setu
 {
     int64_t count = sample->cloud.node_count * sample->dim;
     struct body body = make_body(sample, setup);
-    double *force = sample_array(count, sizeof *force), *at = sample_array(count, sizeof *at);
+    double *force = array_or_fail(count, sizeof *force), *at = array_or_fail(count, sizeof *at);
     double *u = deformed_field(sample, &body, force, random);
     (void)body_force(&body, u, force);
     for (int direction = 0; direction < 5; direction++) {
@@ -73,7 +73,7 @@ static void check_balance(const struct sample *sample, const struct setup *setup
     int dim = sample->dim;
     int64_t count = sample->cloud.node_count * dim;
     struct body body = make_body(sample, setup);
-    double *force = sample_array(count, sizeof *force);
+    double *force = array_or_fail(count, sizeof *force);
     double *u = deformed_field(sample, &body, force, random);
     double sum[3] = {0.0}, moment[3] = {0.0}, size;
     (void)body_force(&body, u, force);
@@ -111,16 +111,16 @@ static void check_linear(const struct sample *sample, const struct setup *setup,
     const double *A = sample->dim == 2 ? plane : space;
     struct body body = make_body(sample, setup);
     double *u = linear_field(sample, A, (double[]){0.1, 0.2, -0.3}), C[9], J = determinant(A), energy = 0.0;
-    double *F = sample_array(sample->point_count * 9, sizeof *F);
-    double *P = sample_array(sample->point_count * 9, sizeof *P);
-    double *force = sample_array(sample->cloud.node_count * sample->dim, sizeof *force), volume = 0.0;
+    double *F = array_or_fail(sample->assembly.point_count * 9, sizeof *F);
+    double *P = array_or_fail(sample->assembly.point_count * 9, sizeof *P);
+    double *force = array_or_fail(sample->cloud.node_count * sample->dim, sizeof *force), volume = 0.0;
     (void)random;
     struct deformation deformation = body_force(&body, u, force);
     NEAR_TO(deformation.least_jacobian, J, 1e-12);
     body_gradient(&body, F);
     body_stress(&body, P);
     cofactor(A, C);
-    for (int64_t q = 0; q < sample->point_count; q++) {
+    for (int64_t q = 0; q < sample->assembly.point_count; q++) {
         const struct material *material = &setup->material[material_at(sample, setup, q)];
         double expected[9];
         material_shape_stress(material, A, expected);
@@ -128,9 +128,9 @@ static void check_linear(const struct sample *sample, const struct setup *setup,
             NEAR_TO(F[9 * q + i], A[i], 1e-12);
             NEAR_TO(P[9 * q + i], expected[i] + material_pressure(material, J) * C[i], 1e-7);
         }
-        volume += sample->weight[q];
-        energy +=
-            sample->weight[q] * (material_shape_energy(material, A) + material_volume_energy(material, J));
+        volume += sample->assembly.weight[q];
+        energy += sample->assembly.weight[q] *
+                  (material_shape_energy(material, A) + material_volume_energy(material, J));
     }
     NEAR_TO(volume, pow(sample_size, sample->dim), 1e-15);
     NEAR_TO(body_energy(&body, u), energy, 1e-11 * energy);
@@ -159,38 +159,31 @@ static void fault_of_smoothing(void)
     struct setup setup = one_material(MATERIAL_NEO_HOOKEAN, false);
     struct sample *sample = &samples[0];
     struct smoothed_cells_input smoothed = sample_smoothed(sample);
-    int32_t *material = sample_array(sample->point_count, sizeof *material);
-    struct body_input input = {.dim = 2,
-                               .node_count = sample->cloud.node_count,
-                               .point_count = sample->point_count,
-                               .x = sample->x,
-                               .weight = sample->weight,
-                               .ptr = sample->ptr,
-                               .idx = sample->idx,
-                               .dphi = sample->dphi,
-                               .materials = setup.material,
-                               .material = material,
-                               .material_count = 1,
-                               .smoothed = &smoothed};
-    double *changed = &sample->averages.phi[sample->averages.ptr[7]], before = *changed;
+    int32_t *material = array_or_fail(sample->assembly.point_count, sizeof *material);
+    struct body_input input = sample_input(sample, setup.material, 1, material);
+    input.vertex = NULL;
+    input.smoothed = &smoothed;
+    double *face_phi = stream_find(&sample->stream, "face.phi")->data,
+           *node_phi = stream_find(&sample->stream, "node.phi")->data;
+    double *changed = &face_phi[sample->assembly.lists.ptr[7]], before = *changed;
     *changed += 0.01;
     assert_int_equal(body_build(&input, &body, &error), STATUS_INPUT);
     assert_string_equal(error.text,
                         "face.phi: row 7: not the shape functions at this row: run shapefn again");
     *changed = before;
-    changed = &sample->node_phi[sample->node_lists.ptr[5]];
+    changed = &node_phi[sample->assembly.node_lists.ptr[5]];
     before = *changed;
     *changed += 0.01;
     assert_int_equal(body_build(&input, &body, &error), STATUS_INPUT);
     assert_string_equal(error.text,
                         "node.phi: node 5: not the shape functions at this node: run shapefn again");
     *changed = before;
-    struct faces fewer = sample->faces;
+    struct faces fewer = sample->assembly.faces;
     fewer.count--;
     smoothed.faces = &fewer;
     FAILS(body_build(&input, &body, &error), STATUS_INPUT, "lacks a face: run ipoints for smoothed cells");
-    struct faces wrong = sample->faces;
-    wrong.row = sample_array(wrong.count, sizeof *wrong.row);
+    struct faces wrong = sample->assembly.faces;
+    wrong.row = array_or_fail(wrong.count, sizeof *wrong.row);
     for (int64_t f = 0; f < wrong.count; f++) {
         wrong.row[f] = (int32_t)(f == 4 ? 2 : f);
     }
@@ -248,17 +241,18 @@ TEST(many_blocks)
         setup.faces = by_faces;
         struct body body = make_body(&sample, &setup);
         int64_t count = sample.cloud.node_count * 2;
-        double *force = sample_array(count, sizeof *force), *expected = sample_array(count, sizeof *expected);
-        double *P = sample_array(sample.point_count * 9, sizeof *P);
+        double *force = array_or_fail(count, sizeof *force),
+               *expected = array_or_fail(count, sizeof *expected);
+        double *P = array_or_fail(sample.assembly.point_count * 9, sizeof *P);
         double *u = deformed_field(&sample, &body, force, &random), slope = 0.0, h = 1e-9, high;
         assert_true(body.block_count > 30);
         (void)body_force(&body, u, force);
         body_stress(&body, P);
-        for (int64_t q = 0; q < sample.point_count && !by_faces; q++) {
+        for (int64_t q = 0; q < sample.assembly.point_count && !by_faces; q++) {
             for (int64_t k = sample.ptr[q] * 2; k < sample.ptr[q + 1] * 2; k++) {
                 for (int a = 0; a < 2; a++) {
                     expected[sample.idx[k / 2] * 2 + a] +=
-                        sample.weight[q] * P[9 * q + 3 * a + k % 2] * sample.dphi[k];
+                        sample.assembly.weight[q] * P[9 * q + 3 * a + k % 2] * sample.dphi[k];
                 }
             }
         }

@@ -18,12 +18,12 @@ static void check_threads(const struct sample *sample, const struct setup *setup
     for (int threads = 1; threads <= 3; threads++) {
         omp_set_num_threads(threads);
         struct body body = make_body(sample, setup);
-        double *force = sample_array(count, sizeof *force);
+        double *force = array_or_fail(count, sizeof *force);
         body.threads = threads; /* also where so many would not pay */
         for (int call = 0; call < 2; call++) {
             (void)body_force(&body, u, force);
             if (first == NULL) {
-                first = sample_array(count, sizeof *first);
+                first = array_or_fail(count, sizeof *first);
                 memcpy(first, force, (size_t)count * sizeof *first);
                 energy = body_energy(&body, u);
             }
@@ -49,7 +49,7 @@ static void check_instructions(const struct sample *sample, const struct setup *
     int64_t count = sample->cloud.node_count * sample->dim;
     static const char *const sets[] = {"plain", "avx2", "avx512"};
     struct body body = make_body(sample, setup);
-    double *force = sample_array(count, sizeof *force), *expected = sample_array(count, sizeof *expected);
+    double *force = array_or_fail(count, sizeof *force), *expected = array_or_fail(count, sizeof *expected);
     double *u = deformed_field(sample, &body, force, random);
     (void)body_force(&body, u, expected);
     for (int k = 0; k < 3; k++) {
@@ -88,7 +88,8 @@ TEST(compressible)
         }
         struct body one = make_body(sample, &none), other = make_body(sample, &whole);
         int64_t count = sample->cloud.node_count * sample->dim;
-        double *force = sample_array(count, sizeof *force), *expected = sample_array(count, sizeof *expected);
+        double *force = array_or_fail(count, sizeof *force),
+               *expected = array_or_fail(count, sizeof *expected);
         double *u = deformed_field(sample, &one, force, &random), energy = body_energy(&one, u);
         (void)body_force(&one, u, expected);
         (void)body_force(&other, u, force);
@@ -160,7 +161,7 @@ TEST(nodal_pressures)
         struct body body = make_alike(&sample, poisson_ratio[k / 2]);
         struct nodal_volumes *volumes = &body.volumes;
         const struct material *material = &body.materials[0];
-        double *u = sample_array(sample.cloud.node_count * sample.dim, sizeof *u), J = 1.0;
+        double *u = array_or_fail(sample.cloud.node_count * sample.dim, sizeof *u), J = 1.0;
         for (int64_t i = 0; i < sample.cloud.node_count * sample.dim; i++) {
             u[i] = 0.01 * sample.cloud.x[i];
         }
@@ -244,9 +245,10 @@ TEST(diagonal)
         int64_t count = sample->cloud.node_count * dim;
         double mu = setup.material[0].shear_modulus, h = 1e-8;
         double wave = material_wave_modulus(&setup.material[0]), lambda = wave - 2.0 * mu;
-        double *bound = sample_array(sample->cloud.node_count, sizeof *bound);
-        double *force = sample_array(count, sizeof *force);
-        double *u = deformed ? deformed_field(sample, &body, force, &random) : sample_array(count, sizeof *u);
+        double *bound = array_or_fail(sample->cloud.node_count, sizeof *bound);
+        double *force = array_or_fail(count, sizeof *force);
+        double *u =
+            deformed ? deformed_field(sample, &body, force, &random) : array_or_fail(count, sizeof *u);
         (void)body_force(&body, u, force);
         body_diagonal(&body, bound);
         for (int64_t n = 0; n < sample->cloud.node_count; n++) {
@@ -279,7 +281,8 @@ static void check_inversion(const struct sample *sample, const struct setup *set
     int dim = sample->dim;
     int64_t count = sample->cloud.node_count * dim, nodes = sample->cloud.node_count;
     struct body body = make_body(sample, setup);
-    double *force = sample_array(count, sizeof *force), *F = sample_array(sample->point_count * 9, sizeof *F);
+    double *force = array_or_fail(count, sizeof *force),
+           *F = array_or_fail(sample->assembly.point_count * 9, sizeof *F);
     double *u = random_field(sample, 1e-4, random);
     for (int round = 0; round < 4; round++) {
         int64_t node = (int64_t)uniform(random, 0.0, (double)nodes), least = 0;
@@ -287,7 +290,7 @@ static void check_inversion(const struct sample *sample, const struct setup *set
         u[node * dim] += 3.0 * sample_size * inward; /* through its neighbours */
         struct deformation deformation = body_force(&body, u, force);
         body_gradient(&body, F);
-        for (int64_t q = 0; q < sample->point_count; q++) {
+        for (int64_t q = 0; q < sample->assembly.point_count; q++) {
             double G[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
             for (int64_t i = sample->ptr[q]; i < sample->ptr[q + 1]; i++) {
                 for (int k = 0; k < dim * dim; k++) {

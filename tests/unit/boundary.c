@@ -2,17 +2,6 @@
  * divergence theorem against the cells' table, and facets that are none. */
 #include "body_fixture.h"
 
-static struct face_table face_table(const struct sample *sample)
-{
-    return (struct face_table){.dim = sample->dim,
-                               .node_count = sample->cloud.node_count,
-                               .x = sample->cloud.x,
-                               .faces = &sample->faces,
-                               .per_face = sample->face_rule.points,
-                               .lists = &sample->face_neighbours,
-                               .phi = sample->face_phi};
-}
-
 static struct facet_set all_facets(const struct sample *sample)
 {
     return (struct facet_set){sample->cloud.facet_count, sample->cloud.facets};
@@ -35,7 +24,7 @@ static struct boundary_averages averages_of(const struct sample *sample, struct 
 {
     struct boundary_averages averages;
     struct error error;
-    struct face_table table = face_table(sample);
+    struct face_table table = sample_face_table(sample);
     GOOD(boundary_averages_build(&table, &set, &averages, &error));
     return averages;
 }
@@ -181,12 +170,14 @@ TEST(divergence_theorem)
         struct sample sample = make_sample(dim, true, dim == 2 ? 7 : 4);
         struct boundary_averages averages = averages_of(&sample, all_facets(&sample));
         int64_t count = sample.cloud.node_count * dim;
-        double *inside = sample_array(count, sizeof *inside), *outside = sample_array(count, sizeof *outside);
+        double *inside = array_or_fail(count, sizeof *inside),
+               *outside = array_or_fail(count, sizeof *outside);
         double largest = 0.0;
-        for (int64_t q = 0; q < sample.point_count; q++) {
+        for (int64_t q = 0; q < sample.assembly.point_count; q++) {
             for (int64_t i = sample.ptr[q]; i < sample.ptr[q + 1]; i++) {
                 for (int c = 0; c < dim; c++) {
-                    inside[(int64_t)sample.idx[i] * dim + c] += sample.weight[q] * sample.dphi[i * dim + c];
+                    inside[(int64_t)sample.idx[i] * dim + c] +=
+                        sample.assembly.weight[q] * sample.dphi[i * dim + c];
                 }
             }
         }
@@ -217,7 +208,7 @@ TEST(other_vertex_orders)
         struct sample sample = make_sample(dim, true, 4);
         struct facet_set set = all_facets(&sample);
         struct boundary_averages expected = averages_of(&sample, set);
-        int32_t *turned = sample_array(set.count * dim, sizeof *turned);
+        int32_t *turned = array_or_fail(set.count * dim, sizeof *turned);
         for (int shift = 1; shift < dim + 1; shift++) {
             /* Begin with the next node; at last, swap two: inside out. */
             for (int64_t f = 0; f < set.count; f++) {
@@ -334,7 +325,7 @@ TEST(whole_sides)
 {
     for (int dim = 2; dim <= 3; dim++) {
         struct sample sample = make_sample(dim, true, 5);
-        struct face_table table = face_table(&sample);
+        struct face_table table = sample_face_table(&sample);
         struct facet_set set = all_facets(&sample);
         struct error error;
         for (int split = 0; split < 2; split++) {
@@ -387,17 +378,14 @@ TEST(node_values)
     for (int dim = 2; dim <= 3; dim++) {
         struct error error;
         struct sample sample = make_sample(dim, true, 5);
-        struct support_lists lists;
+        const struct neighbours lists = sample.assembly.node_lists;
+        const double *phi = sample.assembly.node_phi;
         struct boundary_averages averages;
         int64_t count = sample.cloud.node_count, expected = 0;
-        GOOD(support_build(&sample.options, &sample.grid, count, sample.cloud.x, "nodes", &lists, &error));
-        struct neighbours neighbours = support_view(&lists);
-        double *phi = sample_array(lists.ptr[count], sizeof *phi), area = 0.0;
-        GOOD(shape_table(&sample.options.mls, sample.cloud.x, sample.radius, &neighbours, sample.cloud.x,
-                         "nodes", phi, NULL, &error));
-        struct face_table table = face_table(&sample);
+        double area = 0.0;
+        struct face_table table = sample_face_table(&sample);
         struct facet_set set = all_facets(&sample);
-        GOOD(boundary_nodes_build(&table, &set, &neighbours, phi, &averages, &error));
+        GOOD(boundary_nodes_build(&table, &set, &lists, phi, &averages, &error));
         check_averages(&sample, &averages);
         for (int32_t n = 0; n < count; n++) {
             expected += sides_at(&sample, n) > 0;
@@ -416,8 +404,6 @@ TEST(node_values)
             }
         }
         NEAR_TO(area, 2.0 * dim * pow(sample_size, dim - 1), 1e-14);
-        free(phi);
-        support_free(&lists);
         boundary_averages_free(&averages);
         sample_free(&sample);
     }
@@ -426,9 +412,10 @@ TEST(node_values)
 /* Whether a face lies on the side x = 0 of the box, there all of it below y = limit. */
 static bool on_side_below(const struct sample *sample, int64_t face, double limit)
 {
-    bool is_there = sample->faces.cell[2 * face + 1] < 0;
+    bool is_there = sample->assembly.faces.cell[2 * face + 1] < 0;
     for (int k = 0; k < sample->dim; k++) {
-        const double *x = sample->cloud.x + (int64_t)sample->faces.node[face * sample->dim + k] * sample->dim;
+        const double *x =
+            sample->cloud.x + (int64_t)sample->assembly.faces.node[face * sample->dim + k] * sample->dim;
         is_there = is_there && fabs(x[0]) < 1e-12 && x[1] < limit;
     }
     return is_there;
@@ -440,27 +427,28 @@ TEST(ends)
 {
     for (int dim = 2; dim <= 3; dim++) {
         struct sample sample = make_sample(dim, true, 5);
-        struct face_table table = face_table(&sample);
+        struct face_table table = sample_face_table(&sample);
         struct error error;
-        bool *held = sample_array(sample.faces.count, sizeof *held);
-        bool *end = sample_array(sample.cloud.node_count, sizeof *end);
+        bool *held = array_or_fail(sample.assembly.faces.count, sizeof *held);
+        bool *end = array_or_fail(sample.cloud.node_count, sizeof *end);
         GOOD(boundary_find_ends(&table, BOUNDARY_END_SMOOTH, held, end, &error));
-        for (int64_t f = 0; f < sample.faces.count; f++) {
+        for (int64_t f = 0; f < sample.assembly.faces.count; f++) {
             held[f] = on_side_below(&sample, f, 2.0 * sample_size);
         }
         GOOD(boundary_find_ends(&table, BOUNDARY_END_SMOOTH, held, end, &error));
-        for (int64_t f = 0; f < sample.faces.count; f++) {
-            held[f] = sample.faces.cell[2 * f + 1] < 0;
+        for (int64_t f = 0; f < sample.assembly.faces.count; f++) {
+            held[f] = sample.assembly.faces.cell[2 * f + 1] < 0;
         }
         GOOD(boundary_find_ends(&table, BOUNDARY_END_SMOOTH, held, end, &error));
         for (int64_t n = 0; n < sample.cloud.node_count; n++) {
             assert_false(end[n]);
         }
         double highest = 0.0;
-        for (int64_t f = 0; f < sample.faces.count; f++) {
+        for (int64_t f = 0; f < sample.assembly.faces.count; f++) {
             held[f] = on_side_below(&sample, f, 0.6 * sample_size);
             for (int k = 0; k < dim && held[f]; k++) {
-                highest = fmax(highest, sample.cloud.x[(int64_t)sample.faces.node[f * dim + k] * dim + 1]);
+                highest =
+                    fmax(highest, sample.cloud.x[(int64_t)sample.assembly.faces.node[f * dim + k] * dim + 1]);
             }
         }
         assert_true(highest > 0.2 * sample_size);
@@ -476,7 +464,7 @@ TEST(ends)
         assert_int_equal(count, dim == 2 ? 1 : 5);
         /* The whole side, whose edges are sharp ends. */
         memset(end, 0, (size_t)sample.cloud.node_count * sizeof *end);
-        for (int64_t f = 0; f < sample.faces.count; f++) {
+        for (int64_t f = 0; f < sample.assembly.faces.count; f++) {
             held[f] = on_side_below(&sample, f, 2.0 * sample_size);
         }
         GOOD(boundary_find_ends(&table, BOUNDARY_END_SHARP, held, end, &error));
@@ -498,7 +486,7 @@ TEST(faults)
 {
     for (int dim = 2; dim <= 3; dim++) {
         struct sample sample = make_sample(dim, true, 4);
-        struct face_table table = face_table(&sample);
+        struct face_table table = sample_face_table(&sample);
         struct boundary_averages averages;
         struct error error;
         int32_t facets[6];
@@ -506,10 +494,10 @@ TEST(faults)
         memcpy(facets, sample.cloud.facets, (size_t)dim * sizeof *facets);
         /* A face between two cells. */
         int64_t inner = 0;
-        while (sample.faces.cell[2 * inner + 1] < 0) {
+        while (sample.assembly.faces.cell[2 * inner + 1] < 0) {
             inner++;
         }
-        memcpy(facets + dim, sample.faces.node + inner * dim, (size_t)dim * sizeof *facets);
+        memcpy(facets + dim, sample.assembly.faces.node + inner * dim, (size_t)dim * sizeof *facets);
         assert_int_equal(boundary_averages_build(&table, &set, &averages, &error), STATUS_INPUT);
         assert_string_equal(error.text, "facets: row 1 of the set is no boundary face of the cells");
         assert_null(averages.node);

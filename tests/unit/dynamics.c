@@ -363,9 +363,9 @@ TEST(sudden_weight)
     struct dead_load *load = calloc(1, sizeof *load);
     assert_non_null(load);
     *load = (struct dead_load){.force = lattice_vector(&l), .curve = curve};
-    for (int64_t c = 0; c < l.cells.count; c++) {
+    for (int64_t c = 0; c < l.assembly.cells.count; c++) {
         for (int64_t i = l.smoothed.ptr[c]; i < l.smoothed.ptr[c + 1]; i++) {
-            load->force[2 * l.smoothed.idx[i] + 1] -= 1e-2 * 1000 * l.weight[c] * l.smoothed.phi[i];
+            load->force[2 * l.smoothed.idx[i] + 1] -= 1e-2 * 1000 * l.assembly.weight[c] * l.smoothed.phi[i];
         }
     }
     l.system.loads = load;

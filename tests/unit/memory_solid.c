@@ -19,23 +19,10 @@ static enum status try_body_of(const struct smoothed_cells_input *smoothed, stru
                                                  {.shear_modulus = 2.0, .bulk_modulus = 9.0}};
     static int32_t material[64];
     struct body body;
-    assert_true(sample.point_count <= 64);
+    assert_true(sample.assembly.point_count <= 64);
     material[1] = 1;
-    struct body_input input = {.dim = 2,
-                               .node_count = sample.cloud.node_count,
-                               .point_count = sample.point_count,
-                               .x = sample.x,
-                               .weight = sample.weight,
-                               .ptr = sample.ptr,
-                               .idx = sample.idx,
-                               .dphi = sample.dphi,
-                               .materials = materials,
-                               .material = material,
-                               .material_count = 2,
-                               .vertex = sample.vertex,
-                               .barycentric = sample.barycentric,
-                               .node_x = sample.cloud.x,
-                               .smoothed = smoothed};
+    struct body_input input = sample_input(&sample, materials, 2, material);
+    input.smoothed = smoothed;
     enum status status = body_build(&input, &body, error);
     body_free(&body);
     return status;
@@ -52,20 +39,9 @@ static enum status try_cells(struct error *error)
     return try_body_of(&smoothed, error);
 }
 
-static struct face_table sample_face_table(void)
-{
-    return (struct face_table){.dim = 2,
-                               .node_count = sample.cloud.node_count,
-                               .x = sample.cloud.x,
-                               .faces = &sample.faces,
-                               .per_face = sample.face_rule.points,
-                               .lists = &sample.face_neighbours,
-                               .phi = sample.face_phi};
-}
-
 static enum status build_averages(struct boundary_averages *averages, struct error *error)
 {
-    struct face_table table = sample_face_table();
+    struct face_table table = sample_face_table(&sample);
     struct facet_set set = {sample.cloud.facet_count, sample.cloud.facets};
     return boundary_averages_build(&table, &set, averages, error);
 }
@@ -81,8 +57,8 @@ static enum status try_boundary(struct error *error)
 static enum status try_ends(struct error *error)
 {
     static bool none_held[1 << 12], end[1 << 12];
-    struct face_table table = sample_face_table();
-    assert_true(sample.faces.count < 1 << 12 && sample.cloud.node_count < 1 << 12);
+    struct face_table table = sample_face_table(&sample);
+    assert_true(sample.assembly.faces.count < 1 << 12 && sample.cloud.node_count < 1 << 12);
     return boundary_find_ends(&table, BOUNDARY_END_SMOOTH, none_held, end, error);
 }
 

@@ -160,28 +160,34 @@ static int64_t evaluate(struct body *body, const double *u, double *results)
 
 static int64_t room(const struct sample *sample)
 {
-    return 8 * sample->cloud.node_count * sample->dim + 20 * sample->point_count + 8;
+    return 8 * sample->cloud.node_count * sample->dim + 20 * sample->assembly.point_count + 8;
 }
 
-/* Of the rows that faces are averaged over every so manieth, as if the others were another process's. */
-static void keep_some(const struct ranks *ranks, struct face_averages *averages, int32_t *reader,
-                      int64_t faces)
+/* Of the rows that faces are averaged over every so manieth, as if the others were another process's; the
+ * caller frees lists and phi. */
+static void keep_some(const struct ranks *ranks, const struct assembly *all, struct assembly *some)
 {
-    struct face_averages all = *averages;
-    averages->boundary_phi = NULL;
-    averages->ptr = sample_array(faces + 1, sizeof *averages->ptr);
-    averages->idx = sample_array(all.ptr[faces], sizeof *averages->idx);
-    averages->phi = sample_array(all.ptr[faces], sizeof *averages->phi);
-    for (int64_t f = 0; f < faces; f++) {
-        int64_t at = averages->ptr[f], from = all.ptr[f], length = 0;
-        reader[f] = (int32_t)(f * f % ranks->count);
-        if (reader[f] == ranks->rank) {
-            length = all.ptr[f + 1] - from;
-            memcpy(averages->idx + at, all.idx + from, (size_t)length * sizeof *all.idx);
-            memcpy(averages->phi + at, all.phi + from, (size_t)length * sizeof *all.phi);
+    int64_t rows = all->faces.row_count, *ptr, pairs = all->lists.ptr[rows];
+    int32_t *idx, *reader;
+    double *phi;
+    ARRAY(ptr, rows + 1);
+    ARRAY(idx, pairs);
+    ARRAY(phi, pairs);
+    ARRAY(reader, rows);
+    for (int64_t r = 0; r < rows; r++) {
+        int64_t from = all->lists.ptr[r], length = 0;
+        reader[r] = (int32_t)(r * r % ranks->count);
+        if (reader[r] == ranks->rank) {
+            length = all->lists.ptr[r + 1] - from;
+            memcpy(idx + ptr[r], all->lists.idx + from, (size_t)length * sizeof *idx);
+            memcpy(phi + ptr[r], all->phi + from, (size_t)length * sizeof *phi);
         }
-        averages->ptr[f + 1] = at + length;
+        ptr[r + 1] = ptr[r] + length;
     }
+    some->lists.ptr = ptr;
+    some->lists.idx = idx;
+    some->phi = phi;
+    some->face_reader = reader;
 }
 
 static void *evaluate_member(void *context)
@@ -190,18 +196,18 @@ static void *evaluate_member(void *context)
     struct setup setup = *member->setup;
     struct sample sample = *member->sample;
     bool reads_some = member->reads_some && setup.faces;
-    int32_t *reader = sample_array(sample.faces.row_count, sizeof *reader);
     setup.ranks = &member->ranks;
     omp_set_num_threads(1); /* of this thread's regions */
     if (reads_some) {
-        keep_some(&member->ranks, &sample.averages, reader, sample.faces.row_count);
-        sample.face_reader = reader;
+        keep_some(&member->ranks, &member->sample->assembly, &sample.assembly);
     }
     struct body body = make_body(&sample, &setup);
-    if (reads_some) {
-        face_averages_free(&sample.averages); /* the body has fetched what it needs */
+    if (reads_some) { /* the body has fetched what it needs */
+        free((void *)(uintptr_t)sample.assembly.lists.ptr);
+        free((void *)(uintptr_t)sample.assembly.lists.idx);
+        free((void *)(uintptr_t)sample.assembly.phi);
+        free((void *)(uintptr_t)sample.assembly.face_reader);
     }
-    free(reader);
     member->count[member->ranks.rank] =
         evaluate(&body, member->u, member->results + member->ranks.rank * room(member->sample));
     body_free(&body);
@@ -212,8 +218,9 @@ static void check_body(const struct sample *sample, const struct setup *setup, s
 {
     static const int counts[] = {2, 3, MOST};
     int64_t some = room(sample);
-    double *force = sample_array(sample->cloud.node_count * sample->dim, sizeof *force);
-    double *alone = sample_array(some, sizeof *alone), *results = sample_array(some * MOST, sizeof *results);
+    double *force = array_or_fail(sample->cloud.node_count * sample->dim, sizeof *force);
+    double *alone = array_or_fail(some, sizeof *alone),
+           *results = array_or_fail(some * MOST, sizeof *results);
     struct body body = make_body(sample, setup);
     double *u = deformed_field(sample, &body, force, random);
     int64_t count = evaluate(&body, u, alone);

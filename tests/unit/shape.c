@@ -204,7 +204,8 @@ static void smoothed_build(struct smoothed *s, int dim, int64_t per_axis, enum b
     s->lists = support_view(&s->table.lists);
     GOOD(shape_average_faces(&options.mls, s->cells.x, s->table.radius, &s->lists, s->points, "points.x",
                              &s->faces, &s->averages, &error));
-    s->smooth = cell_table_make(&s->cells, &s->faces, &s->averages);
+    struct neighbours averages = {.count = s->averages.count, .ptr = s->averages.ptr, .idx = s->averages.idx};
+    s->smooth = cell_table_make(&s->cells, &s->faces, &averages, s->averages.phi);
 }
 
 static void smoothed_free(struct smoothed *s)
