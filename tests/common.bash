@@ -1,5 +1,25 @@
 # shellcheck shell=bash
-# What several suites of command-line tests share.
+# What suites of command-line tests share.
+
+bats_require_minimum_version 1.5.0
+
+# A test begins in a folder of its own; $top is the repository; a pipe fails when any of its stages does.
+begin() {
+    cd "$BATS_TEST_TMPDIR" || return
+    set -o pipefail
+    top=$BATS_TEST_DIRNAME/..
+}
+
+# The same with one thread.
+begin_alone() {
+    begin
+    export OMP_NUM_THREADS=1
+}
+
+# For suites whose tests need no more.
+setup() {
+    begin
+}
 
 # Rows of section $1 of a text stream.
 rows() {

@@ -1,10 +1,9 @@
 # Results are whole or not there, for every program: a full disk, a limit on file sizes, a closed pipe or output, a signal.
 
-bats_require_minimum_version 1.5.0
+load common.bash
 
 setup() {
-    cd "$BATS_TEST_TMPDIR"
-    export OMP_NUM_THREADS=1
+    begin_alone
     cloud -d 2 -k jittered -n 8 --box 0,0.1,0,0.1 --jitter 0.2 > square.mts
     shapefn square.mts > table.mts 2> note
     printf '[scene]\ndim = 2\nanalysis = quasi-static\n[material all]\nregion = body\nE = 3000\nnu = 0.45\nrho = 1000\n' > run.scene

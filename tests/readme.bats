@@ -1,10 +1,9 @@
 # The texts: what they say the commands print is what these print, their figures are those of the result files, and they name what is there.
 
-bats_require_minimum_version 1.5.0
+load common.bash
 
 setup() {
-    cd "$BATS_TEST_TMPDIR"
-    top=$BATS_TEST_DIRNAME/..
+    begin
     texts="README.md examples/README.md pipelines/README.md"
 }
 
