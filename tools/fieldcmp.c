@@ -64,7 +64,6 @@ int main(int argc, char *argv[])
     struct tool tool;
     struct side a, b;
     struct findings findings;
-    struct error error;
     tool_begin(&tool, usage, 2, 2, argc, argv);
     struct comparison_request request = comparison_parse(&tool);
     side_read(&tool, tool.operands[0], request.field, &a);
@@ -75,7 +74,7 @@ int main(int argc, char *argv[])
     print_iteration("iteration_a", &a);
     print_iteration("iteration_b", &b);
     if (request.region == NULL) {
-        tool_check(&tool, print_regions(&findings, &error), &error);
+        TOOL_TRY(&tool, print_regions(&findings, &error));
     }
     bool good = comparison_judge(&tool, &request, &a, &b, &findings.statistics);
     if (request.map != NULL) {

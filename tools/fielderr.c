@@ -254,7 +254,6 @@ int main(int argc, char *argv[])
     struct tool tool;
     struct side fine, coarse;
     struct findings findings;
-    struct error error;
     tool_begin(&tool, usage, 2, 3, argc, argv);
     struct request request = parse(&tool);
     const struct comparison_request *asked = &request.comparison;
@@ -275,10 +274,10 @@ int main(int argc, char *argv[])
     print_quantity("order", NULL, order);
     print_quantity("ratio", NULL, request.ratio);
     print_quantity("cells_ratio", NULL, found);
-    tool_check(&tool, print_forces(&fine, &coarse, share, &error), &error);
+    TOOL_TRY(&tool, print_forces(&fine, &coarse, share, &error));
     print_energy(&fine, &coarse, share);
     if (asked->region == NULL) {
-        tool_check(&tool, print_regions(&findings, &error), &error);
+        TOOL_TRY(&tool, print_regions(&findings, &error));
     }
     bool good = comparison_judge(&tool, asked, &fine, &coarse, &findings.statistics);
     if (asked->map != NULL) {

@@ -124,12 +124,10 @@ static enum status make_group(const struct request *request, enum group_kind kin
     TRY(take_name(request, &name, &expression, error));
     TRY(group_check_name(name, error));
     if (body->cells.count == 0 && kind != GROUP_NODES) {
-        status = fail(error, STATUS_INPUT, "the stream has no cells, only nodes can be grouped (-n)");
-        goto done;
+        TRY(fail(error, STATUS_INPUT, "the stream has no cells, only nodes can be grouped (-n)"));
     }
     if (group_find(&body->groups[kind], name) >= 0 && !request->replace) {
-        status = fail(error, STATUS_INPUT, "there is one of that name already: --replace replaces it");
-        goto done;
+        TRY(fail(error, STATUS_INPUT, "there is one of that name already: --replace replaces it"));
     }
     TRY(NEW_ARRAY(&chosen, items->count, error));
     TRY(group_select(body, kind, expression, request->unit, chosen, error));
@@ -185,8 +183,7 @@ static enum status rename_group(const struct request *request, struct error *err
     TRY(group_check_name(after, error));
     struct group_list *list = &request->body->groups[kind];
     if (group_find(list, after) >= 0) {
-        status = fail(error, STATUS_INPUT, "there is one of the new name already");
-        goto done;
+        TRY(fail(error, STATUS_INPUT, "there is one of the new name already"));
     }
     name = strdup(after);
     if (name == NULL) {
@@ -350,15 +347,14 @@ static void drop_stale(const struct tool *tool, struct stream *stream)
 
 static void finish(const struct tool *tool, struct group_body *body, struct stream *stream, bool verbose)
 {
-    struct error error;
     drop_empty_regions(tool, &body->groups[GROUP_REGION]);
-    tool_check(tool, note_overlaps(tool, body, &error), &error);
+    TOOL_TRY(tool, note_overlaps(tool, body, &error));
     for (int kind = 0; kind < GROUP_KINDS && verbose; kind++) {
         for (int64_t g = 0; g < body->groups[kind].count; g++) {
             report(tool, body, (enum group_kind)kind, &body->groups[kind].group[g]);
         }
     }
-    tool_check(tool, group_body_write(body, stream, &error), &error);
+    TOOL_TRY(tool, group_body_write(body, stream, &error));
     if (body->groups[GROUP_FACETS].changed) {
         drop_stale(tool, stream);
     }

@@ -241,12 +241,11 @@ enum { COMMANDS = sizeof commands / sizeof *commands };
 static const struct command *find_command(const struct tool *tool)
 {
     const char *names[COMMANDS];
-    struct error error;
     int index;
     for (int i = 0; i < COMMANDS; i++) {
         names[i] = commands[i].name;
     }
-    tool_check(tool, parse_choice(tool->operands[0], "command", names, COMMANDS, &index, &error), &error);
+    TOOL_TRY(tool, parse_choice(tool->operands[0], "command", names, COMMANDS, &index, &error));
     const struct command *command = &commands[index];
     int operands = tool->operand_count - 1;
     if (operands < command->least) {

@@ -72,7 +72,6 @@ struct request {
 
 static void parse(const struct tool *tool, struct request *request)
 {
-    struct error error;
     const char *tissue[OPTIONS_MOST_USES];
     int tissue_count = tool_values(tool, "tissue", tissue);
     *request = (struct request){.method = tool_image_method(tool),
@@ -108,9 +107,9 @@ static void parse(const struct tool *tool, struct request *request)
                   request->at);
     }
     if (tool_given(tool, "material")) {
-        tool_check(tool, tissue_read(tool_value(tool, "material"), &request->tissue, &error), &error);
+        TOOL_TRY(tool, tissue_read(tool_value(tool, "material"), &request->tissue, &error));
     } else if (tissue_count > 0) {
-        tool_check(tool, tissue_parse(tissue_count, tissue, &request->tissue, &error), &error);
+        TOOL_TRY(tool, tissue_parse(tissue_count, tissue, &request->tissue, &error));
     }
 }
 
@@ -167,7 +166,6 @@ static void sample_image(const struct tool *tool, const struct request *request,
 /* The values of all images. The first one says how many there are at a point. */
 static void sample_images(const struct tool *tool, const struct request *request, struct sample_points *rows)
 {
-    struct error error;
     for (int i = 0; i < request->image_count; i++) {
         struct image image;
         struct image_axes axes;
@@ -179,7 +177,7 @@ static void sample_images(const struct tool *tool, const struct request *request
         }
         if (i == 0) {
             rows->cols = request->stiffness ? request->image_count : (int64_t)image.components;
-            tool_check(tool, NEW_ARRAY(&rows->value, rows->count * rows->cols, &error), &error);
+            TOOL_TRY(tool, NEW_ARRAY(&rows->value, rows->count * rows->cols, &error));
         }
         sample_image(tool, request, &image, tool->operands[i], rows, i);
         image_free(&image);
@@ -189,10 +187,9 @@ static void sample_images(const struct tool *tool, const struct request *request
 /* E and nu in place of the images' values. */
 static void find_moduli(const struct tool *tool, const struct tissue *tissue, struct sample_points *rows)
 {
-    struct error error;
     double(*moduli)[2];
     int64_t beyond = 0;
-    tool_check(tool, NEW_ARRAY(&moduli, rows->count, &error), &error);
+    TOOL_TRY(tool, NEW_ARRAY(&moduli, rows->count, &error));
     for (int64_t p = 0; p < rows->count; p++) {
         if (!tissue_moduli(tissue, rows->value + p * rows->cols, moduli[p], &beyond)) {
             char place[96];
@@ -236,13 +233,12 @@ static void print_rows(FILE *file, const struct request *request, const struct s
 static void write_table(const struct tool *tool, const struct request *request,
                         const struct sample_points *rows)
 {
-    struct error error;
     struct output output;
     if (tool->output == NULL) {
         print_rows(stdout, request, rows);
         return;
     }
-    tool_check(tool, output_open(&output, tool->output, &error), &error);
+    TOOL_TRY(tool, output_open(&output, tool->output, &error));
     int descriptor = dup(output.descriptor);
     FILE *file = descriptor < 0 ? NULL : fdopen(descriptor, "w");
     if (file != NULL) {
@@ -254,7 +250,7 @@ static void write_table(const struct tool *tool, const struct request *request,
         output_abandon(&output);
         tool_fail(tool, STATUS_SYSTEM, "%s: %s", tool->output, strerror(number));
     }
-    tool_check(tool, output_commit(&output, &error), &error);
+    TOOL_TRY(tool, output_commit(&output, &error));
 }
 
 int main(int argc, char *argv[])
@@ -263,7 +259,6 @@ int main(int argc, char *argv[])
     struct stream stream;
     struct request request;
     struct sample_points rows;
-    struct error error;
     tool_begin(&tool, usage, 1, OPTIONS_MOST_USES + 1, argc, argv);
     parse(&tool, &request);
     int most = request.image_count + (request.points == NULL ? 1 : 0);
@@ -285,10 +280,8 @@ int main(int argc, char *argv[])
         find_moduli(&tool, &request.tissue, &rows);
     }
     if (request.section != NULL) {
-        tool_check(&tool,
-                   stream_put(&stream, request.section, TYPE_F8, rows.count, rows.cols,
-                              request.stiffness ? "cols=E,nu" : "", rows.value, true, &error),
-                   &error);
+        TOOL_TRY(&tool, stream_put(&stream, request.section, TYPE_F8, rows.count, rows.cols,
+                                   request.stiffness ? "cols=E,nu" : "", rows.value, true, &error));
         rows.value = NULL;
         tool_write(&tool, &stream, request.text);
     } else {

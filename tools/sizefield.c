@@ -181,12 +181,11 @@ static void print_view(FILE *file, const struct layered *layered, double unit)
 static void write_view(const struct tool *tool, const struct layered *layered, double unit)
 {
     struct output output;
-    struct error error;
     if (tool->output == NULL) {
         print_view(stdout, layered, unit);
         return;
     }
-    tool_check(tool, output_open(&output, tool->output, &error), &error);
+    TOOL_TRY(tool, output_open(&output, tool->output, &error));
     int descriptor = dup(output.descriptor); /* the output closes its own */
     FILE *file = descriptor >= 0 ? fdopen(descriptor, "w") : NULL;
     int reason = errno;
@@ -199,7 +198,7 @@ static void write_view(const struct tool *tool, const struct layered *layered, d
     if (reason != 0 || file == NULL) {
         tool_fail(tool, STATUS_SYSTEM, "%s: %s", tool->output, strerror(reason));
     }
-    tool_check(tool, output_commit(&output, &error), &error);
+    TOOL_TRY(tool, output_commit(&output, &error));
 }
 
 /* Cells of a stream are positively oriented: those of the layer are turned where need be, or left out where
@@ -224,23 +223,16 @@ static void orient(struct layered *layered)
 static void write_sizes(const struct tool *tool, struct layered *layered, bool text)
 {
     struct stream stream;
-    struct error error;
     char attributes[64];
     const struct cells *cells = &layered->cells;
     orient(layered);
     stream_init(&stream);
-    tool_check(tool,
-               stream_put(&stream, "nodes.x", TYPE_F8, cells->node_count, cells->dim,
-                          vector_attributes(cells->dim, "m", attributes), layered->x, false, &error),
-               &error);
-    tool_check(
-        tool,
-        stream_put(&stream, "cells", TYPE_I4, cells->count, cells->dim + 1, "", layered->node, false, &error),
-        &error);
-    tool_check(
-        tool,
-        stream_put(&stream, "size", TYPE_F8, cells->node_count, 1, "unit=m", layered->size, false, &error),
-        &error);
+    TOOL_TRY(tool, stream_put(&stream, "nodes.x", TYPE_F8, cells->node_count, cells->dim,
+                              vector_attributes(cells->dim, "m", attributes), layered->x, false, &error));
+    TOOL_TRY(tool, stream_put(&stream, "cells", TYPE_I4, cells->count, cells->dim + 1, "", layered->node,
+                              false, &error));
+    TOOL_TRY(tool, stream_put(&stream, "size", TYPE_F8, cells->node_count, 1, "unit=m", layered->size, false,
+                              &error));
     tool_write(tool, &stream, text);
     stream_free(&stream);
 }
@@ -262,7 +254,6 @@ int main(int argc, char *argv[])
     struct stream stream;
     struct cells cells;
     struct size_field field;
-    struct error error;
     double *squared = NULL;
     tool_begin(&tool, usage, 0, 1, argc, argv);
     tool_excludes(&tool, "binary", "text");
@@ -271,14 +262,14 @@ int main(int argc, char *argv[])
     }
     struct request request = parse(&tool);
     tool_read(&tool, tool.operands[0], &stream);
-    tool_check(&tool, recover(&stream, request.field, &cells, &squared, &error), &error);
-    tool_check(&tool, size_field_build(&cells, squared, &request.sizes, &field, &error), &error);
+    TOOL_TRY(&tool, recover(&stream, request.field, &cells, &squared, &error));
+    TOOL_TRY(&tool, size_field_build(&cells, squared, &request.sizes, &field, &error));
     if (field.unbound > request.sizes.most_nodes) {
         tool_note(&tool, "these sizes ask for %.3g nodes: made larger for %.0f (-n)", field.unbound,
                   request.sizes.most_nodes);
     }
     struct layered layered;
-    tool_check(&tool, layered_make(&cells, &field, &layered, &error), &error);
+    TOOL_TRY(&tool, layered_make(&cells, &field, &layered, &error));
     if (tool_given(&tool, "binary") || tool_given(&tool, "text")) {
         write_sizes(&tool, &layered, tool_given(&tool, "text"));
     } else {

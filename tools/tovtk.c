@@ -72,12 +72,11 @@ struct target {
 
 static void target_open(const struct tool *tool, struct target *target, const char *name)
 {
-    struct error error;
     *target = (struct target){.name = name, .file = stdout};
     if (name == NULL) {
         return;
     }
-    tool_check(tool, output_open(&target->output, name, &error), &error);
+    TOOL_TRY(tool, output_open(&target->output, name, &error));
     int descriptor = dup(target->output.descriptor); /* the output closes its own */
     target->file = descriptor >= 0 ? fdopen(descriptor, "wb") : NULL;
     if (target->file == NULL) {

@@ -208,7 +208,6 @@ done:
 void comparison_write_map(struct tool *tool, struct side *a, const char *name, double *value,
                           const char *file, bool text)
 {
-    struct error error;
     static const char *const kept[] = {"nodes.x", "cells", "cells.region"};
     struct stream *stream = &a->stream;
     char unit[32], attributes[48] = "";
@@ -224,10 +223,8 @@ void comparison_write_map(struct tool *tool, struct side *a, const char *name, d
             stream_remove(stream, stream->sections[s].name);
         }
     }
-    tool_check(
-        tool,
-        stream_put(stream, name, TYPE_F8, a->field.cells.node_count, 1, attributes, value, false, &error),
-        &error);
+    TOOL_TRY(tool, stream_put(stream, name, TYPE_F8, a->field.cells.node_count, 1, attributes, value, false,
+                              &error));
     tool->output = file;
     tool_write(tool, stream, text);
 }

@@ -126,9 +126,8 @@ static enum status find_facets(struct group_body *body, const struct named_facet
         const struct keyed *found =
             bsearch(&wanted, keyed, (size_t)boundary->count, sizeof *keyed, compare_keys);
         if (found == NULL) {
-            status = fail(error, STATUS_INPUT,
-                          "facets: row %lld: no face of exactly one cell: run nodes again", (long long)i);
-            goto done;
+            TRY(fail(error, STATUS_INPUT, "facets: row %lld: no face of exactly one cell: run nodes again",
+                     (long long)i));
         }
         facet[i] = found->facet;
         memcpy(&boundary->node[(int64_t)found->facet * dim], &named->facet[i * dim],

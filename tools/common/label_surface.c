@@ -141,14 +141,13 @@ static void print_curves(FILE *file, const struct stuffing *stuffing,
 static void print_surface(const struct tool *tool, FILE *file, const struct stuffing *stuffing,
                           const struct label_surface_options *options)
 {
-    struct error error;
     int dim = stuffing->dim;
     int64_t *next = NULL;
     double *mean = NULL, *least = NULL, *place = NULL;
-    tool_check(tool, NEW_ARRAY(&mean, stuffing->node_count * dim, &error), &error);
-    tool_check(tool, NEW_ARRAY(&least, stuffing->node_count, &error), &error);
-    tool_check(tool, NEW_ARRAY(&place, stuffing->node_count * dim, &error), &error);
-    tool_check(tool, NEW_ARRAY(&next, stuffing->node_count, &error), &error);
+    TOOL_TRY(tool, NEW_ARRAY(&mean, stuffing->node_count * dim, &error));
+    TOOL_TRY(tool, NEW_ARRAY(&least, stuffing->node_count, &error));
+    TOOL_TRY(tool, NEW_ARRAY(&place, stuffing->node_count * dim, &error));
+    TOOL_TRY(tool, NEW_ARRAY(&next, stuffing->node_count, &error));
     move_outward(stuffing, options, mean, least, place);
     if (dim == 3) {
         print_triangles(file, stuffing, options, place);
@@ -165,7 +164,6 @@ void label_surface_write(const struct tool *tool, const struct stuffing *stuffin
                          const struct label_surface_options *options)
 {
     struct output output;
-    struct error error;
     int64_t count = 0;
     for (int64_t f = 0; f < stuffing->facet_count; f++) {
         count += is_chosen(stuffing, options, f);
@@ -177,7 +175,7 @@ void label_surface_write(const struct tool *tool, const struct stuffing *stuffin
         print_surface(tool, stdout, stuffing, options);
         return;
     }
-    tool_check(tool, output_open(&output, tool->output, &error), &error);
+    TOOL_TRY(tool, output_open(&output, tool->output, &error));
     int descriptor = dup(output.descriptor);
     FILE *file = descriptor >= 0 ? fdopen(descriptor, "w") : NULL;
     int reason = errno;
@@ -190,5 +188,5 @@ void label_surface_write(const struct tool *tool, const struct stuffing *stuffin
     if (reason != 0 || file == NULL) {
         tool_fail(tool, STATUS_SYSTEM, "%s: %s", tool->output, strerror(reason));
     }
-    tool_check(tool, output_commit(&output, &error), &error);
+    TOOL_TRY(tool, output_commit(&output, &error));
 }

@@ -4,10 +4,9 @@
 
 void mls_parse(const struct tool *tool, struct mls *mls)
 {
-    struct error error;
     const struct mls_texts texts = {tool_value(tool, "basis"), tool_value(tool, "weight"),
                                     tool_value(tool, "mu"), tool_value(tool, "mu-unit")};
-    tool_check(tool, mls_apply(&texts, mls, &error), &error);
+    TOOL_TRY(tool, mls_apply(&texts, mls, &error));
 }
 
 void radius_parse(const struct tool *tool, struct support_options *support)

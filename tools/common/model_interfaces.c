@@ -56,8 +56,7 @@ static void remedy(const struct names *names, const double *modulus, char text[2
         }
         done[stiffest] = true;
         size_t length = strlen(text);
-        snprintf(text + length, 256 - length, "%s%s", k > 0 ? "," : "",
-                 names->name[stiffest]);
+        snprintf(text + length, 256 - length, "%s%s", k > 0 ? "," : "", names->name[stiffest]);
     }
 }
 

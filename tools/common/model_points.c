@@ -113,8 +113,7 @@ static enum status find_field(struct point_section *p, struct error *error)
     TRY(stream_need(p->model->stream, "support.radius", TYPE_F8, 1, "support", &radius, error));
     TRY(stage_recorded(p->model->stream, "support", cells->dim, &recorded, error));
     if (radius->rows != cells->node_count) {
-        status = fail(error, STATUS_INPUT, "support.radius: does not fit the nodes: run support again");
-        goto done;
+        TRY(fail(error, STATUS_INPUT, "support.radius: does not fit the nodes: run support again"));
     }
     TRY(field_table_build(&recorded.support, &recorded.shapes, cells, radius->data, measured->count,
                           measured->x, p->section->table, &field, error));

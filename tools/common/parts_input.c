@@ -111,9 +111,8 @@ static int64_t begin(const struct tool *tool, const char *operand, struct stream
 /* The checksums of all parts as one. */
 static uint32_t identify(const struct tool *tool, const struct rejoin *rejoin, const int64_t *first)
 {
-    struct error error;
     uint32_t *each;
-    tool_check(tool, NEW_ARRAY(&each, rejoin->part_count, &error), &error);
+    TOOL_TRY(tool, NEW_ARRAY(&each, rejoin->part_count, &error));
     for (int64_t k = 0; k < rejoin->part_count; k++) {
         each[k] = rejoin->part[k].elsewhere ? 0 : checkpoint_identify_input(&rejoin->part[k].stream);
     }
@@ -127,9 +126,8 @@ static uint32_t identify(const struct tool *tool, const struct rejoin *rejoin, c
 static void list_readers(const struct tool *tool, const struct rejoin *rejoin, const int64_t *first,
                          struct parts_input *parts)
 {
-    struct error error;
     const struct ranks *ranks = process_ranks();
-    tool_check(tool, NEW_ARRAY(&parts->face_reader, rejoin->rows[ROWS_OF_FACES], &error), &error);
+    TOOL_TRY(tool, NEW_ARRAY(&parts->face_reader, rejoin->rows[ROWS_OF_FACES], &error));
     for (int64_t k = 0; k < rejoin->part_count; k++) {
         const struct rejoin_part *part = &rejoin->part[k];
         for (int64_t f = 0; f < part->count[ROWS_OF_FACES]; f++) {
@@ -173,7 +171,6 @@ static void take_provenance(struct rejoin *rejoin, struct stream *stream)
 void parts_read(const struct tool *tool, const char *operand, struct stream *stream,
                 struct parts_input *parts)
 {
-    struct error error;
     const struct ranks *ranks = process_ranks();
     struct rejoin rejoin = {.tool = tool};
     struct stream start;
@@ -187,13 +184,13 @@ void parts_read(const struct tool *tool, const char *operand, struct stream *str
     stream_init(stream);
     stream_init(&start);
     rejoin.part_count = begin(tool, operand, &start);
-    tool_check(tool, NEW_ARRAY(&rejoin.part, rejoin.part_count, &error), &error);
-    tool_check(tool, ranks_share(ranks, rejoin.part_count, NULL, &first, &error), &error);
-    tool_check(tool, ranks_agree(ranks, read_own(&rejoin, operand, first, &start, &error), &error), &error);
+    TOOL_TRY(tool, NEW_ARRAY(&rejoin.part, rejoin.part_count, &error));
+    TOOL_TRY(tool, ranks_share(ranks, rejoin.part_count, NULL, &first, &error));
+    TOOL_TRY(tool, ranks_agree(ranks, read_own(&rejoin, operand, first, &start, &error), &error));
     parts->identity = identify(tool, &rejoin, first);
-    tool_check(tool, parts_share_small(&rejoin, first, &packed, &error), &error);
+    TOOL_TRY(tool, parts_share_small(&rejoin, first, &packed, &error));
     rejoin_streams(&rejoin);
-    tool_check(tool, ranks_agree(ranks, rejoin_check_large(&rejoin, &error), &error), &error);
+    TOOL_TRY(tool, ranks_agree(ranks, rejoin_check_large(&rejoin, &error), &error));
     rejoin_sections(&rejoin, stream);
     if (ranks != NULL && stream_find(stream, "face.ptr") != NULL) {
         list_readers(tool, &rejoin, first, parts);

@@ -38,17 +38,15 @@ static void put_field(const struct run *run, const struct moment *moment, const 
 /* The sides of interfaces, where supports have any. */
 static void put_sides(const struct run *run)
 {
-    struct error error;
     const struct section *side = stream_find(run->stream, "support.side");
     int32_t *copy = NULL;
     if (side == NULL) {
         return;
     }
-    tool_check(run->tool, NEW_ARRAY(&copy, side->rows, &error), &error);
+    TOOL_TRY(run->tool, NEW_ARRAY(&copy, side->rows, &error));
     memcpy(copy, side->data, (size_t)side->rows * sizeof *copy);
-    tool_check(run->tool,
-               stream_put(run->stream, "parameters.side", TYPE_I4, side->rows, 1, "", copy, true, &error),
-               &error);
+    TOOL_TRY(run->tool,
+             stream_put(run->stream, "parameters.side", TYPE_I4, side->rows, 1, "", copy, true, &error));
 }
 
 void run_put_supports(const struct run *run)

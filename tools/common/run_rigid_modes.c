@@ -150,10 +150,9 @@ done:
 
 void run_check_rigid_modes(struct run *run)
 {
-    struct error error;
     struct bodies bodies;
     const struct model *model = run->model;
-    tool_check(run->tool, bodies_find(model, &bodies, &error), &error);
+    TOOL_TRY(run->tool, bodies_find(model, &bodies, &error));
     for (int64_t b = 0; b < bodies.count; b++) {
         const struct rigid_modes *moves = &bodies.moves[b];
         char body[256], what[512];
@@ -161,7 +160,7 @@ void run_check_rigid_modes(struct run *run)
             continue;
         }
         moves_text(model->assembly.cells.dim, model->assembly.extent, moves, what, sizeof what);
-        tool_check(run->tool, body_text(model, &bodies, b, body, &error), &error);
+        TOOL_TRY(run->tool, body_text(model, &bodies, b, body, &error));
         if (!bodies.touches[b]) {
             run_fail(run, STATUS_VERDICT,
                      "%s: nothing holds %s: it %s: add a [displacement] that forbids that", run->scene->path,

@@ -12,8 +12,7 @@
 void sample_points_table(const struct tool *tool, const char *file, double unit, struct sample_points *rows)
 {
     struct table table;
-    struct error error;
-    tool_check(tool, table_read(file, 2, 3, &table, &error), &error);
+    TOOL_TRY(tool, table_read(file, 2, 3, &table, &error));
     *rows =
         (struct sample_points){.what = file, .dim = (int)table.cols, .count = table.rows, .x = table.values};
     table.values = NULL;
@@ -27,18 +26,17 @@ void sample_points_table(const struct tool *tool, const char *file, double unit,
 static void choose_regions(const struct tool *tool, const struct stream *stream, char *list,
                            struct sample_points *rows)
 {
-    struct error error;
     struct names names;
     const struct section *cell, *region;
     bool *wanted;
     int64_t kept = 0;
-    tool_check(tool, stream_need(stream, "points.cell", TYPE_I4, 1, "ipoints", &cell, &error), &error);
-    tool_check(tool, stream_need(stream, "cells.region", TYPE_I4, 1, "nodes", &region, &error), &error);
+    TOOL_TRY(tool, stream_need(stream, "points.cell", TYPE_I4, 1, "ipoints", &cell, &error));
+    TOOL_TRY(tool, stream_need(stream, "cells.region", TYPE_I4, 1, "nodes", &region, &error));
     if (cell->rows != rows->count) {
         tool_fail(tool, STATUS_INPUT, "points.cell: not one row per point: run ipoints again");
     }
-    tool_check(tool, names_read(region, &names, &error), &error);
-    tool_check(tool, NEW_ARRAY(&wanted, names.count, &error), &error);
+    TOOL_TRY(tool, names_read(region, &names, &error));
+    TOOL_TRY(tool, NEW_ARRAY(&wanted, names.count, &error));
     for (char *name; (name = strsep(&list, ",")) != NULL;) {
         int64_t index = names_find(&names, name);
         if (index < 0) {
@@ -65,23 +63,22 @@ static void choose_regions(const struct tool *tool, const struct stream *stream,
 void sample_points_section(const struct tool *tool, const char *file, const char *name, const char *regions,
                            struct stream *stream, struct sample_points *rows)
 {
-    struct error error;
     const struct section *at;
     tool_read(tool, file, stream);
     if (strcmp(name, "points.x") == 0) {
         stage_fill(tool, stream, "ipoints");
     }
-    tool_check(tool, stream_need(stream, name, TYPE_F8, 0, "nodes", &at, &error), &error);
+    TOOL_TRY(tool, stream_need(stream, name, TYPE_F8, 0, "nodes", &at, &error));
     if (at->cols < 2 || at->cols > 3) {
         tool_fail(tool, STATUS_INPUT, "%s: %lld columns: points have 2 or 3 coordinates", name,
                   (long long)at->cols);
     }
     *rows = (struct sample_points){.what = name, .dim = (int)at->cols, .count = at->rows};
-    tool_check(tool, NEW_ARRAY(&rows->x, at->rows * at->cols, &error), &error);
+    TOOL_TRY(tool, NEW_ARRAY(&rows->x, at->rows * at->cols, &error));
     memcpy(rows->x, at->data, (size_t)(at->rows * at->cols) * sizeof *rows->x);
     if (regions != NULL) {
         char *list = strdup(regions);
-        tool_check(tool, list == NULL ? fail_memory(&error, "-r") : STATUS_OK, &error);
+        TOOL_TRY(tool, list == NULL ? fail_memory(&error, "-r") : STATUS_OK);
         choose_regions(tool, stream, list, rows);
         free(list);
     }

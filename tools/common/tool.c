@@ -91,10 +91,8 @@ static _Noreturn void print_and_exit(const struct tool *tool, const char *text)
 
 static void parse_options(struct tool *tool)
 {
-    struct error error;
     options_declare(&tool->options, tool->usage);
-    tool_check(tool, options_parse(&tool->options, tool->argc, arguments, &tool->operand_count, &error),
-               &error);
+    TOOL_TRY(tool, options_parse(&tool->options, tool->argc, arguments, &tool->operand_count, &error));
     if (tool_given(tool, "help")) {
         print_and_exit(tool, tool->usage);
     }
@@ -193,10 +191,9 @@ void tool_names_input(const char *operand)
 
 void tool_read(const struct tool *tool, const char *file, struct stream *stream)
 {
-    struct error error;
     const char *name;
     int descriptor = tool_open(tool, file, &name);
-    tool_check(tool, stream_read(stream, descriptor, name, &error), &error);
+    TOOL_TRY(tool, stream_read(stream, descriptor, name, &error));
     if (descriptor != STDIN_FILENO) {
         close(descriptor);
     }
@@ -232,7 +229,6 @@ static char *without_silent(const struct tool *tool, const char *argument, size_
  * output goes. */
 static void add_provenance(const struct tool *tool, struct stream *stream)
 {
-    struct error error;
     int count = 0, rest_count = 0;
     char *rests[TOOL_MOST_SILENT], **kept = array_new(tool->argc + 1, sizeof *kept);
     if (kept == NULL) {
@@ -253,7 +249,7 @@ static void add_provenance(const struct tool *tool, struct stream *stream)
             kept[count++] = argument;
         }
     }
-    tool_check(tool, stream_add_provenance(stream, count, kept, &error), &error);
+    TOOL_TRY(tool, stream_add_provenance(stream, count, kept, &error));
     while (rest_count > 0) {
         free(rests[--rest_count]);
     }
