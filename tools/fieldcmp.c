@@ -73,17 +73,5 @@ int main(int argc, char *argv[])
     print_relative(&findings);
     print_iteration("iteration_a", &a);
     print_iteration("iteration_b", &b);
-    if (request.region == NULL) {
-        TOOL_TRY(&tool, print_regions(&findings, &error));
-    }
-    bool good = comparison_judge(&tool, &request, &a, &b, &findings.statistics);
-    if (request.map != NULL) {
-        comparison_write_map(&tool, &a, "difference", findings.comparison.difference, request.map,
-                             request.text);
-    }
-    findings_free(&findings);
-    stream_free(&a.stream);
-    stream_free(&b.stream);
-    int status = tool_end(&tool);
-    return good ? status : (int)STATUS_VERDICT;
+    return comparison_end(&tool, &request, &a, &b, &findings, "difference");
 }

@@ -276,16 +276,5 @@ int main(int argc, char *argv[])
     print_quantity("cells_ratio", NULL, found);
     TOOL_TRY(&tool, print_forces(&fine, &coarse, share, &error));
     print_energy(&fine, &coarse, share);
-    if (asked->region == NULL) {
-        TOOL_TRY(&tool, print_regions(&findings, &error));
-    }
-    bool good = comparison_judge(&tool, asked, &fine, &coarse, &findings.statistics);
-    if (asked->map != NULL) {
-        comparison_write_map(&tool, &fine, "error", findings.comparison.difference, asked->map, asked->text);
-    }
-    findings_free(&findings);
-    stream_free(&fine.stream);
-    stream_free(&coarse.stream);
-    int status = tool_end(&tool);
-    return good ? status : (int)STATUS_VERDICT;
+    return comparison_end(&tool, asked, &fine, &coarse, &findings, "error");
 }

@@ -58,6 +58,7 @@ static const char usage[] =
     "  groups -u mm -f 'probe=ball:10,0,42,5 and normal:0,0,1,60' -f 'free=all without probe' < body.mts\n"
     "  groups -f 'cavity=side:2,180' -r 'tumour=ball:0.01,0,0.03,0.008' -n 'tip=plane:0,0,0.1,0,0,1'\n";
 
+#include "cell_report.h"
 #include "group_body.h"
 #include "group_select.h"
 #include "tool.h"
@@ -100,18 +101,6 @@ static const char *plural(enum group_kind kind)
     return plurals[kind];
 }
 
-/* "0 0 0 to 0.1 0.1 0.2 m" */
-static const char *describe_box(const struct box *box, char text[128])
-{
-    int length = 0;
-    for (int k = 0; k < 2 * box->dim; k++) {
-        length += snprintf(text + length, (size_t)(128 - length), "%s%.4g ", k == box->dim ? "to " : "",
-                           k < box->dim ? box->low[k] : box->high[k - box->dim]);
-    }
-    snprintf(text + length, (size_t)(128 - length), "m");
-    return text;
-}
-
 static enum status make_group(const struct request *request, enum group_kind kind, struct error *error)
 {
     enum status status;
@@ -138,7 +127,7 @@ static enum status make_group(const struct request *request, enum group_kind kin
         struct box box = box_of(body->cells.dim, body->cells.node_count, body->cells.x);
         char place[128];
         status = fail(error, STATUS_INPUT, "chooses none of %lld %s; the body's box is %s",
-                      (long long)items->count, plural(kind), describe_box(&box, place));
+                      (long long)items->count, plural(kind), cell_report_box(&box, place));
         goto done;
     }
     TRY(group_put(body, kind, name, chosen, request->use->value, error));
@@ -326,7 +315,7 @@ static void report(const struct tool *tool, const struct group_body *body, enum 
         at += snprintf(at, (size_t)(end - at), ", %s %.4g m%.0d", of_dim[region][dim - 2], size,
                        power == 1 ? 0 : power);
     }
-    at += snprintf(at, (size_t)(end - at), ", box %s%s", describe_box(&box, place),
+    at += snprintf(at, (size_t)(end - at), ", box %s%s", cell_report_box(&box, place),
                    kind == GROUP_FACETS ? ", mean normal" : "");
     for (int k = 0; k < dim && kind == GROUP_FACETS; k++) {
         double share = size > 0 ? sum[k] / size : 0;

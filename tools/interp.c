@@ -254,10 +254,7 @@ static void put_all_fields(const struct tool *tool, const struct stream *stream,
 static void put_fields(const struct tool *tool, const struct stream *stream, int64_t node_count,
                        const char *names, const struct points *points, struct stream *output)
 {
-    char *list = strdup(names), *name;
-    if (list == NULL) {
-        tool_fail(tool, STATUS_SYSTEM, "out of memory");
-    }
+    char *list = tool_memory(tool, strdup(names)), *name;
     for (char *rest = list; (name = strsep(&rest, ",")) != NULL;) {
         const struct section *field = stream_find(stream, name);
         if (field == NULL || !is_field(field, node_count)) {
@@ -325,10 +322,7 @@ static void begin_output(const struct tool *tool, struct stream *stream, int dim
 {
     char attributes[64];
     stream_init(output);
-    output->provenance = stream->provenance;
-    output->provenance_count = stream->provenance_count;
-    stream->provenance = NULL;
-    stream->provenance_count = 0;
+    stream_inherit(output, stream);
     TOOL_TRY(tool, stream_put(output, "nodes.x", TYPE_F8, points->count, dim,
                               vector_attributes(dim, "m", attributes), points->x, true, &error));
 }

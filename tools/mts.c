@@ -192,10 +192,7 @@ static int select_sections(struct tool *tool, bool keep)
     bool used[MOST] = {false};
     int count = 0;
     struct stream stream;
-    char *list_of_patterns = strdup(tool->operands[1]);
-    if (list_of_patterns == NULL) {
-        tool_fail(tool, STATUS_SYSTEM, "out of memory");
-    }
+    char *list_of_patterns = tool_memory(tool, strdup(tool->operands[1]));
     for (char *rest = list_of_patterns, *pattern; (pattern = strsep(&rest, ",")) != NULL;) {
         if (count == MOST || *pattern == '\0') {
             tool_fail(tool, STATUS_INPUT, "'%s' is not a list of at most %d patterns", tool->operands[1],

@@ -135,13 +135,8 @@ static void report(const struct tool *tool, const struct mesh *mesh, bool verbos
         return;
     }
     TOOL_TRY(tool, cell_report_make(&cells, INFINITY, &cell_report, &error));
-    int length = 0;
-    for (int k = 0; k < 2 * mesh->dim; k++) {
-        length += snprintf(text + length, sizeof text - (size_t)length, "%s%.4g ",
-                           k == mesh->dim ? "to " : "", k < mesh->dim ? box.low[k] : box.high[k - mesh->dim]);
-    }
-    tool_note(tool, "%lld nodes, %lld cells, box %sm, %s %.4g %s, %d connected bod%s",
-              (long long)mesh->node_count, (long long)mesh->cell_count, text,
+    tool_note(tool, "%lld nodes, %lld cells, box %s, %s %.4g %s, %d connected bod%s",
+              (long long)mesh->node_count, (long long)mesh->cell_count, cell_report_box(&box, text),
               mesh->dim == 2 ? "area" : "volume", cell_report.volume, mesh->dim == 2 ? "m2" : "m3",
               cell_report.bodies, cell_report.bodies == 1 ? "y" : "ies");
     tool_note(tool, "quality of the cells: least %.2g, median %.2g", cell_report.least_median[0],

@@ -46,16 +46,12 @@ static const char usage[] =
 /* "NAME with %d" with a number in its place; to be freed. */
 static char *numbered(const struct tool *tool, const char *name, int32_t number)
 {
-    char *text;
     const char *at = strstr(name, "%d");
     int before = at != NULL ? (int)(at - name) : 0;
     if (at == NULL || strstr(at + 1, "%d") != NULL) {
         tool_fail(tool, STATUS_INPUT, "-o %s: has to have one %%d, where the number of the part goes", name);
     }
-    if (asprintf(&text, "%.*s%d%s", before, name, number, name + before + 2) < 0) {
-        tool_fail(tool, STATUS_SYSTEM, "out of memory");
-    }
-    return text;
+    return tool_text(tool, "%.*s%d%s", before, name, number, name + before + 2);
 }
 
 /* What -v tells. */

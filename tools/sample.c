@@ -47,18 +47,16 @@ static const char usage[] =
 #include "image_body.h"
 #include "images.h"
 #include "sample_points.h"
-#include "output.h"
+#include "target.h"
 #include "tissue.h"
 #include "stages/views.h"
 
 #include "io/image_sample.h"
 
-#include <errno.h>
 #include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 /* What was asked for. */
 struct request {
@@ -135,10 +133,7 @@ static void sample_image(const struct tool *tool, const struct request *request,
         double place[3] = {0, 0, image->to_world[2][3]}, voxel[3];
         double *value = rows->value + p * rows->cols + first;
         memcpy(place, rows->x + p * rows->dim, (size_t)rows->dim * sizeof *place);
-        for (int i = 0; i < 3; i++) {
-            voxel[i] = inverse[i][0] * place[0] + inverse[i][1] * place[1] + inverse[i][2] * place[2] +
-                       inverse[i][3];
-        }
+        image_map(&inverse[0][0], place, voxel);
         if (!image_sample(image, request->method, voxel, value) || !are_finite(value, image->components)) {
             first_outside = outside++ == 0 ? p : first_outside;
             for (size_t c = 0; c < image->components; c++) {
@@ -229,36 +224,13 @@ static void print_rows(FILE *file, const struct request *request, const struct s
     }
 }
 
-/* To the output file, or standard output. */
-static void write_table(const struct tool *tool, const struct request *request,
-                        const struct sample_points *rows)
-{
-    struct output output;
-    if (tool->output == NULL) {
-        print_rows(stdout, request, rows);
-        return;
-    }
-    TOOL_TRY(tool, output_open(&output, tool->output, &error));
-    int descriptor = dup(output.descriptor);
-    FILE *file = descriptor < 0 ? NULL : fdopen(descriptor, "w");
-    if (file != NULL) {
-        print_rows(file, request, rows);
-    }
-    bool failed = file == NULL || ferror(file) != 0;
-    if ((file != NULL && fclose(file) != 0) || failed) {
-        int number = errno;
-        output_abandon(&output);
-        tool_fail(tool, STATUS_SYSTEM, "%s: %s", tool->output, strerror(number));
-    }
-    TOOL_TRY(tool, output_commit(&output, &error));
-}
-
 int main(int argc, char *argv[])
 {
     struct tool tool;
     struct stream stream;
     struct request request;
     struct sample_points rows;
+    struct target target;
     tool_begin(&tool, usage, 1, OPTIONS_MOST_USES + 1, argc, argv);
     parse(&tool, &request);
     int most = request.image_count + (request.points == NULL ? 1 : 0);
@@ -285,7 +257,9 @@ int main(int argc, char *argv[])
         rows.value = NULL;
         tool_write(&tool, &stream, request.text);
     } else {
-        write_table(&tool, &request, &rows);
+        target_open(&tool, &target, tool.output);
+        print_rows(target.file, &request, &rows);
+        target_end(&tool, &target);
     }
     free(rows.x);
     free(rows.value);

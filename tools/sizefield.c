@@ -39,17 +39,15 @@ static const char usage[] =
     "  gmsh -2 graded.geo -o graded.msh\n"
     "  sizefield -b u.dat | voxels -h 6mm --sizes - labels.nii.gz > finer.mts\n";
 
-#include "output.h"
+#include "target.h"
 #include "tool.h"
 #include "stages/views.h"
 
 #include "approx/field_error.h"
 #include "approx/size_field.h"
 
-#include <errno.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 /* What the command line asks for. */
 struct request {
@@ -178,29 +176,6 @@ static void print_view(FILE *file, const struct layered *layered, double unit)
     fprintf(file, "};\n");
 }
 
-static void write_view(const struct tool *tool, const struct layered *layered, double unit)
-{
-    struct output output;
-    if (tool->output == NULL) {
-        print_view(stdout, layered, unit);
-        return;
-    }
-    TOOL_TRY(tool, output_open(&output, tool->output, &error));
-    int descriptor = dup(output.descriptor); /* the output closes its own */
-    FILE *file = descriptor >= 0 ? fdopen(descriptor, "w") : NULL;
-    int reason = errno;
-    if (file != NULL) {
-        errno = 0;
-        print_view(file, layered, unit);
-        reason = ferror(file) != 0 ? errno : 0;
-        reason = fclose(file) != 0 && reason == 0 ? errno : reason;
-    }
-    if (reason != 0 || file == NULL) {
-        tool_fail(tool, STATUS_SYSTEM, "%s: %s", tool->output, strerror(reason));
-    }
-    TOOL_TRY(tool, output_commit(&output, &error));
-}
-
 /* Cells of a stream are positively oriented: those of the layer are turned where need be, or left out where
  * they have no volume. */
 static void orient(struct layered *layered)
@@ -269,11 +244,14 @@ int main(int argc, char *argv[])
                   request.sizes.most_nodes);
     }
     struct layered layered;
+    struct target target;
     TOOL_TRY(&tool, layered_make(&cells, &field, &layered, &error));
     if (tool_given(&tool, "binary") || tool_given(&tool, "text")) {
         write_sizes(&tool, &layered, tool_given(&tool, "text"));
     } else {
-        write_view(&tool, &layered, request.unit);
+        target_open(&tool, &target, tool.output);
+        print_view(target.file, &layered, request.unit);
+        target_end(&tool, &target);
     }
     if (request.verbose) {
         report(&request, &cells, &field);

@@ -4,6 +4,7 @@
 #include "base/memory.h"
 #include "base/options.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 

@@ -58,6 +58,9 @@ MUST_CHECK enum status stream_put_copy(struct stream *stream, const char *name, 
                                        int64_t rows, int64_t cols, const char *attributes, const void *data,
                                        struct error *error);
 
+/* The provenance of `from`, for what is made of it. */
+void stream_inherit(struct stream *stream, struct stream *from);
+
 /* Attributes of a section of one vector in each row, "unit=UNIT cols=x,y[,z]", into text[64]; returns it. */
 const char *vector_attributes(int dim, const char *unit, char text[64]);
 

@@ -175,7 +175,8 @@ double iteration_error(const struct side *side)
     return known ? *(const double *)section->data : -1.0;
 }
 
-enum status print_regions(const struct findings *findings, struct error *error)
+/* Statistics of the nodes of each region. */
+static enum status print_regions(const struct findings *findings, struct error *error)
 {
     const struct field_comparison *comparison = &findings->comparison;
     const struct regions *regions = &findings->regions;
@@ -205,8 +206,9 @@ done:
     return status;
 }
 
-void comparison_write_map(struct tool *tool, struct side *a, const char *name, double *value,
-                          const char *file, bool text)
+/* Write A's nodes and cells with a value at each node, section `name`, to a file. */
+static void write_map(struct tool *tool, struct side *a, const char *name, double *value, const char *file,
+                      bool text)
 {
     static const char *const kept[] = {"nodes.x", "cells", "cells.region"};
     struct stream *stream = &a->stream;
@@ -232,20 +234,29 @@ void comparison_write_map(struct tool *tool, struct side *a, const char *name, d
 /* Whether a value is within its tolerance; NaN is not. Notes if it is beyond. */
 static bool is_within(const struct tool *tool, const char *name, double value, double tolerance)
 {
-    if (!(value <= tolerance)) {
-        if (isfinite(tolerance)) {
-            tool_note(tool, "%s %.9g is beyond %.9g", name, value, tolerance);
-        }
-        return false;
+    bool within = value <= tolerance;
+    if (!within && isfinite(tolerance)) {
+        tool_note(tool, "%s %.9g is beyond %.9g", name, value, tolerance);
     }
-    return true;
+    return within;
 }
 
-bool comparison_judge(const struct tool *tool, const struct comparison_request *request, const struct side *a,
-                      const struct side *b, const struct field_statistics *statistics)
+int comparison_end(struct tool *tool, const struct comparison_request *request, struct side *a,
+                   struct side *b, struct findings *findings, const char *name)
 {
+    if (request->region == NULL) {
+        TOOL_TRY(tool, print_regions(findings, &error));
+    }
     bool good = !has_unknown(tool, a, request->field);
     good = !has_unknown(tool, b, request->field) && good;
-    good = is_within(tool, "avg", statistics->average, request->tol_avg) && good;
-    return is_within(tool, "max", statistics->largest, request->tol_max) && good;
+    good = is_within(tool, "avg", findings->statistics.average, request->tol_avg) && good;
+    good = is_within(tool, "max", findings->statistics.largest, request->tol_max) && good;
+    if (request->map != NULL) {
+        write_map(tool, a, name, findings->comparison.difference, request->map, request->text);
+    }
+    findings_free(findings);
+    stream_free(&a->stream);
+    stream_free(&b->stream);
+    int status = tool_end(tool);
+    return good ? status : (int)STATUS_VERDICT;
 }

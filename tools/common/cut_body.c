@@ -101,11 +101,8 @@ void cut_body_keep_sections(struct cut_body *whole)
         struct section *kept = &whole->sections[i];
         *kept = stream->sections[i];
         stream->sections[i].owned = false; /* freed at the end: they are replaced for each part */
-        kept->name = strdup(kept->name);
-        kept->attributes = strdup(kept->attributes);
-        if (kept->name == NULL || kept->attributes == NULL) {
-            tool_fail(whole->tool, STATUS_SYSTEM, "out of memory");
-        }
+        kept->name = tool_memory(whole->tool, strdup(kept->name));
+        kept->attributes = tool_memory(whole->tool, strdup(kept->attributes));
     }
 }
 

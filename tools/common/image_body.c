@@ -100,12 +100,10 @@ static double *nodes_in_voxels(const struct tool *tool, const struct image *grid
     image_to_voxel(grid, inverse);
     TOOL_TRY(tool, NEW_ARRAY(&place, cells->node_count * dim, &error));
     for (int64_t n = 0; n < cells->node_count; n++) {
-        double world[3] = {0, 0, grid->to_world[2][3]};
+        double world[3] = {0, 0, grid->to_world[2][3]}, voxel[3];
         memcpy(world, x + n * dim, (size_t)dim * sizeof *x);
-        for (int i = 0; i < dim; i++) {
-            place[n * dim + i] = inverse[i][0] * world[0] + inverse[i][1] * world[1] +
-                                 inverse[i][2] * world[2] + inverse[i][3];
-        }
+        image_map(&inverse[0][0], world, voxel);
+        memcpy(place + n * dim, voxel, (size_t)dim * sizeof *place);
     }
     return place;
 }

@@ -20,10 +20,7 @@ static void world_of(const struct label_image *image, int64_t voxel, double worl
     const int64_t *size = image->labels.size;
     int64_t line = voxel / size[0], slice = line / size[1];
     const double at[3] = {(double)(voxel % size[0]), (double)(line % size[1]), (double)slice};
-    for (int d = 0; d < 3; d++) {
-        const double *row = image->to_world[d];
-        world[d] = row[0] * at[0] + row[1] * at[1] + row[2] * at[2] + row[3];
-    }
+    image_map(&image->to_world[0][0], at, world);
 }
 
 static bool is_within(const struct place *place, const struct labels *labels, const double world[3])
@@ -36,10 +33,7 @@ static bool is_within(const struct place *place, const struct labels *labels, co
     if (place->is_ball) {
         return square <= place->radius * place->radius;
     }
-    for (int d = 0; d < 3; d++) {
-        const double *row = place->to_voxel[d];
-        index[d] = row[0] * world[0] + row[1] * world[1] + row[2] * world[2] + row[3];
-    }
+    image_map(&place->to_voxel[0][0], world, index);
     return image_sample(&place->mask, IMAGE_NEAREST, index, value) && value[0] != 0;
 }
 
@@ -47,11 +41,8 @@ static bool is_within(const struct place *place, const struct labels *labels, co
 static void parse_ball(const struct tool *tool, const char *text, int dim, struct place *place)
 {
     double value[4] = {0};
-    char *copy = strdup(text), *rest = copy;
+    char *copy = tool_memory(tool, strdup(text)), *rest = copy;
     int count = 0;
-    if (copy == NULL) {
-        tool_fail(tool, STATUS_SYSTEM, "out of memory");
-    }
     for (const char *word = strsep(&rest, ","); word != NULL; word = strsep(&rest, ",")) {
         bool negative = word[0] == '-';
         if (count == dim + 1) {

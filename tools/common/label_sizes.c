@@ -10,10 +10,7 @@ bool *label_fine_parse(const struct tool *tool, const struct label_image *image,
                        double spacing, double *finest)
 {
     bool *fine = NULL;
-    char *copy = strdup(text), *names = copy;
-    if (copy == NULL) {
-        tool_fail(tool, STATUS_SYSTEM, "out of memory");
-    }
+    char *copy = tool_memory(tool, strdup(text)), *names = copy;
     const char *length = strsep(&names, ":");
     TOOL_TRY(tool, parse_length(length, "--fine", finest, &error));
     if (*finest >= spacing) {

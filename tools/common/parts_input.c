@@ -23,12 +23,8 @@ bool parts_are_named(const char *operand)
 /* The file of a part; to be freed. */
 static char *file_of(const struct tool *tool, const char *operand, int64_t number)
 {
-    char *file;
     const char *at = strstr(operand, "%d");
-    if (asprintf(&file, "%.*s%lld%s", (int)(at - operand), operand, (long long)number, at + 2) < 0) {
-        tool_fail(tool, STATUS_SYSTEM, "out of memory");
-    }
-    return file;
+    return tool_text(tool, "%.*s%lld%s", (int)(at - operand), operand, (long long)number, at + 2);
 }
 
 static enum status fail_missing(const char *file, int64_t number, int64_t count, struct error *error)
@@ -158,16 +154,6 @@ static enum status read_own(struct rejoin *rejoin, const char *operand, const in
     return status;
 }
 
-/* How the first part was made. */
-static void take_provenance(struct rejoin *rejoin, struct stream *stream)
-{
-    struct stream *from = &rejoin->part[0].stream;
-    stream->provenance = from->provenance;
-    stream->provenance_count = from->provenance_count;
-    from->provenance = NULL;
-    from->provenance_count = 0;
-}
-
 void parts_read(const struct tool *tool, const char *operand, struct stream *stream,
                 struct parts_input *parts)
 {
@@ -195,7 +181,7 @@ void parts_read(const struct tool *tool, const char *operand, struct stream *str
     if (ranks != NULL && stream_find(stream, "face.ptr") != NULL) {
         list_readers(tool, &rejoin, first, parts);
     }
-    take_provenance(&rejoin, stream);
+    stream_inherit(stream, &rejoin.part[0].stream); /* how the first part was made */
     for (int64_t k = 0; k < rejoin.part_count; k++) {
         free((char *)rejoin.part[k].file);
     }

@@ -77,8 +77,7 @@ void sample_points_section(const struct tool *tool, const char *file, const char
     TOOL_TRY(tool, NEW_ARRAY(&rows->x, at->rows * at->cols, &error));
     memcpy(rows->x, at->data, (size_t)(at->rows * at->cols) * sizeof *rows->x);
     if (regions != NULL) {
-        char *list = strdup(regions);
-        TOOL_TRY(tool, list == NULL ? fail_memory(&error, "-r") : STATUS_OK);
+        char *list = tool_memory(tool, strdup(regions));
         choose_regions(tool, stream, list, rows);
         free(list);
     }
