@@ -29,12 +29,11 @@ static struct body body_of(int dim, int64_t per_axis)
     GOOD(cloud_make(&wanted, &body.cloud, &error));
     body.cells =
         (struct cells){dim, body.cloud.node_count, body.cloud.x, body.cloud.cell_count, body.cloud.cells};
-    double *spacing = calloc((size_t)body.cells.node_count, sizeof *spacing);
+    double *spacing = zeros(body.cells.node_count, sizeof *spacing);
     body.radius = calloc((size_t)body.cells.node_count, sizeof *body.radius);
     GOOD(cells_node_spacing(&body.cells, spacing, &error));
     body.options.support.factor = 2.4; /* smooth: where supports are widened, gradients jump */
     GOOD(support_radii(&body.options.support, body.cells.node_count, spacing, body.radius, &error));
-    free(spacing);
     return body;
 }
 
@@ -119,7 +118,7 @@ static double *stiffness(const struct body *body, int64_t count, const double *x
     GOOD(point_grid_build(&grid, dim, n, body->cells.x, body->radius, &error));
     GOOD(support_build(&body->options.support, &grid, count, x, "points.x", &found, &error));
     double *phi = calloc((size_t)found.ptr[count], sizeof *phi);
-    double *dphi = calloc((size_t)(found.ptr[count] * dim), sizeof *dphi);
+    double *dphi = zeros(found.ptr[count] * dim, sizeof *dphi);
     struct neighbours view = support_view(&found);
     GOOD(shape_table(&body->options.support.mls, body->cells.x, body->radius, &view, x, "points.x", phi, dphi,
                      &error));
@@ -134,8 +133,6 @@ static double *stiffness(const struct body *body, int64_t count, const double *x
             }
         }
     }
-    free(phi);
-    free(dphi);
     support_free(&found);
     point_grid_free(&grid);
     return K;

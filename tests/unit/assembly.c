@@ -44,7 +44,7 @@ TEST(linear_field_by_table)
         struct lattice_options options = lattice_defaults(dim, 5);
         options.jitter = 0.1;
         lattice_build(&l, &options);
-        ARRAY(rows, l.assembly.cells.node_count * 2 * dim);
+        rows = zeros(l.assembly.cells.node_count * 2 * dim, sizeof *rows);
         for (int64_t n = 0; n < l.assembly.cells.node_count; n++) {
             for (int i = 0; i < dim; i++) {
                 rows[n * 2 * dim + i] = l.assembly.cells.x[n * dim + i];
@@ -74,9 +74,6 @@ TEST(linear_field_by_table)
                 NEAR_TO(field[n * dim + i], rows[n * 2 * dim + dim + i], 1e-9);
             }
         }
-        free(u);
-        free(field);
-        free(rows);
         free(facet);
         lattice_free(&l);
     }

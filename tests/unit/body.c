@@ -9,7 +9,7 @@ static void check_rigid_motion(const struct sample *sample, const struct setup *
 {
     int64_t count = sample->cloud.node_count * sample->dim;
     struct body body = make_body(sample, setup);
-    double *force = array_or_fail(count, sizeof *force);
+    double *force = zeros(count, sizeof *force);
     double scale =
         50.0 * setup->material[0].shear_modulus * (sample->dim == 2 ? 1.0 : sample_size) * sample_size;
     for (int motion = 0; motion < 5; motion++) {
@@ -22,9 +22,7 @@ static void check_rigid_motion(const struct sample *sample, const struct setup *
         NEAR_TO(deformation.least_jacobian, 1.0, 1e-12);
         AT_MOST(largest(force, count), 1e-12 * scale);
         NEAR_TO(body_energy(&body, u), 0.0, 1e-12 * scale);
-        free(u);
     }
-    free(force);
     body_free(&body);
 }
 
@@ -38,7 +36,7 @@ static void check_gradient(const struct sample *sample, const struct setup *setu
 {
     int64_t count = sample->cloud.node_count * sample->dim;
     struct body body = make_body(sample, setup);
-    double *force = array_or_fail(count, sizeof *force), *at = array_or_fail(count, sizeof *at);
+    double *force = zeros(count, sizeof *force), *at = zeros(count, sizeof *at);
     double *u = deformed_field(sample, &body, force, random);
     (void)body_force(&body, u, force);
     for (int direction = 0; direction < 5; direction++) {
@@ -54,11 +52,7 @@ static void check_gradient(const struct sample *sample, const struct setup *setu
             sum += fabs(force[i] * v[i]);
         }
         NEAR_TO(work, (value[0] - 8.0 * value[1] + 8.0 * value[2] - value[3]) / (12.0 * h), 2e-7 * sum);
-        free(v);
     }
-    free(u);
-    free(at);
-    free(force);
     body_free(&body);
 }
 
@@ -73,7 +67,7 @@ static void check_balance(const struct sample *sample, const struct setup *setup
     int dim = sample->dim;
     int64_t count = sample->cloud.node_count * dim;
     struct body body = make_body(sample, setup);
-    double *force = array_or_fail(count, sizeof *force);
+    double *force = zeros(count, sizeof *force);
     double *u = deformed_field(sample, &body, force, random);
     double sum[3] = {0.0}, moment[3] = {0.0}, size;
     (void)body_force(&body, u, force);
@@ -92,8 +86,6 @@ static void check_balance(const struct sample *sample, const struct setup *setup
         NEAR_TO(sum[a], 0.0, 1e-12 * size);
         NEAR_TO(moment[a], 0.0, 1e-12 * size * sample_size);
     }
-    free(u);
-    free(force);
     body_free(&body);
 }
 
@@ -111,9 +103,9 @@ static void check_linear(const struct sample *sample, const struct setup *setup,
     const double *A = sample->dim == 2 ? plane : space;
     struct body body = make_body(sample, setup);
     double *u = linear_field(sample, A, (double[]){0.1, 0.2, -0.3}), C[9], J = determinant(A), energy = 0.0;
-    double *F = array_or_fail(sample->assembly.point_count * 9, sizeof *F);
-    double *P = array_or_fail(sample->assembly.point_count * 9, sizeof *P);
-    double *force = array_or_fail(sample->cloud.node_count * sample->dim, sizeof *force), volume = 0.0;
+    double *F = zeros(sample->assembly.point_count * 9, sizeof *F);
+    double *P = zeros(sample->assembly.point_count * 9, sizeof *P);
+    double *force = zeros(sample->cloud.node_count * sample->dim, sizeof *force), volume = 0.0;
     (void)random;
     struct deformation deformation = body_force(&body, u, force);
     NEAR_TO(deformation.least_jacobian, J, 1e-12);
@@ -139,10 +131,6 @@ static void check_linear(const struct sample *sample, const struct setup *setup,
         volume += body.weight[q];
     }
     NEAR_TO(volume, pow(sample_size, sample->dim), 1e-15);
-    free(u);
-    free(F);
-    free(P);
-    free(force);
     body_free(&body);
 }
 
@@ -159,7 +147,7 @@ static void fault_of_smoothing(void)
     struct setup setup = one_material(MATERIAL_NEO_HOOKEAN, false);
     struct sample *sample = &samples[0];
     struct smoothed_cells_input smoothed = sample_smoothed(sample);
-    int32_t *material = array_or_fail(sample->assembly.point_count, sizeof *material);
+    int32_t *material = zeros(sample->assembly.point_count, sizeof *material);
     struct body_input input = sample_input(sample, setup.material, 1, material);
     input.vertex = NULL;
     input.smoothed = &smoothed;
@@ -190,7 +178,6 @@ static void fault_of_smoothing(void)
     smoothed.faces = &wrong;
     FAILS(body_build(&input, &body, &error), STATUS_INPUT, "faces.row: row ");
     free(wrong.row);
-    free(material);
 }
 
 TEST(faults)
@@ -241,9 +228,8 @@ TEST(many_blocks)
         setup.faces = by_faces;
         struct body body = make_body(&sample, &setup);
         int64_t count = sample.cloud.node_count * 2;
-        double *force = array_or_fail(count, sizeof *force),
-               *expected = array_or_fail(count, sizeof *expected);
-        double *P = array_or_fail(sample.assembly.point_count * 9, sizeof *P);
+        double *force = zeros(count, sizeof *force), *expected = zeros(count, sizeof *expected);
+        double *P = zeros(sample.assembly.point_count * 9, sizeof *P);
         double *u = deformed_field(&sample, &body, force, &random), slope = 0.0, h = 1e-9, high;
         assert_true(body.block_count > 30);
         (void)body_force(&body, u, force);
@@ -286,11 +272,6 @@ TEST(many_blocks)
             u[k] -= 2.0 * h * along[k];
         }
         NEAR_TO((high - body_energy(&body, u)) / (2.0 * h), slope, 1e-5 * fabs(slope));
-        free(along);
-        free(P);
-        free(u);
-        free(force);
-        free(expected);
         body_free(&body);
         sample_free(&sample);
     }

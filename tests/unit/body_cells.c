@@ -14,8 +14,8 @@ TEST(accumulation)
             struct body body = make_body(&sample, &setup);
             int64_t inner = 0;
             double *u = linear_field(&sample, A, NULL);
-            double *force = array_or_fail(sample.cloud.node_count * dim, sizeof *force);
-            bool *outer = array_or_fail(sample.cloud.node_count, sizeof *outer);
+            double *force = zeros(sample.cloud.node_count * dim, sizeof *force);
+            bool *outer = zeros(sample.cloud.node_count, sizeof *outer);
             for (int64_t f = 0; f < sample.assembly.faces.count; f++) {
                 for (int g = 0; g < OWN_POINTS(dim) && sample.assembly.faces.cell[2 * f + 1] < 0; g++) {
                     int64_t point = f * OWN_POINTS(dim) + g;
@@ -35,9 +35,6 @@ TEST(accumulation)
                 }
             }
             assert_true(inner > 0);
-            free(u);
-            free(force);
-            free(outer);
             body_free(&body);
         }
         sample_free(&sample);
@@ -136,8 +133,7 @@ TEST(enclosed_volume)
         struct body body = make_body(sample, &setup);
         double *u = random_field(sample, 0.05 * sample_size, &random), sum = 0.0, averages = 0.0,
                inside = 0.0;
-        double *F = array_or_fail(sample->assembly.point_count * 9, sizeof *F),
-               rest = pow(sample_size, sample->dim);
+        double *F = zeros(sample->assembly.point_count * 9, sizeof *F), rest = pow(sample_size, sample->dim);
         (void)body_energy(&body, u);
         body_gradient(&body, F);
         for (int64_t q = 0; q < body.point_count; q++) {
@@ -150,8 +146,6 @@ TEST(enclosed_volume)
         NEAR_TO(sum, inside, 1e-13 * rest);
 
         assert_true(fabs(averages - inside) > 1e-4 * rest); /* the determinants of the averages do not */
-        free(u);
-        free(F);
         body_free(&body);
     }
 }
@@ -169,9 +163,8 @@ TEST(faces)
             struct body by_table = make_body(sample, &setup);
             setup.faces = true;
             struct body by_faces = make_body(sample, &setup);
-            double *force = array_or_fail(count, sizeof *force),
-                   *expected = array_or_fail(count, sizeof *expected);
-            double *F = array_or_fail(size, sizeof *F), *F_expected = array_or_fail(size, sizeof *F_expected);
+            double *force = zeros(count, sizeof *force), *expected = zeros(count, sizeof *expected);
+            double *F = zeros(size, sizeof *F), *F_expected = zeros(size, sizeof *F_expected);
             double *u = deformed_field(sample, &by_table, expected, &random);
             struct deformation least = body_force(&by_table, u, expected),
                                other = body_force(&by_faces, u, force);
@@ -200,11 +193,6 @@ TEST(faces)
             }
             energy = body_energy(&by_table, u);
             NEAR_TO(body_energy(&by_faces, u) - 1e-10 * stabilised, energy, 1e-4 * energy);
-            free(u);
-            free(F);
-            free(F_expected);
-            free(force);
-            free(expected);
             body_free(&by_table);
             body_free(&by_faces);
         }
@@ -221,8 +209,7 @@ TEST(general_law)
         struct setup setup = one_material(MATERIAL_NEO_HOOKEAN, i < 4);
         setup.faces = sample->smoothed;
         struct body body = make_body(sample, &setup);
-        double *force = array_or_fail(count, sizeof *force),
-               *expected = array_or_fail(count, sizeof *expected);
+        double *force = zeros(count, sizeof *force), *expected = zeros(count, sizeof *expected);
         double *u = deformed_field(sample, &body, force, &random);
         (void)body_force(&body, u, force);
         for (int64_t b = 0; b < body.block_count; b++) {
@@ -233,9 +220,6 @@ TEST(general_law)
         for (int64_t k = 0; k < count; k++) {
             NEAR_TO(force[k], expected[k], 1e-12 * largest(expected, count));
         }
-        free(u);
-        free(force);
-        free(expected);
         body_free(&body);
     }
 }

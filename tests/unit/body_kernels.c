@@ -18,24 +18,21 @@ static void check_threads(const struct sample *sample, const struct setup *setup
     for (int threads = 1; threads <= 3; threads++) {
         omp_set_num_threads(threads);
         struct body body = make_body(sample, setup);
-        double *force = array_or_fail(count, sizeof *force);
+        double *force = zeros(count, sizeof *force);
         body.threads = threads; /* also where so many would not pay */
         for (int call = 0; call < 2; call++) {
             (void)body_force(&body, u, force);
             if (first == NULL) {
-                first = array_or_fail(count, sizeof *first);
+                first = zeros(count, sizeof *first);
                 memcpy(first, force, (size_t)count * sizeof *first);
                 energy = body_energy(&body, u);
             }
             assert_memory_equal(force, first, (size_t)count * sizeof *first);
             NEAR_TO(body_energy(&body, u), energy, 0.0);
         }
-        free(force);
         body_free(&body);
     }
     omp_set_num_threads(before);
-    free(first);
-    free(u);
 }
 
 TEST(threads)
@@ -49,7 +46,7 @@ static void check_instructions(const struct sample *sample, const struct setup *
     int64_t count = sample->cloud.node_count * sample->dim;
     static const char *const sets[] = {"plain", "avx2", "avx512"};
     struct body body = make_body(sample, setup);
-    double *force = array_or_fail(count, sizeof *force), *expected = array_or_fail(count, sizeof *expected);
+    double *force = zeros(count, sizeof *force), *expected = zeros(count, sizeof *expected);
     double *u = deformed_field(sample, &body, force, random);
     (void)body_force(&body, u, expected);
     for (int k = 0; k < 3; k++) {
@@ -64,9 +61,6 @@ static void check_instructions(const struct sample *sample, const struct setup *
             NEAR_TO(force[i], expected[i], 1e-12 * largest(expected, count));
         }
     }
-    free(u);
-    free(force);
-    free(expected);
     body_free(&body);
 }
 
@@ -88,8 +82,7 @@ TEST(compressible)
         }
         struct body one = make_body(sample, &none), other = make_body(sample, &whole);
         int64_t count = sample->cloud.node_count * sample->dim;
-        double *force = array_or_fail(count, sizeof *force),
-               *expected = array_or_fail(count, sizeof *expected);
+        double *force = zeros(count, sizeof *force), *expected = zeros(count, sizeof *expected);
         double *u = deformed_field(sample, &one, force, &random), energy = body_energy(&one, u);
         (void)body_force(&one, u, expected);
         (void)body_force(&other, u, force);
@@ -97,9 +90,6 @@ TEST(compressible)
             NEAR_TO(force[k], expected[k], 1e-12 * largest(expected, count));
         }
         NEAR_TO(body_energy(&other, u), energy, 1e-12 * energy);
-        free(u);
-        free(force);
-        free(expected);
         body_free(&one);
         body_free(&other);
     }
@@ -137,7 +127,6 @@ TEST(nodal_volumes)
         NEAR_TO(volume, carried, 1e-15);
         NEAR_TO(content, expected, 1e-15);
         assert_true(volumes->count > sample.cloud.node_count); /* some nodes lie between materials */
-        free(u);
         body_free(&body);
         sample_free(&sample);
     }
@@ -161,7 +150,7 @@ TEST(nodal_pressures)
         struct body body = make_alike(&sample, poisson_ratio[k / 2]);
         struct nodal_volumes *volumes = &body.volumes;
         const struct material *material = &body.materials[0];
-        double *u = array_or_fail(sample.cloud.node_count * sample.dim, sizeof *u), J = 1.0;
+        double *u = zeros(sample.cloud.node_count * sample.dim, sizeof *u), J = 1.0;
         for (int64_t i = 0; i < sample.cloud.node_count * sample.dim; i++) {
             u[i] = 0.01 * sample.cloud.x[i];
         }
@@ -192,7 +181,6 @@ TEST(nodal_pressures)
         }
         AT_MOST(sqrt(missing2 / whole2),
                 2.0 * 0.02 / 0.98); /* by the iterations, and scaled for uniform ones */
-        free(u);
         body_free(&body);
         sample_free(&sample);
     }
@@ -245,10 +233,9 @@ TEST(diagonal)
         int64_t count = sample->cloud.node_count * dim;
         double mu = setup.material[0].shear_modulus, h = 1e-8;
         double wave = material_wave_modulus(&setup.material[0]), lambda = wave - 2.0 * mu;
-        double *bound = array_or_fail(sample->cloud.node_count, sizeof *bound);
-        double *force = array_or_fail(count, sizeof *force);
-        double *u =
-            deformed ? deformed_field(sample, &body, force, &random) : array_or_fail(count, sizeof *u);
+        double *bound = zeros(sample->cloud.node_count, sizeof *bound);
+        double *force = zeros(count, sizeof *force);
+        double *u = deformed ? deformed_field(sample, &body, force, &random) : zeros(count, sizeof *u);
         (void)body_force(&body, u, force);
         body_diagonal(&body, bound);
         for (int64_t n = 0; n < sample->cloud.node_count; n++) {
@@ -268,9 +255,6 @@ TEST(diagonal)
                 NEAR_TO(trace, bound[n] * (lambda + (dim + 1) * mu) / wave, 1e-6 * bound[n]);
             }
         }
-        free(bound);
-        free(u);
-        free(force);
         body_free(&body);
     }
 }
@@ -281,8 +265,7 @@ static void check_inversion(const struct sample *sample, const struct setup *set
     int dim = sample->dim;
     int64_t count = sample->cloud.node_count * dim, nodes = sample->cloud.node_count;
     struct body body = make_body(sample, setup);
-    double *force = array_or_fail(count, sizeof *force),
-           *F = array_or_fail(sample->assembly.point_count * 9, sizeof *F);
+    double *force = zeros(count, sizeof *force), *F = zeros(sample->assembly.point_count * 9, sizeof *F);
     double *u = random_field(sample, 1e-4, random);
     for (int round = 0; round < 4; round++) {
         int64_t node = (int64_t)uniform(random, 0.0, (double)nodes), least = 0;
@@ -315,9 +298,6 @@ static void check_inversion(const struct sample *sample, const struct setup *set
         touched = touched || sample->idx[i] == 3 / dim;
     }
     assert_true(touched || setup->faces); /* faces are worked on in groups: a neighbour may have it first */
-    free(u);
-    free(F);
-    free(force);
     body_free(&body);
 }
 

@@ -70,7 +70,7 @@ static inline struct body make_body(const struct sample *sample, const struct se
 static inline double *linear_field(const struct sample *sample, const double *A, const double *b)
 {
     int dim = sample->dim;
-    double *u = array_or_fail(sample->cloud.node_count * dim, sizeof *u);
+    double *u = zeros(sample->cloud.node_count * dim, sizeof *u);
     for (int64_t n = 0; n < sample->cloud.node_count; n++) {
         for (int i = 0; i < dim; i++) {
             u[n * dim + i] = b != NULL ? b[i] : 0.0;
@@ -85,7 +85,7 @@ static inline double *linear_field(const struct sample *sample, const double *A,
 static inline double *random_field(const struct sample *sample, double size, struct random *random)
 {
     int64_t count = sample->cloud.node_count * sample->dim;
-    double *u = array_or_fail(count, sizeof *u);
+    double *u = zeros(count, sizeof *u);
     for (int64_t i = 0; i < count; i++) {
         u[i] = size * uniform(random, -1.0, 1.0);
     }

@@ -170,8 +170,7 @@ TEST(divergence_theorem)
         struct sample sample = make_sample(dim, true, dim == 2 ? 7 : 4);
         struct boundary_averages averages = averages_of(&sample, all_facets(&sample));
         int64_t count = sample.cloud.node_count * dim;
-        double *inside = array_or_fail(count, sizeof *inside),
-               *outside = array_or_fail(count, sizeof *outside);
+        double *inside = zeros(count, sizeof *inside), *outside = zeros(count, sizeof *outside);
         double largest = 0.0;
         for (int64_t q = 0; q < sample.assembly.point_count; q++) {
             for (int64_t i = sample.ptr[q]; i < sample.ptr[q + 1]; i++) {
@@ -194,8 +193,6 @@ TEST(divergence_theorem)
             NEAR_TO(inside[i], outside[i], 1e-13 * pow(sample_size, dim - 1));
         }
         assert_true(largest > 0.01 * pow(sample_size, dim - 1));
-        free(inside);
-        free(outside);
         boundary_averages_free(&averages);
         sample_free(&sample);
     }
@@ -208,7 +205,7 @@ TEST(other_vertex_orders)
         struct sample sample = make_sample(dim, true, 4);
         struct facet_set set = all_facets(&sample);
         struct boundary_averages expected = averages_of(&sample, set);
-        int32_t *turned = array_or_fail(set.count * dim, sizeof *turned);
+        int32_t *turned = zeros(set.count * dim, sizeof *turned);
         for (int shift = 1; shift < dim + 1; shift++) {
             /* Begin with the next node; at last, swap two: inside out. */
             for (int64_t f = 0; f < set.count; f++) {
@@ -234,7 +231,6 @@ TEST(other_vertex_orders)
             }
             boundary_averages_free(&averages);
         }
-        free(turned);
         boundary_averages_free(&expected);
         sample_free(&sample);
     }
@@ -429,8 +425,8 @@ TEST(ends)
         struct sample sample = make_sample(dim, true, 5);
         struct face_table table = sample_face_table(&sample);
         struct error error;
-        bool *held = array_or_fail(sample.assembly.faces.count, sizeof *held);
-        bool *end = array_or_fail(sample.cloud.node_count, sizeof *end);
+        bool *held = zeros(sample.assembly.faces.count, sizeof *held);
+        bool *end = zeros(sample.cloud.node_count, sizeof *end);
         GOOD(boundary_find_ends(&table, BOUNDARY_END_SMOOTH, held, end, &error));
         for (int64_t f = 0; f < sample.assembly.faces.count; f++) {
             held[f] = on_side_below(&sample, f, 2.0 * sample_size);
@@ -476,8 +472,6 @@ TEST(ends)
             }
             assert_int_equal(end[n], fabs(x[0]) < 1e-12 && is_edge);
         }
-        free(held);
-        free(end);
         sample_free(&sample);
     }
 }

@@ -35,8 +35,7 @@ static bool is_outer(const struct faces *faces, const int32_t *side, int32_t nod
 static void check_points(const struct cells *cells, const struct faces *faces)
 {
     int dim = faces->dim;
-    double *x = calloc((size_t)(face_row_point(faces, faces->row_count) * dim), sizeof *x);
-    assert_non_null(x);
+    double *x = zeros((face_row_point(faces, faces->row_count) * dim), sizeof *x);
     face_rows_points(faces, cells->x, x);
     for (int64_t f = 0; f < faces->count; f++) {
         for (int a = 0; a < dim; a++) {
@@ -61,7 +60,6 @@ static void check_points(const struct cells *cells, const struct faces *faces)
             at_most(fabs(mean - centre), 1e-15, "centre of a face");
         }
     }
-    free(x);
 }
 
 /* The cells of a row are those with all of the nodes: of the face, or of the edge. */
@@ -139,11 +137,10 @@ TEST(rows_of_faces)
     for (int dim = 2; dim <= 3; dim++) {
         struct cloud cloud = box_cloud(dim, 6, 0.1, 0.0);
         struct cells cells = cells_of(&cloud);
-        int32_t *side = calloc((size_t)cells.count, sizeof *side);
+        int32_t *side = zeros(cells.count, sizeof *side);
         struct faces faces;
         struct error error;
         int64_t own[2];
-        assert_non_null(side);
         for (int64_t c = 0; c < cells.count; c++) {
             double middle[3];
             cell_centroid(&cells, c, middle);
@@ -164,7 +161,6 @@ TEST(rows_of_faces)
         assert_null(faces.row);
         assert_int_equal(faces.row_count, faces.boundary_count);
         faces_free(&faces);
-        free(side);
         cloud_free(&cloud);
     }
 }

@@ -12,8 +12,7 @@ static double linear(int dim, const double *x)
 /* values[count * 2]: a linear field and a constant. */
 static double *linear_field(int dim, int64_t count, const double *x)
 {
-    double *values = malloc((size_t)(count * 2) * sizeof *values);
-    assert_non_null(values);
+    double *values = zeros(count * 2, sizeof *values);
     for (int64_t n = 0; n < count; n++) {
         values[2 * n] = linear(dim, x + n * dim);
         values[2 * n + 1] = -7.0;
@@ -36,10 +35,9 @@ TEST(linear_fields_are_exact)
             struct cells cells = {.dim = dim, .node_count = cloud.count, .x = cloud.x};
             struct field_table table;
             struct error error;
-            double *spacing = malloc((size_t)cloud.count * sizeof *spacing);
+            double *spacing = zeros(cloud.count, sizeof *spacing);
             double *values = linear_field(dim, cloud.count, cloud.x);
             double *expected = linear_field(dim, 80, cloud.points), got[160];
-            assert_non_null(spacing);
             GOOD(field_spacing(&cells, spacing, &error));
             GOOD(support_radii(&options, cells.node_count, spacing, spacing, &error));
             GOOD(field_table_build(&options, NULL, &cells, spacing, 80, cloud.points, "points.x", &table,
@@ -49,9 +47,6 @@ TEST(linear_fields_are_exact)
                 at_most(fabs(got[i] - expected[i]), 1e-11 * (places[p].size + 10.0), "a linear field");
             }
             field_table_free(&table);
-            free(spacing);
-            free(values);
-            free(expected);
             scattered_free(&cloud);
         }
     }
@@ -119,13 +114,11 @@ TEST(outside_of_cells)
 TEST(matching)
 {
     struct scattered cloud = scatter(2, 9, 1, &places[2], 0.3, 12);
-    double *other = malloc((size_t)(cloud.count * 2) * sizeof *other);
-    int32_t *match = malloc((size_t)cloud.count * sizeof *match);
+    double *other = zeros(cloud.count * 2, sizeof *other);
+    int32_t *match = zeros(cloud.count, sizeof *match);
     char seen[81] = {0};
     bool matched;
     struct error error;
-    assert_non_null(other);
-    assert_non_null(match);
     memcpy(cloud.x + 2 * 40, cloud.x + 2 * 41, 2 * sizeof(double));
     for (int64_t n = 0; n < 81; n++) { /* 31 and 81 have no common factor */
         other[2 * (n * 31 % 81)] = cloud.x[2 * n] + 0.9e-10 * (n % 2 == 0 ? 1 : -1);
@@ -153,8 +146,6 @@ TEST(matching)
     memcpy(other, cloud.x + 2 * 40, 2 * sizeof *other);
     GOOD(field_match_nodes(2, 81, cloud.x, 81, other, match, &matched, &error));
     assert_false(matched);
-    free(other);
-    free(match);
     scattered_free(&cloud);
 }
 
@@ -197,8 +188,7 @@ TEST(comparisons)
         struct nodal_field first = view(&coarse, a), second = view(&fine, b);
         struct field_comparison comparison;
         struct error error;
-        bool *chosen = calloc((size_t)coarse.count, sizeof *chosen);
-        assert_non_null(chosen);
+        bool *chosen = zeros(coarse.count, sizeof *chosen);
         GOOD(field_compare(&first, &first, NULL, false, &comparison, &error));
         assert_true(comparison.coincide && comparison.count == coarse.count && comparison.outside == 0);
         for (int64_t n = 0; n < coarse.count; n++) {
@@ -230,10 +220,6 @@ TEST(comparisons)
         assert_true(comparison.node[0] == 7 && comparison.node[1] == 8);
         assert_true(isnan(comparison.difference[0]));
         field_comparison_free(&comparison);
-
-        free(chosen);
-        free(a);
-        free(b);
         scattered_free(&coarse);
         scattered_free(&fine);
     }

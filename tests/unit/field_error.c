@@ -29,8 +29,7 @@ static struct cells cells_of(const struct cloud *cloud)
 
 static double *array_of(int64_t count, double value)
 {
-    double *array = malloc((size_t)count * sizeof *array);
-    assert_non_null(array);
+    double *array = zeros(count, sizeof *array);
     for (int64_t i = 0; i < count; i++) {
         array[i] = value;
     }
@@ -88,7 +87,6 @@ TEST(mean_over_body)
             value[n] = NAN;
         }
         assert_true(isnan(field_error_mean(&cells, value)));
-        free(value);
         cloud_free(&cloud);
     }
 }
@@ -101,8 +99,7 @@ TEST(linear_fields_have_no_error)
         struct cells cells = cells_of(&cloud);
         struct error error;
         double *values = array_of(cells.node_count * 2, -7.0), *squared = array_of(cells.count, -1.0);
-        int32_t *region = calloc((size_t)cells.count, sizeof *region);
-        assert_non_null(region);
+        int32_t *region = zeros(cells.count, sizeof *region);
         for (int64_t q = 0; q < cells.count; q++) {
             double middle[3];
             cell_centroid(&cells, q, middle);
@@ -129,9 +126,6 @@ TEST(linear_fields_have_no_error)
         }
         values[5] = NAN;
         FAILS(field_error_recovered(&cells, NULL, 0, 2, values, squared, &error), STATUS_INPUT, "row 2");
-        free(values);
-        free(squared);
-        free(region);
         cloud_free(&cloud);
     }
 }
@@ -159,8 +153,6 @@ TEST(quadratic_fields_converge)
             /* The gradient 2 x is off by up to h in a cell: h^2 / 3 in the mean square. */
             double h = i == 0 ? 1.0 / 8 : 1.0 / 16, exact = h * h / 3.0;
             at_most(fabs(log(total[i] / exact)), log(1.5), "recovered by exact error");
-            free(values);
-            free(squared);
             cloud_free(&cloud);
         }
         at_most(fabs(total[0] / total[1] - 4.0), 0.6, "squares of errors with cells of half the size");
@@ -206,8 +198,6 @@ TEST(equal_errors_keep_a_mesh_even)
             assert_true(inside ? field.size[n] > spacing[n] : field.size[n] <= spacing[n]);
         }
         size_field_free(&field);
-        free(squared);
-        free(spacing);
         cloud_free(&cloud);
     }
 }
@@ -259,7 +249,6 @@ TEST(bad_cells)
                 at_most(fabs(least / request.least - 1.0), 1e-12, "least size");
             }
         }
-        free(squared);
         cloud_free(&cloud);
     }
 }
@@ -302,7 +291,6 @@ TEST(facets_near_their_curve)
     size_field_free(&bent);
     size_field_free(&straight);
     size_field_free(&limited);
-    free(squared);
     cloud_free(&ring);
     cloud_free(&square);
 }

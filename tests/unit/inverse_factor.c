@@ -73,7 +73,7 @@ TEST(linear_fields_have_their_energy)
         const struct body *body = &cube.l.system.body;
         const struct material *material = body->materials;
         double *x;
-        ARRAY(x, cube.n);
+        x = zeros(cube.n, sizeof *x);
         for (int64_t i = 0; i < cube.n; i++) {
             x[i] = 1.0;
         }
@@ -87,7 +87,6 @@ TEST(linear_fields_have_their_energy)
         if (!bonded) {
             AT_MOST(fabs(energy(&cube, x) / (13.0 * whole) - 1.0), 1e-9);
         }
-        free(x);
         release(&cube);
     }
 }
@@ -99,7 +98,7 @@ TEST(the_diagonal_is_one)
     build(&cube, true);
     const struct inverse_factor *factor = &cube.factor;
     double *x;
-    ARRAY(x, cube.n);
+    x = zeros(cube.n, sizeof *x);
     for (int64_t i = 0; i < cube.n; i++) {
         assert_int_equal(factor->rows.idx[factor->rows.ptr[i + 1] - 1], i);
         memset(x, 0, (size_t)cube.n * sizeof *x);
@@ -109,7 +108,6 @@ TEST(the_diagonal_is_one)
         }
         AT_MOST(fabs(energy(&cube, x) - 1.0), 1e-6);
     }
-    free(x);
     release(&cube);
 }
 
@@ -144,9 +142,6 @@ TEST(the_transpose_is_undone)
         AT_MOST(fabs(u[i] - y[i]), 1e-9);
     }
     constraint_rows_free(&rows);
-    free(y);
-    free(u);
-    free(back);
     release(&cube);
 }
 

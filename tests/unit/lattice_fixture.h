@@ -175,11 +175,10 @@ static inline double lattice_field(const struct lattice *l, const double *u, int
     return sum;
 }
 
+/* Zeros for all parameters, for a test. */
 static inline double *lattice_vector(const struct lattice *l)
 {
-    double *vector;
-    ARRAY(vector, l->system.node_count * l->options.dim);
-    return vector;
+    return zeros(l->system.node_count * l->options.dim, sizeof(double));
 }
 
 #endif

@@ -91,8 +91,6 @@ static void fail_each_in(int dim, enum status (*try)(struct error *error), long 
     u = lattice_vector(&lattice);
     v = lattice_vector(&lattice);
     fail_each(try, least);
-    free(u);
-    free(v);
     lattice_free(&lattice);
 }
 

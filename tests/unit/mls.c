@@ -425,10 +425,9 @@ TEST(convergence)
 static double paper_error(enum basis basis, double mu, double radius)
 {
     double x[324 * 2], values[324], sum = 0.0;
-    double *points = malloc(6561 * 2 * sizeof *points);
+    double *points = zeros(6561 * 2, sizeof *points);
     struct table table;
     struct error error;
-    assert_non_null(points);
     for (int n = 0; n < 324; n++) {
         x[2 * n] = -4.0 + 8.0 * (n % 18) / 17.0;
         x[2 * n + 1] = -4.0 + 8.0 * (n / 18) / 17.0;
@@ -454,7 +453,6 @@ static double paper_error(enum basis basis, double mu, double radius)
         sum += value * value;
     }
     table_free(&table);
-    free(points);
     return status == STATUS_OK ? sqrt(sum / 6561.0) : INFINITY;
 }
 

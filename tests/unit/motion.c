@@ -224,7 +224,7 @@ TEST(owners)
         make_body(dim, 5, linear_field, &body);
         const int64_t *size = sizes[dim - 2];
         int64_t count = size[0] * size[1] * size[2], doubly, found = 0;
-        int32_t *owner = calloc((size_t)count, sizeof *owner), *again = calloc((size_t)count, sizeof *again);
+        int32_t *owner = zeros(count, sizeof *owner), *again = zeros(count, sizeof *again);
         for (int64_t i = 0; i < body.cells.node_count * dim; i++) {
             /* Beyond the grid on two sides; nodes at the corners of the lattice fall on grid points. */
             body.cloud.x[i] = body.cloud.x[i] * 12 - 2;
@@ -251,8 +251,6 @@ TEST(owners)
         for (int64_t v = 0; v < count; v++) {
             assert_int_equal(owner[v], -1);
         }
-        free(owner);
-        free(again);
         drop_body(&body);
     }
 }

@@ -28,8 +28,7 @@ struct sketch {
 
 static struct sketch *sketch_new(void)
 {
-    struct sketch *s = calloc(1, sizeof *s);
-    assert_non_null(s);
+    struct sketch *s = zeros(1, sizeof *s);
     s->msh = (struct msh){.x = s->x,
                           .node_tag = s->node_tag,
                           .element_tag = s->element_tag,
@@ -96,7 +95,6 @@ static void expect_failure(struct sketch *s, const char *wanted, const char *mes
         fail_msg("'%s' does not say '%s'", error.text, message);
     }
     assert_null(mesh.x);
-    free(s);
 }
 
 static struct cells cells_of(const struct mesh *mesh)
@@ -224,7 +222,6 @@ TEST(hexahedra_conform)
             }
         }
         mesh_free(&mesh);
-        free(s);
     }
 }
 
@@ -268,7 +265,6 @@ TEST(mixed_cells_conform)
         assert_int_equal(mesh.regions.count, 1);
         assert_string_equal(mesh.regions.name[0], "body");
         mesh_free(&mesh);
-        free(s);
     }
 }
 
@@ -285,7 +281,6 @@ TEST(quadrangles_of_any_shape)
         assert_int_equal(mesh.cell_count, 2);
         assert_true(fabs(total_volume(&mesh) - 4) < 1e-14);
         mesh_free(&mesh);
-        free(s);
     }
 }
 
@@ -321,7 +316,6 @@ TEST(cells_are_turned_and_facets_look_outward)
         assert_string_equal(mesh.facet_sets.name[0], "side");
         assert_string_equal(mesh.facet_sets.name[1], "left");
         mesh_free(&mesh);
-        free(s);
     }
 }
 
@@ -367,7 +361,6 @@ TEST(what_is_left_out_is_noted)
         assert_ptr_equal(strstr(mesh.notes.name[i], notes[i]), mesh.notes.name[i]);
     }
     mesh_free(&mesh);
-    free(s);
 }
 
 TEST(regions_can_be_picked)
@@ -407,7 +400,6 @@ TEST(lengths_are_scaled)
     assert_true(mesh.x[4] == 1e-6);
     assert_true(fabs(total_volume(&mesh) / 1e-12 - 1) < 1e-14);
     mesh_free(&mesh);
-    free(s);
 }
 
 /* ---- faults ---- */
@@ -427,7 +419,6 @@ TEST(meshes_without_cells)
     struct mesh mesh = build(s, NULL);
     assert_int_equal(mesh.dim, 2);
     mesh_free(&mesh);
-    free(s);
 }
 
 TEST(nodes_at_the_same_place)
@@ -447,13 +438,11 @@ TEST(nodes_at_the_same_place)
     assert_int_equal(two.notes.count, 1);
     assert_non_null(strstr(two.notes.name[0], "of different bodies: 2 pairs"));
     mesh_free(&two);
-    free(s);
     s = square();
     add_node(s, 1, 1, 0); /* a twin of no cell is no harm */
     struct mesh mesh = build(s, NULL);
     assert_int_equal(mesh.node_count, 4);
     mesh_free(&mesh);
-    free(s);
 }
 
 TEST(cells_that_are_none)
@@ -512,7 +501,6 @@ TEST(cells_that_stand_twice)
     assert_non_null(strstr(mesh.notes.name[0], "cells that stand twice"));
     assert_non_null(strstr(mesh.notes.name[0], "as the first: 2"));
     mesh_free(&mesh);
-    free(s);
 }
 
 TEST(two_sets_of_one_name)

@@ -97,8 +97,7 @@ static void check_part(const struct body *body, int32_t part)
     int64_t own_count = body->own_ptr[part + 1] - body->own_ptr[part];
     uint32_t state = 7;
     GOOD(body_part_build(&body->partition, part, own, own_count, true, &work, &got, &error));
-    bool *reached = calloc((size_t)cells->node_count, sizeof *reached);
-    assert_non_null(reached);
+    bool *reached = zeros(cells->node_count, sizeof *reached);
     for (int64_t i = 0; i < own_count; i++) {
         assert_int_equal(partition_cell_owner(cells, own[i], body->owner), part);
         double x[3];
@@ -132,7 +131,6 @@ static void check_part(const struct body *body, int32_t part)
     }
     assert_true(got.needed <= got.node_count - got.own_nodes);
     assert_true(body->partition.parts == 1 ? got.needed == 0 : got.needed > 0);
-    free(reached);
     body_part_free(&got);
     body_part_work_free(&work);
 }

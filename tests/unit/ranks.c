@@ -218,9 +218,8 @@ static void check_body(const struct sample *sample, const struct setup *setup, s
 {
     static const int counts[] = {2, 3, MOST};
     int64_t some = room(sample);
-    double *force = array_or_fail(sample->cloud.node_count * sample->dim, sizeof *force);
-    double *alone = array_or_fail(some, sizeof *alone),
-           *results = array_or_fail(some * MOST, sizeof *results);
+    double *force = zeros(sample->cloud.node_count * sample->dim, sizeof *force);
+    double *alone = zeros(some, sizeof *alone), *results = zeros(some * MOST, sizeof *results);
     struct body body = make_body(sample, setup);
     double *u = deformed_field(sample, &body, force, random);
     int64_t count = evaluate(&body, u, alone);
@@ -244,10 +243,6 @@ static void check_body(const struct sample *sample, const struct setup *setup, s
             assert_memory_equal(results + r * some, alone, (size_t)count * sizeof *alone);
         }
     }
-    free(u);
-    free(force);
-    free(alone);
-    free(results);
     body_free(&body);
 }
 

@@ -409,16 +409,13 @@ TEST(gradients)
         find(dim == 2 ? 3.4 : 2.4, false);
         struct neighbours view = support_view(&found.lists);
         int64_t pairs = found.lists.ptr[found.count], step_pairs[2];
-        double *phi = calloc((size_t)pairs, sizeof *phi), *dphi = calloc((size_t)(pairs * dim), sizeof *dphi);
-        double *moved = calloc((size_t)(found.count * dim), sizeof *moved);
+        double *phi = zeros(pairs, sizeof *phi), *dphi = zeros(pairs * dim, sizeof *dphi);
+        double *moved = zeros(found.count * dim, sizeof *moved);
         double *stepped[2] = {NULL, NULL};
         struct support_lists lists[2];
         struct error error;
         const double step = 1e-5;
         struct reach_places inside = {.cell = found.cell, .points_per_row = 1};
-        assert_non_null(phi);
-        assert_non_null(dphi);
-        assert_non_null(moved);
         GOOD(shape_table(&found.options.mls, body.x, found.radius, &view, found.x, "points", phi, dphi,
                          &error));
         for (int a = 0; a < dim; a++) {
@@ -463,9 +460,6 @@ TEST(gradients)
         }
         assert_true(compared > 300);
         at_most(worst, 1e-8, "a gradient around a corner");
-        free(phi);
-        free(dphi);
-        free(moved);
         lose();
     }
 }

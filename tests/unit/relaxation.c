@@ -79,7 +79,6 @@ static double patch(int dim, double jitter, int gauss_points, bool nodal_volume)
     lattice_build(&l, &options);
     prescribe_all(&l, A, lattice_curve(&l, curve_of_kind(CURVE_SMOOTH)));
     double *u = relaxed(&l, gauss_points > 0 ? 1e-6 : 1e-9, NULL), error = patch_error(&l, A, u);
-    free(u);
     lattice_free(&l);
     return error;
 }
@@ -115,7 +114,7 @@ TEST(simple_shear)
     prescribe_all(&l, A, lattice_curve(&l, curve_of_kind(CURVE_SMOOTH)));
     double *u = relaxed(&l, 1e-10, NULL), *residual = lattice_vector(&l);
     (void)system_residual(&l.system, u, residual);
-    ARRAY(stress, l.system.body.point_count * 9);
+    stress = zeros(l.system.body.point_count * 9, sizeof *stress);
     body_stress(&l.system.body, stress);
     for (int64_t q = 0; q < l.system.body.point_count; q++) {
         const double *P = stress + 9 * q;
@@ -124,9 +123,6 @@ TEST(simple_shear)
         NEAR_TO(P[4], -83.89262, 1e-4);
         NEAR_TO(P[8], -83.89262, 1e-4);
     }
-    free(stress);
-    free(residual);
-    free(u);
     lattice_free(&l);
 }
 
@@ -144,15 +140,13 @@ static void squeeze(int dim, double stretch, bool confined, double expected, dou
     unsigned low = dim == 2 ? 5u : 21u, all = (1u << 2 * dim) - 1;
     lattice_slide(&l, confined ? all & ~(1u << top) : low, curve);
     lattice_push(&l, top, (stretch - 1) * 0.1, curve);
-    ARRAY(row_force, l.system.rows.count);
+    row_force = zeros(l.system.rows.count, sizeof *row_force);
     double *u = relaxed(&l, 1e-9, row_force);
     double area = dim == 2 ? 0.1 : 0.01;
     NEAR_TO(lattice_reaction(&l, row_force, 1u << top) / area / expected, 1, 1e-6);
     for (int64_t n = 0; n < l.system.node_count; n++) {
         NEAR_TO(lattice_field(&l, u, n, 0), (lateral - 1) * l.system.X[n * dim], 1e-7 * 0.1);
     }
-    free(row_force);
-    free(u);
     lattice_free(&l);
 }
 
@@ -223,12 +217,10 @@ TEST(reaction_does_the_work)
             struct lattice l;
             double *row_force;
             clamp(&l, 7, down + (k - 1) * change, 0, true);
-            ARRAY(row_force, l.system.rows.count);
+            row_force = zeros(l.system.rows.count, sizeof *row_force);
             double *u = relaxed(&l, 1e-9, row_force);
             force[k] = lattice_reaction(&l, row_force, 1);
             energy[k] = body_energy(&l.system.body, u);
-            free(row_force);
-            free(u);
             lattice_free(&l);
         }
         if (large) {
@@ -295,7 +287,7 @@ TEST(estimate_is_a_bound)
         double *mass, largest_overestimate = 0;
         problem_of_bound(&l, problem);
         double *exact = relaxed(&l, 1e-10, NULL), *residual = lattice_vector(&l);
-        ARRAY(mass, l.system.node_count);
+        mass = zeros(l.system.node_count, sizeof *mass);
         (void)system_residual(&l.system, exact, residual);
         system_relaxation_mass(&l.system, false, mass);
         for (size_t k = 0; k < sizeof tolerances / sizeof *tolerances; k++) {
@@ -308,13 +300,9 @@ TEST(estimate_is_a_bound)
             AT_MOST(remaining, report.error);
             AT_MOST(largest_move(&l, u, exact) / largest_move(&l, exact, NULL), report.error);
             largest_overestimate = fmax(largest_overestimate, report.error / remaining);
-            free(u);
         }
         print_message("problem %d: the error is overestimated by at most %.3g\n", problem,
                       largest_overestimate);
-        free(mass);
-        free(residual);
-        free(exact);
         lattice_free(&l);
     }
 }
@@ -347,11 +335,9 @@ TEST(ramp_does_not_matter)
             first = u;
         } else {
             AT_MOST(largest_difference(first, u, l.system.node_count * 2), 1e-7 * 0.02);
-            free(u);
         }
         lattice_free(&l);
     }
-    free(first);
 }
 
 TEST(any_number_of_threads)
@@ -374,12 +360,10 @@ TEST(any_number_of_threads)
             first = u;
         } else {
             assert_memory_equal(first, u, (size_t)l.system.node_count * 3 * sizeof *u);
-            free(u);
         }
         lattice_free(&l);
     }
     omp_set_num_threads(most);
-    free(first);
 }
 
 /* Augmentations reach the pressures that the bulk modulus itself makes of the volumes: the same forces
@@ -409,9 +393,6 @@ TEST(pressures_are_augmented)
             most = fmax(most, fabs(expected[i]));
         }
         AT_MOST(largest_difference(force, expected, size), 0.01 * most);
-        free(u);
-        free(force);
-        free(expected);
         lattice_free(&l);
     }
 }
@@ -431,8 +412,6 @@ TEST(conditions_twice)
     struct relaxation_options options = to(1e-6);
     FAILS(relaxation_run(&twice.system, &options, v, NULL, &report, &error), STATUS_VERDICT,
           "the conditions at node");
-    free(u);
-    free(v);
     lattice_free(&once);
     lattice_free(&twice);
 }
@@ -449,7 +428,8 @@ TEST(column_under_gravity)
     lattice_slide(&l, 7, curve);
     struct dead_load *load = calloc(1, sizeof *load);
     assert_non_null(load);
-    *load = (struct dead_load){.force = lattice_vector(&l), .curve = curve};
+    *load =
+        (struct dead_load){.force = array_or_fail(l.system.node_count * 2, sizeof(double)), .curve = curve};
     for (int64_t c = 0; c < l.assembly.cells.count; c++) {
         for (int64_t i = l.smoothed.ptr[c]; i < l.smoothed.ptr[c + 1]; i++) {
             load->force[2 * l.smoothed.idx[i] + 1] -= 9.81 * 1000 * l.assembly.weight[c] * l.smoothed.phi[i];
@@ -462,7 +442,6 @@ TEST(column_under_gravity)
         top += (i % 3 == 0 ? 1.0 / 6 : 1.0 / 3) * lattice_field(&l, u, l.system.node_count - 1 - i, 1);
     }
     NEAR_TO(top / -0.954976e-3, 1, 5e-3);
-    free(u);
     lattice_free(&l);
 }
 
@@ -527,7 +506,6 @@ TEST(frames_and_outcomes)
         assert_true(fabs(album.force[k]) > fabs(album.force[k - 1]));
         lattice_free(&alone);
     }
-    free(row_force);
     memset(u, 0, (size_t)l.system.node_count * 2 * sizeof *u);
     options = to(1e-12);
     options.most_steps = 150;
@@ -537,7 +515,6 @@ TEST(frames_and_outcomes)
     options.progress = stop_at_once;
     report = relax(&l, &options, u, NULL);
     assert_int_equal(report.outcome, RELAXATION_STOPPED);
-    free(u);
     lattice_free(&l);
     clamp(&l, 5, -0.01, 0, true);
     u = lattice_vector(&l);
@@ -547,7 +524,6 @@ TEST(frames_and_outcomes)
     assert_int_equal(report.outcome, RELAXATION_INVERTED);
     assert_true(!(report.least_jacobian > 0));
     assert_true(report.inverted_point >= 0 && report.inverted_point < l.system.body.point_count);
-    free(u);
     lattice_free(&l);
 }
 

@@ -98,11 +98,9 @@ TEST(cells_and_faces)
         at_most(fabs(volume / pow(0.1, dim) - 1.0), 1e-12, "volume of the box");
         GOOD(faces_build(&cells, false, &faces, &error));
         GOOD(faces_build(&cells, true, &boundary, &error));
-        double *closed = calloc((size_t)(cells.count * dim), sizeof *closed);
-        int *sides = calloc((size_t)cells.count, sizeof *sides);
+        double *closed = zeros(cells.count * dim, sizeof *closed);
+        int *sides = zeros(cells.count, sizeof *sides);
         int64_t outer = 0;
-        assert_non_null(closed);
-        assert_non_null(sides);
         for (int64_t f = 0; f < faces.count; f++) {
             double area[3], centroid[3], outward = 0.0;
             face_area_vector(dim, cells.x, faces.node + f * dim, area);
@@ -139,8 +137,6 @@ TEST(cells_and_faces)
         for (int64_t i = 0; i < cells.count * dim; i++) {
             at_most(fabs(closed[i]) / area_unit, 1e-14, "sum of the normals of a cell");
         }
-        free(closed);
-        free(sides);
         faces_free(&faces);
         faces_free(&boundary);
         cloud_free(&cloud);
@@ -227,8 +223,7 @@ TEST(smoothing_is_consistent)
                 struct smoothed s;
                 int64_t per_axis = dim == 2 ? 9 : 6;
                 smoothed_build(&s, dim, per_axis, (enum basis)b, offset);
-                double *centroids = malloc((size_t)(s.cells.count * dim) * sizeof *centroids);
-                assert_non_null(centroids);
+                double *centroids = zeros(s.cells.count * dim, sizeof *centroids);
                 for (int64_t c = 0; c < s.cells.count; c++) {
                     cell_centroid(&s.cells, c, centroids + c * dim);
                     for (int64_t i = s.smooth.ptr[c] + 1; i < s.smooth.ptr[c + 1]; i++) {
@@ -247,7 +242,6 @@ TEST(smoothing_is_consistent)
                 at_most(worst.position, 1e-12, "sum phi x - centroid");
                 at_most(worst.gradient_sum, 1e-12, "sum grad phi");
                 at_most(worst.gradient_position, 1e-12, "sum grad phi x - I");
-                free(centroids);
                 smoothed_free(&s);
             }
         }
@@ -261,8 +255,7 @@ TEST(smoothing_telescopes)
         struct smoothed s;
         smoothed_build(&s, dim, dim == 2 ? 9 : 6, BASIS_MODIFIED, 0.0);
         struct quadrature_rule rule = quadrature_face_rule(dim);
-        double *sum = calloc((size_t)(s.cells.node_count * dim), sizeof *sum);
-        assert_non_null(sum);
+        double *sum = zeros(s.cells.node_count * dim, sizeof *sum);
         for (int64_t c = 0; c < s.cells.count; c++) {
             double volume = cell_volume(&s.cells, c);
             for (int64_t i = s.smooth.ptr[c]; i < s.smooth.ptr[c + 1]; i++) {
@@ -286,7 +279,6 @@ TEST(smoothing_telescopes)
         for (int64_t i = 0; i < s.cells.node_count * dim; i++) {
             at_most(fabs(sum[i]) / pow(0.1, dim - 1), 1e-14, "cells against the boundary");
         }
-        free(sum);
         smoothed_free(&s);
     }
 }
@@ -319,11 +311,10 @@ TEST(averages_of_values)
     for (int dim = 2; dim <= 3; dim++) {
         struct smoothed s;
         smoothed_build(&s, dim, dim == 2 ? 9 : 6, BASIS_MODIFIED, 0.0);
-        double *row = calloc((size_t)s.cells.node_count, sizeof *row);
+        double *row = zeros(s.cells.node_count, sizeof *row);
         int64_t outer = 0;
         struct error error;
         struct support_options options = options_for(dim, BASIS_MODIFIED, WEIGHT_QUARTIC);
-        assert_non_null(row);
         GOOD(shape_table(&options.mls, s.cells.x, s.table.radius, &s.lists, s.points, "points.x", s.table.phi,
                          NULL, &error));
         for (int64_t f = 0; f < s.faces.count; f++) {
@@ -351,7 +342,6 @@ TEST(averages_of_values)
         assert_int_equal(outer, s.faces.boundary_count);
         assert_memory_equal(s.averages.boundary_phi, s.table.phi,
                             (size_t)s.lists.ptr[outer * s.per_face] * sizeof(double));
-        free(row);
         smoothed_free(&s);
     }
 }

@@ -48,8 +48,7 @@ static int64_t count_astray(const struct labels *labels, const struct stuffing *
     struct faces faces;
     struct error error;
     int64_t count = 0;
-    bool *seen = calloc((size_t)stuffing->node_count, sizeof *seen);
-    assert_non_null(seen);
+    bool *seen = zeros(stuffing->node_count, sizeof *seen);
     GOOD(faces_build(&cells, false, &faces, &error));
     for (int64_t f = 0; f < faces.count; f++) {
         const int32_t *cell = faces.cell + 2 * f;
@@ -61,7 +60,6 @@ static int64_t count_astray(const struct labels *labels, const struct stuffing *
         }
     }
     faces_free(&faces);
-    free(seen);
     return count;
 }
 
@@ -107,8 +105,7 @@ TEST(orders_of_voxels)
     struct label_shape shape;
     assert_true(label_shape_make("two", 1, voxel, &shape));
     struct labels labels = labels_of(&shape), turned = labels;
-    uint16_t *label = calloc((size_t)(shape.size[0] * shape.size[1] * shape.size[2]), sizeof *label);
-    assert_non_null(label);
+    uint16_t *label = zeros(shape.size[0] * shape.size[1] * shape.size[2], sizeof *label);
     for (int d = 0; d < 3; d++) { /* axes k, i, j, the first one backwards */
         turned.size[d] = shape.size[(d + 2) % 3];
         for (int e = 0; e < 4; e++) {
@@ -134,7 +131,6 @@ TEST(orders_of_voxels)
     }
     stuffing_free(&a);
     stuffing_free(&b);
-    free(label);
     free(shape.label);
 }
 
@@ -142,8 +138,7 @@ TEST(orders_of_voxels)
 static double longest_edge(const struct stuffing *stuffing, int32_t label, bool at_boundary)
 {
     double longest = 0;
-    bool *on = calloc((size_t)stuffing->node_count, sizeof *on);
-    assert_non_null(on);
+    bool *on = zeros(stuffing->node_count, sizeof *on);
     for (int64_t i = 0; i < 3 * stuffing->facet_count; i++) {
         on[stuffing->facet[i]] = true;
     }
@@ -157,7 +152,6 @@ static double longest_edge(const struct stuffing *stuffing, int32_t label, bool 
             longest = fmax(longest, sqrt(shape_square(a, b)));
         }
     }
-    free(on);
     return longest;
 }
 

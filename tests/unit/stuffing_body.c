@@ -33,7 +33,7 @@ static int64_t count_hinges(const struct stuffing *stuffing)
     struct cells cells = cells_of(stuffing);
     struct error error;
     int64_t hinges = 0;
-    int32_t *across = calloc((size_t)cells.count * 4, sizeof *across);
+    int32_t *across = zeros(cells.count * 4, sizeof *across);
     int32_t *part =
         calloc((size_t)cells.count * 4, sizeof *part); /* of each corner: the least cell reached */
     assert_true(across != NULL && part != NULL);
@@ -53,16 +53,13 @@ static int64_t count_hinges(const struct stuffing *stuffing)
             }
         }
     }
-    int32_t *least = calloc((size_t)cells.node_count, sizeof *least);
-    assert_non_null(least);
+    int32_t *least = zeros(cells.node_count, sizeof *least);
     for (int64_t i = 0; i < cells.count * 4; i++) {
         int32_t *of_node = &least[cells.node[i]];
         hinges += *of_node != 0 && *of_node != part[i] + 1 && part[i] == i / 4;
         *of_node = *of_node == 0 ? part[i] + 1 : *of_node;
     }
-    free(across);
     free(part);
-    free(least);
     return hinges;
 }
 
@@ -89,10 +86,8 @@ static int32_t count_bodies(const struct stuffing *stuffing)
 {
     struct cells cells = cells_of(stuffing);
     struct error error;
-    int32_t count = 0, *part = calloc((size_t)cells.count, sizeof *part);
-    assert_non_null(part);
+    int32_t count = 0, *part = zeros(cells.count, sizeof *part);
     GOOD(cells_parts(&cells, part, &count, &error));
-    free(part);
     return count;
 }
 
@@ -101,8 +96,8 @@ static void check_apart(const struct stuffing *stuffing)
 {
     struct cells cells = cells_of(stuffing);
     struct error error;
-    int32_t count = 0, *part = calloc((size_t)cells.count, sizeof *part);
-    int32_t *of_node = calloc((size_t)cells.node_count, sizeof *of_node);
+    int32_t count = 0, *part = zeros(cells.count, sizeof *part);
+    int32_t *of_node = zeros(cells.node_count, sizeof *of_node);
     assert_true(part != NULL && of_node != NULL);
     GOOD(cells_parts(&cells, part, &count, &error));
     for (int64_t i = 0; i < 4 * cells.count; i++) {
@@ -110,8 +105,6 @@ static void check_apart(const struct stuffing *stuffing)
         assert_true(*body == 0 || *body == part[i / 4] + 1);
         *body = part[i / 4] + 1;
     }
-    free(part);
-    free(of_node);
 }
 
 TEST(parts_that_hang_by_an_edge)

@@ -67,8 +67,7 @@ TEST(lists_against_brute_force)
             struct point_grid grid;
             struct support_lists lists;
             struct error error;
-            double *radius = malloc((size_t)cloud.count * sizeof *radius);
-            assert_non_null(radius);
+            double *radius = zeros(cloud.count, sizeof *radius);
             options.widen = false;
             for (int64_t n = 0; n < cloud.count; n++) {
                 radius[n] = cloud.spacing * ((kind & 1) ? 0.2 * pow(20.0, gsl_rng_uniform(random)) : 2.1);
@@ -103,7 +102,6 @@ TEST(lists_against_brute_force)
             }
             assert_int_equal(lists.fewest, fewest);
             assert_int_equal(lists.most, most);
-            free(radius);
             support_free(&lists);
             point_grid_free(&grid);
             scattered_free(&cloud);
@@ -145,11 +143,9 @@ TEST(spacing_against_brute_force)
 {
     for (int dim = 2; dim <= 3; dim++) {
         struct scattered cloud = scatter(dim, dim == 2 ? 15 : 6, 1, &places[2], 0.4, 2);
-        double *spacing = malloc((size_t)cloud.count * sizeof *spacing);
-        double *distance = malloc((size_t)cloud.count * sizeof *distance);
+        double *spacing = zeros(cloud.count, sizeof *spacing);
+        double *distance = zeros(cloud.count, sizeof *distance);
         struct error error;
-        assert_non_null(spacing);
-        assert_non_null(distance);
         cloud.x[0] -= 3.0 * cloud.size; /* one node far from the others */
         GOOD(nodes_spacing(dim, cloud.count, cloud.x, spacing, &error));
         for (int64_t n = 0; n < cloud.count; n++) {
@@ -168,8 +164,6 @@ TEST(spacing_against_brute_force)
             }
             at_most(fabs(spacing[n] / mean - 1.0), 1e-12, "spacing");
         }
-        free(spacing);
-        free(distance);
         scattered_free(&cloud);
     }
 }

@@ -24,7 +24,7 @@ static struct halves make_halves(int dim, const struct support_options *options)
     halves.cells = (struct cells){dim, cloud->node_count, cloud->x, cloud->cell_count, cloud->cells};
     halves.side = calloc((size_t)halves.cells.count, sizeof *halves.side);
     halves.radius = calloc((size_t)halves.cells.node_count, sizeof *halves.radius);
-    double *spacing = calloc((size_t)halves.cells.node_count, sizeof *spacing);
+    double *spacing = zeros(halves.cells.node_count, sizeof *spacing);
     assert_true(halves.side != NULL && halves.radius != NULL && spacing != NULL);
     for (int64_t c = 0; c < halves.cells.count; c++) {
         double middle[3];
@@ -33,7 +33,6 @@ static struct halves make_halves(int dim, const struct support_options *options)
     }
     GOOD(cells_node_spacing(&halves.cells, spacing, &error));
     GOOD(support_radii(options, halves.cells.node_count, spacing, halves.radius, &error));
-    free(spacing);
     return halves;
 }
 
@@ -112,8 +111,8 @@ TEST(places_tell_the_side)
         struct support_lists found, given;
         struct error error;
         int64_t nodes = halves.cells.node_count, cells = halves.cells.count;
-        double *middle = calloc((size_t)(cells * dim), sizeof *middle);
-        int32_t *cell = calloc((size_t)cells, sizeof *cell);
+        double *middle = zeros(cells * dim, sizeof *middle);
+        int32_t *cell = zeros(cells, sizeof *cell);
         assert_true(middle != NULL && cell != NULL);
         options.side = halves.side;
         GOOD(support_space_build(&options, &halves.cells, halves.radius, &space, &error));
@@ -136,8 +135,6 @@ TEST(places_tell_the_side)
         }
         support_space_free(&space);
         halves_free(&halves);
-        free(middle);
-        free(cell);
     }
 }
 
@@ -150,8 +147,7 @@ TEST(kinks_are_exact)
         struct halves halves = make_halves(dim, &options);
         struct error error;
         double *x = scatter_points(dim, COUNT), got[COUNT], worst[2] = {0.0, 0.0};
-        double *field = calloc((size_t)halves.cells.node_count, sizeof *field);
-        assert_non_null(field);
+        double *field = zeros(halves.cells.node_count, sizeof *field);
         for (int64_t n = 0; n < halves.cells.node_count; n++) {
             const double *at = halves.cells.x + n * dim;
             field[n] = fabs(at[0] - 0.5) + 0.3 * at[dim - 1];
@@ -171,7 +167,6 @@ TEST(kinks_are_exact)
         at_most(worst[1], 1e-12, "a kink at the interface");
         assert_true(worst[0] > 1e-2);
         halves_free(&halves);
-        free(field);
         free(x);
     }
 }

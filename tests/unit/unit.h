@@ -24,6 +24,23 @@
 static struct CMUnitTest unit_tests[64];
 static size_t unit_test_count;
 
+/* What zeros() has given the test that runs. */
+struct unit_memory {
+    struct unit_memory *next;
+    _Alignas(16) char bytes[];
+};
+static struct unit_memory *unit_memory;
+
+static inline int unit_free(__attribute__((unused)) void **state)
+{
+    while (unit_memory != NULL) {
+        struct unit_memory *next = unit_memory->next;
+        free(unit_memory);
+        unit_memory = next;
+    }
+    return 0;
+}
+
 static inline void unit_list(struct CMUnitTest test)
 {
     if (unit_test_count < sizeof unit_tests / sizeof *unit_tests) {
@@ -36,7 +53,7 @@ static inline void unit_list(struct CMUnitTest test)
     static void name(void **state);                                                                          \
     __attribute__((constructor)) static void list_##name(void)                                               \
     {                                                                                                        \
-        unit_list((struct CMUnitTest)cmocka_unit_test(name));                                                \
+        unit_list((struct CMUnitTest)cmocka_unit_test_teardown(name, unit_free));                            \
     }                                                                                                        \
     static void name(__attribute__((unused)) void **state)
 
@@ -109,7 +126,7 @@ static inline void near_to(double value, double expected, double tolerance, cons
 
 /* ---- memory and random numbers ---- */
 
-/* Zeros, with room for one more. */
+/* Zeros, with room for one more, for an owner that frees them. */
 static inline void *array_or_fail(int64_t count, size_t size)
 {
     void *array = calloc((size_t)count + 1, size);
@@ -117,6 +134,16 @@ static inline void *array_or_fail(int64_t count, size_t size)
     return array;
 }
 #define ARRAY(pointer, count) ((pointer) = array_or_fail((count), sizeof *(pointer)))
+
+/* Zeros that are freed when the test ends. */
+static inline void *zeros(int64_t count, size_t size)
+{
+    struct unit_memory *memory = calloc(1, sizeof *memory + ((size_t)count + 1) * size);
+    assert_non_null(memory);
+    memory->next = unit_memory;
+    unit_memory = memory;
+    return memory->bytes;
+}
 
 /* A stream of pseudo-random numbers (Knuth's 64-bit congruential generator), the same everywhere. */
 struct random {
