@@ -13,39 +13,49 @@ square() {
 1 1
 0 1
 
+
 # cells i4 2 3 enc=text
 0 1 2
 0 2 3
+
 
 # cells.region i4 2 1 enc=text names=grey,white
 0
 1
 
+
 # facets i4 1 2 enc=text
 0 1
 
+
 # facets.set i4 1 1 enc=text names=bottom
 0
+
 
 # sets.ptr i8 2 1 enc=text names=corner
 0
 2
 
+
 # sets.idx i4 2 1 enc=text
 1
 3
+
 
 # points.x f8 2 2 enc=text unit=m
 0.6 0.3
 0.3 0.6
 
+
 # points.weight f8 2 1 enc=text unit=m2
 0.5
 0.25
 
+
 # points.cell i4 2 1 enc=text
 0
 -1
+
 
 # support.radius f8 4 1 enc=text unit=m
 2
@@ -53,10 +63,12 @@ square() {
 2
 2
 
+
 # nbr.ptr i8 3 1 enc=text
 0
 2
 5
+
 
 # nbr.idx i4 5 1 enc=text
 0
@@ -65,9 +77,11 @@ square() {
 2
 3
 
+
 # nbr.widen f8 2 1 enc=text
 1
 1.5
+
 
 # shape.phi f8 5 1 enc=text
 0.75
@@ -76,6 +90,7 @@ square() {
 1
 0.5
 
+
 # shape.dphi f8 5 2 enc=text unit=1/m
 1 1
 -1 -1
@@ -83,11 +98,13 @@ square() {
 -1 0
 0 0
 
+
 # u f8 4 2 enc=text unit=m
 0 0
 0 0
 0 0
 0 1
+
 
 # end 17
 END
@@ -244,11 +261,13 @@ violates() {
 5 1
 5.0001 0.5
 
+
 # cells i4 4 3 enc=text
 0 1 2
 1 0 3
 4 5 6
 4 6 7
+
 
 # end 2
 END

@@ -271,6 +271,7 @@ END
 3 3
 4 4
 
+
 # end 1
 END
     ipoints --lattice 3 line.txt > line.mts
