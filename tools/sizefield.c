@@ -77,12 +77,7 @@ static enum status recover(const struct stream *stream, const char *field, struc
     const struct section *section;
     struct cell_regions regions = {0};
     TRY(stream_cells(stream, true, cells, error));
-    TRY(stream_need(stream, field, TYPE_F8, 0, "mtled", &section, error));
-    if (section->cols > 3 || section->rows != cells->node_count) {
-        TRY(fail(error, STATUS_INPUT,
-                 "%s: %lld rows of %lld columns: not a field of 1 to 3 columns on %lld nodes", field,
-                 (long long)section->rows, (long long)section->cols, (long long)cells->node_count));
-    }
+    TRY(stream_field(stream, field, cells->node_count, &section, error));
     if (stream_find(stream, "cells.region") != NULL) {
         TRY(stream_regions(stream, cells, &regions, error));
     }

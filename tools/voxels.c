@@ -81,15 +81,6 @@ static const char usage[] =
  * cells of the sizes. */
 static const double reported_share = 0.01;
 
-/* Volume of the cells of each label with its parts, m3 (2D: m2). */
-static void cell_volumes(const struct cells *cells, const struct label_image *image, const int32_t *label,
-                         double *volume)
-{
-    for (int64_t c = 0; c < cells->count; c++) {
-        volume[image->region[label[c]]] += cell_volume(cells, c);
-    }
-}
-
 /* Volumes in ml, areas in cm2. */
 static double shown(int dim, double volume)
 {
@@ -97,10 +88,8 @@ static double shown(int dim, double volume)
 }
 
 static void report_labels(const struct tool *tool, const struct label_image *image,
-                          const struct stuffing *stuffing, bool verbose)
+                          const struct stuffing *stuffing, const struct cells *cells, bool verbose)
 {
-    struct cells cells = {stuffing->dim, stuffing->node_count, stuffing->x, stuffing->cell_count,
-                          stuffing->cell};
     double *volume = NULL, *voxels = NULL;
     int64_t *lost = NULL;
     int dim = stuffing->dim;
@@ -109,7 +98,9 @@ static void report_labels(const struct tool *tool, const struct label_image *ima
     TOOL_TRY(tool, NEW_ARRAY(&lost, image->labels.count, &error));
     TOOL_TRY(tool, stuffing_lost(&image->labels, stuffing, lost, &error));
     TOOL_TRY(tool, NEW_ARRAY(&voxels, image->labels.count, &error));
-    cell_volumes(&cells, image, stuffing->label, volume);
+    for (int64_t c = 0; c < cells->count; c++) {
+        volume[image->region[stuffing->label[c]]] += cell_volume(cells, c);
+    }
     for (int32_t l = 1; l < image->labels.count; l++) {
         voxels[image->region[l]] += image->volume[l];
         lost[image->region[l]] += image->region[l] != l ? lost[l] : 0;
@@ -213,7 +204,7 @@ static void report(const struct tool *tool, const struct label_image *image, con
             "parts of a body touch by a node or an edge alone at %lld nodes: --fine may tell them apart",
             (long long)stuffing->hinges);
     }
-    report_labels(tool, image, stuffing, verbose);
+    report_labels(tool, image, stuffing, &cells, verbose);
     report_bodies(tool, &cells, verbose);
     report_cells(tool, &cells, spacing, verbose);
     if (verbose) {

@@ -8,12 +8,17 @@
 
 enum status names_read(const struct section *section, struct names *names, struct error *error)
 {
+    return names_of(section, "names", names, error);
+}
+
+enum status names_of(const struct section *section, const char *key, struct names *names, struct error *error)
+{
     enum status status;
     size_t size = strlen(section->attributes) + 1;
     *names = (struct names){0};
     TRY(NEW_ARRAY(&names->list, 2 * (int64_t)size, error)); /* and behind it the same, cut at the commas */
     TRY(NEW_ARRAY(&names->name, (int64_t)size, error));
-    char *rest = section_attribute(section, "names", names->list, size) && names->list[0] != '\0'
+    char *rest = section_attribute(section, key, names->list, size) && names->list[0] != '\0'
                      ? strcpy(names->list + size, names->list)
                      : NULL;
     while (rest != NULL) {

@@ -49,6 +49,20 @@ done:
     return status;
 }
 
+enum status stream_field(const struct stream *stream, const char *name, int64_t node_count,
+                         const struct section **field, struct error *error)
+{
+    enum status status;
+    TRY(stream_need(stream, name, TYPE_F8, 0, "mtled", field, error));
+    if ((*field)->cols > 3 || (*field)->rows != node_count) {
+        return fail(error, STATUS_INPUT,
+                    "%s: %lld rows of %lld columns: not a field of 1 to 3 columns on %lld nodes", name,
+                    (long long)(*field)->rows, (long long)(*field)->cols, (long long)node_count);
+    }
+done:
+    return status;
+}
+
 enum status stream_regions(const struct stream *stream, const struct cells *cells,
                            struct cell_regions *regions, struct error *error)
 {

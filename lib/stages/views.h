@@ -15,6 +15,10 @@ MUST_CHECK enum status stream_nodes(const struct stream *stream, int *dim, int64
 MUST_CHECK enum status stream_cells(const struct stream *stream, bool needed, struct cells *cells,
                                     struct error *error);
 
+/* A field at the nodes, of 1 to 3 columns. */
+MUST_CHECK enum status stream_field(const struct stream *stream, const char *name, int64_t node_count,
+                                    const struct section **field, struct error *error);
+
 /* The region of each cell: of_cell[cells.count], each below names.count; names are to be freed, also on
  * failure. */
 struct cell_regions {

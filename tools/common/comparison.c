@@ -27,38 +27,34 @@ struct comparison_request comparison_parse(const struct tool *tool)
                                        .text = tool_given(tool, "text")};
 }
 
+static enum status view_side(struct side *side, const char *field, struct error *error)
+{
+    enum status status;
+    struct nodal_field *view = &side->field;
+    TRY(stream_cells(&side->stream, false, &view->cells, error));
+    TRY(stream_field(&side->stream, field, view->cells.node_count, &side->section, error));
+    TRY(solved_read(&side->stream, &side->solved, error));
+    const struct section *parameters = solved_parameters(&side->stream, &side->solved, side->section);
+    view->cols = side->section->cols;
+    view->values = side->section->data;
+    if (parameters != side->section) {
+        view->parameters = parameters->data;
+        view->radius = side->solved.radius;
+        view->support = &side->solved.recorded.support;
+        view->shapes = &side->solved.recorded.shapes;
+    }
+done:
+    return status;
+}
+
 void side_read(const struct tool *tool, const char *file, const char *field, struct side *side)
 {
     struct error error;
-    const struct section *section;
     *side = (struct side){.name = strcmp(file, "-") == 0 ? "standard input" : file};
     tool_read(tool, file, &side->stream);
-    enum status status = stream_cells(&side->stream, false, &side->field.cells, &error);
-    if (status == STATUS_OK) {
-        status = stream_need(&side->stream, field, TYPE_F8, 0, "mtled", &section, &error);
-    }
-    if (status == STATUS_OK && (section->cols > 3 || section->rows != side->field.cells.node_count)) {
-        status =
-            fail(&error, STATUS_INPUT,
-                 "%s: %lld rows of %lld columns: not a field of 1 to 3 columns on %lld nodes", field,
-                 (long long)section->rows, (long long)section->cols, (long long)side->field.cells.node_count);
-    }
+    enum status status = view_side(side, field, &error);
     if (status != STATUS_OK) {
         tool_fail(tool, status, "%s: %s", side->name, error.text);
-    }
-    status = solved_read(&side->stream, &side->solved, &error);
-    if (status != STATUS_OK) {
-        tool_fail(tool, status, "%s: %s", side->name, error.text);
-    }
-    const struct section *parameters = solved_parameters(&side->stream, &side->solved, section);
-    side->section = section;
-    side->field.cols = section->cols;
-    side->field.values = section->data;
-    if (parameters != section) {
-        side->field.parameters = parameters->data;
-        side->field.radius = side->solved.radius;
-        side->field.support = &side->solved.recorded.support;
-        side->field.shapes = &side->solved.recorded.shapes;
     }
 }
 
