@@ -2,6 +2,11 @@
 
 load common.bash
 
+setup() {
+    begin
+    set +o pipefail # programs refuse what they are given, and grep -q stops reading
+}
+
 # The unit square in MSH 2.2, in two triangles, with a named side, corner and a diagonal.
 square() {
     cat <<'END'

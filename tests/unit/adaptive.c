@@ -111,13 +111,13 @@ static double *stiffness(const struct body *body, int64_t count, const double *x
 {
     int dim = body->cells.dim;
     int64_t n = body->cells.node_count;
-    double *K = calloc((size_t)(n * n), sizeof *K);
+    double *K = zeros(n * n, sizeof *K);
     struct point_grid grid;
     struct support_lists found;
     struct error error;
     GOOD(point_grid_build(&grid, dim, n, body->cells.x, body->radius, &error));
     GOOD(support_build(&body->options.support, &grid, count, x, "points.x", &found, &error));
-    double *phi = calloc((size_t)found.ptr[count], sizeof *phi);
+    double *phi = zeros(found.ptr[count], sizeof *phi);
     double *dphi = zeros(found.ptr[count] * dim, sizeof *dphi);
     struct neighbours view = support_view(&found);
     GOOD(shape_table(&body->options.support.mls, body->cells.x, body->radius, &view, x, "points.x", phi, dphi,
@@ -186,10 +186,8 @@ TEST(convergence)
             assert_int_equal(points.unresolved, 0);
             before = points.count;
             error_before = error;
-            free(K);
             adaptive_points_free(&points);
         }
-        free(reference);
         adaptive_points_free(&finest);
         body_free(&body);
     }
