@@ -145,12 +145,8 @@ static void put_rows(const struct cut_body *whole, const struct section *section
 static void put_numbers(const struct cut_body *whole, const char *name, const char *attributes,
                         const int32_t *number, int64_t count)
 {
-    int32_t *copy;
-    TOOL_TRY(whole->tool, NEW_ARRAY(&copy, count, &error));
-    if (count > 0) {
-        memcpy(copy, number, (size_t)count * sizeof *copy);
-    }
-    put(whole, name, TYPE_I4, count, 1, attributes, copy);
+    TOOL_TRY(whole->tool,
+             stream_put_copy(whole->stream, name, TYPE_I4, count, 1, attributes, number, &error));
 }
 
 /* Facets whose nodes are all there and belong to a cell that is. */

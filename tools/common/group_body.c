@@ -181,17 +181,16 @@ done:
 static enum status read_regions(const struct stream *stream, struct group_body *body, struct error *error)
 {
     enum status status = STATUS_OK;
+    struct cell_regions regions = {0};
     const struct section *section = stream_find(stream, "cells.region");
     if (section == NULL || body->cells.count == 0) {
         return STATUS_OK;
     }
-    TRY(stream_need(stream, "cells.region", TYPE_I4, 1, "nodes", &section, error));
-    if (section->rows != body->cells.count) {
-        return fail(error, STATUS_INPUT, "cells.region: not one row per cell");
-    }
+    TRY(stream_regions(stream, &body->cells, &regions, error));
     TRY(add_named(&body->groups[GROUP_REGION], section, error));
     TRY(sort_items(&body->groups[GROUP_REGION], section, NULL, error));
 done:
+    names_free(&regions.names);
     return status;
 }
 
@@ -299,11 +298,10 @@ enum status group_put(struct group_body *body, enum group_kind kind, const char 
     }
     struct group *group = &list->group[place];
     free(group->item);
-    group->item = item;
+    group->item = array_take(&item);
     group->count = count;
     group->expression = expression;
     list->changed = true;
-    item = NULL;
 done:
     free(item);
     return status;
@@ -360,11 +358,8 @@ static enum status write_facets(const struct group_body *body, struct stream *st
             set[at] = (int32_t)g;
         }
     }
-    status = stream_put(stream, "facets", TYPE_I4, count, dim, "", node, true, error);
-    node = NULL;
-    TRY(status);
-    status = stream_put(stream, "facets.set", TYPE_I4, count, 1, names, set, true, error);
-    set = NULL;
+    TRY(stream_put(stream, "facets", TYPE_I4, count, dim, "", array_take(&node), true, error));
+    TRY(stream_put(stream, "facets.set", TYPE_I4, count, 1, names, array_take(&set), true, error));
 done:
     free(node);
     free(set);
@@ -392,11 +387,8 @@ static enum status write_sets(const struct group_body *body, struct stream *stre
         ptr[g + 1] = ptr[g] + list->group[g].count;
         memcpy(&idx[ptr[g]], list->group[g].item, (size_t)list->group[g].count * sizeof *idx);
     }
-    status = stream_put(stream, "sets.ptr", TYPE_I8, list->count + 1, 1, names, ptr, true, error);
-    ptr = NULL;
-    TRY(status);
-    status = stream_put(stream, "sets.idx", TYPE_I4, count, 1, "", idx, true, error);
-    idx = NULL;
+    TRY(stream_put(stream, "sets.ptr", TYPE_I8, list->count + 1, 1, names, array_take(&ptr), true, error));
+    TRY(stream_put(stream, "sets.idx", TYPE_I4, count, 1, "", array_take(&idx), true, error));
 done:
     free(ptr);
     free(idx);
@@ -424,8 +416,8 @@ static enum status write_regions(const struct group_body *body, struct stream *s
             region[list->group[g].item[i]] = (int32_t)g;
         }
     }
-    status = stream_put(stream, "cells.region", TYPE_I4, body->cells.count, 1, names, region, true, error);
-    region = NULL;
+    TRY(stream_put(stream, "cells.region", TYPE_I4, body->cells.count, 1, names, array_take(&region), true,
+                   error));
 done:
     free(region);
     free(names);

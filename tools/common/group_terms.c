@@ -1,4 +1,4 @@
-#include "group_terms.h"
+#include "group_select.h"
 
 #include "approx/parts.h"
 #include "base/box.h"

@@ -82,7 +82,7 @@ void model_free(struct model *model)
 
 enum status model_own(struct model *model, void *array, struct error *error)
 {
-    void **grown = array_grow(model->owned, model->owned_count + 1, sizeof *grown);
+    void **grown = array == NULL ? NULL : array_grow(model->owned, model->owned_count + 1, sizeof *grown);
     if (grown == NULL) {
         free(array);
         return fail_memory(error, "conditions");

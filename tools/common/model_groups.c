@@ -27,8 +27,7 @@ enum status model_facets(struct model *model, const struct scene_label *label, c
         }
         wanted[group] = true;
     }
-    TRY(NEW_ARRAY(&chosen, facets.count * dim, error));
-    TRY(model_own(model, chosen, error));
+    TRY(MODEL_ARRAY(model, &chosen, facets.count * dim, error));
     for (int64_t f = 0; f < facets.count; f++) {
         if (facets.set[f] >= 0 && facets.set[f] < present.count && wanted[facets.set[f]]) {
             memcpy(chosen + set->count * dim, facets.facet + f * dim, (size_t)dim * sizeof *chosen);
@@ -72,8 +71,7 @@ enum status model_nodes(struct model *model, const struct scene_label *label, co
             member[sets.idx[k]] = true;
         }
     }
-    TRY(NEW_ARRAY(&chosen, node_count, error));
-    TRY(model_own(model, chosen, error));
+    TRY(MODEL_ARRAY(model, &chosen, node_count, error));
     *nodes = chosen;
     for (int64_t n = 0; n < node_count; n++) {
         if (member[n]) {

@@ -35,8 +35,7 @@ static enum status read_section(struct point_section *p, struct error *error)
     double unit = p->section->table_unit;
     TRY(table_read_open(p->section->table, 2 * dim, 2 * dim + 1, dim, 2 * dim, &p->table, error));
     int64_t rows = p->table.rows, cols = p->table.cols;
-    TRY(NEW_ARRAY(&values, rows * (2 * dim + 1), error));
-    TRY(model_own(p->model, values, error));
+    TRY(MODEL_ARRAY(p->model, &values, rows * (2 * dim + 1), error));
     double *x = values, *u = x + rows * dim, *deviation = u + rows * dim;
     p->condition->measured = (struct measured){dim, rows, x, u, deviation};
     for (int64_t i = 0; i < rows; i++) {

@@ -10,6 +10,14 @@ static const char *file_of(const struct rejoin *rejoin, int64_t k)
     return rejoin->part[k].file;
 }
 
+void rejoin_check(const struct rejoin *rejoin, const struct rejoin_part *part, enum status status,
+                  const struct error *error)
+{
+    if (status != STATUS_OK) {
+        tool_fail(rejoin->tool, status, "%s: %s", part->file, error->text);
+    }
+}
+
 static int64_t attribute(const struct rejoin *rejoin, const struct rejoin_part *part, const char *key)
 {
     struct error error;
@@ -29,10 +37,8 @@ static const int32_t *numbers(const struct rejoin *rejoin, const struct rejoin_p
 {
     struct error error;
     const struct section *section;
-    enum status status = stream_need(&part->stream, name, TYPE_I4, 1, "part", &section, &error);
-    if (status != STATUS_OK) {
-        tool_fail(rejoin->tool, status, "%s: %s", part->file, error.text);
-    }
+    rejoin_check(rejoin, part, stream_need(&part->stream, name, TYPE_I4, 1, "part", &section, &error),
+                 &error);
     const int32_t *value = section->data;
     if (section->rows != rows) {
         tool_fail(rejoin->tool, STATUS_INPUT,
@@ -61,10 +67,7 @@ static void view_part(struct rejoin *rejoin, struct rejoin_part *part)
     if (!section_attribute(node, "cut", part->cut, sizeof part->cut)) {
         tool_fail(rejoin->tool, STATUS_INPUT, "%s: part.node: no cut=: not written by part", file);
     }
-    enum status status = stream_cells(&part->stream, true, &part->cells, &error);
-    if (status != STATUS_OK) {
-        tool_fail(rejoin->tool, status, "%s: %s", file, error.text);
-    }
+    rejoin_check(rejoin, part, stream_cells(&part->stream, true, &part->cells, &error), &error);
     part->node =
         numbers(rejoin, part, "part.node", part->cells.node_count, 0, attribute(rejoin, part, "nodes"), true);
     part->owner = numbers(rejoin, part, "part.owner", part->cells.node_count, 0, part->parts, false);

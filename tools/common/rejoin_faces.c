@@ -98,10 +98,7 @@ void rejoin_map_faces(struct rejoin *rejoin)
                                 .node = rejoin->cell};
     for (int64_t k = 0; k < rejoin->part_count; k++) {
         struct rejoin_part *part = &rejoin->part[k];
-        enum status status = stream_faces(&part->stream, &part->cells, &part->faces, &error);
-        if (status != STATUS_OK) {
-            tool_fail(tool, status, "%s: %s", part->file, error.text);
-        }
+        rejoin_check(rejoin, part, stream_faces(&part->stream, &part->cells, &part->faces, &error), &error);
     }
     tool_check(tool, faces_build(&whole, boundary_only, &rejoin->faces, &error), &error);
     if (side != NULL) {

@@ -359,11 +359,9 @@ static bool put_faces(const struct rejoin *rejoin, struct stream *stream, const 
                     {"faces.row", FACE_ROWS(rejoin->dim), faces->row}};
     for (int i = 0; i < 3; i++) {
         if (strcmp(sections[i].name, name) == 0 && sections[i].values != NULL) {
-            int64_t cols = sections[i].cols;
-            int32_t *data = new_rows(rejoin, name, faces->count * cols, sizeof *data);
-            memcpy(data, sections[i].values, (size_t)(faces->count * cols) * sizeof *data);
-            put(rejoin, stream, name, TYPE_I4, faces->count, cols,
-                section_of(rejoin, 0, name, NULL)->attributes, data);
+            TOOL_TRY(rejoin->tool, stream_put_copy(stream, name, TYPE_I4, faces->count, sections[i].cols,
+                                                   section_of(rejoin, 0, name, NULL)->attributes,
+                                                   sections[i].values, &error));
             return true;
         }
     }
