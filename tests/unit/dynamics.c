@@ -176,11 +176,9 @@ TEST(shear_wave)
  * closed form and stays. */
 TEST(release)
 {
-    struct lattice_options options = lattice_defaults(3, 5);
     struct lattice l;
     struct energy_log log = {0};
-    lattice_build(&l, &options);
-    int32_t curve = lattice_curve(&l, curve_of_kind(CURVE_STEP));
+    int32_t curve = lattice_begin(&l, 3, 5, 0.0, CURVE_STEP);
     lattice_slide(&l, 1u << 0 | 1u << 2 | 1u << 4, curve);
     double *u = lattice_vector(&l);
     for (int64_t n = 0; n < l.system.node_count; n++) {
@@ -311,11 +309,9 @@ TEST(pushed)
  * The begin at that speed is a blow, whose work counts. */
 TEST(moved_at_constant_speed)
 {
-    struct lattice_options options = lattice_defaults(2, 5);
     struct lattice l;
     struct energy_log log = {0};
-    lattice_build(&l, &options);
-    int32_t curve = lattice_curve(&l, curve_of_kind(CURVE_LINEAR));
+    int32_t curve = lattice_begin(&l, 2, 5, 0.0, CURVE_LINEAR);
     double there = 0.01;
     lattice_prescribe(&l, 15, x_axis, lattice_constant, &there, curve);
     double *u = lattice_vector(&l), *v = lattice_vector(&l);
@@ -419,10 +415,8 @@ TEST(bounce)
 /* What goes wrong has a name. */
 TEST(outcomes)
 {
-    struct lattice_options options = lattice_defaults(2, 5);
     struct lattice l;
-    lattice_build(&l, &options);
-    int32_t curve = lattice_curve(&l, curve_of_kind(CURVE_STEP));
+    int32_t curve = lattice_begin(&l, 2, 5, 0.0, CURVE_STEP);
     lattice_slide(&l, 1u << 2, curve);
     double *u = lattice_vector(&l);
     struct dynamics_options dynamics = over(0.1);
@@ -482,12 +476,10 @@ TEST(stopped_by_the_caller)
 /* Conditions that say the same twice are one; ones that disagree are a verdict that names a node. */
 TEST(conditions_twice)
 {
-    struct lattice_options options = lattice_defaults(2, 4);
     struct lattice l;
     struct dynamics_report report;
     struct error error;
-    lattice_build(&l, &options);
-    int32_t curve = lattice_curve(&l, curve_of_kind(CURVE_SMOOTH));
+    int32_t curve = lattice_begin(&l, 2, 4, 0.0, CURVE_SMOOTH);
     lattice_push(&l, 3, -0.001, curve);
     lattice_push(&l, 3, -0.001, curve);
     double *u = lattice_vector(&l);
@@ -506,12 +498,9 @@ TEST(any_number_of_threads)
     int most = omp_get_max_threads();
     size_t bytes = 0;
     for (int threads = 1; threads <= 3; threads++) {
-        struct lattice_options options = lattice_defaults(3, 6);
         struct lattice l;
-        options.jitter = 0.1;
         omp_set_num_threads(threads);
-        lattice_build(&l, &options);
-        int32_t curve = lattice_curve(&l, curve_of_kind(CURVE_SMOOTH));
+        int32_t curve = lattice_begin(&l, 3, 6, 0.1, CURVE_SMOOTH);
         lattice_slide(&l, 1u << 4, curve);
         lattice_push(&l, 5, -0.01, curve);
         double *u = lattice_vector(&l);

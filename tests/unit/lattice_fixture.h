@@ -90,6 +90,16 @@ static inline int32_t lattice_curve(struct lattice *l, struct load_curve curve)
     return (int32_t)count;
 }
 
+/* The base material on `n` jittered nodes along each axis, and a load curve, whose number it returns. */
+static inline int32_t lattice_begin(struct lattice *l, int dim, int64_t n, double jitter,
+                                    enum curve_kind kind)
+{
+    struct lattice_options options = lattice_defaults(dim, n);
+    options.jitter = jitter;
+    lattice_build(l, &options);
+    return lattice_curve(l, curve_of_kind(kind));
+}
+
 /* The boundary averages over the sides in `sides` (bit 2 * axis, + 1 at the high end), split at corners. */
 static inline struct boundary_averages lattice_averages(const struct lattice *l, unsigned sides)
 {

@@ -82,9 +82,7 @@ static enum status try_assembly(struct error *error)
 /* Let each allocation fail on a block pressed between its sides. */
 static void fail_each_in(int dim, enum status (*try)(struct error *error), long least)
 {
-    struct lattice_options options = lattice_defaults(dim, dim == 2 ? 4 : 3);
-    lattice_build(&lattice, &options);
-    int32_t curve = lattice_curve(&lattice, curve_of_kind(CURVE_SMOOTH));
+    int32_t curve = lattice_begin(&lattice, dim, dim == 2 ? 4 : 3, 0.0, CURVE_SMOOTH);
     lattice_slide(&lattice, 1u << 2, curve);
     lattice_push(&lattice, 3, -0.001, curve);
     lattice_push(&lattice, 3, -0.001, curve); /* twice: dropped conditions are checked */

@@ -130,13 +130,10 @@ TEST(simple_shear)
  */
 static void squeeze(int dim, double stretch, bool confined, double expected, double lateral)
 {
-    struct lattice_options options = lattice_defaults(dim, dim == 2 ? 6 : 4);
     struct lattice l;
     double *row_force;
     int top = 2 * dim - 1;
-    options.jitter = 0.1;
-    lattice_build(&l, &options);
-    int32_t curve = lattice_curve(&l, curve_of_kind(CURVE_SMOOTH));
+    int32_t curve = lattice_begin(&l, dim, dim == 2 ? 6 : 4, 0.1, CURVE_SMOOTH);
     unsigned low = dim == 2 ? 5u : 21u, all = (1u << 2 * dim) - 1;
     lattice_slide(&l, confined ? all & ~(1u << top) : low, curve);
     lattice_push(&l, top, (stretch - 1) * 0.1, curve);
@@ -345,12 +342,9 @@ TEST(any_number_of_threads)
     double *first = NULL;
     int most = omp_get_max_threads();
     for (int threads = 1; threads <= 3; threads++) {
-        struct lattice_options options = lattice_defaults(3, 5);
         struct lattice l;
-        options.jitter = 0.1;
         omp_set_num_threads(threads);
-        lattice_build(&l, &options);
-        int32_t curve = lattice_curve(&l, curve_of_kind(CURVE_SMOOTH));
+        int32_t curve = lattice_begin(&l, 3, 5, 0.1, CURVE_SMOOTH);
         lattice_slide(&l, 1u << 4 | 1u << 0, curve);
         lattice_push(&l, 5, -0.01, curve);
         double *u = lattice_vector(&l);
