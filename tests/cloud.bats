@@ -2,6 +2,8 @@
 
 load common.bash
 
+setup() { begin_loosely; }
+
 @test "the cloud of the approximation study" {
     cloud -d 2 -k regular -n 18 --box -4,4,-4,4 --field paper -t > cloud.mts
     [ "$(rows nodes.x cloud.mts | wc -l)" -eq 324 ]

@@ -5,7 +5,8 @@ load common.bash
 load faults.bash # its `refused` is another one
 
 setup() {
-    begin_alone
+    begin_loosely
+    export OMP_NUM_THREADS=1
     mesh > square.msh
     /usr/bin/python3 "$BATS_TEST_DIRNAME/helper/nifti.py" step slice.nii 1 2
     pressed_block > block.scene

@@ -2,6 +2,8 @@
 
 load common.bash
 
+setup() { begin_loosely; }
+
 # A block of .1 x .1 x .2 m whose names are taken away, as bare.mts.
 bare_block() {
     cloud -d 3 -k regular -n 6,6,11 --box 0,0.1,0,0.1,0,0.2 | mts drop 'facets*' > bare.mts

@@ -3,7 +3,8 @@
 load common.bash
 
 setup() {
-    begin_alone
+    begin_loosely
+    export OMP_NUM_THREADS=1
     cloud -d 2 -k jittered -n 8 --box 0,0.1,0,0.1 --jitter 0.2 > square.mts
     shapefn square.mts > table.mts 2> note
     printf '[scene]\ndim = 2\nanalysis = quasi-static\n[material all]\nregion = body\nE = 3000\nnu = 0.45\nrho = 1000\n' > run.scene

@@ -18,9 +18,10 @@ enum status names_of(const struct section *section, const char *key, struct name
     *names = (struct names){0};
     TRY(NEW_ARRAY(&names->list, 2 * (int64_t)size, error)); /* and behind it the same, cut at the commas */
     TRY(NEW_ARRAY(&names->name, (int64_t)size, error));
-    char *rest = section_attribute(section, key, names->list, size) && names->list[0] != '\0'
-                     ? strcpy(names->list + size, names->list)
-                     : NULL;
+    char *rest = NULL;
+    if (section_attribute(section, key, names->list, size) && names->list[0] != '\0') {
+        rest = memcpy(names->list + size, names->list, size);
+    }
     while (rest != NULL) {
         names->name[names->count++] = strsep(&rest, ",");
     }
