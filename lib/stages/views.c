@@ -71,8 +71,8 @@ enum status stream_regions(const struct stream *stream, const struct cells *cell
     *regions = (struct cell_regions){0};
     TRY(stream_need(stream, "cells.region", TYPE_I4, 1, "nodes", &section, error));
     if (section->rows != cells->count) {
-        return fail(error, STATUS_INPUT, "cells.region: has %lld rows, cells %lld", (long long)section->rows,
-                    (long long)cells->count);
+        return fail(error, STATUS_INPUT, "cells.region: has %lld rows, cells %lld: does not fit",
+                    (long long)section->rows, (long long)cells->count);
     }
     TRY(names_read(section, &regions->names, error));
     regions->of_cell = section->data;
