@@ -3,7 +3,7 @@
 load common.bash
 
 setup() {
-    begin
+    enter
     cloud -d 2 -k jittered -n 9 --box 0,0.1,0,0.1 --jitter 0.3 > square.mts
 }
 

@@ -3,7 +3,7 @@
 load common.bash
 
 setup() {
-    begin_loosely
+    enter_loosely
     block=$BATS_TEST_DIRNAME/../examples/block
     gmsh -2 -v 2 "$block/block.geo" -o block.msh
     nodes -u mm block.msh | shapefn > table.mts 2> note

@@ -2,7 +2,7 @@
 
 load common.bash
 
-setup() { begin_loosely; }
+setup() { enter_loosely; }
 
 @test "the cloud of the approximation study" {
     cloud -d 2 -k regular -n 18 --box -4,4,-4,4 --field paper -t > cloud.mts

@@ -4,7 +4,7 @@
 bats_require_minimum_version 1.5.0
 
 # A test begins in a folder of its own; $top is the repository; a pipe fails when any of its stages does.
-begin() {
+enter() {
     cd "$BATS_TEST_TMPDIR" || return
     set -o pipefail
     # shellcheck disable=SC2034 # for the suites
@@ -12,20 +12,20 @@ begin() {
 }
 
 # The same, but a pipe ends as its last stage does: for programs that refuse what they are given, and grep -q, which stops reading.
-begin_loosely() {
-    begin
+enter_loosely() {
+    enter
     set +o pipefail
 }
 
 # The same with one thread.
-begin_alone() {
-    begin
+enter_alone() {
+    enter
     export OMP_NUM_THREADS=1
 }
 
 # For suites whose tests need no more.
 setup() {
-    begin
+    enter
 }
 
 # Rows of section $1 of a text stream.

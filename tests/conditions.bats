@@ -3,7 +3,7 @@
 load common.bash
 
 setup() {
-    begin_alone
+    enter_alone
 }
 
 # head of a scene in 3D with the base material

@@ -3,7 +3,7 @@
 load common.bash
 
 setup() {
-    begin_alone
+    enter_alone
 }
 
 # ball RADIUS DEPTH RIM: a quarter of a block, 480 mm wide, with 7 x 7 x 9 nodes; a ball (mm) comes up into its lower side.

@@ -5,7 +5,7 @@ load common.bash
 load faults.bash # its `refused` is another one
 
 setup() {
-    begin_loosely
+    enter_loosely
     export OMP_NUM_THREADS=1
     mesh > square.msh
     /usr/bin/python3 "$BATS_TEST_DIRNAME/helper/nifti.py" step slice.nii 1 2

@@ -2,7 +2,7 @@
 
 load common.bash
 
-setup() { begin_loosely; }
+setup() { enter_loosely; }
 
 # A block of .1 x .1 x .2 m whose names are taken away, as bare.mts.
 bare_block() {

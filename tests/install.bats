@@ -3,7 +3,7 @@
 load common.bash
 
 setup() {
-    begin
+    enter
     tools=()
     for file in "$top"/tools/*.c; do tools+=("$(basename "$file" .c)"); done
 }

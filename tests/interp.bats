@@ -3,7 +3,7 @@
 load common.bash
 
 setup() {
-    begin
+    enter
     cloud -d 2 -k jittered -n 12 --box 0,1,0,1 --jitter 0.3 --field linear > linear.mts
     cloud -d 2 -k halton -n 60 --box 0,1,0,1 --field linear > points.mts
 }

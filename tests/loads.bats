@@ -4,7 +4,7 @@
 load common.bash
 
 setup() {
-    begin_alone
+    enter_alone
     square_msh
     nodes -u mm body.msh 2> note | shapefn > square.mts 2> note
     { block quasi-static && held_below && walls; } > held.scene

@@ -5,7 +5,7 @@ load common.bash
 
 setup() {
     [ -x "$BUILD/bin/mtled-mpi" ] || skip "MPI is not installed (make deps)"
-    begin_alone
+    enter_alone
     # Root in a container, more processes than cores, and none of mpirun's own words.
     export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
 }

@@ -3,7 +3,7 @@
 load common.bash
 
 setup() {
-    begin_alone
+    enter_alone
     cloud -d 2 -k jittered -n 6 --box 0,0.1,0,0.1 --jitter 0.2 > square.mts
     pressed_block > block.scene
 }

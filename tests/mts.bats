@@ -2,7 +2,7 @@
 
 load common.bash
 
-setup() { begin_loosely; }
+setup() { enter_loosely; }
 
 # A square of two triangles, with everything that mts check looks at.
 square() {

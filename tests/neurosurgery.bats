@@ -3,7 +3,7 @@
 load common.bash
 
 setup() {
-    begin
+    enter
     scripts=$top/pipelines/neurosurgery
 }
 

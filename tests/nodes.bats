@@ -2,7 +2,7 @@
 
 load common.bash
 
-setup() { begin_loosely; }
+setup() { enter_loosely; }
 
 # The unit square in MSH 2.2, in two triangles, with a named side, corner and a diagonal.
 square() {

@@ -4,7 +4,7 @@
 load common.bash
 
 setup() {
-    begin_loosely
+    enter_loosely
     export OMP_NUM_THREADS=1
     cloud -d 2 -k jittered -n 6 --box 0,0.1,0,0.1 --jitter 0.2 | shapefn > table.mts 2> note
 }

@@ -3,7 +3,7 @@
 load common.bash
 
 setup() {
-    begin_loosely
+    enter_loosely
     export OMP_NUM_THREADS=1
     cloud -d 2 -k jittered -n 8 --box 0,0.1,0,0.1 --jitter 0.2 > square.mts
     shapefn square.mts > table.mts 2> note

@@ -3,7 +3,7 @@
 load common.bash
 
 setup() {
-    begin_alone
+    enter_alone
     cloud -d 2 -k regular -n 9 --box 0,0.1,0,0.1 | shapefn > block.mts 2> note
     printf -- '-1 0.1\n2 0.1\n' > lid.tsv
 }

@@ -3,7 +3,7 @@
 load common.bash
 
 setup() {
-    begin_alone
+    enter_alone
 }
 
 # cloud_of DIM: a block of 0.1 m as block.mts

@@ -3,7 +3,7 @@
 load common.bash
 
 setup() {
-    begin_alone
+    enter_alone
 }
 
 # blocks GAP: blocks.mts, two blocks of 20 x 10 mm with nodes every 2 mm, GAP mm apart.

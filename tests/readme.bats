@@ -3,7 +3,7 @@
 load common.bash
 
 setup() {
-    begin_loosely
+    enter_loosely
     texts="README.md examples/README.md pipelines/README.md"
 }
 

@@ -5,7 +5,7 @@ load common.bash
 nifti() { /usr/bin/python3 "$BATS_TEST_DIRNAME/helper/nifti.py" "$@"; }
 
 setup() {
-    begin
+    enter
     nifti smooth scan.nii.gz
     cloud -d 3 -k jittered -n 5 --box 0,0.06,0,0.06,0,0.06 --jitter 0.12 > cube.mts
     cloud -d 2 -k jittered -n 7 --box 0,0.1,0,0.1 --jitter 0.2 > square.mts

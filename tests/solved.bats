@@ -3,7 +3,7 @@
 load common.bash
 
 setup() {
-    begin_alone
+    enter_alone
 }
 
 # scene DIM LOW HIGH COMPONENTS: held at LOW, moved at HIGH.

@@ -5,7 +5,7 @@ load common.bash
 tools="ipoints support shapefn"
 
 setup() {
-    begin
+    enter
     cloud -d 2 -k jittered -n 7 --box 0,0.1,0,0.1 --jitter 0.3 > square.mts
 }
 

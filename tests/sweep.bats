@@ -3,7 +3,7 @@
 load common.bash
 
 setup() {
-    begin
+    enter
     sweep=$top/pipelines/sweep
     pressed_block | sed 's/^E = .*/E = @E@/; s/^nu = .*/nu = @nu@/; s/^components = 0, -.*/table = top.tsv\nunit = mm/' > block.scene
     printf '0 100 0 -8\n100 100 0 -8\n' > top.tsv

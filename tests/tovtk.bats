@@ -2,7 +2,7 @@
 
 load common.bash
 
-setup() { begin_loosely; }
+setup() { enter_loosely; }
 
 # A triangle mesh of two cells in two regions, with a field, two frames of it, and a CSR list that is no field.
 two_triangles() {

@@ -3,7 +3,7 @@
 load common.bash
 
 setup() {
-    begin_loosely
+    enter_loosely
     tools=()
     for file in "$top"/tools/*.c; do tools+=("$(basename "$file" .c)"); done
     [ ${#tools[@]} -ge 10 ]

@@ -2,7 +2,7 @@
 
 load common.bash
 
-setup() { begin_loosely; }
+setup() { enter_loosely; }
 
 phantom() {
     "$BUILD/tests/helper/phantom" "$@"

@@ -19,7 +19,7 @@ smooth_u='s = .06; pi = atan2(0, -1); b = .004 * sin(pi * $1 / s) * sin(pi * $2 
     printf "%.17g %.17g %.17g\n", .3 * b, -.5 * b * cos(2 * $1 / s), -b'
 
 setup() {
-    begin
+    enter
     cloud -d 3 -k jittered -n 13 --box 0,0.06,0,0.06,0,0.06 --jitter 0.12 > cube.mts
     with_u cube.mts "$smooth_u" > u.dat
 }
