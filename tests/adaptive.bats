@@ -1,10 +1,9 @@
 # Adaptive integration by ipoints -a.
 
-bats_require_minimum_version 1.5.0
+load common.bash
 
 setup() {
-    cd "$BATS_TEST_TMPDIR"
-    set -o pipefail
+    enter
     cloud -d 2 -k jittered -n 9 --box 0,0.1,0,0.1 --jitter 0.3 > square.mts
 }
 

@@ -1,9 +1,9 @@
 # The example of a scene of one's own: a block with a lump, from the geometry to a result that can be judged.
 
-bats_require_minimum_version 1.5.0
+load common.bash
 
 setup() {
-    cd "$BATS_TEST_TMPDIR"
+    enter_loosely
     block=$BATS_TEST_DIRNAME/../examples/block
     gmsh -2 -v 2 "$block/block.geo" -o block.msh
     nodes -u mm block.msh | shapefn > table.mts 2> note

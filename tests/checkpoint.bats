@@ -1,13 +1,9 @@
 # mtled -c: a run that is ended by a signal, killed or cut off goes on to the same bytes; nothing else is taken for it.
 
-bats_require_minimum_version 1.5.0
-
 load common.bash
 
 setup() {
-    cd "$BATS_TEST_TMPDIR"
-    set -o pipefail
-    export OMP_NUM_THREADS=1
+    enter_alone
     cloud -d 2 -k jittered -n 8 --box 0,0.1,0,0.1 --jitter 0.2 | shapefn > table.mts 2> note
     scene > run.scene
 }

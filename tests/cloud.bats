@@ -1,12 +1,8 @@
 # cloud: clouds without a mesher.
 
-bats_require_minimum_version 1.5.0
-
 load common.bash
 
-setup() {
-    cd "$BATS_TEST_TMPDIR"
-}
+setup() { enter_loosely; }
 
 @test "the cloud of the approximation study" {
     cloud -d 2 -k regular -n 18 --box -4,4,-4,4 --field paper -t > cloud.mts

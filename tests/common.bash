@@ -1,5 +1,32 @@
 # shellcheck shell=bash
-# What several suites of command-line tests share.
+# What suites of command-line tests share.
+
+bats_require_minimum_version 1.5.0
+
+# A test begins in a folder of its own; $top is the repository; a pipe fails when any of its stages does.
+enter() {
+    cd "$BATS_TEST_TMPDIR" || return
+    set -o pipefail
+    # shellcheck disable=SC2034 # for the suites
+    top=$BATS_TEST_DIRNAME/..
+}
+
+# The same, but a pipe ends as its last stage does: for programs that refuse what they are given, and grep -q, which stops reading.
+enter_loosely() {
+    enter
+    set +o pipefail
+}
+
+# The same with one thread.
+enter_alone() {
+    enter
+    export OMP_NUM_THREADS=1
+}
+
+# For suites whose tests need no more.
+setup() {
+    enter
+}
 
 # Rows of section $1 of a text stream.
 rows() {

@@ -1,13 +1,9 @@
 # Conditions: patches that go round a body's end, sections that share nodes, redundant ones, and the forces that they report.
 
-bats_require_minimum_version 1.5.0
-
 load common.bash
 
 setup() {
-    cd "$BATS_TEST_TMPDIR"
-    set -o pipefail
-    export OMP_NUM_THREADS=1
+    enter_alone
 }
 
 # head of a scene in 3D with the base material

@@ -1,13 +1,9 @@
 # Contact with rigid surfaces that the body's facets are too large for: told, or refused; and found in good time.
 
-bats_require_minimum_version 1.5.0
-
 load common.bash
 
 setup() {
-    cd "$BATS_TEST_TMPDIR"
-    set -o pipefail
-    export OMP_NUM_THREADS=1
+    enter_alone
 }
 
 # ball RADIUS DEPTH RIM: a quarter of a block, 480 mm wide, with 7 x 7 x 9 nodes; a ball (mm) comes up into its lower side.

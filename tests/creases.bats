@@ -1,13 +1,9 @@
 # Contact with rigid surfaces that have creases: grooves, a corner, a bowl of facets.
 
-bats_require_minimum_version 1.5.0
-
 load common.bash
 
 setup() {
-    cd "$BATS_TEST_TMPDIR"
-    set -o pipefail
-    export OMP_NUM_THREADS=1
+    enter_alone
 }
 
 # keel SLOPE: a body, 80 mm wide, whose lower side goes up from a keel to either side; groove.tsv, one that it fits in.

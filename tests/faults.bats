@@ -1,13 +1,11 @@
 # Faults that the programs survive: with a status of their own, one line that names program, place and remedy, and no
 # output that could be taken for whole. make faults prints what was observed.
 
-bats_require_minimum_version 1.5.0
-
 load common.bash
 load faults.bash # its `refused` is another one
 
 setup() {
-    cd "$BATS_TEST_TMPDIR"
+    enter_loosely
     export OMP_NUM_THREADS=1
     mesh > square.msh
     /usr/bin/python3 "$BATS_TEST_DIRNAME/helper/nifti.py" step slice.nii 1 2

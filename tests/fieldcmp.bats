@@ -1,11 +1,6 @@
 # fieldcmp: the table and the verdict; clouds that coincide and clouds that do not; nan never passes.
 
-bats_require_minimum_version 1.5.0
-
-setup() {
-    cd "$BATS_TEST_TMPDIR"
-    set -o pipefail
-}
+load common.bash
 
 # field FILE ROWS...: a text stream of nodes.x, cells of two regions and u; rows "x y ux uy".
 field() {

@@ -1,13 +1,6 @@
 # fielderr: an estimate of the discretisation error from two or three clouds; sizefield: sizes of a graded mesh; make refine.
 
-bats_require_minimum_version 1.5.0
-load common
-
-setup() {
-    cd "$BATS_TEST_TMPDIR"
-    set -o pipefail
-    top=$BATS_TEST_DIRNAME/..
-}
+load common.bash
 
 # value NAME: that line's value in $output.
 value() {

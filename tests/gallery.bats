@@ -1,12 +1,6 @@
 # The examples that others can judge, coarsely: a liver, a bar of silicone that was measured.
 
-bats_require_minimum_version 1.5.0
-
-setup() {
-    cd "$BATS_TEST_TMPDIR"
-    set -o pipefail
-    top=$BATS_TEST_DIRNAME/..
-}
+load common.bash
 
 @test "liver: a surface from an image, named by groups, its lobe lifted; forces balance, the volume stays" {
     gzip -dc "$top/examples/liver/liver_surface.stl.gz" > liver_surface.stl

@@ -1,12 +1,8 @@
 # groups: facets, node sets and regions chosen by place, shape and connection.
 
-bats_require_minimum_version 1.5.0
-
 load common.bash
 
-setup() {
-    cd "$BATS_TEST_TMPDIR"
-}
+setup() { enter_loosely; }
 
 # A block of .1 x .1 x .2 m whose names are taken away, as bare.mts.
 bare_block() {

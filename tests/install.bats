@@ -1,13 +1,9 @@
 # What make install and make deb leave is complete: programs that run, pages, completions, a library to link with.
 
-bats_require_minimum_version 1.5.0
-
 load common.bash
 
 setup() {
-    cd "$BATS_TEST_TMPDIR"
-    set -o pipefail
-    top=$BATS_TEST_DIRNAME/..
+    enter
     tools=()
     for file in "$top"/tools/*.c; do tools+=("$(basename "$file" .c)"); done
 }

@@ -1,14 +1,7 @@
 # Interfaces between materials of unequal stiffness: supports stop there (support -i), and the stress is right on both sides.
 # The figures, in 2D and 3D and on a ball of three layers: pipelines/hard/31-interfaces.sh.
 
-bats_require_minimum_version 1.5.0
-
-setup() {
-    cd "$BATS_TEST_TMPDIR"
-    set -o pipefail
-    source "$BATS_TEST_DIRNAME/common.bash"
-    top=$BATS_TEST_DIRNAME/..
-}
+load common.bash
 
 # The layers of examples/hard, as body.mts.
 layers() {

@@ -1,10 +1,9 @@
 # interp: fields at the stream's own points, at those of another stream and of a table.
 
-bats_require_minimum_version 1.5.0
+load common.bash
 
 setup() {
-    cd "$BATS_TEST_TMPDIR"
-    set -o pipefail
+    enter
     cloud -d 2 -k jittered -n 12 --box 0,1,0,1 --jitter 0.3 --field linear > linear.mts
     cloud -d 2 -k halton -n 60 --box 0,1,0,1 --field linear > points.mts
 }

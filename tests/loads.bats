@@ -1,14 +1,10 @@
 # Loads and contacts of a scene: what presses on a body is what holds it, whatever kind of load it is; and each fault in a
 # section of them is one line that names it.
 
-bats_require_minimum_version 1.5.0
-
 load common.bash
 
 setup() {
-    cd "$BATS_TEST_TMPDIR"
-    set -o pipefail
-    export OMP_NUM_THREADS=1
+    enter_alone
     square_msh
     nodes -u mm body.msh 2> note | shapefn > square.mts 2> note
     { block quasi-static && held_below && walls; } > held.scene

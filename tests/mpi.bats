@@ -1,15 +1,11 @@
 # mtled-mpi: several processes under mpirun give the bytes of one, of one stream or of parts; one message, one status; a process that
 # dies loses little.
 
-bats_require_minimum_version 1.5.0
-
 load common.bash
 
 setup() {
     [ -x "$BUILD/bin/mtled-mpi" ] || skip "MPI is not installed (make deps)"
-    cd "$BATS_TEST_TMPDIR"
-    set -o pipefail
-    export OMP_NUM_THREADS=1
+    enter_alone
     # Root in a container, more processes than cores, and none of mpirun's own words.
     export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
 }

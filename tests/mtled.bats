@@ -1,13 +1,9 @@
 # mtled: a scene on a small cloud; the same bytes whichever way; each fault one line and no output; sections on request.
 
-bats_require_minimum_version 1.5.0
-
 load common.bash
 
 setup() {
-    cd "$BATS_TEST_TMPDIR"
-    set -o pipefail
-    export OMP_NUM_THREADS=1
+    enter_alone
     cloud -d 2 -k jittered -n 6 --box 0,0.1,0,0.1 --jitter 0.2 > square.mts
     pressed_block > block.scene
 }

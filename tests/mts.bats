@@ -1,12 +1,8 @@
 # mts: list, print, keep, drop and check.
 
-bats_require_minimum_version 1.5.0
-
 load common.bash
 
-setup() {
-    cd "$BATS_TEST_TMPDIR"
-}
+setup() { enter_loosely; }
 
 # A square of two triangles, with everything that mts check looks at.
 square() {

@@ -1,11 +1,9 @@
 # The study of a craniotomy, coarsely: from a label image to the shift of landmarks.
 
-bats_require_minimum_version 1.5.0
+load common.bash
 
 setup() {
-    cd "$BATS_TEST_TMPDIR"
-    set -o pipefail
-    top=$BATS_TEST_DIRNAME/..
+    enter
     scripts=$top/pipelines/neurosurgery
 }
 

@@ -1,12 +1,8 @@
 # nodes: a gmsh mesh becomes a cloud, cells, facets and sets; and no mesh file, however broken, does harm.
 
-bats_require_minimum_version 1.5.0
-
 load common.bash
 
-setup() {
-    cd "$BATS_TEST_TMPDIR"
-}
+setup() { enter_loosely; }
 
 # The unit square in MSH 2.2, in two triangles, with a named side, corner and a diagonal.
 square() {

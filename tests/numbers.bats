@@ -1,12 +1,10 @@
 # Runs that go wrong stop at that step and say where and what to change; frames asked for are kept in a stream that says
 # that it is not whole; and a long run neither drifts nor grows.
 
-bats_require_minimum_version 1.5.0
-
 load common.bash
 
 setup() {
-    cd "$BATS_TEST_TMPDIR"
+    enter_loosely
     export OMP_NUM_THREADS=1
     cloud -d 2 -k jittered -n 6 --box 0,0.1,0,0.1 --jitter 0.2 | shapefn > table.mts 2> note
 }

@@ -1,9 +1,9 @@
 # Results are whole or not there, for every program: a full disk, a limit on file sizes, a closed pipe or output, a signal.
 
-bats_require_minimum_version 1.5.0
+load common.bash
 
 setup() {
-    cd "$BATS_TEST_TMPDIR"
+    enter_loosely
     export OMP_NUM_THREADS=1
     cloud -d 2 -k jittered -n 8 --box 0,0.1,0,0.1 --jitter 0.2 > square.mts
     shapefn square.mts > table.mts 2> note

@@ -1,13 +1,6 @@
 # A body in parts: cutting, then computing tables, gives the bytes of computing, then cutting.
 
-bats_require_minimum_version 1.5.0
-
-setup() {
-    cd "$BATS_TEST_TMPDIR"
-    set -o pipefail
-    source "$BATS_TEST_DIRNAME/common.bash"
-    top=$BATS_TEST_DIRNAME/..
-}
+load common.bash
 
 # A stream as text, without its provenance; not empty.
 plain() {

@@ -1,13 +1,9 @@
 # Rigid surfaces that move, and bodies that fold: what presses, what is told, and what is refused.
 
-bats_require_minimum_version 1.5.0
-
 load common.bash
 
 setup() {
-    cd "$BATS_TEST_TMPDIR"
-    set -o pipefail
-    export OMP_NUM_THREADS=1
+    enter_alone
     cloud -d 2 -k regular -n 9 --box 0,0.1,0,0.1 | shapefn > block.mts 2> note
     printf -- '-1 0.1\n2 0.1\n' > lid.tsv
 }

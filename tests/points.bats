@@ -1,13 +1,9 @@
 # Displacements of measured points, anywhere in a body or on it: exact ones and those known to a standard deviation.
 
-bats_require_minimum_version 1.5.0
-
 load common.bash
 
 setup() {
-    cd "$BATS_TEST_TMPDIR"
-    set -o pipefail
-    export OMP_NUM_THREADS=1
+    enter_alone
 }
 
 # cloud_of DIM: a block of 0.1 m as block.mts

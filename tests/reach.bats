@@ -1,12 +1,9 @@
 # Supports see only what is connected: two blocks, a slit, bodies that touch, and what the stream records of it.
 
-bats_require_minimum_version 1.5.0
+load common.bash
 
 setup() {
-    cd "$BATS_TEST_TMPDIR"
-    set -o pipefail
-    top=$BATS_TEST_DIRNAME/..
-    export OMP_NUM_THREADS=1
+    enter_alone
 }
 
 # blocks GAP: blocks.mts, two blocks of 20 x 10 mm with nodes every 2 mm, GAP mm apart.

@@ -1,10 +1,9 @@
 # The texts: what they say the commands print is what these print, their figures are those of the result files, and they name what is there.
 
-bats_require_minimum_version 1.5.0
+load common.bash
 
 setup() {
-    cd "$BATS_TEST_TMPDIR"
-    top=$BATS_TEST_DIRNAME/..
+    enter_loosely
     texts="README.md examples/README.md pipelines/README.md"
 }
 
@@ -141,7 +140,7 @@ up_to_date() {
 
 @test "the rooms of lib/ include only what lib/README.md lets them" {
     includes() { grep -rhoE '^#include "[a-z]+/' "$top/lib/$1" | sed 's/.*"//; s|/||' | sort -u; }
-    for room in base approx solid io; do
+    for room in base approx solid io stages; do
         awk -F '|' -v room=" \`$room\` " '$2 == room { gsub(/[`, ]+/, " ", $4); print room, $4; exit }' "$top/lib/README.md" > allowed
         [ -s allowed ]
         includes "$room" > found

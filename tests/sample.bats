@@ -1,14 +1,11 @@
 # sample: values of images at points, and the stiffness made of them.
 
-bats_require_minimum_version 1.5.0
-
 load common.bash
 
 nifti() { /usr/bin/python3 "$BATS_TEST_DIRNAME/helper/nifti.py" "$@"; }
 
 setup() {
-    cd "$BATS_TEST_TMPDIR"
-    set -o pipefail
+    enter
     nifti smooth scan.nii.gz
     cloud -d 3 -k jittered -n 5 --box 0,0.06,0,0.06,0,0.06 --jitter 0.12 > cube.mts
     cloud -d 2 -k jittered -n 7 --box 0,0.1,0,0.1 --jitter 0.2 > square.mts

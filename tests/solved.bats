@@ -1,12 +1,9 @@
 # Results carry the parameters of the field that mtled solved for: interp and fieldcmp evaluate that field.
 
-bats_require_minimum_version 1.5.0
+load common.bash
 
 setup() {
-    top=$BATS_TEST_DIRNAME/..
-    cd "$BATS_TEST_TMPDIR"
-    set -o pipefail
-    export OMP_NUM_THREADS=1
+    enter_alone
 }
 
 # scene DIM LOW HIGH COMPONENTS: held at LOW, moved at HIGH.

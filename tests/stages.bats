@@ -1,12 +1,11 @@
 # ipoints, support and shapefn: command lines, stage order, equal bytes whichever way, and hostile streams.
 
-bats_require_minimum_version 1.5.0
+load common.bash
 
 tools="ipoints support shapefn"
 
 setup() {
-    cd "$BATS_TEST_TMPDIR"
-    set -o pipefail
+    enter
     cloud -d 2 -k jittered -n 7 --box 0,0.1,0,0.1 --jitter 0.3 > square.mts
 }
 

@@ -1,12 +1,9 @@
 # Many cases of one scene, from a table of parameters: pipelines/sweep, and the study of an uncertain brain shift.
 
-bats_require_minimum_version 1.5.0
+load common.bash
 
 setup() {
-    cd "$BATS_TEST_TMPDIR"
-    set -o pipefail
-    source "$BATS_TEST_DIRNAME/common.bash"
-    top=$BATS_TEST_DIRNAME/..
+    enter
     sweep=$top/pipelines/sweep
     pressed_block | sed 's/^E = .*/E = @E@/; s/^nu = .*/nu = @nu@/; s/^components = 0, -.*/table = top.tsv\nunit = mm/' > block.scene
     printf '0 100 0 -8\n100 100 0 -8\n' > top.tsv

@@ -1,12 +1,8 @@
 # tovtk: what ParaView is given is what the stream holds.
 
-bats_require_minimum_version 1.5.0
-
 load common.bash
 
-setup() {
-    cd "$BATS_TEST_TMPDIR"
-}
+setup() { enter_loosely; }
 
 # A triangle mesh of two cells in two regions, with a field, two frames of it, and a CSR list that is no field.
 two_triangles() {

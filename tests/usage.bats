@@ -1,10 +1,9 @@
 # What is the same for all programs: usage text, version, refusals, and the man page made from the text.
 
-bats_require_minimum_version 1.5.0
+load common.bash
 
 setup() {
-    cd "$BATS_TEST_TMPDIR"
-    top=$BATS_TEST_DIRNAME/..
+    enter_loosely
     tools=()
     for file in "$top"/tools/*.c; do tools+=("$(basename "$file" .c)"); done
     [ ${#tools[@]} -ge 10 ]

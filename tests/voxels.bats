@@ -1,12 +1,8 @@
 # voxels: from a label image to the stream that nodes writes.
 
-bats_require_minimum_version 1.5.0
-
 load common.bash
 
-setup() {
-    cd "$BATS_TEST_TMPDIR"
-}
+setup() { enter_loosely; }
 
 phantom() {
     "$BUILD/tests/helper/phantom" "$@"

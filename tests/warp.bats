@@ -1,7 +1,5 @@
 # warp: images moved by a displacement, judged by nibabel and by plastimatch, a program of others.
 
-bats_require_minimum_version 1.5.0
-
 load common.bash
 
 nifti() { /usr/bin/python3 "$BATS_TEST_DIRNAME/helper/nifti.py" "$@"; }
@@ -21,8 +19,7 @@ smooth_u='s = .06; pi = atan2(0, -1); b = .004 * sin(pi * $1 / s) * sin(pi * $2 
     printf "%.17g %.17g %.17g\n", .3 * b, -.5 * b * cos(2 * $1 / s), -b'
 
 setup() {
-    cd "$BATS_TEST_TMPDIR"
-    set -o pipefail
+    enter
     cloud -d 3 -k jittered -n 13 --box 0,0.06,0,0.06,0,0.06 --jitter 0.12 > cube.mts
     with_u cube.mts "$smooth_u" > u.dat
 }

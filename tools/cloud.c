@@ -57,10 +57,9 @@ static void check_kind(const struct tool *tool, const char *option, bool applies
 
 static void parse_box(const struct tool *tool, const char *text, struct cloud_options *cloud)
 {
-    struct error error;
     double box[6];
     int count;
-    tool_check(tool, parse_double_list(text, "--box", -1e100, 1e100, 6, box, &count, &error), &error);
+    TOOL_TRY(tool, parse_double_list(text, "--box", -1e100, 1e100, 6, box, &count, &error));
     if (count != 2 * cloud->dim) {
         tool_fail(tool, STATUS_INPUT, "--box: %d numbers, not %d", count, 2 * cloud->dim);
     }
@@ -72,10 +71,9 @@ static void parse_box(const struct tool *tool, const char *text, struct cloud_op
 
 static void parse_count(const struct tool *tool, const char *text, struct cloud_options *cloud)
 {
-    struct error error;
     double numbers[3];
     int count;
-    tool_check(tool, parse_double_list(text, "-n", 1, INT32_MAX, 3, numbers, &count, &error), &error);
+    TOOL_TRY(tool, parse_double_list(text, "-n", 1, INT32_MAX, 3, numbers, &count, &error));
     if (count != 1 && (count != cloud->dim || cloud->kind == CLOUD_HALTON)) {
         tool_fail(tool, STATUS_INPUT, "-n: %d numbers, not 1%s", count,
                   cloud->kind == CLOUD_HALTON ? "" : " or one for each axis");
@@ -153,20 +151,19 @@ int main(int argc, char *argv[])
     struct tool tool;
     struct cloud cloud;
     struct stream stream;
-    struct error error;
     tool_begin(&tool, usage, 0, 0, argc, argv);
     struct cloud_options wanted = parse(&tool);
     int function = tool_choice(&tool, "field", functions, 3, 0);
-    tool_check(&tool, cloud_make(&wanted, &cloud, &error), &error);
+    TOOL_TRY(&tool, cloud_make(&wanted, &cloud, &error));
     if (wanted.kind != CLOUD_HALTON && cloud.cell_count == 0) {
         tool_note(&tool, "jitter %g turns tetrahedra over: cells and facets are left out", wanted.jitter);
     }
     int32_t *region = NULL;
-    tool_check(&tool, NEW_ARRAY(&region, cloud.cell_count, &error), &error);
+    TOOL_TRY(&tool, NEW_ARRAY(&region, cloud.cell_count, &error));
     stream_init(&stream);
-    tool_check(&tool, put_cloud(&stream, &cloud, region, &error), &error);
+    TOOL_TRY(&tool, put_cloud(&stream, &cloud, region, &error));
     if (tool_given(&tool, "field")) {
-        tool_check(&tool, put_field(&stream, &cloud, (enum cloud_function)function, &error), &error);
+        TOOL_TRY(&tool, put_field(&stream, &cloud, (enum cloud_function)function, &error));
     }
     tool_write(&tool, &stream, tool_given(&tool, "text"));
     stream_free(&stream);

@@ -64,7 +64,6 @@ int main(int argc, char *argv[])
     struct tool tool;
     struct side a, b;
     struct findings findings;
-    struct error error;
     tool_begin(&tool, usage, 2, 2, argc, argv);
     struct comparison_request request = comparison_parse(&tool);
     side_read(&tool, tool.operands[0], request.field, &a);
@@ -74,17 +73,5 @@ int main(int argc, char *argv[])
     print_relative(&findings);
     print_iteration("iteration_a", &a);
     print_iteration("iteration_b", &b);
-    if (request.region == NULL) {
-        tool_check(&tool, print_regions(&findings, &error), &error);
-    }
-    bool good = comparison_judge(&tool, &request, &a, &b, &findings.statistics);
-    if (request.map != NULL) {
-        comparison_write_map(&tool, &a, "difference", findings.comparison.difference, request.map,
-                             request.text);
-    }
-    findings_free(&findings);
-    stream_free(&a.stream);
-    stream_free(&b.stream);
-    int status = tool_end(&tool);
-    return good ? status : (int)STATUS_VERDICT;
+    return comparison_end(&tool, &request, &a, &b, &findings, "difference");
 }

@@ -124,19 +124,6 @@ static const struct section *find_table(const struct side *side, const char *nam
     return section != NULL && section->type == TYPE_F8 && section->cols == cols ? section : NULL;
 }
 
-/* Names of rows, cut at their commas; their count. `text` is as long as the attributes of a section. */
-static int64_t row_names(const struct section *section, char *text, char *names[])
-{
-    int64_t count = 0;
-    if (!section_attribute(section, "rows", text, strlen(section->attributes) + 1)) {
-        return 0;
-    }
-    for (char *rest = text; rest != NULL && count < section->rows;) {
-        names[count++] = strsep(&rest, ",");
-    }
-    return count;
-}
-
 /* Conditions and contacts that both results have. */
 static enum status print_forces(const struct side *fine, const struct side *coarse, double share,
                                 struct error *error)
@@ -145,29 +132,24 @@ static enum status print_forces(const struct side *fine, const struct side *coar
     int dim = fine->field.cells.dim;
     const struct section *f = find_table(fine, "reactions", dim);
     const struct section *c = find_table(coarse, "reactions", dim);
-    char *text[2] = {NULL, NULL}, **names[2] = {NULL, NULL};
+    struct names of_fine = {0}, of_coarse = {0};
     if (f == NULL || c == NULL) {
         return STATUS_OK;
     }
-    TRY(NEW_ARRAY(&text[0], (int64_t)strlen(f->attributes) + 1, error));
-    TRY(NEW_ARRAY(&text[1], (int64_t)strlen(c->attributes) + 1, error));
-    TRY(NEW_ARRAY(&names[0], f->rows, error));
-    TRY(NEW_ARRAY(&names[1], c->rows, error));
-    int64_t count[2] = {row_names(f, text[0], names[0]), row_names(c, text[1], names[1])};
-    for (int64_t i = 0; i < count[0]; i++) {
-        for (int64_t k = 0; k < count[1]; k++) {
-            if (strcmp(names[0][i], names[1][k]) == 0) {
+    TRY(names_of(f, "rows", &of_fine, error));
+    TRY(names_of(c, "rows", &of_coarse, error));
+    for (int64_t i = 0; i < of_fine.count && i < f->rows; i++) {
+        for (int64_t k = 0; k < of_coarse.count && k < c->rows; k++) {
+            if (strcmp(of_fine.name[i], of_coarse.name[k]) == 0) {
                 double length, off = row_difference(f, i, c, k, &length);
-                print_quantity("force", names[0][i], share * off);
-                print_quantity("force_relative", names[0][i], off == 0.0 ? 0.0 : share * off / length);
+                print_quantity("force", of_fine.name[i], share * off);
+                print_quantity("force_relative", of_fine.name[i], off == 0.0 ? 0.0 : share * off / length);
             }
         }
     }
 done:
-    for (int i = 0; i < 2; i++) {
-        free(text[i]);
-        free(names[i]);
-    }
+    names_free(&of_fine);
+    names_free(&of_coarse);
     return status;
 }
 
@@ -254,7 +236,6 @@ int main(int argc, char *argv[])
     struct tool tool;
     struct side fine, coarse;
     struct findings findings;
-    struct error error;
     tool_begin(&tool, usage, 2, 3, argc, argv);
     struct request request = parse(&tool);
     const struct comparison_request *asked = &request.comparison;
@@ -275,18 +256,7 @@ int main(int argc, char *argv[])
     print_quantity("order", NULL, order);
     print_quantity("ratio", NULL, request.ratio);
     print_quantity("cells_ratio", NULL, found);
-    tool_check(&tool, print_forces(&fine, &coarse, share, &error), &error);
+    TOOL_TRY(&tool, print_forces(&fine, &coarse, share, &error));
     print_energy(&fine, &coarse, share);
-    if (asked->region == NULL) {
-        tool_check(&tool, print_regions(&findings, &error), &error);
-    }
-    bool good = comparison_judge(&tool, asked, &fine, &coarse, &findings.statistics);
-    if (asked->map != NULL) {
-        comparison_write_map(&tool, &fine, "error", findings.comparison.difference, asked->map, asked->text);
-    }
-    findings_free(&findings);
-    stream_free(&fine.stream);
-    stream_free(&coarse.stream);
-    int status = tool_end(&tool);
-    return good ? status : (int)STATUS_VERDICT;
+    return comparison_end(&tool, asked, &fine, &coarse, &findings, "error");
 }

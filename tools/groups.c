@@ -58,6 +58,7 @@ static const char usage[] =
     "  groups -u mm -f 'probe=ball:10,0,42,5 and normal:0,0,1,60' -f 'free=all without probe' < body.mts\n"
     "  groups -f 'cavity=side:2,180' -r 'tumour=ball:0.01,0,0.03,0.008' -n 'tip=plane:0,0,0.1,0,0,1'\n";
 
+#include "cell_report.h"
 #include "group_body.h"
 #include "group_select.h"
 #include "tool.h"
@@ -100,18 +101,6 @@ static const char *plural(enum group_kind kind)
     return plurals[kind];
 }
 
-/* "0 0 0 to 0.1 0.1 0.2 m" */
-static const char *describe_box(const struct box *box, char text[128])
-{
-    int length = 0;
-    for (int k = 0; k < 2 * box->dim; k++) {
-        length += snprintf(text + length, (size_t)(128 - length), "%s%.4g ", k == box->dim ? "to " : "",
-                           k < box->dim ? box->low[k] : box->high[k - box->dim]);
-    }
-    snprintf(text + length, (size_t)(128 - length), "m");
-    return text;
-}
-
 static enum status make_group(const struct request *request, enum group_kind kind, struct error *error)
 {
     enum status status;
@@ -124,12 +113,10 @@ static enum status make_group(const struct request *request, enum group_kind kin
     TRY(take_name(request, &name, &expression, error));
     TRY(group_check_name(name, error));
     if (body->cells.count == 0 && kind != GROUP_NODES) {
-        status = fail(error, STATUS_INPUT, "the stream has no cells, only nodes can be grouped (-n)");
-        goto done;
+        TRY(fail(error, STATUS_INPUT, "the stream has no cells, only nodes can be grouped (-n)"));
     }
     if (group_find(&body->groups[kind], name) >= 0 && !request->replace) {
-        status = fail(error, STATUS_INPUT, "there is one of that name already: --replace replaces it");
-        goto done;
+        TRY(fail(error, STATUS_INPUT, "there is one of that name already: --replace replaces it"));
     }
     TRY(NEW_ARRAY(&chosen, items->count, error));
     TRY(group_select(body, kind, expression, request->unit, chosen, error));
@@ -140,7 +127,7 @@ static enum status make_group(const struct request *request, enum group_kind kin
         struct box box = box_of(body->cells.dim, body->cells.node_count, body->cells.x);
         char place[128];
         status = fail(error, STATUS_INPUT, "chooses none of %lld %s; the body's box is %s",
-                      (long long)items->count, plural(kind), describe_box(&box, place));
+                      (long long)items->count, plural(kind), cell_report_box(&box, place));
         goto done;
     }
     TRY(group_put(body, kind, name, chosen, request->use->value, error));
@@ -185,8 +172,7 @@ static enum status rename_group(const struct request *request, struct error *err
     TRY(group_check_name(after, error));
     struct group_list *list = &request->body->groups[kind];
     if (group_find(list, after) >= 0) {
-        status = fail(error, STATUS_INPUT, "there is one of the new name already");
-        goto done;
+        TRY(fail(error, STATUS_INPUT, "there is one of the new name already"));
     }
     name = strdup(after);
     if (name == NULL) {
@@ -329,7 +315,7 @@ static void report(const struct tool *tool, const struct group_body *body, enum 
         at += snprintf(at, (size_t)(end - at), ", %s %.4g m%.0d", of_dim[region][dim - 2], size,
                        power == 1 ? 0 : power);
     }
-    at += snprintf(at, (size_t)(end - at), ", box %s%s", describe_box(&box, place),
+    at += snprintf(at, (size_t)(end - at), ", box %s%s", cell_report_box(&box, place),
                    kind == GROUP_FACETS ? ", mean normal" : "");
     for (int k = 0; k < dim && kind == GROUP_FACETS; k++) {
         double share = size > 0 ? sum[k] / size : 0;
@@ -350,15 +336,14 @@ static void drop_stale(const struct tool *tool, struct stream *stream)
 
 static void finish(const struct tool *tool, struct group_body *body, struct stream *stream, bool verbose)
 {
-    struct error error;
     drop_empty_regions(tool, &body->groups[GROUP_REGION]);
-    tool_check(tool, note_overlaps(tool, body, &error), &error);
+    TOOL_TRY(tool, note_overlaps(tool, body, &error));
     for (int kind = 0; kind < GROUP_KINDS && verbose; kind++) {
         for (int64_t g = 0; g < body->groups[kind].count; g++) {
             report(tool, body, (enum group_kind)kind, &body->groups[kind].group[g]);
         }
     }
-    tool_check(tool, group_body_write(body, stream, &error), &error);
+    TOOL_TRY(tool, group_body_write(body, stream, &error));
     if (body->groups[GROUP_FACETS].changed) {
         drop_stale(tool, stream);
     }

@@ -43,8 +43,9 @@ static const char usage[] =
     "  interp -p fine.mts coarse.dat | fieldcmp - fine.dat\n"
     "  interp -f u -p grid.tsv -u mm --skip-outside -t u.dat\n";
 
+#include "stage_fill.h"
 #include "mls_options.h"
-#include "solved.h"
+#include "stages/solved.h"
 
 #include "approx/field.h"
 #include "io/sections.h"
@@ -87,10 +88,9 @@ static void read_table(const struct tool *tool, const char *file, const char *un
                        struct points *points)
 {
     struct table table;
-    struct error error;
     double unit;
-    tool_check(tool, parse_length_unit(unit_name, "-u", &unit, &error), &error);
-    tool_check(tool, table_read(file, dim, dim, &table, &error), &error);
+    TOOL_TRY(tool, parse_length_unit(unit_name, "-u", &unit, &error));
+    TOOL_TRY(tool, table_read(file, dim, dim, &table, &error));
     points->count = table.rows;
     points->x = table.values;
     table.values = NULL;
@@ -143,11 +143,10 @@ static enum status drop_outside(const struct tool *tool, const struct cells *cel
         if (outside[i] && !skip) {
             char place[96];
             point_text(dim, points->x + i * dim, place);
-            status = fail(error, STATUS_INPUT,
-                          "%s: row %lld at %s: farther from the body than the spacing of its nodes: is the "
-                          "unit right? --skip-outside leaves such points out",
-                          file, (long long)i, place);
-            goto done;
+            TRY(fail(error, STATUS_INPUT,
+                     "%s: row %lld at %s: farther from the body than the spacing of its nodes: is the "
+                     "unit right? --skip-outside leaves such points out",
+                     file, (long long)i, place));
         }
         if (!outside[i]) {
             memmove(points->x + kept * dim, points->x + i * dim, (size_t)dim * sizeof *points->x);
@@ -230,15 +229,12 @@ static void evaluate(const struct points *points, const struct section *field, d
 static void put_values(const struct tool *tool, const struct stream *stream, const struct section *field,
                        const struct points *points, struct stream *output)
 {
-    struct error error;
     double *values;
     const struct section *from = solved_parameters(stream, &points->solved, field);
-    tool_check(tool, NEW_ARRAY(&values, points->count * field->cols, &error), &error);
+    TOOL_TRY(tool, NEW_ARRAY(&values, points->count * field->cols, &error));
     evaluate(points, from, values);
-    tool_check(tool,
-               stream_put(output, field->name, TYPE_F8, points->count, field->cols, field->attributes, values,
-                          true, &error),
-               &error);
+    TOOL_TRY(tool, stream_put(output, field->name, TYPE_F8, points->count, field->cols, field->attributes,
+                              values, true, &error));
 }
 
 static void put_all_fields(const struct tool *tool, const struct stream *stream, int64_t node_count,
@@ -258,10 +254,7 @@ static void put_all_fields(const struct tool *tool, const struct stream *stream,
 static void put_fields(const struct tool *tool, const struct stream *stream, int64_t node_count,
                        const char *names, const struct points *points, struct stream *output)
 {
-    char *list = strdup(names), *name;
-    if (list == NULL) {
-        tool_fail(tool, STATUS_SYSTEM, "out of memory");
-    }
+    char *list = tool_memory(tool, strdup(names)), *name;
     for (char *rest = list; (name = strsep(&rest, ",")) != NULL;) {
         const struct section *field = stream_find(stream, name);
         if (field == NULL || !is_field(field, node_count)) {
@@ -280,77 +273,64 @@ static void put_fields(const struct tool *tool, const struct stream *stream, int
 static void put_deformed(const struct tool *tool, const struct stream *stream, int dim, int64_t node_count,
                          const struct points *points, struct stream *output)
 {
-    struct error error;
     char attributes[64];
     const struct section *u;
     double *x;
-    tool_check(tool, stream_need(stream, "u", TYPE_F8, dim, "mtled", &u, &error), &error);
+    TOOL_TRY(tool, stream_need(stream, "u", TYPE_F8, dim, "mtled", &u, &error));
     if (u->rows != node_count) {
         tool_fail(tool, STATUS_INPUT, "u: %lld rows for %lld nodes", (long long)u->rows,
                   (long long)node_count);
     }
-    tool_check(tool, NEW_ARRAY(&x, points->count * dim, &error), &error);
+    TOOL_TRY(tool, NEW_ARRAY(&x, points->count * dim, &error));
     u = solved_parameters(stream, &points->solved, u);
     evaluate(points, u, x);
     for (int64_t i = 0; i < points->count * dim; i++) {
         x[i] += points->x[i];
     }
-    tool_check(tool,
-               stream_put(output, "x.deformed", TYPE_F8, points->count, dim,
-                          vector_attributes(dim, "m", attributes), x, true, &error),
-               &error);
+    TOOL_TRY(tool, stream_put(output, "x.deformed", TYPE_F8, points->count, dim,
+                              vector_attributes(dim, "m", attributes), x, true, &error));
 }
 
 /* The points wanted: the stream's own, or those of a file; and supports and shape functions there. */
 static void find_points(const struct tool *tool, struct stream *stream, int dim, struct points *points)
 {
-    struct error error;
     const char *file = tool_value(tool, "points");
     struct support_options support = parse(tool, dim);
     if (tool_first_given(tool, choose_supports) == NULL) {
-        tool_check(tool, solved_read(stream, &points->solved, &error), &error);
+        TOOL_TRY(tool, solved_read(stream, &points->solved, &error));
     }
     struct solved known = points->solved;
     if (file == NULL) {
         const struct section *radius = stream_find(stream, "support.radius");
         stage_fill(tool, stream, "ipoints");
-        tool_check(tool, copy_points(stream, dim, points, &error), &error);
+        TOOL_TRY(tool, copy_points(stream, dim, points, &error));
         if (known.radius == NULL && radius != NULL) {
-            tool_check(tool, supports_read(stream, "support", &known, &error), &error);
+            TOOL_TRY(tool, supports_read(stream, "support", &known, &error));
         }
     } else if (tool_given(tool, "unit")) {
         read_table(tool, file, tool_value(tool, "unit"), dim, points);
     } else {
         read_nodes(tool, file, dim, points);
     }
-    tool_check(
-        tool,
-        make_table(tool, &known, &support, stream, tool_given(tool, "skip-outside"), file, points, &error),
-        &error);
+    TOOL_TRY(tool, make_table(tool, &known, &support, stream, tool_given(tool, "skip-outside"), file, points,
+                              &error));
 }
 
 /* A stream of the same descent that holds the points; it takes points->x. */
 static void begin_output(const struct tool *tool, struct stream *stream, int dim, const struct points *points,
                          struct stream *output)
 {
-    struct error error;
     char attributes[64];
     stream_init(output);
-    output->provenance = stream->provenance;
-    output->provenance_count = stream->provenance_count;
-    stream->provenance = NULL;
-    stream->provenance_count = 0;
-    tool_check(tool,
-               stream_put(output, "nodes.x", TYPE_F8, points->count, dim,
-                          vector_attributes(dim, "m", attributes), points->x, true, &error),
-               &error);
+    stream_inherit(output, stream);
+    TOOL_TRY(tool, stream_put(output, "nodes.x", TYPE_F8, points->count, dim,
+                              vector_attributes(dim, "m", attributes), points->x, true, &error));
 }
 
 int main(int argc, char *argv[])
 {
     struct tool tool;
     struct stream stream, output;
-    struct error error;
     struct points points = {0};
     int dim;
     int64_t node_count;
@@ -358,7 +338,7 @@ int main(int argc, char *argv[])
     tool_begin(&tool, usage, 0, 1, argc, argv);
     (void)parse(&tool, 0); /* usage errors before waiting for the input */
     tool_read(&tool, tool.operands[0], &stream);
-    tool_check(&tool, stream_nodes(&stream, &dim, &node_count, &nodes, &error), &error);
+    TOOL_TRY(&tool, stream_nodes(&stream, &dim, &node_count, &nodes, &error));
     find_points(&tool, &stream, dim, &points);
     begin_output(&tool, &stream, dim, &points, &output);
     if (tool_given(&tool, "field")) {
@@ -370,9 +350,8 @@ int main(int argc, char *argv[])
         put_deformed(&tool, &stream, dim, node_count, &points, &output);
     }
     if (tool_given(&tool, "skip-outside")) {
-        tool_check(&tool,
-                   stream_put(&output, "points.row", TYPE_I8, points.count, 1, "", points.row, false, &error),
-                   &error);
+        TOOL_TRY(&tool,
+                 stream_put(&output, "points.row", TYPE_I8, points.count, 1, "", points.row, false, &error));
     }
     tool_write(&tool, &output, tool_given(&tool, "text"));
     field_table_free(&points.table);

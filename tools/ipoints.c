@@ -46,14 +46,13 @@ static const char usage[] =
     "  cloud -d 2 -k regular -n 18 --box -4,4,-4,4 | ipoints --lattice 81,81 > lattice.mts\n";
 
 #include "mls_options.h"
-#include "stages.h"
+#include "stages/stages.h"
 
 static void parse_lattice(const struct tool *tool, const char *text, int64_t lattice[3])
 {
     double numbers[3];
     int count;
-    struct error error;
-    tool_check(tool, parse_double_list(text, "--lattice", 2, 1e6, 3, numbers, &count, &error), &error);
+    TOOL_TRY(tool, parse_double_list(text, "--lattice", 2, 1e6, 3, numbers, &count, &error));
     for (int a = 0; a < count; a++) {
         lattice[a] = (int64_t)numbers[a];
         if ((double)lattice[a] != numbers[a]) {
@@ -106,10 +105,9 @@ static struct ipoints_options parse_for(const struct tool *tool, const struct st
     int dim;
     int64_t node_count;
     const double *x;
-    struct error error;
     struct recorded recorded;
-    tool_check(tool, stream_nodes(stream, &dim, &node_count, &x, &error), &error);
-    tool_check(tool, stage_recorded(stream, "support", dim, &recorded, &error), &error);
+    TOOL_TRY(tool, stream_nodes(stream, &dim, &node_count, &x, &error));
+    TOOL_TRY(tool, stage_recorded(stream, "support", dim, &recorded, &error));
     struct ipoints_options ipoints = parse(tool, &recorded.support.mls);
     ipoints.refinement.support.reach = recorded.support.reach;
     return ipoints;
@@ -119,14 +117,13 @@ int main(int argc, char *argv[])
 {
     struct tool tool;
     struct stream stream;
-    struct error error;
     struct mls any = mls_default(0);
     int64_t unresolved;
     tool_begin(&tool, usage, 0, 1, argc, argv);
     (void)parse(&tool, &any); /* usage errors before waiting for the input */
     tool_read(&tool, tool.operands[0], &stream);
     struct ipoints_options ipoints = parse_for(&tool, &stream);
-    tool_check(&tool, stage_ipoints(&stream, &ipoints, &unresolved, &error), &error);
+    TOOL_TRY(&tool, stage_ipoints(&stream, &ipoints, &unresolved, &error));
     if (unresolved > 0) {
         tool_note(&tool, "%lld cells change by more than the tolerance even at level %d",
                   (long long)unresolved, ipoints.refinement.levels);

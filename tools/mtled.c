@@ -67,6 +67,7 @@ static const char usage[] =
     "  nodes -u mm body.msh | shapefn | mtled brain2d.scene > u.dat\n"
     "  mpirun -n 4 mtled-mpi -o u.dat brain2d.scene part.%d.mts    by processes (make mpi); same bytes\n";
 
+#include "stage_fill.h"
 #include "process.h"
 #include "run.h"
 
@@ -90,7 +91,6 @@ int main(int argc, char *argv[])
     struct scene scene;
     struct model model;
     struct parts_input parts = {.given = false};
-    struct error error;
     process_begin(&argc, &argv);
     tool_begin(&tool, usage, 1, 2, argc, argv);
     tool_requires(&tool, "every", "checkpoint");
@@ -102,7 +102,7 @@ int main(int argc, char *argv[])
         tool_fail(&tool, STATUS_INPUT,
                   "several processes cannot share standard input: name the stream's file");
     }
-    tool_check(&tool, scene_read(tool.operands[0], &scene, &error), &error);
+    TOOL_TRY(&tool, scene_read(tool.operands[0], &scene, &error));
     if (parts_are_named(tool.operands[1])) {
         parts_read(&tool, tool.operands[1], &stream, &parts);
     } else {
@@ -129,14 +129,14 @@ int main(int argc, char *argv[])
                     .started = clock_seconds()}};
     run_put_supports(&run);
     run_checkpoint_begin(&run);
-    tool_check(&tool, model_build(&stream, parts.face_reader, &scene, &model, &error), &error);
+    TOOL_TRY(&tool, model_build(&stream, parts.face_reader, &scene, &model, &error));
     if (model.note.text[0] != '\0') {
         tool_note(&tool, "%s", model.note.text);
     }
     if (model.interfaces.text[0] != '\0') {
         tool_note(&tool, "%s", model.interfaces.text);
     }
-    tool_check(&tool, NEW_ARRAY(&run.u, model.system.node_count * scene.dim, &error), &error);
+    TOOL_TRY(&tool, NEW_ARRAY(&run.u, model.system.node_count * scene.dim, &error));
     run.prepare_seconds = clock_seconds() - run.display.started;
     run_folds_begin(&run);
     run_stability_begin(&run);

@@ -41,7 +41,7 @@ static const char usage[] =
 
 #include "cell_report.h"
 #include "io/invariants.h"
-#include "views.h"
+#include "stages/views.h"
 
 #include <fnmatch.h>
 #include <inttypes.h>
@@ -192,10 +192,7 @@ static int select_sections(struct tool *tool, bool keep)
     bool used[MOST] = {false};
     int count = 0;
     struct stream stream;
-    char *list_of_patterns = strdup(tool->operands[1]);
-    if (list_of_patterns == NULL) {
-        tool_fail(tool, STATUS_SYSTEM, "out of memory");
-    }
+    char *list_of_patterns = tool_memory(tool, strdup(tool->operands[1]));
     for (char *rest = list_of_patterns, *pattern; (pattern = strsep(&rest, ",")) != NULL;) {
         if (count == MOST || *pattern == '\0') {
             tool_fail(tool, STATUS_INPUT, "'%s' is not a list of at most %d patterns", tool->operands[1],
@@ -241,12 +238,11 @@ enum { COMMANDS = sizeof commands / sizeof *commands };
 static const struct command *find_command(const struct tool *tool)
 {
     const char *names[COMMANDS];
-    struct error error;
     int index;
     for (int i = 0; i < COMMANDS; i++) {
         names[i] = commands[i].name;
     }
-    tool_check(tool, parse_choice(tool->operands[0], "command", names, COMMANDS, &index, &error), &error);
+    TOOL_TRY(tool, parse_choice(tool->operands[0], "command", names, COMMANDS, &index, &error));
     const struct command *command = &commands[index];
     int operands = tool->operand_count - 1;
     if (operands < command->least) {

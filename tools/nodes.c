@@ -67,10 +67,9 @@ static const char usage[] =
 
 static void read_mesh(const struct tool *tool, struct msh *msh)
 {
-    struct error error;
     const char *name;
     int descriptor = tool_open(tool, tool->operands[0], &name);
-    tool_check(tool, msh_read(msh, descriptor, name, &error), &error);
+    TOOL_TRY(tool, msh_read(msh, descriptor, name, &error));
     if (descriptor != STDIN_FILENO) {
         close(descriptor);
     }
@@ -107,9 +106,8 @@ static void list_groups(const struct tool *tool, const struct msh *msh)
 static void note_thin(const struct tool *tool, const struct cells *cells)
 {
     struct thin_report thin;
-    struct error error;
     char place[96];
-    tool_check(tool, cells_find_thin(cells, THIN, &thin, &error), &error);
+    TOOL_TRY(tool, cells_find_thin(cells, THIN, &thin, &error));
     if (thin.share > THIN_SHARE) {
         point_text(cells->dim, thin.place, place);
         tool_note(tool,
@@ -128,7 +126,6 @@ static void report(const struct tool *tool, const struct mesh *mesh, bool verbos
     double diagonal = box_diagonal(&box);
     struct cells cells = {mesh->dim, mesh->node_count, mesh->x, mesh->cell_count, mesh->cells};
     struct cell_report cell_report;
-    struct error error;
     char text[128];
     if (diagonal > LARGEST_DIAGONAL || diagonal < SMALLEST_DIAGONAL) {
         tool_note(tool, "the body is %.3g m across: is the unit of -u right?", diagonal);
@@ -137,14 +134,9 @@ static void report(const struct tool *tool, const struct mesh *mesh, bool verbos
     if (!verbose) {
         return;
     }
-    tool_check(tool, cell_report_make(&cells, INFINITY, &cell_report, &error), &error);
-    int length = 0;
-    for (int k = 0; k < 2 * mesh->dim; k++) {
-        length += snprintf(text + length, sizeof text - (size_t)length, "%s%.4g ",
-                           k == mesh->dim ? "to " : "", k < mesh->dim ? box.low[k] : box.high[k - mesh->dim]);
-    }
-    tool_note(tool, "%lld nodes, %lld cells, box %sm, %s %.4g %s, %d connected bod%s",
-              (long long)mesh->node_count, (long long)mesh->cell_count, text,
+    TOOL_TRY(tool, cell_report_make(&cells, INFINITY, &cell_report, &error));
+    tool_note(tool, "%lld nodes, %lld cells, box %s, %s %.4g %s, %d connected bod%s",
+              (long long)mesh->node_count, (long long)mesh->cell_count, cell_report_box(&box, text),
               mesh->dim == 2 ? "area" : "volume", cell_report.volume, mesh->dim == 2 ? "m2" : "m3",
               cell_report.bodies, cell_report.bodies == 1 ? "y" : "ies");
     tool_note(tool, "quality of the cells: least %.2g, median %.2g", cell_report.least_median[0],
@@ -180,7 +172,6 @@ int main(int argc, char *argv[])
     struct msh msh;
     struct mesh mesh;
     struct stream stream;
-    struct error error;
     tool_begin(&tool, usage, 0, 1, argc, argv);
     struct mesh_options wanted = parse(&tool);
     read_mesh(&tool, &msh);
@@ -189,7 +180,7 @@ int main(int argc, char *argv[])
         msh_free(&msh);
         return tool_end(&tool);
     }
-    tool_check(&tool, mesh_build(&mesh, &msh, &wanted, &error), &error);
+    TOOL_TRY(&tool, mesh_build(&mesh, &msh, &wanted, &error));
     msh_free(&msh);
     for (int32_t i = 0; i < mesh.notes.count; i++) {
         tool_note(&tool, "%s", mesh.notes.name[i]);
@@ -199,7 +190,7 @@ int main(int argc, char *argv[])
     }
     report(&tool, &mesh, tool_given(&tool, "verbose"));
     stream_init(&stream);
-    tool_check(&tool, mesh_put(&mesh, &stream, &error), &error);
+    TOOL_TRY(&tool, mesh_put(&mesh, &stream, &error));
     tool_write(&tool, &stream, tool_given(&tool, "text"));
     stream_free(&stream);
     mesh_free(&mesh);

@@ -46,16 +46,12 @@ static const char usage[] =
 /* "NAME with %d" with a number in its place; to be freed. */
 static char *numbered(const struct tool *tool, const char *name, int32_t number)
 {
-    char *text;
     const char *at = strstr(name, "%d");
     int before = at != NULL ? (int)(at - name) : 0;
     if (at == NULL || strstr(at + 1, "%d") != NULL) {
         tool_fail(tool, STATUS_INPUT, "-o %s: has to have one %%d, where the number of the part goes", name);
     }
-    if (asprintf(&text, "%.*s%d%s", before, name, number, name + before + 2) < 0) {
-        tool_fail(tool, STATUS_SYSTEM, "out of memory");
-    }
-    return text;
+    return tool_text(tool, "%.*s%d%s", before, name, number, name + before + 2);
 }
 
 /* What -v tells. */
@@ -88,15 +84,13 @@ static void print_report(const struct cut_body *whole, const struct report *repo
 
 static void write_parts(const struct cut_body *whole, bool wanted, bool text, struct report *report)
 {
-    struct error error;
     struct body_part_work work = {0};
     const char *name = whole->tool->output;
     for (int32_t k = 0; k < whole->partition.parts; k++) {
         struct body_part body;
-        tool_check(whole->tool,
-                   body_part_build(&whole->partition, k, whole->own_cell + whole->own_ptr[k],
-                                   whole->own_ptr[k + 1] - whole->own_ptr[k], wanted, &work, &body, &error),
-                   &error);
+        TOOL_TRY(whole->tool,
+                 body_part_build(&whole->partition, k, whole->own_cell + whole->own_ptr[k],
+                                 whole->own_ptr[k + 1] - whole->own_ptr[k], wanted, &work, &body, &error));
         add((double)body.own_nodes, &report->own, &report->most_own);
         add((double)body.node_count, &report->nodes, &report->most_nodes);
         add((double)body.needed, &report->needed, &report->most_needed);
@@ -134,30 +128,24 @@ static uint32_t identify(const struct cut_body *whole)
 /* Only this program calls METIS, so that the others are linked without. */
 static void cut(struct cut_body *whole, const struct support_options *support)
 {
-    struct error error;
     struct tool *tool = whole->tool;
     struct cells *cells = &whole->cells;
-    tool_check(tool, NEW_ARRAY(&whole->radius, cells->node_count, &error), &error);
-    tool_check(tool, NEW_ARRAY(&whole->owner, cells->node_count, &error), &error);
-    tool_check(tool, NEW_ARRAY(&whole->work, cells->count, &error), &error);
-    tool_check(tool, stage_radii(whole->stream, support, cells->node_count, cells->x, whole->radius, &error),
-               &error);
-    tool_check(tool,
-               point_grid_build(&whole->grid, cells->dim, cells->node_count, cells->x, whole->radius, &error),
-               &error);
-    tool_check(tool, cell_stars_build(cells, &whole->stars, &error), &error);
-    tool_check(tool, partition_work(cells, &whole->grid, whole->work, &error), &error);
-    tool_check(
-        tool,
-        partition_nodes(cells, &whole->stars, whole->work, whole->partition.parts, whole->owner, &error),
-        &error);
+    TOOL_TRY(tool, NEW_ARRAY(&whole->radius, cells->node_count, &error));
+    TOOL_TRY(tool, NEW_ARRAY(&whole->owner, cells->node_count, &error));
+    TOOL_TRY(tool, NEW_ARRAY(&whole->work, cells->count, &error));
+    TOOL_TRY(tool, stage_radii(whole->stream, support, cells->node_count, cells->x, whole->radius, &error));
+    TOOL_TRY(tool,
+             point_grid_build(&whole->grid, cells->dim, cells->node_count, cells->x, whole->radius, &error));
+    TOOL_TRY(tool, cell_stars_build(cells, &whole->stars, &error));
+    TOOL_TRY(tool, partition_work(cells, &whole->grid, whole->work, &error));
+    TOOL_TRY(tool, partition_nodes(cells, &whole->stars, whole->work, whole->partition.parts, whole->owner,
+                                   &error));
     whole->partition.cells = cells;
     whole->partition.stars = &whole->stars;
     whole->partition.grid = &whole->grid;
     whole->partition.owner = whole->owner;
     whole->partition.work = whole->work;
-    tool_check(tool, partition_own_cells(&whole->partition, &whole->own_ptr, &whole->own_cell, &error),
-               &error);
+    TOOL_TRY(tool, partition_own_cells(&whole->partition, &whole->own_ptr, &whole->own_cell, &error));
     whole->cut = identify(whole);
 }
 
@@ -165,7 +153,6 @@ int main(int argc, char *argv[])
 {
     struct tool tool;
     struct stream stream;
-    struct error error;
     struct cut_body whole = {.tool = &tool, .stream = &stream};
     struct support_options support = support_defaults(2);
     tool_begin(&tool, usage, 0, 1, argc, argv);
@@ -184,7 +171,7 @@ int main(int argc, char *argv[])
     if (stream_find(&stream, "part.node") != NULL) {
         tool_fail(&tool, STATUS_INPUT, "part.node: the input is a part already");
     }
-    tool_check(&tool, stream_cells(&stream, true, &whole.cells, &error), &error);
+    TOOL_TRY(&tool, stream_cells(&stream, true, &whole.cells, &error));
     support = support_defaults(whole.cells.dim);
     radius_parse(&tool, &support);
     cut(&whole, &support);

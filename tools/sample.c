@@ -47,18 +47,16 @@ static const char usage[] =
 #include "image_body.h"
 #include "images.h"
 #include "sample_points.h"
-#include "output.h"
+#include "target.h"
 #include "tissue.h"
-#include "views.h"
+#include "stages/views.h"
 
 #include "io/image_sample.h"
 
-#include <errno.h>
 #include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 /* What was asked for. */
 struct request {
@@ -72,7 +70,6 @@ struct request {
 
 static void parse(const struct tool *tool, struct request *request)
 {
-    struct error error;
     const char *tissue[OPTIONS_MOST_USES];
     int tissue_count = tool_values(tool, "tissue", tissue);
     *request = (struct request){.method = tool_image_method(tool),
@@ -108,9 +105,9 @@ static void parse(const struct tool *tool, struct request *request)
                   request->at);
     }
     if (tool_given(tool, "material")) {
-        tool_check(tool, tissue_read(tool_value(tool, "material"), &request->tissue, &error), &error);
+        TOOL_TRY(tool, tissue_read(tool_value(tool, "material"), &request->tissue, &error));
     } else if (tissue_count > 0) {
-        tool_check(tool, tissue_parse(tissue_count, tissue, &request->tissue, &error), &error);
+        TOOL_TRY(tool, tissue_parse(tissue_count, tissue, &request->tissue, &error));
     }
 }
 
@@ -136,10 +133,7 @@ static void sample_image(const struct tool *tool, const struct request *request,
         double place[3] = {0, 0, image->to_world[2][3]}, voxel[3];
         double *value = rows->value + p * rows->cols + first;
         memcpy(place, rows->x + p * rows->dim, (size_t)rows->dim * sizeof *place);
-        for (int i = 0; i < 3; i++) {
-            voxel[i] = inverse[i][0] * place[0] + inverse[i][1] * place[1] + inverse[i][2] * place[2] +
-                       inverse[i][3];
-        }
+        image_map(&inverse[0][0], place, voxel);
         if (!image_sample(image, request->method, voxel, value) || !are_finite(value, image->components)) {
             first_outside = outside++ == 0 ? p : first_outside;
             for (size_t c = 0; c < image->components; c++) {
@@ -167,7 +161,6 @@ static void sample_image(const struct tool *tool, const struct request *request,
 /* The values of all images. The first one says how many there are at a point. */
 static void sample_images(const struct tool *tool, const struct request *request, struct sample_points *rows)
 {
-    struct error error;
     for (int i = 0; i < request->image_count; i++) {
         struct image image;
         struct image_axes axes;
@@ -179,7 +172,7 @@ static void sample_images(const struct tool *tool, const struct request *request
         }
         if (i == 0) {
             rows->cols = request->stiffness ? request->image_count : (int64_t)image.components;
-            tool_check(tool, NEW_ARRAY(&rows->value, rows->count * rows->cols, &error), &error);
+            TOOL_TRY(tool, NEW_ARRAY(&rows->value, rows->count * rows->cols, &error));
         }
         sample_image(tool, request, &image, tool->operands[i], rows, i);
         image_free(&image);
@@ -189,10 +182,9 @@ static void sample_images(const struct tool *tool, const struct request *request
 /* E and nu in place of the images' values. */
 static void find_moduli(const struct tool *tool, const struct tissue *tissue, struct sample_points *rows)
 {
-    struct error error;
     double(*moduli)[2];
     int64_t beyond = 0;
-    tool_check(tool, NEW_ARRAY(&moduli, rows->count, &error), &error);
+    TOOL_TRY(tool, NEW_ARRAY(&moduli, rows->count, &error));
     for (int64_t p = 0; p < rows->count; p++) {
         if (!tissue_moduli(tissue, rows->value + p * rows->cols, moduli[p], &beyond)) {
             char place[96];
@@ -232,38 +224,13 @@ static void print_rows(FILE *file, const struct request *request, const struct s
     }
 }
 
-/* To the output file, or standard output. */
-static void write_table(const struct tool *tool, const struct request *request,
-                        const struct sample_points *rows)
-{
-    struct error error;
-    struct output output;
-    if (tool->output == NULL) {
-        print_rows(stdout, request, rows);
-        return;
-    }
-    tool_check(tool, output_open(&output, tool->output, &error), &error);
-    int descriptor = dup(output.descriptor);
-    FILE *file = descriptor < 0 ? NULL : fdopen(descriptor, "w");
-    if (file != NULL) {
-        print_rows(file, request, rows);
-    }
-    bool failed = file == NULL || ferror(file) != 0;
-    if ((file != NULL && fclose(file) != 0) || failed) {
-        int number = errno;
-        output_abandon(&output);
-        tool_fail(tool, STATUS_SYSTEM, "%s: %s", tool->output, strerror(number));
-    }
-    tool_check(tool, output_commit(&output, &error), &error);
-}
-
 int main(int argc, char *argv[])
 {
     struct tool tool;
     struct stream stream;
     struct request request;
     struct sample_points rows;
-    struct error error;
+    struct target target;
     tool_begin(&tool, usage, 1, OPTIONS_MOST_USES + 1, argc, argv);
     parse(&tool, &request);
     int most = request.image_count + (request.points == NULL ? 1 : 0);
@@ -285,14 +252,14 @@ int main(int argc, char *argv[])
         find_moduli(&tool, &request.tissue, &rows);
     }
     if (request.section != NULL) {
-        tool_check(&tool,
-                   stream_put(&stream, request.section, TYPE_F8, rows.count, rows.cols,
-                              request.stiffness ? "cols=E,nu" : "", rows.value, true, &error),
-                   &error);
+        TOOL_TRY(&tool, stream_put(&stream, request.section, TYPE_F8, rows.count, rows.cols,
+                                   request.stiffness ? "cols=E,nu" : "", rows.value, true, &error));
         rows.value = NULL;
         tool_write(&tool, &stream, request.text);
     } else {
-        write_table(&tool, &request, &rows);
+        target_open(&tool, &target, tool.output);
+        print_rows(target.file, &request, &rows);
+        target_end(&tool, &target);
     }
     free(rows.x);
     free(rows.value);

@@ -30,27 +30,21 @@ static const char usage[] =
     "  nodes -u mm body.msh | shapefn | mtled scene > u.dat\n"
     "  nodes -u mm body.msh | ipoints -g 4 | support -R 9mm | shapefn --mu 1e-7 --mu-unit mm > table.mts\n";
 
+#include "stage_fill.h"
 #include "mls_options.h"
-#include "stages.h"
-
-#include <string.h>
+#include "stages/stages.h"
 
 /* What the shape functions are, for whoever evaluates them elsewhere. */
 static void record(const struct tool *tool, struct stream *stream, const struct recorded *recorded)
 {
-    struct error error;
-    double *radius;
-    const struct section *section = stream_find(stream, "support.radius");
-    tool_check(tool, NEW_ARRAY(&radius, section->rows, &error), &error);
-    memcpy(radius, section->data, (size_t)section->rows * sizeof *radius);
-    tool_check(tool, stage_record(stream, recorded, section->rows, radius, &error), &error);
+    const struct section *radius = stream_find(stream, "support.radius");
+    TOOL_TRY(tool, stage_record(stream, recorded, radius->rows, radius->data, &error));
 }
 
 int main(int argc, char *argv[])
 {
     struct tool tool;
     struct stream stream;
-    struct error error;
     int dim;
     int64_t node_count;
     const double *x;
@@ -59,12 +53,12 @@ int main(int argc, char *argv[])
     tool_begin(&tool, usage, 0, 1, argc, argv);
     mls_parse(&tool, &mls);
     tool_read(&tool, tool.operands[0], &stream);
-    tool_check(&tool, stream_nodes(&stream, &dim, &node_count, &x, &error), &error);
+    TOOL_TRY(&tool, stream_nodes(&stream, &dim, &node_count, &x, &error));
     stage_fill(&tool, &stream, "support");
-    tool_check(&tool, stage_recorded(&stream, "support", dim, &recorded, &error), &error);
+    TOOL_TRY(&tool, stage_recorded(&stream, "support", dim, &recorded, &error));
     recorded.shapes = recorded.support.mls;
     mls_parse(&tool, &recorded.shapes);
-    tool_check(&tool, stage_shapefn(&stream, &recorded.shapes, &error), &error);
+    TOOL_TRY(&tool, stage_shapefn(&stream, &recorded.shapes, &error));
     record(&tool, &stream, &recorded);
     tool_write(&tool, &stream, tool_given(&tool, "text"));
     stream_free(&stream);

@@ -39,18 +39,15 @@ static const char usage[] =
     "  gmsh -2 graded.geo -o graded.msh\n"
     "  sizefield -b u.dat | voxels -h 6mm --sizes - labels.nii.gz > finer.mts\n";
 
-#include "output.h"
-#include "regions.h"
+#include "target.h"
 #include "tool.h"
-#include "views.h"
+#include "stages/views.h"
 
 #include "approx/field_error.h"
 #include "approx/size_field.h"
 
-#include <errno.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 /* What the command line asks for. */
 struct request {
@@ -78,24 +75,20 @@ static enum status recover(const struct stream *stream, const char *field, struc
 {
     enum status status;
     const struct section *section;
-    struct regions regions = {0};
+    struct cell_regions regions = {0};
     TRY(stream_cells(stream, true, cells, error));
-    TRY(stream_need(stream, field, TYPE_F8, 0, "mtled", &section, error));
-    if (section->cols > 3 || section->rows != cells->node_count) {
-        TRY(fail(error, STATUS_INPUT,
-                 "%s: %lld rows of %lld columns: not a field of 1 to 3 columns on %lld nodes", field,
-                 (long long)section->rows, (long long)section->cols, (long long)cells->node_count));
+    TRY(stream_field(stream, field, cells->node_count, &section, error));
+    if (stream_find(stream, "cells.region") != NULL) {
+        TRY(stream_regions(stream, cells, &regions, error));
     }
-    TRY(regions_read(stream, cells, &regions, error));
-    const struct section *region = regions.count > 0 ? stream_find(stream, "cells.region") : NULL;
     TRY(NEW_ARRAY(squared, cells->count, error));
-    status = field_error_recovered(cells, region != NULL ? region->data : NULL, regions.count, section->cols,
+    status = field_error_recovered(cells, regions.of_cell, (int32_t)regions.names.count, section->cols,
                                    section->data, *squared, error);
     if (status != STATUS_OK) {
         status = fail_in(error, status, "%s", field);
     }
 done:
-    regions_free(&regions);
+    names_free(&regions.names);
     return status;
 }
 
@@ -178,30 +171,6 @@ static void print_view(FILE *file, const struct layered *layered, double unit)
     fprintf(file, "};\n");
 }
 
-static void write_view(const struct tool *tool, const struct layered *layered, double unit)
-{
-    struct output output;
-    struct error error;
-    if (tool->output == NULL) {
-        print_view(stdout, layered, unit);
-        return;
-    }
-    tool_check(tool, output_open(&output, tool->output, &error), &error);
-    int descriptor = dup(output.descriptor); /* the output closes its own */
-    FILE *file = descriptor >= 0 ? fdopen(descriptor, "w") : NULL;
-    int reason = errno;
-    if (file != NULL) {
-        errno = 0;
-        print_view(file, layered, unit);
-        reason = ferror(file) != 0 ? errno : 0;
-        reason = fclose(file) != 0 && reason == 0 ? errno : reason;
-    }
-    if (reason != 0 || file == NULL) {
-        tool_fail(tool, STATUS_SYSTEM, "%s: %s", tool->output, strerror(reason));
-    }
-    tool_check(tool, output_commit(&output, &error), &error);
-}
-
 /* Cells of a stream are positively oriented: those of the layer are turned where need be, or left out where
  * they have no volume. */
 static void orient(struct layered *layered)
@@ -224,23 +193,16 @@ static void orient(struct layered *layered)
 static void write_sizes(const struct tool *tool, struct layered *layered, bool text)
 {
     struct stream stream;
-    struct error error;
     char attributes[64];
     const struct cells *cells = &layered->cells;
     orient(layered);
     stream_init(&stream);
-    tool_check(tool,
-               stream_put(&stream, "nodes.x", TYPE_F8, cells->node_count, cells->dim,
-                          vector_attributes(cells->dim, "m", attributes), layered->x, false, &error),
-               &error);
-    tool_check(
-        tool,
-        stream_put(&stream, "cells", TYPE_I4, cells->count, cells->dim + 1, "", layered->node, false, &error),
-        &error);
-    tool_check(
-        tool,
-        stream_put(&stream, "size", TYPE_F8, cells->node_count, 1, "unit=m", layered->size, false, &error),
-        &error);
+    TOOL_TRY(tool, stream_put(&stream, "nodes.x", TYPE_F8, cells->node_count, cells->dim,
+                              vector_attributes(cells->dim, "m", attributes), layered->x, false, &error));
+    TOOL_TRY(tool, stream_put(&stream, "cells", TYPE_I4, cells->count, cells->dim + 1, "", layered->node,
+                              false, &error));
+    TOOL_TRY(tool, stream_put(&stream, "size", TYPE_F8, cells->node_count, 1, "unit=m", layered->size, false,
+                              &error));
     tool_write(tool, &stream, text);
     stream_free(&stream);
 }
@@ -262,7 +224,6 @@ int main(int argc, char *argv[])
     struct stream stream;
     struct cells cells;
     struct size_field field;
-    struct error error;
     double *squared = NULL;
     tool_begin(&tool, usage, 0, 1, argc, argv);
     tool_excludes(&tool, "binary", "text");
@@ -271,18 +232,21 @@ int main(int argc, char *argv[])
     }
     struct request request = parse(&tool);
     tool_read(&tool, tool.operands[0], &stream);
-    tool_check(&tool, recover(&stream, request.field, &cells, &squared, &error), &error);
-    tool_check(&tool, size_field_build(&cells, squared, &request.sizes, &field, &error), &error);
+    TOOL_TRY(&tool, recover(&stream, request.field, &cells, &squared, &error));
+    TOOL_TRY(&tool, size_field_build(&cells, squared, &request.sizes, &field, &error));
     if (field.unbound > request.sizes.most_nodes) {
         tool_note(&tool, "these sizes ask for %.3g nodes: made larger for %.0f (-n)", field.unbound,
                   request.sizes.most_nodes);
     }
     struct layered layered;
-    tool_check(&tool, layered_make(&cells, &field, &layered, &error), &error);
+    struct target target;
+    TOOL_TRY(&tool, layered_make(&cells, &field, &layered, &error));
     if (tool_given(&tool, "binary") || tool_given(&tool, "text")) {
         write_sizes(&tool, &layered, tool_given(&tool, "text"));
     } else {
-        write_view(&tool, &layered, request.unit);
+        target_open(&tool, &target, tool.output);
+        print_view(target.file, &layered, request.unit);
+        target_end(&tool, &target);
     }
     if (request.verbose) {
         report(&request, &cells, &field);

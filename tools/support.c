@@ -51,8 +51,9 @@ static const char usage[] =
     "  nodes -u mm body.msh | ipoints | support -k 2 > lists.mts\n"
     "  nodes -u mm body.msh | ipoints -g 4 | support -R 8mm --mu 1e-7 --mu-unit mm | shapefn > a.mts\n";
 
+#include "stage_fill.h"
 #include "mls_options.h"
-#include "stages.h"
+#include "stages/stages.h"
 
 #include <stdlib.h>
 
@@ -106,7 +107,6 @@ int main(int argc, char *argv[])
 {
     struct tool tool;
     struct stream stream;
-    struct error error;
     int dim;
     int64_t node_count;
     const double *x;
@@ -114,15 +114,15 @@ int main(int argc, char *argv[])
     tool_begin(&tool, usage, 0, 1, argc, argv);
     (void)parse(&tool, 0); /* usage errors before waiting for the input */
     tool_read(&tool, tool.operands[0], &stream);
-    tool_check(&tool, stream_nodes(&stream, &dim, &node_count, &x, &error), &error);
+    TOOL_TRY(&tool, stream_nodes(&stream, &dim, &node_count, &x, &error));
     struct support_options support = parse(&tool, dim);
     stage_fill(&tool, &stream, "ipoints");
     int32_t *side = NULL;
     if (tool_given(&tool, "interface")) {
-        tool_check(&tool, stage_interfaces(&stream, tool_value(&tool, "interface"), &side, &error), &error);
+        TOOL_TRY(&tool, stage_interfaces(&stream, tool_value(&tool, "interface"), &side, &error));
         support.side = side;
     }
-    tool_check(&tool, stage_support(&stream, &support, &report, &error), &error);
+    TOOL_TRY(&tool, stage_support(&stream, &support, &report, &error));
     if (tool_given(&tool, "reach") && report.reach != support.reach) {
         tool_fail(&tool, STATUS_INPUT, "--reach cells: the input has no cells: --reach distance");
     }

@@ -41,14 +41,11 @@ static const char usage[] =
     "  mtled brain2d.scene < table.mts | tovtk -o brain2d.pvd\n"
     "  tovtk -o u.vtu u.dat && paraview u.vtu\n";
 
-#include "output.h"
 #include "plot.h"
-#include "tool.h"
+#include "target.h"
 
-#include <errno.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 static bool is_named(const char *path, const char *ending)
 {
@@ -61,49 +58,6 @@ static enum status write_vtu(struct plot *plot, int64_t frame, bool text, FILE *
 {
     plot_choose_fields(plot, frame);
     return vtu_write(file, &plot->mesh, plot->fields, plot->field_count, text, error);
-}
-
-/* A file that appears only when whole, or standard output when its name is NULL. */
-struct target {
-    const char *name;
-    struct output output;
-    FILE *file;
-};
-
-static void target_open(const struct tool *tool, struct target *target, const char *name)
-{
-    struct error error;
-    *target = (struct target){.name = name, .file = stdout};
-    if (name == NULL) {
-        return;
-    }
-    tool_check(tool, output_open(&target->output, name, &error), &error);
-    int descriptor = dup(target->output.descriptor); /* the output closes its own */
-    target->file = descriptor >= 0 ? fdopen(descriptor, "wb") : NULL;
-    if (target->file == NULL) {
-        int cause = errno;
-        output_abandon(&target->output);
-        tool_fail(tool, STATUS_SYSTEM, "%s: %s", name, strerror(cause));
-    }
-}
-
-/* Give the file its name if the writing went well; exit if not. */
-static void target_close(const struct tool *tool, struct target *target, enum status status,
-                         struct error *error)
-{
-    const char *name = target->name != NULL ? target->name : "standard output";
-    if (target->name != NULL && fclose(target->file) != 0 && status == STATUS_OK) {
-        status = fail(error, STATUS_SYSTEM, "%s", strerror(errno));
-    }
-    if (status != STATUS_OK) {
-        if (target->name != NULL) {
-            output_abandon(&target->output);
-        }
-        tool_fail(tool, status, "%s: %s", name, error->text);
-    }
-    if (target->name != NULL) {
-        tool_check(tool, output_commit(&target->output, error), error);
-    }
 }
 
 /* NAME-0001.vtu, ... and at last the NAME.pvd that lists them. */
@@ -123,10 +77,8 @@ static void write_series(const struct tool *tool, struct plot *plot, bool text)
     for (int64_t i = 0; i < count; i++) {
         int64_t frame = plot_frame(plot, i);
         tool_check(tool, plot_time(plot, frame, &times[i], &error), &error);
-        if (asprintf(&paths[i], "%.*s-%04lld.vtu", (int)stem, tool->output,
-                     frame == FRAME_NONE ? 0LL : (long long)frame) < 0) {
-            tool_fail(tool, STATUS_SYSTEM, "out of memory");
-        }
+        paths[i] = tool_text(tool, "%.*s-%04lld.vtu", (int)stem, tool->output,
+                             frame == FRAME_NONE ? 0LL : (long long)frame);
         target_open(tool, &target, paths[i]);
         target_close(tool, &target, write_vtu(plot, frame, text, target.file, &error), &error);
         names[i] = paths[i] + folder;

@@ -33,11 +33,7 @@ int main(int argc, char *argv[])
     rejoin_begin(&rejoin, &tool, tool.operands, tool.operand_count);
     stream_init(&stream);
     rejoin_sections(&rejoin, &stream);
-    /* How part 0 was made. */
-    stream.provenance = rejoin.part[0].stream.provenance;
-    stream.provenance_count = rejoin.part[0].stream.provenance_count;
-    rejoin.part[0].stream.provenance = NULL;
-    rejoin.part[0].stream.provenance_count = 0;
+    stream_inherit(&stream, &rejoin.part[0].stream); /* as they were made alike */
     tool_write(&tool, &stream, tool_given(&tool, "text"));
     stream_free(&stream);
     rejoin_free(&rejoin);

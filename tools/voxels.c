@@ -81,15 +81,6 @@ static const char usage[] =
  * cells of the sizes. */
 static const double reported_share = 0.01;
 
-/* Volume of the cells of each label with its parts, m3 (2D: m2). */
-static void cell_volumes(const struct cells *cells, const struct label_image *image, const int32_t *label,
-                         double *volume)
-{
-    for (int64_t c = 0; c < cells->count; c++) {
-        volume[image->region[label[c]]] += cell_volume(cells, c);
-    }
-}
-
 /* Volumes in ml, areas in cm2. */
 static double shown(int dim, double volume)
 {
@@ -97,20 +88,19 @@ static double shown(int dim, double volume)
 }
 
 static void report_labels(const struct tool *tool, const struct label_image *image,
-                          const struct stuffing *stuffing, bool verbose)
+                          const struct stuffing *stuffing, const struct cells *cells, bool verbose)
 {
-    struct cells cells = {stuffing->dim, stuffing->node_count, stuffing->x, stuffing->cell_count,
-                          stuffing->cell};
-    struct error error;
     double *volume = NULL, *voxels = NULL;
     int64_t *lost = NULL;
     int dim = stuffing->dim;
     const char *unit = dim == 3 ? "ml" : "cm2";
-    tool_check(tool, NEW_ARRAY(&volume, image->labels.count, &error), &error);
-    tool_check(tool, NEW_ARRAY(&lost, image->labels.count, &error), &error);
-    tool_check(tool, stuffing_lost(&image->labels, stuffing, lost, &error), &error);
-    tool_check(tool, NEW_ARRAY(&voxels, image->labels.count, &error), &error);
-    cell_volumes(&cells, image, stuffing->label, volume);
+    TOOL_TRY(tool, NEW_ARRAY(&volume, image->labels.count, &error));
+    TOOL_TRY(tool, NEW_ARRAY(&lost, image->labels.count, &error));
+    TOOL_TRY(tool, stuffing_lost(&image->labels, stuffing, lost, &error));
+    TOOL_TRY(tool, NEW_ARRAY(&voxels, image->labels.count, &error));
+    for (int64_t c = 0; c < cells->count; c++) {
+        volume[image->region[stuffing->label[c]]] += cell_volume(cells, c);
+    }
     for (int32_t l = 1; l < image->labels.count; l++) {
         voxels[image->region[l]] += image->volume[l];
         lost[image->region[l]] += image->region[l] != l ? lost[l] : 0;
@@ -147,11 +137,10 @@ static void report_labels(const struct tool *tool, const struct label_image *ima
 /* How many connected bodies there are, when more than one. */
 static void report_bodies(const struct tool *tool, const struct cells *cells, bool verbose)
 {
-    struct error error;
     int32_t *part = NULL, count = 0;
     double total = 0, first = 0;
-    tool_check(tool, NEW_ARRAY(&part, cells->count, &error), &error);
-    tool_check(tool, cells_parts(cells, part, &count, &error), &error);
+    TOOL_TRY(tool, NEW_ARRAY(&part, cells->count, &error));
+    TOOL_TRY(tool, cells_parts(cells, part, &count, &error));
     for (int64_t c = 0; c < cells->count; c++) {
         double volume = cell_volume(cells, c);
         total += volume;
@@ -215,7 +204,7 @@ static void report(const struct tool *tool, const struct label_image *image, con
             "parts of a body touch by a node or an edge alone at %lld nodes: --fine may tell them apart",
             (long long)stuffing->hinges);
     }
-    report_labels(tool, image, stuffing, verbose);
+    report_labels(tool, image, stuffing, &cells, verbose);
     report_bodies(tool, &cells, verbose);
     report_cells(tool, &cells, spacing, verbose);
     if (verbose) {
@@ -230,8 +219,7 @@ static void write_stream(const struct tool *tool, const struct label_image *imag
 {
     struct mesh mesh;
     struct stream stream;
-    struct error error;
-    tool_check(tool, label_mesh_make(image, stuffing, &mesh, &error), &error);
+    TOOL_TRY(tool, label_mesh_make(image, stuffing, &mesh, &error));
     stream_init(&stream);
     for (int32_t p = 0; p < image->part_count; p++) {
         bool found = false;
@@ -242,7 +230,7 @@ static void write_stream(const struct tool *tool, const struct label_image *imag
             tool_fail(tool, STATUS_INPUT, "--part %s: no facet of the boundary lies in it", image->part[p]);
         }
     }
-    tool_check(tool, mesh_put(&mesh, &stream, &error), &error);
+    TOOL_TRY(tool, mesh_put(&mesh, &stream, &error));
     tool_write(tool, &stream, text);
     stream_free(&stream);
     label_mesh_free(&mesh);
@@ -267,7 +255,6 @@ int main(int argc, char *argv[])
     struct tool tool;
     struct label_image image;
     struct stuffing stuffing;
-    struct error error;
     if (argc > 1 && strcmp(argv[argc - 1], "-h") == 0) {
         argv[argc - 1] = help;
     }
@@ -299,7 +286,7 @@ int main(int argc, char *argv[])
     label_sizes_read(&tool, &image, tool_value(&tool, "sizes"), &sizes);
     stuffing_options.sized = &sizes.cells;
     stuffing_options.size = sizes.size;
-    tool_check(&tool, stuffing_make(&image.labels, &stuffing_options, &stuffing, &error), &error);
+    TOOL_TRY(&tool, stuffing_make(&image.labels, &stuffing_options, &stuffing, &error));
     report(&tool, &image, &stuffing, spacing, tool_given(&tool, "verbose"));
     if (tool_given(&tool, "surface")) {
         label_surface_write(&tool, &stuffing, &surface);

@@ -50,8 +50,8 @@ static const char usage[] =
 
 #include "image_body.h"
 #include "images.h"
-#include "solved.h"
-#include "views.h"
+#include "stages/solved.h"
+#include "stages/views.h"
 #include "warp_voxels.h"
 
 #include "approx/motion.h"
@@ -91,11 +91,10 @@ static void parse(const struct tool *tool, struct warp_request *request)
 static const double *find_field(const struct tool *tool, const struct stream *stream, const char *name,
                                 struct cells *cells)
 {
-    struct error error;
     const struct section *u;
-    tool_check(tool, stream_cells(stream, true, cells, &error), &error);
-    tool_check(tool, cells_check(cells, &error), &error);
-    tool_check(tool, stream_need(stream, name, TYPE_F8, cells->dim, "mtled", &u, &error), &error);
+    TOOL_TRY(tool, stream_cells(stream, true, cells, &error));
+    TOOL_TRY(tool, cells_check(cells, &error));
+    TOOL_TRY(tool, stream_need(stream, name, TYPE_F8, cells->dim, "mtled", &u, &error));
     if (u->rows != cells->node_count) {
         tool_fail(tool, STATUS_INPUT, "%s: %lld rows for %lld nodes", name, (long long)u->rows,
                   (long long)cells->node_count);
@@ -155,9 +154,8 @@ static void tell(const struct tool *tool, const struct warp_request *request, co
 static void new_result(const struct tool *tool, const struct image *source, const struct image *grid,
                        struct image *result)
 {
-    struct error error;
     size_t components = source != NULL ? source->components : 3;
-    tool_check(tool, image_new(result, grid->size, components, &error), &error);
+    TOOL_TRY(tool, image_new(result, grid->size, components, &error));
     double *values = result->values;
     if (source != NULL) {
         *result = *source;

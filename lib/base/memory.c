@@ -58,3 +58,11 @@ void *array_grow(void *array, int64_t count, size_t size)
     }
     return realloc(array, bytes > 0 ? bytes : 1);
 }
+
+void *array_take(void *pointer)
+{
+    void *array;
+    memcpy(&array, pointer, sizeof array);
+    memset(pointer, 0, sizeof array);
+    return array;
+}

@@ -17,6 +17,10 @@ void *array_new_untouched(int64_t count, size_t size);
  * returns NULL and the old array stays valid. The result is not 64-byte aligned. */
 void *array_grow(void *array, int64_t count, size_t size);
 
+/* The array that *pointer points to; *pointer becomes NULL. For an array that a function takes over, whose
+ * former owner then frees nothing: put(array_take(&x)). */
+void *array_take(void *pointer);
+
 /* *pointer = array_new(count, sizeof **pointer); evaluates to a status, with an error naming the array. */
 #define NEW_ARRAY(pointer, count, error)                                                                     \
     ((*(pointer) = array_new((count), sizeof **(pointer))) != NULL ? STATUS_OK                               \

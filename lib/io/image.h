@@ -88,6 +88,9 @@ size_t image_voxels(const struct image *image);
 /* inverse: world, m, to voxel index. */
 void image_to_voxel(const struct image *image, double inverse[3][4]);
 
+/* place = m x + t: m[3 * 4], the last of each row is t, as of to_world and image_to_voxel. */
+void image_map(const double *m, const double x[3], double place[3]);
+
 /* The place of a voxel index, which need not be whole, m. */
 void image_world(const struct image *image, const double voxel[3], double world[3]);
 

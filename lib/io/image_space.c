@@ -5,10 +5,10 @@
 #include <stdio.h>
 #include <string.h>
 
-static void map(double m[3][4], const double x[3], double place[3])
+void image_map(const double *m, const double x[3], double place[3])
 {
-    for (int r = 0; r < 3; r++) {
-        place[r] = m[r][0] * x[0] + m[r][1] * x[1] + m[r][2] * x[2] + m[r][3];
+    for (int r = 0; r < 3; r++, m += 4) {
+        place[r] = m[0] * x[0] + m[1] * x[1] + m[2] * x[2] + m[3];
     }
 }
 
@@ -30,9 +30,7 @@ static double column_length(double m[3][4], int c)
 
 void image_world(const struct image *image, const double voxel[3], double world[3])
 {
-    double m[3][4];
-    memcpy(m, image->to_world, sizeof m);
-    map(m, voxel, world);
+    image_map(&image->to_world[0][0], voxel, world);
 }
 
 void image_to_voxel(const struct image *image, double inverse[3][4])
@@ -152,8 +150,8 @@ static double disagreement(const struct image *image, double a[3][4], double b[3
         for (int i = 0; i < 3; i++) {
             voxel[i] = corner >> i & 1 ? (double)(image->size[i] - 1) : 0;
         }
-        map(a, voxel, at_a);
-        map(b, voxel, at_b);
+        image_map(&a[0][0], voxel, at_a);
+        image_map(&b[0][0], voxel, at_b);
         most = fmax(most, hypot(hypot(at_a[0] - at_b[0], at_a[1] - at_b[1]), at_a[2] - at_b[2]));
     }
     return most;

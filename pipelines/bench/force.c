@@ -38,49 +38,6 @@ struct variant {
     bool averaged, smoothed;
 };
 
-/* What a body is built from, beside the problem; not needed any more once it is. */
-struct ingredients {
-    int64_t count;        /* points */
-    double *weight;       /* count: each cell's volume to its point; nodes share theirs */
-    double *hat_value;    /* count * (dim + 1) */
-    double *centroids;    /* count * dim: the points of smoothed cells; else NULL */
-    int32_t *material_of; /* count, zero */
-};
-
-static enum status make_ingredients(const struct problem *problem, bool smoothed, struct ingredients *made,
-                                    struct error *error)
-{
-    enum status status;
-    const struct cells *cells = &problem->cells;
-    int dim = cells->dim, corners = dim + 1;
-    *made = (struct ingredients){.count = smoothed ? cells->count : problem->point_count};
-    TRY(NEW_ARRAY(&made->weight, made->count, error));
-    TRY(NEW_ARRAY(&made->material_of, made->count, error));
-    TRY(NEW_ARRAY(&made->hat_value, made->count * corners, error));
-    if (smoothed) {
-        TRY(NEW_ARRAY(&made->centroids, made->count * dim, error));
-        for (int64_t q = 0; q < made->count; q++) {
-            cell_centroid(cells, q, made->centroids + q * dim);
-        }
-    }
-    for (int64_t q = 0; q < made->count; q++) {
-        made->weight[q] = made->count == cells->count ? cell_volume(cells, q) : 1e-3 / (double)made->count;
-    }
-    for (int64_t i = 0; i < made->count * corners; i++) {
-        made->hat_value[i] = 1.0 / corners;
-    }
-done:
-    return status;
-}
-
-static void free_ingredients(struct ingredients *made)
-{
-    free(made->weight);
-    free(made->hat_value);
-    free(made->centroids);
-    free(made->material_of);
-}
-
 static struct smoothed_cells_input smoothed_cells_input(const struct problem *problem)
 {
     const struct cells *cells = &problem->cells;
@@ -95,30 +52,54 @@ static struct smoothed_cells_input smoothed_cells_input(const struct problem *pr
                                          .node_phi = problem->node_phi};
 }
 
-static enum status build_body(const struct problem *problem, const struct variant *variant,
-                              const struct ingredients *made, struct body *body, struct error *error)
+/* Each cell's volume belongs to its point, at its centroid; points at the nodes share the body's. */
+static enum status build_body(const struct problem *problem, const struct variant *variant, struct body *body,
+                              struct error *error)
 {
+    enum status status;
     const struct cells *cells = &problem->cells;
-    int dim = cells->dim;
+    int dim = cells->dim, corners = dim + 1;
+    int64_t count = variant->smoothed ? cells->count : problem->point_count;
+    double *weight = NULL, *barycentric = NULL, *x = NULL;
+    int32_t *none = NULL;
     struct smoothed_cells_input smoothed = smoothed_cells_input(problem);
     struct material material = {.model = MATERIAL_NEO_HOOKEAN, .density = 1000.0};
     material_set_moduli(&material, 3000.0, 0.49);
+    TRY(NEW_ARRAY(&weight, count, error));
+    TRY(NEW_ARRAY(&none, count, error));
+    TRY(NEW_ARRAY(&barycentric, count * corners, error));
+    TRY(NEW_ARRAY(&x, count * dim, error));
+    for (int64_t q = 0; q < count; q++) {
+        weight[q] = count == cells->count ? cell_volume(cells, q) : 1e-3 / (double)count;
+        if (variant->smoothed) {
+            cell_centroid(cells, q, x + q * dim);
+        }
+    }
+    for (int64_t i = 0; i < count * corners; i++) {
+        barycentric[i] = 1.0 / corners;
+    }
     struct body_input input = {.dim = dim,
                                .node_x = cells->x,
                                .smoothed = variant->smoothed ? &smoothed : NULL,
                                .node_count = cells->node_count,
-                               .point_count = made->count,
-                               .x = made->centroids != NULL ? made->centroids : problem->points,
-                               .weight = made->weight,
+                               .point_count = count,
+                               .x = variant->smoothed ? x : problem->points,
+                               .weight = weight,
                                .ptr = problem->lists.ptr,
                                .idx = problem->lists.idx,
                                .dphi = problem->dphi,
                                .materials = &material,
-                               .material = made->material_of,
+                               .material = none,
                                .material_count = 1,
-                               .hat_node = variant->averaged ? cells->node : NULL,
-                               .hat_value = made->hat_value};
-    return body_build(&input, body, error);
+                               .vertex = variant->averaged ? cells->node : NULL,
+                               .barycentric = barycentric};
+    TRY(body_build(&input, body, error));
+done:
+    free(weight);
+    free(none);
+    free(barycentric);
+    free(x);
+    return status;
 }
 
 static enum status make_loop(struct loop *loop, struct problem *problem, const struct variant *variant,
@@ -126,11 +107,9 @@ static enum status make_loop(struct loop *loop, struct problem *problem, const s
 {
     enum status status;
     const struct cells *cells = &problem->cells;
-    struct ingredients made;
     *loop = (struct loop){.problem = problem};
-    TRY(make_ingredients(problem, variant->smoothed, &made, error));
     double before = problem_heap_bytes();
-    TRY(build_body(problem, variant, &made, &loop->body, error));
+    TRY(build_body(problem, variant, &loop->body, error));
     loop->heap = problem_heap_bytes() - before;
     TRY(NEW_ARRAY(&loop->u, cells->node_count * cells->dim, error));
     TRY(NEW_ARRAY(&loop->force, cells->node_count * cells->dim, error));
@@ -139,7 +118,6 @@ static enum status make_loop(struct loop *loop, struct problem *problem, const s
         loop->u[i] = 0.03 * x + 0.2 * x * x;
     }
 done:
-    free_ingredients(&made);
     return status;
 }
 

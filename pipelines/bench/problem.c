@@ -36,11 +36,6 @@ enum status problem_support(void *context, struct error *error)
     return build_lists(problem, problem->point_count, problem->points, "points.x", &problem->lists, error);
 }
 
-static struct neighbours view_of(const struct support_lists *lists)
-{
-    return support_view(lists);
-}
-
 enum status problem_nodes(struct problem *problem, struct error *error)
 {
     enum status status;
@@ -48,7 +43,7 @@ enum status problem_nodes(struct problem *problem, struct error *error)
     const double *x = problem->cells.x;
     TRY(build_lists(problem, count, x, "nodes.x", &problem->node_lists, error));
     TRY(NEW_ARRAY(&problem->node_phi, problem->node_lists.ptr[count], error));
-    struct neighbours lists = view_of(&problem->node_lists);
+    struct neighbours lists = support_view(&problem->node_lists);
     TRY(shape_table(&problem->options.mls, x, problem->radius, &lists, x, "nodes.x", problem->node_phi, NULL,
                     error));
 done:
@@ -60,7 +55,7 @@ static enum status run_shape(struct problem *problem, bool gradients, struct err
 {
     enum status status;
     int64_t pairs = problem->lists.ptr[problem->point_count];
-    struct neighbours lists = view_of(&problem->lists);
+    struct neighbours lists = support_view(&problem->lists);
     if (problem->phi == NULL) {
         TRY(NEW_ARRAY(&problem->phi, pairs, error));
     }
@@ -86,15 +81,16 @@ enum status problem_values(void *context, struct error *error)
 enum status problem_averages(void *context, struct error *error)
 {
     struct problem *problem = context;
-    struct neighbours lists = view_of(&problem->lists);
+    struct neighbours lists = support_view(&problem->lists);
     face_averages_free(&problem->averages);
     return shape_average_faces(&problem->options.mls, problem->cloud.x, problem->radius, &lists,
                                problem->points, "facepoints.x", &problem->faces, &problem->averages, error);
 }
 
-/* A cube (square) of that many nodes along each axis, support radius = factor times its spacing. */
-enum status problem_make(struct problem *problem, int dim, int64_t per_axis, double factor, double jitter,
-                         struct error *error)
+/* A cube (square) of 0.1 m with that many nodes along each axis. The support radius is 2.12 times the
+ * spacing: a support holds about 40 nodes in 3D, 14 in 2D. */
+static enum status make_body(struct problem *problem, int dim, int64_t per_axis, double jitter,
+                             struct error *error)
 {
     enum status status;
     struct cloud_options wanted = {.kind = CLOUD_JITTERED, .dim = dim, .jitter = jitter};
@@ -106,48 +102,38 @@ enum status problem_make(struct problem *problem, int dim, int64_t per_axis, dou
     TRY(cloud_make(&wanted, &problem->cloud, error));
     problem->cells = (struct cells){dim, problem->cloud.node_count, problem->cloud.x,
                                     problem->cloud.cell_count, problem->cloud.cells};
-    problem->options.radius = factor * 0.1 / (double)(per_axis - 1);
+    problem->options.radius = 2.12 * 0.1 / (double)(per_axis - 1);
     TRY(NEW_ARRAY(&problem->radius, problem->cells.node_count, error));
     TRY(support_radii(&problem->options, problem->cells.node_count, NULL, problem->radius, error));
 done:
     return status;
 }
 
-enum status problem_points_in_cells(struct problem *problem, struct error *error)
+static enum status make_points(struct problem *problem, enum bench_points at, struct error *error)
 {
-    int dim = problem->cells.dim;
-    problem->point_count = problem->cells.count;
-    enum status status = NEW_ARRAY(&problem->points, problem->point_count * dim, error);
-    for (int64_t c = 0; status == STATUS_OK && c < problem->point_count; c++) {
-        cell_centroid(&problem->cells, c, problem->points + c * dim);
+    enum status status = STATUS_OK;
+    const struct cells *cells = &problem->cells;
+    int dim = cells->dim;
+    if (at == BENCH_FACES) {
+        TRY(faces_build(cells, false, &problem->faces, error));
     }
-    return status;
-}
-
-enum status problem_points_on_faces(struct problem *problem, struct error *error)
-{
-    enum status status;
-    int dim = problem->cells.dim;
-    TRY(faces_build(&problem->cells, false, &problem->faces, error));
-    problem->point_count = face_row_point(&problem->faces, problem->faces.row_count);
+    problem->point_count = at == BENCH_CELLS   ? cells->count
+                           : at == BENCH_NODES ? cells->node_count
+                                               : face_row_point(&problem->faces, problem->faces.row_count);
     TRY(NEW_ARRAY(&problem->points, problem->point_count * dim, error));
-    face_rows_points(&problem->faces, problem->cells.x, problem->points);
+    if (at == BENCH_FACES) {
+        face_rows_points(&problem->faces, cells->x, problem->points);
+    } else if (at == BENCH_NODES) {
+        memcpy(problem->points, cells->x, (size_t)(problem->point_count * dim) * sizeof *problem->points);
+    }
+    for (int64_t c = 0; c < cells->count && at == BENCH_CELLS; c++) {
+        cell_centroid(cells, c, problem->points + c * dim);
+    }
 done:
     return status;
 }
 
-enum status problem_points_at_nodes(struct problem *problem, struct error *error)
-{
-    size_t size = (size_t)(problem->cells.node_count * problem->cells.dim);
-    problem->point_count = problem->cells.node_count;
-    enum status status = NEW_ARRAY(&problem->points, (int64_t)size, error);
-    if (status == STATUS_OK) {
-        memcpy(problem->points, problem->cells.x, size * sizeof *problem->points);
-    }
-    return status;
-}
-
-void problem_free(struct problem *problem)
+static void problem_free(struct problem *problem)
 {
     cloud_free(&problem->cloud);
     faces_free(&problem->faces);
@@ -161,32 +147,30 @@ void problem_free(struct problem *problem)
     free(problem->dphi);
 }
 
-typedef enum status place_function(struct problem *problem, struct error *error);
-
-static void time_on(int dim, int64_t per_axis, double jitter, place_function *place, bench_function *run,
+static void time_on(int dim, int64_t per_axis, double jitter, enum bench_points at, bench_function *run,
                     double seconds)
 {
     struct problem problem;
     struct error error;
-    bench_check(problem_make(&problem, dim, per_axis, 2.12, jitter, &error), &error);
-    bench_check(place(&problem, &error), &error);
+    bench_check(make_body(&problem, dim, per_axis, jitter, &error), &error);
+    bench_check(make_points(&problem, at, &error), &error);
     run(&problem, seconds);
     problem_free(&problem);
 }
 
 void problem_large(bench_function *points, double seconds)
 {
-    time_on(3, 56, 0.12, problem_points_in_cells, points, seconds);
+    time_on(3, 56, 0.12, BENCH_CELLS, points, seconds);
 }
 
 void problem_sweep(bench_function *points, bench_function *cells, bench_function *growth, double seconds)
 {
     static const int64_t per_axis[] = {10, 22, 46, 100};
-    time_on(2, 27, 0.3, problem_points_in_cells, points, seconds);
-    time_on(3, 38, 0.12, problem_points_in_cells, points, seconds);
-    time_on(2, 27, 0.3, problem_points_on_faces, cells, seconds);
-    time_on(3, 25, 0.12, problem_points_on_faces, cells, seconds);
+    time_on(2, 27, 0.3, BENCH_CELLS, points, seconds);
+    time_on(3, 38, 0.12, BENCH_CELLS, points, seconds);
+    time_on(2, 27, 0.3, BENCH_FACES, cells, seconds);
+    time_on(3, 25, 0.12, BENCH_FACES, cells, seconds);
     for (int i = 0; i < 4; i++) {
-        time_on(3, per_axis[i], 0.3, problem_points_at_nodes, growth, seconds);
+        time_on(3, per_axis[i], 0.3, BENCH_NODES, growth, seconds);
     }
 }

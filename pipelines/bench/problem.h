@@ -24,16 +24,8 @@ struct problem {
 /* Bytes that the program has allocated. */
 double problem_heap_bytes(void);
 
-/* A cube (square) of 0.1 m with that many nodes along each axis, support radius = factor times its spacing.
- */
-MUST_CHECK enum status problem_make(struct problem *problem, int dim, int64_t per_axis, double factor,
-                                    double jitter, struct error *error);
-void problem_free(struct problem *problem);
-
-/* Points: one in each cell, those of the faces' quadrature, or the nodes. */
-MUST_CHECK enum status problem_points_in_cells(struct problem *problem, struct error *error);
-MUST_CHECK enum status problem_points_on_faces(struct problem *problem, struct error *error);
-MUST_CHECK enum status problem_points_at_nodes(struct problem *problem, struct error *error);
+/* Where the points are: one in each cell, those of the faces' quadrature, or at the nodes. */
+enum bench_points { BENCH_CELLS, BENCH_FACES, BENCH_NODES };
 
 /* The stages; the context is the struct problem. Lists as the tool support makes them, tables of values with
  * gradients or without, allocated with the first run, and averages over the faces. */

@@ -7,8 +7,6 @@
 #include "approx/quadrature.h"
 #include "approx/sorted.h"
 
-#include <omp.h>
-
 /* A jittered box with its cells, radii of generous supports, and the options to integrate over it. */
 struct body {
     struct cloud cloud;
@@ -28,15 +26,14 @@ static struct body body_of(int dim, int64_t per_axis)
         wanted.low[a] = 1.0;
         wanted.high[a] = 1.1;
     }
-    good(cloud_make(&wanted, &body.cloud, &error), &error);
+    GOOD(cloud_make(&wanted, &body.cloud, &error));
     body.cells =
         (struct cells){dim, body.cloud.node_count, body.cloud.x, body.cloud.cell_count, body.cloud.cells};
-    double *spacing = calloc((size_t)body.cells.node_count, sizeof *spacing);
+    double *spacing = zeros(body.cells.node_count, sizeof *spacing);
     body.radius = calloc((size_t)body.cells.node_count, sizeof *body.radius);
-    good(cells_node_spacing(&body.cells, spacing, &error), &error);
+    GOOD(cells_node_spacing(&body.cells, spacing, &error));
     body.options.support.factor = 2.4; /* smooth: where supports are widened, gradients jump */
-    good(support_radii(&body.options.support, body.cells.node_count, spacing, body.radius, &error), &error);
-    free(spacing);
+    GOOD(support_radii(&body.options.support, body.cells.node_count, spacing, body.radius, &error));
     return body;
 }
 
@@ -53,13 +50,12 @@ static struct adaptive_points integrate(const struct body *body, double toleranc
     struct error error;
     options.tolerance = tolerance;
     options.levels = levels;
-    good(adaptive_points_build(&options, &body->cells, body->radius, &points, &error), &error);
+    GOOD(adaptive_points_build(&options, &body->cells, body->radius, &points, &error));
     return points;
 }
 
-static void lists(void **state)
+TEST(lists)
 {
-    (void)state;
     static const int32_t a[] = {1, 4, 5, 9}, b[] = {0, 4, 9, 12, 13}, both[] = {0, 1, 4, 5, 9, 12, 13};
     static const int32_t places_of_b[] = {0, 2, 4, 5, 6};
     int32_t united[9], place[5];
@@ -74,9 +70,8 @@ static void lists(void **state)
 }
 
 /* Each cell's weights sum to its volume, its points lie in it and in its order; quadratics come out exact. */
-static void fill_and_exactness(void **state)
+TEST(fill_and_exactness)
 {
-    (void)state;
     for (int dim = 2; dim <= 3; dim++) {
         struct body body = body_of(dim, dim == 2 ? 6 : 3);
         struct adaptive_points points = integrate(&body, dim == 2 ? 1e-3 : 2e-2, 4);
@@ -116,18 +111,17 @@ static double *stiffness(const struct body *body, int64_t count, const double *x
 {
     int dim = body->cells.dim;
     int64_t n = body->cells.node_count;
-    double *K = calloc((size_t)(n * n), sizeof *K);
+    double *K = zeros(n * n, sizeof *K);
     struct point_grid grid;
     struct support_lists found;
     struct error error;
-    good(point_grid_build(&grid, dim, n, body->cells.x, body->radius, &error), &error);
-    good(support_build(&body->options.support, &grid, count, x, "points.x", &found, &error), &error);
-    double *phi = calloc((size_t)found.ptr[count], sizeof *phi);
-    double *dphi = calloc((size_t)(found.ptr[count] * dim), sizeof *dphi);
+    GOOD(point_grid_build(&grid, dim, n, body->cells.x, body->radius, &error));
+    GOOD(support_build(&body->options.support, &grid, count, x, "points.x", &found, &error));
+    double *phi = zeros(found.ptr[count], sizeof *phi);
+    double *dphi = zeros(found.ptr[count] * dim, sizeof *dphi);
     struct neighbours view = support_view(&found);
-    good(shape_table(&body->options.support.mls, body->cells.x, body->radius, &view, x, "points.x", phi, dphi,
-                     &error),
-         &error);
+    GOOD(shape_table(&body->options.support.mls, body->cells.x, body->radius, &view, x, "points.x", phi, dphi,
+                     &error));
     for (int64_t p = 0; p < count; p++) {
         for (int64_t i = found.ptr[p]; i < found.ptr[p + 1]; i++) {
             for (int64_t k = found.ptr[p]; k < found.ptr[p + 1]; k++) {
@@ -139,8 +133,6 @@ static double *stiffness(const struct body *body, int64_t count, const double *x
             }
         }
     }
-    free(phi);
-    free(dphi);
     support_free(&found);
     point_grid_free(&grid);
     return K;
@@ -173,9 +165,8 @@ static struct adaptive_points brute(const struct body *body, int levels)
 }
 
 /* The whole body's K is within the tolerance of that of brute subdivision, with fewer points the looser. */
-static void convergence(void **state)
+TEST(convergence)
 {
-    (void)state;
     for (int dim = 2; dim <= 3; dim++) {
         struct body body = body_of(dim, dim == 2 ? 6 : 3);
         int64_t n = body.cells.node_count, before = 0;
@@ -195,10 +186,8 @@ static void convergence(void **state)
             assert_int_equal(points.unresolved, 0);
             before = points.count;
             error_before = error;
-            free(K);
             adaptive_points_free(&points);
         }
-        free(reference);
         adaptive_points_free(&finest);
         body_free(&body);
     }
@@ -206,9 +195,8 @@ static void convergence(void **state)
 
 /* A loose tolerance leaves the rule as it is on a fine cloud; one node whose support ends within its cells
  * calls for more there. */
-static void depth_where_needed(void **state)
+TEST(depth_where_needed)
 {
-    (void)state;
     struct body body = body_of(2, 8);
     struct adaptive_points loose = integrate(&body, 2.0, 5);
     assert_int_equal(loose.count, body.cells.count * 3);
@@ -240,9 +228,8 @@ static void depth_where_needed(void **state)
     body_free(&body);
 }
 
-static void threads(void **state)
+TEST(threads)
 {
-    (void)state;
     int before = omp_get_max_threads();
     for (int dim = 2; dim <= 3; dim++) {
         struct body body = body_of(dim, dim == 2 ? 9 : 3);
@@ -262,35 +249,24 @@ static void threads(void **state)
     omp_set_num_threads(before);
 }
 
-static void failures(void **state)
+TEST(failures)
 {
-    (void)state;
     struct body body = body_of(2, 4);
     struct adaptive_options options = body.options;
     struct adaptive_points points;
     struct error error;
     options.rule_points = 5;
-    assert_int_equal(adaptive_points_build(&options, &body.cells, body.radius, &points, &error),
-                     STATUS_INPUT);
-    assert_non_null(strstr(error.text, "no rule of 5 points"));
+    FAILS(adaptive_points_build(&options, &body.cells, body.radius, &points, &error), STATUS_INPUT,
+          "no rule of 5 points");
     options = body.options;
     options.support.mls.basis = BASIS_QUADRATIC;
     options.support.widen = false;
     for (int64_t n = 0; n < body.cells.node_count; n++) {
         body.radius[n] *= 0.6;
     }
-    assert_int_equal(adaptive_points_build(&options, &body.cells, body.radius, &points, &error),
-                     STATUS_VERDICT);
-    assert_non_null(strstr(error.text, "mls2"));
+    FAILS(adaptive_points_build(&options, &body.cells, body.radius, &points, &error), STATUS_VERDICT, "mls2");
     assert_null(points.x);
     body_free(&body);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(lists),   cmocka_unit_test(fill_and_exactness), cmocka_unit_test(convergence),
-        cmocka_unit_test(threads), cmocka_unit_test(depth_where_needed), cmocka_unit_test(failures),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

@@ -3,19 +3,12 @@
 #ifndef TESTS_APPROX_FIXTURE_H
 #define TESTS_APPROX_FIXTURE_H
 
+#include "unit.h"
+
 #include "approx/shape.h"
 #include "approx/support.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
-
 #include <gsl/gsl_rng.h>
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 static inline void at_most(double value, double bound, const char *what)
 {

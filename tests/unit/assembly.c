@@ -33,9 +33,8 @@ static enum status assemble(struct lattice *l, const struct condition *condition
 }
 
 /* u = A x prescribed by a table on the whole boundary is u within. */
-static void linear_field_by_table(void **state)
+TEST(linear_field_by_table)
 {
-    (void)state;
     static const double A[3][3] = {{0.02, 0.01, -0.01}, {0.03, -0.02, 0.01}, {0.01, -0.01, 0.015}};
     for (int dim = 2; dim <= 3; dim++) {
         struct lattice l;
@@ -45,12 +44,12 @@ static void linear_field_by_table(void **state)
         struct lattice_options options = lattice_defaults(dim, 5);
         options.jitter = 0.1;
         lattice_build(&l, &options);
-        ARRAY(rows, l.cells.node_count * 2 * dim);
-        for (int64_t n = 0; n < l.cells.node_count; n++) {
+        rows = zeros(l.assembly.cells.node_count * 2 * dim, sizeof *rows);
+        for (int64_t n = 0; n < l.assembly.cells.node_count; n++) {
             for (int i = 0; i < dim; i++) {
-                rows[n * 2 * dim + i] = l.cells.x[n * dim + i];
+                rows[n * 2 * dim + i] = l.assembly.cells.x[n * dim + i];
                 for (int k = 0; k < dim; k++) {
-                    rows[n * 2 * dim + dim + i] += A[i][k] * l.cells.x[n * dim + k];
+                    rows[n * 2 * dim + dim + i] += A[i][k] * l.assembly.cells.x[n * dim + k];
                 }
             }
         }
@@ -58,7 +57,7 @@ static void linear_field_by_table(void **state)
                                       .where = "scene:1: [displacement all]",
                                       .facets = side_facets(&l, 63u, &facet),
                                       .kind = CONDITION_TABLE,
-                                      .row_count = l.cells.node_count,
+                                      .row_count = l.assembly.cells.node_count,
                                       .rows = rows,
                                       .unit = 1.0,
                                       .table = "table"};
@@ -70,23 +69,19 @@ static void linear_field_by_table(void **state)
         GOOD(relaxation_run(&l.system, &relax, u, NULL, &report, &error));
         assert_int_equal(report.outcome, RELAXATION_CONVERGED);
         assembly_nodal_field(&l.assembly, u, field);
-        for (int64_t n = 0; n < l.cells.node_count; n++) {
+        for (int64_t n = 0; n < l.assembly.cells.node_count; n++) {
             for (int i = 0; i < dim; i++) {
                 NEAR_TO(field[n * dim + i], rows[n * 2 * dim + dim + i], 1e-9);
             }
         }
-        free(u);
-        free(field);
-        free(rows);
         free(facet);
         lattice_free(&l);
     }
 }
 
 /* Only the faces within one condition are held; those of a corner between two are not. */
-static void held_faces(void **state)
+TEST(held_faces)
 {
-    (void)state;
     struct lattice l;
     struct error error;
     int32_t *low, *high;
@@ -100,8 +95,8 @@ static void held_faces(void **state)
     l.assembly.condition_count = 2;
     GOOD(assembly_held_faces(&l.assembly, 1, &held, &error));
     for (int64_t f = 0; f < l.assembly.boundary.count; f++) {
-        const double *a = l.cells.x + 2 * (int64_t)l.assembly.boundary.node[2 * f],
-                     *b = l.cells.x + 2 * (int64_t)l.assembly.boundary.node[2 * f + 1];
+        const double *a = l.assembly.cells.x + 2 * (int64_t)l.assembly.boundary.node[2 * f],
+                     *b = l.assembly.cells.x + 2 * (int64_t)l.assembly.boundary.node[2 * f + 1];
         bool flat = a[1] == b[1] && (a[1] < 1e-9 || a[1] > 0.1 - 1e-9);
         assert_int_equal(held[f], flat);
         count += held[f];
@@ -114,9 +109,8 @@ static void held_faces(void **state)
 }
 
 /* Two conditions that share a corner: far apart an error that names both, a little apart a note. */
-static void shared_corners(void **state)
+TEST(shared_corners)
 {
-    (void)state;
     struct lattice l;
     struct error error, note;
     int32_t *low, *side;
@@ -141,9 +135,4 @@ static void shared_corners(void **state)
     lattice_free(&l);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {cmocka_unit_test(linear_field_by_table), cmocka_unit_test(held_faces),
-                                       cmocka_unit_test(shared_corners)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

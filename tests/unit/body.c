@@ -9,7 +9,7 @@ static void check_rigid_motion(const struct sample *sample, const struct setup *
 {
     int64_t count = sample->cloud.node_count * sample->dim;
     struct body body = make_body(sample, setup);
-    double *force = sample_array(count, sizeof *force);
+    double *force = zeros(count, sizeof *force);
     double scale =
         50.0 * setup->material[0].shear_modulus * (sample->dim == 2 ? 1.0 : sample_size) * sample_size;
     for (int motion = 0; motion < 5; motion++) {
@@ -22,15 +22,12 @@ static void check_rigid_motion(const struct sample *sample, const struct setup *
         NEAR_TO(deformation.least_jacobian, 1.0, 1e-12);
         AT_MOST(largest(force, count), 1e-12 * scale);
         NEAR_TO(body_energy(&body, u), 0.0, 1e-12 * scale);
-        free(u);
     }
-    free(force);
     body_free(&body);
 }
 
-static void rigid_motion(void **state)
+TEST(rigid_motion)
 {
-    (void)state;
     for_all(check_rigid_motion);
 }
 
@@ -39,7 +36,7 @@ static void check_gradient(const struct sample *sample, const struct setup *setu
 {
     int64_t count = sample->cloud.node_count * sample->dim;
     struct body body = make_body(sample, setup);
-    double *force = sample_array(count, sizeof *force), *at = sample_array(count, sizeof *at);
+    double *force = zeros(count, sizeof *force), *at = zeros(count, sizeof *at);
     double *u = deformed_field(sample, &body, force, random);
     (void)body_force(&body, u, force);
     for (int direction = 0; direction < 5; direction++) {
@@ -55,17 +52,12 @@ static void check_gradient(const struct sample *sample, const struct setup *setu
             sum += fabs(force[i] * v[i]);
         }
         NEAR_TO(work, (value[0] - 8.0 * value[1] + 8.0 * value[2] - value[3]) / (12.0 * h), 2e-7 * sum);
-        free(v);
     }
-    free(u);
-    free(at);
-    free(force);
     body_free(&body);
 }
 
-static void force_is_gradient(void **state)
+TEST(force_is_gradient)
 {
-    (void)state;
     for_all(check_gradient);
 }
 
@@ -75,7 +67,7 @@ static void check_balance(const struct sample *sample, const struct setup *setup
     int dim = sample->dim;
     int64_t count = sample->cloud.node_count * dim;
     struct body body = make_body(sample, setup);
-    double *force = sample_array(count, sizeof *force);
+    double *force = zeros(count, sizeof *force);
     double *u = deformed_field(sample, &body, force, random);
     double sum[3] = {0.0}, moment[3] = {0.0}, size;
     (void)body_force(&body, u, force);
@@ -94,14 +86,11 @@ static void check_balance(const struct sample *sample, const struct setup *setup
         NEAR_TO(sum[a], 0.0, 1e-12 * size);
         NEAR_TO(moment[a], 0.0, 1e-12 * size * sample_size);
     }
-    free(u);
-    free(force);
     body_free(&body);
 }
 
-static void balance(void **state)
+TEST(balance)
 {
-    (void)state;
     for_all(check_balance);
 }
 
@@ -114,16 +103,16 @@ static void check_linear(const struct sample *sample, const struct setup *setup,
     const double *A = sample->dim == 2 ? plane : space;
     struct body body = make_body(sample, setup);
     double *u = linear_field(sample, A, (double[]){0.1, 0.2, -0.3}), C[9], J = determinant(A), energy = 0.0;
-    double *F = sample_array(sample->point_count * 9, sizeof *F);
-    double *P = sample_array(sample->point_count * 9, sizeof *P);
-    double *force = sample_array(sample->cloud.node_count * sample->dim, sizeof *force), volume = 0.0;
+    double *F = zeros(sample->assembly.point_count * 9, sizeof *F);
+    double *P = zeros(sample->assembly.point_count * 9, sizeof *P);
+    double *force = zeros(sample->cloud.node_count * sample->dim, sizeof *force), volume = 0.0;
     (void)random;
     struct deformation deformation = body_force(&body, u, force);
     NEAR_TO(deformation.least_jacobian, J, 1e-12);
     body_gradient(&body, F);
     body_stress(&body, P);
     cofactor(A, C);
-    for (int64_t q = 0; q < sample->point_count; q++) {
+    for (int64_t q = 0; q < sample->assembly.point_count; q++) {
         const struct material *material = &setup->material[material_at(sample, setup, q)];
         double expected[9];
         material_shape_stress(material, A, expected);
@@ -131,9 +120,9 @@ static void check_linear(const struct sample *sample, const struct setup *setup,
             NEAR_TO(F[9 * q + i], A[i], 1e-12);
             NEAR_TO(P[9 * q + i], expected[i] + material_pressure(material, J) * C[i], 1e-7);
         }
-        volume += sample->weight[q];
-        energy +=
-            sample->weight[q] * (material_shape_energy(material, A) + material_volume_energy(material, J));
+        volume += sample->assembly.weight[q];
+        energy += sample->assembly.weight[q] *
+                  (material_shape_energy(material, A) + material_volume_energy(material, J));
     }
     NEAR_TO(volume, pow(sample_size, sample->dim), 1e-15);
     NEAR_TO(body_energy(&body, u), energy, 1e-11 * energy);
@@ -142,16 +131,11 @@ static void check_linear(const struct sample *sample, const struct setup *setup,
         volume += body.weight[q];
     }
     NEAR_TO(volume, pow(sample_size, sample->dim), 1e-15);
-    free(u);
-    free(F);
-    free(P);
-    free(force);
     body_free(&body);
 }
 
-static void linear_fields(void **state)
+TEST(linear_fields)
 {
-    (void)state;
     for_all(check_linear);
 }
 
@@ -163,52 +147,41 @@ static void fault_of_smoothing(void)
     struct setup setup = one_material(MATERIAL_NEO_HOOKEAN, false);
     struct sample *sample = &samples[0];
     struct smoothed_cells_input smoothed = sample_smoothed(sample);
-    int32_t *material = sample_array(sample->point_count, sizeof *material);
-    struct body_input input = {.dim = 2,
-                               .node_count = sample->cloud.node_count,
-                               .point_count = sample->point_count,
-                               .x = sample->x,
-                               .weight = sample->weight,
-                               .ptr = sample->ptr,
-                               .idx = sample->idx,
-                               .dphi = sample->dphi,
-                               .materials = setup.material,
-                               .material = material,
-                               .material_count = 1,
-                               .smoothed = &smoothed};
-    double *changed = &sample->averages.phi[sample->averages.ptr[7]], before = *changed;
+    int32_t *material = zeros(sample->assembly.point_count, sizeof *material);
+    struct body_input input = sample_input(sample, setup.material, 1, material);
+    input.vertex = NULL;
+    input.smoothed = &smoothed;
+    double *face_phi = stream_find(&sample->stream, "face.phi")->data,
+           *node_phi = stream_find(&sample->stream, "node.phi")->data;
+    double *changed = &face_phi[sample->assembly.lists.ptr[7]], before = *changed;
     *changed += 0.01;
     assert_int_equal(body_build(&input, &body, &error), STATUS_INPUT);
     assert_string_equal(error.text,
                         "face.phi: row 7: not the shape functions at this row: run shapefn again");
     *changed = before;
-    changed = &sample->node_phi[sample->node_lists.ptr[5]];
+    changed = &node_phi[sample->assembly.node_lists.ptr[5]];
     before = *changed;
     *changed += 0.01;
     assert_int_equal(body_build(&input, &body, &error), STATUS_INPUT);
     assert_string_equal(error.text,
                         "node.phi: node 5: not the shape functions at this node: run shapefn again");
     *changed = before;
-    struct faces fewer = sample->faces;
+    struct faces fewer = sample->assembly.faces;
     fewer.count--;
     smoothed.faces = &fewer;
-    assert_int_equal(body_build(&input, &body, &error), STATUS_INPUT);
-    assert_non_null(strstr(error.text, "lacks a face: run ipoints for smoothed cells"));
-    struct faces wrong = sample->faces;
-    wrong.row = sample_array(wrong.count, sizeof *wrong.row);
+    FAILS(body_build(&input, &body, &error), STATUS_INPUT, "lacks a face: run ipoints for smoothed cells");
+    struct faces wrong = sample->assembly.faces;
+    wrong.row = array_or_fail(wrong.count, sizeof *wrong.row);
     for (int64_t f = 0; f < wrong.count; f++) {
         wrong.row[f] = (int32_t)(f == 4 ? 2 : f);
     }
     smoothed.faces = &wrong;
-    assert_int_equal(body_build(&input, &body, &error), STATUS_INPUT);
-    assert_non_null(strstr(error.text, "faces.row: row "));
+    FAILS(body_build(&input, &body, &error), STATUS_INPUT, "faces.row: row ");
     free(wrong.row);
-    free(material);
 }
 
-static void faults(void **state)
+TEST(faults)
 {
-    (void)state;
     struct body body;
     struct error error;
     static const struct material material = {.shear_modulus = 1.0, .bulk_modulus = 1.0};
@@ -245,9 +218,8 @@ static void faults(void **state)
 
 /* A body of many blocks: forces from the caller's
  * table and the stresses, one point after the other; of smoothed cells as the slope of the energy. */
-static void many_blocks(void **state)
+TEST(many_blocks)
 {
-    (void)state;
     struct random random = {7};
     for (int i = 0; i < 4; i++) {
         bool by_faces = i >= 2;
@@ -256,17 +228,17 @@ static void many_blocks(void **state)
         setup.faces = by_faces;
         struct body body = make_body(&sample, &setup);
         int64_t count = sample.cloud.node_count * 2;
-        double *force = sample_array(count, sizeof *force), *expected = sample_array(count, sizeof *expected);
-        double *P = sample_array(sample.point_count * 9, sizeof *P);
+        double *force = zeros(count, sizeof *force), *expected = zeros(count, sizeof *expected);
+        double *P = zeros(sample.assembly.point_count * 9, sizeof *P);
         double *u = deformed_field(&sample, &body, force, &random), slope = 0.0, h = 1e-9, high;
         assert_true(body.block_count > 30);
         (void)body_force(&body, u, force);
         body_stress(&body, P);
-        for (int64_t q = 0; q < sample.point_count && !by_faces; q++) {
+        for (int64_t q = 0; q < sample.assembly.point_count && !by_faces; q++) {
             for (int64_t k = sample.ptr[q] * 2; k < sample.ptr[q + 1] * 2; k++) {
                 for (int a = 0; a < 2; a++) {
                     expected[sample.idx[k / 2] * 2 + a] +=
-                        sample.weight[q] * P[9 * q + 3 * a + k % 2] * sample.dphi[k];
+                        sample.assembly.weight[q] * P[9 * q + 3 * a + k % 2] * sample.dphi[k];
                 }
             }
         }
@@ -300,21 +272,9 @@ static void many_blocks(void **state)
             u[k] -= 2.0 * h * along[k];
         }
         NEAR_TO((high - body_energy(&body, u)) / (2.0 * h), slope, 1e-5 * fabs(slope));
-        free(along);
-        free(P);
-        free(u);
-        free(force);
-        free(expected);
         body_free(&body);
         sample_free(&sample);
     }
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(rigid_motion),  cmocka_unit_test(force_is_gradient), cmocka_unit_test(balance),
-        cmocka_unit_test(linear_fields), cmocka_unit_test(many_blocks),       cmocka_unit_test(faults),
-    };
-    return cmocka_run_group_tests(tests, make_samples, free_samples);
-}
+RUN_TESTS(make_samples, free_samples)

@@ -3,9 +3,8 @@
 #include "body_setup.h"
 
 /* A linear field of a body of one material is in equilibrium inside: with smoothed cells to round-off. */
-static void accumulation(void **state)
+TEST(accumulation)
 {
-    (void)state;
     static const double A[9] = {1.1, 0.2, 0, 0.1, 0.95, 0, 0, 0, 1};
     for (int dim = 2; dim <= 3; dim++) {
         struct sample sample = make_sample(dim, true, dim == 2 ? 9 : 7);
@@ -15,14 +14,15 @@ static void accumulation(void **state)
             struct body body = make_body(&sample, &setup);
             int64_t inner = 0;
             double *u = linear_field(&sample, A, NULL);
-            double *force = sample_array(sample.cloud.node_count * dim, sizeof *force);
-            bool *outer = sample_array(sample.cloud.node_count, sizeof *outer);
-            for (int64_t f = 0; f < sample.faces.count; f++) {
-                for (int g = 0; g < sample.face_rule.points && sample.faces.cell[2 * f + 1] < 0; g++) {
-                    int64_t point = f * sample.face_rule.points + g;
-                    for (int64_t i = sample.face_lists.ptr[point]; i < sample.face_lists.ptr[point + 1];
-                         i++) {
-                        outer[sample.face_lists.idx[i]] = true; /* the boundary's integral feels it */
+            double *force = zeros(sample.cloud.node_count * dim, sizeof *force);
+            bool *outer = zeros(sample.cloud.node_count, sizeof *outer);
+            for (int64_t f = 0; f < sample.assembly.faces.count; f++) {
+                for (int g = 0; g < OWN_POINTS(dim) && sample.assembly.faces.cell[2 * f + 1] < 0; g++) {
+                    int64_t point = f * OWN_POINTS(dim) + g;
+                    for (int64_t i = sample.assembly.boundary_lists.ptr[point];
+                         i < sample.assembly.boundary_lists.ptr[point + 1]; i++) {
+                        outer[sample.assembly.boundary_lists.idx[i]] =
+                            true; /* the boundary's integral feels it */
                     }
                 }
             }
@@ -35,9 +35,6 @@ static void accumulation(void **state)
                 }
             }
             assert_true(inner > 0);
-            free(u);
-            free(force);
-            free(outer);
             body_free(&body);
         }
         sample_free(&sample);
@@ -49,22 +46,26 @@ static void value_at_node(const struct sample *sample, int64_t node, const doubl
 {
     int dim = sample->dim;
     memset(value, 0, 3 * sizeof *value);
-    for (int64_t i = sample->node_lists.ptr[node]; i < sample->node_lists.ptr[node + 1]; i++) {
+    for (int64_t i = sample->assembly.node_lists.ptr[node]; i < sample->assembly.node_lists.ptr[node + 1];
+         i++) {
         for (int a = 0; a < dim; a++) {
-            value[a] += sample->node_phi[i] * u[(int64_t)sample->node_lists.idx[i] * dim + a];
+            value[a] +=
+                sample->assembly.node_phi[i] * u[(int64_t)sample->assembly.node_lists.idx[i] * dim + a];
         }
     }
 }
 
 static void mean_of_face(const struct sample *sample, int64_t face, const double *u, double *mean)
 {
-    int dim = sample->dim, points = sample->face_rule.points;
+    int dim = sample->dim, points = OWN_POINTS(dim);
+    const struct quadrature_rule rule = quadrature_face_rule(dim);
     memset(mean, 0, 3 * sizeof *mean);
     for (int64_t p = face * points; p < (face + 1) * points; p++) {
-        for (int64_t i = sample->face_lists.ptr[p]; i < sample->face_lists.ptr[p + 1]; i++) {
-            double share = sample->face_rule.weight[p % points] * sample->face_phi[i];
+        for (int64_t i = sample->assembly.boundary_lists.ptr[p];
+             i < sample->assembly.boundary_lists.ptr[p + 1]; i++) {
+            double share = rule.weight[p % points] * sample->assembly.boundary_phi[i];
             for (int a = 0; a < dim; a++) {
-                mean[a] += share * u[(int64_t)sample->face_lists.idx[i] * dim + a];
+                mean[a] += share * u[(int64_t)sample->assembly.boundary_lists.idx[i] * dim + a];
             }
         }
     }
@@ -93,9 +94,9 @@ static double dot(const double a[3], const double b[3])
 static double volume_below(const struct sample *sample, int64_t face, const double *u)
 {
     int dim = sample->dim;
-    const int32_t *vertex = sample->faces.node + face * dim, *cell = sample->cells.node;
+    const int32_t *vertex = sample->assembly.faces.node + face * dim, *cell = sample->assembly.cells.node;
     double rest[3][3] = {{0.0}}, x[3][3] = {{0.0}}, inside[3] = {0.0}, centre[3] = {0.0}, mean[3], area[3];
-    cell += (int64_t)sample->faces.cell[2 * face] * (dim + 1);
+    cell += (int64_t)sample->assembly.faces.cell[2 * face] * (dim + 1);
     mean_of_face(sample, face, u, mean);
     for (int k = 0; k < dim; k++) {
         double value[3];
@@ -122,9 +123,8 @@ static double volume_below(const struct sample *sample, int64_t face, const doub
 }
 
 /* Whatever the field, the volume ratios of smoothed cells make up the volume within the boundary. */
-static void enclosed_volume(void **state)
+TEST(enclosed_volume)
 {
-    (void)state;
     struct random random = {17};
     for (int i = 0; i < 4; i += 2) {
         const struct sample *sample = &samples[i];
@@ -133,42 +133,38 @@ static void enclosed_volume(void **state)
         struct body body = make_body(sample, &setup);
         double *u = random_field(sample, 0.05 * sample_size, &random), sum = 0.0, averages = 0.0,
                inside = 0.0;
-        double *F = sample_array(sample->point_count * 9, sizeof *F), rest = pow(sample_size, sample->dim);
+        double *F = zeros(sample->assembly.point_count * 9, sizeof *F), rest = pow(sample_size, sample->dim);
         (void)body_energy(&body, u);
         body_gradient(&body, F);
         for (int64_t q = 0; q < body.point_count; q++) {
             sum += body.weight[q] * body.J[q];
             averages += body.weight[q] * determinant(F + 9 * body.order[q]);
         }
-        for (int64_t f = 0; f < sample->faces.count; f++) {
-            inside += sample->faces.cell[2 * f + 1] < 0 ? volume_below(sample, f, u) : 0.0;
+        for (int64_t f = 0; f < sample->assembly.faces.count; f++) {
+            inside += sample->assembly.faces.cell[2 * f + 1] < 0 ? volume_below(sample, f, u) : 0.0;
         }
         NEAR_TO(sum, inside, 1e-13 * rest);
 
         assert_true(fabs(averages - inside) > 1e-4 * rest); /* the determinants of the averages do not */
-        free(u);
-        free(F);
         body_free(&body);
     }
 }
 
 /* Smoothed cells by averages over their faces: the gradients of the table, but for round-off; and for a small
  * field, where J differs from det F by a square, its forces and energy. */
-static void faces(void **state)
+TEST(faces)
 {
-    (void)state;
     struct random random = {11};
     for (int i = 0; i < 4; i += 2) {
         for (int kind = 0; kind < 2; kind++) {
             const struct sample *sample = &samples[i];
             struct setup setup = three_materials(kind == 1);
-            int64_t count = sample->cloud.node_count * sample->dim, size = sample->point_count * 9;
+            int64_t count = sample->cloud.node_count * sample->dim, size = sample->assembly.point_count * 9;
             struct body by_table = make_body(sample, &setup);
             setup.faces = true;
             struct body by_faces = make_body(sample, &setup);
-            double *force = sample_array(count, sizeof *force),
-                   *expected = sample_array(count, sizeof *expected);
-            double *F = sample_array(size, sizeof *F), *F_expected = sample_array(size, sizeof *F_expected);
+            double *force = zeros(count, sizeof *force), *expected = zeros(count, sizeof *expected);
+            double *F = zeros(size, sizeof *F), *F_expected = zeros(size, sizeof *F_expected);
             double *u = deformed_field(sample, &by_table, expected, &random);
             struct deformation least = body_force(&by_table, u, expected),
                                other = body_force(&by_faces, u, force);
@@ -197,11 +193,6 @@ static void faces(void **state)
             }
             energy = body_energy(&by_table, u);
             NEAR_TO(body_energy(&by_faces, u) - 1e-10 * stabilised, energy, 1e-4 * energy);
-            free(u);
-            free(F);
-            free(F_expected);
-            free(force);
-            free(expected);
             body_free(&by_table);
             body_free(&by_faces);
         }
@@ -209,9 +200,8 @@ static void faces(void **state)
 }
 
 /* The kernels of the neo-Hookean law and what serves all laws, one cell at a time: the same forces. */
-static void general_law(void **state)
+TEST(general_law)
 {
-    (void)state;
     struct random random = {13};
     for (int i = 0; i < 8; i++) {
         const struct sample *sample = &samples[i % 4];
@@ -219,7 +209,7 @@ static void general_law(void **state)
         struct setup setup = one_material(MATERIAL_NEO_HOOKEAN, i < 4);
         setup.faces = sample->smoothed;
         struct body body = make_body(sample, &setup);
-        double *force = sample_array(count, sizeof *force), *expected = sample_array(count, sizeof *expected);
+        double *force = zeros(count, sizeof *force), *expected = zeros(count, sizeof *expected);
         double *u = deformed_field(sample, &body, force, &random);
         (void)body_force(&body, u, force);
         for (int64_t b = 0; b < body.block_count; b++) {
@@ -230,20 +220,8 @@ static void general_law(void **state)
         for (int64_t k = 0; k < count; k++) {
             NEAR_TO(force[k], expected[k], 1e-12 * largest(expected, count));
         }
-        free(u);
-        free(force);
-        free(expected);
         body_free(&body);
     }
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(accumulation),
-        cmocka_unit_test(faces),
-        cmocka_unit_test(enclosed_volume),
-        cmocka_unit_test(general_law),
-    };
-    return cmocka_run_group_tests(tests, make_samples, free_samples);
-}
+RUN_TESTS(make_samples, free_samples)

@@ -1,142 +1,30 @@
-/* A small body for tests: a jittered lattice in a square or cube of 0.1 m, its cells, faces, supports, and
- * the tables of both integration schemes. */
+/* A small body for tests: a jittered lattice in a square or cube of 0.1 m, and its tables by either
+ * integration scheme. */
 #ifndef TESTS_BODY_FIXTURE_H
 #define TESTS_BODY_FIXTURE_H
 
 #include "cell_table.h"
-#include "solid_fixture.h"
+#include "tables_fixture.h"
 
-#include "approx/boundary.h"
-#include "approx/cloud.h"
 #include "approx/quadrature.h"
-#include "approx/support.h"
 #include "solid/smoothed_cells.h"
 
 struct sample {
     int dim;
     bool smoothed;
     struct cloud cloud;
-    struct cells cells;
-    struct faces faces; /* conforming: all; else those of the boundary */
-    struct support_options options;
-    double *radius;
-    struct point_grid grid;
-    /* Points of the faces: those of the boundary face by face. */
-    struct quadrature_rule face_rule;
-    double *face_x, *face_phi;
-    struct support_lists face_lists;
-    struct neighbours face_neighbours;
-    struct face_averages averages;
-    const int32_t *face_reader; /* as in struct smoothed_cells_input */
-    /* Integration points. */
-    int64_t point_count;
-    double *x, *weight, *barycentric, *phi, *dphi;
-    int32_t *vertex;
-    int64_t *ptr;
-    int32_t *idx;
-    /* Values at the nodes. */
-    struct support_lists node_lists;
-    double *node_phi;
+    struct stream stream;
+    struct assembly assembly; /* in view of the stream; a copy's face_table is not to be used */
+    /* Gradients at the integration points; of smoothed cells those that the averages over faces make. */
+    struct cell_table of_cells;
+    const int64_t *ptr;
+    const int32_t *idx;
+    const double *dphi;
+    int32_t *vertex; /* of the cell of each point, and its barycentric coordinates there */
+    double *barycentric;
 };
 
 static const double sample_size = 0.1;
-
-static inline void *sample_array(int64_t count, size_t size)
-{
-    void *array = calloc((size_t)count, size);
-    assert_non_null(array);
-    return array;
-}
-
-static inline void sample_faces(struct sample *sample)
-{
-    struct error error;
-    int dim = sample->dim;
-    sample->face_rule = quadrature_face_rule(dim);
-    GOOD(faces_build(&sample->cells, !sample->smoothed, &sample->faces, &error));
-    int64_t count = face_row_point(&sample->faces, sample->faces.row_count);
-    sample->face_x = sample_array(count * dim, sizeof(double));
-    face_rows_points(&sample->faces, sample->cloud.x, sample->face_x);
-    GOOD(support_build(&sample->options, &sample->grid, count, sample->face_x, "faces", &sample->face_lists,
-                       &error));
-    sample->face_neighbours = support_view(&sample->face_lists);
-    sample->face_phi = sample_array(sample->face_lists.ptr[count], sizeof(double));
-    GOOD(shape_table(&sample->options.mls, sample->cloud.x, sample->radius, &sample->face_neighbours,
-                     sample->face_x, "faces", sample->face_phi, NULL, &error));
-    GOOD(shape_average_faces(&sample->options.mls, sample->cloud.x, sample->radius, &sample->face_neighbours,
-                             sample->face_x, "faces", &sample->faces, &sample->averages, &error));
-}
-
-/* One point for each cell, gradients smoothed over it; or the Gauss points of a rule of `per_cell` points. */
-static inline void sample_points(struct sample *sample, int per_cell)
-{
-    struct error error;
-    struct quadrature_rule rule;
-    int dim = sample->dim;
-    GOOD(quadrature_cell_rule(dim, per_cell, &rule, &error));
-    sample->point_count = sample->cells.count * per_cell;
-    sample->x = sample_array(sample->point_count * dim, sizeof(double));
-    sample->weight = sample_array(sample->point_count, sizeof(double));
-    sample->vertex = sample_array(sample->point_count * (dim + 1), sizeof(int32_t));
-    sample->barycentric = sample_array(sample->point_count * (dim + 1), sizeof(double));
-    for (int64_t c = 0; c < sample->cells.count; c++) {
-        const int32_t *vertex = sample->cells.node + c * (dim + 1);
-        quadrature_positions(&rule, dim, sample->cloud.x, vertex, sample->x + c * per_cell * dim);
-        for (int g = 0; g < per_cell; g++) {
-            int64_t q = c * per_cell + g;
-            sample->weight[q] = rule.weight[g] * cell_volume(&sample->cells, c);
-            for (int k = 0; k <= dim; k++) {
-                sample->vertex[q * (dim + 1) + k] = vertex[k];
-                sample->barycentric[q * (dim + 1) + k] = rule.barycentric[g * (dim + 1) + k];
-            }
-        }
-    }
-    if (sample->smoothed) {
-        struct cell_table table = cell_table_make(&sample->cells, &sample->faces, &sample->averages);
-        sample->ptr = table.ptr;
-        sample->idx = table.idx;
-        sample->phi = table.phi;
-        sample->dphi = table.dphi;
-    } else {
-        struct support_lists lists;
-        GOOD(support_build(&sample->options, &sample->grid, sample->point_count, sample->x, "points", &lists,
-                           &error));
-        struct neighbours neighbours = support_view(&lists);
-        sample->phi = sample_array(lists.ptr[lists.count], sizeof(double));
-        sample->dphi = sample_array(lists.ptr[lists.count] * dim, sizeof(double));
-        GOOD(shape_table(&sample->options.mls, sample->cloud.x, sample->radius, &neighbours, sample->x,
-                         "points", sample->phi, sample->dphi, &error));
-        sample->ptr = lists.ptr;
-        sample->idx = lists.idx;
-        free(lists.widen);
-    }
-}
-
-static inline void sample_nodes(struct sample *sample)
-{
-    struct error error;
-    GOOD(support_build(&sample->options, &sample->grid, sample->cloud.node_count, sample->cloud.x, "nodes",
-                       &sample->node_lists, &error));
-    struct neighbours neighbours = support_view(&sample->node_lists);
-    sample->node_phi = sample_array(sample->node_lists.ptr[sample->cloud.node_count], sizeof(double));
-    GOOD(shape_table(&sample->options.mls, sample->cloud.x, sample->radius, &neighbours, sample->cloud.x,
-                     "nodes", sample->node_phi, NULL, &error));
-}
-
-/* What a body of smoothed cells is made of. */
-static inline struct smoothed_cells_input sample_smoothed(const struct sample *sample)
-{
-    return (struct smoothed_cells_input){.x = sample->cloud.x,
-                                         .cell_node = sample->cells.node,
-                                         .faces = &sample->faces,
-                                         .face_ptr = sample->averages.ptr,
-                                         .face_idx = sample->averages.idx,
-                                         .face_phi = sample->averages.phi,
-                                         .face_reader = sample->face_reader,
-                                         .node_ptr = sample->node_lists.ptr,
-                                         .node_idx = sample->node_lists.idx,
-                                         .node_phi = sample->node_phi};
-}
 
 /* The jittered lattice of a sample. */
 static inline struct cloud sample_cloud(int dim, int64_t per_axis)
@@ -154,24 +42,29 @@ static inline struct cloud sample_cloud(int dim, int64_t per_axis)
     return made;
 }
 
-/* Of a cloud, which becomes the sample's; factor: support radius over local spacing. */
+/* Of a cloud, which becomes the sample's; factor: support radius by local spacing. */
 static inline struct sample sample_of(int dim, bool smoothed, struct cloud cloud, double factor)
 {
     struct error error;
+    struct quadrature_rule rule;
     struct sample sample = {.dim = dim, .smoothed = smoothed, .cloud = cloud};
-    sample.cells = (struct cells){dim, sample.cloud.node_count, sample.cloud.x, sample.cloud.cell_count,
-                                  sample.cloud.cells};
-    double *spacing = sample_array(sample.cloud.node_count, sizeof *spacing);
-    sample.options = support_defaults(dim);
-    sample.options.factor = factor;
-    sample.radius = sample_array(sample.cloud.node_count, sizeof(double));
-    GOOD(cells_node_spacing(&sample.cells, spacing, &error));
-    GOOD(support_radii(&sample.options, sample.cloud.node_count, spacing, sample.radius, &error));
-    GOOD(point_grid_build(&sample.grid, dim, sample.cloud.node_count, sample.cloud.x, sample.radius, &error));
-    free(spacing);
-    sample_faces(&sample);
-    sample_points(&sample, smoothed ? 1 : dim == 2 ? 3 : 4);
-    sample_nodes(&sample);
+    int per_cell = smoothed ? 1 : dim + 1, corners = dim + 1;
+    struct assembly *assembly = &sample.assembly;
+    make_tables_of(&sample.cloud, smoothed ? 0 : per_cell, factor, &sample.stream, assembly);
+    GOOD(quadrature_cell_rule(dim, per_cell, &rule, &error));
+    ARRAY(sample.vertex, assembly->point_count * corners);
+    ARRAY(sample.barycentric, assembly->point_count * corners);
+    for (int64_t i = 0; i < assembly->point_count * corners; i++) {
+        sample.vertex[i] = assembly->cells.node[i / corners / per_cell * corners + i % corners];
+        sample.barycentric[i] = rule.barycentric[i % (per_cell * corners)];
+    }
+    if (smoothed) {
+        sample.of_cells =
+            cell_table_make(&assembly->cells, &assembly->faces, &assembly->lists, assembly->phi);
+    }
+    sample.ptr = smoothed ? sample.of_cells.ptr : assembly->lists.ptr;
+    sample.idx = smoothed ? sample.of_cells.idx : assembly->lists.idx;
+    sample.dphi = smoothed ? sample.of_cells.dphi : assembly->dphi;
     return sample;
 }
 
@@ -187,24 +80,59 @@ static inline struct sample make_sample(int dim, bool smoothed, int64_t per_axis
 
 static inline void sample_free(struct sample *sample)
 {
-    free(sample->radius);
-    free(sample->face_x);
-    free(sample->face_phi);
-    face_averages_free(&sample->averages);
-    free(sample->x);
-    free(sample->weight);
+    cell_table_free(&sample->of_cells);
     free(sample->vertex);
     free(sample->barycentric);
-    free(sample->phi);
-    free(sample->dphi);
-    free(sample->ptr);
-    free(sample->idx);
-    free(sample->node_phi);
-    support_free(&sample->node_lists);
-    support_free(&sample->face_lists);
-    point_grid_free(&sample->grid);
-    faces_free(&sample->faces);
+    stream_free(&sample->stream);
     cloud_free(&sample->cloud);
+}
+
+/* What a body of smoothed cells is made of. */
+static inline struct smoothed_cells_input sample_smoothed(const struct sample *sample)
+{
+    const struct assembly *assembly = &sample->assembly;
+    return (struct smoothed_cells_input){.x = sample->cloud.x,
+                                         .cell_node = assembly->cells.node,
+                                         .faces = &assembly->faces,
+                                         .face_ptr = assembly->lists.ptr,
+                                         .face_idx = assembly->lists.idx,
+                                         .face_phi = assembly->phi,
+                                         .face_reader = assembly->face_reader,
+                                         .node_ptr = assembly->node_lists.ptr,
+                                         .node_idx = assembly->node_lists.idx,
+                                         .node_phi = assembly->node_phi};
+}
+
+/* The body of these materials; material[points]. Change what else is to be different. */
+static inline struct body_input sample_input(const struct sample *sample, const struct material *materials,
+                                             int64_t material_count, const int32_t *material)
+{
+    return (struct body_input){.dim = sample->dim,
+                               .node_count = sample->cloud.node_count,
+                               .point_count = sample->assembly.point_count,
+                               .node_x = sample->cloud.x,
+                               .x = sample->assembly.x,
+                               .weight = sample->assembly.weight,
+                               .ptr = sample->ptr,
+                               .idx = sample->idx,
+                               .dphi = sample->dphi,
+                               .materials = materials,
+                               .material = material,
+                               .material_count = material_count,
+                               .vertex = sample->vertex,
+                               .barycentric = sample->barycentric};
+}
+
+/* Shape functions on the faces of the boundary. */
+static inline struct face_table sample_face_table(const struct sample *sample)
+{
+    return (struct face_table){.dim = sample->dim,
+                               .node_count = sample->cloud.node_count,
+                               .x = sample->cloud.x,
+                               .faces = &sample->assembly.faces,
+                               .per_face = OWN_POINTS(sample->dim),
+                               .lists = &sample->assembly.boundary_lists,
+                               .phi = sample->assembly.boundary_phi};
 }
 
 #endif

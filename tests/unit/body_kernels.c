@@ -6,8 +6,6 @@
 #include "solid/kernel.h"
 #include "solid/nodal_volume.h"
 
-#include <omp.h>
-
 /* The same bits for 1, 2 and 3 threads, and from one call to the next. */
 static void check_threads(const struct sample *sample, const struct setup *setup, struct random *random)
 {
@@ -20,29 +18,25 @@ static void check_threads(const struct sample *sample, const struct setup *setup
     for (int threads = 1; threads <= 3; threads++) {
         omp_set_num_threads(threads);
         struct body body = make_body(sample, setup);
-        double *force = sample_array(count, sizeof *force);
+        double *force = zeros(count, sizeof *force);
         body.threads = threads; /* also where so many would not pay */
         for (int call = 0; call < 2; call++) {
             (void)body_force(&body, u, force);
             if (first == NULL) {
-                first = sample_array(count, sizeof *first);
+                first = zeros(count, sizeof *first);
                 memcpy(first, force, (size_t)count * sizeof *first);
                 energy = body_energy(&body, u);
             }
             assert_memory_equal(force, first, (size_t)count * sizeof *first);
             NEAR_TO(body_energy(&body, u), energy, 0.0);
         }
-        free(force);
         body_free(&body);
     }
     omp_set_num_threads(before);
-    free(first);
-    free(u);
 }
 
-static void threads(void **state)
+TEST(threads)
 {
-    (void)state;
     for_all(check_threads);
 }
 
@@ -52,7 +46,7 @@ static void check_instructions(const struct sample *sample, const struct setup *
     int64_t count = sample->cloud.node_count * sample->dim;
     static const char *const sets[] = {"plain", "avx2", "avx512"};
     struct body body = make_body(sample, setup);
-    double *force = sample_array(count, sizeof *force), *expected = sample_array(count, sizeof *expected);
+    double *force = zeros(count, sizeof *force), *expected = zeros(count, sizeof *expected);
     double *u = deformed_field(sample, &body, force, random);
     (void)body_force(&body, u, expected);
     for (int k = 0; k < 3; k++) {
@@ -67,22 +61,17 @@ static void check_instructions(const struct sample *sample, const struct setup *
             NEAR_TO(force[i], expected[i], 1e-12 * largest(expected, count));
         }
     }
-    free(u);
-    free(force);
-    free(expected);
     body_free(&body);
 }
 
-static void instructions(void **state)
+TEST(instructions)
 {
-    (void)state;
     for_all(check_instructions);
 }
 
 /* Averaging changes nothing where the bulk modulus is at most twice the shear modulus and U is a square. */
-static void compressible(void **state)
+TEST(compressible)
 {
-    (void)state;
     struct random random = {2};
     for (int i = 0; i < 4; i++) {
         const struct sample *sample = &samples[i];
@@ -93,7 +82,7 @@ static void compressible(void **state)
         }
         struct body one = make_body(sample, &none), other = make_body(sample, &whole);
         int64_t count = sample->cloud.node_count * sample->dim;
-        double *force = sample_array(count, sizeof *force), *expected = sample_array(count, sizeof *expected);
+        double *force = zeros(count, sizeof *force), *expected = zeros(count, sizeof *expected);
         double *u = deformed_field(sample, &one, force, &random), energy = body_energy(&one, u);
         (void)body_force(&one, u, expected);
         (void)body_force(&other, u, force);
@@ -101,18 +90,14 @@ static void compressible(void **state)
             NEAR_TO(force[k], expected[k], 1e-12 * largest(expected, count));
         }
         NEAR_TO(body_energy(&other, u), energy, 1e-12 * energy);
-        free(u);
-        free(force);
-        free(expected);
         body_free(&one);
         body_free(&other);
     }
 }
 
 /* Nodal volumes share out the body, and its change of volume, among nodes and materials. */
-static void nodal_volumes(void **state)
+TEST(nodal_volumes)
 {
-    (void)state;
     struct random random = {3};
     for (int dim = 2; dim <= 3; dim++) {
         struct sample sample = make_sample(dim, false, 5);
@@ -142,7 +127,6 @@ static void nodal_volumes(void **state)
         NEAR_TO(volume, carried, 1e-15);
         NEAR_TO(content, expected, 1e-15);
         assert_true(volumes->count > sample.cloud.node_count); /* some nodes lie between materials */
-        free(u);
         body_free(&body);
         sample_free(&sample);
     }
@@ -158,16 +142,15 @@ static struct body make_alike(const struct sample *sample, double poisson_ratio)
 
 /* The pressures solve A pi = b to what is stated of Chebyshev's iterations; a uniform change of volume meets
  * the bulk modulus itself. */
-static void nodal_pressures(void **state)
+TEST(nodal_pressures)
 {
-    (void)state;
     const double poisson_ratio[3] = {0.49, 0.4999, 0.49999};
     for (int k = 0; k < 6; k++) {
         struct sample sample = make_sample(2 + k % 2, false, 5);
         struct body body = make_alike(&sample, poisson_ratio[k / 2]);
         struct nodal_volumes *volumes = &body.volumes;
         const struct material *material = &body.materials[0];
-        double *u = sample_array(sample.cloud.node_count * sample.dim, sizeof *u), J = 1.0;
+        double *u = zeros(sample.cloud.node_count * sample.dim, sizeof *u), J = 1.0;
         for (int64_t i = 0; i < sample.cloud.node_count * sample.dim; i++) {
             u[i] = 0.01 * sample.cloud.x[i];
         }
@@ -198,16 +181,14 @@ static void nodal_pressures(void **state)
         }
         AT_MOST(sqrt(missing2 / whole2),
                 2.0 * 0.02 / 0.98); /* by the iterations, and scaled for uniform ones */
-        free(u);
         body_free(&body);
         sample_free(&sample);
     }
 }
 
 /* Nodal volumes of no size, between two materials of a group, count for nothing. */
-static void empty_volumes(void **state)
+TEST(empty_volumes)
 {
-    (void)state;
     struct body body;
     struct error error;
     struct material material[2] = {make_material(MATERIAL_NEO_HOOKEAN, 3000.0),
@@ -238,9 +219,8 @@ static void empty_volumes(void **state)
 
 /* The bound of the stiffness, at rest and deformed: no diagonal entry exceeds it, and at rest, but for the
  * stabilisation of cells, the sum over the components is known. */
-static void diagonal(void **state)
+TEST(diagonal)
 {
-    (void)state;
     struct random random = {5};
     for (int i = 0; i < 6; i++) {
         /* the stabilisation of cells is bounded roughly */
@@ -253,9 +233,9 @@ static void diagonal(void **state)
         int64_t count = sample->cloud.node_count * dim;
         double mu = setup.material[0].shear_modulus, h = 1e-8;
         double wave = material_wave_modulus(&setup.material[0]), lambda = wave - 2.0 * mu;
-        double *bound = sample_array(sample->cloud.node_count, sizeof *bound);
-        double *force = sample_array(count, sizeof *force);
-        double *u = deformed ? deformed_field(sample, &body, force, &random) : sample_array(count, sizeof *u);
+        double *bound = zeros(sample->cloud.node_count, sizeof *bound);
+        double *force = zeros(count, sizeof *force);
+        double *u = deformed ? deformed_field(sample, &body, force, &random) : zeros(count, sizeof *u);
         (void)body_force(&body, u, force);
         body_diagonal(&body, bound);
         for (int64_t n = 0; n < sample->cloud.node_count; n++) {
@@ -275,9 +255,6 @@ static void diagonal(void **state)
                 NEAR_TO(trace, bound[n] * (lambda + (dim + 1) * mu) / wave, 1e-6 * bound[n]);
             }
         }
-        free(bound);
-        free(u);
-        free(force);
         body_free(&body);
     }
 }
@@ -288,7 +265,7 @@ static void check_inversion(const struct sample *sample, const struct setup *set
     int dim = sample->dim;
     int64_t count = sample->cloud.node_count * dim, nodes = sample->cloud.node_count;
     struct body body = make_body(sample, setup);
-    double *force = sample_array(count, sizeof *force), *F = sample_array(sample->point_count * 9, sizeof *F);
+    double *force = zeros(count, sizeof *force), *F = zeros(sample->assembly.point_count * 9, sizeof *F);
     double *u = random_field(sample, 1e-4, random);
     for (int round = 0; round < 4; round++) {
         int64_t node = (int64_t)uniform(random, 0.0, (double)nodes), least = 0;
@@ -296,7 +273,7 @@ static void check_inversion(const struct sample *sample, const struct setup *set
         u[node * dim] += 3.0 * sample_size * inward; /* through its neighbours */
         struct deformation deformation = body_force(&body, u, force);
         body_gradient(&body, F);
-        for (int64_t q = 0; q < sample->point_count; q++) {
+        for (int64_t q = 0; q < sample->assembly.point_count; q++) {
             double G[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
             for (int64_t i = sample->ptr[q]; i < sample->ptr[q + 1]; i++) {
                 for (int k = 0; k < dim * dim; k++) {
@@ -321,24 +298,12 @@ static void check_inversion(const struct sample *sample, const struct setup *set
         touched = touched || sample->idx[i] == 3 / dim;
     }
     assert_true(touched || setup->faces); /* faces are worked on in groups: a neighbour may have it first */
-    free(u);
-    free(F);
-    free(force);
     body_free(&body);
 }
 
-static void inversion(void **state)
+TEST(inversion)
 {
-    (void)state;
     for_all(check_inversion);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(threads),       cmocka_unit_test(instructions),    cmocka_unit_test(compressible),
-        cmocka_unit_test(nodal_volumes), cmocka_unit_test(nodal_pressures), cmocka_unit_test(diagonal),
-        cmocka_unit_test(inversion),     cmocka_unit_test(empty_volumes),
-    };
-    return cmocka_run_group_tests(tests, make_samples, free_samples);
-}
+RUN_TESTS(make_samples, free_samples)

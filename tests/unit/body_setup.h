@@ -7,8 +7,6 @@
 
 #include "solid/body.h"
 
-#include <omp.h>
-
 enum { MATERIALS = 3 };
 
 /* How a body is made from a sample. */
@@ -46,7 +44,7 @@ static inline struct setup three_materials(bool averaged)
 /* Materials lie in layers across axis 0. */
 static inline int32_t material_at(const struct sample *sample, const struct setup *setup, int64_t q)
 {
-    return (int32_t)(sample->x[q * sample->dim] / sample_size * setup->model_count);
+    return (int32_t)(sample->assembly.x[q * sample->dim] / sample_size * setup->model_count);
 }
 
 static inline struct body make_body(const struct sample *sample, const struct setup *setup)
@@ -54,26 +52,15 @@ static inline struct body make_body(const struct sample *sample, const struct se
     struct body body;
     struct error error;
     struct smoothed_cells_input smoothed = sample_smoothed(sample);
-    int32_t *material = sample_array(sample->point_count, sizeof *material);
-    for (int64_t q = 0; q < sample->point_count; q++) {
+    int32_t *material;
+    ARRAY(material, sample->assembly.point_count);
+    for (int64_t q = 0; q < sample->assembly.point_count; q++) {
         material[q] = material_at(sample, setup, q);
     }
-    struct body_input input = {.dim = sample->dim,
-                               .node_count = sample->cloud.node_count,
-                               .point_count = sample->point_count,
-                               .node_x = sample->cloud.x,
-                               .smoothed = setup->faces ? &smoothed : NULL,
-                               .x = sample->x,
-                               .weight = sample->weight,
-                               .ptr = sample->ptr,
-                               .idx = sample->idx,
-                               .dphi = sample->dphi,
-                               .materials = setup->material,
-                               .material = material,
-                               .material_count = setup->model_count,
-                               .vertex = setup->averaged ? sample->vertex : NULL,
-                               .barycentric = sample->barycentric,
-                               .ranks = setup->ranks};
+    struct body_input input = sample_input(sample, setup->material, setup->model_count, material);
+    input.smoothed = setup->faces ? &smoothed : NULL;
+    input.vertex = setup->averaged ? sample->vertex : NULL;
+    input.ranks = setup->ranks;
     GOOD(body_build(&input, &body, &error));
     free(material);
     return body;
@@ -83,7 +70,7 @@ static inline struct body make_body(const struct sample *sample, const struct se
 static inline double *linear_field(const struct sample *sample, const double *A, const double *b)
 {
     int dim = sample->dim;
-    double *u = sample_array(sample->cloud.node_count * dim, sizeof *u);
+    double *u = zeros(sample->cloud.node_count * dim, sizeof *u);
     for (int64_t n = 0; n < sample->cloud.node_count; n++) {
         for (int i = 0; i < dim; i++) {
             u[n * dim + i] = b != NULL ? b[i] : 0.0;
@@ -98,7 +85,7 @@ static inline double *linear_field(const struct sample *sample, const double *A,
 static inline double *random_field(const struct sample *sample, double size, struct random *random)
 {
     int64_t count = sample->cloud.node_count * sample->dim;
-    double *u = sample_array(count, sizeof *u);
+    double *u = zeros(count, sizeof *u);
     for (int64_t i = 0; i < count; i++) {
         u[i] = size * uniform(random, -1.0, 1.0);
     }

@@ -2,17 +2,6 @@
  * divergence theorem against the cells' table, and facets that are none. */
 #include "body_fixture.h"
 
-static struct face_table face_table(const struct sample *sample)
-{
-    return (struct face_table){.dim = sample->dim,
-                               .node_count = sample->cloud.node_count,
-                               .x = sample->cloud.x,
-                               .faces = &sample->faces,
-                               .per_face = sample->face_rule.points,
-                               .lists = &sample->face_neighbours,
-                               .phi = sample->face_phi};
-}
-
 static struct facet_set all_facets(const struct sample *sample)
 {
     return (struct facet_set){sample->cloud.facet_count, sample->cloud.facets};
@@ -35,7 +24,7 @@ static struct boundary_averages averages_of(const struct sample *sample, struct 
 {
     struct boundary_averages averages;
     struct error error;
-    struct face_table table = face_table(sample);
+    struct face_table table = sample_face_table(sample);
     GOOD(boundary_averages_build(&table, &set, &averages, &error));
     return averages;
 }
@@ -85,9 +74,8 @@ static void check_averages(const struct sample *sample, const struct boundary_av
 }
 
 /* The whole boundary in one set: a boundary average for each side that meets at a node. */
-static void averages_split_at_corners(void **state)
+TEST(averages_split_at_corners)
 {
-    (void)state;
     for (int dim = 2; dim <= 3; dim++) {
         for (int smoothed = 0; smoothed < 2; smoothed++) {
             struct sample sample = make_wide_sample(dim, smoothed == 1, dim == 2 ? 6 : 5, 2.6);
@@ -136,9 +124,8 @@ static void averages_split_at_corners(void **state)
 
 /* A side alone has one boundary average for each of its nodes, and that is the part of it in the whole
  * boundary. */
-static void sides(void **state)
+TEST(sides)
 {
-    (void)state;
     for (int dim = 2; dim <= 3; dim++) {
         struct sample sample = make_sample(dim, true, 4);
         struct boundary_averages whole = averages_of(&sample, all_facets(&sample));
@@ -177,19 +164,19 @@ static void sides(void **state)
 /* The mean gradient of any field over the body is its boundary's: for every node j,
  * sum_cells V dphi_j = sum_averages A Phi_j n, to round-off, since cells and boundary averages share their
  * quadrature. */
-static void divergence_theorem(void **state)
+TEST(divergence_theorem)
 {
-    (void)state;
     for (int dim = 2; dim <= 3; dim++) {
         struct sample sample = make_sample(dim, true, dim == 2 ? 7 : 4);
         struct boundary_averages averages = averages_of(&sample, all_facets(&sample));
         int64_t count = sample.cloud.node_count * dim;
-        double *inside = sample_array(count, sizeof *inside), *outside = sample_array(count, sizeof *outside);
+        double *inside = zeros(count, sizeof *inside), *outside = zeros(count, sizeof *outside);
         double largest = 0.0;
-        for (int64_t q = 0; q < sample.point_count; q++) {
+        for (int64_t q = 0; q < sample.assembly.point_count; q++) {
             for (int64_t i = sample.ptr[q]; i < sample.ptr[q + 1]; i++) {
                 for (int c = 0; c < dim; c++) {
-                    inside[(int64_t)sample.idx[i] * dim + c] += sample.weight[q] * sample.dphi[i * dim + c];
+                    inside[(int64_t)sample.idx[i] * dim + c] +=
+                        sample.assembly.weight[q] * sample.dphi[i * dim + c];
                 }
             }
         }
@@ -206,22 +193,19 @@ static void divergence_theorem(void **state)
             NEAR_TO(inside[i], outside[i], 1e-13 * pow(sample_size, dim - 1));
         }
         assert_true(largest > 0.01 * pow(sample_size, dim - 1));
-        free(inside);
-        free(outside);
         boundary_averages_free(&averages);
         sample_free(&sample);
     }
 }
 
 /* A facet is the same face whatever node it begins with; which way it is turned gives the normal. */
-static void other_vertex_orders(void **state)
+TEST(other_vertex_orders)
 {
-    (void)state;
     for (int dim = 2; dim <= 3; dim++) {
         struct sample sample = make_sample(dim, true, 4);
         struct facet_set set = all_facets(&sample);
         struct boundary_averages expected = averages_of(&sample, set);
-        int32_t *turned = sample_array(set.count * dim, sizeof *turned);
+        int32_t *turned = zeros(set.count * dim, sizeof *turned);
         for (int shift = 1; shift < dim + 1; shift++) {
             /* Begin with the next node; at last, swap two: inside out. */
             for (int64_t f = 0; f < set.count; f++) {
@@ -247,16 +231,14 @@ static void other_vertex_orders(void **state)
             }
             boundary_averages_free(&averages);
         }
-        free(turned);
         boundary_averages_free(&expected);
         sample_free(&sample);
     }
 }
 
 /* In 3D two facets that touch at one node only do not share its boundary average. */
-static void touching_facets(void **state)
+TEST(touching_facets)
 {
-    (void)state;
     struct sample sample = make_sample(3, true, 4);
     struct facet_set side = facets_of_side(&sample, 0);
     int pairs[4] = {0};
@@ -278,9 +260,8 @@ static void touching_facets(void **state)
 }
 
 /* Boundary averages stay whole on a curve that turns gently. */
-static void gentle_and_sharp_turns(void **state)
+TEST(gentle_and_sharp_turns)
 {
-    (void)state;
     /* A fan of triangles about node 0; the outer nodes lie on a polygon. */
     enum { MOST = 24 };
     for (int corners = 4; corners <= MOST; corners += 4) {
@@ -336,12 +317,11 @@ static void gentle_and_sharp_turns(void **state)
 
 /* Boundary averages that are not split, and the mean over each side of the box: the boundary averages of a
  * side, split there, make its mean. Of split boundary averages the groups are the sides. */
-static void whole_sides(void **state)
+TEST(whole_sides)
 {
-    (void)state;
     for (int dim = 2; dim <= 3; dim++) {
         struct sample sample = make_sample(dim, true, 5);
-        struct face_table table = face_table(&sample);
+        struct face_table table = sample_face_table(&sample);
         struct facet_set set = all_facets(&sample);
         struct error error;
         for (int split = 0; split < 2; split++) {
@@ -389,23 +369,19 @@ static void whole_sides(void **state)
 }
 
 /* Node values: one entry for each node, never split, with the table's row of the node. */
-static void node_values(void **state)
+TEST(node_values)
 {
-    (void)state;
     for (int dim = 2; dim <= 3; dim++) {
         struct error error;
         struct sample sample = make_sample(dim, true, 5);
-        struct support_lists lists;
+        const struct neighbours lists = sample.assembly.node_lists;
+        const double *phi = sample.assembly.node_phi;
         struct boundary_averages averages;
         int64_t count = sample.cloud.node_count, expected = 0;
-        GOOD(support_build(&sample.options, &sample.grid, count, sample.cloud.x, "nodes", &lists, &error));
-        struct neighbours neighbours = support_view(&lists);
-        double *phi = sample_array(lists.ptr[count], sizeof *phi), area = 0.0;
-        GOOD(shape_table(&sample.options.mls, sample.cloud.x, sample.radius, &neighbours, sample.cloud.x,
-                         "nodes", phi, NULL, &error));
-        struct face_table table = face_table(&sample);
+        double area = 0.0;
+        struct face_table table = sample_face_table(&sample);
         struct facet_set set = all_facets(&sample);
-        GOOD(boundary_nodes_build(&table, &set, &neighbours, phi, &averages, &error));
+        GOOD(boundary_nodes_build(&table, &set, &lists, phi, &averages, &error));
         check_averages(&sample, &averages);
         for (int32_t n = 0; n < count; n++) {
             expected += sides_at(&sample, n) > 0;
@@ -424,8 +400,6 @@ static void node_values(void **state)
             }
         }
         NEAR_TO(area, 2.0 * dim * pow(sample_size, dim - 1), 1e-14);
-        free(phi);
-        support_free(&lists);
         boundary_averages_free(&averages);
         sample_free(&sample);
     }
@@ -434,9 +408,10 @@ static void node_values(void **state)
 /* Whether a face lies on the side x = 0 of the box, there all of it below y = limit. */
 static bool on_side_below(const struct sample *sample, int64_t face, double limit)
 {
-    bool is_there = sample->faces.cell[2 * face + 1] < 0;
+    bool is_there = sample->assembly.faces.cell[2 * face + 1] < 0;
     for (int k = 0; k < sample->dim; k++) {
-        const double *x = sample->cloud.x + (int64_t)sample->faces.node[face * sample->dim + k] * sample->dim;
+        const double *x =
+            sample->cloud.x + (int64_t)sample->assembly.faces.node[face * sample->dim + k] * sample->dim;
         is_there = is_there && fabs(x[0]) < 1e-12 && x[1] < limit;
     }
     return is_there;
@@ -444,33 +419,33 @@ static bool on_side_below(const struct sample *sample, int64_t face, double limi
 
 /* A side that is held in part ends where the held faces do; at the edges of the box, where the boundary
  * turns, and within a boundary that is held altogether nothing ends. */
-static void ends(void **state)
+TEST(ends)
 {
-    (void)state;
     for (int dim = 2; dim <= 3; dim++) {
         struct sample sample = make_sample(dim, true, 5);
-        struct face_table table = face_table(&sample);
+        struct face_table table = sample_face_table(&sample);
         struct error error;
-        bool *held = sample_array(sample.faces.count, sizeof *held);
-        bool *touched = sample_array(sample.faces.count, sizeof *touched);
-        bool *end = sample_array(sample.cloud.node_count, sizeof *end);
+        bool *held = zeros(sample.assembly.faces.count, sizeof *held);
+        bool *touched = zeros(sample.assembly.faces.count, sizeof *touched);
+        bool *end = zeros(sample.cloud.node_count, sizeof *end);
         GOOD(boundary_find_ends(&table, BOUNDARY_END_SMOOTH, held, held, end, &error));
-        for (int64_t f = 0; f < sample.faces.count; f++) {
+        for (int64_t f = 0; f < sample.assembly.faces.count; f++) {
             held[f] = on_side_below(&sample, f, 2.0 * sample_size);
         }
         GOOD(boundary_find_ends(&table, BOUNDARY_END_SMOOTH, held, held, end, &error));
-        for (int64_t f = 0; f < sample.faces.count; f++) {
-            held[f] = sample.faces.cell[2 * f + 1] < 0;
+        for (int64_t f = 0; f < sample.assembly.faces.count; f++) {
+            held[f] = sample.assembly.faces.cell[2 * f + 1] < 0;
         }
         GOOD(boundary_find_ends(&table, BOUNDARY_END_SMOOTH, held, held, end, &error));
         for (int64_t n = 0; n < sample.cloud.node_count; n++) {
             assert_false(end[n]);
         }
         double highest = 0.0;
-        for (int64_t f = 0; f < sample.faces.count; f++) {
+        for (int64_t f = 0; f < sample.assembly.faces.count; f++) {
             held[f] = on_side_below(&sample, f, 0.6 * sample_size);
             for (int k = 0; k < dim && held[f]; k++) {
-                highest = fmax(highest, sample.cloud.x[(int64_t)sample.faces.node[f * dim + k] * dim + 1]);
+                highest =
+                    fmax(highest, sample.cloud.x[(int64_t)sample.assembly.faces.node[f * dim + k] * dim + 1]);
             }
         }
         assert_true(highest > 0.2 * sample_size);
@@ -486,11 +461,11 @@ static void ends(void **state)
         assert_int_equal(count, dim == 2 ? 1 : 5);
         /* The whole side, whose edges are sharp ends. */
         memset(end, 0, (size_t)sample.cloud.node_count * sizeof *end);
-        for (int64_t f = 0; f < sample.faces.count; f++) {
+        for (int64_t f = 0; f < sample.assembly.faces.count; f++) {
             held[f] = on_side_below(&sample, f, 2.0 * sample_size);
         }
-        for (int64_t f = 0; f < sample.faces.count; f++) {
-            touched[f] = sample.faces.cell[2 * f + 1] < 0;
+        for (int64_t f = 0; f < sample.assembly.faces.count; f++) {
+            touched[f] = sample.assembly.faces.cell[2 * f + 1] < 0;
         }
         GOOD(boundary_find_ends(&table, BOUNDARY_END_SHARP, held, touched, end, &error));
         for (int64_t n = 0; n < sample.cloud.node_count; n++) {
@@ -505,19 +480,15 @@ static void ends(void **state)
             }
             assert_int_equal(end[n], fabs(x[0]) < 1e-12 && is_edge);
         }
-        free(touched);
-        free(held);
-        free(end);
         sample_free(&sample);
     }
 }
 
-static void faults(void **state)
+TEST(faults)
 {
-    (void)state;
     for (int dim = 2; dim <= 3; dim++) {
         struct sample sample = make_sample(dim, true, 4);
-        struct face_table table = face_table(&sample);
+        struct face_table table = sample_face_table(&sample);
         struct boundary_averages averages;
         struct error error;
         int32_t facets[6];
@@ -525,10 +496,10 @@ static void faults(void **state)
         memcpy(facets, sample.cloud.facets, (size_t)dim * sizeof *facets);
         /* A face between two cells. */
         int64_t inner = 0;
-        while (sample.faces.cell[2 * inner + 1] < 0) {
+        while (sample.assembly.faces.cell[2 * inner + 1] < 0) {
             inner++;
         }
-        memcpy(facets + dim, sample.faces.node + inner * dim, (size_t)dim * sizeof *facets);
+        memcpy(facets + dim, sample.assembly.faces.node + inner * dim, (size_t)dim * sizeof *facets);
         assert_int_equal(boundary_averages_build(&table, &set, &averages, &error), STATUS_INPUT);
         assert_string_equal(error.text, "facets: row 1 of the set is no boundary face of the cells");
         assert_null(averages.node);
@@ -547,19 +518,4 @@ static void faults(void **state)
     }
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(averages_split_at_corners),
-        cmocka_unit_test(sides),
-        cmocka_unit_test(divergence_theorem),
-        cmocka_unit_test(other_vertex_orders),
-        cmocka_unit_test(touching_facets),
-        cmocka_unit_test(gentle_and_sharp_turns),
-        cmocka_unit_test(whole_sides),
-        cmocka_unit_test(node_values),
-        cmocka_unit_test(ends),
-        cmocka_unit_test(faults),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

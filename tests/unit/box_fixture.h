@@ -17,7 +17,7 @@ static inline struct cloud box_cloud(int dim, int64_t per_axis, double jitter, d
         options.low[a] = offset;
         options.high[a] = offset + 0.1;
     }
-    good(cloud_make(&options, &cloud, &error), &error);
+    GOOD(cloud_make(&options, &cloud, &error));
     assert_true(cloud.cell_count > 0);
     return cloud;
 }

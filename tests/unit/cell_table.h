@@ -3,9 +3,9 @@
 #ifndef TESTS_CELL_TABLE_H
 #define TESTS_CELL_TABLE_H
 
-#include "approx/shape.h"
+#include "unit.h"
 
-#include <stdlib.h>
+#include "approx/shape.h"
 
 struct cell_table {
     int64_t *ptr;
@@ -15,7 +15,7 @@ struct cell_table {
 };
 
 static inline struct cell_table cell_table_make(const struct cells *cells, const struct faces *faces,
-                                                const struct face_averages *averages)
+                                                const struct neighbours *averages, const double *phi)
 {
     int dim = cells->dim;
     int64_t nodes = cells->node_count, count = 0;
@@ -41,7 +41,7 @@ static inline struct cell_table cell_table_make(const struct cells *cells, const
                 int64_t row = face_row(faces, s / 2, r);
                 for (int64_t i = averages->ptr[row]; i < averages->ptr[row + 1]; i++) {
                     double *of_node = sum + 4 * (int64_t)averages->idx[i];
-                    double share = averages->phi[i] / FACE_ROWS(dim);
+                    double share = phi[i] / FACE_ROWS(dim);
                     seen[averages->idx[i]] = 1;
                     low = averages->idx[i] < low ? averages->idx[i] : low;
                     high = averages->idx[i] > high ? averages->idx[i] : high;

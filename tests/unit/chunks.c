@@ -1,13 +1,7 @@
 /* Chunks cover a loop, alike for any number of threads. */
+#include "unit.h"
+
 #include "base/chunks.h"
-
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
-
-#include <omp.h>
 
 /* Each item lies in one chunk, and chunks differ by one item at most. */
 static void check_cover(const struct chunks *chunks, int64_t items)
@@ -21,9 +15,8 @@ static void check_cover(const struct chunks *chunks, int64_t items)
     }
 }
 
-static void cover(void **state)
+TEST(cover)
 {
-    (void)state;
     static const int64_t lengths[] = {0, 1, 99, 199, 200, 301, 6400, 6499, 100000, INT64_MAX / 2};
     int before = omp_get_max_threads();
     for (size_t i = 0; i < sizeof lengths / sizeof *lengths; i++) {
@@ -43,19 +36,11 @@ static void cover(void **state)
 }
 
 /* What is not worth a second thread is one chunk; what is, is worth two. */
-static void worthwhile(void **state)
+TEST(worthwhile)
 {
-    (void)state;
     assert_int_equal(chunks_of(199, 100).count, 1);
     assert_int_equal(chunks_of(200, 100).count, 2);
     assert_int_equal(chunks_of(1000000, 100).count, CHUNKS_MOST);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(cover),
-        cmocka_unit_test(worthwhile),
-    };
-    return cmocka_run_group_tests_name("chunks", tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

@@ -1,15 +1,8 @@
 /* Analytic clouds: counts, places, positive cells that fill the box, outward facets. */
+#include "unit.h"
+
 #include "approx/cells.h"
 #include "approx/cloud.h"
-
-#include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdlib.h>
-#include <string.h>
-
-#include <cmocka.h>
 
 static struct cloud_options options_of(enum cloud_kind kind, int dim)
 {
@@ -54,9 +47,8 @@ static double box_volume(const struct cloud_options *options)
     return volume;
 }
 
-static void cells_fill_the_box(void **state)
+TEST(cells_fill_the_box)
 {
-    (void)state;
     for (int dim = 2; dim <= 3; dim++) {
         for (int kind = CLOUD_REGULAR; kind <= CLOUD_GRADED; kind++) {
             struct cloud_options options = options_of((enum cloud_kind)kind, dim);
@@ -75,9 +67,8 @@ static void cells_fill_the_box(void **state)
 }
 
 /* Each side is covered once, all its facets looking outward: their area vectors sum to that of the side. */
-static void facets_look_outward(void **state)
+TEST(facets_look_outward)
 {
-    (void)state;
     for (int dim = 2; dim <= 3; dim++) {
         struct cloud_options options = options_of(CLOUD_JITTERED, dim);
         struct cloud cloud = make(&options);
@@ -105,16 +96,15 @@ static void facets_look_outward(void **state)
     }
 }
 
-static void neighbours_conform(void **state)
+TEST(neighbours_conform)
 {
-    (void)state;
     for (int dim = 2; dim <= 3; dim++) {
         struct cloud_options options = options_of(CLOUD_JITTERED, dim);
         struct cloud cloud = make(&options);
         struct cells cells = {dim, cloud.node_count, cloud.x, cloud.cell_count, cloud.cells};
         struct faces boundary;
         struct error error;
-        assert_int_equal(faces_build(&cells, true, &boundary, &error), STATUS_OK);
+        GOOD(faces_build(&cells, true, &boundary, &error));
         assert_int_equal(boundary.count, cloud.facet_count);
         assert_int_equal(boundary.count, dim == 2 ? 14 : 2 * 2 * (12 + 8 + 6));
         faces_free(&boundary);
@@ -122,9 +112,8 @@ static void neighbours_conform(void **state)
     }
 }
 
-static void regular_nodes_are_where_they_should(void **state)
+TEST(regular_nodes_are_where_they_should)
 {
-    (void)state;
     struct cloud_options options = options_of(CLOUD_REGULAR, 3);
     struct cloud cloud = make(&options);
     for (int64_t n = 0; n < cloud.node_count; n++) {
@@ -136,9 +125,8 @@ static void regular_nodes_are_where_they_should(void **state)
 }
 
 /* Jitter moves inner nodes by no more than it may, the boundary not at all, and depends on the seed only. */
-static void jitter_is_bounded(void **state)
+TEST(jitter_is_bounded)
 {
-    (void)state;
     struct cloud_options options = options_of(CLOUD_JITTERED, 2);
     options.count[0] = options.count[1] = 40;
     struct cloud cloud = make(&options);
@@ -171,9 +159,8 @@ static void jitter_is_bounded(void **state)
     cloud_free(&regular);
 }
 
-static void grading_has_its_ratio(void **state)
+TEST(grading_has_its_ratio)
 {
-    (void)state;
     struct cloud_options options = options_of(CLOUD_GRADED, 2);
     struct cloud cloud = make(&options);
     const double *x = cloud.x;
@@ -183,9 +170,8 @@ static void grading_has_its_ratio(void **state)
     cloud_free(&cloud);
 }
 
-static void halton_is_in_the_box_and_even(void **state)
+TEST(halton_is_in_the_box_and_even)
 {
-    (void)state;
     struct cloud_options options = options_of(CLOUD_HALTON, 3);
     options.count[0] = 1000;
     struct cloud cloud = make(&options);
@@ -205,9 +191,8 @@ static void halton_is_in_the_box_and_even(void **state)
     cloud_free(&cloud);
 }
 
-static void overturned_tetrahedra_are_left_out(void **state)
+TEST(overturned_tetrahedra_are_left_out)
 {
-    (void)state;
     struct cloud_options options = options_of(CLOUD_JITTERED, 3);
     options.count[0] = options.count[1] = options.count[2] = 12;
     options.jitter = 0.5;
@@ -218,9 +203,8 @@ static void overturned_tetrahedra_are_left_out(void **state)
     cloud_free(&cloud);
 }
 
-static void wrong_options_are_refused(void **state)
+TEST(wrong_options_are_refused)
 {
-    (void)state;
     static const char *const about[] = {"dimension", "count", "count", "box", "box", "jitter", "ratio"};
     struct cloud_options good = options_of(CLOUD_JITTERED, 2);
     for (int i = 0; i < 7; i++) {
@@ -241,9 +225,8 @@ static void wrong_options_are_refused(void **state)
     }
 }
 
-static void functions_have_their_values(void **state)
+TEST(functions_have_their_values)
 {
-    (void)state;
     const double x[3] = {0.5, -2, 3};
     assert_true(fabs(cloud_function_value(FUNCTION_PAPER, 2, x) - (1 - 4.25) * exp(-4.25 / 2)) < 1e-16);
     assert_true(fabs(cloud_function_value(FUNCTION_PAPER, 3, x) - (1 - 13.25) * exp(-13.25 / 2)) < 1e-16);
@@ -253,19 +236,4 @@ static void functions_have_their_values(void **state)
     assert_true(cloud_function_value(FUNCTION_QUADRATIC, 3, x) == 8 + 0.25 + 2 + 12 + 1.5 + 6 + 18);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(cells_fill_the_box),
-        cmocka_unit_test(facets_look_outward),
-        cmocka_unit_test(neighbours_conform),
-        cmocka_unit_test(regular_nodes_are_where_they_should),
-        cmocka_unit_test(jitter_is_bounded),
-        cmocka_unit_test(grading_has_its_ratio),
-        cmocka_unit_test(halton_is_in_the_box_and_even),
-        cmocka_unit_test(overturned_tetrahedra_are_left_out),
-        cmocka_unit_test(wrong_options_are_refused),
-        cmocka_unit_test(functions_have_their_values),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

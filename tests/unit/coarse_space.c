@@ -1,11 +1,9 @@
 /* Smooth fields on a cloud: they share unity and hold linear fields; Z and its transpose agree, with plain
  * sums and with themselves, whatever the threads and the instructions. */
-#include "solid_fixture.h"
+#include "unit.h"
 
 #include "base/memory.h"
 #include "solid/coarse_space.h"
-
-#include <omp.h>
 
 enum { NODES = 34000 }; /* worth three threads */
 
@@ -70,9 +68,8 @@ static void sum_plainly(const struct cloud *cloud, const double *weight, double 
     }
 }
 
-static void plain_sums(void **state)
+TEST(plain_sums)
 {
-    (void)state;
     for (int dim = 2; dim <= 3; dim++) {
         for (int64_t centres = 1; centres <= COARSE_MOST_CENTRES; centres += 7) {
             for (int weighted = 0; weighted < 2; weighted++) {
@@ -103,9 +100,8 @@ static void plain_sums(void **state)
 }
 
 /* The same bits for 1, 2 and 3 threads and from each set of instructions. */
-static void same_bits(void **state)
+TEST(same_bits)
 {
-    (void)state;
     static const char *const sets[] = {"plain", "avx2", "avx512"};
     int before = omp_get_max_threads();
     for (int dim = 2; dim <= 3; dim++) {
@@ -141,9 +137,8 @@ static void same_bits(void **state)
 }
 
 /* The shares of all centres make the constant field, and with the places of the centres the coordinates. */
-static void linear_fields(void **state)
+TEST(linear_fields)
 {
-    (void)state;
     for (int dim = 2; dim <= 3; dim++) {
         struct cloud cloud = make_cloud(dim, 500, 6);
         const struct coarse_space *coarse = &cloud.coarse;
@@ -166,12 +161,4 @@ static void linear_fields(void **state)
     }
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(linear_fields),
-        cmocka_unit_test(plain_sums),
-        cmocka_unit_test(same_bits),
-    };
-    return cmocka_run_group_tests_name("coarse_space", tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

@@ -1,6 +1,6 @@
 /* Conditions that depend on each other: met where they agree, sharing their forces by the least norm; named
  * where they do not; and rows so nearly dependent, or so long, that a plain factorization suffers. */
-#include "solid_fixture.h"
+#include "unit.h"
 
 #include "solid/assembly.h"
 
@@ -70,9 +70,8 @@ static void spread(const struct line *line, const double *force, double *total)
 
 /* Twice the same, and a mean of others: the forces on the nodes stay, twins share equally, and no other
  * shares have a smaller norm. */
-static void dependent_rows_share(void **state)
+TEST(dependent_rows_share)
 {
-    (void)state;
     struct line line;
     struct constraint constraint;
     struct error error;
@@ -114,9 +113,8 @@ static void dependent_rows_share(void **state)
 }
 
 /* Targets that disagree are a verdict with both sections, the node, its place and the difference. */
-static void disagreement_is_named(void **state)
+TEST(disagreement_is_named)
 {
-    (void)state;
     struct line line;
     struct constraint constraint;
     struct error error;
@@ -125,8 +123,8 @@ static void disagreement_is_named(void **state)
     line.system.conditions = conditions;
     hold(&line, 3, 4, 0.25, 0);
     hold(&line, 3, 4, 0.5, 1);
-    assert_int_equal(system_constrain(&line.system, line.mass, &constraint, &error), STATUS_VERDICT);
-    assert_non_null(strstr(error.text, "[displacement plate]"));
+    FAILS(system_constrain(&line.system, line.mass, &constraint, &error), STATUS_VERDICT,
+          "[displacement plate]");
     assert_non_null(strstr(error.text, "[displacement rim]"));
     assert_non_null(strstr(error.text, "node 3 at (0.3, 0)"));
     assert_non_null(strstr(error.text, "by 0.25 m")); /* at full load */
@@ -136,9 +134,8 @@ static void disagreement_is_named(void **state)
 }
 
 /* A row over all nodes beside one for each node but one: it is long, and told apart from a dependent one. */
-static void long_rows(void **state)
+TEST(long_rows)
 {
-    (void)state;
     for (int32_t all = 0; all < 2; all++) {
         struct line line;
         struct constraint constraint;
@@ -157,9 +154,8 @@ static void long_rows(void **state)
 }
 
 /* Chains of rows that overlap almost whole: none may blow up, whatever is dropped. */
-static void nearly_dependent_rows(void **state)
+TEST(nearly_dependent_rows)
 {
-    (void)state;
     for (double off = 1e-2; off > 1e-16; off *= 0.1) {
         struct line line;
         struct constraint constraint;
@@ -192,13 +188,4 @@ static void nearly_dependent_rows(void **state)
     }
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(dependent_rows_share),
-        cmocka_unit_test(disagreement_is_named),
-        cmocka_unit_test(long_rows),
-        cmocka_unit_test(nearly_dependent_rows),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

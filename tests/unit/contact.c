@@ -5,9 +5,8 @@
 #include "contact_fixture.h"
 
 /* force = - d energy / du, with and without multipliers. */
-static void force_is_gradient(void **state)
+TEST(force_is_gradient)
 {
-    (void)state;
     struct random random = {1};
     struct contact_nodes contact_nodes;
     int contacts = 0;
@@ -39,9 +38,8 @@ static void force_is_gradient(void **state)
 
 /* The sum of the forces on the parameters is sum p A n, and their moment that of the contact nodes' forces
  * where the contact nodes are. */
-static void balance(void **state)
+TEST(balance)
 {
-    (void)state;
     struct random random = {2};
     struct contact_nodes contact_nodes;
     for (int round = 0; round < 40; round++) {
@@ -75,9 +73,8 @@ static void balance(void **state)
 
 /* Along walks in and out of closed and open shells the forces are the same bits as when every contact node is
  * always looked at. */
-static void skipping(void **state)
+TEST(skipping)
 {
-    (void)state;
     struct random random = {3};
     struct contact_nodes contact_nodes;
     int contacts = 0, steps = 0, skipped = 0;
@@ -118,9 +115,8 @@ static void skipping(void **state)
 
 /* Along such walks evaluations at other places and back again change nothing: forces, gaps and the state are
  * the same bytes. */
-static void evaluations_change_no_state(void **state)
+TEST(evaluations_change_no_state)
 {
-    (void)state;
     struct random random = {5};
     struct contact_nodes contact_nodes;
     int changes = 0, touches = 0;
@@ -170,9 +166,8 @@ static void evaluations_change_no_state(void **state)
 }
 
 /* Particles on springs, pulled through a wall: the penalty leaves them in it, multipliers bring them back. */
-static void augmentation(void **state)
+TEST(augmentation)
 {
-    (void)state;
     for (int dim = 2; dim <= 3; dim++) {
         struct contact_nodes contact_nodes;
         make_particles(&contact_nodes, dim, 0.5);
@@ -209,9 +204,8 @@ static void augmentation(void **state)
 }
 
 /* No force from a wall slides anything along it. */
-static void frictionless(void **state)
+TEST(frictionless)
 {
-    (void)state;
     struct contact_nodes contact_nodes;
     make_particles(&contact_nodes, 3, 0.5);
     struct contact contact = built(&contact_nodes, make_shell(3, 6, 0.5, false), 100.0);
@@ -238,9 +232,8 @@ static void frictionless(void **state)
 
 /* A line y = 0 from x = 0 to 1, the body above. One particle goes through it and is held; one goes round its
  * end to the back and is not, until it has been in front again. */
-static void round_the_rim(void **state)
+TEST(round_the_rim)
 {
-    (void)state;
     static const double corners[] = {1, 0, 0, 0};
     static const double path[][2] = {{1.2, 0.3}, {1.2, 0.05}, {1.2, -0.2}, {0.9, -0.2}, {0.5, -0.2},
                                      {0.5, 0.2}, {0.5, -0.2}, {1.2, -0.2}, {1.2, 0.2},  {0.5, 0.1}};
@@ -273,9 +266,8 @@ static void round_the_rim(void **state)
 
 /* The nodes of a body with a curved boundary touch a wall of the same curvature: so do its contact nodes,
  * though the mean of the chords lies beneath. */
-static void curved_boundary(void **state)
+TEST(curved_boundary)
 {
-    (void)state;
     struct contact_nodes contact_nodes;
     struct random random = {4};
     make_contact_nodes(&contact_nodes, 2, 0.1, &random);
@@ -301,9 +293,8 @@ static void curved_boundary(void **state)
 }
 
 /* The wrong side of the surface is noticed. */
-static void wrong_side(void **state)
+TEST(wrong_side)
 {
-    (void)state;
     struct rigid_surface surface;
     struct contact contact;
     struct error error;
@@ -345,14 +336,4 @@ static void wrong_side(void **state)
                                     "side, or leave the node's facets out");
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(force_is_gradient), cmocka_unit_test(balance),
-        cmocka_unit_test(skipping),          cmocka_unit_test(evaluations_change_no_state),
-        cmocka_unit_test(augmentation),      cmocka_unit_test(frictionless),
-        cmocka_unit_test(round_the_rim),     cmocka_unit_test(curved_boundary),
-        cmocka_unit_test(wrong_side),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

@@ -17,17 +17,6 @@ struct pair {
     struct contact contact;
 };
 
-static struct face_table face_table(const struct sample *sample)
-{
-    return (struct face_table){.dim = sample->dim,
-                               .node_count = sample->cloud.node_count,
-                               .x = sample->cloud.x,
-                               .faces = &sample->faces,
-                               .per_face = sample->face_rule.points,
-                               .lists = &sample->face_neighbours,
-                               .phi = sample->face_phi};
-}
-
 static struct facet_set facets_of_side(const struct sample *sample, int side)
 {
     struct facet_set set = {0};
@@ -60,16 +49,16 @@ static void move_over(const struct pair *pair, struct opposite *opposite)
 /* Both boxes, or the whole boundary of one against itself. */
 static struct pair *make_pair(const struct sample *sample, bool itself, bool *any)
 {
-    struct pair *pair = sample_array(1, sizeof *pair);
+    struct pair *pair = zeros(1, sizeof *pair);
     *pair = (struct pair){.sample = sample, .nodes = sample->cloud.node_count};
-    struct face_table table = face_table(sample);
+    struct face_table table = sample_face_table(sample);
     struct opposite opposite;
     struct error error;
     int dim = sample->dim;
     struct facet_set points = facets_of_side(sample, itself ? -1 : HIGH_SIDE);
     struct facet_set others = itself ? points : facets_of_side(sample, LOW_SIDE);
-    pair->X = sample_array(2 * pair->nodes * dim, sizeof *pair->X);
-    pair->part = sample_array(2 * pair->nodes, sizeof *pair->part);
+    pair->X = zeros(2 * pair->nodes * dim, sizeof *pair->X);
+    pair->part = zeros(2 * pair->nodes, sizeof *pair->part);
     for (int64_t i = 0; i < 2 * pair->nodes * dim; i++) {
         bool second = i >= pair->nodes * dim;
         pair->X[i] = sample->cloud.x[i % (pair->nodes * dim)] + (second && i % dim == 0 ? sample_size : 0.0);
@@ -79,9 +68,8 @@ static struct pair *make_pair(const struct sample *sample, bool itself, bool *an
     GOOD(opposite_build(&table, &others, pair->part, itself, &opposite, &error));
     if (!itself) {
         move_over(pair, &opposite);
-        double *u = sample_array(2 * pair->nodes * dim, sizeof *u);
+        double *u = zeros(2 * pair->nodes * dim, sizeof *u);
         opposite_move(&opposite, u);
-        free(u);
     }
     GOOD(contact_between_build(&pair->points, &pair->averages, dim, 2 * pair->nodes, table.per_face,
                                &opposite, pair->part, itself ? 0 : 1, 1e5, true, &pair->contact, any,
@@ -94,9 +82,6 @@ static void pair_free(struct pair *pair)
     contact_free(&pair->contact);
     boundary_averages_free(&pair->points);
     boundary_averages_free(&pair->averages);
-    free(pair->X);
-    free(pair->part);
-    free(pair);
 }
 
 static int64_t pressing(const struct contact *contact)
@@ -126,16 +111,15 @@ static void hold(struct contact *contact, struct random *random)
     contact_spread_multipliers(contact);
 }
 
-static void force_is_gradient(void **state)
+TEST(force_is_gradient)
 {
-    (void)state;
     struct random random = {1};
     for (int s = 0; s < 4; s++) {
         bool any;
         struct pair *pair = make_pair(&samples[s], false, &any);
         int64_t size = 2 * pair->nodes * samples[s].dim;
-        double *u = sample_array(size, sizeof *u), *force = sample_array(size, sizeof *force);
-        double *aside = sample_array(size, sizeof *aside), h = 1e-8, most = 0.0;
+        double *u = zeros(size, sizeof *u), *force = zeros(size, sizeof *force);
+        double *aside = zeros(size, sizeof *aside), h = 1e-8, most = 0.0;
         assert_true(any);
         hold(&pair->contact, &random);
         overlap(pair, 1e-3, 5e-4, &random, u);
@@ -154,23 +138,19 @@ static void force_is_gradient(void **state)
             u[i] = at;
             NEAR_TO(force[i], -(energy[1] - energy[0]) / (2.0 * h), 2e-4 * most);
         }
-        free(u);
-        free(force);
-        free(aside);
         pair_free(pair);
     }
 }
 
-static void forces_balance(void **state)
+TEST(forces_balance)
 {
-    (void)state;
     struct random random = {2};
     for (int round = 0; round < 12; round++) {
         bool any;
         struct pair *pair = make_pair(&samples[round % 4], false, &any);
         int dim = pair->sample->dim;
         int64_t size = 2 * pair->nodes * dim;
-        double *u = sample_array(size, sizeof *u), *force = sample_array(size, sizeof *force);
+        double *u = zeros(size, sizeof *u), *force = zeros(size, sizeof *force);
         double sum[3] = {0.0}, moment[3] = {0.0}, total[3], scale = 0.0;
         hold(&pair->contact, &random);
         overlap(pair, 1e-3, 1e-3, &random, u);
@@ -193,23 +173,20 @@ static void forces_balance(void **state)
             NEAR_TO(sum[a], 0.0, 1e-14 * scale);
             NEAR_TO(moment[a], 0.0, 1e-14 * sample_size * scale);
         }
-        free(u);
-        free(force);
         pair_free(pair);
     }
 }
 
 /* A linear field that shifts the other box into the first: the same gap at all points. */
-static void linear_fields(void **state)
+TEST(linear_fields)
 {
-    (void)state;
     static const double turned[9] = {0.8, -0.6, 0.0, 0.6, 0.8, 0.0, 0.0, 0.0, 1.0};
     static const double stretch[3] = {0.9, 1.2, 0.95};
     for (int s = 0; s < 4; s++) {
         bool any;
         struct pair *pair = make_pair(&samples[s], false, &any);
         int dim = pair->sample->dim;
-        double *u = sample_array(2 * pair->nodes * dim, sizeof *u), depth = 1e-3;
+        double *u = zeros(2 * pair->nodes * dim, sizeof *u), depth = 1e-3;
         for (int64_t n = 0; n < 2 * pair->nodes; n++) {
             for (int a = 0; a < dim; a++) {
                 double x = 0.0;
@@ -225,15 +202,13 @@ static void linear_fields(void **state)
             NEAR_TO(pair->contact.gap[p], -depth, 1e-12);
             NEAR_TO(pair->contact.normal[p * dim], -turned[0], 1e-10);
         }
-        free(u);
         pair_free(pair);
     }
 }
 
 /* Along walks in and out of contact the forces are the same bits as when every point always looks. */
-static void skipping(void **state)
+TEST(skipping)
 {
-    (void)state;
     struct random random = {3};
     int64_t touches = 0, skipped = 0, steps = 0;
     for (int s = 0; s < 4; s++) {
@@ -241,8 +216,8 @@ static void skipping(void **state)
         struct pair *pair = make_pair(&samples[s], false, &any),
                     *always = make_pair(&samples[s], false, &any);
         int64_t size = 2 * pair->nodes * samples[s].dim;
-        double *u = sample_array(size, sizeof *u), *force = sample_array(size, sizeof *force);
-        double *expected = sample_array(size, sizeof *expected);
+        double *u = zeros(size, sizeof *u), *force = zeros(size, sizeof *force);
+        double *expected = zeros(size, sizeof *expected);
         for (int step = 0; step < 150; step++) {
             double away = 1e-3 * sin(0.05 * step);
             for (int64_t i = 0; i < size; i++) {
@@ -269,9 +244,6 @@ static void skipping(void **state)
             }
             touches += pressing(&pair->contact);
         }
-        free(u);
-        free(force);
-        free(expected);
         pair_free(pair);
         pair_free(always);
     }
@@ -279,9 +251,8 @@ static void skipping(void **state)
 }
 
 /* What faces a point through the body is not opposite to it, however the body is deformed. */
-static void box_against_itself(void **state)
+TEST(box_against_itself)
 {
-    (void)state;
     struct random random = {4};
     for (int s = 0; s < 4; s++) {
         bool any;
@@ -289,7 +260,7 @@ static void box_against_itself(void **state)
         const struct opposite *opposite = &pair->contact.between->opposite;
         int dim = pair->sample->dim;
         int64_t size = 2 * pair->nodes * dim;
-        double *u = sample_array(size, sizeof *u);
+        double *u = zeros(size, sizeof *u);
         assert_false(any);
         for (int round = 0; round < 20; round++) {
             for (int64_t i = 0; i < size; i++) { /* flattened, sheared and rough */
@@ -308,15 +279,8 @@ static void box_against_itself(void **state)
                 assert_true(one != other);
             }
         }
-        free(u);
         pair_free(pair);
     }
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {cmocka_unit_test(force_is_gradient), cmocka_unit_test(forces_balance),
-                                       cmocka_unit_test(linear_fields), cmocka_unit_test(skipping),
-                                       cmocka_unit_test(box_against_itself)};
-    return cmocka_run_group_tests(tests, make_samples, free_samples);
-}
+RUN_TESTS(make_samples, free_samples)

@@ -6,9 +6,8 @@
 /* Closed convex shells, inside which particles have multipliers of any direction, before and behind the
  * surface: moved by d, each force changes by at most k A d, as the projection onto a convex set is a
  * contraction. */
-static void forces_do_not_jump(void **state)
+TEST(forces_do_not_jump)
 {
-    (void)state;
     struct random random = {31};
     const double stiffness = 1e3, area = 0.5, step = 1e-4;
     for (int round = 0; round < 300; round++) {
@@ -85,9 +84,8 @@ static double settle(struct contact *contact, double spring, const double *pull,
 /* Particles are pulled into a groove of sides at several angles. Those that are pulled between the two
  * normals come to rest in the crease, held by the whole pull; the others on the side that they are pulled
  * towards, held along its normal. One starts at the crease itself. */
-static void rest_in_a_groove(void **state)
+TEST(rest_in_a_groove)
 {
-    (void)state;
     static const double angles[] = {5, 10, 20, 45, 75};
     int creased = 0, slid = 0;
     for (int round = 0; round < 30; round++) {
@@ -127,9 +125,8 @@ static void rest_in_a_groove(void **state)
 
 /* Into a corner of three planes: a cube's, which all particles are pulled into along directions between its
  * normals. */
-static void rest_in_a_corner(void **state)
+TEST(rest_in_a_corner)
 {
-    (void)state;
     struct random random = {32};
     for (int round = 0; round < 10; round++) {
         struct contact_nodes contact_nodes;
@@ -158,12 +155,4 @@ static void rest_in_a_corner(void **state)
     }
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(forces_do_not_jump),
-        cmocka_unit_test(rest_in_a_groove),
-        cmocka_unit_test(rest_in_a_corner),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

@@ -3,7 +3,7 @@
 #ifndef TESTS_CONTACT_FIXTURE_H
 #define TESTS_CONTACT_FIXTURE_H
 
-#include "solid_fixture.h"
+#include "unit.h"
 
 #include "solid/contact.h"
 

@@ -21,9 +21,8 @@ static struct rigid_motion some_motion(int dim, struct random *random)
 }
 
 /* Known places, and the order: turned first, about an axis that does not move. */
-static void motions(void **state)
+TEST(motions)
 {
-    (void)state;
     struct error error;
     struct rigid_motion motion = {.moves = true,
                                   .translation = {1.0, 0.0, 5.0},
@@ -64,9 +63,8 @@ static void motions(void **state)
 
 /* A shell that moves, and contact nodes that move with it, are as a shell and contact nodes at rest: gaps,
  * pressures and energy the same, forces turned. Along the way contact nodes are skipped as they may be. */
-static void moved_together(void **state)
+TEST(moved_together)
 {
-    (void)state;
     struct random random = {7};
     struct contact_nodes contact_nodes;
     int contacts = 0;
@@ -114,9 +112,8 @@ static void moved_together(void **state)
 
 /* While the surface moves and the contact nodes stay, the energy of the penalty grows by the work of the
  * surface. */
-static void work_of_the_surface(void **state)
+TEST(work_of_the_surface)
 {
-    (void)state;
     struct random random = {8};
     struct contact_nodes contact_nodes;
     int pressed = 0;
@@ -152,9 +149,8 @@ static void work_of_the_surface(void **state)
 
 /* The moment is that of the forces on the parameters, about any point, also where contact nodes are raised.
  */
-static void moment(void **state)
+TEST(moment)
 {
-    (void)state;
     struct random random = {9};
     struct contact_nodes contact_nodes;
     for (int round = 0; round < 20; round++) {
@@ -195,9 +191,8 @@ static void moment(void **state)
 
 /* For points too far from the surface the search is skipped. Measured with `all` they have the gaps of this
  * state. */
-static void gaps_of_this_state(void **state)
+TEST(gaps_of_this_state)
 {
-    (void)state;
     struct contact_nodes contact_nodes;
     struct random random = {10};
     make_contact_nodes(&contact_nodes, 2, 0.1, &random);
@@ -222,9 +217,8 @@ static void gaps_of_this_state(void **state)
 /* Points in pairs on edges of a line of nodes: multipliers are at the nodes, and an augmentation makes them
  * the mean of what points beneath them press. Where all press the next one closes the gap of a wall that
  * yields. */
-static void multipliers_of_nodes(void **state)
+TEST(multipliers_of_nodes)
 {
-    (void)state;
     enum { AVERAGES = CONTACT_NODES / 2 + 1 };
     struct contact_nodes points;
     struct error error;
@@ -297,15 +291,4 @@ static void multipliers_of_nodes(void **state)
     contact_free(&contact);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(motions),
-        cmocka_unit_test(moved_together),
-        cmocka_unit_test(work_of_the_surface),
-        cmocka_unit_test(moment),
-        cmocka_unit_test(gaps_of_this_state),
-        cmocka_unit_test(multipliers_of_nodes),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

@@ -23,9 +23,8 @@ static void make_samples(struct contact_nodes *contact_nodes)
 }
 
 /* Nodes on a line, each with a contact node, that press in turn. */
-static void across(void **state)
+TEST(across)
 {
-    (void)state;
     static const struct {
         const char *presses;
         int64_t pressing;
@@ -67,9 +66,8 @@ static void across(void **state)
 
 /* A square with corners at (0, +-.5) and (+-.5, 0), and bodies from y = low to high whose upper side is in
  * contact: how far its corners are inside of them. */
-static void inside(void **state)
+TEST(inside)
 {
-    (void)state;
     static const struct {
         double low, high, inside, corner;
     } bodies[] = {
@@ -92,8 +90,4 @@ static void inside(void **state)
     contact_free(&contact);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {cmocka_unit_test(across), cmocka_unit_test(inside)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

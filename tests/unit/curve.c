@@ -1,22 +1,8 @@
 /* Load curves: end values, smoothness, monotone interpolation; one clear error for each wrong table (fault
  * 13). */
+#include "unit.h"
+
 #include "solid/curve.h"
-
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
-
-#include <math.h>
-#include <string.h>
-
-static void near_to(double value, double expected, double tolerance)
-{
-    if (!(fabs(value - expected) <= tolerance)) {
-        fail_msg("%.17g is not %.17g within %g", value, expected, tolerance);
-    }
-}
 
 /* The derivative agrees with central differences of the value. */
 static void rate_is_derivative(const struct load_curve *curve)
@@ -24,71 +10,67 @@ static void rate_is_derivative(const struct load_curve *curve)
     const double h = 1e-5;
     for (double s = .07; s < 1; s += .0937) {
         double difference = (curve_value(curve, s + h) - curve_value(curve, s - h)) / (2 * h);
-        near_to(curve_rate(curve, s), difference, 1e-4);
+        NEAR_TO(curve_rate(curve, s), difference, 1e-4);
     }
 }
 
-static void smooth(void **state)
+TEST(smooth)
 {
-    (void)state;
     struct load_curve curve = curve_of_kind(CURVE_SMOOTH);
-    near_to(curve_value(&curve, 0), 0, 0);
-    near_to(curve_value(&curve, 1), 1, 0);
-    near_to(curve_value(&curve, .5), .5, 1e-15);
-    near_to(curve_rate(&curve, 0), 0, 0);
-    near_to(curve_rate(&curve, 1), 0, 0);
-    near_to(curve_rate(&curve, .5), 1.875, 1e-15);
-    near_to(curve_rate(&curve, 1e-4) / 1e-4, 0, 1e-2); /* no acceleration at the ends */
-    near_to(curve_rate(&curve, 1 - 1e-4) / 1e-4, 0, 1e-2);
+    NEAR_TO(curve_value(&curve, 0), 0, 0);
+    NEAR_TO(curve_value(&curve, 1), 1, 0);
+    NEAR_TO(curve_value(&curve, .5), .5, 1e-15);
+    NEAR_TO(curve_rate(&curve, 0), 0, 0);
+    NEAR_TO(curve_rate(&curve, 1), 0, 0);
+    NEAR_TO(curve_rate(&curve, .5), 1.875, 1e-15);
+    NEAR_TO(curve_rate(&curve, 1e-4) / 1e-4, 0, 1e-2); /* no acceleration at the ends */
+    NEAR_TO(curve_rate(&curve, 1 - 1e-4) / 1e-4, 0, 1e-2);
     for (double s = 0; s <= .5; s += .01) {
-        near_to(curve_value(&curve, s) + curve_value(&curve, 1 - s), 1, 1e-14);
+        NEAR_TO(curve_value(&curve, s) + curve_value(&curve, 1 - s), 1, 1e-14);
     }
     rate_is_derivative(&curve);
     curve_free(&curve);
 }
 
-static void held_outside(void **state)
+TEST(held_outside)
 {
-    (void)state;
     static const double points[] = {-1, 5, 0, 1, 2, 3, 3, 9};
     struct load_curve table;
     struct error error;
-    assert_int_equal(curve_tabulate(&table, 4, points, 2, &error), STATUS_OK);
+    GOOD(curve_tabulate(&table, 4, points, 2, &error));
     for (int kind = CURVE_SMOOTH; kind <= CURVE_TABLE; kind++) {
         struct load_curve curve = kind < CURVE_TABLE ? curve_of_kind((enum curve_kind)kind) : table;
-        near_to(curve_value(&curve, -.5), curve_value(&curve, 0), 0);
-        near_to(curve_value(&curve, 7), curve_value(&curve, 1), 0);
-        near_to(curve_rate(&curve, -.5), 0, 0);
-        near_to(curve_rate(&curve, 7), 0, 0);
+        NEAR_TO(curve_value(&curve, -.5), curve_value(&curve, 0), 0);
+        NEAR_TO(curve_value(&curve, 7), curve_value(&curve, 1), 0);
+        NEAR_TO(curve_rate(&curve, -.5), 0, 0);
+        NEAR_TO(curve_rate(&curve, 7), 0, 0);
     }
-    near_to(curve_value(&table, 0), 1, 1e-15);
-    near_to(curve_value(&table, 1), 3, 1e-15);
+    NEAR_TO(curve_value(&table, 0), 1, 1e-15);
+    NEAR_TO(curve_value(&table, 1), 3, 1e-15);
     curve_free(&table);
 }
 
-static void simple(void **state)
+TEST(simple)
 {
-    (void)state;
     struct load_curve linear = curve_of_kind(CURVE_LINEAR);
     struct load_curve step = curve_of_kind(CURVE_STEP);
     rate_is_derivative(&linear);
     for (double s = 0; s <= 1; s += .125) {
-        near_to(curve_value(&linear, s), s, 0);
-        near_to(curve_value(&step, s), 1, 0);
-        near_to(curve_rate(&step, s), 0, 0);
+        NEAR_TO(curve_value(&linear, s), s, 0);
+        NEAR_TO(curve_value(&step, s), 1, 0);
+        NEAR_TO(curve_rate(&step, s), 0, 0);
     }
 }
 
 /* Every point is taken; between two of them the factor stays between theirs, also beside a kink. */
-static void tabulated(void **state)
+TEST(tabulated)
 {
-    (void)state;
     static const double points[] = {0, 0, .2, 0, .3, 1, .5, 1, 1.2, -.5, 2, -.5, 4, 7};
     struct load_curve curve;
     struct error error;
-    assert_int_equal(curve_tabulate(&curve, 7, points, 4, &error), STATUS_OK);
+    GOOD(curve_tabulate(&curve, 7, points, 4, &error));
     for (int i = 0; i < 7; i++) {
-        near_to(curve_value(&curve, points[2 * i] / 4), points[2 * i + 1], 1e-14);
+        NEAR_TO(curve_value(&curve, points[2 * i] / 4), points[2 * i + 1], 1e-14);
     }
     for (int i = 0; i < 6; i++) {
         double low = fmin(points[2 * i + 1], points[2 * i + 3]);
@@ -104,15 +86,14 @@ static void tabulated(void **state)
     assert_null(curve.time);
 }
 
-static void two_points(void **state)
+TEST(two_points)
 {
-    (void)state;
     static const double points[] = {0, 1, 8, 5};
     struct load_curve curve;
     struct error error;
-    assert_int_equal(curve_tabulate(&curve, 2, points, 4, &error), STATUS_OK);
-    near_to(curve_value(&curve, .5), 2, 1e-15);
-    near_to(curve_rate(&curve, .5), 2, 1e-15); /* per s, not per unit of time */
+    GOOD(curve_tabulate(&curve, 2, points, 4, &error));
+    NEAR_TO(curve_value(&curve, .5), 2, 1e-15);
+    NEAR_TO(curve_rate(&curve, .5), 2, 1e-15); /* per s, not per unit of time */
     curve_free(&curve);
 }
 
@@ -125,9 +106,8 @@ static void fails(int64_t count, const double *points, double end, const char *e
     assert_null(curve.time);
 }
 
-static void faults(void **state)
+TEST(faults)
 {
-    (void)state;
     fails(1, (double[]){0, 1}, 1, "load curve of 1 point: give at least two, times from 0 to 1");
     fails(0, NULL, 1, "load curve of 0 point: give at least two, times from 0 to 1");
     fails(3, (double[]){0, 0, .7, 1, .6, 1}, 1,
@@ -140,11 +120,4 @@ static void faults(void **state)
     fails(2, (double[]){0, (double)INFINITY, 1, 1}, 1, "row 1: time or factor is not finite");
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(smooth),    cmocka_unit_test(held_outside), cmocka_unit_test(simple),
-        cmocka_unit_test(tabulated), cmocka_unit_test(two_points),   cmocka_unit_test(faults),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

@@ -3,8 +3,6 @@
 
 #include "approx/face_rows.h"
 
-#include <math.h>
-
 /* Whether a cell or a face of `corners` nodes has all of those. */
 static bool has_all(const int32_t *vertex, int corners, const int32_t *node, int count)
 {
@@ -37,8 +35,7 @@ static bool is_outer(const struct faces *faces, const int32_t *side, int32_t nod
 static void check_points(const struct cells *cells, const struct faces *faces)
 {
     int dim = faces->dim;
-    double *x = calloc((size_t)(face_row_point(faces, faces->row_count) * dim), sizeof *x);
-    assert_non_null(x);
+    double *x = zeros((face_row_point(faces, faces->row_count) * dim), sizeof *x);
     face_rows_points(faces, cells->x, x);
     for (int64_t f = 0; f < faces->count; f++) {
         for (int a = 0; a < dim; a++) {
@@ -63,7 +60,6 @@ static void check_points(const struct cells *cells, const struct faces *faces)
             at_most(fabs(mean - centre), 1e-15, "centre of a face");
         }
     }
-    free(x);
 }
 
 /* The cells of a row are those with all of the nodes: of the face, or of the edge. */
@@ -73,7 +69,7 @@ static void check_cells(const struct cells *cells, const struct faces *faces)
     int32_t *cell;
     int dim = faces->dim;
     struct error error;
-    good(face_rows_cells(cells->node_count, faces, &ptr, &cell, &error), &error);
+    GOOD(face_rows_cells(cells->node_count, faces, &ptr, &cell, &error));
     for (int64_t i = 0; i < faces->count * FACE_ROWS(dim); i++) {
         int64_t f = i / FACE_ROWS(dim), k = i % FACE_ROWS(dim), row = face_row(faces, f, (int)k), with = 0;
         bool own = face_has_own_row(faces, f);
@@ -136,26 +132,24 @@ static void check_rows(const struct faces *faces, const int32_t *side)
     assert_int_equal(next, faces->row_count);
 }
 
-static void rows_of_faces(void **state)
+TEST(rows_of_faces)
 {
-    (void)state;
     for (int dim = 2; dim <= 3; dim++) {
         struct cloud cloud = box_cloud(dim, 6, 0.1, 0.0);
         struct cells cells = cells_of(&cloud);
-        int32_t *side = calloc((size_t)cells.count, sizeof *side);
+        int32_t *side = zeros(cells.count, sizeof *side);
         struct faces faces;
         struct error error;
         int64_t own[2];
-        assert_non_null(side);
         for (int64_t c = 0; c < cells.count; c++) {
             double middle[3];
             cell_centroid(&cells, c, middle);
             side[c] = middle[0] > 0.045;
         }
-        good(faces_build(&cells, false, &faces, &error), &error);
+        GOOD(faces_build(&cells, false, &faces, &error));
         for (int sides = 0; sides < 2; sides++) {
             free(faces.row);
-            good(face_rows_number(cells.node_count, sides ? side : NULL, &faces, &error), &error);
+            GOOD(face_rows_number(cells.node_count, sides ? side : NULL, &faces, &error));
             check_rows(&faces, sides ? side : NULL);
             check_points(&cells, &faces);
             check_cells(&cells, &faces);
@@ -163,17 +157,12 @@ static void rows_of_faces(void **state)
         }
         assert_true(dim == 2 ? own[0] == faces.count : own[0] < own[1] && own[1] < faces.count);
         faces_free(&faces);
-        good(faces_build(&cells, true, &faces, &error), &error);
+        GOOD(faces_build(&cells, true, &faces, &error));
         assert_null(faces.row);
         assert_int_equal(faces.row_count, faces.boundary_count);
         faces_free(&faces);
-        free(side);
         cloud_free(&cloud);
     }
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {cmocka_unit_test(rows_of_faces)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

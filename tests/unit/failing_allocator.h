@@ -3,20 +3,13 @@
 #ifndef FAILING_ALLOCATOR_H
 #define FAILING_ALLOCATOR_H
 
+#include "unit.h"
+
+#include <errno.h>
+#include <malloc.h>
+
 #if !defined(__SANITIZE_ADDRESS__) && defined(__GLIBC__)
 #define FAILING_ALLOCATOR
-
-#include "base/status.h"
-
-#include <malloc.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stdbool.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <string.h>
-
-#include <cmocka.h>
 
 extern void *__libc_malloc(size_t size);
 extern void *__libc_calloc(size_t count, size_t size);
@@ -76,6 +69,18 @@ void *aligned_alloc(size_t alignment, size_t size)
     return is_denied() ? NULL : counted(__libc_memalign(alignment, size));
 }
 
+/* What OpenMP allocates its teams by: counted, never denied. */
+void *memalign(size_t alignment, size_t size)
+{
+    return counted(__libc_memalign(alignment, size));
+}
+
+int posix_memalign(void **memory, size_t alignment, size_t size)
+{
+    *memory = counted(__libc_memalign(alignment, size));
+    return *memory == NULL ? ENOMEM : 0;
+}
+
 void free(void *memory)
 {
     if (watched && memory != NULL) {
@@ -84,6 +89,17 @@ void free(void *memory)
     }
     __libc_free(memory);
 }
+
+#ifdef WITHOUT_LIBGOMP
+/* In place of libgomp's, which ends the program when it gets no memory: all work on this thread. */
+void GOMP_parallel(void (*work)(void *), void *data, unsigned threads, unsigned flags);
+void GOMP_parallel(void (*work)(void *), void *data, unsigned threads, unsigned flags)
+{
+    (void)threads;
+    (void)flags;
+    work(data);
+}
+#endif
 
 /* Let the first, the second, ... allocation fail, until none is left to fail. */
 static inline void fail_each(enum status (*try)(struct error *error), long least)

@@ -12,8 +12,7 @@ static double linear(int dim, const double *x)
 /* values[count * 2]: a linear field and a constant. */
 static double *linear_field(int dim, int64_t count, const double *x)
 {
-    double *values = malloc((size_t)(count * 2) * sizeof *values);
-    assert_non_null(values);
+    double *values = zeros(count * 2, sizeof *values);
     for (int64_t n = 0; n < count; n++) {
         values[2 * n] = linear(dim, x + n * dim);
         values[2 * n + 1] = -7.0;
@@ -27,9 +26,8 @@ static struct nodal_field view(const struct scattered *cloud, const double *valu
         .cells = {.dim = cloud->dim, .node_count = cloud->count, .x = cloud->x}, .cols = 2, .values = values};
 }
 
-static void linear_fields_are_exact(void **state)
+TEST(linear_fields_are_exact)
 {
-    (void)state;
     for (int dim = 2; dim <= 3; dim++) {
         for (int p = 0; p < PLACE_COUNT; p++) {
             struct scattered cloud = scatter(dim, dim == 2 ? 10 : 6, 80, &places[p], 0.3, 3);
@@ -37,63 +35,55 @@ static void linear_fields_are_exact(void **state)
             struct cells cells = {.dim = dim, .node_count = cloud.count, .x = cloud.x};
             struct field_table table;
             struct error error;
-            double *spacing = malloc((size_t)cloud.count * sizeof *spacing);
+            double *spacing = zeros(cloud.count, sizeof *spacing);
             double *values = linear_field(dim, cloud.count, cloud.x);
             double *expected = linear_field(dim, 80, cloud.points), got[160];
-            assert_non_null(spacing);
-            good(field_spacing(&cells, spacing, &error), &error);
-            good(support_radii(&options, cells.node_count, spacing, spacing, &error), &error);
-            good(field_table_build(&options, NULL, &cells, spacing, 80, cloud.points, "points.x", &table,
-                                   &error),
-                 &error);
+            GOOD(field_spacing(&cells, spacing, &error));
+            GOOD(support_radii(&options, cells.node_count, spacing, spacing, &error));
+            GOOD(field_table_build(&options, NULL, &cells, spacing, 80, cloud.points, "points.x", &table,
+                                   &error));
             field_evaluate(80, table.lists.ptr, table.lists.idx, table.phi, 2, values, got);
             for (int i = 0; i < 160; i++) {
                 at_most(fabs(got[i] - expected[i]), 1e-11 * (places[p].size + 10.0), "a linear field");
             }
             field_table_free(&table);
-            free(spacing);
-            free(values);
-            free(expected);
             scattered_free(&cloud);
         }
     }
 }
 
 /* Nodes of cells have the cells' spacing, others that of the nearest nodes. */
-static void spacing_with_and_without_cells(void **state)
+TEST(spacing_with_and_without_cells)
 {
-    (void)state;
     static const double x[] = {0, 0, 1, 0, 1, 1, 0, 1, 3, 0};
     static const int32_t node[] = {0, 1, 2, 0, 2, 3};
     struct cells cells = {2, 5, x, 2, node}, bare = {2, 5, x, 0, NULL};
     double spacing[5], nearest[5], alone[5];
     struct error error;
-    good(field_spacing(&cells, spacing, &error), &error);
-    good(nodes_spacing(2, 5, x, nearest, &error), &error);
-    good(field_spacing(&bare, alone, &error), &error);
+    GOOD(field_spacing(&cells, spacing, &error));
+    GOOD(nodes_spacing(2, 5, x, nearest, &error));
+    GOOD(field_spacing(&bare, alone, &error));
     assert_memory_equal(alone, nearest, sizeof nearest);
     at_most(fabs(spacing[1] - 1.0), 1e-15, "spacing of cells");
     assert_true(spacing[4] == nearest[4]);
 }
 
 /* A cloud of nodes alone: within twice a node's spacing. */
-static void outside_of_nodes(void **state)
+TEST(outside_of_nodes)
 {
-    (void)state;
     static const double x[] = {0, 0, 1, 0, 0, 1}, spacing[] = {1, 1, 1};
     static const double points[] = {0.5, 0.5, 2.9, 0, 0, -1.9, 3.1, 0, 0, -2.1, 0, 0};
     static const bool expected[] = {false, false, false, true, true, false};
     struct cells cells = {2, 3, x, 0, NULL};
     bool got[6];
     struct error error;
-    good(field_outside(&cells, spacing, FIELD_MARGIN, 6, points, got, &error), &error);
+    GOOD(field_outside(&cells, spacing, FIELD_MARGIN, 6, points, got, &error));
     assert_memory_equal(got, expected, sizeof got);
 }
 
 /* Beyond a side, beyond a corner (an edge, in 3D), in a notch between cells; within 0 and within a margin. */
-static void outside_of_cells(void **state)
+TEST(outside_of_cells)
 {
-    (void)state;
     static const double x2[] = {0, 0, 1, 0, 1, 1, 0, 1, 2, 0, 2, 1}, spacing[] = {1, 1, 1, 1, 1, 1};
     static const int32_t triangle[] = {0, 1, 2, 0, 2, 3, 1, 4, 5};
     static const double points2[] = {0.5, 0.5,   1,   0.5,  1.2,  0.6,  -0.19,
@@ -110,39 +100,36 @@ static void outside_of_cells(void **state)
     struct cells cells2 = {2, 6, x2, 3, triangle}, cells3 = {3, 4, x3, 1, tetrahedron};
     bool got[9];
     struct error error;
-    good(field_outside(&cells2, spacing, 0.0, 7, points2, got, &error), &error);
+    GOOD(field_outside(&cells2, spacing, 0.0, 7, points2, got, &error));
     assert_memory_equal(got, in2, sizeof in2);
-    good(field_outside(&cells2, spacing, 0.2, 7, points2, got, &error), &error);
+    GOOD(field_outside(&cells2, spacing, 0.2, 7, points2, got, &error));
     assert_memory_equal(got, near2, sizeof near2);
-    good(field_outside(&cells3, spacing, 0.0, 9, points3, got, &error), &error);
+    GOOD(field_outside(&cells3, spacing, 0.0, 9, points3, got, &error));
     assert_memory_equal(got, in3, sizeof in3);
-    good(field_outside(&cells3, spacing, 0.2, 9, points3, got, &error), &error);
+    GOOD(field_outside(&cells3, spacing, 0.2, 9, points3, got, &error));
     assert_memory_equal(got, near3, sizeof near3);
 }
 
 /* In order, in another order, with two nodes at one place, and moved by more than round-off. */
-static void matching(void **state)
+TEST(matching)
 {
-    (void)state;
     struct scattered cloud = scatter(2, 9, 1, &places[2], 0.3, 12);
-    double *other = malloc((size_t)(cloud.count * 2) * sizeof *other);
-    int32_t *match = malloc((size_t)cloud.count * sizeof *match);
+    double *other = zeros(cloud.count * 2, sizeof *other);
+    int32_t *match = zeros(cloud.count, sizeof *match);
     char seen[81] = {0};
     bool matched;
     struct error error;
-    assert_non_null(other);
-    assert_non_null(match);
     memcpy(cloud.x + 2 * 40, cloud.x + 2 * 41, 2 * sizeof(double));
     for (int64_t n = 0; n < 81; n++) { /* 31 and 81 have no common factor */
         other[2 * (n * 31 % 81)] = cloud.x[2 * n] + 0.9e-10 * (n % 2 == 0 ? 1 : -1);
         other[2 * (n * 31 % 81) + 1] = cloud.x[2 * n + 1];
     }
-    good(field_match_nodes(2, 81, cloud.x, 81, cloud.x, match, &matched, &error), &error);
+    GOOD(field_match_nodes(2, 81, cloud.x, 81, cloud.x, match, &matched, &error));
     assert_true(matched);
     for (int32_t n = 0; n < 81; n++) {
         assert_int_equal(match[n], n);
     }
-    good(field_match_nodes(2, 81, cloud.x, 81, other, match, &matched, &error), &error);
+    GOOD(field_match_nodes(2, 81, cloud.x, 81, other, match, &matched, &error));
     assert_true(matched);
     for (int64_t n = 0; n < 81; n++) {
         assert_false(seen[match[n]]);
@@ -151,27 +138,24 @@ static void matching(void **state)
         at_most(fabs(other[2 * match[n] + 1] - cloud.x[2 * n + 1]), 1e-10, "a matched node");
     }
     other[5] += 1e-8;
-    good(field_match_nodes(2, 81, cloud.x, 81, other, match, &matched, &error), &error);
+    GOOD(field_match_nodes(2, 81, cloud.x, 81, other, match, &matched, &error));
     assert_false(matched);
-    good(field_match_nodes(2, 81, cloud.x, 80, cloud.x, match, &matched, &error), &error);
+    GOOD(field_match_nodes(2, 81, cloud.x, 80, cloud.x, match, &matched, &error));
     assert_false(matched);
     memcpy(other, cloud.x, 81 * 2 * sizeof *other); /* the same places, but not equally often */
     memcpy(other, cloud.x + 2 * 40, 2 * sizeof *other);
-    good(field_match_nodes(2, 81, cloud.x, 81, other, match, &matched, &error), &error);
+    GOOD(field_match_nodes(2, 81, cloud.x, 81, other, match, &matched, &error));
     assert_false(matched);
-    free(other);
-    free(match);
     scattered_free(&cloud);
 }
 
-static void statistics_of_differences(void **state)
+TEST(statistics_of_differences)
 {
-    (void)state;
     double difference[] = {3.0, 0.0, 4.0, 100.0, 4.0, 1.0};
     static const int64_t index[] = {0, 1, 2, 4, 5};
     struct field_statistics statistics;
     struct error error;
-    good(field_statistics(5, index, difference, &statistics, &error), &error);
+    GOOD(field_statistics(5, index, difference, &statistics, &error));
     at_most(fabs(statistics.average - 2.4), 1e-15, "average");
     at_most(fabs(statistics.rmse - sqrt(42.0 / 5.0)), 1e-15, "rmse");
     assert_true(statistics.largest == 4.0 && statistics.largest_at == 2);
@@ -181,12 +165,12 @@ static void statistics_of_differences(void **state)
     at_most(fabs(field_percentile(&statistics, 12.5) - 0.5), 1e-15, "percentile between two");
     field_statistics_free(&statistics);
     difference[4] = NAN;
-    good(field_statistics(5, index, difference, &statistics, &error), &error);
+    GOOD(field_statistics(5, index, difference, &statistics, &error));
     assert_true(isnan(statistics.average) && isnan(statistics.largest) && isnan(statistics.rmse));
     assert_true(isnan(field_percentile(&statistics, 50)));
     assert_int_equal(statistics.largest_at, 4);
     field_statistics_free(&statistics);
-    good(field_statistics(0, index, difference, &statistics, &error), &error);
+    GOOD(field_statistics(0, index, difference, &statistics, &error));
     assert_true(isnan(statistics.average) && isnan(statistics.largest) && isnan(statistics.rmse));
     field_statistics_free(&statistics);
     static const double field[] = {3.0, 4.0, NAN, 0.0};
@@ -195,9 +179,8 @@ static void statistics_of_differences(void **state)
 }
 
 /* A field against itself, against itself on another cloud, and against one that differs at one node. */
-static void comparisons(void **state)
+TEST(comparisons)
 {
-    (void)state;
     for (int dim = 2; dim <= 3; dim++) {
         struct scattered coarse = scatter(dim, 5, 1, &places[0], 0.0, 3);
         struct scattered fine = scatter(dim, dim == 2 ? 12 : 8, 1, &places[0], 0.2, 4);
@@ -205,9 +188,8 @@ static void comparisons(void **state)
         struct nodal_field first = view(&coarse, a), second = view(&fine, b);
         struct field_comparison comparison;
         struct error error;
-        bool *chosen = calloc((size_t)coarse.count, sizeof *chosen);
-        assert_non_null(chosen);
-        good(field_compare(&first, &first, NULL, false, &comparison, &error), &error);
+        bool *chosen = zeros(coarse.count, sizeof *chosen);
+        GOOD(field_compare(&first, &first, NULL, false, &comparison, &error));
         assert_true(comparison.coincide && comparison.count == coarse.count && comparison.outside == 0);
         for (int64_t n = 0; n < coarse.count; n++) {
             assert_true(comparison.difference[n] == 0.0);
@@ -216,7 +198,7 @@ static void comparisons(void **state)
 
         a[2 * 7] += 3.0;
         a[2 * 7 + 1] += 4.0;
-        good(field_compare(&first, &second, NULL, false, &comparison, &error), &error);
+        GOOD(field_compare(&first, &second, NULL, false, &comparison, &error));
         assert_false(comparison.coincide);
         for (int64_t n = 0; n < coarse.count; n++) {
             at_most(fabs(comparison.difference[n] - (n == 7 ? 5.0 : 0.0)), 1e-11, "difference");
@@ -228,29 +210,24 @@ static void comparisons(void **state)
         assert_int_equal(comparison.outside, 1);
         assert_non_null(strstr(error.text, "row 9"));
         field_comparison_free(&comparison);
-        good(field_compare(&first, &second, NULL, true, &comparison, &error), &error);
+        GOOD(field_compare(&first, &second, NULL, true, &comparison, &error));
         assert_int_equal(comparison.count, coarse.count - 1);
         assert_true(isnan(comparison.difference[9]));
         field_comparison_free(&comparison);
         chosen[7] = chosen[8] = true;
-        good(field_compare(&first, &second, chosen, false, &comparison, &error), &error);
+        GOOD(field_compare(&first, &second, chosen, false, &comparison, &error));
         assert_int_equal(comparison.count, 2);
         assert_true(comparison.node[0] == 7 && comparison.node[1] == 8);
         assert_true(isnan(comparison.difference[0]));
         field_comparison_free(&comparison);
-
-        free(chosen);
-        free(a);
-        free(b);
         scattered_free(&coarse);
         scattered_free(&fine);
     }
 }
 
 /* A cloud that cannot be interpolated is not comparable: an error, not a verdict. */
-static void not_comparable(void **state)
+TEST(not_comparable)
 {
-    (void)state;
     static const double line[] = {0, 0, 1, 1, 2, 2, 3, 3, 4, 4}, point[] = {1.5, 1.5}, values[10] = {0.0};
     struct nodal_field a = {.cells = {.dim = 2, .node_count = 1, .x = point}, .cols = 2, .values = values};
     struct nodal_field b = {.cells = {.dim = 2, .node_count = 5, .x = line}, .cols = 2, .values = values};
@@ -260,17 +237,4 @@ static void not_comparable(void **state)
     field_comparison_free(&comparison);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(linear_fields_are_exact),
-        cmocka_unit_test(spacing_with_and_without_cells),
-        cmocka_unit_test(outside_of_nodes),
-        cmocka_unit_test(outside_of_cells),
-        cmocka_unit_test(matching),
-        cmocka_unit_test(statistics_of_differences),
-        cmocka_unit_test(comparisons),
-        cmocka_unit_test(not_comparable),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

@@ -17,7 +17,7 @@ static struct cloud lattice(int dim, int n, double jitter)
                                    .seed = 1};
     struct cloud cloud;
     struct error error;
-    good(cloud_make(&wanted, &cloud, &error), &error);
+    GOOD(cloud_make(&wanted, &cloud, &error));
     assert_true(cloud.cell_count > 0);
     return cloud;
 }
@@ -29,8 +29,7 @@ static struct cells cells_of(const struct cloud *cloud)
 
 static double *array_of(int64_t count, double value)
 {
-    double *array = malloc((size_t)count * sizeof *array);
-    assert_non_null(array);
+    double *array = zeros(count, sizeof *array);
     for (int64_t i = 0; i < count; i++) {
         array[i] = value;
     }
@@ -38,9 +37,8 @@ static double *array_of(int64_t count, double value)
 }
 
 /* An error c h^p on spacings h, 2 h, 4 h is found again, and its order. */
-static void extrapolation(void **state)
+TEST(extrapolation)
 {
-    (void)state;
     for (double p = 1.0; p <= 2.0; p += 0.25) {
         double fine = pow(2.0, p) - 1.0, coarse = pow(4.0, p) - pow(2.0, p); /* differences, c h^p = 1 */
         at_most(fabs(fine * field_error_share(2.0, p) - 1.0), 1e-14, "error");
@@ -53,9 +51,8 @@ static void extrapolation(void **state)
     assert_true(field_error_order(1.0, NAN, 2.0) == FIELD_ERROR_MOST_ORDER);
 }
 
-static void ratio_of_cells(void **state)
+TEST(ratio_of_cells)
 {
-    (void)state;
     for (int dim = 2; dim <= 3; dim++) {
         struct cloud fine = lattice(dim, 9, 0.0), coarse = lattice(dim, 5, 0.0);
         struct cells f = cells_of(&fine), c = cells_of(&coarse), nodes = c;
@@ -68,15 +65,14 @@ static void ratio_of_cells(void **state)
 }
 
 /* A mean over the body is no mean over its nodes, which a graded cloud has in one corner. */
-static void mean_over_body(void **state)
+TEST(mean_over_body)
 {
-    (void)state;
     for (int dim = 2; dim <= 3; dim++) {
         struct cloud_options wanted = {
             .kind = CLOUD_GRADED, .dim = dim, .count = {7, 7, 7}, .high = {1.0, 1.0, 1.0}, .ratio = 10.0};
         struct cloud cloud;
         struct error error;
-        good(cloud_make(&wanted, &cloud, &error), &error);
+        GOOD(cloud_make(&wanted, &cloud, &error));
         struct cells cells = cells_of(&cloud);
         double *value = array_of(cells.node_count, 0.0);
         for (int64_t n = 0; n < cells.node_count; n++) {
@@ -91,22 +87,19 @@ static void mean_over_body(void **state)
             value[n] = NAN;
         }
         assert_true(isnan(field_error_mean(&cells, value)));
-        free(value);
         cloud_free(&cloud);
     }
 }
 
 /* Gradients of a linear field are recovered, also where its slope jumps between two regions. */
-static void linear_fields_have_no_error(void **state)
+TEST(linear_fields_have_no_error)
 {
-    (void)state;
     for (int dim = 2; dim <= 3; dim++) {
         struct cloud cloud = lattice(dim, 7, 0.0);
         struct cells cells = cells_of(&cloud);
         struct error error;
         double *values = array_of(cells.node_count * 2, -7.0), *squared = array_of(cells.count, -1.0);
-        int32_t *region = calloc((size_t)cells.count, sizeof *region);
-        assert_non_null(region);
+        int32_t *region = zeros(cells.count, sizeof *region);
         for (int64_t q = 0; q < cells.count; q++) {
             double middle[3];
             cell_centroid(&cells, q, middle);
@@ -117,14 +110,14 @@ static void linear_fields_have_no_error(void **state)
             values[2 * n] = x > 0.5 ? 4.0 * x - 1.5 : x;
             values[2 * n + 1] = 1.0 - 2.0 * cells.x[n * dim + 1];
         }
-        good(field_error_recovered(&cells, region, 2, 2, values, squared, &error), &error);
+        GOOD(field_error_recovered(&cells, region, 2, 2, values, squared, &error));
         double largest = 0.0;
         for (int64_t q = 0; q < cells.count; q++) {
             assert_true(squared[q] >= 0.0);
             largest = fmax(largest, squared[q]);
         }
         at_most(largest, 1e-26, "error of linear fields");
-        good(field_error_recovered(&cells, NULL, 0, 2, values, squared, &error), &error);
+        GOOD(field_error_recovered(&cells, NULL, 0, 2, values, squared, &error));
         for (int64_t q = 0; q < cells.count; q++) {
             double middle[3];
             cell_centroid(&cells, q, middle);
@@ -132,11 +125,7 @@ static void linear_fields_have_no_error(void **state)
             assert_true(near ? squared[q] > 1e-6 : squared[q] < 1e-26);
         }
         values[5] = NAN;
-        assert_int_equal(field_error_recovered(&cells, NULL, 0, 2, values, squared, &error), STATUS_INPUT);
-        assert_non_null(strstr(error.text, "row 2"));
-        free(values);
-        free(squared);
-        free(region);
+        FAILS(field_error_recovered(&cells, NULL, 0, 2, values, squared, &error), STATUS_INPUT, "row 2");
         cloud_free(&cloud);
     }
 }
@@ -144,9 +133,8 @@ static void linear_fields_have_no_error(void **state)
 /* Of a quadratic field the recovered error is about the true one of the interpolant, and halves with the
  * cells.
  */
-static void quadratic_fields_converge(void **state)
+TEST(quadratic_fields_converge)
 {
-    (void)state;
     for (int dim = 2; dim <= 3; dim++) {
         double total[2];
         for (int i = 0; i < 2; i++) {
@@ -157,7 +145,7 @@ static void quadratic_fields_converge(void **state)
             for (int64_t n = 0; n < cells.node_count; n++) {
                 values[n] = cells.x[n * dim] * cells.x[n * dim];
             }
-            good(field_error_recovered(&cells, NULL, 0, 1, values, squared, &error), &error);
+            GOOD(field_error_recovered(&cells, NULL, 0, 1, values, squared, &error));
             total[i] = 0.0;
             for (int64_t q = 0; q < cells.count; q++) {
                 total[i] += squared[q];
@@ -165,8 +153,6 @@ static void quadratic_fields_converge(void **state)
             /* The gradient 2 x is off by up to h in a cell: h^2 / 3 in the mean square. */
             double h = i == 0 ? 1.0 / 8 : 1.0 / 16, exact = h * h / 3.0;
             at_most(fabs(log(total[i] / exact)), log(1.5), "recovered by exact error");
-            free(values);
-            free(squared);
             cloud_free(&cloud);
         }
         at_most(fabs(total[0] / total[1] - 4.0), 0.6, "squares of errors with cells of half the size");
@@ -174,9 +160,8 @@ static void quadratic_fields_converge(void **state)
 }
 
 /* Equal errors: all cells become smaller alike, by the root of the share, and so many more. */
-static void equal_errors_keep_a_mesh_even(void **state)
+TEST(equal_errors_keep_a_mesh_even)
 {
-    (void)state;
     for (int dim = 2; dim <= 3; dim++) {
         struct cloud cloud = lattice(dim, 6, 0.0);
         struct cells cells = cells_of(&cloud);
@@ -184,8 +169,8 @@ static void equal_errors_keep_a_mesh_even(void **state)
         struct size_field field;
         struct error error;
         double *squared = array_of(cells.count, 3.0), *spacing = array_of(cells.node_count, 0.0);
-        good(cells_node_spacing(&cells, spacing, &error), &error);
-        good(size_field_build(&cells, squared, &request, &field, &error), &error);
+        GOOD(cells_node_spacing(&cells, spacing, &error));
+        GOOD(size_field_build(&cells, squared, &request, &field, &error));
         for (int64_t n = 0; n < cells.node_count; n++) {
             at_most(fabs(field.size[n] / spacing[n] - 0.5), 0.2, "size");
         }
@@ -196,7 +181,7 @@ static void equal_errors_keep_a_mesh_even(void **state)
 
         /* No more nodes than there may be: all sizes larger by one factor. */
         request.most_nodes = (double)cells.node_count;
-        good(size_field_build(&cells, squared, &request, &field, &error), &error);
+        GOOD(size_field_build(&cells, squared, &request, &field, &error));
         at_most(fabs(field.nodes - request.most_nodes), 0.0, "nodes");
         assert_true(field.unbound > field.nodes);
         size_field_free(&field);
@@ -204,7 +189,7 @@ static void equal_errors_keep_a_mesh_even(void **state)
         /* Without errors cells become larger, but not at the boundary. */
         request = (struct size_field_request){.share = 1.0, .most_nodes = 1e9};
         memset(squared, 0, (size_t)cells.count * sizeof *squared);
-        good(size_field_build(&cells, squared, &request, &field, &error), &error);
+        GOOD(size_field_build(&cells, squared, &request, &field, &error));
         for (int64_t n = 0; n < cells.node_count; n++) {
             bool inside = true;
             for (int a = 0; a < dim; a++) {
@@ -213,17 +198,14 @@ static void equal_errors_keep_a_mesh_even(void **state)
             assert_true(inside ? field.size[n] > spacing[n] : field.size[n] <= spacing[n]);
         }
         size_field_free(&field);
-        free(squared);
-        free(spacing);
         cloud_free(&cloud);
     }
 }
 
 /* Bad cells around one node: sizes are least there, change along no edge by more than the gradation, and keep
  * their bounds. */
-static void bad_cells(void **state)
+TEST(bad_cells)
 {
-    (void)state;
     for (int dim = 2; dim <= 3; dim++) {
         struct cloud cloud = lattice(dim, 9, 0.0);
         struct cells cells = cells_of(&cloud);
@@ -238,7 +220,7 @@ static void bad_cells(void **state)
             }
         }
         for (int pass = 0; pass < 2; pass++) {
-            good(size_field_build(&cells, squared, &request, &field, &error), &error);
+            GOOD(size_field_build(&cells, squared, &request, &field, &error));
             least = INFINITY;
             for (int64_t n = 0; n < cells.node_count; n++) {
                 least = fmin(least, field.size[n]);
@@ -267,15 +249,13 @@ static void bad_cells(void **state)
                 at_most(fabs(least / request.least - 1.0), 1e-12, "least size");
             }
         }
-        free(squared);
         cloud_free(&cloud);
     }
 }
 
 /* A ring of radii 1 and 2: facets no farther than asked off the circles; a square's corners are no curves. */
-static void facets_near_their_curve(void **state)
+TEST(facets_near_their_curve)
 {
-    (void)state;
     struct cloud ring = lattice(2, 13, 0.0), square = lattice(2, 13, 0.0);
     struct size_field_request request = {.share = 1.0, .most_nodes = 1e9};
     struct size_field bent, straight, limited;
@@ -295,7 +275,7 @@ static void facets_near_their_curve(void **state)
     }
     double *squared = array_of(cells.count, 1.0);
     request.sag = 1e-4;
-    good(size_field_build(&cells, squared, &request, &bent, &error), &error);
+    GOOD(size_field_build(&cells, squared, &request, &bent, &error));
     for (int64_t n = 0; n < cells.node_count; n++) {
         double x = cells.x[2 * n], y = cells.x[2 * n + 1], r = hypot(x, y), angle = atan2(y, x);
         bool on_circle = fabs(r - 1.0) < 1e-9 || fabs(r - 2.0) < 1e-9;
@@ -304,44 +284,27 @@ static void facets_near_their_curve(void **state)
             at_most(fabs(bent.size[n] / exact - 1.0), 0.05, "size for the sag of a circle");
         }
     }
-    good(size_field_build(&flat, squared, &request, &straight, &error), &error);
+    GOOD(size_field_build(&flat, squared, &request, &straight, &error));
     request.sag = 0.0;
-    good(size_field_build(&flat, squared, &request, &limited, &error), &error);
+    GOOD(size_field_build(&flat, squared, &request, &limited, &error));
     assert_memory_equal(straight.size, limited.size, (size_t)flat.node_count * sizeof(double));
     size_field_free(&bent);
     size_field_free(&straight);
     size_field_free(&limited);
-    free(squared);
     cloud_free(&ring);
     cloud_free(&square);
 }
 
-static void nodes_of_no_cell(void **state)
+TEST(nodes_of_no_cell)
 {
-    (void)state;
     static const double x[] = {0, 0, 1, 0, 0, 1, 5, 5}, squared[] = {1.0};
     static const int32_t node[] = {0, 1, 2};
     struct cells cells = {2, 4, x, 1, node};
     struct size_field_request request = {.share = 1.0, .most_nodes = 100.0};
     struct size_field field;
     struct error error;
-    assert_int_equal(size_field_build(&cells, squared, &request, &field, &error), STATUS_INPUT);
-    assert_non_null(strstr(error.text, "node 3"));
+    FAILS(size_field_build(&cells, squared, &request, &field, &error), STATUS_INPUT, "node 3");
     size_field_free(&field);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(extrapolation),
-        cmocka_unit_test(ratio_of_cells),
-        cmocka_unit_test(mean_over_body),
-        cmocka_unit_test(linear_fields_have_no_error),
-        cmocka_unit_test(quadratic_fields_converge),
-        cmocka_unit_test(equal_errors_keep_a_mesh_even),
-        cmocka_unit_test(bad_cells),
-        cmocka_unit_test(facets_near_their_curve),
-        cmocka_unit_test(nodes_of_no_cell),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

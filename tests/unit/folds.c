@@ -1,5 +1,5 @@
 /* Folds: bodies that are bent, turned and stretched one-to-one have none; each kind is found where it is. */
-#include "solid_fixture.h"
+#include "unit.h"
 
 #include "approx/cells.h"
 #include "solid/folds.h"
@@ -186,9 +186,8 @@ static void bend(const struct shape *shape, double angle, double *y)
     }
 }
 
-static void one_to_one(void **state)
+TEST(one_to_one)
 {
-    (void)state;
     static struct shape shape;
     double y[MOST_NODES * 3];
     for (int dim = 2; dim <= 3; dim++) {
@@ -204,9 +203,8 @@ static void one_to_one(void **state)
 }
 
 /* Bent until the ends pass through each other. */
-static void crossing(void **state)
+TEST(crossing)
 {
-    (void)state;
     static struct shape shape;
     double y[MOST_NODES * 3];
     for (int dim = 2; dim <= 3; dim++) {
@@ -230,9 +228,8 @@ static void crossing(void **state)
 
 /* A ring whose ends meet beside each other: one through the other by less than a twentieth of a facet is
  * round-off of what holds averages; by more it is a crossing. */
-static void barely_through(void **state)
+TEST(barely_through)
 {
-    (void)state;
     static struct shape shape;
     static const double depth[] = {1e-9, 3e-3, 8e-3};
     double y[MOST_NODES * 3];
@@ -255,9 +252,8 @@ static void barely_through(void **state)
 }
 
 /* A wedge whose sides pass through each other at its edge, all cells right way round. */
-static void crease(void **state)
+TEST(crease)
 {
-    (void)state;
     static struct shape shape;
     double y[MOST_NODES * 3];
     for (int dim = 2; dim <= 3; dim++) {
@@ -285,9 +281,8 @@ static void crease(void **state)
 
 /* A node beyond the far side of its cells: those and only those that are inverted, the first one with its
  * place. */
-static void inverted(void **state)
+TEST(inverted)
 {
-    (void)state;
     static struct shape shape;
     double y[MOST_NODES * 3];
     for (int dim = 2; dim <= 3; dim++) {
@@ -330,9 +325,8 @@ static void inverted(void **state)
 
 /* The side's lowest nodes go below the plane of the support under the body, unless something presses on them.
  */
-static void through_the_plane(void **state)
+TEST(through_the_plane)
 {
-    (void)state;
     static struct shape shape;
     double u[MOST_NODES * 3];
     bool stopped[MOST_NODES];
@@ -391,9 +385,8 @@ static void make_two(struct shape *shape, int dim, double away)
 
 /* Bodies that interpenetrate: at rest, and when one is moved; a boundary crosses only where one is not wholly
  * within. */
-static void another_body(void **state)
+TEST(another_body)
 {
-    (void)state;
     static struct shape shape;
     double y[MOST_NODES * 3];
     for (int dim = 2; dim <= 3; dim++) {
@@ -422,9 +415,8 @@ static void another_body(void **state)
 
 /* A strip that is bent to a ring and goes on over its begin, exactly: boundaries lie on each other and do not
  * cross. */
-static void over_itself(void **state)
+TEST(over_itself)
 {
-    (void)state;
     static struct shape shape;
     double y[MOST_NODES * 3], u[MOST_NODES * 3];
     struct fold fold;
@@ -451,12 +443,4 @@ static void over_itself(void **state)
     }
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(one_to_one),   cmocka_unit_test(crossing),          cmocka_unit_test(crease),
-        cmocka_unit_test(inverted),     cmocka_unit_test(through_the_plane), cmocka_unit_test(barely_through),
-        cmocka_unit_test(another_body), cmocka_unit_test(over_itself),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

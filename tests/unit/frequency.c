@@ -48,15 +48,11 @@ static double least_of_all(struct lattice *l, struct constraint *constraint, con
     gsl_eigen_symm_free(work);
     gsl_vector_free(values);
     gsl_matrix_free(matrix);
-    free(move);
-    free(displaced);
-    free(after);
     return least;
 }
 
-static void agrees_with_all_eigenvalues(void **state)
+TEST(agrees_with_all_eigenvalues)
 {
-    (void)state;
     for (int dim = 2; dim <= 3; dim++) {
         struct lattice l;
         struct preconditioner preconditioner;
@@ -71,8 +67,8 @@ static void agrees_with_all_eigenvalues(void **state)
         lattice_slide(&l, dim == 2 ? 1u << 0 | 1u << 2 : 1u << 0 | 1u << 2 | 1u << 4, curve);
         int64_t size = l.system.node_count * dim;
         double *u = lattice_vector(&l), *residual = lattice_vector(&l), *start = lattice_vector(&l);
-        ARRAY(mass, l.system.node_count);
-        ARRAY(scratch, 4 * size);
+        mass = zeros(l.system.node_count, sizeof *mass);
+        scratch = zeros(4 * size, sizeof *scratch);
         for (int64_t i = 0; i < size; i++) { /* a strained state; a start without favour */
             u[i] = (i % dim == 0 ? -0.05 : 0.05 / (dim - 1)) * l.system.X[i];
             start[i] = sin(1.0 + (double)(i * i % 97));
@@ -90,20 +86,14 @@ static void agrees_with_all_eigenvalues(void **state)
         assert_true(spectrum.lowest > (1.0 - 1e-9) * least);
         AT_MOST(0.8 * spectrum.lowest, least);
         preconditioner_free(&preconditioner);
-        free(mass);
-        free(scratch);
-        free(u);
-        free(residual);
-        free(start);
         lattice_free(&l);
     }
 }
 
 /* A block in plane strain between sliding ends, compressed along the first axis, its free side along it: a
  * half-space wrinkles at a stretch of .544 (Biot 1963). */
-static void a_block_compressed_beyond_biots_limit_is_not_stable(void **state)
+TEST(a_block_compressed_beyond_biots_limit_is_not_stable)
 {
-    (void)state;
     const double stretch[] = {0.8, 0.5}, across[] = {1.2379, 1.9123}; /* lateral: of no stress there */
     for (int k = 0; k < 2; k++) {
         struct lattice l;
@@ -118,8 +108,8 @@ static void a_block_compressed_beyond_biots_limit_is_not_stable(void **state)
         lattice_slide(&l, 1u << 0 | 1u << 1 | 1u << 2, lattice_curve(&l, curve_of_kind(CURVE_SMOOTH)));
         int64_t size = l.system.node_count * 2;
         double *u = lattice_vector(&l), *residual = lattice_vector(&l), *start = lattice_vector(&l);
-        ARRAY(mass, l.system.node_count);
-        ARRAY(scratch, 4 * size);
+        mass = zeros(l.system.node_count, sizeof *mass);
+        scratch = zeros(4 * size, sizeof *scratch);
         for (int64_t i = 0; i < size; i++) {
             u[i] = ((i % 2 == 0 ? stretch[k] : across[k]) - 1.0) * l.system.X[i];
             start[i] = sin(1.0 + (double)(i * i % 97));
@@ -140,18 +130,8 @@ static void a_block_compressed_beyond_biots_limit_is_not_stable(void **state)
             AT_MOST(0.1 - l.system.X[stability.node * 2 + 1], 1e-9); /* on the free side */
         }
         preconditioner_free(&preconditioner);
-        free(mass);
-        free(scratch);
-        free(u);
-        free(residual);
-        free(start);
         lattice_free(&l);
     }
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {cmocka_unit_test(agrees_with_all_eigenvalues),
-                                       cmocka_unit_test(a_block_compressed_beyond_biots_limit_is_not_stable)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

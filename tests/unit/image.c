@@ -4,17 +4,8 @@
 
 #include "io/image.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
-
 #include <fcntl.h>
-#include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <sys/mman.h>
 #include <unistd.h>
 #include <zlib.h>
@@ -113,9 +104,8 @@ static void make_kind(const struct kind *kind, int version, bool big)
     }
 }
 
-static void types(void **state)
+TEST(types)
 {
-    (void)state;
     for (size_t k = 0; k < sizeof kinds / sizeof *kinds; k++) {
         for (int way = 0; way < 8; way++) {
             unsigned char packed[4096];
@@ -135,17 +125,15 @@ static void types(void **state)
     }
 }
 
-static void whole_numbers_beyond_doubles(void **state)
+TEST(whole_numbers_beyond_doubles)
 {
-    (void)state;
     make_kind(&kinds[6], 1, false);
     put_number(&file, 352, 8, ((uint64_t)1 << 60) + 1);
     refused("beyond 2^53");
 }
 
-static void scaling(void **state)
+TEST(scaling)
 {
-    (void)state;
     make_kind(&kinds[0], 1, true);
     put_scale(&file, 0.5, -10);
     accepted();
@@ -173,9 +161,8 @@ static void same_space(double expected[3][4])
 }
 
 /* sform before qform before voxel sizes, and the units. */
-static void spaces(void **state)
+TEST(spaces)
 {
-    (void)state;
     double sform[3][4] = {{0, -2, 0, 10}, {0, 0, 3, 20}, {-1, 0, 0, 30}};
     double in_metres[3][4], turned[3][4] = {{0, -2e-3, 0, 4e-3}, {1e-3, 0, 0, 5e-3}, {0, 0, -3e-3, 6e-3}};
     double sizes[3][4] = {{1e-3, 0, 0, 0}, {0, 2e-3, 0, 0}, {0, 0, 3e-3, 0}};
@@ -224,9 +211,8 @@ static void spaces(void **state)
     image_free(&image);
 }
 
-static void spaces_that_are_none(void **state)
+TEST(spaces_that_are_none)
 {
-    (void)state;
     double flat[3][4] = {{1, 0, 0, 0}, {0, 1, 0, 0}, {1, 1, 0, 0}},
            far[3][4] = {{1, 0, 0, NAN}, {0, 1, 0, 0}, {0, 0, 1, 0}};
     begin_nifti(&file, 1, false, 2, 2, 2, 2, 8);
@@ -255,9 +241,8 @@ static void spaces_that_are_none(void **state)
     image_free(&image);
 }
 
-static void colours_and_vectors(void **state)
+TEST(colours_and_vectors)
 {
-    (void)state;
     begin_nifti(&file, 1, false, 2, 2, 1, 128, 24);
     for (int i = 0; i < 12; i++) {
         append_value(&file, 1, (uint64_t)(10 + i));
@@ -279,9 +264,8 @@ static void colours_and_vectors(void **state)
     image_free(&image);
 }
 
-static void headers_that_lie(void **state)
+TEST(headers_that_lie)
 {
-    (void)state;
     make_kind(&kinds[2], 1, false);
     file.size--;
     refused("cut short: data of 11 bytes, the header says 12");
@@ -322,9 +306,8 @@ static void headers_that_lie(void **state)
     refused("along dimension 1");
 }
 
-static void other_files(void **state)
+TEST(other_files)
 {
-    (void)state;
     file.size = 0;
     refused("is empty");
     static const char *const texts[][2] = {
@@ -347,16 +330,14 @@ static void other_files(void **state)
     make_kind(&kinds[0], 2, false);
     file.bytes[5] = 'x';
     refused("no mark of NIfTI-2");
-    assert_int_equal(image_read(&image, "/nonexistent.nii", &error), STATUS_INPUT);
-    assert_non_null(strstr(error.text, "/nonexistent.nii: No such file"));
+    FAILS(image_read(&image, "/nonexistent.nii", &error), STATUS_INPUT, "/nonexistent.nii: No such file");
     assert_int_equal(image_read(&image, "/", &error), STATUS_INPUT);
 }
 
 /* No part of a file passes for the whole, compressed or not; no bit of compressed data can be turned unseen.
  */
-static void cut_and_damaged(void **state)
+TEST(cut_and_damaged)
 {
-    (void)state;
     unsigned char packed[4096];
     int silent = 0;
     make_kind(&kinds[9], 1, false);
@@ -385,9 +366,8 @@ static void cut_and_damaged(void **state)
 }
 
 /* A file of many blocks, cut within its checksum, which is all that is missing. */
-static void without_checksum(void **state)
+TEST(without_checksum)
 {
-    (void)state;
     static unsigned char packed[1 << 18];
     uint32_t random = 1;
     begin_nifti(&file, 1, false, 100, 100, 10, 2, 8);
@@ -416,9 +396,9 @@ static void write_and_read(const struct image *written, bool gzip)
 {
     int descriptor = memfd_create("image", 0);
     assert_true(descriptor >= 0);
-    assert_int_equal(image_write(written, descriptor, gzip, &error), STATUS_OK);
+    GOOD(image_write(written, descriptor, gzip, &error));
     assert_int_equal(lseek(descriptor, 0, SEEK_SET), 0);
-    assert_int_equal(image_read_from(&image, descriptor, "written", &error), STATUS_OK);
+    GOOD(image_read_from(&image, descriptor, "written", &error));
     close(descriptor);
 }
 
@@ -438,9 +418,8 @@ static void assert_same(const struct image *a, const struct image *b)
     }
 }
 
-static void round_trips(void **state)
+TEST(round_trips)
 {
-    (void)state;
     double oblique[3][4] = {{-0.6, 0.8, 0, 1}, {0.8, 0.6, 0, 2}, {0, 0, 2, -3}};
     for (size_t k = 0; k < sizeof kinds / sizeof *kinds; k++) {
         for (int version = 1; version <= 2; version++) {
@@ -464,14 +443,13 @@ static void round_trips(void **state)
 }
 
 /* What a type cannot hold becomes the nearest that it can. */
-static void rounding(void **state)
+TEST(rounding)
 {
-    (void)state;
     struct image written;
     const size_t size[3] = {6, 1, 1};
     static const double values[6] = {-5, 1e9, 1.5001, NAN, 254.4, INFINITY};
     static const double expected[6] = {0, 255, 2, 0, 254, 255};
-    assert_int_equal(image_new(&written, size, 1, &error), STATUS_OK);
+    GOOD(image_new(&written, size, 1, &error));
     written.datatype = IMAGE_UINT8;
     memcpy(written.values, values, sizeof values);
     write_and_read(&written, false);
@@ -487,12 +465,11 @@ static void rounding(void **state)
 }
 
 /* More than fits the first version, several blocks of compression, and components. */
-static void large(void **state)
+TEST(large)
 {
-    (void)state;
     struct image written;
     const size_t size[3] = {40000, 31, 1};
-    assert_int_equal(image_new(&written, size, 3, &error), STATUS_OK);
+    GOOD(image_new(&written, size, 3, &error));
     written.space = IMAGE_SPACE_SCANNER;
     for (size_t i = 0; i < 3 * image_voxels(&written); i++) {
         written.values[i] = (float)sin((double)i);
@@ -507,36 +484,16 @@ static void large(void **state)
     image_free(&written);
 }
 
-static void full_device(void **state)
+TEST(full_device)
 {
-    (void)state;
     struct image written;
     const size_t size[3] = {10, 10, 10};
     int full = open("/dev/full", O_WRONLY);
-    assert_int_equal(image_new(&written, size, 1, &error), STATUS_OK);
+    GOOD(image_new(&written, size, 1, &error));
     assert_int_equal(image_write(&written, full, true, &error), STATUS_SYSTEM);
     assert_string_equal(error.text, "No space left on device");
     image_free(&written);
     close(full);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(types),
-        cmocka_unit_test(whole_numbers_beyond_doubles),
-        cmocka_unit_test(scaling),
-        cmocka_unit_test(spaces),
-        cmocka_unit_test(spaces_that_are_none),
-        cmocka_unit_test(colours_and_vectors),
-        cmocka_unit_test(headers_that_lie),
-        cmocka_unit_test(other_files),
-        cmocka_unit_test(cut_and_damaged),
-        cmocka_unit_test(without_checksum),
-        cmocka_unit_test(round_trips),
-        cmocka_unit_test(rounding),
-        cmocka_unit_test(large),
-        cmocka_unit_test(full_device),
-    };
-    return cmocka_run_group_tests_name("image", tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

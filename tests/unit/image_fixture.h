@@ -3,9 +3,7 @@
 #ifndef IMAGE_FIXTURE_H
 #define IMAGE_FIXTURE_H
 
-#include <stdbool.h>
-#include <stdint.h>
-#include <string.h>
+#include "unit.h"
 
 /* A file in the making: the fields of either version are named by the first one's. */
 struct nifti_file {

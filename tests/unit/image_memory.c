@@ -6,32 +6,12 @@
 #include "image_fixture.h"
 #include "io/image.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
-
-#include <errno.h>
-#include <omp.h>
 #include <sys/mman.h>
 #include <unistd.h>
 
 #include "failing_allocator.h"
 
 #ifdef FAILING_ALLOCATOR
-
-/* What OpenMP allocates its teams by: counted, never denied. */
-void *memalign(size_t alignment, size_t size)
-{
-    return counted(__libc_memalign(alignment, size));
-}
-
-int posix_memalign(void **memory, size_t alignment, size_t size)
-{
-    *memory = counted(__libc_memalign(alignment, size));
-    return *memory == NULL ? ENOMEM : 0;
-}
 
 static struct nifti_file file;
 
@@ -52,15 +32,14 @@ static enum status read_and_write(struct error *error)
     return status;
 }
 
-static void images(void **state)
+TEST(images)
 {
-    (void)state;
     struct error error;
     begin_nifti(&file, 1, false, 4, 3, 2, 16, 32);
     put_dim(&file, 0, 5);
     put_dim(&file, 5, 3);
     file.size += 4 * 3 * 2 * 3 * 4;
-    assert_int_equal(read_and_write(&error), STATUS_OK); /* OpenMP has its teams then */
+    GOOD(read_and_write(&error)); /* OpenMP has its teams then */
     fail_each(read_and_write, 6);
 }
 
@@ -81,33 +60,20 @@ static enum status move(struct error *error)
     return status;
 }
 
-static void motions(void **state)
+TEST(motions)
 {
-    (void)state;
     struct error error;
     struct cloud_options options = {.kind = CLOUD_REGULAR, .dim = 3, .count = {4, 4, 4}, .high = {3, 3, 3}};
     struct cloud cloud;
     static double none[4 * 4 * 4 * 3];
-    assert_int_equal(cloud_make(&options, &cloud, &error), STATUS_OK);
+    GOOD(cloud_make(&options, &cloud, &error));
     cells = (struct cells){3, cloud.node_count, cloud.x, cloud.cell_count, cloud.cells};
     u = none;
-    assert_int_equal(move(&error), STATUS_OK);
+    GOOD(move(&error));
     fail_each(move, 10);
     cloud_free(&cloud);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {cmocka_unit_test(images), cmocka_unit_test(motions)};
-    omp_set_num_threads(1);
-    return cmocka_run_group_tests_name("image_memory", tests, NULL, NULL);
-}
-
-#else
-
-int main(void)
-{
-    return 0;
-}
-
 #endif
+
+RUN_TESTS(one_thread, NULL)

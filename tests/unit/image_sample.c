@@ -1,13 +1,7 @@
 /* Values between voxels: exact for what each method reproduces, and none outside. */
+#include "unit.h"
+
 #include "io/image_sample.h"
-
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
-
-#include <math.h>
 
 static struct image image;
 
@@ -48,9 +42,8 @@ static void place(int i, double x[3])
     x[2] = 1 + fmod(0.2317 * i, 2);
 }
 
-static void reproduction(void **state)
+TEST(reproduction)
 {
-    (void)state;
     double x[3], value[2], expected[2];
     for (int i = 0; i < 200; i++) {
         place(i, x);
@@ -69,9 +62,8 @@ static void reproduction(void **state)
     }
 }
 
-static void borders(void **state)
+TEST(borders)
 {
-    (void)state;
     static const double within[][3] = {{-0.5, 0, 0}, {6.5, 5, 4}, {3, -0.4, 4.5}, {0, 5.5, 0}};
     static const double outside[][3] = {{-0.51, 0, 0}, {6.51, 5, 4}, {3, 3, 4.6},
                                         {0, -7, 0},    {NAN, 1, 1},  {1, INFINITY, 1}};
@@ -91,9 +83,8 @@ static void borders(void **state)
 }
 
 /* What is not a number spreads to what is interpolated from it, and no farther. */
-static void not_a_number(void **state)
+TEST(not_a_number)
 {
-    (void)state;
     double value[2], before = image.values[2 * (3 + 7 * (2 + 6 * 2))];
     image.values[2 * (3 + 7 * (2 + 6 * 2))] = NAN;
     assert_true(image_sample(&image, IMAGE_LINEAR, (double[3]){2, 2, 2}, value));
@@ -103,12 +94,4 @@ static void not_a_number(void **state)
     image.values[2 * (3 + 7 * (2 + 6 * 2))] = before;
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(reproduction),
-        cmocka_unit_test(borders),
-        cmocka_unit_test(not_a_number),
-    };
-    return cmocka_run_group_tests_name("image_sample", tests, make, drop);
-}
+RUN_TESTS(make, drop)

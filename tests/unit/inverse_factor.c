@@ -65,16 +65,15 @@ static double energy(const struct cube *cube, const double *x)
 
 /* x . S x of a constant is 0 but for the bonds; of a linear field it is volume times modulus, as the shape
  * functions reproduce it. */
-static void linear_fields_have_their_energy(void **state)
+TEST(linear_fields_have_their_energy)
 {
-    (void)state;
     for (int bonded = 0; bonded < 2; bonded++) {
         struct cube cube;
         build(&cube, bonded);
         const struct body *body = &cube.l.system.body;
         const struct material *material = body->materials;
         double *x;
-        ARRAY(x, cube.n);
+        x = zeros(cube.n, sizeof *x);
         for (int64_t i = 0; i < cube.n; i++) {
             x[i] = 1.0;
         }
@@ -88,20 +87,18 @@ static void linear_fields_have_their_energy(void **state)
         if (!bonded) {
             AT_MOST(fabs(energy(&cube, x) / (13.0 * whole) - 1.0), 1e-9);
         }
-        free(x);
         release(&cube);
     }
 }
 
 /* L is lower triangular, the diagonal of L S L^T is 1. */
-static void the_diagonal_is_one(void **state)
+TEST(the_diagonal_is_one)
 {
-    (void)state;
     struct cube cube;
     build(&cube, true);
     const struct inverse_factor *factor = &cube.factor;
     double *x;
-    ARRAY(x, cube.n);
+    x = zeros(cube.n, sizeof *x);
     for (int64_t i = 0; i < cube.n; i++) {
         assert_int_equal(factor->rows.idx[factor->rows.ptr[i + 1] - 1], i);
         memset(x, 0, (size_t)cube.n * sizeof *x);
@@ -111,14 +108,12 @@ static void the_diagonal_is_one(void **state)
         }
         AT_MOST(fabs(energy(&cube, x) - 1.0), 1e-6);
     }
-    free(x);
     release(&cube);
 }
 
 /* Solving undoes applying; rows of conditions act on y as they do on L^T y. */
-static void the_transpose_is_undone(void **state)
+TEST(the_transpose_is_undone)
 {
-    (void)state;
     struct cube cube;
     struct error error;
     struct constraint_rows rows;
@@ -147,16 +142,7 @@ static void the_transpose_is_undone(void **state)
         AT_MOST(fabs(u[i] - y[i]), 1e-9);
     }
     constraint_rows_free(&rows);
-    free(y);
-    free(u);
-    free(back);
     release(&cube);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {cmocka_unit_test(linear_fields_have_their_energy),
-                                       cmocka_unit_test(the_diagonal_is_one),
-                                       cmocka_unit_test(the_transpose_is_undone)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

@@ -1,6 +1,6 @@
 /* Material laws: stresses are gradients of energies, do not see rotations, are Hooke's at small strain, and
  * take the values of closed forms in homogeneous states. */
-#include "solid_fixture.h"
+#include "unit.h"
 
 #include "solid/material.h"
 
@@ -73,9 +73,8 @@ static void random_gradient(struct random *random, double F[9])
     } while (determinant(F) < 0.3 || determinant(F) > 3.0);
 }
 
-static void cofactor_is_derivative(void **state)
+TEST(cofactor_is_derivative)
 {
-    (void)state;
     struct random random = {1};
     for (int round = 0; round < 50; round++) {
         double F[9], C[9], h = 1e-4;
@@ -92,9 +91,8 @@ static void cofactor_is_derivative(void **state)
     }
 }
 
-static void stress_is_gradient(void **state)
+TEST(stress_is_gradient)
 {
-    (void)state;
     struct random random = {2};
     struct material all[MATERIALS];
     make_all(all);
@@ -120,9 +118,8 @@ static void stress_is_gradient(void **state)
     }
 }
 
-static void pressure_is_derivative(void **state)
+TEST(pressure_is_derivative)
 {
-    (void)state;
     struct material all[MATERIALS];
     make_all(all);
     for (int m = 0; m < MATERIALS; m++) {
@@ -139,9 +136,8 @@ static void pressure_is_derivative(void **state)
 }
 
 /* Rotating the body afterwards turns the stress with it; the material has no direction. */
-static void rotations(void **state)
+TEST(rotations)
 {
-    (void)state;
     struct random random = {3};
     struct material all[MATERIALS];
     make_all(all);
@@ -176,9 +172,8 @@ static void rotations(void **state)
     }
 }
 
-static void rest(void **state)
+TEST(rest)
 {
-    (void)state;
     static const double identity[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
     struct material all[MATERIALS];
     make_all(all);
@@ -193,9 +188,8 @@ static void rest(void **state)
 }
 
 /* P = lambda tr(e) I + 2 mu e for small e, whatever the model. */
-static void small_strain(void **state)
+TEST(small_strain)
 {
-    (void)state;
     struct random random = {4};
     struct material all[MATERIALS];
     static const double ratios[] = {-0.2, 0.0, 0.3, 0.49, 0.499};
@@ -222,9 +216,8 @@ static void small_strain(void **state)
 }
 
 /* Models that contain each other. */
-static void special_cases(void **state)
+TEST(special_cases)
 {
-    (void)state;
     struct random random = {5};
     struct material hooke = make(MATERIAL_NEO_HOOKEAN, 0.49), ogden = make(MATERIAL_OGDEN, 0.49);
     struct material mooney = make(MATERIAL_MOONEY_RIVLIN, 0.49), second = ogden;
@@ -267,9 +260,8 @@ static double unconfined(const struct material *material, double stretch, double
 
 /* Figures for E = 3000 Pa, nu = .49; those of compression are also what CalculiX
  * gives for *HYPERELASTIC, NEO HOOKE. */
-static void unconfined_compression(void **state)
+TEST(unconfined_compression)
 {
-    (void)state;
     static const double expected[][3] = {{0.8, -763.26922, 5e-6},
                                          {0.5, -3503.55836, 5e-6},
                                          {0.3, -10796.20005, 5e-5},
@@ -290,9 +282,8 @@ static void unconfined_compression(void **state)
     }
 }
 
-static void confined_compression(void **state)
+TEST(confined_compression)
 {
-    (void)state;
     struct material material = make(MATERIAL_NEO_HOOKEAN, 0.49);
     double P[9];
     stress(&material, (double[]){0.8, 0, 0, 0, 1, 0, 0, 0, 1}, P);
@@ -300,9 +291,8 @@ static void confined_compression(void **state)
 }
 
 /* Cauchy stresses; with the isochoric law the normal stresses sum to zero. */
-static void simple_shear(void **state)
+TEST(simple_shear)
 {
-    (void)state;
     struct material material = make(MATERIAL_NEO_HOOKEAN, 0.49);
     const double F[9] = {1, 0.5, 0, 0, 1, 0, 0, 0, 1};
     double P[9], sigma[9], transposed[9];
@@ -319,9 +309,8 @@ static void simple_shear(void **state)
 }
 
 /* Ogden's law with equal, nearly equal and widely different stretches, whatever their directions. */
-static void principal_stretches(void **state)
+TEST(principal_stretches)
 {
-    (void)state;
     struct random random = {6};
     static const double stretches[][3] = {{1, 1, 1},       {1.3, 1, 1},
                                           {1.3, 1.3, 0.7}, {1.2, 1.2 + 1e-9, 0.8},
@@ -354,9 +343,8 @@ static void principal_stretches(void **state)
 
 /* Plane strain: F33 = 1. Nothing acts out of the plane but P33, and the plane's stresses have their closed
  * form. */
-static void plane_strain(void **state)
+TEST(plane_strain)
 {
-    (void)state;
     struct random random = {7};
     struct material all[MATERIALS];
     make_all(all);
@@ -386,9 +374,8 @@ static void plane_strain(void **state)
 }
 
 /* A point turned inside out has no energy. */
-static void inverted(void **state)
+TEST(inverted)
 {
-    (void)state;
     struct material all[MATERIALS];
     make_all(all);
     for (int m = 0; m < MATERIALS; m++) {
@@ -397,22 +384,4 @@ static void inverted(void **state)
     }
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(cofactor_is_derivative),
-        cmocka_unit_test(stress_is_gradient),
-        cmocka_unit_test(pressure_is_derivative),
-        cmocka_unit_test(rotations),
-        cmocka_unit_test(rest),
-        cmocka_unit_test(small_strain),
-        cmocka_unit_test(special_cases),
-        cmocka_unit_test(unconfined_compression),
-        cmocka_unit_test(confined_compression),
-        cmocka_unit_test(simple_shear),
-        cmocka_unit_test(principal_stretches),
-        cmocka_unit_test(plane_strain),
-        cmocka_unit_test(inverted),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

@@ -1,15 +1,14 @@
 /* Measured points: the energy scale of their springs, pairs that contradict each other, conditions that
  * follow from others. */
-#include "solid_fixture.h"
+#include "unit.h"
 
 #include "solid/measured.h"
 
 static const double pi = 3.14159265358979323846;
 
 /* A point alone in three dimensions: the ball that a node stands for, by Stokes' law. */
-static void energy_of_one(void **state)
+TEST(energy_of_one)
 {
-    (void)state;
     const double x[] = {0.1, 0.2, 0.3}, u[] = {1e-3, NAN, 0}, deviation[] = {5e-4};
     struct measured measured = {3, 1, x, u, deviation};
     struct measured_region region = {
@@ -25,9 +24,8 @@ static void energy_of_one(void **state)
 }
 
 /* Many points within a ball: its radius; shared by the points, or by the nodes where these are fewer. */
-static void energy_of_a_ball(void **state)
+TEST(energy_of_a_ball)
 {
-    (void)state;
     enum { SIDE = 21 };
     static double x[SIDE * SIDE * SIDE * 3], u[SIDE * SIDE * SIDE * 3], deviation[SIDE * SIDE * SIDE];
     int64_t count = 0;
@@ -51,9 +49,8 @@ static void energy_of_a_ball(void **state)
     NEAR_TO(measured_energy(&measured, &region), all * (double)count / 10, 1e-9);
 }
 
-static void pairs(void **state)
+TEST(pairs)
 {
-    (void)state;
     /* 1 contradicts 0; 3 says what 2 says, and so does 4 of what both know; 6 is too far from 5 for its
      * noise, 7 is not */
     const double x[] = {0, 0, 0.1, 0, 5, 5, 5, 5, 5, 5, 9, 9, 9, 9.1, 9, 9.2, 7, 7, 7, 7};
@@ -77,9 +74,8 @@ static void pairs(void **state)
 }
 
 /* Rows over the same nodes: the third follows from two but for a part of itself. */
-static void dependence(void **state)
+TEST(dependence)
 {
-    (void)state;
     const int32_t nodes[] = {0, 1, 2};
     const double one[] = {1, 0, 0}, two[] = {0, 1, 0}, along[] = {1, 0}, across[] = {0, 1};
     for (int k = 0; k < 2; k++) {
@@ -101,9 +97,4 @@ static void dependence(void **state)
     }
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {cmocka_unit_test(energy_of_one), cmocka_unit_test(energy_of_a_ball),
-                                       cmocka_unit_test(pairs), cmocka_unit_test(dependence)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

@@ -10,28 +10,11 @@
 #include "approx/ways.h"
 #include "base/memory.h"
 
-#include <errno.h>
 #include <gsl/gsl_errno.h>
-#include <malloc.h>
-#include <omp.h>
-#include <stdlib.h>
-#include <string.h>
 
 #include "failing_allocator.h"
 
 #ifdef FAILING_ALLOCATOR
-
-/* What OpenMP allocates its teams by: counted, never denied. */
-void *memalign(size_t alignment, size_t size)
-{
-    return counted(__libc_memalign(alignment, size));
-}
-
-int posix_memalign(void **memory, size_t alignment, size_t size)
-{
-    *memory = counted(__libc_memalign(alignment, size));
-    return *memory == NULL ? ENOMEM : 0;
-}
 
 /* From a cloud to its averages over faces. */
 static enum status try_table(struct error *error)
@@ -217,67 +200,56 @@ done:
 }
 
 /* One thread, and a first run unwatched: what OpenMP allocates for itself is not ours to test. */
-static void tables(void **state)
+TEST(tables)
 {
-    (void)state;
     struct error error;
-    assert_int_equal(try_table(&error), STATUS_OK);
+    GOOD(try_table(&error));
     fail_each(try_table, 30);
 }
 
-static void around_corners(void **state)
+TEST(around_corners)
 {
-    (void)state;
     struct error error;
-    assert_int_equal(try_reach(&error), STATUS_OK);
+    GOOD(try_reach(&error));
     fail_each(try_reach, 30);
 }
 
-static void sides(void **state)
+TEST(sides)
 {
-    (void)state;
     struct error error;
-    assert_int_equal(try_sides(&error), STATUS_OK);
+    GOOD(try_sides(&error));
     fail_each(try_sides, 60);
 }
 
-static void adaptive(void **state)
+TEST(adaptive)
 {
-    (void)state;
     struct error error;
-    assert_int_equal(try_adaptive(&error), STATUS_OK);
+    GOOD(try_adaptive(&error));
     fail_each(try_adaptive, 30);
 }
 
-static void comparisons(void **state)
+TEST(comparisons)
 {
-    (void)state;
     struct error error;
-    assert_int_equal(try_compare(&error), STATUS_OK);
+    GOOD(try_compare(&error));
     fail_each(try_compare, 30);
 }
 
-static void sizes(void **state)
+TEST(sizes)
 {
-    (void)state;
     struct error error;
-    assert_int_equal(try_sizes(&error), STATUS_OK);
+    GOOD(try_sizes(&error));
     fail_each(try_sizes, 10);
 }
 
-int main(void)
+static int as_the_tools_do(void **state)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(tables),      cmocka_unit_test(around_corners), cmocka_unit_test(adaptive),
-        cmocka_unit_test(comparisons), cmocka_unit_test(sizes),          cmocka_unit_test(sides),
-    };
-    gsl_set_error_handler_off(); /* as the tools do */
-    omp_set_num_threads(1);
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    gsl_set_error_handler_off();
+    return one_thread(state);
 }
+
+RUN_TESTS(as_the_tools_do, NULL)
+
 #else
-int main(void)
-{
-    return 0;
-}
+RUN_TESTS(NULL, NULL)
 #endif

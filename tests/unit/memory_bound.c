@@ -5,14 +5,7 @@
 #include "io/stream.h"
 #include "io/table.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
-
 #include <stdio.h>
-#include <stdlib.h>
 #include <sys/mman.h>
 #include <unistd.h>
 
@@ -89,9 +82,8 @@ static void read_stream(const char *what, bool mapped, enum status expected, dou
     close(file);
 }
 
-static void streams(void **state)
+TEST(streams)
 {
-    (void)state;
     enum { ROWS = 2000000 };
     for (int mapped = 0; mapped < 2; mapped++) {
         append("# mts 1\n# x f8 2000000 1 enc=text\n");
@@ -109,9 +101,8 @@ static void streams(void **state)
     }
 }
 
-static void announced(void **state)
+TEST(announced)
 {
-    (void)state;
     static const char *const sizes[] = {"f8 100000000000 1", "f8 1 100000000000", "i4 9223372036854775807 1",
                                         "f4 3000000000 3000000000"};
     for (int i = 0; i < 16; i++) {
@@ -127,9 +118,8 @@ static void announced(void **state)
     }
 }
 
-static void tables(void **state)
+TEST(tables)
 {
-    (void)state;
     struct table table;
     struct error error;
     char path[32];
@@ -137,16 +127,15 @@ static void tables(void **state)
         repeat(blocks ? "0 0\n\n" : "0 0\n", blocks ? 20000 : 1000000);
         int file = make_file(path, true);
         begin();
-        assert_int_equal(table_read(path, 2, 2, &table, &error), STATUS_OK);
+        GOOD(table_read(path, 2, 2, &table, &error));
         table_free(&table);
         end(blocks ? "table, a block for each row" : "table, two bytes a number", 16.0);
         close(file);
     }
 }
 
-static void scenes(void **state)
+TEST(scenes)
 {
-    (void)state;
     struct scene scene;
     struct error error;
     char path[32];
@@ -164,9 +153,8 @@ static void scenes(void **state)
     close(file);
 }
 
-static void meshes(void **state)
+TEST(meshes)
 {
-    (void)state;
     struct msh msh;
     struct error error;
     char line[96];
@@ -182,7 +170,7 @@ static void meshes(void **state)
     }
     append("$EndElements\n");
     begin();
-    assert_int_equal(msh_parse(&msh, text, length, &error), STATUS_OK);
+    GOOD(msh_parse(&msh, text, length, &error));
     msh_free(&msh);
     end("mesh of points", 6.0);
     append("$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n100000000000\n1 0 0 0\n");
@@ -191,19 +179,15 @@ static void meshes(void **state)
     end("mesh that announces nodes", 1.0);
 }
 
-int main(void)
+static int free_text(void **state)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(streams), cmocka_unit_test(announced), cmocka_unit_test(tables),
-        cmocka_unit_test(scenes),  cmocka_unit_test(meshes),
-    };
-    int failed = cmocka_run_group_tests(tests, NULL, NULL);
+    (void)state;
     free(text);
-    return failed;
-}
-#else
-int main(void)
-{
     return 0;
 }
+
+RUN_TESTS(NULL, free_text)
+
+#else
+RUN_TESTS(NULL, NULL)
 #endif

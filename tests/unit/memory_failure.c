@@ -6,15 +6,8 @@
 #include "solid/curve.h"
 
 #include <gsl/gsl_errno.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
 
 #include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <unistd.h>
 
 #include "failing_allocator.h"
@@ -64,9 +57,8 @@ static enum status try_curve(struct error *error)
     return status;
 }
 
-static void scenes(void **state)
+TEST(scenes)
 {
-    (void)state;
     write_file("[scene]\ndim = 2\nanalysis = quasi-static\ntitle = t\n"
                "[material m]\nregion = a, b\nE = 1\nnu = 0\nrho = 1\n"
                "[displacement d]\nfacets = f\ntable = t\nunit = m\ncurve = c\n"
@@ -78,9 +70,8 @@ static void scenes(void **state)
     fail_each(try_scene, 90);
 }
 
-static void tables(void **state)
+TEST(tables)
 {
-    (void)state;
     char text[1024] = "";
     for (int i = 0; i < 100; i++) {
         strcat(text, i % 10 == 9 ? "0 0\n\n" : "1 1\n");
@@ -91,15 +82,15 @@ static void tables(void **state)
     fail_each(try_surface, 3);
 }
 
-static void curves(void **state)
+TEST(curves)
 {
-    (void)state;
     fail_each(try_curve, 3);
 }
 
 static int make_file(void **state)
 {
     (void)state;
+    gsl_set_error_handler_off(); /* as the tools do */
     int descriptor = mkstemp(path);
     return descriptor < 0 ? -1 : close(descriptor);
 }
@@ -110,19 +101,8 @@ static int remove_file(void **state)
     return unlink(path);
 }
 
-int main(void)
-{
-    gsl_set_error_handler_off(); /* as the tools do */
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(scenes),
-        cmocka_unit_test(tables),
-        cmocka_unit_test(curves),
-    };
-    return cmocka_run_group_tests(tests, make_file, remove_file);
-}
+RUN_TESTS(make_file, remove_file)
+
 #else
-int main(void)
-{
-    return 0;
-}
+RUN_TESTS(NULL, NULL)
 #endif

@@ -3,6 +3,7 @@
 #include "lattice_fixture.h"
 
 #ifndef __clang__ /* whose OpenMP cannot be replaced as simply */
+#define WITHOUT_LIBGOMP
 #include "failing_allocator.h"
 #endif
 
@@ -11,15 +12,6 @@
 #include "base/memory.h"
 #include "solid/dynamics.h"
 #include "solid/relaxation.h"
-
-/* In place of libgomp's, which ends the program when it gets no memory: all work on this thread. */
-void GOMP_parallel(void (*work)(void *), void *data, unsigned threads, unsigned flags);
-void GOMP_parallel(void (*work)(void *), void *data, unsigned threads, unsigned flags)
-{
-    (void)threads;
-    (void)flags;
-    work(data);
-}
 
 static struct lattice lattice; /* made before any allocation fails */
 static double *u, *v;
@@ -87,55 +79,44 @@ static enum status try_assembly(struct error *error)
     return status;
 }
 
-static void assemblies(void **state)
+/* Let each allocation fail on a block pressed between its sides. */
+static void fail_each_in(int dim, enum status (*try)(struct error *error), long least)
 {
-    (void)state;
-    fail_each(try_assembly, 100);
-}
-
-static void relaxations(void **state)
-{
-    (void)state;
-    fail_each(try_relaxation, 15);
-}
-
-static void dynamics(void **state)
-{
-    (void)state;
-    fail_each(try_dynamics, 15);
-}
-
-static int run_in(int dim)
-{
-    const struct CMUnitTest tests[] = {cmocka_unit_test(relaxations), cmocka_unit_test(dynamics),
-                                       cmocka_unit_test(assemblies)};
-    struct lattice_options options = lattice_defaults(dim, dim == 2 ? 4 : 3);
-    lattice_build(&lattice, &options);
-    int32_t curve = lattice_curve(&lattice, curve_of_kind(CURVE_SMOOTH));
+    int32_t curve = lattice_begin(&lattice, dim, dim == 2 ? 4 : 3, 0.0, CURVE_SMOOTH);
     lattice_slide(&lattice, 1u << 2, curve);
     lattice_push(&lattice, 3, -0.001, curve);
     lattice_push(&lattice, 3, -0.001, curve); /* twice: dropped conditions are checked */
     u = lattice_vector(&lattice);
     v = lattice_vector(&lattice);
-    /* The assembly of this test is of the body in 2D. */
-    size_t count = sizeof tests / sizeof *tests - (dim == 2 ? 0 : 1);
-    int failed = _cmocka_run_group_tests("memory_run", tests, count, NULL, NULL);
-    free(u);
-    free(v);
+    fail_each(try, least);
     lattice_free(&lattice);
-    return failed;
 }
 
-int main(void)
+TEST(relaxation_in_2d)
 {
-    return run_in(2) + run_in(3);
+    fail_each_in(2, try_relaxation, 15);
 }
 
-#else
-
-int main(void)
+TEST(dynamics_in_2d)
 {
-    return 0;
+    fail_each_in(2, try_dynamics, 15);
+}
+
+TEST(assembly_in_2d)
+{
+    fail_each_in(2, try_assembly, 100);
+}
+
+TEST(relaxation_in_3d)
+{
+    fail_each_in(3, try_relaxation, 15);
+}
+
+TEST(dynamics_in_3d)
+{
+    fail_each_in(3, try_dynamics, 15);
 }
 
 #endif
+
+RUN_TESTS(NULL, NULL)

@@ -2,6 +2,7 @@
  * it with STATUS_SYSTEM and leave nothing allocated. */
 #include "body_fixture.h"
 
+#define WITHOUT_LIBGOMP
 #include "failing_allocator.h"
 
 #ifdef FAILING_ALLOCATOR
@@ -9,15 +10,6 @@
 #include "solid/body.h"
 #include "solid/contact_between.h"
 #include "solid/folds.h"
-
-/* In place of libgomp's, which ends the program when it gets no memory: all work on this thread. */
-void GOMP_parallel(void (*work)(void *), void *data, unsigned threads, unsigned flags);
-void GOMP_parallel(void (*work)(void *), void *data, unsigned threads, unsigned flags)
-{
-    (void)threads;
-    (void)flags;
-    work(data);
-}
 
 static struct sample sample; /* made before any allocation fails */
 
@@ -27,23 +19,10 @@ static enum status try_body_of(const struct smoothed_cells_input *smoothed, stru
                                                  {.shear_modulus = 2.0, .bulk_modulus = 9.0}};
     static int32_t material[64];
     struct body body;
-    assert_true(sample.point_count <= 64);
+    assert_true(sample.assembly.point_count <= 64);
     material[1] = 1;
-    struct body_input input = {.dim = 2,
-                               .node_count = sample.cloud.node_count,
-                               .point_count = sample.point_count,
-                               .x = sample.x,
-                               .weight = sample.weight,
-                               .ptr = sample.ptr,
-                               .idx = sample.idx,
-                               .dphi = sample.dphi,
-                               .materials = materials,
-                               .material = material,
-                               .material_count = 2,
-                               .vertex = sample.vertex,
-                               .barycentric = sample.barycentric,
-                               .node_x = sample.cloud.x,
-                               .smoothed = smoothed};
+    struct body_input input = sample_input(&sample, materials, 2, material);
+    input.smoothed = smoothed;
     enum status status = body_build(&input, &body, error);
     body_free(&body);
     return status;
@@ -60,20 +39,9 @@ static enum status try_cells(struct error *error)
     return try_body_of(&smoothed, error);
 }
 
-static struct face_table sample_face_table(void)
-{
-    return (struct face_table){.dim = 2,
-                               .node_count = sample.cloud.node_count,
-                               .x = sample.cloud.x,
-                               .faces = &sample.faces,
-                               .per_face = sample.face_rule.points,
-                               .lists = &sample.face_neighbours,
-                               .phi = sample.face_phi};
-}
-
 static enum status build_averages(struct boundary_averages *averages, struct error *error)
 {
-    struct face_table table = sample_face_table();
+    struct face_table table = sample_face_table(&sample);
     struct facet_set set = {sample.cloud.facet_count, sample.cloud.facets};
     return boundary_averages_build(&table, &set, averages, error);
 }
@@ -89,8 +57,8 @@ static enum status try_boundary(struct error *error)
 static enum status try_ends(struct error *error)
 {
     static bool none_held[1 << 12], end[1 << 12];
-    struct face_table table = sample_face_table();
-    assert_true(sample.faces.count < 1 << 12 && sample.cloud.node_count < 1 << 12);
+    struct face_table table = sample_face_table(&sample);
+    assert_true(sample.assembly.faces.count < 1 << 12 && sample.cloud.node_count < 1 << 12);
     return boundary_find_ends(&table, BOUNDARY_END_SMOOTH, none_held, none_held, end, error);
 }
 
@@ -125,20 +93,14 @@ static enum status try_contact(struct error *error)
 /* The boundary against itself. */
 static enum status try_between(struct error *error)
 {
-    struct face_table table = {.dim = 2,
-                               .node_count = sample.cloud.node_count,
-                               .x = sample.cloud.x,
-                               .faces = &sample.faces,
-                               .per_face = sample.face_rule.points,
-                               .lists = &sample.face_neighbours,
-                               .phi = sample.face_phi};
+    struct face_table table = sample_face_table(&sample);
     struct facet_set set = {sample.cloud.facet_count, sample.cloud.facets};
     struct boundary_averages points = {0}, averages = {0};
     struct opposite opposite = {0};
     struct contact contact = {0};
     int32_t part[64] = {0};
     bool any;
-    enum status status = opposite_parts(&sample.cells, part, error);
+    enum status status = opposite_parts(&sample.assembly.cells, part, error);
     status = status == STATUS_OK ? boundary_points_build(&table, &set, &points, error) : status;
     status = status == STATUS_OK ? boundary_averages_build(&table, &set, &averages, error) : status;
     status = status == STATUS_OK ? opposite_build(&table, &set, part, true, &opposite, error) : status;
@@ -172,56 +134,50 @@ static enum status try_folds(struct error *error)
     return status;
 }
 
-static void bodies(void **state)
+TEST(bodies)
 {
-    (void)state;
     fail_each(try_body, 20);
     fail_each(try_cells, 40);
 }
 
-static void boundaries(void **state)
+TEST(boundaries)
 {
-    (void)state;
     fail_each(try_boundary, 12);
     fail_each(try_ends, 1);
 }
 
-static void rigid_surfaces(void **state)
+TEST(rigid_surfaces)
 {
-    (void)state;
     fail_each(try_rigid, 12);
 }
 
-static void contacts(void **state)
+TEST(contacts)
 {
-    (void)state;
     fail_each(try_contact, 30);
     fail_each(try_between, 60);
 }
 
-static void folds_of_bodies(void **state)
+TEST(folds_of_bodies)
 {
-    (void)state;
     fail_each(try_folds, 12);
 }
 
-int main(void)
+static int make(void **state)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(bodies),   cmocka_unit_test(boundaries),      cmocka_unit_test(rigid_surfaces),
-        cmocka_unit_test(contacts), cmocka_unit_test(folds_of_bodies),
-    };
+    (void)state;
     sample = make_sample(2, true, 3); /* so small that sorting allocates nothing */
-    int failed = cmocka_run_group_tests(tests, NULL, NULL);
-    sample_free(&sample);
-    return failed;
-}
-
-#else
-
-int main(void)
-{
     return 0;
 }
 
+static int drop(void **state)
+{
+    (void)state;
+    sample_free(&sample);
+    return 0;
+}
+
+RUN_TESTS(make, drop)
+
+#else
+RUN_TESTS(NULL, NULL)
 #endif

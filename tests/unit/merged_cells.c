@@ -64,7 +64,7 @@ static struct sample sliver_sample(int dim, double thickness)
     struct cloud cloud = sample_cloud(dim, dim == 2 ? 8 : 6);
     const struct cells cells = {dim, cloud.node_count, cloud.x, cloud.cell_count, cloud.cells};
     int slivers = 0;
-    bool *used = sample_array(cloud.node_count, sizeof *used);
+    bool *used = zeros(cloud.node_count, sizeof *used);
     for (int64_t i = 0; i < cells.count * (dim + 1) && slivers < 5; i++) {
         int64_t cell = i / (dim + 1);
         bool inside = true, fresh = true;
@@ -85,7 +85,6 @@ static struct sample sliver_sample(int dim, double thickness)
         }
     }
     assert_true(slivers > 0);
-    free(used);
     return sample_of(dim, true, cloud, dim == 2 ? 1.8 : 2.0);
 }
 
@@ -93,7 +92,7 @@ static struct sample sliver_sample(int dim, double thickness)
 static double *quadratic_field(const struct sample *sample)
 {
     int dim = sample->dim;
-    double *u = sample_array(sample->cloud.node_count * dim, sizeof *u);
+    double *u = zeros(sample->cloud.node_count * dim, sizeof *u);
     for (int64_t n = 0; n < sample->cloud.node_count; n++) {
         const double *x = sample->cloud.x + n * dim;
         for (int a = 0; a < dim; a++) {
@@ -111,24 +110,20 @@ static void measure(int dim, double thickness, double result[3])
     setup.faces = true;
     struct body body = make_body(&sample, &setup);
     int64_t nodes = sample.cloud.node_count;
-    double *u = quadratic_field(&sample), *force = sample_array(nodes * dim, sizeof *force);
-    double *stiffness = sample_array(nodes, sizeof *stiffness);
+    double *u = quadratic_field(&sample), *force = zeros(nodes * dim, sizeof *force);
+    double *stiffness = zeros(nodes, sizeof *stiffness);
     assert_true(body.cells.merged_count > 0);
     result[2] = body_force(&body, u, force).least_jacobian;
     body_diagonal(&body, stiffness);
     result[1] = largest(stiffness, nodes);
     result[0] = body_energy(&body, u);
-    free(u);
-    free(force);
-    free(stiffness);
     body_free(&body);
     sample_free(&sample);
 }
 
 /* Slivers a thousand times thinner change nothing: without merging all three go with 1 / thickness. */
-static void flatness(void **state)
+TEST(flatness)
 {
-    (void)state;
     for (int dim = 2; dim <= 3; dim++) {
         double thick[3], thin[3];
         measure(dim, 1e-4 * sample_size, thick);
@@ -140,9 +135,8 @@ static void flatness(void **state)
 }
 
 /* F is that of a linear field to round-off, and forces inside vanish. */
-static void linear(void **state)
+TEST(linear)
 {
-    (void)state;
     static const double A[9] = {1.1, 0.2, 0, 0.1, 0.95, 0, 0, 0, 1};
     for (int dim = 2; dim <= 3; dim++) {
         struct sample sample = sliver_sample(dim, 1e-6 * sample_size);
@@ -150,30 +144,26 @@ static void linear(void **state)
         setup.faces = true;
         struct body body = make_body(&sample, &setup);
         int64_t nodes = sample.cloud.node_count;
-        double *u = linear_field(&sample, A, NULL), *force = sample_array(nodes * dim, sizeof *force);
-        double *F = sample_array(sample.point_count * 9, sizeof *F), sum = 0.0, total = 0.0;
+        double *u = linear_field(&sample, A, NULL), *force = zeros(nodes * dim, sizeof *force);
+        double *F = zeros(sample.assembly.point_count * 9, sizeof *F), sum = 0.0, total = 0.0;
         (void)body_force(&body, u, force);
         body_gradient(&body, F);
-        for (int64_t i = 0; i < sample.point_count * 9; i++) {
+        for (int64_t i = 0; i < sample.assembly.point_count * 9; i++) {
             NEAR_TO(F[i], A[i % 9], 1e-11);
         }
-        for (int64_t q = 0; q < sample.point_count; q++) {
+        for (int64_t q = 0; q < sample.assembly.point_count; q++) {
             sum += body.weight[q] * body.J[q];
             total += body.weight[q];
         }
         NEAR_TO(sum, determinant(A) * total, 1e-11 * total);
-        free(u);
-        free(force);
-        free(F);
         body_free(&body);
         sample_free(&sample);
     }
 }
 
 /* Forces are the gradient of the energy, whatever the law, and of groups with cells of large volume. */
-static void gradient(void **state)
+TEST(gradient)
 {
-    (void)state;
     struct random random = {5};
     for (int i = 0; i < 8; i++) {
         int dim = 2 + i % 2;
@@ -182,7 +172,7 @@ static void gradient(void **state)
         setup.faces = true;
         struct body body = make_body(&sample, &setup);
         int64_t count = sample.cloud.node_count * dim;
-        double *force = sample_array(count, sizeof *force), *at = sample_array(count, sizeof *at);
+        double *force = zeros(count, sizeof *force), *at = zeros(count, sizeof *at);
         double *u = random_field(&sample, 0.005 * sample_size, &random),
                *v = random_field(&sample, 1.0, &random);
         double work = 0.0, all = 0.0, value[2], h = 1e-7;
@@ -199,19 +189,14 @@ static void gradient(void **state)
             all += fabs(force[n] * v[n]);
         }
         NEAR_TO(work, (value[0] - value[1]) / (2.0 * h), 1e-6 * all);
-        free(u);
-        free(v);
-        free(at);
-        free(force);
         body_free(&body);
         sample_free(&sample);
     }
 }
 
 /* A group is of one material, in one block, and has a cell that is not poor. */
-static void groups(void **state)
+TEST(groups)
 {
-    (void)state;
     for (int dim = 2; dim <= 3; dim++) {
         struct sample sample = sliver_sample(dim, 1e-5 * sample_size);
         struct setup setup = three_materials(true);
@@ -226,8 +211,8 @@ static void groups(void **state)
                 assert_true(smoothed_cells_group_end(&body, q) <= block->first_point + block->point_count);
                 assert_int_equal(body.material[first], body.material[q]);
                 if (first != q) {
-                    assert_true(cell_quality(&sample.cells, body.order[q]) < POOR_QUALITY);
-                    assert_true(cell_quality(&sample.cells, body.order[first]) > POOR_QUALITY);
+                    assert_true(cell_quality(&sample.assembly.cells, body.order[q]) < POOR_QUALITY);
+                    assert_true(cell_quality(&sample.assembly.cells, body.order[first]) > POOR_QUALITY);
                     merged++;
                 }
             }
@@ -239,13 +224,4 @@ static void groups(void **state)
     }
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(flatness),
-        cmocka_unit_test(linear),
-        cmocka_unit_test(gradient),
-        cmocka_unit_test(groups),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

@@ -5,9 +5,8 @@
 #include "approx/mls_kernel.h"
 #include "approx/mls_solve.h"
 
-static void weights(void **state)
+TEST(weights)
 {
-    (void)state;
     for (int w = 0; w < WEIGHT_COUNT; w++) {
         double value, slope, before = 1.0;
         weight_evaluate((enum weight_function)w, 0.0, &value, &slope);
@@ -28,9 +27,8 @@ static void weights(void **state)
 }
 
 /* All bases, weights, dimensions and places. */
-static void reproduction(void **state)
+TEST(reproduction)
 {
-    (void)state;
     for (int dim = 2; dim <= 3; dim++) {
         for (int p = 0; p < PLACE_COUNT; p++) {
             struct scattered cloud = scatter(dim, dim == 2 ? 12 : 6, 100, &places[p], 0.3, 7);
@@ -39,7 +37,7 @@ static void reproduction(void **state)
                     struct support_options options = options_for(dim, (enum basis)b, (enum weight_function)w);
                     struct table table;
                     struct error error;
-                    good(tabulate(&options, cloud.count, cloud.x, 100, cloud.points, &table, &error), &error);
+                    GOOD(tabulate(&options, cloud.count, cloud.x, 100, cloud.points, &table, &error));
                     struct defects worst =
                         table_defects(&table, dim, cloud.x, cloud.points, 2.0 * cloud.spacing);
                     if (getenv("SHOW")) {
@@ -79,16 +77,15 @@ static double quadratic(int dim, const double *x, double offset, double size, do
     return value;
 }
 
-static void quadratic_reproduction(void **state)
+TEST(quadratic_reproduction)
 {
-    (void)state;
     for (int dim = 2; dim <= 3; dim++) {
         for (int p = 0; p < PLACE_COUNT; p++) {
             struct scattered cloud = scatter(dim, dim == 2 ? 12 : 6, 100, &places[p], 0.3, 11);
             struct support_options options = options_for(dim, BASIS_QUADRATIC, WEIGHT_QUARTIC);
             struct table table;
             struct error error;
-            good(tabulate(&options, cloud.count, cloud.x, 100, cloud.points, &table, &error), &error);
+            GOOD(tabulate(&options, cloud.count, cloud.x, 100, cloud.points, &table, &error));
             for (int64_t q = 0; q < 100; q++) {
                 double value = 0.0, slope[3] = {0.0}, expected[3], unused[3];
                 for (int64_t i = table.lists.ptr[q]; i < table.lists.ptr[q + 1]; i++) {
@@ -124,7 +121,7 @@ static void evaluate(const struct mls *mls, const struct scattered *cloud, const
                                   .widen = table->lists.widen[p],
                                   .neighbours = table->lists.idx + table->lists.ptr[p],
                                   .count = table->lists.ptr[p + 1] - table->lists.ptr[p]};
-    good(mls_evaluate(mls, &support, &work, phi, dphi, &verdict, &error), &error);
+    GOOD(mls_evaluate(mls, &support, &work, phi, dphi, &verdict, &error));
     assert_int_equal(verdict, MLS_GOOD);
     mls_work_free(&work);
 }
@@ -133,9 +130,8 @@ enum { MOST = 1000 };
 
 /* Full gradients against central differences; nodes that leave or enter the support between the two points
  * have weights of zero to third order. */
-static void gradients(void **state)
+TEST(gradients)
 {
-    (void)state;
     for (int dim = 2; dim <= 3; dim++) {
         struct scattered cloud = scatter(dim, dim == 2 ? 10 : 6, 20, &places[2], 0.3, 3);
         for (int b = 0; b < BASIS_COUNT; b++) {
@@ -143,7 +139,7 @@ static void gradients(void **state)
                 struct support_options options = options_for(dim, (enum basis)b, (enum weight_function)w);
                 struct table table;
                 struct error error;
-                good(tabulate(&options, cloud.count, cloud.x, 20, cloud.points, &table, &error), &error);
+                GOOD(tabulate(&options, cloud.count, cloud.x, 20, cloud.points, &table, &error));
                 double h = 1e-5 * cloud.spacing;
                 for (int64_t p = 0; p < 20; p++) {
                     double plus[MOST], minus[MOST], x[3], largest = 0.0;
@@ -204,15 +200,14 @@ static struct mls with_mu(struct mls mls, double mu)
 }
 
 /* MMLS lies between linear MLS (mu huge) and quadratic MLS (mu nothing). */
-static void limits_of_modified(void **state)
+TEST(limits_of_modified)
 {
-    (void)state;
     for (int dim = 2; dim <= 3; dim++) {
         struct scattered cloud = scatter(dim, dim == 2 ? 10 : 6, 30, &places[0], 0.3, 5);
         struct support_options options = options_for(dim, BASIS_QUADRATIC, WEIGHT_QUARTIC);
         struct table table;
         struct error error;
-        good(tabulate(&options, cloud.count, cloud.x, 30, cloud.points, &table, &error), &error);
+        GOOD(tabulate(&options, cloud.count, cloud.x, 30, cloud.points, &table, &error));
         struct mls linear = options_for(dim, BASIS_LINEAR, WEIGHT_QUARTIC).mls;
         struct mls modified = options_for(dim, BASIS_MODIFIED, WEIGHT_QUARTIC).mls;
         struct mls huge = with_mu(modified, 1e12), nothing = with_mu(modified, 1e-14);
@@ -227,9 +222,8 @@ static void limits_of_modified(void **state)
 }
 
 /* An absolute mu is the dimensionless mu s^4; one mu for each monomial acts on that one. */
-static void units_of_mu(void **state)
+TEST(units_of_mu)
 {
-    (void)state;
     for (int dim = 2; dim <= 3; dim++) {
         struct scattered cloud = scatter(dim, dim == 2 ? 10 : 6, 30, &places[1], 0.3, 6);
         struct support_options options = options_for(dim, BASIS_MODIFIED, WEIGHT_QUARTIC);
@@ -237,7 +231,7 @@ static void units_of_mu(void **state)
         options.widen = false;
         struct table table;
         struct error error;
-        good(tabulate(&options, cloud.count, cloud.x, 30, cloud.points, &table, &error), &error);
+        GOOD(tabulate(&options, cloud.count, cloud.x, 30, cloud.points, &table, &error));
         double s4 = pow(options.radius, 4.0);
         struct mls relative = with_mu(options.mls, 1e-3), absolute = with_mu(options.mls, 1e-3 * s4);
         absolute.mu_absolute = true;
@@ -253,9 +247,8 @@ static void units_of_mu(void **state)
 }
 
 /* Scaling by a power of two changes no bit of phi; a translation changes round-off only. */
-static void invariance(void **state)
+TEST(invariance)
 {
-    (void)state;
     for (int dim = 2; dim <= 3; dim++) {
         for (int b = 0; b < BASIS_COUNT; b++) {
             const double factor = 1024.0;
@@ -273,9 +266,9 @@ static void invariance(void **state)
             struct support_options options = options_for(dim, (enum basis)b, WEIGHT_QUARTIC);
             struct table one, two, three;
             struct error error;
-            good(tabulate(&options, cloud.count, cloud.x, 50, cloud.points, &one, &error), &error);
-            good(tabulate(&options, cloud.count, scaled.x, 50, scaled.points, &two, &error), &error);
-            good(tabulate(&options, cloud.count, moved.x, 50, moved.points, &three, &error), &error);
+            GOOD(tabulate(&options, cloud.count, cloud.x, 50, cloud.points, &one, &error));
+            GOOD(tabulate(&options, cloud.count, scaled.x, 50, scaled.points, &two, &error));
+            GOOD(tabulate(&options, cloud.count, moved.x, 50, moved.points, &three, &error));
             int64_t pairs = one.lists.ptr[50];
             assert_memory_equal(one.lists.ptr, two.lists.ptr, 51 * sizeof(int64_t));
             assert_memory_equal(one.lists.idx, two.lists.idx, (size_t)pairs * sizeof(int32_t));
@@ -301,9 +294,8 @@ static void invariance(void **state)
 
 /* All instruction sets give the same bits; where they leave a point to the careful way, all do. What they
  * decide agrees with the careful way to round-off. */
-static void instruction_sets(void **state)
+TEST(instruction_sets)
 {
-    (void)state;
     enum { STRIDE = MOST + MLS_PADDING };
     static const char *const sets[] = {"plain", "avx2", "avx512"};
     static double phi[4][MOST], dphi[4][3 * MOST];
@@ -317,7 +309,7 @@ static void instruction_sets(void **state)
                 struct support_options options = options_for(dim, (enum basis)b, (enum weight_function)w);
                 struct table table;
                 struct error error;
-                good(tabulate(&options, cloud.count, cloud.x, 100, cloud.points, &table, &error), &error);
+                GOOD(tabulate(&options, cloud.count, cloud.x, 100, cloud.points, &table, &error));
                 for (int64_t p = 0; p < 100; p++) {
                     struct mls_support support = {.x = cloud.points + p * dim,
                                                   .nodes = cloud.x,
@@ -399,7 +391,7 @@ static double fit_error(int dim, enum basis basis, int per_axis)
     struct table table;
     struct error error;
     double sum = 0.0;
-    good(tabulate(&options, cloud.count, cloud.x, 400, cloud.points, &table, &error), &error);
+    GOOD(tabulate(&options, cloud.count, cloud.x, 400, cloud.points, &table, &error));
     for (int64_t p = 0; p < 400; p++) {
         double value = -wave(dim, cloud.points + p * dim);
         for (int64_t i = table.lists.ptr[p]; i < table.lists.ptr[p + 1]; i++) {
@@ -413,9 +405,8 @@ static double fit_error(int dim, enum basis basis, int per_axis)
 }
 
 /* Order 2 for the linear basis, 3 for the quadratic and the modified. */
-static void convergence(void **state)
+TEST(convergence)
 {
-    (void)state;
     for (int dim = 2; dim <= 3; dim++) {
         for (int b = 0; b < BASIS_COUNT; b++) {
             int coarse = dim == 2 ? 13 : 7, fine = 2 * coarse - 1;
@@ -434,10 +425,9 @@ static void convergence(void **state)
 static double paper_error(enum basis basis, double mu, double radius)
 {
     double x[324 * 2], values[324], sum = 0.0;
-    double *points = malloc(6561 * 2 * sizeof *points);
+    double *points = zeros(6561 * 2, sizeof *points);
     struct table table;
     struct error error;
-    assert_non_null(points);
     for (int n = 0; n < 324; n++) {
         x[2 * n] = -4.0 + 8.0 * (n % 18) / 17.0;
         x[2 * n + 1] = -4.0 + 8.0 * (n / 18) / 17.0;
@@ -463,14 +453,12 @@ static double paper_error(enum basis basis, double mu, double radius)
         sum += value * value;
     }
     table_free(&table);
-    free(points);
     return status == STATUS_OK ? sqrt(sum / 6561.0) : INFINITY;
 }
 
 /* Table 1 of the paper, regular cloud, R = 2.0, 1.5, 0.8. */
-static void paper_table(void **state)
+TEST(paper_table)
 {
-    (void)state;
     static const struct {
         enum basis basis;
         double mu, rmse[3];
@@ -493,14 +481,4 @@ static void paper_table(void **state)
     }
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(weights),     cmocka_unit_test(reproduction),
-        cmocka_unit_test(gradients),   cmocka_unit_test(quadratic_reproduction),
-        cmocka_unit_test(units_of_mu), cmocka_unit_test(limits_of_modified),
-        cmocka_unit_test(invariance),  cmocka_unit_test(convergence),
-        cmocka_unit_test(paper_table), cmocka_unit_test(instruction_sets),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

@@ -1,18 +1,9 @@
 /* The motion between the nodes, its inverse, and which cell each point of a grid lies in. */
+#include "unit.h"
+
 #include "approx/cloud.h"
 #include "approx/motion.h"
 #include "approx/raster.h"
-
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
-
-#include <math.h>
-#include <omp.h>
-#include <stdlib.h>
-#include <string.h>
 
 static struct error error;
 
@@ -54,7 +45,7 @@ static void make_body(int dim, int64_t along, field_function field, struct body 
                                     .high = {1, 1, 1},
                                     .jitter = dim == 2 ? 0.3 : 0.12,
                                     .seed = 7};
-    assert_int_equal(cloud_make(&options, &body->cloud, &error), STATUS_OK);
+    GOOD(cloud_make(&options, &body->cloud, &error));
     body->cells =
         (struct cells){dim, body->cloud.node_count, body->cloud.x, body->cloud.cell_count, body->cloud.cells};
     assert_true(body->cells.count > 0);
@@ -131,16 +122,15 @@ static void check_polynomial(int dim, bool linear, field_function field, double 
     struct motion motion;
     double inverse_error;
     make_body(dim, dim == 2 ? 9 : 6, field, &body);
-    assert_int_equal(motion_build(&body.cells, body.u, linear, NULL, &motion, &error), STATUS_OK);
+    GOOD(motion_build(&body.cells, body.u, linear, NULL, &motion, &error));
     assert_true(largest_error(&motion, field, &inverse_error) <= tolerance);
     assert_true(inverse_error <= 1e-10);
     motion_free(&motion);
     drop_body(&body);
 }
 
-static void polynomials_are_exact(void **state)
+TEST(polynomials_are_exact)
 {
-    (void)state;
     for (int dim = 2; dim <= 3; dim++) {
         check_polynomial(dim, false, linear_field, 1e-11);
         check_polynomial(dim, true, linear_field, 1e-11);
@@ -149,16 +139,15 @@ static void polynomials_are_exact(void **state)
 }
 
 /* Half the spacing: an eighth of the error, a quarter without gradients. */
-static void orders(void **state)
+TEST(orders)
 {
-    (void)state;
     for (int linear = 0; linear < 2; linear++) {
         double errors[2], ignored;
         for (int fine = 0; fine < 2; fine++) {
             struct body body;
             struct motion motion;
             make_body(2, fine ? 41 : 21, smooth_field, &body);
-            assert_int_equal(motion_build(&body.cells, body.u, linear, NULL, &motion, &error), STATUS_OK);
+            GOOD(motion_build(&body.cells, body.u, linear, NULL, &motion, &error));
             errors[fine] = largest_error(&motion, smooth_field, &ignored);
             motion_free(&motion);
             drop_body(&body);
@@ -172,13 +161,12 @@ static void orders(void **state)
 }
 
 /* Places beside the cell that the search begins in are found through its faces. */
-static void walks(void **state)
+TEST(walks)
 {
-    (void)state;
     struct body body;
     struct motion motion;
     make_body(3, 6, smooth_field, &body);
-    assert_int_equal(motion_build(&body.cells, body.u, false, NULL, &motion, &error), STATUS_OK);
+    GOOD(motion_build(&body.cells, body.u, false, NULL, &motion, &error));
     for (int64_t c = 0; c < body.cells.count; c++) {
         for (int a = 0; a <= 3; a++) {
             int64_t start = motion.across[4 * c + a];
@@ -196,15 +184,14 @@ static void walks(void **state)
 }
 
 /* A body turned inside out: told, and nothing is found that is none. */
-static void folds(void **state)
+TEST(folds)
 {
-    (void)state;
     static const double x[] = {0, 0, 1, 0, 1, 1, 0, 1}, u[] = {0, 0, 0, 0, -1.5, 0, 0, 0};
     static const int32_t node[] = {0, 1, 2, 0, 2, 3};
     struct cells cells = {2, 4, x, 2, node};
     struct motion motion;
     int64_t first = -1;
-    assert_int_equal(motion_build(&cells, u, true, NULL, &motion, &error), STATUS_OK);
+    GOOD(motion_build(&cells, u, true, NULL, &motion, &error));
     assert_int_equal(motion_folded(&motion, &first), 1);
     assert_int_equal(first, 1);
     motion_free(&motion);
@@ -229,25 +216,24 @@ static bool holds(const struct cells *cells, int64_t cell, const double *y)
     return true;
 }
 
-static void owners(void **state)
+TEST(owners)
 {
-    (void)state;
     static const int64_t sizes[2][3] = {{37, 29, 1}, {13, 11, 17}};
     for (int dim = 2; dim <= 3; dim++) {
         struct body body;
         make_body(dim, 5, linear_field, &body);
         const int64_t *size = sizes[dim - 2];
         int64_t count = size[0] * size[1] * size[2], doubly, found = 0;
-        int32_t *owner = calloc((size_t)count, sizeof *owner), *again = calloc((size_t)count, sizeof *again);
+        int32_t *owner = zeros(count, sizeof *owner), *again = zeros(count, sizeof *again);
         for (int64_t i = 0; i < body.cells.node_count * dim; i++) {
             /* Beyond the grid on two sides; nodes at the corners of the lattice fall on grid points. */
             body.cloud.x[i] = body.cloud.x[i] * 12 - 2;
         }
         omp_set_num_threads(1);
-        assert_int_equal(raster_cells(&body.cells, 1, size, owner, &doubly, &error), STATUS_OK);
+        GOOD(raster_cells(&body.cells, 1, size, owner, &doubly, &error));
         assert_int_equal(doubly, 0);
         omp_set_num_threads(3);
-        assert_int_equal(raster_cells(&body.cells, 1, size, again, &doubly, &error), STATUS_OK);
+        GOOD(raster_cells(&body.cells, 1, size, again, &doubly, &error));
         assert_memory_equal(owner, again, (size_t)count * sizeof *owner);
         for (int64_t v = 0; v < count; v++) {
             const double y[3] = {(double)(v % size[0]), (double)(v / size[0] % size[1]),
@@ -261,39 +247,25 @@ static void owners(void **state)
         }
         assert_true(found > (dim == 2 ? 100 : 1000));
         /* Seen in a mirror all cells are turned over. */
-        assert_int_equal(raster_cells(&body.cells, -1, size, owner, &doubly, &error), STATUS_OK);
+        GOOD(raster_cells(&body.cells, -1, size, owner, &doubly, &error));
         for (int64_t v = 0; v < count; v++) {
             assert_int_equal(owner[v], -1);
         }
-        free(owner);
-        free(again);
         drop_body(&body);
     }
 }
 
-static void two_parts_at_one_place(void **state)
+TEST(two_parts_at_one_place)
 {
-    (void)state;
     static const double x[] = {0, 0, 10, 0, 0, 10, 1.5, 1.5, 8.5, 1.5, 1.5, 8.5};
     static const int32_t node[] = {0, 1, 2, 3, 4, 5};
     static const int64_t size[3] = {12, 12, 1};
     struct cells cells = {2, 6, x, 2, node};
     int32_t owner[144];
     int64_t doubly;
-    assert_int_equal(raster_cells(&cells, 1, size, owner, &doubly, &error), STATUS_OK);
+    GOOD(raster_cells(&cells, 1, size, owner, &doubly, &error));
     assert_int_equal(owner[2 + 12 * 2], 0);
     assert_int_equal(doubly, 6 + 5 + 4 + 3 + 2 + 1);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(polynomials_are_exact),
-        cmocka_unit_test(orders),
-        cmocka_unit_test(walks),
-        cmocka_unit_test(folds),
-        cmocka_unit_test(owners),
-        cmocka_unit_test(two_parts_at_one_place),
-    };
-    return cmocka_run_group_tests_name("motion", tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

@@ -1,15 +1,8 @@
 /* From a mesh file's contents to cells, facets and sets; the contents are put together by hand. */
+#include "unit.h"
+
 #include "approx/cells.h"
 #include "io/msh.h"
-
-#include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdlib.h>
-#include <string.h>
-
-#include <cmocka.h>
 
 enum {
     POINT = 15,
@@ -35,8 +28,7 @@ struct sketch {
 
 static struct sketch *sketch_new(void)
 {
-    struct sketch *s = calloc(1, sizeof *s);
-    assert_non_null(s);
+    struct sketch *s = zeros(1, sizeof *s);
     s->msh = (struct msh){.x = s->x,
                           .node_tag = s->node_tag,
                           .element_tag = s->element_tag,
@@ -103,7 +95,6 @@ static void expect_failure(struct sketch *s, const char *wanted, const char *mes
         fail_msg("'%s' does not say '%s'", error.text, message);
     }
     assert_null(mesh.x);
-    free(s);
 }
 
 static struct cells cells_of(const struct mesh *mesh)
@@ -127,7 +118,7 @@ static int64_t boundary_count(const struct mesh *mesh)
     struct cells cells = cells_of(mesh);
     struct faces faces;
     struct error error;
-    assert_int_equal(faces_build(&cells, true, &faces, &error), STATUS_OK);
+    GOOD(faces_build(&cells, true, &faces, &error));
     int64_t count = faces.count;
     faces_free(&faces);
     return count;
@@ -206,9 +197,8 @@ static struct sketch *random_grid(uint32_t seed)
     return s;
 }
 
-static void hexahedra_conform(void **state)
+TEST(hexahedra_conform)
 {
-    (void)state;
     for (uint32_t seed = 1; seed <= 50; seed++) {
         struct sketch *s = random_grid(seed);
         struct mesh mesh = build(s, NULL);
@@ -232,15 +222,13 @@ static void hexahedra_conform(void **state)
             }
         }
         mesh_free(&mesh);
-        free(s);
     }
 }
 
 /* A cube of six pyramids, a cube of two prisms on it, a pyramid on that, and a tetrahedron on one of its
  * sides. */
-static void mixed_cells_conform(void **state)
+TEST(mixed_cells_conform)
 {
-    (void)state;
     static const double at[15][3] = {{0, 0, 0}, {2, 0, 0}, {2, 2, 0}, {0, 2, 0}, {0, 0, 2},
                                      {2, 0, 2}, {2, 2, 2}, {0, 2, 2}, {1, 1, 1}, {0, 0, 4},
                                      {2, 0, 4}, {2, 2, 4}, {0, 2, 4}, {1, 1, 6}, {1, -2, 5}};
@@ -277,13 +265,11 @@ static void mixed_cells_conform(void **state)
         assert_int_equal(mesh.regions.count, 1);
         assert_string_equal(mesh.regions.name[0], "body");
         mesh_free(&mesh);
-        free(s);
     }
 }
 
-static void quadrangles_of_any_shape(void **state)
+TEST(quadrangles_of_any_shape)
 {
-    (void)state;
     for (int first = 0; first < 4; first++) { /* an arrowhead: only one of its diagonals is inside */
         struct sketch *s = sketch_new();
         static const double at[4][2] = {{0, 0}, {4, 0}, {1, 1}, {0, 4}};
@@ -295,15 +281,13 @@ static void quadrangles_of_any_shape(void **state)
         assert_int_equal(mesh.cell_count, 2);
         assert_true(fabs(total_volume(&mesh) - 4) < 1e-14);
         mesh_free(&mesh);
-        free(s);
     }
 }
 
 /* ---- orientation, facets, sets ---- */
 
-static void cells_are_turned_and_facets_look_outward(void **state)
+TEST(cells_are_turned_and_facets_look_outward)
 {
-    (void)state;
     for (int turned = 0; turned < 2; turned++) {
         struct sketch *s = sketch_new();
         add_node(s, 0, 0, 0);
@@ -332,14 +316,12 @@ static void cells_are_turned_and_facets_look_outward(void **state)
         assert_string_equal(mesh.facet_sets.name[0], "side");
         assert_string_equal(mesh.facet_sets.name[1], "left");
         mesh_free(&mesh);
-        free(s);
     }
 }
 
 /* Nodes and groups that are no part of the body go, with a note; those between two cells become a set. */
-static void what_is_left_out_is_noted(void **state)
+TEST(what_is_left_out_is_noted)
 {
-    (void)state;
     struct sketch *s = sketch_new();
     add_node(s, 9, 9, 0);
     add_node(s, 0, 0, 0);
@@ -379,12 +361,10 @@ static void what_is_left_out_is_noted(void **state)
         assert_ptr_equal(strstr(mesh.notes.name[i], notes[i]), mesh.notes.name[i]);
     }
     mesh_free(&mesh);
-    free(s);
 }
 
-static void regions_can_be_picked(void **state)
+TEST(regions_can_be_picked)
 {
-    (void)state;
     struct sketch *s = sketch_new();
     for (int i = 0; i < 6; i++) {
         add_node(s, i % 3, i / 3, 0);
@@ -411,24 +391,21 @@ static void regions_can_be_picked(void **state)
     expect_failure(s, "right,midle", "no cells in a region 'midle': there are left, right");
 }
 
-static void lengths_are_scaled(void **state)
+TEST(lengths_are_scaled)
 {
-    (void)state;
     struct sketch *s = square();
     struct mesh mesh;
     struct error error;
-    assert_int_equal(mesh_build(&mesh, &s->msh, &(struct mesh_options){.unit = 1e-6}, &error), STATUS_OK);
+    GOOD(mesh_build(&mesh, &s->msh, &(struct mesh_options){.unit = 1e-6}, &error));
     assert_true(mesh.x[4] == 1e-6);
     assert_true(fabs(total_volume(&mesh) / 1e-12 - 1) < 1e-14);
     mesh_free(&mesh);
-    free(s);
 }
 
 /* ---- faults ---- */
 
-static void meshes_without_cells(void **state)
+TEST(meshes_without_cells)
 {
-    (void)state;
     struct sketch *s = sketch_new();
     add_node(s, 0, 0, 0);
     add_node(s, 1, 0, 0);
@@ -442,12 +419,10 @@ static void meshes_without_cells(void **state)
     struct mesh mesh = build(s, NULL);
     assert_int_equal(mesh.dim, 2);
     mesh_free(&mesh);
-    free(s);
 }
 
-static void nodes_at_the_same_place(void **state)
+TEST(nodes_at_the_same_place)
 {
-    (void)state;
     struct sketch *s = square();
     int32_t twin = add_node(s, 1, 1 + 1e-13, 0);
     s->node_idx[5] = 3;
@@ -463,18 +438,15 @@ static void nodes_at_the_same_place(void **state)
     assert_int_equal(two.notes.count, 1);
     assert_non_null(strstr(two.notes.name[0], "of different bodies: 2 pairs"));
     mesh_free(&two);
-    free(s);
     s = square();
     add_node(s, 1, 1, 0); /* a twin of no cell is no harm */
     struct mesh mesh = build(s, NULL);
     assert_int_equal(mesh.node_count, 4);
     mesh_free(&mesh);
-    free(s);
 }
 
-static void cells_that_are_none(void **state)
+TEST(cells_that_are_none)
 {
-    (void)state;
     struct sketch *s = square();
     int32_t node = add_node(s, 0.5, 1e-14, 0);
     ADD(s, TRIANGLE, 0, 0, 1, node);
@@ -499,9 +471,8 @@ static void cells_that_are_none(void **state)
     expect_failure(s, NULL, "element 1000 has no volume");
 }
 
-static void cells_in_two_groups(void **state)
+TEST(cells_in_two_groups)
 {
-    (void)state;
     struct sketch *s = square();
     int32_t other = add_group(s, 2, 2, "other");
     s->member_idx[s->member_ptr[2]++] = other;
@@ -517,9 +488,8 @@ static void cells_in_two_groups(void **state)
 }
 
 /* In MSH 2 a cell of two groups stands twice. */
-static void cells_that_stand_twice(void **state)
+TEST(cells_that_stand_twice)
 {
-    (void)state;
     struct sketch *s = square();
     int32_t other = add_group(s, 2, 2, "other");
     ADD(s, TRIANGLE, other, 2, 0, 1);
@@ -531,12 +501,10 @@ static void cells_that_stand_twice(void **state)
     assert_non_null(strstr(mesh.notes.name[0], "cells that stand twice"));
     assert_non_null(strstr(mesh.notes.name[0], "as the first: 2"));
     mesh_free(&mesh);
-    free(s);
 }
 
-static void two_sets_of_one_name(void **state)
+TEST(two_sets_of_one_name)
 {
-    (void)state;
     struct sketch *s = square();
     s->groups[2] = s->groups[0];
     s->groups[0] = s->groups[1] = (struct msh_group){0, 1, (char *)(uintptr_t) "here", 1, NULL};
@@ -551,22 +519,4 @@ static void two_sets_of_one_name(void **state)
     expect_failure(s, NULL, "physical groups of two dimensions are named 'here', both sets of nodes");
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(hexahedra_conform),
-        cmocka_unit_test(mixed_cells_conform),
-        cmocka_unit_test(quadrangles_of_any_shape),
-        cmocka_unit_test(cells_are_turned_and_facets_look_outward),
-        cmocka_unit_test(what_is_left_out_is_noted),
-        cmocka_unit_test(regions_can_be_picked),
-        cmocka_unit_test(lengths_are_scaled),
-        cmocka_unit_test(meshes_without_cells),
-        cmocka_unit_test(nodes_at_the_same_place),
-        cmocka_unit_test(cells_that_are_none),
-        cmocka_unit_test(cells_in_two_groups),
-        cmocka_unit_test(cells_that_stand_twice),
-        cmocka_unit_test(two_sets_of_one_name),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

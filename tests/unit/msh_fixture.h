@@ -4,11 +4,9 @@
 #ifndef MSH_FIXTURE_H
 #define MSH_FIXTURE_H
 
-#include <stdarg.h>
-#include <stdbool.h>
-#include <stdint.h>
+#include "unit.h"
+
 #include <stdio.h>
-#include <string.h>
 
 struct fixture {
     int version; /* 22, 40, 41 */

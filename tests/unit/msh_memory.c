@@ -4,13 +4,6 @@
 #include "io/msh.h"
 
 #include <gsl/gsl_errno.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdlib.h>
-
-#include <cmocka.h>
 
 #include "failing_allocator.h"
 
@@ -72,39 +65,24 @@ static enum status try_cloud(struct error *error)
     return status;
 }
 
-static void files(void **state)
+TEST(files)
 {
-    (void)state;
     for (form = 0; form < FIXTURE_FORMS; form++) {
         fail_each(try_read, 15);
     }
 }
 
-static void meshes(void **state)
+TEST(meshes)
 {
-    (void)state;
     fail_each(try_build, 25);
 }
 
-static void clouds(void **state)
+TEST(clouds)
 {
-    (void)state;
     gsl_set_error_handler_off(); /* as the tool does */
     fail_each(try_cloud, 8);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(files),
-        cmocka_unit_test(meshes),
-        cmocka_unit_test(clouds),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
-#else
-int main(void)
-{
-    return 0;
-}
 #endif
+
+RUN_TESTS(NULL, NULL)

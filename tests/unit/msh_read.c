@@ -3,14 +3,8 @@
 #include "io/msh.h"
 #include "msh_fixture.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdlib.h>
 #include <sys/mman.h>
 #include <unistd.h>
-
-#include <cmocka.h>
 
 /* Read a file of these bytes. */
 static enum status read_bytes(struct msh *msh, const char *bytes, size_t size, struct error *error)
@@ -53,9 +47,8 @@ static void require_sense(const char *bytes, size_t size)
     msh_free(&msh);
 }
 
-static void every_form_gives_the_same_mesh(void **state)
+TEST(every_form_gives_the_same_mesh)
 {
-    (void)state;
     for (int form = 0; form < FIXTURE_FORMS; form++) {
         struct fixture f = fixture_make(form);
         struct msh msh;
@@ -69,7 +62,7 @@ static void every_form_gives_the_same_mesh(void **state)
         assert_int_equal(msh.group_count, 3);
         assert_string_equal(msh.groups[0].name, "corner");
         assert_int_equal(msh.groups[2].element_count, 2);
-        assert_int_equal(mesh_build(&mesh, &msh, &(struct mesh_options){.unit = 1e-3}, &error), STATUS_OK);
+        GOOD(mesh_build(&mesh, &msh, &(struct mesh_options){.unit = 1e-3}, &error));
         assert_int_equal(mesh.dim, 2);
         assert_int_equal(mesh.node_count, 4);
         for (int n = 0; n < 4; n++) {
@@ -91,16 +84,15 @@ static void every_form_gives_the_same_mesh(void **state)
 }
 
 /* In MSH 2 the elements of one entity may be in different groups, one each. */
-static void groups_of_elements_not_of_entities(void **state)
+TEST(groups_of_elements_not_of_entities)
 {
-    (void)state;
     struct fixture f = fixture_make(ASCII_22);
     struct msh msh;
     struct mesh mesh;
     struct error error = {""};
     assert_true(fixture_replace(&f, "14 2 2 2 1", "14 2 2 8 1"));
-    assert_int_equal(read_bytes(&msh, f.bytes, f.size, &error), STATUS_OK);
-    assert_int_equal(mesh_build(&mesh, &msh, &(struct mesh_options){.unit = 1}, &error), STATUS_OK);
+    GOOD(read_bytes(&msh, f.bytes, f.size, &error));
+    GOOD(mesh_build(&mesh, &msh, &(struct mesh_options){.unit = 1}, &error));
     assert_int_equal(mesh.regions.count, 2);
     assert_string_equal(mesh.regions.name[1], "group_8");
     assert_int_equal(mesh.cell_region[0], 0);
@@ -110,9 +102,8 @@ static void groups_of_elements_not_of_entities(void **state)
 }
 
 /* Tags in any order, close together and far apart. */
-static void tags_in_any_order(void **state)
+TEST(tags_in_any_order)
 {
-    (void)state;
     static const char *const tags[] = {"30", "2147483647"};
     for (int i = 0; i < 2; i++) {
         struct fixture f = fixture_make(ASCII_22);
@@ -131,7 +122,7 @@ static void tags_in_any_order(void **state)
             snprintf(to, sizeof to, "%.*s%s%s", (int)(at - lines[k][1]), lines[k][1], tags[i], at + 2);
             assert_true(fixture_replace(&f, lines[k][0], to));
         }
-        assert_int_equal(parse_copy(&msh, f.bytes, f.size, &error), STATUS_OK);
+        GOOD(parse_copy(&msh, f.bytes, f.size, &error));
         assert_int_equal(msh.node_tag[0], atoll(tags[i]));
         assert_memory_equal(msh.node_idx, ((int32_t[]){4, 0, 1, 0, 1, 2, 0, 2, 3}), 9 * sizeof(int32_t));
         assert_memory_equal(msh.node_ptr, ((int64_t[]){0, 1, 3, 6, 9}), 5 * sizeof(int64_t));
@@ -140,14 +131,13 @@ static void tags_in_any_order(void **state)
 }
 
 /* In MSH 4 a group may be of reversed orientation, and stand twice; it is the entity's. */
-static void groups_of_entities(void **state)
+TEST(groups_of_entities)
 {
-    (void)state;
     struct fixture f = fixture_make(ASCII_41);
     struct msh msh;
     struct error error = {""};
     assert_true(fixture_replace(&f, " 1 2 1 1\n", " 4 7 -2 -7 2 1 1\n"));
-    assert_int_equal(parse_copy(&msh, f.bytes, f.size, &error), STATUS_OK);
+    GOOD(parse_copy(&msh, f.bytes, f.size, &error));
     assert_string_equal(error.text, "");
     assert_int_equal(msh.group_count, 4);
     assert_string_equal(msh.groups[3].name, "group_7");
@@ -156,9 +146,8 @@ static void groups_of_entities(void **state)
     msh_free(&msh);
 }
 
-static void an_entity_stands_once(void **state)
+TEST(an_entity_stands_once)
 {
-    (void)state;
     struct fixture f = fixture_make(ASCII_41);
     struct msh msh;
     struct error error = {""};
@@ -169,9 +158,8 @@ static void an_entity_stands_once(void **state)
 }
 
 /* MSH 4 without $Entities, as meshio writes it: no groups. */
-static void entities_may_be_absent(void **state)
+TEST(entities_may_be_absent)
 {
-    (void)state;
     struct fixture f = fixture_make(ASCII_41);
     struct msh msh;
     struct error error = {""};
@@ -180,15 +168,14 @@ static void entities_may_be_absent(void **state)
     assert_true(from != NULL && to != NULL);
     memmove(from, to, (size_t)(f.bytes + f.size - to));
     f.size -= (size_t)(to - from);
-    assert_int_equal(parse_copy(&msh, f.bytes, f.size, &error), STATUS_OK);
+    GOOD(parse_copy(&msh, f.bytes, f.size, &error));
     assert_int_equal(msh.member_ptr[FIXTURE_ELEMENTS], 0);
     assert_int_equal(msh.groups[2].element_count, 0);
     msh_free(&msh);
 }
 
-static void truncation_at_every_byte_is_found(void **state)
+TEST(truncation_at_every_byte_is_found)
 {
-    (void)state;
     for (int form = 0; form < FIXTURE_FORMS; form++) {
         struct fixture f = fixture_make(form);
         for (size_t size = 0; size + 1 < f.size; size++) {
@@ -205,9 +192,8 @@ static void truncation_at_every_byte_is_found(void **state)
     }
 }
 
-static void changed_bytes_do_no_harm(void **state)
+TEST(changed_bytes_do_no_harm)
 {
-    (void)state;
     static const unsigned char values[] = {0x00, 0x01, 0x02, 0x7f, 0xff, '$', '7', '9', '-', '\n'};
     for (int form = 0; form < FIXTURE_FORMS; form++) {
         struct fixture f = fixture_make(form);
@@ -224,9 +210,8 @@ static void changed_bytes_do_no_harm(void **state)
 
 /* MSH 1, partitioned files and second order, as gmsh writes them, treated in the same ways; in the folder
  * that holds the tests. */
-static void other_forms_are_read(void **state)
+TEST(other_forms_are_read)
 {
-    (void)state;
     static const struct {
         const char *name;
         int nodes, elements, groups, members; /* the parts of a body are in its group once each */
@@ -242,7 +227,7 @@ static void other_forms_are_read(void **state)
         assert_non_null(file);
         size_t size = fread(bytes, 1, sizeof bytes, file);
         fclose(file);
-        assert_int_equal(parse_copy(&msh, bytes, size, &error), STATUS_OK);
+        GOOD(parse_copy(&msh, bytes, size, &error));
         assert_string_equal(error.text, "");
         assert_int_equal(msh.node_count, files[i].nodes);
         assert_int_equal(msh.element_count, files[i].elements);
@@ -270,9 +255,8 @@ struct fault {
     const char *from, *to, *message;
 };
 
-static void each_fault_has_its_message(void **state)
+TEST(each_fault_has_its_message)
 {
-    (void)state;
     static const struct fault faults[] = {
         {ASCII_22, "$Nodes\n5\n", "$Nodes\n100000000000\n",
          "$Nodes: number of nodes: 100000000000 cannot be in"},
@@ -340,22 +324,20 @@ static void each_fault_has_its_message(void **state)
 }
 
 /* Sections that are not needed are stepped over, whatever is in them. */
-static void other_sections_are_left_out(void **state)
+TEST(other_sections_are_left_out)
 {
-    (void)state;
     struct fixture f = fixture_make(ASCII_22);
     struct msh msh;
     struct error error;
     assert_true(
         fixture_replace(&f, "$EndNodes\n", "$EndNodes\n$Comments\n$Nodes\n1 0 0\n$EndNodes\n$EndComments\n"));
-    assert_int_equal(parse_copy(&msh, f.bytes, f.size, &error), STATUS_OK);
+    GOOD(parse_copy(&msh, f.bytes, f.size, &error));
     assert_int_equal(msh.node_count, FIXTURE_NODES);
     msh_free(&msh);
 }
 
-static void lines_may_end_as_in_dos(void **state)
+TEST(lines_may_end_as_in_dos)
 {
-    (void)state;
     struct fixture f = fixture_make(ASCII_41);
     struct fixture dos = {.size = 0};
     struct msh msh;
@@ -366,14 +348,13 @@ static void lines_may_end_as_in_dos(void **state)
         }
         dos.bytes[dos.size++] = f.bytes[i];
     }
-    assert_int_equal(parse_copy(&msh, dos.bytes, dos.size, &error), STATUS_OK);
+    GOOD(parse_copy(&msh, dos.bytes, dos.size, &error));
     assert_int_equal(msh.node_count, FIXTURE_NODES);
     msh_free(&msh);
 }
 
-static void pipes_are_read_whole(void **state)
+TEST(pipes_are_read_whole)
 {
-    (void)state;
     struct fixture f = fixture_make(BINARY_41);
     int ends[2];
     struct msh msh;
@@ -381,28 +362,10 @@ static void pipes_are_read_whole(void **state)
     assert_int_equal(pipe(ends), 0);
     assert_int_equal(write(ends[1], f.bytes, f.size), f.size);
     close(ends[1]);
-    assert_int_equal(msh_read(&msh, ends[0], "pipe", &error), STATUS_OK);
+    GOOD(msh_read(&msh, ends[0], "pipe", &error));
     assert_int_equal(msh.element_count, FIXTURE_ELEMENTS);
     msh_free(&msh);
     close(ends[0]);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_form_gives_the_same_mesh),
-        cmocka_unit_test(groups_of_elements_not_of_entities),
-        cmocka_unit_test(groups_of_entities),
-        cmocka_unit_test(an_entity_stands_once),
-        cmocka_unit_test(entities_may_be_absent),
-        cmocka_unit_test(tags_in_any_order),
-        cmocka_unit_test(truncation_at_every_byte_is_found),
-        cmocka_unit_test(changed_bytes_do_no_harm),
-        cmocka_unit_test(other_forms_are_read),
-        cmocka_unit_test(each_fault_has_its_message),
-        cmocka_unit_test(other_sections_are_left_out),
-        cmocka_unit_test(lines_may_end_as_in_dos),
-        cmocka_unit_test(pipes_are_read_whole),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

@@ -1,13 +1,7 @@
 /* Options as a usage text declares them, and command lines that use them. */
+#include "unit.h"
+
 #include "base/options.h"
-
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
-
-#include <string.h>
 
 static const char usage[] = "program - does something\n"
                             "\n"
@@ -45,9 +39,8 @@ static enum status parse(const char *line, struct options *options, char operand
     return status;
 }
 
-static void declarations(void **state)
+TEST(declarations)
 {
-    (void)state;
     static const struct option expected[] = {
         {'k', "factor", true, false, false, NULL},
         {'\0', "no-widen", false, false, false, NULL},
@@ -81,9 +74,8 @@ static void declarations(void **state)
 }
 
 /* A tool's own -h leaves --help without a letter; a text without a block declares these two alone. */
-static void own_letter(void **state)
+TEST(own_letter)
 {
-    (void)state;
     struct options options;
     options_declare(&options, "voxels\n\nOptions:\n  -h, --spacing LENGTH  required\n");
     assert_int_equal(options_find(&options, "spacing")->letter, 'h');
@@ -92,13 +84,12 @@ static void own_letter(void **state)
     assert_int_equal(options.count, 2);
 }
 
-static void uses(void **state)
+TEST(uses)
 {
-    (void)state;
     struct options options;
     struct error error;
     char operands[256];
-    assert_int_equal(parse("a -vk3 --part=x=1 - --part y -- -k", &options, operands, &error), STATUS_OK);
+    GOOD(parse("a -vk3 --part=x=1 - --part y -- -k", &options, operands, &error));
     assert_string_equal(operands, "a - -k");
     assert_true(options_find(&options, "verbose")->given);
     assert_false(options_find(&options, "no-widen")->given);
@@ -110,9 +101,8 @@ static void uses(void **state)
     assert_string_equal(options.use[2].value, "y");
 }
 
-static void refused(void **state)
+TEST(refused)
 {
-    (void)state;
     static const char *const cases[][2] = {
         {"-k 1 --factor 2", "option --factor given twice"},   {"-vv", "option -v given twice"},
         {"--verbose=1", "option --verbose=1 takes no value"}, {"-k", "option -k lacks its value"},
@@ -128,13 +118,4 @@ static void refused(void **state)
     }
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(declarations),
-        cmocka_unit_test(own_letter),
-        cmocka_unit_test(uses),
-        cmocka_unit_test(refused),
-    };
-    return cmocka_run_group_tests_name("options", tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

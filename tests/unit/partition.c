@@ -6,9 +6,6 @@
 #include "approx/support.h"
 #include "base/memory.h"
 
-#include <math.h>
-#include <stdlib.h>
-
 struct body {
     struct cloud cloud;
     struct cells cells;
@@ -28,23 +25,23 @@ static void body_setup(struct body *body, int dim, double ratio, int32_t parts, 
         .kind = CLOUD_GRADED, .dim = dim, .count = {16, 7, 6}, .high = {0.2, 0.1, 0.1}, .ratio = ratio};
     struct support_options options = support_defaults(dim);
     *body = (struct body){0};
-    good(cloud_make(&wanted, &body->cloud, &error), &error);
+    GOOD(cloud_make(&wanted, &body->cloud, &error));
     body->cells =
         (struct cells){dim, body->cloud.node_count, body->cloud.x, body->cloud.cell_count, body->cloud.cells};
     int64_t nodes = body->cells.node_count;
-    good(NEW_ARRAY(&spacing, nodes, &error), &error);
-    good(NEW_ARRAY(&body->radius, nodes, &error), &error);
-    good(NEW_ARRAY(&body->owner, nodes, &error), &error);
-    good(NEW_ARRAY(&body->work, body->cells.count, &error), &error);
-    good(cells_node_spacing(&body->cells, spacing, &error), &error);
-    good(support_radii(&options, nodes, spacing, body->radius, &error), &error);
-    good(point_grid_build(&body->grid, dim, nodes, body->cells.x, body->radius, &error), &error);
-    good(cell_stars_build(&body->cells, &body->stars, &error), &error);
-    good(partition_work(&body->cells, &body->grid, body->work, &error), &error);
-    good(partition_nodes(&body->cells, &body->stars, body->work, parts, body->owner, &error), &error);
+    GOOD(NEW_ARRAY(&spacing, nodes, &error));
+    GOOD(NEW_ARRAY(&body->radius, nodes, &error));
+    GOOD(NEW_ARRAY(&body->owner, nodes, &error));
+    GOOD(NEW_ARRAY(&body->work, body->cells.count, &error));
+    GOOD(cells_node_spacing(&body->cells, spacing, &error));
+    GOOD(support_radii(&options, nodes, spacing, body->radius, &error));
+    GOOD(point_grid_build(&body->grid, dim, nodes, body->cells.x, body->radius, &error));
+    GOOD(cell_stars_build(&body->cells, &body->stars, &error));
+    GOOD(partition_work(&body->cells, &body->grid, body->work, &error));
+    GOOD(partition_nodes(&body->cells, &body->stars, body->work, parts, body->owner, &error));
     body->partition =
         (struct partition){&body->cells, &body->stars, &body->grid, parts, body->owner, body->work, widen};
-    good(partition_own_cells(&body->partition, &body->own_ptr, &body->own_cell, &error), &error);
+    GOOD(partition_own_cells(&body->partition, &body->own_ptr, &body->own_cell, &error));
     free(spacing);
 }
 
@@ -99,9 +96,8 @@ static void check_part(const struct body *body, int32_t part)
     const int32_t *own = body->own_cell + body->own_ptr[part];
     int64_t own_count = body->own_ptr[part + 1] - body->own_ptr[part];
     uint32_t state = 7;
-    good(body_part_build(&body->partition, part, own, own_count, true, &work, &got, &error), &error);
-    bool *reached = calloc((size_t)cells->node_count, sizeof *reached);
-    assert_non_null(reached);
+    GOOD(body_part_build(&body->partition, part, own, own_count, true, &work, &got, &error));
+    bool *reached = zeros(cells->node_count, sizeof *reached);
     for (int64_t i = 0; i < own_count; i++) {
         assert_int_equal(partition_cell_owner(cells, own[i], body->owner), part);
         double x[3];
@@ -135,14 +131,12 @@ static void check_part(const struct body *body, int32_t part)
     }
     assert_true(got.needed <= got.node_count - got.own_nodes);
     assert_true(body->partition.parts == 1 ? got.needed == 0 : got.needed > 0);
-    free(reached);
     body_part_free(&got);
     body_part_work_free(&work);
 }
 
-static void parts_hold_what_reaches_them(void **unused)
+TEST(parts_hold_what_reaches_them)
 {
-    (void)unused;
     static const struct {
         int dim;
         double ratio, widen;
@@ -159,9 +153,8 @@ static void parts_hold_what_reaches_them(void **unused)
 }
 
 /* Work is shared to a tenth on a graded body, where equal numbers of nodes are not equal work. */
-static void work_is_balanced(void **unused)
+TEST(work_is_balanced)
 {
-    (void)unused;
     struct body body;
     double most = 0, sum = 0;
     body_setup(&body, 3, 2, 4, 1);
@@ -177,9 +170,8 @@ static void work_is_balanced(void **unused)
     body_teardown(&body);
 }
 
-static void cells_have_one_owner(void **unused)
+TEST(cells_have_one_owner)
 {
-    (void)unused;
     const double x[] = {0, 0, 1, 0, 0, 1};
     const int32_t node[] = {0, 1, 2, 1, 2, 0};
     const struct cells cells = {.dim = 2, .node_count = 3, .x = x, .count = 2, .node = node};
@@ -188,9 +180,8 @@ static void cells_have_one_owner(void **unused)
     assert_int_equal(partition_cell_owner(&cells, 1, (int32_t[]){3, 1, 2}), 1);
 }
 
-static void too_many_parts(void **unused)
+TEST(too_many_parts)
 {
-    (void)unused;
     struct error error;
     struct body body;
     body_setup(&body, 2, 1, 2, 1);
@@ -200,13 +191,4 @@ static void too_many_parts(void **unused)
     body_teardown(&body);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(parts_hold_what_reaches_them),
-        cmocka_unit_test(work_is_balanced),
-        cmocka_unit_test(cells_have_one_owner),
-        cmocka_unit_test(too_many_parts),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

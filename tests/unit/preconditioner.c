@@ -17,14 +17,13 @@ static void measure(struct strained *s, bool coarse)
 {
     struct error error;
     double *mass;
-    ARRAY(mass, s->l.system.node_count);
+    mass = zeros(s->l.system.node_count, sizeof *mass);
     (void)system_residual(&s->l.system, s->u, s->residual);
     system_relaxation_mass(&s->l.system, false, mass);
     GOOD(preconditioner_build(&s->l.system, coarse, &s->preconditioner, &error));
     GOOD(preconditioner_set_mass(&s->preconditioner, &s->l.system, mass, &error));
     GOOD(preconditioner_measure(&s->preconditioner, &s->l.system, s->u, &error));
     (void)system_residual(&s->l.system, s->u, s->residual);
-    free(mass);
 }
 
 static void strain_bar_of(struct strained *s, int dim, double poisson_ratio, double strain, bool clamped,
@@ -60,8 +59,6 @@ static void release(struct strained *s)
 {
     preconditioner_free(&s->preconditioner);
     lattice_free(&s->l);
-    free(s->u);
-    free(s->residual);
 }
 
 static double dot(const struct strained *s, const double *x, const double *y)
@@ -105,14 +102,10 @@ static void check_inverse(struct strained *s)
         most = fmax(most, fabs(y[i]));
     }
     AT_MOST(constraint_violation(&s->preconditioner.constraint, s->l.system.factor, y, NULL), 1e-10 * most);
-    free(x);
-    free(y);
-    free(force);
 }
 
-static void mass_and_inverse_agree(void **state)
+TEST(mass_and_inverse_agree)
 {
-    (void)state;
     for (int dim = 2; dim <= 3; dim++) {
         struct strained s;
         strain_bar(&s, dim, 0.0, true, true);
@@ -126,7 +119,7 @@ static void frequencies(struct strained *s, double *largest, double *lowest)
     struct error error;
     double *mode = lattice_vector(&s->l), *start = lattice_vector(&s->l), *scratch;
     struct spectrum spectrum;
-    ARRAY(scratch, 4 * s->size);
+    scratch = zeros(4 * s->size, sizeof *scratch);
     for (int64_t i = 0; i < s->size; i++) {
         start[i] = sin(1.0 + (double)(i * i % 97));
     }
@@ -136,16 +129,12 @@ static void frequencies(struct strained *s, double *largest, double *lowest)
                          &error));
     AT_MOST(fabs(spectrum.largest / (*largest * *largest) - 1.0), 0.01);
     *lowest = sqrt(spectrum.lowest);
-    free(mode);
-    free(start);
-    free(scratch);
 }
 
 /* The coarse fields carry the modes as large as the bar: the ratio of its frequencies, which is the number of
  * steps, falls by far, and the largest one hardly rises; in 3D the inverse factor leaves it below 2. */
-static void slow_modes_are_gone(void **state)
+TEST(slow_modes_are_gone)
 {
-    (void)state;
     for (int dim = 2; dim <= 3; dim++) {
         double largest[2], lowest[2];
         for (int coarse = 0; coarse < 2; coarse++) {
@@ -163,9 +152,8 @@ static void slow_modes_are_gone(void **state)
 
 /* With a limit of the bulk modulus nearly incompressible bodies have the frequencies of one that is less so;
  * otherwise their ratio would grow by the root of the bulk modulus, 100 times here. */
-static void bulk_modulus_is_limited(void **state)
+TEST(bulk_modulus_is_limited)
 {
-    (void)state;
     for (int dim = 2; dim <= 3; dim++) {
         double ratio[2];
         for (int k = 0; k < 2; k++) {
@@ -184,9 +172,8 @@ static void bulk_modulus_is_limited(void **state)
 
 /* Pressed against a plate, contact nodes are counted in at once: the largest frequency stays what it was,
  * where otherwise a stiff contact would move a body that weighs nothing. */
-static void contacts_are_followed(void **state)
+TEST(contacts_are_followed)
 {
-    (void)state;
     struct strained s;
     struct error error;
     struct rigid_surface plate;
@@ -208,11 +195,9 @@ static void contacts_are_followed(void **state)
             assert_false(preconditioner_follow(&s.preconditioner, &s.l.system, false));
         }
         double *mode = lattice_vector(&s.l), *scratch;
-        ARRAY(scratch, 2 * s.size);
+        scratch = zeros(2 * s.size, sizeof *scratch);
         alone[followed] =
             system_largest_frequency(&s.l.system, &s.preconditioner, s.u, s.residual, 60, mode, scratch);
-        free(mode);
-        free(scratch);
     }
     print_message("largest frequency with contacts left out %g, followed %g\n", alone[0], alone[1]);
     AT_MOST(3.0 * alone[1], alone[0]);
@@ -224,10 +209,4 @@ static void contacts_are_followed(void **state)
     release(&s);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(mass_and_inverse_agree), cmocka_unit_test(slow_modes_are_gone),
-        cmocka_unit_test(bulk_modulus_is_limited), cmocka_unit_test(contacts_are_followed)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

@@ -160,28 +160,34 @@ static int64_t evaluate(struct body *body, const double *u, double *results)
 
 static int64_t room(const struct sample *sample)
 {
-    return 8 * sample->cloud.node_count * sample->dim + 20 * sample->point_count + 8;
+    return 8 * sample->cloud.node_count * sample->dim + 20 * sample->assembly.point_count + 8;
 }
 
-/* Of the rows that faces are averaged over every so manieth, as if the others were another process's. */
-static void keep_some(const struct ranks *ranks, struct face_averages *averages, int32_t *reader,
-                      int64_t faces)
+/* Of the rows that faces are averaged over every so manieth, as if the others were another process's; the
+ * caller frees lists and phi. */
+static void keep_some(const struct ranks *ranks, const struct assembly *all, struct assembly *some)
 {
-    struct face_averages all = *averages;
-    averages->boundary_phi = NULL;
-    averages->ptr = sample_array(faces + 1, sizeof *averages->ptr);
-    averages->idx = sample_array(all.ptr[faces], sizeof *averages->idx);
-    averages->phi = sample_array(all.ptr[faces], sizeof *averages->phi);
-    for (int64_t f = 0; f < faces; f++) {
-        int64_t at = averages->ptr[f], from = all.ptr[f], length = 0;
-        reader[f] = (int32_t)(f * f % ranks->count);
-        if (reader[f] == ranks->rank) {
-            length = all.ptr[f + 1] - from;
-            memcpy(averages->idx + at, all.idx + from, (size_t)length * sizeof *all.idx);
-            memcpy(averages->phi + at, all.phi + from, (size_t)length * sizeof *all.phi);
+    int64_t rows = all->faces.row_count, *ptr, pairs = all->lists.ptr[rows];
+    int32_t *idx, *reader;
+    double *phi;
+    ARRAY(ptr, rows + 1);
+    ARRAY(idx, pairs);
+    ARRAY(phi, pairs);
+    ARRAY(reader, rows);
+    for (int64_t r = 0; r < rows; r++) {
+        int64_t from = all->lists.ptr[r], length = 0;
+        reader[r] = (int32_t)(r * r % ranks->count);
+        if (reader[r] == ranks->rank) {
+            length = all->lists.ptr[r + 1] - from;
+            memcpy(idx + ptr[r], all->lists.idx + from, (size_t)length * sizeof *idx);
+            memcpy(phi + ptr[r], all->phi + from, (size_t)length * sizeof *phi);
         }
-        averages->ptr[f + 1] = at + length;
+        ptr[r + 1] = ptr[r] + length;
     }
+    some->lists.ptr = ptr;
+    some->lists.idx = idx;
+    some->phi = phi;
+    some->face_reader = reader;
 }
 
 static void *evaluate_member(void *context)
@@ -190,18 +196,18 @@ static void *evaluate_member(void *context)
     struct setup setup = *member->setup;
     struct sample sample = *member->sample;
     bool reads_some = member->reads_some && setup.faces;
-    int32_t *reader = sample_array(sample.faces.row_count, sizeof *reader);
     setup.ranks = &member->ranks;
     omp_set_num_threads(1); /* of this thread's regions */
     if (reads_some) {
-        keep_some(&member->ranks, &sample.averages, reader, sample.faces.row_count);
-        sample.face_reader = reader;
+        keep_some(&member->ranks, &member->sample->assembly, &sample.assembly);
     }
     struct body body = make_body(&sample, &setup);
-    if (reads_some) {
-        face_averages_free(&sample.averages); /* the body has fetched what it needs */
+    if (reads_some) { /* the body has fetched what it needs */
+        free((void *)(uintptr_t)sample.assembly.lists.ptr);
+        free((void *)(uintptr_t)sample.assembly.lists.idx);
+        free((void *)(uintptr_t)sample.assembly.phi);
+        free((void *)(uintptr_t)sample.assembly.face_reader);
     }
-    free(reader);
     member->count[member->ranks.rank] =
         evaluate(&body, member->u, member->results + member->ranks.rank * room(member->sample));
     body_free(&body);
@@ -212,8 +218,8 @@ static void check_body(const struct sample *sample, const struct setup *setup, s
 {
     static const int counts[] = {2, 3, MOST};
     int64_t some = room(sample);
-    double *force = sample_array(sample->cloud.node_count * sample->dim, sizeof *force);
-    double *alone = sample_array(some, sizeof *alone), *results = sample_array(some * MOST, sizeof *results);
+    double *force = zeros(sample->cloud.node_count * sample->dim, sizeof *force);
+    double *alone = zeros(some, sizeof *alone), *results = zeros(some * MOST, sizeof *results);
     struct body body = make_body(sample, setup);
     double *u = deformed_field(sample, &body, force, random);
     int64_t count = evaluate(&body, u, alone);
@@ -237,24 +243,18 @@ static void check_body(const struct sample *sample, const struct setup *setup, s
             assert_memory_equal(results + r * some, alone, (size_t)count * sizeof *alone);
         }
     }
-    free(u);
-    free(force);
-    free(alone);
-    free(results);
     body_free(&body);
 }
 
 /* Every kind of body, by 2, 3 and 7 processes, of which some have nothing to do. */
-static void bodies(void **state)
+TEST(bodies)
 {
-    (void)state;
     for_all(check_body);
 }
 
 /* Larger: bodies of many blocks, whose bounds are summed in parts that go from process to process. */
-static void large_body(void **state)
+TEST(large_body)
 {
-    (void)state;
     struct random random = {3};
     struct sample sample = make_sample(2, true, 60);
     struct setup setup = three_materials(true);
@@ -264,9 +264,8 @@ static void large_body(void **state)
 }
 
 /* Stretches are of about the same work, cover all items in turn, and say whose an item is. */
-static void shares(void **state)
+TEST(shares)
 {
-    (void)state;
     struct error error;
     struct ranks ranks = {.count = 3};
     const double work[8] = {4.0, 0.0, 0.0, 1.0, 1.0, 1.0, 1.0, 4.0};
@@ -290,9 +289,8 @@ static void shares(void **state)
     assert_int_equal(ranks_most(NULL, 3), 3);
 }
 
-static void rows_in_stretches(void **state)
+TEST(rows_in_stretches)
 {
-    (void)state;
     struct error error;
     struct stretches stretches;
     const bool wanted[9] = {true, true, false, true, false, false, true, true, true};
@@ -315,7 +313,7 @@ static void *agree_member(void *context)
     const struct ranks *ranks = &member->ranks;
     struct error error = {"?"};
     int64_t *each;
-    assert_int_equal(ranks_agree(ranks, STATUS_OK, &error), STATUS_OK);
+    GOOD(ranks_agree(ranks, STATUS_OK, &error));
     enum status status =
         ranks->rank > 0 ? (fail)(&error, STATUS_INPUT + (ranks->rank > 1), "by %d", ranks->rank) : STATUS_OK;
     assert_int_equal(ranks_agree(ranks, status, &error), STATUS_INPUT);
@@ -328,9 +326,8 @@ static void *agree_member(void *context)
     return NULL;
 }
 
-static void agreement(void **state)
+TEST(agreement)
 {
-    (void)state;
     struct member members[3] = {{.sample = NULL}};
     struct error error;
     run_team(3, members, agree_member);
@@ -382,9 +379,8 @@ static void *solve_member(void *context)
 }
 
 /* Blocks are solved by several processes to the bits of one. */
-static void solving(void **state)
+TEST(solving)
 {
-    (void)state;
     double right[SOLVED], alone[SOLVED], results[MOST * SOLVED];
     struct envelope factor;
     make_chains(&factor);
@@ -410,12 +406,4 @@ static void solving(void **state)
     }
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(shares),    cmocka_unit_test(rows_in_stretches),
-        cmocka_unit_test(agreement), cmocka_unit_test(solving),
-        cmocka_unit_test(bodies),    cmocka_unit_test(large_body),
-    };
-    return cmocka_run_group_tests(tests, make_samples, free_samples);
-}
+RUN_TESTS(make_samples, free_samples)

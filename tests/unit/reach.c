@@ -77,7 +77,7 @@ static void build(int dim, const int *size, solid_function *solid, sheet_functio
     }
     body.cells = (struct cells){
         .dim = dim, .node_count = body.node_count, .x = body.x, .count = body.cell_count, .node = body.cell};
-    good(cells_check(&body.cells, &error), &error);
+    GOOD(cells_check(&body.cells, &error));
 }
 
 static int one_sheet(const int *cube, int i, int j, int k)
@@ -128,16 +128,14 @@ static void find(double radius, bool widen)
             }
         }
     }
-    good(point_grid_build(&found.grid, dim, body.node_count, body.x, found.radius, &error), &error);
-    good(reach_build(&body.cells, &found.grid, &found.reach, &error), &error);
+    GOOD(point_grid_build(&found.grid, dim, body.node_count, body.x, found.radius, &error));
+    GOOD(reach_build(&body.cells, &found.grid, &found.reach, &error));
     struct reach_places inside = {.cell = found.cell, .points_per_row = 1};
-    good(support_build_within(&found.options, &found.grid, &found.reach, &inside, found.count, found.x,
-                              "points", &found.lists, &error),
-         &error);
+    GOOD(support_build_within(&found.options, &found.grid, &found.reach, &inside, found.count, found.x,
+                              "points", &found.lists, &error));
     inside = (struct reach_places){.nodes = true};
-    good(support_build_within(&found.options, &found.grid, &found.reach, &inside, body.node_count, body.x,
-                              "nodes", &found.nodes, &error),
-         &error);
+    GOOD(support_build_within(&found.options, &found.grid, &found.reach, &inside, body.node_count, body.x,
+                              "nodes", &found.nodes, &error));
 }
 
 static void lose(void)
@@ -164,9 +162,8 @@ static bool same_lists(const struct support_lists *a, const struct support_lists
 }
 
 /* Convex bodies: nothing changes, also where supports are widened. */
-static void convex(void **state)
+TEST(convex)
 {
-    (void)state;
     for (int dim = 2; dim <= 3; dim++) {
         for (int wide = 0; wide < 2; wide++) {
             struct support_lists plain;
@@ -174,13 +171,12 @@ static void convex(void **state)
             build(dim, (int[3]){7, 6, 5}, all_solid, one_sheet);
             find(wide ? 2.3 : 0.9, true);
             assert_true(wide || found.lists.widened > 0);
-            good(support_build(&found.options, &found.grid, found.count, found.x, "points", &plain, &error),
-                 &error);
+            GOOD(support_build(&found.options, &found.grid, found.count, found.x, "points", &plain, &error));
             assert_true(same_lists(&plain, &found.lists, dim));
             assert_int_equal(found.lists.around_count, 0);
             support_free(&plain);
-            good(support_build(&found.options, &found.grid, body.node_count, body.x, "nodes", &plain, &error),
-                 &error);
+            GOOD(
+                support_build(&found.options, &found.grid, body.node_count, body.x, "nodes", &plain, &error));
             assert_true(same_lists(&plain, &found.nodes, dim));
             support_free(&plain);
             lose();
@@ -194,17 +190,15 @@ static bool of_l(const int *cube)
     return cube[0] < 4 || cube[1] < 4;
 }
 
-static void located(void **state)
+TEST(located)
 {
-    (void)state;
     for (int dim = 2; dim <= 3; dim++) {
         struct support_lists other;
         struct error error;
         build(dim, (int[3]){8, 8, 4}, of_l, one_sheet);
         find(2.0, true);
-        good(support_build_within(&found.options, &found.grid, &found.reach, NULL, found.count, found.x,
-                                  "points", &other, &error),
-             &error);
+        GOOD(support_build_within(&found.options, &found.grid, &found.reach, NULL, found.count, found.x,
+                                  "points", &other, &error));
         assert_true(found.lists.around_count > 0);
         assert_true(same_lists(&other, &found.lists, dim));
         support_free(&other);
@@ -241,9 +235,8 @@ static void check_apart(const struct support_lists *lists, const double *x)
     assert_int_equal(lists->around_count, 0);
 }
 
-static void apart(void **state)
+TEST(apart)
 {
-    (void)state;
     for (int dim = 2; dim <= 3; dim++) {
         for (second_from = 4; second_from <= 5; second_from++) {
             build(dim, (int[3]){9, 5, 3}, but_gap, sheet_of_side);
@@ -269,9 +262,8 @@ static bool of_lobes(const int *cube)
     return (cube[0] < 4) == (cube[1] < 4);
 }
 
-static void lobes(void **state)
+TEST(lobes)
 {
-    (void)state;
     for (int dim = 2; dim <= 3; dim++) {
         build(dim, (int[3]){8, 8, 3}, of_lobes, one_sheet);
         find(2.1, true);
@@ -317,9 +309,8 @@ static bool hidden_in_l(const double *p, const double *q)
 }
 
 /* Around the corner of an L the weights follow the true lengths of the paths. */
-static void around_corner(void **state)
+TEST(around_corner)
 {
-    (void)state;
     for (int dim = 2; dim <= 3; dim++) {
         int64_t hidden = 0;
         double radius = dim == 2 ? 3.2 : 2.2;
@@ -376,9 +367,8 @@ static int sheet_of_fissure(const int *cube, int i, int j, int k)
     return i == 5 && (body.dim == 2 ? j : k) > 5 ? 1 + (cube[0] >= 5) : 0;
 }
 
-static void fissure(void **state)
+TEST(fissure)
 {
-    (void)state;
     for (int dim = 2; dim <= 3; dim++) {
         build(dim, (int[3]){10, 10, 10}, of_ball, sheet_of_fissure);
         find(2.0, true);
@@ -410,9 +400,8 @@ static void fissure(void **state)
 }
 
 /* Gradients at points that see around the corner are those of the values, where the neighbours stay. */
-static void gradients(void **state)
+TEST(gradients)
 {
-    (void)state;
     for (int dim = 2; dim <= 3; dim++) {
         double worst = 0.0;
         int64_t compared = 0;
@@ -420,34 +409,28 @@ static void gradients(void **state)
         find(dim == 2 ? 3.4 : 2.4, false);
         struct neighbours view = support_view(&found.lists);
         int64_t pairs = found.lists.ptr[found.count], step_pairs[2];
-        double *phi = calloc((size_t)pairs, sizeof *phi), *dphi = calloc((size_t)(pairs * dim), sizeof *dphi);
-        double *moved = calloc((size_t)(found.count * dim), sizeof *moved);
+        double *phi = zeros(pairs, sizeof *phi), *dphi = zeros(pairs * dim, sizeof *dphi);
+        double *moved = zeros(found.count * dim, sizeof *moved);
         double *stepped[2] = {NULL, NULL};
         struct support_lists lists[2];
         struct error error;
         const double step = 1e-5;
         struct reach_places inside = {.cell = found.cell, .points_per_row = 1};
-        assert_non_null(phi);
-        assert_non_null(dphi);
-        assert_non_null(moved);
-        good(shape_table(&found.options.mls, body.x, found.radius, &view, found.x, "points", phi, dphi,
-                         &error),
-             &error);
+        GOOD(shape_table(&found.options.mls, body.x, found.radius, &view, found.x, "points", phi, dphi,
+                         &error));
         for (int a = 0; a < dim; a++) {
             for (int s = 0; s < 2; s++) {
                 for (int64_t i = 0; i < found.count * dim; i++) {
                     moved[i] = found.x[i] + (i % dim == a ? (s ? step : -step) : 0.0);
                 }
-                good(support_build_within(&found.options, &found.grid, &found.reach, &inside, found.count,
-                                          moved, "points", &lists[s], &error),
-                     &error);
+                GOOD(support_build_within(&found.options, &found.grid, &found.reach, &inside, found.count,
+                                          moved, "points", &lists[s], &error));
                 step_pairs[s] = lists[s].ptr[found.count];
                 stepped[s] = calloc((size_t)step_pairs[s], sizeof(double));
                 assert_non_null(stepped[s]);
                 view = support_view(&lists[s]);
-                good(shape_table(&found.options.mls, body.x, found.radius, &view, moved, "points", stepped[s],
-                                 NULL, &error),
-                     &error);
+                GOOD(shape_table(&found.options.mls, body.x, found.radius, &view, moved, "points", stepped[s],
+                                 NULL, &error));
             }
             int64_t next = 0;
             for (int64_t p = 0; p < found.count; p++) {
@@ -477,9 +460,6 @@ static void gradients(void **state)
         }
         assert_true(compared > 300);
         at_most(worst, 1e-8, "a gradient around a corner");
-        free(phi);
-        free(dphi);
-        free(moved);
         lose();
     }
 }
@@ -489,20 +469,19 @@ static bool reaches(struct ways *ways, int32_t from, int64_t place)
     struct error error;
     bool reached;
     ways_begin(ways, from);
-    good(ways_reach(ways, place, &reached, &error), &error);
+    GOOD(ways_reach(ways, place, &reached, &error));
     return reached;
 }
 
 /* Places, here the nodes themselves, are within reach round a corner and a fissure's end, not across a gap or
  * from one lip to the other. */
-static void ways(void **state)
+TEST(ways)
 {
     struct error error;
     struct ways ways;
-    (void)state;
     for (int dim = 2; dim <= 3; dim++) {
         build(dim, (int[3]){8, 8, 4}, of_l, one_sheet);
-        good(ways_build(&body.cells, body.node_count, dim, body.x, 1.0, &ways, &error), &error);
+        GOOD(ways_build(&body.cells, body.node_count, dim, body.x, 1.0, &ways, &error));
         for (int32_t n = 0; n < body.node_count; n += 5) {
             for (int64_t p = 0; p < body.node_count; p++) {
                 assert_true(reaches(&ways, n, p));
@@ -511,7 +490,7 @@ static void ways(void **state)
         ways_free(&ways);
         second_from = 5;
         build(dim, (int[3]){9, 5, 3}, but_gap, sheet_of_side);
-        good(ways_build(&body.cells, body.node_count, dim, body.x, 1.0, &ways, &error), &error);
+        GOOD(ways_build(&body.cells, body.node_count, dim, body.x, 1.0, &ways, &error));
         for (int32_t n = 0; n < body.node_count; n += 5) {
             for (int64_t p = 0; p < body.node_count; p++) {
                 assert_int_equal(reaches(&ways, n, p), body.key[n][3] == body.key[p][3]);
@@ -519,7 +498,7 @@ static void ways(void **state)
         }
         ways_free(&ways);
         build(dim, (int[3]){10, 10, 10}, of_ball, sheet_of_fissure);
-        good(ways_build(&body.cells, body.node_count, dim, body.x, 1.0, &ways, &error), &error);
+        GOOD(ways_build(&body.cells, body.node_count, dim, body.x, 1.0, &ways, &error));
         int other = dim == 3 ? 5 : 0;
         int32_t low_left = node_at(4, dim == 3 ? other : 6, dim == 3 ? 6 : 0, 0);
         int32_t low_right = node_at(6, dim == 3 ? other : 6, dim == 3 ? 6 : 0, 0);
@@ -533,12 +512,4 @@ static void ways(void **state)
     }
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(convex),    cmocka_unit_test(located),       cmocka_unit_test(apart),
-        cmocka_unit_test(lobes),     cmocka_unit_test(around_corner), cmocka_unit_test(fissure),
-        cmocka_unit_test(gradients), cmocka_unit_test(ways),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

@@ -1,5 +1,5 @@
 /* Rigid surfaces: closest points against brute force, signs against winding numbers, open rims, faults. */
-#include "solid_fixture.h"
+#include "unit.h"
 
 #include "solid/rigid.h"
 
@@ -231,9 +231,8 @@ static void check_everywhere(const struct shape *shape, struct random *random)
     rigid_free(&surface);
 }
 
-static void closed_curves(void **state)
+TEST(closed_curves)
 {
-    (void)state;
     struct random random = {1};
     static struct shape shape;
     for (int count = 3; count < 400; count = count * 3 + 1) {
@@ -242,9 +241,8 @@ static void closed_curves(void **state)
     }
 }
 
-static void closed_surfaces(void **state)
+TEST(closed_surfaces)
 {
-    (void)state;
     struct random random = {2};
     static struct shape shape;
     for (int n = 1; n <= 7; n += 3) {
@@ -256,9 +254,8 @@ static void closed_surfaces(void **state)
 }
 
 /* At a concave corner the sign of the first facet found would be wrong for half of the points. */
-static void concave_corners(void **state)
+TEST(concave_corners)
 {
-    (void)state;
     static const double ell[][2] = {{0, 0}, {2, 0}, {2, 1}, {1, 1}, {1, 2}, {0, 2}};
     struct shape shape = {.dim = 2};
     struct random random = {3};
@@ -275,9 +272,8 @@ static void concave_corners(void **state)
 }
 
 /* On a vertex and on a facet the normal is the surface's, not a quotient of round-off. */
-static void normals_on_the_surface(void **state)
+TEST(normals_on_the_surface)
 {
-    (void)state;
     static const double curve[][2] = {{0, 0}, {1, 0}, {1, 1}};
     struct shape shape = {.dim = 2};
     add_facet(&shape, curve[0], curve[1], NULL);
@@ -296,9 +292,8 @@ static void normals_on_the_surface(void **state)
     rigid_free(&surface);
 }
 
-static void flipped(void **state)
+TEST(flipped)
 {
-    (void)state;
     struct random random = {4};
     static struct shape shape;
     for (int dim = 2; dim <= 3; dim++) {
@@ -327,9 +322,8 @@ static void flipped(void **state)
 
 /* Facets that touch nothing: every corner and edge is a rim. What is found is the closest; what is not lies
  * beyond the rim of the closest. */
-static void loose_facets(void **state)
+TEST(loose_facets)
 {
-    (void)state;
     struct random random = {5};
     static struct shape shape;
     for (int dim = 2; dim <= 3; dim++) {
@@ -367,9 +361,8 @@ static void loose_facets(void **state)
 }
 
 /* An open curve ends at the normals through its ends; a sheet at the planes through its edges. */
-static void rims(void **state)
+TEST(rims)
 {
-    (void)state;
     static const double curve[][2] = {{0, 0}, {1, 0}, {2, 0}};
     struct shape line = {.dim = 2};
     add_facet(&line, curve[1], curve[2], NULL);
@@ -418,9 +411,8 @@ static void rims(void **state)
 }
 
 /* A place where the surface is open only by round-off is no rim; a rim on another facet is. */
-static void seams(void **state)
+TEST(seams)
 {
-    (void)state;
     struct shape shape = {.dim = 2};
     struct random random = {6};
     for (int i = 0; i < 40; i++) { /* the same point written twice with different round-off */
@@ -446,9 +438,8 @@ static void seams(void **state)
 
 /* Straight over the end of a facet, however it lies: found; straight over a place where the rim of one facet
  * stands on another: that one is. */
-static void over_the_rim(void **state)
+TEST(over_the_rim)
 {
-    (void)state;
     struct random random = {7};
     static struct shape shape;
     for (int round = 0; round < 1000; round++) {
@@ -492,9 +483,8 @@ static void fails(int dim, int64_t count, const double *corners, const char *exp
     assert_null(surface.vertex);
 }
 
-static void faults(void **state)
+TEST(faults)
 {
-    (void)state;
     fails(2, 0, NULL, "rigid surface: 0 facets: none, or too many");
     fails(2, 2, (double[]){0, 0, 1, 0, 1, 0, 1, 0}, "rigid surface: facet 2 has no size: remove it");
     fails(3, 1, (double[]){0, 0, 0, 1, 1, 1, 2, 2, 2}, "rigid surface: facet 1 has no size: remove it");
@@ -513,9 +503,8 @@ static void faults(void **state)
 }
 
 /* Not a number is not found, and is looked at again. */
-static void not_a_number(void **state)
+TEST(not_a_number)
 {
-    (void)state;
     struct shape shape = {.dim = 2};
     add_facet(&shape, (double[]){0, 0}, (double[]){1, 0}, NULL);
     struct rigid_surface surface = built(&shape, false);
@@ -525,20 +514,4 @@ static void not_a_number(void **state)
     rigid_free(&surface);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(closed_curves),
-        cmocka_unit_test(closed_surfaces),
-        cmocka_unit_test(concave_corners),
-        cmocka_unit_test(normals_on_the_surface),
-        cmocka_unit_test(flipped),
-        cmocka_unit_test(loose_facets),
-        cmocka_unit_test(rims),
-        cmocka_unit_test(seams),
-        cmocka_unit_test(over_the_rim),
-        cmocka_unit_test(faults),
-        cmocka_unit_test(not_a_number),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

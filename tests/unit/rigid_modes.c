@@ -1,5 +1,5 @@
 /* Rigid moves that conditions leave free: of nodes held one by one, in 2D and 3D, of several bodies. */
-#include "solid_fixture.h"
+#include "unit.h"
 
 #include "solid/rigid_modes.h"
 
@@ -58,9 +58,8 @@ static void expect(struct held *held, int64_t body, int translations, int turns,
     }
 }
 
-static void in_the_plane(void **state)
+TEST(in_the_plane)
 {
-    (void)state;
     for (double from = 0.0; from < 20.0; from += 10.0) { /* wherever the origin is */
         struct held held;
         struct rigid_modes moves;
@@ -85,9 +84,8 @@ static void in_the_plane(void **state)
     }
 }
 
-static void in_space(void **state)
+TEST(in_space)
 {
-    (void)state;
     struct held held;
     struct rigid_modes moves;
     begin(&held, 3, 1, 5.0);
@@ -124,9 +122,8 @@ static void in_space(void **state)
 }
 
 /* Of three bodies the one in the middle is free; a row over nodes of two bodies holds either. */
-static void several_bodies(void **state)
+TEST(several_bodies)
 {
-    (void)state;
     struct held held;
     struct rigid_modes moves;
     begin(&held, 2, 3, 0.0);
@@ -147,12 +144,4 @@ static void several_bodies(void **state)
     constraint_rows_free(&held.system.rows);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(in_the_plane),
-        cmocka_unit_test(in_space),
-        cmocka_unit_test(several_bodies),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

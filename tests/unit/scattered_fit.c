@@ -1,6 +1,6 @@
 /* Displacements from tables of points: linear fields exactly, however few the points; quadratic ones where
  * there are enough; nothing made up across a line of points. */
-#include "solid_fixture.h"
+#include "unit.h"
 
 #include "approx/scattered_fit.h"
 
@@ -44,9 +44,8 @@ static double worst(const struct scattered_fit *fit, double (*field)(const doubl
     return largest;
 }
 
-static void few_points_give_linear_fields(void **state)
+TEST(few_points_give_linear_fields)
 {
-    (void)state;
     double row[6 * 4] = {0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 0.5, 0.4, 0, 0, 0.2, 0.7, 0, 0};
     for (int64_t count = 3; count <= 6; count++) {
         struct scattered_fit fit = table(row, count, linear);
@@ -55,9 +54,8 @@ static void few_points_give_linear_fields(void **state)
     }
 }
 
-static void enough_points_give_quadratic_fields(void **state)
+TEST(enough_points_give_quadratic_fields)
 {
-    (void)state;
     double row[25 * 4];
     for (int i = 0; i < 25; i++) {
         row[4 * i] = 0.25 * (i % 5) + 0.01 * sin(i);
@@ -69,9 +67,8 @@ static void enough_points_give_quadratic_fields(void **state)
 }
 
 /* On a line nothing is known of what changes across it. */
-static void a_line_is_extended_across(void **state)
+TEST(a_line_is_extended_across)
 {
-    (void)state;
     double row[9 * 4] = {0};
     for (int i = 0; i < 9; i++) {
         row[4 * i] = 0.125 * i;
@@ -85,9 +82,8 @@ static void a_line_is_extended_across(void **state)
     scattered_fit_free(&fit);
 }
 
-static void one_point_is_a_constant(void **state)
+TEST(one_point_is_a_constant)
 {
-    (void)state;
     double row[4] = {0.3, 0.3, 0, 0};
     struct scattered_fit fit = table(row, 1, linear);
     struct error error;
@@ -98,9 +94,8 @@ static void one_point_is_a_constant(void **state)
 }
 
 /* The nearest of many points, by the grid as by looking at all; far from the points as well. */
-static void nearest_by_the_grid(void **state)
+TEST(nearest_by_the_grid)
 {
-    (void)state;
     enum { COUNT = 400 };
     double row[COUNT * 4];
     for (int i = 0; i < COUNT; i++) {
@@ -121,14 +116,4 @@ static void nearest_by_the_grid(void **state)
     scattered_fit_free(&fit);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(few_points_give_linear_fields),
-        cmocka_unit_test(enough_points_give_quadratic_fields),
-        cmocka_unit_test(a_line_is_extended_across),
-        cmocka_unit_test(one_point_is_a_constant),
-        cmocka_unit_test(nearest_by_the_grid),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

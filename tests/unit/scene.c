@@ -1,16 +1,9 @@
 /* Scenes: what a good one holds, and one clear error with its line for each thing that can be wrong. */
+#include "unit.h"
+
 #include "io/scene.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
-
-#include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <unistd.h>
 
 static char folder[] = "/tmp/scene-XXXXXX";
@@ -90,9 +83,8 @@ static void same(double value, double expected)
     assert_true(fabs(value - expected) <= 1e-15 * fabs(expected));
 }
 
-static void reads_everything(void **state)
+TEST(reads_everything)
 {
-    (void)state;
     struct scene scene;
     struct error error = {""};
     char expected[128];
@@ -151,13 +143,12 @@ static void reads_everything(void **state)
     assert_null(scene.materials);
 }
 
-static void defaults(void **state)
+TEST(defaults)
 {
-    (void)state;
     struct scene scene;
     struct error error;
     write_bytes(HEAD BODY, sizeof(HEAD BODY) - 1);
-    assert_int_equal(scene_read(path, &scene, &error), STATUS_OK);
+    GOOD(scene_read(path, &scene, &error));
     assert_string_equal(scene.title, "");
     assert_int_equal(scene.materials[0].model, SCENE_NEO_HOOKEAN);
     assert_int_equal(scene.solver.constraints, SCENE_EBCIEM);
@@ -195,9 +186,8 @@ static void fails(const char *text, int line, const char *words)
 }
 
 /* Fault 10: unknown, repeated, missing, decimal comma, CRLF, BOM. */
-static void strict_form(void **state)
+TEST(strict_form)
 {
-    (void)state;
     fails(HEAD BODY "Emod = 3\n", 9, "[material m]: Emod: unknown key: allowed are region");
     fails(HEAD BODY "[materials m]\n", 9, "unknown section: allowed are scene, material");
     fails(HEAD BODY "[material m]\nregion = q\n", 9, "[material m]: already in line 4");
@@ -238,9 +228,8 @@ static void strict_form(void **state)
     fails(HEAD BODY "[output]", 9, "last line without newline");
 }
 
-static void line_length(void **state)
+TEST(line_length)
 {
-    (void)state;
     char text[700];
     for (int extra = 0; extra < 2; extra++) { /* 198 bytes of content are read whole, 199 are not */
         int title = 198 - 8 + extra;
@@ -254,14 +243,14 @@ static void line_length(void **state)
         struct scene scene;
         struct error error;
         write_bytes(text, strlen(text));
-        assert_int_equal(scene_read(path, &scene, &error), STATUS_OK);
+        GOOD(scene_read(path, &scene, &error));
         assert_int_equal(strlen(scene.title), title);
         scene_free(&scene);
     }
 }
 
 /* Fault 11: material constants out of range. */
-static void material_values(void **state)
+TEST(material_values)
 {
     static const struct {
         const char *key, *value, *words;
@@ -278,7 +267,6 @@ static void material_values(void **state)
         {"nu", "-1", "nu: -1 is not above -1"},
         {"nu", "NaN", "nu: 'NaN' is not a finite number"},
     };
-    (void)state;
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         char text[256];
         int length = snprintf(text, sizeof text, HEAD "[material m]\n%s = %s\nregion = r\n", cases[i].key,
@@ -294,21 +282,19 @@ static void material_values(void **state)
 }
 
 /* At rest without weight nobody need give a density. */
-static void density_that_is_not_felt(void **state)
+TEST(density_that_is_not_felt)
 {
-    (void)state;
     static const char text[] = HEAD "[material m]\nregion = r\nE = 3\nnu = .3\n";
     struct scene scene;
     struct error error = {""};
     write_bytes(text, sizeof text - 1);
-    assert_int_equal(scene_read(path, &scene, &error), STATUS_OK);
+    GOOD(scene_read(path, &scene, &error));
     assert_true(scene.materials[0].density > 0);
     scene_free(&scene);
 }
 
-static void material_keys(void **state)
+TEST(material_keys)
 {
-    (void)state;
     fails(HEAD "[material m]\nregion = r\nnu = .3\nrho = 1\n", 4, "E: missing: give Young's modulus in Pa");
     fails(HEAD "[material m]\nregion = r\nE = 3\nrho = 1\n", 4, "nu: missing");
     fails(HEAD "gravity = 0, -9.81\n[material m]\nregion = r\nE = 3\nnu = .3\n", 5,
@@ -330,9 +316,8 @@ static void material_keys(void **state)
     fails(HEAD "[material m]\nregion = r, q, r\n", 5, "region: names 'r' twice");
 }
 
-static void conditions(void **state)
+TEST(conditions)
 {
-    (void)state;
     fails(HEAD BODY "[displacement d]\nfacets = f\n", 9,
           "none of table, components, normal: give exactly one");
     fails(HEAD BODY "[displacement d]\nfacets = f\nnormal = 0\ncomponents = 0,0\n", 9, "several of table");
@@ -363,9 +348,8 @@ static void conditions(void **state)
           "has 2 components: dim = 3 needs 3");
 }
 
-static void solver_and_output(void **state)
+TEST(solver_and_output)
 {
-    (void)state;
     fails(HEAD BODY "[solver]\ntolerance = 1\n", 10, "tolerance: 1 is not within (0, 1)");
     fails(HEAD BODY "[solver]\ntolerance = 0\n", 10, "tolerance: 0 is not within (0, 1)");
     fails(HEAD BODY "[solver]\nend_time = 1\n", 10, "a quasi-static scene has no time");
@@ -385,23 +369,19 @@ static void solver_and_output(void **state)
           "is none of no, yes"); /* no scene names an output */
 }
 
-static void wrong_files(void **state)
+TEST(wrong_files)
 {
-    (void)state;
     struct scene scene;
     struct error error;
     assert_int_equal(scene_read("/nonexistent/x.scene", &scene, &error), STATUS_INPUT);
     assert_string_equal(error.text, "/nonexistent/x.scene: No such file or directory");
-    assert_int_equal(scene_read(folder, &scene, &error), STATUS_INPUT);
-    assert_non_null(strstr(error.text, "is a folder"));
-    assert_int_equal(scene_read("/dev/zero", &scene, &error), STATUS_INPUT);
-    assert_non_null(strstr(error.text, "is a device"));
+    FAILS(scene_read(folder, &scene, &error), STATUS_INPUT, "is a folder");
+    FAILS(scene_read("/dev/zero", &scene, &error), STATUS_INPUT, "is a device");
 }
 
 /* Cut anywhere, a scene is either refused or means a whole number of its lines; it never crashes. */
-static void truncation(void **state)
+TEST(truncation)
 {
-    (void)state;
     for (size_t size = 0; size < sizeof full; size++) {
         struct scene scene;
         struct error error = {""};
@@ -429,15 +409,4 @@ static int remove_folder(void **state)
     return rmdir(folder);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(reads_everything),  cmocka_unit_test(defaults),
-        cmocka_unit_test(strict_form),       cmocka_unit_test(line_length),
-        cmocka_unit_test(material_values),   cmocka_unit_test(density_that_is_not_felt),
-        cmocka_unit_test(material_keys),     cmocka_unit_test(conditions),
-        cmocka_unit_test(solver_and_output), cmocka_unit_test(wrong_files),
-        cmocka_unit_test(truncation),
-    };
-    return cmocka_run_group_tests(tests, make_folder, remove_folder);
-}
+RUN_TESTS(make_folder, remove_folder)

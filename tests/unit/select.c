@@ -1,19 +1,12 @@
 /* Choosing by place, connected parts, rings, and the quality of cells. */
+#include "unit.h"
+
 #include "approx/parts.h"
 #include "approx/quality.h"
 #include "approx/select.h"
 
-#include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdlib.h>
-
-#include <cmocka.h>
-
-static void regular_simplices_have_quality_one(void **state)
+TEST(regular_simplices_have_quality_one)
 {
-    (void)state;
     const double triangle[] = {0, 0, 2, 0, 1, sqrt(3)};
     const double tetrahedron[] = {1, 1, 1, 1, -1, -1, -1, 1, -1, -1, -1, 1};
     const int32_t positive3[] = {0, 1, 3, 2};
@@ -29,9 +22,8 @@ static void regular_simplices_have_quality_one(void **state)
 }
 
 /* A corner of the unit cube: V = 1/6, surface (3 + sqrt 3) / 2, R = sqrt 3 / 2. A flat one has none. */
-static void quality_is_the_ratio_of_radii(void **state)
+TEST(quality_is_the_ratio_of_radii)
 {
-    (void)state;
     double corner[] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1};
     const int32_t node[] = {0, 1, 2, 3};
     struct cells cells = {3, 4, corner, 1, node};
@@ -43,9 +35,8 @@ static void quality_is_the_ratio_of_radii(void **state)
     assert_true(cell_quality(&cells, 0) == 0);
 }
 
-static void the_poorest_come_first(void **state)
+TEST(the_poorest_come_first)
 {
-    (void)state;
     const double x[] = {0, 0, 1, 0, 0.5, 0.1, 0.5, 0.001, 0.5, 0.01, 0.5, 0.9};
     const int32_t node[] = {0, 1, 2, 0, 1, 3, 0, 1, 4, 0, 1, 5};
     struct cells cells = {2, 6, x, 4, node};
@@ -57,9 +48,8 @@ static void the_poorest_come_first(void **state)
     assert_int_equal(cells_poorest(&cells, 0.5, 0, poorest), 3);
 }
 
-static void distances_to_pieces(void **state)
+TEST(distances_to_pieces)
 {
-    (void)state;
     const double triangle[] = {0, 0, 0, 2, 0, 0, 0, 2, 0};
     struct pieces pieces = {3, 3, 1, triangle};
     assert_true(fabs(piece_distance(&pieces, 0, (double[]){0.5, 0.5, 3}) - 3) < 1e-14);
@@ -77,64 +67,49 @@ static const double islands_x[] = {0, 0, 1, 0, 1, 1, 0, 1, 2, 1, 2, 2, 1, 2, 5, 
 static const int32_t islands[] = {0, 1, 2, 0, 2, 3, 2, 4, 5, 2, 5, 6, 7, 8, 9, 7, 9, 10};
 static const struct cells islands_cells = {2, 11, islands_x, 6, islands};
 
-static void bodies_share_faces_and_are_numbered_by_size(void **state)
+TEST(bodies_share_faces_and_are_numbered_by_size)
 {
-    (void)state;
     int32_t part[6];
     int32_t count;
     struct error error;
-    assert_int_equal(cells_parts(&islands_cells, part, &count, &error), STATUS_OK);
+    GOOD(cells_parts(&islands_cells, part, &count, &error));
     assert_int_equal(count, 3);
     const int32_t expected[] = {1, 1, 2, 2, 0, 0};
     assert_memory_equal(part, expected, sizeof part);
 }
 
-static void sides_end_at_sharp_turns(void **state)
+TEST(sides_end_at_sharp_turns)
 {
-    (void)state;
     struct faces boundary;
     struct error error;
     int32_t part[12];
     int32_t count;
-    assert_int_equal(faces_build(&islands_cells, true, &boundary, &error), STATUS_OK);
+    GOOD(faces_build(&islands_cells, true, &boundary, &error));
     assert_int_equal(boundary.count, 12);
-    assert_int_equal(boundary_sides(islands_x, &boundary, 180, part, &count, &error), STATUS_OK);
+    GOOD(boundary_sides(islands_x, &boundary, 180, part, &count, &error));
     /* at the shared node four edges meet: the two small squares are not joined there */
     assert_int_equal(count, 3);
-    assert_int_equal(boundary_sides(islands_x, &boundary, 89, part, &count, &error), STATUS_OK);
+    GOOD(boundary_sides(islands_x, &boundary, 89, part, &count, &error));
     assert_int_equal(count, 12);
-    assert_int_equal(boundary_sides(islands_x, &boundary, 90, part, &count, &error), STATUS_OK);
+    GOOD(boundary_sides(islands_x, &boundary, 90, part, &count, &error));
     assert_int_equal(count, 3);
     faces_free(&boundary);
 }
 
-static void rings_grow_and_shrink(void **state)
+TEST(rings_grow_and_shrink)
 {
-    (void)state;
     const int32_t chain[] = {0, 1, 1, 2, 2, 3, 3, 4, 4, 5};
     bool items[5] = {false, false, true, false, false};
     bool nodes[6] = {true};
     struct error error;
-    assert_int_equal(items_grow(5, 2, chain, 6, 1, items, &error), STATUS_OK);
+    GOOD(items_grow(5, 2, chain, 6, 1, items, &error));
     assert_true(!items[0] && items[1] && items[2] && items[3] && !items[4]);
-    assert_int_equal(items_grow(5, 2, chain, 6, -1, items, &error), STATUS_OK);
+    GOOD(items_grow(5, 2, chain, 6, -1, items, &error));
     assert_true(!items[0] && !items[1] && items[2] && !items[3] && !items[4]);
-    assert_int_equal(nodes_grow(5, 2, chain, 6, 2, nodes, &error), STATUS_OK);
+    GOOD(nodes_grow(5, 2, chain, 6, 2, nodes, &error));
     assert_true(nodes[0] && nodes[1] && nodes[2] && !nodes[3]);
-    assert_int_equal(nodes_grow(5, 2, chain, 6, -1, nodes, &error), STATUS_OK);
+    GOOD(nodes_grow(5, 2, chain, 6, -1, nodes, &error));
     assert_true(nodes[0] && nodes[1] && !nodes[2]);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(regular_simplices_have_quality_one),
-        cmocka_unit_test(quality_is_the_ratio_of_radii),
-        cmocka_unit_test(the_poorest_come_first),
-        cmocka_unit_test(distances_to_pieces),
-        cmocka_unit_test(bodies_share_faces_and_are_numbered_by_size),
-        cmocka_unit_test(sides_end_at_sharp_turns),
-        cmocka_unit_test(rings_grow_and_shrink),
-    };
-    return cmocka_run_group_tests_name("select", tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

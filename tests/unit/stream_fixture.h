@@ -3,19 +3,12 @@
 #ifndef TESTS_STREAM_FIXTURE_H
 #define TESTS_STREAM_FIXTURE_H
 
+#include "unit.h"
+
 #include "io/stream.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
-
 #include <float.h>
-#include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <sys/mman.h>
 #include <unistd.h>
 
@@ -29,7 +22,7 @@ static inline void put_sample(struct stream *stream, const char *name, enum elem
                               int64_t cols, const char *attributes, void *data)
 {
     struct error error;
-    assert_int_equal(stream_put(stream, name, type, rows, cols, attributes, data, false, &error), STATUS_OK);
+    GOOD(stream_put(stream, name, type, rows, cols, attributes, data, false, &error));
 }
 
 static inline struct stream sample_stream(void)
@@ -38,7 +31,7 @@ static inline struct stream sample_stream(void)
     struct error error;
     char *command[] = {"/usr/bin/nodes", "-u", "mm", "it's a file", "", "line\nend"};
     stream_init(&stream);
-    assert_int_equal(stream_add_provenance(&stream, 6, command, &error), STATUS_OK);
+    GOOD(stream_add_provenance(&stream, 6, command, &error));
     put_sample(&stream, "a.i4", TYPE_I4, 3, 2, "unit=m cols=x,y", sample_i4);
     put_sample(&stream, "empty", TYPE_F8, 0, 3, "", sample_f8);
     put_sample(&stream, "b-i8", TYPE_I8, 3, 1, "names=a,b", sample_i8);
@@ -53,7 +46,7 @@ static inline char *written_bytes(const struct stream *stream, bool text, size_t
     struct error error;
     int file = memfd_create("stream", 0);
     assert_true(file >= 0);
-    assert_int_equal(stream_write(stream, file, text, &error), STATUS_OK);
+    GOOD(stream_write(stream, file, text, &error));
     *size = (size_t)lseek(file, 0, SEEK_END);
     char *bytes = malloc(*size + 1);
     assert_non_null(bytes);

@@ -52,48 +52,46 @@ done:
     return status;
 }
 
-static void read_text_and_binary(void **state)
+TEST(read_text_and_binary)
 {
-    (void)state;
     struct error error;
     for (int form = 0; form < 4; form++) {
         descriptor = memfd_create("stream", 0);
         begin = form / 2;
         lseek(descriptor, begin, SEEK_SET);
-        assert_int_equal(stream_write(&sample, descriptor, form % 2 == 0, &error), STATUS_OK);
+        GOOD(stream_write(&sample, descriptor, form % 2 == 0, &error));
         lseek(descriptor, begin, SEEK_SET);
         fail_each(try_read, 12);
         close(descriptor);
     }
 }
 
-static void written(void **state)
+TEST(written)
 {
-    (void)state;
     fail_each(try_write, 10);
 }
 
-static void changed(void **state)
+TEST(changed)
 {
-    (void)state;
     fail_each(try_change, 12);
 }
 
-int main(void)
+static int make(void **state)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(read_text_and_binary),
-        cmocka_unit_test(written),
-        cmocka_unit_test(changed),
-    };
+    (void)state;
     sample = sample_stream();
-    int failed = cmocka_run_group_tests(tests, NULL, NULL);
-    stream_free(&sample);
-    return failed;
-}
-#else
-int main(void)
-{
     return 0;
 }
+
+static int drop(void **state)
+{
+    (void)state;
+    stream_free(&sample);
+    return 0;
+}
+
+RUN_TESTS(make, drop)
+
+#else
+RUN_TESTS(NULL, NULL)
 #endif

@@ -1,17 +1,10 @@
 /* Numbers as text, against printf and strtod of the C library, on hard cases and random bit patterns. */
+#include "unit.h"
+
 #include "io/stream_private.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
-
 #include <float.h>
-#include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
 /* xorshift64: the same numbers in every run. */
 static uint64_t next_random(uint64_t *state)
@@ -68,9 +61,8 @@ static void check_text(const char *text)
     }
 }
 
-static void hard_values(void **state)
+TEST(hard_values)
 {
-    (void)state;
     static const double values[] = {0.0,
                                     -0.0,
                                     5e-324,
@@ -115,9 +107,8 @@ static void hard_values(void **state)
     }
 }
 
-static void hard_texts(void **state)
+TEST(hard_texts)
 {
-    (void)state;
     static const char *const texts[] = {"9007199254740993",
                                         "9007199254740992.9999999999999",
                                         "9007199254740993.0000000000001",
@@ -168,9 +159,8 @@ static void hard_texts(void **state)
     }
 }
 
-static void random_bit_patterns(void **state)
+TEST(random_bit_patterns)
 {
-    (void)state;
     uint64_t random = 88172645463325252U;
     for (int i = 0; i < 100000; i++) {
         uint64_t bits = next_random(&random);
@@ -191,9 +181,8 @@ static void random_bit_patterns(void **state)
 }
 
 /* Random decimals, many of them close to the middle between two doubles or floats. */
-static void random_decimals(void **state)
+TEST(random_decimals)
 {
-    (void)state;
     uint64_t random = 2463534242U;
     char text[80];
     for (int i = 0; i < 100000; i++) {
@@ -211,9 +200,8 @@ static void random_decimals(void **state)
     }
 }
 
-static void integers(void **state)
+TEST(integers)
 {
-    (void)state;
     static const int64_t values[] = {0, 1, -1, 9, 10, 99, 100, INT32_MIN, INT32_MAX, INT64_MIN, INT64_MAX};
     for (size_t i = 0; i < sizeof values / sizeof *values; i++) {
         char text[NUMBER_TEXT_LIMIT + 1], expected[32];
@@ -244,14 +232,4 @@ static void integers(void **state)
     }
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(hard_values),
-        cmocka_unit_test(hard_texts),
-        cmocka_unit_test(random_bit_patterns),
-        cmocka_unit_test(random_decimals),
-        cmocka_unit_test(integers),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

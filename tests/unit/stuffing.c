@@ -4,12 +4,6 @@
 
 #include "stuffing_fixture.h"
 
-#include <omp.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <cmocka.h>
-
 /* The volume of each label within a share of that of its voxels. */
 static void check_volumes(const struct labels *labels, const struct label_shape *shape,
                           const struct stuffing *stuffing, double tolerance)
@@ -54,9 +48,8 @@ static int64_t count_astray(const struct labels *labels, const struct stuffing *
     struct faces faces;
     struct error error;
     int64_t count = 0;
-    bool *seen = calloc((size_t)stuffing->node_count, sizeof *seen);
-    assert_non_null(seen);
-    assert_int_equal(faces_build(&cells, false, &faces, &error), STATUS_OK);
+    bool *seen = zeros(stuffing->node_count, sizeof *seen);
+    GOOD(faces_build(&cells, false, &faces, &error));
     for (int64_t f = 0; f < faces.count; f++) {
         const int32_t *cell = faces.cell + 2 * f;
         for (int k = 0; k < 3 && (cell[1] < 0 || stuffing->label[cell[0]] != stuffing->label[cell[1]]); k++) {
@@ -67,18 +60,16 @@ static int64_t count_astray(const struct labels *labels, const struct stuffing *
         }
     }
     faces_free(&faces);
-    free(seen);
     return count;
 }
 
-static void smooth_shapes(void **state)
+TEST(smooth_shapes)
 {
     static const struct {
         const char *name;
         double spacing;
     } cases[] = {{"sphere", 3}, {"sphere", 6},     {"sphere", 12}, {"torus", 4}, {"two", 5},
                  {"four", 5},   {"four", 0.8 * 5}, {"thin", 2},    {"layer", 2}, {"layer", 1.5}};
-    (void)state;
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         struct label_shape shape;
         struct labels labels;
@@ -91,9 +82,8 @@ static void smooth_shapes(void **state)
 }
 
 /* Where gaps and necks are narrower than the spacing a few nodes are off. */
-static void random_blobs(void **state)
+TEST(random_blobs)
 {
-    (void)state;
     for (uint64_t seed = 1; seed <= 20; seed++) {
         for (int h = 3; h <= 5; h += 2) {
             struct label_shape shape;
@@ -109,15 +99,13 @@ static void random_blobs(void **state)
 }
 
 /* The same body from voxels in another order, mirrored along an axis: the same cells. */
-static void orders_of_voxels(void **state)
+TEST(orders_of_voxels)
 {
     const double voxel[3] = {1, 1.25, 2};
     struct label_shape shape;
-    (void)state;
     assert_true(label_shape_make("two", 1, voxel, &shape));
     struct labels labels = labels_of(&shape), turned = labels;
-    uint16_t *label = calloc((size_t)(shape.size[0] * shape.size[1] * shape.size[2]), sizeof *label);
-    assert_non_null(label);
+    uint16_t *label = zeros(shape.size[0] * shape.size[1] * shape.size[2], sizeof *label);
     for (int d = 0; d < 3; d++) { /* axes k, i, j, the first one backwards */
         turned.size[d] = shape.size[(d + 2) % 3];
         for (int e = 0; e < 4; e++) {
@@ -143,7 +131,6 @@ static void orders_of_voxels(void **state)
     }
     stuffing_free(&a);
     stuffing_free(&b);
-    free(label);
     free(shape.label);
 }
 
@@ -151,8 +138,7 @@ static void orders_of_voxels(void **state)
 static double longest_edge(const struct stuffing *stuffing, int32_t label, bool at_boundary)
 {
     double longest = 0;
-    bool *on = calloc((size_t)stuffing->node_count, sizeof *on);
-    assert_non_null(on);
+    bool *on = zeros(stuffing->node_count, sizeof *on);
     for (int64_t i = 0; i < 3 * stuffing->facet_count; i++) {
         on[stuffing->facet[i]] = true;
     }
@@ -166,15 +152,13 @@ static double longest_edge(const struct stuffing *stuffing, int32_t label, bool 
             longest = fmax(longest, sqrt(shape_square(a, b)));
         }
     }
-    free(on);
     return longest;
 }
 
-static void finer_at_interfaces(void **state)
+TEST(finer_at_interfaces)
 {
     struct label_shape shape;
     bool fine[64] = {false, false, true};
-    (void)state;
     assert_true(label_shape_make("sphere", 1, millimetre, &shape));
     struct labels labels = labels_of(&shape);
     struct stuffing_options options = {.spacing = 6e-3, .finest = 1.5e-3, .keep = all_kept};
@@ -232,12 +216,11 @@ static void sized_cube(double half, double least, struct sized_cube *cube)
     cube->cells = (struct cells){3, 8, cube->x, 6, cube->node};
 }
 
-static void by_sizes(void **state)
+TEST(by_sizes)
 {
     struct label_shape shape;
     struct sized_cube cube;
     struct error error;
-    (void)state;
     assert_true(label_shape_make("sphere", 1, millimetre, &shape));
     struct labels labels = labels_of(&shape);
     struct stuffing_options options = {.spacing = 8e-3, .keep = all_kept, .sized = &cube.cells};
@@ -304,26 +287,22 @@ static void by_sizes(void **state)
     for (int i = 0; i < 24; i++) {
         cube.x[i] += 1;
     }
-    assert_int_equal(stuffing_make(&labels, &options, &stuffing, &error), STATUS_INPUT);
-    assert_non_null(strstr(error.text, "elsewhere"));
+    FAILS(stuffing_make(&labels, &options, &stuffing, &error), STATUS_INPUT, "elsewhere");
     sized_cube(30e-3, 1e-6, &cube);
-    assert_int_equal(stuffing_make(&labels, &options, &stuffing, &error), STATUS_INPUT);
-    assert_non_null(strstr(error.text, "a size of 1e-06 m"));
+    FAILS(stuffing_make(&labels, &options, &stuffing, &error), STATUS_INPUT, "a size of 1e-06 m");
     sized_cube(30e-3, 0.1e-3, &cube);
-    assert_int_equal(stuffing_make(&labels, &options, &stuffing, &error), STATUS_INPUT);
-    assert_non_null(strstr(error.text, "lattice points"));
+    FAILS(stuffing_make(&labels, &options, &stuffing, &error), STATUS_INPUT, "lattice points");
     stuffing_free(&plain);
     free(shape.label);
 }
 
 /* A slice: triangles. */
-static void slices(void **state)
+TEST(slices)
 {
     uint16_t label[64 * 64];
     struct labels labels = {.size = {64, 1, 64}, .label = label, .count = 3, .dim = 2, .axis = {0, 2}};
     const double area[3] = {0, 0.5 * M_PI * 400e-6, 0.5 * M_PI * 400e-6};
     double found[3] = {0};
-    (void)state;
     for (int v = 0; v < 64 * 64; v++) {
         double x = v % 64 - 31.5, z = v / 64 - 31.5;
         label[v] = hypot(x, z) < 20 ? (x < 0 ? 1 : 2) : 0;
@@ -345,15 +324,13 @@ static void slices(void **state)
     stuffing_free(&stuffing);
     struct error error = {""};
     options.finest = 1e-3;
-    assert_int_equal(stuffing_make(&labels, &options, &stuffing, &error), STATUS_INPUT);
-    assert_non_null(strstr(error.text, "not for slices"));
+    FAILS(stuffing_make(&labels, &options, &stuffing, &error), STATUS_INPUT, "not for slices");
 }
 
-static void threads(void **state)
+TEST(threads)
 {
     struct label_shape shape;
     struct stuffing stuffing[2];
-    (void)state;
     assert_true(label_shape_make("blobs", 3, millimetre, &shape));
     struct labels labels = labels_of(&shape);
     struct stuffing_options options = {.spacing = 5e-3, .finest = 2.5e-3, .keep = all_kept};
@@ -374,12 +351,11 @@ static void threads(void **state)
 }
 
 /* The shares sum to 1, their difference has the gradient it says, and far from the grid all is outside. */
-static void shares(void **state)
+TEST(shares)
 {
     struct label_shape shape;
     const double far[3] = {5, -3, 1e6}, step = 1e-6;
     uint64_t seed = 7;
-    (void)state;
     assert_true(label_shape_make("four", 1, millimetre, &shape));
     struct labels labels = labels_of(&shape);
     assert_int_equal(labels_at(&labels, far), 0);
@@ -407,11 +383,10 @@ static void shares(void **state)
     free(shape.label);
 }
 
-static void what_is_lost(void **state)
+TEST(what_is_lost)
 {
     struct label_shape shape;
     int64_t lost[64], total = 0;
-    (void)state;
     assert_true(label_shape_make("thin", 1, millimetre, &shape));
     struct labels labels = labels_of(&shape);
     for (int64_t v = 0; v < shape.size[0] * shape.size[1] * shape.size[2]; v++) {
@@ -420,54 +395,36 @@ static void what_is_lost(void **state)
     struct error error;
     struct stuffing_options options = {.spacing = 8e-3, .keep = all_kept};
     struct stuffing stuffing = make(&labels, &options);
-    assert_int_equal(stuffing_lost(&labels, &stuffing, lost, &error), STATUS_OK);
+    GOOD(stuffing_lost(&labels, &stuffing, lost, &error));
     assert_true((double)lost[2] > 0.7 * (double)total && lost[2] <= total);
     stuffing_free(&stuffing);
     options.spacing = 2e-3;
     stuffing = make(&labels, &options);
-    assert_int_equal(stuffing_lost(&labels, &stuffing, lost, &error), STATUS_OK);
+    GOOD(stuffing_lost(&labels, &stuffing, lost, &error));
     assert_int_equal(lost[2], 0);
     stuffing_free(&stuffing);
     free(shape.label);
 }
 
-static void refusals(void **state)
+TEST(refusals)
 {
     struct label_shape shape;
     struct stuffing stuffing;
     struct error error;
-    (void)state;
     assert_true(label_shape_make("layer", 1, millimetre, &shape));
     struct labels labels = labels_of(&shape);
     struct stuffing_options options = {.spacing = 1e-6, .keep = all_kept};
-    assert_int_equal(stuffing_make(&labels, &options, &stuffing, &error), STATUS_INPUT);
-    assert_non_null(strstr(error.text, "lattice points over the labels"));
+    FAILS(stuffing_make(&labels, &options, &stuffing, &error), STATUS_INPUT,
+          "lattice points over the labels");
     options.spacing = 10;
-    assert_int_equal(stuffing_make(&labels, &options, &stuffing, &error), STATUS_INPUT);
-    assert_non_null(strstr(error.text, "no lattice point lies in a label: smaller?"));
+    FAILS(stuffing_make(&labels, &options, &stuffing, &error), STATUS_INPUT,
+          "no lattice point lies in a label: smaller?");
     options = (struct stuffing_options){.spacing = 1, .finest = 1e-3, .keep = all_kept};
-    assert_int_equal(stuffing_make(&labels, &options, &stuffing, &error), STATUS_INPUT);
-    assert_non_null(strstr(error.text, "1/128"));
+    FAILS(stuffing_make(&labels, &options, &stuffing, &error), STATUS_INPUT, "1/128");
     memset(shape.label, 0, (size_t)(shape.size[0] * shape.size[1] * shape.size[2]) * sizeof *shape.label);
     options = (struct stuffing_options){.spacing = 1e-3, .keep = all_kept};
-    assert_int_equal(stuffing_make(&labels, &options, &stuffing, &error), STATUS_INPUT);
-    assert_non_null(strstr(error.text, "all is outside"));
+    FAILS(stuffing_make(&labels, &options, &stuffing, &error), STATUS_INPUT, "all is outside");
     free(shape.label);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(shares),
-        cmocka_unit_test(smooth_shapes),
-        cmocka_unit_test(random_blobs),
-        cmocka_unit_test(orders_of_voxels),
-        cmocka_unit_test(finer_at_interfaces),
-        cmocka_unit_test(by_sizes),
-        cmocka_unit_test(slices),
-        cmocka_unit_test(threads),
-        cmocka_unit_test(what_is_lost),
-        cmocka_unit_test(refusals),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

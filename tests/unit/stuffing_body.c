@@ -6,14 +6,13 @@
 /* The surface of a body stays where it is, wherever its labels meet beneath, or are too thin for the lattice:
  * nodes on the boundary of a sphere of 24 mm. Voxels of 1 mm know it to half a voxel, and the volumes of
  * labels move it by as much. */
-static void surface_over_labels(void **state)
+TEST(surface_over_labels)
 {
     static const struct {
         const char *name;
         double spacing, most; /* mm */
     } cases[] = {{"sphere", 4, 0.6}, {"sphere", 6, 0.6}, {"two", 4, 1},  {"two", 5, 1},   {"two", 6, 1},
                  {"four", 4, 1},     {"four", 5, 1},     {"four", 6, 1}, {"shell", 4, 1}, {"shell", 5, 1.3}};
-    (void)state;
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         struct label_shape shape;
         struct labels labels;
@@ -34,11 +33,11 @@ static int64_t count_hinges(const struct stuffing *stuffing)
     struct cells cells = cells_of(stuffing);
     struct error error;
     int64_t hinges = 0;
-    int32_t *across = calloc((size_t)cells.count * 4, sizeof *across);
+    int32_t *across = zeros(cells.count * 4, sizeof *across);
     int32_t *part =
         calloc((size_t)cells.count * 4, sizeof *part); /* of each corner: the least cell reached */
     assert_true(across != NULL && part != NULL);
-    assert_int_equal(cells_across(&cells, across, &error), STATUS_OK);
+    GOOD(cells_across(&cells, across, &error));
     for (int64_t i = 0; i < cells.count * 4; i++) {
         part[i] = (int32_t)(i / 4);
     }
@@ -54,24 +53,20 @@ static int64_t count_hinges(const struct stuffing *stuffing)
             }
         }
     }
-    int32_t *least = calloc((size_t)cells.node_count, sizeof *least);
-    assert_non_null(least);
+    int32_t *least = zeros(cells.node_count, sizeof *least);
     for (int64_t i = 0; i < cells.count * 4; i++) {
         int32_t *of_node = &least[cells.node[i]];
         hinges += *of_node != 0 && *of_node != part[i] + 1 && part[i] == i / 4;
         *of_node = *of_node == 0 ? part[i] + 1 : *of_node;
     }
-    free(across);
     free(part);
-    free(least);
     return hinges;
 }
 
 /* Gaps narrower than the lattice are filled where parts of one body would hang together by nodes alone. */
-static void parts_are_joined(void **state)
+TEST(parts_are_joined)
 {
     int64_t hinges = 0;
-    (void)state;
     for (uint64_t seed = 1; seed <= 20; seed++) {
         struct label_shape shape;
         assert_true(label_shape_make("blobs", seed, millimetre, &shape));
@@ -91,10 +86,8 @@ static int32_t count_bodies(const struct stuffing *stuffing)
 {
     struct cells cells = cells_of(stuffing);
     struct error error;
-    int32_t count = 0, *part = calloc((size_t)cells.count, sizeof *part);
-    assert_non_null(part);
-    assert_int_equal(cells_parts(&cells, part, &count, &error), STATUS_OK);
-    free(part);
+    int32_t count = 0, *part = zeros(cells.count, sizeof *part);
+    GOOD(cells_parts(&cells, part, &count, &error));
     return count;
 }
 
@@ -103,24 +96,21 @@ static void check_apart(const struct stuffing *stuffing)
 {
     struct cells cells = cells_of(stuffing);
     struct error error;
-    int32_t count = 0, *part = calloc((size_t)cells.count, sizeof *part);
-    int32_t *of_node = calloc((size_t)cells.node_count, sizeof *of_node);
+    int32_t count = 0, *part = zeros(cells.count, sizeof *part);
+    int32_t *of_node = zeros(cells.node_count, sizeof *of_node);
     assert_true(part != NULL && of_node != NULL);
-    assert_int_equal(cells_parts(&cells, part, &count, &error), STATUS_OK);
+    GOOD(cells_parts(&cells, part, &count, &error));
     for (int64_t i = 0; i < 4 * cells.count; i++) {
         int32_t *body = &of_node[cells.node[i]];
         assert_true(*body == 0 || *body == part[i / 4] + 1);
         *body = part[i / 4] + 1;
     }
-    free(part);
-    free(of_node);
 }
 
-static void parts_that_hang_by_an_edge(void **state)
+TEST(parts_that_hang_by_an_edge)
 {
     struct label_shape shape;
     int64_t cut = 0;
-    (void)state;
     assert_true(label_shape_make("boxes", 1, millimetre, &shape));
     struct labels labels = labels_of(&shape);
     for (int h = 2; h <= 6; h++) {
@@ -145,10 +135,9 @@ static void parts_that_hang_by_an_edge(void **state)
     free(shape.label);
 }
 
-static void specks_and_the_largest_body(void **state)
+TEST(specks_and_the_largest_body)
 {
     struct label_shape shape;
-    (void)state;
     assert_true(label_shape_make("sphere", 1, millimetre, &shape));
     struct labels labels = labels_of(&shape);
     /* A cube of 5 voxels about a point of the lattice, and one of 10. */
@@ -182,12 +171,11 @@ static void specks_and_the_largest_body(void **state)
 }
 
 /* A label that is left out leaves a cavity, whose wall knows it. */
-static void cavities(void **state)
+TEST(cavities)
 {
     struct label_shape shape;
     const bool keep[5] = {false, true, false, true, true};
     int64_t walls = 0;
-    (void)state;
     assert_true(label_shape_make("four", 1, millimetre, &shape));
     struct labels labels = labels_of(&shape);
     struct stuffing_options options = {.spacing = 5e-3, .keep = keep};
@@ -202,14 +190,4 @@ static void cavities(void **state)
     free(shape.label);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(surface_over_labels),
-        cmocka_unit_test(parts_are_joined),
-        cmocka_unit_test(parts_that_hang_by_an_edge),
-        cmocka_unit_test(specks_and_the_largest_body),
-        cmocka_unit_test(cavities),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

@@ -2,15 +2,12 @@
 #ifndef STUFFING_FIXTURE_H
 #define STUFFING_FIXTURE_H
 
+#include "unit.h"
+
 #include "approx/cells.h"
 #include "approx/stuffing.h"
 
 #include "label_shapes.h"
-
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <cmocka.h>
 
 static const double millimetre[3] = {1, 1, 1};
 static const bool all_kept[64] = {
@@ -56,7 +53,7 @@ static inline void check_cells(const struct stuffing *stuffing)
     int dim = stuffing->dim;
     double volume = 0, flux = 0;
     assert_true(stuffing->cell_count > 0);
-    assert_int_equal(cells_check(&cells, &error), STATUS_OK);
+    GOOD(cells_check(&cells, &error));
     for (int64_t c = 0; c < cells.count; c++) {
         const double *x[4];
         double angles[2];
@@ -67,7 +64,7 @@ static inline void check_cells(const struct stuffing *stuffing)
         assert_true(angles[0] >= 8 && angles[1] <= 165);
         volume += cell_volume(&cells, c);
     }
-    assert_int_equal(faces_build(&cells, true, &faces, &error), STATUS_OK);
+    GOOD(faces_build(&cells, true, &faces, &error));
     assert_int_equal(faces.count, stuffing->facet_count);
     faces_free(&faces);
     for (int64_t f = 0; f < stuffing->facet_count; f++) {

@@ -3,27 +3,12 @@
 #include "approx/stuffing.h"
 #include "io/label_table.h"
 
-#include <errno.h>
-#include <omp.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <unistd.h>
 
 #include "failing_allocator.h"
 
 #ifdef FAILING_ALLOCATOR
-
-/* What OpenMP allocates its teams by: counted, never denied. */
-void *memalign(size_t alignment, size_t size)
-{
-    return counted(__libc_memalign(alignment, size));
-}
-
-int posix_memalign(void **memory, size_t alignment, size_t size)
-{
-    *memory = counted(__libc_memalign(alignment, size));
-    return *memory == NULL ? ENOMEM : 0;
-}
 
 static char path[] = "/tmp/labels-XXXXXX";
 
@@ -65,14 +50,13 @@ static enum status try_label_table(struct error *error)
 }
 
 /* Not fail_each: qsort does without memory when it gets none. */
-static void cells(void **state)
+TEST(cells)
 {
     enum { ENOUGH = 1000000 };
     struct error error = {""};
     long failed = 0;
-    (void)state;
     omp_set_num_threads(1);
-    assert_int_equal(try_stuffing(&error), STATUS_OK); /* OpenMP has what it keeps */
+    GOOD(try_stuffing(&error)); /* OpenMP has what it keeps */
     before_failure = ENOUGH;
     watched = true;
     enum status status = try_stuffing(&error);
@@ -93,9 +77,8 @@ static void cells(void **state)
     assert_true(failed > 40 && failed >= count - 4);
 }
 
-static void tables(void **state)
+TEST(tables)
 {
-    (void)state;
     int descriptor = mkstemp(path);
     FILE *file = descriptor < 0 ? NULL : fdopen(descriptor, "w");
     assert_non_null(file);
@@ -105,17 +88,6 @@ static void tables(void **state)
     assert_int_equal(unlink(path), 0);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(cells),
-        cmocka_unit_test(tables),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
-#else
-int main(void)
-{
-    return 0;
-}
 #endif
+
+RUN_TESTS(NULL, NULL)

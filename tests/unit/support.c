@@ -4,12 +4,9 @@
 
 #include "approx/cloud.h"
 
-#include <omp.h>
-
 /* Radii over three decades, two nodes at one place. */
-static void grid_against_brute_force(void **state)
+TEST(grid_against_brute_force)
 {
-    (void)state;
     static const double factors[] = {1.0, 1.1, 2.5, 8.0};
     gsl_rng *random = gsl_rng_alloc(gsl_rng_mt19937);
     assert_non_null(random);
@@ -27,14 +24,14 @@ static void grid_against_brute_force(void **state)
             struct point_grid grid;
             struct index_list list = {0};
             struct error error;
-            good(point_grid_build(&grid, dim, NODES, x, radius, &error), &error);
+            GOOD(point_grid_build(&grid, dim, NODES, x, radius, &error));
             for (int p = 0; p < POINTS; p++) {
                 for (int a = 0; a < dim; a++) { /* within, at nodes, outside */
                     point[a] = p < 20 ? x[p * dim + a] : 4.0 + 3.0 * gsl_rng_uniform(random);
                 }
                 double factor = factors[p % 4];
                 list.count = 0;
-                good(point_grid_query(&grid, point, factor, &list, &error), &error);
+                GOOD(point_grid_query(&grid, point, factor, &list, &error));
                 int64_t at = 0;
                 for (int n = 0; n < NODES; n++) {
                     double sum = 0.0;
@@ -58,9 +55,8 @@ static void grid_against_brute_force(void **state)
 
 /* Lists of points in rows, which share their search in groups, and of points all over the place, where radii
  * are constant or graded. */
-static void lists_against_brute_force(void **state)
+TEST(lists_against_brute_force)
 {
-    (void)state;
     enum { POINTS = 700 };
     gsl_rng *random = gsl_rng_alloc(gsl_rng_mt19937);
     assert_non_null(random);
@@ -71,8 +67,7 @@ static void lists_against_brute_force(void **state)
             struct point_grid grid;
             struct support_lists lists;
             struct error error;
-            double *radius = malloc((size_t)cloud.count * sizeof *radius);
-            assert_non_null(radius);
+            double *radius = zeros(cloud.count, sizeof *radius);
             options.widen = false;
             for (int64_t n = 0; n < cloud.count; n++) {
                 radius[n] = cloud.spacing * ((kind & 1) ? 0.2 * pow(20.0, gsl_rng_uniform(random)) : 2.1);
@@ -84,8 +79,8 @@ static void lists_against_brute_force(void **state)
                         1.0 + cloud.spacing * ((double)step / 7.0 + 0.01 * gsl_rng_uniform(random));
                 }
             }
-            good(point_grid_build(&grid, dim, cloud.count, cloud.x, radius, &error), &error);
-            good(support_build(&options, &grid, POINTS, cloud.points, "points.x", &lists, &error), &error);
+            GOOD(point_grid_build(&grid, dim, cloud.count, cloud.x, radius, &error));
+            GOOD(support_build(&options, &grid, POINTS, cloud.points, "points.x", &lists, &error));
             int64_t fewest = cloud.count, most = 0;
             for (int64_t p = 0; p < POINTS; p++) {
                 int64_t at = lists.ptr[p];
@@ -107,7 +102,6 @@ static void lists_against_brute_force(void **state)
             }
             assert_int_equal(lists.fewest, fewest);
             assert_int_equal(lists.most, most);
-            free(radius);
             support_free(&lists);
             point_grid_free(&grid);
             scattered_free(&cloud);
@@ -117,16 +111,15 @@ static void lists_against_brute_force(void **state)
 }
 
 /* Queries append; nodes all at one place, or on a line, need no special care; wrong radii are refused. */
-static void grid_odd_clouds(void **state)
+TEST(grid_odd_clouds)
 {
-    (void)state;
     double x[6] = {1.0, 2.0, 1.0, 2.0, 1.0, 2.0}, radius[3] = {0.5, 1e9, 1e-9}, at[2] = {1.1, 2.0};
     struct point_grid grid;
     struct index_list list = {0};
     struct error error;
-    good(point_grid_build(&grid, 2, 3, x, radius, &error), &error);
-    good(point_grid_query(&grid, at, 1.0, &list, &error), &error);
-    good(point_grid_query(&grid, x, 1.0, &list, &error), &error);
+    GOOD(point_grid_build(&grid, 2, 3, x, radius, &error));
+    GOOD(point_grid_query(&grid, at, 1.0, &list, &error));
+    GOOD(point_grid_query(&grid, x, 1.0, &list, &error));
     static const int32_t expected[] = {0, 1, 0, 1, 2};
     assert_int_equal(list.count, 5);
     assert_memory_equal(list.index, expected, sizeof expected);
@@ -135,8 +128,7 @@ static void grid_odd_clouds(void **state)
     static const double wrong[] = {0.0, -1.0, NAN, INFINITY};
     for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
         radius[1] = wrong[i];
-        assert_int_equal(point_grid_build(&grid, 2, 3, x, radius, &error), STATUS_INPUT);
-        assert_non_null(strstr(error.text, "row 1"));
+        FAILS(point_grid_build(&grid, 2, 3, x, radius, &error), STATUS_INPUT, "row 1");
         point_grid_free(&grid);
     }
 }
@@ -147,18 +139,15 @@ static int compare_doubles(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-static void spacing_against_brute_force(void **state)
+TEST(spacing_against_brute_force)
 {
-    (void)state;
     for (int dim = 2; dim <= 3; dim++) {
         struct scattered cloud = scatter(dim, dim == 2 ? 15 : 6, 1, &places[2], 0.4, 2);
-        double *spacing = malloc((size_t)cloud.count * sizeof *spacing);
-        double *distance = malloc((size_t)cloud.count * sizeof *distance);
+        double *spacing = zeros(cloud.count, sizeof *spacing);
+        double *distance = zeros(cloud.count, sizeof *distance);
         struct error error;
-        assert_non_null(spacing);
-        assert_non_null(distance);
         cloud.x[0] -= 3.0 * cloud.size; /* one node far from the others */
-        good(nodes_spacing(dim, cloud.count, cloud.x, spacing, &error), &error);
+        GOOD(nodes_spacing(dim, cloud.count, cloud.x, spacing, &error));
         for (int64_t n = 0; n < cloud.count; n++) {
             double mean = 0.0;
             for (int64_t i = 0; i < cloud.count; i++) {
@@ -175,16 +164,13 @@ static void spacing_against_brute_force(void **state)
             }
             at_most(fabs(spacing[n] / mean - 1.0), 1e-12, "spacing");
         }
-        free(spacing);
-        free(distance);
         scattered_free(&cloud);
     }
 }
 
 /* At most so many nearest neighbours: of equally distant ones the lower indices stay. */
-static void nearest_with_ties(void **state)
+TEST(nearest_with_ties)
 {
-    (void)state;
     double x[25 * 2];
     for (int n = 0; n < 25; n++) {
         x[2 * n] = n % 5;
@@ -200,9 +186,9 @@ static void nearest_with_ties(void **state)
         struct support_lists lists;
         struct error error;
         double radius[25];
-        good(support_radii(&options, 25, NULL, radius, &error), &error);
-        good(point_grid_build(&grid, 2, 25, x, radius, &error), &error);
-        good(support_build(&options, &grid, 1, point, "points.x", &lists, &error), &error);
+        GOOD(support_radii(&options, 25, NULL, radius, &error));
+        GOOD(point_grid_build(&grid, 2, 25, x, radius, &error));
+        GOOD(support_build(&options, &grid, 1, point, "points.x", &lists, &error));
         assert_int_equal(lists.ptr[1], most[i]);
         assert_memory_equal(lists.idx, expected[i], (size_t)most[i] * sizeof(int32_t));
         support_free(&lists);
@@ -210,15 +196,14 @@ static void nearest_with_ties(void **state)
     }
 }
 
-static void least_neighbours(void **state)
+TEST(least_neighbours)
 {
-    (void)state;
     struct scattered cloud = scatter(2, 12, 200, &places[0], 0.3, 4);
     struct support_options options = support_defaults(2);
     options.least = 15;
     struct table table;
     struct error error;
-    good(tabulate(&options, cloud.count, cloud.x, 200, cloud.points, &table, &error), &error);
+    GOOD(tabulate(&options, cloud.count, cloud.x, 200, cloud.points, &table, &error));
     int64_t widened = 0;
     double widest = 1.0;
     for (int64_t p = 0; p < 200; p++) {
@@ -238,9 +223,8 @@ static void least_neighbours(void **state)
 }
 
 /* The same bytes for any number of threads; also the same error. */
-static void threads(void **state)
+TEST(threads)
 {
-    (void)state;
     static const int numbers[] = {1, 2, 5};
     struct scattered cloud = scatter(3, 7, 3000, &places[0], 0.3, 9);
     struct support_options options = support_defaults(3);
@@ -249,7 +233,7 @@ static void threads(void **state)
     int before = omp_get_max_threads();
     for (int i = 0; i < 3; i++) {
         omp_set_num_threads(numbers[i]);
-        good(tabulate(&options, cloud.count, cloud.x, 3000, cloud.points, &tables[i], &error), &error);
+        GOOD(tabulate(&options, cloud.count, cloud.x, 3000, cloud.points, &tables[i], &error));
     }
     for (int i = 1; i < 3; i++) {
         size_t pairs = (size_t)tables[0].lists.ptr[3000];
@@ -277,9 +261,8 @@ static void threads(void **state)
     scattered_free(&cloud);
 }
 
-static void not_finite(void **state)
+TEST(not_finite)
 {
-    (void)state;
     struct scattered cloud = scatter(2, 8, 10, &places[0], 0.3, 4);
     struct support_options options = support_defaults(2);
     struct table table;
@@ -287,9 +270,8 @@ static void not_finite(void **state)
     static const double wrong[] = {NAN, INFINITY};
     for (int i = 0; i < 2; i++) {
         cloud.points[9] = wrong[i];
-        assert_int_equal(tabulate(&options, cloud.count, cloud.x, 10, cloud.points, &table, &error),
-                         STATUS_INPUT);
-        assert_non_null(strstr(error.text, "points.x: row 4"));
+        FAILS(tabulate(&options, cloud.count, cloud.x, 10, cloud.points, &table, &error), STATUS_INPUT,
+              "points.x: row 4");
         table_free(&table);
     }
     scattered_free(&cloud);
@@ -347,9 +329,8 @@ static enum status spring(const struct trap *trap, enum basis basis, bool widen)
     return status;
 }
 
-static void trap_sphere(void **state)
+TEST(trap_sphere)
 {
-    (void)state;
     static struct trap trap = {.name = "50 nodes on a sphere", .dim = 3, .count = 50};
     for (int n = 0; n < 50; n++) {
         double z = 1.0 - 2.0 * (n + 0.5) / 50.0, angle = 2.399963229728653 * n, r = sqrt(1.0 - z * z);
@@ -382,9 +363,8 @@ static void trap_sphere(void **state)
     }
 }
 
-static void trap_slab(void **state)
+TEST(trap_slab)
 {
-    (void)state;
     static struct trap trap = {.name = "slab 4 x 4 x 2", .dim = 3, .count = 32};
     for (int n = 0; n < 32; n++) {
         trap.x[3 * n] = n % 4;
@@ -397,9 +377,8 @@ static void trap_slab(void **state)
     assert_int_equal(spring(&trap, BASIS_QUADRATIC, false), STATUS_VERDICT);
 }
 
-static void trap_coplanar(void **state)
+TEST(trap_coplanar)
 {
-    (void)state;
     static struct trap trap = {.name = "25 coplanar nodes", .dim = 3, .count = 25};
     for (int n = 0; n < 25; n++) {
         trap.x[3 * n] = n % 5;
@@ -412,9 +391,8 @@ static void trap_coplanar(void **state)
     }
 }
 
-static void trap_collinear(void **state)
+TEST(trap_collinear)
 {
-    (void)state;
     static struct trap trap = {.name = "12 collinear nodes", .dim = 2, .count = 12};
     for (int n = 0; n < 12; n++) {
         trap.x[2 * n] = 0.1 * n;
@@ -440,9 +418,8 @@ static void regular_trap(struct trap *trap, int dim, int per_axis)
     }
 }
 
-static void trap_coincident(void **state)
+TEST(trap_coincident)
 {
-    (void)state;
     for (int dim = 2; dim <= 3; dim++) {
         static struct trap trap = {.name = "two coincident nodes"};
         regular_trap(&trap, dim, dim == 2 ? 8 : 5);
@@ -461,17 +438,15 @@ static void trap_coincident(void **state)
     struct support_options options = support_defaults(2);
     struct table table;
     struct error error;
-    assert_int_equal(tabulate(&options, heap.count, heap.x, heap.count, heap.x, &table, &error),
-                     STATUS_INPUT);
-    assert_non_null(strstr(error.text, "nodes.x: row 31"));
+    FAILS(tabulate(&options, heap.count, heap.x, heap.count, heap.x, &table, &error), STATUS_INPUT,
+          "nodes.x: row 31");
     table_free(&table);
 }
 
 /* One node six spacings from the others: it and the points beside it either see enough of the others or are
  * named. */
-static void trap_isolated(void **state)
+TEST(trap_isolated)
 {
-    (void)state;
     for (int dim = 2; dim <= 3; dim++) {
         static struct trap trap = {.name = "one isolated node"};
         regular_trap(&trap, dim, dim == 2 ? 8 : 5);
@@ -489,16 +464,15 @@ static void trap_isolated(void **state)
     }
 }
 
-static void trap_graded(void **state)
+TEST(trap_graded)
 {
-    (void)state;
     for (int dim = 2; dim <= 3; dim++) {
         static struct trap trap = {.name = "cloud graded 20:1"};
         struct cloud_options graded = {
             .kind = CLOUD_GRADED, .dim = dim, .high = {1, 1, 1}, .ratio = 20.0, .count = {10, 10, 10}};
         struct cloud cloud;
         struct error error;
-        good(cloud_make(&graded, &cloud, &error), &error);
+        GOOD(cloud_make(&graded, &cloud, &error));
         trap.dim = dim;
         trap.count = cloud.node_count;
         assert_true((size_t)(trap.count * dim) <= sizeof trap.x / sizeof *trap.x);
@@ -511,9 +485,8 @@ static void trap_graded(void **state)
 }
 
 /* Fewer nodes than any basis needs, down to one. */
-static void trap_few(void **state)
+TEST(trap_few)
 {
-    (void)state;
     for (int dim = 2; dim <= 3; dim++) {
         for (int64_t count = 1; count <= dim + 1; count++) {
             double x[4 * 3] = {0.0};
@@ -533,25 +506,4 @@ static void trap_few(void **state)
     }
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(grid_against_brute_force),
-        cmocka_unit_test(grid_odd_clouds),
-        cmocka_unit_test(lists_against_brute_force),
-        cmocka_unit_test(spacing_against_brute_force),
-        cmocka_unit_test(nearest_with_ties),
-        cmocka_unit_test(least_neighbours),
-        cmocka_unit_test(threads),
-        cmocka_unit_test(not_finite),
-        cmocka_unit_test(trap_sphere),
-        cmocka_unit_test(trap_slab),
-        cmocka_unit_test(trap_coplanar),
-        cmocka_unit_test(trap_collinear),
-        cmocka_unit_test(trap_coincident),
-        cmocka_unit_test(trap_isolated),
-        cmocka_unit_test(trap_graded),
-        cmocka_unit_test(trap_few),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

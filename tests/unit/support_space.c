@@ -19,21 +19,20 @@ static struct halves make_halves(int dim, const struct support_options *options)
         .kind = CLOUD_REGULAR, .dim = dim, .count = {9, dim == 2 ? 9 : 5, 5}, .high = {1.0, 1.0, 1.0}};
     struct halves halves = {0};
     struct error error;
-    good(cloud_make(&wanted, &halves.cloud, &error), &error);
+    GOOD(cloud_make(&wanted, &halves.cloud, &error));
     struct cloud *cloud = &halves.cloud;
     halves.cells = (struct cells){dim, cloud->node_count, cloud->x, cloud->cell_count, cloud->cells};
     halves.side = calloc((size_t)halves.cells.count, sizeof *halves.side);
     halves.radius = calloc((size_t)halves.cells.node_count, sizeof *halves.radius);
-    double *spacing = calloc((size_t)halves.cells.node_count, sizeof *spacing);
+    double *spacing = zeros(halves.cells.node_count, sizeof *spacing);
     assert_true(halves.side != NULL && halves.radius != NULL && spacing != NULL);
     for (int64_t c = 0; c < halves.cells.count; c++) {
         double middle[3];
         cell_centroid(&halves.cells, c, middle);
         halves.side[c] = middle[0] > 0.5;
     }
-    good(cells_node_spacing(&halves.cells, spacing, &error), &error);
-    good(support_radii(options, halves.cells.node_count, spacing, halves.radius, &error), &error);
-    free(spacing);
+    GOOD(cells_node_spacing(&halves.cells, spacing, &error));
+    GOOD(support_radii(options, halves.cells.node_count, spacing, halves.radius, &error));
     return halves;
 }
 
@@ -59,9 +58,8 @@ static double *scatter_points(int dim, int64_t count)
 
 /* Each list holds nodes of its side only, those of the interface among them, and all that are within reach
  * there: the body is convex on either side. */
-static void lists_stop_at_the_interface(void **state)
+TEST(lists_stop_at_the_interface)
 {
-    (void)state;
     for (int dim = 2; dim <= 3; dim++) {
         enum { COUNT = 300 };
         struct support_options options = support_defaults(dim);
@@ -73,9 +71,9 @@ static void lists_stop_at_the_interface(void **state)
         double *x = scatter_points(dim, COUNT);
         int64_t crossing = 0;
         options.side = halves.side;
-        good(support_space_build(&options, &halves.cells, halves.radius, &space, &error), &error);
+        GOOD(support_space_build(&options, &halves.cells, halves.radius, &space, &error));
         assert_int_equal(space.side_count, 2);
-        good(support_space_lists(&options, &space, NULL, COUNT, x, "points", &lists, &error), &error);
+        GOOD(support_space_lists(&options, &space, NULL, COUNT, x, "points", &lists, &error));
         for (int64_t p = 0; p < COUNT; p++) {
             int64_t at = lists.ptr[p];
             for (int32_t n = 0; n < halves.cells.node_count; n++) {
@@ -104,9 +102,8 @@ static void lists_stop_at_the_interface(void **state)
 }
 
 /* What is known of the points' cells changes nothing, nor that points are nodes. */
-static void places_tell_the_side(void **state)
+TEST(places_tell_the_side)
 {
-    (void)state;
     for (int dim = 2; dim <= 3; dim++) {
         struct support_options options = support_defaults(dim);
         struct halves halves = make_halves(dim, &options);
@@ -114,11 +111,11 @@ static void places_tell_the_side(void **state)
         struct support_lists found, given;
         struct error error;
         int64_t nodes = halves.cells.node_count, cells = halves.cells.count;
-        double *middle = calloc((size_t)(cells * dim), sizeof *middle);
-        int32_t *cell = calloc((size_t)cells, sizeof *cell);
+        double *middle = zeros(cells * dim, sizeof *middle);
+        int32_t *cell = zeros(cells, sizeof *cell);
         assert_true(middle != NULL && cell != NULL);
         options.side = halves.side;
-        good(support_space_build(&options, &halves.cells, halves.radius, &space, &error), &error);
+        GOOD(support_space_build(&options, &halves.cells, halves.radius, &space, &error));
         struct reach_places at_nodes = {.nodes = true}, in_cells = {.cell = cell, .points_per_row = 1};
         for (int64_t c = 0; c < cells; c++) {
             cell_centroid(&halves.cells, c, middle + c * dim);
@@ -128,8 +125,8 @@ static void places_tell_the_side(void **state)
             int64_t count = kind == 0 ? nodes : cells;
             const double *x = kind == 0 ? halves.cells.x : middle;
             const struct reach_places *known = kind == 0 ? &at_nodes : &in_cells;
-            good(support_space_lists(&options, &space, NULL, count, x, "points", &found, &error), &error);
-            good(support_space_lists(&options, &space, known, count, x, "points", &given, &error), &error);
+            GOOD(support_space_lists(&options, &space, NULL, count, x, "points", &found, &error));
+            GOOD(support_space_lists(&options, &space, known, count, x, "points", &given, &error));
             assert_memory_equal(found.ptr, given.ptr, (size_t)(count + 1) * sizeof *found.ptr);
             assert_memory_equal(found.idx, given.idx, (size_t)found.ptr[count] * sizeof *found.idx);
             assert_memory_equal(found.widen, given.widen, (size_t)count * sizeof *found.widen);
@@ -138,23 +135,19 @@ static void places_tell_the_side(void **state)
         }
         support_space_free(&space);
         halves_free(&halves);
-        free(middle);
-        free(cell);
     }
 }
 
 /* A field that is linear on either side, with a kink at the interface, is exact; across it, it is not. */
-static void kinks_are_exact(void **state)
+TEST(kinks_are_exact)
 {
-    (void)state;
     for (int dim = 2; dim <= 3; dim++) {
         enum { COUNT = 300 };
         struct support_options options = support_defaults(dim);
         struct halves halves = make_halves(dim, &options);
         struct error error;
         double *x = scatter_points(dim, COUNT), got[COUNT], worst[2] = {0.0, 0.0};
-        double *field = calloc((size_t)halves.cells.node_count, sizeof *field);
-        assert_non_null(field);
+        double *field = zeros(halves.cells.node_count, sizeof *field);
         for (int64_t n = 0; n < halves.cells.node_count; n++) {
             const double *at = halves.cells.x + n * dim;
             field[n] = fabs(at[0] - 0.5) + 0.3 * at[dim - 1];
@@ -162,9 +155,8 @@ static void kinks_are_exact(void **state)
         for (int stops = 0; stops < 2; stops++) {
             struct field_table table;
             options.side = stops ? halves.side : NULL;
-            good(field_table_build(&options, NULL, &halves.cells, halves.radius, COUNT, x, "points", &table,
-                                   &error),
-                 &error);
+            GOOD(field_table_build(&options, NULL, &halves.cells, halves.radius, COUNT, x, "points", &table,
+                                   &error));
             field_evaluate(COUNT, table.lists.ptr, table.lists.idx, table.phi, 1, field, got);
             for (int64_t p = 0; p < COUNT; p++) {
                 double exact = fabs(x[p * dim] - 0.5) + 0.3 * x[p * dim + dim - 1];
@@ -175,15 +167,13 @@ static void kinks_are_exact(void **state)
         at_most(worst[1], 1e-12, "a kink at the interface");
         assert_true(worst[0] > 1e-2);
         halves_free(&halves);
-        free(field);
         free(x);
     }
 }
 
 /* A region round which the supports of the rest must bend, and one that is a single cell. */
-static void inclusions(void **state)
+TEST(inclusions)
 {
-    (void)state;
     struct support_options options = support_defaults(2);
     struct halves halves = make_halves(2, &options);
     struct error error;
@@ -197,10 +187,9 @@ static void inclusions(void **state)
             halves.side[c] = single ? c == 40 : fabs(middle[0] - 0.5) < 0.13 && fabs(middle[1] - 0.5) < 0.13;
         }
         options.side = halves.side;
-        good(support_space_build(&options, &halves.cells, halves.radius, &space, &error), &error);
-        good(support_space_lists(&options, &space, &at_nodes, halves.cells.node_count, halves.cells.x,
-                                 "nodes", &lists, &error),
-             &error);
+        GOOD(support_space_build(&options, &halves.cells, halves.radius, &space, &error));
+        GOOD(support_space_lists(&options, &space, &at_nodes, halves.cells.node_count, halves.cells.x,
+                                 "nodes", &lists, &error));
         assert_true(lists.fewest >= 3);
         assert_true(single || lists.around_count > 0);
         for (int64_t i = 1; i < lists.around_count; i++) {
@@ -213,9 +202,8 @@ static void inclusions(void **state)
 }
 
 /* A point without a good support is named by its number among all. */
-static void failures_name_the_row(void **state)
+TEST(failures_name_the_row)
 {
-    (void)state;
     struct support_options options = support_defaults(2);
     struct halves halves = make_halves(2, &options);
     struct support_space space;
@@ -223,27 +211,16 @@ static void failures_name_the_row(void **state)
     struct error error;
     static const double x[] = {0.2, 0.2, 0.8, 0.8, NAN, 0.8, 0.7, 0.7};
     options.side = halves.side;
-    good(support_space_build(&options, &halves.cells, halves.radius, &space, &error), &error);
+    GOOD(support_space_build(&options, &halves.cells, halves.radius, &space, &error));
     assert_int_equal(support_space_lists(&options, &space, NULL, 4, x, "points.x", &lists, &error),
                      STATUS_INPUT);
     assert_string_equal(error.text, "points.x: row 2: not a finite coordinate");
     options.least = 1000;
     static const double inside[] = {0.8, 0.8, 0.2, 0.2};
-    assert_int_equal(support_space_lists(&options, &space, NULL, 2, inside, "points.x", &lists, &error),
-                     STATUS_VERDICT);
-    assert_non_null(strstr(error.text, "points.x: row 1 at (0.2, 0.2): no good support"));
+    FAILS(support_space_lists(&options, &space, NULL, 2, inside, "points.x", &lists, &error), STATUS_VERDICT,
+          "points.x: row 1 at (0.2, 0.2): no good support");
     support_space_free(&space);
     halves_free(&halves);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(lists_stop_at_the_interface),
-        cmocka_unit_test(places_tell_the_side),
-        cmocka_unit_test(kinks_are_exact),
-        cmocka_unit_test(inclusions),
-        cmocka_unit_test(failures_name_the_row),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

@@ -3,8 +3,6 @@
 
 #include "approx/thin.h"
 
-#include <math.h>
-
 enum { MOST_NODES = 400, MOST_CELLS = 1200 };
 
 struct shape {
@@ -52,15 +50,14 @@ static struct thin_report thin(const struct shape *shape, double bound)
     struct cells cells = {shape->dim, shape->nodes, shape->x, shape->cells, shape->cell};
     struct thin_report report;
     struct error error;
-    good(cells_check(&cells, &error), &error);
-    good(cells_find_thin(&cells, bound, &report, &error), &error);
+    GOOD(cells_check(&cells, &error));
+    GOOD(cells_find_thin(&cells, bound, &report, &error));
     return report;
 }
 
 /* The long sides of a plate are thin, its narrow ones are not. */
-static void plates(void **state)
+TEST(plates)
 {
-    (void)state;
     static struct shape shape;
     make_grid(&shape, 2, (int[]){8, 1}, (double[]){1.0, 0.5});
     struct thin_report report = thin(&shape, 1.5);
@@ -80,9 +77,8 @@ static void plates(void **state)
 }
 
 /* A wedge is thin towards its edge only. */
-static void wedge(void **state)
+TEST(wedge)
 {
-    (void)state;
     static struct shape shape;
     make_grid(&shape, 2, (int[]){8, 2}, (double[]){1.0, 1.0});
     for (int64_t k = 0; k < shape.nodes; k++) {
@@ -93,8 +89,4 @@ static void wedge(void **state)
     assert_true(report.share > 0.2 && report.share < 0.5);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {cmocka_unit_test(plates), cmocka_unit_test(wedge)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

@@ -51,3 +51,14 @@ const char *cell_report_describe(const struct cells *cells, const struct poor_ce
     snprintf(text + length, (size_t)(128 - length), " m");
     return text;
 }
+
+const char *cell_report_box(const struct box *box, char text[128])
+{
+    int length = 0;
+    for (int k = 0; k < 2 * box->dim; k++) {
+        length += snprintf(text + length, (size_t)(128 - length), "%s%.4g ", k == box->dim ? "to " : "",
+                           k < box->dim ? box->low[k] : box->high[k - box->dim]);
+    }
+    snprintf(text + length, (size_t)(128 - length), "m");
+    return text;
+}

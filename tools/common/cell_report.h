@@ -4,6 +4,7 @@
 
 #include "approx/cells.h"
 #include "approx/quality.h"
+#include "base/box.h"
 
 /* The most cells that are reported one by one. */
 #define CELL_REPORT_MOST 10
@@ -23,5 +24,8 @@ MUST_CHECK enum status cell_report_make(const struct cells *cells, double bound,
 
 /* "quality 3.1e-05 at 0.01 0.02 0.03 m" of a poor cell. */
 const char *cell_report_describe(const struct cells *cells, const struct poor_cell *poor, char text[128]);
+
+/* "0 0 0 to 0.1 0.1 0.2 m" */
+const char *cell_report_box(const struct box *box, char text[128]);
 
 #endif

@@ -27,38 +27,34 @@ struct comparison_request comparison_parse(const struct tool *tool)
                                        .text = tool_given(tool, "text")};
 }
 
+static enum status view_side(struct side *side, const char *field, struct error *error)
+{
+    enum status status;
+    struct nodal_field *view = &side->field;
+    TRY(stream_cells(&side->stream, false, &view->cells, error));
+    TRY(stream_field(&side->stream, field, view->cells.node_count, &side->section, error));
+    TRY(solved_read(&side->stream, &side->solved, error));
+    const struct section *parameters = solved_parameters(&side->stream, &side->solved, side->section);
+    view->cols = side->section->cols;
+    view->values = side->section->data;
+    if (parameters != side->section) {
+        view->parameters = parameters->data;
+        view->radius = side->solved.radius;
+        view->support = &side->solved.recorded.support;
+        view->shapes = &side->solved.recorded.shapes;
+    }
+done:
+    return status;
+}
+
 void side_read(const struct tool *tool, const char *file, const char *field, struct side *side)
 {
     struct error error;
-    const struct section *section;
     *side = (struct side){.name = strcmp(file, "-") == 0 ? "standard input" : file};
     tool_read(tool, file, &side->stream);
-    enum status status = stream_cells(&side->stream, false, &side->field.cells, &error);
-    if (status == STATUS_OK) {
-        status = stream_need(&side->stream, field, TYPE_F8, 0, "mtled", &section, &error);
-    }
-    if (status == STATUS_OK && (section->cols > 3 || section->rows != side->field.cells.node_count)) {
-        status =
-            fail(&error, STATUS_INPUT,
-                 "%s: %lld rows of %lld columns: not a field of 1 to 3 columns on %lld nodes", field,
-                 (long long)section->rows, (long long)section->cols, (long long)side->field.cells.node_count);
-    }
+    enum status status = view_side(side, field, &error);
     if (status != STATUS_OK) {
         tool_fail(tool, status, "%s: %s", side->name, error.text);
-    }
-    status = solved_read(&side->stream, &side->solved, &error);
-    if (status != STATUS_OK) {
-        tool_fail(tool, status, "%s: %s", side->name, error.text);
-    }
-    const struct section *parameters = solved_parameters(&side->stream, &side->solved, section);
-    side->section = section;
-    side->field.cols = section->cols;
-    side->field.values = section->data;
-    if (parameters != section) {
-        side->field.parameters = parameters->data;
-        side->field.radius = side->solved.radius;
-        side->field.support = &side->solved.recorded.support;
-        side->field.shapes = &side->solved.recorded.shapes;
     }
 }
 
@@ -175,28 +171,29 @@ double iteration_error(const struct side *side)
     return known ? *(const double *)section->data : -1.0;
 }
 
-enum status print_regions(const struct findings *findings, struct error *error)
+/* Statistics of the nodes of each region. */
+static enum status print_regions(const struct findings *findings, struct error *error)
 {
     const struct field_comparison *comparison = &findings->comparison;
     const struct regions *regions = &findings->regions;
     enum status status;
     int64_t *node = NULL;
     TRY(NEW_ARRAY(&node, comparison->count, error));
-    for (int r = 0; r < regions->count; r++) {
+    for (int64_t r = 0; r < regions->names.count; r++) {
         struct field_statistics statistics;
         int64_t count = 0;
         for (int64_t i = 0; i < comparison->count; i++) {
-            if (regions->member[comparison->node[i] * regions->count + r]) {
+            if (regions->member[comparison->node[i] * regions->names.count + r]) {
                 node[count++] = comparison->node[i];
             }
         }
-        printf("n.%s\t%lld\n", regions->name[r], (long long)count);
+        printf("n.%s\t%lld\n", regions->names.name[r], (long long)count);
         if (count > 0) {
             TRY(field_statistics(count, node, comparison->difference, &statistics, error));
-            print_quantity("avg", regions->name[r], statistics.average);
-            print_quantity("max", regions->name[r], statistics.largest);
-            print_quantity("rmse", regions->name[r], statistics.rmse);
-            print_quantity("p95", regions->name[r], field_percentile(&statistics, 95));
+            print_quantity("avg", regions->names.name[r], statistics.average);
+            print_quantity("max", regions->names.name[r], statistics.largest);
+            print_quantity("rmse", regions->names.name[r], statistics.rmse);
+            print_quantity("p95", regions->names.name[r], field_percentile(&statistics, 95));
             field_statistics_free(&statistics);
         }
     }
@@ -205,10 +202,10 @@ done:
     return status;
 }
 
-void comparison_write_map(struct tool *tool, struct side *a, const char *name, double *value,
-                          const char *file, bool text)
+/* Write A's nodes and cells with a value at each node, section `name`, to a file. */
+static void write_map(struct tool *tool, struct side *a, const char *name, double *value, const char *file,
+                      bool text)
 {
-    struct error error;
     static const char *const kept[] = {"nodes.x", "cells", "cells.region"};
     struct stream *stream = &a->stream;
     char unit[32], attributes[48] = "";
@@ -224,10 +221,8 @@ void comparison_write_map(struct tool *tool, struct side *a, const char *name, d
             stream_remove(stream, stream->sections[s].name);
         }
     }
-    tool_check(
-        tool,
-        stream_put(stream, name, TYPE_F8, a->field.cells.node_count, 1, attributes, value, false, &error),
-        &error);
+    TOOL_TRY(tool, stream_put(stream, name, TYPE_F8, a->field.cells.node_count, 1, attributes, value, false,
+                              &error));
     tool->output = file;
     tool_write(tool, stream, text);
 }
@@ -235,20 +230,29 @@ void comparison_write_map(struct tool *tool, struct side *a, const char *name, d
 /* Whether a value is within its tolerance; NaN is not. Notes if it is beyond. */
 static bool is_within(const struct tool *tool, const char *name, double value, double tolerance)
 {
-    if (!(value <= tolerance)) {
-        if (isfinite(tolerance)) {
-            tool_note(tool, "%s %.9g is beyond %.9g", name, value, tolerance);
-        }
-        return false;
+    bool within = value <= tolerance;
+    if (!within && isfinite(tolerance)) {
+        tool_note(tool, "%s %.9g is beyond %.9g", name, value, tolerance);
     }
-    return true;
+    return within;
 }
 
-bool comparison_judge(const struct tool *tool, const struct comparison_request *request, const struct side *a,
-                      const struct side *b, const struct field_statistics *statistics)
+int comparison_end(struct tool *tool, const struct comparison_request *request, struct side *a,
+                   struct side *b, struct findings *findings, const char *name)
 {
+    if (request->region == NULL) {
+        TOOL_TRY(tool, print_regions(findings, &error));
+    }
     bool good = !has_unknown(tool, a, request->field);
     good = !has_unknown(tool, b, request->field) && good;
-    good = is_within(tool, "avg", statistics->average, request->tol_avg) && good;
-    return is_within(tool, "max", statistics->largest, request->tol_max) && good;
+    good = is_within(tool, "avg", findings->statistics.average, request->tol_avg) && good;
+    good = is_within(tool, "max", findings->statistics.largest, request->tol_max) && good;
+    if (request->map != NULL) {
+        write_map(tool, a, name, findings->comparison.difference, request->map, request->text);
+    }
+    findings_free(findings);
+    stream_free(&a->stream);
+    stream_free(&b->stream);
+    int status = tool_end(tool);
+    return good ? status : (int)STATUS_VERDICT;
 }

@@ -4,7 +4,7 @@
 #define TOOLS_COMPARISON_H
 
 #include "regions.h"
-#include "solved.h"
+#include "stages/solved.h"
 #include "tool.h"
 
 #include "approx/field_compare.h"
@@ -62,16 +62,10 @@ void print_relative(const struct findings *findings);
 /* The error that the iteration of a result has left, m, as mtled estimates it; negative: not known. */
 double iteration_error(const struct side *side);
 
-/* Statistics of the nodes of each region. */
-MUST_CHECK enum status print_regions(const struct findings *findings, struct error *error);
-
-/* Write A's nodes and cells with a value at each node, section `name`, to a file. */
-void comparison_write_map(struct tool *tool, struct side *a, const char *name, double *value,
-                          const char *file, bool text);
-
-/* Whether all values of both sides are numbers, and the statistics within the tolerances; NaN is not. Notes
- * what is not. */
-bool comparison_judge(const struct tool *tool, const struct comparison_request *request, const struct side *a,
-                      const struct side *b, const struct field_statistics *statistics);
+/* Print the statistics of each region unless one was asked for, write the map that was asked for, section
+ * `name`, free all, and end the program: returns its exit status, a verdict where a value is not a number or
+ * beyond its tolerance, with a note. */
+int comparison_end(struct tool *tool, const struct comparison_request *request, struct side *a,
+                   struct side *b, struct findings *findings, const char *name);
 
 #endif

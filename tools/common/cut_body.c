@@ -20,10 +20,8 @@ static bool is_nodal(const struct cut_body *whole, const struct section *section
 /* Numbers of nodes. */
 static void check_nodes(const struct cut_body *whole, const char *name, int64_t cols)
 {
-    struct error error;
     const struct section *section;
-    tool_check(whole->tool, stream_need(whole->stream, name, TYPE_I4, cols, "nodes", &section, &error),
-               &error);
+    TOOL_TRY(whole->tool, stream_need(whole->stream, name, TYPE_I4, cols, "nodes", &section, &error));
     const int32_t *node = section->data;
     for (int64_t i = 0; i < section->rows * cols; i++) {
         if (node[i] < 0 || node[i] >= whole->cells.node_count) {
@@ -45,7 +43,6 @@ static void check_rows(const struct cut_body *whole, const char *name, const cha
 /* Check the groups of a body that is cut here and has not been checked before. */
 static void check_groups(const struct cut_body *whole)
 {
-    struct error error;
     const struct section *ptr, *idx;
     if (stream_find(whole->stream, "cells.region") != NULL) {
         check_rows(whole, "cells.region", "cells");
@@ -60,8 +57,7 @@ static void check_groups(const struct cut_body *whole)
     if (stream_find(whole->stream, "sets.ptr") == NULL && stream_find(whole->stream, "sets.idx") == NULL) {
         return;
     }
-    tool_check(whole->tool, stream_need(whole->stream, "sets.ptr", TYPE_I8, 1, "nodes", &ptr, &error),
-               &error);
+    TOOL_TRY(whole->tool, stream_need(whole->stream, "sets.ptr", TYPE_I8, 1, "nodes", &ptr, &error));
     check_nodes(whole, "sets.idx", 1);
     idx = stream_find(whole->stream, "sets.idx");
     const int64_t *begin = ptr->data;
@@ -81,7 +77,6 @@ void cut_body_keep_sections(struct cut_body *whole)
 {
     static const char *const known[] = {"cells",    "cells.region", "facets",         "facets.set",
                                         "sets.ptr", "sets.idx",     "parameters.side"};
-    struct error error;
     struct stream *stream = whole->stream;
     char dropped[256] = "";
     check_groups(whole);
@@ -101,16 +96,13 @@ void cut_body_keep_sections(struct cut_body *whole)
         tool_note(whole->tool, "left out:%s", dropped);
     }
     whole->section_count = stream->section_count;
-    tool_check(whole->tool, NEW_ARRAY(&whole->sections, stream->section_count, &error), &error);
+    TOOL_TRY(whole->tool, NEW_ARRAY(&whole->sections, stream->section_count, &error));
     for (int64_t i = 0; i < stream->section_count; i++) {
         struct section *kept = &whole->sections[i];
         *kept = stream->sections[i];
         stream->sections[i].owned = false; /* freed at the end: they are replaced for each part */
-        kept->name = strdup(kept->name);
-        kept->attributes = strdup(kept->attributes);
-        if (kept->name == NULL || kept->attributes == NULL) {
-            tool_fail(whole->tool, STATUS_SYSTEM, "out of memory");
-        }
+        kept->name = tool_memory(whole->tool, strdup(kept->name));
+        kept->attributes = tool_memory(whole->tool, strdup(kept->attributes));
     }
 }
 
@@ -127,9 +119,7 @@ static const struct section *kept_section(const struct cut_body *whole, const ch
 static void put(const struct cut_body *whole, const char *name, enum element_type type, int64_t rows,
                 int64_t cols, const char *attributes, void *data)
 {
-    struct error error;
-    tool_check(whole->tool, stream_put(whole->stream, name, type, rows, cols, attributes, data, true, &error),
-               &error);
+    TOOL_TRY(whole->tool, stream_put(whole->stream, name, type, rows, cols, attributes, data, true, &error));
 }
 
 /* Put these rows of a section; where `place` is given, its values are node numbers and become places there.
@@ -155,19 +145,13 @@ static void put_rows(const struct cut_body *whole, const struct section *section
 static void put_numbers(const struct cut_body *whole, const char *name, const char *attributes,
                         const int32_t *number, int64_t count)
 {
-    struct error error;
-    int32_t *copy;
-    tool_check(whole->tool, NEW_ARRAY(&copy, count, &error), &error);
-    if (count > 0) {
-        memcpy(copy, number, (size_t)count * sizeof *copy);
-    }
-    put(whole, name, TYPE_I4, count, 1, attributes, copy);
+    TOOL_TRY(whole->tool,
+             stream_put_copy(whole->stream, name, TYPE_I4, count, 1, attributes, number, &error));
 }
 
 /* Facets whose nodes are all there and belong to a cell that is. */
 static void put_facets(const struct cut_body *whole, const int32_t *place, const bool *has_cell)
 {
-    struct error error;
     const struct section *facets = kept_section(whole, "facets"), *set = kept_section(whole, "facets.set");
     if (facets == NULL || set == NULL) {
         return;
@@ -177,7 +161,7 @@ static void put_facets(const struct cut_body *whole, const int32_t *place, const
     int dim = whole->cells.dim;
     int64_t count = 0;
     int32_t *row;
-    tool_check(whole->tool, NEW_ARRAY(&row, facets->rows, &error), &error);
+    TOOL_TRY(whole->tool, NEW_ARRAY(&row, facets->rows, &error));
     for (int64_t f = 0; f < facets->rows; f++) {
         bool there = false;
         int32_t first = node[f * dim];
@@ -203,7 +187,6 @@ static void put_facets(const struct cut_body *whole, const int32_t *place, const
 
 static void put_sets(const struct cut_body *whole, const int32_t *place)
 {
-    struct error error;
     const struct section *ptr = kept_section(whole, "sets.ptr"), *idx = kept_section(whole, "sets.idx");
     if (ptr == NULL || idx == NULL) {
         return;
@@ -212,8 +195,8 @@ static void put_sets(const struct cut_body *whole, const int32_t *place)
     const int32_t *node = idx->data;
     int64_t *own, count = 0;
     int32_t *row;
-    tool_check(whole->tool, NEW_ARRAY(&own, ptr->rows, &error), &error);
-    tool_check(whole->tool, NEW_ARRAY(&row, idx->rows, &error), &error);
+    TOOL_TRY(whole->tool, NEW_ARRAY(&own, ptr->rows, &error));
+    TOOL_TRY(whole->tool, NEW_ARRAY(&row, idx->rows, &error));
     for (int64_t s = 0; s + 1 < ptr->rows; s++) {
         for (int64_t i = begin[s]; i < begin[s + 1]; i++) {
             if (place[node[i]] >= 0) {
@@ -231,13 +214,12 @@ static void put_sets(const struct cut_body *whole, const int32_t *place)
 /* The stream becomes that of one part. */
 void cut_body_make_part(const struct cut_body *whole, int32_t number, const struct body_part *body)
 {
-    struct error error;
     int32_t *place, *owner;
     bool *has_cell;
     char attributes[192];
-    tool_check(whole->tool, NEW_ARRAY(&place, whole->cells.node_count, &error), &error);
-    tool_check(whole->tool, NEW_ARRAY(&has_cell, whole->cells.count, &error), &error);
-    tool_check(whole->tool, NEW_ARRAY(&owner, body->node_count, &error), &error);
+    TOOL_TRY(whole->tool, NEW_ARRAY(&place, whole->cells.node_count, &error));
+    TOOL_TRY(whole->tool, NEW_ARRAY(&has_cell, whole->cells.count, &error));
+    TOOL_TRY(whole->tool, NEW_ARRAY(&owner, body->node_count, &error));
     for (int64_t n = 0; n < whole->cells.node_count; n++) {
         place[n] = -1;
     }

@@ -2,7 +2,9 @@
 #ifndef TOOLS_CUT_BODY_H
 #define TOOLS_CUT_BODY_H
 
-#include "stages.h"
+#include "tool.h"
+
+#include "stages/stages.h"
 
 #include "approx/partition.h"
 

@@ -4,7 +4,6 @@
 #include "base/memory.h"
 #include "frames.h"
 #include "io/vtk.h"
-#include "names.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -166,17 +165,17 @@ static enum status append_groups(const struct section *named, const char *kind, 
                                  struct derived *derived, int64_t *first, int64_t *count, struct error *error)
 {
     enum status status;
-    char *names = NULL;
+    struct names names = {0};
     *first = derived->count;
-    TRY(names_of_section(named, &names, error));
-    for (char *rest = names, *name; (name = strsep(&rest, ",")) != NULL;) {
-        if (name[0] != '\0') {
-            TRY(append(derived, kind, name, "", TYPE_I4, node_count, 1, "", error));
+    TRY(names_read(named, &names, error));
+    for (int64_t i = 0; i < names.count; i++) {
+        if (names.name[i][0] != '\0') {
+            TRY(append(derived, kind, names.name[i], "", TYPE_I4, node_count, 1, "", error));
         }
     }
     *count = derived->count - *first;
 done:
-    free(names);
+    names_free(&names);
     return status;
 }
 

@@ -2,7 +2,7 @@
 #ifndef TOOLS_DERIVED_H
 #define TOOLS_DERIVED_H
 
-#include "views.h"
+#include "stages/views.h"
 
 /* Sections of their own, beside the stream's. */
 struct derived {

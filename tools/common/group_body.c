@@ -1,7 +1,6 @@
 #include "group_body.h"
 
-#include "names.h"
-#include "views.h"
+#include "stages/views.h"
 
 #include "base/box.h"
 #include "base/memory.h"
@@ -35,14 +34,14 @@ void group_remove(struct group_list *list, int64_t index)
 }
 
 /* Append an empty group. */
-static enum status add_group(struct group_list *list, const char *name, size_t length, struct error *error)
+static enum status add_group(struct group_list *list, const char *name, struct error *error)
 {
     struct group *grown = array_grow(list->group, list->count + 1, sizeof *grown);
     if (grown == NULL) {
         return fail_memory(error, "groups");
     }
     list->group = grown;
-    grown[list->count] = (struct group){.name = strndup(name, length)};
+    grown[list->count] = (struct group){.name = strdup(name)};
     if (grown[list->count].name == NULL) {
         return fail_memory(error, "groups");
     }
@@ -53,16 +52,12 @@ static enum status add_group(struct group_list *list, const char *name, size_t l
 /* The groups that a section names, all empty. */
 static enum status add_named(struct group_list *list, const struct section *section, struct error *error)
 {
-    enum status status;
-    char *names = NULL;
-    TRY(names_of_section(section, &names, error));
-    for (const char *at = names; *at != '\0';) {
-        size_t length = strcspn(at, ",");
-        TRY(add_group(list, at, length, error));
-        at += length + (at[length] == ',');
+    struct names names;
+    enum status status = names_read(section, &names, error);
+    for (int64_t i = 0; i < names.count && status == STATUS_OK; i++) {
+        status = add_group(list, names.name[i], error);
     }
-done:
-    free(names);
+    names_free(&names);
     return status;
 }
 
@@ -131,9 +126,8 @@ static enum status find_facets(struct group_body *body, const struct named_facet
         const struct keyed *found =
             bsearch(&wanted, keyed, (size_t)boundary->count, sizeof *keyed, compare_keys);
         if (found == NULL) {
-            status = fail(error, STATUS_INPUT,
-                          "facets: row %lld: no face of exactly one cell: run nodes again", (long long)i);
-            goto done;
+            TRY(fail(error, STATUS_INPUT, "facets: row %lld: no face of exactly one cell: run nodes again",
+                     (long long)i));
         }
         facet[i] = found->facet;
         memcpy(&boundary->node[(int64_t)found->facet * dim], &named->facet[i * dim],
@@ -187,17 +181,16 @@ done:
 static enum status read_regions(const struct stream *stream, struct group_body *body, struct error *error)
 {
     enum status status = STATUS_OK;
+    struct cell_regions regions = {0};
     const struct section *section = stream_find(stream, "cells.region");
     if (section == NULL || body->cells.count == 0) {
         return STATUS_OK;
     }
-    TRY(stream_need(stream, "cells.region", TYPE_I4, 1, "nodes", &section, error));
-    if (section->rows != body->cells.count) {
-        return fail(error, STATUS_INPUT, "cells.region: not one row per cell");
-    }
+    TRY(stream_regions(stream, &body->cells, &regions, error));
     TRY(add_named(&body->groups[GROUP_REGION], section, error));
     TRY(sort_items(&body->groups[GROUP_REGION], section, NULL, error));
 done:
+    names_free(&regions.names);
     return status;
 }
 
@@ -298,152 +291,18 @@ enum status group_put(struct group_body *body, enum group_kind kind, const char 
     }
     if (place < 0) {
         place = list->count;
-        TRY(add_group(list, name, strlen(name), error));
+        TRY(add_group(list, name, error));
     }
     if (kind == GROUP_REGION) {
         take_cells(list, chosen);
     }
     struct group *group = &list->group[place];
     free(group->item);
-    group->item = item;
+    group->item = array_take(&item);
     group->count = count;
     group->expression = expression;
     list->changed = true;
-    item = NULL;
 done:
     free(item);
-    return status;
-}
-
-/* ---- writing ---- */
-
-/* "names=a,b" of the groups, allocated. */
-static enum status names_attribute(const struct group_list *list, char **text, struct error *error)
-{
-    size_t size = sizeof "names=";
-    for (int64_t g = 0; g < list->count; g++) {
-        size += strlen(list->group[g].name) + 1;
-    }
-    enum status status = NEW_ARRAY(text, (int64_t)size, error);
-    char *at = status == STATUS_OK ? stpcpy(*text, "names=") : NULL;
-    for (int64_t g = 0; g < list->count && at != NULL; g++) {
-        at = stpcpy(stpcpy(at, g > 0 ? "," : ""), list->group[g].name);
-    }
-    return status;
-}
-
-static int64_t item_count(const struct group_list *list)
-{
-    int64_t sum = 0;
-    for (int64_t g = 0; g < list->count; g++) {
-        sum += list->group[g].count;
-    }
-    return sum;
-}
-
-static enum status write_facets(const struct group_body *body, struct stream *stream, struct error *error)
-{
-    enum status status = STATUS_OK;
-    const struct group_list *list = &body->groups[GROUP_FACETS];
-    int dim = body->boundary.dim;
-    int64_t count = item_count(list);
-    int64_t at = 0;
-    int32_t *node = NULL;
-    int32_t *set = NULL;
-    char *names = NULL;
-    if (count == 0) {
-        stream_remove(stream, "facets");
-        stream_remove(stream, "facets.set");
-        return STATUS_OK;
-    }
-    TRY(NEW_ARRAY(&node, count * dim, error));
-    TRY(NEW_ARRAY(&set, count, error));
-    TRY(names_attribute(list, &names, error));
-    for (int64_t g = 0; g < list->count; g++) {
-        for (int64_t i = 0; i < list->group[g].count; i++, at++) {
-            memcpy(&node[at * dim], &body->boundary.node[(int64_t)list->group[g].item[i] * dim],
-                   (size_t)dim * sizeof *node);
-            set[at] = (int32_t)g;
-        }
-    }
-    status = stream_put(stream, "facets", TYPE_I4, count, dim, "", node, true, error);
-    node = NULL;
-    TRY(status);
-    status = stream_put(stream, "facets.set", TYPE_I4, count, 1, names, set, true, error);
-    set = NULL;
-done:
-    free(node);
-    free(set);
-    free(names);
-    return status;
-}
-
-static enum status write_sets(const struct group_body *body, struct stream *stream, struct error *error)
-{
-    enum status status = STATUS_OK;
-    const struct group_list *list = &body->groups[GROUP_NODES];
-    int64_t count = item_count(list);
-    int64_t *ptr = NULL;
-    int32_t *idx = NULL;
-    char *names = NULL;
-    if (list->count == 0) {
-        stream_remove(stream, "sets.ptr");
-        stream_remove(stream, "sets.idx");
-        return STATUS_OK;
-    }
-    TRY(NEW_ARRAY(&ptr, list->count + 1, error));
-    TRY(NEW_ARRAY(&idx, count, error));
-    TRY(names_attribute(list, &names, error));
-    for (int64_t g = 0; g < list->count; g++) {
-        ptr[g + 1] = ptr[g] + list->group[g].count;
-        memcpy(&idx[ptr[g]], list->group[g].item, (size_t)list->group[g].count * sizeof *idx);
-    }
-    status = stream_put(stream, "sets.ptr", TYPE_I8, list->count + 1, 1, names, ptr, true, error);
-    ptr = NULL;
-    TRY(status);
-    status = stream_put(stream, "sets.idx", TYPE_I4, count, 1, "", idx, true, error);
-    idx = NULL;
-done:
-    free(ptr);
-    free(idx);
-    free(names);
-    return status;
-}
-
-static enum status write_regions(const struct group_body *body, struct stream *stream, struct error *error)
-{
-    enum status status = STATUS_OK;
-    const struct group_list *list = &body->groups[GROUP_REGION];
-    int64_t lacking = body->cells.count - item_count(list);
-    int32_t *region = NULL;
-    char *names = NULL;
-    if (lacking > 0) {
-        return fail(error, STATUS_INPUT,
-                    "%lld of %lld cells belong to no region: give the rest a name, too (-r "
-                    "'NAME=all without region:...')",
-                    (long long)lacking, (long long)body->cells.count);
-    }
-    TRY(NEW_ARRAY(&region, body->cells.count, error));
-    TRY(names_attribute(list, &names, error));
-    for (int64_t g = 0; g < list->count; g++) {
-        for (int64_t i = 0; i < list->group[g].count; i++) {
-            region[list->group[g].item[i]] = (int32_t)g;
-        }
-    }
-    status = stream_put(stream, "cells.region", TYPE_I4, body->cells.count, 1, names, region, true, error);
-    region = NULL;
-done:
-    free(region);
-    free(names);
-    return status;
-}
-
-enum status group_body_write(const struct group_body *body, struct stream *stream, struct error *error)
-{
-    enum status status = STATUS_OK;
-    TRY(body->groups[GROUP_FACETS].changed ? write_facets(body, stream, error) : STATUS_OK);
-    TRY(body->groups[GROUP_NODES].changed ? write_sets(body, stream, error) : STATUS_OK);
-    TRY(body->groups[GROUP_REGION].changed ? write_regions(body, stream, error) : STATUS_OK);
-done:
     return status;
 }

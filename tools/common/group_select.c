@@ -1,7 +1,5 @@
 #include "group_select.h"
 
-#include "group_terms.h"
-
 #include "approx/parts.h"
 #include "base/memory.h"
 #include "base/options.h"

@@ -10,4 +10,8 @@
 MUST_CHECK enum status group_select(const struct group_body *body, enum group_kind kind,
                                     const char *expression, double unit, bool *chosen, struct error *error);
 
+/* The same of one term, KIND:ARGUMENTS. */
+MUST_CHECK enum status group_term(const struct group_body *body, enum group_kind kind, const char *term,
+                                  double unit, bool *chosen, struct error *error);
+
 #endif

@@ -1,4 +1,4 @@
-#include "group_terms.h"
+#include "group_select.h"
 
 #include "approx/parts.h"
 #include "base/box.h"
@@ -368,8 +368,7 @@ static enum status choose_part(const struct term *term)
              : cells_parts(&body->cells, part, &parts, term->error));
     bool by_point = count == dim + side;
     if (!by_point && !(values[0] >= 1 && values[0] <= parts && values[0] == floor(values[0]))) {
-        status = fail(term->error, STATUS_INPUT, "%.100s: there are %d, counted from 1", term->text, parts);
-        goto done;
+        TRY(fail(term->error, STATUS_INPUT, "%.100s: there are %d, counted from 1", term->text, parts));
     }
     scale(by_point ? dim : 0, values, term->unit);
     int32_t wanted = by_point ? part[nearest(items, values)] : (int32_t)values[0] - 1;

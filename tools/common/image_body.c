@@ -95,18 +95,15 @@ double least_step(const struct image *image, int dim)
 static double *nodes_in_voxels(const struct tool *tool, const struct image *grid, const struct cells *cells,
                                const double *x)
 {
-    struct error error;
     int dim = cells->dim;
     double inverse[3][4], *place;
     image_to_voxel(grid, inverse);
-    tool_check(tool, NEW_ARRAY(&place, cells->node_count * dim, &error), &error);
+    TOOL_TRY(tool, NEW_ARRAY(&place, cells->node_count * dim, &error));
     for (int64_t n = 0; n < cells->node_count; n++) {
-        double world[3] = {0, 0, grid->to_world[2][3]};
+        double world[3] = {0, 0, grid->to_world[2][3]}, voxel[3];
         memcpy(world, x + n * dim, (size_t)dim * sizeof *x);
-        for (int i = 0; i < dim; i++) {
-            place[n * dim + i] = inverse[i][0] * world[0] + inverse[i][1] * world[1] +
-                                 inverse[i][2] * world[2] + inverse[i][3];
-        }
+        image_map(&inverse[0][0], world, voxel);
+        memcpy(place + n * dim, voxel, (size_t)dim * sizeof *place);
     }
     return place;
 }
@@ -114,15 +111,14 @@ static double *nodes_in_voxels(const struct tool *tool, const struct image *grid
 int32_t *find_owners(const struct tool *tool, const struct image *grid, const struct cells *cells,
                      const double *x, int64_t *doubly)
 {
-    struct error error;
     struct cells placed = *cells;
     int32_t *owner;
     const int64_t size[3] = {(int64_t)grid->size[0], (int64_t)grid->size[1], (int64_t)grid->size[2]};
     double *place = nodes_in_voxels(tool, grid, cells, x);
     int sign = determinant(grid, cells->dim) < 0 ? -1 : 1;
-    tool_check(tool, NEW_ARRAY(&owner, size[0] * size[1] * size[2], &error), &error);
+    TOOL_TRY(tool, NEW_ARRAY(&owner, size[0] * size[1] * size[2], &error));
     placed.x = place;
-    tool_check(tool, raster_cells(&placed, sign, size, owner, doubly, &error), &error);
+    TOOL_TRY(tool, raster_cells(&placed, sign, size, owner, doubly, &error));
     free(place);
     return owner;
 }

@@ -14,10 +14,9 @@ static bool ends_in(const char *name, const char *ending)
 
 void tool_read_image(const struct tool *tool, const char *file, struct image *image)
 {
-    struct error error;
     const char *name;
     int descriptor = tool_open(tool, file, &name);
-    tool_check(tool, image_read_from(image, descriptor, name, &error), &error);
+    TOOL_TRY(tool, image_read_from(image, descriptor, name, &error));
     if (descriptor != STDIN_FILENO) {
         close(descriptor);
     }

@@ -89,7 +89,6 @@ static void collect_values(const struct tool *tool, const struct image *image, s
 /* Names label_1, label_2, ... for an image without a table. */
 static void name_values(const struct tool *tool, const struct values *values, struct label_table *table)
 {
-    struct error error;
     for (int32_t v = 0; v < values->count; v++) {
         struct label_range range = {.first = (int64_t)values->value[v], .last = (int64_t)values->value[v]};
         char name[32];
@@ -102,8 +101,8 @@ static void name_values(const struct tool *tool, const struct values *values, st
                       values->count);
         }
         snprintf(name, sizeof name, "label_%lld", (long long)range.first);
-        tool_check(tool, label_table_name(table, name, true, &range.name, &error), &error);
-        tool_check(tool, label_table_add(table, &range, &error), &error);
+        TOOL_TRY(tool, label_table_name(table, name, true, &range.name, &error));
+        TOOL_TRY(tool, label_table_add(table, &range, &error));
     }
 }
 
@@ -139,24 +138,23 @@ static void label_values(const struct tool *tool, struct values *values, struct 
 static void set_labels(const struct tool *tool, const struct image *source, struct label_image *image,
                        const char *table)
 {
-    struct error error;
     int64_t count = (int64_t)image_voxels(source);
     struct values *values = NULL;
-    tool_check(tool, NEW_ARRAY(&values, 1, &error), &error);
+    TOOL_TRY(tool, NEW_ARRAY(&values, 1, &error));
     collect_values(tool, source, values);
     if (table == NULL) {
         name_values(tool, values, &image->table);
     }
     image->labels.count = image->table.name_count + 1;
-    tool_check(tool, NEW_ARRAY(&image->keep, image->labels.count, &error), &error);
-    tool_check(tool, NEW_ARRAY(&image->volume, image->labels.count, &error), &error);
-    tool_check(tool, NEW_ARRAY(&image->region, image->labels.count, &error), &error);
-    tool_check(tool, NEW_ARRAY(&image->part_of, image->labels.count, &error), &error);
+    TOOL_TRY(tool, NEW_ARRAY(&image->keep, image->labels.count, &error));
+    TOOL_TRY(tool, NEW_ARRAY(&image->volume, image->labels.count, &error));
+    TOOL_TRY(tool, NEW_ARRAY(&image->region, image->labels.count, &error));
+    TOOL_TRY(tool, NEW_ARRAY(&image->part_of, image->labels.count, &error));
     for (int32_t l = 0; l < image->labels.count; l++) {
         image->region[l] = l;
         image->part_of[l] = -1;
     }
-    tool_check(tool, NEW_ARRAY(&image->voxel, count, &error), &error);
+    TOOL_TRY(tool, NEW_ARRAY(&image->voxel, count, &error));
     label_values(tool, values, image, table);
     int32_t at = 0;
     for (int64_t i = 0; i < count; i++) {
@@ -210,7 +208,6 @@ static void take_slice(struct image *image, int axis, size_t slice)
 /* "z=12mm" */
 static void parse_slice(const struct tool *tool, const char *text, int *axis, double *place)
 {
-    struct error error;
     double unit = 1;
     char number[64] = "";
     size_t length = text[0] != '\0' && text[1] == '=' ? strspn(text + 2, "+-.0123456789eE") : 0;
@@ -219,9 +216,9 @@ static void parse_slice(const struct tool *tool, const char *text, int *axis, do
         tool_fail(tool, STATUS_INPUT, "-s: '%s' is not a place on an axis, as z=12mm", text);
     }
     memcpy(number, text + 2, length);
-    tool_check(tool, parse_double(number, "-s", -1e6, 1e6, place, &error), &error);
+    TOOL_TRY(tool, parse_double(number, "-s", -1e6, 1e6, place, &error));
     if (text[2 + length] != '\0') {
-        tool_check(tool, parse_length_unit(text + 2 + length, "-s", &unit, &error), &error);
+        TOOL_TRY(tool, parse_length_unit(text + 2 + length, "-s", &unit, &error));
     }
     *place *= unit;
 }
@@ -333,10 +330,9 @@ void label_image_read(const struct tool *tool, const char *file, const struct la
                       struct label_image *image)
 {
     struct image source;
-    struct error error;
     *image = (struct label_image){0};
     if (options->table != NULL) {
-        tool_check(tool, label_table_read(options->table, &image->table, &error), &error);
+        TOOL_TRY(tool, label_table_read(options->table, &image->table, &error));
     }
     tool_read_image(tool, file == NULL ? "-" : file, &source);
     if (source.components > 1) {

@@ -188,23 +188,9 @@ done:
     return status;
 }
 
-static void free_names(struct mesh_names *names)
-{
-    for (int32_t i = 0; i < names->count; i++) {
-        free(names->name[i]);
-    }
-    free(names->name);
-}
-
 void label_mesh_free(struct mesh *mesh)
 {
-    free(mesh->cell_region);
-    free(mesh->facets);
-    free(mesh->facet_set);
-    free(mesh->set_ptr);
-    free(mesh->set_idx);
-    free_names(&mesh->regions);
-    free_names(&mesh->facet_sets);
-    free_names(&mesh->node_sets);
-    *mesh = (struct mesh){0};
+    mesh->x = NULL; /* borrowed, as are the cells */
+    mesh->cells = NULL;
+    mesh_free(mesh);
 }

@@ -20,10 +20,7 @@ static void world_of(const struct label_image *image, int64_t voxel, double worl
     const int64_t *size = image->labels.size;
     int64_t line = voxel / size[0], slice = line / size[1];
     const double at[3] = {(double)(voxel % size[0]), (double)(line % size[1]), (double)slice};
-    for (int d = 0; d < 3; d++) {
-        const double *row = image->to_world[d];
-        world[d] = row[0] * at[0] + row[1] * at[1] + row[2] * at[2] + row[3];
-    }
+    image_map(&image->to_world[0][0], at, world);
 }
 
 static bool is_within(const struct place *place, const struct labels *labels, const double world[3])
@@ -36,23 +33,16 @@ static bool is_within(const struct place *place, const struct labels *labels, co
     if (place->is_ball) {
         return square <= place->radius * place->radius;
     }
-    for (int d = 0; d < 3; d++) {
-        const double *row = place->to_voxel[d];
-        index[d] = row[0] * world[0] + row[1] * world[1] + row[2] * world[2] + row[3];
-    }
+    image_map(&place->to_voxel[0][0], world, index);
     return image_sample(&place->mask, IMAGE_NEAREST, index, value) && value[0] != 0;
 }
 
 /* "X,Y,Z,RADIUS", in 2D "X,Y,RADIUS". */
 static void parse_ball(const struct tool *tool, const char *text, int dim, struct place *place)
 {
-    struct error error;
     double value[4] = {0};
-    char *copy = strdup(text), *rest = copy;
+    char *copy = tool_memory(tool, strdup(text)), *rest = copy;
     int count = 0;
-    if (copy == NULL) {
-        tool_fail(tool, STATUS_SYSTEM, "out of memory");
-    }
     for (const char *word = strsep(&rest, ","); word != NULL; word = strsep(&rest, ",")) {
         bool negative = word[0] == '-';
         if (count == dim + 1) {
@@ -62,7 +52,7 @@ static void parse_ball(const struct tool *tool, const char *text, int dim, struc
             value[count++] = 0; /* 0 and 0mm, which is no length above 0 */
             continue;
         }
-        tool_check(tool, parse_length(word + negative, "--part", &value[count], &error), &error);
+        TOOL_TRY(tool, parse_length(word + negative, "--part", &value[count], &error));
         value[count] = negative ? -value[count] : value[count];
         count++;
     }
@@ -100,7 +90,6 @@ static int32_t part_label(const struct tool *tool, struct label_image *image, in
             return l;
         }
     }
-    struct error error;
     bool grown = count < UINT16_MAX;
     int32_t **indices[2] = {&image->region, &image->part_of};
     for (int i = 0; i < 2; i++) {
@@ -111,7 +100,7 @@ static int32_t part_label(const struct tool *tool, struct label_image *image, in
     bool *keep = array_grow(image->keep, count + 1, sizeof *keep);
     double *volume = array_grow(image->volume, count + 1, sizeof *volume);
     if (!grown || keep == NULL || volume == NULL) {
-        tool_check(tool, fail_memory(&error, "labels"), &error);
+        TOOL_TRY(tool, fail_memory(&error, "labels"));
     }
     image->keep = keep;
     image->volume = volume;
@@ -147,7 +136,6 @@ static void make_part(const struct tool *tool, const struct place *place, struct
 static void add_part(const struct tool *tool, const char *text, struct label_image *image)
 {
     struct place place = {.is_ball = false};
-    struct error error;
     size_t length = strcspn(text, "=");
     if (text[length] == '\0') {
         tool_fail(tool, STATUS_INPUT, "--part: '%.60s' is not NAME=ball:X,Y,Z,RADIUS or NAME=IMAGE", text);
@@ -155,7 +143,7 @@ static void add_part(const struct tool *tool, const char *text, struct label_ima
     const char *expression = text + length + 1;
     char *name = strndup(text, length);
     char **part = array_grow(image->part, image->part_count + 1, sizeof *part);
-    tool_check(tool, name == NULL || part == NULL ? fail_memory(&error, "a part") : STATUS_OK, &error);
+    TOOL_TRY(tool, name == NULL || part == NULL ? fail_memory(&error, "a part") : STATUS_OK);
     image->part = part;
     check_name(tool, image, name);
     image->part[image->part_count++] = name;

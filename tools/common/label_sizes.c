@@ -1,6 +1,6 @@
 #include "label_sizes.h"
 
-#include "views.h"
+#include "stages/views.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -9,19 +9,15 @@
 bool *label_fine_parse(const struct tool *tool, const struct label_image *image, const char *text,
                        double spacing, double *finest)
 {
-    struct error error;
     bool *fine = NULL;
-    char *copy = strdup(text), *names = copy;
-    if (copy == NULL) {
-        tool_fail(tool, STATUS_SYSTEM, "out of memory");
-    }
+    char *copy = tool_memory(tool, strdup(text)), *names = copy;
     const char *length = strsep(&names, ":");
-    tool_check(tool, parse_length(length, "--fine", finest, &error), &error);
+    TOOL_TRY(tool, parse_length(length, "--fine", finest, &error));
     if (*finest >= spacing) {
         tool_fail(tool, STATUS_INPUT, "--fine: %s is not less than the spacing of -h", length);
     }
     if (names != NULL) {
-        tool_check(tool, NEW_ARRAY(&fine, image->labels.count, &error), &error);
+        TOOL_TRY(tool, NEW_ARRAY(&fine, image->labels.count, &error));
     }
     while (names != NULL) {
         const char *name = strsep(&names, ",");
@@ -40,7 +36,6 @@ bool *label_fine_parse(const struct tool *tool, const struct label_image *image,
 void label_sizes_read(const struct tool *tool, const struct label_image *image, const char *file,
                       struct label_sizes *sizes)
 {
-    struct error error;
     const struct section *section;
     *sizes = (struct label_sizes){0};
     stream_init(&sizes->stream);
@@ -48,9 +43,8 @@ void label_sizes_read(const struct tool *tool, const struct label_image *image, 
         return;
     }
     tool_read(tool, file, &sizes->stream);
-    tool_check(tool, stream_cells(&sizes->stream, true, &sizes->cells, &error), &error);
-    tool_check(tool, stream_need(&sizes->stream, "size", TYPE_F8, 1, "sizefield -b", &section, &error),
-               &error);
+    TOOL_TRY(tool, stream_cells(&sizes->stream, true, &sizes->cells, &error));
+    TOOL_TRY(tool, stream_need(&sizes->stream, "size", TYPE_F8, 1, "sizefield -b", &section, &error));
     if (sizes->cells.dim != image->labels.dim) {
         tool_fail(tool, STATUS_INPUT, "--sizes: cells in %dD, the image is of a body in %dD",
                   sizes->cells.dim, image->labels.dim);

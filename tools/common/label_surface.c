@@ -1,13 +1,12 @@
 #include "label_surface.h"
 
-#include "approx/cells.h"
-#include "output.h"
+#include "target.h"
 
-#include <errno.h>
+#include "approx/cells.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 /* Where facets meet at an edge their nodes move farther than the gap: at most by this factor. */
 static const double most_stretch = 2;
@@ -15,10 +14,7 @@ static const double most_stretch = 2;
 void label_surface_parse(const struct tool *tool, const struct label_image *image, const char *text,
                          struct label_surface_options *options)
 {
-    char *copy = strdup(text);
-    if (copy == NULL) {
-        tool_fail(tool, STATUS_SYSTEM, "out of memory");
-    }
+    char *copy = tool_memory(tool, strdup(text));
     char *outer = copy;
     const char *inner = strsep(&outer, "|");
     options->inner = label_image_find(image, inner);
@@ -141,14 +137,13 @@ static void print_curves(FILE *file, const struct stuffing *stuffing,
 static void print_surface(const struct tool *tool, FILE *file, const struct stuffing *stuffing,
                           const struct label_surface_options *options)
 {
-    struct error error;
     int dim = stuffing->dim;
     int64_t *next = NULL;
     double *mean = NULL, *least = NULL, *place = NULL;
-    tool_check(tool, NEW_ARRAY(&mean, stuffing->node_count * dim, &error), &error);
-    tool_check(tool, NEW_ARRAY(&least, stuffing->node_count, &error), &error);
-    tool_check(tool, NEW_ARRAY(&place, stuffing->node_count * dim, &error), &error);
-    tool_check(tool, NEW_ARRAY(&next, stuffing->node_count, &error), &error);
+    TOOL_TRY(tool, NEW_ARRAY(&mean, stuffing->node_count * dim, &error));
+    TOOL_TRY(tool, NEW_ARRAY(&least, stuffing->node_count, &error));
+    TOOL_TRY(tool, NEW_ARRAY(&place, stuffing->node_count * dim, &error));
+    TOOL_TRY(tool, NEW_ARRAY(&next, stuffing->node_count, &error));
     move_outward(stuffing, options, mean, least, place);
     if (dim == 3) {
         print_triangles(file, stuffing, options, place);
@@ -164,8 +159,7 @@ static void print_surface(const struct tool *tool, FILE *file, const struct stuf
 void label_surface_write(const struct tool *tool, const struct stuffing *stuffing,
                          const struct label_surface_options *options)
 {
-    struct output output;
-    struct error error;
+    struct target target;
     int64_t count = 0;
     for (int64_t f = 0; f < stuffing->facet_count; f++) {
         count += is_chosen(stuffing, options, f);
@@ -173,22 +167,7 @@ void label_surface_write(const struct tool *tool, const struct stuffing *stuffin
     if (count == 0) {
         tool_fail(tool, STATUS_INPUT, "--surface: these labels do not touch");
     }
-    if (tool->output == NULL) {
-        print_surface(tool, stdout, stuffing, options);
-        return;
-    }
-    tool_check(tool, output_open(&output, tool->output, &error), &error);
-    int descriptor = dup(output.descriptor);
-    FILE *file = descriptor >= 0 ? fdopen(descriptor, "w") : NULL;
-    int reason = errno;
-    if (file != NULL) {
-        errno = 0;
-        print_surface(tool, file, stuffing, options);
-        reason = ferror(file) != 0 ? errno : 0;
-        reason = fclose(file) != 0 && reason == 0 ? errno : reason;
-    }
-    if (reason != 0 || file == NULL) {
-        tool_fail(tool, STATUS_SYSTEM, "%s: %s", tool->output, strerror(reason));
-    }
-    tool_check(tool, output_commit(&output, &error), &error);
+    target_open(tool, &target, tool->output);
+    print_surface(tool, target.file, stuffing, options);
+    target_end(tool, &target);
 }

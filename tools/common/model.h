@@ -2,8 +2,11 @@
 #ifndef TOOLS_MODEL_H
 #define TOOLS_MODEL_H
 
-#include "stages.h"
+#include "stages/tables.h"
+#include "stages/views.h"
 
+#include "base/memory.h"
+#include "base/options.h"
 #include "io/scene.h"
 #include "solid/assembly.h"
 
@@ -38,7 +41,11 @@ MUST_CHECK enum status model_interfaces(struct model *model, struct error *error
 MUST_CHECK enum status model_points(struct model *model, const struct scene_displacement *section,
                                     struct condition *condition, struct error *error);
 
-/* An array that the model frees; also on failure. */
+/* *pointer = zeros that the model frees. */
+#define MODEL_ARRAY(model, pointer, count, error)                                                            \
+    model_own((model), *(pointer) = array_new((count), sizeof **(pointer)), (error))
+
+/* An array that the model frees, also on failure; STATUS_SYSTEM where it is NULL. */
 MUST_CHECK enum status model_own(struct model *model, void *array, struct error *error);
 
 /* The facets of the named groups, and the nodes of the named sets, ascending; the model owns them. An error

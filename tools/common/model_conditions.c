@@ -141,8 +141,8 @@ static enum status add_loads(struct model *model, struct error *error)
     /* In time gravity is there from the begin; a state of rest is approached gently. */
     const struct scene_curve curve = {.kind = input->in_time ? SCENE_CURVE_STEP : SCENE_CURVE_SMOOTH};
     struct load *loads;
-    TRY(NEW_ARRAY(&loads, scene->traction_count + scene->force_count + scene->pressure_count, error));
-    TRY(model_own(model, loads, error));
+    TRY(MODEL_ARRAY(model, &loads, scene->traction_count + scene->force_count + scene->pressure_count,
+                    error));
     input->loads = loads;
     memcpy(input->gravity, scene->gravity, sizeof input->gravity);
     if (assembly_has_gravity(input)) {
@@ -167,8 +167,7 @@ static enum status read_surface(struct model *model, const struct scene_contact 
     int dim = model->assembly.cells.dim;
     int64_t count = 0;
     TRY(surface_read(section->rigid, dim, &table, error));
-    TRY(NEW_ARRAY(&corners, table.rows * (dim == 2 ? 4 : 9), error));
-    TRY(model_own(model, corners, error));
+    TRY(MODEL_ARRAY(model, &corners, table.rows * (dim == 2 ? 4 : 9), error));
     for (int64_t b = 0; b < table.block_count && dim == 2; b++) {
         for (int64_t r = table.block_ptr[b]; r + 1 < table.block_ptr[b + 1]; r++) {
             for (int i = 0; i < 4; i++) {
@@ -226,10 +225,8 @@ enum status model_conditions(struct model *model, struct error *error)
     input->pointwise_volume = scene->solver.volume == SCENE_POINTWISE_VOLUME;
     input->node_values = scene->solver.constraint_points == SCENE_NODE_VALUES;
     input->direct = scene->solver.constraints == SCENE_DIRECT;
-    TRY(NEW_ARRAY(&conditions, scene->displacement_count, error));
-    TRY(model_own(model, conditions, error));
-    TRY(NEW_ARRAY(&contacts, scene->contact_count, error));
-    TRY(model_own(model, contacts, error));
+    TRY(MODEL_ARRAY(model, &conditions, scene->displacement_count, error));
+    TRY(MODEL_ARRAY(model, &contacts, scene->contact_count, error));
     input->conditions = conditions;
     input->contacts = contacts;
     for (; input->condition_count < scene->displacement_count; input->condition_count++) {

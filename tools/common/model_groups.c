@@ -1,7 +1,5 @@
 #include "model.h"
 
-#include "names.h"
-
 #include <stdlib.h>
 #include <string.h>
 
@@ -11,29 +9,27 @@ enum status model_facets(struct model *model, const struct scene_label *label, c
     enum status status;
     const struct section *groups;
     struct named_facets facets;
-    char *present = NULL;
+    struct names present = {0};
     bool *wanted = NULL;
     int32_t *chosen;
     int dim = model->assembly.cells.dim;
     *set = (struct facet_set){0};
     TRY(stream_facets(model->stream, true, dim, &facets, error));
     TRY(stream_need(model->stream, "facets.set", TYPE_I4, 1, "nodes", &groups, error));
-    TRY(names_of_section(groups, &present, error));
-    int64_t most = (int64_t)strlen(present) + 1; /* groups, at the most */
-    TRY(NEW_ARRAY(&wanted, most, error));
+    TRY(names_read(groups, &present, error));
+    TRY(NEW_ARRAY(&wanted, present.count, error));
     for (int64_t i = 0; i < names->count; i++) {
-        int64_t group = names_index(present, names->names[i]);
+        int64_t group = names_find(&present, names->names[i]);
         if (group < 0) {
             status = fail(error, STATUS_INPUT, "%s: the mesh has no facet group '%s'; present: %s",
-                          label->where, names->names[i], present[0] != '\0' ? present : "none");
+                          label->where, names->names[i], present.count > 0 ? present.list : "none");
             goto done;
         }
         wanted[group] = true;
     }
-    TRY(NEW_ARRAY(&chosen, facets.count * dim, error));
-    TRY(model_own(model, chosen, error));
+    TRY(MODEL_ARRAY(model, &chosen, facets.count * dim, error));
     for (int64_t f = 0; f < facets.count; f++) {
-        if (facets.set[f] >= 0 && facets.set[f] < most && wanted[facets.set[f]]) {
+        if (facets.set[f] >= 0 && facets.set[f] < present.count && wanted[facets.set[f]]) {
             memcpy(chosen + set->count * dim, facets.facet + f * dim, (size_t)dim * sizeof *chosen);
             set->count++;
         }
@@ -43,7 +39,7 @@ enum status model_facets(struct model *model, const struct scene_label *label, c
         status = fail(error, STATUS_INPUT, "%s: its facet groups are empty", label->where);
     }
 done:
-    free(present);
+    names_free(&present);
     free(wanted);
     return status;
 }
@@ -54,7 +50,7 @@ enum status model_nodes(struct model *model, const struct scene_label *label, co
     enum status status;
     const struct section *ptr, *idx;
     struct neighbours sets;
-    char *present = NULL;
+    struct names present = {0};
     bool *member = NULL;
     int32_t *chosen;
     int64_t node_count = model->assembly.cells.node_count;
@@ -62,21 +58,20 @@ enum status model_nodes(struct model *model, const struct scene_label *label, co
     TRY(stream_need(model->stream, "sets.ptr", TYPE_I8, 1, "nodes", &ptr, error));
     TRY(stream_need(model->stream, "sets.idx", TYPE_I4, 1, "nodes", &idx, error));
     TRY(stream_neighbours(model->stream, "sets", ptr->rows - 1, node_count, &sets, error));
-    TRY(names_of_section(ptr, &present, error));
+    TRY(names_read(ptr, &present, error));
     TRY(NEW_ARRAY(&member, node_count, error));
     for (int64_t i = 0; i < names->count; i++) {
-        int64_t set = names_index(present, names->names[i]);
+        int64_t set = names_find(&present, names->names[i]);
         if (set < 0 || set >= sets.count) {
             status = fail(error, STATUS_INPUT, "%s: the mesh has no node set '%s'; present: %s", label->where,
-                          names->names[i], present[0] != '\0' ? present : "none");
+                          names->names[i], present.count > 0 ? present.list : "none");
             goto done;
         }
         for (int64_t k = sets.ptr[set]; k < sets.ptr[set + 1]; k++) {
             member[sets.idx[k]] = true;
         }
     }
-    TRY(NEW_ARRAY(&chosen, node_count, error));
-    TRY(model_own(model, chosen, error));
+    TRY(MODEL_ARRAY(model, &chosen, node_count, error));
     *nodes = chosen;
     for (int64_t n = 0; n < node_count; n++) {
         if (member[n]) {
@@ -84,7 +79,7 @@ enum status model_nodes(struct model *model, const struct scene_label *label, co
         }
     }
 done:
-    free(present);
+    names_free(&present);
     free(member);
     return status;
 }

@@ -1,7 +1,7 @@
 /* Interfaces between materials, and whether supports stop there. */
 #include "model.h"
-#include "names.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -40,18 +40,10 @@ static void look(const struct assembly *input, const int32_t *region, struct wor
     }
 }
 
-/* The name of region `index` of the list. */
-static void name_of(const char *names, int32_t index, char name[64])
-{
-    for (; index > 0; index--) {
-        names += strcspn(names, ",") + 1;
-    }
-    snprintf(name, 64, "%.*s", (int)strcspn(names, ","), names);
-}
-
 /* What to say to support: the regions by falling modulus, without the last. */
-static void remedy(const char *names, const double *modulus, int64_t count, char text[256])
+static void remedy(const struct names *names, const double *modulus, char text[256])
 {
+    int64_t count = names->count;
     bool done[MOST_NAMED + 1] = {false};
     text[0] = '\0';
     if (count > MOST_NAMED + 1) {
@@ -59,14 +51,12 @@ static void remedy(const char *names, const double *modulus, int64_t count, char
     }
     for (int64_t k = 0; count <= MOST_NAMED + 1 && k + 1 < count; k++) {
         int32_t stiffest = -1;
-        char name[64];
         for (int32_t r = 0; r < count; r++) {
             stiffest = !done[r] && (stiffest < 0 || modulus[r] > modulus[stiffest]) ? r : stiffest;
         }
         done[stiffest] = true;
-        name_of(names, stiffest, name);
         size_t length = strlen(text);
-        snprintf(text + length, 256 - length, "%s%s", k > 0 ? "," : "", name);
+        snprintf(text + length, 256 - length, "%s%s", k > 0 ? "," : "", names->name[stiffest]);
     }
 }
 
@@ -75,40 +65,33 @@ enum status model_interfaces(struct model *model, struct error *error)
     enum status status;
     const struct assembly *input = &model->assembly;
     const struct scene_output *output = &model->scene->output;
-    const struct section *section;
-    char *names = NULL, first[64], second[64], regions[256];
+    struct cell_regions regions;
+    char order[256];
     double *modulus = NULL;
-    int64_t count = 1;
     struct worst crossed = {.ratio = 1.0}, softer = {.ratio = 1.0};
-    TRY(stream_need(model->stream, "cells.region", TYPE_I4, 1, "nodes", &section, error));
-    TRY(names_of_section(section, &names, error));
-    for (const char *at = names; *at != '\0'; at++) {
-        count += *at == ',';
-    }
-    TRY(NEW_ARRAY(&modulus, count, error));
-    const int32_t *region = section->data;
+    TRY(stream_regions(model->stream, &input->cells, &regions, error));
+    TRY(NEW_ARRAY(&modulus, regions.names.count, error));
     for (int32_t c = 0; c < input->cells.count; c++) {
-        modulus[region[c]] = modulus_of(&input->materials, c);
+        modulus[regions.of_cell[c]] = modulus_of(&input->materials, c);
     }
-    look(input, region, &crossed, &softer);
-    remedy(names, modulus, count, regions);
+    look(input, regions.of_cell, &crossed, &softer);
+    remedy(&regions.names, modulus, order);
     const struct worst *worst = softer.ratio > 1.0 ? &softer : &crossed;
-    name_of(names, worst->region[0], first);
-    name_of(names, worst->region[1], second);
+    const char *first = regions.names.name[worst->region[0]], *second = regions.names.name[worst->region[1]];
     if (softer.ratio > 1.0) {
         (void)fail(
             &model->interfaces, STATUS_OK,
             "the interface of %s and %s has the shape functions of %s, the softer: the stress in %s is "
             "less exact: support -i %s",
-            first, second, second, first, regions);
+            first, second, second, first, order);
     } else if (crossed.ratio > 1.0 && (output->stress || output->strain || output->pressure)) {
         (void)fail(&model->interfaces, STATUS_OK,
                    "supports reach across the boundary of %s and %s, where the shear modulus jumps %.3g : 1: "
                    "the stress there is smoothed: support -i %s",
-                   first, second, crossed.ratio, regions);
+                   first, second, crossed.ratio, order);
     }
 done:
-    free(names);
+    names_free(&regions.names);
     free(modulus);
     return status;
 }

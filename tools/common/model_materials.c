@@ -1,7 +1,5 @@
 #include "model.h"
 
-#include "names.h"
-
 #include "io/table.h"
 
 #include <stdlib.h>
@@ -61,8 +59,7 @@ static enum status add_point_table(struct model *model, int64_t m, struct error 
     TRY(table_read(section->table, dim + 2, dim + 2, &table, error));
     struct material *grown = array_grow(list->items, list->count + table.rows, sizeof *grown);
     if (grown == NULL) {
-        status = fail_memory(error, "materials");
-        goto done;
+        TRY(fail_memory(error, "materials"));
     }
     list->items = grown;
     for (int64_t q = 0; q < model->assembly.point_count; q++) {
@@ -86,21 +83,21 @@ done:
     return status;
 }
 
-/* Material of each region: -1 where the scene names none. */
-static enum status materials_of_regions(const struct scene *scene, const char *names, int64_t region_count,
+/* The material of each region: material[names->count], -1 where the scene names none. */
+static enum status materials_of_regions(const struct scene *scene, const struct names *names,
                                         int32_t *material, struct error *error)
 {
-    for (int64_t r = 0; r < region_count; r++) {
+    for (int64_t r = 0; r < names->count; r++) {
         material[r] = -1;
     }
     for (int64_t m = 0; m < scene->material_count; m++) {
         const struct scene_material *section = &scene->materials[m];
         for (int64_t i = 0; i < section->regions.count; i++) {
-            int64_t region = names_index(names, section->regions.names[i]);
-            if (region < 0 || region >= region_count) {
+            int64_t region = names_find(names, section->regions.names[i]);
+            if (region < 0) {
                 return fail(error, STATUS_INPUT, "%s: the mesh has no region '%s'; present: %s",
                             section->label.where, section->regions.names[i],
-                            names[0] != '\0' ? names : "none");
+                            names->count > 0 ? names->list : "none");
             }
             material[region] = (int32_t)m;
         }
@@ -112,36 +109,25 @@ static enum status materials_of_regions(const struct scene *scene, const char *n
 static enum status materials_of_cells(struct model *model, struct error *error)
 {
     enum status status;
-    const struct section *region;
     const struct cells *cells = &model->assembly.cells;
-    char *names = NULL;
+    struct cell_regions regions;
     int32_t *material = NULL;
-    int64_t region_count = 1;
-    TRY(stream_need(model->stream, "cells.region", TYPE_I4, 1, "nodes", &region, error));
-    TRY(names_of_section(region, &names, error));
-    const int32_t *of_cell = region->data;
-    for (const char *at = names; *at != '\0'; at++) {
-        region_count += *at == ',';
-    }
-    TRY(NEW_ARRAY(&material, region_count, error));
+    TRY(stream_regions(model->stream, cells, &regions, error));
+    TRY(NEW_ARRAY(&material, regions.names.count, error));
     TRY(NEW_ARRAY(&model->assembly.materials.of_cell, cells->count, error));
-    TRY(materials_of_regions(model->scene, names, region_count, material, error));
-    if (region->rows != cells->count) {
-        status = fail(error, STATUS_INPUT, "cells.region: does not fit the cells");
-        goto done;
-    }
+    TRY(materials_of_regions(model->scene, &regions.names, material, error));
     for (int64_t c = 0; c < cells->count; c++) {
-        if (of_cell[c] < 0 || of_cell[c] >= region_count || material[of_cell[c]] < 0) {
-            status = fail(
-                error, STATUS_INPUT,
-                "%s: region %d of the mesh (of %s) has no material: name it, or leave it out with nodes -r",
-                model->scene->path, of_cell[c], names);
-            goto done;
+        int32_t region = regions.of_cell[c];
+        if (material[region] < 0) {
+            TRY(fail(error, STATUS_INPUT,
+                     "%s: region %d of the mesh (of %s) has no material: name it, or leave it out with nodes "
+                     "-r",
+                     model->scene->path, region, regions.names.list));
         }
-        model->assembly.materials.of_cell[c] = material[of_cell[c]];
+        model->assembly.materials.of_cell[c] = material[region];
     }
 done:
-    free(names);
+    names_free(&regions.names);
     free(material);
     return status;
 }

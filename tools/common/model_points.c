@@ -1,6 +1,8 @@
 /* Measured points of a section: what the table says of them, and the field there. */
 #include "model.h"
 
+#include "stages/stages.h"
+
 #include "approx/field.h"
 #include "io/table.h"
 
@@ -33,8 +35,7 @@ static enum status read_section(struct point_section *p, struct error *error)
     double unit = p->section->table_unit;
     TRY(table_read_open(p->section->table, 2 * dim, 2 * dim + 1, dim, 2 * dim, &p->table, error));
     int64_t rows = p->table.rows, cols = p->table.cols;
-    TRY(NEW_ARRAY(&values, rows * (2 * dim + 1), error));
-    TRY(model_own(p->model, values, error));
+    TRY(MODEL_ARRAY(p->model, &values, rows * (2 * dim + 1), error));
     double *x = values, *u = x + rows * dim, *deviation = u + rows * dim;
     p->condition->measured = (struct measured){dim, rows, x, u, deviation};
     for (int64_t i = 0; i < rows; i++) {
@@ -111,8 +112,7 @@ static enum status find_field(struct point_section *p, struct error *error)
     TRY(stream_need(p->model->stream, "support.radius", TYPE_F8, 1, "support", &radius, error));
     TRY(stage_recorded(p->model->stream, "support", cells->dim, &recorded, error));
     if (radius->rows != cells->node_count) {
-        status = fail(error, STATUS_INPUT, "support.radius: does not fit the nodes: run support again");
-        goto done;
+        TRY(fail(error, STATUS_INPUT, "support.radius: does not fit the nodes: run support again"));
     }
     TRY(field_table_build(&recorded.support, &recorded.shapes, cells, radius->data, measured->count,
                           measured->x, p->section->table, &field, error));

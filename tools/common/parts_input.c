@@ -23,12 +23,8 @@ bool parts_are_named(const char *operand)
 /* The file of a part; to be freed. */
 static char *file_of(const struct tool *tool, const char *operand, int64_t number)
 {
-    char *file;
     const char *at = strstr(operand, "%d");
-    if (asprintf(&file, "%.*s%lld%s", (int)(at - operand), operand, (long long)number, at + 2) < 0) {
-        tool_fail(tool, STATUS_SYSTEM, "out of memory");
-    }
-    return file;
+    return tool_text(tool, "%.*s%lld%s", (int)(at - operand), operand, (long long)number, at + 2);
 }
 
 static enum status fail_missing(const char *file, int64_t number, int64_t count, struct error *error)
@@ -111,9 +107,8 @@ static int64_t begin(const struct tool *tool, const char *operand, struct stream
 /* The checksums of all parts as one. */
 static uint32_t identify(const struct tool *tool, const struct rejoin *rejoin, const int64_t *first)
 {
-    struct error error;
     uint32_t *each;
-    tool_check(tool, NEW_ARRAY(&each, rejoin->part_count, &error), &error);
+    TOOL_TRY(tool, NEW_ARRAY(&each, rejoin->part_count, &error));
     for (int64_t k = 0; k < rejoin->part_count; k++) {
         each[k] = rejoin->part[k].elsewhere ? 0 : checkpoint_identify_input(&rejoin->part[k].stream);
     }
@@ -127,9 +122,8 @@ static uint32_t identify(const struct tool *tool, const struct rejoin *rejoin, c
 static void list_readers(const struct tool *tool, const struct rejoin *rejoin, const int64_t *first,
                          struct parts_input *parts)
 {
-    struct error error;
     const struct ranks *ranks = process_ranks();
-    tool_check(tool, NEW_ARRAY(&parts->face_reader, rejoin->rows[ROWS_OF_FACES], &error), &error);
+    TOOL_TRY(tool, NEW_ARRAY(&parts->face_reader, rejoin->rows[ROWS_OF_FACES], &error));
     for (int64_t k = 0; k < rejoin->part_count; k++) {
         const struct rejoin_part *part = &rejoin->part[k];
         for (int64_t f = 0; f < part->count[ROWS_OF_FACES]; f++) {
@@ -160,20 +154,9 @@ static enum status read_own(struct rejoin *rejoin, const char *operand, const in
     return status;
 }
 
-/* How the first part was made. */
-static void take_provenance(struct rejoin *rejoin, struct stream *stream)
-{
-    struct stream *from = &rejoin->part[0].stream;
-    stream->provenance = from->provenance;
-    stream->provenance_count = from->provenance_count;
-    from->provenance = NULL;
-    from->provenance_count = 0;
-}
-
 void parts_read(const struct tool *tool, const char *operand, struct stream *stream,
                 struct parts_input *parts)
 {
-    struct error error;
     const struct ranks *ranks = process_ranks();
     struct rejoin rejoin = {.tool = tool};
     struct stream start;
@@ -187,18 +170,18 @@ void parts_read(const struct tool *tool, const char *operand, struct stream *str
     stream_init(stream);
     stream_init(&start);
     rejoin.part_count = begin(tool, operand, &start);
-    tool_check(tool, NEW_ARRAY(&rejoin.part, rejoin.part_count, &error), &error);
-    tool_check(tool, ranks_share(ranks, rejoin.part_count, NULL, &first, &error), &error);
-    tool_check(tool, ranks_agree(ranks, read_own(&rejoin, operand, first, &start, &error), &error), &error);
+    TOOL_TRY(tool, NEW_ARRAY(&rejoin.part, rejoin.part_count, &error));
+    TOOL_TRY(tool, ranks_share(ranks, rejoin.part_count, NULL, &first, &error));
+    TOOL_TRY(tool, ranks_agree(ranks, read_own(&rejoin, operand, first, &start, &error), &error));
     parts->identity = identify(tool, &rejoin, first);
-    tool_check(tool, parts_share_small(&rejoin, first, &packed, &error), &error);
+    TOOL_TRY(tool, parts_share_small(&rejoin, first, &packed, &error));
     rejoin_streams(&rejoin);
-    tool_check(tool, ranks_agree(ranks, rejoin_check_large(&rejoin, &error), &error), &error);
+    TOOL_TRY(tool, ranks_agree(ranks, rejoin_check_large(&rejoin, &error), &error));
     rejoin_sections(&rejoin, stream);
     if (ranks != NULL && stream_find(stream, "face.ptr") != NULL) {
         list_readers(tool, &rejoin, first, parts);
     }
-    take_provenance(&rejoin, stream);
+    stream_inherit(stream, &rejoin.part[0].stream); /* how the first part was made */
     for (int64_t k = 0; k < rejoin.part_count; k++) {
         free((char *)rejoin.part[k].file);
     }

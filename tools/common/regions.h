@@ -2,15 +2,12 @@
 #ifndef TOOLS_REGIONS_H
 #define TOOLS_REGIONS_H
 
-#include "approx/cells.h"
-#include "io/stream.h"
+#include "stages/views.h"
 
 struct regions {
     int64_t node_count;
-    int count;
-    char **name;
-    char *list;   /* the names' storage */
-    bool *member; /* node_count * count: a node is of the region of every cell at it */
+    struct names names;
+    bool *member; /* node_count * names.count: a node is of the region of every cell at it */
 };
 
 /* None where the stream has no cells or no cells.region; to be freed also on failure. */

@@ -10,6 +10,14 @@ static const char *file_of(const struct rejoin *rejoin, int64_t k)
     return rejoin->part[k].file;
 }
 
+void rejoin_check(const struct rejoin *rejoin, const struct rejoin_part *part, enum status status,
+                  const struct error *error)
+{
+    if (status != STATUS_OK) {
+        tool_fail(rejoin->tool, status, "%s: %s", part->file, error->text);
+    }
+}
+
 static int64_t attribute(const struct rejoin *rejoin, const struct rejoin_part *part, const char *key)
 {
     struct error error;
@@ -29,10 +37,8 @@ static const int32_t *numbers(const struct rejoin *rejoin, const struct rejoin_p
 {
     struct error error;
     const struct section *section;
-    enum status status = stream_need(&part->stream, name, TYPE_I4, 1, "part", &section, &error);
-    if (status != STATUS_OK) {
-        tool_fail(rejoin->tool, status, "%s: %s", part->file, error.text);
-    }
+    rejoin_check(rejoin, part, stream_need(&part->stream, name, TYPE_I4, 1, "part", &section, &error),
+                 &error);
     const int32_t *value = section->data;
     if (section->rows != rows) {
         tool_fail(rejoin->tool, STATUS_INPUT,
@@ -61,10 +67,7 @@ static void view_part(struct rejoin *rejoin, struct rejoin_part *part)
     if (!section_attribute(node, "cut", part->cut, sizeof part->cut)) {
         tool_fail(rejoin->tool, STATUS_INPUT, "%s: part.node: no cut=: not written by part", file);
     }
-    enum status status = stream_cells(&part->stream, true, &part->cells, &error);
-    if (status != STATUS_OK) {
-        tool_fail(rejoin->tool, status, "%s: %s", file, error.text);
-    }
+    rejoin_check(rejoin, part, stream_cells(&part->stream, true, &part->cells, &error), &error);
     part->node =
         numbers(rejoin, part, "part.node", part->cells.node_count, 0, attribute(rejoin, part, "nodes"), true);
     part->owner = numbers(rejoin, part, "part.owner", part->cells.node_count, 0, part->parts, false);
@@ -122,7 +125,6 @@ static void check_versions(const struct rejoin *rejoin, const struct rejoin_part
 static void sort_parts(struct rejoin *rejoin)
 {
     const struct tool *tool = rejoin->tool;
-    struct error error;
     struct rejoin_part *sorted, *first = &rejoin->part[0];
     for (int64_t k = 0; k < rejoin->part_count; k++) {
         const struct rejoin_part *part = &rejoin->part[k];
@@ -146,7 +148,7 @@ static void sort_parts(struct rejoin *rejoin)
         }
     }
     check_numbers(rejoin);
-    tool_check(tool, NEW_ARRAY(&sorted, first->parts, &error), &error);
+    TOOL_TRY(tool, NEW_ARRAY(&sorted, first->parts, &error));
     for (int64_t k = 0; k < rejoin->part_count; k++) {
         sorted[rejoin->part[k].number] = rejoin->part[k];
     }
@@ -157,15 +159,13 @@ static void sort_parts(struct rejoin *rejoin)
 int32_t *rejoin_new_rows(const struct rejoin *rejoin, struct rejoin_part *part, enum rows_of kind,
                          int64_t count)
 {
-    struct error error;
-    tool_check(rejoin->tool, NEW_ARRAY(&part->to[kind], count, &error), &error);
+    TOOL_TRY(rejoin->tool, NEW_ARRAY(&part->to[kind], count, &error));
     part->count[kind] = count;
     return part->to[kind];
 }
 
 void rejoin_check_rows(const struct rejoin *rejoin, enum rows_of kind, const char *called)
 {
-    struct error error;
     bool *found;
     int64_t total = 0;
     for (int64_t k = 0; k < rejoin->part_count; k++) {
@@ -178,7 +178,7 @@ void rejoin_check_rows(const struct rejoin *rejoin, enum rows_of kind, const cha
         tool_fail(rejoin->tool, STATUS_INPUT, "%s: %lld rows in all parts, not %lld: cut again", called,
                   (long long)total, (long long)rejoin->rows[kind]);
     }
-    tool_check(rejoin->tool, NEW_ARRAY(&found, total, &error), &error);
+    TOOL_TRY(rejoin->tool, NEW_ARRAY(&found, total, &error));
     for (int64_t k = 0; k < rejoin->part_count; k++) {
         const struct rejoin_part *part = &rejoin->part[k];
         for (int64_t i = 0; i < part->count[kind]; i++) {
@@ -198,7 +198,6 @@ void rejoin_check_rows(const struct rejoin *rejoin, enum rows_of kind, const cha
 /* Nodes and cells of the whole. */
 static void map_body(struct rejoin *rejoin)
 {
-    struct error error;
     int vertices = rejoin->dim + 1;
     for (int64_t k = 0; k < rejoin->part_count; k++) {
         struct rejoin_part *part = &rejoin->part[k];
@@ -215,8 +214,8 @@ static void map_body(struct rejoin *rejoin)
     rejoin->rows[ROWS_CELLS] = attribute(rejoin, &rejoin->part[0], "cells");
     rejoin_check_rows(rejoin, ROWS_NODES, "part.node");
     rejoin_check_rows(rejoin, ROWS_CELLS, "part.cell");
-    tool_check(rejoin->tool, NEW_ARRAY(&rejoin->x, rejoin->rows[ROWS_NODES] * rejoin->dim, &error), &error);
-    tool_check(rejoin->tool, NEW_ARRAY(&rejoin->cell, rejoin->rows[ROWS_CELLS] * vertices, &error), &error);
+    TOOL_TRY(rejoin->tool, NEW_ARRAY(&rejoin->x, rejoin->rows[ROWS_NODES] * rejoin->dim, &error));
+    TOOL_TRY(rejoin->tool, NEW_ARRAY(&rejoin->cell, rejoin->rows[ROWS_CELLS] * vertices, &error));
     for (int64_t k = 0; k < rejoin->part_count; k++) {
         const struct rejoin_part *part = &rejoin->part[k];
         for (int64_t i = 0; i < part->cells.node_count; i++) {
@@ -233,18 +232,17 @@ static void map_body(struct rejoin *rejoin)
 /* Nodes at which a part lacks cells: no list of what is its own may hold them. */
 static void find_edges(struct rejoin *rejoin)
 {
-    struct error error;
     int vertices = rejoin->dim + 1;
     int32_t *degree;
-    tool_check(rejoin->tool, NEW_ARRAY(&degree, rejoin->rows[ROWS_NODES], &error), &error);
+    TOOL_TRY(rejoin->tool, NEW_ARRAY(&degree, rejoin->rows[ROWS_NODES], &error));
     for (int64_t i = 0; i < rejoin->rows[ROWS_CELLS] * vertices; i++) {
         degree[rejoin->cell[i]]++;
     }
     for (int64_t k = 0; k < rejoin->part_count; k++) {
         struct rejoin_part *part = &rejoin->part[k];
         int32_t *here;
-        tool_check(rejoin->tool, NEW_ARRAY(&here, part->cells.node_count, &error), &error);
-        tool_check(rejoin->tool, NEW_ARRAY(&part->at_edge, part->cells.node_count, &error), &error);
+        TOOL_TRY(rejoin->tool, NEW_ARRAY(&here, part->cells.node_count, &error));
+        TOOL_TRY(rejoin->tool, NEW_ARRAY(&part->at_edge, part->cells.node_count, &error));
         for (int64_t i = 0; i < part->cells.count * vertices; i++) {
             here[part->cells.node[i]]++;
         }
@@ -284,9 +282,8 @@ static void map_listed(struct rejoin *rejoin, enum rows_of kind, const char *nam
 /* Integration points follow their cells. */
 static void map_points(struct rejoin *rejoin)
 {
-    struct error error;
     int64_t *begin, cells = rejoin->rows[ROWS_CELLS];
-    tool_check(rejoin->tool, NEW_ARRAY(&begin, cells + 2, &error), &error);
+    TOOL_TRY(rejoin->tool, NEW_ARRAY(&begin, cells + 2, &error));
     for (int pass = 0; pass < 2; pass++) {
         for (int64_t k = 0; k < rejoin->part_count; k++) {
             struct rejoin_part *part = &rejoin->part[k];
@@ -323,9 +320,8 @@ static void map_points(struct rejoin *rejoin)
 
 void rejoin_begin(struct rejoin *rejoin, const struct tool *tool, char *const files[], int64_t count)
 {
-    struct error error;
     *rejoin = (struct rejoin){.tool = tool, .part_count = count};
-    tool_check(tool, NEW_ARRAY(&rejoin->part, count, &error), &error);
+    TOOL_TRY(tool, NEW_ARRAY(&rejoin->part, count, &error));
     for (int64_t k = 0; k < count; k++) {
         rejoin->part[k].file = files[k];
         tool_read(tool, files[k], &rejoin->part[k].stream);

@@ -4,7 +4,7 @@
 #define TOOLS_REJOIN_H
 
 #include "tool.h"
-#include "views.h"
+#include "stages/views.h"
 
 /* What the rows of a section stand for. */
 enum rows_of {

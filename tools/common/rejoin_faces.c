@@ -1,6 +1,6 @@
 #include "rejoin_private.h"
 
-#include "stages.h"
+#include "stages/stages.h"
 
 #include "approx/face_rows.h"
 
@@ -67,14 +67,13 @@ static void map_face_rows(struct rejoin *rejoin, struct rejoin_part *part, const
 /* The side of each cell of the whole, for the caller to free; NULL where supports stop at no interfaces. */
 static int32_t *whole_sides(const struct rejoin *rejoin)
 {
-    struct error error;
     int32_t *side = NULL;
     for (int64_t k = 0; k < rejoin->part_count; k++) {
         const struct rejoin_part *part = &rejoin->part[k];
         const int32_t *of_part;
-        tool_check(rejoin->tool, stage_sides(&part->stream, "support", &of_part, &error), &error);
+        TOOL_TRY(rejoin->tool, stage_sides(&part->stream, "support", &of_part, &error));
         if (of_part != NULL && side == NULL) {
-            tool_check(rejoin->tool, NEW_ARRAY(&side, rejoin->rows[ROWS_CELLS], &error), &error);
+            TOOL_TRY(rejoin->tool, NEW_ARRAY(&side, rejoin->rows[ROWS_CELLS], &error));
         }
         for (int64_t c = 0; of_part != NULL && c < part->cells.count; c++) {
             side[part->cell[c]] = of_part[c];
@@ -99,10 +98,7 @@ void rejoin_map_faces(struct rejoin *rejoin)
                                 .node = rejoin->cell};
     for (int64_t k = 0; k < rejoin->part_count; k++) {
         struct rejoin_part *part = &rejoin->part[k];
-        enum status status = stream_faces(&part->stream, &part->cells, &part->faces, &error);
-        if (status != STATUS_OK) {
-            tool_fail(tool, status, "%s: %s", part->file, error.text);
-        }
+        rejoin_check(rejoin, part, stream_faces(&part->stream, &part->cells, &part->faces, &error), &error);
     }
     tool_check(tool, faces_build(&whole, boundary_only, &rejoin->faces, &error), &error);
     if (side != NULL) {

@@ -72,9 +72,7 @@ static void *new_rows(const struct rejoin *rejoin, const char *name, int64_t row
 static void put(const struct rejoin *rejoin, struct stream *stream, const char *name, enum element_type type,
                 int64_t rows, int64_t cols, const char *attributes, void *data)
 {
-    struct error error;
-    tool_check(rejoin->tool, stream_put(stream, name, type, rows, cols, attributes, data, true, &error),
-               &error);
+    TOOL_TRY(rejoin->tool, stream_put(stream, name, type, rows, cols, attributes, data, true, &error));
 }
 
 /* Numbers of nodes or cells of a part become those of the whole. */
@@ -186,13 +184,12 @@ done:
 
 static void view_lists(const struct rejoin *rejoin, struct joined_lists *joined)
 {
-    struct error error;
-    tool_check(rejoin->tool, NEW_ARRAY(&joined->of, rejoin->part_count, &error), &error);
-    tool_check(rejoin->tool, NEW_ARRAY(&joined->ptr, rejoin->rows[joined->rows] + 1, &error), &error);
+    TOOL_TRY(rejoin->tool, NEW_ARRAY(&joined->of, rejoin->part_count, &error));
+    TOOL_TRY(rejoin->tool, NEW_ARRAY(&joined->ptr, rejoin->rows[joined->rows] + 1, &error));
     for (int64_t k = 0; k < rejoin->part_count; k++) {
         const struct rejoin_part *part = &rejoin->part[k];
         struct neighbours *of = &joined->of[k];
-        tool_check(rejoin->tool, view_part(rejoin, k, joined->prefix, joined->rows, of, &error), &error);
+        TOOL_TRY(rejoin->tool, view_part(rejoin, k, joined->prefix, joined->rows, of, &error));
         for (int64_t i = 0; i < of->count; i++) {
             int32_t to = part->to[joined->rows][i];
             if (to >= 0) {
@@ -265,7 +262,6 @@ static int by_pair(const void *a, const void *b)
 
 static void put_around(const struct rejoin *rejoin, struct stream *stream, const struct joined_lists *joined)
 {
-    struct error error;
     char name[64];
     const char *attributes = "";
     int64_t most = 0, count = 0, *pair;
@@ -277,7 +273,7 @@ static void put_around(const struct rejoin *rejoin, struct stream *stream, const
         attributes = section != NULL ? section->attributes : attributes;
         most += joined->of[k].around.count;
     }
-    tool_check(rejoin->tool, NEW_ARRAY(&seen, most, &error), &error);
+    TOOL_TRY(rejoin->tool, NEW_ARRAY(&seen, most, &error));
     for (int64_t k = 0; k < rejoin->part_count; k++) {
         const struct neighbours *of = &joined->of[k];
         int64_t row = 0;
@@ -290,8 +286,8 @@ static void put_around(const struct rejoin *rejoin, struct stream *stream, const
     }
     if (count > 0) {
         qsort(seen, (size_t)count, sizeof *seen, by_pair);
-        tool_check(rejoin->tool, NEW_ARRAY(&pair, count, &error), &error);
-        tool_check(rejoin->tool, NEW_ARRAY(&image, count * rejoin->dim, &error), &error);
+        TOOL_TRY(rejoin->tool, NEW_ARRAY(&pair, count, &error));
+        TOOL_TRY(rejoin->tool, NEW_ARRAY(&image, count * rejoin->dim, &error));
         for (int64_t i = 0; i < count; i++) {
             pair[i] = seen[i].pair;
             memcpy(image + i * rejoin->dim, seen[i].offset, (size_t)rejoin->dim * sizeof *image);
@@ -363,11 +359,9 @@ static bool put_faces(const struct rejoin *rejoin, struct stream *stream, const 
                     {"faces.row", FACE_ROWS(rejoin->dim), faces->row}};
     for (int i = 0; i < 3; i++) {
         if (strcmp(sections[i].name, name) == 0 && sections[i].values != NULL) {
-            int64_t cols = sections[i].cols;
-            int32_t *data = new_rows(rejoin, name, faces->count * cols, sizeof *data);
-            memcpy(data, sections[i].values, (size_t)(faces->count * cols) * sizeof *data);
-            put(rejoin, stream, name, TYPE_I4, faces->count, cols,
-                section_of(rejoin, 0, name, NULL)->attributes, data);
+            TOOL_TRY(rejoin->tool, stream_put_copy(stream, name, TYPE_I4, faces->count, sections[i].cols,
+                                                   section_of(rejoin, 0, name, NULL)->attributes,
+                                                   sections[i].values, &error));
             return true;
         }
     }
@@ -377,10 +371,9 @@ static bool put_faces(const struct rejoin *rejoin, struct stream *stream, const 
 /* Where each set ends, from the members that the parts own. */
 static void put_sets(const struct rejoin *rejoin, struct stream *stream)
 {
-    struct error error;
     const struct section *first = section_of(rejoin, 0, "sets.ptr", NULL);
     int64_t *ptr;
-    tool_check(rejoin->tool, NEW_ARRAY(&ptr, first->rows, &error), &error);
+    TOOL_TRY(rejoin->tool, NEW_ARRAY(&ptr, first->rows, &error));
     for (int64_t k = 0; k < rejoin->part_count; k++) {
         const struct rejoin_part *part = &rejoin->part[k];
         const struct section *section = section_of(rejoin, k, "sets.ptr", first);

@@ -81,16 +81,13 @@ void run_fail(struct run *run, enum status status, const char *format, ...)
 void run_put(const struct run *run, const char *name, int64_t rows, int64_t cols, const char *attributes,
              double *values)
 {
-    struct error error;
-    tool_check(run->tool,
-               stream_put(run->stream, name, TYPE_F8, rows, cols, attributes, values, true, &error), &error);
+    TOOL_TRY(run->tool, stream_put(run->stream, name, TYPE_F8, rows, cols, attributes, values, true, &error));
 }
 
 double *run_new_values(const struct run *run, int64_t count)
 {
-    struct error error;
     double *values;
-    tool_check(run->tool, NEW_ARRAY(&values, count, &error), &error);
+    TOOL_TRY(run->tool, NEW_ARRAY(&values, count, &error));
     return values;
 }
 

@@ -10,11 +10,8 @@
 /* Put a section of another stream, which outlives this one. */
 static void share(const struct run *run, struct stream *stream, const struct section *section)
 {
-    struct error error;
-    tool_check(run->tool,
-               stream_put(stream, section->name, section->type, section->rows, section->cols,
-                          section->attributes, section->data, false, &error),
-               &error);
+    TOOL_TRY(run->tool, stream_put(stream, section->name, section->type, section->rows, section->cols,
+                                   section->attributes, section->data, false, &error));
 }
 
 /* The frames that the run had given. */
@@ -59,13 +56,10 @@ static void compare_processes(const struct run *run)
 static void resume(struct run *run)
 {
     struct run_checkpoint *checkpoint = &run->checkpoint;
-    struct error error;
     enum checkpoint_source source;
     int64_t step = 0;
-    tool_check(run->tool,
-               checkpoint_read(checkpoint->file, &checkpoint->identity, &checkpoint->restored, &source, &step,
-                               &error),
-               &error);
+    TOOL_TRY(run->tool, checkpoint_read(checkpoint->file, &checkpoint->identity, &checkpoint->restored,
+                                        &source, &step, &error));
     if (!agree(step) || !agree((int64_t)source)) {
         tool_fail(run->tool, STATUS_INPUT, "%s: not the same file for all processes: put it where all see it",
                   checkpoint->file);
@@ -84,11 +78,9 @@ static void resume(struct run *run)
 void run_checkpoint_begin(struct run *run)
 {
     struct run_checkpoint *checkpoint = &run->checkpoint;
-    struct error error;
     stream_init(&checkpoint->restored);
     if (checkpoint->file != NULL || process_ranks() != NULL) {
-        tool_check(run->tool, checkpoint_identify(run->scene, run->stream, &checkpoint->identity, &error),
-                   &error);
+        TOOL_TRY(run->tool, checkpoint_identify(run->scene, run->stream, &checkpoint->identity, &error));
         if (run->parts->given) {
             checkpoint->identity.input = run->parts->identity;
         }
@@ -110,7 +102,6 @@ const struct state *run_checkpoint_state(const struct run *run)
 static void put_view(struct run *run, const struct progress *progress, struct stream *stream)
 {
     static const char *const names[] = {"nodes.x", "cells", "cells.region"};
-    struct error error;
     int64_t nodes = run->model->system.node_count, dim = run->scene->dim;
     for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
         const struct section *section = stream_find(run->stream, names[i]);
@@ -125,8 +116,7 @@ static void put_view(struct run *run, const struct progress *progress, struct st
     }
     double *field = run_new_values(run, nodes * dim);
     assembly_nodal_field(&run->model->assembly, progress->u, field);
-    tool_check(run->tool, stream_put(stream, "u.last", TYPE_F8, nodes, dim, "unit=m", field, true, &error),
-               &error);
+    TOOL_TRY(run->tool, stream_put(stream, "u.last", TYPE_F8, nodes, dim, "unit=m", field, true, &error));
 }
 
 /* The state of the run and of what this program saw of it. */
@@ -225,7 +215,6 @@ void run_checkpoint_remove(struct run *run)
     struct run_checkpoint *checkpoint = &run->checkpoint;
     stream_free(&checkpoint->restored);
     if (checkpoint->file != NULL && process_speaks()) {
-        struct error error;
-        tool_check(run->tool, checkpoint_remove(checkpoint->file, &error), &error);
+        TOOL_TRY(run->tool, checkpoint_remove(checkpoint->file, &error));
     }
 }

@@ -1,6 +1,6 @@
 #include "run.h"
 
-#include "names.h"
+#include "stages/names.h"
 
 #include "approx/cells.h"
 #include "solid/contact_between.h"
@@ -37,27 +37,23 @@ static void name_facet(const struct run *run, int64_t f, char *name, size_t size
     const struct stream *stream = run->stream;
     const struct section *facets = stream_find(stream, "facets"), *set = stream_find(stream, "facets.set");
     int dim = run->scene->dim;
-    char *names = NULL;
+    struct names names = {0};
     struct error error;
     int32_t key[3], other[3];
     snprintf(name, size, "the boundary");
-    if (facets == NULL || set == NULL || names_of_section(set, &names, &error) != STATUS_OK) {
+    if (facets == NULL || set == NULL || names_read(set, &names, &error) != STATUS_OK) {
         return;
     }
     face_key(dim, run->folds.folds.input.facet + f * dim, key);
     for (int64_t i = 0; i < facets->rows && i < set->rows; i++) {
         face_key(dim, (const int32_t *)facets->data + i * dim, other);
         if (memcmp(key, other, sizeof key) == 0) {
-            const char *at = names;
-            for (int32_t k = ((const int32_t *)set->data)[i]; k > 0; k--) {
-                at += strcspn(at, ",");
-                at += *at == ',';
-            }
-            snprintf(name, size, "%.*s", (int)strcspn(at, ","), at);
+            int32_t group = ((const int32_t *)set->data)[i];
+            snprintf(name, size, "%s", group >= 0 && group < names.count ? names.name[group] : "");
             break;
         }
     }
-    free(names);
+    names_free(&names);
 }
 
 /* Bodies that interpenetrate at rest are an error, unless the scene allows folds. */

@@ -35,31 +35,19 @@ static void put_field(const struct run *run, const struct moment *moment, const 
     put(run, moment, "parameters", nodes, dim, vector, parameters);
 }
 
-/* The sides of interfaces, where supports have any. */
-static void put_sides(const struct run *run)
-{
-    struct error error;
-    const struct section *side = stream_find(run->stream, "support.side");
-    int32_t *copy = NULL;
-    if (side == NULL) {
-        return;
-    }
-    tool_check(run->tool, NEW_ARRAY(&copy, side->rows, &error), &error);
-    memcpy(copy, side->data, (size_t)side->rows * sizeof *copy);
-    tool_check(run->tool,
-               stream_put(run->stream, "parameters.side", TYPE_I4, side->rows, 1, "", copy, true, &error),
-               &error);
-}
-
 void run_put_supports(const struct run *run)
 {
     const struct section *radius = stream_find(run->stream, "support.radius"),
-                         *nodes = stream_find(run->stream, "nodes.x");
-    if (radius != NULL && nodes != NULL && radius->rows == nodes->rows) {
-        double *values = run_new_values(run, radius->rows);
-        memcpy(values, radius->data, (size_t)radius->rows * sizeof *values);
-        run_put(run, "parameters.radius", radius->rows, 1, radius->attributes, values);
-        put_sides(run);
+                         *nodes = stream_find(run->stream, "nodes.x"),
+                         *side = stream_find(run->stream, "support.side");
+    if (radius == NULL || nodes == NULL || radius->rows != nodes->rows) {
+        return;
+    }
+    TOOL_TRY(run->tool, stream_put_copy(run->stream, "parameters.radius", TYPE_F8, radius->rows, 1,
+                                        radius->attributes, radius->data, &error));
+    if (side != NULL) {
+        TOOL_TRY(run->tool, stream_put_copy(run->stream, "parameters.side", TYPE_I4, side->rows, 1, "",
+                                            side->data, &error));
     }
 }
 

@@ -1,5 +1,4 @@
 /* Free rigid-body modes: reported before the first step. */
-#include "names.h"
 #include "run.h"
 
 #include "approx/support.h"
@@ -189,34 +188,26 @@ static void moves_text(int dim, double size, const struct rigid_modes *moves, ch
 static enum status body_text(const struct model *model, const struct bodies *bodies, int64_t b,
                              char text[256], struct error *error)
 {
-    enum status status;
-    char *names = NULL, place[96], *name;
-    const struct section *region;
+    enum status status = STATUS_OK;
+    char place[96];
+    struct cell_regions regions = {0};
     snprintf(text, 256, "the body");
     if (bodies->count > 1) {
-        TRY(stream_need(model->stream, "cells.region", TYPE_I4, 1, "nodes", &region, error));
-        TRY(names_of_section(region, &names, error));
-        name = names;
-        for (int32_t k = ((const int32_t *)region->data)[bodies->cell[b]]; k > 0 && name != NULL; k--) {
-            name = strchr(name, ',') != NULL ? strchr(name, ',') + 1 : NULL;
-        }
+        TRY(stream_regions(model->stream, &model->assembly.cells, &regions, error));
         point_text(model->assembly.cells.dim, bodies->moves[b].centre, place);
-        snprintf(text, 256, "body %lld (region %.*s, near %s)", (long long)b + 1,
-                 name != NULL ? (int)strcspn(name, ",") : 1, name != NULL ? name : "?", place);
-    } else {
-        status = STATUS_OK;
+        snprintf(text, 256, "body %lld (region %s, near %s)", (long long)b + 1,
+                 regions.names.name[regions.of_cell[bodies->cell[b]]], place);
     }
 done:
-    free(names);
+    names_free(&regions.names);
     return status;
 }
 
 void run_check_rigid_modes(struct run *run)
 {
-    struct error error;
     struct bodies bodies;
     const struct model *model = run->model;
-    tool_check(run->tool, bodies_find(model, &bodies, &error), &error);
+    TOOL_TRY(run->tool, bodies_find(model, &bodies, &error));
     for (int64_t b = 0; b < bodies.count; b++) {
         const struct rigid_modes *moves = &bodies.moves[b];
         char body[256], what[512];
@@ -224,7 +215,7 @@ void run_check_rigid_modes(struct run *run)
             continue;
         }
         moves_text(model->assembly.cells.dim, model->assembly.extent, moves, what, sizeof what);
-        tool_check(run->tool, body_text(model, &bodies, b, body, &error), &error);
+        TOOL_TRY(run->tool, body_text(model, &bodies, b, body, &error));
         if (!bodies.touches[b]) {
             run_fail(run, STATUS_VERDICT,
                      "%s: nothing holds %s: it %s: add a [displacement] that forbids that", run->scene->path,

@@ -17,13 +17,12 @@ static int64_t parameter_count(const struct run *run)
 
 void run_stability_begin(struct run *run)
 {
-    struct error error;
     struct run_stability *stability = &run->stability;
     const struct state *restored = run_checkpoint_state(run);
     *stability = (struct run_stability){.least = INFINITY};
     stability->near = run_new_values(run, parameter_count(run));
     if (restored != NULL) {
-        tool_check(run->tool, run_stability_state(run, restored, &error), &error);
+        TOOL_TRY(run->tool, run_stability_state(run, restored, &error));
     }
 }
 

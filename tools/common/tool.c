@@ -70,6 +70,24 @@ void tool_check(const struct tool *tool, enum status status, const struct error 
     }
 }
 
+void *tool_memory(const struct tool *tool, void *memory)
+{
+    if (memory == NULL) {
+        tool_fail(tool, STATUS_SYSTEM, "out of memory");
+    }
+    return memory;
+}
+
+char *tool_text(const struct tool *tool, const char *format, ...)
+{
+    char *text;
+    va_list values;
+    va_start(values, format);
+    text = vasprintf(&text, format, values) < 0 ? NULL : text;
+    va_end(values);
+    return tool_memory(tool, text);
+}
+
 /* A file opened later must not become standard input, output or error: fill the gaps, such that using them
  * fails. */
 static void fill_descriptors(void)
@@ -91,10 +109,8 @@ static _Noreturn void print_and_exit(const struct tool *tool, const char *text)
 
 static void parse_options(struct tool *tool)
 {
-    struct error error;
     options_declare(&tool->options, tool->usage);
-    tool_check(tool, options_parse(&tool->options, tool->argc, arguments, &tool->operand_count, &error),
-               &error);
+    TOOL_TRY(tool, options_parse(&tool->options, tool->argc, arguments, &tool->operand_count, &error));
     if (tool_given(tool, "help")) {
         print_and_exit(tool, tool->usage);
     }
@@ -147,10 +163,7 @@ void tool_begin(struct tool *tool, const char *usage, int least, int most, int a
     process_name = tool->name;
     signal(SIGBUS, on_lost_mapping);
     (void)on_exit(on_foreign_exit, NULL);
-    arguments = array_new(argc + 1, sizeof *arguments);
-    if (arguments == NULL) {
-        tool_fail(tool, STATUS_SYSTEM, "out of memory");
-    }
+    arguments = tool_memory(tool, array_new(argc + 1, sizeof *arguments));
     memcpy(arguments, argv, (size_t)argc * sizeof *arguments);
     parse_options(tool);
     tool->operands = arguments + 1;
@@ -193,10 +206,9 @@ void tool_names_input(const char *operand)
 
 void tool_read(const struct tool *tool, const char *file, struct stream *stream)
 {
-    struct error error;
     const char *name;
     int descriptor = tool_open(tool, file, &name);
-    tool_check(tool, stream_read(stream, descriptor, name, &error), &error);
+    TOOL_TRY(tool, stream_read(stream, descriptor, name, &error));
     if (descriptor != STDIN_FILENO) {
         close(descriptor);
     }
@@ -220,11 +232,7 @@ static char *without_silent(const struct tool *tool, const char *argument, size_
     if (length <= 2 || argument[1] == '-') {
         return NULL;
     }
-    char *rest = strndup(argument, length - 1);
-    if (rest == NULL) {
-        tool_fail(tool, STATUS_SYSTEM, "out of memory");
-    }
-    return rest;
+    return tool_memory(tool, strndup(argument, length - 1));
 }
 
 /* The command line without what changes nothing in the result: -o FILE and the like, and the operand that was
@@ -232,12 +240,8 @@ static char *without_silent(const struct tool *tool, const char *argument, size_
  * output goes. */
 static void add_provenance(const struct tool *tool, struct stream *stream)
 {
-    struct error error;
     int count = 0, rest_count = 0;
-    char *rests[TOOL_MOST_SILENT], **kept = array_new(tool->argc + 1, sizeof *kept);
-    if (kept == NULL) {
-        tool_fail(tool, STATUS_SYSTEM, "out of memory");
-    }
+    char *rests[TOOL_MOST_SILENT], **kept = tool_memory(tool, array_new(tool->argc + 1, sizeof *kept));
     for (int i = 0; i < tool->argc; i++) {
         char *argument = tool->argv[i];
         const char *value = silent_value(tool, argument);
@@ -253,7 +257,7 @@ static void add_provenance(const struct tool *tool, struct stream *stream)
             kept[count++] = argument;
         }
     }
-    tool_check(tool, stream_add_provenance(stream, count, kept, &error), &error);
+    TOOL_TRY(tool, stream_add_provenance(stream, count, kept, &error));
     while (rest_count > 0) {
         free(rests[--rest_count]);
     }

@@ -60,6 +60,21 @@ void tool_leave_out(struct tool *tool, const char *option);
 /* Print "name: message" on standard error and exit with `status`; returns when the status is STATUS_OK. */
 void tool_check(const struct tool *tool, enum status status, const struct error *error);
 
+/* Evaluate an expression, with &error in it, to a status; print what is wrong and exit unless it is
+ * STATUS_OK.
+ */
+#define TOOL_TRY(tool, expression)                                                                           \
+    do {                                                                                                     \
+        struct error error;                                                                                  \
+        tool_check((tool), (expression), &error);                                                            \
+    } while (0)
+
+/* The memory that was asked for; exits where it is NULL. */
+void *tool_memory(const struct tool *tool, void *memory);
+
+/* Text as of printf, to be freed; exits when there is no memory. */
+char *tool_text(const struct tool *tool, const char *format, ...) __attribute__((format(printf, 2, 3)));
+
 /* Print "name: message" and exit; `status` may also be 128 + the number of a signal. */
 _Noreturn void tool_fail(const struct tool *tool, enum status status, const char *format, ...)
     __attribute__((format(printf, 3, 4)));

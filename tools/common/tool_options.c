@@ -14,13 +14,11 @@ const char *tool_value(const struct tool *tool, const char *option)
 
 double tool_number(const struct tool *tool, const char *option, double least, double most, double otherwise)
 {
-    struct error error;
     char what[32];
     const struct option *found = options_find(&tool->options, option);
     double value = otherwise;
     if (found->given) {
-        tool_check(tool, parse_double(found->value, option_text(found, what), least, most, &value, &error),
-                   &error);
+        TOOL_TRY(tool, parse_double(found->value, option_text(found, what), least, most, &value, &error));
     }
     return value;
 }
@@ -28,37 +26,33 @@ double tool_number(const struct tool *tool, const char *option, double least, do
 int64_t tool_integer(const struct tool *tool, const char *option, int64_t least, int64_t most,
                      int64_t otherwise)
 {
-    struct error error;
     char what[32];
     const struct option *found = options_find(&tool->options, option);
     int64_t value = otherwise;
     if (found->given) {
-        tool_check(tool, parse_integer(found->value, option_text(found, what), least, most, &value, &error),
-                   &error);
+        TOOL_TRY(tool, parse_integer(found->value, option_text(found, what), least, most, &value, &error));
     }
     return value;
 }
 
 double tool_length(const struct tool *tool, const char *option, double otherwise)
 {
-    struct error error;
     char what[32];
     const struct option *found = options_find(&tool->options, option);
     double value = otherwise;
     if (found->given) {
-        tool_check(tool, parse_length(found->value, option_text(found, what), &value, &error), &error);
+        TOOL_TRY(tool, parse_length(found->value, option_text(found, what), &value, &error));
     }
     return value;
 }
 
 double tool_length_unit(const struct tool *tool, const char *option, double otherwise)
 {
-    struct error error;
     char what[32];
     const struct option *found = options_find(&tool->options, option);
     double value = otherwise;
     if (found->given) {
-        tool_check(tool, parse_length_unit(found->value, option_text(found, what), &value, &error), &error);
+        TOOL_TRY(tool, parse_length_unit(found->value, option_text(found, what), &value, &error));
     }
     return value;
 }
@@ -66,14 +60,11 @@ double tool_length_unit(const struct tool *tool, const char *option, double othe
 int tool_choice(const struct tool *tool, const char *option, const char *const choices[], int count,
                 int otherwise)
 {
-    struct error error;
     char what[32];
     const struct option *found = options_find(&tool->options, option);
     int choice = otherwise;
     if (found->given) {
-        tool_check(tool,
-                   parse_choice(found->value, option_text(found, what), choices, count, &choice, &error),
-                   &error);
+        TOOL_TRY(tool, parse_choice(found->value, option_text(found, what), choices, count, &choice, &error));
     }
     return choice;
 }

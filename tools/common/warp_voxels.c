@@ -35,10 +35,7 @@ static void put_value(const struct warp_job *job, int64_t v, const double place[
     double voxel[3], *value = job->result->values + (size_t)v * components;
     bool outside = job->owner[v] < 0, vacated = outside && job->other != NULL && job->other[v] >= 0;
     report->vacated += vacated;
-    for (int i = 0; i < 3; i++) {
-        const double *row = job->source_voxel[i];
-        voxel[i] = row[0] * place[0] + row[1] * place[1] + row[2] * place[2] + row[3];
-    }
+    image_map(&job->source_voxel[0][0], place, voxel);
     bool known = !(vacated && request->marks_vacated) && !(outside && request->fills);
     if (known && image_sample(job->source, request->method, voxel, value)) {
         return;

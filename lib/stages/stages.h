@@ -1,11 +1,9 @@
-/* The stages between a node cloud and a table of shape functions, on a stream. Each tool of that name runs
- * its stage; a later tool that finds an earlier stage's sections missing runs that stage's defaults itself.
- */
-#ifndef TOOLS_STAGES_H
-#define TOOLS_STAGES_H
+/* The stages between a node cloud and a table of shape functions, on a stream: each adds its sections, and
+ * removes those that were made from what it replaces. */
+#ifndef STAGES_STAGES_H
+#define STAGES_STAGES_H
 
-#include "tool.h"
-#include "views.h"
+#include "stages/views.h"
 
 #include "approx/adaptive.h"
 #include "approx/support.h"
@@ -33,16 +31,19 @@ MUST_CHECK enum status stage_ipoints(struct stream *stream, const struct ipoints
 MUST_CHECK enum status stage_radii(const struct stream *stream, const struct support_options *options,
                                    int64_t node_count, const double *x, double *radius, struct error *error);
 
-/* What support found, for each of its lists. */
+/* What support found, for one of its lists, */
+struct list_report {
+    const char *what; /* "points on faces" */
+    int64_t points, pairs, fewest, most, widened;
+    int64_t around; /* pairs that see each other around corners */
+    double widest;
+};
+
+/* and for all. */
 struct support_report {
     enum reach_rule reach; /* by distance also where there are no cells */
     int lists;
-    struct {
-        const char *what; /* "points on faces" */
-        int64_t points, pairs, fewest, most, widened;
-        int64_t around; /* pairs that see each other around corners */
-        double widest;
-    } list[3];
+    struct list_report list[3];
 };
 
 /* side[cells], allocated: the place of each cell's region in the list of names, with commas between, or
@@ -79,13 +80,8 @@ MUST_CHECK enum status stage_sides(const struct stream *stream, const char *pref
 MUST_CHECK enum status stage_recorded(const struct stream *stream, const char *prefix, int dim,
                                       struct recorded *recorded, struct error *error);
 
-/* Put radius[node_count], which the stream takes, as support.radius with the settings. */
+/* Put radius[node_count] as support.radius, with the settings. */
 MUST_CHECK enum status stage_record(struct stream *stream, const struct recorded *recorded,
-                                    int64_t node_count, double *radius, struct error *error);
-
-/* Run the defaults of every stage up to shapefn whose sections are missing, saying so once on standard error
- * and adding the provenance of the stages run. `upto` is "ipoints", "support" or "shapefn". Exits on failure.
- */
-void stage_fill(const struct tool *tool, struct stream *stream, const char *upto);
+                                    int64_t node_count, const double *radius, struct error *error);
 
 #endif

@@ -1,6 +1,7 @@
-#include "stages.h"
+#include "stages/stages.h"
 
 #include "approx/face_rows.h"
+#include "base/memory.h"
 #include "io/sections.h"
 
 #include <math.h>
@@ -40,16 +41,14 @@ static enum status view_points(const struct stream *stream, const char *section,
     TRY(stream_need(stream, "support.radius", TYPE_F8, 1, "support", &radius, error));
     TRY(stream_neighbours(stream, prefix, points->rows, of->node_count, &of->lists, error));
     if (radius->rows != of->node_count || of->lists.widen == NULL) {
-        status = fail(error, STATUS_INPUT, "support.radius, %s.widen: do not fit: run support again", prefix);
-        goto done;
+        TRY(fail(error, STATUS_INPUT, "support.radius, %s.widen: do not fit: run support again", prefix));
     }
     TRY(check_numbers(points, false, error));
     TRY(check_numbers(radius, true, error));
     for (int64_t p = 0; p < points->rows; p++) {
         if (!(of->lists.widen[p] >= 1.0) || !isfinite(of->lists.widen[p])) {
-            status = fail(error, STATUS_INPUT, "%s.widen: row %lld: %g is no factor", prefix, (long long)p,
-                          of->lists.widen[p]);
-            goto done;
+            TRY(fail(error, STATUS_INPUT, "%s.widen: row %lld: %g is no factor", prefix, (long long)p,
+                     of->lists.widen[p]));
         }
     }
     of->x = points->data;
@@ -74,12 +73,10 @@ static enum status tabulate(struct stream *stream, const struct mls *mls, const 
         TRY(NEW_ARRAY(&dphi, pairs * mls->dim, error));
     }
     TRY(shape_table(mls, of.nodes, of.radius, &of.lists, of.x, section, phi, dphi, error));
-    status = stream_put(stream, phi_name, TYPE_F8, pairs, 1, "", phi, true, error);
-    phi = NULL;
-    if (status == STATUS_OK && gradients) {
-        status = stream_put(stream, "shape.dphi", TYPE_F8, pairs, mls->dim,
-                            vector_attributes(mls->dim, "1/m", attributes), dphi, true, error);
-        dphi = NULL;
+    TRY(stream_put(stream, phi_name, TYPE_F8, pairs, 1, "", array_take(&phi), true, error));
+    if (gradients) {
+        TRY(stream_put(stream, "shape.dphi", TYPE_F8, pairs, mls->dim,
+                       vector_attributes(mls->dim, "1/m", attributes), array_take(&dphi), true, error));
     }
 done:
     free(phi);
@@ -88,19 +85,16 @@ done:
 }
 
 /* A table of `rows` rows as sections PREFIX.ptr, .idx and .phi; the stream takes the arrays. */
-static enum status put_table(struct stream *stream, const char *prefix, int64_t rows, int64_t *ptr,
-                             int32_t *idx, double *phi, struct error *error)
+static enum status put_table(struct stream *stream, const char *prefix, int64_t rows, int64_t **ptr,
+                             int32_t **idx, double **phi, struct error *error)
 {
-    char name[64];
-    int64_t pairs = ptr[rows];
-    snprintf(name, sizeof name, "%s.ptr", prefix);
-    enum status status = stream_put(stream, name, TYPE_I8, rows + 1, 1, "", ptr, true, error), next;
-    snprintf(name, sizeof name, "%s.idx", prefix);
-    next = stream_put(stream, name, TYPE_I4, pairs, 1, "", idx, true, error);
-    status = status != STATUS_OK ? status : next;
-    snprintf(name, sizeof name, "%s.phi", prefix);
-    next = stream_put(stream, name, TYPE_F8, pairs, 1, "", phi, true, error);
-    return status != STATUS_OK ? status : next;
+    enum status status;
+    int64_t pairs = (*ptr)[rows];
+    TRY(stream_put_member(stream, prefix, "ptr", TYPE_I8, rows + 1, 1, "", ptr, error));
+    TRY(stream_put_member(stream, prefix, "idx", TYPE_I4, pairs, 1, "", idx, error));
+    TRY(stream_put_member(stream, prefix, "phi", TYPE_F8, pairs, 1, "", phi, error));
+done:
+    return status;
 }
 
 /* The values at points on the boundary, and the averages over faces of smoothed cells. What lies at the
@@ -118,27 +112,18 @@ static enum status put_faces(struct stream *stream, const struct mls *mls, bool 
     TRY(stream_faces(stream, &cells, &faces, error));
     TRY(view_points(stream, "facepoints.x", "facepoint", &of, error));
     if (of.lists.count != face_row_point(&faces, faces.row_count)) {
-        status = fail(error, STATUS_INPUT, "facepoints.x: does not fit faces.row: run ipoints again");
-        goto done;
+        TRY(fail(error, STATUS_INPUT, "facepoints.x: does not fit faces.row: run ipoints again"));
     }
     TRY(shape_average_faces(mls, of.nodes, of.radius, &of.lists, of.x, of.section, &faces, &averages, error));
     if (smoothed) {
-        status = put_table(stream, "face", faces.row_count, averages.ptr, averages.idx, averages.phi, error);
-        averages.ptr = NULL;
-        averages.idx = NULL;
-        averages.phi = NULL;
-        TRY(status);
+        TRY(put_table(stream, "face", faces.row_count, &averages.ptr, &averages.idx, &averages.phi, error));
     }
     int64_t rows = face_row_point(&faces, faces.boundary_count), pairs = of.lists.ptr[rows];
     TRY(NEW_ARRAY(&ptr, rows + 1, error));
     TRY(NEW_ARRAY(&idx, pairs, error));
     memcpy(ptr, of.lists.ptr, (size_t)(rows + 1) * sizeof *ptr);
     memcpy(idx, of.lists.idx, (size_t)pairs * sizeof *idx);
-    status = put_table(stream, "boundary", rows, ptr, idx, averages.boundary_phi, error);
-    ptr = NULL;
-    idx = NULL;
-    averages.boundary_phi = NULL;
-    TRY(status);
+    TRY(put_table(stream, "boundary", rows, &ptr, &idx, &averages.boundary_phi, error));
     for (int64_t s = stream->section_count - 1; s >= 0; s--) {
         if (strncmp(stream->sections[s].name, "facepoint", strlen("facepoint")) == 0) {
             stream_remove(stream, stream->sections[s].name);

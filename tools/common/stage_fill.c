@@ -1,4 +1,6 @@
-#include "stages.h"
+#include "stage_fill.h"
+
+#include "stages/stages.h"
 
 #include <string.h>
 

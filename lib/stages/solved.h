@@ -1,10 +1,10 @@
 /* The field that mtled solved for, as its results carry it: u_h(x) = sum_j phi_j(x) d_j, with the parameters
  * d_j in the sections parameters and parameters.frame.K, and the supports that phi_j has in
  * parameters.radius. */
-#ifndef TOOLS_SOLVED_H
-#define TOOLS_SOLVED_H
+#ifndef STAGES_SOLVED_H
+#define STAGES_SOLVED_H
 
-#include "stages.h"
+#include "stages/stages.h"
 
 struct solved {
     const double *radius;     /* of the nodes, m; NULL: the stream carries no such field */

@@ -1,6 +1,9 @@
-#include "solved.h"
+#include "stages/solved.h"
+
+#include "base/memory.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 static const char prefix[] = "parameters";

@@ -1,4 +1,4 @@
-#include "views.h"
+#include "stages/views.h"
 
 #include "approx/face_rows.h"
 #include "base/memory.h"
@@ -34,19 +34,56 @@ enum status stream_nodes(const struct stream *stream, int *dim, int64_t *node_co
 
 enum status stream_cells(const struct stream *stream, bool needed, struct cells *cells, struct error *error)
 {
+    enum status status;
     const struct section *section = stream_find(stream, "cells");
     *cells = (struct cells){0};
-    enum status status = stream_nodes(stream, &cells->dim, &cells->node_count, &cells->x, error);
-    if (status != STATUS_OK || (section == NULL && !needed)) {
-        return status;
+    TRY(stream_nodes(stream, &cells->dim, &cells->node_count, &cells->x, error));
+    if (section == NULL && !needed) {
+        return STATUS_OK;
     }
-    status = stream_need(stream, "cells", TYPE_I4, cells->dim + 1, "nodes", &section, error);
-    if (status != STATUS_OK) {
-        return status;
-    }
+    TRY(stream_need(stream, "cells", TYPE_I4, cells->dim + 1, "nodes", &section, error));
     cells->count = section->rows;
     cells->node = section->data;
-    return cells_check(cells, error);
+    TRY(cells_check(cells, error));
+done:
+    return status;
+}
+
+enum status stream_field(const struct stream *stream, const char *name, int64_t node_count,
+                         const struct section **field, struct error *error)
+{
+    enum status status;
+    TRY(stream_need(stream, name, TYPE_F8, 0, "mtled", field, error));
+    if ((*field)->cols > 3 || (*field)->rows != node_count) {
+        return fail(error, STATUS_INPUT,
+                    "%s: %lld rows of %lld columns: not a field of 1 to 3 columns on %lld nodes", name,
+                    (long long)(*field)->rows, (long long)(*field)->cols, (long long)node_count);
+    }
+done:
+    return status;
+}
+
+enum status stream_regions(const struct stream *stream, const struct cells *cells,
+                           struct cell_regions *regions, struct error *error)
+{
+    enum status status;
+    const struct section *section;
+    *regions = (struct cell_regions){0};
+    TRY(stream_need(stream, "cells.region", TYPE_I4, 1, "nodes", &section, error));
+    if (section->rows != cells->count) {
+        return fail(error, STATUS_INPUT, "cells.region: has %lld rows, cells %lld: does not fit",
+                    (long long)section->rows, (long long)cells->count);
+    }
+    TRY(names_read(section, &regions->names, error));
+    regions->of_cell = section->data;
+    for (int64_t c = 0; c < cells->count; c++) {
+        if (regions->of_cell[c] < 0 || regions->of_cell[c] >= regions->names.count) {
+            return fail(error, STATUS_INPUT, "cells.region: row %lld: no region %d in names=", (long long)c,
+                        regions->of_cell[c]);
+        }
+    }
+done:
+    return status;
 }
 
 enum status stream_facets(const struct stream *stream, bool needed, int dim, struct named_facets *facets,
@@ -190,18 +227,13 @@ done:
 enum status stream_neighbours(const struct stream *stream, const char *prefix, int64_t rows, int64_t columns,
                               struct neighbours *lists, struct error *error)
 {
+    enum status status;
     char name[64];
     const struct section *ptr, *idx, *widen;
     snprintf(name, sizeof name, "%s.ptr", prefix);
-    enum status status = stream_need(stream, name, TYPE_I8, 1, "support", &ptr, error);
-    if (status != STATUS_OK) {
-        return status;
-    }
+    TRY(stream_need(stream, name, TYPE_I8, 1, "support", &ptr, error));
     snprintf(name, sizeof name, "%s.idx", prefix);
-    status = stream_need(stream, name, TYPE_I4, 1, "support", &idx, error);
-    if (status != STATUS_OK) {
-        return status;
-    }
+    TRY(stream_need(stream, name, TYPE_I4, 1, "support", &idx, error));
     snprintf(name, sizeof name, "%s.widen", prefix);
     widen = stream_find(stream, name);
     *lists = (struct neighbours){.count = rows, .ptr = ptr->data, .idx = idx->data};
@@ -231,7 +263,39 @@ enum status stream_neighbours(const struct stream *stream, const char *prefix, i
             }
         }
     }
-    return view_around(stream, prefix, idx->rows, &lists->around, error);
+    TRY(view_around(stream, prefix, idx->rows, &lists->around, error));
+done:
+    return status;
+}
+
+enum status stream_put_member(struct stream *stream, const char *prefix, const char *name,
+                              enum element_type type, int64_t rows, int64_t cols, const char *attributes,
+                              void *array, struct error *error)
+{
+    char full[64];
+    snprintf(full, sizeof full, "%s.%s", prefix, name);
+    return stream_put(stream, full, type, rows, cols, attributes, array_take(array), true, error);
+}
+
+enum status stream_put_copy(struct stream *stream, const char *name, enum element_type type, int64_t rows,
+                            int64_t cols, const char *attributes, const void *data, struct error *error)
+{
+    size_t bytes = element_size(type) * (size_t)cols;
+    void *copy = array_new(rows, bytes);
+    if (copy == NULL) {
+        return fail_memory(error, name);
+    }
+    if (rows > 0) {
+        memcpy(copy, data, (size_t)rows * bytes);
+    }
+    return stream_put(stream, name, type, rows, cols, attributes, copy, true, error);
+}
+
+void stream_inherit(struct stream *stream, struct stream *from)
+{
+    stream->provenance = array_take(&from->provenance);
+    stream->provenance_count = from->provenance_count;
+    from->provenance_count = 0;
 }
 
 const char *vector_attributes(int dim, const char *unit, char text[64])

@@ -1,11 +1,11 @@
-/* Parts of a stream as the library takes them: in view, their shapes and indices checked. The messages name
- * the tool that makes what is missing. */
-#ifndef TOOLS_VIEWS_H
-#define TOOLS_VIEWS_H
+/* Parts of a stream as the rest of the library takes them: in view, their shapes and indices checked. The
+ * messages name the tool that makes what is missing. */
+#ifndef STAGES_VIEWS_H
+#define STAGES_VIEWS_H
 
 #include "approx/cells.h"
 #include "approx/shape.h"
-#include "io/stream.h"
+#include "stages/names.h"
 
 /* Node coordinates, checked to be finite. */
 MUST_CHECK enum status stream_nodes(const struct stream *stream, int *dim, int64_t *node_count,
@@ -14,6 +14,19 @@ MUST_CHECK enum status stream_nodes(const struct stream *stream, int *dim, int64
 /* Nodes and background cells. cells->count is 0 when there are none, an error if they are needed. */
 MUST_CHECK enum status stream_cells(const struct stream *stream, bool needed, struct cells *cells,
                                     struct error *error);
+
+/* A field at the nodes, of 1 to 3 columns. */
+MUST_CHECK enum status stream_field(const struct stream *stream, const char *name, int64_t node_count,
+                                    const struct section **field, struct error *error);
+
+/* The region of each cell: of_cell[cells.count], each below names.count; names are to be freed, also on
+ * failure. */
+struct cell_regions {
+    const int32_t *of_cell;
+    struct names names;
+};
+MUST_CHECK enum status stream_regions(const struct stream *stream, const struct cells *cells,
+                                      struct cell_regions *regions, struct error *error);
 
 /* Named facets of the boundary: facet[count * dim] node indices, set[count] the group of each. */
 struct named_facets {
@@ -37,6 +50,20 @@ MUST_CHECK enum status stream_neighbours(const struct stream *stream, const char
 
 /* Whether points.x has one point for each cell, for gradients smoothed over it. */
 bool points_are_smoothed(const struct section *points);
+
+/* Put section PREFIX.NAME, of the array at *array, which the stream takes: *array becomes NULL, also on
+ * failure. */
+MUST_CHECK enum status stream_put_member(struct stream *stream, const char *prefix, const char *name,
+                                         enum element_type type, int64_t rows, int64_t cols,
+                                         const char *attributes, void *array, struct error *error);
+
+/* Put a copy of the data. */
+MUST_CHECK enum status stream_put_copy(struct stream *stream, const char *name, enum element_type type,
+                                       int64_t rows, int64_t cols, const char *attributes, const void *data,
+                                       struct error *error);
+
+/* The provenance of `from`, for what is made of it. */
+void stream_inherit(struct stream *stream, struct stream *from);
 
 /* Attributes of a section of one vector in each row, "unit=UNIT cols=x,y[,z]", into text[64]; returns it. */
 const char *vector_attributes(int dim, const char *unit, char text[64]);

@@ -1,0 +1,98 @@
+/* Sides of the interfaces at which supports stop. */
+#include "stages/stages.h"
+
+#include "base/memory.h"
+#include "base/options.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum status stage_interfaces(const struct stream *stream, const char *names, int32_t **side,
+                             struct error *error)
+{
+    enum status status;
+    struct cells cells;
+    struct cell_regions regions = {0};
+    int32_t *of_region = NULL, named = 0; /* the place of each region in the list, from 1; 0: it has none */
+    char *list = strdup(names), *rest = list;
+    *side = NULL;
+    TRY(list == NULL ? fail_memory(error, "regions") : STATUS_OK);
+    TRY(stream_cells(stream, true, &cells, error));
+    TRY(stream_regions(stream, &cells, &regions, error));
+    TRY(NEW_ARRAY(&of_region, regions.names.count, error));
+    for (char *name; (name = strsep(&rest, ",")) != NULL;) {
+        int64_t region = names_find(&regions.names, name);
+        if (region < 0) {
+            TRY(fail(error, STATUS_INPUT, "--interface: no region '%s'; there are: %s", name,
+                     regions.names.list));
+        }
+        if (of_region[region] > 0) {
+            TRY(fail(error, STATUS_INPUT, "--interface: region '%s' stands twice", name));
+        }
+        of_region[region] = ++named;
+    }
+    TRY(NEW_ARRAY(side, cells.count, error));
+    for (int64_t c = 0; c < cells.count; c++) {
+        int32_t place = of_region[regions.of_cell[c]];
+        (*side)[c] = place > 0 ? place - 1 : named;
+    }
+done:
+    free(list);
+    free(of_region);
+    names_free(&regions.names);
+    return status;
+}
+
+enum status stage_sides(const struct stream *stream, const char *prefix, const int32_t **side,
+                        struct error *error)
+{
+    enum status status = STATUS_OK;
+    char name[64];
+    struct cells cells;
+    const struct section *section;
+    snprintf(name, sizeof name, "%s.side", prefix);
+    *side = NULL;
+    if (stream_find(stream, name) == NULL) {
+        return STATUS_OK;
+    }
+    TRY(stream_need(stream, name, TYPE_I4, 1, "support", &section, error));
+    TRY(stream_cells(stream, true, &cells, error));
+    *side = section->data;
+    for (int64_t c = 0; c < section->rows; c++) {
+        if ((*side)[c] < 0 || (*side)[c] >= cells.count) {
+            return fail(error, STATUS_INPUT, "%s: row %lld: no side %d", name, (long long)c, (*side)[c]);
+        }
+    }
+    if (section->rows != cells.count) {
+        return fail(error, STATUS_INPUT, "%s: %lld rows for %lld cells: run support again", name,
+                    (long long)section->rows, (long long)cells.count);
+    }
+done:
+    return status;
+}
+
+enum status stage_own_part(const struct stream *stream, int64_t node_count, struct support_options *options,
+                           struct error *error)
+{
+    enum status status = STATUS_OK;
+    const struct section *node = stream_find(stream, "part.node"), *owner;
+    char value[64];
+    int64_t part = 0;
+    if (node == NULL) {
+        return STATUS_OK;
+    }
+    TRY(stream_need(stream, "part.owner", TYPE_I4, 1, "part", &owner, error));
+    if (owner->rows != node_count) {
+        return fail(error, STATUS_INPUT, "part.owner: %lld rows for %lld nodes: cut again",
+                    (long long)owner->rows, (long long)node_count);
+    }
+    if (!section_attribute(node, "part", value, sizeof value)) {
+        return fail(error, STATUS_INPUT, "part.node: no part=: not written by part");
+    }
+    TRY(parse_integer(value, "part.node: part", 0, INT32_MAX, &part, error));
+    options->owner = owner->data;
+    options->part = (int32_t)part;
+done:
+    return status;
+}

@@ -1,0 +1,208 @@
+#include "stages/stages.h"
+
+#include "approx/face_rows.h"
+#include "approx/quadrature.h"
+#include "base/box.h"
+#include "base/memory.h"
+#include "io/sections.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+struct ipoints_options ipoints_defaults(void)
+{
+    return (struct ipoints_options){.smoothed = true};
+}
+
+/* Room for so many points. */
+static enum status new_points(int64_t count, int dim, struct adaptive_points *points, struct error *error)
+{
+    enum status status;
+    TRY(NEW_ARRAY(&points->x, count * dim, error));
+    TRY(NEW_ARRAY(&points->weight, count, error));
+    TRY(NEW_ARRAY(&points->cell, count, error));
+    points->count = count;
+done:
+    return status;
+}
+
+/* One point for each smoothed cell, or those of a rule. */
+static enum status cell_points(const struct cells *cells, int per_cell, struct adaptive_points *points,
+                               struct error *error)
+{
+    enum status status;
+    struct quadrature_rule rule;
+    int dim = cells->dim;
+    TRY(quadrature_cell_rule(dim, per_cell, &rule, error));
+    TRY(new_points(cells->count * per_cell, dim, points, error));
+    for (int64_t c = 0; c < cells->count; c++) {
+        double volume = cell_volume(cells, c);
+        quadrature_positions(&rule, dim, cells->x, cells->node + c * (dim + 1),
+                             points->x + c * per_cell * dim);
+        for (int q = 0; q < per_cell; q++) {
+            points->weight[c * per_cell + q] = rule.weight[q] * volume;
+            points->cell[c * per_cell + q] = (int32_t)c;
+        }
+    }
+done:
+    return status;
+}
+
+/* n[dim] points along each axis, from one number for all or one for each; *count receives their product. */
+static enum status count_lattice(const int64_t wanted[3], int dim, int64_t n[3], int64_t *count,
+                                 struct error *error)
+{
+    int given = 1 + (wanted[1] > 0) + (wanted[2] > 0);
+    if (given != 1 && given != dim) {
+        return fail(error, STATUS_INPUT, "--lattice: %d numbers of points, not 1 or %d", given, dim);
+    }
+    *count = 1;
+    for (int a = 0; a < dim; a++) {
+        n[a] = wanted[given == 1 ? 0 : a];
+        if (__builtin_mul_overflow(*count, n[a], count) || *count > INT32_MAX) {
+            return fail(error, STATUS_INPUT, "--lattice: more than %d points", INT32_MAX);
+        }
+    }
+    return STATUS_OK;
+}
+
+/* A lattice of points, at least 2 along each axis, over the box of the nodes, x fastest; weights of the
+ * trapezium rule. */
+static enum status lattice_points(const struct cells *nodes, const int64_t wanted[3],
+                                  struct adaptive_points *points, struct error *error)
+{
+    enum status status;
+    int dim = nodes->dim;
+    int64_t count = 0, n[3];
+    double step[3];
+    struct box box = box_of(dim, nodes->node_count, nodes->x);
+    TRY(count_lattice(wanted, dim, n, &count, error));
+    TRY(new_points(count, dim, points, error));
+    for (int a = 0; a < dim; a++) {
+        step[a] = (box.high[a] - box.low[a]) / (double)(n[a] - 1);
+    }
+    for (int64_t p = 0; p < count; p++) {
+        int64_t rest = p;
+        points->weight[p] = 1.0;
+        points->cell[p] = -1;
+        for (int a = 0; a < dim; a++) {
+            int64_t i = rest % n[a];
+            rest /= n[a];
+            points->x[p * dim + a] = box.low[a] + step[a] * (double)i;
+            points->weight[p] *= i == 0 || i == n[a] - 1 ? 0.5 * step[a] : step[a];
+        }
+    }
+done:
+    return status;
+}
+
+/* What the shape functions of adaptive integration are made from: the settings and radii recorded in the
+ * stream, unless others were asked for. */
+static enum status adaptive_radii(const struct stream *stream, const struct ipoints_options *options,
+                                  const struct cells *cells, double *radius, struct error *error)
+{
+    enum status status;
+    const struct section *recorded = stream_find(stream, "support.radius");
+    if (recorded == NULL || options->given_radius) {
+        return stage_radii(stream, &options->refinement.support, cells->node_count, cells->x, radius, error);
+    }
+    TRY(stream_need(stream, "support.radius", TYPE_F8, 1, "support", &recorded, error));
+    if (recorded->rows != cells->node_count) {
+        return fail(error, STATUS_INPUT, "support.radius: %lld rows for %lld nodes: run support again",
+                    (long long)recorded->rows, (long long)cells->node_count);
+    }
+    memcpy(radius, recorded->data, (size_t)recorded->rows * sizeof *radius);
+done:
+    return status;
+}
+
+static enum status adaptive_cell_points(const struct stream *stream, const struct ipoints_options *options,
+                                        const struct cells *cells, struct adaptive_points *points,
+                                        struct error *error)
+{
+    enum status status;
+    double *radius = NULL;
+    TRY(NEW_ARRAY(&radius, cells->node_count, error));
+    TRY(adaptive_radii(stream, options, cells, radius, error));
+    TRY(adaptive_points_build(&options->refinement, cells, radius, points, error));
+done:
+    free(radius);
+    return status;
+}
+
+static enum status put_points(struct stream *stream, int dim, const char *rule,
+                              struct adaptive_points *points, struct error *error)
+{
+    enum status status;
+    char vector[64], attributes[96];
+    int64_t count = points->count;
+    snprintf(attributes, sizeof attributes, "%s rule=%s", vector_attributes(dim, "m", vector), rule);
+    TRY(stream_put(stream, "points.x", TYPE_F8, count, dim, attributes, array_take(&points->x), true, error));
+    TRY(stream_put(stream, "points.weight", TYPE_F8, count, 1, dim == 2 ? "unit=m2" : "unit=m3",
+                   array_take(&points->weight), true, error));
+    TRY(stream_put(stream, "points.cell", TYPE_I4, count, 1, "", array_take(&points->cell), true, error));
+done:
+    return status;
+}
+
+/* Faces, and their quadrature points. */
+static enum status put_faces(struct stream *stream, const struct cells *cells, bool boundary_only,
+                             struct error *error)
+{
+    enum status status;
+    int dim = cells->dim;
+    struct faces faces = {0};
+    double *x = NULL;
+    char attributes[64];
+    TRY(faces_build(cells, boundary_only, &faces, error));
+    int64_t count = faces.count, points = face_row_point(&faces, faces.row_count);
+    TRY(NEW_ARRAY(&x, points * dim, error));
+    face_rows_points(&faces, cells->x, x);
+    TRY(stream_put(stream, "faces", TYPE_I4, count, dim, "", array_take(&faces.node), true, error));
+    TRY(stream_put(stream, "faces.cell", TYPE_I4, count, 2, "", array_take(&faces.cell), true, error));
+    if (faces.row != NULL) {
+        TRY(stream_put(stream, "faces.row", TYPE_I4, count, FACE_ROWS(dim), "", array_take(&faces.row), true,
+                       error));
+    }
+    TRY(stream_put(stream, "facepoints.x", TYPE_F8, points, dim, vector_attributes(dim, "m", attributes),
+                   array_take(&x), true, error));
+done:
+    faces_free(&faces);
+    free(x);
+    return status;
+}
+
+enum status stage_ipoints(struct stream *stream, const struct ipoints_options *options, int64_t *unresolved,
+                          struct error *error)
+{
+    enum status status = STATUS_OK;
+    struct cells cells;
+    struct adaptive_points points = {0};
+    bool lattice = options->lattice[0] > 0;
+    int per_cell = options->smoothed ? 1 : options->gauss_points;
+    char rule[32];
+    *unresolved = 0;
+    TRY(lattice ? stream_nodes(stream, &cells.dim, &cells.node_count, &cells.x, error)
+                : stream_cells(stream, true, &cells, error));
+    if (lattice) {
+        snprintf(rule, sizeof rule, "lattice");
+        TRY(lattice_points(&cells, options->lattice, &points, error));
+    } else if (options->adaptive) {
+        snprintf(rule, sizeof rule, "adaptive");
+        TRY(adaptive_cell_points(stream, options, &cells, &points, error));
+        *unresolved = points.unresolved;
+    } else {
+        snprintf(rule, sizeof rule, options->smoothed ? "conforming" : "gauss%d", per_cell);
+        TRY(cell_points(&cells, per_cell, &points, error));
+    }
+    /* What was made from other points is void. */
+    sections_remove(stream, MADE_WITH_POINTS, MADE_WITH_SHAPES);
+    TRY(put_points(stream, cells.dim, rule, &points, error));
+    if (!lattice) {
+        TRY(put_faces(stream, &cells, !options->smoothed, error));
+    }
+done:
+    adaptive_points_free(&points);
+    return status;
+}

@@ -1,0 +1,57 @@
+#include "stages/names.h"
+
+#include "base/memory.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum status names_read(const struct section *section, struct names *names, struct error *error)
+{
+    return names_of(section, "names", names, error);
+}
+
+enum status names_of(const struct section *section, const char *key, struct names *names, struct error *error)
+{
+    enum status status;
+    size_t size = strlen(section->attributes) + 1;
+    *names = (struct names){0};
+    TRY(NEW_ARRAY(&names->list, 2 * (int64_t)size, error)); /* and behind it the same, cut at the commas */
+    TRY(NEW_ARRAY(&names->name, (int64_t)size, error));
+    char *rest = NULL;
+    if (section_attribute(section, key, names->list, size) && names->list[0] != '\0') {
+        rest = memcpy(names->list + size, names->list, size);
+    }
+    while (rest != NULL) {
+        names->name[names->count++] = strsep(&rest, ",");
+    }
+done:
+    return status;
+}
+
+void names_free(struct names *names)
+{
+    free(names->list);
+    free(names->name);
+    *names = (struct names){0};
+}
+
+int64_t names_find(const struct names *names, const char *name)
+{
+    for (int64_t i = 0; i < names->count; i++) {
+        if (strcmp(names->name[i], name) == 0) {
+            return i;
+        }
+    }
+    return -1;
+}
+
+const char *names_text(const struct names *names, char text[256])
+{
+    snprintf(text, 256, "none");
+    for (int64_t i = 0; i < names->count; i++) {
+        size_t length = i == 0 ? 0 : strlen(text);
+        snprintf(text + length, 256 - length, "%s%s", i == 0 ? "" : ", ", names->name[i]);
+    }
+    return text;
+}

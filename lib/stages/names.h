@@ -1,0 +1,27 @@
+/* The names of groups that a section carries: its attribute names=, separated by commas. */
+#ifndef STAGES_NAMES_H
+#define STAGES_NAMES_H
+
+#include "io/stream.h"
+
+struct names {
+    char *list; /* "body,lump", as in the section; "" when it has none */
+    int64_t count;
+    char **name; /* count */
+};
+
+/* The names of a section; to be freed also on failure. */
+MUST_CHECK enum status names_read(const struct section *section, struct names *names, struct error *error);
+/* The same of another attribute that is a list, such as rows=. */
+MUST_CHECK enum status names_of(const struct section *section, const char *key, struct names *names,
+                                struct error *error);
+void names_free(struct names *names);
+
+/* Index of `name`, or -1. */
+int64_t names_find(const struct names *names, const char *name);
+
+/* The names, separated by blanks after the commas, into text[256] for a message; "none" when there are none.
+ */
+const char *names_text(const struct names *names, char text[256]);
+
+#endif

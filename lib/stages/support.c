@@ -1,0 +1,229 @@
+#include "stages/stages.h"
+
+#include "approx/face_rows.h"
+#include "approx/support_space.h"
+#include "base/memory.h"
+#include "io/sections.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* Radii by the local spacing: from the cells where there are any, else from the nearest nodes. */
+static enum status local_radii(const struct stream *stream, const struct support_options *options,
+                               int64_t node_count, const double *x, double *radius, struct error *error)
+{
+    enum status status;
+    struct cells cells;
+    double *spacing = NULL;
+    TRY(NEW_ARRAY(&spacing, node_count, error));
+    TRY(stream_cells(stream, false, &cells, error));
+    if (cells.count > 0) {
+        TRY(cells_node_spacing(&cells, spacing, error));
+    } else {
+        TRY(nodes_spacing(options->mls.dim, node_count, x, spacing, error));
+    }
+    TRY(support_radii(options, node_count, spacing, radius, error));
+done:
+    free(spacing);
+    return status;
+}
+
+enum status stage_radii(const struct stream *stream, const struct support_options *options,
+                        int64_t node_count, const double *x, double *radius, struct error *error)
+{
+    return options->radius > 0.0 ? support_radii(options, node_count, NULL, radius, error)
+                                 : local_radii(stream, options, node_count, x, radius, error);
+}
+
+/* Radii of the nodes, put into the stream with the settings they were made for. */
+static enum status put_radii(struct stream *stream, const struct support_options *options, int64_t node_count,
+                             const double *x, struct error *error)
+{
+    enum status status;
+    double *radius = NULL;
+    TRY(NEW_ARRAY(&radius, node_count, error));
+    TRY(stage_radii(stream, options, node_count, x, radius, error));
+    TRY(stage_record(stream, &(struct recorded){*options, options->mls}, node_count, radius, error));
+done:
+    free(radius);
+    return status;
+}
+
+/* Points of one section, in those cells: lists PREFIX.ptr, .idx, .widen, and what the report calls them. */
+struct listed {
+    const struct section *points;
+    struct reach_places places;
+    const char *prefix, *called;
+};
+
+static enum status put_lists(struct stream *stream, const struct support_options *options,
+                             const struct support_space *space, const struct listed *listed,
+                             struct support_report *report, struct error *error)
+{
+    const struct section *points = listed->points;
+    const char *prefix = listed->prefix;
+    enum status status;
+    struct support_lists lists = {0};
+    char vector[64];
+    int64_t count = points->rows;
+    TRY(support_space_lists(options, space, &listed->places, count, points->data, points->name, &lists,
+                            error));
+    int64_t pairs = lists.ptr[count];
+    report->list[report->lists++] = (struct list_report){.what = listed->called,
+                                                         .points = count,
+                                                         .pairs = pairs,
+                                                         .fewest = lists.fewest,
+                                                         .most = lists.most,
+                                                         .widened = lists.widened,
+                                                         .around = lists.around_count,
+                                                         .widest = lists.widest};
+    TRY(stream_put_member(stream, prefix, "ptr", TYPE_I8, count + 1, 1, "", &lists.ptr, error));
+    TRY(stream_put_member(stream, prefix, "idx", TYPE_I4, pairs, 1, "", &lists.idx, error));
+    TRY(stream_put_member(stream, prefix, "widen", TYPE_F8, count, 1, "", &lists.widen, error));
+    if (lists.around_count > 0) {
+        TRY(stream_put_member(stream, prefix, "around", TYPE_I8, lists.around_count, 1, "",
+                              &lists.around_pair, error));
+        TRY(stream_put_member(stream, prefix, "image", TYPE_F8, lists.around_count, points->cols,
+                              vector_attributes((int)points->cols, "m", vector), &lists.around_offset,
+                              error));
+    }
+done:
+    support_free(&lists);
+    return status;
+}
+
+/* The cells of the integration points; to be found by place where there is no such section. */
+static enum status places_of_points(const struct stream *stream, const struct cells *cells, int64_t points,
+                                    struct reach_places *places, struct error *error)
+{
+    enum status status = STATUS_OK;
+    const struct section *section = stream_find(stream, "points.cell");
+    *places = (struct reach_places){0};
+    if (section == NULL) {
+        return STATUS_OK;
+    }
+    TRY(stream_need(stream, "points.cell", TYPE_I4, 1, "ipoints", &section, error));
+    if (section->rows != points) {
+        return fail(error, STATUS_INPUT, "points.cell: %lld rows for %lld points: run ipoints again",
+                    (long long)section->rows, (long long)points);
+    }
+    const int32_t *cell = section->data;
+    for (int64_t i = 0; i < points; i++) {
+        if (cell[i] < -1 || (cells->count > 0 && cell[i] >= cells->count)) {
+            return fail(error, STATUS_INPUT, "points.cell: row %lld: no cell %d", (long long)i, cell[i]);
+        }
+    }
+    *places = (struct reach_places){.cell = cell, .points_per_row = 1};
+done:
+    return status;
+}
+
+/* The cells at the points of faces, in arrays of the caller's; to be found by place where faces.cell is not
+ * there. */
+static enum status places_of_face_points(const struct stream *stream, const struct cells *cells,
+                                         int64_t points, int64_t **ptr, int32_t **cell,
+                                         struct reach_places *places, struct error *error)
+{
+    enum status status = STATUS_OK;
+    struct faces faces;
+    *places = (struct reach_places){0};
+    if (cells->count == 0 || stream_find(stream, "faces.cell") == NULL) {
+        return STATUS_OK;
+    }
+    TRY(stream_faces(stream, cells, &faces, error));
+    if (face_row_point(&faces, faces.row_count) != points) {
+        TRY(fail(error, STATUS_INPUT, "facepoints.x: does not fit faces.row: run ipoints again"));
+    }
+    TRY(face_rows_cells(cells->node_count, &faces, ptr, cell, error));
+    *places = (struct reach_places){
+        .ptr = *ptr, .cell = *cell, .points_per_row = OWN_POINTS(cells->dim), .long_rows = faces.own_count};
+done:
+    return status;
+}
+
+/* The rows of faces, and their points, as the sides have them. */
+static enum status renew_rows(struct stream *stream, const struct cells *cells, const int32_t *side,
+                              struct error *error)
+{
+    enum status status;
+    struct faces faces;
+    int32_t *row = NULL;
+    double *x = NULL;
+    char attributes[64];
+    int dim = cells->dim;
+    TRY(stream_faces(stream, cells, &faces, error));
+    if (!faces_may_share(&faces)) {
+        return STATUS_OK;
+    }
+    TRY(face_rows_number(cells->node_count, side, &faces, error));
+    row = faces.row;
+    int64_t points = face_row_point(&faces, faces.row_count);
+    TRY(NEW_ARRAY(&x, points * dim, error));
+    face_rows_points(&faces, cells->x, x);
+    TRY(stream_put(stream, "faces.row", TYPE_I4, faces.count, dim, "", array_take(&row), true, error));
+    TRY(stream_put(stream, "facepoints.x", TYPE_F8, points, dim, vector_attributes(dim, "m", attributes),
+                   array_take(&x), true, error));
+done:
+    free(row);
+    free(x);
+    return status;
+}
+
+enum status stage_support(struct stream *stream, const struct support_options *options,
+                          struct support_report *report, struct error *error)
+{
+    enum status status;
+    struct support_space space = {0};
+    int dim;
+    int64_t node_count;
+    const double *x;
+    const struct section *points, *facepoints;
+    struct support_options actual = *options;
+    struct cells cells;
+    struct listed listed;
+    int64_t *face_ptr = NULL;
+    int32_t *face_cell = NULL;
+    *report = (struct support_report){0};
+    bool had_sides = stream_find(stream, "support.side") != NULL;
+    sections_remove(stream, MADE_WITH_SUPPORT, MADE_WITH_SHAPES);
+    TRY(stream_nodes(stream, &dim, &node_count, &x, error));
+    TRY(stream_need(stream, "points.x", TYPE_F8, dim, "ipoints", &points, error));
+    TRY(stream_cells(stream, false, &cells, error));
+    if (cells.count == 0) {
+        actual.reach = REACH_DISTANCE;
+    }
+    report->reach = actual.reach;
+    TRY(put_radii(stream, &actual, node_count, x, error));
+    if (actual.side != NULL) {
+        TRY(stream_put_copy(stream, "support.side", TYPE_I4, cells.count, 1, "", actual.side, error));
+    }
+    TRY(stage_own_part(stream, node_count, &actual, error));
+    TRY(support_space_build(&actual, &cells, stream_find(stream, "support.radius")->data, &space, error));
+    bool smoothed = points_are_smoothed(points); /* gradients come from the faces alone */
+    if (!smoothed) {
+        listed = (struct listed){.points = points, .prefix = "nbr", .called = "integration points"};
+        TRY(places_of_points(stream, &cells, points->rows, &listed.places, error));
+        TRY(put_lists(stream, &actual, &space, &listed, report, error));
+    }
+    if (stream_find(stream, "faces") != NULL || smoothed) {
+        TRY(stream_need(stream, "facepoints.x", TYPE_F8, dim, "ipoints", &facepoints, error));
+        if (had_sides || actual.side != NULL) {
+            TRY(renew_rows(stream, &cells, actual.side, error));
+            facepoints = stream_find(stream, "facepoints.x");
+        }
+        listed = (struct listed){.points = facepoints, .prefix = "facepoint", .called = "points on faces"};
+        TRY(places_of_face_points(stream, &cells, facepoints->rows, &face_ptr, &face_cell, &listed.places,
+                                  error));
+        TRY(put_lists(stream, &actual, &space, &listed, report, error));
+    }
+    listed = (struct listed){.points = stream_find(stream, "nodes.x"),
+                             .places = {.nodes = true},
+                             .prefix = "node",
+                             .called = "nodes"};
+    TRY(put_lists(stream, &actual, &space, &listed, report, error));
+done:
+    free(face_ptr);
+    free(face_cell);
+    support_space_free(&space);
+    return status;
+}
