@@ -138,6 +138,7 @@ int main(int argc, char *argv[])
     }
     tool_check(&tool, NEW_ARRAY(&run.u, model.system.node_count * scene.dim, &error), &error);
     run.prepare_seconds = clock_seconds() - run.display.started;
+    run_contacts_begin(&run);
     run_folds_begin(&run);
     run_stability_begin(&run);
     if (scene.analysis == SCENE_DYNAMIC) {

@@ -178,6 +178,7 @@ enum status contact_state(struct contact *contact, const char *prefix, const str
     const struct state_value values[] = {
         {"multiplier", STATE_NUMBERS, contact->multiplier, contact_nodes(contact)->count * dim},
         {"behind", STATE_FLAGS, contact->behind, count},
+        {"pressed", STATE_FLAGS, &contact->pressed, 1},
         {"checked_x", STATE_NUMBERS, contact->checked_x, count * dim},
         {"checked_distance", STATE_NUMBERS, contact->checked_distance, count},
         {"checked_normal", STATE_NUMBERS, contact->checked_normal, count * dim},
@@ -287,6 +288,7 @@ void contact_accept(struct contact *contact)
     int dim = contact->dim;
     for (int64_t p = 0; p < contact->count; p++) {
         const struct contact_view *view = &contact->view[p];
+        contact->pressed = contact->pressed || contact->pressure[p] > 0.0;
         if (view->searched) {
             contact->behind[p] = view->behind;
             contact->checked_distance[p] = view->distance;

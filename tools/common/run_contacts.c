@@ -22,6 +22,89 @@ static double *deformed(const struct run *run)
     return x;
 }
 
+/* The largest factor that a load curve takes. */
+static double largest_factor(const struct load_curve *curve)
+{
+    double largest = curve->count > 0 ? 0.0 : 1.0;
+    for (int64_t i = 0; i < curve->count; i++) {
+        largest = fmax(largest, fabs(curve->factor[i]));
+    }
+    return largest;
+}
+
+/* How far the rows of conditions move the body at most, m. */
+static double prescribed_motion(const struct solid_system *system, const struct constraint_rows *rows)
+{
+    double most = 0.0;
+    for (int64_t r = 0; r < rows->count; r++) {
+        most = fmax(most, fabs(rows->target[r]) * largest_factor(&system->curves[rows->curve[r]]));
+    }
+    return most * sqrt(system->dim);
+}
+
+/* How far the surface moves at most, m. */
+static double own_motion(const struct solid_system *system, const struct contact *contact)
+{
+    const struct rigid_motion *motion = &contact->motion;
+    double way = 0.0;
+    if (!motion->moves) {
+        return 0.0;
+    }
+    for (int64_t v = 0; v < contact->surface.vertex_count; v++) {
+        way = fmax(way, rigid_motion_way(motion, contact->dim, contact->surface.vertex + v * contact->dim));
+    }
+    return way * fmax(largest_factor(&system->curves[motion->translation_curve]),
+                      largest_factor(&system->curves[motion->rotation_curve]));
+}
+
+/* How far the surface is from the points of its contact at rest, at least, m: by the boxes around both, and
+ * by the points, which in front of an open rim tell less. */
+static double distance_at_rest(const struct contact *contact)
+{
+    const struct rigid_branch *box = contact->surface.branch;
+    double between2 = 0.0, nearest = INFINITY;
+    for (int a = 0; a < contact->dim; a++) {
+        double low = INFINITY, high = -INFINITY;
+        for (int64_t p = 0; p < contact->count; p++) {
+            low = fmin(low, contact->rest[p * contact->dim + a]);
+            high = fmax(high, contact->rest[p * contact->dim + a]);
+        }
+        double gap = fmax(0.0, fmax(box->low[a] - high, low - box->high[a]));
+        between2 += gap * gap;
+    }
+    for (int64_t p = 0; p < contact->count; p++) {
+        double distance =
+            rigid_closest(&contact->surface, contact->rest + p * contact->dim, INFINITY).distance;
+        nearest = fmin(nearest, distance);
+    }
+    return fmax(sqrt(between2), nearest);
+}
+
+void run_contacts_begin(const struct run *run)
+{
+    const struct solid_system *system = &run->model->system;
+    const struct assembly *input = &run->model->assembly;
+    /* What is thrown or pushed in time may go anywhere. */
+    bool anywhere = input->in_time && (input->load_count > 0 || assembly_has_gravity(input) ||
+                                       run->scene->initial.table != NULL);
+    double prescribed =
+        fmax(prescribed_motion(system, &system->rows), prescribed_motion(system, &system->penalties));
+    for (int64_t c = 0; c < system->contact_count && !anywhere; c++) {
+        const struct contact *contact = &system->contacts[c];
+        if (contact->surface.facet_count == 0) {
+            continue;
+        }
+        double distance = distance_at_rest(contact), motion = own_motion(system, contact);
+        if (distance > input->extent + motion + prescribed) {
+            tool_fail(
+                run->tool, STATUS_INPUT,
+                "%s: the rigid surface is %.3g m from the facets, farther than the body's size of %.3g m "
+                "and all motion of the scene, %.3g m: wrong unit or wrong place?",
+                input->contacts[contact->section].where, distance, input->extent, motion + prescribed);
+        }
+    }
+}
+
 /* Whether the scene asks for what such patches are wrong about. */
 static bool wants_forces(const struct scene_output *output)
 {
@@ -44,6 +127,12 @@ static void judge_patch(struct run *run, const struct contact *contact, const st
             "nothing presses: begin with the surface outside, and refine the body there until its facets are "
             "smaller than the contact",
             run->scene->path, name, patch->inside, place);
+    }
+    if (!contact->pressed && contact->surface.facet_count > 0) {
+        tool_note(run->tool,
+                  "%s: [contact %s]: the body never touches the rigid surface: has that the right unit and "
+                  "place?",
+                  run->scene->path, name);
     }
     if (patch->thin > most_thin && wants_forces(&run->scene->output)) {
         point_text(system->dim, system->X + (int64_t)patch->node * system->dim, place);
