@@ -332,6 +332,20 @@ frames_hold() {
     refused 2 "load.tsv" mtled edited.scene square.mts
 }
 
+@test "a table of displacements of other facets, of a part of them, or that contradicts itself" {
+    with 's/^components = 0, -0.005$/table = load.tsv\nunit = mm/'
+    seq 0 10 100 | awk '{ print $1, 0, 0, -5 }' > load.tsv
+    refused 2 'edited.scene:15: [displacement top]: table load.tsv: its nearest point is 0.1 m from the boundary at (' mtled edited.scene square.mts
+    [[ "$stderr" == *'wrong unit or wrong place, else give rows there or leave these facets out' ]]
+    seq 0 2 20 | awk '{ print $1, 100, 0, -5 }' > load.tsv
+    refused 2 'its nearest point is 0.0' mtled edited.scene square.mts
+    printf '%s\n' "0 100 0 -5" "100 100 0 -5" "100 100 0 -4" > load.tsv
+    refused 2 'table load.tsv: rows 2 and 3, both at (0.1, 0.1), differ by 0.001 m: leave one out' mtled edited.scene square.mts
+    # The same again is no contradiction, and two rows tell of all that is between them.
+    printf '%s\n' "0 100 0 -5" "100 100 0 -5" "100 100 0 -5.000000000001" > load.tsv
+    mtled edited.scene square.mts 2> note > u.dat
+}
+
 @test "a slender beam bent far by a dead load: the load waits for it, and no step is taken back" {
     cat > beam.scene <<'END'
 [scene]
@@ -425,4 +439,36 @@ END
     OMP_NUM_THREADS=1 mtled -q pull.scene cube.mts > one.dat
     OMP_NUM_THREADS=2 OMP_STACKSIZE=256k mtled -q pull.scene cube.mts > two.dat
     cmp one.dat two.dat
+}
+
+@test "an output that would replace an input of the run is refused, and the input stays" {
+    shapefn -o t.mts square.mts 2> note
+    pressed_block > s.scene
+    mtled -q s.scene t.mts > u.dat
+    cp u.dat v.dat
+    printf '0.05 0.05\n' > marks.tsv
+    ln -s s.scene link.scene
+    sha256sum t.mts s.scene u.dat v.dat marks.tsv > sums
+    refused 2 '-o s.scene: replaces s.scene, an input of this run: name another file' mtled -q -o s.scene s.scene t.mts
+    refused 2 '-o s.scene: replaces link.scene, an input' mtled -q -o s.scene link.scene t.mts
+    refused 2 '-o ./t.mts: replaces t.mts, an input' mtled -q -o ./t.mts s.scene t.mts
+    refused 2 '-m v.dat: replaces v.dat, an input' fieldcmp -m v.dat u.dat v.dat
+    refused 2 '-o marks.tsv: replaces marks.tsv, an input' interp -f u -p marks.tsv -u m -o marks.tsv u.dat
+    refused 2 '-o t.mts: replaces t.mts, an input' shapefn -o t.mts t.mts
+    sha256sum --check --quiet sums
+    # A device is not replaced.
+    mtled -q -o /dev/null s.scene t.mts
+}
+
+@test "a checkpoint that is the result, or an input, is refused before the first step" {
+    shapefn -o t.mts square.mts 2> note
+    pressed_block > s.scene
+    refused 2 '-o run.mts: is the checkpoint of -c run.mts, which is removed at the end: name another file' mtled -q -c run.mts -o run.mts s.scene t.mts
+    refused 2 '-o ./run.old: is the checkpoint of -c run' mtled -q -c run -o ./run.old s.scene t.mts
+    cp t.mts run.old
+    refused 2 '-c run.old: replaces run.old, an input of this run' mtled -q -c run s.scene run.old
+    cmp t.mts run.old
+    [ ! -e run.mts ]
+    mtled -q -c run.ckpt -o run.mts s.scene t.mts
+    [ -s run.mts ]
 }

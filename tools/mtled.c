@@ -50,11 +50,11 @@ static const char usage[] =
     "  -c, --checkpoint FILE\n"
     "                       keep the state of the run in FILE, and go on from what is there\n"
     "  -e, --every SECONDS  with -c: how often (default 60)\n"
-    "  -o, --output FILE    write to FILE, which appears only when whole\n"
+    "  -o, --output FILE    write to FILE, none of the inputs, which appears only when whole\n"
     "\n"
     "Exit status:\n"
     "  0        done\n"
-    "  1        a body that nothing holds; diverged, inverted, folded, out of balance or of steps\n"
+    "  1        a verdict, as above, or not converged\n"
     "  2        wrong usage or malformed input\n"
     "  3        input, output or memory failed\n"
     "  128 + n  ended by signal n after a whole step\n"
@@ -67,6 +67,7 @@ static const char usage[] =
     "  nodes -u mm body.msh | shapefn | mtled brain2d.scene > u.dat\n"
     "  mpirun -n 4 mtled-mpi -o u.dat brain2d.scene part.%d.mts    by processes (make mpi); same bytes\n";
 
+#include "overwrite.h"
 #include "process.h"
 #include "run.h"
 
@@ -83,6 +84,26 @@ static void drop_results(struct stream *stream)
     run_drop_frames(stream);
 }
 
+/* The checkpoint, and the one before, must be neither an input nor the result: they go at the end. */
+static void check_checkpoint(const struct tool *tool)
+{
+    static const char *const suffixes[] = {"", ".old"};
+    const char *file = tool_value(tool, "checkpoint");
+    for (int i = 0; i < 2 && file != NULL; i++) {
+        char *name = NULL;
+        overwrite_refuse(tool, "checkpoint", suffixes[i]);
+        if (asprintf(&name, "%s%s", file, suffixes[i]) < 0) {
+            tool_fail(tool, STATUS_SYSTEM, "out of memory");
+        }
+        if (tool->output != NULL && overwrite_is_same(name, tool->output)) {
+            tool_fail(tool, STATUS_INPUT,
+                      "-o %s: is the checkpoint of -c %s, which is removed at the end: name another file",
+                      tool->output, file);
+        }
+        free(name);
+    }
+}
+
 int main(int argc, char *argv[])
 {
     struct tool tool;
@@ -96,6 +117,7 @@ int main(int argc, char *argv[])
     tool_requires(&tool, "every", "checkpoint");
     tool_leave_out(&tool, "checkpoint");
     tool_leave_out(&tool, "every");
+    check_checkpoint(&tool);
     double every = tool_number(&tool, "every", 0.0, 1e9, 60.0); /* seconds between checkpoints */
     double started = clock_seconds();
     if (process_ranks() != NULL && (tool.operand_count < 2 || strcmp(tool.operands[1], "-") == 0)) {
