@@ -106,3 +106,27 @@ lid() {
     mtled lid.scene block.mts 2> said > u.dat
     [ ! -s said ]
 }
+
+@test "contacts that give way: a verdict with its cause; in time a note" {
+    printf '%s\n' '-1 0.1' '1 0.1' > plate.tsv
+    lid 'rigid = plate.tsv' 'unit = m' 'translation = 0, -0.01' 'curve = linear' 'stiffness = 1'
+    refused 1 'lid.scene: contacts give way by 0.0' mtled lid.scene block.mts
+    [[ "$stderr" == *' m, where the body moves '*' m: [contact lid] sets its stiffness: leave it out, or raise it' ]]
+    lid 'rigid = plate.tsv' 'unit = m' '[displacement top]' 'facets = ymax' 'components = 0, 0.001'
+    refused 1 '[displacement top] moves facets of [contact lid]: leave them out of one' mtled lid.scene block.mts
+    lid 'rigid = plate.tsv' 'unit = m' 'translation = 0, -0.01' 'curve = smooth'
+    mtled lid.scene block.mts 2> said > u.dat
+    [ ! -s said ]
+    sed -i 's/quasi-static/dynamic/' lid.scene
+    printf '[solver]\nend_time = 0.5\ndamping = 60\n' >> lid.scene
+    mtled lid.scene block.mts 2> said > u.dat
+    [[ "$(cat said)" == 'mtled: lid.scene: contacts give way by '*' m, not '*' m: a larger stiffness, with shorter steps, or a finer cloud there helps' ]]
+}
+
+@test "a contact on the wrong side names its section and the deepest node" {
+    printf '0 0.2\n0.1 0.2\n' > line.tsv
+    lid 'rigid = line.tsv' 'unit = m'
+    sed -i 's/^side = right/side = left/' lid.scene
+    refused 2 'lid.scene:14: [contact lid]: contact: node 5' mtled lid.scene block.mts
+    [[ "$stderr" == *', the deepest, starts 0.1 m behind the rigid surface: state its other side, or leave the node'* ]]
+}

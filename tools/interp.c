@@ -265,8 +265,11 @@ static void put_fields(const struct tool *tool, const struct stream *stream, int
     for (char *rest = list; (name = strsep(&rest, ",")) != NULL;) {
         const struct section *field = stream_find(stream, name);
         if (field == NULL || !is_field(field, node_count)) {
-            tool_fail(tool, STATUS_INPUT, "-f: no field '%s' of type f8 with one row per node (see mts list)",
-                      name);
+            tool_fail(tool, STATUS_INPUT,
+                      "-f: no field '%s' of type f8 with one row per node (see mts list)%s", name,
+                      field != NULL && field->rows != node_count
+                          ? "; one row per integration point or cell: see tovtk"
+                          : "");
         }
         if (stream_find(output, name) != NULL) {
             tool_fail(tool, STATUS_INPUT, "-f: field '%s' given twice", name);

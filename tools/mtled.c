@@ -26,15 +26,17 @@ static const char usage[] =
     "Sections on request, of the final state: stress (Cauchy), strain (Green-Lagrange), pressure\n"
     "and volume_ratio of each integration point; reactions and moments of each displacement and\n"
     "contact, the moments about moments_about, at the deformed places where they act; gaps and\n"
-    "pressures of contacts; energy, J (2D: J/m): in a dynamic scene about 200 rows of time (s),\n"
+    "nominal pressures, per area at rest, of contacts; energy, J (2D: J/m): in a\n"
+    "dynamic scene about 200 "
+    "rows of time (s),\n"
     "kinetic, internal and contact energy, work of loads and prescribed motion, dissipated, and\n"
     "error of the balance relative to the largest energy; in a quasi-static scene one row,\n"
     "internal and contact.\n"
     "\n"
     "And of frames, states on the way: u.frame.K, the field u at time=, K = 0, the begin, 1, 2, ...,\n"
     "evenly. In a quasi-static scene time goes from 0 to 1 over the load, which is held at each\n"
-    "frame until the error is below the tolerance. What else the scene asks for is there of each\n"
-    "frame, too: stress.frame.K and so on, and tables with a row for each frame, time first,\n"
+    "frame until the error is below the tolerance. There, not in time, what else is asked for is\n"
+    "given of each frame: stress.frame.K and so on, and tables with a row for each frame, time first,\n"
     "reactions.frames, moments.frames, energy.frames: a load curve.\n"
     "\n"
     "With -c, the state of the run is kept in a file, from time to time and when SIGINT, SIGTERM\n"
@@ -44,7 +46,7 @@ static const char usage[] =
     "field as u.last and the frames so far; when the results are written, both go.\n"
     "\n"
     "Options:\n"
-    "  -v, --verbose        end with a report on standard error: steps, error, cost of each part\n"
+    "  -v, --verbose        a report on standard error: steps, error, costs\n"
     "  -q, --quiet          no progress\n"
     "  -b, --binary         write binary instead of text\n"
     "  -c, --checkpoint FILE\n"
@@ -104,6 +106,20 @@ static void check_checkpoint(const struct tool *tool)
     }
 }
 
+/* The operands in the wrong order. */
+static void check_scene(const struct tool *tool)
+{
+    char begin[5] = "";
+    FILE *file = fopen(tool->operands[0], "r");
+    bool is_stream = file != NULL && fread(begin, 1, 5, file) == 5 && memcmp(begin, "# mts", 5) == 0;
+    if (file != NULL) {
+        fclose(file);
+    }
+    if (is_stream) {
+        tool_fail(tool, STATUS_INPUT, "%s: a stream, not a scene: mtled SCENE [FILE]", tool->operands[0]);
+    }
+}
+
 int main(int argc, char *argv[])
 {
     struct tool tool;
@@ -118,6 +134,7 @@ int main(int argc, char *argv[])
     tool_leave_out(&tool, "checkpoint");
     tool_leave_out(&tool, "every");
     check_checkpoint(&tool);
+    check_scene(&tool);
     double every = tool_number(&tool, "every", 0.0, 1e9, 60.0); /* seconds between checkpoints */
     double started = clock_seconds();
     if (process_ranks() != NULL && (tool.operand_count < 2 || strcmp(tool.operands[1], "-") == 0)) {

@@ -5,6 +5,7 @@
 #include "io/table.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 static void set_material(const struct scene_material *section, struct material *material)
 {
@@ -36,7 +37,7 @@ static enum status check_row(const struct model *model, const struct scene_mater
     if (!(away <= MODEL_SAME_PLACE)) {
         return fail(error, STATUS_INPUT,
                     "%s: %s:%lld: the rows do not match the integration points of its regions: %g m from "
-                    "point %lld",
+                    "point %lld: wrong unit, or make the table anew from this stream",
                     section->label.where, section->table, (long long)table->line[row],
                     away * model->assembly.extent, (long long)q);
     }
@@ -132,10 +133,15 @@ static enum status materials_of_cells(struct model *model, struct error *error)
     }
     for (int64_t c = 0; c < cells->count; c++) {
         if (of_cell[c] < 0 || of_cell[c] >= region_count || material[of_cell[c]] < 0) {
-            status = fail(
-                error, STATUS_INPUT,
-                "%s: region %d of the mesh (of %s) has no material: name it, or leave it out with nodes -r",
-                model->scene->path, of_cell[c], names);
+            const char *name = names;
+            for (int32_t r = 0; r < of_cell[c] && *name != '\0'; r++) {
+                name += strcspn(name, ",");
+                name += *name == ',';
+            }
+            status = fail(error, STATUS_INPUT,
+                          "%s: region '%.*s' has no material: add it to a [material], or leave it out (nodes "
+                          "-r; voxels -l)",
+                          model->scene->path, (int)strcspn(name, ","), name);
             goto done;
         }
         model->assembly.materials.of_cell[c] = material[of_cell[c]];
