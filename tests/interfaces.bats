@@ -157,7 +157,7 @@ even() {
     through -i middle,right
     [ ! -s note ]
     # Forces are off, too, where the jump is large.
-    sed '/^stress/d; /^strain/d' body.scene | awk '/^E = / { $3 = 3000 * 100 ^ n++ } { print }' > forces.scene
+    sed '/^stress/d; /^strain/d; s/^E = 30000$/E = 300000/; s/1e-10/1e-6/' body.scene > forces.scene
     ipoints body.mts | support | shapefn | mtled -q forces.scene 2> note > u.dat
     grep -q ' is smoothed, and forces may be off by tens of percent: support -i ' note
     # Without stresses there is nothing to say; nor without a jump.
