@@ -66,7 +66,7 @@ static enum status check_side(const struct contact *contact, struct error *error
     }
     if (deepest > round_off * most_depth(contact, worst)) {
         return fail(error, STATUS_INPUT,
-                    "contact: node %d, the deepest, starts %.3g m behind the rigid surface: state its other "
+                    "contact: node %d starts %.3g m behind the rigid surface: state its other "
                     "side, or leave the node's facets out",
                     contact->points->node[worst], deepest);
     }
