@@ -69,3 +69,60 @@ ball() {
     cat forces
     awk '{ f[NR] = $1 } END { d = f[1] / f[2] - 1; exit !(f[1] > 1 && d < 0.02 && d > -0.02) }' forces
 }
+
+# lid LINES: a square of 0.1 m on its bottom; a rigid surface, as the lines of its section say, above it.
+lid() {
+    cloud -d 2 -k regular -n 8 --box 0,0.1,0,0.1 | shapefn > block.mts 2> note
+    { block quasi-static && held_below && printf '[contact lid]\nfacets = ymax\nside = right\n' && printf '%s\n' "$@"; } > lid.scene
+}
+
+@test "a rigid surface out of all reach is refused with its distance; one that is never touched is told" {
+    lid 'rigid = plate.tsv' 'unit = m' 'translation = 0, -0.01' 'curve = linear'
+    printf '%s\n' '-1000 100' '1000 100' > plate.tsv
+    refused 2 'lid.scene:14: [contact lid]: the rigid surface is 99.9 m from the facets, farther than the body'"'"'s size of 0.' mtled lid.scene block.mts
+    [[ "$stderr" == *'all motion of the scene, 0.01 m: wrong unit or wrong place?' ]]
+    # As far away, but the scene brings it near: told, as it still does not touch.
+    lid 'rigid = plate.tsv' 'unit = m' 'translation = 0, -99.89' 'curve = linear' '[solver]' 'ramp_steps = 10'
+    run --separate-stderr mtled lid.scene block.mts
+    [ "$status" -eq 0 ]
+    [ "$stderr" = 'mtled: lid.scene: [contact lid]: the body never touches the rigid surface: has that the right unit and place?' ]
+    # Beside the body, level with its top.
+    lid 'rigid = plate.tsv' 'unit = mm' 'translation = 0, -0.01' 'curve = linear'
+    printf '%s\n' '200 100' '1000 100' > plate.tsv
+    run --separate-stderr mtled lid.scene block.mts
+    [ "$status" -eq 0 ]
+    [ "$stderr" = 'mtled: lid.scene: [contact lid]: the body never touches the rigid surface: has that the right unit and place?' ]
+    # Far beside it.
+    printf '%s\n' '2000 100' '3000 100' > plate.tsv
+    refused 2 'the rigid surface is 1.9 m from the facets' mtled lid.scene block.mts
+    # A plate that presses, and leaves again, has touched.
+    lid 'rigid = plate.tsv' 'unit = mm' 'translation = 0, -0.01' 'curve = there.tsv'
+    printf '%s\n' '-10 100' '110 100' > plate.tsv
+    printf '%s\n' '0 0' '0.4 1' '0.8 -1' '1 -1' > there.tsv
+    mtled lid.scene block.mts 2> said > u.dat
+    [ ! -s said ]
+}
+
+@test "contacts that give way: a verdict with its cause; in time a note" {
+    printf '%s\n' '-1 0.1' '1 0.1' > plate.tsv
+    lid 'rigid = plate.tsv' 'unit = m' 'translation = 0, -0.01' 'curve = linear' 'stiffness = 1'
+    refused 1 'lid.scene: contacts give way by 0.0' mtled lid.scene block.mts
+    [[ "$stderr" == *' m, where the body moves '*' m: [contact lid] sets its stiffness: leave it out, or raise it' ]]
+    lid 'rigid = plate.tsv' 'unit = m' '[displacement top]' 'facets = ymax' 'components = 0, 0.001'
+    refused 1 '[displacement top] moves facets of [contact lid]: leave them out of one' mtled lid.scene block.mts
+    lid 'rigid = plate.tsv' 'unit = m' 'translation = 0, -0.01' 'curve = smooth'
+    mtled lid.scene block.mts 2> said > u.dat
+    [ ! -s said ]
+    sed -i 's/quasi-static/dynamic/' lid.scene
+    printf '[solver]\nend_time = 0.5\ndamping = 60\n' >> lid.scene
+    mtled lid.scene block.mts 2> said > u.dat
+    [[ "$(cat said)" == 'mtled: lid.scene: contacts give way by '*' m, not '*' m: a larger stiffness, with shorter steps, or a finer cloud there helps' ]]
+}
+
+@test "a contact on the wrong side names its section and the deepest node" {
+    printf '0 0.2\n0.1 0.2\n' > line.tsv
+    lid 'rigid = line.tsv' 'unit = m'
+    sed -i 's/^side = right/side = left/' lid.scene
+    refused 2 'lid.scene:14: [contact lid]: contact: node 5' mtled lid.scene block.mts
+    [[ "$stderr" == *' starts 0.1 m behind the rigid surface: state its other side, or leave the node'* ]]
+}

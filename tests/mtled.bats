@@ -328,6 +328,20 @@ frames_hold() {
     refused 2 "load.tsv" mtled edited.scene square.mts
 }
 
+@test "a table of displacements of other facets, of a part of them, or that contradicts itself" {
+    with 's/^components = 0, -0.005$/table = load.tsv\nunit = mm/'
+    seq 0 10 100 | awk '{ print $1, 0, 0, -5 }' > load.tsv
+    refused 2 'edited.scene:15: [displacement top]: table load.tsv: its nearest point is 0.1 m from the boundary at (' mtled edited.scene square.mts
+    [[ "$stderr" == *'wrong unit or wrong place, else give rows there or leave these facets out' ]]
+    seq 0 2 20 | awk '{ print $1, 100, 0, -5 }' > load.tsv
+    refused 2 'its nearest point is 0.0' mtled edited.scene square.mts
+    printf '%s\n' "0 100 0 -5" "100 100 0 -5" "100 100 0 -4" > load.tsv
+    refused 2 'table load.tsv: rows 2 and 3, both at (0.1, 0.1), differ by 0.001 m: leave one out' mtled edited.scene square.mts
+    # The same again is no contradiction, and two rows tell of all that is between them.
+    printf '%s\n' "0 100 0 -5" "100 100 0 -5" "100 100 0 -5.000000000001" > load.tsv
+    mtled edited.scene square.mts 2> note > u.dat
+}
+
 @test "a slender beam bent far by a dead load: the load waits for it, and no step is taken back" {
     cat > beam.scene <<'END'
 [scene]
@@ -421,4 +435,56 @@ END
     OMP_NUM_THREADS=1 mtled -q pull.scene cube.mts > one.dat
     OMP_NUM_THREADS=2 OMP_STACKSIZE=256k mtled -q pull.scene cube.mts > two.dat
     cmp one.dat two.dat
+}
+
+@test "an output that would replace an input of the run is refused, and the input stays" {
+    shapefn -o t.mts square.mts 2> note
+    pressed_block > s.scene
+    mtled -q s.scene t.mts > u.dat
+    cp u.dat v.dat
+    printf '0.05 0.05\n' > marks.tsv
+    ln -s s.scene link.scene
+    sha256sum t.mts s.scene u.dat v.dat marks.tsv > sums
+    refused 2 '-o s.scene: replaces s.scene, an input of this run: name another file' mtled -q -o s.scene s.scene t.mts
+    refused 2 '-o s.scene: replaces link.scene, an input' mtled -q -o s.scene link.scene t.mts
+    refused 2 '-o ./t.mts: replaces t.mts, an input' mtled -q -o ./t.mts s.scene t.mts
+    refused 2 '-m v.dat: replaces v.dat, an input' fieldcmp -m v.dat u.dat v.dat
+    refused 2 '-o marks.tsv: replaces marks.tsv, an input' interp -f u -p marks.tsv -u m -o marks.tsv u.dat
+    refused 2 '-o t.mts: replaces t.mts, an input' shapefn -o t.mts t.mts
+    sha256sum --check --quiet sums
+    # A device is not replaced.
+    mtled -q -o /dev/null s.scene t.mts
+}
+
+@test "a checkpoint that is the result, or an input, is refused before the first step" {
+    shapefn -o t.mts square.mts 2> note
+    pressed_block > s.scene
+    refused 2 '-o run.mts: is the checkpoint of -c run.mts, which is removed at the end: name another file' mtled -q -c run.mts -o run.mts s.scene t.mts
+    refused 2 '-o ./run.old: is the checkpoint of -c run' mtled -q -c run -o ./run.old s.scene t.mts
+    cp t.mts run.old
+    refused 2 '-c run.old: replaces run.old, an input of this run' mtled -q -c run s.scene run.old
+    cmp t.mts run.old
+    [ ! -e run.mts ]
+    mtled -q -c run.ckpt -o run.mts s.scene t.mts
+    [ -s run.mts ]
+}
+
+@test "messages: what is missing, its section, and the remedy" {
+    mts drop 'facets*' square.mts | shapefn > bare.mts 2> note
+    refused 2 'block.scene:11: [displacement bottom]: no named facets: give the mesh physical groups, or run groups' mtled block.scene bare.mts
+    with 's/^components = 0, -0.005$/&\ncurve = ramp/'
+    refused 2 'edited.scene:15: [displacement top]: curve: not smooth, linear or step, and as a file: ' mtled edited.scene square.mts
+    refused 2 'square.mts: a stream, not a scene: mtled SCENE [FILE]' mtled square.mts block.scene
+    with 's/^analysis.*/&\ngravity = 0 -9.81/'
+    refused 2 'separate components by commas' mtled edited.scene square.mts
+    with 's/^components = 0, -0.005$/components = 0, -10/'
+    printf '[solver]\nmax_steps = 1\n' >> edited.scene
+    run --separate-stderr mtled edited.scene square.mts
+    [ "$status" -eq 1 ]
+    [[ "$stderr" == *'edited.scene: a displacement of 10 m is prescribed, '*' times the size of the body: lengths without a unit are in m'* ]]
+    groups -r 'left=half:0.05,0,1,0' square.mts 2> note | shapefn > two.mts 2> note
+    refused 2 "region 'left' has no material: add it to a [material], or leave it out (nodes -r; voxels -l)" mtled block.scene two.mts
+    printf '[output]\nstress = yes\n' | cat block.scene - > edited.scene
+    mtled edited.scene square.mts > u.dat 2> note
+    refused 2 "-f: no field 'stress' of type f8 with one row per node (see mts list); one row per integration point or cell: see tovtk" interp -f stress u.dat
 }

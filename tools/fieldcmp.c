@@ -49,6 +49,7 @@ static const char usage[] =
     "  mtled brain2d.scene table.mts | fieldcmp -m difference.mts - reference.dat\n";
 
 #include "comparison.h"
+#include "overwrite.h"
 
 /* Where it is known. */
 static void print_iteration(const char *name, const struct side *side)
@@ -65,6 +66,7 @@ int main(int argc, char *argv[])
     struct side a, b;
     struct findings findings;
     tool_begin(&tool, usage, 2, 2, argc, argv);
+    overwrite_refuse(&tool, "map", "");
     struct comparison_request request = comparison_parse(&tool);
     side_read(&tool, tool.operands[0], request.field, &a);
     side_read(&tool, tool.operands[1], request.field, &b);

@@ -36,7 +36,7 @@ static const char usage[] =
     "      --skip-outside     leave out the points that lie in no cell, as of a grid that covers the\n"
     "                         body; a section points.row then tells the rows of POINTS that are there\n"
     "  -t, --text             write text instead of binary\n"
-    "  -o, --output FILE      write to FILE, which appears only when whole\n"
+    "  -o, --output FILE      write to FILE, none of the inputs, which appears only when whole\n"
     "\n"
     "Examples:\n"
     "  interp -f u -p landmarks.tsv -u mm --deformed -t u.dat\n"
@@ -258,8 +258,11 @@ static void put_fields(const struct tool *tool, const struct stream *stream, int
     for (char *rest = list; (name = strsep(&rest, ",")) != NULL;) {
         const struct section *field = stream_find(stream, name);
         if (field == NULL || !is_field(field, node_count)) {
-            tool_fail(tool, STATUS_INPUT, "-f: no field '%s' of type f8 with one row per node (see mts list)",
-                      name);
+            tool_fail(tool, STATUS_INPUT,
+                      "-f: no field '%s' of type f8 with one row per node (see mts list)%s", name,
+                      field != NULL && field->rows != node_count
+                          ? "; one row per integration point or cell: see tovtk"
+                          : "");
         }
         if (stream_find(output, name) != NULL) {
             tool_fail(tool, STATUS_INPUT, "-f: field '%s' given twice", name);

@@ -26,15 +26,17 @@ static const char usage[] =
     "Sections on request, of the final state: stress (Cauchy), strain (Green-Lagrange), pressure\n"
     "and volume_ratio of each integration point; reactions and moments of each displacement and\n"
     "contact, the moments about moments_about, at the deformed places where they act; gaps and\n"
-    "pressures of contacts; energy, J (2D: J/m): in a dynamic scene about 200 rows of time (s),\n"
+    "nominal pressures, per area at rest, of contacts; energy, J (2D: J/m): in a\n"
+    "dynamic scene about 200 "
+    "rows of time (s),\n"
     "kinetic, internal and contact energy, work of loads and prescribed motion, dissipated, and\n"
     "error of the balance relative to the largest energy; in a quasi-static scene one row,\n"
     "internal and contact.\n"
     "\n"
     "And of frames, states on the way: u.frame.K, the field u at time=, K = 0, the begin, 1, 2, ...,\n"
     "evenly. A quasi-static scene's time is 0 to 1; its load is that of the curve, held until the\n"
-    "error is below the tolerance. What else the scene asks for is there of each frame, too:\n"
-    "stress.frame.K and so on, and tables with a row for each frame, time first,\n"
+    "error is below the tolerance. There, not in dynamics, what else is asked for is given of each\n"
+    "frame: stress.frame.K and so on, and tables with a row for each frame, time first,\n"
     "reactions.frames, moments.frames, energy.frames: a load curve.\n"
     "\n"
     "With -c, the state of the run is kept in a file, from time to time and when SIGINT, SIGTERM\n"
@@ -44,17 +46,17 @@ static const char usage[] =
     "field as u.last and the frames so far; when the results are written, both go.\n"
     "\n"
     "Options:\n"
-    "  -v, --verbose        end with a report on standard error: steps, error, cost of each part\n"
+    "  -v, --verbose        a report on standard error: steps, error, costs\n"
     "  -q, --quiet          no progress\n"
     "  -b, --binary         write binary instead of text\n"
     "  -c, --checkpoint FILE\n"
     "                       keep the state of the run in FILE, and go on from what is there\n"
     "  -e, --every SECONDS  with -c: how often (default 60)\n"
-    "  -o, --output FILE    write to FILE, which appears only when whole\n"
+    "  -o, --output FILE    write to FILE, none of the inputs, which appears only when whole\n"
     "\n"
     "Exit status:\n"
     "  0        done\n"
-    "  1        a body that nothing holds; diverged, inverted, folded, out of balance or of steps\n"
+    "  1        a verdict, as above, or not converged\n"
     "  2        wrong usage or malformed input\n"
     "  3        input, output or memory failed\n"
     "  128 + n  ended by signal n after a whole step\n"
@@ -67,6 +69,7 @@ static const char usage[] =
     "  nodes -u mm body.msh | shapefn | mtled brain2d.scene > u.dat\n"
     "  mpirun -n 4 mtled-mpi -o u.dat brain2d.scene part.%d.mts    by processes (make mpi); same bytes\n";
 
+#include "overwrite.h"
 #include "stage_fill.h"
 #include "process.h"
 #include "run.h"
@@ -84,6 +87,40 @@ static void drop_results(struct stream *stream)
     run_drop_frames(stream);
 }
 
+/* The checkpoint, and the one before, must be neither an input nor the result: they go at the end. */
+static void check_checkpoint(const struct tool *tool)
+{
+    static const char *const suffixes[] = {"", ".old"};
+    const char *file = tool_value(tool, "checkpoint");
+    for (int i = 0; i < 2 && file != NULL; i++) {
+        char *name = NULL;
+        overwrite_refuse(tool, "checkpoint", suffixes[i]);
+        if (asprintf(&name, "%s%s", file, suffixes[i]) < 0) {
+            tool_fail(tool, STATUS_SYSTEM, "out of memory");
+        }
+        if (tool->output != NULL && overwrite_is_same(name, tool->output)) {
+            tool_fail(tool, STATUS_INPUT,
+                      "-o %s: is the checkpoint of -c %s, which is removed at the end: name another file",
+                      tool->output, file);
+        }
+        free(name);
+    }
+}
+
+/* The operands in the wrong order. */
+static void check_scene(const struct tool *tool)
+{
+    char begin[5] = "";
+    FILE *file = fopen(tool->operands[0], "r");
+    bool is_stream = file != NULL && fread(begin, 1, 5, file) == 5 && memcmp(begin, "# mts", 5) == 0;
+    if (file != NULL) {
+        fclose(file);
+    }
+    if (is_stream) {
+        tool_fail(tool, STATUS_INPUT, "%s: a stream, not a scene: mtled SCENE [FILE]", tool->operands[0]);
+    }
+}
+
 int main(int argc, char *argv[])
 {
     struct tool tool;
@@ -96,6 +133,8 @@ int main(int argc, char *argv[])
     tool_requires(&tool, "every", "checkpoint");
     tool_leave_out(&tool, "checkpoint");
     tool_leave_out(&tool, "every");
+    check_checkpoint(&tool);
+    check_scene(&tool);
     double every = tool_number(&tool, "every", 0.0, 1e9, 60.0); /* seconds between checkpoints */
     double started = clock_seconds();
     if (process_ranks() != NULL && (tool.operand_count < 2 || strcmp(tool.operands[1], "-") == 0)) {
@@ -138,6 +177,7 @@ int main(int argc, char *argv[])
     }
     TOOL_TRY(&tool, NEW_ARRAY(&run.u, model.system.node_count * scene.dim, &error));
     run.prepare_seconds = clock_seconds() - run.display.started;
+    run_contacts_begin(&run);
     run_folds_begin(&run);
     run_stability_begin(&run);
     if (scene.analysis == SCENE_DYNAMIC) {

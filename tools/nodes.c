@@ -46,7 +46,7 @@ static const char usage[] =
     "                          1 for a regular cell)\n"
     "  -b, --binary            write binary (default)\n"
     "  -t, --text              write text\n"
-    "  -o, --output FILE       write to FILE, which appears only when whole\n"
+    "  -o, --output FILE       write to FILE, none of the inputs, which appears only when whole\n"
     "\n"
     "Examples:\n"
     "  gmsh -2 brain2d.geo -o body.msh && nodes -u mm body.msh | mts list\n"

@@ -15,7 +15,7 @@ static const char usage[] =
     "\n"
     "Options:\n"
     "  -t, --text             write text instead of binary\n"
-    "  -o, --output FILE      write to FILE, which appears only when whole\n"
+    "  -o, --output FILE      write to FILE, none of the inputs, which appears only when whole\n"
     "\n"
     "Examples:\n"
     "  unpart part.*.mts > table.mts\n";

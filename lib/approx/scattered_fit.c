@@ -124,6 +124,24 @@ done:
     return status;
 }
 
+/* Mean spacing of the points around row `row`, in the table's unit: those of a boundary, n of them within a
+ * radius r, have 2 r / n of a curve each, or pi r^2 / n of a surface. */
+static enum status spacing_around(const struct scattered_fit *fit, int64_t row, double *spacing,
+                                  struct error *error)
+{
+    double x[3] = {0.0, 0.0, 0.0};
+    struct nearest nearest;
+    for (int a = 0; a < fit->dim; a++) {
+        x[a] = fit->row[row * fit->row_size + a] * fit->unit;
+    }
+    enum status status = find_nearest(fit, x, &nearest, error);
+    if (status == STATUS_OK) {
+        double radius = nearest.distance[nearest.count - 1], count = (double)nearest.count;
+        *spacing = radius * (fit->dim == 2 ? 2.0 / count : sqrt(M_PI / count));
+    }
+    return status;
+}
+
 /* The nearest points within reach: checks the ways to the nearest, until all of them are. */
 static enum status find_reached(const struct scattered_fit *fit, int32_t from, const double *x,
                                 struct nearest *nearest, struct error *error)
@@ -328,7 +346,11 @@ enum status scattered_fit_evaluate(const struct scattered_fit *fit, int32_t from
     }
     int64_t last = nearest.count - 1;
     *distance = nearest.distance[0] * fit->unit;
-    *spacing = 2.0 * nearest.distance[last] / (double)nearest.count * fit->unit;
+    status = spacing_around(fit, nearest.row[0], spacing, error);
+    if (status != STATUS_OK) {
+        return status;
+    }
+    *spacing *= fit->unit;
     if (nearest.count > 1 && nearest.distance[last] > 0.0) {
         status = weights_of(fit, x, &nearest, phi, error);
         if (status != STATUS_OK) {

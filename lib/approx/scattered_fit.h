@@ -33,8 +33,8 @@ void scattered_fit_free(struct scattered_fit *fit);
 
 /* values[value_count] at x[dim] (m), which is beside node `from`: where there are ways, only of rows within
  * reach of it (STATUS_INPUT: there are none). *distance receives the distance to the nearest point and
- * *spacing the mean spacing of the points used (m; 0 for a single one), so that a caller can refuse to
- * extrapolate far. */
+ * *spacing the mean spacing of the points around that one (m; 0 for a single one), so that a caller can
+ * refuse to extrapolate far. */
 MUST_CHECK enum status scattered_fit_evaluate(const struct scattered_fit *fit, int32_t from, const double *x,
                                               double *values, double *distance, double *spacing,
                                               struct error *error);

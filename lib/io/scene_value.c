@@ -106,7 +106,9 @@ static enum status number(const struct place *place, const char *key, const char
         return STATUS_OK;
     }
     return place_fail(place, key, "'%s' is not a finite number%s", text,
-                      strchr(text, ',') != NULL ? ": write one number, with a decimal point" : "");
+                      strchr(text, ',') != NULL   ? ": write one number, with a decimal point"
+                      : strchr(text, ' ') != NULL ? ": separate components by commas"
+                                                  : "");
 }
 
 enum status place_number(const struct place *place, const char *key, struct range range, double *value)

@@ -1,5 +1,6 @@
 #include "solid/prescription.h"
 
+#include "approx/field.h"
 #include "base/memory.h"
 
 #include <math.h>
@@ -250,6 +251,9 @@ static enum status add_condition(struct prescription *p, struct error *error)
                                         .unit = condition->unit,
                                         .ways = &ways};
         TRY(scattered_fit_build(&p->fit, error));
+        TRY(prescription_check_table(p, error));
+        TRY(NEW_ARRAY(&p->spacing, p->input->cells.node_count, error));
+        TRY(field_spacing(&p->input->cells, p->spacing, error));
     }
     if (condition->facets.count > 0 && assembly_holds_averages(p->input)) {
         TRY(add_averages(p, error));
@@ -260,6 +264,7 @@ static enum status add_condition(struct prescription *p, struct error *error)
 done:
     ways_free(&ways);
     scattered_fit_free(&p->fit);
+    free(p->spacing);
     return status;
 }
 

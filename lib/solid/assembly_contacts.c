@@ -146,8 +146,11 @@ static enum status add_contact(const struct assembly *input, int32_t number, str
     } else {
         TRY(rigid_build(system->dim, condition->rigid_count, condition->corners, condition->flip, &surface,
                         error));
-        TRY(contact_build(points, averages->count > 0 ? averages : NULL, system->X, system->dim, &surface,
-                          condition->stiffness, contact, error));
+        status = contact_build(points, averages->count > 0 ? averages : NULL, system->X, system->dim,
+                               &surface, condition->stiffness, contact, error);
+        if (status != STATUS_OK) {
+            return fail_in(error, status, "%s", condition->where);
+        }
     }
     if (condition->stiffness == 0.0) {
         contact_set_stiffness(contact, (averages->count > 0 ? points_share : 1.0) *

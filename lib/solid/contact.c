@@ -48,19 +48,31 @@ static double facing(const struct contact *contact, int64_t p, const struct rigi
  * from it, as a body on the wrong side of a shell does at a small depth. */
 static enum status check_side(const struct contact *contact, struct error *error)
 {
+    int64_t worst = -1;
+    double deepest = -INFINITY;
     for (int64_t p = 0; p < contact->count; p++) {
         struct rigid_contact closest =
             rigid_closest(&contact->surface, contact->rest + p * contact->dim, INFINITY);
         double depth = closest.found ? -closest.gap : -INFINITY, length = contact_most_depth(contact, p);
         bool back = closest.found && facing(contact, p, &closest) > 0.5;
-        if (depth > length || (depth > -round_off * length && back)) {
-            return fail(error, STATUS_INPUT,
-                        "contact: node %d starts %.3g m behind the rigid surface: state its other side, or "
-                        "leave the node's facets out",
-                        contact->points->node[p], fmax(depth, 0.0));
+        if (depth > deepest && (depth > length || (depth > -round_off * length && back))) {
+            deepest = depth;
+            worst = p;
         }
     }
-    return STATUS_OK;
+    if (worst < 0) {
+        return STATUS_OK;
+    }
+    if (deepest > round_off * contact_most_depth(contact, worst)) {
+        return fail(error, STATUS_INPUT,
+                    "contact: node %d starts %.3g m behind the rigid surface: state its other "
+                    "side, or leave the node's facets out",
+                    contact->points->node[worst], deepest);
+    }
+    return fail(error, STATUS_INPUT,
+                "contact: node %d faces away from the surface that it starts on, as a body "
+                "behind the rigid surface: state its other side, or leave the node's facets out",
+                contact->points->node[worst]);
 }
 
 /* Add to x `share` of the way from `from` to the plane through a node with that normal. */
@@ -179,6 +191,7 @@ enum status contact_state(struct contact *contact, const char *prefix, const str
     const struct state_value values[] = {
         {"multiplier", STATE_NUMBERS, contact->multiplier, contact_nodes(contact)->count * dim},
         {"behind", STATE_FLAGS, contact->behind, count},
+        {"pressed", STATE_FLAGS, &contact->pressed, 1},
         {"checked_x", STATE_NUMBERS, contact->checked_x, count * dim},
         {"checked_distance", STATE_NUMBERS, contact->checked_distance, count},
         {"checked_normal", STATE_NUMBERS, contact->checked_normal, count * dim},
@@ -297,6 +310,7 @@ void contact_accept(struct contact *contact)
     contact_between_accept(contact);
     for (int64_t p = 0; p < contact->count; p++) {
         const struct contact_view *view = &contact->view[p];
+        contact->pressed = contact->pressed || contact->pressure[p] > 0.0;
         if (view->searched) {
             contact->behind[p] = view->behind;
             contact->checked_distance[p] = view->distance;

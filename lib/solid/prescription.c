@@ -1,7 +1,19 @@
 #include "solid/prescription.h"
 
+#include "base/memory.h"
+
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
+
+/* A place is farther from the rows of a table by at most so many spacings, of the rows or of the nodes. Of
+ * rows on a square grid none is farther than .71 spacings. Of rows at random on a surface one in exp(4 pi),
+ * 3e5 places, is farther than 2. */
+static const double most_spacings = 2.0;
+
+/* Values that differ by less than this share of the table's largest, and places that differ by less than this
+ * share of the body, are the same. */
+static const double round_off = 1e-9;
 
 /* value[dim] = the displacement of the condition's table at x, beside that node, m. */
 static enum status value_at(const struct prescription *p, int32_t node, const double *x, double *value,
@@ -17,13 +29,76 @@ static enum status value_at(const struct prescription *p, int32_t node, const do
         return fail(error, status, "%s: table %s: at %s: %s", condition->where, condition->table, place,
                     why.text);
     }
-    if (condition->row_count > 1 && !(distance <= fmin(8.0 * spacing, p->input->extent))) {
-        return fail(error, STATUS_INPUT,
-                    "%s: table %s: its nearest point is %.3g m from the boundary at %s, its points are %.3g "
-                    "m apart: wrong unit or wrong place",
-                    condition->where, condition->table, distance, place, spacing);
+    if (!(distance <= fmin(most_spacings * fmax(spacing, p->spacing[node]), p->input->extent))) {
+        return fail(
+            error, STATUS_INPUT,
+            "%s: table %s: its nearest point is %.3g m from the boundary at %s, by node %d, its points "
+            "are %.3g m apart, the nodes %.3g m: wrong unit or wrong place, else give rows there or "
+            "leave these facets out",
+            condition->where, condition->table, distance, place, node, spacing, p->spacing[node]);
     }
     return STATUS_OK;
+}
+
+/* A row in the order of its first coordinate. */
+struct sorted {
+    double x;
+    int64_t row;
+};
+
+static int compare_sorted(const void *left, const void *right)
+{
+    const struct sorted *a = left, *b = right;
+    return a->x != b->x ? (a->x > b->x) - (a->x < b->x) : (a->row > b->row) - (a->row < b->row);
+}
+
+/* The largest difference of two rows in `count` entries. */
+static double apart(const double *row, const double *other, int count)
+{
+    double most = 0.0;
+    for (int c = 0; c < count; c++) {
+        most = fmax(most, fabs(row[c] - other[c]));
+    }
+    return most;
+}
+
+enum status prescription_check_table(const struct prescription *p, struct error *error)
+{
+    enum status status;
+    const struct condition *condition = p->condition;
+    int dim = p->input->cells.dim;
+    int64_t count = condition->row_count;
+    double largest = 0.0, same = round_off * p->input->extent / condition->unit;
+    struct sorted *sorted;
+    char place[96];
+    TRY(NEW_ARRAY(&sorted, count, error));
+    for (int64_t i = 0; i < count; i++) {
+        const double zeros[3] = {0.0, 0.0, 0.0};
+        sorted[i] = (struct sorted){condition->rows[i * 2 * dim], i};
+        largest = fmax(largest, apart(condition->rows + i * 2 * dim + dim, zeros, dim));
+    }
+    qsort(sorted, (size_t)count, sizeof *sorted, compare_sorted);
+    for (int64_t s = 0; s < count; s++) {
+        for (int64_t t = s + 1; t < count && sorted[t].x - sorted[s].x <= same; t++) {
+            const double *a = condition->rows + sorted[s].row * 2 * dim,
+                         *b = condition->rows + sorted[t].row * 2 * dim;
+            double difference = apart(a + dim, b + dim, dim);
+            if (apart(a, b, dim) <= same && difference > round_off * largest && status == STATUS_OK) {
+                double at[3] = {0.0, 0.0, 0.0};
+                for (int c = 0; c < dim; c++) {
+                    at[c] = b[c] * condition->unit;
+                }
+                point_text(dim, at, place);
+                status = fail(error, STATUS_INPUT,
+                              "%s: table %s: rows %lld and %lld, both at %s, differ by %.3g m: leave one out",
+                              condition->where, condition->table, (long long)sorted[s].row + 1,
+                              (long long)sorted[t].row + 1, place, difference * condition->unit);
+            }
+        }
+    }
+    free(sorted);
+done:
+    return status;
 }
 
 /* Mean of the table over the samples of one average. */

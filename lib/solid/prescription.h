@@ -18,6 +18,7 @@ struct prescription {
     bool *shared; /* group_count * dim: conditions before hold that component at some of the group's nodes */
     int32_t number;           /* of the condition */
     struct scattered_fit fit; /* CONDITION_TABLE: of its points, with the ways to them */
+    double *spacing;          /* CONDITION_TABLE: of the cells at each node, m */
     bool penalties;           /* adding constraint penalties, not exact rows */
     double modulus, layer;    /* of the constraint penalties: Pa, and the size of the cells there, m */
 };
@@ -32,6 +33,9 @@ struct demand {
 /* How many directions the condition prescribes at a place; all of them? */
 int prescription_directions(const struct condition *condition, int dim);
 bool prescription_is_full(const struct prescription *p);
+
+/* STATUS_INPUT where two rows of a condition's table stand at one place with unlike displacements. */
+MUST_CHECK enum status prescription_check_table(const struct prescription *p, struct error *error);
 
 /* What the condition asks of average a; or, of the same directions, at its node. */
 MUST_CHECK enum status prescription_demand(const struct prescription *p,

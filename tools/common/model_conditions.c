@@ -28,7 +28,11 @@ static enum status add_curve(struct model *model, const struct scene_label *labe
         grown[input->curve_count] = curve_of_kind(kinds[curve->kind]);
     } else {
         double end = input->in_time ? model->scene->solver.end_time : 1.0;
-        TRY(table_read(curve->file, 2, 2, &table, error));
+        status = table_read(curve->file, 2, 2, &table, error);
+        if (status != STATUS_OK) {
+            fail_in(error, status, "%s: curve: not smooth, linear or step, and as a file", label->where);
+            goto done;
+        }
         status = curve_tabulate(&grown[input->curve_count], table.rows, table.values, end, error);
         if (status != STATUS_OK) {
             fail_in(error, status, "%s: curve %s", label->where, curve->file);

@@ -14,6 +14,10 @@ enum status model_facets(struct model *model, const struct scene_label *label, c
     int32_t *chosen;
     int dim = model->assembly.cells.dim;
     *set = (struct facet_set){0};
+    if (stream_find(model->stream, "facets") == NULL || stream_find(model->stream, "facets.set") == NULL) {
+        return fail(error, STATUS_INPUT, "%s: no named facets: give the mesh physical groups, or run groups",
+                    label->where);
+    }
     TRY(stream_facets(model->stream, true, dim, &facets, error));
     TRY(stream_need(model->stream, "facets.set", TYPE_I4, 1, "nodes", &groups, error));
     TRY(names_read(groups, &present, error));

@@ -3,6 +3,7 @@
 #include "io/table.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 static void set_material(const struct scene_material *section, struct material *material)
 {
@@ -34,7 +35,7 @@ static enum status check_row(const struct model *model, const struct scene_mater
     if (!(away <= MODEL_SAME_PLACE)) {
         return fail(error, STATUS_INPUT,
                     "%s: %s:%lld: the rows do not match the integration points of its regions: %g m from "
-                    "point %lld",
+                    "point %lld: wrong unit, or make the table anew from this stream",
                     section->label.where, section->table, (long long)table->line[row],
                     away * model->assembly.extent, (long long)q);
     }
@@ -119,10 +120,11 @@ static enum status materials_of_cells(struct model *model, struct error *error)
     for (int64_t c = 0; c < cells->count; c++) {
         int32_t region = regions.of_cell[c];
         if (material[region] < 0) {
-            TRY(fail(error, STATUS_INPUT,
-                     "%s: region %d of the mesh (of %s) has no material: name it, or leave it out with nodes "
-                     "-r",
-                     model->scene->path, region, regions.names.list));
+            TRY(fail(
+                error, STATUS_INPUT,
+                "%s: region '%s' has no material: add it to a [material], or leave it out (nodes -r; voxels "
+                "-l)",
+                model->scene->path, regions.names.name[region]));
         }
         model->assembly.materials.of_cell[c] = material[region];
     }

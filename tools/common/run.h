@@ -54,9 +54,16 @@ void run_check_rigid_modes(struct run *run);
 /* Quasi-static: relax to the full load. Exits with a verdict when it does not converge. */
 void run_quasi_static(struct run *run);
 
+/* Exits where a rigid surface is out of the reach of the body; notes displacements far beyond its size. */
+void run_contacts_begin(const struct run *run);
+
+/* Of the final state: tells that contacts give way by `miss`, more than `allowed`, m; in a quasi-static scene
+ * exits with a verdict where that is more than a tenth of the motion. */
+void run_contacts_give_way(struct run *run, double miss, double allowed, double motion);
+
 /* Of the final state: exits with a verdict where a rigid surface is in the body by more than `slack`, m, and
  * `share` of a facet's width, and no node presses; and notes contacts that press on less than three nodes
- * across. */
+ * across, and those that never pressed. */
 void run_contacts_judge(struct run *run, double slack, double share);
 
 /* Dynamic: step to the end time. Exits with a verdict when it cannot; adds the section energy on request. */

@@ -22,10 +22,161 @@ static double *deformed(const struct run *run)
     return x;
 }
 
+/* The largest factor that a load curve takes. */
+static double largest_factor(const struct load_curve *curve)
+{
+    double largest = curve->count > 0 ? 0.0 : 1.0;
+    for (int64_t i = 0; i < curve->count; i++) {
+        largest = fmax(largest, fabs(curve->factor[i]));
+    }
+    return largest;
+}
+
+/* How far the rows of conditions move the body at most, m. */
+static double prescribed_motion(const struct solid_system *system, const struct constraint_rows *rows)
+{
+    double most = 0.0;
+    for (int64_t r = 0; r < rows->count; r++) {
+        most = fmax(most, fabs(rows->target[r]) * largest_factor(&system->curves[rows->curve[r]]));
+    }
+    return most;
+}
+
+/* How far the surface moves at most, m. */
+static double own_motion(const struct solid_system *system, const struct contact *contact)
+{
+    const struct rigid_motion *motion = &contact->motion;
+    double way = 0.0;
+    if (!motion->moves) {
+        return 0.0;
+    }
+    for (int64_t v = 0; v < contact->surface.vertex_count; v++) {
+        way = fmax(way, rigid_motion_way(motion, contact->dim, contact->surface.vertex + v * contact->dim));
+    }
+    return way * fmax(largest_factor(&system->curves[motion->translation_curve]),
+                      largest_factor(&system->curves[motion->rotation_curve]));
+}
+
+/* How far the surface is from the points of its contact at rest, at least, m: by the boxes around both, and
+ * by the points, which in front of an open rim tell less. */
+static double distance_at_rest(const struct contact *contact)
+{
+    const struct rigid_branch *box = contact->surface.branch;
+    double between2 = 0.0, nearest = INFINITY;
+    for (int a = 0; a < contact->dim; a++) {
+        double low = INFINITY, high = -INFINITY;
+        for (int64_t p = 0; p < contact->count; p++) {
+            low = fmin(low, contact->rest[p * contact->dim + a]);
+            high = fmax(high, contact->rest[p * contact->dim + a]);
+        }
+        double gap = fmax(0.0, fmax(box->low[a] - high, low - box->high[a]));
+        between2 += gap * gap;
+    }
+    for (int64_t p = 0; p < contact->count; p++) {
+        double distance =
+            rigid_closest(&contact->surface, contact->rest + p * contact->dim, INFINITY).distance;
+        nearest = fmin(nearest, distance);
+    }
+    return fmax(sqrt(between2), nearest);
+}
+
+/* A body that is moved by more than so many times its size may be one of mm whose scene has m for mm. */
+static const double most_sizes = 10.0;
+
+void run_contacts_begin(const struct run *run)
+{
+    const struct solid_system *system = &run->model->system;
+    const struct assembly *input = &run->model->assembly;
+    /* What is thrown or pushed in time may go anywhere. */
+    bool anywhere = input->in_time && (input->load_count > 0 || assembly_has_gravity(input) ||
+                                       run->scene->initial.table != NULL);
+    double prescribed =
+        fmax(prescribed_motion(system, &system->rows), prescribed_motion(system, &system->penalties));
+    if (prescribed > most_sizes * input->extent) {
+        tool_note(
+            run->tool,
+            "%s: a displacement of %.3g m is prescribed, %.3g times the size of the body: lengths without "
+            "a unit are in m",
+            run->scene->path, prescribed, prescribed / input->extent);
+    }
+    for (int64_t c = 0; c < system->contact_count && !anywhere; c++) {
+        const struct contact *contact = &system->contacts[c];
+        if (contact->surface.facet_count == 0) {
+            continue;
+        }
+        double distance = distance_at_rest(contact), motion = own_motion(system, contact);
+        if (distance > input->extent + motion + prescribed) {
+            tool_fail(
+                run->tool, STATUS_INPUT,
+                "%s: the rigid surface is %.3g m from the facets, farther than the body's size of %.3g m "
+                "and all motion of the scene, %.3g m: wrong unit or wrong place?",
+                input->contacts[contact->section].where, distance, input->extent, motion + prescribed);
+        }
+    }
+}
+
 /* Whether the scene asks for what such patches are wrong about. */
 static bool wants_forces(const struct scene_output *output)
 {
     return output->reactions || output->moments || output->gaps;
+}
+
+/* A result of which contacts give way by more than this share of the motion is none. */
+static const double most_share = 0.1;
+
+/* The displacement that moves a facet of a contact, or NULL. */
+static const struct condition *moved_by(const struct assembly *input, const struct facet_set *set)
+{
+    size_t size = (size_t)input->cells.dim * sizeof *set->facet;
+    for (int64_t i = 0; i < input->condition_count; i++) {
+        const struct facet_set *other = &input->conditions[i].facets;
+        for (int64_t f = 0; f < other->count * set->count; f++) {
+            if (memcmp(other->facet + f / set->count * input->cells.dim,
+                       set->facet + f % set->count * input->cells.dim, size) == 0) {
+                return &input->conditions[i];
+            }
+        }
+    }
+    return NULL;
+}
+
+void run_contacts_give_way(struct run *run, double miss, double allowed, double motion)
+{
+    const struct solid_system *system = &run->model->system;
+    const struct assembly *input = &run->model->assembly;
+    const struct contact *worst = system->contacts;
+    const char *remedy = "a finer cloud there may help";
+    char text[256];
+    if (!(miss > allowed)) {
+        return;
+    }
+    for (int64_t c = 1; c < system->contact_count; c++) {
+        worst = contact_miss(&system->contacts[c]) > contact_miss(worst) ? &system->contacts[c] : worst;
+    }
+    if (worst->surface.facet_count > 0) {
+        const struct contact_condition *contact = &input->contacts[worst->section];
+        const struct condition *mover = moved_by(input, &contact->facets);
+        if (mover != NULL) {
+            snprintf(text, sizeof text,
+                     "[displacement %s] moves facets of [contact %s]: leave them out of one", mover->name,
+                     run->scene->contacts[worst->section].label.name);
+            remedy = text;
+        } else if (contact->stiffness > 0.0) {
+            snprintf(text, sizeof text, "[contact %s] sets its stiffness: %s",
+                     run->scene->contacts[worst->section].label.name,
+                     input->in_time ? "raise it, which shortens the steps" : "leave it out, or raise it");
+            remedy = text;
+        } else if (input->in_time) {
+            remedy = "a larger stiffness, with shorter steps, or a finer cloud there helps";
+        }
+    }
+    if (!input->in_time && miss > most_share * motion) {
+        run->last_good = -1.0; /* the frames are all there */
+        run_fail(run, STATUS_VERDICT, "%s: contacts give way by %.2g m, where the body moves %.2g m: %s",
+                 run->scene->path, miss, motion, remedy);
+    }
+    tool_note(run->tool, "%s: contacts give way by %.2g m, not %.2g m: %s", run->scene->path, miss, allowed,
+              remedy);
 }
 
 /* Exits where a surface has gone into the body between its nodes. */
@@ -45,14 +196,23 @@ static void judge_patch(struct run *run, const struct contact *contact, const st
             "smaller than the contact",
             run->scene->path, name, patch->inside, place);
     }
+    if (!contact->pressed && contact->surface.facet_count > 0) {
+        tool_note(run->tool,
+                  "%s: [contact %s]: the body never touches the rigid surface: has that the right unit and "
+                  "place?",
+                  run->scene->path, name);
+    }
     if (patch->thin > most_thin && wants_forces(&run->scene->output)) {
         point_text(system->dim, system->X + (int64_t)patch->node * system->dim, place);
-        tool_note(
-            run->tool,
-            "%s: [contact %s]: presses on %lld node%s, most of it about %s, where that is less than three "
-            "across: the force may be off by tens of percent: refine the body there to a third of the "
-            "contact's radius",
-            run->scene->path, name, (long long)patch->pressing, patch->pressing == 1 ? "" : "s", place);
+        tool_note(run->tool,
+                  "%s: [contact %s]: presses on %.0lld%s, most of it about %s, where that is less than three "
+                  "across: the force may be off by tens of percent: refine the body there to a third of the "
+                  "contact's radius",
+                  run->scene->path, name, (long long)patch->pressing,
+                  patch->pressing == 0   ? "less than a node"
+                  : patch->pressing == 1 ? " node"
+                                         : " nodes",
+                  place);
     }
 }
 

@@ -15,10 +15,7 @@ static void judge(struct run *run, const struct relaxation_report *report)
             tool_note(run->tool, "%s: estimated error %.2g, not %.2g: round-off admits no less", scene->path,
                       report->error, scene->solver.tolerance);
         }
-        if (report->penetration > report->penetration_allowed) {
-            tool_note(run->tool, "%s: contacts give way by %.2g m, not %.2g m: a finer cloud there may help",
-                      scene->path, report->penetration, report->penetration_allowed);
-        }
+        run_contacts_give_way(run, report->penetration, report->penetration_allowed, report->largest_move);
         run_folds_judge(run);
         run_contacts_judge(run, report->penetration_allowed, 0.0);
         return;
@@ -43,8 +40,9 @@ static void judge(struct run *run, const struct relaxation_report *report)
     }
     run_fail(run, STATUS_VERDICT,
              "%s: not converged after %lld steps%s: estimated remaining error %.2g of the displacement: "
-             "allow more (max_steps), or hold the body against rigid motion",
-             scene->path, (long long)report->steps, load, report->error);
+             "allow more (max_steps), or hold the body against rigid motion%s",
+             scene->path, (long long)report->steps, load, report->error,
+             run->model->interfaces.text[0] != '\0' ? ", or stop supports at interfaces (support -i)" : "");
 }
 
 /* How far the iteration may have left the field from where it would end, m: the relaxation, and contacts that

@@ -1,6 +1,7 @@
 #include "tool.h"
 
 #include "output.h"
+#include "overwrite.h"
 #include "process.h"
 
 #include <errno.h>
@@ -173,6 +174,9 @@ void tool_begin(struct tool *tool, const char *usage, int least, int most, int a
     }
     if (tool->operand_count < least) {
         tool_fail(tool, STATUS_INPUT, "an operand is missing (see -h)");
+    }
+    if (tool->output != NULL) {
+        overwrite_refuse(tool, "output", "");
     }
 }
 

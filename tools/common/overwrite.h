@@ -1,0 +1,14 @@
+/* Outputs that would replace an input of the same run. */
+#ifndef TOOLS_OVERWRITE_H
+#define TOOLS_OVERWRITE_H
+
+#include "tool.h"
+
+/* Whether two names are of one file, which need not exist yet. */
+bool overwrite_is_same(const char *name, const char *other);
+
+/* Exits where the file that `option` names, with `suffix` appended, is an operand, or the value of another
+ * option but -o. */
+void overwrite_refuse(const struct tool *tool, const char *option, const char *suffix);
+
+#endif
