@@ -47,8 +47,9 @@ metres() {
     esac
 }
 
-[ -n "$scene" ] && [ -n "$geometry" ] && [ -n "$out" ] ||
+if [ -z "$scene" ] || [ -z "$geometry" ] || [ -z "$out" ]; then
     fail 2 "usage: make refine SCENE=FILE GEO=FILE UNIT=UNIT TOL=LENGTH, or GEO=IMAGE SPACING=LENGTH"
+fi
 [ -f "$scene" ] || fail 2 "SCENE: no file $scene"
 [ -f "$geometry" ] || fail 2 "GEO: no file $geometry"
 case $geometry in
