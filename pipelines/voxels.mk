@@ -4,7 +4,7 @@
 # farthest off, what is lost in thin parts, how far the nodes of interfaces are from them, seconds of the processor; then the
 # compression's status, steps and least J, and what is told of crevices that it closes (folds are allowed), and from which share of the load
 # on. Then one body, meshed by gmsh and from an image: meshes.sh. Bodies of random blobs have crevices of some voxels, beside which parts of the body meet: contact of a body with itself is not modelled.
-VOXELS := $(OUT)/voxels
+VOXELS_OUT := $(OUT)/voxels
 VOXELS_SHAPES ?= sphere torus two four thin layer boxes atlas aniso flipped colin27 $(VOXELS_SEEDS:%=blobs-%)
 VOXELS_SEEDS ?= 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19 20
 VOXELS_PHANTOM := $(BUILD)/tests/helper/phantom
@@ -18,44 +18,44 @@ atlas.options = -h 4mm -l pipelines/voxels/atlas.txt
 colin27.options = -h 8mm --fine 4mm:label_2
 
 .PHONY: voxels
-voxels: $(VOXELS)/voxels.tsv $(VOXELS)/meshes.tsv
+voxels: $(VOXELS_OUT)/voxels.tsv $(VOXELS_OUT)/meshes.tsv
 	@awk -F '\t' '{ printf "%-9s %6s %7s %5s %6s %6s %7s %7s %6s %4s %6s %6s %5s %7s %10s  %s\n", $$1, $$2, $$3, $$4, $$5, $$6, $$7, $$8, $$9, $$10, $$11, $$12, $$13, $$14, $$15, $$16 }' $<
 	@awk -F '\t' 'NR > 1 { n++; good += $$4 == "yes" && $$5 >= 8 && $$6 <= 165; near += $$7 < 1 && $$7 > -1; ran += $$12 == 0; folds += $$15 != "-" } \
 	    END { printf "\nof %d: valid, angles within 8 to 165 degrees: %d; volumes within 1 %%: %d; compressed: %d, of which fold: %d\n", n, good, near, ran, folds }' $<
 	@echo
 	@awk -F '\t' '{ printf "%-10s %6s %8s %8s\n", $$1, $$2, $$3, $$4 } /^gmsh/ { of_gmsh += $$4 / 3 } /^image/ { of_image += $$4 / 3 } \
-	    END { printf "\nfrom meshes of gmsh, by how far they are from each other: %.2f\n", of_image / of_gmsh }' $(VOXELS)/meshes.tsv
+	    END { printf "\nfrom meshes of gmsh, by how far they are from each other: %.2f\n", of_image / of_gmsh }' $(VOXELS_OUT)/meshes.tsv
 
-$(VOXELS)/%: export PATH := $(abspath $(BUILD))/bin:$(PATH)
+$(VOXELS_OUT)/%: export PATH := $(abspath $(BUILD))/bin:$(PATH)
 
-$(VOXELS)/colin27.nii.gz: examples/neurosurgery/colin27_labels.nii.gz
+$(VOXELS_OUT)/colin27.nii.gz: examples/neurosurgery/colin27_labels.nii.gz
 	@mkdir -p $(@D)
 	cp $< $@
-$(VOXELS)/blobs-%.nii.gz: $(VOXELS_PHANTOM)
+$(VOXELS_OUT)/blobs-%.nii.gz: $(VOXELS_PHANTOM)
 	@mkdir -p $(@D)
 	$< blobs $* > $@
-$(VOXELS)/aniso.nii.gz: $(VOXELS_PHANTOM)
+$(VOXELS_OUT)/aniso.nii.gz: $(VOXELS_PHANTOM)
 	@mkdir -p $(@D)
 	$< two 1 1,1.5,3 > $@
-$(VOXELS)/flipped.nii.gz: $(VOXELS_PHANTOM)
+$(VOXELS_OUT)/flipped.nii.gz: $(VOXELS_PHANTOM)
 	@mkdir -p $(@D)
 	$< four@flipped 1 1,1,2 > $@
-$(VOXELS)/%.nii.gz: $(VOXELS_PHANTOM)
+$(VOXELS_OUT)/%.nii.gz: $(VOXELS_PHANTOM)
 	@mkdir -p $(@D)
 	$< $* > $@
 
-$(VOXELS_SHAPES:%=$(VOXELS)/%.row): $(VOXELS)/%.row: $(VOXELS)/%.nii.gz pipelines/voxels/row.sh pipelines/voxels/atlas.txt $(VOXELS_TOOLS)
+$(VOXELS_SHAPES:%=$(VOXELS_OUT)/%.row): $(VOXELS_OUT)/%.row: $(VOXELS_OUT)/%.nii.gz pipelines/voxels/row.sh pipelines/voxels/atlas.txt $(VOXELS_TOOLS)
 	bash pipelines/voxels/row.sh $* $< $(or $($*.options),$(voxels.options)) > $@
 
-$(VOXELS)/voxels.tsv: $(VOXELS_SHAPES:%=$(VOXELS)/%.row) pipelines/voxels.mk
+$(VOXELS_OUT)/voxels.tsv: $(VOXELS_SHAPES:%=$(VOXELS_OUT)/%.row) pipelines/voxels.mk
 	(printf 'image\tnodes\tcells\tvalid\tleast_angle\tlargest_angle\tvolume_error_percent\tlost_ml\tfarthest_voxels\tastray\tseconds\tstatus\tsteps\tleast_J\tfolds_from\tmessage\n'; \
 	    awk -F '\t' -v OFS='\t' '{ from = "-"; if (match($$15, /folds from [0-9.]+/)) from = substr($$15, RSTART + 11, RLENGTH - 11); $$15 = from OFS $$15; print }' \
 	    $(filter %.row,$^)) > $@
 
 # Small voxels, so that it is the ball of ball.geo.
-$(VOXELS)/ball.nii.gz: $(VOXELS_PHANTOM)
+$(VOXELS_OUT)/ball.nii.gz: $(VOXELS_PHANTOM)
 	@mkdir -p $(@D)
 	$< sphere 1 0.75 > $@
 
-$(VOXELS)/meshes.tsv: $(VOXELS)/ball.nii.gz pipelines/voxels/meshes.sh pipelines/voxels/ball.geo $(VOXELS_TOOLS) $(addprefix $(BUILD)/bin/,nodes fieldcmp)
+$(VOXELS_OUT)/meshes.tsv: $(VOXELS_OUT)/ball.nii.gz pipelines/voxels/meshes.sh pipelines/voxels/ball.geo $(VOXELS_TOOLS) $(addprefix $(BUILD)/bin/,nodes fieldcmp)
 	bash pipelines/voxels/meshes.sh $< > $@

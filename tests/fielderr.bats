@@ -215,6 +215,7 @@ field() {
 }
 
 @test "make refine: a round at a time until the estimate is below the tolerance" {
+    export UNIT=mm
     run -0 bash "$top/pipelines/refine/refine.sh" "$top/examples/block/block.scene" "$top/examples/block/block.geo" 0.003mm out
     mts check out/u.dat
     [ -s out/body.msh ]
@@ -230,6 +231,7 @@ field() {
 }
 
 @test "make refine: wrong tolerance, budget, size, files: one line; a budget that is spent keeps the last good round" {
+    export UNIT=mm
     scene=$top/examples/block/block.scene geometry=$top/examples/block/block.geo
     for tolerance in 0 -1 nan 0mm 1foot 1e- '' '1 mm'; do
         run -2 bash "$top/pipelines/refine/refine.sh" "$scene" "$geometry" "$tolerance" out
@@ -245,6 +247,10 @@ field() {
     [ "$output" = "refine: SCENE: no file missing.scene" ]
     run -2 bash "$top/pipelines/refine/refine.sh" "$scene" missing.geo 1mm out
     [ "$output" = "refine: GEO: no file missing.geo" ]
+    run -2 env UNIT= bash "$top/pipelines/refine/refine.sh" "$scene" "$geometry" 1mm out
+    [ "$output" = "refine: UNIT: say in which unit $geometry is, as UNIT=mm" ]
+    run -2 env REFINE_GROUPS="-f 'held=low:z" bash "$top/pipelines/refine/refine.sh" "$scene" "$geometry" 1mm out
+    [ "$output" = "refine: GROUPS: -f 'held=low:z: a quote is not closed" ]
     [ ! -e out ]
     run -1 --separate-stderr env NODES=400 bash "$top/pipelines/refine/refine.sh" "$scene" "$geometry" 0.001mm out
     [[ $stderr == "refine: the budget of 400 nodes (NODES) is spent; kept: round "* ]]
@@ -261,6 +267,54 @@ field() {
     cmp out/u.dat before/u.dat
     run -1 --separate-stderr env UNIT=parsec bash "$top/pipelines/refine/refine.sh" "$scene" "$geometry" 0.1mm out
     [[ $stderr == "refine: round 1: the scene: nodes: "*"kept: none" ]]
+}
+
+# refine VARIABLE...: through make, as a user does, into ./out
+refine() {
+    make -C "$top" --no-print-directory BUILD="$(realpath --relative-to "$top" "$BUILD")" REFINE_OUT="$PWD/out" refine "$@"
+}
+
+@test "make refine: variables reach the stages, through make" {
+    run -2 refine
+    [[ $output == *"refine: usage: make refine SCENE=FILE GEO=FILE UNIT=UNIT TOL=LENGTH, or GEO=IMAGE SPACING=LENGTH"* ]]
+    "$BUILD/tests/helper/phantom" sphere > sphere.nii.gz
+    printf '1 flesh\n' > names.tsv
+    {
+        printf '[scene]\ndim = 3\nanalysis = quasi-static\n[material body]\nregion = flesh\nE = 3000\nnu = 0.49\nrho = 1000\n'
+        printf '[displacement held]\nfacets = low_end\ncomponents = 0, 0, 0\n[displacement pushed]\nfacets = pushed\ncomponents = 0, 0, -0.002\n'
+    } > press.scene
+    run -0 refine SCENE="$PWD/press.scene" GEO="$PWD/sphere.nii.gz" SPACING=8mm VOXELS="-l $PWD/names.tsv" TOL=1mm \
+        GROUPS="-u mm -f 'low_end=all and ball:0,0,-24,14' -f pushed=ball:0,0,24,12"
+    mts check out/u.dat
+    [ "$(wc -l < out/rounds.tsv)" -eq 2 ]
+}
+
+@test "make refine: rounds that are over keep the one of least estimate, and say which" {
+    # Stand-ins: each round has more nodes; the second estimate is the least.
+    mkdir bin
+    for tool in gmsh sizefield mtled nodes ipoints support shapefn; do
+        printf '#!/bin/bash\n[ ! -p /dev/stdin ] || cat > /dev/null\n' > bin/$tool
+        printf 'while [ $# -gt 0 ]; do [ "$1" != -o ] || { echo %s >> calls; wc -l < calls > "$2"; }; shift; done\n' $tool >> bin/$tool
+    done
+    printf 'printf "least size\\t0.001\\n" >&2\n' >> bin/sizefield
+    cat > bin/fielderr << 'END'
+#!/bin/bash
+echo x >> rounds
+n=$(wc -l < rounds)
+printf 'n\t%d\nmean\t%s\nmax\t1\nreference\t1\n' $((1000 * n)) "$(sed -n "${n}p" estimates)"
+END
+    printf '0 0\n1 1\n' > places
+    printf '#!/bin/bash\ncat places\n' > bin/mts
+    chmod +x bin/*
+    printf '0.0005\n0.0002\n0.0003\n' > estimates
+    printf '[scene]\ndim = 2\n' > some.scene
+    touch some.geo
+    run -1 --separate-stderr env PATH="$PWD/bin:$PATH" PLACES="$PWD/places" UNIT=m ROUNDS=3 KEEP_ROUNDS=1 \
+        bash "$top/pipelines/refine/refine.sh" some.scene some.geo 0.1mm out
+    [ "$stderr" = "refine: 3 rounds (ROUNDS) are over; kept: round 2, 2000 nodes, 0.2 mm" ]
+    [ "$(wc -l < out/rounds.tsv)" -eq 4 ]
+    cmp out/u.dat out/u-2.dat
+    run -1 cmp out/u.dat out/u-3.dat
 }
 
 @test "make refine: of a label image, by voxels" {

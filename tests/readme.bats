@@ -20,6 +20,22 @@ up_to_date() {
     same "$text" new -v digits=$digits
 }
 
+@test "what voxels and groups say in examples/neurosurgery/README.md is what they print" {
+    text=examples/neurosurgery/README.md
+    cd "$top"
+    (
+        N=examples/neurosurgery
+        # Its line, up to groups.
+        eval "$(sed -n '/^voxels -v /,/^ *groups /p' $text | sed '$ s/ |$//')" > /dev/null
+    ) 2> "$BATS_TEST_TMPDIR/said"
+    cd "$BATS_TEST_TMPDIR"
+    grep -E '^(voxels|groups): ' "$top/$text" > shown
+    [ "$(wc -l < shown)" -ge 6 ]
+    while IFS= read -r line; do
+        grep -qxF "$line" said || { echo "not printed: $line"; cat said; false; }
+    done < shown
+}
+
 @test "figures, tables and commands in README.md are up to date (else: make readme)" { up_to_date README.md; }
 @test "the same of examples/README.md" {
     [ "$(grep -c '^\$ ' "$top/examples/README.md")" -ge 15 ]

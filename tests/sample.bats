@@ -112,6 +112,11 @@ exact='{ e = 100 + 50 * sin(300 * $1) * cos(200 * $2 + 1) + 30 * sin(250 * $3) }
     nifti step none.nii 0 0
     run -2 --separate-stderr sample --tissue 1000,0.3 none.nii square.mts
     [[ $stderr == *"points.x: row 0 at "*"no tissue has a probability above 0 there"* ]]
+    for value in 1.01 -0.25 100; do
+        nifti step beyond.nii 0.5 $value
+        refused 2 "beyond.nii: a value of $value: probabilities of tissues are from 0 to 1" \
+            sample --tissue 1000,0.3 --tissue 5000,0.4 first.nii beyond.nii square.mts
+    done
 }
 
 @test "only the points of chosen regions" {

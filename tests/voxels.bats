@@ -314,6 +314,16 @@ rim() {
     refused 2 "give one of --surface and --part" voxels -h 5mm --part a=torus.nii.gz --surface label_1 sphere.nii.gz
 }
 
+@test "a part that reaches into a label within the body leaves its volume alone" {
+    # A ball about the opening of the skull, with most of the tumour below it in it.
+    at=$BATS_TEST_DIRNAME/../examples/neurosurgery
+    for radius in 20mm 33mm 43mm; do
+        voxels -v "$at/colin27_labels.nii.gz" -h 9mm -l "$at/labels.tsv" --part "exposed=ball:63.5mm,16mm,20mm,$radius" 2> said > body.mts
+        read -r before after < <(said tumour)
+        near "$after" "$before" 0.01
+    done
+}
+
 @test "the surface of a label as a table for contact, at a gap" {
     phantom two > two.nii.gz
     voxels -h 5mm --surface label_1 two.nii.gz > one.tsv
@@ -383,6 +393,7 @@ END
     refused 2 "-h: ' mm' is none of m, cm, mm, um" voxels -h '6 mm' sphere.nii.gz
     refused 2 "lattice points over the labels: larger" voxels -h 6um sphere.nii.gz
     refused 2 "no lattice point lies in a label: smaller" voxels -h 6m sphere.nii.gz
+    refused 2 "smaller? -h 5 is 5 m: give a unit, as -h 5mm" voxels -h 5 sphere.nii.gz
     refused 2 "missing.nii.gz" voxels -h 6mm missing.nii.gz
     head -c 2000 sphere.nii.gz > cut.nii.gz
     refused 2 "cut.nii.gz: " voxels -h 6mm cut.nii.gz

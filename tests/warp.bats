@@ -70,8 +70,8 @@ setup_file() {
         awk '{ exit !(NF == 2 && $1 < .05 && $2 < .02) }' distances || { echo "$way: $(cat distances)"; false; }
     done
     run --separate-stderr warp -v -o moved.nii.gz scan.nii.gz u.dat
-    [[ $stderr == *"place and inverse agree to "* ]]
-    awk '/agree to/ { split($0, part, "agree to "); exit !(part[2] + 0 < .05) }' <<< "$stderr"
+    [[ $stderr == *"inverse map: largest residual "*" voxels; Newton did not converge to 1e-04 in "*" voxels, where the linear inverse of the cell is taken"* ]]
+    awk '/inverse map/ { split($0, part, "residual "); exit !(part[2] + 0 < .05) }' <<< "$stderr"
 }
 
 @test "plastimatch applies our field to the scan and gets our image" {
@@ -138,7 +138,8 @@ setup_file() {
     # Twice as flat: it leaves the upper half.
     with_u cube.mts 'print 0, 0, -.5 * $3' > flat.dat
     scan=$BATS_FILE_TMPDIR/scan.nii.gz
-    warp -o plain.nii "$scan" flat.dat
+    warp -o plain.nii "$scan" flat.dat 2> plain_said
+    [ "$(cat plain_said)" = "warp: 111630 voxels that the body left keep their old value: see --vacated" ]
     warp --fill -7 -o filled.nii "$scan" flat.dat
     warp --vacated -8 -v -o vacated.nii "$scan" flat.dat 2> said
     warp --vacated -8 --fill -7 -o both.nii "$scan" flat.dat
@@ -150,6 +151,17 @@ setup_file() {
     for file in vacated both; do [ "$(nifti value $file.nii 30 30 60)" = -8 ]; done
     for file in plain filled vacated both; do [ "$(nifti value $file.nii 30 30 30)" = "$(nifti value plain.nii 30 30 30)" ]; done
     grep -q '^warp: 111630 voxels were left by the body$' said # 61 x 61 x 30
+}
+
+@test "values that the type of the image cannot hold: one line" {
+    nifti change "$BATS_FILE_TMPDIR/scan.nii.gz" scaled.nii scaled
+    nifti change "$BATS_FILE_TMPDIR/scan.nii.gz" rgb.nii rgb
+    refused 2 "--fill 1e+06: values of scaled.nii are from " warp --fill 1e6 -o moved.nii scaled.nii u.dat
+    for option in --fill --vacated; do
+        for value in -1 300; do refused 2 "$option $value: values of rgb.nii are from 0 to 255" warp $option $value -o moved.nii rgb.nii u.dat; done
+        run -0 --separate-stderr warp $option 255 -o good.nii rgb.nii u.dat
+    done
+    [ ! -e moved.nii ]
 }
 
 @test "on the grid of another image" {
@@ -284,7 +296,7 @@ END
     [ "$(nifti value moved.nii.gz 38 38 65)" = -8 ] # at 57 mm
     [ "$(nifti value moved.nii.gz 38 38 59)" != -8 ]
     awk '/displacement at most/ { split($0, part, "at most "); d = part[2] + 0; exit !(d > 5.9 && d < 8) }' said
-    grep -q ' in 0 voxels, without a place ' said
+    grep -q 'Newton did not converge to 1e-04 in 0 voxels,' said
 }
 
 @test "between the nodes: the field that mtled solved for, nearer than a fit of its values" {

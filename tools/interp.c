@@ -26,7 +26,7 @@ static const char usage[] =
     "                         coordinates (blanks or tabs between them, # begins a comment)\n"
     "  -u, --unit UNIT        POINTS is a table in m, cm, mm, um or so many metres\n"
     "  -k, --factor FACTOR    support radius = FACTOR times the local node spacing (default 1.8,\n"
-    "                         in 3D 1.9)\n"
+    "                         in 3D 2)\n"
     "  -R, --radius RADIUS    constant radius: a length with its unit, e.g. 8mm (without one: m)\n"
     "  -b, --basis BASIS      mls1, mls2 or mmls2 (default), see shapefn\n"
     "  -w, --weight WEIGHT    quartic (default) or regularised\n"

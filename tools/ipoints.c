@@ -27,7 +27,7 @@ static const char usage[] =
     "  -a, --adaptive TOLERANCE  subdivide each cell until it changes by less, relative to the cell\n"
     "      --levels LEVELS     halve a cell's edges at most so often (default 4, in 3D 3)\n"
     "  -k, --factor FACTOR     support radius = FACTOR times the local node spacing (default 1.8,\n"
-    "                          in 3D 1.9)\n"
+    "                          in 3D 2)\n"
     "  -R, --radius RADIUS     constant support radius: a length with its unit, e.g. 8mm (without: m)\n"
     "  -b, --basis BASIS       mls1, mls2 or mmls2 (default), see shapefn\n"
     "  -w, --weight WEIGHT     quartic (default) or regularised\n"

@@ -15,9 +15,10 @@ static const char usage[] =
     "\n"
     "With --material the values are turned into stiffness, by a table with rows of a value, E (Pa) and nu,\n"
     "ascending: linear between the rows, constant beyond. With --tissue each image is the probability of a\n"
-    "tissue, and E and nu are the means of the tissues' weighted by it. The rows are then coordinates, E\n"
-    "and nu at the integration points (ipoints is run with its defaults where it was not), as a scene's\n"
-    "[material] takes them: table = FILE, unit = m. Leave to -r the regions of that material.\n"
+    "tissue (0 to 1), and E and nu are the means of the tissues' weighted by it. The rows are then\n"
+    "coordinates, E and nu at the integration points (ipoints is run with its defaults where it was\n"
+    "not), as a scene's [material] takes them: table = FILE, unit = m. Leave to -r the regions of\n"
+    "that material.\n"
     "\n"
     "A point outside of the image, or where it is not finite, is an error, unless --outside gives it a\n"
     "value. Then such points are counted.\n"
@@ -158,6 +159,17 @@ static void sample_image(const struct tool *tool, const struct request *request,
               rows->what, (long long)outside, (long long)rows->count, name, request->outside);
 }
 
+/* That no value is beyond 0 to 1, but for round-off; one that is not finite counts as outside. */
+static void check_probabilities(const struct tool *tool, const struct image *image, const char *name)
+{
+    for (size_t v = 0; v < image_voxels(image); v++) {
+        if (isfinite(image->values[v]) && !(image->values[v] >= -0.001 && image->values[v] <= 1.001)) {
+            tool_fail(tool, STATUS_INPUT, "%s: a value of %g: probabilities of tissues are from 0 to 1", name,
+                      image->values[v]);
+        }
+    }
+}
+
 /* The values of all images. The first one says how many there are at a point. */
 static void sample_images(const struct tool *tool, const struct request *request, struct sample_points *rows)
 {
@@ -169,6 +181,9 @@ static void sample_images(const struct tool *tool, const struct request *request
         if (request->stiffness && image.components != 1) {
             tool_fail(tool, STATUS_INPUT, "%s: %zu values at a voxel: stiffness comes from one",
                       tool->operands[i], image.components);
+        }
+        if (request->tissue.count > 0) {
+            check_probabilities(tool, &image, tool->operands[i]);
         }
         if (i == 0) {
             rows->cols = request->stiffness ? request->image_count : (int64_t)image.components;

@@ -73,6 +73,7 @@ static const char usage[] =
 #include "approx/cells.h"
 #include "approx/parts.h"
 
+#include <ctype.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -286,7 +287,13 @@ int main(int argc, char *argv[])
     label_sizes_read(&tool, &image, tool_value(&tool, "sizes"), &sizes);
     stuffing_options.sized = &sizes.cells;
     stuffing_options.size = sizes.size;
-    TOOL_TRY(&tool, stuffing_make(&image.labels, &stuffing_options, &stuffing, &error));
+    enum status status = stuffing_make(&image.labels, &stuffing_options, &stuffing, &error);
+    const char *length = tool_value(&tool, "spacing");
+    if (status == STATUS_INPUT && !isalpha((unsigned char)length[strlen(length) - 1])) {
+        tool_fail(&tool, status, "%s -h %s is %s m: give a unit, as -h %smm", error.text, length, length,
+                  length);
+    }
+    tool_check(&tool, status, &error);
     report(&tool, &image, &stuffing, spacing, tool_given(&tool, "verbose"));
     if (tool_given(&tool, "surface")) {
         label_surface_write(&tool, &stuffing, &surface);

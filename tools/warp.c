@@ -17,8 +17,8 @@ static const char usage[] =
     "field that mtled solved for (its section parameters) at the nodes, or of a fit where the stream\n"
     "does not tell that field. Places are found by Newton's method to 1e-4 of a voxel, from\n"
     "the moved cell that the voxel lies in. Voxels outside of the moved body stay as they are: so does\n"
-    "what the body uncovers, unless --vacated or --fill gives it a value. Where X lies outside of IMAGE the\n"
-    "value is that of --fill, or 0, and the voxels are counted.\n"
+    "what the body uncovers, which is told, unless --vacated or --fill gives it a value. Where X lies\n"
+    "outside of IMAGE the value is that of --fill, or 0, and the voxels are counted.\n"
     "\n"
     "With --field the displacement field is written on the grid of an image instead: a vector image of\n"
     "5 dimensions (intent 1007, float32) as programs based on ITK take it (3D Slicer, ANTs, plastimatch).\n"
@@ -38,7 +38,7 @@ static const char usage[] =
     "      --inverse      the other way: at X the value of IMAGE, which shows the moved body, at X + u(X);\n"
     "                     with --field that displacement, u at X, along the same axes\n"
     "      --frame K      take u.frame.K in place of u\n"
-    "  -v, --verbose      tell what was moved, how far, and how well place and inverse agree; with\n"
+    "  -v, --verbose      tell what was moved, how far, and how exact the inverse map is; with\n"
     "                     -i nearest the volumes of labels before and after\n"
     "  -o, --output FILE  write to FILE (.nii or .nii.gz), none of the inputs, which appears only when\n"
     "                     whole\n"
@@ -126,6 +126,10 @@ static void tell(const struct tool *tool, const struct warp_request *request, co
         tool_note(tool, "%lld voxels show places outside of the image: %s there", (long long)report->beyond,
                   request->fills ? "the value of --fill" : "0");
     }
+    if (report->vacated > 0 && !request->marks_vacated && !request->fills) {
+        tool_note(tool, "%lld voxels that the body left keep their old value: see --vacated",
+                  (long long)report->vacated);
+    }
     if (!request->verbose) {
         return;
     }
@@ -145,9 +149,20 @@ static void tell(const struct tool *tool, const struct warp_request *request, co
     if (!request->inverse) {
         tool_note(
             tool,
-            "place and inverse agree to %.2g voxels; in %lld voxels, without a place to %.0e, by linear "
-            "interpolation",
-            report->inconsistency / least_step(grid, dim), (long long)report->inexact, tolerance);
+            "inverse map: largest residual %.2g voxels; Newton did not converge to %.0e in %lld voxels, "
+            "where the linear inverse of the cell is taken",
+            report->inconsistency / least_step(grid, dim), tolerance, (long long)report->inexact);
+    }
+}
+
+/* That the image's type can hold the value of an option. */
+static void check_value(const struct tool *tool, const struct image *image, const char *option, double value)
+{
+    double least, most;
+    image_range(image, &least, &most);
+    if (tool_given(tool, option) && !(value >= least && value <= most)) {
+        tool_fail(tool, STATUS_INPUT, "--%s %g: values of %s are from %g to %g", option, value,
+                  tool->operands[0], least, most);
     }
 }
 
@@ -215,6 +230,8 @@ int main(int argc, char *argv[])
     tool_begin(&tool, usage, 1, 2, argc, argv);
     parse(&tool, &request);
     tool_read_image(&tool, tool.operands[0], &image);
+    check_value(&tool, &image, "fill", request.fill);
+    check_value(&tool, &image, "vacated", request.vacated);
     if (tool_given(&tool, "like")) {
         tool_read_image(&tool, tool_value(&tool, "like"), &like);
     }
@@ -238,7 +255,7 @@ int main(int argc, char *argv[])
         inside += owner[v] >= 0;
     }
     check_image_overlap(&tool, grid, &cells, seen, inside);
-    if (request.marks_vacated) {
+    if (!request.field) {
         other = find_owners(&tool, grid, &cells, request.inverse ? motion.moved : cells.x, &ignored);
     }
     if (!request.field) {

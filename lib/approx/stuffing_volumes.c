@@ -54,11 +54,12 @@ static void node_gradients(const struct volumes *volumes, int64_t node, double G
     for (int64_t i = star->ptr[node]; i < star->ptr[node + 1]; i++) {
         double gradient[3];
         int64_t cell = star->cell[i];
+        int32_t label = volumes->whole[volumes->stuffing->label[cell]];
         int k = 0, row = 0;
         while (k < corners - 1 && volumes->stuffing->cell[cell * corners + k] != node) {
             k++;
         }
-        while (row < star->labels[node] && star->label[node][row] != volumes->stuffing->label[cell]) {
+        while (row < star->labels[node] && star->label[node][row] != label) {
             row++;
         }
         stuffing_gradient(volumes->stuffing, cell, k, gradient);

@@ -74,6 +74,9 @@ MUST_CHECK enum status image_read(struct image *image, const char *path, struct 
 MUST_CHECK enum status image_read_from(struct image *image, int descriptor, const char *name,
                                        struct error *error);
 
+/* The least and the largest value that the image's type and scaling can hold. */
+void image_range(const struct image *image, double *least, double *most);
+
 /* Write an image to an open descriptor, little-endian. Values are rounded to what the type can hold, NaN is 0
  * in integers. The same image gives the same bytes. Errors: STATUS_INPUT for sizes that do not fit the type
  * of the components; STATUS_SYSTEM for write errors, with errno's text, and memory. */

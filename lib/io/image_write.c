@@ -5,6 +5,7 @@
 #include "base/memory.h"
 
 #include <errno.h>
+#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -42,6 +43,23 @@ static void store(const struct nifti_type *type, double value, unsigned char *by
     for (int b = 0; b < type->bytes; b++) {
         bytes[b] = (unsigned char)(bits >> (8 * b));
     }
+}
+
+void image_range(const struct image *image, double *least, double *most)
+{
+    const struct nifti_type *type = nifti_type(image->datatype);
+    bool whole = type->most > type->least, scaled = type->components == 1;
+    double ends[2] = {whole                         ? type->least
+                      : type->code == IMAGE_FLOAT32 ? -FLT_MAX
+                                                    : -DBL_MAX,
+                      whole                         ? type->most
+                      : type->code == IMAGE_FLOAT32 ? FLT_MAX
+                                                    : DBL_MAX};
+    for (int i = 0; i < 2 && scaled; i++) {
+        ends[i] = fmax(fmin(ends[i] * image->slope + image->inter, DBL_MAX), -DBL_MAX);
+    }
+    *least = fmin(ends[0], ends[1]);
+    *most = fmax(ends[0], ends[1]);
 }
 
 /* All bytes of the data, in the order of the file. */

@@ -3,21 +3,22 @@
 #
 # Each round meshes the geometry by gmsh, or a label image (GEO ends in .nii or .nii.gz) by voxels, at sizes s and 2 s, solves the scene on both, and estimates the error of the finer solution
 # (fielderr). While its mean is above TOL (0.2mm; m without a unit), the next round's sizes come from sizefield. In the folder OUT stay
-# those of the last good round: body.msh, sizes.pos (of an image body.mts, sizes.mts), u.dat, coarse.dat, errors.tsv; and rounds.tsv, a row for each round:
+# those of the round of least estimate: body.msh, sizes.pos (of an image body.mts, sizes.mts), u.dat, coarse.dat, errors.tsv; and rounds.tsv, a row for each round:
 #   round, nodes, mean_mm over the body and max_mm of the nodes (estimated), seconds (processor time: nodes to mtled on the finer mesh), all_seconds (all of the
 #   round, gmsh and the coarser mesh as well)
 #
-# Environment: UNIT of the geometry (default mm), NODES at most (default 20000), ROUNDS at most (default 8), GMSH more arguments for gmsh,
+# Environment: UNIT of the geometry, which is no image, NODES at most (default 20000), ROUNDS at most (default 8), GMSH more arguments for gmsh,
 # of an image SPACING of the first round's lattice, such as 6mm, and VOXELS more arguments for voxels (-l labels.tsv; not -h),
+# REFINE_GROUPS arguments for groups (GROUPS of make; bash has an array of that name), quoted as in a shell: -u mm -f 'held=low:z,5',
 # SUPPORT arguments for support (-i tumour), START a factor for the sizes of the first round (default 1), LEAST a length with unit below which no size goes (sizefield), GRADED=no: all sizes
 # made smaller alike.
 #
-# Exit status: 0 below TOL; 1 the budget of nodes or rounds is spent, or a round failed: the last good one is kept; 2 wrong usage.
+# Exit status: 0 below TOL; 1 the budget of nodes or rounds is spent, or a round failed: the one of least estimate is kept; 2 wrong usage.
 set -euo pipefail
 export LC_ALL=C OMP_NUM_THREADS=${OMP_NUM_THREADS:-1}
 TIMEFORMAT='%U %S'
 scene=${1-} geometry=${2-} tolerance=${3-} out=${4-}
-unit=${UNIT:-mm} budget=${NODES:-20000} rounds=${ROUNDS:-8} start=${START:-1}
+unit=${UNIT-} budget=${NODES:-20000} rounds=${ROUNDS:-8} start=${START:-1}
 
 # fail STATUS MESSAGE
 fail() {
@@ -46,7 +47,9 @@ metres() {
     esac
 }
 
-[ -n "$out" ] || fail 2 "usage: make refine SCENE=FILE GEO=FILE TOL=LENGTH"
+if [ -z "$scene" ] || [ -z "$geometry" ] || [ -z "$out" ]; then
+    fail 2 "usage: make refine SCENE=FILE GEO=FILE UNIT=UNIT TOL=LENGTH, or GEO=IMAGE SPACING=LENGTH"
+fi
 [ -f "$scene" ] || fail 2 "SCENE: no file $scene"
 [ -f "$geometry" ] || fail 2 "GEO: no file $geometry"
 case $geometry in
@@ -56,7 +59,10 @@ case $geometry in
             fail 2 "SPACING: '${SPACING-}' is not a positive length, such as 6mm"
         fi
         ;;
-    *) image='' body=body.msh sizes=sizes.pos ;;
+    *)
+        image='' body=body.msh sizes=sizes.pos
+        [ -n "$unit" ] || fail 2 "UNIT: say in which unit $geometry is, as UNIT=mm"
+        ;;
 esac
 if ! wanted=$(metres "$tolerance") || ! holds "$wanted > 0"; then
     fail 2 "TOL: '$tolerance' is not a positive length, such as 0.2mm"
@@ -66,6 +72,11 @@ fi
 if [[ ! $start =~ ^[0-9]*\.?[0-9]+$ ]] || ! holds "$start > 0"; then
     fail 2 "START: '$start' is not a positive number"
 fi
+# Words as of a shell, without evaluating them.
+if ! naming=$(xargs -r printf '%s\n' <<< "${REFINE_GROUPS-}" 2> /dev/null); then
+    fail 2 "GROUPS: ${REFINE_GROUPS-}: a quote is not closed"
+fi
+mapfile -t naming < <([ -z "$naming" ] || printf '%s\n' "$naming")
 dim=$(sed -n 's/^dim *= *\([23]\).*/\1/p' "$scene")
 [ -n "$dim" ] || fail 2 "SCENE: $scene has no dim = 2 or 3"
 mkdir -p "$out"
@@ -90,11 +101,16 @@ scaled() {
     awk -v factor="$1" '/^# / { on = $2 == "size" } on && NF == 1 { $1 = sprintf("%.17g", factor * $1) } { print }' "$work/$sizes"
 }
 
+# named: the stage groups, where it is asked for.
+named() {
+    if [ "${#naming[@]}" -gt 0 ]; then groups "${naming[@]}"; else cat; fi
+}
+
 # solve MESH FILE: the stages start together, and all of them append to an empty log.
 solve() {
     : > "$work/log"
     # shellcheck disable=SC2086 # several arguments
-    if [ "$image" ]; then cat "$1"; else nodes -u "$unit" "$1" 2>> "$work/log"; fi | ipoints 2>> "$work/log" | support ${SUPPORT-} 2>> "$work/log" | shapefn 2>> "$work/log" | mtled -q "$scene" -o "$2" 2>> "$work/log"
+    if [ "$image" ]; then cat "$1"; else nodes -u "$unit" "$1" 2>> "$work/log"; fi | named 2>> "$work/log" | ipoints 2>> "$work/log" | support ${SUPPORT-} 2>> "$work/log" | shapefn 2>> "$work/log" | mtled -q "$scene" -o "$2" 2>> "$work/log"
 }
 
 # What the last command said, in a line: of a pipe not what stages say of one before them that failed.
@@ -111,9 +127,12 @@ quantity() {
     awk -F '\t' -v name="$1" '$1 == name { print $2 }' "$work/errors.tsv"
 }
 
-# keep: what a later round that fails leaves alone.
+# keep: what a later round that fails, or is worse, leaves alone.
 keep() {
     local file
+    cp "$work/u.dat" "$work/last.dat"
+    holds "$estimate < ${least_estimate:-1e300}" || return 0
+    least_estimate=$estimate kept="round $round, $nodes nodes, $(calc "1000 * $estimate") mm"
     for file in "$body" u.dat coarse.dat errors.tsv "$sizes"; do
         [ ! -e "$work/$file" ] || cp "$work/$file" "$out/.$file.new"
     done
@@ -133,7 +152,7 @@ lost() {
 # about the largest displacement over the longest side of the body.
 turning() {
     ! grep -q '^\[contact' "$scene" || { echo 1; return; }
-    mts print nodes.x "$out/u.dat" | awk -v u="$(quantity reference)" '
+    mts print nodes.x "$work/last.dat" | awk -v u="$(quantity reference)" '
         { for (k = 1; k <= NF; k++) { if (NR == 1 || $k < low[k]) low[k] = $k; if (NR == 1 || $k > high[k]) high[k] = $k } }
         END { for (k = 1; k <= NF; k++) if (high[k] - low[k] > side) side = high[k] - low[k]; print (u < side ? u / side : 1) }'
 }
@@ -143,7 +162,7 @@ grade() {
     local form=(-n "$budget" --sag "$(calc "$share * $estimate / $(turning)")" -u "$unit")
     # The octree of voxels makes up to twice the nodes; the volumes that it keeps make up for chords.
     [ -z "$image" ] || form=(-n "$(calc "int($budget / 2)")" -t)
-    sizefield -v -s "$share" ${least:+--least "$least"} "${form[@]}" -o "$work/$sizes" "$out/u.dat" 2> "$work/log" || lost sizefield
+    sizefield -v -s "$share" ${least:+--least "$least"} "${form[@]}" -o "$work/$sizes" "$work/last.dat" 2> "$work/log" || lost sizefield
     smallest=$(awk -F '\t' '$1 == "least size" { print $2 }' "$work/log")
     graded=yes
     if [ "$image" ]; then
@@ -190,7 +209,6 @@ for ((round = 1; round <= rounds; round++)); do
     printf '%d\t%d\t%.6g\t%.6g\t%s\t%s\n' "$round" "$nodes" "$(calc "1000 * $estimate")" "$(calc "1000 * $(quantity max)")" \
         "$(seconds "$work/solve.time")" "$(seconds "$work"/*.time)" | tee -a "$out/rounds.tsv"
     keep
-    kept="round $round, $nodes nodes, $(calc "1000 * $estimate") mm"
     [ -z "${KEEP_ROUNDS-}" ] || cp "$work/u.dat" "$out/u-$round.dat"
     ! holds "$estimate <= $wanted" || exit 0
     left=$(sed -n 's/^tolerance *= *//p' "$scene")
