@@ -10,19 +10,16 @@
 static enum status allocate(int dim, int64_t parts, int64_t samples, struct boundary_averages *averages,
                             struct error *error)
 {
-    enum status status;
     averages->count = parts;
-    TRY(NEW_ARRAY(&averages->node, parts, error));
-    TRY(NEW_ARRAY(&averages->area, parts, error));
-    TRY(NEW_ARRAY(&averages->normal, parts * dim, error));
-    TRY(NEW_ARRAY(&averages->position, parts * dim, error));
-    TRY(NEW_ARRAY(&averages->ptr, parts + 1, error));
-    TRY(NEW_ARRAY(&averages->sample_ptr, parts + 1, error));
-    TRY(NEW_ARRAY(&averages->sample_x, samples * dim, error));
-    TRY(NEW_ARRAY(&averages->sample_share, samples, error));
-    TRY(NEW_ARRAY(&averages->sample_point, samples, error));
-done:
-    return status;
+    RETURN_IF_ERROR(NEW_ARRAY(&averages->node, parts, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&averages->area, parts, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&averages->normal, parts * dim, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&averages->position, parts * dim, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&averages->ptr, parts + 1, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&averages->sample_ptr, parts + 1, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&averages->sample_x, samples * dim, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&averages->sample_share, samples, error));
+    return NEW_ARRAY(&averages->sample_point, samples, error);
 }
 
 /* A dense row over the nodes, with the list of those touched: one average at a time is summed in it. */
@@ -105,10 +102,7 @@ static enum status add_corner(const struct face_table *table, const struct facet
         double weight = rule.weight[g] * size * rule.barycentric[g * dim + vertex];
         int64_t point = face_of[corner->facet] * table->per_face + g;
         for (int64_t i = table->lists->ptr[point]; row != NULL && i < table->lists->ptr[point + 1]; i++) {
-            enum status status = row_add(row, table->lists->idx[i], weight * table->phi[i], error);
-            if (status != STATUS_OK) {
-                return status;
-            }
+            RETURN_IF_ERROR(row_add(row, table->lists->idx[i], weight * table->phi[i], error));
         }
         averages->area[part] += weight;
         int64_t sample = averages->sample_ptr[part + 1]++;

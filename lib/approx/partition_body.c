@@ -64,14 +64,12 @@ void body_part_work_free(struct body_part_work *work)
 static enum status prepare(const struct partition *partition, struct body_part_work *work,
                            struct error *error)
 {
-    enum status status = STATUS_OK;
     if (work->mark == NULL) {
-        TRY(NEW_ARRAY(&work->mark, partition->cells->node_count, error));
-        TRY(NEW_ARRAY(&work->cell_mark, partition->cells->count, error));
-        TRY(NEW_ARRAY(&work->part_mark, partition->parts, error));
+        RETURN_IF_ERROR(NEW_ARRAY(&work->mark, partition->cells->node_count, error));
+        RETURN_IF_ERROR(NEW_ARRAY(&work->cell_mark, partition->cells->count, error));
+        RETURN_IF_ERROR(NEW_ARRAY(&work->part_mark, partition->parts, error));
     }
-done:
-    return status;
+    return STATUS_OK;
 }
 
 /* Does the support of node j, not widened, reach the box? */
@@ -116,22 +114,21 @@ static enum status list_reaching(const struct partition *partition, int32_t part
                                  int64_t count, struct body_part_work *work, struct index_list *list,
                                  struct error *error)
 {
-    enum status status = STATUS_OK;
     double low[3], high[3];
     for (int64_t i = 0; i < count; i++) {
         box_of_cell(partition->cells, own_cell[i], low, high);
         work->near.count = 0;
-        TRY(point_grid_query_box(partition->grid, low, high, partition->widen, &work->near, error));
+        RETURN_IF_ERROR(
+            point_grid_query_box(partition->grid, low, high, partition->widen, &work->near, error));
         for (int64_t n = 0; n < work->near.count; n++) {
             int32_t j = work->near.index[n];
-            TRY(see_node(work, part, j, list, error));
+            RETURN_IF_ERROR(see_node(work, part, j, list, error));
             if (mark_of(work->mark, j, part) == SEEN && reaches(partition, j, low, high)) {
                 work->mark[j] = part * MARKS + NEEDED;
             }
         }
     }
-done:
-    return status;
+    return STATUS_OK;
 }
 
 /* The cells at all nodes of the list from number `from` on, and their vertices behind the list. */
@@ -139,7 +136,6 @@ static enum status add_cells(const struct partition *partition, int32_t part, st
                              struct index_list *nodes, int64_t from, struct index_list *found,
                              struct error *error)
 {
-    enum status status = STATUS_OK;
     const struct cells *cells = partition->cells;
     const struct cell_stars *stars = partition->stars;
     int vertices = cells->dim + 1;
@@ -151,15 +147,15 @@ static enum status add_cells(const struct partition *partition, int32_t part, st
                 continue;
             }
             work->cell_mark[cell] = part + 1;
-            TRY(index_list_reserve(found, 1, error));
+            RETURN_IF_ERROR(index_list_reserve(found, 1, error));
             found->index[found->count++] = cell;
             for (int k = 0; k < vertices; k++) {
-                TRY(see_node(work, part, cells->node[(int64_t)cell * vertices + k], nodes, error));
+                RETURN_IF_ERROR(
+                    see_node(work, part, cells->node[(int64_t)cell * vertices + k], nodes, error));
             }
         }
     }
-done:
-    return status;
+    return STATUS_OK;
 }
 
 static int ascending(const void *a, const void *b)

@@ -70,14 +70,12 @@ done:
 
 static enum status parts_begin(int64_t items, int32_t **parent, double **size, struct error *error)
 {
-    enum status status;
-    TRY(NEW_ARRAY(parent, items, error));
-    TRY(NEW_ARRAY(size, items, error));
+    RETURN_IF_ERROR(NEW_ARRAY(parent, items, error));
+    RETURN_IF_ERROR(NEW_ARRAY(size, items, error));
     for (int64_t i = 0; i < items; i++) {
         (*parent)[i] = (int32_t)i;
     }
-done:
-    return status;
+    return STATUS_OK;
 }
 
 enum status cells_parts(const struct cells *cells, int32_t *part, int32_t *count, struct error *error)

@@ -117,7 +117,6 @@ static void draw(const struct simplex *simplex, const struct cells *cells, int64
 static enum status list_by_slab(const struct cells *cells, int64_t size, int64_t slabs, int64_t *ptr,
                                 int32_t **idx, struct error *error)
 {
-    enum status status = STATUS_OK;
     *idx = NULL;
     for (int pass = 0; pass < 2; pass++) {
         for (int64_t c = 0; c < cells->count; c++) {
@@ -135,15 +134,14 @@ static enum status list_by_slab(const struct cells *cells, int64_t size, int64_t
             for (int64_t s = 0; s < slabs; s++) {
                 ptr[s + 1] += ptr[s];
             }
-            TRY(NEW_ARRAY(idx, ptr[slabs], error));
+            RETURN_IF_ERROR(NEW_ARRAY(idx, ptr[slabs], error));
         }
     }
     for (int64_t s = slabs; s > 0; s--) { /* each has moved to the beginning of the next */
         ptr[s] = ptr[s - 1];
     }
     ptr[0] = 0;
-done:
-    return status;
+    return STATUS_OK;
 }
 
 enum status raster_cells(const struct cells *cells, int sign, const int64_t size[3], int32_t *owner,

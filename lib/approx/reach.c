@@ -80,7 +80,6 @@ LIST_SET(avx512, AVX512_SET)
 enum status reach_list_facets(const struct reach *reach, const int32_t *index, int64_t count,
                               struct reach_work *work, struct error *error)
 {
-    enum status status = STATUS_OK;
     for (int64_t i = 0; i < count; i++) {
         int32_t node = index[i];
         int64_t first = reach->opposing_ptr[node], last = reach->opposing_ptr[node + 1];
@@ -91,7 +90,7 @@ enum status reach_list_facets(const struct reach *reach, const int32_t *index, i
         work->near_begin[node] = (int32_t)work->near.count;
         if (first < last) {
             struct row_view row = view_row(reach, node, work);
-            TRY(index_list_reserve(&work->near, last - first + 1, error));
+            RETURN_IF_ERROR(index_list_reserve(&work->near, last - first + 1, error));
             int32_t *list = work->near.index + work->near.count;
             work->near.count += (work->avx512 ? list_passing_avx512
                                  : work->avx2 ? list_passing_avx2
@@ -100,8 +99,7 @@ enum status reach_list_facets(const struct reach *reach, const int32_t *index, i
         }
         work->near_end[node] = (int32_t)work->near.count;
     }
-done:
-    return status;
+    return STATUS_OK;
 }
 
 void reach_begin_row(const struct reach *reach, const double *x, int64_t count, struct reach_work *work)
@@ -127,10 +125,7 @@ void reach_begin_row(const struct reach *reach, const double *x, int64_t count, 
 enum status reach_begin(const struct reach *reach, const struct reach_places *places, int64_t p,
                         const double *x, struct reach_work *work, struct error *error)
 {
-    enum status status = reach_work_reserve(reach, work, error);
-    if (status != STATUS_OK) {
-        return status;
-    }
+    RETURN_IF_ERROR(reach_work_reserve(reach, work, error));
     if (++work->serial >= UINT32_MAX / 2) {
         memset(work->mark, 0, (size_t)reach->cells.node_count * sizeof *work->mark);
         work->serial = 1;
@@ -163,11 +158,10 @@ enum status reach_begin(const struct reach *reach, const struct reach_places *pl
 static enum status mark_hidden(const struct reach *reach, double widen, const int32_t *index, int64_t count,
                                struct reach_work *work, int64_t *hidden, struct error *error)
 {
-    enum status status = STATUS_OK;
     *hidden = 0;
     for (int64_t i = 0; i < count && work->cell_count < 0; i++) {
         if (widen > 1.0 || reach->opposing_ptr[index[i]] < reach->opposing_ptr[index[i] + 1]) {
-            TRY(reach_locate(reach, work->x, work, error));
+            RETURN_IF_ERROR(reach_locate(reach, work->x, work, error));
         }
     }
     bool by_facets = widen <= 1.0 && !work->outside;
@@ -181,27 +175,25 @@ static enum status mark_hidden(const struct reach *reach, double widen, const in
         }
         if (work->mark[node] / 2 != work->serial) {
             bool seen;
-            TRY((by_facets ? reach_sees : reach_walk)(reach, work->from, work->cell, work->cell_count, node,
-                                                      work, &seen, error));
+            RETURN_IF_ERROR((by_facets ? reach_sees : reach_walk)(
+                reach, work->from, work->cell, work->cell_count, node, work, &seen, error));
             work->mark[node] = 2 * work->serial + !seen;
         }
         *hidden += reach_is_hidden(work, node);
     }
-done:
-    return status;
+    return STATUS_OK;
 }
 
 /* Keep the neighbours within reach, with their images. */
 static enum status keep(const struct reach *reach, double widen, int32_t *index, int64_t *count,
                         struct reach_work *work, struct error *error)
 {
-    enum status status = STATUS_OK;
     int dim = reach->cells.dim;
     int64_t kept = 0;
     if (*count > work->capacity) {
         free(work->image);
         work->capacity = 0;
-        TRY(NEW_ARRAY(&work->image, 2 * *count * dim, error));
+        RETURN_IF_ERROR(NEW_ARRAY(&work->image, 2 * *count * dim, error));
         work->capacity = 2 * *count;
     }
     for (int64_t i = 0; i < *count; i++) {
@@ -229,22 +221,19 @@ static enum status keep(const struct reach *reach, double widen, int32_t *index,
         work->around++;
     }
     *count = kept;
-done:
-    return status;
+    return STATUS_OK;
 }
 
 enum status reach_filter(const struct reach *reach, double widen, int32_t *index, int64_t *count,
                          struct reach_work *work, struct error *error)
 {
-    enum status status;
     work->around = 0;
-    TRY(mark_hidden(reach, widen, index, *count, work, &work->changed, error));
+    RETURN_IF_ERROR(mark_hidden(reach, widen, index, *count, work, &work->changed, error));
     if (work->changed > 0) {
-        TRY(reach_paths(reach, widen, index, *count, work, error));
-        TRY(keep(reach, widen, index, count, work, error));
+        RETURN_IF_ERROR(reach_paths(reach, widen, index, *count, work, error));
+        RETURN_IF_ERROR(keep(reach, widen, index, count, work, error));
     }
-done:
-    return status;
+    return STATUS_OK;
 }
 
 void reach_free(struct reach *reach)

@@ -35,9 +35,8 @@ static enum status add_pair(struct pair_list *pairs, int32_t row, int32_t value,
 static enum status file_pairs(const struct pair_list *pairs, int64_t rows, int64_t **ptr, int32_t **idx,
                               struct error *error)
 {
-    enum status status;
-    TRY(NEW_ARRAY(ptr, rows + 2, error));
-    TRY(NEW_ARRAY(idx, pairs->count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(ptr, rows + 2, error));
+    RETURN_IF_ERROR(NEW_ARRAY(idx, pairs->count, error));
     int64_t *start = *ptr;
     for (int64_t i = 0; i < pairs->count; i++) {
         start[pairs->pair[i].row + 2]++;
@@ -48,8 +47,7 @@ static enum status file_pairs(const struct pair_list *pairs, int64_t rows, int64
     for (int64_t i = 0; i < pairs->count; i++) {
         (*idx)[start[pairs->pair[i].row + 1]++] = pairs->pair[i].value;
     }
-done:
-    return status;
+    return STATUS_OK;
 }
 
 static enum status file_stars(struct reach *reach, struct error *error)
@@ -96,9 +94,8 @@ static void set_dual(const struct reach *reach, struct reach_facet *facet)
 
 static enum status set_facets(const struct faces *faces, struct reach *reach, struct error *error)
 {
-    enum status status;
     int dim = reach->cells.dim;
-    TRY(NEW_ARRAY(&reach->facet, faces->count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&reach->facet, faces->count, error));
     reach->facet_count = faces->count;
     for (int64_t f = 0; f < faces->count; f++) {
         struct reach_facet *facet = &reach->facet[f];
@@ -120,8 +117,7 @@ static enum status set_facets(const struct faces *faces, struct reach *reach, st
         }
         set_dual(reach, facet);
     }
-done:
-    return status;
+    return STATUS_OK;
 }
 
 static double height_above(const struct reach *reach, const struct reach_facet *facet, int32_t node)

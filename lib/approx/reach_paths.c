@@ -15,20 +15,18 @@ static const double most_slack = 1.2;
 
 enum status reach_work_reserve(const struct reach *reach, struct reach_work *work, struct error *error)
 {
-    enum status status = STATUS_OK;
     if (work->mark == NULL) {
-        TRY(NEW_ARRAY(&work->mark, reach->cells.node_count, error));
-        TRY(NEW_ARRAY(&work->passed, reach->cells.node_count, error));
-        TRY(NEW_ARRAY(&work->length, reach->cells.node_count, error));
-        TRY(NEW_ARRAY(&work->before, reach->cells.node_count, error));
-        TRY(NEW_ARRAY(&work->listed, reach->cells.node_count, error));
-        TRY(NEW_ARRAY(&work->near_begin, reach->cells.node_count, error));
-        TRY(NEW_ARRAY(&work->near_end, reach->cells.node_count, error));
+        RETURN_IF_ERROR(NEW_ARRAY(&work->mark, reach->cells.node_count, error));
+        RETURN_IF_ERROR(NEW_ARRAY(&work->passed, reach->cells.node_count, error));
+        RETURN_IF_ERROR(NEW_ARRAY(&work->length, reach->cells.node_count, error));
+        RETURN_IF_ERROR(NEW_ARRAY(&work->before, reach->cells.node_count, error));
+        RETURN_IF_ERROR(NEW_ARRAY(&work->listed, reach->cells.node_count, error));
+        RETURN_IF_ERROR(NEW_ARRAY(&work->near_begin, reach->cells.node_count, error));
+        RETURN_IF_ERROR(NEW_ARRAY(&work->near_end, reach->cells.node_count, error));
         work->avx2 = processor_has("avx2");
         work->avx512 = processor_has("avx512");
     }
-done:
-    return status;
+    return STATUS_OK;
 }
 
 void reach_work_free(struct reach_work *work)
@@ -73,7 +71,6 @@ static bool shorten(const struct reach *reach, int32_t node, double limit, struc
 enum status reach_paths(const struct reach *reach, double widen, const int32_t *index, int64_t count,
                         struct reach_work *work, struct error *error)
 {
-    enum status status = STATUS_OK;
     int dim = reach->cells.dim;
     double limit = dim == 3 ? most_slack * widen : widen;
     if (++work->pass == UINT32_MAX) {
@@ -81,7 +78,7 @@ enum status reach_paths(const struct reach *reach, double widen, const int32_t *
         work->pass = 1;
     }
     work->hidden.count = 0;
-    TRY(index_list_reserve(&work->hidden, count, error));
+    RETURN_IF_ERROR(index_list_reserve(&work->hidden, count, error));
     for (int64_t i = 0; i < count; i++) {
         int32_t node = index[i];
         if (reach_is_hidden(work, node)) {
@@ -106,8 +103,7 @@ enum status reach_paths(const struct reach *reach, double widen, const int32_t *
             shorter = shorter || (now && reach->corner[node]);
         }
     }
-done:
-    return status;
+    return STATUS_OK;
 }
 
 /* The shortest way from p to q over the edge from a to b: its length, unrolled into a plane, and how far

@@ -104,15 +104,13 @@ static bool contains(const struct index_list *list, int32_t value)
 
 static enum status visit(int32_t cell, struct reach_work *work, struct error *error)
 {
-    enum status status = STATUS_OK;
     if (cell >= 0 && !contains(&work->visited, cell)) {
-        TRY(index_list_reserve(&work->visited, 1, error));
-        TRY(index_list_reserve(&work->stack, 1, error));
+        RETURN_IF_ERROR(index_list_reserve(&work->visited, 1, error));
+        RETURN_IF_ERROR(index_list_reserve(&work->stack, 1, error));
         work->visited.index[work->visited.count++] = cell;
         work->stack.index[work->stack.count++] = cell;
     }
-done:
-    return status;
+    return STATUS_OK;
 }
 
 static bool has_node(const struct cells *cells, int64_t cell, int32_t node)
@@ -124,13 +122,12 @@ static bool has_node(const struct cells *cells, int64_t cell, int32_t node)
 enum status reach_walk(const struct reach *reach, const double *x, const int32_t *cell, int64_t cell_count,
                        int32_t node, struct reach_work *work, bool *arrives, struct error *error)
 {
-    enum status status = STATUS_OK;
     int corners = reach->cells.dim + 1;
     const double *y = node < 0 ? x : reach->cells.x + (int64_t)node * reach->cells.dim;
     work->visited.count = work->stack.count = 0;
     *arrives = false;
     for (int64_t i = 0; i < cell_count; i++) {
-        TRY(visit(cell[i], work, error));
+        RETURN_IF_ERROR(visit(cell[i], work, error));
     }
     while (work->stack.count > 0) {
         double least[4];
@@ -144,12 +141,11 @@ enum status reach_walk(const struct reach *reach, const double *x, const int32_t
         }
         for (int k = 0; k < corners; k++) {
             if (least[k] <= on_face) {
-                TRY(visit(reach->across[(int64_t)at * corners + k], work, error));
+                RETURN_IF_ERROR(visit(reach->across[(int64_t)at * corners + k], work, error));
             }
         }
     }
-done:
-    return status;
+    return STATUS_OK;
 }
 
 /* How a segment passes a facet: not; through it, out of the body; or too near its rim or its ends to say. */

@@ -209,10 +209,7 @@ static void snap(struct lattice *lattice, int64_t node)
 
 enum status lattice_cut(struct lattice *lattice, struct error *error)
 {
-    enum status status = find_edges(lattice, error);
-    if (status != STATUS_OK) {
-        return status;
-    }
+    RETURN_IF_ERROR(find_edges(lattice, error));
 #pragma omp parallel for schedule(dynamic, 256)
     for (int64_t e = 0; e < lattice->edge_count; e++) {
         bool cut =

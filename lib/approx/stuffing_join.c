@@ -314,7 +314,6 @@ enum status stuffing_cut_apart(struct stuffing_keeping *keeping, const struct st
                                struct error *error)
 {
     struct stuffing *stuffing = keeping->stuffing;
-    enum status status;
     int64_t nodes = stuffing->node_count, fresh = 0;
     double *x = NULL;
     for (int64_t n = 0; n < nodes; n++) {
@@ -322,8 +321,8 @@ enum status stuffing_cut_apart(struct stuffing_keeping *keeping, const struct st
         fresh += count > 1 ? count - 1 : 0;
         stuffing->pinched += count > 1;
     }
-    TRY(NEW_ARRAY(&keeping->apart, nodes + fresh, error));
-    TRY(NEW_ARRAY(&x, (nodes + fresh) * stuffing->dim, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&keeping->apart, nodes + fresh, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&x, (nodes + fresh) * stuffing->dim, error));
     memcpy(x, stuffing->x, (size_t)(nodes * stuffing->dim) * sizeof *x);
     free(stuffing->x);
     stuffing->x = x;
@@ -332,6 +331,5 @@ enum status stuffing_cut_apart(struct stuffing_keeping *keeping, const struct st
     }
     keeping->cells.node_count = stuffing->node_count;
     keeping->cells.x = stuffing->x;
-done:
-    return status;
+    return STATUS_OK;
 }

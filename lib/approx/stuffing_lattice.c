@@ -85,9 +85,8 @@ static enum status size_points(struct points *points, struct error *error)
 
 static enum status label_points(struct points *points, struct error *error)
 {
-    enum status status;
-    TRY(NEW_ARRAY(&points->label, points->total, error));
-    TRY(NEW_ARRAY(&points->node, points->total, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&points->label, points->total, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&points->node, points->total, error));
 #pragma omp parallel for schedule(static)
     for (int64_t p = 0; p < points->total; p++) {
         double x[3];
@@ -95,8 +94,7 @@ static enum status label_points(struct points *points, struct error *error)
         points->label[p] = (uint16_t)labels_at(points->lattice->labels, x);
         points->node[p] = -1;
     }
-done:
-    return status;
+    return STATUS_OK;
 }
 
 /* ---- cells ---- */
@@ -242,16 +240,15 @@ done:
 static enum status make_nodes(struct points *points, struct error *error)
 {
     struct lattice *lattice = points->lattice;
-    enum status status;
     int dim = lattice->dim;
     for (int64_t p = 0; p < points->total; p++) {
         if (points->node[p] >= 0) {
             points->node[p] = (int32_t)lattice->node_count++;
         }
     }
-    TRY(NEW_ARRAY(&lattice->x, lattice->node_count * dim, error));
-    TRY(NEW_ARRAY(&lattice->label, lattice->node_count, error));
-    TRY(NEW_ARRAY(&lattice->place, lattice->node_count * 3, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&lattice->x, lattice->node_count * dim, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&lattice->label, lattice->node_count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&lattice->place, lattice->node_count * 3, error));
     for (int64_t p = 0; p < points->total; p++) {
         int64_t n = points->node[p];
         if (n >= 0) {
@@ -265,8 +262,7 @@ static enum status make_nodes(struct points *points, struct error *error)
     for (int64_t i = 0; i < lattice->cell_count * (dim + 1); i++) {
         lattice->cell[i] = points->node[lattice->cell[i]];
     }
-done:
-    return status;
+    return STATUS_OK;
 }
 
 /* The levels that the finest cubes need, at interfaces and for sizes. */

@@ -203,10 +203,7 @@ static enum status join_larger(const struct side *side, const int64_t beyond[3])
             } else {
                 memcpy(corner[3], middle, sizeof middle);
             }
-            enum status status = side->tell(side->context, (const int32_t(*)[3])corner);
-            if (status != STATUS_OK) {
-                return status;
-            }
+            RETURN_IF_ERROR(side->tell(side->context, (const int32_t(*)[3])corner));
         }
     }
     return STATUS_OK;

@@ -24,10 +24,9 @@ struct facets_at {
 
 static enum status find_facets_at(const struct stuffing *stuffing, struct facets_at *at, struct error *error)
 {
-    enum status status;
     int dim = stuffing->dim;
-    TRY(NEW_ARRAY(&at->ptr, stuffing->node_count + 2, error));
-    TRY(NEW_ARRAY(&at->facet, stuffing->facet_count * dim, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&at->ptr, stuffing->node_count + 2, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&at->facet, stuffing->facet_count * dim, error));
     for (int64_t i = 0; i < stuffing->facet_count * dim; i++) {
         at->ptr[stuffing->facet[i] + 2]++;
     }
@@ -37,8 +36,7 @@ static enum status find_facets_at(const struct stuffing *stuffing, struct facets
     for (int64_t i = 0; i < stuffing->facet_count * dim; i++) {
         at->facet[at->ptr[stuffing->facet[i] + 1]++] = (int32_t)(i / dim);
     }
-done:
-    return status;
+    return STATUS_OK;
 }
 
 /* The largest angle of a facet, degrees, once all corners are where the labels meet; 180 where one cannot be
@@ -157,7 +155,6 @@ done:
 enum status labels_without_parts(const struct labels *labels, const int32_t *whole, struct labels *result,
                                  struct error *error)
 {
-    enum status status = STATUS_OK;
     uint16_t *label = NULL;
     bool has_parts = false;
     int64_t count = labels->size[0] * labels->size[1] * labels->size[2];
@@ -166,12 +163,11 @@ enum status labels_without_parts(const struct labels *labels, const int32_t *who
         has_parts = has_parts || whole[l] != l;
     }
     if (has_parts) {
-        TRY(NEW_ARRAY(&label, count, error));
+        RETURN_IF_ERROR(NEW_ARRAY(&label, count, error));
         for (int64_t v = 0; v < count; v++) {
             label[v] = (uint16_t)whole[labels->label[v]];
         }
         result->label = label;
     }
-done:
-    return status;
+    return STATUS_OK;
 }

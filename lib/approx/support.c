@@ -76,7 +76,6 @@ static enum status fail_support(const struct search *search, int64_t row, const 
 static enum status build_chunk(const struct search *search, int64_t first, int64_t last,
                                struct support_lists *lists, struct worker *worker, struct error *error)
 {
-    enum status status = STATUS_OK;
     const struct point_grid *grid = search->grid;
     int dim = grid->dim;
     worker->list.count = worker->around_count = 0;
@@ -87,7 +86,7 @@ static enum status build_chunk(const struct search *search, int64_t first, int64
                         row_of(search, p));
         }
         int64_t before = worker->list.count;
-        TRY(support_find(search, p, worker, &lists->widen[p], &serves, error));
+        RETURN_IF_ERROR(support_find(search, p, worker, &lists->widen[p], &serves, error));
         const int32_t *index = worker->list.index + before;
         int64_t count = worker->list.count - before;
         if (!serves) {
@@ -95,8 +94,7 @@ static enum status build_chunk(const struct search *search, int64_t first, int64
         }
         lists->ptr[p + 1] = count;
     }
-done:
-    return status;
+    return STATUS_OK;
 }
 
 /* Append a worker's neighbours around corners to those of the lists, whose pairs are `before` so far. */

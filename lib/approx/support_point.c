@@ -40,10 +40,7 @@ static enum status keep_nearest(const struct point_grid *grid, const double *x, 
         int64_t capacity = 2 * *count + 64;
         free(worker->order);
         worker->capacity = 0;
-        enum status status = NEW_ARRAY(&worker->order, capacity, error);
-        if (status != STATUS_OK) {
-            return status;
-        }
+        RETURN_IF_ERROR(NEW_ARRAY(&worker->order, capacity, error));
         worker->capacity = capacity;
     }
     double *distance2 = worker->order;
@@ -156,37 +153,35 @@ static enum status note_around(const struct point_grid *grid, const double *x, c
 enum status support_find(const struct search *search, int64_t p, struct worker *worker, double *widen,
                          bool *serves, struct error *error)
 {
-    enum status status = STATUS_OK;
     const struct support_options *options = search->options;
     const struct point_grid *grid = search->grid;
     const double *x = search->x + p * grid->dim;
     int64_t first = worker->list.count;
     if (search->reach != NULL) {
-        TRY(reach_begin(search->reach, &search->places, p, x, &worker->reach, error));
+        RETURN_IF_ERROR(reach_begin(search->reach, &search->places, p, x, &worker->reach, error));
     }
     for (*widen = 1.0; *widen <= SUPPORT_WIDEN_LIMIT; *widen *= widen_step) {
         worker->list.count = first;
-        TRY(point_grid_query(grid, x, *widen, &worker->list, error));
+        RETURN_IF_ERROR(point_grid_query(grid, x, *widen, &worker->list, error));
         int64_t count = worker->list.count - first;
         int32_t *index = worker->list.index + first;
         double *image = NULL;
         if (search->reach != NULL) {
             if (*widen == 1.0) {
-                TRY(reach_list_facets(search->reach, index, count, &worker->reach, error));
+                RETURN_IF_ERROR(reach_list_facets(search->reach, index, count, &worker->reach, error));
             }
-            TRY(reach_filter(search->reach, *widen, index, &count, &worker->reach, error));
+            RETURN_IF_ERROR(reach_filter(search->reach, *widen, index, &count, &worker->reach, error));
             image = worker->reach.around > 0 ? worker->reach.image : NULL;
         }
-        TRY(keep_nearest(grid, x, options->most, index, image, &count, worker, error));
+        RETURN_IF_ERROR(keep_nearest(grid, x, options->most, index, image, &count, worker, error));
         worker->list.count = first + count;
         *serves = true;
         if (options->widen) {
-            TRY(judge(search, x, *widen, index, image, count, worker, serves, error));
+            RETURN_IF_ERROR(judge(search, x, *widen, index, image, count, worker, serves, error));
         }
         if (*serves) {
             return image != NULL ? note_around(grid, x, image, first, worker, error) : STATUS_OK;
         }
     }
-done:
-    return status;
+    return STATUS_OK;
 }

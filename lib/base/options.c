@@ -131,10 +131,7 @@ static enum status parse_long(struct options *options, int argc, char *argv[], i
         return fail(error, STATUS_INPUT, "unknown option %s (see -h)", shown);
     }
     struct option *option = &options->option[index];
-    enum status status = mark_given(option, shown, error);
-    if (status != STATUS_OK) {
-        return status;
-    }
+    RETURN_IF_ERROR(mark_given(option, shown, error));
     if (!option->takes_value) {
         return equals == NULL ? STATUS_OK : fail(error, STATUS_INPUT, "option %s takes no value", shown);
     }
@@ -156,10 +153,7 @@ static enum status parse_short(struct options *options, int argc, char *argv[], 
         if (option == NULL) {
             return fail(error, STATUS_INPUT, "unknown option %s in %s (see -h)", shown, argv[*at]);
         }
-        enum status status = mark_given(option, shown, error);
-        if (status != STATUS_OK) {
-            return status;
-        }
+        RETURN_IF_ERROR(mark_given(option, shown, error));
         if (!option->takes_value) {
             continue;
         }
@@ -247,10 +241,7 @@ enum status parse_double_list(const char *text, const char *what, double least, 
         }
         memcpy(item, at, length);
         item[length] = '\0';
-        enum status status = parse_double(item, what, least, largest, &values[*count], error);
-        if (status != STATUS_OK) {
-            return status;
-        }
+        RETURN_IF_ERROR(parse_double(item, what, least, largest, &values[*count], error));
         ++*count;
         at += length;
         if (*at == '\0') {

@@ -74,11 +74,10 @@ done:
 enum status ranks_share(const struct ranks *ranks, int64_t items, const double *work, int64_t **first,
                         struct error *error)
 {
-    enum status status;
     int count = ranks_count(ranks);
     double all = 0.0, sum = 0.0;
     int64_t item = 0;
-    TRY(NEW_ARRAY(first, count + 1, error));
+    RETURN_IF_ERROR(NEW_ARRAY(first, count + 1, error));
     for (int64_t i = 0; i < items; i++) {
         all += work != NULL ? work[i] : 1.0;
     }
@@ -89,8 +88,7 @@ enum status ranks_share(const struct ranks *ranks, int64_t items, const double *
         (*first)[r] = item;
     }
     (*first)[count] = items;
-done:
-    return status;
+    return STATUS_OK;
 }
 
 int ranks_owner(const struct ranks *ranks, const int64_t *first, int64_t item)
@@ -110,7 +108,6 @@ int ranks_owner(const struct ranks *ranks, const int64_t *first, int64_t item)
 enum status stretches_of(int64_t begin, int64_t end, const bool *wanted, struct stretches *stretches,
                          struct error *error)
 {
-    enum status status;
     int64_t most = 0;
     *stretches = (struct stretches){0};
     for (int pass = 0; pass < 2; pass++) {
@@ -128,11 +125,10 @@ enum status stretches_of(int64_t begin, int64_t end, const bool *wanted, struct 
         }
         if (pass == 0) {
             most = stretches->count;
-            TRY(NEW_ARRAY(&stretches->items, most, error));
+            RETURN_IF_ERROR(NEW_ARRAY(&stretches->items, most, error));
         }
     }
-done:
-    return status;
+    return STATUS_OK;
 }
 
 void stretches_free(struct stretches *stretches)

@@ -142,23 +142,21 @@ static enum status add_face(struct gathering *g, int32_t group, const int32_t no
 
 static enum status note_tally(struct gathering *g, const struct msh_group *group, const struct tally *tally)
 {
-    enum status status = STATUS_OK;
     if (tally->elsewhere > 0) {
-        TRY(mesh_add_note(g->draft, "group '%s': facets of no cell, left out: %lld", group->name,
-                          (long long)tally->elsewhere));
+        RETURN_IF_ERROR(mesh_add_note(g->draft, "group '%s': facets of no cell, left out: %lld", group->name,
+                                      (long long)tally->elsewhere));
     }
     if (tally->interior > 0) {
-        TRY(mesh_add_note(g->draft, "group '%s': facets between two cells, made a set of nodes: %lld",
-                          group->name, (long long)tally->interior));
+        RETURN_IF_ERROR(mesh_add_note(g->draft,
+                                      "group '%s': facets between two cells, made a set of nodes: %lld",
+                                      group->name, (long long)tally->interior));
     }
-done:
-    return status;
+    return STATUS_OK;
 }
 
 /* A group of dimension dim - 1. */
 static enum status gather_facets(struct gathering *g, int32_t group)
 {
-    enum status status = STATUS_OK;
     const struct msh *msh = g->draft->msh;
     struct mesh *mesh = g->draft->mesh;
     struct tally tally = {0, 0, 0};
@@ -166,22 +164,19 @@ static enum status gather_facets(struct gathering *g, int32_t group)
         int32_t pieces[MESH_MOST_SIMPLICES][4];
         int count = mesh_simplices(g->draft, g->group_idx[i], pieces);
         for (int p = 0; p < count; p++) {
-            TRY(add_face(g, group, pieces[p], &tally));
+            RETURN_IF_ERROR(add_face(g, group, pieces[p], &tally));
         }
     }
     if (tally.boundary > 0) {
-        TRY(mesh_add_name(&mesh->facet_sets, msh->groups[group].name, g->draft->error));
+        RETURN_IF_ERROR(mesh_add_name(&mesh->facet_sets, msh->groups[group].name, g->draft->error));
     }
-    TRY(close_set(g, group));
-    TRY(note_tally(g, &msh->groups[group], &tally));
-done:
-    return status;
+    RETURN_IF_ERROR(close_set(g, group));
+    return note_tally(g, &msh->groups[group], &tally);
 }
 
 /* A group of lower dimension. */
 static enum status gather_nodes(struct gathering *g, int32_t group)
 {
-    enum status status = STATUS_OK;
     const struct msh *msh = g->draft->msh;
     int64_t lost = 0;
     for (int64_t i = g->group_ptr[group]; i < g->group_ptr[group + 1]; i++) {
@@ -190,35 +185,32 @@ static enum status gather_nodes(struct gathering *g, int32_t group)
         for (int k = 0; k < used; k++) {
             int32_t node = g->draft->node_of[msh->node_idx[msh->node_ptr[e] + k]];
             lost += node < 0;
-            TRY(add_set_node(g, group, node));
+            RETURN_IF_ERROR(add_set_node(g, group, node));
         }
     }
-    TRY(close_set(g, group));
+    RETURN_IF_ERROR(close_set(g, group));
     if (lost > 0) {
-        TRY(mesh_add_note(g->draft, "group '%s': some of its nodes belong to no cell: left out",
-                          msh->groups[group].name));
+        RETURN_IF_ERROR(mesh_add_note(g->draft, "group '%s': some of its nodes belong to no cell: left out",
+                                      msh->groups[group].name));
     }
-done:
-    return status;
+    return STATUS_OK;
 }
 
 static enum status gather_groups(struct gathering *g)
 {
-    enum status status = STATUS_OK;
     const struct msh *msh = g->draft->msh;
     int dim = g->draft->mesh->dim;
     for (int32_t group = 0; group < msh->group_count; group++) {
         if (msh->groups[group].element_count == 0) {
-            TRY(mesh_add_note(g->draft, "group '%s' of dimension %d is empty: left out",
-                              msh->groups[group].name, msh->groups[group].dim));
+            RETURN_IF_ERROR(mesh_add_note(g->draft, "group '%s' of dimension %d is empty: left out",
+                                          msh->groups[group].name, msh->groups[group].dim));
         } else if (msh->groups[group].dim == dim - 1) {
-            TRY(gather_facets(g, group));
+            RETURN_IF_ERROR(gather_facets(g, group));
         } else if (msh->groups[group].dim < dim - 1) {
-            TRY(gather_nodes(g, group));
+            RETURN_IF_ERROR(gather_nodes(g, group));
         }
     }
-done:
-    return status;
+    return STATUS_OK;
 }
 
 static int compare_names(const void *left, const void *right)

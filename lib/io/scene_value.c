@@ -116,10 +116,7 @@ enum status place_number(const struct place *place, const char *key, struct rang
     if (text == NULL) {
         return STATUS_OK;
     }
-    enum status status = number(place, key, text, &given);
-    if (status != STATUS_OK) {
-        return status;
-    }
+    RETURN_IF_ERROR(number(place, key, text, &given));
     bool above = range.open_least ? given > range.least : given >= range.least;
     bool below = range.open_most ? given < range.most : given <= range.most;
     if (above && below) {
