@@ -3,6 +3,7 @@
 #include "approx/shape.h"
 #include "approx/sorted.h"
 #include "base/memory.h"
+#include "base/vector.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -102,10 +103,7 @@ static void add_products(int dim, const double *gradient, const int32_t *place, 
             own[a] = factor * gradient[i * dim + a];
         }
         for (int64_t k = 0; k <= i; k++) {
-            double sum = 0.0;
-            for (int a = 0; a < dim; a++) {
-                sum += own[a] * gradient[k * dim + a];
-            }
+            double sum = vector_dot(dim, own, gradient + k * dim);
             row[place[k]] += sum;
         }
     }

@@ -1,24 +1,15 @@
 /* What each part needs of the others: the reach of supports over its own cells. */
 #include "approx/partition.h"
 
+#include "base/box.h"
 #include "base/memory.h"
 
 #include <math.h>
 #include <stdlib.h>
 
-static void box_of_cell(const struct cells *cells, int64_t cell, double low[3], double high[3])
+static struct box box_of_cell(const struct cells *cells, int64_t cell)
 {
-    int dim = cells->dim;
-    const int32_t *node = cells->node + cell * (dim + 1);
-    for (int a = 0; a < dim; a++) {
-        low[a] = INFINITY;
-        high[a] = -INFINITY;
-        for (int k = 0; k <= dim; k++) {
-            double x = cells->x[(int64_t)node[k] * dim + a];
-            low[a] = fmin(low[a], x);
-            high[a] = fmax(high[a], x);
-        }
-    }
+    return box_of_nodes(cells->dim, cells->x, cells->node + cell * (cells->dim + 1), cells->dim + 1);
 }
 
 enum status partition_work(const struct cells *cells, const struct point_grid *grid, int32_t *work,
@@ -32,11 +23,10 @@ enum status partition_work(const struct cells *cells, const struct point_grid *g
         enum status mine = STATUS_OK;
 #pragma omp for schedule(static)
         for (int64_t c = 0; c < cells->count; c++) {
-            double low[3], high[3];
-            box_of_cell(cells, c, low, high);
+            struct box box = box_of_cell(cells, c);
             near.count = 0;
             if (mine == STATUS_OK) {
-                mine = point_grid_query_box(grid, low, high, 1.0, &near, &own);
+                mine = point_grid_query_box(grid, box.low, box.high, 1.0, &near, &own);
             }
             work[c] = (int32_t)near.count;
         }
@@ -73,13 +63,13 @@ static enum status prepare(const struct partition *partition, struct body_part_w
 }
 
 /* Does the support of node j, not widened, reach the box? */
-static bool reaches(const struct partition *partition, int32_t j, const double *low, const double *high)
+static bool reaches(const struct partition *partition, int32_t j, const struct box *box)
 {
     const struct point_grid *grid = partition->grid;
     double square = 0;
     for (int a = 0; a < grid->dim; a++) {
         double x = grid->x[(int64_t)j * grid->dim + a];
-        double d = fmax(0.0, fmax(low[a] - x, x - high[a]));
+        double d = fmax(0.0, fmax(box->low[a] - x, x - box->high[a]));
         square += d * d;
     }
     return square < grid->radius[j] * grid->radius[j];
@@ -114,16 +104,15 @@ static enum status list_reaching(const struct partition *partition, int32_t part
                                  int64_t count, struct body_part_work *work, struct index_list *list,
                                  struct error *error)
 {
-    double low[3], high[3];
     for (int64_t i = 0; i < count; i++) {
-        box_of_cell(partition->cells, own_cell[i], low, high);
+        struct box box = box_of_cell(partition->cells, own_cell[i]);
         work->near.count = 0;
         RETURN_IF_ERROR(
-            point_grid_query_box(partition->grid, low, high, partition->widen, &work->near, error));
+            point_grid_query_box(partition->grid, box.low, box.high, partition->widen, &work->near, error));
         for (int64_t n = 0; n < work->near.count; n++) {
             int32_t j = work->near.index[n];
             RETURN_IF_ERROR(see_node(work, part, j, list, error));
-            if (mark_of(work->mark, j, part) == SEEN && reaches(partition, j, low, high)) {
+            if (mark_of(work->mark, j, part) == SEEN && reaches(partition, j, &box)) {
                 work->mark[j] = part * MARKS + NEEDED;
             }
         }

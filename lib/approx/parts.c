@@ -1,6 +1,7 @@
 #include "approx/parts.h"
 
 #include "base/memory.h"
+#include "base/vector.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -140,19 +141,6 @@ static void list_edges(const struct faces *boundary, struct edge *edges)
     qsort(edges, (size_t)(boundary->count * dim), sizeof *edges, compare_edges);
 }
 
-static double cosine(int dim, const double *a, const double *b)
-{
-    double ab = 0;
-    double aa = 0;
-    double bb = 0;
-    for (int k = 0; k < dim; k++) {
-        ab += a[k] * b[k];
-        aa += a[k] * a[k];
-        bb += b[k] * b[k];
-    }
-    return ab / sqrt(aa * bb);
-}
-
 enum status boundary_sides(const double *x, const struct faces *boundary, double degrees, int32_t *part,
                            int32_t *count, struct error *error)
 {
@@ -168,12 +156,8 @@ enum status boundary_sides(const double *x, const struct faces *boundary, double
     TRY(NEW_ARRAY(&normal, boundary->count * dim, error));
     TRY(NEW_ARRAY(&edges, edge_count, error));
     for (int64_t f = 0; f < boundary->count; f++) {
-        double square = 0;
         face_area_vector(dim, x, &boundary->node[f * dim], &normal[f * dim]);
-        for (int k = 0; k < dim; k++) {
-            square += normal[f * dim + k] * normal[f * dim + k];
-        }
-        area[f] = sqrt(square);
+        area[f] = vector_length(dim, normal + f * dim);
     }
     list_edges(boundary, edges);
     for (int64_t first = 0, end; first < edge_count; first = end) {
@@ -181,7 +165,8 @@ enum status boundary_sides(const double *x, const struct faces *boundary, double
         }
         int32_t a = edges[first].facet;
         int32_t b = edges[end - 1].facet;
-        if (end - first == 2 && cosine(dim, &normal[(int64_t)a * dim], &normal[(int64_t)b * dim]) >= least) {
+        double product = vector_dot(dim, normal + (int64_t)a * dim, normal + (int64_t)b * dim);
+        if (end - first == 2 && product / (area[a] * area[b]) >= least) {
             join(parent, a, b);
         }
     }

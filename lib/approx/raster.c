@@ -1,6 +1,7 @@
 #include "approx/raster.h"
 
 #include "base/memory.h"
+#include "base/vector.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -39,9 +40,7 @@ static bool place_cell(const struct cells *cells, int64_t cell, int sign, struct
     const double *origin = cells->x + node[0] * dim;
     double e[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}; /* rows: edges */
     for (int a = 0; a < dim; a++) {
-        for (int i = 0; i < dim; i++) {
-            e[a][i] = cells->x[node[a + 1] * dim + i] - origin[i];
-        }
+        vector_subtract(dim, cells->x + node[a + 1] * dim, origin, e[a]);
     }
     double determinant = e[0][0] * (e[1][1] * e[2][2] - e[1][2] * e[2][1]) -
                          e[0][1] * (e[1][0] * e[2][2] - e[1][2] * e[2][0]) +

@@ -2,6 +2,7 @@
 
 #include "base/memory.h"
 #include "base/processor.h"
+#include "base/vector.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -118,7 +119,7 @@ void reach_begin_row(const struct reach *reach, const double *x, int64_t count, 
         }
     }
     for (int64_t i = 0; i < count; i++) {
-        work->row_radius = fmax(work->row_radius, reach_distance(dim, work->row_middle, x + i * dim));
+        work->row_radius = fmax(work->row_radius, vector_distance(dim, work->row_middle, x + i * dim));
     }
 }
 
@@ -213,7 +214,7 @@ static enum status keep(const struct reach *reach, double widen, int32_t *index,
         if (!(length < widen * reach->grid->radius[node])) {
             continue;
         }
-        double leg = reach_distance(dim, work->x, bend);
+        double leg = vector_distance(dim, work->x, bend);
         for (int a = 0; a < dim; a++) {
             image[a] = (bend[a] - work->x[a]) * (length / leg);
         }

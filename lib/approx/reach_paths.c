@@ -3,6 +3,7 @@
 
 #include "base/memory.h"
 #include "base/processor.h"
+#include "base/vector.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -85,7 +86,7 @@ enum status reach_paths(const struct reach *reach, double widen, const int32_t *
             work->hidden.index[work->hidden.count++] = node;
             work->length[node] = INFINITY;
         } else if (reach->corner[node]) {
-            double length = reach_distance(dim, work->from, reach->cells.x + (int64_t)node * dim);
+            double length = vector_distance(dim, work->from, reach->cells.x + (int64_t)node * dim);
             /* From the corner itself nothing is to be had that it does not see. */
             work->length[node] = length > REACH_ON_PLANE * reach->grid->radius[node] ? length : INFINITY;
         } else {
@@ -142,7 +143,7 @@ static void slide(const struct reach *reach, const double *before, const double 
                   double *bend)
 {
     const double *corner = reach->cells.x + (int64_t)node * 3;
-    double least = reach_distance(3, before, corner) + reach_distance(3, corner, after);
+    double least = vector_distance(3, before, corner) + vector_distance(3, corner, after);
     memcpy(bend, corner, 3 * sizeof *bend);
     for (int64_t e = reach->edge_ptr[node]; e < reach->edge_ptr[node + 1]; e++) {
         double passes;
@@ -150,9 +151,7 @@ static void slide(const struct reach *reach, const double *before, const double 
         double length = shortest_over_edge(corner, other, before, after, &passes);
         if (length < least && passes > 0.0) {
             least = length;
-            for (int a = 0; a < 3; a++) {
-                bend[a] = corner[a] + passes * (other[a] - corner[a]);
-            }
+            vector_between(3, corner, other, passes, bend);
         }
     }
 }
@@ -183,8 +182,8 @@ void reach_first_bend(const struct reach *reach, int32_t node, const struct reac
         }
     }
     memcpy(bend, place[0], sizeof *place);
-    *length = reach_distance(3, work->from, place[0]);
+    *length = vector_distance(3, work->from, place[0]);
     for (int b = 0; b < bends; b++) {
-        *length += reach_distance(3, place[b], place[b + 1]);
+        *length += vector_distance(3, place[b], place[b + 1]);
     }
 }

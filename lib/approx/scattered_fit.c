@@ -2,6 +2,7 @@
 
 #include "approx/weight.h"
 #include "base/memory.h"
+#include "base/vector.h"
 
 #include <gsl/gsl_errno.h>
 #include <gsl/gsl_linalg.h>
@@ -107,11 +108,7 @@ static enum status find_nearest(const struct scattered_fit *fit, const double *x
     }
     nearest->count = 0;
     for (int64_t k = 0; k < near.count; k++) { /* rows ascend */
-        double sum = 0.0;
-        for (int a = 0; a < dim; a++) {
-            double difference = fit->x[near.index[k] * dim + a] - at[a];
-            sum += difference * difference;
-        }
+        double sum = vector_distance2(dim, fit->x + near.index[k] * dim, at);
         if (usable(fit, near.index[k])) {
             insert(nearest, most, near.index[k], sqrt(sum));
         }

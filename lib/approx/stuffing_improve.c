@@ -1,6 +1,7 @@
 #include "approx/cells.h"
 #include "approx/stuffing_private.h"
 #include "base/memory.h"
+#include "base/vector.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -32,10 +33,7 @@ double stuffing_score(const struct stuffing *stuffing, int64_t cell)
     struct cells cells = {dim, stuffing->node_count, stuffing->x, stuffing->cell_count, stuffing->cell};
     double product = 1;
     for (int k = 1; k <= dim; k++) {
-        double square = 0;
-        for (int d = 0; d < dim; d++) {
-            square += (x[k][d] - x[0][d]) * (x[k][d] - x[0][d]);
-        }
+        double square = vector_distance2(dim, x[k], x[0]);
         product *= sqrt(square);
     }
     double volume = cell_volume(&cells, cell);
@@ -60,9 +58,7 @@ void star_move(struct stuffing *stuffing, const struct stuffing_star *star, int6
     memcpy(before, x, (size_t)dim * sizeof *x);
     double share = 1;
     for (int halving = 0; halving < 4; halving++, share /= 2) {
-        for (int d = 0; d < dim; d++) {
-            x[d] = before[d] + share * (target[d] - before[d]);
-        }
+        vector_between(dim, before, target, share, x);
         if (star_score(stuffing, star, node) >= score) {
             return;
         }
@@ -233,9 +229,7 @@ static void settle(const struct labels *labels, const struct labels *parts, uint
         double score = fmin(star_score(stuffing, star, n), last_score);
         memcpy(from, x, (size_t)dim * sizeof *x);
         for (int step = 8; step >= 0; step--) {
-            for (int d = 0; d < dim; d++) {
-                x[d] = from[d] + step / 8.0 * (target[d] - from[d]);
-            }
+            vector_between(dim, from, target, step / 8.0, x);
             if (star_score(stuffing, star, n) >= score) {
                 break;
             }

@@ -1,6 +1,7 @@
 /* Where parts of the body hang together by a node or an edge alone. */
 #include "approx/stuffing_private.h"
 #include "base/memory.h"
+#include "base/vector.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -196,11 +197,8 @@ static bool is_crevice(const struct stuffing_keeping *keeping, int64_t cell, str
     }
     for (int k = 0; k < corners; k++) {
         int32_t next = keeping->across[cell * corners + k];
-        double square = 0;
         stuffing_gradient(keeping->stuffing, cell, k, gradient[k]);
-        for (int d = 0; d < dim; d++) {
-            square += gradient[k][d] * gradient[k][d];
-        }
+        double square = vector_dot(dim, gradient[k], gradient[k]);
         length[k] = next >= 0 && keeping->wanted[next] ? sqrt(square) : 0;
         if (length[k] > 0) {
             walls++;
@@ -209,10 +207,7 @@ static bool is_crevice(const struct stuffing_keeping *keeping, int64_t cell, str
     }
     for (int k = 0; k < corners; k++) {
         for (int l = k + 1; l < corners && length[k] > 0; l++) {
-            double dot = 0;
-            for (int d = 0; d < dim; d++) {
-                dot += gradient[k][d] * gradient[l][d];
-            }
+            double dot = vector_dot(dim, gradient[k], gradient[l]);
             if (length[l] > 0 && -dot > sharpest * length[k] * length[l]) {
                 return true;
             }

@@ -1,5 +1,6 @@
 #include "approx/cells.h"
 #include "approx/stuffing_private.h"
+#include "base/lists.h"
 #include "base/memory.h"
 
 #include <math.h>
@@ -28,20 +29,13 @@ enum status star_make(const struct stuffing *stuffing, const int32_t *whole, str
     enum status status;
     int corners = stuffing->dim + 1;
     *star = (struct stuffing_star){0};
-    TRY(NEW_ARRAY(&star->ptr, stuffing->node_count + 2, error));
-    TRY(NEW_ARRAY(&star->cell, stuffing->cell_count * corners, error));
+    TRY(lists_by_row(stuffing->cell_count, corners, stuffing->cell, stuffing->node_count, &star->ptr,
+                     &star->cell, error));
     TRY(NEW_ARRAY(&star->label, stuffing->node_count, error));
     TRY(NEW_ARRAY(&star->labels, stuffing->node_count, error));
     for (int64_t i = 0; i < stuffing->cell_count * corners; i++) {
-        star->ptr[stuffing->cell[i] + 2]++;
         int32_t label = stuffing->label[i / corners];
         add_label(star, stuffing->cell[i], whole != NULL ? whole[label] : label);
-    }
-    for (int64_t n = 0; n < stuffing->node_count; n++) {
-        star->ptr[n + 2] += star->ptr[n + 1];
-    }
-    for (int64_t i = 0; i < stuffing->cell_count * corners; i++) {
-        star->cell[star->ptr[stuffing->cell[i] + 1]++] = (int32_t)(i / corners);
     }
     for (int64_t i = 0; i < stuffing->facet_count * stuffing->dim; i++) {
         int32_t label = stuffing->side[2 * (i / stuffing->dim) + 1];

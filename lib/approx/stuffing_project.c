@@ -1,6 +1,7 @@
 /* The place of the nearest interface, and how far off it is. */
 #include "approx/stuffing_private.h"
 #include "base/dense.h"
+#include "base/vector.h"
 
 #include <math.h>
 #include <string.h>
@@ -116,9 +117,7 @@ static bool search_change(const struct labels *labels, const struct interface_be
     }
     for (int step = 0; step < 12; step++) {
         double t = (low + high) / 2, y[3] = {0};
-        for (int d = 0; d < labels->dim; d++) {
-            y[d] = x[d] + t * (place[d] - x[d]);
-        }
+        vector_between(labels->dim, x, place, t, y);
         *(is_beyond(beyond, labels_at(labels, y)) ? &high : &low) = t;
     }
     for (int d = 0; d < labels->dim; d++) {

@@ -1,5 +1,6 @@
 #include "approx/stuffing_private.h"
 #include "base/memory.h"
+#include "base/vector.h"
 
 #include <math.h>
 #include <string.h>
@@ -15,11 +16,7 @@ static double edge_length(const struct stuffing *stuffing, const struct stuffing
     for (int64_t i = star->ptr[node]; i < star->ptr[node + 1]; i++) {
         for (int k = 0; k <= dim; k++) {
             int64_t other = stuffing->cell[(int64_t)star->cell[i] * (dim + 1) + k];
-            double square = 0;
-            for (int d = 0; d < dim; d++) {
-                double step = stuffing->x[other * dim + d] - stuffing->x[node * dim + d];
-                square += step * step;
-            }
+            double square = vector_distance2(dim, stuffing->x + other * dim, stuffing->x + node * dim);
             sum += sqrt(square);
             count += other != node;
         }

@@ -2,6 +2,7 @@
 #include "approx/stuffing_private.h"
 #include "base/dense.h"
 #include "base/memory.h"
+#include "base/vector.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -73,10 +74,7 @@ static double node_weight(int dim, double G[STUFFING_MOST_LABELS][3])
 {
     double most = 0;
     for (int i = 0; i < STUFFING_MOST_LABELS; i++) {
-        double square = 0;
-        for (int d = 0; d < dim; d++) {
-            square += G[i][d] * G[i][d];
-        }
+        double square = vector_dot(dim, G[i], G[i]);
         most = fmax(most, sqrt(square));
     }
     return most > 0 ? 1 / most : 0;

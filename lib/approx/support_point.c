@@ -2,6 +2,7 @@
 #include "approx/support_private.h"
 
 #include "base/memory.h"
+#include "base/vector.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -9,22 +10,13 @@
 
 static const double widen_step = 1.05;
 
-static double distance2_of(int dim, const double *a, const double *b)
-{
-    double sum = 0.0;
-    for (int i = 0; i < dim; i++) {
-        sum += (a[i] - b[i]) * (a[i] - b[i]);
-    }
-    return sum;
-}
-
 /* Squared distance from x to a neighbour; around a corner, along the path. */
 static double neighbour_distance2(const struct point_grid *grid, const double *x, int32_t node,
                                   const double *image)
 {
     static const double origin[3] = {0.0, 0.0, 0.0};
-    return image != NULL ? distance2_of(grid->dim, image, origin)
-                         : distance2_of(grid->dim, x, grid->x + (int64_t)node * grid->dim);
+    return image != NULL ? vector_distance2(grid->dim, image, origin)
+                         : vector_distance2(grid->dim, x, grid->x + (int64_t)node * grid->dim);
 }
 
 /* Keep the `most` nearest of the neighbours in index[count], ties going to the lower index; image[count *

@@ -1,6 +1,7 @@
 #include "approx/thin.h"
 
 #include "base/memory.h"
+#include "base/vector.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -16,21 +17,9 @@ static double facet_width(int dim, const double *x, const int32_t *node)
     double sum = 0.0;
     int edges = dim == 2 ? 1 : 3;
     for (int k = 0; k < edges; k++) {
-        double length2 = 0.0;
-        for (int a = 0; a < dim; a++) {
-            double way = x[(int64_t)node[(k + 1) % dim] * dim + a] - x[(int64_t)node[k] * dim + a];
-            length2 += way * way;
-        }
+        double length2 =
+            vector_distance2(dim, x + (int64_t)node[(k + 1) % dim] * dim, x + (int64_t)node[k] * dim);
         sum += sqrt(length2) / edges;
-    }
-    return sum;
-}
-
-static double dot(int dim, const double *a, const double *b)
-{
-    double sum = 0.0;
-    for (int i = 0; i < dim; i++) {
-        sum += a[i] * b[i];
     }
     return sum;
 }
@@ -54,8 +43,9 @@ static double leave_cell(const struct cells *cells, int64_t cell, int entered, c
             to_face[a] = cells->x[(int64_t)side[0] * dim + a] - x[a];
             to_vertex[a] = cells->x[(int64_t)node[k] * dim + a] - cells->x[(int64_t)side[0] * dim + a];
         }
-        double sign = dot(dim, area, to_vertex) > 0.0 ? -1.0 : 1.0, slope = sign * dot(dim, area, way);
-        double distance = sign * dot(dim, area, to_face) / slope;
+        double sign = vector_dot(dim, area, to_vertex) > 0.0 ? -1.0 : 1.0,
+               slope = sign * vector_dot(dim, area, way);
+        double distance = sign * vector_dot(dim, area, to_face) / slope;
         if (k != entered && slope > 0.0 && distance < nearest) {
             nearest = distance;
             *face = k;
@@ -81,7 +71,9 @@ static double thickness(const struct cells *cells, const int32_t *across, int64_
         }
         int32_t next = across[cell * corners + out];
         if (next < 0) {
-            return dot(dim, normal, inward) > facing * sqrt(dot(dim, normal, normal)) ? distance : INFINITY;
+            return vector_dot(dim, normal, inward) > facing * sqrt(vector_dot(dim, normal, normal))
+                       ? distance
+                       : INFINITY;
         }
         for (face = 0; across[(int64_t)next * corners + face] != cell; face++) {
         }
@@ -115,7 +107,7 @@ enum status cells_find_thin(const struct cells *cells, double bound, struct thin
             }
         }
         face_area_vector(dim, cells->x, node, area);
-        double size = sqrt(dot(dim, area, area)), height = 0.0;
+        double size = sqrt(vector_dot(dim, area, area)), height = 0.0;
         for (int a = 0; a < dim; a++) {
             int64_t vertex = cells->node[cell * corners + face];
             height += area[a] * (cells->x[vertex * dim + a] - middle[a]);

@@ -2,6 +2,7 @@
 
 #include "approx/reach_private.h"
 #include "base/memory.h"
+#include "base/vector.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -132,8 +133,8 @@ static enum status search(struct ways *ways, double limit, struct error *error)
              end.length <= ways->length[end.node] && s < reach->star_ptr[end.node + 1]; s++) {
             for (int k = 0; k <= dim; k++) {
                 int32_t next = reach->cells.node[(int64_t)reach->star[s] * (dim + 1) + k];
-                double length = end.length + reach_distance(dim, reach->cells.x + (int64_t)end.node * dim,
-                                                            reach->cells.x + (int64_t)next * dim);
+                double length = end.length + vector_distance(dim, reach->cells.x + (int64_t)end.node * dim,
+                                                             reach->cells.x + (int64_t)next * dim);
                 if (length < ways->length[next] && length <= limit) {
                     ways->length[next] = length;
                     RETURN_IF_ERROR(push(ways, length, next, error));
@@ -155,7 +156,7 @@ enum status ways_reach(struct ways *ways, int64_t place, bool *reached, struct e
         RETURN_IF_ERROR(reach_walk(reach, x, reach->star + reach->star_ptr[from],
                                    reach->star_ptr[from + 1] - reach->star_ptr[from], node, &ways->work,
                                    &sees, error));
-        double limit = most_detour * reach_distance(dim, x, reach->cells.x + (int64_t)node * dim);
+        double limit = most_detour * vector_distance(dim, x, reach->cells.x + (int64_t)node * dim);
         if (!sees && ways->searched < limit) {
             RETURN_IF_ERROR(
                 search(ways, 1.5 * limit, error)); /* farther than needed here, for the next queries */

@@ -27,6 +27,15 @@ void *array_grow(void *array, int64_t count, size_t size);
          ? STATUS_OK                                                                                         \
          : fail_memory((error), #pointer))
 
+/* Let *pointer, an array of *room elements from malloc or NULL, have room for `needed`, and more than that,
+ * so that a list may grow one by one; a status, as above. On failure the array stays valid. */
+#define GROW_ARRAY(pointer, needed, room, error)                                                             \
+    ((needed) <= *(room)                                                                                     \
+         ? STATUS_OK                                                                                         \
+         : array_grow_list((void *)(pointer), (needed), (room), sizeof **(pointer), #pointer, (error)))
+enum status array_grow_list(void *pointer, int64_t needed, int64_t *room, size_t size, const char *name,
+                            struct error *error);
+
 /* Evaluate a status expression; on failure, leave through the label `done` with `status` set.
  * The functions of lib/ have one exit path, which frees. */
 #define TRY(expression)                                                                                      \
