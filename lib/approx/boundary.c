@@ -33,15 +33,7 @@ struct dense_row {
 static enum status row_add(struct dense_row *row, int32_t node, double value, struct error *error)
 {
     if (!row->is_touched[node]) {
-        if (row->count == row->capacity) {
-            int64_t capacity = row->capacity * 2 + 64;
-            int32_t *grown = array_grow(row->touched, capacity, sizeof *grown);
-            if (grown == NULL) {
-                return fail_memory(error, "boundary averages");
-            }
-            row->touched = grown;
-            row->capacity = capacity;
-        }
+        RETURN_IF_ERROR(GROW_ARRAY(&row->touched, row->count + 1, &row->capacity, error));
         row->is_touched[node] = true;
         row->touched[row->count++] = node;
     }
@@ -59,17 +51,9 @@ static int compare_indices(const void *left, const void *right)
 static enum status row_finish(struct dense_row *row, double whole, int64_t part, int64_t *capacity,
                               struct boundary_averages *averages, struct error *error)
 {
-    int64_t at = averages->ptr[part];
-    if (at + row->count > *capacity) {
-        *capacity = (at + row->count) * 2 + 1024;
-        int32_t *idx = array_grow(averages->idx, *capacity, sizeof *idx);
-        averages->idx = idx != NULL ? idx : averages->idx;
-        double *phi = array_grow(averages->phi, *capacity, sizeof *phi);
-        averages->phi = phi != NULL ? phi : averages->phi;
-        if (idx == NULL || phi == NULL) {
-            return fail_memory(error, "boundary averages");
-        }
-    }
+    int64_t at = averages->ptr[part], room = *capacity;
+    RETURN_IF_ERROR(GROW_ARRAY(&averages->idx, at + row->count, &room, error));
+    RETURN_IF_ERROR(GROW_ARRAY(&averages->phi, at + row->count, capacity, error));
     qsort(row->touched, (size_t)row->count, sizeof *row->touched, compare_indices);
     for (int64_t i = 0; i < row->count; i++) {
         int32_t node = row->touched[i];

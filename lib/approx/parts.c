@@ -1,29 +1,12 @@
 #include "approx/parts.h"
 
 #include "base/memory.h"
+#include "base/sets.h"
 #include "base/vector.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-
-/* ---- sets that are joined: each item points to an earlier one of its set, or to itself ---- */
-
-static int32_t root_of(int32_t parent[], int32_t item)
-{
-    while (parent[item] != item) {
-        parent[item] = parent[parent[item]];
-        item = parent[item];
-    }
-    return item;
-}
-
-static void join(int32_t parent[], int32_t a, int32_t b)
-{
-    a = root_of(parent, a);
-    b = root_of(parent, b);
-    parent[a > b ? a : b] = a > b ? b : a;
-}
 
 struct part {
     double size;
@@ -49,7 +32,7 @@ static enum status number_parts(int64_t items, int32_t parent[], const double si
     TRY(NEW_ARRAY(&parts, items, error));
     TRY(NEW_ARRAY(&place, items, error));
     for (int64_t i = 0; i < items; i++) {
-        int32_t root = root_of(parent, (int32_t)i);
+        int32_t root = set_first(parent, (int32_t)i);
         if (root == i) {
             place[i] = *count;
             parts[(*count)++].root = root;
@@ -61,7 +44,7 @@ static enum status number_parts(int64_t items, int32_t parent[], const double si
         place[parts[p].root] = p;
     }
     for (int64_t i = 0; i < items; i++) {
-        part[i] = place[root_of(parent, (int32_t)i)];
+        part[i] = place[set_first(parent, (int32_t)i)];
     }
 done:
     free(parts);
@@ -89,7 +72,7 @@ enum status cells_parts(const struct cells *cells, int32_t *part, int32_t *count
     TRY(faces_build(cells, false, &faces, error));
     for (int64_t f = 0; f < faces.count; f++) {
         if (faces.cell[2 * f + 1] >= 0) {
-            join(parent, faces.cell[2 * f], faces.cell[2 * f + 1]);
+            set_join(parent, faces.cell[2 * f], faces.cell[2 * f + 1]);
         }
     }
     for (int64_t c = 0; c < cells->count; c++) {
@@ -167,7 +150,7 @@ enum status boundary_sides(const double *x, const struct faces *boundary, double
         int32_t b = edges[end - 1].facet;
         double product = vector_dot(dim, normal + (int64_t)a * dim, normal + (int64_t)b * dim);
         if (end - first == 2 && product / (area[a] * area[b]) >= least) {
-            join(parent, a, b);
+            set_join(parent, a, b);
         }
     }
     TRY(number_parts(boundary->count, parent, area, part, count, error));

@@ -150,16 +150,7 @@ void point_grid_free(struct point_grid *grid)
 
 enum status index_list_reserve(struct index_list *list, int64_t count, struct error *error)
 {
-    if (list->count + count > list->capacity) {
-        int64_t capacity = 2 * (list->count + count) + 64;
-        int32_t *grown = array_grow(list->index, capacity, sizeof *grown);
-        if (grown == NULL) {
-            return fail_memory(error, "neighbour list");
-        }
-        list->index = grown;
-        list->capacity = capacity;
-    }
-    return STATUS_OK;
+    return GROW_ARRAY(&list->index, list->count + count, &list->capacity, error);
 }
 
 /* Append those of the nodes [first, last) of a level whose supports reach the box (or the point: low ==

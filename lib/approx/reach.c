@@ -1,7 +1,6 @@
 #include "approx/reach_private.h"
 
 #include "base/memory.h"
-#include "base/processor.h"
 #include "base/vector.h"
 
 #include <math.h>
@@ -32,7 +31,7 @@ static struct row_view view_row(const struct reach *reach, int32_t node, const s
 
 /* passes[REACH_BLOCK]: which of the facets from `first` on may hide the node from the row: the row is not
  * beyond them, and the segments may meet their balls. Returns whether there are any. */
-KERNEL_INLINE bool block_passes(float *const *view, int64_t first, const struct row_view *row,
+static inline bool block_passes(float *const *view, int64_t first, const struct row_view *row,
                                 int32_t *passes)
 {
     const float *nx = view[0] + first, *ny = view[1] + first, *nz = view[2] + first, *above = view[3] + first;
@@ -52,31 +51,21 @@ KERNEL_INLINE bool block_passes(float *const *view, int64_t first, const struct 
 }
 
 /* List those of the facets opposing[first, last); returns how many. */
-KERNEL_INLINE int64_t list_passing(float *const *view, const int32_t *opposing, int64_t first, int64_t last,
-                                   const struct row_view *row, int32_t *list)
+static int64_t list_passing(const struct reach *reach, int64_t first, int64_t last,
+                            const struct row_view *row, int32_t *list)
 {
     int64_t count = 0;
     for (int64_t i = first; i < last; i += REACH_BLOCK) {
         int32_t passes[REACH_BLOCK];
-        if (block_passes(view, i, row, passes)) {
+        if (block_passes(reach->opposing_view, i, row, passes)) {
             for (int64_t k = i; k < i + REACH_BLOCK && k < last; k++) {
-                list[count] = opposing[k];
+                list[count] = reach->opposing[k];
                 count += passes[k - i];
             }
         }
     }
     return count;
 }
-
-#define LIST_SET(set, attribute)                                                                             \
-    attribute static int64_t list_passing_##set(float *const *view, const int32_t *opposing, int64_t first,  \
-                                                int64_t last, const struct row_view *row, int32_t *list)     \
-    {                                                                                                        \
-        return list_passing(view, opposing, first, last, row, list);                                         \
-    }
-LIST_SET(plain, PLAIN_SET)
-LIST_SET(avx2, AVX2_SET)
-LIST_SET(avx512, AVX512_SET)
 
 enum status reach_list_facets(const struct reach *reach, const int32_t *index, int64_t count,
                               struct reach_work *work, struct error *error)
@@ -92,11 +81,7 @@ enum status reach_list_facets(const struct reach *reach, const int32_t *index, i
         if (first < last) {
             struct row_view row = view_row(reach, node, work);
             RETURN_IF_ERROR(index_list_reserve(&work->near, last - first + 1, error));
-            int32_t *list = work->near.index + work->near.count;
-            work->near.count += (work->avx512 ? list_passing_avx512
-                                 : work->avx2 ? list_passing_avx2
-                                              : list_passing_plain)((float *const *)reach->opposing_view,
-                                                                    reach->opposing, first, last, &row, list);
+            work->near.count += list_passing(reach, first, last, &row, work->near.index + work->near.count);
         }
         work->near_end[node] = (int32_t)work->near.count;
     }

@@ -2,7 +2,6 @@
 #include "approx/reach_private.h"
 
 #include "base/memory.h"
-#include "base/processor.h"
 #include "base/vector.h"
 
 #include <math.h>
@@ -24,8 +23,6 @@ enum status reach_work_reserve(const struct reach *reach, struct reach_work *wor
         RETURN_IF_ERROR(NEW_ARRAY(&work->listed, reach->cells.node_count, error));
         RETURN_IF_ERROR(NEW_ARRAY(&work->near_begin, reach->cells.node_count, error));
         RETURN_IF_ERROR(NEW_ARRAY(&work->near_end, reach->cells.node_count, error));
-        work->avx2 = processor_has("avx2");
-        work->avx512 = processor_has("avx512");
     }
     return STATUS_OK;
 }

@@ -41,21 +41,9 @@ static enum status append(struct cutting *cutting, const int32_t *node, struct e
     int corners = stuffing->dim + 1;
     if (stuffing->cell_count == cutting->room) {
         int64_t room = cutting->room + cutting->room / 2 + 1024;
-        int32_t *cell = array_grow(stuffing->cell, room * corners, sizeof *cell);
-        if (cell == NULL) {
-            return fail_memory(error, "cells");
-        }
-        stuffing->cell = cell;
-        int32_t *labels = array_grow(stuffing->label, room, sizeof *labels);
-        if (labels == NULL) {
-            return fail_memory(error, "labels of cells");
-        }
-        stuffing->label = labels;
-        bool *between = array_grow(cutting->between, room, sizeof *between);
-        if (between == NULL) {
-            return fail_memory(error, "cells");
-        }
-        cutting->between = between;
+        RETURN_IF_ERROR(RESIZE_ARRAY(&stuffing->cell, room * corners, error));
+        RETURN_IF_ERROR(RESIZE_ARRAY(&stuffing->label, room, error));
+        RETURN_IF_ERROR(RESIZE_ARRAY(&cutting->between, room, error));
         cutting->room = room;
     }
     memcpy(stuffing->cell + stuffing->cell_count * corners, node, (size_t)corners * sizeof *node);

@@ -16,7 +16,7 @@ struct points {
     int64_t count[3], corners, total;
     uint16_t *label; /* total */
     int32_t *node;   /* total: number of the node, -1: not used */
-    int64_t room;    /* cells allocated */
+    int64_t room;    /* numbers allocated in lattice->cell */
     struct error *error;
 };
 
@@ -111,15 +111,8 @@ static enum status add_cell(struct points *points, int64_t corner[4])
     if (outside) {
         return STATUS_OK;
     }
-    if (lattice->cell_count == points->room) {
-        int64_t room = points->room + points->room / 2 + 1024;
-        int32_t *cell = array_grow(lattice->cell, room * corners, sizeof *cell);
-        if (cell == NULL) {
-            return fail_memory(points->error, "cells of the lattice");
-        }
-        lattice->cell = cell;
-        points->room = room;
-    }
+    RETURN_IF_ERROR(
+        GROW_ARRAY(&lattice->cell, (lattice->cell_count + 1) * corners, &points->room, points->error));
     for (int k = 0; k < corners; k++) {
         lattice->cell[lattice->cell_count * corners + k] = (int32_t)corner[k];
         points->node[corner[k]] = 0;
@@ -159,13 +152,8 @@ static enum status add_triangles(struct points *points)
         if (i + 2 >= points->count[0] || j + 1 >= points->count[1]) {
             continue;
         }
-        enum status status = add_cell(points, up);
-        if (status == STATUS_OK) {
-            status = add_cell(points, down);
-        }
-        if (status != STATUS_OK) {
-            return status;
-        }
+        RETURN_IF_ERROR(add_cell(points, up));
+        RETURN_IF_ERROR(add_cell(points, down));
     }
     return STATUS_OK;
 }

@@ -105,18 +105,13 @@ static enum status append_around(int dim, const struct worker *worker, int64_t b
     if (worker->around_count == 0) {
         return STATUS_OK;
     }
-    int64_t *pair = array_grow(lists->around_pair, count, sizeof *pair);
-    lists->around_pair = pair != NULL ? pair : lists->around_pair;
-    double *offset = array_grow(lists->around_offset, count, (size_t)dim * sizeof *offset);
-    lists->around_offset = offset != NULL ? offset : lists->around_offset;
-    if (pair == NULL || offset == NULL) {
-        return fail_memory(error, "neighbours around corners");
-    }
+    RETURN_IF_ERROR(RESIZE_ARRAY(&lists->around_pair, count, error));
+    RETURN_IF_ERROR(RESIZE_ARRAY(&lists->around_offset, count * dim, error));
     for (int64_t i = 0; i < worker->around_count; i++) {
-        pair[lists->around_count + i] = before + worker->around_pair[i];
+        lists->around_pair[lists->around_count + i] = before + worker->around_pair[i];
     }
-    memcpy(offset + lists->around_count * dim, worker->around_offset,
-           (size_t)(worker->around_count * dim) * sizeof *offset);
+    memcpy(lists->around_offset + lists->around_count * dim, worker->around_offset,
+           (size_t)(worker->around_count * dim) * sizeof(double));
     lists->around_count = count;
     return STATUS_OK;
 }
@@ -126,13 +121,8 @@ static enum status append_chunk(int dim, struct support_lists *lists, int64_t fi
                                 const struct worker *worker, struct index_list *all, struct error *error)
 {
     const struct index_list *own = &worker->list;
-    enum status status = index_list_reserve(all, own->count, error);
-    if (status == STATUS_OK) {
-        status = append_around(dim, worker, all->count, lists, error);
-    }
-    if (status != STATUS_OK) {
-        return status;
-    }
+    RETURN_IF_ERROR(index_list_reserve(all, own->count, error));
+    RETURN_IF_ERROR(append_around(dim, worker, all->count, lists, error));
     if (own->count > 0) {
         memcpy(all->index + all->count, own->index, (size_t)own->count * sizeof *own->index);
         all->count += own->count;

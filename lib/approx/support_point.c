@@ -127,13 +127,8 @@ static enum status note_around(const struct point_grid *grid, const double *x, c
         }
         if (worker->around_count == worker->around_capacity) {
             int64_t capacity = 2 * worker->around_capacity + 64;
-            int64_t *pair = array_grow(worker->around_pair, capacity, sizeof *pair);
-            worker->around_pair = pair != NULL ? pair : worker->around_pair;
-            double *offset = array_grow(worker->around_offset, capacity, (size_t)dim * sizeof *offset);
-            worker->around_offset = offset != NULL ? offset : worker->around_offset;
-            if (pair == NULL || offset == NULL) {
-                return fail_memory(error, "neighbours around corners");
-            }
+            RETURN_IF_ERROR(RESIZE_ARRAY(&worker->around_pair, capacity, error));
+            RETURN_IF_ERROR(RESIZE_ARRAY(&worker->around_offset, capacity * dim, error));
             worker->around_capacity = capacity;
         }
         worker->around_pair[worker->around_count] = i;

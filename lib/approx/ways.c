@@ -81,15 +81,7 @@ static bool is_shorter(const struct way_end *a, const struct way_end *b)
 
 static enum status push(struct ways *ways, double length, int32_t node, struct error *error)
 {
-    if (ways->queued == ways->capacity) {
-        int64_t capacity = 2 * ways->capacity + 256;
-        struct way_end *grown = array_grow(ways->queue, capacity, sizeof *grown);
-        if (grown == NULL) {
-            return fail_memory(error, "ways through the cells");
-        }
-        ways->queue = grown;
-        ways->capacity = capacity;
-    }
+    RETURN_IF_ERROR(GROW_ARRAY(&ways->queue, ways->queued + 1, &ways->capacity, error));
     struct way_end end = {.length = length, .node = node};
     int64_t at = ways->queued++;
     for (; at > 0 && is_shorter(&end, &ways->queue[(at - 1) / 2]); at = (at - 1) / 2) {

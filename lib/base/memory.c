@@ -59,17 +59,23 @@ void *array_grow(void *array, int64_t count, size_t size)
     return realloc(array, bytes > 0 ? bytes : 1);
 }
 
-enum status array_grow_list(void *pointer, int64_t needed, int64_t *room, size_t size, const char *name,
-                            struct error *error)
+enum status array_resize(void *pointer, int64_t count, size_t size, const char *name, struct error *error)
 {
-    int64_t larger = needed + needed / 2 + 64;
     void *array;
     memcpy(&array, pointer, sizeof array);
-    array = array_grow(array, larger, size);
+    array = array_grow(array, count, size);
     if (array == NULL) {
         return fail_memory(error, name);
     }
     memcpy(pointer, &array, sizeof array);
+    return STATUS_OK;
+}
+
+enum status array_grow_list(void *pointer, int64_t needed, int64_t *room, size_t size, const char *name,
+                            struct error *error)
+{
+    int64_t larger = needed + needed / 2 + 64;
+    RETURN_IF_ERROR(array_resize(pointer, larger, size, name, error));
     *room = larger;
     return STATUS_OK;
 }

@@ -26,15 +26,13 @@ enum status label_table_name(struct label_table *table, const char *text, bool k
     if (table->name_count == NAMES_LIMIT) {
         return fail(error, STATUS_INPUT, "more than %d names", NAMES_LIMIT);
     }
-    struct label_name *names = array_grow(table->name, table->name_count + 1, sizeof *names);
+    RETURN_IF_ERROR(RESIZE_ARRAY(&table->name, table->name_count + 1, error));
     char *copy = strdup(text);
-    table->name = names != NULL ? names : table->name;
-    if (names == NULL || copy == NULL) {
-        free(copy);
+    if (copy == NULL) {
         return fail_memory(error, "names of labels");
     }
     *name = table->name_count++;
-    names[*name] = (struct label_name){copy, kept};
+    table->name[*name] = (struct label_name){copy, kept};
     return STATUS_OK;
 }
 
@@ -47,12 +45,8 @@ enum status label_table_add(struct label_table *table, const struct label_range 
                 (long long)(range->first > table->range[r].first ? range->first : table->range[r].first));
         }
     }
-    struct label_range *ranges = array_grow(table->range, table->range_count + 1, sizeof *ranges);
-    if (ranges == NULL) {
-        return fail_memory(error, "ranges of labels");
-    }
-    table->range = ranges;
-    ranges[table->range_count++] = *range;
+    RETURN_IF_ERROR(RESIZE_ARRAY(&table->range, table->range_count + 1, error));
+    table->range[table->range_count++] = *range;
     return STATUS_OK;
 }
 

@@ -9,13 +9,9 @@
 
 enum status mesh_add_name(struct mesh_names *names, const char *name, struct error *error)
 {
-    char **grown = array_grow(names->name, names->count + 1, sizeof *grown);
-    if (grown == NULL) {
-        return fail_memory(error, "names");
-    }
-    names->name = grown;
-    grown[names->count] = strdup(name);
-    if (grown[names->count] == NULL) {
+    RETURN_IF_ERROR(RESIZE_ARRAY(&names->name, names->count + 1, error));
+    names->name[names->count] = strdup(name);
+    if (names->name[names->count] == NULL) {
         return fail_memory(error, "names");
     }
     names->count++;

@@ -64,15 +64,7 @@ static enum status add_set_node(struct gathering *g, int32_t group, int32_t node
     if (node < 0 || g->node_stamp[node] == group + 1) {
         return STATUS_OK;
     }
-    if (*count == g->set_capacity) {
-        int64_t capacity = 2 * g->set_capacity + 256;
-        int32_t *grown = array_grow(mesh->set_idx, capacity, sizeof *grown);
-        if (grown == NULL) {
-            return fail_memory(g->draft->error, "node sets");
-        }
-        mesh->set_idx = grown;
-        g->set_capacity = capacity;
-    }
+    RETURN_IF_ERROR(GROW_ARRAY(&mesh->set_idx, *count + 1, &g->set_capacity, g->draft->error));
     g->node_stamp[node] = group + 1;
     mesh->set_idx[(*count)++] = node;
     return STATUS_OK;

@@ -86,8 +86,7 @@ static void read_physicals(struct msh_reader *r, int dim, struct msh_entity *ent
     entity->first = r->physical_count;
     for (int64_t i = 0; r->status == STATUS_OK && i < count; i++) {
         int64_t tag = msh_int(r, "physical groups", -MSH_LARGEST_TAG, MSH_LARGEST_TAG);
-        r->physicals =
-            msh_grow(r, r->physicals, &r->physical_room, r->physical_count + 1, sizeof *r->physicals);
+        MSH_GROW(r, &r->physicals, r->physical_count + 1, &r->physical_room);
         if (r->status == STATUS_OK) {
             r->physicals[r->physical_count++] = msh_key(dim, tag < 0 ? -tag : tag);
         }
@@ -130,7 +129,7 @@ static void read_entities(struct msh_reader *r, bool partitioned)
     if (total > (r->end - r->at) / 10) {
         msh_fail(r, "%lld entities cannot be in what is left of the file", (long long)total);
     }
-    r->entities = msh_grow(r, r->entities, &r->entity_room, r->entity_count + total, sizeof *r->entities);
+    MSH_GROW(r, &r->entities, r->entity_count + total, &r->entity_room);
     for (int dim = 0; dim < 4; dim++) {
         r->kind = entity_kinds[dim];
         for (int64_t i = 0; r->status == STATUS_OK && i < counts[dim]; i++) {
@@ -318,8 +317,8 @@ static void name_groups(struct msh_reader *r)
 static void make_entities(struct msh_reader *r)
 {
     int64_t count = r->msh->group_count;
-    r->entities = msh_grow(r, r->entities, &r->entity_room, count, sizeof *r->entities);
-    r->physicals = msh_grow(r, r->physicals, &r->physical_room, count, sizeof *r->physicals);
+    MSH_GROW(r, &r->entities, count, &r->entity_room);
+    MSH_GROW(r, &r->physicals, count, &r->physical_room);
     for (int64_t i = 0; r->status == STATUS_OK && i < count; i++) {
         r->physicals[i] = group_key(&r->msh->groups[i]);
         r->entities[r->entity_count++] = (struct msh_entity){r->physicals[i], i, 1};
