@@ -64,8 +64,7 @@ void boundary_unit_normal(const struct face_table *table, const int32_t *facet, 
 {
     normal[2] = 0.0;
     face_area_vector(table->dim, table->x, facet, normal);
-    double sum = vector_dot(table->dim, normal, normal);
-    *size = sqrt(sum);
+    *size = vector_length(table->dim, normal);
     for (int a = 0; a < table->dim; a++) {
         normal[a] /= *size;
     }

@@ -14,19 +14,13 @@ static const int tetrahedron_faces[4][3] = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0,
 static const int triangle_opposite[3] = {2, 0, 1};
 static const int tetrahedron_opposite[4] = {3, 2, 0, 1};
 
-static void edge_vector(int dim, const double *x, int32_t from, int32_t to, double *edge)
-{
-    for (int a = 0; a < dim; a++) {
-        edge[a] = x[(int64_t)to * dim + a] - x[(int64_t)from * dim + a];
-    }
-}
-
 double cell_volume(const struct cells *cells, int64_t cell)
 {
     const int32_t *v = cells->node + cell * (cells->dim + 1);
     double e[3][3], w[3];
     for (int k = 0; k < cells->dim; k++) {
-        edge_vector(cells->dim, cells->x, v[0], v[1 + k], e[k]);
+        vector_subtract(cells->dim, cells->x + (int64_t)v[1 + k] * cells->dim,
+                        cells->x + (int64_t)v[0] * cells->dim, e[k]);
     }
     if (cells->dim == 2) {
         return 0.5 * (e[0][0] * e[1][1] - e[0][1] * e[1][0]);
@@ -51,13 +45,13 @@ void cell_centroid(const struct cells *cells, int64_t cell, double *centroid)
 void face_area_vector(int dim, const double *x, const int32_t *face, double *vector)
 {
     double u[3], v[3];
-    edge_vector(dim, x, face[0], face[1], u);
+    vector_subtract(dim, x + (int64_t)face[1] * dim, x + (int64_t)face[0] * dim, u);
     if (dim == 2) {
         vector[0] = u[1];
         vector[1] = -u[0];
         return;
     }
-    edge_vector(dim, x, face[0], face[2], v);
+    vector_subtract(dim, x + (int64_t)face[2] * dim, x + (int64_t)face[0] * dim, v);
     vector_cross(u, v, vector);
     for (int a = 0; a < 3; a++) {
         vector[a] *= 0.5;
@@ -315,12 +309,8 @@ enum status cells_node_spacing(const struct cells *cells, double *spacing, struc
         const int32_t *v = cells->node + c * (dim + 1);
         for (int i = 0; i <= dim; i++) {
             for (int k = i + 1; k <= dim; k++) {
-                double edge[3], length2 = 0.0;
-                edge_vector(dim, cells->x, v[i], v[k], edge);
-                for (int a = 0; a < dim; a++) {
-                    length2 += edge[a] * edge[a];
-                }
-                double length = sqrt(length2);
+                double length =
+                    vector_distance(dim, cells->x + (int64_t)v[k] * dim, cells->x + (int64_t)v[i] * dim);
                 spacing[v[i]] += length;
                 spacing[v[k]] += length;
                 visits[v[i]]++;

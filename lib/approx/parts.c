@@ -192,44 +192,39 @@ static void invert(int64_t count, bool *chosen)
     }
 }
 
+/* Let `chosen` items and nodes take in each other's neighbours: rings times, beginning with the nodes of the
+ * items or the items of the nodes; rings < 0: those that are not chosen. */
+static enum status grow(int64_t count, int corners, const int32_t *item, int64_t node_count, int rings,
+                        bool of_items, bool *chosen, struct error *error)
+{
+    bool *other;
+    RETURN_IF_ERROR(NEW_ARRAY(&other, of_items ? node_count : count, error));
+    bool *items = of_items ? chosen : other, *nodes = of_items ? other : chosen;
+    if (rings < 0) {
+        invert(of_items ? count : node_count, chosen);
+    }
+    for (int step = 0; step < 2 * abs(rings); step++) {
+        if ((step % 2 == 0) == of_items) {
+            mark_nodes(count, corners, item, items, nodes);
+        } else {
+            mark_items(count, corners, item, nodes, items);
+        }
+    }
+    if (rings < 0) {
+        invert(of_items ? count : node_count, chosen);
+    }
+    free(other);
+    return STATUS_OK;
+}
+
 enum status items_grow(int64_t count, int corners, const int32_t *item, int64_t node_count, int rings,
                        bool *chosen, struct error *error)
 {
-    enum status status;
-    bool *node_chosen = NULL;
-    TRY(NEW_ARRAY(&node_chosen, node_count, error));
-    if (rings < 0) {
-        invert(count, chosen);
-    }
-    for (int ring = 0; ring < abs(rings); ring++) {
-        mark_nodes(count, corners, item, chosen, node_chosen);
-        mark_items(count, corners, item, node_chosen, chosen);
-    }
-    if (rings < 0) {
-        invert(count, chosen);
-    }
-done:
-    free(node_chosen);
-    return status;
+    return grow(count, corners, item, node_count, rings, true, chosen, error);
 }
 
 enum status nodes_grow(int64_t count, int corners, const int32_t *item, int64_t node_count, int rings,
                        bool *chosen, struct error *error)
 {
-    enum status status;
-    bool *item_chosen = NULL;
-    TRY(NEW_ARRAY(&item_chosen, count, error));
-    if (rings < 0) {
-        invert(node_count, chosen);
-    }
-    for (int ring = 0; ring < abs(rings); ring++) {
-        mark_items(count, corners, item, chosen, item_chosen);
-        mark_nodes(count, corners, item, item_chosen, chosen);
-    }
-    if (rings < 0) {
-        invert(node_count, chosen);
-    }
-done:
-    free(item_chosen);
-    return status;
+    return grow(count, corners, item, node_count, rings, false, chosen, error);
 }

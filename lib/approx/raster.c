@@ -42,9 +42,7 @@ static bool place_cell(const struct cells *cells, int64_t cell, int sign, struct
     for (int a = 0; a < dim; a++) {
         vector_subtract(dim, cells->x + node[a + 1] * dim, origin, e[a]);
     }
-    double determinant = e[0][0] * (e[1][1] * e[2][2] - e[1][2] * e[2][1]) -
-                         e[0][1] * (e[1][0] * e[2][2] - e[1][2] * e[2][0]) +
-                         e[0][2] * (e[1][0] * e[2][1] - e[1][1] * e[2][0]);
+    double determinant = determinant3(e[0], e[1], e[2]);
     if (!(determinant * sign > 0)) {
         return false;
     }

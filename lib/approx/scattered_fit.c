@@ -108,9 +108,9 @@ static enum status find_nearest(const struct scattered_fit *fit, const double *x
     }
     nearest->count = 0;
     for (int64_t k = 0; k < near.count; k++) { /* rows ascend */
-        double sum = vector_distance2(dim, fit->x + near.index[k] * dim, at);
+        double distance = vector_distance(dim, fit->x + near.index[k] * dim, at);
         if (usable(fit, near.index[k])) {
-            insert(nearest, most, near.index[k], sqrt(sum));
+            insert(nearest, most, near.index[k], distance);
         }
     }
     if (near.count < wanted) {

@@ -33,8 +33,7 @@ double stuffing_score(const struct stuffing *stuffing, int64_t cell)
     struct cells cells = {dim, stuffing->node_count, stuffing->x, stuffing->cell_count, stuffing->cell};
     double product = 1;
     for (int k = 1; k <= dim; k++) {
-        double square = vector_distance2(dim, x[k], x[0]);
-        product *= sqrt(square);
+        product *= vector_distance(dim, x[k], x[0]);
     }
     double volume = cell_volume(&cells, cell);
     return volume < 0 ? volume / product : 0;
@@ -198,14 +197,11 @@ static bool find_astray(const struct labels *labels, const struct labels *parts,
                         const bool *keep, const struct stuffing *stuffing, const struct stuffing_star *star,
                         int64_t node, double target[3])
 {
-    double most = last_slack * labels_voxel(labels), square = 0;
+    double most = last_slack * labels_voxel(labels);
     const double *x = stuffing->x + node * labels->dim;
     memcpy(target, x, (size_t)labels->dim * sizeof *target);
     if (rim[0] != 0 && line_project(parts, keep, 3, rim, target)) {
-        for (int d = 0; d < labels->dim; d++) {
-            square += (target[d] - x[d]) * (target[d] - x[d]);
-        }
-        if (sqrt(square) > most) {
+        if (vector_distance(labels->dim, target, x) > most) {
             return true;
         }
         memcpy(target, x, (size_t)labels->dim * sizeof *target);
@@ -260,11 +256,10 @@ enum status stuffing_improve(const struct labels *parts, const struct stuffing_o
     TRY(star_make(stuffing, options->whole, &star, error));
     for (int sweep = 0; sweep < FIT_SWEEPS; sweep++) {
         fit(&labels, parts, rim, options->keep, stuffing, &star);
-        stuffing_repair(&labels, options->keep, least_score, 0, stuffing, &star);
+        stuffing_repair(&labels, options->keep, least_score, stuffing, &star);
     }
     separate(&labels, stuffing, &star, apart);
     TRY(stuffing_volumes(&labels, options, apart, dropped, &star, stuffing, error));
-    stuffing_repair(&labels, options->keep, last_score, last_slack * labels_voxel(&labels), stuffing, &star);
     for (int sweep = 0; sweep < FIT_SWEEPS; sweep++) {
         settle(&labels, parts, rim, options->keep, stuffing, &star);
     }

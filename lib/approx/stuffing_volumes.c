@@ -74,8 +74,7 @@ static double node_weight(int dim, double G[STUFFING_MOST_LABELS][3])
 {
     double most = 0;
     for (int i = 0; i < STUFFING_MOST_LABELS; i++) {
-        double square = vector_dot(dim, G[i], G[i]);
-        most = fmax(most, sqrt(square));
+        most = fmax(most, vector_length(dim, G[i]));
     }
     return most > 0 ? 1 / most : 0;
 }

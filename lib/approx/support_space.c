@@ -2,6 +2,7 @@
 
 #include "approx/partition.h"
 #include "approx/reach_private.h"
+#include "base/lists.h"
 #include "base/memory.h"
 
 #include <stdlib.h>
@@ -55,25 +56,15 @@ static enum status cut(struct support_space *space, struct error *error)
     for (int64_t c = 0; c < cells->count; c++) {
         sides = space->cell_side[c] >= sides ? space->cell_side[c] + 1 : sides;
     }
-    TRY(NEW_ARRAY(&first, (int64_t)sides + 2, error));
-    TRY(NEW_ARRAY(&cell, cells->count, error));
+    TRY(lists_by_row(cells->count, 1, space->cell_side, sides, &first, &cell, error));
     TRY(NEW_ARRAY(&local_node, cells->node_count, error));
     TRY(NEW_ARRAY(&space->place, cells->count, error));
     TRY(NEW_ARRAY(&space->side, (int64_t)sides + 1, error));
     space->side_count = sides;
     space->side[sides].node_count = space->owner != NULL ? cells->node_count : 0;
-    for (int64_t c = 0; c < cells->count; c++) {
-        first[space->cell_side[c] + 2]++;
-    }
-    for (int32_t s = 0; s < sides; s++) {
-        space->side[s].cell_count = first[s + 2];
-        first[s + 2] += first[s + 1];
-    }
-    for (int64_t c = 0; c < cells->count; c++) {
-        cell[first[space->cell_side[c] + 1]++] = (int32_t)c;
-    }
     memset(local_node, -1, (size_t)cells->node_count * sizeof *local_node);
     for (int32_t s = 0; s < sides; s++) {
+        space->side[s].cell_count = first[s + 1] - first[s];
         TRY(cut_out(space, cell + first[s], &space->side[s], local_node, error));
     }
 done:

@@ -167,28 +167,26 @@ done:
     return status;
 }
 
-/* Exchange what each process wants from each other one: first the counts, then the lists. */
-static enum status exchange_lists(struct halo *halo, struct error *error)
+enum status ranks_exchange_lists(const struct ranks *ranks, const int64_t *send, const int64_t *send_first,
+                                 int64_t **receive, int64_t **receive_first, struct error *error)
 {
     enum status status;
-    const struct ranks *ranks = halo->ranks;
     int count = ranks->count;
     int64_t *each = NULL, *in_turn = NULL, *many = NULL;
     TRY(NEW_ARRAY(&each, count, error));
     TRY(NEW_ARRAY(&many, count, error));
     TRY(NEW_ARRAY(&in_turn, count + 1, error));
-    TRY(NEW_ARRAY(&halo->send_first, count + 1, error));
+    TRY(NEW_ARRAY(receive_first, count + 1, error));
     for (int r = 0; r < count; r++) {
         in_turn[r + 1] = r + 1;
-        each[r] = halo->receive_first[r + 1] - halo->receive_first[r];
+        each[r] = send_first[r + 1] - send_first[r];
     }
     ranks->exchange(ranks, sizeof *each, each, in_turn, many, in_turn);
     for (int r = 0; r < count; r++) {
-        halo->send_first[r + 1] = halo->send_first[r] + many[r];
+        (*receive_first)[r + 1] = (*receive_first)[r] + many[r];
     }
-    TRY(NEW_ARRAY(&halo->send, halo->send_first[count], error));
-    ranks->exchange(ranks, sizeof *halo->send, halo->receive, halo->receive_first, halo->send,
-                    halo->send_first);
+    TRY(NEW_ARRAY(receive, (*receive_first)[count], error));
+    ranks->exchange(ranks, sizeof *send, send, send_first, *receive, *receive_first);
 done:
     free(each);
     free(many);
@@ -206,7 +204,8 @@ enum status halo_build(const struct ranks *ranks, int64_t items, const bool *wan
         return STATUS_OK;
     }
     TRY(list_wanted(halo, items, wanted, owner, context, error));
-    TRY(exchange_lists(halo, error));
+    TRY(ranks_exchange_lists(ranks, halo->receive, halo->receive_first, &halo->send, &halo->send_first,
+                             error));
     TRY(NEW_ARRAY(&halo->sent, halo->send_first[ranks->count] * width, error));
     TRY(NEW_ARRAY(&halo->received, halo->receive_first[ranks->count] * width, error));
 done:

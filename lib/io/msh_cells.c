@@ -1,4 +1,5 @@
 #include "base/memory.h"
+#include "base/vector.h"
 #include "io/msh_build.h"
 #include "io/msh_split.h"
 
@@ -86,31 +87,20 @@ static double relative_volume(const struct mesh *mesh, const int32_t cell[])
     double longest = 0;
     for (int i = 0; i <= dim; i++) {
         for (int j = i + 1; j <= dim; j++) {
-            double square = 0;
-            for (int k = 0; k < dim; k++) {
-                double d = mesh->x[cell[j] * dim + k] - mesh->x[cell[i] * dim + k];
-                square += d * d;
-                if (i == 0) {
-                    edge[j - 1][k] = d;
-                }
+            const double *from = mesh->x + (int64_t)cell[i] * dim, *to = mesh->x + (int64_t)cell[j] * dim;
+            longest = fmax(longest, vector_distance(dim, to, from));
+            if (i == 0) {
+                vector_subtract(dim, to, from, edge[j - 1]);
             }
-            longest = fmax(longest, sqrt(square));
         }
     }
     if (!(longest > 0)) {
         return 0;
     }
-    for (int i = 0; i < dim; i++) {
-        for (int k = 0; k < dim; k++) {
-            edge[i][k] /= longest;
-        }
+    for (int i = 0; i < 9; i++) {
+        edge[i / 3][i % 3] /= longest;
     }
-    if (dim == 2) {
-        return edge[0][0] * edge[1][1] - edge[0][1] * edge[1][0];
-    }
-    return edge[0][0] * (edge[1][1] * edge[2][2] - edge[1][2] * edge[2][1]) -
-           edge[0][1] * (edge[1][0] * edge[2][2] - edge[1][2] * edge[2][0]) +
-           edge[0][2] * (edge[1][0] * edge[2][1] - edge[1][1] * edge[2][0]);
+    return dim == 2 ? determinant2(edge[0], edge[1]) : determinant3(edge[0], edge[1], edge[2]);
 }
 
 int mesh_simplices(const struct mesh_draft *draft, int64_t element, int32_t simplices[MESH_MOST_SIMPLICES][4])
