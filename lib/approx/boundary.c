@@ -1,6 +1,7 @@
 #include "approx/boundary_private.h"
 
 #include "approx/quadrature.h"
+#include "base/lists.h"
 #include "base/memory.h"
 
 #include <math.h>
@@ -41,12 +42,6 @@ static enum status row_add(struct dense_row *row, int32_t node, double value, st
     return STATUS_OK;
 }
 
-static int compare_indices(const void *left, const void *right)
-{
-    int32_t a = *(const int32_t *)left, b = *(const int32_t *)right;
-    return (a > b) - (a < b);
-}
-
 /* Append the row, divided by `whole`, to the averages' CSR lists, and clear it. */
 static enum status row_finish(struct dense_row *row, double whole, int64_t part, int64_t *capacity,
                               struct boundary_averages *averages, struct error *error)
@@ -54,7 +49,7 @@ static enum status row_finish(struct dense_row *row, double whole, int64_t part,
     int64_t at = averages->ptr[part], room = *capacity;
     RETURN_IF_ERROR(GROW_ARRAY(&averages->idx, at + row->count, &room, error));
     RETURN_IF_ERROR(GROW_ARRAY(&averages->phi, at + row->count, capacity, error));
-    qsort(row->touched, (size_t)row->count, sizeof *row->touched, compare_indices);
+    qsort(row->touched, (size_t)row->count, sizeof *row->touched, compare_int32);
     for (int64_t i = 0; i < row->count; i++) {
         int32_t node = row->touched[i];
         averages->idx[at + i] = node;

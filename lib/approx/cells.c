@@ -42,6 +42,16 @@ void cell_centroid(const struct cells *cells, int64_t cell, double *centroid)
     }
 }
 
+void cell_face(const struct cells *cells, int64_t cell, int opposite, int32_t *face)
+{
+    static const int of_triangle[3][2] = {{1, 2}, {2, 0}, {0, 1}};
+    static const int of_tetrahedron[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};
+    const int *corner = cells->dim == 2 ? of_triangle[opposite] : of_tetrahedron[opposite];
+    for (int k = 0; k < cells->dim; k++) {
+        face[k] = cells->node[cell * (cells->dim + 1) + corner[k]];
+    }
+}
+
 void face_area_vector(int dim, const double *x, const int32_t *face, double *vector)
 {
     double u[3], v[3];

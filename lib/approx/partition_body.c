@@ -2,6 +2,7 @@
 #include "approx/partition.h"
 
 #include "base/box.h"
+#include "base/lists.h"
 #include "base/memory.h"
 
 #include <math.h>
@@ -147,12 +148,6 @@ static enum status add_cells(const struct partition *partition, int32_t part, st
     return STATUS_OK;
 }
 
-static int ascending(const void *a, const void *b)
-{
-    int32_t left = *(const int32_t *)a, right = *(const int32_t *)b;
-    return (left > right) - (left < right);
-}
-
 /* What an evaluation needs of others. */
 static void count_needed(const struct partition *partition, int32_t part, struct body_part_work *work,
                          struct body_part *body)
@@ -190,14 +185,14 @@ enum status body_part_build(const struct partition *partition, int32_t part, con
     int64_t reaching = nodes.count;
     TRY(add_cells(partition, part, work, &nodes, 0, &found, error));
     TRY(add_cells(partition, part, work, &nodes, reaching, &found, error));
-    qsort(nodes.index, (size_t)nodes.count, sizeof *nodes.index, ascending);
+    qsort(nodes.index, (size_t)nodes.count, sizeof *nodes.index, compare_int32);
     body->node = nodes.index;
     body->node_count = nodes.count;
     nodes.index = NULL;
     count_needed(partition, part, work, body);
     body->cell_count = found.count;
     if (cells_wanted) {
-        qsort(found.index, (size_t)found.count, sizeof *found.index, ascending);
+        qsort(found.index, (size_t)found.count, sizeof *found.index, compare_int32);
         body->cell = found.index;
         found.index = NULL;
     }

@@ -30,7 +30,7 @@ double stuffing_score(const struct stuffing *stuffing, int64_t cell)
         return fmin(angles[0] / STUFFING_LEAST_ANGLE, (180 - angles[1]) / (180 - STUFFING_MOST_ANGLE));
     }
     /* Inverted: its volume, of the product of its edges at one corner. */
-    struct cells cells = {dim, stuffing->node_count, stuffing->x, stuffing->cell_count, stuffing->cell};
+    struct cells cells = stuffing_cells(stuffing);
     double product = 1;
     for (int k = 1; k <= dim; k++) {
         product *= vector_distance(dim, x[k], x[0]);
@@ -148,7 +148,7 @@ static void separate(const struct labels *labels, struct stuffing *stuffing, con
 {
     int dim = stuffing->dim;
     double most = most_separation * labels_voxel(labels);
-    struct cells cells = {dim, stuffing->node_count, stuffing->x, stuffing->cell_count, stuffing->cell};
+    struct cells cells = stuffing_cells(stuffing);
     for (int64_t n = 0; n < stuffing->node_count; n++) {
         double target[3] = {0};
         int64_t count = star->ptr[n + 1] - star->ptr[n];

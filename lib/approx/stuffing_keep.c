@@ -59,16 +59,6 @@ void star_free(struct stuffing_star *star)
 
 /* ---- the boundary ---- */
 
-/* The face opposite a corner, oriented outward of a positively oriented cell. */
-static void face_of(int dim, const int32_t *node, int opposite, int32_t *face)
-{
-    static const int of_triangle[3][2] = {{1, 2}, {2, 0}, {0, 1}};
-    static const int of_tetrahedron[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};
-    for (int k = 0; k < dim; k++) {
-        face[k] = node[dim == 2 ? of_triangle[opposite][k] : of_tetrahedron[opposite][k]];
-    }
-}
-
 /* The boundary of the wanted cells, counted or, where there is room, stored. */
 static int64_t find_facets(const struct stuffing_keeping *keeping, int32_t *facet, int32_t *side)
 {
@@ -81,7 +71,7 @@ static int64_t find_facets(const struct stuffing_keeping *keeping, int32_t *face
                 continue;
             }
             if (facet != NULL) {
-                face_of(dim, keeping->cells.node + c * (dim + 1), k, facet + count * dim);
+                cell_face(&keeping->cells, c, k, facet + count * dim);
                 side[2 * count] = keeping->stuffing->label[c];
                 side[2 * count + 1] = next >= 0 ? keeping->stuffing->label[next] : 0;
             }
@@ -195,9 +185,7 @@ enum status stuffing_keep(const struct stuffing_options *options, const bool *be
     int32_t bodies = 0;
     struct stuffing_star star = {0};
     struct stuffing_keeping keeping = {
-        .stuffing = stuffing,
-        .between = between,
-        .cells = {dim, stuffing->node_count, stuffing->x, count, stuffing->cell}};
+        .stuffing = stuffing, .between = between, .cells = stuffing_cells(stuffing)};
     *apart = NULL;
     TRY(NEW_ARRAY(&keeping.across, count * (dim + 1), error));
     TRY(NEW_ARRAY(&keeping.wanted, count, error));

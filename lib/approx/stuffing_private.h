@@ -5,6 +5,12 @@
 #include "approx/cells.h"
 #include "approx/stuffing.h"
 
+static inline struct cells stuffing_cells(const struct stuffing *stuffing)
+{
+    return (struct cells){stuffing->dim, stuffing->node_count, stuffing->x, stuffing->cell_count,
+                          stuffing->cell};
+}
+
 /* The lattice whose cells are cut. 3D: corners and centres of cubes, which are leaves of an octree; 2D:
  * equilateral triangles. Cells whose points are all outside are left out. */
 struct lattice {

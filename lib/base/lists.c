@@ -22,3 +22,9 @@ enum status lists_by_row(int64_t items, int per, const int32_t *row, int64_t row
     }
     return STATUS_OK;
 }
+
+int compare_int32(const void *left, const void *right)
+{
+    int32_t a = *(const int32_t *)left, b = *(const int32_t *)right;
+    return (a > b) - (a < b);
+}

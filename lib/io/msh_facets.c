@@ -1,3 +1,4 @@
+#include "base/lists.h"
 #include "base/memory.h"
 #include "io/msh_build.h"
 #include "io/msh_faces.h"
@@ -70,13 +71,6 @@ static enum status add_set_node(struct gathering *g, int32_t group, int32_t node
     return STATUS_OK;
 }
 
-static int compare_nodes(const void *left, const void *right)
-{
-    int32_t a = *(const int32_t *)left;
-    int32_t b = *(const int32_t *)right;
-    return (a > b) - (a < b);
-}
-
 /* The set is whole: if it has nodes, it gets its name. */
 static enum status close_set(struct gathering *g, int32_t group)
 {
@@ -87,7 +81,7 @@ static enum status close_set(struct gathering *g, int32_t group)
     if (count == 0) {
         return STATUS_OK;
     }
-    qsort(&mesh->set_idx[first], (size_t)count, sizeof *mesh->set_idx, compare_nodes);
+    qsort(&mesh->set_idx[first], (size_t)count, sizeof *mesh->set_idx, compare_int32);
     enum status status = mesh_add_name(&mesh->node_sets, g->draft->msh->groups[group].name, g->draft->error);
     if (status == STATUS_OK) {
         mesh->set_ptr[mesh->node_sets.count + 1] = mesh->set_ptr[mesh->node_sets.count];
