@@ -92,12 +92,10 @@ static enum status see_node(struct body_part_work *work, int32_t part, int32_t n
     if (mark_of(work->mark, node, part) > 0) {
         return STATUS_OK;
     }
-    enum status status = index_list_reserve(list, 1, error);
-    if (status == STATUS_OK) {
-        work->mark[node] = part * MARKS + SEEN;
-        list->index[list->count++] = node;
-    }
-    return status;
+    RETURN_IF_ERROR(index_list_reserve(list, 1, error));
+    work->mark[node] = part * MARKS + SEEN;
+    list->index[list->count++] = node;
+    return STATUS_OK;
 }
 
 /* Nodes whose supports, widened, reach the own cells; those not widened are marked NEEDED. */

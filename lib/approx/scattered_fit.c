@@ -319,18 +319,12 @@ enum status scattered_fit_evaluate(const struct scattered_fit *fit, int32_t from
 {
     struct nearest nearest = {0};
     double phi[MOST_NEIGHBOURS] = {1.0};
-    enum status status = find_reached(fit, from, x, &nearest, error);
-    if (status != STATUS_OK) {
-        return status;
-    }
+    RETURN_IF_ERROR(find_reached(fit, from, x, &nearest, error));
     int64_t last = nearest.count - 1;
     *distance = nearest.distance[0] * fit->unit;
     *spacing = 2.0 * nearest.distance[last] / (double)nearest.count * fit->unit;
     if (nearest.count > 1 && nearest.distance[last] > 0.0) {
-        status = weights_of(fit, x, &nearest, phi, error);
-        if (status != STATUS_OK) {
-            return status;
-        }
+        RETURN_IF_ERROR(weights_of(fit, x, &nearest, phi, error));
     }
     for (int v = 0; v < fit->value_count; v++) {
         values[v] = 0.0;

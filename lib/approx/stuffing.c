@@ -75,14 +75,9 @@ static enum status make(const struct labels *labels, const struct stuffing_optio
     enum status status;
     *stuffing = (struct stuffing){.dim = labels->dim};
     TRY(lattice_make(labels, options, &lattice, error));
-    status = lattice_cut(&lattice, error);
-    if (status == STATUS_OK) {
-        status = lattice_cells(&lattice, stuffing, &between, error);
-    }
+    TRY(lattice_cut(&lattice, error));
+    TRY(lattice_cells(&lattice, stuffing, &between, error));
     lattice_free(&lattice);
-    if (status != STATUS_OK) {
-        goto done;
-    }
     TRY(NEW_ARRAY(&dropped, labels->count, error));
     TRY(stuffing_keep(options, between, stuffing, &apart, dropped, error));
     if (stuffing->cell_count == 0) {
@@ -91,6 +86,7 @@ static enum status make(const struct labels *labels, const struct stuffing_optio
     }
     TRY(stuffing_improve(labels, options, apart, dropped, stuffing, error));
 done:
+    lattice_free(&lattice);
     free(apart);
     free(between);
     free(dropped);

@@ -9,8 +9,8 @@
 
 /* Nodes of interfaces are moved as long as the cells at them score at least this, or as before. */
 static const double goal = 1.3;
-/* Cells that score less are improved; in the end cells beyond the bounds, by nodes up to so many voxels off.
- */
+/* Cells that score less are improved. In the end nodes that are more than so many voxels off their interface
+ * are brought nearer to it, down to that score. */
 static const double least_score = 1.25, last_score = 1.02, last_slack = 0.55;
 /* Nodes that are cut apart move so much of the way to the middle of their own cells, by at most so many
  * voxels. */

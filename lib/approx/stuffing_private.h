@@ -76,10 +76,10 @@ MUST_CHECK enum status octree_make(int levels, const int64_t count[3], uint8_t *
                                    struct error *error);
 void octree_free(struct octree *octree);
 
-/* Call tell(context, corner) for each tetrahedron between the leaves: four points, each x, y, z in halves of
- * the finest cube's edge. Stops when tell fails. */
-typedef enum status octree_tell(void *context, const int32_t corner[4][3]);
-MUST_CHECK enum status octree_cells(const struct octree *octree, octree_tell *tell, void *context);
+/* Call visit(context, corner) for each tetrahedron between the leaves: four points, each x, y, z in halves of
+ * the finest cube's edge. Stops when it fails. */
+typedef enum status octree_visitor(void *context, const int32_t corner[4][3]);
+MUST_CHECK enum status octree_cells(const struct octree *octree, octree_visitor *visit, void *context);
 
 /* The level of an octree, 0 for cubes of edge `spacing`, whose cells' edges are nearest to `size` by ratio.
  */

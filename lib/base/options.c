@@ -171,18 +171,14 @@ enum status options_parse(struct options *options, int argc, char *argv[], int *
     bool options_ended = false;
     *operand_count = 0;
     for (int at = 1; at < argc; at++) {
-        enum status status = STATUS_OK;
         if (options_ended || argv[at][0] != '-' || argv[at][1] == '\0') {
             argv[++*operand_count] = argv[at];
         } else if (strcmp(argv[at], "--") == 0) {
             options_ended = true;
         } else if (argv[at][1] == '-') {
-            status = parse_long(options, argc, argv, &at, error);
+            RETURN_IF_ERROR(parse_long(options, argc, argv, &at, error));
         } else {
-            status = parse_short(options, argc, argv, &at, error);
-        }
-        if (status != STATUS_OK) {
-            return status;
+            RETURN_IF_ERROR(parse_short(options, argc, argv, &at, error));
         }
     }
     return STATUS_OK;

@@ -35,7 +35,7 @@ void invariants_violation(struct check *check, const struct section *section, co
     va_start(arguments, format);
     vsnprintf(text + length, sizeof text - (size_t)length, format, arguments);
     va_end(arguments);
-    check->tell(check->context, text);
+    check->report(check->context, text);
     check->count++;
 }
 
@@ -301,9 +301,9 @@ static int find_dimension(struct check *check)
     return 0;
 }
 
-int64_t stream_check(const struct stream *stream, violation_function *tell, void *context)
+int64_t stream_check(const struct stream *stream, violation_function *report, void *context)
 {
-    struct check check = {.stream = stream, .tell = tell, .context = context};
+    struct check check = {.stream = stream, .report = report, .context = context};
     check.dim = find_dimension(&check);
     for (int i = 0; i < SECTION_KINDS; i++) {
         const struct section_kind *rule = &section_kinds[i];

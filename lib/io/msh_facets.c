@@ -82,11 +82,9 @@ static enum status close_set(struct gathering *g, int32_t group)
         return STATUS_OK;
     }
     qsort(&mesh->set_idx[first], (size_t)count, sizeof *mesh->set_idx, compare_int32);
-    enum status status = mesh_add_name(&mesh->node_sets, g->draft->msh->groups[group].name, g->draft->error);
-    if (status == STATUS_OK) {
-        mesh->set_ptr[mesh->node_sets.count + 1] = mesh->set_ptr[mesh->node_sets.count];
-    }
-    return status;
+    RETURN_IF_ERROR(mesh_add_name(&mesh->node_sets, g->draft->msh->groups[group].name, g->draft->error));
+    mesh->set_ptr[mesh->node_sets.count + 1] = mesh->set_ptr[mesh->node_sets.count];
+    return STATUS_OK;
 }
 
 /* How the faces of a group lie. */
