@@ -113,17 +113,14 @@ static double normalise(int dim, int64_t part, struct boundary_averages *average
     return sqrt(length2) / averages->area[part];
 }
 
-/* The node itself in place of the points around it: the one sample of its part. */
-static void take_node(const struct face_table *table, int64_t part, struct boundary_averages *averages)
+/* Average `a` is the value at one place, its one sample. */
+static void put_place(int dim, int64_t a, const double *x, struct boundary_averages *averages)
 {
-    int dim = table->dim;
-    int64_t sample = averages->sample_ptr[part];
-    averages->sample_ptr[part + 1] = sample + 1;
+    int64_t sample = averages->sample_ptr[a];
+    averages->sample_ptr[a + 1] = sample + 1;
     averages->sample_share[sample] = 1.0;
-    for (int a = 0; a < dim; a++) {
-        double x = table->x[(int64_t)averages->node[part] * dim + a];
-        averages->position[part * dim + a] = averages->sample_x[sample * dim + a] = x;
-    }
+    memcpy(averages->position + a * dim, x, (size_t)dim * sizeof *x);
+    memcpy(averages->sample_x + sample * dim, x, (size_t)dim * sizeof *x);
 }
 
 /* The parts that averages are made of: boundary averages, split where the boundary turns or not, and, with
@@ -184,7 +181,7 @@ static enum status build(const struct face_table *table, const struct facet_set 
         }
         if (node_lists != NULL) {
             whole = 1.0;
-            take_node(table, part, averages);
+            put_place(dim, part, table->x + (int64_t)node * dim, averages);
             for (int64_t i = node_lists->ptr[node]; i < node_lists->ptr[node + 1]; i++) {
                 TRY(row_add(&row, node_lists->idx[i], node_phi[i], error));
             }
@@ -262,12 +259,7 @@ enum status boundary_list_build(int dim, const double *x, const int32_t *nodes, 
         int64_t from = lists->ptr[nodes[i]], length = lists->ptr[nodes[i] + 1] - from;
         averages->node[i] = nodes[i];
         put_values(averages, i, lists->idx + from, phi + from, length);
-        averages->sample_ptr[i + 1] = i + 1;
-        averages->sample_share[i] = 1.0;
-        for (int a = 0; a < dim; a++) {
-            averages->position[i * dim + a] = averages->sample_x[i * dim + a] =
-                x[(int64_t)nodes[i] * dim + a];
-        }
+        put_place(dim, i, x + (int64_t)nodes[i] * dim, averages);
     }
 done:
     if (status != STATUS_OK) {
@@ -301,13 +293,8 @@ enum status boundary_points_build(const struct face_table *table, const struct f
         quadrature_positions(&rule, dim, table->x, table->faces->node + face_of[facet] * dim, x);
         averages->node[p] = set->facet[facet * dim];
         averages->area[p] = rule.weight[p % table->per_face] * size;
-        averages->sample_ptr[p + 1] = p + 1;
-        averages->sample_share[p] = 1.0;
-        for (int a = 0; a < dim; a++) {
-            double place = x[p % table->per_face * dim + a];
-            averages->normal[p * dim + a] = normal[a];
-            averages->position[p * dim + a] = averages->sample_x[p * dim + a] = place;
-        }
+        memcpy(averages->normal + p * dim, normal, (size_t)dim * sizeof *normal);
+        put_place(dim, p, x + p % table->per_face * dim, averages);
         put_values(averages, p, table->lists->idx + from, table->phi + from, length);
     }
 done:

@@ -164,8 +164,7 @@ void msh_read_partitions(struct msh_reader *r)
 
 static int compare_keys(const void *left, const void *right) /* also of structs that begin with a key */
 {
-    const int64_t *a = left;
-    const int64_t *b = right;
+    const int64_t *a = left, *b = right;
     return (*a > *b) - (*a < *b);
 }
 
@@ -193,8 +192,8 @@ static int compare_group(const void *key, const void *group)
 /* By dimension and name, then tag. */
 static int compare_names(const void *left, const void *right)
 {
-    const struct msh_group *a = *(const struct msh_group *const *)left;
-    const struct msh_group *b = *(const struct msh_group *const *)right;
+    const struct msh_group *a = *(const struct msh_group *const *)left,
+                           *b = *(const struct msh_group *const *)right;
     int names = a->dim == b->dim ? strcmp(a->name, b->name) : 0;
     int64_t key = group_key(a);
     return names != 0 ? names : compare_group(&key, b);
@@ -369,8 +368,7 @@ static const struct msh_entity *entity_of(struct msh_reader *r, int64_t e, const
 static void join_members(struct msh_reader *r)
 {
     struct msh *msh = r->msh;
-    const struct msh_entity none = {0, 0, 0};
-    const struct msh_entity *entity = &none;
+    const struct msh_entity none = {0, 0, 0}, *entity = &none;
     MSH_NEW(r, &msh->member_ptr, msh->element_count + 1);
     for (int64_t e = 0; r->status == STATUS_OK && e < msh->element_count; e++) {
         entity = entity_of(r, e, entity);
