@@ -287,6 +287,7 @@ int main(int argc, char *argv[])
     label_sizes_read(&tool, &image, tool_value(&tool, "sizes"), &sizes);
     stuffing_options.sized = &sizes.cells;
     stuffing_options.size = sizes.size;
+    struct error error;
     enum status status = stuffing_make(&image.labels, &stuffing_options, &stuffing, &error);
     const char *length = tool_value(&tool, "spacing");
     if (status == STATUS_INPUT && !isalpha((unsigned char)length[strlen(length) - 1])) {

@@ -108,7 +108,6 @@ static enum status start(const struct cells *cells, struct leaves *leaves, struc
 static enum status mark(const struct refinement *refinement, const struct leaves *leaves, int64_t *marked,
                         int64_t *unresolved, struct error *error)
 {
-    enum status status = STATUS_OK;
     *marked = *unresolved = 0;
     for (int64_t begin = 0, end = 0; begin < leaves->count; begin = end) {
         bool stuck;
@@ -116,19 +115,17 @@ static enum status mark(const struct refinement *refinement, const struct leaves
         while (end < leaves->count && leaves->leaf[end].cell == cell) {
             end++;
         }
-        TRY(mark_cell(refinement->options, leaves->leaf + begin, end - begin, refinement->norm[cell], marked,
-                      &stuck, error));
+        RETURN_IF_ERROR(mark_cell(refinement->options, leaves->leaf + begin, end - begin,
+                                  refinement->norm[cell], marked, &stuck, error));
         *unresolved += stuck;
     }
-done:
-    return status;
+    return STATUS_OK;
 }
 
 /* The rule's points in all subcells. */
 static enum status place_points(const struct refinement *refinement, const struct leaves *leaves,
                                 struct adaptive_points *points, struct error *error)
 {
-    enum status status;
     const struct quadrature_rule *rule = &refinement->rule;
     int dim = refinement->cells->dim;
     points->count = leaves->count * rule->points;
@@ -138,10 +135,10 @@ static enum status place_points(const struct refinement *refinement, const struc
                     "levels are needed",
                     (long long)points->count);
     }
-    TRY(NEW_ARRAY(&points->x, points->count * dim, error));
-    TRY(NEW_ARRAY(&points->weight, points->count, error));
-    TRY(NEW_ARRAY(&points->cell, points->count, error));
-    TRY(NEW_ARRAY(&points->level, points->count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&points->x, points->count * dim, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&points->weight, points->count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&points->cell, points->count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&points->level, points->count, error));
     for (int64_t l = 0; l < leaves->count; l++) {
         const struct leaf *leaf = &leaves->leaf[l];
         int64_t first = l * rule->points;
@@ -153,8 +150,7 @@ static enum status place_points(const struct refinement *refinement, const struc
             points->level[first + q] = leaf->level;
         }
     }
-done:
-    return status;
+    return STATUS_OK;
 }
 
 enum status adaptive_points_build(const struct adaptive_options *options, const struct cells *cells,

@@ -3,6 +3,7 @@
 #include "approx/shape.h"
 #include "approx/sorted.h"
 #include "base/memory.h"
+#include "base/vector.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -62,13 +63,12 @@ static void sample_free(struct sample *sample)
 static enum status sample_leaves(const struct refinement *refinement, struct leaf *const *leaf, int64_t count,
                                  struct sample *sample, struct error *error)
 {
-    enum status status;
     const struct cells *cells = refinement->cells;
     const struct mls *mls = &refinement->options->support.mls;
     int dim = cells->dim, per_rule = refinement->rule.points;
     sample->per_leaf = per_rule * (1 + adaptive_children(dim));
     int64_t points = count * sample->per_leaf;
-    TRY(NEW_ARRAY(&sample->x, points * dim, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&sample->x, points * dim, error));
     double *x = sample->x;
     for (int64_t l = 0; l < count; l++) {
         sample->cell[l] = leaf[l]->cell;
@@ -82,16 +82,14 @@ static enum status sample_leaves(const struct refinement *refinement, struct lea
         }
     }
     struct reach_places places = {.cell = sample->cell, .points_per_row = sample->per_leaf};
-    TRY(support_space_lists(&refinement->options->support, &refinement->space, &places, points, sample->x,
-                            "adaptive points", &sample->lists, error));
+    RETURN_IF_ERROR(support_space_lists(&refinement->options->support, &refinement->space, &places, points,
+                                        sample->x, "adaptive points", &sample->lists, error));
     int64_t pairs = sample->lists.ptr[points];
-    TRY(NEW_ARRAY(&sample->phi, pairs, error));
-    TRY(NEW_ARRAY(&sample->dphi, pairs * dim, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&sample->phi, pairs, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&sample->dphi, pairs * dim, error));
     struct neighbours lists = support_view(&sample->lists);
-    TRY(shape_table(mls, cells->x, refinement->radius, &lists, sample->x, "adaptive points", sample->phi,
-                    sample->dphi, error));
-done:
-    return status;
+    return shape_table(mls, cells->x, refinement->radius, &lists, sample->x, "adaptive points", sample->phi,
+                       sample->dphi, error);
 }
 
 /* matrix (n x n, lower half) += factor G G^T, the rows of G standing at `place`. */
@@ -105,10 +103,7 @@ static void add_products(int dim, const double *gradient, const int32_t *place, 
             own[a] = factor * gradient[i * dim + a];
         }
         for (int64_t k = 0; k <= i; k++) {
-            double sum = 0.0;
-            for (int a = 0; a < dim; a++) {
-                sum += own[a] * gradient[k * dim + a];
-            }
+            double sum = vector_dot(dim, own, gradient + k * dim);
             row[place[k]] += sum;
         }
     }
@@ -208,7 +203,6 @@ done:
 
 enum status adaptive_measure(struct refinement *refinement, struct leaves *leaves, struct error *error)
 {
-    enum status status = STATUS_OK;
     struct leaf *batch[BATCH_LEAVES];
     int64_t count = 0;
     for (int64_t l = 0; l < leaves->count; l++) {
@@ -216,10 +210,9 @@ enum status adaptive_measure(struct refinement *refinement, struct leaves *leave
             batch[count++] = &leaves->leaf[l];
         }
         if (count == BATCH_LEAVES || (count > 0 && l == leaves->count - 1)) {
-            TRY(measure_batch(refinement, batch, count, error));
+            RETURN_IF_ERROR(measure_batch(refinement, batch, count, error));
             count = 0;
         }
     }
-done:
-    return status;
+    return STATUS_OK;
 }

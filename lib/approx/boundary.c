@@ -1,6 +1,7 @@
 #include "approx/boundary_private.h"
 
 #include "approx/quadrature.h"
+#include "base/lists.h"
 #include "base/memory.h"
 
 #include <math.h>
@@ -10,19 +11,16 @@
 static enum status allocate(int dim, int64_t parts, int64_t samples, struct boundary_averages *averages,
                             struct error *error)
 {
-    enum status status;
     averages->count = parts;
-    TRY(NEW_ARRAY(&averages->node, parts, error));
-    TRY(NEW_ARRAY(&averages->area, parts, error));
-    TRY(NEW_ARRAY(&averages->normal, parts * dim, error));
-    TRY(NEW_ARRAY(&averages->position, parts * dim, error));
-    TRY(NEW_ARRAY(&averages->ptr, parts + 1, error));
-    TRY(NEW_ARRAY(&averages->sample_ptr, parts + 1, error));
-    TRY(NEW_ARRAY(&averages->sample_x, samples * dim, error));
-    TRY(NEW_ARRAY(&averages->sample_share, samples, error));
-    TRY(NEW_ARRAY(&averages->sample_point, samples, error));
-done:
-    return status;
+    RETURN_IF_ERROR(NEW_ARRAY(&averages->node, parts, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&averages->area, parts, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&averages->normal, parts * dim, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&averages->position, parts * dim, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&averages->ptr, parts + 1, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&averages->sample_ptr, parts + 1, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&averages->sample_x, samples * dim, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&averages->sample_share, samples, error));
+    return NEW_ARRAY(&averages->sample_point, samples, error);
 }
 
 /* A dense row over the nodes, with the list of those touched: one average at a time is summed in it. */
@@ -36,15 +34,7 @@ struct dense_row {
 static enum status row_add(struct dense_row *row, int32_t node, double value, struct error *error)
 {
     if (!row->is_touched[node]) {
-        if (row->count == row->capacity) {
-            int64_t capacity = row->capacity * 2 + 64;
-            int32_t *grown = array_grow(row->touched, capacity, sizeof *grown);
-            if (grown == NULL) {
-                return fail_memory(error, "boundary averages");
-            }
-            row->touched = grown;
-            row->capacity = capacity;
-        }
+        RETURN_IF_ERROR(GROW_ARRAY(&row->touched, row->count + 1, &row->capacity, error));
         row->is_touched[node] = true;
         row->touched[row->count++] = node;
     }
@@ -52,28 +42,14 @@ static enum status row_add(struct dense_row *row, int32_t node, double value, st
     return STATUS_OK;
 }
 
-static int compare_indices(const void *left, const void *right)
-{
-    int32_t a = *(const int32_t *)left, b = *(const int32_t *)right;
-    return (a > b) - (a < b);
-}
-
 /* Append the row, divided by `whole`, to the averages' CSR lists, and clear it. */
 static enum status row_finish(struct dense_row *row, double whole, int64_t part, int64_t *capacity,
                               struct boundary_averages *averages, struct error *error)
 {
-    int64_t at = averages->ptr[part];
-    if (at + row->count > *capacity) {
-        *capacity = (at + row->count) * 2 + 1024;
-        int32_t *idx = array_grow(averages->idx, *capacity, sizeof *idx);
-        averages->idx = idx != NULL ? idx : averages->idx;
-        double *phi = array_grow(averages->phi, *capacity, sizeof *phi);
-        averages->phi = phi != NULL ? phi : averages->phi;
-        if (idx == NULL || phi == NULL) {
-            return fail_memory(error, "boundary averages");
-        }
-    }
-    qsort(row->touched, (size_t)row->count, sizeof *row->touched, compare_indices);
+    int64_t at = averages->ptr[part], room = *capacity;
+    RETURN_IF_ERROR(GROW_ARRAY(&averages->idx, at + row->count, &room, error));
+    RETURN_IF_ERROR(GROW_ARRAY(&averages->phi, at + row->count, capacity, error));
+    qsort(row->touched, (size_t)row->count, sizeof *row->touched, compare_int32);
     for (int64_t i = 0; i < row->count; i++) {
         int32_t node = row->touched[i];
         averages->idx[at + i] = node;
@@ -115,10 +91,7 @@ static enum status add_corner(const struct face_table *table, const struct facet
         double in_row = at_corner ? size / dim * extrapolated(&rule, dim, g, vertex) : weight;
         int64_t point = face_of[corner->facet] * table->per_face + g;
         for (int64_t i = table->lists->ptr[point]; row != NULL && i < table->lists->ptr[point + 1]; i++) {
-            enum status status = row_add(row, table->lists->idx[i], in_row * table->phi[i], error);
-            if (status != STATUS_OK) {
-                return status;
-            }
+            RETURN_IF_ERROR(row_add(row, table->lists->idx[i], in_row * table->phi[i], error));
         }
         averages->area[part] += weight;
         int64_t sample = averages->sample_ptr[part + 1]++;
@@ -150,17 +123,14 @@ static double normalise(int dim, int64_t part, struct boundary_averages *average
     return sqrt(length2) / averages->area[part];
 }
 
-/* The node itself in place of the points around it: the one sample of its part. */
-static void take_node(const struct face_table *table, int64_t part, struct boundary_averages *averages)
+/* Average `a` is the value at one place, its one sample. */
+static void put_place(int dim, int64_t a, const double *x, struct boundary_averages *averages)
 {
-    int dim = table->dim;
-    int64_t sample = averages->sample_ptr[part];
-    averages->sample_ptr[part + 1] = sample + 1;
+    int64_t sample = averages->sample_ptr[a];
+    averages->sample_ptr[a + 1] = sample + 1;
     averages->sample_share[sample] = 1.0;
-    for (int a = 0; a < dim; a++) {
-        double x = table->x[(int64_t)averages->node[part] * dim + a];
-        averages->position[part * dim + a] = averages->sample_x[sample * dim + a] = x;
-    }
+    memcpy(averages->position + a * dim, x, (size_t)dim * sizeof *x);
+    memcpy(averages->sample_x + sample * dim, x, (size_t)dim * sizeof *x);
 }
 
 /* The parts that averages are made of: boundary averages, split where the boundary turns or not, and, with
@@ -221,7 +191,7 @@ static enum status build(const struct face_table *table, const struct facet_set 
         }
         if (node_lists != NULL) {
             whole = 1.0;
-            take_node(table, part, averages);
+            put_place(dim, part, table->x + (int64_t)node * dim, averages);
             for (int64_t i = node_lists->ptr[node]; i < node_lists->ptr[node + 1]; i++) {
                 TRY(row_add(&row, node_lists->idx[i], node_phi[i], error));
             }
@@ -305,12 +275,7 @@ enum status boundary_list_build(int dim, const double *x, const int32_t *nodes, 
         int64_t from = lists->ptr[nodes[i]], length = lists->ptr[nodes[i] + 1] - from;
         averages->node[i] = nodes[i];
         put_values(averages, i, lists->idx + from, phi + from, length);
-        averages->sample_ptr[i + 1] = i + 1;
-        averages->sample_share[i] = 1.0;
-        for (int a = 0; a < dim; a++) {
-            averages->position[i * dim + a] = averages->sample_x[i * dim + a] =
-                x[(int64_t)nodes[i] * dim + a];
-        }
+        put_place(dim, i, x + (int64_t)nodes[i] * dim, averages);
     }
 done:
     if (status != STATUS_OK) {
@@ -344,13 +309,8 @@ enum status boundary_points_build(const struct face_table *table, const struct f
         quadrature_positions(&rule, dim, table->x, table->faces->node + face_of[facet] * dim, x);
         averages->node[p] = set->facet[facet * dim];
         averages->area[p] = rule.weight[p % table->per_face] * size;
-        averages->sample_ptr[p + 1] = p + 1;
-        averages->sample_share[p] = 1.0;
-        for (int a = 0; a < dim; a++) {
-            double place = x[p % table->per_face * dim + a];
-            averages->normal[p * dim + a] = normal[a];
-            averages->position[p * dim + a] = averages->sample_x[p * dim + a] = place;
-        }
+        memcpy(averages->normal + p * dim, normal, (size_t)dim * sizeof *normal);
+        put_place(dim, p, x + p % table->per_face * dim, averages);
         put_values(averages, p, table->lists->idx + from, table->phi + from, length);
     }
 done:

@@ -1,24 +1,10 @@
 /* Where a held part of the boundary ends. */
 #include "approx/boundary_private.h"
 
+#include "base/lists.h"
 #include "base/memory.h"
 
 #include <stdlib.h>
-
-/* A face of the boundary at one of its nodes. */
-struct face_at_node {
-    int32_t node;
-    int64_t face;
-};
-
-static int compare_faces_at_nodes(const void *left, const void *right)
-{
-    const struct face_at_node *a = left, *b = right;
-    if (a->node != b->node) {
-        return a->node < b->node ? -1 : 1;
-    }
-    return (a->face > b->face) - (a->face < b->face);
-}
 
 enum status boundary_find_ends(const struct face_table *table, enum boundary_end kind, const bool *held,
                                const bool *touched, bool *end, struct error *error)
@@ -26,26 +12,28 @@ enum status boundary_find_ends(const struct face_table *table, enum boundary_end
     enum status status;
     int dim = table->dim;
     const int32_t *node = table->faces->node;
-    struct face_at_node *at = NULL;
-    int64_t count = 0;
-    TRY(NEW_ARRAY(&at, table->faces->count * dim, error));
-    for (int64_t f = 0; f < table->faces->count; f++) {
-        for (int k = 0; k < dim && table->faces->cell[2 * f + 1] < 0; k++) {
-            at[count++] = (struct face_at_node){node[f * dim + k], f};
-        }
+    int64_t count = table->faces->count, *ptr = NULL;
+    int32_t *row = NULL, *at = NULL; /* faces of the boundary at each node */
+    TRY(NEW_ARRAY(&row, count * dim, error));
+    for (int64_t i = 0; i < count * dim; i++) {
+        row[i] = table->faces->cell[2 * (i / dim) + 1] < 0 ? node[i] : -1;
     }
-    qsort(at, (size_t)count, sizeof *at, compare_faces_at_nodes);
-    for (int64_t i = 0; i < count; i++) {
-        for (int64_t k = i + 1; k < count && at[k].node == at[i].node; k++) {
-            int64_t f = at[i].face, g = at[k].face;
-            bool ends = (held[f] && !touched[g]) || (held[g] && !touched[f]);
-            if (ends && boundary_share_edge(dim, node + f * dim, node + g * dim) &&
-                boundary_same_side(table, node + f * dim, node + g * dim) == (kind == BOUNDARY_END_SMOOTH)) {
-                end[at[i].node] = true;
+    TRY(lists_by_row(count, dim, row, table->node_count, &ptr, &at, error));
+    for (int64_t n = 0; n < table->node_count; n++) {
+        for (int64_t i = ptr[n]; i < ptr[n + 1]; i++) {
+            for (int64_t k = i + 1; k < ptr[n + 1]; k++) {
+                const int32_t *f = node + (int64_t)at[i] * dim, *g = node + (int64_t)at[k] * dim;
+                bool ends = (held[at[i]] && !touched[at[k]]) || (held[at[k]] && !touched[at[i]]);
+                if (ends && boundary_share_edge(dim, f, g) &&
+                    boundary_same_side(table, f, g) == (kind == BOUNDARY_END_SMOOTH)) {
+                    end[n] = true;
+                }
             }
         }
     }
 done:
+    free(row);
+    free(ptr);
     free(at);
     return status;
 }

@@ -2,6 +2,7 @@
 #include "approx/boundary_private.h"
 
 #include "base/memory.h"
+#include "base/vector.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -61,13 +62,9 @@ done:
 
 void boundary_unit_normal(const struct face_table *table, const int32_t *facet, double *normal, double *size)
 {
-    double sum = 0.0;
     normal[2] = 0.0;
     face_area_vector(table->dim, table->x, facet, normal);
-    for (int a = 0; a < table->dim; a++) {
-        sum += normal[a] * normal[a];
-    }
-    *size = sqrt(sum);
+    *size = vector_length(table->dim, normal);
     for (int a = 0; a < table->dim; a++) {
         normal[a] /= *size;
     }

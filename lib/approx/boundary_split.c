@@ -2,6 +2,7 @@
 #include "approx/boundary_private.h"
 
 #include "base/memory.h"
+#include "base/sets.h"
 
 #include <stdlib.h>
 
@@ -111,36 +112,20 @@ void boundary_collect_corners(const struct face_table *table, const struct facet
     qsort(corners, (size_t)count, sizeof *corners, compare_parts);
 }
 
-/* The first of the facets that facet f is joined with; the chains in `first` are shortened on the way. */
-static int64_t first_of(int64_t *first, int64_t f)
-{
-    while (first[f] != f) {
-        first[f] = first[first[f]];
-        f = first[f];
-    }
-    return f;
-}
-
-static void join(int64_t *first, int64_t f, int64_t g)
-{
-    int64_t a = first_of(first, f), b = first_of(first, g);
-    first[a > b ? a : b] = a > b ? b : a;
-}
-
 /* side, piece[set->count]: the first facet of the side and of the piece of each. */
 static void join_facets(const struct face_table *table, const struct facet_set *set,
-                        const struct corner *corners, int64_t *side, int64_t *piece)
+                        const struct corner *corners, int32_t *side, int32_t *piece)
 {
     int64_t count = set->count * table->dim;
     for (int64_t f = 0; f < set->count; f++) {
-        side[f] = piece[f] = f;
+        side[f] = piece[f] = (int32_t)f;
     }
     for (int64_t begin = 0, i = 0; i < count; i++) {
         begin = corners[i].node == corners[begin].node ? begin : i;
-        join(piece, corners[begin].facet, corners[i].facet);
+        set_join(piece, (int32_t)corners[begin].facet, (int32_t)corners[i].facet);
         for (int64_t k = begin; k < i; k++) {
             if (same_side(table, set, &corners[i], &corners[k])) {
-                join(side, corners[i].facet, corners[k].facet);
+                set_join(side, (int32_t)corners[i].facet, (int32_t)corners[k].facet);
             }
         }
     }
@@ -152,14 +137,16 @@ enum status boundary_add_sides(const struct face_table *table, const struct face
 {
     enum status status;
     int dim = table->dim;
-    int64_t count = set->count * dim, *side = NULL, *piece = NULL, *part = NULL;
+    int64_t count = set->count * dim, *part = NULL;
+    int32_t *side = NULL, *piece = NULL;
     TRY(NEW_ARRAY(&side, set->count, error));
     TRY(NEW_ARRAY(&piece, set->count, error));
     TRY(NEW_ARRAY(&part, set->count, error));
     join_facets(table, set, corners, side, piece);
     *group_count = 0;
     for (int64_t f = 0; f < set->count; f++) {
-        int64_t of_side = first_of(side, f), first = split ? of_side : first_of(piece, f);
+        int32_t of_side = set_first(side, (int32_t)f);
+        int32_t first = split ? of_side : set_first(piece, (int32_t)f);
         group[f] = first == f ? (*group_count)++ : group[first];
         part[f] = of_side == f ? (*part_count)++ : part[of_side];
         for (int k = 0; k < dim; k++) {

@@ -2,6 +2,7 @@
 
 #include "approx/face_rows.h"
 #include "base/memory.h"
+#include "base/vector.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -13,31 +14,18 @@ static const int tetrahedron_faces[4][3] = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0,
 static const int triangle_opposite[3] = {2, 0, 1};
 static const int tetrahedron_opposite[4] = {3, 2, 0, 1};
 
-static void edge_vector(int dim, const double *x, int32_t from, int32_t to, double *edge)
-{
-    for (int a = 0; a < dim; a++) {
-        edge[a] = x[(int64_t)to * dim + a] - x[(int64_t)from * dim + a];
-    }
-}
-
-static void cross(const double *u, const double *v, double *w)
-{
-    w[0] = u[1] * v[2] - u[2] * v[1];
-    w[1] = u[2] * v[0] - u[0] * v[2];
-    w[2] = u[0] * v[1] - u[1] * v[0];
-}
-
 double cell_volume(const struct cells *cells, int64_t cell)
 {
     const int32_t *v = cells->node + cell * (cells->dim + 1);
     double e[3][3], w[3];
     for (int k = 0; k < cells->dim; k++) {
-        edge_vector(cells->dim, cells->x, v[0], v[1 + k], e[k]);
+        vector_subtract(cells->dim, cells->x + (int64_t)v[1 + k] * cells->dim,
+                        cells->x + (int64_t)v[0] * cells->dim, e[k]);
     }
     if (cells->dim == 2) {
         return 0.5 * (e[0][0] * e[1][1] - e[0][1] * e[1][0]);
     }
-    cross(e[0], e[1], w);
+    vector_cross(e[0], e[1], w);
     return (w[0] * e[2][0] + w[1] * e[2][1] + w[2] * e[2][2]) / 6.0;
 }
 
@@ -54,19 +42,88 @@ void cell_centroid(const struct cells *cells, int64_t cell, double *centroid)
     }
 }
 
+void cell_face(const struct cells *cells, int64_t cell, int opposite, int32_t *face)
+{
+    static const int of_triangle[3][2] = {{1, 2}, {2, 0}, {0, 1}};
+    static const int of_tetrahedron[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};
+    const int *corner = cells->dim == 2 ? of_triangle[opposite] : of_tetrahedron[opposite];
+    for (int k = 0; k < cells->dim; k++) {
+        face[k] = cells->node[cell * (cells->dim + 1) + corner[k]];
+    }
+}
+
 void face_area_vector(int dim, const double *x, const int32_t *face, double *vector)
 {
     double u[3], v[3];
-    edge_vector(dim, x, face[0], face[1], u);
+    vector_subtract(dim, x + (int64_t)face[1] * dim, x + (int64_t)face[0] * dim, u);
     if (dim == 2) {
         vector[0] = u[1];
         vector[1] = -u[0];
         return;
     }
-    edge_vector(dim, x, face[0], face[2], v);
-    cross(u, v, vector);
+    vector_subtract(dim, x + (int64_t)face[2] * dim, x + (int64_t)face[0] * dim, v);
+    vector_cross(u, v, vector);
     for (int a = 0; a < 3; a++) {
         vector[a] *= 0.5;
+    }
+}
+
+/* Barycentric coordinates of the projection of x on the plane through corner[0 .. order], by Cramer's rule on
+ * the Gram matrix of the edges; false where these are linearly dependent. */
+static bool project(int dim, int order, const double *const *corner, const double *x, double *place)
+{
+    double edge[3][3], from[3], gram[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, right[3] = {0.0, 0.0, 0.0};
+    double cofactor[3][3];
+    vector_subtract(dim, x, corner[0], from);
+    for (int k = 0; k < order; k++) {
+        vector_subtract(dim, corner[k + 1], corner[0], edge[k]);
+    }
+    for (int k = 0; k < order; k++) {
+        right[k] = vector_dot(dim, edge[k], from);
+        for (int l = 0; l < order; l++) {
+            gram[k][l] = vector_dot(dim, edge[k], edge[l]);
+        }
+    }
+    for (int k = 0; k < 3; k++) {
+        vector_cross(gram[(k + 1) % 3], gram[(k + 2) % 3], cofactor[k]);
+    }
+    double determinant = vector_dot(3, gram[0], cofactor[0]);
+    place[0] = 1.0;
+    for (int k = 0; k < order; k++) {
+        place[k + 1] = vector_dot(3, cofactor[k], right) / determinant;
+        place[0] -= place[k + 1];
+    }
+    return determinant > 0.0;
+}
+
+/* The nearest place is in the simplex, or in a face beyond which the projection of x lies. */
+double simplex_distance2(int dim, int order, const double *const *corner, const double *x)
+{
+    double place[4] = {1.0}, least = INFINITY, nearest[3] = {0.0};
+    bool projected = order == 0 || project(dim, order, corner, x, place);
+    for (int k = 0; k <= order; k++) {
+        if (!projected || place[k] < -1e-9) {
+            const double *face[3];
+            for (int l = 0; l < order; l++) {
+                face[l] = corner[l + (l >= k)];
+            }
+            least = fmin(least, simplex_distance2(dim, order - 1, face, x));
+        }
+    }
+    if (isinf(least)) {
+        for (int i = 0; i < (order + 1) * dim; i++) {
+            nearest[i % dim] += place[i / dim] * corner[i / dim][i % dim];
+        }
+        least = vector_distance2(dim, nearest, x);
+    }
+    return least;
+}
+
+void cell_corners(const struct cells *cells, int64_t cell, const double *corner[4])
+{
+    const int32_t *node = cells->node + cell * (cells->dim + 1);
+    for (int k = 0; k <= cells->dim; k++) {
+        corner[k] = cells->x + (int64_t)node[k] * cells->dim;
     }
 }
 
@@ -262,12 +319,8 @@ enum status cells_node_spacing(const struct cells *cells, double *spacing, struc
         const int32_t *v = cells->node + c * (dim + 1);
         for (int i = 0; i <= dim; i++) {
             for (int k = i + 1; k <= dim; k++) {
-                double edge[3], length2 = 0.0;
-                edge_vector(dim, cells->x, v[i], v[k], edge);
-                for (int a = 0; a < dim; a++) {
-                    length2 += edge[a] * edge[a];
-                }
-                double length = sqrt(length2);
+                double length =
+                    vector_distance(dim, cells->x + (int64_t)v[k] * dim, cells->x + (int64_t)v[i] * dim);
                 spacing[v[i]] += length;
                 spacing[v[k]] += length;
                 visits[v[i]]++;

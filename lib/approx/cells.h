@@ -35,8 +35,17 @@ MUST_CHECK enum status cells_check(const struct cells *cells, struct error *erro
 /* Area or volume of a cell. */
 double cell_volume(const struct cells *cells, int64_t cell);
 
+/* The places of a cell's dim + 1 vertices. */
+void cell_corners(const struct cells *cells, int64_t cell, const double *corner[4]);
+
+/* Squared distance of x[dim] from the simplex of corner[0 .. order], order <= dim: a point, a segment, ... */
+double simplex_distance2(int dim, int order, const double *const *corner, const double *x);
+
 /* Mean of a cell's vertices. */
 void cell_centroid(const struct cells *cells, int64_t cell, double *centroid);
+
+/* face[dim]: the nodes of the face opposite a vertex of a cell, oriented outward. */
+void cell_face(const struct cells *cells, int64_t cell, int opposite, int32_t *face);
 
 /* Outward normal times length or area of a face of node indices face[dim]. */
 void face_area_vector(int dim, const double *x, const int32_t *face, double *vector);

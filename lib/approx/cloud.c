@@ -183,7 +183,6 @@ static void split_cube(const struct cloud_options *options, int64_t node, int32_
 
 static enum status make_cells(const struct cloud_options *options, struct cloud *cloud, struct error *error)
 {
-    enum status status = STATUS_OK;
     int dim = options->dim;
     int pieces = dim == 2 ? 2 : 6;
     int64_t count = pieces;
@@ -191,10 +190,9 @@ static enum status make_cells(const struct cloud_options *options, struct cloud 
         count *= options->count[a] - 1; /* at most 6 (2^31 - 1) */
     }
     if (count > INT32_MAX) {
-        status = fail(error, STATUS_INPUT, "count: more than %d cells", INT32_MAX);
-        goto done;
+        return fail(error, STATUS_INPUT, "count: more than %d cells", INT32_MAX);
     }
-    TRY(NEW_ARRAY(&cloud->cells, count * (dim + 1), error));
+    RETURN_IF_ERROR(NEW_ARRAY(&cloud->cells, count * (dim + 1), error));
     for (int64_t n = 0; n < cloud->node_count; n++) {
         int64_t index[3];
         bool is_corner = true;
@@ -213,8 +211,7 @@ static enum status make_cells(const struct cloud_options *options, struct cloud 
         }
         cloud->cell_count += pieces;
     }
-done:
-    return status;
+    return STATUS_OK;
 }
 
 static bool all_positive(const struct cloud *cloud)

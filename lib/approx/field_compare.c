@@ -107,11 +107,10 @@ double field_largest(int64_t count, int64_t cols, const double *field)
 enum status field_statistics(int64_t count, const int64_t *index, const double *difference,
                              struct field_statistics *statistics, struct error *error)
 {
-    enum status status;
     double sum = 0.0, sum2 = 0.0;
     bool unknown = count == 0;
     *statistics = (struct field_statistics){.count = count};
-    TRY(NEW_ARRAY(&statistics->sorted, count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&statistics->sorted, count, error));
     for (int64_t i = 0; i < count; i++) {
         double d = difference[index[i]];
         statistics->sorted[i] = d;
@@ -133,8 +132,7 @@ enum status field_statistics(int64_t count, const int64_t *index, const double *
     } else {
         gsl_sort(statistics->sorted, 1, (size_t)count);
     }
-done:
-    return status;
+    return STATUS_OK;
 }
 
 void field_statistics_free(struct field_statistics *statistics)

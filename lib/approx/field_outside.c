@@ -1,86 +1,13 @@
 #include "approx/field.h"
 
 #include "base/memory.h"
+#include "base/vector.h"
 
 #include <math.h>
 #include <stdlib.h>
 
 /* A point nearer to a cell than this share of its size counts as inside. */
 static const double in_cell = 1e-9;
-
-static double dot(int dim, const double *a, const double *b)
-{
-    double sum = 0.0;
-    for (int i = 0; i < dim; i++) {
-        sum += a[i] * b[i];
-    }
-    return sum;
-}
-
-/* Barycentric coordinates of the projection of x on the plane through corner[0 .. order], by Cramer's rule on
- * the Gram matrix of the edges. */
-static void project(int dim, int order, const double *const *corner, const double *x, double *place)
-{
-    double edge[3][3], from[3], gram[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1}, right[3] = {0.0, 0.0, 0.0};
-    for (int d = 0; d < dim; d++) {
-        from[d] = x[d] - corner[0][d];
-        for (int k = 0; k < order; k++) {
-            edge[k][d] = corner[k + 1][d] - corner[0][d];
-        }
-    }
-    for (int k = 0; k < order; k++) {
-        right[k] = dot(dim, edge[k], from);
-        for (int l = 0; l < order; l++) {
-            gram[3 * k + l] = dot(dim, edge[k], edge[l]);
-        }
-    }
-    double minor[3] = {gram[4] * gram[8] - gram[5] * gram[7], gram[5] * gram[6] - gram[3] * gram[8],
-                       gram[3] * gram[7] - gram[4] * gram[6]};
-    double determinant = gram[0] * minor[0] + gram[1] * minor[1] + gram[2] * minor[2];
-    double cofactor[9] = {minor[0],
-                          minor[1],
-                          minor[2],
-                          gram[2] * gram[7] - gram[1] * gram[8],
-                          gram[0] * gram[8] - gram[2] * gram[6],
-                          gram[1] * gram[6] - gram[0] * gram[7],
-                          gram[1] * gram[5] - gram[2] * gram[4],
-                          gram[2] * gram[3] - gram[0] * gram[5],
-                          gram[0] * gram[4] - gram[1] * gram[3]};
-    place[0] = 1.0;
-    for (int k = 0; k < order; k++) {
-        place[k + 1] = dot(3, cofactor + 3 * k, right) / determinant;
-        place[0] -= place[k + 1];
-    }
-}
-
-/* Squared distance of x from the simplex of corner[0 .. order]. Its nearest place is in the simplex, or in a
- * face beyond which the projection of x lies. */
-static double distance2(int dim, int order, const double *const *corner, const double *x)
-{
-    double place[4] = {1.0}, least = INFINITY, offset[3];
-    if (order > 0) {
-        project(dim, order, corner, x, place);
-    }
-    for (int k = 0; k <= order; k++) {
-        if (place[k] < -in_cell) {
-            const double *face[3];
-            for (int l = 0; l < order; l++) {
-                face[l] = corner[l + (l >= k)];
-            }
-            least = fmin(least, distance2(dim, order - 1, face, x));
-        }
-    }
-    if (isinf(least)) {
-        for (int d = 0; d < dim; d++) {
-            offset[d] = -x[d];
-            for (int k = 0; k <= order; k++) {
-                offset[d] += place[k] * corner[k][d];
-            }
-        }
-        least = dot(dim, offset, offset);
-    }
-    return least;
-}
 
 /* centre[count * dim] and radius[count], m: a ball around each cell that holds all that is nearer to it than
  * `within` times the largest spacing of its nodes, size[count]. */
@@ -92,12 +19,7 @@ static void enclose(const struct cells *cells, const double *spacing, double wit
         cell_centroid(cells, c, centre + c * dim);
         for (int k = 0; k <= dim; k++) {
             int64_t node = cells->node[c * (dim + 1) + k];
-            double sum = 0.0;
-            for (int d = 0; d < dim; d++) {
-                double offset = cells->x[node * dim + d] - centre[c * dim + d];
-                sum += offset * offset;
-            }
-            radius[c] = fmax(radius[c], sqrt(sum));
+            radius[c] = fmax(radius[c], vector_distance(dim, cells->x + node * dim, centre + c * dim));
             size[c] = fmax(size[c], spacing[node]);
         }
         radius[c] = (1.0 + 1e-6) * radius[c] + within * size[c];
@@ -124,11 +46,9 @@ static enum status outside_of_cells(const struct cells *cells, const double *spa
         for (int64_t i = 0; i < near.count && outside[p]; i++) {
             const double *corner[4];
             int64_t c = near.index[i];
-            for (int k = 0; k <= dim; k++) {
-                corner[k] = cells->x + (int64_t)cells->node[c * (dim + 1) + k] * dim;
-            }
+            cell_corners(cells, c, corner);
             double most = (within + in_cell) * size[c];
-            outside[p] = !(distance2(dim, dim, corner, x + p * dim) <= most * most);
+            outside[p] = !(simplex_distance2(dim, dim, corner, x + p * dim) <= most * most);
         }
     }
 done:

@@ -1,7 +1,7 @@
 #include "approx/mls.h"
 
 #include "approx/mls_kernel.h"
-#include "approx/mls_solve.h"
+#include "approx/mls_orthogonal.h"
 #include "base/memory.h"
 
 #include <math.h>

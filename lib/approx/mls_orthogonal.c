@@ -1,14 +1,39 @@
-/* MLS at points whose moment matrix may be ill-conditioned: the normal equations with refinement where the
- * condition admits them, else an orthogonal (QR) factorisation. */
-#include "approx/mls_solve.h"
+/* MLS at points whose moment matrix may be ill-conditioned, by orthogonal (QR) factorisation of the weighted
+ * monomials: half as many digits are lost as by the normal equations. */
+#include "approx/mls_orthogonal.h"
 
 #include "approx/weight.h"
+#include "base/dense.h"
 
 #include <math.h>
 
+/* Reciprocal condition (1-norm, of the matrix scaled to unit diagonal) below which a support is refused. */
+static const double least_condition = 1e-10;
+
+/* One point's data in local scaled coordinates; arrays of `count` entries, `stride` apart. */
+struct mls_local {
+    int64_t count, stride;
+    double scale;       /* s, in units of x */
+    double *monomials;  /* [m][stride]: p_k(xi_j) */
+    double *orthogonal; /* [m][stride]: scratch of the orthogonal factorization, count + m used */
+    double *weight;     /* w_j */
+    double *slope;      /* grad w_j = -slope_j image_j / s */
+    double *image;      /* [dim][stride]: where the neighbour seems to be; xi_j but around corners */
+    double *projection; /* p_j . c */
+    double *row;        /* scratch */
+    double matrix[MLS_MAX_BASIS * MLS_MAX_BASIS]; /* moment matrix with H, m x m */
+    double regularisation[MLS_MAX_BASIS];         /* diagonal of H */
+};
+
+/* sqrt(W) P D^-1 over sqrt(H) D^-1 = Q R, D = sqrt(diag M); Q stands in local->orthogonal. */
+struct mls_factor {
+    double scaling[MLS_MAX_BASIS];               /* 1 / D */
+    double lower[MLS_MAX_BASIS * MLS_MAX_BASIS]; /* R^T */
+};
+
 /* Local coordinates, weights and monomials of the neighbours. */
-static inline __attribute__((always_inline)) void
-gather(const struct mls *mls, const struct mls_support *support, int dim, int m, struct mls_local *local)
+static void gather(const struct mls *mls, const struct mls_support *support, int dim, int m,
+                   struct mls_local *local)
 {
     double scale = 0.0;
     for (int64_t j = 0; j < support->count; j++) {
@@ -52,7 +77,7 @@ gather(const struct mls *mls, const struct mls_support *support, int dim, int m,
 }
 
 /* Upper triangle of the moment matrix sum_j w p p^T, mirrored. */
-static inline __attribute__((always_inline)) void assemble(int m, struct mls_local *local)
+static void assemble(int m, struct mls_local *local)
 {
     for (int k = 0; k < m; k++) {
         const double *pk = local->monomials + k * local->stride;
@@ -90,23 +115,183 @@ static void regularise(const struct mls *mls, int dim, int m, struct mls_local *
     }
 }
 
-/* phi_j = w_j p_j.c; keeps p_j.c in local->projection. */
-static inline __attribute__((always_inline)) void values(int m, struct mls_local *local, const double *c,
-                                                         double *phi)
+/* Solve with the leading `size` rows and columns of the m x m factor. */
+static void substitute(int m, int size, const struct mls_factor *factor, const double *right,
+                       double *solution)
 {
+    const double *lower = factor->lower;
+    for (int k = 0; k < size; k++) {
+        double sum = right[k] * factor->scaling[k];
+        for (int i = 0; i < k; i++) {
+            sum -= lower[k * m + i] * solution[i];
+        }
+        solution[k] = sum / lower[k * m + k];
+    }
+    for (int k = size - 1; k >= 0; k--) {
+        double sum = solution[k];
+        for (int i = k + 1; i < size; i++) {
+            sum -= lower[i * m + k] * solution[i];
+        }
+        solution[k] = sum / lower[k * m + k];
+    }
+    for (int k = 0; k < size; k++) {
+        solution[k] *= factor->scaling[k];
+    }
+}
+
+/* 1 / (|A| |A^-1|) in the 1-norm, of the leading `size` block of the moment matrix, scaled; 0 where that is
+ * not positive definite. */
+static double reciprocal_condition(int m, int size, const struct mls_local *local, const double *scaling)
+{
+    double block[MLS_MAX_BASIS * MLS_MAX_BASIS], norm[2] = {0.0, 0.0};
+    for (int k = 0; k < size * size; k++) {
+        block[k] = local->matrix[k / size * m + k % size] * scaling[k / size] * scaling[k % size];
+    }
+    for (int inverse = 0; inverse < 2; inverse++) {
+        if (inverse == 1) {
+            if (!dense_factorise(size, block)) {
+                return 0.0;
+            }
+            dense_invert(size, block);
+        }
+        for (int k = 0; k < size; k++) {
+            double sum = 0.0;
+            for (int l = 0; l < size; l++) {
+                sum += fabs(block[k * size + l]);
+            }
+            norm[inverse] = fmax(norm[inverse], sum);
+        }
+    }
+    return 1.0 / (norm[0] * norm[1]);
+}
+
+/* Judge the condition of the moment matrix: that of the linear block always, that of the whole unless
+ * `modified` (there H bounds it, and the reproduction is checked afterwards). Sets `scaling`. */
+static enum mls_verdict judge(int m, int dim, bool modified, const struct mls_local *local, double *scaling)
+{
+    for (int k = 0; k < m; k++) {
+        double diagonal = local->matrix[k * m + k];
+        if (!(diagonal > 1e-280) || !isfinite(diagonal)) {
+            return MLS_ILL_CONDITIONED;
+        }
+        scaling[k] = 1.0 / sqrt(diagonal);
+    }
+    bool good = reciprocal_condition(m, dim + 1, local, scaling) >= least_condition &&
+                (modified || reciprocal_condition(m, m, local, scaling) >= least_condition);
+    return good ? MLS_GOOD : MLS_ILL_CONDITIONED;
+}
+
+/* Gram-Schmidt, each column orthogonalised twice, of the scaled rows sqrt(w_j) p_j and sqrt(h_k) e_k. */
+static void orthogonalise(int m, struct mls_local *local, struct mls_factor *factor)
+{
+    int64_t rows = local->count + m;
+    for (int k = 0; k < m; k++) {
+        double *column = local->orthogonal + k * local->stride;
+        const double *pk = local->monomials + k * local->stride;
+        for (int64_t j = 0; j < local->count; j++) {
+            column[j] = sqrt(local->weight[j]) * pk[j] * factor->scaling[k];
+        }
+        for (int l = 0; l < m; l++) {
+            column[local->count + l] = l == k ? sqrt(local->regularisation[k]) * factor->scaling[k] : 0.0;
+        }
+        double *r = factor->lower + k * m; /* column k of R, stored as row k of R^T */
+        for (int l = 0; l < m; l++) {
+            r[l] = 0.0;
+        }
+        for (int pass = 0; pass < 2; pass++) {
+            for (int l = 0; l < k; l++) {
+                const double *other = local->orthogonal + l * local->stride;
+                double dot = 0.0;
+                for (int64_t j = 0; j < rows; j++) {
+                    dot += other[j] * column[j];
+                }
+                r[l] += dot;
+                for (int64_t j = 0; j < rows; j++) {
+                    column[j] -= dot * other[j];
+                }
+            }
+        }
+        double norm2 = 0.0;
+        for (int64_t j = 0; j < rows; j++) {
+            norm2 += column[j] * column[j];
+        }
+        r[k] = sqrt(fmax(norm2, 1e-300));
+        for (int64_t j = 0; j < rows; j++) {
+            column[j] /= r[k];
+        }
+    }
+}
+
+/* solution = M^-1 right, with one step of iterative refinement. */
+static void solve(int m, const struct mls_factor *factor, const struct mls_local *local, const double *right,
+                  double *solution)
+{
+    double residual[MLS_MAX_BASIS] = {0.0}, correction[MLS_MAX_BASIS];
+    substitute(m, m, factor, right, solution);
+    for (int k = 0; k < m; k++) {
+        double sum = right[k];
+        for (int l = 0; l < m; l++) {
+            sum -= local->matrix[k * m + l] * solution[l];
+        }
+        residual[k] = sum;
+    }
+    substitute(m, m, factor, residual, correction);
+    for (int k = 0; k < m; k++) {
+        solution[k] += correction[k];
+    }
+}
+
+/* c = M^-1 e_1 and phi_j = w_j p_j . c, from Q directly: products with a large c would cancel. Sets
+ * local->projection. */
+static void orthogonal_values(int m, const struct mls_factor *factor, struct mls_local *local, double *c,
+                              double *phi)
+{
+    double unit[MLS_MAX_BASIS] = {1.0}, y[MLS_MAX_BASIS];
+    for (int k = 0; k < m; k++) { /* R^T y = D^-1 e_1 */
+        double sum = unit[k] * factor->scaling[k];
+        for (int i = 0; i < k; i++) {
+            sum -= factor->lower[k * m + i] * y[i];
+        }
+        y[k] = sum / factor->lower[k * m + k];
+    }
+    solve(m, factor, local, unit, c);
     for (int64_t j = 0; j < local->count; j++) {
         double sum = 0.0;
         for (int k = 0; k < m; k++) {
-            sum += local->monomials[k * local->stride + j] * c[k];
+            sum += local->orthogonal[k * local->stride + j] * y[k];
         }
-        local->projection[j] = sum;
-        phi[j] = local->weight[j] * sum;
+        double root = sqrt(local->weight[j]);
+        phi[j] = root * sum;
+        local->projection[j] = root > 1e-150 ? sum / root : 0.0;
+    }
+}
+
+/* Correct values[j * value_stride] by w_j p_j . c over the linear monomials, where H is zero, so that
+ * sum_j value_j p_k(xi_j) = target[k], k <= dim, to round-off: linear fields are reproduced also where the
+ * quadratic part is ill-conditioned. */
+static void restore(int m, int dim, const struct mls_factor *factor, const struct mls_local *local,
+                    const double *target, double *values, int value_stride)
+{
+    double defect[MLS_MAX_BASIS], correction[MLS_MAX_BASIS];
+    for (int k = 0; k <= dim; k++) {
+        const double *pk = local->monomials + k * local->stride;
+        defect[k] = target[k];
+        for (int64_t j = 0; j < local->count; j++) {
+            defect[k] -= values[j * value_stride] * pk[j];
+        }
+    }
+    substitute(m, dim + 1, factor, defect, correction);
+    for (int64_t j = 0; j < local->count; j++) {
+        double sum = 0.0;
+        for (int k = 0; k <= dim; k++) {
+            sum += local->monomials[k * local->stride + j] * correction[k];
+        }
+        values[j * value_stride] += local->weight[j] * sum;
     }
 }
 
 /* Right-hand side of the gradient's coefficients: e_a - (d_a M) c, with d_a M = sum_j d_a w_j p_j p_j^T. */
-static inline __attribute__((always_inline)) void
-gradient_right_side(int m, int a, const struct mls_local *local, double *right)
+static void gradient_right_side(int m, int a, const struct mls_local *local, double *right)
 {
     const double *image = local->image + a * local->stride;
     for (int64_t j = 0; j < local->count; j++) {
@@ -124,8 +309,7 @@ gradient_right_side(int m, int a, const struct mls_local *local, double *right)
 
 /* d_a phi_j = d_a w_j (p_j.c) + w_j p_j.g, from scaled to physical coordinates. Call after
  * gradient_right_side, whose row[] it reuses. */
-static inline __attribute__((always_inline)) void
-gradient(int m, int dim, int a, const struct mls_local *local, const double *g, double *dphi)
+static void gradient(int m, int dim, int a, const struct mls_local *local, const double *g, double *dphi)
 {
     for (int64_t j = 0; j < local->count; j++) {
         double sum = 0.0;
@@ -167,64 +351,44 @@ static void restore_linear(int m, int dim, const struct mls_factor *factor, cons
                            double *phi, double *dphi)
 {
     double target[4] = {1.0, 0.0, 0.0, 0.0};
-    mls_restore_linear(m, dim, factor, local, target, phi, 1);
+    restore(m, dim, factor, local, target, phi, 1);
     target[0] = 0.0;
     for (int a = 0; dphi != NULL && a < dim; a++) {
         target[1 + a] = 1.0 / local->scale;
-        mls_restore_linear(m, dim, factor, local, target, dphi + a, dim);
+        restore(m, dim, factor, local, target, dphi + a, dim);
         target[1 + a] = 0.0;
     }
-}
-
-static inline __attribute__((always_inline)) enum mls_verdict
-evaluate(const struct mls *mls, const struct mls_support *support, int dim, int m, struct mls_local *local,
-         double *phi, double *dphi)
-{
-    double unit[MLS_MAX_BASIS] = {1.0}, c[MLS_MAX_BASIS], right[MLS_MAX_BASIS], g[MLS_MAX_BASIS];
-    gather(mls, support, dim, m, local);
-    assemble(m, local);
-    regularise(mls, dim, m, local);
-    struct mls_factor factor;
-    enum mls_verdict verdict = mls_factorise(m, dim, mls->basis == BASIS_MODIFIED, local, &factor);
-    /* The normal equations serve well-conditioned supports; the orthogonal factorization, which loses half as
-     * many digits, the others. */
-    for (int attempt = 0; verdict == MLS_GOOD; attempt++) {
-        if (factor.orthogonal) {
-            mls_orthogonal_values(m, &factor, local, c, phi);
-        } else {
-            mls_solve(m, &factor, local, unit, c);
-            values(m, local, c, phi);
-        }
-        for (int a = 0; dphi != NULL && a < dim; a++) {
-            gradient_right_side(m, a, local, right);
-            mls_solve(m, &factor, local, right, g);
-            gradient(m, dim, a, local, g, dphi);
-        }
-        if (factor.orthogonal) {
-            restore_linear(m, dim, &factor, local, phi, dphi);
-        }
-        if (reproduction_defect(dim, local, phi, dphi) <= (factor.orthogonal ? 1e-10 : 1e-13)) {
-            break;
-        }
-        if (factor.orthogonal || attempt > 0) {
-            verdict = MLS_ILL_CONDITIONED;
-        } else {
-            mls_orthogonalise(m, local, &factor);
-        }
-    }
-    return verdict;
 }
 
 enum mls_verdict mls_orthogonal(const struct mls *mls, const struct mls_support *support, double *scratch,
                                 int64_t stride, double *phi, double *dphi)
 {
-    int m = mls_basis_size(mls);
-    struct mls_local local;
-    mls_local_layout(&local, scratch, support->count, stride);
-    if (mls->dim == 2) {
-        return m == 3 ? evaluate(mls, support, 2, 3, &local, phi, dphi)
-                      : evaluate(mls, support, 2, 6, &local, phi, dphi);
+    int dim = mls->dim, m = mls_basis_size(mls);
+    double c[MLS_MAX_BASIS], right[MLS_MAX_BASIS], g[MLS_MAX_BASIS];
+    struct mls_factor factor;
+    struct mls_local local = {.count = support->count,
+                              .stride = stride,
+                              .monomials = scratch,
+                              .orthogonal = scratch + MLS_MAX_BASIS * stride,
+                              .weight = scratch + 2 * MLS_MAX_BASIS * stride};
+    local.slope = local.weight + stride;
+    local.projection = local.slope + stride;
+    local.row = local.projection + stride;
+    local.image = local.row + stride;
+    gather(mls, support, dim, m, &local);
+    assemble(m, &local);
+    regularise(mls, dim, m, &local);
+    enum mls_verdict verdict = judge(m, dim, mls->basis == BASIS_MODIFIED, &local, factor.scaling);
+    if (verdict != MLS_GOOD) {
+        return verdict;
     }
-    return m == 4 ? evaluate(mls, support, 3, 4, &local, phi, dphi)
-                  : evaluate(mls, support, 3, 10, &local, phi, dphi);
+    orthogonalise(m, &local, &factor);
+    orthogonal_values(m, &factor, &local, c, phi);
+    for (int a = 0; dphi != NULL && a < dim; a++) {
+        gradient_right_side(m, a, &local, right);
+        solve(m, &factor, &local, right, g);
+        gradient(m, dim, a, &local, g, dphi);
+    }
+    restore_linear(m, dim, &factor, &local, phi, dphi);
+    return reproduction_defect(dim, &local, phi, dphi) <= 1e-10 ? MLS_GOOD : MLS_ILL_CONDITIONED;
 }

@@ -1,28 +1,18 @@
 #include "approx/partition.h"
 
+#include "base/lists.h"
 #include "base/memory.h"
 
 #include <stdlib.h>
 
 enum status cell_stars_build(const struct cells *cells, struct cell_stars *stars, struct error *error)
 {
-    enum status status;
-    int vertices = cells->dim + 1;
     *stars = (struct cell_stars){0};
-    TRY(NEW_ARRAY(&stars->ptr, cells->node_count + 2, error));
-    TRY(NEW_ARRAY(&stars->cell, cells->count * vertices, error));
-    for (int64_t i = 0; i < cells->count * vertices; i++) {
-        stars->ptr[cells->node[i] + 2]++;
+    enum status status = lists_by_row(cells->count, cells->dim + 1, cells->node, cells->node_count,
+                                      &stars->ptr, &stars->cell, error);
+    if (status != STATUS_OK) {
+        cell_stars_free(stars);
     }
-    for (int64_t n = 1; n <= cells->node_count; n++) {
-        stars->ptr[n + 1] += stars->ptr[n];
-    }
-    for (int64_t i = 0; i < cells->count * vertices; i++) {
-        stars->cell[stars->ptr[cells->node[i] + 1]++] = (int32_t)(i / vertices);
-    }
-    return STATUS_OK;
-done:
-    cell_stars_free(stars);
     return status;
 }
 
@@ -56,24 +46,21 @@ enum status partition_own_cells(const struct partition *partition, int64_t **own
 {
     enum status status;
     const struct cells *cells = partition->cells;
+    int32_t *part = NULL;
     *own_ptr = NULL;
     *own_cell = NULL;
-    TRY(NEW_ARRAY(own_ptr, partition->parts + 2, error));
-    TRY(NEW_ARRAY(own_cell, cells->count, error));
+    TRY(NEW_ARRAY(&part, cells->count, error));
     for (int64_t c = 0; c < cells->count; c++) {
-        (*own_ptr)[partition_cell_owner(cells, c, partition->owner) + 2]++;
+        part[c] = partition_cell_owner(cells, c, partition->owner);
     }
-    for (int32_t k = 1; k <= partition->parts; k++) {
-        (*own_ptr)[k + 1] += (*own_ptr)[k];
-    }
-    for (int64_t c = 0; c < cells->count; c++) {
-        (*own_cell)[(*own_ptr)[partition_cell_owner(cells, c, partition->owner) + 1]++] = (int32_t)c;
-    }
-    return STATUS_OK;
+    TRY(lists_by_row(cells->count, 1, part, partition->parts, own_ptr, own_cell, error));
 done:
-    free(*own_ptr);
-    free(*own_cell);
-    *own_ptr = NULL;
-    *own_cell = NULL;
+    free(part);
+    if (status != STATUS_OK) {
+        free(*own_ptr);
+        free(*own_cell);
+        *own_ptr = NULL;
+        *own_cell = NULL;
+    }
     return status;
 }

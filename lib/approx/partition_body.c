@@ -1,24 +1,16 @@
 /* What each part needs of the others: the reach of supports over its own cells. */
 #include "approx/partition.h"
 
+#include "base/box.h"
+#include "base/lists.h"
 #include "base/memory.h"
 
 #include <math.h>
 #include <stdlib.h>
 
-static void box_of_cell(const struct cells *cells, int64_t cell, double low[3], double high[3])
+static struct box box_of_cell(const struct cells *cells, int64_t cell)
 {
-    int dim = cells->dim;
-    const int32_t *node = cells->node + cell * (dim + 1);
-    for (int a = 0; a < dim; a++) {
-        low[a] = INFINITY;
-        high[a] = -INFINITY;
-        for (int k = 0; k <= dim; k++) {
-            double x = cells->x[(int64_t)node[k] * dim + a];
-            low[a] = fmin(low[a], x);
-            high[a] = fmax(high[a], x);
-        }
-    }
+    return box_of_nodes(cells->dim, cells->x, cells->node + cell * (cells->dim + 1), cells->dim + 1);
 }
 
 enum status partition_work(const struct cells *cells, const struct point_grid *grid, int32_t *work,
@@ -32,11 +24,10 @@ enum status partition_work(const struct cells *cells, const struct point_grid *g
         enum status mine = STATUS_OK;
 #pragma omp for schedule(static)
         for (int64_t c = 0; c < cells->count; c++) {
-            double low[3], high[3];
-            box_of_cell(cells, c, low, high);
+            struct box box = box_of_cell(cells, c);
             near.count = 0;
             if (mine == STATUS_OK) {
-                mine = point_grid_query_box(grid, low, high, 1.0, &near, &own);
+                mine = point_grid_query_box(grid, box.low, box.high, 1.0, &near, &own);
             }
             work[c] = (int32_t)near.count;
         }
@@ -64,24 +55,22 @@ void body_part_work_free(struct body_part_work *work)
 static enum status prepare(const struct partition *partition, struct body_part_work *work,
                            struct error *error)
 {
-    enum status status = STATUS_OK;
     if (work->mark == NULL) {
-        TRY(NEW_ARRAY(&work->mark, partition->cells->node_count, error));
-        TRY(NEW_ARRAY(&work->cell_mark, partition->cells->count, error));
-        TRY(NEW_ARRAY(&work->part_mark, partition->parts, error));
+        RETURN_IF_ERROR(NEW_ARRAY(&work->mark, partition->cells->node_count, error));
+        RETURN_IF_ERROR(NEW_ARRAY(&work->cell_mark, partition->cells->count, error));
+        RETURN_IF_ERROR(NEW_ARRAY(&work->part_mark, partition->parts, error));
     }
-done:
-    return status;
+    return STATUS_OK;
 }
 
 /* Does the support of node j, not widened, reach the box? */
-static bool reaches(const struct partition *partition, int32_t j, const double *low, const double *high)
+static bool reaches(const struct partition *partition, int32_t j, const struct box *box)
 {
     const struct point_grid *grid = partition->grid;
     double square = 0;
     for (int a = 0; a < grid->dim; a++) {
         double x = grid->x[(int64_t)j * grid->dim + a];
-        double d = fmax(0.0, fmax(low[a] - x, x - high[a]));
+        double d = fmax(0.0, fmax(box->low[a] - x, x - box->high[a]));
         square += d * d;
     }
     return square < grid->radius[j] * grid->radius[j];
@@ -103,12 +92,10 @@ static enum status see_node(struct body_part_work *work, int32_t part, int32_t n
     if (mark_of(work->mark, node, part) > 0) {
         return STATUS_OK;
     }
-    enum status status = index_list_reserve(list, 1, error);
-    if (status == STATUS_OK) {
-        work->mark[node] = part * MARKS + SEEN;
-        list->index[list->count++] = node;
-    }
-    return status;
+    RETURN_IF_ERROR(index_list_reserve(list, 1, error));
+    work->mark[node] = part * MARKS + SEEN;
+    list->index[list->count++] = node;
+    return STATUS_OK;
 }
 
 /* Nodes whose supports, widened, reach the own cells; those not widened are marked NEEDED. */
@@ -116,22 +103,20 @@ static enum status list_reaching(const struct partition *partition, int32_t part
                                  int64_t count, struct body_part_work *work, struct index_list *list,
                                  struct error *error)
 {
-    enum status status = STATUS_OK;
-    double low[3], high[3];
     for (int64_t i = 0; i < count; i++) {
-        box_of_cell(partition->cells, own_cell[i], low, high);
+        struct box box = box_of_cell(partition->cells, own_cell[i]);
         work->near.count = 0;
-        TRY(point_grid_query_box(partition->grid, low, high, partition->widen, &work->near, error));
+        RETURN_IF_ERROR(
+            point_grid_query_box(partition->grid, box.low, box.high, partition->widen, &work->near, error));
         for (int64_t n = 0; n < work->near.count; n++) {
             int32_t j = work->near.index[n];
-            TRY(see_node(work, part, j, list, error));
-            if (mark_of(work->mark, j, part) == SEEN && reaches(partition, j, low, high)) {
+            RETURN_IF_ERROR(see_node(work, part, j, list, error));
+            if (mark_of(work->mark, j, part) == SEEN && reaches(partition, j, &box)) {
                 work->mark[j] = part * MARKS + NEEDED;
             }
         }
     }
-done:
-    return status;
+    return STATUS_OK;
 }
 
 /* The cells at all nodes of the list from number `from` on, and their vertices behind the list. */
@@ -139,7 +124,6 @@ static enum status add_cells(const struct partition *partition, int32_t part, st
                              struct index_list *nodes, int64_t from, struct index_list *found,
                              struct error *error)
 {
-    enum status status = STATUS_OK;
     const struct cells *cells = partition->cells;
     const struct cell_stars *stars = partition->stars;
     int vertices = cells->dim + 1;
@@ -151,21 +135,15 @@ static enum status add_cells(const struct partition *partition, int32_t part, st
                 continue;
             }
             work->cell_mark[cell] = part + 1;
-            TRY(index_list_reserve(found, 1, error));
+            RETURN_IF_ERROR(index_list_reserve(found, 1, error));
             found->index[found->count++] = cell;
             for (int k = 0; k < vertices; k++) {
-                TRY(see_node(work, part, cells->node[(int64_t)cell * vertices + k], nodes, error));
+                RETURN_IF_ERROR(
+                    see_node(work, part, cells->node[(int64_t)cell * vertices + k], nodes, error));
             }
         }
     }
-done:
-    return status;
-}
-
-static int ascending(const void *a, const void *b)
-{
-    int32_t left = *(const int32_t *)a, right = *(const int32_t *)b;
-    return (left > right) - (left < right);
+    return STATUS_OK;
 }
 
 /* What an evaluation needs of others. */
@@ -205,14 +183,14 @@ enum status body_part_build(const struct partition *partition, int32_t part, con
     int64_t reaching = nodes.count;
     TRY(add_cells(partition, part, work, &nodes, 0, &found, error));
     TRY(add_cells(partition, part, work, &nodes, reaching, &found, error));
-    qsort(nodes.index, (size_t)nodes.count, sizeof *nodes.index, ascending);
+    qsort(nodes.index, (size_t)nodes.count, sizeof *nodes.index, compare_int32);
     body->node = nodes.index;
     body->node_count = nodes.count;
     nodes.index = NULL;
     count_needed(partition, part, work, body);
     body->cell_count = found.count;
     if (cells_wanted) {
-        qsort(found.index, (size_t)found.count, sizeof *found.index, ascending);
+        qsort(found.index, (size_t)found.count, sizeof *found.index, compare_int32);
         body->cell = found.index;
         found.index = NULL;
     }

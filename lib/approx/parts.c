@@ -1,28 +1,12 @@
 #include "approx/parts.h"
 
 #include "base/memory.h"
+#include "base/sets.h"
+#include "base/vector.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-
-/* ---- sets that are joined: each item points to an earlier one of its set, or to itself ---- */
-
-static int32_t root_of(int32_t parent[], int32_t item)
-{
-    while (parent[item] != item) {
-        parent[item] = parent[parent[item]];
-        item = parent[item];
-    }
-    return item;
-}
-
-static void join(int32_t parent[], int32_t a, int32_t b)
-{
-    a = root_of(parent, a);
-    b = root_of(parent, b);
-    parent[a > b ? a : b] = a > b ? b : a;
-}
 
 struct part {
     double size;
@@ -48,7 +32,7 @@ static enum status number_parts(int64_t items, int32_t parent[], const double si
     TRY(NEW_ARRAY(&parts, items, error));
     TRY(NEW_ARRAY(&place, items, error));
     for (int64_t i = 0; i < items; i++) {
-        int32_t root = root_of(parent, (int32_t)i);
+        int32_t root = set_first(parent, (int32_t)i);
         if (root == i) {
             place[i] = *count;
             parts[(*count)++].root = root;
@@ -60,7 +44,7 @@ static enum status number_parts(int64_t items, int32_t parent[], const double si
         place[parts[p].root] = p;
     }
     for (int64_t i = 0; i < items; i++) {
-        part[i] = place[root_of(parent, (int32_t)i)];
+        part[i] = place[set_first(parent, (int32_t)i)];
     }
 done:
     free(parts);
@@ -70,14 +54,12 @@ done:
 
 static enum status parts_begin(int64_t items, int32_t **parent, double **size, struct error *error)
 {
-    enum status status;
-    TRY(NEW_ARRAY(parent, items, error));
-    TRY(NEW_ARRAY(size, items, error));
+    RETURN_IF_ERROR(NEW_ARRAY(parent, items, error));
+    RETURN_IF_ERROR(NEW_ARRAY(size, items, error));
     for (int64_t i = 0; i < items; i++) {
         (*parent)[i] = (int32_t)i;
     }
-done:
-    return status;
+    return STATUS_OK;
 }
 
 enum status cells_parts(const struct cells *cells, int32_t *part, int32_t *count, struct error *error)
@@ -90,7 +72,7 @@ enum status cells_parts(const struct cells *cells, int32_t *part, int32_t *count
     TRY(faces_build(cells, false, &faces, error));
     for (int64_t f = 0; f < faces.count; f++) {
         if (faces.cell[2 * f + 1] >= 0) {
-            join(parent, faces.cell[2 * f], faces.cell[2 * f + 1]);
+            set_join(parent, faces.cell[2 * f], faces.cell[2 * f + 1]);
         }
     }
     for (int64_t c = 0; c < cells->count; c++) {
@@ -142,19 +124,6 @@ static void list_edges(const struct faces *boundary, struct edge *edges)
     qsort(edges, (size_t)(boundary->count * dim), sizeof *edges, compare_edges);
 }
 
-static double cosine(int dim, const double *a, const double *b)
-{
-    double ab = 0;
-    double aa = 0;
-    double bb = 0;
-    for (int k = 0; k < dim; k++) {
-        ab += a[k] * b[k];
-        aa += a[k] * a[k];
-        bb += b[k] * b[k];
-    }
-    return ab / sqrt(aa * bb);
-}
-
 enum status boundary_sides(const double *x, const struct faces *boundary, double degrees, int32_t *part,
                            int32_t *count, struct error *error)
 {
@@ -170,12 +139,8 @@ enum status boundary_sides(const double *x, const struct faces *boundary, double
     TRY(NEW_ARRAY(&normal, boundary->count * dim, error));
     TRY(NEW_ARRAY(&edges, edge_count, error));
     for (int64_t f = 0; f < boundary->count; f++) {
-        double square = 0;
         face_area_vector(dim, x, &boundary->node[f * dim], &normal[f * dim]);
-        for (int k = 0; k < dim; k++) {
-            square += normal[f * dim + k] * normal[f * dim + k];
-        }
-        area[f] = sqrt(square);
+        area[f] = vector_length(dim, normal + f * dim);
     }
     list_edges(boundary, edges);
     for (int64_t first = 0, end; first < edge_count; first = end) {
@@ -183,8 +148,9 @@ enum status boundary_sides(const double *x, const struct faces *boundary, double
         }
         int32_t a = edges[first].facet;
         int32_t b = edges[end - 1].facet;
-        if (end - first == 2 && cosine(dim, &normal[(int64_t)a * dim], &normal[(int64_t)b * dim]) >= least) {
-            join(parent, a, b);
+        double product = vector_dot(dim, normal + (int64_t)a * dim, normal + (int64_t)b * dim);
+        if (end - first == 2 && product / (area[a] * area[b]) >= least) {
+            set_join(parent, a, b);
         }
     }
     TRY(number_parts(boundary->count, parent, area, part, count, error));
@@ -226,44 +192,39 @@ static void invert(int64_t count, bool *chosen)
     }
 }
 
+/* Let `chosen` items and nodes take in each other's neighbours: rings times, beginning with the nodes of the
+ * items or the items of the nodes; rings < 0: those that are not chosen. */
+static enum status grow(int64_t count, int corners, const int32_t *item, int64_t node_count, int rings,
+                        bool of_items, bool *chosen, struct error *error)
+{
+    bool *other;
+    RETURN_IF_ERROR(NEW_ARRAY(&other, of_items ? node_count : count, error));
+    bool *items = of_items ? chosen : other, *nodes = of_items ? other : chosen;
+    if (rings < 0) {
+        invert(of_items ? count : node_count, chosen);
+    }
+    for (int step = 0; step < 2 * abs(rings); step++) {
+        if ((step % 2 == 0) == of_items) {
+            mark_nodes(count, corners, item, items, nodes);
+        } else {
+            mark_items(count, corners, item, nodes, items);
+        }
+    }
+    if (rings < 0) {
+        invert(of_items ? count : node_count, chosen);
+    }
+    free(other);
+    return STATUS_OK;
+}
+
 enum status items_grow(int64_t count, int corners, const int32_t *item, int64_t node_count, int rings,
                        bool *chosen, struct error *error)
 {
-    enum status status;
-    bool *node_chosen = NULL;
-    TRY(NEW_ARRAY(&node_chosen, node_count, error));
-    if (rings < 0) {
-        invert(count, chosen);
-    }
-    for (int ring = 0; ring < abs(rings); ring++) {
-        mark_nodes(count, corners, item, chosen, node_chosen);
-        mark_items(count, corners, item, node_chosen, chosen);
-    }
-    if (rings < 0) {
-        invert(count, chosen);
-    }
-done:
-    free(node_chosen);
-    return status;
+    return grow(count, corners, item, node_count, rings, true, chosen, error);
 }
 
 enum status nodes_grow(int64_t count, int corners, const int32_t *item, int64_t node_count, int rings,
                        bool *chosen, struct error *error)
 {
-    enum status status;
-    bool *item_chosen = NULL;
-    TRY(NEW_ARRAY(&item_chosen, count, error));
-    if (rings < 0) {
-        invert(node_count, chosen);
-    }
-    for (int ring = 0; ring < abs(rings); ring++) {
-        mark_items(count, corners, item, chosen, item_chosen);
-        mark_nodes(count, corners, item, item_chosen, chosen);
-    }
-    if (rings < 0) {
-        invert(node_count, chosen);
-    }
-done:
-    free(item_chosen);
-    return status;
+    return grow(count, corners, item, node_count, rings, false, chosen, error);
 }

@@ -58,7 +58,6 @@ static int64_t choose_bins(struct point_grid_level *level, int dim, const double
 static enum status build_level(struct point_grid *grid, int number, const uint8_t *level_of_node,
                                struct error *error)
 {
-    enum status status;
     struct point_grid_level *level = &grid->level[number];
     int dim = grid->dim;
     double upper[3] = {-INFINITY, -INFINITY, -INFINITY};
@@ -81,9 +80,9 @@ static enum status build_level(struct point_grid *grid, int number, const uint8_
         return STATUS_OK;
     }
     int64_t bins = choose_bins(level, dim, upper, nodes);
-    TRY(NEW_ARRAY(&level->start, bins + 2, error));
-    TRY(NEW_ARRAY(&level->node, nodes, error));
-    TRY(NEW_ARRAY(&level->place, nodes * (dim + 1), error));
+    RETURN_IF_ERROR(NEW_ARRAY(&level->start, bins + 2, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&level->node, nodes, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&level->place, nodes * (dim + 1), error));
     for (int64_t n = 0; n < grid->node_count; n++) {
         if (level_of_node[n] == number) {
             level->start[bin_of(grid, level, grid->x + n * dim) + 2]++;
@@ -104,8 +103,7 @@ static enum status build_level(struct point_grid *grid, int number, const uint8_
         }
         place[dim] = grid->radius[level->node[i]];
     }
-done:
-    return status;
+    return STATUS_OK;
 }
 
 enum status point_grid_build(struct point_grid *grid, int dim, int64_t node_count, const double *x,
@@ -152,16 +150,7 @@ void point_grid_free(struct point_grid *grid)
 
 enum status index_list_reserve(struct index_list *list, int64_t count, struct error *error)
 {
-    if (list->count + count > list->capacity) {
-        int64_t capacity = 2 * (list->count + count) + 64;
-        int32_t *grown = array_grow(list->index, capacity, sizeof *grown);
-        if (grown == NULL) {
-            return fail_memory(error, "neighbour list");
-        }
-        list->index = grown;
-        list->capacity = capacity;
-    }
-    return STATUS_OK;
+    return GROW_ARRAY(&list->index, list->count + count, &list->capacity, error);
 }
 
 /* Append those of the nodes [first, last) of a level whose supports reach the box (or the point: low ==
@@ -226,10 +215,7 @@ static enum status query_level(const struct point_grid *grid, const struct point
         for (int64_t j = from[1]; j <= to[1]; j++) {
             int64_t row = (k * level->bins[1] + j) * level->bins[0];
             int64_t first = level->start[row + from[0]], last = level->start[row + to[0] + 1];
-            enum status status = index_list_reserve(list, last - first, error);
-            if (status != STATUS_OK) {
-                return status;
-            }
+            RETURN_IF_ERROR(index_list_reserve(list, last - first, error));
             query_any_run(level, grid->dim, first, last, low, high, factor, list);
         }
     }
@@ -288,17 +274,15 @@ static void sort_ascending(int32_t *index, int64_t count)
 enum status point_grid_query_box(const struct point_grid *grid, const double *low, const double *high,
                                  double factor, struct index_list *list, struct error *error)
 {
-    enum status status = STATUS_OK;
     int64_t first = list->count;
     for (int l = 0; l < grid->level_count; l++) {
         if (grid->level[l].start != NULL) {
-            TRY(query_level(grid, &grid->level[l], low, high, factor, list, error));
+            RETURN_IF_ERROR(query_level(grid, &grid->level[l], low, high, factor, list, error));
         }
     }
-    TRY(index_list_reserve(list, list->count - first, error)); /* scratch for sorting */
+    RETURN_IF_ERROR(index_list_reserve(list, list->count - first, error)); /* scratch for sorting */
     sort_ascending(list->index + first, list->count - first);
-done:
-    return status;
+    return STATUS_OK;
 }
 
 enum status point_grid_query(const struct point_grid *grid, const double *x, double factor,

@@ -5,11 +5,13 @@
 
 #include "approx/cells.h"
 
+enum { QUADRATURE_MOST = 14 }; /* points of a rule */
+
 /* A rule on the reference simplex: barycentric coordinates (vertices each) and weights that sum to 1. */
 struct quadrature_rule {
     int points, vertices;
-    const double *barycentric; /* points * vertices */
-    const double *weight;      /* points */
+    double barycentric[QUADRATURE_MOST * 4]; /* points * vertices */
+    double weight[QUADRATURE_MOST];          /* points */
 };
 
 /* The rule of that many points on a cell: triangles 1, 3, 4 (centroids of the four sub-triangles), 6, 7, 12;

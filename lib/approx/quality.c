@@ -1,23 +1,16 @@
 #include "approx/quality.h"
 
+#include "base/vector.h"
+
 #include <math.h>
 #include <string.h>
-
-static double distance(const double *a, const double *b, int dim)
-{
-    double sum = 0;
-    for (int k = 0; k < dim; k++) {
-        sum += (a[k] - b[k]) * (a[k] - b[k]);
-    }
-    return sqrt(sum);
-}
 
 /* q = 2 r / R with r = A / s, R = a b c / (4 A), s half the perimeter. */
 static double triangle_quality(double area, const double *const x[3])
 {
-    double a = distance(x[1], x[2], 2);
-    double b = distance(x[2], x[0], 2);
-    double c = distance(x[0], x[1], 2);
+    double a = vector_distance(2, x[1], x[2]);
+    double b = vector_distance(2, x[2], x[0]);
+    double c = vector_distance(2, x[0], x[1]);
     return area * fabs(area) * 16 / ((a + b + c) * a * b * c);
 }
 
@@ -25,9 +18,9 @@ static double triangle_quality(double area, const double *const x[3])
  * edges and p half their sum. */
 static double tetrahedron_quality(double volume, const double *const x[4])
 {
-    double a = distance(x[0], x[1], 3) * distance(x[2], x[3], 3);
-    double b = distance(x[0], x[2], 3) * distance(x[1], x[3], 3);
-    double c = distance(x[0], x[3], 3) * distance(x[1], x[2], 3);
+    double a = vector_distance(3, x[0], x[1]) * vector_distance(3, x[2], x[3]);
+    double b = vector_distance(3, x[0], x[2]) * vector_distance(3, x[1], x[3]);
+    double c = vector_distance(3, x[0], x[3]) * vector_distance(3, x[1], x[2]);
     double p = (a + b + c) / 2;
     double surface = 0;
     for (int i = 0; i < 4; i++) {
@@ -35,10 +28,8 @@ static double tetrahedron_quality(double volume, const double *const x[4])
         const double *v = x[(i + 2) % 4];
         const double *w = x[(i + 3) % 4];
         double s[3], t[3];
-        for (int k = 0; k < 3; k++) {
-            s[k] = v[k] - u[k];
-            t[k] = w[k] - u[k];
-        }
+        vector_subtract(3, v, u, s);
+        vector_subtract(3, w, u, t);
         surface +=
             hypot(hypot(s[1] * t[2] - s[2] * t[1], s[2] * t[0] - s[0] * t[2]), s[0] * t[1] - s[1] * t[0]) / 2;
     }
@@ -50,9 +41,7 @@ double cell_quality(const struct cells *cells, int64_t cell)
 {
     int dim = cells->dim;
     const double *x[4];
-    for (int k = 0; k <= dim; k++) {
-        x[k] = cells->x + (int64_t)cells->node[cell * (dim + 1) + k] * dim;
-    }
+    cell_corners(cells, cell, x);
     double volume = cell_volume(cells, cell);
     double quality = dim == 2 ? triangle_quality(volume, x) : tetrahedron_quality(volume, x);
     return isfinite(quality) ? quality : 0;

@@ -1,6 +1,7 @@
 #include "approx/raster.h"
 
 #include "base/memory.h"
+#include "base/vector.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -39,13 +40,9 @@ static bool place_cell(const struct cells *cells, int64_t cell, int sign, struct
     const double *origin = cells->x + node[0] * dim;
     double e[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}; /* rows: edges */
     for (int a = 0; a < dim; a++) {
-        for (int i = 0; i < dim; i++) {
-            e[a][i] = cells->x[node[a + 1] * dim + i] - origin[i];
-        }
+        vector_subtract(dim, cells->x + node[a + 1] * dim, origin, e[a]);
     }
-    double determinant = e[0][0] * (e[1][1] * e[2][2] - e[1][2] * e[2][1]) -
-                         e[0][1] * (e[1][0] * e[2][2] - e[1][2] * e[2][0]) +
-                         e[0][2] * (e[1][0] * e[2][1] - e[1][1] * e[2][0]);
+    double determinant = determinant3(e[0], e[1], e[2]);
     if (!(determinant * sign > 0)) {
         return false;
     }
@@ -117,7 +114,6 @@ static void draw(const struct simplex *simplex, const struct cells *cells, int64
 static enum status list_by_slab(const struct cells *cells, int64_t size, int64_t slabs, int64_t *ptr,
                                 int32_t **idx, struct error *error)
 {
-    enum status status = STATUS_OK;
     *idx = NULL;
     for (int pass = 0; pass < 2; pass++) {
         for (int64_t c = 0; c < cells->count; c++) {
@@ -135,15 +131,14 @@ static enum status list_by_slab(const struct cells *cells, int64_t size, int64_t
             for (int64_t s = 0; s < slabs; s++) {
                 ptr[s + 1] += ptr[s];
             }
-            TRY(NEW_ARRAY(idx, ptr[slabs], error));
+            RETURN_IF_ERROR(NEW_ARRAY(idx, ptr[slabs], error));
         }
     }
     for (int64_t s = slabs; s > 0; s--) { /* each has moved to the beginning of the next */
         ptr[s] = ptr[s - 1];
     }
     ptr[0] = 0;
-done:
-    return status;
+    return STATUS_OK;
 }
 
 enum status raster_cells(const struct cells *cells, int sign, const int64_t size[3], int32_t *owner,

@@ -1,7 +1,7 @@
 #include "approx/reach_private.h"
 
 #include "base/memory.h"
-#include "base/processor.h"
+#include "base/vector.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -31,7 +31,7 @@ static struct row_view view_row(const struct reach *reach, int32_t node, const s
 
 /* passes[REACH_BLOCK]: which of the facets from `first` on may hide the node from the row: the row is not
  * beyond them, and the segments may meet their balls. Returns whether there are any. */
-KERNEL_INLINE bool block_passes(float *const *view, int64_t first, const struct row_view *row,
+static inline bool block_passes(float *const *view, int64_t first, const struct row_view *row,
                                 int32_t *passes)
 {
     const float *nx = view[0] + first, *ny = view[1] + first, *nz = view[2] + first, *above = view[3] + first;
@@ -51,15 +51,15 @@ KERNEL_INLINE bool block_passes(float *const *view, int64_t first, const struct 
 }
 
 /* List those of the facets opposing[first, last); returns how many. */
-KERNEL_INLINE int64_t list_passing(float *const *view, const int32_t *opposing, int64_t first, int64_t last,
-                                   const struct row_view *row, int32_t *list)
+static int64_t list_passing(const struct reach *reach, int64_t first, int64_t last,
+                            const struct row_view *row, int32_t *list)
 {
     int64_t count = 0;
     for (int64_t i = first; i < last; i += REACH_BLOCK) {
         int32_t passes[REACH_BLOCK];
-        if (block_passes(view, i, row, passes)) {
+        if (block_passes(reach->opposing_view, i, row, passes)) {
             for (int64_t k = i; k < i + REACH_BLOCK && k < last; k++) {
-                list[count] = opposing[k];
+                list[count] = reach->opposing[k];
                 count += passes[k - i];
             }
         }
@@ -67,20 +67,9 @@ KERNEL_INLINE int64_t list_passing(float *const *view, const int32_t *opposing, 
     return count;
 }
 
-#define LIST_SET(set, attribute)                                                                             \
-    attribute static int64_t list_passing_##set(float *const *view, const int32_t *opposing, int64_t first,  \
-                                                int64_t last, const struct row_view *row, int32_t *list)     \
-    {                                                                                                        \
-        return list_passing(view, opposing, first, last, row, list);                                         \
-    }
-LIST_SET(plain, PLAIN_SET)
-LIST_SET(avx2, AVX2_SET)
-LIST_SET(avx512, AVX512_SET)
-
 enum status reach_list_facets(const struct reach *reach, const int32_t *index, int64_t count,
                               struct reach_work *work, struct error *error)
 {
-    enum status status = STATUS_OK;
     for (int64_t i = 0; i < count; i++) {
         int32_t node = index[i];
         int64_t first = reach->opposing_ptr[node], last = reach->opposing_ptr[node + 1];
@@ -91,17 +80,12 @@ enum status reach_list_facets(const struct reach *reach, const int32_t *index, i
         work->near_begin[node] = (int32_t)work->near.count;
         if (first < last) {
             struct row_view row = view_row(reach, node, work);
-            TRY(index_list_reserve(&work->near, last - first + 1, error));
-            int32_t *list = work->near.index + work->near.count;
-            work->near.count += (work->avx512 ? list_passing_avx512
-                                 : work->avx2 ? list_passing_avx2
-                                              : list_passing_plain)((float *const *)reach->opposing_view,
-                                                                    reach->opposing, first, last, &row, list);
+            RETURN_IF_ERROR(index_list_reserve(&work->near, last - first + 1, error));
+            work->near.count += list_passing(reach, first, last, &row, work->near.index + work->near.count);
         }
         work->near_end[node] = (int32_t)work->near.count;
     }
-done:
-    return status;
+    return STATUS_OK;
 }
 
 void reach_begin_row(const struct reach *reach, const double *x, int64_t count, struct reach_work *work)
@@ -120,17 +104,14 @@ void reach_begin_row(const struct reach *reach, const double *x, int64_t count, 
         }
     }
     for (int64_t i = 0; i < count; i++) {
-        work->row_radius = fmax(work->row_radius, reach_distance(dim, work->row_middle, x + i * dim));
+        work->row_radius = fmax(work->row_radius, vector_distance(dim, work->row_middle, x + i * dim));
     }
 }
 
 enum status reach_begin(const struct reach *reach, const struct reach_places *places, int64_t p,
                         const double *x, struct reach_work *work, struct error *error)
 {
-    enum status status = reach_work_reserve(reach, work, error);
-    if (status != STATUS_OK) {
-        return status;
-    }
+    RETURN_IF_ERROR(reach_work_reserve(reach, work, error));
     if (++work->serial >= UINT32_MAX / 2) {
         memset(work->mark, 0, (size_t)reach->cells.node_count * sizeof *work->mark);
         work->serial = 1;
@@ -163,11 +144,10 @@ enum status reach_begin(const struct reach *reach, const struct reach_places *pl
 static enum status mark_hidden(const struct reach *reach, double widen, const int32_t *index, int64_t count,
                                struct reach_work *work, int64_t *hidden, struct error *error)
 {
-    enum status status = STATUS_OK;
     *hidden = 0;
     for (int64_t i = 0; i < count && work->cell_count < 0; i++) {
         if (widen > 1.0 || reach->opposing_ptr[index[i]] < reach->opposing_ptr[index[i] + 1]) {
-            TRY(reach_locate(reach, work->x, work, error));
+            RETURN_IF_ERROR(reach_locate(reach, work->x, work, error));
         }
     }
     bool by_facets = widen <= 1.0 && !work->outside;
@@ -181,27 +161,25 @@ static enum status mark_hidden(const struct reach *reach, double widen, const in
         }
         if (work->mark[node] / 2 != work->serial) {
             bool seen;
-            TRY((by_facets ? reach_sees : reach_walk)(reach, work->from, work->cell, work->cell_count, node,
-                                                      work, &seen, error));
+            RETURN_IF_ERROR((by_facets ? reach_sees : reach_walk)(
+                reach, work->from, work->cell, work->cell_count, node, work, &seen, error));
             work->mark[node] = 2 * work->serial + !seen;
         }
         *hidden += reach_is_hidden(work, node);
     }
-done:
-    return status;
+    return STATUS_OK;
 }
 
 /* Keep the neighbours within reach, with their images. */
 static enum status keep(const struct reach *reach, double widen, int32_t *index, int64_t *count,
                         struct reach_work *work, struct error *error)
 {
-    enum status status = STATUS_OK;
     int dim = reach->cells.dim;
     int64_t kept = 0;
     if (*count > work->capacity) {
         free(work->image);
         work->capacity = 0;
-        TRY(NEW_ARRAY(&work->image, 2 * *count * dim, error));
+        RETURN_IF_ERROR(NEW_ARRAY(&work->image, 2 * *count * dim, error));
         work->capacity = 2 * *count;
     }
     for (int64_t i = 0; i < *count; i++) {
@@ -221,7 +199,7 @@ static enum status keep(const struct reach *reach, double widen, int32_t *index,
         if (!(length < widen * reach->grid->radius[node])) {
             continue;
         }
-        double leg = reach_distance(dim, work->x, bend);
+        double leg = vector_distance(dim, work->x, bend);
         for (int a = 0; a < dim; a++) {
             image[a] = (bend[a] - work->x[a]) * (length / leg);
         }
@@ -229,22 +207,19 @@ static enum status keep(const struct reach *reach, double widen, int32_t *index,
         work->around++;
     }
     *count = kept;
-done:
-    return status;
+    return STATUS_OK;
 }
 
 enum status reach_filter(const struct reach *reach, double widen, int32_t *index, int64_t *count,
                          struct reach_work *work, struct error *error)
 {
-    enum status status;
     work->around = 0;
-    TRY(mark_hidden(reach, widen, index, *count, work, &work->changed, error));
+    RETURN_IF_ERROR(mark_hidden(reach, widen, index, *count, work, &work->changed, error));
     if (work->changed > 0) {
-        TRY(reach_paths(reach, widen, index, *count, work, error));
-        TRY(keep(reach, widen, index, count, work, error));
+        RETURN_IF_ERROR(reach_paths(reach, widen, index, *count, work, error));
+        RETURN_IF_ERROR(keep(reach, widen, index, count, work, error));
     }
-done:
-    return status;
+    return STATUS_OK;
 }
 
 void reach_free(struct reach *reach)

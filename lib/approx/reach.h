@@ -109,7 +109,6 @@ struct reach_work {
     int64_t row;           /* of the points, see reach_places; their ball: */
     double row_middle[3], row_radius;
     uint32_t row_serial, *listed;   /* node_count: the last row that facets are listed for */
-    bool avx2, avx512;              /* what the processor has */
     int32_t *near_begin, *near_end; /* node_count: for the candidates, the facets that may lie
                                        between, in `near` */
     struct index_list near;

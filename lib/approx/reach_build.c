@@ -1,7 +1,10 @@
 /* Preparation of a body for queries of reach: facets, re-entrant corners, and which nodes see which. */
 #include "approx/reach_private.h"
 
+#include "base/box.h"
+#include "base/lists.h"
 #include "base/memory.h"
+#include "base/vector.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -10,60 +13,34 @@
 /* Pairs (row, value), to become a CSR. */
 struct pair_list {
     int64_t count, capacity;
-    struct {
-        int32_t row, value;
-    } * pair;
+    int32_t *row, *value;
 };
 
 static enum status add_pair(struct pair_list *pairs, int32_t row, int32_t value, struct error *error)
 {
-    if (pairs->count == pairs->capacity) {
-        int64_t capacity = 2 * pairs->capacity + 256;
-        void *grown = array_grow(pairs->pair, capacity, sizeof *pairs->pair);
-        if (grown == NULL) {
-            return fail_memory(error, "connections of the body");
-        }
-        pairs->pair = grown;
-        pairs->capacity = capacity;
-    }
-    pairs->pair[pairs->count].row = row;
-    pairs->pair[pairs->count++].value = value;
+    int64_t capacity = pairs->capacity;
+    RETURN_IF_ERROR(GROW_ARRAY(&pairs->row, pairs->count + 1, &capacity, error));
+    RETURN_IF_ERROR(GROW_ARRAY(&pairs->value, pairs->count + 1, &pairs->capacity, error));
+    pairs->row[pairs->count] = row;
+    pairs->value[pairs->count++] = value;
     return STATUS_OK;
 }
 
-/* ptr[rows + 1], idx: the values of each row in their order. */
+/* (*ptr)[rows + 1], (*idx): the values of each row in their order. */
 static enum status file_pairs(const struct pair_list *pairs, int64_t rows, int64_t **ptr, int32_t **idx,
                               struct error *error)
 {
-    enum status status;
-    TRY(NEW_ARRAY(ptr, rows + 2, error));
-    TRY(NEW_ARRAY(idx, pairs->count, error));
-    int64_t *start = *ptr;
+    RETURN_IF_ERROR(lists_by_row(pairs->count, 1, pairs->row, rows, ptr, idx, error));
     for (int64_t i = 0; i < pairs->count; i++) {
-        start[pairs->pair[i].row + 2]++;
+        (*idx)[i] = pairs->value[(*idx)[i]];
     }
-    for (int64_t r = 0; r < rows; r++) {
-        start[r + 2] += start[r + 1];
-    }
-    for (int64_t i = 0; i < pairs->count; i++) {
-        (*idx)[start[pairs->pair[i].row + 1]++] = pairs->pair[i].value;
-    }
-done:
-    return status;
+    return STATUS_OK;
 }
 
-static enum status file_stars(struct reach *reach, struct error *error)
+static void pair_list_free(struct pair_list *pairs)
 {
-    enum status status = STATUS_OK;
-    struct pair_list pairs = {0};
-    int corners = reach->cells.dim + 1;
-    for (int64_t i = 0; i < reach->cells.count * corners; i++) {
-        TRY(add_pair(&pairs, reach->cells.node[i], (int32_t)(i / corners), error));
-    }
-    TRY(file_pairs(&pairs, reach->cells.node_count, &reach->star_ptr, &reach->star, error));
-done:
-    free(pairs.pair);
-    return status;
+    free(pairs->row);
+    free(pairs->value);
 }
 
 /* The dual of the edges from the first vertex, within the facet. */
@@ -96,9 +73,8 @@ static void set_dual(const struct reach *reach, struct reach_facet *facet)
 
 static enum status set_facets(const struct faces *faces, struct reach *reach, struct error *error)
 {
-    enum status status;
     int dim = reach->cells.dim;
-    TRY(NEW_ARRAY(&reach->facet, faces->count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&reach->facet, faces->count, error));
     reach->facet_count = faces->count;
     for (int64_t f = 0; f < faces->count; f++) {
         struct reach_facet *facet = &reach->facet[f];
@@ -106,7 +82,7 @@ static enum status set_facets(const struct faces *faces, struct reach *reach, st
         memcpy(facet->node, faces->node + f * dim, (size_t)dim * sizeof *facet->node);
         facet->cell = faces->cell[2 * f];
         face_area_vector(dim, reach->cells.x, facet->node, area);
-        double size = sqrt(area[0] * area[0] + area[1] * area[1] + area[2] * area[2]);
+        double size = vector_length(3, area);
         for (int a = 0; a < dim; a++) {
             facet->normal[a] = area[a] / size;
             facet->offset += facet->normal[a] * reach->cells.x[(int64_t)facet->node[0] * dim + a];
@@ -116,12 +92,11 @@ static enum status set_facets(const struct faces *faces, struct reach *reach, st
         }
         for (int k = 0; k < dim; k++) {
             const double *vertex = reach->cells.x + (int64_t)facet->node[k] * dim;
-            facet->radius = fmax(facet->radius, reach_distance(dim, facet->middle, vertex) * (1.0 + 1e-6));
+            facet->radius = fmax(facet->radius, vector_distance(dim, facet->middle, vertex) * (1.0 + 1e-6));
         }
         set_dual(reach, facet);
     }
-done:
-    return status;
+    return STATUS_OK;
 }
 
 static double height_above(const struct reach *reach, const struct reach_facet *facet, int32_t node)
@@ -147,25 +122,16 @@ static enum status file_opposing(struct reach *reach, struct error *error)
     int dim = reach->cells.dim;
     for (int64_t f = 0; f < reach->facet_count; f++) {
         const struct reach_facet *facet = &reach->facet[f];
-        double low[3], high[3];
-        for (int a = 0; a < dim; a++) {
-            low[a] = INFINITY;
-            high[a] = -INFINITY;
-            for (int k = 0; k < dim; k++) {
-                double x = reach->cells.x[(int64_t)facet->node[k] * dim + a];
-                low[a] = fmin(low[a], x);
-                high[a] = fmax(high[a], x);
-            }
-        }
+        struct box box = box_of_nodes(dim, reach->cells.x, facet->node, dim);
         near.count = 0;
-        TRY(point_grid_query_box(reach->grid, low, high, 1.0, &near, error));
+        TRY(point_grid_query_box(reach->grid, box.low, box.high, 1.0, &near, error));
         for (int64_t i = 0; i < near.count; i++) {
             int32_t node = near.index[i];
             double height = height_above(reach, facet, node),
                    tolerance = REACH_ON_PLANE * reach->grid->radius[node];
             const double *x = reach->cells.x + (int64_t)node * dim;
             if (height > tolerance || (height >= -tolerance && !is_of_facet(dim, facet, node) &&
-                                       reach_distance(dim, facet->middle, x) <= facet->radius)) {
+                                       vector_distance(dim, facet->middle, x) <= facet->radius)) {
                 TRY(add_pair(&pairs, node, (int32_t)f, error));
             }
         }
@@ -187,7 +153,7 @@ static enum status file_opposing(struct reach *reach, struct error *error)
         }
     }
 done:
-    free(pairs.pair);
+    pair_list_free(&pairs);
     free(near.index);
     return status;
 }
@@ -304,7 +270,7 @@ static enum status find_corners(struct reach *reach, struct reach_work *work, st
     TRY(file_pairs(&edges, reach->cells.node_count, &reach->edge_ptr, &reach->edge, error));
 done:
     free(ridges);
-    free(edges.pair);
+    pair_list_free(&edges);
     return status;
 }
 
@@ -336,12 +302,12 @@ static enum status file_views(struct reach *reach, struct reach_work *work, stru
     TRY(NEW_ARRAY(&reach->seen_length, pairs.count, error));
     for (int64_t n = 0; n < reach->cells.node_count; n++) {
         for (int64_t i = reach->seen_ptr[n]; i < reach->seen_ptr[n + 1]; i++) {
-            reach->seen_length[i] =
-                reach_distance(dim, reach->cells.x + (int64_t)reach->seen[i] * dim, reach->cells.x + n * dim);
+            reach->seen_length[i] = vector_distance(dim, reach->cells.x + (int64_t)reach->seen[i] * dim,
+                                                    reach->cells.x + n * dim);
         }
     }
 done:
-    free(pairs.pair);
+    pair_list_free(&pairs);
     free(near.index);
     return status;
 }
@@ -352,7 +318,8 @@ enum status reach_build_cells(const struct cells *cells, struct reach *reach, st
     *reach = (struct reach){.cells = *cells};
     TRY(NEW_ARRAY(&reach->across, cells->count * (cells->dim + 1), error));
     TRY(cells_across(cells, reach->across, error));
-    TRY(file_stars(reach, error));
+    TRY(lists_by_row(cells->count, cells->dim + 1, cells->node, cells->node_count, &reach->star_ptr,
+                     &reach->star, error));
 done:
     if (status != STATUS_OK) {
         reach_free(reach);

@@ -2,7 +2,7 @@
 #include "approx/reach_private.h"
 
 #include "base/memory.h"
-#include "base/processor.h"
+#include "base/vector.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -15,20 +15,16 @@ static const double most_slack = 1.2;
 
 enum status reach_work_reserve(const struct reach *reach, struct reach_work *work, struct error *error)
 {
-    enum status status = STATUS_OK;
     if (work->mark == NULL) {
-        TRY(NEW_ARRAY(&work->mark, reach->cells.node_count, error));
-        TRY(NEW_ARRAY(&work->passed, reach->cells.node_count, error));
-        TRY(NEW_ARRAY(&work->length, reach->cells.node_count, error));
-        TRY(NEW_ARRAY(&work->before, reach->cells.node_count, error));
-        TRY(NEW_ARRAY(&work->listed, reach->cells.node_count, error));
-        TRY(NEW_ARRAY(&work->near_begin, reach->cells.node_count, error));
-        TRY(NEW_ARRAY(&work->near_end, reach->cells.node_count, error));
-        work->avx2 = processor_has("avx2");
-        work->avx512 = processor_has("avx512");
+        RETURN_IF_ERROR(NEW_ARRAY(&work->mark, reach->cells.node_count, error));
+        RETURN_IF_ERROR(NEW_ARRAY(&work->passed, reach->cells.node_count, error));
+        RETURN_IF_ERROR(NEW_ARRAY(&work->length, reach->cells.node_count, error));
+        RETURN_IF_ERROR(NEW_ARRAY(&work->before, reach->cells.node_count, error));
+        RETURN_IF_ERROR(NEW_ARRAY(&work->listed, reach->cells.node_count, error));
+        RETURN_IF_ERROR(NEW_ARRAY(&work->near_begin, reach->cells.node_count, error));
+        RETURN_IF_ERROR(NEW_ARRAY(&work->near_end, reach->cells.node_count, error));
     }
-done:
-    return status;
+    return STATUS_OK;
 }
 
 void reach_work_free(struct reach_work *work)
@@ -73,7 +69,6 @@ static bool shorten(const struct reach *reach, int32_t node, double limit, struc
 enum status reach_paths(const struct reach *reach, double widen, const int32_t *index, int64_t count,
                         struct reach_work *work, struct error *error)
 {
-    enum status status = STATUS_OK;
     int dim = reach->cells.dim;
     double limit = dim == 3 ? most_slack * widen : widen;
     if (++work->pass == UINT32_MAX) {
@@ -81,14 +76,14 @@ enum status reach_paths(const struct reach *reach, double widen, const int32_t *
         work->pass = 1;
     }
     work->hidden.count = 0;
-    TRY(index_list_reserve(&work->hidden, count, error));
+    RETURN_IF_ERROR(index_list_reserve(&work->hidden, count, error));
     for (int64_t i = 0; i < count; i++) {
         int32_t node = index[i];
         if (reach_is_hidden(work, node)) {
             work->hidden.index[work->hidden.count++] = node;
             work->length[node] = INFINITY;
         } else if (reach->corner[node]) {
-            double length = reach_distance(dim, work->from, reach->cells.x + (int64_t)node * dim);
+            double length = vector_distance(dim, work->from, reach->cells.x + (int64_t)node * dim);
             /* From the corner itself nothing is to be had that it does not see. */
             work->length[node] = length > REACH_ON_PLANE * reach->grid->radius[node] ? length : INFINITY;
         } else {
@@ -106,8 +101,7 @@ enum status reach_paths(const struct reach *reach, double widen, const int32_t *
             shorter = shorter || (now && reach->corner[node]);
         }
     }
-done:
-    return status;
+    return STATUS_OK;
 }
 
 /* The shortest way from p to q over the edge from a to b: its length, unrolled into a plane, and how far
@@ -146,7 +140,7 @@ static void slide(const struct reach *reach, const double *before, const double 
                   double *bend)
 {
     const double *corner = reach->cells.x + (int64_t)node * 3;
-    double least = reach_distance(3, before, corner) + reach_distance(3, corner, after);
+    double least = vector_distance(3, before, corner) + vector_distance(3, corner, after);
     memcpy(bend, corner, 3 * sizeof *bend);
     for (int64_t e = reach->edge_ptr[node]; e < reach->edge_ptr[node + 1]; e++) {
         double passes;
@@ -154,9 +148,7 @@ static void slide(const struct reach *reach, const double *before, const double 
         double length = shortest_over_edge(corner, other, before, after, &passes);
         if (length < least && passes > 0.0) {
             least = length;
-            for (int a = 0; a < 3; a++) {
-                bend[a] = corner[a] + passes * (other[a] - corner[a]);
-            }
+            vector_between(3, corner, other, passes, bend);
         }
     }
 }
@@ -187,8 +179,8 @@ void reach_first_bend(const struct reach *reach, int32_t node, const struct reac
         }
     }
     memcpy(bend, place[0], sizeof *place);
-    *length = reach_distance(3, work->from, place[0]);
+    *length = vector_distance(3, work->from, place[0]);
     for (int b = 0; b < bends; b++) {
-        *length += reach_distance(3, place[b], place[b + 1]);
+        *length += vector_distance(3, place[b], place[b + 1]);
     }
 }

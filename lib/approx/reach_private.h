@@ -48,13 +48,4 @@ static inline bool reach_is_hidden(const struct reach_work *work, int32_t node)
     return work->mark[node] == 2 * work->serial + 1;
 }
 
-static inline double reach_distance(int dim, const double *a, const double *b)
-{
-    double sum = 0.0;
-    for (int i = 0; i < dim; i++) {
-        sum += (a[i] - b[i]) * (a[i] - b[i]);
-    }
-    return __builtin_sqrt(sum);
-}
-
 #endif

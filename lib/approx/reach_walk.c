@@ -2,6 +2,7 @@
 #include "approx/reach_private.h"
 
 #include "base/memory.h"
+#include "base/vector.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -12,29 +13,6 @@ static const double on_face = 1e-9;
 /* A segment passes a facet where it meets its plane nearer than this, barycentric, to the facet. */
 static const double beside_facet = 1e-6;
 
-static void subtract(int dim, const double *a, const double *b, double *difference)
-{
-    for (int i = 0; i < dim; i++) {
-        difference[i] = a[i] - b[i];
-    }
-}
-
-static double dot(int dim, const double *a, const double *b)
-{
-    double sum = 0.0;
-    for (int i = 0; i < dim; i++) {
-        sum += a[i] * b[i];
-    }
-    return sum;
-}
-
-static void cross(const double *u, const double *v, double *w)
-{
-    w[0] = u[1] * v[2] - u[2] * v[1];
-    w[1] = u[2] * v[0] - u[0] * v[2];
-    w[2] = u[0] * v[1] - u[1] * v[0];
-}
-
 /* The barycentric coordinates of two points in a cell. */
 static void barycentric(const struct cells *cells, int64_t cell, const double *x, const double *y,
                         double *of_x, double *of_y)
@@ -44,25 +22,25 @@ static void barycentric(const struct cells *cells, int64_t cell, const double *x
     const double *first = cells->x + (int64_t)v[0] * dim;
     double edge[3][3], dual[3][3], from_x[3], from_y[3];
     for (int k = 0; k < dim; k++) {
-        subtract(dim, cells->x + (int64_t)v[k + 1] * dim, first, edge[k]);
+        vector_subtract(dim, cells->x + (int64_t)v[k + 1] * dim, first, edge[k]);
     }
-    subtract(dim, x, first, from_x);
-    subtract(dim, y, first, from_y);
+    vector_subtract(dim, x, first, from_x);
+    vector_subtract(dim, y, first, from_y);
     if (dim == 2) {
         dual[0][0] = edge[1][1];
         dual[0][1] = -edge[1][0];
         dual[1][0] = -edge[0][1];
         dual[1][1] = edge[0][0];
     } else {
-        cross(edge[1], edge[2], dual[0]);
-        cross(edge[2], edge[0], dual[1]);
-        cross(edge[0], edge[1], dual[2]);
+        vector_cross(edge[1], edge[2], dual[0]);
+        vector_cross(edge[2], edge[0], dual[1]);
+        vector_cross(edge[0], edge[1], dual[2]);
     }
-    double volume = dot(dim, edge[0], dual[0]);
+    double volume = vector_dot(dim, edge[0], dual[0]);
     of_x[0] = of_y[0] = 1.0;
     for (int k = 0; k < dim; k++) {
-        of_x[k + 1] = dot(dim, from_x, dual[k]) / volume;
-        of_y[k + 1] = dot(dim, from_y, dual[k]) / volume;
+        of_x[k + 1] = vector_dot(dim, from_x, dual[k]) / volume;
+        of_y[k + 1] = vector_dot(dim, from_y, dual[k]) / volume;
         of_x[0] -= of_x[k + 1];
         of_y[0] -= of_y[k + 1];
     }
@@ -104,15 +82,13 @@ static bool contains(const struct index_list *list, int32_t value)
 
 static enum status visit(int32_t cell, struct reach_work *work, struct error *error)
 {
-    enum status status = STATUS_OK;
     if (cell >= 0 && !contains(&work->visited, cell)) {
-        TRY(index_list_reserve(&work->visited, 1, error));
-        TRY(index_list_reserve(&work->stack, 1, error));
+        RETURN_IF_ERROR(index_list_reserve(&work->visited, 1, error));
+        RETURN_IF_ERROR(index_list_reserve(&work->stack, 1, error));
         work->visited.index[work->visited.count++] = cell;
         work->stack.index[work->stack.count++] = cell;
     }
-done:
-    return status;
+    return STATUS_OK;
 }
 
 static bool has_node(const struct cells *cells, int64_t cell, int32_t node)
@@ -124,13 +100,12 @@ static bool has_node(const struct cells *cells, int64_t cell, int32_t node)
 enum status reach_walk(const struct reach *reach, const double *x, const int32_t *cell, int64_t cell_count,
                        int32_t node, struct reach_work *work, bool *arrives, struct error *error)
 {
-    enum status status = STATUS_OK;
     int corners = reach->cells.dim + 1;
     const double *y = node < 0 ? x : reach->cells.x + (int64_t)node * reach->cells.dim;
     work->visited.count = work->stack.count = 0;
     *arrives = false;
     for (int64_t i = 0; i < cell_count; i++) {
-        TRY(visit(cell[i], work, error));
+        RETURN_IF_ERROR(visit(cell[i], work, error));
     }
     while (work->stack.count > 0) {
         double least[4];
@@ -144,12 +119,11 @@ enum status reach_walk(const struct reach *reach, const double *x, const int32_t
         }
         for (int k = 0; k < corners; k++) {
             if (least[k] <= on_face) {
-                TRY(visit(reach->across[(int64_t)at * corners + k], work, error));
+                RETURN_IF_ERROR(visit(reach->across[(int64_t)at * corners + k], work, error));
             }
         }
     }
-done:
-    return status;
+    return STATUS_OK;
 }
 
 /* How a segment passes a facet: not; through it, out of the body; or too near its rim or its ends to say. */
@@ -160,8 +134,8 @@ static enum passage passage_of(const struct reach *reach, const struct reach_fac
                                const double *x, bool own, const double *y)
 {
     int dim = reach->cells.dim;
-    double of_x = dot(dim, facet->normal, x) - facet->offset;
-    double of_y = dot(dim, facet->normal, y) - facet->offset, tolerance = REACH_ON_PLANE * radius;
+    double of_x = vector_dot(dim, facet->normal, x) - facet->offset;
+    double of_y = vector_dot(dim, facet->normal, y) - facet->offset, tolerance = REACH_ON_PLANE * radius;
     if (of_y <= tolerance) {
         return of_y < -tolerance ? PASSES_NOT : PASSES_CLOSE; /* the target is on the facet, from elsewhere */
     }
@@ -220,7 +194,7 @@ static double pull_into(const struct cells *cells, int64_t cell, const double *x
         int32_t node = cells->node[cell * (dim + 1) + i / dim];
         pulled[i % dim] += place[i / dim] / sum * cells->x[(int64_t)node * dim + i % dim];
     }
-    return reach_distance(dim, x, pulled);
+    return vector_distance(dim, x, pulled);
 }
 
 enum status reach_locate(const struct reach *reach, const double *x, struct reach_work *work,

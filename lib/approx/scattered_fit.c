@@ -2,6 +2,7 @@
 
 #include "approx/weight.h"
 #include "base/memory.h"
+#include "base/vector.h"
 
 #include <gsl/gsl_errno.h>
 #include <gsl/gsl_linalg.h>
@@ -107,13 +108,9 @@ static enum status find_nearest(const struct scattered_fit *fit, const double *x
     }
     nearest->count = 0;
     for (int64_t k = 0; k < near.count; k++) { /* rows ascend */
-        double sum = 0.0;
-        for (int a = 0; a < dim; a++) {
-            double difference = fit->x[near.index[k] * dim + a] - at[a];
-            sum += difference * difference;
-        }
+        double distance = vector_distance(dim, fit->x + near.index[k] * dim, at);
         if (usable(fit, near.index[k])) {
-            insert(nearest, most, near.index[k], sqrt(sum));
+            insert(nearest, most, near.index[k], distance);
         }
     }
     if (near.count < wanted) {
@@ -340,22 +337,13 @@ enum status scattered_fit_evaluate(const struct scattered_fit *fit, int32_t from
 {
     struct nearest nearest = {0};
     double phi[MOST_NEIGHBOURS] = {1.0};
-    enum status status = find_reached(fit, from, x, &nearest, error);
-    if (status != STATUS_OK) {
-        return status;
-    }
+    RETURN_IF_ERROR(find_reached(fit, from, x, &nearest, error));
     int64_t last = nearest.count - 1;
     *distance = nearest.distance[0] * fit->unit;
-    status = spacing_around(fit, nearest.row[0], spacing, error);
-    if (status != STATUS_OK) {
-        return status;
-    }
+    RETURN_IF_ERROR(spacing_around(fit, nearest.row[0], spacing, error));
     *spacing *= fit->unit;
     if (nearest.count > 1 && nearest.distance[last] > 0.0) {
-        status = weights_of(fit, x, &nearest, phi, error);
-        if (status != STATUS_OK) {
-            return status;
-        }
+        RETURN_IF_ERROR(weights_of(fit, x, &nearest, phi, error));
     }
     for (int v = 0; v < fit->value_count; v++) {
         values[v] = 0.0;

@@ -3,26 +3,16 @@
 #include "approx/cells.h"
 #include "approx/point_grid.h"
 #include "base/memory.h"
+#include "base/vector.h"
 
 #include <math.h>
 #include <stdlib.h>
-
-static double dot(int dim, const double *a, const double *b)
-{
-    double sum = 0;
-    for (int k = 0; k < dim; k++) {
-        sum += a[k] * b[k];
-    }
-    return sum;
-}
 
 static bool contains(int dim, const struct shape *shape, const double *point)
 {
     double from[3];
     double reach = shape->size + shape->slack;
-    for (int k = 0; k < dim; k++) {
-        from[k] = point[k] - shape->a[k];
-    }
+    vector_subtract(dim, point, shape->a, from);
     switch (shape->kind) {
     case SHAPE_BOX:
         for (int k = 0; k < dim; k++) {
@@ -32,9 +22,9 @@ static bool contains(int dim, const struct shape *shape, const double *point)
         }
         return true;
     case SHAPE_BALL:
-        return dot(dim, from, from) <= reach * reach;
+        return vector_dot(dim, from, from) <= reach * reach;
     default: {
-        double height = dot(dim, from, shape->b) / sqrt(dot(dim, shape->b, shape->b));
+        double height = vector_dot(dim, from, shape->b) / vector_length(dim, shape->b);
         return shape->kind == SHAPE_HALF ? height >= -shape->slack : fabs(height) <= reach;
     }
     }
@@ -71,69 +61,20 @@ void items_facing(const struct items *items, const double *direction, double deg
     for (int64_t i = 0; i < items->count; i++) {
         double normal[3];
         face_area_vector(dim, items->x, items->item + i * dim, normal);
-        chosen[i] = dot(dim, normal, direction) >=
-                    least * sqrt(dot(dim, normal, normal) * dot(dim, direction, direction));
+        chosen[i] = vector_dot(dim, normal, direction) >=
+                    least * sqrt(vector_dot(dim, normal, normal) * vector_dot(dim, direction, direction));
     }
 }
 
 /* ---- distances ---- */
 
-static double clamp(double value)
-{
-    return fmin(fmax(value, 0), 1);
-}
-
-/* Squared distance of `to` to the segment 0, u. */
-static double segment_square(int dim, const double *u, const double *to)
-{
-    double length = dot(dim, u, u);
-    double t = length > 0 ? clamp(dot(dim, u, to) / length) : 0;
-    double sum = 0;
-    for (int k = 0; k < dim; k++) {
-        sum += (to[k] - t * u[k]) * (to[k] - t * u[k]);
-    }
-    return sum;
-}
-
-/* Squared distance of `to` to the triangle 0, u, v in space: to its plane if that is met inside, else to its
- * edges. */
-static double triangle_square(const double *u, const double *v, const double *to)
-{
-    double uu = dot(3, u, u);
-    double uv = dot(3, u, v);
-    double vv = dot(3, v, v);
-    double ut = dot(3, u, to);
-    double vt = dot(3, v, to);
-    double determinant = uu * vv - uv * uv;
-    double s = (vv * ut - uv * vt) / determinant;
-    double t = (uu * vt - uv * ut) / determinant;
-    double sum = 0;
-    if (s >= 0 && t >= 0 && s + t <= 1) {
-        for (int k = 0; k < 3; k++) {
-            double d = to[k] - s * u[k] - t * v[k];
-            sum += d * d;
-        }
-        return sum;
-    }
-    double w[3], from_u[3];
-    for (int k = 0; k < 3; k++) {
-        w[k] = v[k] - u[k];
-        from_u[k] = to[k] - u[k];
-    }
-    return fmin(fmin(segment_square(3, u, to), segment_square(3, v, to)), segment_square(3, w, from_u));
-}
-
 double piece_distance(const struct pieces *pieces, int64_t piece, const double *point)
 {
-    int dim = pieces->dim;
-    const double *corner = pieces->x + piece * pieces->corners * dim;
-    double to[3], u[3], v[3];
-    for (int k = 0; k < dim; k++) {
-        to[k] = point[k] - corner[k];
-        u[k] = pieces->corners > 1 ? corner[dim + k] - corner[k] : 0;
-        v[k] = pieces->corners > 2 ? corner[2 * dim + k] - corner[k] : 0;
+    const double *corner[3];
+    for (int k = 0; k < pieces->corners; k++) {
+        corner[k] = pieces->x + (piece * pieces->corners + k) * pieces->dim;
     }
-    return sqrt(pieces->corners > 2 ? triangle_square(u, v, to) : segment_square(dim, u, to));
+    return sqrt(simplex_distance2(pieces->dim, pieces->corners - 1, corner, point));
 }
 
 /* Balls of radius `reach` and that of each piece around the pieces: those that contain a point are
@@ -152,11 +93,7 @@ static void circumscribe(const struct pieces *pieces, double reach, double *cent
             }
         }
         for (int i = 0; i < pieces->corners; i++) {
-            double square = 0;
-            for (int k = 0; k < dim; k++) {
-                square += (x[i * dim + k] - c[k]) * (x[i * dim + k] - c[k]);
-            }
-            farthest = fmax(farthest, sqrt(square));
+            farthest = fmax(farthest, vector_distance(dim, x + i * dim, c));
         }
         radius[p] = (reach + farthest) * (1 + 1e-9);
     }

@@ -31,7 +31,6 @@ struct images {
 static enum status find_images(int dim, const struct neighbours *lists, int64_t first, int64_t last,
                                struct images *images, struct mls_support *support, struct error *error)
 {
-    enum status status = STATUS_OK;
     const struct around *around = &lists->around;
     if (images->next == around->count || around->pair[images->next] >= last) {
         return STATUS_OK;
@@ -39,7 +38,7 @@ static enum status find_images(int dim, const struct neighbours *lists, int64_t 
     if (last - first > images->capacity) {
         free(images->offset);
         images->capacity = 0;
-        TRY(NEW_ARRAY(&images->offset, 2 * (last - first) * dim, error));
+        RETURN_IF_ERROR(NEW_ARRAY(&images->offset, 2 * (last - first) * dim, error));
         images->capacity = 2 * (last - first);
     }
     for (int64_t i = 0; i < (last - first) * dim; i++) {
@@ -51,8 +50,7 @@ static enum status find_images(int dim, const struct neighbours *lists, int64_t 
                around->offset + images->next * dim, (size_t)dim * sizeof *images->offset);
     }
     support->image = images->offset;
-done:
-    return status;
+    return STATUS_OK;
 }
 
 /* The first neighbour from `pair` on that is seen around a corner. */

@@ -1,6 +1,7 @@
 #include "approx/size_field.h"
 
 #include "base/memory.h"
+#include "base/vector.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -112,13 +113,8 @@ static void boundary_normals(const struct cells *cells, const struct faces *face
 /* Angle between two vectors. */
 static double angle_between(int dim, const double *u, const double *v)
 {
-    double uv = 0.0, uu = 0.0, vv = 0.0;
-    for (int a = 0; a < dim; a++) {
-        uv += u[a] * v[a];
-        uu += u[a] * u[a];
-        vv += v[a] * v[a];
-    }
-    return acos(fmin(fmax(uv / sqrt(uu * vv), -1.0), 1.0));
+    double lengths = sqrt(vector_dot(dim, u, u) * vector_dot(dim, v, v));
+    return acos(fmin(fmax(vector_dot(dim, u, v) / lengths, -1.0), 1.0));
 }
 
 /* angle[node_count]: the largest between the boundary's normal at a node and those of its facets. */

@@ -2,25 +2,10 @@
 
 #include "approx/stuffing_private.h"
 #include "base/memory.h"
+#include "base/vector.h"
 
 #include <math.h>
 #include <stdlib.h>
-
-static void cross(const double a[3], const double b[3], double c[3])
-{
-    c[0] = a[1] * b[2] - a[2] * b[1];
-    c[1] = a[2] * b[0] - a[0] * b[2];
-    c[2] = a[0] * b[1] - a[1] * b[0];
-}
-
-static double dot(int dim, const double *a, const double *b)
-{
-    double sum = 0;
-    for (int d = 0; d < dim; d++) {
-        sum += a[d] * b[d];
-    }
-    return sum;
-}
 
 /* Cosines between inward normals of faces: the angle between two faces is 180 degrees less that of the
  * normals. */
@@ -29,9 +14,7 @@ void simplex_angles(int dim, const double *const x[], double angles[2])
     double edge[3][3] = {{0}}, normal[4][3] = {{0}};
     double least = 2, most = -2, size;
     for (int k = 0; k < dim; k++) {
-        for (int d = 0; d < dim; d++) {
-            edge[k][d] = x[k + 1][d] - x[0][d];
-        }
+        vector_subtract(dim, x[k + 1], x[0], edge[k]);
     }
     if (dim == 2) {
         size = edge[0][0] * edge[1][1] - edge[0][1] * edge[1][0];
@@ -40,10 +23,10 @@ void simplex_angles(int dim, const double *const x[], double angles[2])
         normal[2][0] = -edge[0][1];
         normal[2][1] = edge[0][0];
     } else {
-        cross(edge[1], edge[2], normal[1]);
-        cross(edge[2], edge[0], normal[2]);
-        cross(edge[0], edge[1], normal[3]);
-        size = dot(3, edge[0], normal[1]);
+        vector_cross(edge[1], edge[2], normal[1]);
+        vector_cross(edge[2], edge[0], normal[2]);
+        vector_cross(edge[0], edge[1], normal[3]);
+        size = vector_dot(3, edge[0], normal[1]);
     }
     angles[0] = 0;
     angles[1] = 180;
@@ -57,11 +40,11 @@ void simplex_angles(int dim, const double *const x[], double angles[2])
     }
     double length[4];
     for (int k = 0; k <= dim; k++) {
-        length[k] = sqrt(dot(dim, normal[k], normal[k]));
+        length[k] = sqrt(vector_dot(dim, normal[k], normal[k]));
     }
     for (int k = 0; k <= dim; k++) {
         for (int l = k + 1; l <= dim; l++) {
-            double cosine = -dot(dim, normal[k], normal[l]) / (length[k] * length[l]);
+            double cosine = -vector_dot(dim, normal[k], normal[l]) / (length[k] * length[l]);
             least = fmin(least, cosine);
             most = fmax(most, cosine);
         }
@@ -92,14 +75,9 @@ static enum status make(const struct labels *labels, const struct stuffing_optio
     enum status status;
     *stuffing = (struct stuffing){.dim = labels->dim};
     TRY(lattice_make(labels, options, &lattice, error));
-    status = lattice_cut(&lattice, error);
-    if (status == STATUS_OK) {
-        status = lattice_cells(&lattice, stuffing, &between, error);
-    }
+    TRY(lattice_cut(&lattice, error));
+    TRY(lattice_cells(&lattice, stuffing, &between, error));
     lattice_free(&lattice);
-    if (status != STATUS_OK) {
-        goto done;
-    }
     TRY(NEW_ARRAY(&dropped, labels->count, error));
     TRY(stuffing_keep(options, between, stuffing, &apart, dropped, error));
     if (stuffing->cell_count == 0) {
@@ -108,6 +86,7 @@ static enum status make(const struct labels *labels, const struct stuffing_optio
     }
     TRY(stuffing_improve(labels, options, apart, dropped, stuffing, error));
 done:
+    lattice_free(&lattice);
     free(apart);
     free(between);
     free(dropped);

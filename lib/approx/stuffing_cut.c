@@ -41,21 +41,9 @@ static enum status append(struct cutting *cutting, const int32_t *node, struct e
     int corners = stuffing->dim + 1;
     if (stuffing->cell_count == cutting->room) {
         int64_t room = cutting->room + cutting->room / 2 + 1024;
-        int32_t *cell = array_grow(stuffing->cell, room * corners, sizeof *cell);
-        if (cell == NULL) {
-            return fail_memory(error, "cells");
-        }
-        stuffing->cell = cell;
-        int32_t *labels = array_grow(stuffing->label, room, sizeof *labels);
-        if (labels == NULL) {
-            return fail_memory(error, "labels of cells");
-        }
-        stuffing->label = labels;
-        bool *between = array_grow(cutting->between, room, sizeof *between);
-        if (between == NULL) {
-            return fail_memory(error, "cells");
-        }
-        cutting->between = between;
+        RETURN_IF_ERROR(RESIZE_ARRAY(&stuffing->cell, room * corners, error));
+        RETURN_IF_ERROR(RESIZE_ARRAY(&stuffing->label, room, error));
+        RETURN_IF_ERROR(RESIZE_ARRAY(&cutting->between, room, error));
         cutting->room = room;
     }
     memcpy(stuffing->cell + stuffing->cell_count * corners, node, (size_t)corners * sizeof *node);
@@ -171,27 +159,23 @@ static enum status cut_cell(struct cutting *cutting, const int32_t *node, struct
 static enum status find_seconds(struct cutting *cutting, struct error *error)
 {
     const struct lattice *lattice = cutting->lattice;
-    enum status status;
     cutting->searching = true;
     for (int64_t c = 0; c < lattice->cell_count; c++) {
-        TRY(cut_cell(cutting, lattice->cell + c * (lattice->dim + 1), error));
+        RETURN_IF_ERROR(cut_cell(cutting, lattice->cell + c * (lattice->dim + 1), error));
     }
     cutting->searching = false;
-    TRY(cutting_seconds(cutting, error));
-done:
-    return status;
+    return cutting_seconds(cutting, error);
 }
 
 /* Number the cuts behind the nodes of the lattice. */
 static enum status set_nodes(struct cutting *cutting, struct error *error)
 {
     const struct lattice *lattice = cutting->lattice;
-    enum status status;
     int dim = lattice->dim;
     int64_t *count = &cutting->node_count;
     *count = lattice->node_count;
-    TRY(NEW_ARRAY(&cutting->cut_node, lattice->edge_count, error));
-    TRY(NEW_ARRAY(&cutting->cut_edge, lattice->edge_count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&cutting->cut_node, lattice->edge_count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&cutting->cut_edge, lattice->edge_count, error));
     for (int64_t e = 0; e < lattice->edge_count; e++) {
         cutting->cut_node[e] = -1;
         if (lattice->cut[e] > 0) {
@@ -201,9 +185,9 @@ static enum status set_nodes(struct cutting *cutting, struct error *error)
     }
     cutting->cuts = *count - lattice->node_count;
     if (*count > INT32_MAX / 2) {
-        TRY(fail(error, STATUS_INPUT, "more than 1073741823 nodes: a larger spacing?"));
+        return fail(error, STATUS_INPUT, "more than 1073741823 nodes: a larger spacing?");
     }
-    TRY(NEW_ARRAY(&cutting->x, *count * dim, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&cutting->x, *count * dim, error));
     memcpy(cutting->x, lattice->x, (size_t)(lattice->node_count * dim) * sizeof *cutting->x);
     for (int64_t e = 0; e < lattice->edge_count; e++) {
         const double *from = lattice->x + (int64_t)lattice->end[2 * e] * dim;
@@ -213,8 +197,7 @@ static enum status set_nodes(struct cutting *cutting, struct error *error)
                 from[d] + lattice->cut[e] * (to[d] - from[d]);
         }
     }
-done:
-    return status;
+    return STATUS_OK;
 }
 
 /* Number the nodes of cells anew, without those of no cell; x is replaced. */

@@ -1,5 +1,7 @@
 #include "approx/stuffing_private.h"
+#include "base/lists.h"
 #include "base/memory.h"
+#include "base/vector.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -54,22 +56,13 @@ static enum status find_edges(struct lattice *lattice, struct error *error)
     }
     TRY(NEW_ARRAY(&lattice->end, 2 * lattice->edge_count, error));
     TRY(NEW_ARRAY(&lattice->cut, lattice->edge_count, error));
-    TRY(NEW_ARRAY(&lattice->edge_ptr, lattice->node_count + 2, error));
-    TRY(NEW_ARRAY(&lattice->edge_idx, 2 * lattice->edge_count, error));
     TRY(NEW_ARRAY(&lattice->on, lattice->node_count, error));
-    int64_t *ptr = lattice->edge_ptr;
     for (int64_t e = 0; e < lattice->edge_count; e++) {
         lattice->end[2 * e] = (int32_t)(key[e] >> 32);
         lattice->end[2 * e + 1] = (int32_t)(key[e] & UINT32_MAX);
-        ptr[lattice->end[2 * e] + 2]++;
-        ptr[lattice->end[2 * e + 1] + 2]++;
     }
-    for (int64_t n = 0; n < lattice->node_count; n++) {
-        ptr[n + 2] += ptr[n + 1];
-    }
-    for (int64_t i = 0; i < 2 * lattice->edge_count; i++) {
-        lattice->edge_idx[ptr[lattice->end[i] + 1]++] = (int32_t)(i / 2);
-    }
+    TRY(lists_by_row(lattice->edge_count, 2, lattice->end, lattice->node_count, &lattice->edge_ptr,
+                     &lattice->edge_idx, error));
 done:
     free(key);
     return status;
@@ -113,9 +106,7 @@ static double change(const struct lattice *lattice, const double p[], const doub
     for (int step = 0; step < 16; step++) {
         double t = (low + high) / 2, x[3];
         struct label_mix mix;
-        for (int d = 0; d < lattice->dim; d++) {
-            x[d] = p[d] + t * (q[d] - p[d]);
-        }
+        vector_between(lattice->dim, p, q, t, x);
         labels_mix(lattice->labels, x, &mix);
         double value = difference(lattice, &mix, a, b);
         if (strictly ? value > 0 : value >= 0) {
@@ -138,13 +129,8 @@ static double near_end(const struct lattice *lattice, int64_t edge)
 static double length_of(const struct lattice *lattice, int64_t edge)
 {
     const int32_t *end = lattice->end + 2 * edge;
-    double square = 0;
-    for (int d = 0; d < lattice->dim; d++) {
-        double step =
-            lattice->x[(int64_t)end[1] * lattice->dim + d] - lattice->x[(int64_t)end[0] * lattice->dim + d];
-        square += step * step;
-    }
-    return sqrt(square);
+    return vector_distance(lattice->dim, lattice->x + (int64_t)end[1] * lattice->dim,
+                           lattice->x + (int64_t)end[0] * lattice->dim);
 }
 
 double lattice_change(const struct lattice *lattice, const double p[], const double q[], int32_t a, int32_t b)
@@ -201,18 +187,14 @@ static void snap(struct lattice *lattice, int64_t node)
     const int32_t *end = lattice->end + 2 * best;
     const double *other = lattice->x + (int64_t)(end[0] == node ? end[1] : end[0]) * dim;
     lattice->on[node] = true;
-    for (int d = 0; d < dim; d++) {
-        lattice->x[node * dim + d] += fraction * (other[d] - lattice->x[node * dim + d]);
-    }
+    double *own = lattice->x + node * dim;
+    vector_between(dim, own, other, fraction, own);
     take_cuts(lattice, node, lattice->label[end[0] == node ? end[1] : end[0]]);
 }
 
 enum status lattice_cut(struct lattice *lattice, struct error *error)
 {
-    enum status status = find_edges(lattice, error);
-    if (status != STATUS_OK) {
-        return status;
-    }
+    RETURN_IF_ERROR(find_edges(lattice, error));
 #pragma omp parallel for schedule(dynamic, 256)
     for (int64_t e = 0; e < lattice->edge_count; e++) {
         bool cut =

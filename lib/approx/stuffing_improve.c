@@ -1,6 +1,7 @@
 #include "approx/cells.h"
 #include "approx/stuffing_private.h"
 #include "base/memory.h"
+#include "base/vector.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -8,8 +9,8 @@
 
 /* Nodes of interfaces are moved as long as the cells at them score at least this, or as before. */
 static const double goal = 1.3;
-/* Cells that score less are improved; in the end cells beyond the bounds, by nodes up to so many voxels off.
- */
+/* Cells that score less are improved. In the end nodes that are more than so many voxels off their interface
+ * are brought nearer to it, down to that score. */
 static const double least_score = 1.25, last_score = 1.02, last_slack = 0.55;
 /* Nodes that are cut apart move so much of the way to the middle of their own cells, by at most so many
  * voxels. */
@@ -29,14 +30,10 @@ double stuffing_score(const struct stuffing *stuffing, int64_t cell)
         return fmin(angles[0] / STUFFING_LEAST_ANGLE, (180 - angles[1]) / (180 - STUFFING_MOST_ANGLE));
     }
     /* Inverted: its volume, of the product of its edges at one corner. */
-    struct cells cells = {dim, stuffing->node_count, stuffing->x, stuffing->cell_count, stuffing->cell};
+    struct cells cells = stuffing_cells(stuffing);
     double product = 1;
     for (int k = 1; k <= dim; k++) {
-        double square = 0;
-        for (int d = 0; d < dim; d++) {
-            square += (x[k][d] - x[0][d]) * (x[k][d] - x[0][d]);
-        }
-        product *= sqrt(square);
+        product *= vector_distance(dim, x[k], x[0]);
     }
     double volume = cell_volume(&cells, cell);
     return volume < 0 ? volume / product : 0;
@@ -60,9 +57,7 @@ void star_move(struct stuffing *stuffing, const struct stuffing_star *star, int6
     memcpy(before, x, (size_t)dim * sizeof *x);
     double share = 1;
     for (int halving = 0; halving < 4; halving++, share /= 2) {
-        for (int d = 0; d < dim; d++) {
-            x[d] = before[d] + share * (target[d] - before[d]);
-        }
+        vector_between(dim, before, target, share, x);
         if (star_score(stuffing, star, node) >= score) {
             return;
         }
@@ -153,7 +148,7 @@ static void separate(const struct labels *labels, struct stuffing *stuffing, con
 {
     int dim = stuffing->dim;
     double most = most_separation * labels_voxel(labels);
-    struct cells cells = {dim, stuffing->node_count, stuffing->x, stuffing->cell_count, stuffing->cell};
+    struct cells cells = stuffing_cells(stuffing);
     for (int64_t n = 0; n < stuffing->node_count; n++) {
         double target[3] = {0};
         int64_t count = star->ptr[n + 1] - star->ptr[n];
@@ -202,14 +197,11 @@ static bool find_astray(const struct labels *labels, const struct labels *parts,
                         const bool *keep, const struct stuffing *stuffing, const struct stuffing_star *star,
                         int64_t node, double target[3])
 {
-    double most = last_slack * labels_voxel(labels), square = 0;
+    double most = last_slack * labels_voxel(labels);
     const double *x = stuffing->x + node * labels->dim;
     memcpy(target, x, (size_t)labels->dim * sizeof *target);
     if (rim[0] != 0 && line_project(parts, keep, 3, rim, target)) {
-        for (int d = 0; d < labels->dim; d++) {
-            square += (target[d] - x[d]) * (target[d] - x[d]);
-        }
-        if (sqrt(square) > most) {
+        if (vector_distance(labels->dim, target, x) > most) {
             return true;
         }
         memcpy(target, x, (size_t)labels->dim * sizeof *target);
@@ -233,9 +225,7 @@ static void settle(const struct labels *labels, const struct labels *parts, uint
         double score = fmin(star_score(stuffing, star, n), last_score);
         memcpy(from, x, (size_t)dim * sizeof *x);
         for (int step = 8; step >= 0; step--) {
-            for (int d = 0; d < dim; d++) {
-                x[d] = from[d] + step / 8.0 * (target[d] - from[d]);
-            }
+            vector_between(dim, from, target, step / 8.0, x);
             if (star_score(stuffing, star, n) >= score) {
                 break;
             }
@@ -266,11 +256,10 @@ enum status stuffing_improve(const struct labels *parts, const struct stuffing_o
     TRY(star_make(stuffing, options->whole, &star, error));
     for (int sweep = 0; sweep < FIT_SWEEPS; sweep++) {
         fit(&labels, parts, rim, options->keep, stuffing, &star);
-        stuffing_repair(&labels, options->keep, least_score, 0, stuffing, &star);
+        stuffing_repair(&labels, options->keep, least_score, stuffing, &star);
     }
     separate(&labels, stuffing, &star, apart);
     TRY(stuffing_volumes(&labels, options, apart, dropped, &star, stuffing, error));
-    stuffing_repair(&labels, options->keep, last_score, last_slack * labels_voxel(&labels), stuffing, &star);
     for (int sweep = 0; sweep < FIT_SWEEPS; sweep++) {
         settle(&labels, parts, rim, options->keep, stuffing, &star);
     }

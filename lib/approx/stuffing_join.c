@@ -1,6 +1,7 @@
 /* Where parts of the body hang together by a node or an edge alone. */
 #include "approx/stuffing_private.h"
 #include "base/memory.h"
+#include "base/vector.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -196,11 +197,8 @@ static bool is_crevice(const struct stuffing_keeping *keeping, int64_t cell, str
     }
     for (int k = 0; k < corners; k++) {
         int32_t next = keeping->across[cell * corners + k];
-        double square = 0;
         stuffing_gradient(keeping->stuffing, cell, k, gradient[k]);
-        for (int d = 0; d < dim; d++) {
-            square += gradient[k][d] * gradient[k][d];
-        }
+        double square = vector_dot(dim, gradient[k], gradient[k]);
         length[k] = next >= 0 && keeping->wanted[next] ? sqrt(square) : 0;
         if (length[k] > 0) {
             walls++;
@@ -209,10 +207,7 @@ static bool is_crevice(const struct stuffing_keeping *keeping, int64_t cell, str
     }
     for (int k = 0; k < corners; k++) {
         for (int l = k + 1; l < corners && length[k] > 0; l++) {
-            double dot = 0;
-            for (int d = 0; d < dim; d++) {
-                dot += gradient[k][d] * gradient[l][d];
-            }
+            double dot = vector_dot(dim, gradient[k], gradient[l]);
             if (length[l] > 0 && -dot > sharpest * length[k] * length[l]) {
                 return true;
             }
@@ -314,7 +309,6 @@ enum status stuffing_cut_apart(struct stuffing_keeping *keeping, const struct st
                                struct error *error)
 {
     struct stuffing *stuffing = keeping->stuffing;
-    enum status status;
     int64_t nodes = stuffing->node_count, fresh = 0;
     double *x = NULL;
     for (int64_t n = 0; n < nodes; n++) {
@@ -322,8 +316,8 @@ enum status stuffing_cut_apart(struct stuffing_keeping *keeping, const struct st
         fresh += count > 1 ? count - 1 : 0;
         stuffing->pinched += count > 1;
     }
-    TRY(NEW_ARRAY(&keeping->apart, nodes + fresh, error));
-    TRY(NEW_ARRAY(&x, (nodes + fresh) * stuffing->dim, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&keeping->apart, nodes + fresh, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&x, (nodes + fresh) * stuffing->dim, error));
     memcpy(x, stuffing->x, (size_t)(nodes * stuffing->dim) * sizeof *x);
     free(stuffing->x);
     stuffing->x = x;
@@ -332,6 +326,5 @@ enum status stuffing_cut_apart(struct stuffing_keeping *keeping, const struct st
     }
     keeping->cells.node_count = stuffing->node_count;
     keeping->cells.x = stuffing->x;
-done:
-    return status;
+    return STATUS_OK;
 }

@@ -1,5 +1,6 @@
 #include "approx/cells.h"
 #include "approx/stuffing_private.h"
+#include "base/lists.h"
 #include "base/memory.h"
 
 #include <math.h>
@@ -28,20 +29,13 @@ enum status star_make(const struct stuffing *stuffing, const int32_t *whole, str
     enum status status;
     int corners = stuffing->dim + 1;
     *star = (struct stuffing_star){0};
-    TRY(NEW_ARRAY(&star->ptr, stuffing->node_count + 2, error));
-    TRY(NEW_ARRAY(&star->cell, stuffing->cell_count * corners, error));
+    TRY(lists_by_row(stuffing->cell_count, corners, stuffing->cell, stuffing->node_count, &star->ptr,
+                     &star->cell, error));
     TRY(NEW_ARRAY(&star->label, stuffing->node_count, error));
     TRY(NEW_ARRAY(&star->labels, stuffing->node_count, error));
     for (int64_t i = 0; i < stuffing->cell_count * corners; i++) {
-        star->ptr[stuffing->cell[i] + 2]++;
         int32_t label = stuffing->label[i / corners];
         add_label(star, stuffing->cell[i], whole != NULL ? whole[label] : label);
-    }
-    for (int64_t n = 0; n < stuffing->node_count; n++) {
-        star->ptr[n + 2] += star->ptr[n + 1];
-    }
-    for (int64_t i = 0; i < stuffing->cell_count * corners; i++) {
-        star->cell[star->ptr[stuffing->cell[i] + 1]++] = (int32_t)(i / corners);
     }
     for (int64_t i = 0; i < stuffing->facet_count * stuffing->dim; i++) {
         int32_t label = stuffing->side[2 * (i / stuffing->dim) + 1];
@@ -65,16 +59,6 @@ void star_free(struct stuffing_star *star)
 
 /* ---- the boundary ---- */
 
-/* The face opposite a corner, oriented outward of a positively oriented cell. */
-static void face_of(int dim, const int32_t *node, int opposite, int32_t *face)
-{
-    static const int of_triangle[3][2] = {{1, 2}, {2, 0}, {0, 1}};
-    static const int of_tetrahedron[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};
-    for (int k = 0; k < dim; k++) {
-        face[k] = node[dim == 2 ? of_triangle[opposite][k] : of_tetrahedron[opposite][k]];
-    }
-}
-
 /* The boundary of the wanted cells, counted or, where there is room, stored. */
 static int64_t find_facets(const struct stuffing_keeping *keeping, int32_t *facet, int32_t *side)
 {
@@ -87,7 +71,7 @@ static int64_t find_facets(const struct stuffing_keeping *keeping, int32_t *face
                 continue;
             }
             if (facet != NULL) {
-                face_of(dim, keeping->cells.node + c * (dim + 1), k, facet + count * dim);
+                cell_face(&keeping->cells, c, k, facet + count * dim);
                 side[2 * count] = keeping->stuffing->label[c];
                 side[2 * count + 1] = next >= 0 ? keeping->stuffing->label[next] : 0;
             }
@@ -201,9 +185,7 @@ enum status stuffing_keep(const struct stuffing_options *options, const bool *be
     int32_t bodies = 0;
     struct stuffing_star star = {0};
     struct stuffing_keeping keeping = {
-        .stuffing = stuffing,
-        .between = between,
-        .cells = {dim, stuffing->node_count, stuffing->x, count, stuffing->cell}};
+        .stuffing = stuffing, .between = between, .cells = stuffing_cells(stuffing)};
     *apart = NULL;
     TRY(NEW_ARRAY(&keeping.across, count * (dim + 1), error));
     TRY(NEW_ARRAY(&keeping.wanted, count, error));

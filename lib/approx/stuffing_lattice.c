@@ -16,7 +16,7 @@ struct points {
     int64_t count[3], corners, total;
     uint16_t *label; /* total */
     int32_t *node;   /* total: number of the node, -1: not used */
-    int64_t room;    /* cells allocated */
+    int64_t room;    /* numbers allocated in lattice->cell */
     struct error *error;
 };
 
@@ -85,9 +85,8 @@ static enum status size_points(struct points *points, struct error *error)
 
 static enum status label_points(struct points *points, struct error *error)
 {
-    enum status status;
-    TRY(NEW_ARRAY(&points->label, points->total, error));
-    TRY(NEW_ARRAY(&points->node, points->total, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&points->label, points->total, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&points->node, points->total, error));
 #pragma omp parallel for schedule(static)
     for (int64_t p = 0; p < points->total; p++) {
         double x[3];
@@ -95,8 +94,7 @@ static enum status label_points(struct points *points, struct error *error)
         points->label[p] = (uint16_t)labels_at(points->lattice->labels, x);
         points->node[p] = -1;
     }
-done:
-    return status;
+    return STATUS_OK;
 }
 
 /* ---- cells ---- */
@@ -113,15 +111,8 @@ static enum status add_cell(struct points *points, int64_t corner[4])
     if (outside) {
         return STATUS_OK;
     }
-    if (lattice->cell_count == points->room) {
-        int64_t room = points->room + points->room / 2 + 1024;
-        int32_t *cell = array_grow(lattice->cell, room * corners, sizeof *cell);
-        if (cell == NULL) {
-            return fail_memory(points->error, "cells of the lattice");
-        }
-        lattice->cell = cell;
-        points->room = room;
-    }
+    RETURN_IF_ERROR(
+        GROW_ARRAY(&lattice->cell, (lattice->cell_count + 1) * corners, &points->room, points->error));
     for (int k = 0; k < corners; k++) {
         lattice->cell[lattice->cell_count * corners + k] = (int32_t)corner[k];
         points->node[corner[k]] = 0;
@@ -161,13 +152,8 @@ static enum status add_triangles(struct points *points)
         if (i + 2 >= points->count[0] || j + 1 >= points->count[1]) {
             continue;
         }
-        enum status status = add_cell(points, up);
-        if (status == STATUS_OK) {
-            status = add_cell(points, down);
-        }
-        if (status != STATUS_OK) {
-            return status;
-        }
+        RETURN_IF_ERROR(add_cell(points, up));
+        RETURN_IF_ERROR(add_cell(points, down));
     }
     return STATUS_OK;
 }
@@ -242,16 +228,15 @@ done:
 static enum status make_nodes(struct points *points, struct error *error)
 {
     struct lattice *lattice = points->lattice;
-    enum status status;
     int dim = lattice->dim;
     for (int64_t p = 0; p < points->total; p++) {
         if (points->node[p] >= 0) {
             points->node[p] = (int32_t)lattice->node_count++;
         }
     }
-    TRY(NEW_ARRAY(&lattice->x, lattice->node_count * dim, error));
-    TRY(NEW_ARRAY(&lattice->label, lattice->node_count, error));
-    TRY(NEW_ARRAY(&lattice->place, lattice->node_count * 3, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&lattice->x, lattice->node_count * dim, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&lattice->label, lattice->node_count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&lattice->place, lattice->node_count * 3, error));
     for (int64_t p = 0; p < points->total; p++) {
         int64_t n = points->node[p];
         if (n >= 0) {
@@ -265,8 +250,7 @@ static enum status make_nodes(struct points *points, struct error *error)
     for (int64_t i = 0; i < lattice->cell_count * (dim + 1); i++) {
         lattice->cell[i] = points->node[lattice->cell[i]];
     }
-done:
-    return status;
+    return STATUS_OK;
 }
 
 /* The levels that the finest cubes need, at interfaces and for sizes. */

@@ -2,6 +2,7 @@
 #include "approx/raster.h"
 #include "approx/stuffing.h"
 #include "base/memory.h"
+#include "base/vector.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -42,12 +43,7 @@ static int sign_of(const struct labels *labels, const struct grid *grid)
     if (dim == 2) {
         edge[2][2] = 1;
     }
-    double det = 0;
-    for (int d = 0; d < 3; d++) {
-        det += edge[0][d] *
-               (edge[1][(d + 1) % 3] * edge[2][(d + 2) % 3] - edge[1][(d + 2) % 3] * edge[2][(d + 1) % 3]);
-    }
-    return det > 0 ? 1 : -1;
+    return determinant3(edge[0], edge[1], edge[2]) > 0 ? 1 : -1;
 }
 
 /* Whether a voxel or one that touches it lies in a cell of the label. */

@@ -118,7 +118,7 @@ struct side {
     int32_t size;    /* half the edge of the leaf, in halves of the finest edge */
     int64_t at[3];   /* the leaf */
     int axis, upper; /* the side */
-    octree_tell *tell;
+    octree_visitor *visit;
     void *context;
 };
 
@@ -165,17 +165,11 @@ static enum status between_equals(const struct side *side, const int64_t beyond[
             for (int d = 0; d < 3; d++) {
                 corner[3][d] = (first[d] + second[d]) / 2;
             }
-            enum status status = side->tell(side->context, (const int32_t(*)[3])corner);
-            if (status != STATUS_OK) {
-                return status;
-            }
+            RETURN_IF_ERROR(side->visit(side->context, (const int32_t(*)[3])corner));
             memcpy(corner[2], corner[3], sizeof first);
             memcpy(corner[3], second, sizeof second);
         }
-        enum status status = side->tell(side->context, (const int32_t(*)[3])corner);
-        if (status != STATUS_OK) {
-            return status;
-        }
+        RETURN_IF_ERROR(side->visit(side->context, (const int32_t(*)[3])corner));
     }
     return STATUS_OK;
 }
@@ -203,27 +197,23 @@ static enum status join_larger(const struct side *side, const int64_t beyond[3])
             } else {
                 memcpy(corner[3], middle, sizeof middle);
             }
-            enum status status = side->tell(side->context, (const int32_t(*)[3])corner);
-            if (status != STATUS_OK) {
-                return status;
-            }
+            RETURN_IF_ERROR(side->visit(side->context, (const int32_t(*)[3])corner));
         }
     }
     return STATUS_OK;
 }
 
-enum status octree_cells(const struct octree *octree, octree_tell *tell, void *context)
+enum status octree_cells(const struct octree *octree, octree_visitor *visit, void *context)
 {
-    enum status status = STATUS_OK;
-    for (int level = 0; level < octree->levels && status == STATUS_OK; level++) {
+    for (int level = 0; level < octree->levels; level++) {
         const int64_t *count = octree->count[level];
-        struct side side = {octree, level, 1 << (octree->levels - 1 - level), {0}, 0, 0, tell, context};
-        for (int64_t i = 0; i < cubes(count) && status == STATUS_OK; i++) {
+        struct side side = {octree, level, 1 << (octree->levels - 1 - level), {0}, 0, 0, visit, context};
+        for (int64_t i = 0; i < cubes(count); i++) {
             side.at[0] = i % count[0];
             side.at[1] = i / count[0] % count[1];
             side.at[2] = i / count[0] / count[1];
             bool leaf = exists(octree, level, side.at) && !is_split(octree, level, side.at);
-            for (int s = 0; s < 6 && leaf && status == STATUS_OK; s++) {
+            for (int s = 0; s < 6 && leaf; s++) {
                 int64_t beyond[3] = {side.at[0], side.at[1], side.at[2]};
                 side.axis = s / 2;
                 side.upper = s % 2;
@@ -232,12 +222,12 @@ enum status octree_cells(const struct octree *octree, octree_tell *tell, void *c
                     continue;
                 }
                 if (!exists(octree, level, beyond)) {
-                    status = join_larger(&side, beyond);
+                    RETURN_IF_ERROR(join_larger(&side, beyond));
                 } else if (side.upper && !is_split(octree, level, beyond)) {
-                    status = between_equals(&side, beyond);
+                    RETURN_IF_ERROR(between_equals(&side, beyond));
                 }
             }
         }
     }
-    return status;
+    return STATUS_OK;
 }

@@ -1,7 +1,9 @@
 /* Parts of a label, which are there for the names of facets: their rims are lines on the boundary, and within
  * the body there is nothing of them. */
 #include "approx/stuffing_private.h"
+#include "base/lists.h"
 #include "base/memory.h"
+#include "base/vector.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -18,28 +20,9 @@ static bool is_part_of(const struct stuffing_options *options, int32_t a, int32_
 
 /* The facets at each node. */
 struct facets_at {
-    int64_t *ptr;   /* node_count + 2 */
+    int64_t *ptr;   /* node_count + 1 */
     int32_t *facet; /* facet_count * dim */
 };
-
-static enum status find_facets_at(const struct stuffing *stuffing, struct facets_at *at, struct error *error)
-{
-    enum status status;
-    int dim = stuffing->dim;
-    TRY(NEW_ARRAY(&at->ptr, stuffing->node_count + 2, error));
-    TRY(NEW_ARRAY(&at->facet, stuffing->facet_count * dim, error));
-    for (int64_t i = 0; i < stuffing->facet_count * dim; i++) {
-        at->ptr[stuffing->facet[i] + 2]++;
-    }
-    for (int64_t n = 0; n < stuffing->node_count; n++) {
-        at->ptr[n + 2] += at->ptr[n + 1];
-    }
-    for (int64_t i = 0; i < stuffing->facet_count * dim; i++) {
-        at->facet[at->ptr[stuffing->facet[i] + 1]++] = (int32_t)(i / dim);
-    }
-done:
-    return status;
-}
 
 /* The largest angle of a facet, degrees, once all corners are where the labels meet; 180 where one cannot be
  * put there. */
@@ -55,14 +38,11 @@ static double angle_on_line(const struct labels *labels, const struct stuffing_o
         }
     }
     for (int k = 0; k < 3; k++) {
-        double product = 0.0, square[2] = {0.0, 0.0};
-        for (int d = 0; d < 3; d++) {
-            double one = x[(k + 1) % 3][d] - x[k][d], other = x[(k + 2) % 3][d] - x[k][d];
-            product += one * other;
-            square[0] += one * one;
-            square[1] += other * other;
-        }
-        most = fmax(most, acos(fmax(-1.0, product / sqrt(square[0] * square[1]))) * 180.0 / M_PI);
+        double one[3], other[3];
+        vector_subtract(3, x[(k + 1) % 3], x[k], one);
+        vector_subtract(3, x[(k + 2) % 3], x[k], other);
+        double lengths = sqrt(vector_dot(3, one, one) * vector_dot(3, other, other));
+        most = fmax(most, acos(fmax(-1.0, vector_dot(3, one, other) / lengths)) * 180.0 / M_PI);
     }
     return most;
 }
@@ -141,7 +121,8 @@ enum status stuffing_rims(const struct labels *labels, const struct stuffing_opt
     if (options->whole == NULL) {
         goto done;
     }
-    TRY(find_facets_at(stuffing, &at, error));
+    TRY(lists_by_row(stuffing->facet_count, stuffing->dim, stuffing->facet, stuffing->node_count, &at.ptr,
+                     &at.facet, error));
     if (stuffing->dim == 3) {
         straighten(labels, options, &at, stuffing);
     }
@@ -157,7 +138,6 @@ done:
 enum status labels_without_parts(const struct labels *labels, const int32_t *whole, struct labels *result,
                                  struct error *error)
 {
-    enum status status = STATUS_OK;
     uint16_t *label = NULL;
     bool has_parts = false;
     int64_t count = labels->size[0] * labels->size[1] * labels->size[2];
@@ -166,12 +146,11 @@ enum status labels_without_parts(const struct labels *labels, const int32_t *who
         has_parts = has_parts || whole[l] != l;
     }
     if (has_parts) {
-        TRY(NEW_ARRAY(&label, count, error));
+        RETURN_IF_ERROR(NEW_ARRAY(&label, count, error));
         for (int64_t v = 0; v < count; v++) {
             label[v] = (uint16_t)whole[labels->label[v]];
         }
         result->label = label;
     }
-done:
-    return status;
+    return STATUS_OK;
 }

@@ -5,6 +5,12 @@
 #include "approx/cells.h"
 #include "approx/stuffing.h"
 
+static inline struct cells stuffing_cells(const struct stuffing *stuffing)
+{
+    return (struct cells){stuffing->dim, stuffing->node_count, stuffing->x, stuffing->cell_count,
+                          stuffing->cell};
+}
+
 /* The lattice whose cells are cut. 3D: corners and centres of cubes, which are leaves of an octree; 2D:
  * equilateral triangles. Cells whose points are all outside are left out. */
 struct lattice {
@@ -70,10 +76,10 @@ MUST_CHECK enum status octree_make(int levels, const int64_t count[3], uint8_t *
                                    struct error *error);
 void octree_free(struct octree *octree);
 
-/* Call tell(context, corner) for each tetrahedron between the leaves: four points, each x, y, z in halves of
- * the finest cube's edge. Stops when tell fails. */
-typedef enum status octree_tell(void *context, const int32_t corner[4][3]);
-MUST_CHECK enum status octree_cells(const struct octree *octree, octree_tell *tell, void *context);
+/* Call visit(context, corner) for each tetrahedron between the leaves: four points, each x, y, z in halves of
+ * the finest cube's edge. Stops when it fails. */
+typedef enum status octree_visitor(void *context, const int32_t corner[4][3]);
+MUST_CHECK enum status octree_cells(const struct octree *octree, octree_visitor *visit, void *context);
 
 /* The level of an octree, 0 for cubes of edge `spacing`, whose cells' edges are nearest to `size` by ratio.
  */
@@ -177,10 +183,10 @@ double interface_distance(const struct labels *labels, const double x[],
 /* Gradient of a cell's volume with respect to the place of its corner k: normal to the face opposite. */
 void stuffing_gradient(const struct stuffing *stuffing, int64_t cell, int k, double gradient[3]);
 
-/* Move the nodes of cells that score less than `least`, those of interfaces within these or at most `slack`,
- * m, off, until they score more. */
-void stuffing_repair(const struct labels *labels, const bool *keep, double least, double slack,
-                     struct stuffing *stuffing, const struct stuffing_star *star);
+/* Move the nodes of cells that score less than `least`, those of interfaces within these, until they score
+ * more. */
+void stuffing_repair(const struct labels *labels, const bool *keep, double least, struct stuffing *stuffing,
+                     const struct stuffing_star *star);
 
 /* Move nodes: where labels meet onto their interfaces, those apart[] away from the others at the same place,
  * poor cells into shape, and interfaces for the volumes of labels. */

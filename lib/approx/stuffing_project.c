@@ -1,6 +1,7 @@
 /* The place of the nearest interface, and how far off it is. */
 #include "approx/stuffing_private.h"
 #include "base/dense.h"
+#include "base/vector.h"
 
 #include <math.h>
 #include <string.h>
@@ -20,10 +21,7 @@ static bool newton_step(const struct labels *labels, int count, const uint16_t l
     }
     for (int r = 0; r < rows; r++) {
         for (int c = 0; c < rows; c++) {
-            A[r * rows + c] = 0;
-            for (int d = 0; d < dim; d++) {
-                A[r * rows + c] += J[r][d] * J[c][d];
-            }
+            A[r * rows + c] = vector_dot(dim, J[r], J[c]);
         }
         if (!(A[r * rows + r] * voxel * voxel > 1e-4)) {
             return false;
@@ -116,14 +114,10 @@ static bool search_change(const struct labels *labels, const struct interface_be
     }
     for (int step = 0; step < 12; step++) {
         double t = (low + high) / 2, y[3] = {0};
-        for (int d = 0; d < labels->dim; d++) {
-            y[d] = x[d] + t * (place[d] - x[d]);
-        }
+        vector_between(labels->dim, x, place, t, y);
         *(is_beyond(beyond, labels_at(labels, y)) ? &high : &low) = t;
     }
-    for (int d = 0; d < labels->dim; d++) {
-        x[d] += high * (place[d] - x[d]);
-    }
+    vector_between(labels->dim, x, place, high, x);
     return true;
 }
 
@@ -167,7 +161,7 @@ double interface_distance(const struct labels *labels, const double x[],
                           const struct interface_beyond *beyond)
 {
     struct label_mix mix;
-    double place[3] = {0}, square = 0;
+    double place[3] = {0};
     int32_t here = labels_at(labels, x);
     if (is_beyond(beyond, here)) {
         return 0;
@@ -179,10 +173,7 @@ double interface_distance(const struct labels *labels, const double x[],
     if (there < 0 || !interface_project(labels, 2, pair, place)) {
         return search_beyond(labels, x, beyond, place);
     }
-    for (int d = 0; d < labels->dim; d++) {
-        square += (place[d] - x[d]) * (place[d] - x[d]);
-    }
-    return sqrt(square);
+    return vector_distance(labels->dim, place, x);
 }
 
 bool line_project(const struct labels *labels, const bool *keep, int count, const uint16_t label[],

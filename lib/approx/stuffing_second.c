@@ -54,10 +54,7 @@ enum status cutting_again(struct cutting *cutting, struct cutting_pieces *pieces
                 continue;
             }
             if (cutting->searching) {
-                enum status status = add_second(cutting, key.cut, key.point, error);
-                if (status != STATUS_OK) {
-                    return status;
-                }
+                RETURN_IF_ERROR(add_second(cutting, key.cut, key.point, error));
                 continue;
             }
             const struct second_cut *found =
@@ -93,7 +90,6 @@ static double second_change(const struct cutting *cutting, const struct second_c
 enum status cutting_seconds(struct cutting *cutting, struct error *error)
 {
     const struct lattice *lattice = cutting->lattice;
-    enum status status = STATUS_OK;
     int dim = lattice->dim;
     int64_t count = 0;
     if (cutting->seconds > 0) {
@@ -107,7 +103,7 @@ enum status cutting_seconds(struct cutting *cutting, struct error *error)
     cutting->seconds = count;
     double *x = array_grow(cutting->x, (cutting->node_count + count + 1) * dim, sizeof *x);
     if (x == NULL) {
-        TRY(fail_memory(error, "nodes"));
+        return fail_memory(error, "nodes");
     }
     cutting->x = x;
     for (int64_t s = 0; s < count; s++) {
@@ -119,6 +115,5 @@ enum status cutting_seconds(struct cutting *cutting, struct error *error)
         }
         second->node = share > 0 ? (int32_t)cutting->node_count++ : -1;
     }
-done:
-    return status;
+    return STATUS_OK;
 }

@@ -1,6 +1,7 @@
 #include "approx/raster.h"
 #include "approx/stuffing_private.h"
 #include "base/memory.h"
+#include "base/vector.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -14,27 +15,20 @@ int size_level(double spacing, double size)
     return (int)fmin(fmax(round(log2(mean_edge * spacing / size)), 0), OCTREE_MOST_LEVELS);
 }
 
-static double determinant(const double a[3], const double b[3], const double c[3])
-{
-    return a[0] * (b[1] * c[2] - b[2] * c[1]) - a[1] * (b[0] * c[2] - b[2] * c[0]) +
-           a[2] * (b[0] * c[1] - b[1] * c[0]);
-}
-
 /* The size at a place in a cell, linear between its nodes. */
 static double size_at(const struct cells *cells, const double *size, int64_t cell, const double at[3])
 {
     const int32_t *node = cells->node + 4 * cell;
     double edge[3][3], way[3];
-    for (int d = 0; d < 3; d++) {
-        way[d] = at[d] - cells->x[3 * (int64_t)node[0] + d];
-        for (int k = 0; k < 3; k++) {
-            edge[k][d] = cells->x[3 * (int64_t)node[k + 1] + d] - cells->x[3 * (int64_t)node[0] + d];
-        }
+    const double *first = cells->x + 3 * (int64_t)node[0];
+    vector_subtract(3, at, first, way);
+    for (int k = 0; k < 3; k++) {
+        vector_subtract(3, cells->x + 3 * (int64_t)node[k + 1], first, edge[k]);
     }
-    double whole = determinant(edge[0], edge[1], edge[2]), value = size[node[0]];
-    const double share[3] = {determinant(way, edge[1], edge[2]) / whole,
-                             determinant(edge[0], way, edge[2]) / whole,
-                             determinant(edge[0], edge[1], way) / whole};
+    double whole = determinant3(edge[0], edge[1], edge[2]), value = size[node[0]];
+    const double share[3] = {determinant3(way, edge[1], edge[2]) / whole,
+                             determinant3(edge[0], way, edge[2]) / whole,
+                             determinant3(edge[0], edge[1], way) / whole};
     double least = value, most = value;
     for (int k = 0; k < 3; k++) {
         value += share[k] * (size[node[k + 1]] - size[node[0]]);

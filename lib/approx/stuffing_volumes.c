@@ -2,6 +2,7 @@
 #include "approx/stuffing_private.h"
 #include "base/dense.h"
 #include "base/memory.h"
+#include "base/vector.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -13,23 +14,12 @@ enum { SWEEPS = 12 };
 
 void stuffing_gradient(const struct stuffing *stuffing, int64_t cell, int k, double gradient[3])
 {
-    int dim = stuffing->dim;
-    static const int of_triangle[3][2] = {{1, 2}, {2, 0}, {0, 1}};
-    static const int of_tetrahedron[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};
-    const double *x[3];
-    for (int i = 0; i < dim; i++) {
-        int corner = dim == 2 ? of_triangle[k][i] : of_tetrahedron[k][i];
-        x[i] = stuffing->x + (int64_t)stuffing->cell[cell * (dim + 1) + corner] * dim;
-    }
-    if (dim == 2) {
-        gradient[0] = -(x[1][1] - x[0][1]) / 2;
-        gradient[1] = (x[1][0] - x[0][0]) / 2;
-        return;
-    }
-    for (int d = 0; d < 3; d++) {
-        int e = (d + 1) % 3, f = (d + 2) % 3;
-        gradient[d] =
-            -((x[1][e] - x[0][e]) * (x[2][f] - x[0][f]) - (x[1][f] - x[0][f]) * (x[2][e] - x[0][e])) / 6;
+    int32_t face[3];
+    struct cells cells = stuffing_cells(stuffing);
+    cell_face(&cells, cell, k, face);
+    face_area_vector(stuffing->dim, stuffing->x, face, gradient);
+    for (int d = 0; d < stuffing->dim; d++) {
+        gradient[d] /= -stuffing->dim;
     }
 }
 
@@ -74,11 +64,7 @@ static double node_weight(int dim, double G[STUFFING_MOST_LABELS][3])
 {
     double most = 0;
     for (int i = 0; i < STUFFING_MOST_LABELS; i++) {
-        double square = 0;
-        for (int d = 0; d < dim; d++) {
-            square += G[i][d] * G[i][d];
-        }
-        most = fmax(most, sqrt(square));
+        most = fmax(most, vector_length(dim, G[i]));
     }
     return most > 0 ? 1 / most : 0;
 }
@@ -91,7 +77,7 @@ static bool find_pressures(struct volumes *volumes)
     int32_t count = volumes->labels->count;
     const struct stuffing *stuffing = volumes->stuffing;
     int dim = stuffing->dim;
-    struct cells cells = {dim, stuffing->node_count, stuffing->x, stuffing->cell_count, stuffing->cell};
+    struct cells cells = stuffing_cells(stuffing);
     double worst = 0, trace = 0;
     memcpy(volumes->pressure, volumes->wanted, (size_t)count * sizeof(double));
     memset(volumes->matrix, 0, (size_t)count * (size_t)count * sizeof(double));

@@ -76,7 +76,6 @@ static enum status fail_support(const struct search *search, int64_t row, const 
 static enum status build_chunk(const struct search *search, int64_t first, int64_t last,
                                struct support_lists *lists, struct worker *worker, struct error *error)
 {
-    enum status status = STATUS_OK;
     const struct point_grid *grid = search->grid;
     int dim = grid->dim;
     worker->list.count = worker->around_count = 0;
@@ -87,7 +86,7 @@ static enum status build_chunk(const struct search *search, int64_t first, int64
                         row_of(search, p));
         }
         int64_t before = worker->list.count;
-        TRY(support_find(search, p, worker, &lists->widen[p], &serves, error));
+        RETURN_IF_ERROR(support_find(search, p, worker, &lists->widen[p], &serves, error));
         const int32_t *index = worker->list.index + before;
         int64_t count = worker->list.count - before;
         if (!serves) {
@@ -95,8 +94,7 @@ static enum status build_chunk(const struct search *search, int64_t first, int64
         }
         lists->ptr[p + 1] = count;
     }
-done:
-    return status;
+    return STATUS_OK;
 }
 
 /* Append a worker's neighbours around corners to those of the lists, whose pairs are `before` so far. */
@@ -107,18 +105,13 @@ static enum status append_around(int dim, const struct worker *worker, int64_t b
     if (worker->around_count == 0) {
         return STATUS_OK;
     }
-    int64_t *pair = array_grow(lists->around_pair, count, sizeof *pair);
-    lists->around_pair = pair != NULL ? pair : lists->around_pair;
-    double *offset = array_grow(lists->around_offset, count, (size_t)dim * sizeof *offset);
-    lists->around_offset = offset != NULL ? offset : lists->around_offset;
-    if (pair == NULL || offset == NULL) {
-        return fail_memory(error, "neighbours around corners");
-    }
+    RETURN_IF_ERROR(RESIZE_ARRAY(&lists->around_pair, count, error));
+    RETURN_IF_ERROR(RESIZE_ARRAY(&lists->around_offset, count * dim, error));
     for (int64_t i = 0; i < worker->around_count; i++) {
-        pair[lists->around_count + i] = before + worker->around_pair[i];
+        lists->around_pair[lists->around_count + i] = before + worker->around_pair[i];
     }
-    memcpy(offset + lists->around_count * dim, worker->around_offset,
-           (size_t)(worker->around_count * dim) * sizeof *offset);
+    memcpy(lists->around_offset + lists->around_count * dim, worker->around_offset,
+           (size_t)(worker->around_count * dim) * sizeof(double));
     lists->around_count = count;
     return STATUS_OK;
 }
@@ -128,13 +121,8 @@ static enum status append_chunk(int dim, struct support_lists *lists, int64_t fi
                                 const struct worker *worker, struct index_list *all, struct error *error)
 {
     const struct index_list *own = &worker->list;
-    enum status status = index_list_reserve(all, own->count, error);
-    if (status == STATUS_OK) {
-        status = append_around(dim, worker, all->count, lists, error);
-    }
-    if (status != STATUS_OK) {
-        return status;
-    }
+    RETURN_IF_ERROR(index_list_reserve(all, own->count, error));
+    RETURN_IF_ERROR(append_around(dim, worker, all->count, lists, error));
     if (own->count > 0) {
         memcpy(all->index + all->count, own->index, (size_t)own->count * sizeof *own->index);
         all->count += own->count;

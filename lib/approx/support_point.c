@@ -2,6 +2,7 @@
 #include "approx/support_private.h"
 
 #include "base/memory.h"
+#include "base/vector.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -9,22 +10,13 @@
 
 static const double widen_step = 1.05;
 
-static double distance2_of(int dim, const double *a, const double *b)
-{
-    double sum = 0.0;
-    for (int i = 0; i < dim; i++) {
-        sum += (a[i] - b[i]) * (a[i] - b[i]);
-    }
-    return sum;
-}
-
 /* Squared distance from x to a neighbour; around a corner, along the path. */
 static double neighbour_distance2(const struct point_grid *grid, const double *x, int32_t node,
                                   const double *image)
 {
     static const double origin[3] = {0.0, 0.0, 0.0};
-    return image != NULL ? distance2_of(grid->dim, image, origin)
-                         : distance2_of(grid->dim, x, grid->x + (int64_t)node * grid->dim);
+    return image != NULL ? vector_distance2(grid->dim, image, origin)
+                         : vector_distance2(grid->dim, x, grid->x + (int64_t)node * grid->dim);
 }
 
 /* Keep the `most` nearest of the neighbours in index[count], ties going to the lower index; image[count *
@@ -40,10 +32,7 @@ static enum status keep_nearest(const struct point_grid *grid, const double *x, 
         int64_t capacity = 2 * *count + 64;
         free(worker->order);
         worker->capacity = 0;
-        enum status status = NEW_ARRAY(&worker->order, capacity, error);
-        if (status != STATUS_OK) {
-            return status;
-        }
+        RETURN_IF_ERROR(NEW_ARRAY(&worker->order, capacity, error));
         worker->capacity = capacity;
     }
     double *distance2 = worker->order;
@@ -138,13 +127,8 @@ static enum status note_around(const struct point_grid *grid, const double *x, c
         }
         if (worker->around_count == worker->around_capacity) {
             int64_t capacity = 2 * worker->around_capacity + 64;
-            int64_t *pair = array_grow(worker->around_pair, capacity, sizeof *pair);
-            worker->around_pair = pair != NULL ? pair : worker->around_pair;
-            double *offset = array_grow(worker->around_offset, capacity, (size_t)dim * sizeof *offset);
-            worker->around_offset = offset != NULL ? offset : worker->around_offset;
-            if (pair == NULL || offset == NULL) {
-                return fail_memory(error, "neighbours around corners");
-            }
+            RETURN_IF_ERROR(RESIZE_ARRAY(&worker->around_pair, capacity, error));
+            RETURN_IF_ERROR(RESIZE_ARRAY(&worker->around_offset, capacity * dim, error));
             worker->around_capacity = capacity;
         }
         worker->around_pair[worker->around_count] = i;
@@ -156,37 +140,35 @@ static enum status note_around(const struct point_grid *grid, const double *x, c
 enum status support_find(const struct search *search, int64_t p, struct worker *worker, double *widen,
                          bool *serves, struct error *error)
 {
-    enum status status = STATUS_OK;
     const struct support_options *options = search->options;
     const struct point_grid *grid = search->grid;
     const double *x = search->x + p * grid->dim;
     int64_t first = worker->list.count;
     if (search->reach != NULL) {
-        TRY(reach_begin(search->reach, &search->places, p, x, &worker->reach, error));
+        RETURN_IF_ERROR(reach_begin(search->reach, &search->places, p, x, &worker->reach, error));
     }
     for (*widen = 1.0; *widen <= SUPPORT_WIDEN_LIMIT; *widen *= widen_step) {
         worker->list.count = first;
-        TRY(point_grid_query(grid, x, *widen, &worker->list, error));
+        RETURN_IF_ERROR(point_grid_query(grid, x, *widen, &worker->list, error));
         int64_t count = worker->list.count - first;
         int32_t *index = worker->list.index + first;
         double *image = NULL;
         if (search->reach != NULL) {
             if (*widen == 1.0) {
-                TRY(reach_list_facets(search->reach, index, count, &worker->reach, error));
+                RETURN_IF_ERROR(reach_list_facets(search->reach, index, count, &worker->reach, error));
             }
-            TRY(reach_filter(search->reach, *widen, index, &count, &worker->reach, error));
+            RETURN_IF_ERROR(reach_filter(search->reach, *widen, index, &count, &worker->reach, error));
             image = worker->reach.around > 0 ? worker->reach.image : NULL;
         }
-        TRY(keep_nearest(grid, x, options->most, index, image, &count, worker, error));
+        RETURN_IF_ERROR(keep_nearest(grid, x, options->most, index, image, &count, worker, error));
         worker->list.count = first + count;
         *serves = true;
         if (options->widen) {
-            TRY(judge(search, x, *widen, index, image, count, worker, serves, error));
+            RETURN_IF_ERROR(judge(search, x, *widen, index, image, count, worker, serves, error));
         }
         if (*serves) {
             return image != NULL ? note_around(grid, x, image, first, worker, error) : STATUS_OK;
         }
     }
-done:
-    return status;
+    return STATUS_OK;
 }

@@ -2,18 +2,10 @@
 
 #include "base/box.h"
 #include "base/memory.h"
+#include "base/vector.h"
 
 #include <math.h>
 #include <stdlib.h>
-
-static double distance2_of(int dim, const double *a, const double *b)
-{
-    double sum = 0.0;
-    for (int i = 0; i < dim; i++) {
-        sum += (a[i] - b[i]) * (a[i] - b[i]);
-    }
-    return sum;
-}
 
 /* Mean of the `wanted` least distances, or -1 if there are fewer. */
 static double mean_of_least(double *distance, int64_t count, int64_t wanted)
@@ -53,7 +45,7 @@ static enum status spacing_of(const struct point_grid *grid, int64_t node, struc
         int64_t others = 0;
         for (int64_t i = 0; i < list->count; i++) {
             if (list->index[i] != node) {
-                distance[others++] = sqrt(distance2_of(dim, x, grid->x + (int64_t)list->index[i] * dim));
+                distance[others++] = vector_distance(dim, x, grid->x + (int64_t)list->index[i] * dim);
             }
         }
         *spacing = mean_of_least(distance, others, wanted);

@@ -2,6 +2,7 @@
 
 #include "approx/partition.h"
 #include "approx/reach_private.h"
+#include "base/lists.h"
 #include "base/memory.h"
 
 #include <stdlib.h>
@@ -11,11 +12,10 @@
 static enum status cut_out(const struct support_space *space, const int32_t *cell, struct support_side *side,
                            int32_t *local_node, struct error *error)
 {
-    enum status status;
     int dim = space->cells.dim, corners = dim + 1;
     int64_t slots = side->cell_count * corners;
-    TRY(NEW_ARRAY(&side->local, slots, error));
-    TRY(NEW_ARRAY(&side->node, space->cells.node_count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&side->local, slots, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&side->node, space->cells.node_count, error));
     for (int64_t i = 0; i < slots; i++) {
         local_node[space->cells.node[(int64_t)cell[i / corners] * corners + i % corners]] = 0;
     }
@@ -29,16 +29,15 @@ static enum status cut_out(const struct support_space *space, const int32_t *cel
         side->local[i] = local_node[space->cells.node[(int64_t)cell[i / corners] * corners + i % corners]];
         space->place[cell[i / corners]] = (int32_t)(i / corners);
     }
-    TRY(NEW_ARRAY(&side->x, side->node_count * dim, error));
-    TRY(NEW_ARRAY(&side->radius, side->node_count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&side->x, side->node_count * dim, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&side->radius, side->node_count, error));
     for (int64_t n = 0; n < side->node_count; n++) {
         int64_t whole = side->node[n];
         memcpy(side->x + n * dim, space->cells.x + whole * dim, (size_t)dim * sizeof *side->x);
         side->radius[n] = space->radius[whole];
         local_node[whole] = -1;
     }
-done:
-    return status;
+    return STATUS_OK;
 }
 
 /* The sides, with the whole behind them where there is one. */
@@ -57,25 +56,15 @@ static enum status cut(struct support_space *space, struct error *error)
     for (int64_t c = 0; c < cells->count; c++) {
         sides = space->cell_side[c] >= sides ? space->cell_side[c] + 1 : sides;
     }
-    TRY(NEW_ARRAY(&first, (int64_t)sides + 2, error));
-    TRY(NEW_ARRAY(&cell, cells->count, error));
+    TRY(lists_by_row(cells->count, 1, space->cell_side, sides, &first, &cell, error));
     TRY(NEW_ARRAY(&local_node, cells->node_count, error));
     TRY(NEW_ARRAY(&space->place, cells->count, error));
     TRY(NEW_ARRAY(&space->side, (int64_t)sides + 1, error));
     space->side_count = sides;
     space->side[sides].node_count = space->owner != NULL ? cells->node_count : 0;
-    for (int64_t c = 0; c < cells->count; c++) {
-        first[space->cell_side[c] + 2]++;
-    }
-    for (int32_t s = 0; s < sides; s++) {
-        space->side[s].cell_count = first[s + 2];
-        first[s + 2] += first[s + 1];
-    }
-    for (int64_t c = 0; c < cells->count; c++) {
-        cell[first[space->cell_side[c] + 1]++] = (int32_t)c;
-    }
     memset(local_node, -1, (size_t)cells->node_count * sizeof *local_node);
     for (int32_t s = 0; s < sides; s++) {
+        space->side[s].cell_count = first[s + 1] - first[s];
         TRY(cut_out(space, cell + first[s], &space->side[s], local_node, error));
     }
 done:
@@ -241,7 +230,6 @@ static enum status own_points_build(const struct support_space *space, const str
                                     int32_t s, int64_t count, const double *x, const int32_t *side,
                                     struct own_points *own, struct error *error)
 {
-    enum status status;
     int dim = space->cells.dim;
     int64_t items = 0, cells, node = 0;
     for (int64_t p = 0; p < count; p++) {
@@ -251,10 +239,10 @@ static enum status own_points_build(const struct support_space *space, const str
             own->count++;
         }
     }
-    TRY(NEW_ARRAY(&own->row, own->count, error));
-    TRY(NEW_ARRAY(&own->x, own->count * dim, error));
-    TRY(NEW_ARRAY(&own->ptr, own->count + 1, error));
-    TRY(NEW_ARRAY(&own->item, items, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&own->row, own->count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&own->x, own->count * dim, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&own->ptr, own->count + 1, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&own->item, items, error));
     items = 0;
     for (int64_t p = 0, i = 0; p < count; p++) {
         if (side[p] != s) {
@@ -277,8 +265,7 @@ static enum status own_points_build(const struct support_space *space, const str
         own->row[i++] = p;
         own->ptr[i] = items;
     }
-done:
-    return status;
+    return STATUS_OK;
 }
 
 /* Their lists, by nodes of the side. */

@@ -1,9 +1,11 @@
 #include "approx/thin.h"
 
 #include "base/memory.h"
+#include "base/vector.h"
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 /* A facet faces the other way where its normal's product with the way to it is more. */
 static const double facing = 0.5;
@@ -16,21 +18,8 @@ static double facet_width(int dim, const double *x, const int32_t *node)
     double sum = 0.0;
     int edges = dim == 2 ? 1 : 3;
     for (int k = 0; k < edges; k++) {
-        double length2 = 0.0;
-        for (int a = 0; a < dim; a++) {
-            double way = x[(int64_t)node[(k + 1) % dim] * dim + a] - x[(int64_t)node[k] * dim + a];
-            length2 += way * way;
-        }
-        sum += sqrt(length2) / edges;
-    }
-    return sum;
-}
-
-static double dot(int dim, const double *a, const double *b)
-{
-    double sum = 0.0;
-    for (int i = 0; i < dim; i++) {
-        sum += a[i] * b[i];
+        sum +=
+            vector_distance(dim, x + (int64_t)node[(k + 1) % dim] * dim, x + (int64_t)node[k] * dim) / edges;
     }
     return sum;
 }
@@ -50,12 +39,12 @@ static double leave_cell(const struct cells *cells, int64_t cell, int entered, c
             side[i] = node[(k + 1 + i) % corners];
         }
         face_area_vector(dim, cells->x, side, area);
-        for (int a = 0; a < dim; a++) {
-            to_face[a] = cells->x[(int64_t)side[0] * dim + a] - x[a];
-            to_vertex[a] = cells->x[(int64_t)node[k] * dim + a] - cells->x[(int64_t)side[0] * dim + a];
-        }
-        double sign = dot(dim, area, to_vertex) > 0.0 ? -1.0 : 1.0, slope = sign * dot(dim, area, way);
-        double distance = sign * dot(dim, area, to_face) / slope;
+        const double *corner = cells->x + (int64_t)side[0] * dim;
+        vector_subtract(dim, corner, x, to_face);
+        vector_subtract(dim, cells->x + (int64_t)node[k] * dim, corner, to_vertex);
+        double sign = vector_dot(dim, area, to_vertex) > 0.0 ? -1.0 : 1.0,
+               slope = sign * vector_dot(dim, area, way);
+        double distance = sign * vector_dot(dim, area, to_face) / slope;
         if (k != entered && slope > 0.0 && distance < nearest) {
             nearest = distance;
             *face = k;
@@ -81,7 +70,8 @@ static double thickness(const struct cells *cells, const int32_t *across, int64_
         }
         int32_t next = across[cell * corners + out];
         if (next < 0) {
-            return dot(dim, normal, inward) > facing * sqrt(dot(dim, normal, normal)) ? distance : INFINITY;
+            return vector_dot(dim, normal, inward) > facing * vector_length(dim, normal) ? distance
+                                                                                         : INFINITY;
         }
         for (face = 0; across[(int64_t)next * corners + face] != cell; face++) {
         }
@@ -115,7 +105,7 @@ enum status cells_find_thin(const struct cells *cells, double bound, struct thin
             }
         }
         face_area_vector(dim, cells->x, node, area);
-        double size = sqrt(dot(dim, area, area)), height = 0.0;
+        double size = vector_length(dim, area), height = 0.0;
         for (int a = 0; a < dim; a++) {
             int64_t vertex = cells->node[cell * corners + face];
             height += area[a] * (cells->x[vertex * dim + a] - middle[a]);
@@ -129,9 +119,7 @@ enum status cells_find_thin(const struct cells *cells, double bound, struct thin
         thin += ratio < bound ? size : 0.0;
         if (ratio < report->least) {
             report->least = ratio;
-            for (int a = 0; a < dim; a++) {
-                report->place[a] = middle[a];
-            }
+            memcpy(report->place, middle, (size_t)dim * sizeof *middle);
         }
     }
     report->share = whole > 0.0 ? thin / whole : 0.0;

@@ -2,6 +2,7 @@
 
 #include "approx/reach_private.h"
 #include "base/memory.h"
+#include "base/vector.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -80,15 +81,7 @@ static bool is_shorter(const struct way_end *a, const struct way_end *b)
 
 static enum status push(struct ways *ways, double length, int32_t node, struct error *error)
 {
-    if (ways->queued == ways->capacity) {
-        int64_t capacity = 2 * ways->capacity + 256;
-        struct way_end *grown = array_grow(ways->queue, capacity, sizeof *grown);
-        if (grown == NULL) {
-            return fail_memory(error, "ways through the cells");
-        }
-        ways->queue = grown;
-        ways->capacity = capacity;
-    }
+    RETURN_IF_ERROR(GROW_ARRAY(&ways->queue, ways->queued + 1, &ways->capacity, error));
     struct way_end end = {.length = length, .node = node};
     int64_t at = ways->queued++;
     for (; at > 0 && is_shorter(&end, &ways->queue[(at - 1) / 2]); at = (at - 1) / 2) {
@@ -117,7 +110,6 @@ static struct way_end pop(struct ways *ways)
 /* Shortest ways along edges from ways->from, up to that length (Dijkstra 1959). */
 static enum status search(struct ways *ways, double limit, struct error *error)
 {
-    enum status status = STATUS_OK;
     const struct reach *reach = &ways->reach;
     int dim = reach->cells.dim;
     for (int64_t n = 0; n < reach->cells.node_count; n++) {
@@ -126,44 +118,43 @@ static enum status search(struct ways *ways, double limit, struct error *error)
     ways->searched = limit;
     ways->queued = 0;
     ways->length[ways->from] = 0.0;
-    TRY(push(ways, 0.0, ways->from, error));
+    RETURN_IF_ERROR(push(ways, 0.0, ways->from, error));
     while (ways->queued > 0) {
         struct way_end end = pop(ways);
         for (int64_t s = reach->star_ptr[end.node];
              end.length <= ways->length[end.node] && s < reach->star_ptr[end.node + 1]; s++) {
             for (int k = 0; k <= dim; k++) {
                 int32_t next = reach->cells.node[(int64_t)reach->star[s] * (dim + 1) + k];
-                double length = end.length + reach_distance(dim, reach->cells.x + (int64_t)end.node * dim,
-                                                            reach->cells.x + (int64_t)next * dim);
+                double length = end.length + vector_distance(dim, reach->cells.x + (int64_t)end.node * dim,
+                                                             reach->cells.x + (int64_t)next * dim);
                 if (length < ways->length[next] && length <= limit) {
                     ways->length[next] = length;
-                    TRY(push(ways, length, next, error));
+                    RETURN_IF_ERROR(push(ways, length, next, error));
                 }
             }
         }
     }
-done:
-    return status;
+    return STATUS_OK;
 }
 
 enum status ways_reach(struct ways *ways, int64_t place, bool *reached, struct error *error)
 {
-    enum status status = STATUS_OK;
     const struct reach *reach = &ways->reach;
     int dim = reach->cells.dim;
     int32_t from = ways->from, node = ways->node[place];
     if (ways->verdict[place] == WAY_UNKNOWN && node >= 0) {
         const double *x = reach->cells.x + (int64_t)from * dim;
         bool sees;
-        TRY(reach_walk(reach, x, reach->star + reach->star_ptr[from],
-                       reach->star_ptr[from + 1] - reach->star_ptr[from], node, &ways->work, &sees, error));
-        double limit = most_detour * reach_distance(dim, x, reach->cells.x + (int64_t)node * dim);
+        RETURN_IF_ERROR(reach_walk(reach, x, reach->star + reach->star_ptr[from],
+                                   reach->star_ptr[from + 1] - reach->star_ptr[from], node, &ways->work,
+                                   &sees, error));
+        double limit = most_detour * vector_distance(dim, x, reach->cells.x + (int64_t)node * dim);
         if (!sees && ways->searched < limit) {
-            TRY(search(ways, 1.5 * limit, error)); /* farther than needed here, for the next queries */
+            RETURN_IF_ERROR(
+                search(ways, 1.5 * limit, error)); /* farther than needed here, for the next queries */
         }
         ways->verdict[place] = sees || ways->length[node] <= limit ? WAY_GOOD : WAY_NONE;
     }
     *reached = ways->verdict[place] != WAY_NONE;
-done:
-    return status;
+    return STATUS_OK;
 }

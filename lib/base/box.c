@@ -1,12 +1,21 @@
 #include "base/box.h"
 
-#include <math.h>
+#include "base/vector.h"
 
 struct box box_of(int dim, int64_t count, const double *x)
 {
     struct box box = {
         .dim = dim, .low = {INFINITY, INFINITY, INFINITY}, .high = {-INFINITY, -INFINITY, -INFINITY}};
     box_add(&box, count, x);
+    return box;
+}
+
+struct box box_of_nodes(int dim, const double *x, const int32_t *node, int64_t count)
+{
+    struct box box = box_of(dim, 0, x);
+    for (int64_t i = 0; i < count; i++) {
+        box_add(&box, 1, x + (int64_t)node[i] * dim);
+    }
     return box;
 }
 
@@ -31,9 +40,5 @@ double box_side(const struct box *box)
 
 double box_diagonal(const struct box *box)
 {
-    double sum = 0.0;
-    for (int a = 0; a < box->dim; a++) {
-        sum += (box->high[a] - box->low[a]) * (box->high[a] - box->low[a]);
-    }
-    return sqrt(sum);
+    return vector_distance(box->dim, box->high, box->low);
 }

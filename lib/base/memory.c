@@ -66,3 +66,24 @@ void *array_take(void *pointer)
     memset(pointer, 0, sizeof array);
     return array;
 }
+
+enum status array_resize(void *pointer, int64_t count, size_t size, const char *name, struct error *error)
+{
+    void *array;
+    memcpy(&array, pointer, sizeof array);
+    array = array_grow(array, count, size);
+    if (array == NULL) {
+        return fail_memory(error, name);
+    }
+    memcpy(pointer, &array, sizeof array);
+    return STATUS_OK;
+}
+
+enum status array_grow_list(void *pointer, int64_t needed, int64_t *room, size_t size, const char *name,
+                            struct error *error)
+{
+    int64_t larger = needed + needed / 2 + 64;
+    RETURN_IF_ERROR(array_resize(pointer, larger, size, name, error));
+    *room = larger;
+    return STATUS_OK;
+}

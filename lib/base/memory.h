@@ -31,6 +31,20 @@ void *array_take(void *pointer);
          ? STATUS_OK                                                                                         \
          : fail_memory((error), #pointer))
 
+/* Resize *pointer, an array from malloc or NULL, to `count` elements; a status, as above. */
+#define RESIZE_ARRAY(pointer, count, error)                                                                  \
+    array_resize((void *)(pointer), (count), sizeof **(pointer), #pointer, (error))
+enum status array_resize(void *pointer, int64_t count, size_t size, const char *name, struct error *error);
+
+/* Let *pointer, an array of *room elements from malloc or NULL, have room for `needed`, and more than that,
+ * so that a list may grow one by one; a status, as above. On failure the array stays valid. */
+#define GROW_ARRAY(pointer, needed, room, error)                                                             \
+    ((needed) <= *(room)                                                                                     \
+         ? STATUS_OK                                                                                         \
+         : array_grow_list((void *)(pointer), (needed), (room), sizeof **(pointer), #pointer, (error)))
+enum status array_grow_list(void *pointer, int64_t needed, int64_t *room, size_t size, const char *name,
+                            struct error *error);
+
 /* Evaluate a status expression; on failure, leave through the label `done` with `status` set.
  * The functions of lib/ have one exit path, which frees. */
 #define TRY(expression)                                                                                      \

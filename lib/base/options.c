@@ -131,10 +131,7 @@ static enum status parse_long(struct options *options, int argc, char *argv[], i
         return fail(error, STATUS_INPUT, "unknown option %s (see -h)", shown);
     }
     struct option *option = &options->option[index];
-    enum status status = mark_given(option, shown, error);
-    if (status != STATUS_OK) {
-        return status;
-    }
+    RETURN_IF_ERROR(mark_given(option, shown, error));
     if (!option->takes_value) {
         return equals == NULL ? STATUS_OK : fail(error, STATUS_INPUT, "option %s takes no value", shown);
     }
@@ -156,10 +153,7 @@ static enum status parse_short(struct options *options, int argc, char *argv[], 
         if (option == NULL) {
             return fail(error, STATUS_INPUT, "unknown option %s in %s (see -h)", shown, argv[*at]);
         }
-        enum status status = mark_given(option, shown, error);
-        if (status != STATUS_OK) {
-            return status;
-        }
+        RETURN_IF_ERROR(mark_given(option, shown, error));
         if (!option->takes_value) {
             continue;
         }
@@ -177,18 +171,14 @@ enum status options_parse(struct options *options, int argc, char *argv[], int *
     bool options_ended = false;
     *operand_count = 0;
     for (int at = 1; at < argc; at++) {
-        enum status status = STATUS_OK;
         if (options_ended || argv[at][0] != '-' || argv[at][1] == '\0') {
             argv[++*operand_count] = argv[at];
         } else if (strcmp(argv[at], "--") == 0) {
             options_ended = true;
         } else if (argv[at][1] == '-') {
-            status = parse_long(options, argc, argv, &at, error);
+            RETURN_IF_ERROR(parse_long(options, argc, argv, &at, error));
         } else {
-            status = parse_short(options, argc, argv, &at, error);
-        }
-        if (status != STATUS_OK) {
-            return status;
+            RETURN_IF_ERROR(parse_short(options, argc, argv, &at, error));
         }
     }
     return STATUS_OK;
@@ -247,10 +237,7 @@ enum status parse_double_list(const char *text, const char *what, double least, 
         }
         memcpy(item, at, length);
         item[length] = '\0';
-        enum status status = parse_double(item, what, least, largest, &values[*count], error);
-        if (status != STATUS_OK) {
-            return status;
-        }
+        RETURN_IF_ERROR(parse_double(item, what, least, largest, &values[*count], error));
         ++*count;
         at += length;
         if (*at == '\0') {

@@ -74,11 +74,10 @@ done:
 enum status ranks_share(const struct ranks *ranks, int64_t items, const double *work, int64_t **first,
                         struct error *error)
 {
-    enum status status;
     int count = ranks_count(ranks);
     double all = 0.0, sum = 0.0;
     int64_t item = 0;
-    TRY(NEW_ARRAY(first, count + 1, error));
+    RETURN_IF_ERROR(NEW_ARRAY(first, count + 1, error));
     for (int64_t i = 0; i < items; i++) {
         all += work != NULL ? work[i] : 1.0;
     }
@@ -89,8 +88,7 @@ enum status ranks_share(const struct ranks *ranks, int64_t items, const double *
         (*first)[r] = item;
     }
     (*first)[count] = items;
-done:
-    return status;
+    return STATUS_OK;
 }
 
 int ranks_owner(const struct ranks *ranks, const int64_t *first, int64_t item)
@@ -110,7 +108,6 @@ int ranks_owner(const struct ranks *ranks, const int64_t *first, int64_t item)
 enum status stretches_of(int64_t begin, int64_t end, const bool *wanted, struct stretches *stretches,
                          struct error *error)
 {
-    enum status status;
     int64_t most = 0;
     *stretches = (struct stretches){0};
     for (int pass = 0; pass < 2; pass++) {
@@ -128,11 +125,10 @@ enum status stretches_of(int64_t begin, int64_t end, const bool *wanted, struct 
         }
         if (pass == 0) {
             most = stretches->count;
-            TRY(NEW_ARRAY(&stretches->items, most, error));
+            RETURN_IF_ERROR(NEW_ARRAY(&stretches->items, most, error));
         }
     }
-done:
-    return status;
+    return STATUS_OK;
 }
 
 void stretches_free(struct stretches *stretches)
@@ -171,28 +167,26 @@ done:
     return status;
 }
 
-/* Exchange what each process wants from each other one: first the counts, then the lists. */
-static enum status exchange_lists(struct halo *halo, struct error *error)
+enum status ranks_exchange_lists(const struct ranks *ranks, const int64_t *send, const int64_t *send_first,
+                                 int64_t **receive, int64_t **receive_first, struct error *error)
 {
     enum status status;
-    const struct ranks *ranks = halo->ranks;
     int count = ranks->count;
     int64_t *each = NULL, *in_turn = NULL, *many = NULL;
     TRY(NEW_ARRAY(&each, count, error));
     TRY(NEW_ARRAY(&many, count, error));
     TRY(NEW_ARRAY(&in_turn, count + 1, error));
-    TRY(NEW_ARRAY(&halo->send_first, count + 1, error));
+    TRY(NEW_ARRAY(receive_first, count + 1, error));
     for (int r = 0; r < count; r++) {
         in_turn[r + 1] = r + 1;
-        each[r] = halo->receive_first[r + 1] - halo->receive_first[r];
+        each[r] = send_first[r + 1] - send_first[r];
     }
     ranks->exchange(ranks, sizeof *each, each, in_turn, many, in_turn);
     for (int r = 0; r < count; r++) {
-        halo->send_first[r + 1] = halo->send_first[r] + many[r];
+        (*receive_first)[r + 1] = (*receive_first)[r] + many[r];
     }
-    TRY(NEW_ARRAY(&halo->send, halo->send_first[count], error));
-    ranks->exchange(ranks, sizeof *halo->send, halo->receive, halo->receive_first, halo->send,
-                    halo->send_first);
+    TRY(NEW_ARRAY(receive, (*receive_first)[count], error));
+    ranks->exchange(ranks, sizeof *send, send, send_first, *receive, *receive_first);
 done:
     free(each);
     free(many);
@@ -210,7 +204,8 @@ enum status halo_build(const struct ranks *ranks, int64_t items, const bool *wan
         return STATUS_OK;
     }
     TRY(list_wanted(halo, items, wanted, owner, context, error));
-    TRY(exchange_lists(halo, error));
+    TRY(ranks_exchange_lists(ranks, halo->receive, halo->receive_first, &halo->send, &halo->send_first,
+                             error));
     TRY(NEW_ARRAY(&halo->sent, halo->send_first[ranks->count] * width, error));
     TRY(NEW_ARRAY(&halo->received, halo->receive_first[ranks->count] * width, error));
 done:

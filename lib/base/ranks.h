@@ -45,6 +45,13 @@ MUST_CHECK enum status ranks_agree(const struct ranks *ranks, enum status status
 MUST_CHECK enum status ranks_list(const struct ranks *ranks, int64_t value, int64_t **each,
                                   struct error *error);
 
+/* What goes to each process, send[send_first[r]] to before send[send_first[r + 1]], and what comes from each:
+ * (*receive)[(*receive_first)[count]], (*receive_first)[count + 1], to be freed, also on failure. All
+ * processes call this together; `ranks` is not NULL. */
+MUST_CHECK enum status ranks_exchange_lists(const struct ranks *ranks, const int64_t *send,
+                                            const int64_t *send_first, int64_t **receive,
+                                            int64_t **receive_first, struct error *error);
+
 /* Cut a list of items into stretches of about the same work, one for each process: first[count + 1], to be
  * freed. work[items] is not negative; NULL: all alike. */
 MUST_CHECK enum status ranks_share(const struct ranks *ranks, int64_t items, const double *work,

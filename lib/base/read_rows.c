@@ -59,33 +59,15 @@ enum status read_rows_with(const struct read_rows *rows, int (*owner)(const void
                            const void *context, bool *wanted, struct error *error)
 {
     enum status status;
-    const struct ranks *ranks = rows->ranks;
     struct row_lists sent = {0}, got = {0};
-    int64_t *each = NULL, *many = NULL, *in_turn = NULL;
     TRY(list_rows(rows, owner, context, &sent, error));
-    TRY(NEW_ARRAY(&each, ranks->count, error));
-    TRY(NEW_ARRAY(&many, ranks->count, error));
-    TRY(NEW_ARRAY(&in_turn, ranks->count + 1, error));
-    TRY(NEW_ARRAY(&got.first, ranks->count + 1, error));
-    for (int r = 0; r < ranks->count; r++) {
-        in_turn[r + 1] = r + 1;
-        each[r] = sent.first[r + 1] - sent.first[r];
-    }
-    ranks->exchange(ranks, sizeof *each, each, in_turn, many, in_turn);
-    for (int r = 0; r < ranks->count; r++) {
-        got.first[r + 1] = got.first[r] + many[r];
-    }
-    TRY(NEW_ARRAY(&got.row, got.first[ranks->count], error));
-    ranks->exchange(ranks, sizeof *got.row, sent.row, sent.first, got.row, got.first);
-    for (int64_t i = 0; i < got.first[ranks->count]; i++) {
+    TRY(ranks_exchange_lists(rows->ranks, sent.row, sent.first, &got.row, &got.first, error));
+    for (int64_t i = 0; i < got.first[rows->ranks->count]; i++) {
         wanted[got.row[i]] = true;
     }
 done:
     free_lists(&sent);
     free_lists(&got);
-    free(each);
-    free(many);
-    free(in_turn);
     return status;
 }
 

@@ -16,18 +16,15 @@ static enum status check_counts(const struct state_value *value, struct error *e
 enum status state_visit(const struct state *state, const char *prefix, const struct state_value values[],
                         int64_t count, struct error *error)
 {
-    enum status status = STATUS_OK;
-    for (int64_t i = 0; status == STATUS_OK && i < count; i++) {
+    for (int64_t i = 0; i < count; i++) {
         char name[96];
         struct state_value value = values[i];
         if (prefix != NULL) {
             snprintf(name, sizeof name, "%s.%s", prefix, value.name);
             value.name = name;
         }
-        status = state->visit(state->context, &value, error);
-        if (status == STATUS_OK) {
-            status = check_counts(&value, error);
-        }
+        RETURN_IF_ERROR(state->visit(state->context, &value, error));
+        RETURN_IF_ERROR(check_counts(&value, error));
     }
-    return status;
+    return STATUS_OK;
 }

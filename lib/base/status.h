@@ -19,6 +19,16 @@ enum status {
 
 #define MUST_CHECK __attribute__((warn_unused_result))
 
+/* Evaluate a status expression; on failure, return its status. In functions that have something to free
+ * first, see TRY in memory.h. */
+#define RETURN_IF_ERROR(expression)                                                                          \
+    do {                                                                                                     \
+        enum status status_of_expression = (expression);                                                     \
+        if (status_of_expression != STATUS_OK) {                                                             \
+            return status_of_expression;                                                                     \
+        }                                                                                                    \
+    } while (0)
+
 /* One line, `section: row: what is wrong: remedy`, without program name and newline. */
 struct error {
     char text[512];

@@ -26,10 +26,7 @@ static enum status save_flags(struct stream *stream, const char *name, const str
 {
     const bool *flags = value->values;
     int32_t *numbers;
-    enum status status = NEW_ARRAY(&numbers, value->count, error);
-    if (status != STATUS_OK) {
-        return status;
-    }
+    RETURN_IF_ERROR(NEW_ARRAY(&numbers, value->count, error));
     for (int64_t i = 0; i < value->count; i++) {
         numbers[i] = flags[i];
     }
@@ -77,19 +74,16 @@ struct state checkpoint_state(const struct stream *stream)
 enum status checkpoint_fill(struct stream *stream, const struct checkpoint_identity *identity, int64_t step,
                             state_function *function, void *owner, struct error *error)
 {
-    enum status status;
     char attributes[128];
     struct state state = {.visit = save, .context = stream};
     int64_t *value = NULL;
-    TRY(NEW_ARRAY(&value, 1, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&value, 1, error));
     *value = step;
     snprintf(attributes, sizeof attributes,
              "version=" MTS_VERSION " scene=%08" PRIx32 " input=%08" PRIx32 " cols=step", identity->scene,
              identity->input);
-    TRY(stream_put(stream, "checkpoint", TYPE_I8, 1, 1, attributes, value, true, error));
-    TRY(function(owner, &state, error));
-done:
-    return status;
+    RETURN_IF_ERROR(stream_put(stream, "checkpoint", TYPE_I8, 1, 1, attributes, value, true, error));
+    return function(owner, &state, error);
 }
 
 static bool is_same(const struct section *section, const char *key, uint32_t checksum)

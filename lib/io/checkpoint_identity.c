@@ -39,35 +39,30 @@ done:
 
 static enum status add_loads(const struct scene_load *loads, int64_t count, uLong *crc, struct error *error)
 {
-    enum status status = STATUS_OK;
     for (int64_t i = 0; i < count; i++) {
-        TRY(add_file(loads[i].curve.file, crc, error));
+        RETURN_IF_ERROR(add_file(loads[i].curve.file, crc, error));
     }
-done:
-    return status;
+    return STATUS_OK;
 }
 
 static enum status add_scene(const struct scene *scene, uLong *crc, struct error *error)
 {
-    enum status status = STATUS_OK;
     for (int64_t i = 0; i < scene->material_count; i++) {
-        TRY(add_file(scene->materials[i].table, crc, error));
+        RETURN_IF_ERROR(add_file(scene->materials[i].table, crc, error));
     }
     for (int64_t i = 0; i < scene->displacement_count; i++) {
-        TRY(add_file(scene->displacements[i].table, crc, error));
-        TRY(add_file(scene->displacements[i].curve.file, crc, error));
+        RETURN_IF_ERROR(add_file(scene->displacements[i].table, crc, error));
+        RETURN_IF_ERROR(add_file(scene->displacements[i].curve.file, crc, error));
     }
     for (int64_t i = 0; i < scene->contact_count; i++) {
-        TRY(add_file(scene->contacts[i].rigid, crc, error));
-        TRY(add_file(scene->contacts[i].curve.file, crc, error));
-        TRY(add_file(scene->contacts[i].angle_curve.file, crc, error));
+        RETURN_IF_ERROR(add_file(scene->contacts[i].rigid, crc, error));
+        RETURN_IF_ERROR(add_file(scene->contacts[i].curve.file, crc, error));
+        RETURN_IF_ERROR(add_file(scene->contacts[i].angle_curve.file, crc, error));
     }
-    TRY(add_file(scene->initial.table, crc, error));
-    TRY(add_loads(scene->pressures, scene->pressure_count, crc, error));
-    TRY(add_loads(scene->tractions, scene->traction_count, crc, error));
-    TRY(add_loads(scene->forces, scene->force_count, crc, error));
-done:
-    return status;
+    RETURN_IF_ERROR(add_file(scene->initial.table, crc, error));
+    RETURN_IF_ERROR(add_loads(scene->pressures, scene->pressure_count, crc, error));
+    RETURN_IF_ERROR(add_loads(scene->tractions, scene->traction_count, crc, error));
+    return add_loads(scene->forces, scene->force_count, crc, error);
 }
 
 static uLong add_section(uLong crc, const struct section *section)

@@ -60,24 +60,22 @@ static enum status read_header(struct image_source *source, struct nifti *header
     unsigned char bytes[NIFTI2_HEADER] = {0};
     size_t got, more;
     bool swapped = false;
-    enum status status = STATUS_OK;
-    TRY(image_source_take(source, bytes, NIFTI1_HEADER, &got, error));
+    RETURN_IF_ERROR(image_source_take(source, bytes, NIFTI1_HEADER, &got, error));
     int version = got >= 4 ? nifti_version(bytes, &swapped) : 0;
     if (version == 0) {
-        TRY(fail_foreign(bytes, got, error));
+        return fail_foreign(bytes, got, error);
     }
     size_t size = version == 1 ? NIFTI1_HEADER : NIFTI2_HEADER;
     if (got == NIFTI1_HEADER && size > got) {
-        TRY(image_source_take(source, bytes + got, size - got, &more, error));
+        RETURN_IF_ERROR(image_source_take(source, bytes + got, size - got, &more, error));
         got += more;
     }
     if (got < size) {
-        TRY(fail(error, STATUS_INPUT, "cut short: %zu bytes of a header of %zu", got, size));
+        return fail(error, STATUS_INPUT, "cut short: %zu bytes of a header of %zu", got, size);
     }
-    TRY(check_magic(bytes, version, error));
+    RETURN_IF_ERROR(check_magic(bytes, version, error));
     nifti_decode(bytes, version, swapped, header, image);
-done:
-    return status;
+    return STATUS_OK;
 }
 
 /* Sizes and components, whose product is a possible size of memory. */
@@ -207,18 +205,16 @@ static enum status skip_extensions(struct image_source *source, const struct nif
     int64_t offset = header->offset > 0     ? (int64_t)header->offset
                      : header->version == 1 ? NIFTI1_HEADER + 4
                                             : NIFTI2_HEADER + 4;
-    enum status status = STATUS_OK;
     while (source->taken < offset) {
         size_t left = (size_t)(offset - source->taken), got;
-        TRY(image_source_take(source, scratch, left < room ? left : room, &got, error));
+        RETURN_IF_ERROR(image_source_take(source, scratch, left < room ? left : room, &got, error));
         if (got == 0) {
-            TRY(fail(error, STATUS_INPUT,
-                     "cut short: %lld bytes, the header says that data begin at byte %lld",
-                     (long long)source->taken, (long long)offset));
+            return fail(error, STATUS_INPUT,
+                        "cut short: %lld bytes, the header says that data begin at byte %lld",
+                        (long long)source->taken, (long long)offset);
         }
     }
-done:
-    return status;
+    return STATUS_OK;
 }
 
 /* The data: `count` values, and nothing behind them. */
@@ -299,20 +295,18 @@ static enum status read_source(struct image_source *source, struct image *image,
     struct nifti header;
     const struct nifti_type *type;
     size_t count = 0;
-    enum status status = STATUS_OK;
-    TRY(read_header(source, &header, image, error));
-    TRY(check_header(&header, &type, image, &count, error));
-    TRY(nifti_space(&header, image, error));
-    TRY(read_values(source, &header, type, count, image, error));
-    TRY(check_exact(type, count, image->values, error));
+    RETURN_IF_ERROR(read_header(source, &header, image, error));
+    RETURN_IF_ERROR(check_header(&header, &type, image, &count, error));
+    RETURN_IF_ERROR(nifti_space(&header, image, error));
+    RETURN_IF_ERROR(read_values(source, &header, type, count, image, error));
+    RETURN_IF_ERROR(check_exact(type, count, image->values, error));
     if (image->components > (size_t)type->components) {
-        TRY(interleave(image, error));
+        RETURN_IF_ERROR(interleave(image, error));
     }
     for (size_t i = 0; i < count && (image->slope != 1 || image->inter != 0); i++) {
         image->values[i] = image->slope * image->values[i] + image->inter;
     }
-done:
-    return status;
+    return STATUS_OK;
 }
 
 enum status image_read_from(struct image *image, int descriptor, const char *name, struct error *error)

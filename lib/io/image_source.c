@@ -29,20 +29,18 @@ static enum status fill(struct image_source *source, struct error *error)
 /* What the first two bytes say. */
 enum status image_source_open(struct image_source *source, int descriptor, struct error *error)
 {
-    enum status status = STATUS_OK;
     source->descriptor = descriptor;
     source->gzip = source->ended = source->complete = false;
     source->stream = (z_stream){0};
     source->taken = 0;
-    TRY(fill(source, error));
+    RETURN_IF_ERROR(fill(source, error));
     if (source->stream.avail_in >= 2 && source->buffer[0] == 0x1f && source->buffer[1] == 0x8b) {
         if (inflateInit2(&source->stream, 15 + 16) != Z_OK) {
-            TRY(fail_memory(error, "compressed image"));
+            return fail_memory(error, "compressed image");
         }
         source->gzip = true;
     }
-done:
-    return status;
+    return STATUS_OK;
 }
 
 void image_source_close(struct image_source *source)

@@ -1,6 +1,7 @@
 #include "io/invariants_private.h"
 
 #include "io/sections.h"
+#include "base/vector.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -34,7 +35,7 @@ void invariants_violation(struct check *check, const struct section *section, co
     va_start(arguments, format);
     vsnprintf(text + length, sizeof text - (size_t)length, format, arguments);
     va_end(arguments);
-    check->tell(check->context, text);
+    check->report(check->context, text);
     check->count++;
 }
 
@@ -141,18 +142,11 @@ static void check_indices(struct check *check, const struct section *section, co
 /* Determinant of the edges of a simplex from its first node: dim! times its volume. */
 static double simplex_determinant(const double *x, const int32_t *node, int dim)
 {
-    double edge[3][3] = {{0}};
+    double edge[3][3];
     for (int i = 0; i < dim; i++) {
-        for (int k = 0; k < dim; k++) {
-            edge[i][k] = x[(int64_t)node[i + 1] * dim + k] - x[(int64_t)node[0] * dim + k];
-        }
+        vector_subtract(dim, x + (int64_t)node[i + 1] * dim, x + (int64_t)node[0] * dim, edge[i]);
     }
-    if (dim == 2) {
-        return edge[0][0] * edge[1][1] - edge[0][1] * edge[1][0];
-    }
-    return edge[0][0] * (edge[1][1] * edge[2][2] - edge[1][2] * edge[2][1]) -
-           edge[0][1] * (edge[1][0] * edge[2][2] - edge[1][2] * edge[2][0]) +
-           edge[0][2] * (edge[1][0] * edge[2][1] - edge[1][1] * edge[2][0]);
+    return dim == 2 ? determinant2(edge[0], edge[1]) : determinant3(edge[0], edge[1], edge[2]);
 }
 
 /* Cells are positively oriented. Called only when nodes.x and the indices are right. */
@@ -307,9 +301,9 @@ static int find_dimension(struct check *check)
     return 0;
 }
 
-int64_t stream_check(const struct stream *stream, violation_function *tell, void *context)
+int64_t stream_check(const struct stream *stream, violation_function *report, void *context)
 {
-    struct check check = {.stream = stream, .tell = tell, .context = context};
+    struct check check = {.stream = stream, .report = report, .context = context};
     check.dim = find_dimension(&check);
     for (int i = 0; i < SECTION_KINDS; i++) {
         const struct section_kind *rule = &section_kinds[i];

@@ -11,6 +11,6 @@ typedef void violation_function(void *context, const char *text);
  * each other, indices in range, ascending lists, finite coordinates, positive weights, radii and cell
  * volumes, partition of unity within 1e-9. Of each kind of violation the first in a section is reported;
  * returns the number of reports. Absent sections are no violation. */
-int64_t stream_check(const struct stream *stream, violation_function *tell, void *context);
+int64_t stream_check(const struct stream *stream, violation_function *report, void *context);
 
 #endif

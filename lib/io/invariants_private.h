@@ -7,7 +7,7 @@
 struct check {
     const struct stream *stream;
     int dim; /* columns of nodes.x or points.x; 0: unknown */
-    violation_function *tell;
+    violation_function *report;
     void *context;
     int64_t count;
 };

@@ -26,15 +26,13 @@ enum status label_table_name(struct label_table *table, const char *text, bool k
     if (table->name_count == NAMES_LIMIT) {
         return fail(error, STATUS_INPUT, "more than %d names", NAMES_LIMIT);
     }
-    struct label_name *names = array_grow(table->name, table->name_count + 1, sizeof *names);
+    RETURN_IF_ERROR(RESIZE_ARRAY(&table->name, table->name_count + 1, error));
     char *copy = strdup(text);
-    table->name = names != NULL ? names : table->name;
-    if (names == NULL || copy == NULL) {
-        free(copy);
+    if (copy == NULL) {
         return fail_memory(error, "names of labels");
     }
     *name = table->name_count++;
-    names[*name] = (struct label_name){copy, kept};
+    table->name[*name] = (struct label_name){copy, kept};
     return STATUS_OK;
 }
 
@@ -47,12 +45,8 @@ enum status label_table_add(struct label_table *table, const struct label_range 
                 (long long)(range->first > table->range[r].first ? range->first : table->range[r].first));
         }
     }
-    struct label_range *ranges = array_grow(table->range, table->range_count + 1, sizeof *ranges);
-    if (ranges == NULL) {
-        return fail_memory(error, "ranges of labels");
-    }
-    table->range = ranges;
-    ranges[table->range_count++] = *range;
+    RETURN_IF_ERROR(RESIZE_ARRAY(&table->range, table->range_count + 1, error));
+    table->range[table->range_count++] = *range;
     return STATUS_OK;
 }
 
@@ -81,7 +75,6 @@ static enum status check_name(const char *name, struct error *error)
 /* "1,3-5" or "*" */
 static enum status add_labels(struct label_table *table, char *labels, int32_t name, struct error *error)
 {
-    enum status status = STATUS_OK;
     if (strcmp(labels, "*") == 0) {
         if (table->others) {
             return fail(error, STATUS_INPUT, "a second row for all other labels");
@@ -91,23 +84,21 @@ static enum status add_labels(struct label_table *table, char *labels, int32_t n
         return STATUS_OK;
     }
     char *rest = labels;
-    while (status == STATUS_OK && rest != NULL) {
+    while (rest != NULL) {
         char *item = strsep(&rest, ",");
         char *dash = strchr(item, '-');
         struct label_range range = {.name = name};
         if (dash != NULL) {
             *dash = '\0';
         }
-        status = parse_integer(item, "label", 0, label_limit, &range.first, error);
+        RETURN_IF_ERROR(parse_integer(item, "label", 0, label_limit, &range.first, error));
         range.last = range.first;
-        if (status == STATUS_OK && dash != NULL) {
-            status = parse_integer(dash + 1, "label", range.first, label_limit, &range.last, error);
+        if (dash != NULL) {
+            RETURN_IF_ERROR(parse_integer(dash + 1, "label", range.first, label_limit, &range.last, error));
         }
-        if (status == STATUS_OK) {
-            status = label_table_add(table, &range, error);
-        }
+        RETURN_IF_ERROR(label_table_add(table, &range, error));
     }
-    return status;
+    return STATUS_OK;
 }
 
 /* One line, which is written into. */
@@ -131,11 +122,11 @@ static enum status add_row(struct label_table *table, char *line, struct error *
         return fail(error, STATUS_INPUT, "a row is LABELS NAME, or LABELS NAME - to leave the cells out");
     }
     int32_t name = -1;
-    enum status status = check_name(word[1], error);
-    if (status == STATUS_OK && strcmp(word[1], "-") != 0) {
-        status = label_table_name(table, word[1], count == 2, &name, error);
+    RETURN_IF_ERROR(check_name(word[1], error));
+    if (strcmp(word[1], "-") != 0) {
+        RETURN_IF_ERROR(label_table_name(table, word[1], count == 2, &name, error));
     }
-    return status == STATUS_OK ? add_labels(table, word[0], name, error) : status;
+    return add_labels(table, word[0], name, error);
 }
 
 enum status label_table_read(const char *path, struct label_table *table, struct error *error)

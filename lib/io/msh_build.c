@@ -9,13 +9,9 @@
 
 enum status mesh_add_name(struct mesh_names *names, const char *name, struct error *error)
 {
-    char **grown = array_grow(names->name, names->count + 1, sizeof *grown);
-    if (grown == NULL) {
-        return fail_memory(error, "names");
-    }
-    names->name = grown;
-    grown[names->count] = strdup(name);
-    if (grown[names->count] == NULL) {
+    RETURN_IF_ERROR(RESIZE_ARRAY(&names->name, names->count + 1, error));
+    names->name[names->count] = strdup(name);
+    if (names->name[names->count] == NULL) {
         return fail_memory(error, "names");
     }
     names->count++;
@@ -123,25 +119,27 @@ static enum status put_named(struct stream *stream, const char *section, enum el
 
 enum status mesh_put(const struct mesh *mesh, struct stream *stream, struct error *error)
 {
-    enum status status = STATUS_OK;
     int dim = mesh->dim;
     int32_t sets = mesh->node_sets.count;
-    TRY(stream_put(stream, "nodes.x", TYPE_F8, mesh->node_count, dim,
-                   dim == 2 ? "unit=m cols=x,y" : "unit=m cols=x,y,z", mesh->x, false, error));
+    RETURN_IF_ERROR(stream_put(stream, "nodes.x", TYPE_F8, mesh->node_count, dim,
+                               dim == 2 ? "unit=m cols=x,y" : "unit=m cols=x,y,z", mesh->x, false, error));
     if (mesh->cell_count > 0) {
-        TRY(stream_put(stream, "cells", TYPE_I4, mesh->cell_count, dim + 1, "", mesh->cells, false, error));
-        TRY(put_named(stream, "cells.region", TYPE_I4, mesh->cell_count, &mesh->regions, mesh->cell_region,
-                      error));
+        RETURN_IF_ERROR(
+            stream_put(stream, "cells", TYPE_I4, mesh->cell_count, dim + 1, "", mesh->cells, false, error));
+        RETURN_IF_ERROR(put_named(stream, "cells.region", TYPE_I4, mesh->cell_count, &mesh->regions,
+                                  mesh->cell_region, error));
     }
     if (mesh->facet_count > 0) {
-        TRY(stream_put(stream, "facets", TYPE_I4, mesh->facet_count, dim, "", mesh->facets, false, error));
-        TRY(put_named(stream, "facets.set", TYPE_I4, mesh->facet_count, &mesh->facet_sets, mesh->facet_set,
-                      error));
+        RETURN_IF_ERROR(
+            stream_put(stream, "facets", TYPE_I4, mesh->facet_count, dim, "", mesh->facets, false, error));
+        RETURN_IF_ERROR(put_named(stream, "facets.set", TYPE_I4, mesh->facet_count, &mesh->facet_sets,
+                                  mesh->facet_set, error));
     }
     if (sets > 0) {
-        TRY(put_named(stream, "sets.ptr", TYPE_I8, sets + 1, &mesh->node_sets, mesh->set_ptr, error));
-        TRY(stream_put(stream, "sets.idx", TYPE_I4, mesh->set_ptr[sets], 1, "", mesh->set_idx, false, error));
+        RETURN_IF_ERROR(
+            put_named(stream, "sets.ptr", TYPE_I8, sets + 1, &mesh->node_sets, mesh->set_ptr, error));
+        RETURN_IF_ERROR(
+            stream_put(stream, "sets.idx", TYPE_I4, mesh->set_ptr[sets], 1, "", mesh->set_idx, false, error));
     }
-done:
-    return status;
+    return STATUS_OK;
 }

@@ -1,4 +1,5 @@
 #include "base/memory.h"
+#include "base/vector.h"
 #include "io/msh_build.h"
 #include "io/msh_split.h"
 
@@ -10,19 +11,17 @@
 
 enum status mesh_find_roles(struct mesh_draft *draft)
 {
-    enum status status = STATUS_OK;
     const struct msh *msh = draft->msh;
     bool split = draft->options->midside;
     int64_t count = 0;
-    TRY(NEW_ARRAY(&draft->role, msh->node_count, draft->error));
+    RETURN_IF_ERROR(NEW_ARRAY(&draft->role, msh->node_count, draft->error));
     for (int64_t e = 0; e < msh->element_count; e++) {
         struct msh_type type = msh_type(msh->element_type[e]);
         int64_t corners = msh->node_ptr[e] + msh_type(type.linear).node_count;
         if (msh_pieces(msh->element_type[e], split)->count == 0) {
-            status = fail(draft->error, STATUS_INPUT,
-                          "element %lld, a %s, cannot be split at its midside nodes: leave --midside away",
-                          (long long)msh->element_tag[e], type.name);
-            goto done;
+            return fail(draft->error, STATUS_INPUT,
+                        "element %lld, a %s, cannot be split at its midside nodes: leave --midside away",
+                        (long long)msh->element_tag[e], type.name);
         }
         for (int64_t k = msh->node_ptr[e]; k < msh->node_ptr[e + 1]; k++) {
             int8_t *role = &draft->role[msh->node_idx[k]];
@@ -37,24 +36,22 @@ enum status mesh_find_roles(struct mesh_draft *draft)
         count += draft->role[n] == MESH_MIDSIDE;
     }
     if (count > 0) {
-        TRY(mesh_add_note(draft,
-                          split
-                              ? "second-order cells: split at %lld midside nodes"
-                              : "second-order cells: %lld midside nodes left out (--midside use keeps them)",
-                          (long long)count));
+        RETURN_IF_ERROR(mesh_add_note(
+            draft,
+            split ? "second-order cells: split at %lld midside nodes"
+                  : "second-order cells: %lld midside nodes left out (--midside use keeps them)",
+            (long long)count));
     }
-done:
-    return status;
+    return STATUS_OK;
 }
 
 enum status mesh_build_nodes(struct mesh_draft *draft)
 {
-    enum status status = STATUS_OK;
     enum { LOST = -1, IN_CELL = -2, KEPT = -3 };
     const struct msh *msh = draft->msh;
     struct mesh *mesh = draft->mesh;
     int64_t lost = 0;
-    TRY(NEW_ARRAY(&draft->node_of, msh->node_count, draft->error));
+    RETURN_IF_ERROR(NEW_ARRAY(&draft->node_of, msh->node_count, draft->error));
     for (int64_t n = 0; n < msh->node_count; n++) {
         draft->node_of[n] = LOST;
     }
@@ -70,16 +67,15 @@ enum status mesh_build_nodes(struct mesh_draft *draft)
         draft->node_of[n] = draft->node_of[n] == KEPT ? (int32_t)mesh->node_count++ : -1;
     }
     if (lost > 0) {
-        TRY(mesh_add_note(draft, "nodes of no cell, left out: %lld", (long long)lost));
+        RETURN_IF_ERROR(mesh_add_note(draft, "nodes of no cell, left out: %lld", (long long)lost));
     }
-    TRY(NEW_ARRAY(&mesh->x, mesh->node_count * mesh->dim, draft->error));
+    RETURN_IF_ERROR(NEW_ARRAY(&mesh->x, mesh->node_count * mesh->dim, draft->error));
     for (int64_t n = 0; n < msh->node_count; n++) {
         for (int i = 0; i < mesh->dim && draft->node_of[n] >= 0; i++) {
             mesh->x[draft->node_of[n] * mesh->dim + i] = draft->options->unit * msh->x[3 * n + i];
         }
     }
-done:
-    return status;
+    return STATUS_OK;
 }
 
 /* Twice the area or six times the volume of a simplex, signed, over the square or cube of its longest edge.
@@ -91,31 +87,20 @@ static double relative_volume(const struct mesh *mesh, const int32_t cell[])
     double longest = 0;
     for (int i = 0; i <= dim; i++) {
         for (int j = i + 1; j <= dim; j++) {
-            double square = 0;
-            for (int k = 0; k < dim; k++) {
-                double d = mesh->x[cell[j] * dim + k] - mesh->x[cell[i] * dim + k];
-                square += d * d;
-                if (i == 0) {
-                    edge[j - 1][k] = d;
-                }
+            const double *from = mesh->x + (int64_t)cell[i] * dim, *to = mesh->x + (int64_t)cell[j] * dim;
+            longest = fmax(longest, vector_distance(dim, to, from));
+            if (i == 0) {
+                vector_subtract(dim, to, from, edge[j - 1]);
             }
-            longest = fmax(longest, sqrt(square));
         }
     }
     if (!(longest > 0)) {
         return 0;
     }
-    for (int i = 0; i < dim; i++) {
-        for (int k = 0; k < dim; k++) {
-            edge[i][k] /= longest;
-        }
+    for (int i = 0; i < 9; i++) {
+        edge[i / 3][i % 3] /= longest;
     }
-    if (dim == 2) {
-        return edge[0][0] * edge[1][1] - edge[0][1] * edge[1][0];
-    }
-    return edge[0][0] * (edge[1][1] * edge[2][2] - edge[1][2] * edge[2][1]) -
-           edge[0][1] * (edge[1][0] * edge[2][2] - edge[1][2] * edge[2][0]) +
-           edge[0][2] * (edge[1][0] * edge[2][1] - edge[1][1] * edge[2][0]);
+    return dim == 2 ? determinant2(edge[0], edge[1]) : determinant3(edge[0], edge[1], edge[2]);
 }
 
 int mesh_simplices(const struct mesh_draft *draft, int64_t element, int32_t simplices[MESH_MOST_SIMPLICES][4])
@@ -167,7 +152,6 @@ static enum status add_cell(struct mesh_draft *draft, int64_t element, int32_t r
 
 enum status mesh_build_cells(struct mesh_draft *draft)
 {
-    enum status status = STATUS_OK;
     const struct msh *msh = draft->msh;
     struct mesh *mesh = draft->mesh;
     int32_t simplices[MESH_MOST_SIMPLICES][4];
@@ -176,18 +160,16 @@ enum status mesh_build_cells(struct mesh_draft *draft)
         count += draft->region_of[e] >= 0 ? mesh_simplices(draft, e, simplices) : 0;
     }
     if (count > INT32_MAX) {
-        status = fail(draft->error, STATUS_INPUT, "%lld cells are more than %d", (long long)count, INT32_MAX);
-        goto done;
+        return fail(draft->error, STATUS_INPUT, "%lld cells are more than %d", (long long)count, INT32_MAX);
     }
-    TRY(NEW_ARRAY(&mesh->cells, count * (mesh->dim + 1), draft->error));
-    TRY(NEW_ARRAY(&mesh->cell_region, count, draft->error));
-    TRY(NEW_ARRAY(&draft->origin, count, draft->error));
+    RETURN_IF_ERROR(NEW_ARRAY(&mesh->cells, count * (mesh->dim + 1), draft->error));
+    RETURN_IF_ERROR(NEW_ARRAY(&mesh->cell_region, count, draft->error));
+    RETURN_IF_ERROR(NEW_ARRAY(&draft->origin, count, draft->error));
     for (int64_t e = 0; e < msh->element_count; e++) {
         int pieces = draft->region_of[e] >= 0 ? mesh_simplices(draft, e, simplices) : 0;
         for (int i = 0; i < pieces; i++) {
-            TRY(add_cell(draft, e, draft->region_of[e], simplices[i]));
+            RETURN_IF_ERROR(add_cell(draft, e, draft->region_of[e], simplices[i]));
         }
     }
-done:
-    return status;
+    return STATUS_OK;
 }

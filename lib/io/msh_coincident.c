@@ -1,5 +1,6 @@
 #include "base/box.h"
 #include "base/memory.h"
+#include "base/sets.h"
 #include "io/msh_build.h"
 
 #include <math.h>
@@ -33,15 +34,6 @@ static enum status fail_coincident(const struct mesh_draft *draft, int32_t a, in
                 (long long)tags[0], (long long)tags[1]);
 }
 
-static int32_t root_of(int32_t parent[], int32_t node)
-{
-    while (parent[node] != node) {
-        parent[node] = parent[parent[node]];
-        node = parent[node];
-    }
-    return node;
-}
-
 /* body[node_count]: the same for nodes that cells connect. */
 static void find_bodies(const struct mesh *mesh, int32_t body[])
 {
@@ -51,13 +43,11 @@ static void find_bodies(const struct mesh *mesh, int32_t body[])
     for (int64_t c = 0; c < mesh->cell_count; c++) {
         const int32_t *cell = &mesh->cells[c * (mesh->dim + 1)];
         for (int k = 1; k <= mesh->dim; k++) {
-            int32_t a = root_of(body, cell[0]);
-            int32_t b = root_of(body, cell[k]);
-            body[a > b ? a : b] = a > b ? b : a;
+            set_join(body, cell[0], cell[k]);
         }
     }
     for (int64_t n = 0; n < mesh->node_count; n++) {
-        body[n] = root_of(body, (int32_t)n);
+        body[n] = set_first(body, (int32_t)n);
     }
 }
 

@@ -93,8 +93,7 @@ static void read_element_nodes(struct msh_reader *r, int64_t e, const struct blo
     struct msh *msh = r->msh;
     int64_t first = msh->node_ptr[e];
     msh->node_ptr[e + 1] = first + block->type.node_count;
-    msh->node_idx =
-        msh_grow(r, msh->node_idx, &r->node_idx_room, msh->node_ptr[e + 1], sizeof *msh->node_idx);
+    MSH_GROW(r, &msh->node_idx, msh->node_ptr[e + 1], &r->node_idx_room);
     for (int64_t k = first; r->status == STATUS_OK && k < msh->node_ptr[e + 1]; k++) {
         int64_t node = r->version == 41 ? msh_size(r, "node", INT64_MIN, INT64_MAX)
                                         : msh_int(r, "node", INT64_MIN, INT64_MAX);

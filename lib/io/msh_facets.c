@@ -1,3 +1,4 @@
+#include "base/lists.h"
 #include "base/memory.h"
 #include "io/msh_build.h"
 #include "io/msh_faces.h"
@@ -64,25 +65,10 @@ static enum status add_set_node(struct gathering *g, int32_t group, int32_t node
     if (node < 0 || g->node_stamp[node] == group + 1) {
         return STATUS_OK;
     }
-    if (*count == g->set_capacity) {
-        int64_t capacity = 2 * g->set_capacity + 256;
-        int32_t *grown = array_grow(mesh->set_idx, capacity, sizeof *grown);
-        if (grown == NULL) {
-            return fail_memory(g->draft->error, "node sets");
-        }
-        mesh->set_idx = grown;
-        g->set_capacity = capacity;
-    }
+    RETURN_IF_ERROR(GROW_ARRAY(&mesh->set_idx, *count + 1, &g->set_capacity, g->draft->error));
     g->node_stamp[node] = group + 1;
     mesh->set_idx[(*count)++] = node;
     return STATUS_OK;
-}
-
-static int compare_nodes(const void *left, const void *right)
-{
-    int32_t a = *(const int32_t *)left;
-    int32_t b = *(const int32_t *)right;
-    return (a > b) - (a < b);
 }
 
 /* The set is whole: if it has nodes, it gets its name. */
@@ -95,12 +81,10 @@ static enum status close_set(struct gathering *g, int32_t group)
     if (count == 0) {
         return STATUS_OK;
     }
-    qsort(&mesh->set_idx[first], (size_t)count, sizeof *mesh->set_idx, compare_nodes);
-    enum status status = mesh_add_name(&mesh->node_sets, g->draft->msh->groups[group].name, g->draft->error);
-    if (status == STATUS_OK) {
-        mesh->set_ptr[mesh->node_sets.count + 1] = mesh->set_ptr[mesh->node_sets.count];
-    }
-    return status;
+    qsort(&mesh->set_idx[first], (size_t)count, sizeof *mesh->set_idx, compare_int32);
+    RETURN_IF_ERROR(mesh_add_name(&mesh->node_sets, g->draft->msh->groups[group].name, g->draft->error));
+    mesh->set_ptr[mesh->node_sets.count + 1] = mesh->set_ptr[mesh->node_sets.count];
+    return STATUS_OK;
 }
 
 /* How the faces of a group lie. */
@@ -142,23 +126,21 @@ static enum status add_face(struct gathering *g, int32_t group, const int32_t no
 
 static enum status note_tally(struct gathering *g, const struct msh_group *group, const struct tally *tally)
 {
-    enum status status = STATUS_OK;
     if (tally->elsewhere > 0) {
-        TRY(mesh_add_note(g->draft, "group '%s': facets of no cell, left out: %lld", group->name,
-                          (long long)tally->elsewhere));
+        RETURN_IF_ERROR(mesh_add_note(g->draft, "group '%s': facets of no cell, left out: %lld", group->name,
+                                      (long long)tally->elsewhere));
     }
     if (tally->interior > 0) {
-        TRY(mesh_add_note(g->draft, "group '%s': facets between two cells, made a set of nodes: %lld",
-                          group->name, (long long)tally->interior));
+        RETURN_IF_ERROR(mesh_add_note(g->draft,
+                                      "group '%s': facets between two cells, made a set of nodes: %lld",
+                                      group->name, (long long)tally->interior));
     }
-done:
-    return status;
+    return STATUS_OK;
 }
 
 /* A group of dimension dim - 1. */
 static enum status gather_facets(struct gathering *g, int32_t group)
 {
-    enum status status = STATUS_OK;
     const struct msh *msh = g->draft->msh;
     struct mesh *mesh = g->draft->mesh;
     struct tally tally = {0, 0, 0};
@@ -166,22 +148,19 @@ static enum status gather_facets(struct gathering *g, int32_t group)
         int32_t pieces[MESH_MOST_SIMPLICES][4];
         int count = mesh_simplices(g->draft, g->group_idx[i], pieces);
         for (int p = 0; p < count; p++) {
-            TRY(add_face(g, group, pieces[p], &tally));
+            RETURN_IF_ERROR(add_face(g, group, pieces[p], &tally));
         }
     }
     if (tally.boundary > 0) {
-        TRY(mesh_add_name(&mesh->facet_sets, msh->groups[group].name, g->draft->error));
+        RETURN_IF_ERROR(mesh_add_name(&mesh->facet_sets, msh->groups[group].name, g->draft->error));
     }
-    TRY(close_set(g, group));
-    TRY(note_tally(g, &msh->groups[group], &tally));
-done:
-    return status;
+    RETURN_IF_ERROR(close_set(g, group));
+    return note_tally(g, &msh->groups[group], &tally);
 }
 
 /* A group of lower dimension. */
 static enum status gather_nodes(struct gathering *g, int32_t group)
 {
-    enum status status = STATUS_OK;
     const struct msh *msh = g->draft->msh;
     int64_t lost = 0;
     for (int64_t i = g->group_ptr[group]; i < g->group_ptr[group + 1]; i++) {
@@ -190,35 +169,32 @@ static enum status gather_nodes(struct gathering *g, int32_t group)
         for (int k = 0; k < used; k++) {
             int32_t node = g->draft->node_of[msh->node_idx[msh->node_ptr[e] + k]];
             lost += node < 0;
-            TRY(add_set_node(g, group, node));
+            RETURN_IF_ERROR(add_set_node(g, group, node));
         }
     }
-    TRY(close_set(g, group));
+    RETURN_IF_ERROR(close_set(g, group));
     if (lost > 0) {
-        TRY(mesh_add_note(g->draft, "group '%s': some of its nodes belong to no cell: left out",
-                          msh->groups[group].name));
+        RETURN_IF_ERROR(mesh_add_note(g->draft, "group '%s': some of its nodes belong to no cell: left out",
+                                      msh->groups[group].name));
     }
-done:
-    return status;
+    return STATUS_OK;
 }
 
 static enum status gather_groups(struct gathering *g)
 {
-    enum status status = STATUS_OK;
     const struct msh *msh = g->draft->msh;
     int dim = g->draft->mesh->dim;
     for (int32_t group = 0; group < msh->group_count; group++) {
         if (msh->groups[group].element_count == 0) {
-            TRY(mesh_add_note(g->draft, "group '%s' of dimension %d is empty: left out",
-                              msh->groups[group].name, msh->groups[group].dim));
+            RETURN_IF_ERROR(mesh_add_note(g->draft, "group '%s' of dimension %d is empty: left out",
+                                          msh->groups[group].name, msh->groups[group].dim));
         } else if (msh->groups[group].dim == dim - 1) {
-            TRY(gather_facets(g, group));
+            RETURN_IF_ERROR(gather_facets(g, group));
         } else if (msh->groups[group].dim < dim - 1) {
-            TRY(gather_nodes(g, group));
+            RETURN_IF_ERROR(gather_nodes(g, group));
         }
     }
-done:
-    return status;
+    return STATUS_OK;
 }
 
 static int compare_names(const void *left, const void *right)

@@ -86,8 +86,7 @@ static void read_physicals(struct msh_reader *r, int dim, struct msh_entity *ent
     entity->first = r->physical_count;
     for (int64_t i = 0; r->status == STATUS_OK && i < count; i++) {
         int64_t tag = msh_int(r, "physical groups", -MSH_LARGEST_TAG, MSH_LARGEST_TAG);
-        r->physicals =
-            msh_grow(r, r->physicals, &r->physical_room, r->physical_count + 1, sizeof *r->physicals);
+        MSH_GROW(r, &r->physicals, r->physical_count + 1, &r->physical_room);
         if (r->status == STATUS_OK) {
             r->physicals[r->physical_count++] = msh_key(dim, tag < 0 ? -tag : tag);
         }
@@ -130,7 +129,7 @@ static void read_entities(struct msh_reader *r, bool partitioned)
     if (total > (r->end - r->at) / 10) {
         msh_fail(r, "%lld entities cannot be in what is left of the file", (long long)total);
     }
-    r->entities = msh_grow(r, r->entities, &r->entity_room, r->entity_count + total, sizeof *r->entities);
+    MSH_GROW(r, &r->entities, r->entity_count + total, &r->entity_room);
     for (int dim = 0; dim < 4; dim++) {
         r->kind = entity_kinds[dim];
         for (int64_t i = 0; r->status == STATUS_OK && i < counts[dim]; i++) {
@@ -165,8 +164,7 @@ void msh_read_partitions(struct msh_reader *r)
 
 static int compare_keys(const void *left, const void *right) /* also of structs that begin with a key */
 {
-    const int64_t *a = left;
-    const int64_t *b = right;
+    const int64_t *a = left, *b = right;
     return (*a > *b) - (*a < *b);
 }
 
@@ -194,8 +192,8 @@ static int compare_group(const void *key, const void *group)
 /* By dimension and name, then tag. */
 static int compare_names(const void *left, const void *right)
 {
-    const struct msh_group *a = *(const struct msh_group *const *)left;
-    const struct msh_group *b = *(const struct msh_group *const *)right;
+    const struct msh_group *a = *(const struct msh_group *const *)left,
+                           *b = *(const struct msh_group *const *)right;
     int names = a->dim == b->dim ? strcmp(a->name, b->name) : 0;
     int64_t key = group_key(a);
     return names != 0 ? names : compare_group(&key, b);
@@ -318,8 +316,8 @@ static void name_groups(struct msh_reader *r)
 static void make_entities(struct msh_reader *r)
 {
     int64_t count = r->msh->group_count;
-    r->entities = msh_grow(r, r->entities, &r->entity_room, count, sizeof *r->entities);
-    r->physicals = msh_grow(r, r->physicals, &r->physical_room, count, sizeof *r->physicals);
+    MSH_GROW(r, &r->entities, count, &r->entity_room);
+    MSH_GROW(r, &r->physicals, count, &r->physical_room);
     for (int64_t i = 0; r->status == STATUS_OK && i < count; i++) {
         r->physicals[i] = group_key(&r->msh->groups[i]);
         r->entities[r->entity_count++] = (struct msh_entity){r->physicals[i], i, 1};
@@ -370,8 +368,7 @@ static const struct msh_entity *entity_of(struct msh_reader *r, int64_t e, const
 static void join_members(struct msh_reader *r)
 {
     struct msh *msh = r->msh;
-    const struct msh_entity none = {0, 0, 0};
-    const struct msh_entity *entity = &none;
+    const struct msh_entity none = {0, 0, 0}, *entity = &none;
     MSH_NEW(r, &msh->member_ptr, msh->element_count + 1);
     for (int64_t e = 0; r->status == STATUS_OK && e < msh->element_count; e++) {
         entity = entity_of(r, e, entity);

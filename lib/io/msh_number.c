@@ -176,18 +176,3 @@ double msh_real(struct msh_reader *r, const char *what)
     }
     return number;
 }
-
-void *msh_grow(struct msh_reader *r, void *array, int64_t *room, int64_t needed, size_t size)
-{
-    if (r->status != STATUS_OK || needed <= *room) {
-        return array;
-    }
-    int64_t larger = needed + needed / 2 + 64;
-    void *grown = array_grow(array, larger, size);
-    if (grown == NULL) {
-        r->status = fail_memory(r->error, "the mesh");
-        return array;
-    }
-    *room = larger;
-    return grown;
-}

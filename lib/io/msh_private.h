@@ -111,8 +111,13 @@ void msh_skip_line(struct msh_reader *reader);
         }                                                                                                    \
     } while (0)
 
-/* The array at `array`, of *room elements, or a larger one that has at least `needed`; *room follows. */
-void *msh_grow(struct msh_reader *reader, void *array, int64_t *room, int64_t needed, size_t size);
+/* Let *pointer, an array of *room elements, have room for `needed`; a statement. */
+#define MSH_GROW(reader, pointer, needed, room)                                                              \
+    do {                                                                                                     \
+        if ((reader)->status == STATUS_OK) {                                                                 \
+            (reader)->status = GROW_ARRAY(pointer, needed, room, (reader)->error);                           \
+        }                                                                                                    \
+    } while (0)
 
 /* ---- the sections, from the line behind "$Name" to where "$EndName" should be ---- */
 

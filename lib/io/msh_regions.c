@@ -144,15 +144,14 @@ done:
 /* A note on each name that is not as in the file. */
 static enum status note_names(struct mesh_draft *draft)
 {
-    enum status status = STATUS_OK;
     for (int32_t g = 0; g < draft->msh->group_count; g++) {
         const struct msh_group *group = &draft->msh->groups[g];
         if (group->written != NULL) {
-            TRY(mesh_add_note(draft, "group '%s' is named '%s' here", group->written, group->name));
+            RETURN_IF_ERROR(
+                mesh_add_note(draft, "group '%s' is named '%s' here", group->written, group->name));
         }
     }
-done:
-    return status;
+    return STATUS_OK;
 }
 
 /* Is `name` an item of the list? */

@@ -38,40 +38,35 @@ static enum status read_section(const struct place *place, struct scene *scene)
 {
     const struct ini_section *section = place->section;
     const struct scene_kind *kind;
-    enum status status;
-    TRY(scene_kind_find(place, &kind));
+    RETURN_IF_ERROR(scene_kind_find(place, &kind));
     if (kind->has_items && section->name[0] == '\0') {
-        TRY(place_fail(place, NULL, "lacks its name: write [%s NAME]", section->kind));
+        return place_fail(place, NULL, "lacks its name: write [%s NAME]", section->kind);
     }
     if (!kind->has_items && section->name[0] != '\0') {
-        TRY(place_fail(place, NULL, "takes no name: write [%s]", section->kind));
+        return place_fail(place, NULL, "takes no name: write [%s]", section->kind);
     }
     if (kind->has_items) {
-        TRY(add_item(place, kind, scene));
+        RETURN_IF_ERROR(add_item(place, kind, scene));
     }
-    TRY(kind->read(place, scene));
-done:
-    return status;
+    return kind->read(place, scene);
 }
 
 /* [scene] first: the others depend on its dimension and analysis. */
 static enum status read_sections(const struct ini_file *file, struct scene *scene, struct error *error)
 {
-    enum status status = STATUS_OK;
     for (int round = 0; round < 2; round++) {
         for (int64_t s = 0; s < file->section_count; s++) {
             struct place place = {.file = file, .section = &file->sections[s], .error = error};
             if ((strcmp(place.section->kind, "scene") == 0) == (round == 0)) {
-                TRY(read_section(&place, scene));
+                RETURN_IF_ERROR(read_section(&place, scene));
             }
         }
         if (scene->dim == 0) {
-            TRY(fail(error, STATUS_INPUT, "%s: no section [scene]: begin with [scene], dim and analysis",
-                     file->path));
+            return fail(error, STATUS_INPUT, "%s: no section [scene]: begin with [scene], dim and analysis",
+                        file->path);
         }
     }
-done:
-    return status;
+    return STATUS_OK;
 }
 
 /* A region is made of one material. */

@@ -68,12 +68,8 @@ static enum status add_section(struct reading *reading, const char *header, size
                          "section header is not [kind] or [kind NAME] of letters, digits, '_', '.', '-'");
     }
     struct ini_file *file = reading->file;
-    struct ini_section *grown = array_grow(file->sections, file->section_count + 1, sizeof *file->sections);
-    if (grown == NULL) {
-        return fail_memory(reading->error, file->path);
-    }
-    file->sections = grown;
-    struct ini_section *section = &grown[file->section_count++];
+    RETURN_IF_ERROR(RESIZE_ARRAY(&file->sections, file->section_count + 1, reading->error));
+    struct ini_section *section = &file->sections[file->section_count++];
     *section = (struct ini_section){
         .kind = strndup(kind, kind_length), .name = strndup(name, name_length), .line = reading->line};
     if (section->kind == NULL || section->name == NULL) {
@@ -155,13 +151,8 @@ static enum status add_entry(struct reading *reading, const char *key, const cha
         return fail(reading->error, STATUS_INPUT, "%s:%lld: [%s%s%s]: %s: has no value", reading->file->path,
                     (long long)reading->line, section->kind, *section->name ? " " : "", section->name, key);
     }
-    struct ini_entry *grown =
-        array_grow(section->entries, section->entry_count + 1, sizeof *section->entries);
-    if (grown == NULL) {
-        return fail_memory(reading->error, reading->file->path);
-    }
-    section->entries = grown;
-    struct ini_entry *entry = &grown[section->entry_count++];
+    RETURN_IF_ERROR(RESIZE_ARRAY(&section->entries, section->entry_count + 1, reading->error));
+    struct ini_entry *entry = &section->entries[section->entry_count++];
     *entry = (struct ini_entry){.key = strdup(key), .value = strdup(value), .line = reading->line};
     return entry->key != NULL && entry->value != NULL ? STATUS_OK
                                                       : fail_memory(reading->error, reading->file->path);

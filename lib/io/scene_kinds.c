@@ -14,39 +14,34 @@ static enum status read_scene(const struct place *place, struct scene *scene)
     static const char *const analyses[] = {"quasi-static", "dynamic", NULL};
     double dim = 0;
     int analysis = 0;
-    enum status status = STATUS_OK;
-    TRY(place_require(place, "dim", "give 2 or 3"));
-    TRY(place_require(place, "analysis", "give quasi-static or dynamic"));
-    TRY(place_number(place, "dim", range_any, &dim));
+    RETURN_IF_ERROR(place_require(place, "dim", "give 2 or 3"));
+    RETURN_IF_ERROR(place_require(place, "analysis", "give quasi-static or dynamic"));
+    RETURN_IF_ERROR(place_number(place, "dim", range_any, &dim));
     if (dim != 2 && dim != 3) {
-        TRY(place_fail(place, "dim", "%g is neither 2 nor 3", dim));
+        return place_fail(place, "dim", "%g is neither 2 nor 3", dim);
     }
     scene->dim = (int)dim;
-    TRY(place_choice(place, "analysis", analyses, &analysis));
+    RETURN_IF_ERROR(place_choice(place, "analysis", analyses, &analysis));
     scene->analysis = (enum scene_analysis)analysis;
-    TRY(place_vector(place, "gravity", scene->dim, scene->gravity, NULL));
-    TRY(place_text(place, "title", &scene->title));
-done:
-    return status;
+    RETURN_IF_ERROR(place_vector(place, "gravity", scene->dim, scene->gravity, NULL));
+    return place_text(place, "title", &scene->title);
 }
 
 static enum status read_elasticity(const struct place *place, struct scene_material *material)
 {
-    enum status status = STATUS_OK;
-    TRY(place_require(place, "E", "give Young's modulus in Pa, or a table"));
-    TRY(place_require(place, "nu", "give Poisson's ratio, or a table"));
-    TRY(place_number(place, "E", range_positive, &material->youngs_modulus));
-    TRY(place_number(place, "nu", range_any, &material->poisson_ratio));
+    RETURN_IF_ERROR(place_require(place, "E", "give Young's modulus in Pa, or a table"));
+    RETURN_IF_ERROR(place_require(place, "nu", "give Poisson's ratio, or a table"));
+    RETURN_IF_ERROR(place_number(place, "E", range_positive, &material->youngs_modulus));
+    RETURN_IF_ERROR(place_number(place, "nu", range_any, &material->poisson_ratio));
     double nu = material->poisson_ratio;
     if (nu >= .5) {
-        TRY(place_fail(place, "nu",
-                       "%g is not below 0.5: nearly incompressible tissue needs nu < 0.5, as 0.49", nu));
+        return place_fail(place, "nu",
+                          "%g is not below 0.5: nearly incompressible tissue needs nu < 0.5, as 0.49", nu);
     }
     if (nu <= -1) {
-        TRY(place_fail(place, "nu", "%g is not above -1", nu));
+        return place_fail(place, "nu", "%g is not above -1", nu);
     }
-done:
-    return status;
+    return STATUS_OK;
 }
 
 static enum status read_model(const struct place *place, struct scene_material *material)
@@ -54,26 +49,24 @@ static enum status read_model(const struct place *place, struct scene_material *
     static const char *const models[] = {"neo-hookean", "neo-hookean-log",     "mooney-rivlin",
                                          "ogden",       "st-venant-kirchhoff", NULL};
     int model = SCENE_NEO_HOOKEAN;
-    enum status status = STATUS_OK;
-    TRY(place_choice(place, "model", models, &model));
+    RETURN_IF_ERROR(place_choice(place, "model", models, &model));
     material->model = (enum scene_model)model;
     if (model == SCENE_MOONEY_RIVLIN) {
-        TRY(place_require(place, "ratio", "model mooney-rivlin needs C01/C10"));
-        TRY(place_number(place, "ratio", range_not_negative, &material->mooney_ratio));
+        RETURN_IF_ERROR(place_require(place, "ratio", "model mooney-rivlin needs C01/C10"));
+        RETURN_IF_ERROR(place_number(place, "ratio", range_not_negative, &material->mooney_ratio));
     } else {
-        TRY(place_forbid(place, "ratio", "it belongs to model mooney-rivlin"));
+        RETURN_IF_ERROR(place_forbid(place, "ratio", "it belongs to model mooney-rivlin"));
     }
     if (model == SCENE_OGDEN) {
-        TRY(place_require(place, "alpha", "model ogden needs its exponent"));
-        TRY(place_number(place, "alpha", range_any, &material->ogden_alpha));
+        RETURN_IF_ERROR(place_require(place, "alpha", "model ogden needs its exponent"));
+        RETURN_IF_ERROR(place_number(place, "alpha", range_any, &material->ogden_alpha));
         if (fpclassify(material->ogden_alpha) == FP_ZERO) {
-            TRY(place_fail(place, "alpha", "must not be 0"));
+            return place_fail(place, "alpha", "must not be 0");
         }
     } else {
-        TRY(place_forbid(place, "alpha", "it belongs to model ogden"));
+        RETURN_IF_ERROR(place_forbid(place, "alpha", "it belongs to model ogden"));
     }
-done:
-    return status;
+    return STATUS_OK;
 }
 
 /* Without motion and weight the density has no effect. */
@@ -88,119 +81,113 @@ static bool is_density_felt(const struct scene *scene)
 static enum status read_material(const struct place *place, struct scene *scene)
 {
     struct scene_material *material = &scene->materials[scene->material_count - 1];
-    enum status status = STATUS_OK;
-    TRY(place_require(place, "region", "name the regions made of it"));
-    TRY(place_names(place, "region", &material->regions));
-    TRY(read_model(place, material));
+    RETURN_IF_ERROR(place_require(place, "region", "name the regions made of it"));
+    RETURN_IF_ERROR(place_names(place, "region", &material->regions));
+    RETURN_IF_ERROR(read_model(place, material));
     if (is_density_felt(scene)) {
-        TRY(place_require(place, "rho", "give the density in kg/m3"));
+        RETURN_IF_ERROR(place_require(place, "rho", "give the density in kg/m3"));
     }
     material->density = no_matter;
-    TRY(place_number(place, "rho", range_positive, &material->density));
-    TRY(place_table(place, "table", &material->table, &material->table_unit));
+    RETURN_IF_ERROR(place_number(place, "rho", range_positive, &material->density));
+    RETURN_IF_ERROR(place_table(place, "table", &material->table, &material->table_unit));
     if (material->table != NULL) {
-        TRY(place_forbid(place, "E", "the table gives E and nu"));
-        TRY(place_forbid(place, "nu", "the table gives E and nu"));
+        RETURN_IF_ERROR(place_forbid(place, "E", "the table gives E and nu"));
+        RETURN_IF_ERROR(place_forbid(place, "nu", "the table gives E and nu"));
     } else {
-        TRY(read_elasticity(place, material));
+        RETURN_IF_ERROR(read_elasticity(place, material));
     }
-done:
-    return status;
+    return STATUS_OK;
 }
 
 /* Displacements of measured points. */
 static enum status read_points(const struct place *place, struct scene_displacement *displacement)
 {
-    enum status status = STATUS_OK;
-    TRY(place_only_keys(place, KEYS{"points", "unit", "reach", "model_error", "curve", NULL}));
-    TRY(place_table(place, "points", &displacement->table, &displacement->table_unit));
-    TRY(place_number(place, "reach", range_positive, &displacement->reach));
-    TRY(place_number(place, "model_error", range_positive, &displacement->model_error));
-    TRY(place_curve(place, "curve", &displacement->curve));
+    RETURN_IF_ERROR(place_only_keys(place, KEYS{"points", "unit", "reach", "model_error", "curve", NULL}));
+    RETURN_IF_ERROR(place_table(place, "points", &displacement->table, &displacement->table_unit));
+    RETURN_IF_ERROR(place_number(place, "reach", range_positive, &displacement->reach));
+    RETURN_IF_ERROR(place_number(place, "model_error", range_positive, &displacement->model_error));
+    RETURN_IF_ERROR(place_curve(place, "curve", &displacement->curve));
     displacement->kind = SCENE_POINTS;
-done:
-    return status;
+    return STATUS_OK;
 }
 
 static enum status read_displacement(const struct place *place, struct scene *scene)
 {
     struct scene_displacement *displacement = &scene->displacements[scene->displacement_count - 1];
-    enum status status = STATUS_OK;
-    TRY(place_require_one(place, KEYS{"facets", "nodes", "points", NULL}));
+    RETURN_IF_ERROR(place_require_one(place, KEYS{"facets", "nodes", "points", NULL}));
     if (place_has(place, "points")) {
         return read_points(place, displacement);
     }
-    TRY(place_forbid(place, "reach", "it goes with points"));
-    TRY(place_forbid(place, "model_error", "it goes with points"));
-    TRY(place_require_one(place, KEYS{"table", "components", "normal", NULL}));
-    TRY(place_names(place, "facets", &displacement->facets));
-    TRY(place_names(place, "nodes", &displacement->nodes));
-    TRY(place_table(place, "table", &displacement->table, &displacement->table_unit));
-    TRY(place_vector(place, "components", scene->dim, displacement->components, displacement->is_free));
-    TRY(place_number(place, "normal", range_any, &displacement->normal));
-    TRY(place_curve(place, "curve", &displacement->curve));
+    RETURN_IF_ERROR(place_forbid(place, "reach", "it goes with points"));
+    RETURN_IF_ERROR(place_forbid(place, "model_error", "it goes with points"));
+    RETURN_IF_ERROR(place_require_one(place, KEYS{"table", "components", "normal", NULL}));
+    RETURN_IF_ERROR(place_names(place, "facets", &displacement->facets));
+    RETURN_IF_ERROR(place_names(place, "nodes", &displacement->nodes));
+    RETURN_IF_ERROR(place_table(place, "table", &displacement->table, &displacement->table_unit));
+    RETURN_IF_ERROR(
+        place_vector(place, "components", scene->dim, displacement->components, displacement->is_free));
+    RETURN_IF_ERROR(place_number(place, "normal", range_any, &displacement->normal));
+    RETURN_IF_ERROR(place_curve(place, "curve", &displacement->curve));
     if (place_has(place, "normal")) {
-        TRY(place_forbid(place, "nodes", "only facets have a normal"));
+        RETURN_IF_ERROR(place_forbid(place, "nodes", "only facets have a normal"));
         displacement->kind = SCENE_NORMAL;
     } else if (place_has(place, "components")) {
         displacement->kind = SCENE_COMPONENTS;
     }
     const bool *is_free = displacement->is_free;
     if (is_free[0] && is_free[1] && is_free[scene->dim - 1]) {
-        TRY(place_fail(place, "components", "all are free: nothing is prescribed"));
+        return place_fail(place, "components", "all are free: nothing is prescribed");
     }
-done:
-    return status;
+    return STATUS_OK;
 }
 
 /* The motion of a rigid surface, if it has one. */
 static enum status read_motion(const struct place *place, int dim, struct scene_contact *contact)
 {
-    enum status status = STATUS_OK;
     bool turns = place_has(place, "angle");
     double length2 = 0.0;
     contact->moves = turns || place_has(place, "translation");
     contact->axis[2] = dim == 2 ? 1.0 : 0.0;
     if (!turns) {
-        TRY(place_forbid(place, "axis_point", "no angle is given"));
-        TRY(place_forbid(place, "axis", "no angle is given"));
-        TRY(place_forbid(place, "angle_curve", "no angle is given"));
+        RETURN_IF_ERROR(place_forbid(place, "axis_point", "no angle is given"));
+        RETURN_IF_ERROR(place_forbid(place, "axis", "no angle is given"));
+        RETURN_IF_ERROR(place_forbid(place, "angle_curve", "no angle is given"));
     }
     if (!contact->moves) {
-        TRY(place_forbid(place, "curve", "the surface has neither translation nor angle"));
-        goto done;
+        RETURN_IF_ERROR(place_forbid(place, "curve", "the surface has neither translation nor angle"));
+        return STATUS_OK;
     }
-    TRY(place_require(place, "curve",
-                      "a surface that moves needs smooth, linear, or a file of time and factor"));
+    RETURN_IF_ERROR(place_require(place, "curve",
+                                  "a surface that moves needs smooth, linear, or a file of time and factor"));
     if (turns) {
-        TRY(place_require(place, "axis_point", "give a point of the axis of rotation in m"));
+        RETURN_IF_ERROR(place_require(place, "axis_point", "give a point of the axis of rotation in m"));
     }
     if (turns && dim == 3) {
-        TRY(place_require(place, "axis", "give the direction of the axis of rotation"));
+        RETURN_IF_ERROR(place_require(place, "axis", "give the direction of the axis of rotation"));
     }
     if (dim == 2) {
-        TRY(place_forbid(place, "axis", "in 2D a surface turns in the plane, about axis_point"));
+        RETURN_IF_ERROR(place_forbid(place, "axis", "in 2D a surface turns in the plane, about axis_point"));
     }
-    TRY(place_vector(place, "translation", dim, contact->translation, NULL));
-    TRY(place_number(place, "angle", range_any, &contact->angle));
-    TRY(place_vector(place, "axis_point", dim, contact->axis_point, NULL));
-    TRY(place_vector(place, "axis", dim, contact->axis, NULL));
+    RETURN_IF_ERROR(place_vector(place, "translation", dim, contact->translation, NULL));
+    RETURN_IF_ERROR(place_number(place, "angle", range_any, &contact->angle));
+    RETURN_IF_ERROR(place_vector(place, "axis_point", dim, contact->axis_point, NULL));
+    RETURN_IF_ERROR(place_vector(place, "axis", dim, contact->axis, NULL));
     for (int i = 0; i < 3; i++) {
         length2 += contact->axis[i] * contact->axis[i];
     }
     if (turns && !(length2 > 0.0)) {
-        TRY(place_fail(place, "axis", "has no length: give a direction, as 0, 0, 1"));
+        return place_fail(place, "axis", "has no length: give a direction, as 0, 0, 1");
     }
-    TRY(place_curve(place, "curve", &contact->curve));
-    TRY(place_curve(place, place_has(place, "angle_curve") ? "angle_curve" : "curve", &contact->angle_curve));
+    RETURN_IF_ERROR(place_curve(place, "curve", &contact->curve));
+    RETURN_IF_ERROR(
+        place_curve(place, place_has(place, "angle_curve") ? "angle_curve" : "curve", &contact->angle_curve));
     for (int i = 0; i < 2; i++) {
         if ((i == 0 ? contact->curve : contact->angle_curve).kind == SCENE_CURVE_STEP) {
-            TRY(place_fail(place, i == 0 ? "curve" : "angle_curve",
-                           "step jumps: a rigid surface moves by smooth, linear, or a file"));
+            return place_fail(place, i == 0 ? "curve" : "angle_curve",
+                              "step jumps: a rigid surface moves by smooth, linear, or a file");
         }
     }
-done:
-    return status;
+    return STATUS_OK;
 }
 
 /* Contact with other facets of the body. */
@@ -208,14 +195,12 @@ static enum status read_against(const struct place *place, struct scene_contact 
 {
     static const char *const rigid[] = {"rigid",      "unit", "side",  "translation", "angle",
                                         "axis_point", "axis", "curve", "angle_curve"};
-    enum status status;
     for (size_t i = 0; i < sizeof rigid / sizeof *rigid; i++) {
-        TRY(place_forbid(place, rigid[i], "against names facets of the body, not a rigid surface"));
+        RETURN_IF_ERROR(
+            place_forbid(place, rigid[i], "against names facets of the body, not a rigid surface"));
     }
-    TRY(place_names(place, "against", &contact->against));
-    TRY(place_number(place, "stiffness", range_positive, &contact->stiffness));
-done:
-    return status;
+    RETURN_IF_ERROR(place_names(place, "against", &contact->against));
+    return place_number(place, "stiffness", range_positive, &contact->stiffness);
 }
 
 static enum status read_contact(const struct place *place, struct scene *scene)
@@ -223,25 +208,23 @@ static enum status read_contact(const struct place *place, struct scene *scene)
     static const char *const sides[2][3] = {{"left", "right", NULL}, {"front", "back", NULL}};
     struct scene_contact *contact = &scene->contacts[scene->contact_count - 1];
     int side = 0;
-    enum status status = STATUS_OK;
-    TRY(place_require(place, "facets", "name the facet groups that may touch"));
-    TRY(place_names(place, "facets", &contact->facets));
+    RETURN_IF_ERROR(place_require(place, "facets", "name the facet groups that may touch"));
+    RETURN_IF_ERROR(place_names(place, "facets", &contact->facets));
     if (place_has(place, "against")) {
         return read_against(place, contact);
     }
-    TRY(place_require(
+    RETURN_IF_ERROR(place_require(
         place, "rigid",
         "name the file of the rigid surface, or, of the body itself, facet groups by 'against'"));
-    TRY(place_require(place, "side",
-                      scene->dim == 2 ? "left or right of the rigid curve, where the body lies"
+    RETURN_IF_ERROR(place_require(place, "side",
+                                  scene->dim == 2
+                                      ? "left or right of the rigid curve, where the body lies"
                                       : "front or back of the rigid triangles, where the body lies"));
-    TRY(place_table(place, "rigid", &contact->rigid, &contact->rigid_unit));
-    TRY(place_choice(place, "side", sides[scene->dim - 2], &side));
-    TRY(place_number(place, "stiffness", range_positive, &contact->stiffness));
+    RETURN_IF_ERROR(place_table(place, "rigid", &contact->rigid, &contact->rigid_unit));
+    RETURN_IF_ERROR(place_choice(place, "side", sides[scene->dim - 2], &side));
+    RETURN_IF_ERROR(place_number(place, "stiffness", range_positive, &contact->stiffness));
     contact->side = (enum scene_side)(side + 2 * (scene->dim - 2));
-    TRY(read_motion(place, scene->dim, contact));
-done:
-    return status;
+    return read_motion(place, scene->dim, contact);
 }
 
 /* A pressure that grows with the depth below the level of a fluid. */
@@ -249,49 +232,41 @@ static enum status read_fluid(const struct place *place, const struct scene *sce
 {
     static const char *const sides[] = {"below", "above", "both", NULL};
     int side = SCENE_BELOW;
-    enum status status;
-    TRY(place_require(place, "level", "give a place at the level of the fluid, m"));
-    TRY(place_number(place, "density", range_positive, &load->density));
-    TRY(place_vector(place, "level", scene->dim, load->level, NULL));
-    TRY(place_choice(place, "side", sides, &side));
-    TRY(place_vector(place, "gravity", scene->dim, load->gravity, NULL));
+    RETURN_IF_ERROR(place_require(place, "level", "give a place at the level of the fluid, m"));
+    RETURN_IF_ERROR(place_number(place, "density", range_positive, &load->density));
+    RETURN_IF_ERROR(place_vector(place, "level", scene->dim, load->level, NULL));
+    RETURN_IF_ERROR(place_choice(place, "side", sides, &side));
+    RETURN_IF_ERROR(place_vector(place, "gravity", scene->dim, load->gravity, NULL));
     load->level_side = (enum scene_level_side)side;
-done:
-    return status;
+    return STATUS_OK;
 }
 
 static enum status read_pressure(const struct place *place, struct scene *scene)
 {
     struct scene_load *load = &scene->pressures[scene->pressure_count - 1];
-    enum status status = STATUS_OK;
-    TRY(place_require(place, "facets", "name the facet groups pressed"));
-    TRY(place_require_one(place, KEYS{"value", "density", NULL}));
-    TRY(place_names(place, "facets", &load->facets));
-    TRY(place_number(place, "value", range_any, &load->pressure));
+    RETURN_IF_ERROR(place_require(place, "facets", "name the facet groups pressed"));
+    RETURN_IF_ERROR(place_require_one(place, KEYS{"value", "density", NULL}));
+    RETURN_IF_ERROR(place_names(place, "facets", &load->facets));
+    RETURN_IF_ERROR(place_number(place, "value", range_any, &load->pressure));
     if (place_has(place, "density")) {
-        TRY(read_fluid(place, scene, load));
+        RETURN_IF_ERROR(read_fluid(place, scene, load));
     } else {
         for (const char *const *key = KEYS{"level", "side", "gravity", NULL}; *key != NULL; key++) {
-            TRY(place_forbid(place, *key, "it goes with density"));
+            RETURN_IF_ERROR(place_forbid(place, *key, "it goes with density"));
         }
     }
-    TRY(place_curve(place, "curve", &load->curve));
-done:
-    return status;
+    return place_curve(place, "curve", &load->curve);
 }
 
 /* A traction on facets or a force on nodes. */
 static enum status read_vector_load(const struct place *place, const char *where, const char *unit, int dim,
                                     struct name_list *groups, struct scene_load *load)
 {
-    enum status status = STATUS_OK;
-    TRY(place_require(place, where, "name the groups loaded"));
-    TRY(place_require(place, "components", unit));
-    TRY(place_names(place, where, groups));
-    TRY(place_vector(place, "components", dim, load->components, NULL));
-    TRY(place_curve(place, "curve", &load->curve));
-done:
-    return status;
+    RETURN_IF_ERROR(place_require(place, where, "name the groups loaded"));
+    RETURN_IF_ERROR(place_require(place, "components", unit));
+    RETURN_IF_ERROR(place_names(place, where, groups));
+    RETURN_IF_ERROR(place_vector(place, "components", dim, load->components, NULL));
+    return place_curve(place, "curve", &load->curve);
 }
 
 static enum status read_traction(const struct place *place, struct scene *scene)
@@ -309,14 +284,13 @@ static enum status read_force(const struct place *place, struct scene *scene)
 
 static enum status read_initial(const struct place *place, struct scene *scene)
 {
-    enum status status = STATUS_OK;
     if (scene->analysis == SCENE_QUASI_STATIC) {
-        TRY(place_fail(place, NULL, "a quasi-static scene has no time: only dynamic scenes begin somewhere"));
+        return place_fail(place, NULL,
+                          "a quasi-static scene has no time: only dynamic scenes begin somewhere");
     }
-    TRY(place_require(place, "table", "name the file of displacements and velocities at the nodes"));
-    TRY(place_table(place, "table", &scene->initial.table, &scene->initial.table_unit));
-done:
-    return status;
+    RETURN_IF_ERROR(
+        place_require(place, "table", "name the file of displacements and velocities at the nodes"));
+    return place_table(place, "table", &scene->initial.table, &scene->initial.table_unit);
 }
 
 static enum status read_output(const struct place *place, struct scene *scene)
@@ -324,31 +298,29 @@ static enum status read_output(const struct place *place, struct scene *scene)
     static const char *const folds[] = {"refused", "allowed", NULL};
     struct scene_output *output = &scene->output;
     int allowed = 0;
-    enum status status = STATUS_OK;
-    TRY(place_count(place, "frames", 1000000, &output->frames));
-    TRY(place_number(place, "interval", range_positive, &output->interval));
+    RETURN_IF_ERROR(place_count(place, "frames", 1000000, &output->frames));
+    RETURN_IF_ERROR(place_number(place, "interval", range_positive, &output->interval));
     if (place_has(place, "frames")) {
-        TRY(place_forbid(place, "interval", "frames is given"));
+        RETURN_IF_ERROR(place_forbid(place, "interval", "frames is given"));
     }
     if (scene->analysis == SCENE_QUASI_STATIC) {
-        TRY(place_forbid(place, "interval", "a quasi-static scene has no time: use frames"));
+        RETURN_IF_ERROR(place_forbid(place, "interval", "a quasi-static scene has no time: use frames"));
     }
-    TRY(place_yes(place, "stress", &output->stress));
-    TRY(place_yes(place, "strain", &output->strain));
-    TRY(place_yes(place, "pressure", &output->pressure));
-    TRY(place_yes(place, "volume_ratio", &output->volume_ratio));
-    TRY(place_yes(place, "energy", &output->energy));
-    TRY(place_yes(place, "reactions", &output->reactions));
-    TRY(place_yes(place, "moments", &output->moments));
-    TRY(place_vector(place, "moments_about", scene->dim, output->about, NULL));
+    RETURN_IF_ERROR(place_yes(place, "stress", &output->stress));
+    RETURN_IF_ERROR(place_yes(place, "strain", &output->strain));
+    RETURN_IF_ERROR(place_yes(place, "pressure", &output->pressure));
+    RETURN_IF_ERROR(place_yes(place, "volume_ratio", &output->volume_ratio));
+    RETURN_IF_ERROR(place_yes(place, "energy", &output->energy));
+    RETURN_IF_ERROR(place_yes(place, "reactions", &output->reactions));
+    RETURN_IF_ERROR(place_yes(place, "moments", &output->moments));
+    RETURN_IF_ERROR(place_vector(place, "moments_about", scene->dim, output->about, NULL));
     if (!output->moments) {
-        TRY(place_forbid(place, "moments_about", "it goes with moments = yes"));
+        RETURN_IF_ERROR(place_forbid(place, "moments_about", "it goes with moments = yes"));
     }
-    TRY(place_yes(place, "gaps", &output->gaps));
-    TRY(place_choice(place, "folds", folds, &allowed));
+    RETURN_IF_ERROR(place_yes(place, "gaps", &output->gaps));
+    RETURN_IF_ERROR(place_choice(place, "folds", folds, &allowed));
     output->folds_allowed = allowed == 1;
-done:
-    return status;
+    return STATUS_OK;
 }
 
 static enum status read_solver(const struct place *place, struct scene *scene)
@@ -361,31 +333,29 @@ static enum status read_solver(const struct place *place, struct scene *scene)
     int constraint = (int)solver->constraints;
     int point = (int)solver->constraint_points;
     int volume = (int)solver->volume;
-    enum status status = STATUS_OK;
-    TRY(place_choice(place, "constraints", constraints, &constraint));
-    TRY(place_choice(place, "constraint_points", points, &point));
-    TRY(place_choice(place, "volume", volumes, &volume));
+    RETURN_IF_ERROR(place_choice(place, "constraints", constraints, &constraint));
+    RETURN_IF_ERROR(place_choice(place, "constraint_points", points, &point));
+    RETURN_IF_ERROR(place_choice(place, "volume", volumes, &volume));
     solver->constraints = (enum scene_constraints)constraint;
     solver->constraint_points = (enum scene_constraint_points)point;
     solver->volume = (enum scene_volume)volume;
     if (scene->analysis == SCENE_DYNAMIC) { /* steps are to be accurate, not stable only */
         solver->time_step_margin = 0.75;
     }
-    TRY(place_number(place, "time_step_margin", range_open_share, &solver->time_step_margin));
-    TRY(place_count(place, "max_steps", most_steps, &solver->max_steps));
+    RETURN_IF_ERROR(place_number(place, "time_step_margin", range_open_share, &solver->time_step_margin));
+    RETURN_IF_ERROR(place_count(place, "max_steps", most_steps, &solver->max_steps));
     if (scene->analysis == SCENE_DYNAMIC) {
-        TRY(place_forbid(place, "ramp_steps", "a dynamic scene has end_time"));
-        TRY(place_forbid(place, "tolerance", "a dynamic scene ends at end_time"));
-        TRY(place_number(place, "end_time", range_positive, &solver->end_time));
-        TRY(place_number(place, "damping", range_not_negative, &solver->damping));
+        RETURN_IF_ERROR(place_forbid(place, "ramp_steps", "a dynamic scene has end_time"));
+        RETURN_IF_ERROR(place_forbid(place, "tolerance", "a dynamic scene ends at end_time"));
+        RETURN_IF_ERROR(place_number(place, "end_time", range_positive, &solver->end_time));
+        RETURN_IF_ERROR(place_number(place, "damping", range_not_negative, &solver->damping));
     } else {
-        TRY(place_forbid(place, "end_time", "a quasi-static scene has no time"));
-        TRY(place_forbid(place, "damping", "a quasi-static scene chooses its own"));
-        TRY(place_number(place, "tolerance", range_open_share, &solver->tolerance));
-        TRY(place_count(place, "ramp_steps", most_steps, &solver->ramp_steps));
+        RETURN_IF_ERROR(place_forbid(place, "end_time", "a quasi-static scene has no time"));
+        RETURN_IF_ERROR(place_forbid(place, "damping", "a quasi-static scene chooses its own"));
+        RETURN_IF_ERROR(place_number(place, "tolerance", range_open_share, &solver->tolerance));
+        RETURN_IF_ERROR(place_count(place, "ramp_steps", most_steps, &solver->ramp_steps));
     }
-done:
-    return status;
+    return STATUS_OK;
 }
 
 #define ITEMS(items, count)                                                                                  \

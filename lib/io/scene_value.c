@@ -118,10 +118,7 @@ enum status place_number(const struct place *place, const char *key, struct rang
     if (text == NULL) {
         return STATUS_OK;
     }
-    enum status status = number(place, key, text, &given);
-    if (status != STATUS_OK) {
-        return status;
-    }
+    RETURN_IF_ERROR(number(place, key, text, &given));
     bool above = range.open_least ? given > range.least : given >= range.least;
     bool below = range.open_most ? given < range.most : given <= range.most;
     if (above && below) {
@@ -232,14 +229,11 @@ enum status place_names(const struct place *place, const char *key, struct name_
 {
     const char *at = text_of(place, key);
     while (at != NULL) {
+        RETURN_IF_ERROR(RESIZE_ARRAY(&list->names, list->count + 1, place->error));
         char *item = next_item(&at);
-        char **grown = array_grow(list->names, list->count + 1, sizeof *list->names);
-        if (item == NULL || grown == NULL) {
-            free(item);
-            list->names = grown != NULL ? grown : list->names;
+        if (item == NULL) {
             return fail_memory(place->error, place->file->path);
         }
-        list->names = grown;
         list->names[list->count++] = item;
         if (item[0] == '\0') {
             return place_fail(place, key, "has an empty name: write names with single commas between");

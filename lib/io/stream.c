@@ -145,13 +145,8 @@ enum status section_validate(const char *name, enum element_type type, int64_t r
                              const char *attributes, struct error *error)
 {
     int64_t bytes;
-    enum status status = name_validate(name, error);
-    if (status == STATUS_OK) {
-        status = attributes_validate(name, attributes, error);
-    }
-    if (status != STATUS_OK) {
-        return status;
-    }
+    RETURN_IF_ERROR(name_validate(name, error));
+    RETURN_IF_ERROR(attributes_validate(name, attributes, error));
     if (rows < 0 || cols < 1 || cols > COLUMN_LIMIT || __builtin_mul_overflow(rows, cols, &bytes) ||
         __builtin_mul_overflow(bytes, (int64_t)element_size(type), &bytes)) {
         return fail(error, STATUS_INPUT, "%s: %lld rows of %lld columns are out of bounds", name,

@@ -71,7 +71,6 @@ void header_free(struct header *header)
 
 enum status header_parse(const char *line, size_t length, struct header *header, struct error *error)
 {
-    enum status status = STATUS_OK;
     *header = (struct header){.copy = strndup(line, length), .attributes = malloc(length + 1)};
     if (header->copy == NULL || header->attributes == NULL) {
         return fail_memory(error, "header");
@@ -85,11 +84,10 @@ enum status header_parse(const char *line, size_t length, struct header *header,
     }
     char *at = header->copy + 2;
     header->name = next_word(&at);
-    TRY(header_type(next_word(&at), header, error));
-    TRY(header_count(next_word(&at), "rows", header, &header->rows, error));
-    TRY(header_count(next_word(&at), "columns", header, &header->cols, error));
-    TRY(header_attributes(at, header, error));
-    TRY(section_validate(header->name, header->type, header->rows, header->cols, header->attributes, error));
-done:
-    return status;
+    RETURN_IF_ERROR(header_type(next_word(&at), header, error));
+    RETURN_IF_ERROR(header_count(next_word(&at), "rows", header, &header->rows, error));
+    RETURN_IF_ERROR(header_count(next_word(&at), "columns", header, &header->cols, error));
+    RETURN_IF_ERROR(header_attributes(at, header, error));
+    return section_validate(header->name, header->type, header->rows, header->cols, header->attributes,
+                            error);
 }

@@ -91,10 +91,7 @@ enum status input_fill(struct input *input, size_t wanted, struct error *error)
     input->at = input->start = input->buffer;
     while (held < wanted && !input->ended) {
         size_t got;
-        enum status status = read_some(input, input->buffer + held, input->capacity - held, &got, error);
-        if (status != STATUS_OK) {
-            return status;
-        }
+        RETURN_IF_ERROR(read_some(input, input->buffer + held, input->capacity - held, &got, error));
         held += got;
         input->end = input->buffer + held;
     }
@@ -122,10 +119,7 @@ enum status input_line(struct input *input, const char **line, size_t *length, s
                         "ends without its end line: cut short (did an earlier stage fail?)");
         }
         searched = held;
-        enum status status = input_fill(input, held + 1, error);
-        if (status != STATUS_OK) {
-            return status;
-        }
+        RETURN_IF_ERROR(input_fill(input, held + 1, error));
     }
 }
 
@@ -139,10 +133,7 @@ enum status input_copy(struct input *input, void *destination, size_t size, size
     input->at += *got;
     while (*got < size && !input->ended) {
         size_t more;
-        enum status status = read_some(input, (char *)destination + *got, size - *got, &more, error);
-        if (status != STATUS_OK) {
-            return status;
-        }
+        RETURN_IF_ERROR(read_some(input, (char *)destination + *got, size - *got, &more, error));
         *got += more;
         input->start_offset += (int64_t)more;
     }

@@ -132,12 +132,11 @@ static enum status row_end(struct input *input, const struct section *section, i
 static enum status text_row(struct input *input, const struct section *section, int64_t row,
                             struct payload *payload, struct error *error)
 {
-    enum status status = STATUS_OK;
     for (int64_t column = 0; column < section->cols; column++) {
         if (payload->filled == payload->room) {
-            TRY(payload_grow(payload, error));
+            RETURN_IF_ERROR(payload_grow(payload, error));
         }
-        TRY(refill(input, error));
+        RETURN_IF_ERROR(refill(input, error));
         skip_blanks(input);
         const char *behind =
             parse_element(section->type, input->at, input->end, payload->data, payload->filled);
@@ -147,10 +146,8 @@ static enum status text_row(struct input *input, const struct section *section, 
         input->at = behind;
         payload->filled++;
     }
-    TRY(refill(input, error));
-    TRY(row_end(input, section, row, error));
-done:
-    return status;
+    RETURN_IF_ERROR(refill(input, error));
+    return row_end(input, section, row, error);
 }
 
 enum status payload_read_text(struct input *input, struct section *section, struct error *error)

@@ -81,11 +81,7 @@ enum status stream_append_provenance(struct stream *stream, const char *line, si
 {
     int64_t count = stream->provenance_count;
     if ((count & (count - 1)) == 0) { /* the array is full at 0, 1, 2, 4, 8, ... lines */
-        char **grown = array_grow(stream->provenance, count > 0 ? 2 * count : 1, sizeof *grown);
-        if (grown == NULL) {
-            return fail_memory(error, "provenance");
-        }
-        stream->provenance = grown;
+        RETURN_IF_ERROR(RESIZE_ARRAY(&stream->provenance, count > 0 ? 2 * count : 1, error));
     }
     char *copy = strndup(line, length);
     if (copy == NULL) {

@@ -57,10 +57,7 @@ static enum status read_first_line(struct reader *reader, struct error *error)
 {
     struct input *input = &reader->input;
     static const char expected[] = "# mts 1\n";
-    enum status status = input_fill(input, 64, error);
-    if (status != STATUS_OK) {
-        return status;
-    }
+    RETURN_IF_ERROR(input_fill(input, 64, error));
     size_t held = (size_t)(input->end - input->at);
     if (held == 0) {
         return fail(error, STATUS_INPUT, "empty: no stream arrived (did an earlier stage fail?)");
@@ -101,10 +98,7 @@ static enum status read_crc_line(struct reader *reader, const struct section *se
     enum { PREFIX = sizeof prefix - 1, SIZE = PREFIX + 8 + 1 };
     struct input *input = &reader->input;
     uLong stated;
-    enum status status = input_fill(input, SIZE, error);
-    if (status != STATUS_OK) {
-        return status;
-    }
+    RETURN_IF_ERROR(input_fill(input, SIZE, error));
     if (input->end - input->at < SIZE) {
         return fail_short(section, section->rows, error);
     }
@@ -132,10 +126,7 @@ static enum status read_binary(struct reader *reader, struct section *section, u
                     section->name, (long long)input_offset(input), PAYLOAD_ALIGNMENT);
     }
     if (input->buffer != NULL) {
-        enum status status = payload_read_binary(input, section, error);
-        if (status != STATUS_OK) {
-            return status;
-        }
+        RETURN_IF_ERROR(payload_read_binary(input, section, error));
     } else {
         size_t held = (size_t)(input->end - input->at);
         if (held < bytes) {
@@ -224,12 +215,11 @@ static enum status provenance_check(const char *line, size_t length, struct erro
 
 static enum status read_lines(struct reader *reader, struct error *error)
 {
-    enum status status = STATUS_OK;
     const char *line;
     size_t length;
-    TRY(read_first_line(reader, error));
+    RETURN_IF_ERROR(read_first_line(reader, error));
     for (;;) {
-        TRY(frame_line(reader, &line, &length, error));
+        RETURN_IF_ERROR(frame_line(reader, &line, &length, error));
         if (starts_with(line, length, "# end ")) {
             return read_end(reader, line, length, error);
         }
@@ -238,18 +228,17 @@ static enum status read_lines(struct reader *reader, struct error *error)
                         (int)(length < 300 ? length - 10 : 290), line + 10);
         }
         if (!starts_with(line, length, "# @ ")) {
-            TRY(read_section(reader, line, length, error));
+            RETURN_IF_ERROR(read_section(reader, line, length, error));
             reader->whole = reader->stream->section_count;
         } else if (reader->stream->section_count > 0) {
             return fail(error, STATUS_INPUT, "a provenance line behind a section");
         } else {
             frame_count(reader, line, length + 1);
-            TRY(provenance_check(line, length, error));
-            TRY(stream_append_provenance(reader->stream, line + 4, length - 4, error));
+            RETURN_IF_ERROR(provenance_check(line, length, error));
+            RETURN_IF_ERROR(stream_append_provenance(reader->stream, line + 4, length - 4, error));
         }
     }
-done:
-    return status;
+    return STATUS_OK;
 }
 
 /* Sections that are not whole leave the stream. */

@@ -48,10 +48,9 @@ static enum status flush(struct writer *writer, struct error *error)
 
 static enum status put_bytes(struct writer *writer, const void *bytes, size_t size, struct error *error)
 {
-    enum status status = STATUS_OK;
     writer->offset += (int64_t)size;
     if (size > BLOCK_SIZE - writer->held) {
-        TRY(flush(writer, error));
+        RETURN_IF_ERROR(flush(writer, error));
     }
     if (size >= BLOCK_SIZE) {
         return write_all(writer->descriptor, bytes, size, error);
@@ -60,8 +59,7 @@ static enum status put_bytes(struct writer *writer, const void *bytes, size_t si
         memcpy(writer->block + writer->held, bytes, size);
         writer->held += size;
     }
-done:
-    return status;
+    return STATUS_OK;
 }
 
 /* Bytes outside the payloads. */
@@ -121,12 +119,11 @@ static size_t format_element(char *text, const struct section *section, int64_t 
 
 static enum status put_rows(struct writer *writer, const struct section *section, struct error *error)
 {
-    enum status status = STATUS_OK;
     int64_t index = 0;
     for (int64_t row = 0; row < section->rows; row++) {
         for (int64_t column = 0; column < section->cols; column++, index++) {
             if (BLOCK_SIZE - writer->held < NUMBER_TEXT_LIMIT + 1) {
-                TRY(flush(writer, error));
+                RETURN_IF_ERROR(flush(writer, error));
             }
             char *at = writer->block + writer->held;
             size_t length = format_element(at, section, index);
@@ -135,81 +132,65 @@ static enum status put_rows(struct writer *writer, const struct section *section
             writer->offset += (int64_t)length;
         }
     }
-done:
-    return status;
+    return STATUS_OK;
 }
 
 static enum status put_payload_text(struct writer *writer, const struct section *section, struct error *error)
 {
-    enum status status = STATUS_OK;
-    TRY(put_rows(writer, section, error));
-    TRY(put_bytes(writer, "\n\n", 2, error));
-done:
-    return status;
+    RETURN_IF_ERROR(put_rows(writer, section, error));
+    return put_bytes(writer, "\n\n", 2, error);
 }
 
 static enum status put_payload_binary(struct writer *writer, const struct section *section, uLong header_crc,
                                       struct error *error)
 {
-    enum status status = STATUS_OK;
     char line[32];
     size_t bytes = (size_t)(section->rows * section->cols) * element_size(section->type);
     uLong crc = bytes > 0 ? crc32_z(header_crc, section->data, bytes) : header_crc;
     snprintf(line, sizeof line, "# crc32 %08lx\n", crc);
-    TRY(put_bytes(writer, section->data, bytes, error));
-    TRY(put_bytes(writer, "\n", 1, error));
-    TRY(put_text(writer, line, error));
-done:
-    return status;
+    RETURN_IF_ERROR(put_bytes(writer, section->data, bytes, error));
+    RETURN_IF_ERROR(put_bytes(writer, "\n", 1, error));
+    return put_text(writer, line, error);
 }
 
 /* A line of one kind of words and others. */
 static enum status put_line(struct writer *writer, const char *kind, const char *text, struct error *error)
 {
-    enum status status = STATUS_OK;
-    TRY(put_text(writer, kind, error));
-    TRY(put_text(writer, text, error));
-    TRY(put_text(writer, "\n", error));
-done:
-    return status;
+    RETURN_IF_ERROR(put_text(writer, kind, error));
+    RETURN_IF_ERROR(put_text(writer, text, error));
+    return put_text(writer, "\n", error);
 }
 
 static enum status put_end(struct writer *writer, const struct stream *stream, bool text, struct error *error)
 {
-    enum status status = STATUS_OK;
     char line[64];
     snprintf(line, sizeof line, "# end %" PRId64, stream->section_count);
-    TRY(put_text(writer, line, error));
+    RETURN_IF_ERROR(put_text(writer, line, error));
     if (!text && stream->section_count > 0) {
         snprintf(line, sizeof line, " crc32=%08lx", writer->crc);
-        TRY(put_bytes(writer, line, strlen(line), error));
+        RETURN_IF_ERROR(put_bytes(writer, line, strlen(line), error));
     }
-    TRY(put_bytes(writer, "\n", 1, error));
-done:
-    return status;
+    return put_bytes(writer, "\n", 1, error);
 }
 
 /* stopped: why the stream is not whole, or NULL. */
 static enum status put_stream(struct writer *writer, const struct stream *stream, bool text,
                               const char *stopped, struct error *error)
 {
-    enum status status = STATUS_OK;
-    TRY(put_text(writer, "# mts 1\n", error));
+    RETURN_IF_ERROR(put_text(writer, "# mts 1\n", error));
     for (int64_t i = 0; i < stream->provenance_count; i++) {
-        TRY(put_line(writer, "# @ ", stream->provenance[i], error));
+        RETURN_IF_ERROR(put_line(writer, "# @ ", stream->provenance[i], error));
     }
     for (int64_t i = 0; i < stream->section_count; i++) {
         const struct section *section = &stream->sections[i];
         uLong crc;
-        TRY(put_header(writer, section, text, &crc, error));
-        TRY(text ? put_payload_text(writer, section, error)
-                 : put_payload_binary(writer, section, crc, error));
+        RETURN_IF_ERROR(put_header(writer, section, text, &crc, error));
+        RETURN_IF_ERROR(text ? put_payload_text(writer, section, error)
+                             : put_payload_binary(writer, section, crc, error));
     }
-    TRY(stopped != NULL ? put_line(writer, "# stopped ", stopped, error)
-                        : put_end(writer, stream, text, error));
-    TRY(flush(writer, error));
-done:
-    return status;
+    RETURN_IF_ERROR(stopped != NULL ? put_line(writer, "# stopped ", stopped, error)
+                                    : put_end(writer, stream, text, error));
+    return flush(writer, error);
 }
 
 /* A block to gather output in, and the C locale for numbers, whatever the program that calls us has set. */

@@ -46,10 +46,7 @@ static enum status read_binary_stl(const char *path, const struct textfile *file
                             (long long)t + 1);
             }
         }
-        enum status status = table_append(table, row, t + 1, &room, error);
-        if (status != STATUS_OK) {
-            return status;
-        }
+        RETURN_IF_ERROR(table_append(table, row, t + 1, &room, error));
     }
     return STATUS_OK;
 }
@@ -102,23 +99,20 @@ static enum status expect_number(struct words *words, double *value, struct erro
 static enum status read_facet(struct words *words, double row[9], struct error *error)
 {
     double normal[3];
-    enum status status = STATUS_OK;
-    TRY(expect(words, "normal", error));
+    RETURN_IF_ERROR(expect(words, "normal", error));
     for (int i = 0; i < 3; i++) {
-        TRY(expect_number(words, &normal[i], error));
+        RETURN_IF_ERROR(expect_number(words, &normal[i], error));
     }
-    TRY(expect(words, "outer", error));
-    TRY(expect(words, "loop", error));
+    RETURN_IF_ERROR(expect(words, "outer", error));
+    RETURN_IF_ERROR(expect(words, "loop", error));
     for (int corner = 0; corner < 3; corner++) {
-        TRY(expect(words, "vertex", error));
+        RETURN_IF_ERROR(expect(words, "vertex", error));
         for (int i = 0; i < 3; i++) {
-            TRY(expect_number(words, &row[3 * corner + i], error));
+            RETURN_IF_ERROR(expect_number(words, &row[3 * corner + i], error));
         }
     }
-    TRY(expect(words, "endloop", error));
-    TRY(expect(words, "endfacet", error));
-done:
-    return status;
+    RETURN_IF_ERROR(expect(words, "endloop", error));
+    return expect(words, "endfacet", error);
 }
 
 /* solid NAME, facets, endsolid NAME; once. */
@@ -129,26 +123,24 @@ static enum status read_ascii_stl(const char *path, const struct textfile *file,
     int64_t room = 0;
     const char *word;
     size_t length;
-    enum status status = STATUS_OK;
-    TRY(expect(&words, "solid", error));
+    RETURN_IF_ERROR(expect(&words, "solid", error));
     words.at += strcspn(words.at, "\n"); /* the rest of the line is a name */
     while ((length = next_word(&words, &word)) == 5 && strncmp(word, "facet", 5) == 0) {
         double row[9];
         int64_t line = words.line;
-        TRY(read_facet(&words, row, error));
-        TRY(table_append(table, row, line, &room, error));
+        RETURN_IF_ERROR(read_facet(&words, row, error));
+        RETURN_IF_ERROR(table_append(table, row, line, &room, error));
     }
     if (length != 8 || strncmp(word, "endsolid", 8) != 0) {
-        TRY(fail(error, STATUS_INPUT, "%s:%lld: '%.*s' instead of 'facet' or 'endsolid': truncated?", path,
-                 (long long)words.line, (int)(length < 40 ? length : 40), word));
+        return fail(error, STATUS_INPUT, "%s:%lld: '%.*s' instead of 'facet' or 'endsolid': truncated?", path,
+                    (long long)words.line, (int)(length < 40 ? length : 40), word);
     }
     words.at += strcspn(words.at, "\n");
     if (next_word(&words, &word) > 0) {
-        TRY(fail(error, STATUS_INPUT, "%s:%lld: text behind endsolid: one solid is read", path,
-                 (long long)words.line));
+        return fail(error, STATUS_INPUT, "%s:%lld: text behind endsolid: one solid is read", path,
+                    (long long)words.line);
     }
-done:
-    return status;
+    return STATUS_OK;
 }
 
 static enum status read_stl(const char *path, struct table *table, struct error *error)

@@ -19,13 +19,8 @@ enum status table_append(struct table *table, const double *row, int64_t line, i
 {
     if (table->rows == *room) {
         int64_t more = *room > 0 ? 2 * *room : 64;
-        double *values = array_grow(table->values, more, (size_t)table->cols * sizeof *values);
-        table->values = values != NULL ? values : table->values;
-        int64_t *lines = values != NULL ? array_grow(table->line, more, sizeof *lines) : NULL;
-        if (lines == NULL) {
-            return fail_memory(error, "table");
-        }
-        table->line = lines;
+        RETURN_IF_ERROR(RESIZE_ARRAY(&table->values, more * table->cols, error));
+        RETURN_IF_ERROR(RESIZE_ARRAY(&table->line, more, error));
         *room = more;
     }
     memcpy(table->values + table->rows * table->cols, row, (size_t)table->cols * sizeof *row);
@@ -35,19 +30,13 @@ enum status table_append(struct table *table, const double *row, int64_t line, i
 
 enum status table_end_block(struct table *table, struct error *error)
 {
-    if (table->block_count > 0 && table->block_ptr[table->block_count] == table->rows) {
+    int64_t last = table->block_count > 0 ? table->block_ptr[table->block_count] : 0;
+    if (last == table->rows) {
         return STATUS_OK;
     }
-    if (table->rows == 0) {
-        return STATUS_OK;
-    }
-    int64_t *grown = array_grow(table->block_ptr, table->block_count + 2, sizeof *grown);
-    if (grown == NULL) {
-        return fail_memory(error, "table");
-    }
-    grown[0] = 0;
-    grown[++table->block_count] = table->rows;
-    table->block_ptr = grown;
+    RETURN_IF_ERROR(RESIZE_ARRAY(&table->block_ptr, table->block_count + 2, error));
+    table->block_ptr[0] = 0;
+    table->block_ptr[++table->block_count] = table->rows;
     return STATUS_OK;
 }
 

@@ -3,7 +3,7 @@
 #include "approx_fixture.h"
 
 #include "approx/mls_kernel.h"
-#include "approx/mls_solve.h"
+#include "approx/mls_orthogonal.h"
 
 TEST(weights)
 {

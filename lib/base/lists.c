@@ -1,0 +1,30 @@
+#include "base/lists.h"
+
+#include "base/memory.h"
+
+enum status lists_by_row(int64_t items, int per, const int32_t *row, int64_t rows, int64_t **ptr,
+                         int32_t **idx, struct error *error)
+{
+    int64_t count = items * per, *next;
+    RETURN_IF_ERROR(NEW_ARRAY(ptr, rows + 2, error));
+    next = *ptr + 1; /* where the next item of each row goes: in the end, where the row after it begins */
+    for (int64_t i = 0; i < count; i++) {
+        (*ptr)[row[i] + 2] += row[i] >= 0;
+    }
+    for (int64_t r = 0; r < rows; r++) {
+        (*ptr)[r + 2] += (*ptr)[r + 1];
+    }
+    RETURN_IF_ERROR(NEW_ARRAY(idx, (*ptr)[rows + 1], error));
+    for (int64_t i = 0; i < count; i++) {
+        if (row[i] >= 0) {
+            (*idx)[next[row[i]]++] = (int32_t)(i / per);
+        }
+    }
+    return STATUS_OK;
+}
+
+int compare_int32(const void *left, const void *right)
+{
+    int32_t a = *(const int32_t *)left, b = *(const int32_t *)right;
+    return (a > b) - (a < b);
+}

@@ -1,0 +1,18 @@
+/* Lists of lists (CSR): row r has idx[ptr[r]] to before idx[ptr[r + 1]]. */
+#ifndef BASE_LISTS_H
+#define BASE_LISTS_H
+
+#include "base/status.h"
+
+#include <stdint.h>
+
+/* List items 0, 1, ... by the rows that they belong to, each item to `per` of them: row[items * per]; -1:
+ * none. (*ptr)[rows + 1] and (*idx)[(*ptr)[rows]], ascending in each row, are the caller's to free, also on
+ * failure. */
+MUST_CHECK enum status lists_by_row(int64_t items, int per, const int32_t *row, int64_t rows, int64_t **ptr,
+                                    int32_t **idx, struct error *error);
+
+/* For qsort and bsearch of int32_t, ascending. */
+int compare_int32(const void *left, const void *right);
+
+#endif

@@ -1,0 +1,25 @@
+/* Sets of numbers 0, 1, ... that are joined (union and find): first[i] is an earlier member of the set of i,
+ * or i itself, which it is at first. */
+#ifndef BASE_SETS_H
+#define BASE_SETS_H
+
+#include <stdint.h>
+
+/* The first member of the set that i is in. */
+static inline int32_t set_first(int32_t first[], int32_t i)
+{
+    while (first[i] != i) {
+        first[i] = first[first[i]];
+        i = first[i];
+    }
+    return i;
+}
+
+static inline void set_join(int32_t first[], int32_t a, int32_t b)
+{
+    a = set_first(first, a);
+    b = set_first(first, b);
+    first[a > b ? a : b] = a > b ? b : a;
+}
+
+#endif

@@ -1,0 +1,73 @@
+/* Vectors of dim components, 2 or 3, and determinants. */
+#ifndef BASE_VECTOR_H
+#define BASE_VECTOR_H
+
+#include <math.h>
+
+static inline double vector_dot(int dim, const double *a, const double *b)
+{
+    double sum = 0.0;
+    for (int i = 0; i < dim; i++) {
+        sum += a[i] * b[i];
+    }
+    return sum;
+}
+
+/* |a - b|^2 */
+static inline double vector_distance2(int dim, const double *a, const double *b)
+{
+    double sum = 0.0;
+    for (int i = 0; i < dim; i++) {
+        double difference = a[i] - b[i];
+        sum += difference * difference;
+    }
+    return sum;
+}
+
+static inline double vector_length(int dim, const double *a)
+{
+    return sqrt(vector_dot(dim, a, a));
+}
+
+static inline double vector_distance(int dim, const double *a, const double *b)
+{
+    return sqrt(vector_distance2(dim, a, b));
+}
+
+/* difference = a - b */
+static inline void vector_subtract(int dim, const double *a, const double *b, double *difference)
+{
+    for (int i = 0; i < dim; i++) {
+        difference[i] = a[i] - b[i];
+    }
+}
+
+/* x = a + share (b - a); x may be a or b. */
+static inline void vector_between(int dim, const double *a, const double *b, double share, double *x)
+{
+    for (int i = 0; i < dim; i++) {
+        x[i] = a[i] + share * (b[i] - a[i]);
+    }
+}
+
+/* w = u x v, in three dimensions */
+static inline void vector_cross(const double *u, const double *v, double *w)
+{
+    w[0] = u[1] * v[2] - u[2] * v[1];
+    w[1] = u[2] * v[0] - u[0] * v[2];
+    w[2] = u[0] * v[1] - u[1] * v[0];
+}
+
+/* Of the rows a and b in two dimensions, and of a, b and c in three. */
+static inline double determinant2(const double *a, const double *b)
+{
+    return a[0] * b[1] - a[1] * b[0];
+}
+
+static inline double determinant3(const double *a, const double *b, const double *c)
+{
+    return a[0] * (b[1] * c[2] - b[2] * c[1]) - a[1] * (b[0] * c[2] - b[2] * c[0]) +
+           a[2] * (b[0] * c[1] - b[1] * c[0]);
+}
+
+#endif
