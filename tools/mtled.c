@@ -140,6 +140,7 @@ int main(int argc, char *argv[])
     run.prepare_seconds = clock_seconds() - run.display.started;
     run_folds_begin(&run);
     run_stability_begin(&run);
+    stream_give_back(&stream);
     if (scene.analysis == SCENE_DYNAMIC) {
         run_dynamic(&run);
     } else {

@@ -204,6 +204,7 @@ static enum status put_stream(struct writer *writer, const struct stream *stream
         TRY(put_header(writer, section, text, &crc, error));
         TRY(text ? put_payload_text(writer, section, error)
                  : put_payload_binary(writer, section, crc, error));
+        section_give_back(stream, section);
     }
     TRY(stopped != NULL ? put_line(writer, "# stopped ", stopped, error)
                         : put_end(writer, stream, text, error));

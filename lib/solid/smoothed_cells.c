@@ -176,24 +176,22 @@ static enum status check_table(const struct given_table *table, int64_t rows, in
     return STATUS_OK;
 }
 
-/* For several processes: copy the rows that this one's cells need, and transpose the columns of its nodes. */
+/* For several processes: copy the rows that this one's cells need, and the columns of its nodes. */
 static enum status copy_shares(const struct field_averages_input *tables, struct body *body,
                                struct error *error)
 {
     enum status status;
     struct body_share *share = &body->share;
     struct field_averages *averages = &body->cells.averages;
-    struct sparse columns = {0};
+    struct row_operator *rows = &body->rows;
     bool *needed = NULL, *used = NULL;
     TRY(body_share_values(body, &needed, error));
     TRY(stretches_of(0, averages->row_count, needed, &share->values, error));
-    TRY(field_averages_copy(tables, needed, 0, body->node_count, &averages->matrix, error));
-    TRY(field_averages_copy(tables, NULL, share->begin_node, share->end_node, &columns, error));
-    TRY(sparse_transpose(&columns, &averages->transposed, error));
-    TRY(sparse_rows_used(&columns, &used, error));
+    TRY(field_averages_copy(tables, needed, 0, body->node_count, &rows->matrix, error));
+    TRY(field_averages_copy(tables, NULL, share->begin_node, share->end_node, &rows->columns, error));
+    TRY(sparse_rows_used(&rows->columns, &used, error));
     TRY(body_share_rows(body, used, error));
 done:
-    sparse_free(&columns);
     free(needed);
     free(used);
     return status;
@@ -307,6 +305,7 @@ static enum status build_averages(const struct smoothed_cells_input *input, stru
                                           .node_count = body->node_count,
                                           .corner_count = body->point_count * corners,
                                           .place = body->node_place,
+                                          .lets_go = input->copied != NULL && body->share.ranks == NULL,
                                           .tables = {{faces->row_count, order, input->face_ptr,
                                                       input->face_idx, input->face_phi, row_of_corner},
                                                      {body->node_count, body->node_order, input->node_ptr,
@@ -322,11 +321,10 @@ static enum status build_averages(const struct smoothed_cells_input *input, stru
         order = NULL;
         goto done;
     }
-    TRY(field_averages_copy(&tables, NULL, 0, body->node_count, &averages->matrix, error));
+    TRY(field_averages_copy(&tables, NULL, 0, body->node_count, &body->rows.matrix, error));
     if (input->copied != NULL) {
         input->copied(input->context);
     }
-    TRY(sparse_transpose(&averages->matrix, &averages->transposed, error));
     TRY(body_share_rows(body, NULL, error));
     TRY(stretches_of(0, averages->row_count, NULL, &body->share.values, error));
 done:
@@ -385,14 +383,14 @@ int32_t smoothed_cells_node(const struct body *body, int64_t q, int k)
     const struct field_averages *averages = &body->cells.averages;
     int64_t first = averages->corner_count * FACE_ROWS(body->dim);
     int32_t row = averages->of_corner[first + q * (body->dim + 1) + k] / VECTOR_STRIDE(body->dim);
-    return row - (int32_t)(averages->matrix.row_count - body->node_count);
+    return row - (int32_t)(averages->row_count - body->node_count);
 }
 
 enum status cell_functions_make(const struct body *body, struct cell_functions *functions,
                                 struct error *error)
 {
     enum status status;
-    const struct sparse *matrix = body->smoothed ? &body->cells.averages.matrix : &body->gradients;
+    const struct sparse *matrix = &body->rows.matrix;
     int64_t most = 0;
     *functions = (struct cell_functions){0};
     for (int64_t q = 0; q < body->point_count; q++) {
@@ -452,7 +450,7 @@ static int list_rows(const struct body *body, int64_t q, int32_t row[12], double
 /* A set by two arrays that need no clearing: Briggs and Torczon 1993. */
 void cell_functions_list(const struct body *body, int64_t q, struct cell_functions *functions)
 {
-    const struct sparse *matrix = &body->cells.averages.matrix;
+    const struct sparse *matrix = &body->rows.matrix;
     int dim = body->dim, count;
     int32_t row[12];
     double gradient[12 * 3];
@@ -460,7 +458,7 @@ void cell_functions_list(const struct body *body, int64_t q, struct cell_functio
     functions->count = 0;
     for (int r = 0; r < count; r++) {
         for (int64_t i = matrix->ptr[row[r]]; i < matrix->ptr[row[r] + 1]; i++) {
-            int32_t node = matrix->idx[i], at = functions->slot[node];
+            int32_t node = row_operator_column(matrix->idx[i]), at = functions->slot[node];
             if (at >= functions->count || functions->node[at] != node) {
                 at = functions->slot[node] = (int32_t)functions->count++;
                 functions->node[at] = node;

@@ -52,11 +52,12 @@ struct smoothed_cells_input {
     const int64_t *node_ptr; /* node_count + 1: values of the shape functions at the nodes */
     const int32_t *node_idx;
     const double *node_phi;
-    const int32_t *face_reader;    /* row_count: the process that has read each row of the face averages;
-                                      the row is empty in others. NULL: every process has all */
-    void (*copied)(void *context); /* called when face_ptr, face_idx and face_phi are no longer needed; or
-                                      NULL. Where each of several processes has all rows, they are needed
-                                      until the body is freed, and it is not called */
+    const int32_t *face_reader; /* row_count: the process that has read each row of the face averages;
+                                   the row is empty in others. NULL: every process has all */
+    void (*copied)(
+        void *context); /* called when face_ptr, face_idx and face_phi are no longer needed, and
+                           have been let go of (memory_give_back); or NULL. Where each of several processes
+                           has all rows, they are needed until the body is freed, and it is not called */
     void *context;
 };
 
@@ -86,7 +87,7 @@ int32_t smoothed_cells_row(const struct body *body, int64_t q, int k, int i);
 int32_t smoothed_cells_node(const struct body *body, int64_t q, int k);
 
 /* The nodes whose shape functions are not zero on a cell, in the body's order, and the mean gradients of
- * these over the cell. For bodies without smoothed cells only the room for the gradients. */
+ * these over the cell. For bodies without smoothed cells only the room. */
 struct cell_functions {
     int32_t *slot;    /* node_count: index of a node in the list, valid where node[slot] is that node */
     int32_t *node;    /* the list, with room for the most nodes that a cell has */
