@@ -180,6 +180,7 @@ int main(int argc, char *argv[])
     run_contacts_begin(&run);
     run_folds_begin(&run);
     run_stability_begin(&run);
+    stream_give_back(&stream);
     if (scene.analysis == SCENE_DYNAMIC) {
         run_dynamic(&run);
     } else {

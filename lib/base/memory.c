@@ -50,6 +50,16 @@ void *array_new_untouched(int64_t count, size_t size)
     return array;
 }
 
+void memory_give_back(const void *begin, size_t bytes)
+{
+    uintptr_t page = (uintptr_t)sysconf(_SC_PAGESIZE), from = (uintptr_t)begin, to = from + bytes;
+    from = (from + page - 1) / page * page;
+    to = to / page * page;
+    if (from < to) {
+        (void)madvise((void *)from, to - from, MADV_DONTNEED);
+    }
+}
+
 void *array_grow(void *array, int64_t count, size_t size)
 {
     size_t bytes;

@@ -21,6 +21,10 @@ void *array_grow(void *array, int64_t count, size_t size);
  * former owner then frees nothing: put(array_take(&x)). */
 void *array_take(void *pointer);
 
+/* Let go of the whole pages of some bytes that are not needed for now, or not at all: of a mapped file they
+ * are read again when they are needed, elsewhere they become zeros. */
+void memory_give_back(const void *begin, size_t bytes);
+
 /* *pointer = array_new(count, sizeof **pointer); evaluates to a status, with an error naming the array. */
 #define NEW_ARRAY(pointer, count, error)                                                                     \
     ((*(pointer) = array_new((count), sizeof **(pointer))) != NULL ? STATUS_OK                               \

@@ -14,8 +14,8 @@ enum status sparse_new(int64_t row_count, int64_t column_count, int64_t entries,
     enum status status;
     *matrix = (struct sparse){.row_count = row_count, .column_count = column_count};
     TRY(NEW_ARRAY(&matrix->ptr, row_count + 1, error));
-    TRY(NEW_ARRAY(&matrix->idx, entries, error));
-    TRY(NEW_ARRAY(&matrix->value, entries, error));
+    TRY(NEW_ARRAY_UNTOUCHED(&matrix->idx, entries, error));
+    TRY(NEW_ARRAY_UNTOUCHED(&matrix->value, entries, error));
 done:
     if (status != STATUS_OK) {
         sparse_free(matrix);

@@ -1,7 +1,6 @@
 /* Sparse matrices by rows (CSR), which act on fields: the rows of a vector are numbers, or the components of
- * a displacement or force. The force loop applies such an operator and its transpose, equation (12) of
- * lib/README.md, which is stored as well: each row is summed by one thread and in one order, so that any
- * number of threads gives the same bits. */
+ * a displacement or force. Each row is summed by one thread and in one order, so that any number of threads
+ * gives the same bits. */
 #ifndef BASE_SPARSE_H
 #define BASE_SPARSE_H
 

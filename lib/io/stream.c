@@ -6,7 +6,6 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/mman.h>
-#include <unistd.h>
 
 static const struct {
     const char *name;
@@ -256,24 +255,25 @@ enum status stream_put(struct stream *stream, const char *name, enum element_typ
     return status;
 }
 
-/* Whole pages of a mapped section need not stay in memory. */
-static void release_pages(const struct stream *stream, const struct section *section)
+void section_give_back(const struct stream *stream, const struct section *section)
 {
-    uintptr_t page = (uintptr_t)sysconf(_SC_PAGESIZE), from = (uintptr_t)section->data;
-    uintptr_t mapped = (uintptr_t)stream->mapping;
-    uintptr_t to = from + (uintptr_t)(section->rows * section->cols) * element_size(section->type);
-    if (!section->owned && from >= mapped && to <= mapped + stream->mapping_size) {
-        from = (from + page - 1) / page * page;
-        to = to / page * page;
-        if (from < to) {
-            (void)madvise((void *)from, to - from, MADV_DONTNEED);
-        }
+    uintptr_t from = (uintptr_t)section->data, mapped = (uintptr_t)stream->mapping;
+    size_t bytes = (size_t)(section->rows * section->cols) * element_size(section->type);
+    if (!section->owned && from >= mapped && from + bytes <= mapped + stream->mapping_size) {
+        memory_give_back(section->data, bytes);
+    }
+}
+
+void stream_give_back(const struct stream *stream)
+{
+    for (int64_t i = 0; i < stream->section_count; i++) {
+        section_give_back(stream, &stream->sections[i]);
     }
 }
 
 static void remove_at(struct stream *stream, int64_t at)
 {
-    release_pages(stream, &stream->sections[at]);
+    section_give_back(stream, &stream->sections[at]);
     section_free(&stream->sections[at]);
     stream->section_count--;
     memmove(&stream->sections[at], &stream->sections[at + 1],

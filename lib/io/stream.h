@@ -83,6 +83,10 @@ MUST_CHECK enum status stream_put(struct stream *stream, const char *name, enum 
 /* Remove a section, if it exists. */
 void stream_remove(struct stream *stream, const char *name);
 
+/* Let go of the pages of the mapped input, none of which has been changed in place: they are read again when
+ * they are needed. */
+void stream_give_back(const struct stream *stream);
+
 /* Append the provenance line "TOOL VERSION ARGV..." (arguments quoted for a shell where they need it). */
 MUST_CHECK enum status stream_add_provenance(struct stream *stream, int argc, char *const argv[],
                                              struct error *error);

@@ -29,6 +29,10 @@ MUST_CHECK enum status stream_append(struct stream *stream, const char *name, en
                                      int64_t rows, int64_t cols, const char *attributes,
                                      struct section **section, struct error *error);
 
+/* stream.c: where the section lies in the mapped input, its whole pages are read again when they are needed.
+ */
+void section_give_back(const struct stream *stream, const struct section *section);
+
 /* stream.c: append a copy of a provenance line. */
 MUST_CHECK enum status stream_append_provenance(struct stream *stream, const char *line, size_t length,
                                                 struct error *error);

@@ -137,6 +137,7 @@ static enum status read_binary(struct reader *reader, struct section *section, u
         input->at += bytes;
     }
     uLong crc = bytes > 0 ? crc32_z(header_crc, section->data, bytes) : header_crc;
+    section_give_back(reader->stream, section);
     return read_crc_line(reader, section, crc, error);
 }
 

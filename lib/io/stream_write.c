@@ -187,6 +187,7 @@ static enum status put_stream(struct writer *writer, const struct stream *stream
         RETURN_IF_ERROR(put_header(writer, section, text, &crc, error));
         RETURN_IF_ERROR(text ? put_payload_text(writer, section, error)
                              : put_payload_binary(writer, section, crc, error));
+        section_give_back(stream, section);
     }
     RETURN_IF_ERROR(stopped != NULL ? put_line(writer, "# stopped ", stopped, error)
                                     : put_end(writer, stream, text, error));

@@ -160,7 +160,7 @@ enum status assembly_build(struct assembly *input, struct solid_system *system, 
     TRY(assembly_add_loads(input, system, error));
     TRY(build_body(input, system, error));
     TRY(assembly_complete_gravity(input, system, error));
-    TRY(field_averages_drop_copied(&system->body.cells.averages, error));
+    TRY(field_averages_drop_copied(&system->body.rows.matrix, &system->body.cells.averages, error));
     TRY(assembly_add_conditions(input, system, note, error));
     TRY(assembly_add_points(input, system, note, error));
     TRY(assembly_add_contacts(input, system, error));

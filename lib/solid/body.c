@@ -150,21 +150,17 @@ static enum status copy_gradients(const struct body_input *input, struct body *b
 {
     enum status status;
     struct body_share *share = &body->share;
-    struct sparse columns = {0};
     int64_t rows = body->point_count * body->dim;
     bool *wanted = NULL;
     if (rows > INT32_MAX) {
         return fail(error, STATUS_INPUT, "points.x: %lld points: too many", (long long)body->point_count);
     }
-    TRY(copy_rows(input, body, share->begin_point, share->end_point, 0, body->node_count, &body->gradients,
+    TRY(copy_rows(input, body, share->begin_point, share->end_point, 0, body->node_count, &body->rows.matrix,
                   error));
-    if (share->ranks == NULL) {
-        TRY(sparse_transpose(&body->gradients, &body->transposed, error));
-    } else {
-        TRY(copy_rows(input, body, 0, body->point_count, share->begin_node, share->end_node, &columns,
-                      error));
-        TRY(sparse_transpose(&columns, &body->transposed, error));
-        TRY(sparse_rows_used(&columns, &wanted, error));
+    if (share->ranks != NULL) {
+        TRY(copy_rows(input, body, 0, body->point_count, share->begin_node, share->end_node,
+                      &body->rows.columns, error));
+        TRY(sparse_rows_used(&body->rows.columns, &wanted, error));
     }
     TRY(body_share_rows(body, wanted, error));
     TRY(stretches_of(share->begin_point * body->dim, share->end_point * body->dim, NULL, &share->values,
@@ -172,7 +168,6 @@ static enum status copy_gradients(const struct body_input *input, struct body *b
     TRY(NEW_ARRAY_UNTOUCHED(&body->derivative, rows * VECTOR_STRIDE(body->dim), error));
     body->pair_count = input->ptr[body->point_count];
 done:
-    sparse_free(&columns);
     free(wanted);
     return status;
 }
@@ -235,6 +230,8 @@ enum status body_build(const struct body_input *input, struct body *body, struct
         TRY(smoothed_cells_build(input->smoothed, body, error));
     }
     body->threads = worthwhile_threads(body);
+    TRY(row_operator_finish(&body->rows, body->share.begin_node, body->share.end_node, body->threads,
+                            VECTOR_STRIDE(body->dim), error));
     TRY(body_make_bounds(body, error));
 done:
     if (status != STATUS_OK) {
@@ -247,8 +244,7 @@ void body_free(struct body *body)
 {
     body_free_bounds(body);
     body_share_free(&body->share);
-    sparse_free(&body->gradients);
-    sparse_free(&body->transposed);
+    row_operator_free(&body->rows);
     smoothed_cells_free(&body->cells);
     nodal_volumes_free(&body->volumes);
     void *arrays[] = {body->order,  body->weight,     body->materials,  body->material,

@@ -11,6 +11,7 @@
 #include "solid/body_share.h"
 #include "solid/smoothed_cells.h"
 #include "solid/material.h"
+#include "solid/row_operator.h"
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -104,9 +105,9 @@ struct body {
     struct block *blocks;
     struct body_share share; /* what this process computes of several; rows that others do are empty */
     bool smoothed;
-    struct sparse gradients, transposed; /* of the shape functions: row q dim + k has the derivatives along k
-                                            at point q; and the transpose; */
-    double *derivative;          /* du/dx_k, or the stress, of each row: VECTOR_STRIDE(dim) of each; */
+    struct row_operator rows; /* gradients of the shape functions: row q dim + k has the derivatives along k
+                                 at point q; or of smoothed cells field_averages.h */
+    double *derivative;       /* du/dx_k, or the stress, of each row: VECTOR_STRIDE(dim) of each; */
     struct smoothed_cells cells; /* or smoothed cells instead */
     double *u, *force; /* node_count * VECTOR_STRIDE(dim): displacements and forces in the body's order */
     double *F;         /* dim * dim rows of point_count: deformation gradients of the last evaluation */

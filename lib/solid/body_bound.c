@@ -119,13 +119,16 @@ static void add_point(const struct body *body, int64_t q, const double F[9], dou
         add_functions(body, &bound, work->count, work->node, work->gradient, to->of_node);
         return;
     }
-    const struct sparse *matrix = &body->gradients; /* the rows of a point have the same nodes */
+    const struct sparse *matrix = &body->rows.matrix; /* the rows of a point have the same nodes */
     int dim = body->dim;
     int64_t at = matrix->ptr[q * dim], count = matrix->ptr[q * dim + 1] - at;
     for (int64_t i = 0; i < count * dim; i++) {
         work->gradient[i] = matrix->value[at + i % dim * count + i / dim];
     }
-    add_functions(body, &bound, count, matrix->idx + at, work->gradient, to->of_node);
+    for (int64_t i = 0; i < count; i++) {
+        work->node[i] = row_operator_column(matrix->idx[at + i]);
+    }
+    add_functions(body, &bound, count, work->node, work->gradient, to->of_node);
 }
 
 /* The same with the linear shape functions of the cell. */

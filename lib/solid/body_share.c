@@ -78,7 +78,6 @@ enum status body_share_cut(const struct body_input *input, struct body *body, st
     share->end_point = share->point_first[rank + 1];
     share->begin_node = share->node_first[rank];
     share->end_node = share->node_first[rank + 1];
-    TRY(stretches_of(share->begin_node, share->end_node, NULL, &share->nodes, error));
 done:
     free(work);
     free(node_work);
@@ -229,7 +228,6 @@ void body_share_free(struct body_share *share)
     free(share->volume_first);
     stretches_free(&share->values);
     stretches_free(&share->sums);
-    stretches_free(&share->nodes);
     halo_free(&share->strains);
     halo_free(&share->corners);
     halo_free(&share->rows);

@@ -24,7 +24,6 @@ struct body_share {
     int64_t begin_block, end_block, begin_point, end_point, begin_node, end_node; /* of this one */
     struct stretches values; /* rows of the operator that are computed here */
     struct stretches sums;   /* smoothed cells: rows whose forces are summed here */
-    struct stretches nodes;  /* own nodes */
     struct halo strains;     /* of points: for nodal volumes */
     struct halo corners;     /* of smoothed cells: forces on rows that are summed here */
     struct halo rows;        /* forces on rows, for own nodes */

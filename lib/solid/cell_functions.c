@@ -9,7 +9,7 @@ enum status cell_functions_make(const struct body *body, struct cell_functions *
                                 struct error *error)
 {
     enum status status;
-    const struct sparse *matrix = body->smoothed ? &body->cells.averages.matrix : &body->gradients;
+    const struct sparse *matrix = &body->rows.matrix;
     int64_t most = 0;
     *functions = (struct cell_functions){0};
     for (int64_t q = 0; q < body->point_count; q++) {
@@ -85,7 +85,7 @@ static inline void add_function(int32_t node, int dim, double factor, const doub
 
 void cell_functions_list(const struct body *body, int64_t q, struct cell_functions *functions)
 {
-    const struct sparse *matrix = &body->cells.averages.matrix;
+    const struct sparse *matrix = &body->rows.matrix;
     int dim = body->dim;
     functions->count = 0;
     for (int64_t c = smoothed_cells_group(body, q); c < smoothed_cells_group_end(body, q); c++) {
@@ -97,7 +97,8 @@ void cell_functions_list(const struct body *body, int64_t q, struct cell_functio
         }
         for (int r = 0; r < count; r++) {
             for (int64_t i = matrix->ptr[row[r]]; i < matrix->ptr[row[r] + 1]; i++) {
-                add_function(matrix->idx[i], dim, matrix->value[i], gradient + r * dim, functions);
+                add_function(row_operator_column(matrix->idx[i]), dim, matrix->value[i], gradient + r * dim,
+                             functions);
             }
         }
     }

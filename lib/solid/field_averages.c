@@ -5,28 +5,60 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Rows of a table, from number `first_row` on; *at counts the entries. Without the matrix's arrays nothing
- * else is done. */
-static void copy_rows(const struct field_averages_input *input, const struct average_table *table,
-                      const bool *wanted, int64_t first, int64_t last, int64_t first_row, int64_t *at,
-                      struct sparse *matrix)
+/* A table on its way into the rows of a matrix, from `first_row` on. */
+struct copy {
+    const struct field_averages_input *input;
+    const struct average_table *table;
+    const bool *wanted;
+    int64_t first, last; /* columns */
+    int64_t first_row;
+    int64_t *place; /* of each of the caller's rows among those of the table */
+    bool lets_go;   /* the table is not needed afterwards */
+};
+
+static bool copies_row(const struct copy *copy, int64_t f)
 {
-    for (int64_t r = 0; r < table->row_count; r++) {
-        int64_t from = table->order[r];
-        bool copied = wanted == NULL || wanted[first_row + r];
-        for (int64_t i = table->ptr[from]; copied && i < table->ptr[from + 1]; i++) {
-            int32_t node = input->place[table->idx[i]];
-            if (node < first || node >= last) {
-                continue;
-            }
-            if (matrix->ptr != NULL) {
-                matrix->idx[*at] = node;
-                matrix->value[*at] = table->phi[i];
-            }
-            ++*at;
+    return copy->wanted == NULL || copy->wanted[copy->first_row + copy->place[f]];
+}
+
+static bool copies_entry(const struct copy *copy, int64_t i)
+{
+    int32_t node = copy->input->place[copy->table->idx[i]];
+    return node >= copy->first && node < copy->last;
+}
+
+/* length[]: of each of the matrix's rows. */
+static void measure_rows(const struct copy *copy, int64_t *length)
+{
+    const int64_t *ptr = copy->table->ptr;
+    bool all = copy->first == 0 && copy->last == copy->input->node_count;
+    for (int64_t f = 0; f < copy->table->row_count; f++) {
+        int64_t count = copies_row(copy, f) && all ? ptr[f + 1] - ptr[f] : 0;
+        for (int64_t i = ptr[f]; i < ptr[f + 1] && copies_row(copy, f) && !all; i++) {
+            count += copies_entry(copy, i);
         }
-        if (matrix->ptr != NULL) {
-            matrix->ptr[first_row + r + 1] = *at;
+        length[copy->first_row + copy->place[f]] = count;
+    }
+}
+
+/* The table as it comes, so that it can be let go of step by step. */
+static void copy_rows(const struct copy *copy, struct sparse *matrix)
+{
+    enum { STEP = 1 << 20 };
+    const struct average_table *table = copy->table;
+    int64_t gone = 0;
+    for (int64_t f = 0; f < table->row_count; f++) {
+        int64_t at = matrix->ptr[copy->first_row + copy->place[f]];
+        for (int64_t i = table->ptr[f]; i < table->ptr[f + 1] && copies_row(copy, f); i++) {
+            if (copies_entry(copy, i)) {
+                matrix->idx[at] = copy->input->place[table->idx[i]];
+                matrix->value[at++] = table->phi[i];
+            }
+        }
+        if (copy->lets_go && table->ptr[f + 1] - gone >= STEP) {
+            memory_give_back(table->idx + gone, STEP * sizeof *table->idx);
+            memory_give_back(table->phi + gone, STEP * sizeof *table->phi);
+            gone += STEP;
         }
     }
 }
@@ -35,20 +67,34 @@ enum status field_averages_copy(const struct field_averages_input *input, const 
                                 int64_t last, struct sparse *matrix, struct error *error)
 {
     enum status status;
-    const struct average_table *faces = &input->tables[0], *nodes = &input->tables[1];
-    int64_t at = 0, rows = faces->row_count + nodes->row_count;
+    struct copy copies[2] = {{0}};
+    int64_t faces = input->tables[0].row_count, rows = faces + input->tables[1].row_count;
+    int64_t *length = NULL, entries = 0;
     *matrix = (struct sparse){0};
-    if (wanted == NULL && first == 0 && last == input->node_count) {
-        at = faces->ptr[faces->row_count] + nodes->ptr[nodes->row_count];
-    } else {
-        copy_rows(input, faces, wanted, first, last, 0, &at, matrix);
-        copy_rows(input, nodes, wanted, first, last, faces->row_count, &at, matrix);
+    TRY(NEW_ARRAY(&length, rows, error));
+    for (int k = 0; k < 2; k++) {
+        const struct average_table *table = &input->tables[k];
+        copies[k] =
+            (struct copy){input, table, wanted, first, last, k * faces, NULL, k == 0 && input->lets_go};
+        TRY(NEW_ARRAY(&copies[k].place, table->row_count, error));
+        for (int64_t r = 0; r < table->row_count; r++) {
+            copies[k].place[table->order[r]] = r;
+        }
+        measure_rows(&copies[k], length);
     }
-    TRY(sparse_new(rows, input->node_count, at, matrix, error));
-    at = 0;
-    copy_rows(input, faces, wanted, first, last, 0, &at, matrix);
-    copy_rows(input, nodes, wanted, first, last, faces->row_count, &at, matrix);
+    for (int64_t r = 0; r < rows; r++) {
+        entries += length[r];
+    }
+    TRY(sparse_new(rows, input->node_count, entries, matrix, error));
+    for (int64_t r = 0; r < rows; r++) {
+        matrix->ptr[r + 1] = matrix->ptr[r] + length[r];
+    }
+    copy_rows(&copies[0], matrix);
+    copy_rows(&copies[1], matrix);
 done:
+    free(length);
+    free(copies[0].place);
+    free(copies[1].place);
     return status;
 }
 
@@ -123,12 +169,13 @@ done:
     return status;
 }
 
-enum status field_averages_drop_copied(struct field_averages *averages, struct error *error)
+enum status field_averages_drop_copied(const struct sparse *matrix, struct field_averages *averages,
+                                       struct error *error)
 {
     enum status status = STATUS_OK;
     struct sparse *fetched = &averages->fetched;
     struct average_table *faces = &averages->given[0];
-    const int64_t *ptr = averages->matrix.ptr;
+    const int64_t *ptr = matrix->ptr;
     int64_t at = 0, begin = 0;
     bool *kept = NULL;
     if (fetched->ptr == NULL) {
@@ -158,8 +205,6 @@ done:
 
 void field_averages_free(struct field_averages *averages)
 {
-    sparse_free(&averages->matrix);
-    sparse_free(&averages->transposed);
     sparse_free(&averages->fetched);
     free(averages->value);
     free(averages->force);

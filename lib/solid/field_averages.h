@@ -25,10 +25,10 @@ struct average_table {
     const int32_t *row_of_corner; /* one for each corner; in the table of faces FACE_ROWS(dim) */
 };
 
+/* The rows of B, those of faces, then one for each node, are the body's (body.h). With several processes
+ * those computed by others are empty. */
 struct field_averages {
     int64_t row_count;
-    struct sparse matrix, transposed; /* B: the rows of faces, then one for each node; and its transpose.
-                                         With several processes: rows computed by others are empty */
     double *value;        /* of each row at the last evaluation, m, with stride VECTOR_STRIDE(dim) */
     double *force;        /* on each row, with that stride, N (2D: N/m) */
     int64_t corner_count; /* cells * (dim + 1); once for faces, once for nodes */
@@ -47,6 +47,7 @@ struct field_averages_input {
     int64_t node_count, corner_count;
     const int32_t *place;           /* node_count: the body's index of each of the caller's nodes */
     struct average_table tables[2]; /* faces, nodes */
+    bool lets_go; /* idx and phi of the faces are not needed once they are copied: memory_give_back */
 };
 
 /* Set which rows each corner uses, and which corners use each row. */
@@ -60,7 +61,8 @@ MUST_CHECK enum status field_averages_copy(const struct field_averages_input *in
                                            struct error *error);
 
 /* Drop the fetched rows that the matrix has. */
-MUST_CHECK enum status field_averages_drop_copied(struct field_averages *averages, struct error *error);
+MUST_CHECK enum status field_averages_drop_copied(const struct sparse *matrix,
+                                                  struct field_averages *averages, struct error *error);
 void field_averages_free(struct field_averages *averages);
 
 #endif

@@ -65,12 +65,20 @@ void body_visit(const struct body *body, int64_t first, int64_t last, body_visit
 }
 
 /* What threads share: loops over rows, blocks and nodes. */
-static void apply(const struct body *body, const struct sparse *matrix, const struct stretches *rows,
-                  const double *x, double *y)
+static void apply(const struct body *body, const double *x, double *y)
 {
+    const struct stretches *rows = &body->share.values;
 #pragma omp for schedule(static)
     for (int64_t i = 0; i < rows->count; i++) {
-        body->kernels->apply(matrix, rows->items[i].begin, rows->items[i].end, x, y);
+        body->kernels->apply(&body->rows.matrix, rows->items[i].begin, rows->items[i].end, x, y);
+    }
+}
+
+static void apply_transposed(const struct body *body, const double *x, double *y)
+{
+#pragma omp for schedule(static, 1)
+    for (int s = 0; s < body->rows.stripe_count; s++) {
+        body->kernels->apply_transposed(&body->rows, s, x, y);
     }
 }
 
@@ -118,10 +126,10 @@ static void set_state(struct body *body, const double *u)
 {
     place_nodes(body, u);
     if (body->smoothed) {
-        apply(body, &body->cells.averages.matrix, &body->share.values, body->u, body->cells.averages.value);
+        apply(body, body->u, body->cells.averages.value);
         for_blocks(body, body->kernels->cell_gradients);
     } else {
-        apply(body, &body->gradients, &body->share.values, body->u, body->derivative);
+        apply(body, body->u, body->derivative);
         for_blocks(body, body->kernels->point_gradients);
     }
     if (body->averaged) {
@@ -143,11 +151,11 @@ static void evaluate(struct body *body, const double *u, double *force)
             body_share_exchange(share, &share->corners, stride, averages->corner_force);
             sum_corners(body);
             body_share_exchange(share, &share->rows, stride, averages->force);
-            apply(body, &averages->transposed, &share->nodes, averages->force, body->force);
+            apply_transposed(body, averages->force, body->force);
         } else {
             for_blocks(body, stress_point_block);
             body_share_exchange(share, &share->rows, stride, body->derivative);
-            apply(body, &body->transposed, &share->nodes, body->derivative, body->force);
+            apply_transposed(body, body->derivative, body->force);
         }
         body_share_gather(share, body->force, (size_t)stride * sizeof *body->force, share->node_first);
         body_share_gather(share, body->blocks, sizeof *body->blocks, share->block_first);

@@ -86,62 +86,95 @@ static void solve_row(const struct lower *lower, int64_t count, const int32_t *l
     }
 }
 
-/* The rows of S that own rows of L are made of, of several processes. */
-static enum status fetch_rows(const struct solid_system *system, struct lower *lower, struct near *near,
-                              struct error *error)
+/* The other rows of S that a stretch of rows of L is made of. */
+static enum status add_rows(const struct solid_system *system, int64_t first, int64_t last,
+                            struct lower *lower, struct near *near, struct error *error)
 {
     enum status status;
-    const struct body_share *share = &system->body.share;
     bool *wanted = NULL;
     int32_t list[MOST_ENTRIES];
     TRY(NEW_ARRAY(&wanted, system->node_count, error));
-    for (int64_t p = share->begin_node; p < share->end_node; p++) {
+    for (int64_t p = first; p < last; p++) {
         int64_t count = choose(system, lower, (int32_t)system->body.node_order[p], near, list);
         for (int64_t k = 0; k < count; k++) {
             wanted[list[k]] = true;
         }
     }
-    TRY(lower_fetch(system, wanted, lower, error));
+    TRY(system->body.share.ranks != NULL ? lower_fetch(wanted, lower, error)
+                                         : lower_add(wanted, lower, error));
 done:
     free(wanted);
     return status;
 }
 
-/* Rows of own nodes in the body's order, one behind the other; length[]: how long each is. */
-static enum status make_rows(const struct solid_system *system, struct lower *lower, struct sparse *rows,
-                             int64_t *length, struct error *error)
+/* Rows of the nodes from `first` to before `last` in the body's order, with room for MOST_ENTRIES in each,
+ * the first at that of the process's first node; length[]: how long each is. `whole`: these are all nodes. */
+static enum status make_rows(const struct solid_system *system, int64_t first, int64_t last, bool whole,
+                             struct lower *lower, struct sparse *rows, int64_t *length, struct error *error)
 {
     enum status status;
-    const struct body_share *share = &system->body.share;
     const int64_t *node = system->body.node_order;
-    const struct chunks chunks = chunks_of(share->end_node - share->begin_node, worthwhile);
+    const struct chunks chunks = chunks_of(last - first, worthwhile);
     struct near *near = NULL;
-    int64_t most = 0, at = 0, first = share->begin_node;
-    for (int64_t p = first; p < share->end_node; p++) {
+    int64_t most = 0, own = system->body.share.begin_node;
+    for (int64_t p = first; p < last; p++) {
         int64_t entries = lower_row(lower, node[p]).count;
         most = entries > most ? entries : most;
     }
     TRY(NEW_ARRAY(&near, most * chunks.count, error));
-    if (share->ranks != NULL) {
-        TRY(fetch_rows(system, lower, near, error));
+    if (!whole) {
+        TRY(add_rows(system, first, last, lower, near, error));
     }
 #pragma omp parallel for schedule(static, 1) num_threads(chunks.threads)
     for (int64_t c = 0; c < chunks.count; c++) {
-        for (int64_t q = chunks_begin(&chunks, c); q < chunks_begin(&chunks, c + 1); q++) {
-            int32_t *list = rows->idx + q * MOST_ENTRIES;
-            length[first + q] = choose(system, lower, (int32_t)node[first + q], near + c * most, list);
-            solve_row(lower, length[first + q], list, rows->value + q * MOST_ENTRIES);
+        for (int64_t p = first + chunks_begin(&chunks, c); p < first + chunks_begin(&chunks, c + 1); p++) {
+            int32_t *list = rows->idx + (p - own) * MOST_ENTRIES;
+            length[p] = choose(system, lower, (int32_t)node[p], near + c * most, list);
+            solve_row(lower, length[p], list, rows->value + (p - own) * MOST_ENTRIES);
         }
-    }
-    for (int64_t q = 0; q < chunks.items; q++) {
-        int64_t count = length[first + q];
-        memmove(rows->idx + at, rows->idx + q * MOST_ENTRIES, (size_t)count * sizeof *rows->idx);
-        memmove(rows->value + at, rows->value + q * MOST_ENTRIES, (size_t)count * sizeof *rows->value);
-        at += count;
     }
 done:
     free(near);
     return status;
+}
+
+/* All own rows, by stretches of so many nodes, for which alone S is there. What a node without stiffness has
+ * on the diagonal is known when all of S has been seen: then once more. */
+static enum status make_own_rows(const struct solid_system *system, int64_t stretch, struct lower *lower,
+                                 struct sparse *rows, int64_t *length, struct error *error)
+{
+    enum status status = STATUS_OK;
+    const struct body_share *share = &system->body.share;
+    int64_t begin = share->begin_node, end = share->end_node;
+    bool good = false;
+    if (share->ranks != NULL || end - begin <= stretch) {
+        TRY(lower_make(begin, end, lower, error));
+        (void)lower_set_least(lower);
+        TRY(make_rows(system, begin, end, share->ranks == NULL, lower, rows, length, error));
+        goto done;
+    }
+    for (int time = 0; time < 2 && !good; time++) {
+        for (int64_t p = begin; p < end; p += stretch) {
+            int64_t last = end - p < stretch ? end : p + stretch;
+            TRY(lower_make(p, last, lower, error));
+            TRY(make_rows(system, p, last, false, lower, rows, length, error));
+        }
+        good = lower_set_least(lower);
+    }
+done:
+    return status;
+}
+
+/* Own rows one behind the other. */
+static void pack_rows(const struct body_share *share, const int64_t *length, struct sparse *rows)
+{
+    int64_t at = 0;
+    for (int64_t q = 0; q < share->end_node - share->begin_node; q++) {
+        int64_t count = length[share->begin_node + q];
+        memmove(rows->idx + at, rows->idx + q * MOST_ENTRIES, (size_t)count * sizeof *rows->idx);
+        memmove(rows->value + at, rows->value + q * MOST_ENTRIES, (size_t)count * sizeof *rows->value);
+        at += count;
+    }
 }
 
 /* All rows to all, by the processes' stretches of the body's order: rows->ptr[] is of that order. */
@@ -190,6 +223,13 @@ done:
 enum status inverse_factor_build(const struct solid_system *system, struct inverse_factor *factor,
                                  struct error *error)
 {
+    enum { STRETCH = 1 << 16 }; /* rows of S take about 5 kB each */
+    return inverse_factor_build_by(system, STRETCH, factor, error);
+}
+
+enum status inverse_factor_build_by(const struct solid_system *system, int64_t stretch,
+                                    struct inverse_factor *factor, struct error *error)
+{
     enum status status;
     struct lower lower = {0};
     struct sparse by_place = {0};
@@ -197,10 +237,11 @@ enum status inverse_factor_build(const struct solid_system *system, struct inver
     int64_t nodes = system->node_count, *length = NULL;
     *factor = (struct inverse_factor){.ranks = share->ranks};
     TRY(ranks_share(factor->ranks, nodes, NULL, &factor->first, error));
-    TRY(lower_make(system, &lower, error));
+    TRY(lower_begin(system, &lower, error));
     TRY(sparse_new(nodes, nodes, nodes * MOST_ENTRIES, &by_place, error));
     TRY(NEW_ARRAY(&length, nodes, error));
-    TRY(make_rows(system, &lower, &by_place, length, error));
+    TRY(make_own_rows(system, stretch, &lower, &by_place, length, error));
+    pack_rows(share, length, &by_place);
     TRY(gather_rows(share, length, &by_place, error));
     lower_free(&lower);
     TRY(sort_rows(&system->body, &by_place, &factor->rows, error));

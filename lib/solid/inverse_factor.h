@@ -32,6 +32,9 @@ struct inverse_factor {
 /* For a system whose body is made of smoothed cells and that knows the values at its nodes. */
 MUST_CHECK enum status inverse_factor_build(const struct solid_system *system, struct inverse_factor *factor,
                                             struct error *error);
+/* The same, with the rows of S of at most so many nodes at once, and those of others that they need. */
+MUST_CHECK enum status inverse_factor_build_by(const struct solid_system *system, int64_t stretch,
+                                               struct inverse_factor *factor, struct error *error);
 void inverse_factor_free(struct inverse_factor *factor);
 
 /* y = L x, and y = L^T x, of vectors of node_count * dim, not the same. */

@@ -12,6 +12,11 @@
     {                                                                                                        \
         apply_rows_##dim(matrix, begin, end, x, y);                                                          \
     }                                                                                                        \
+    attribute static void apply_transposed_##set##_##dim(const struct row_operator *rows, int64_t stripe,    \
+                                                         const double *x, double *y)                         \
+    {                                                                                                        \
+        apply_transposed_##dim(rows, &rows->stripes[stripe], x, y);                                          \
+    }                                                                                                        \
     attribute static void sum_corners_##set##_##dim(struct field_averages *averages, int64_t begin,          \
                                                     int64_t end)                                             \
     {                                                                                                        \
@@ -52,6 +57,7 @@
     static const struct force_kernels kernels_##set##_##dim = {                                              \
         .name = #set,                                                                                        \
         .apply = apply_##set##_##dim,                                                                        \
+        .apply_transposed = apply_transposed_##set##_##dim,                                                  \
         .sum_corners = sum_corners_##set##_##dim,                                                            \
         .point_gradients = point_gradients_##set##_##dim,                                                    \
         .point_forces = point_forces_##set##_##dim,                                                          \

@@ -12,6 +12,8 @@ struct force_kernels {
     const char *name;
     /* y = A x for rows begin .. end - 1, of vectors VECTOR_STRIDE(dim) apart. */
     void (*apply)(const struct sparse *matrix, int64_t begin, int64_t end, const double *x, double *y);
+    /* y = A^T x for the columns of a stripe. */
+    void (*apply_transposed)(const struct row_operator *rows, int64_t stripe, const double *x, double *y);
     /* The forces of the corners on averages begin .. end - 1. */
     void (*sum_corners)(struct field_averages *averages, int64_t begin, int64_t end);
     /* F and J of points from the derivatives of the field; and weighted stresses P in the place of these. */

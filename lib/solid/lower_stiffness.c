@@ -10,8 +10,8 @@
 
 static const double least_share = 1e-6; /* of the mean diagonal entry, that nodes without stiffness have */
 
-/* Nodes that are worth the while of a thread. */
-static const int64_t worthwhile = 200;
+/* Nodes that are worth the while of a thread, and of a pass over the operator. */
+static const int64_t worthwhile = 1000;
 
 static enum status make_room(struct lower_piece *piece, int64_t more, struct error *error)
 {
@@ -47,38 +47,39 @@ done:
     return status;
 }
 
-/* The rows of a stretch of nodes as a piece, and their diagonal entries, in the body's order. */
-static enum status make_piece(const struct scalar_stiffness *stiffness, int64_t first, int64_t last,
-                              int number, struct scalar_row *row, struct lower *lower, double *diagonal,
-                              struct error *error)
+/* The rows of nodes as a piece. */
+static enum status make_piece(const int32_t *place, int64_t count, int number, struct scalar_row *row,
+                              struct lower *lower, struct error *error)
 {
-    enum status status = STATUS_OK;
-    for (int64_t p = first; p < last; p++) {
-        int64_t i = stiffness->system->body.node_order[p];
-        scalar_stiffness_row(stiffness, i, row);
-        diagonal[p] = row->count > 0 ? row->value[row->count - 1] : 0.0;
+    enum status status;
+    const struct body *body = &lower->stiffness.system->body;
+    TRY(scalar_row_prepare(&lower->stiffness, place, count, row, error));
+    for (int64_t k = 0; k < count; k++) {
+        int64_t i = body->node_order[place[k]];
+        scalar_stiffness_row(&lower->stiffness, i, row);
+        lower->diagonal[place[k]] = row->count > 0 ? row->value[row->count - 1] : 0.0;
         TRY(keep_row(row, i, number, lower, error));
     }
 done:
     return status;
 }
 
-/* All pieces, each by one thread. */
-static enum status make_pieces(const struct scalar_stiffness *stiffness, const struct chunks *chunks,
-                               struct lower *lower, double *diagonal, struct error *error)
+/* The rows of nodes, as more pieces, each by one thread. */
+static enum status make_pieces(const int32_t *place, int64_t count, struct lower *lower, struct error *error)
 {
     enum status status = STATUS_OK;
-    int64_t first = stiffness->system->body.share.begin_node;
-#pragma omp parallel num_threads(chunks->threads)
+    const struct chunks chunks = chunks_of(count, worthwhile);
+#pragma omp parallel num_threads(chunks.threads)
     {
         struct scalar_row row;
         struct error own;
-        enum status made = scalar_row_make(stiffness, &row, &own);
+        enum status made = scalar_row_make(&lower->stiffness, &row, &own);
 #pragma omp for schedule(static, 1)
-        for (int64_t c = 0; c < chunks->count; c++) {
+        for (int64_t c = 0; c < chunks.count; c++) {
+            int64_t first = chunks_begin(&chunks, c);
             if (made == STATUS_OK) {
-                made = make_piece(stiffness, first + chunks_begin(chunks, c),
-                                  first + chunks_begin(chunks, c + 1), (int)c, &row, lower, diagonal, &own);
+                made = make_piece(place + first, chunks_begin(&chunks, c + 1) - first,
+                                  lower->piece_count + (int)c, &row, lower, &own);
             }
         }
         scalar_row_free(&row);
@@ -88,33 +89,88 @@ static enum status make_pieces(const struct scalar_stiffness *stiffness, const s
             *error = own;
         }
     }
+    lower->piece_count += (int)chunks.count;
     return status;
 }
 
-enum status lower_make(const struct solid_system *system, struct lower *lower, struct error *error)
+enum status lower_begin(const struct solid_system *system, struct lower *lower, struct error *error)
 {
     enum status status;
-    struct scalar_stiffness stiffness = {0};
-    const struct body_share *share = &system->body.share;
-    const struct chunks chunks = chunks_of(share->end_node - share->begin_node, worthwhile);
-    double sum = 0.0, *diagonal = NULL; /* in the body's order */
     int64_t nodes = system->node_count;
-    lower->piece_count = (int)chunks.count + 1;
-    TRY(scalar_stiffness_make(system, &stiffness, error));
+    *lower = (struct lower){0};
+    TRY(scalar_stiffness_make(system, &lower->stiffness, error));
     TRY(NEW_ARRAY(&lower->begin, nodes, error));
     TRY(NEW_ARRAY(&lower->end, nodes, error));
     TRY(NEW_ARRAY(&lower->piece_of, nodes, error));
-    TRY(NEW_ARRAY(&diagonal, nodes, error));
-    TRY(make_pieces(&stiffness, &chunks, lower, diagonal, error));
-    ranks_gather(share->ranks, diagonal, sizeof *diagonal, share->node_first);
-    for (int64_t i = 0; i < nodes; i++) {
-        sum += diagonal[system->body.node_place[i]];
-    }
-    lower->least = least_share * sum / (double)nodes;
+    TRY(NEW_ARRAY(&lower->diagonal, nodes, error));
 done:
-    free(diagonal);
-    scalar_stiffness_free(&stiffness);
     return status;
+}
+
+static void drop_pieces(struct lower *lower)
+{
+    for (size_t k = 0; k < sizeof lower->piece / sizeof *lower->piece; k++) {
+        free(lower->piece[k].idx);
+        free(lower->piece[k].value);
+        lower->piece[k] = (struct lower_piece){0};
+    }
+    lower->piece_count = 0;
+}
+
+enum status lower_make(int64_t first, int64_t last, struct lower *lower, struct error *error)
+{
+    enum status status;
+    size_t nodes = (size_t)lower->stiffness.system->node_count;
+    int32_t *place = NULL;
+    drop_pieces(lower);
+    memset(lower->begin, 0, nodes * sizeof *lower->begin);
+    memset(lower->end, 0, nodes * sizeof *lower->end);
+    TRY(NEW_ARRAY(&place, last - first, error));
+    for (int64_t p = first; p < last; p++) {
+        place[p - first] = (int32_t)p;
+    }
+    TRY(make_pieces(place, last - first, lower, error));
+done:
+    free(place);
+    return status;
+}
+
+enum status lower_add(const bool *wanted, struct lower *lower, struct error *error)
+{
+    enum status status;
+    const struct solid_system *system = lower->stiffness.system;
+    int32_t *place = NULL;
+    int64_t count = 0;
+    TRY(NEW_ARRAY(&place, system->node_count, error));
+    for (int64_t p = 0; p < system->node_count; p++) {
+        int64_t i = system->body.node_order[p];
+        if (wanted[i] && lower->begin[i] == lower->end[i]) {
+            place[count++] = (int32_t)p;
+        }
+    }
+    if (count > 0) {
+        TRY(make_pieces(place, count, lower, error));
+    }
+done:
+    free(place);
+    return status;
+}
+
+bool lower_set_least(struct lower *lower)
+{
+    const struct solid_system *system = lower->stiffness.system;
+    const struct body_share *share = &system->body.share;
+    bool above = false;
+    double sum = 0.0;
+    ranks_gather(share->ranks, lower->diagonal, sizeof *lower->diagonal, share->node_first);
+    for (int64_t i = 0; i < system->node_count; i++) {
+        sum += lower->diagonal[system->body.node_place[i]];
+    }
+    lower->least = least_share * sum / (double)system->node_count;
+    for (int64_t p = 0; p < system->node_count; p++) {
+        above = above || !(lower->diagonal[p] >= lower->least);
+    }
+    return !above;
 }
 
 double lower_entry(const struct lower *lower, int32_t i, int32_t j)
@@ -133,17 +189,17 @@ double lower_entry(const struct lower *lower, int32_t i, int32_t j)
     return i == j ? fmax(value, lower->least) : value;
 }
 
-enum status lower_fetch(const struct solid_system *system, const bool *wanted, struct lower *lower,
-                        struct error *error)
+enum status lower_fetch(const bool *wanted, struct lower *lower, struct error *error)
 {
     enum status status;
+    const struct solid_system *system = lower->stiffness.system;
     const struct ranks *ranks = system->body.share.ranks;
     int64_t nodes = system->node_count;
     struct halo halo = {0};
     double *length = NULL, *value = NULL;
     int32_t *idx = NULL;
     int64_t *send_first = NULL, *receive_first = NULL, at = 0;
-    struct lower_piece *fetched = &lower->piece[lower->piece_count - 1];
+    struct lower_piece *fetched = &lower->piece[lower->piece_count++];
     TRY(halo_build(ranks, nodes, wanted, 1, body_share_owner, &system->body, &halo, error));
     TRY(NEW_ARRAY(&length, nodes, error));
     TRY(NEW_ARRAY(&send_first, ranks->count + 1, error));
@@ -190,12 +246,11 @@ done:
 
 void lower_free(struct lower *lower)
 {
+    scalar_stiffness_free(&lower->stiffness);
     free(lower->begin);
     free(lower->end);
     free(lower->piece_of);
-    for (int k = 0; k < lower->piece_count; k++) {
-        free(lower->piece[k].idx);
-        free(lower->piece[k].value);
-    }
+    free(lower->diagonal);
+    drop_pieces(lower);
     *lower = (struct lower){0};
 }

@@ -4,6 +4,7 @@
 
 #include "base/chunks.h"
 #include "solid/inverse_factor.h"
+#include "solid/scalar_stiffness.h"
 
 /* Rows one behind the other. */
 struct lower_piece {
@@ -12,13 +13,15 @@ struct lower_piece {
     int64_t count, capacity; /* entries */
 };
 
-/* S up to its diagonal, by rows: those of own nodes, by stretches of them, and such others as are needed. */
+/* S up to its diagonal, by rows: those of a stretch of own nodes, and such others as are needed. */
 struct lower {
-    int64_t *begin, *end; /* of each row in its piece */
+    struct scalar_stiffness stiffness;
+    int64_t *begin, *end; /* of each row in its piece; none: the same */
     uint8_t *piece_of;    /* each row: its piece */
-    int piece_count;      /* the last one: rows of other processes' nodes */
-    struct lower_piece piece[CHUNKS_MOST + 1];
-    double least; /* on the diagonal */
+    int piece_count;
+    struct lower_piece piece[2 * CHUNKS_MOST + 1];
+    double *diagonal; /* of all rows so far, in the body's order */
+    double least;     /* on the diagonal */
 };
 
 /* A row of S up to the diagonal: columns, ascending, and values. */
@@ -34,14 +37,23 @@ static inline struct lower_row lower_row(const struct lower *lower, int64_t i)
     return (struct lower_row){lower->end[i] - begin, piece->idx + begin, piece->value + begin};
 }
 
-/* The rows of this process's nodes (body_share.h), by several threads. */
-MUST_CHECK enum status lower_make(const struct solid_system *system, struct lower *lower,
-                                  struct error *error);
+/* No rows yet; least 0. */
+MUST_CHECK enum status lower_begin(const struct solid_system *system, struct lower *lower,
+                                   struct error *error);
 void lower_free(struct lower *lower);
 
-/* Of several processes: the rows of S that are wanted (wanted[node_count]) and that others have. */
-MUST_CHECK enum status lower_fetch(const struct solid_system *system, const bool *wanted, struct lower *lower,
-                                   struct error *error);
+/* The rows of own nodes (body_share.h) from `first` to before `last` in the body's order, by several threads,
+ * in place of those that are there. */
+MUST_CHECK enum status lower_make(int64_t first, int64_t last, struct lower *lower, struct error *error);
+
+/* Such rows that are wanted (wanted[node_count], the caller's numbers) and not there in addition. */
+MUST_CHECK enum status lower_add(const bool *wanted, struct lower *lower, struct error *error);
+
+/* Set `least` from the diagonal, when all rows have been made; false where it is above some of that. */
+bool lower_set_least(struct lower *lower);
+
+/* Of several processes: the rows of S that are wanted and that others have. */
+MUST_CHECK enum status lower_fetch(const bool *wanted, struct lower *lower, struct error *error);
 
 /* S_ij, j <= i; 0 where there is no such entry. */
 double lower_entry(const struct lower *lower, int32_t i, int32_t j);

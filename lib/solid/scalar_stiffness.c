@@ -42,8 +42,8 @@ static struct average bond_at(const struct solid_system *system, int64_t b, doub
     return average_of_boundary(system->contacts[c].points, b);
 }
 
-/* Field or bond f; (*place)[]: the body's index of each of its nodes, NULL where they are such. Of several
- * processes the body lacks rows that its cells do not look at, but their tables are here. */
+/* Field or bond f; (*place)[]: the body's index of each of its nodes, NULL where they are the body's entries.
+ * Of several processes the body lacks rows that its cells do not look at, but their tables are here. */
 static struct average field_at(const struct scalar_stiffness *stiffness, int64_t f, const int32_t **place)
 {
     const struct body *body = &stiffness->system->body;
@@ -53,11 +53,11 @@ static struct average field_at(const struct scalar_stiffness *stiffness, int64_t
     if (f >= stiffness->field_count) {
         return bond_at(stiffness->system, f - stiffness->field_count, &unused);
     }
-    int64_t length = averages->matrix.ptr[f + 1] - averages->matrix.ptr[f];
+    const struct sparse *matrix = &body->rows.matrix;
+    int64_t length = matrix->ptr[f + 1] - matrix->ptr[f];
     if (length > 0 || body->share.ranks == NULL) {
-        int64_t at = averages->matrix.ptr[f];
         *place = NULL;
-        return (struct average){length, averages->matrix.idx + at, averages->matrix.value + at};
+        return (struct average){length, matrix->idx + matrix->ptr[f], matrix->value + matrix->ptr[f]};
     }
     int64_t faces = averages->given[0].row_count;
     const struct average_table *table = &averages->given[f < faces ? 0 : 1];
@@ -66,12 +66,12 @@ static struct average field_at(const struct scalar_stiffness *stiffness, int64_t
 }
 
 /* The fields that node i is in, and its shares there. */
-static struct average fields_of(const struct scalar_stiffness *stiffness, int64_t i)
+static struct average fields_of(const struct scalar_stiffness *stiffness, const struct scalar_row *row,
+                                int64_t i)
 {
-    const struct body *body = &stiffness->system->body;
-    const struct sparse *fields = &body->cells.averages.transposed;
-    int64_t row = body->node_place[i], at = fields->ptr[row];
-    return (struct average){fields->ptr[row + 1] - at, fields->idx + at, fields->value + at};
+    const struct sparse *fields = &row->fields;
+    int64_t r = row->slot[stiffness->system->body.node_place[i]], at = fields->ptr[r];
+    return (struct average){fields->ptr[r + 1] - at, fields->idx + at, fields->value + at};
 }
 
 static enum status list_bonds(struct scalar_stiffness *stiffness, struct error *error)
@@ -105,11 +105,12 @@ enum status scalar_stiffness_make(const struct solid_system *system, struct scal
     enum status status;
     const struct body *body = &system->body;
     *stiffness = (struct scalar_stiffness){.system = system, .bond_count = count_bonds(system)};
-    stiffness->field_count = body->cells.averages.matrix.row_count;
+    stiffness->field_count = body->cells.averages.row_count;
     if (stiffness->field_count + stiffness->bond_count > INT32_MAX) {
         status = fail(error, STATUS_SYSTEM, "preconditioner: more than 2^31 faces, nodes and conditions");
         goto done;
     }
+    TRY(row_operator_ranges(&body->rows, &stiffness->range, error));
     TRY(NEW_ARRAY(&stiffness->bond_stiffness, stiffness->bond_count, error));
     TRY(list_bonds(stiffness, error));
 done:
@@ -123,6 +124,7 @@ void scalar_stiffness_free(struct scalar_stiffness *stiffness)
 {
     sparse_free(&stiffness->bonds);
     free(stiffness->bond_stiffness);
+    free(stiffness->range);
     *stiffness = (struct scalar_stiffness){0};
 }
 
@@ -132,6 +134,7 @@ enum status scalar_row_make(const struct scalar_stiffness *stiffness, struct sca
     enum status status;
     int64_t nodes = stiffness->system->node_count, fields = stiffness->field_count + stiffness->bond_count;
     *row = (struct scalar_row){0};
+    TRY(NEW_ARRAY(&row->slot, nodes, error));
     TRY(NEW_ARRAY(&row->node, nodes, error));
     TRY(NEW_ARRAY(&row->value, nodes, error));
     TRY(NEW_ARRAY(&row->at_field, fields, error));
@@ -147,9 +150,18 @@ done:
     return status;
 }
 
+enum status scalar_row_prepare(const struct scalar_stiffness *stiffness, const int32_t *place, int64_t count,
+                               struct scalar_row *row, struct error *error)
+{
+    sparse_free(&row->fields);
+    return row_operator_transpose(&stiffness->system->body.rows, stiffness->range, place, count, row->slot,
+                                  &row->fields, error);
+}
+
 void scalar_row_free(struct scalar_row *row)
 {
-    void *arrays[] = {row->node, row->value,   row->at_field,  row->on_field,
+    sparse_free(&row->fields);
+    void *arrays[] = {row->slot, row->node,    row->value,     row->at_field,  row->on_field,
                       row->sum,  row->touched, row->cell_seen, row->field_seen};
     for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) {
         free(arrays[i]);
@@ -171,7 +183,7 @@ static double modulus_of(const struct body *body, int64_t q)
 static void put(const double amount, int64_t f, int64_t i, struct scalar_row *row, int64_t *touched)
 {
     if (row->field_seen[f] != i + 1) {
-        row->field_seen[f] = i + 1;
+        row->field_seen[f] = (int32_t)(i + 1);
         row->touched[(*touched)++] = (int32_t)f;
         row->on_field[f] = 0.0;
     }
@@ -251,7 +263,7 @@ static void spread(const struct scalar_stiffness *stiffness, int64_t touched, in
         struct average field = field_at(stiffness, row->touched[t], &place);
         double force = row->on_field[row->touched[t]];
         for (int64_t k = 0; k < field.length; k++) {
-            int32_t node = place != NULL ? place[field.idx[k]] : field.idx[k];
+            int32_t node = place != NULL ? place[field.idx[k]] : row_operator_column(field.idx[k]);
             add_to_node(node, force * field.phi[k], i, row);
         }
     }
@@ -278,7 +290,7 @@ static void add_cells(const struct scalar_stiffness *stiffness, int64_t f, int64
         int64_t q =
             smoothed_cells_group(body, averages->corner[c] % averages->corner_count / (body->dim + 1));
         if (row->cell_seen[q] != i + 1) {
-            row->cell_seen[q] = i + 1;
+            row->cell_seen[q] = (int32_t)(i + 1);
             add_group(stiffness, q, i, row, touched);
         }
     }
@@ -287,7 +299,7 @@ static void add_cells(const struct scalar_stiffness *stiffness, int64_t f, int64
 void scalar_stiffness_row(const struct scalar_stiffness *stiffness, int64_t i, struct scalar_row *row)
 {
     const struct sparse *bonds = &stiffness->bonds;
-    struct average fields = fields_of(stiffness, i);
+    struct average fields = fields_of(stiffness, row, i);
     int64_t touched = 0;
     for (int64_t k = 0; k < fields.length; k++) {
         row->at_field[fields.idx[k]] = fields.phi[k];

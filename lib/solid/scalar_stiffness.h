@@ -14,8 +14,8 @@ struct solid_system;
 struct scalar_stiffness {
     const struct solid_system *system;
     int64_t field_count, bond_count;
-    struct sparse bonds; /* a row for each node: the bonds that it is in, and its shares there. The fields it
-                            is in are told by the transpose that the body has */
+    int32_t *range;         /* of the fields' rows, see row_operator_ranges */
+    struct sparse bonds;    /* a row for each node: the bonds that it is in, and its shares there */
     double *bond_stiffness; /* N/m (2D: N/m2) */
 };
 
@@ -32,19 +32,26 @@ void scalar_stiffness_free(struct scalar_stiffness *stiffness);
 
 /* A row, and scratch for it: zeros between calls, where nothing else is said. */
 struct scalar_row {
+    struct sparse
+        fields;    /* a row for each node that is prepared for: the fields that it is in, and its shares, */
+    int32_t *slot; /* and which row that is, of nodes in the body's order */
     int64_t count;
     int32_t *node; /* its entries, ascending, */
     double *value; /* and their values, N/m (2D: N/m2) */
     double *at_field, *on_field;
     struct scalar_sum *sum;          /* of nodes in the body's order */
     int32_t *touched;                /* fields */
-    int64_t *cell_seen, *field_seen; /* 1 + the last row that has seen each */
+    int32_t *cell_seen, *field_seen; /* 1 + the last row that has seen each */
 };
 MUST_CHECK enum status scalar_row_make(const struct scalar_stiffness *stiffness, struct scalar_row *row,
                                        struct error *error);
 void scalar_row_free(struct scalar_row *row);
 
-/* Row i up to the diagonal, which is its last entry. */
+/* Prepare for the rows of so many nodes: place[count] in the body's order, ascending. */
+MUST_CHECK enum status scalar_row_prepare(const struct scalar_stiffness *stiffness, const int32_t *place,
+                                          int64_t count, struct scalar_row *row, struct error *error);
+
+/* Row i, one of these, up to the diagonal, which is its last entry. */
 void scalar_stiffness_row(const struct scalar_stiffness *stiffness, int64_t i, struct scalar_row *row);
 
 #endif

@@ -176,24 +176,22 @@ static enum status check_table(const struct given_table *table, int64_t rows, in
     return STATUS_OK;
 }
 
-/* For several processes: copy the rows that this one's cells need, and transpose the columns of its nodes. */
+/* For several processes: copy the rows that this one's cells need, and the columns of its nodes. */
 static enum status copy_shares(const struct field_averages_input *tables, struct body *body,
                                struct error *error)
 {
     enum status status;
     struct body_share *share = &body->share;
     struct field_averages *averages = &body->cells.averages;
-    struct sparse columns = {0};
+    struct row_operator *rows = &body->rows;
     bool *needed = NULL, *used = NULL;
     TRY(body_share_values(body, &needed, error));
     TRY(stretches_of(0, averages->row_count, needed, &share->values, error));
-    TRY(field_averages_copy(tables, needed, 0, body->node_count, &averages->matrix, error));
-    TRY(field_averages_copy(tables, NULL, share->begin_node, share->end_node, &columns, error));
-    TRY(sparse_transpose(&columns, &averages->transposed, error));
-    TRY(sparse_rows_used(&columns, &used, error));
+    TRY(field_averages_copy(tables, needed, 0, body->node_count, &rows->matrix, error));
+    TRY(field_averages_copy(tables, NULL, share->begin_node, share->end_node, &rows->columns, error));
+    TRY(sparse_rows_used(&rows->columns, &used, error));
     TRY(body_share_rows(body, used, error));
 done:
-    sparse_free(&columns);
     free(needed);
     free(used);
     return status;
@@ -308,6 +306,7 @@ static enum status build_averages(const struct smoothed_cells_input *input, stru
                                           .node_count = body->node_count,
                                           .corner_count = body->point_count * corners,
                                           .place = body->node_place,
+                                          .lets_go = input->copied != NULL && body->share.ranks == NULL,
                                           .tables = {{faces->row_count, order, input->face_ptr,
                                                       input->face_idx, input->face_phi, row_of_corner},
                                                      {body->node_count, body->node_order, input->node_ptr,
@@ -323,11 +322,10 @@ static enum status build_averages(const struct smoothed_cells_input *input, stru
         order = NULL;
         goto done;
     }
-    TRY(field_averages_copy(&tables, NULL, 0, body->node_count, &averages->matrix, error));
+    TRY(field_averages_copy(&tables, NULL, 0, body->node_count, &body->rows.matrix, error));
     if (input->copied != NULL) {
         input->copied(input->context);
     }
-    TRY(sparse_transpose(&averages->matrix, &averages->transposed, error));
     TRY(body_share_rows(body, NULL, error));
     TRY(stretches_of(0, averages->row_count, NULL, &body->share.values, error));
 done:
@@ -397,7 +395,7 @@ int32_t smoothed_cells_node(const struct body *body, int64_t q, int k)
     const struct field_averages *averages = &body->cells.averages;
     int64_t first = averages->corner_count * FACE_ROWS(body->dim);
     int32_t row = averages->of_corner[first + q * (body->dim + 1) + k] / VECTOR_STRIDE(body->dim);
-    return row - (int32_t)(averages->matrix.row_count - body->node_count);
+    return row - (int32_t)(averages->row_count - body->node_count);
 }
 
 double smoothed_cells_share(const struct body *body, int64_t q)

@@ -52,11 +52,12 @@ struct smoothed_cells_input {
     const int64_t *node_ptr; /* node_count + 1: values of the shape functions at the nodes */
     const int32_t *node_idx;
     const double *node_phi;
-    const int32_t *face_reader;    /* row_count: the process that has read each row of the face averages;
-                                      the row is empty in others. NULL: every process has all */
-    void (*copied)(void *context); /* called when face_ptr, face_idx and face_phi are no longer needed; or
-                                      NULL. Where each of several processes has all rows, they are needed
-                                      until the body is freed, and it is not called */
+    const int32_t *face_reader; /* row_count: the process that has read each row of the face averages;
+                                   the row is empty in others. NULL: every process has all */
+    void (*copied)(
+        void *context); /* called when face_ptr, face_idx and face_phi are no longer needed, and
+                           have been let go of (memory_give_back); or NULL. Where each of several processes
+                           has all rows, they are needed until the body is freed, and it is not called */
     void *context;
 };
 

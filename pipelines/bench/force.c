@@ -128,10 +128,10 @@ static void free_loop(struct loop *loop)
     free(loop->force);
 }
 
-/* Bytes of the operator, of which the loop reads one, and of its transpose. */
+/* Bytes of the operator. */
 static double table_bytes(const struct body *body)
 {
-    const struct sparse *matrix = body->smoothed ? &body->cells.averages.matrix : &body->gradients;
+    const struct sparse *matrix = &body->rows.matrix;
     return (double)matrix->ptr[matrix->row_count] * (double)(sizeof *matrix->value + sizeof *matrix->idx);
 }
 

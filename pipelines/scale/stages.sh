@@ -11,9 +11,9 @@ mkdir -p "$folder"
 
 # row STAGE STATUS OUTPUT INPUT COMMAND...: what is written is what the stage adds to its input and what it passes on.
 row() {
-    local stage=$1 wanted=$2 seconds peak anonymous bytes status
+    local stage=$1 wanted=$2 seconds _ peak anonymous bytes status
     shift 2
-    IFS=$'\t' read -r seconds peak anonymous bytes status < <(python3 "$here/measured.py" "$@")
+    IFS=$'\t' read -r seconds _ peak anonymous bytes status < <(python3 "$here/measured.py" "$@")
     [ "$status" -eq "$wanted" ] || { cat "$1.log" >&2; echo "stages.sh: $stage: status $status" >&2; exit 1; }
     awk -v OFS='\t' -v stage="$stage" -v nodes=$nodes -v seconds="$seconds" -v peak="$peak" -v anonymous="$anonymous" -v bytes="$bytes" 'BEGIN {
         printf "%s\t%d\t%.2f\t%.0f\t%.0f\t%.0f\t%.2f\n", stage, nodes, 1e6 * seconds / nodes, bytes / nodes, peak / nodes, anonymous / nodes, \

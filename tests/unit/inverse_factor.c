@@ -35,6 +35,13 @@ static void build(struct cube *cube, bool bonded)
     ARRAY(cube->S, cube->n * cube->n);
     GOOD(scalar_stiffness_make(system, &stiffness, &error));
     GOOD(scalar_row_make(&stiffness, &row, &error));
+    int32_t *place;
+    ARRAY(place, cube->n);
+    for (int64_t p = 0; p < cube->n; p++) {
+        place[p] = (int32_t)p;
+    }
+    GOOD(scalar_row_prepare(&stiffness, place, cube->n, &row, &error));
+    free(place);
     for (int64_t i = 0; i < cube->n; i++) {
         scalar_stiffness_row(&stiffness, i, &row);
         assert_int_equal(row.node[row.count - 1], i);
@@ -143,6 +150,42 @@ TEST(the_transpose_is_undone)
     }
     constraint_rows_free(&rows);
     release(&cube);
+}
+
+static void same_bits(const struct sparse *a, const struct sparse *b)
+{
+    assert_int_equal(a->row_count, b->row_count);
+    assert_memory_equal(a->ptr, b->ptr, (size_t)(a->row_count + 1) * sizeof *a->ptr);
+    assert_memory_equal(a->idx, b->idx, (size_t)a->ptr[a->row_count] * sizeof *a->idx);
+    assert_memory_equal(a->value, b->value, (size_t)a->ptr[a->row_count] * sizeof *a->value);
+}
+
+/* L does not depend on how many rows of S are there at once, also where nodes have hardly any stiffness. */
+TEST(stretches_make_no_difference)
+{
+    static const int64_t stretches[] = {1, 7, 60, 124};
+    for (int weak = 0; weak < 2; weak++) {
+        struct cube cube;
+        struct error error;
+        build(&cube, true);
+        struct solid_system *system = &cube.l.system;
+        for (int64_t q = 0; q < system->body.point_count && weak == 1; q++) {
+            int64_t node = system->body.node_order[smoothed_cells_node(&system->body, q, 0)];
+            system->body.weight[q] *=
+                system->X[3 * node] < 0.7 * cube.l.assembly.cells.x[3 * (cube.n - 1)] ? 1e-12 : 1.0;
+        }
+        struct inverse_factor whole;
+        GOOD(inverse_factor_build(system, &whole, &error));
+        for (size_t k = 0; k < sizeof stretches / sizeof *stretches; k++) {
+            struct inverse_factor factor;
+            GOOD(inverse_factor_build_by(system, stretches[k], &factor, &error));
+            same_bits(&factor.rows, &whole.rows);
+            inverse_factor_free(&factor);
+        }
+        assert_true((memcmp(whole.rows.value, cube.factor.rows.value, sizeof(double)) != 0) == (weak == 1));
+        inverse_factor_free(&whole);
+        release(&cube);
+    }
 }
 
 RUN_TESTS(NULL, NULL)

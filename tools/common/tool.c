@@ -7,6 +7,7 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <gsl/gsl_errno.h>
+#include <malloc.h>
 #include <signal.h>
 #include <stdarg.h>
 #include <stdlib.h>
@@ -163,6 +164,11 @@ void tool_begin(struct tool *tool, const char *usage, int least, int most, int a
     signal(SIGXFSZ, SIG_IGN); /* writing beyond a limit fails instead, with a message */
     process_name = tool->name;
     signal(SIGBUS, on_lost_mapping);
+#ifdef M_MMAP_THRESHOLD
+    /* Arrays of that many bytes are given back when they are freed; else the bound rises with what is freed.
+     */
+    (void)mallopt(M_MMAP_THRESHOLD, 1 << 20);
+#endif
     (void)on_exit(on_foreign_exit, NULL);
     arguments = tool_memory(tool, array_new(argc + 1, sizeof *arguments));
     memcpy(arguments, argv, (size_t)argc * sizeof *arguments);

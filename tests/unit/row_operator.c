@@ -1,0 +1,111 @@
+/* An operator and its transpose from one table: the same bits for any number of stripes, and those of sums
+ * over the rows of the transpose. */
+#include "solid_fixture.h"
+
+#include "solid/kernel.h"
+#include "solid/row_operator.h"
+
+#include <string.h>
+
+enum { ROWS = 300, COLUMNS = 90, STRIDE = 4 };
+
+/* Rows whose columns lie near each other, not ascending, of 0 to 11 entries, now and then all over the place.
+ */
+static void make_table(struct sparse *table)
+{
+    struct error error;
+    struct random random = {5};
+    GOOD(sparse_new(ROWS, COLUMNS, ROWS * 12, table, &error));
+    for (int64_t r = 0; r < ROWS; r++) {
+        int64_t count = r % 12, at = table->ptr[r], step = r % 17 == 0 ? 7 : 1;
+        for (int64_t k = 0; k < count; k++) {
+            table->idx[at + k] = (int32_t)((r * COLUMNS / ROWS + (count - k) * step) % COLUMNS);
+            table->value[at + k] = uniform(&random, -1.0, 1.0);
+        }
+        table->ptr[r + 1] = at + count;
+    }
+}
+
+/* Component 0 of each column's sum as row_operator.h states it. */
+static void expect(const struct sparse *transposed, const double *x, double *y)
+{
+    for (int64_t c = 0; c < COLUMNS; c++) {
+        double sum[ROW_CHAINS] = {0.0};
+        int64_t first = transposed->ptr[c], count = transposed->ptr[c + 1] - first;
+        for (int64_t k = 0; k < count; k++) {
+            int64_t chain = k < count / ROW_CHAINS * ROW_CHAINS ? k % ROW_CHAINS : 0;
+            sum[chain] += transposed->value[first + k] * x[transposed->idx[first + k] * STRIDE];
+        }
+        y[c] = (sum[0] + sum[1]) + (sum[2] + sum[3]);
+    }
+}
+
+static void columns_are_summed_in_order(void **state)
+{
+    (void)state;
+    struct error error;
+    struct sparse table, transposed;
+    double x[ROWS * STRIDE], y[COLUMNS * STRIDE], expected[COLUMNS];
+    struct random random = {7};
+    const struct force_kernels *kernels = force_kernels_select("plain", 3);
+    for (int i = 0; i < ROWS * STRIDE; i++) {
+        x[i] = uniform(&random, -1.0, 1.0);
+    }
+    make_table(&table);
+    GOOD(sparse_transpose(&table, &transposed, &error));
+    expect(&transposed, x, expected);
+    for (int threads = 1; threads < 2 * COLUMNS; threads = 2 * threads + 1) {
+        struct row_operator rows = {0};
+        make_table(&rows.matrix);
+        GOOD(row_operator_finish(&rows, 0, COLUMNS, threads, STRIDE, &error));
+        assert_int_equal(rows.stripe_count, threads);
+        for (int s = 0; s < threads; s++) {
+            kernels->apply_transposed(&rows, s, x, y);
+        }
+        for (int64_t c = 0; c < COLUMNS; c++) {
+            assert_memory_equal(&y[c * STRIDE], &expected[c], sizeof *y);
+        }
+        row_operator_free(&rows);
+    }
+    sparse_free(&table);
+    sparse_free(&transposed);
+}
+
+static void some_columns_are_transposed(void **state)
+{
+    (void)state;
+    struct error error;
+    struct sparse table, transposed, some;
+    struct row_operator rows = {0};
+    int32_t *range, slot[COLUMNS] = {0}, column[] = {0, 3, 4, 50, 89};
+    make_table(&table);
+    make_table(&rows.matrix);
+    GOOD(sparse_transpose(&table, &transposed, &error));
+    GOOD(row_operator_finish(&rows, 0, COLUMNS, 2, STRIDE, &error));
+    GOOD(row_operator_ranges(&rows, &range, &error));
+    for (int64_t count = 0; count <= 5; count++) {
+        GOOD(row_operator_transpose(&rows, range, column, count, slot, &some, &error));
+        assert_int_equal(some.row_count, count);
+        for (int64_t k = 0; k < count; k++) {
+            int64_t from = transposed.ptr[column[k]], length = transposed.ptr[column[k] + 1] - from;
+            assert_int_equal(slot[column[k]], k);
+            assert_int_equal(some.ptr[k + 1] - some.ptr[k], length);
+            assert_memory_equal(some.idx + some.ptr[k], transposed.idx + from,
+                                (size_t)length * sizeof *some.idx);
+            assert_memory_equal(some.value + some.ptr[k], transposed.value + from,
+                                (size_t)length * sizeof *some.value);
+        }
+        sparse_free(&some);
+    }
+    free(range);
+    row_operator_free(&rows);
+    sparse_free(&table);
+    sparse_free(&transposed);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {cmocka_unit_test(columns_are_summed_in_order),
+                                       cmocka_unit_test(some_columns_are_transposed)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
