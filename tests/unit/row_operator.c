@@ -1,11 +1,9 @@
 /* An operator and its transpose from one table: the same bits for any number of stripes, and those of sums
  * over the rows of the transpose. */
-#include "solid_fixture.h"
+#include "unit.h"
 
 #include "solid/kernel.h"
 #include "solid/row_operator.h"
-
-#include <string.h>
 
 enum { ROWS = 300, COLUMNS = 90, STRIDE = 4 };
 
@@ -40,9 +38,8 @@ static void expect(const struct sparse *transposed, const double *x, double *y)
     }
 }
 
-static void columns_are_summed_in_order(void **state)
+TEST(columns_are_summed_in_order)
 {
-    (void)state;
     struct error error;
     struct sparse table, transposed;
     double x[ROWS * STRIDE], y[COLUMNS * STRIDE], expected[COLUMNS];
@@ -71,9 +68,8 @@ static void columns_are_summed_in_order(void **state)
     sparse_free(&transposed);
 }
 
-static void some_columns_are_transposed(void **state)
+TEST(some_columns_are_transposed)
 {
-    (void)state;
     struct error error;
     struct sparse table, transposed, some;
     struct row_operator rows = {0};
@@ -103,9 +99,4 @@ static void some_columns_are_transposed(void **state)
     sparse_free(&transposed);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {cmocka_unit_test(columns_are_summed_in_order),
-                                       cmocka_unit_test(some_columns_are_transposed)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)
