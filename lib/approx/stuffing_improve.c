@@ -256,10 +256,11 @@ enum status stuffing_improve(const struct labels *parts, const struct stuffing_o
     TRY(star_make(stuffing, options->whole, &star, error));
     for (int sweep = 0; sweep < FIT_SWEEPS; sweep++) {
         fit(&labels, parts, rim, options->keep, stuffing, &star);
-        stuffing_repair(&labels, options->keep, least_score, stuffing, &star);
+        stuffing_repair(&labels, options->keep, least_score, 0, stuffing, &star);
     }
     separate(&labels, stuffing, &star, apart);
     TRY(stuffing_volumes(&labels, options, apart, dropped, &star, stuffing, error));
+    stuffing_repair(&labels, options->keep, last_score, last_slack * labels_voxel(&labels), stuffing, &star);
     for (int sweep = 0; sweep < FIT_SWEEPS; sweep++) {
         settle(&labels, parts, rim, options->keep, stuffing, &star);
     }

@@ -183,10 +183,10 @@ double interface_distance(const struct labels *labels, const double x[],
 /* Gradient of a cell's volume with respect to the place of its corner k: normal to the face opposite. */
 void stuffing_gradient(const struct stuffing *stuffing, int64_t cell, int k, double gradient[3]);
 
-/* Move the nodes of cells that score less than `least`, those of interfaces within these, until they score
- * more. */
-void stuffing_repair(const struct labels *labels, const bool *keep, double least, struct stuffing *stuffing,
-                     const struct stuffing_star *star);
+/* Move the nodes of cells that score less than `least`, those of interfaces within these or at most `slack`,
+ * m, off, until they score more. */
+void stuffing_repair(const struct labels *labels, const bool *keep, double least, double slack,
+                     struct stuffing *stuffing, const struct stuffing_star *star);
 
 /* Move nodes: where labels meet onto their interfaces, those apart[] away from the others at the same place,
  * poor cells into shape, and interfaces for the volumes of labels. */

@@ -23,9 +23,27 @@ static double edge_length(const struct stuffing *stuffing, const struct stuffing
     return sum / (double)count;
 }
 
+/* Put a place onto the interface of a node, or leave it where it is no farther from there than the slack, m.
+ * False where there is no interface near. */
+static bool keep_to_interface(const struct labels *labels, const bool *keep, const struct stuffing_star *star,
+                              int64_t node, double slack, double place[3])
+{
+    double projected[3] = {place[0], place[1], place[2]};
+    if (star->labels[node] < 2) {
+        return true;
+    }
+    if (!node_project(labels, keep, star, node, projected)) {
+        return false;
+    }
+    if (!(vector_distance(labels->dim, projected, place) <= slack)) {
+        memcpy(place, projected, (size_t)labels->dim * sizeof *place);
+    }
+    return true;
+}
+
 /* Try steps in all directions, along the axes and between them, of falling length; nodes of interfaces stay
- * there. Takes the best of each length that improves the poorest cell at the node. */
-static bool search(const struct labels *labels, const bool *keep, struct stuffing *stuffing,
+ * there, but for the slack. Takes the best of each length that improves the poorest cell at the node. */
+static bool search(const struct labels *labels, const bool *keep, double slack, struct stuffing *stuffing,
                    const struct stuffing_star *star, int64_t node)
 {
     int dim = stuffing->dim, directions = dim == 2 ? 9 : 27;
@@ -45,7 +63,7 @@ static bool search(const struct labels *labels, const bool *keep, struct stuffin
             for (int d = 0; d < dim; d++) {
                 place[d] = here[d] + (norm > 0 ? length / sqrt(norm) * place[d] : 0);
             }
-            if (star->labels[node] >= 2 && !node_project(labels, keep, star, node, place)) {
+            if (!keep_to_interface(labels, keep, star, node, slack, place)) {
                 continue;
             }
             memcpy(x, place, (size_t)dim * sizeof *x);
@@ -62,8 +80,8 @@ static bool search(const struct labels *labels, const bool *keep, struct stuffin
     return improved;
 }
 
-void stuffing_repair(const struct labels *labels, const bool *keep, double least, struct stuffing *stuffing,
-                     const struct stuffing_star *star)
+void stuffing_repair(const struct labels *labels, const bool *keep, double least, double slack,
+                     struct stuffing *stuffing, const struct stuffing_star *star)
 {
     bool improved = true;
     for (int sweep = 0; sweep < SWEEPS && improved; sweep++) {
@@ -71,7 +89,7 @@ void stuffing_repair(const struct labels *labels, const bool *keep, double least
         for (int64_t c = 0; c < stuffing->cell_count; c++) {
             for (int k = 0; k <= stuffing->dim && stuffing_score(stuffing, c) < least; k++) {
                 int64_t node = stuffing->cell[c * (stuffing->dim + 1) + k];
-                improved = search(labels, keep, stuffing, star, node) || improved;
+                improved = search(labels, keep, slack, stuffing, star, node) || improved;
             }
         }
     }
@@ -132,7 +150,7 @@ bool star_make_room(const struct labels *labels, const bool *keep, double least,
     for (int sweep = 0; sweep < ROOM_SWEEPS; sweep++) {
         for (int r = 0; r < room.count; r++) {
             if (star_score(stuffing, star, room.node[r]) < wanted) {
-                (void)search(labels, keep, stuffing, star, room.node[r]);
+                (void)search(labels, keep, 0, stuffing, star, room.node[r]);
             }
         }
         if (room_score(stuffing, star, node, &room) >= wanted) {
