@@ -300,7 +300,7 @@ END
             mtled "$nu.scene" slab.mts > u.dat
             reaction 2 | awk -v to_be="$force" -v most="$most" '{ e = -$2 / 0.04 / to_be - 1; print "nu " '"$nu"' ", error " e; exit !(e < most && e > -most) }'
         done << 'END'
-0.49 58.1 0.020
+0.49 58.1 0.025
 0.3 38.30 0.004
 END
     done

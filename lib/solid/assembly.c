@@ -220,12 +220,6 @@ enum status assembly_held_faces(const struct assembly *input, int least, bool **
             mark_faces(input, &input->conditions[i].facets, i + 1, stamp, *held);
         }
     }
-    for (int64_t i = 0; i < input->contact_count && least == 0; i++) {
-        if (input->contacts[i].opposite.count > 0) {
-            continue;
-        }
-        mark_faces(input, &input->contacts[i].facets, input->condition_count + i + 1, stamp, *held);
-    }
 done:
     free(stamp);
     return status;

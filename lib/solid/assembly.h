@@ -122,8 +122,7 @@ bool assembly_has_gravity(const struct assembly *input);
 bool assembly_holds_averages(const struct assembly *input);
 
 /* held[boundary.count]: whether all nodes of that face are those of facets that one condition names, which
- * prescribes at least so many directions; 0: or that a contact with a rigid surface names. The caller's to
- * free. */
+ * prescribes at least so many directions. The caller's to free. */
 MUST_CHECK enum status assembly_held_faces(const struct assembly *input, int least, bool **held,
                                            struct error *error);
 
