@@ -87,7 +87,8 @@ SCENE
     refused 2 "run.ckpt: checkpoint of another cloud or table" mtled -c run.ckpt run.scene other.mts
     mts text run.ckpt | sed '/^# checkpoint/s/version=[0-9.]*/version=0.0.9/' | mts binary > old.ckpt
     refused 2 "old.ckpt: checkpoint of version 0.0.9, this is" mtled -c old.ckpt run.scene table.mts
-    refused 2 "table.mts: a stream, but not a checkpoint" mtled -c table.mts run.scene table.mts
+    cp table.mts copy.mts
+    refused 2 "copy.mts: a stream, but not a checkpoint" mtled -c copy.mts run.scene table.mts
     mts drop state.inertia.mass run.ckpt > less.ckpt
     run -2 --separate-stderr mtled -c less.ckpt run.scene table.mts
     [[ $stderr == *"state.inertia.mass is missing or does not fit" ]]

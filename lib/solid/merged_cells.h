@@ -1,4 +1,4 @@
-/* Poor cells, merged with a neighbour.
+/* Poor cells, merged with a neighbour; private to lib/solid.
  *
  * Across a sliver, of thickness t and edges of length h, the gradient of the linear interpolant of a smooth
  * field is off by the order of h^2 / t times the field's second derivative, and that of the averages over the

@@ -80,8 +80,9 @@ static double distance_at_rest(const struct contact *contact)
     return fmax(sqrt(between2), nearest);
 }
 
-/* A body that is moved by more than so many times its size may be one of mm whose scene has m for mm. */
-static const double most_sizes = 10.0;
+/* A body that is moved by more than so many times its size may be one of mm whose scene has m for mm; by more
+ * than so many, no scene means it. */
+static const double many_sizes = 10.0, most_sizes = 1e4;
 
 void run_contacts_begin(const struct run *run)
 {
@@ -93,6 +94,13 @@ void run_contacts_begin(const struct run *run)
     double prescribed =
         fmax(prescribed_motion(system, &system->rows), prescribed_motion(system, &system->penalties));
     if (prescribed > most_sizes * input->extent) {
+        tool_fail(
+            run->tool, STATUS_INPUT,
+            "%s: a displacement of %.3g m is prescribed, %.3g times the size of the body: lengths without a "
+            "unit are in m",
+            run->scene->path, prescribed, prescribed / input->extent);
+    }
+    if (prescribed > many_sizes * input->extent) {
         tool_note(
             run->tool,
             "%s: a displacement of %.3g m is prescribed, %.3g times the size of the body: lengths without "
