@@ -121,8 +121,9 @@ done:
     return status;
 }
 
-/* Mean spacing of the points around row `row`, in the table's unit: those of a boundary, n of them within a
- * radius r, have 2 r / n of a curve each, or pi r^2 / n of a surface. */
+/* Mean spacing of the points around row `row`, in the table's unit: n of them within a radius r have pi r^2 / n
+ * of the plane each, or 4/3 pi r^3 / n of space, if they lie throughout the body; on its boundary they are
+ * closer. */
 static enum status spacing_around(const struct scattered_fit *fit, int64_t row, double *spacing,
                                   struct error *error)
 {
@@ -134,7 +135,7 @@ static enum status spacing_around(const struct scattered_fit *fit, int64_t row, 
     enum status status = find_nearest(fit, x, &nearest, error);
     if (status == STATUS_OK) {
         double radius = nearest.distance[nearest.count - 1], count = (double)nearest.count;
-        *spacing = radius * (fit->dim == 2 ? 2.0 / count : sqrt(M_PI / count));
+        *spacing = radius * (fit->dim == 2 ? sqrt(M_PI / count) : cbrt(4.0 / 3.0 * M_PI / count));
     }
     return status;
 }

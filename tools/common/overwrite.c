@@ -1,8 +1,10 @@
 #include "overwrite.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 static bool is_one(const struct stat *a, const struct stat *b)
 {
@@ -39,6 +41,19 @@ bool overwrite_is_same(const char *name, const char *other)
            stat_folder(other, &b) && is_one(&a, &b);
 }
 
+/* A stream may be replaced by what a filter makes of it. */
+static bool is_stream(const char *name)
+{
+    char begin[6] = "";
+    FILE *file = fopen(name, "rb");
+    bool is = file != NULL && fread(begin, 1, sizeof begin, file) == sizeof begin &&
+              memcmp(begin, "# mts ", sizeof begin) == 0;
+    if (file != NULL) {
+        (void)fclose(file);
+    }
+    return is;
+}
+
 /* Whether it is a regular file, which writing replaces, and an input of that name is the same one. */
 static bool replaces(const char *output, const char *input)
 {
@@ -57,8 +72,13 @@ void overwrite_refuse(const struct tool *tool, const char *option, const char *s
     if (asprintf(&output, "%s%s", value, suffix) < 0) {
         tool_fail(tool, STATUS_SYSTEM, "out of memory");
     }
+    int files = 0;
+    for (int i = 0; i < tool->operand_count; i++) {
+        files += access(tool->operands[i], F_OK) == 0;
+    }
     for (int i = 0; i < tool->operand_count && taken == NULL; i++) {
-        taken = replaces(output, tool->operands[i]) ? tool->operands[i] : NULL;
+        bool filtered = files == 1 && is_stream(tool->operands[i]);
+        taken = replaces(output, tool->operands[i]) && !filtered ? tool->operands[i] : NULL;
     }
     for (int i = 0; i < options->use_count && taken == NULL; i++) {
         const struct option *used = options->use[i].option;
