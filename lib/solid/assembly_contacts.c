@@ -21,10 +21,7 @@ static const double jump_time = 1e-3;
 static enum status check_curve(const struct contact_condition *condition, const char *key,
                                const struct load_curve *curve, struct error *error)
 {
-    double largest = 0.0, at_begin = curve_value(curve, 0.0);
-    for (int64_t i = 0; i < curve->count; i++) {
-        largest = fmax(largest, fabs(curve->factor[i]));
-    }
+    double largest = curve_largest(curve), at_begin = curve_value(curve, 0.0);
     if (fabs(at_begin) > 1e-12 * largest) {
         return fail(error, STATUS_INPUT,
                     "%s: %s: begins at %g, with a jump: begin at time 0 with factor 0, where the file has "

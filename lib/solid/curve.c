@@ -90,6 +90,15 @@ double curve_value(const struct load_curve *curve, double s)
     return 0;
 }
 
+double curve_largest(const struct load_curve *curve)
+{
+    double largest = curve->count > 0 ? 0.0 : 1.0;
+    for (int64_t i = 0; i < curve->count; i++) {
+        largest = fmax(largest, fabs(curve->factor[i]));
+    }
+    return largest;
+}
+
 double curve_rate(const struct load_curve *curve, double s)
 {
     if (s < 0 || s > 1) {

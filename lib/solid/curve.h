@@ -37,6 +37,9 @@ MUST_CHECK enum status curve_tabulate(struct load_curve *curve, int64_t count, c
 /* The factor at s, and its derivative by s. Outside of [0, 1] the factor stays at its end value. Safe to call
  * from several threads. */
 double curve_value(const struct load_curve *curve, double s);
+
+/* The largest factor that it takes, by its size; of a table at its points. */
+double curve_largest(const struct load_curve *curve);
 double curve_rate(const struct load_curve *curve, double s);
 
 void curve_free(struct load_curve *curve);

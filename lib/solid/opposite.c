@@ -18,15 +18,6 @@ static const double near_widths = 4.0, behind_share = 1e-3;
 static const double lever = 0.3;
 enum { VERTICES_FOR_THREAD = 500 }; /* see chunks_of */
 
-static double dot(int dim, const double *a, const double *b)
-{
-    double sum = 0.0;
-    for (int i = 0; i < dim; i++) {
-        sum += a[i] * b[i];
-    }
-    return sum;
-}
-
 enum status opposite_parts(const struct cells *cells, int32_t *part, struct error *error)
 {
     enum status status;
@@ -47,24 +38,6 @@ done:
     return status;
 }
 
-/* An edge of a facet, from its lower vertex. */
-struct half_edge {
-    int32_t low, high;
-    int64_t slot; /* facet * 3 + k */
-};
-
-static int compare_edges(const void *left, const void *right)
-{
-    const struct half_edge *a = left, *b = right;
-    if (a->low != b->low) {
-        return a->low < b->low ? -1 : 1;
-    }
-    if (a->high != b->high) {
-        return a->high < b->high ? -1 : 1;
-    }
-    return (a->slot > b->slot) - (a->slot < b->slot);
-}
-
 /* 3D: what is beyond each edge, and the rims. Edges of more than two facets, where bodies meet, are none. */
 static enum status join_edges(struct opposite *opposite, struct error *error)
 {
@@ -77,16 +50,11 @@ static enum status join_edges(struct opposite *opposite, struct error *error)
     TRY(NEW_ARRAY(&surface->edge_normal, count * 3, error));
     TRY(NEW_ARRAY(&surface->edge_is_rim, count, error));
     for (int64_t slot = 0; slot < count; slot++) {
-        int32_t from = surface->facet[slot], to = surface->facet[slot / 3 * 3 + (slot + 1) % 3];
-        edges[slot] = (struct half_edge){from < to ? from : to, from < to ? to : from, slot};
         opposite->across[slot] = slot;
     }
-    qsort(edges, (size_t)count, sizeof *edges, compare_edges);
+    rigid_list_edges(surface, edges);
     for (int64_t first = 0, last; first < count; first = last) {
-        for (last = first + 1;
-             last < count && edges[last].low == edges[first].low && edges[last].high == edges[first].high;) {
-            last++;
-        }
+        last = rigid_edge_end(edges, first, count);
         if (last - first == 1) {
             opposite->across[edges[first].slot] = -1;
             surface->edge_is_rim[edges[first].slot] = true;
@@ -163,7 +131,7 @@ static enum status measure_rest(struct opposite *opposite, const struct facet_se
         const int32_t *facet = surface->facet + f * dim;
         double *normal = opposite->rest_normal + f * dim, zero[3] = {0.0, 0.0, 0.0};
         face_area_vector(dim, opposite->rest, facet, normal);
-        double area = sqrt(distance2(dim, normal, zero));
+        double area = sqrt(vector_distance2(dim, normal, zero));
         opposite->width[f] = dim == 2 ? area : sqrt(area);
         normalise(dim, normal);
         opposite->part[f] = -1;
@@ -192,7 +160,7 @@ static double corner_angle(const struct rigid_surface *surface, const int32_t *f
     for (int a = 0; a < 3; a++) {
         cross[a] = one[(a + 1) % 3] * other[(a + 2) % 3] - one[(a + 2) % 3] * other[(a + 1) % 3];
     }
-    return atan2(sqrt(dot(3, cross, cross)), dot(3, one, other));
+    return atan2(sqrt(vector_dot(3, cross, cross)), vector_dot(3, one, other));
 }
 
 /* The boxes of the tree, which keeps its branches: those of a branch come behind it. */
@@ -323,12 +291,12 @@ static bool through_body(const struct opposite *opposite, const struct seeker *s
     add_scaled(dim, 1.0, opposite->middle + f * dim, way);
     add_scaled(dim, -1.0, seeker->rest, way);
     double width = seeker->width > opposite->width[f] ? seeker->width : opposite->width[f];
-    double away2 = dot(dim, way, way), least2 = behind_share * behind_share * away2;
+    double away2 = vector_dot(dim, way, way), least2 = behind_share * behind_share * away2;
     if (!(away2 < near_widths * near_widths * width * width)) {
         return false;
     }
-    double facet_behind = -dot(dim, way, seeker->rest_normal);
-    double point_behind = dot(dim, way, opposite->rest_normal + f * dim);
+    double facet_behind = -vector_dot(dim, way, seeker->rest_normal);
+    double point_behind = vector_dot(dim, way, opposite->rest_normal + f * dim);
     return facet_behind > 0.0 && facet_behind * facet_behind > least2 && point_behind > 0.0 &&
            point_behind * point_behind > least2;
 }
@@ -340,7 +308,7 @@ static bool considers(void *context, int64_t f)
     struct search *search = context;
     const struct opposite *opposite = search->opposite;
     int dim = opposite->surface.dim;
-    double cosine = dot(dim, opposite->surface.normal + f * dim, search->seeker->normal);
+    double cosine = vector_dot(dim, opposite->surface.normal + f * dim, search->seeker->normal);
     if (cosine < least_opposed) {
         return !through_body(opposite, search->seeker, f);
     }
@@ -357,8 +325,8 @@ static bool admits(void *context, int64_t f, const double *away)
     const struct search *search = context;
     int dim = search->opposite->surface.dim;
     double depth = search->seeker->depth;
-    return dot(dim, away, search->opposite->surface.normal + f * dim) > 0.0 ||
-           dot(dim, away, away) < depth * depth;
+    return vector_dot(dim, away, search->opposite->surface.normal + f * dim) > 0.0 ||
+           vector_dot(dim, away, away) < depth * depth;
 }
 
 struct rigid_contact opposite_closest(const struct opposite *opposite, const struct seeker *seeker,
@@ -378,8 +346,8 @@ bool opposite_leads(const struct opposite *opposite, const double *rest_normal, 
      * whole; else by number. */
     static const double direction[3] = {0.5377, 0.6180, 0.5734};
     int dim = opposite->surface.dim;
-    double own = dot(dim, direction, rest_normal),
-           other = dot(dim, direction, opposite->rest_normal + f * dim);
+    double own = vector_dot(dim, direction, rest_normal),
+           other = vector_dot(dim, direction, opposite->rest_normal + f * dim);
     if (!opposite->itself || fabs(own - other) < 1e-9) {
         return !opposite->itself || own_facet < f;
     }

@@ -66,7 +66,7 @@ static enum status find_coincident(const struct rigid_surface *surface, const do
         same[c] = c;
         for (int64_t k = i - 1; k >= 0 && placed[i].place - placed[k].place <= near; k--) {
             int64_t other = same[placed[k].corner];
-            if (distance2(dim, corners + c * dim, corners + other * dim) <= near * near) {
+            if (vector_distance2(dim, corners + c * dim, corners + other * dim) <= near * near) {
                 same[c] = other;
                 break;
             }
@@ -111,13 +111,13 @@ static void facet_normal(const struct rigid_surface *surface, int64_t f, double 
     const int32_t *corner = surface->facet + f * dim;
     const double *x0 = surface->vertex + (int64_t)corner[0] * dim;
     const double *x1 = surface->vertex + (int64_t)corner[1] * dim;
-    *size2 = distance2(dim, x0, x1);
+    *size2 = vector_distance2(dim, x0, x1);
     if (dim == 2) {
         normal[0] = x1[1] - x0[1];
         normal[1] = x0[0] - x1[0];
     } else {
         const double *x2 = surface->vertex + (int64_t)corner[2] * dim;
-        *size2 = fmax(*size2, fmax(distance2(3, x0, x2), distance2(3, x1, x2)));
+        *size2 = fmax(*size2, fmax(vector_distance2(3, x0, x2), vector_distance2(3, x1, x2)));
         for (int a = 0; a < 3; a++) {
             int b = (a + 1) % 3, c = (a + 2) % 3;
             normal[a] = (x1[b] - x0[b]) * (x2[c] - x0[c]) - (x1[c] - x0[c]) * (x2[b] - x0[b]);
@@ -134,7 +134,7 @@ static enum status make_normals(struct rigid_surface *surface, bool flip, struct
         double *normal = surface->normal + f * dim, size2, zero[3] = {0.0, 0.0, 0.0};
         facet_normal(surface, f, normal, &size2);
         double least = dim == 2 ? 0.0 : least_slenderness * size2;
-        if (!(sqrt(distance2(dim, normal, zero)) > least)) {
+        if (!(sqrt(vector_distance2(dim, normal, zero)) > least)) {
             status = fail(error, STATUS_INPUT, "rigid surface: facet %lld has no size: remove it",
                           (long long)(f + 1));
             goto done;

@@ -3,6 +3,7 @@
 #define SOLID_RIGID_PRIVATE_H
 
 #include "base/box.h"
+#include "base/vector.h"
 #include "solid/rigid.h"
 
 #include <math.h>
@@ -11,17 +12,22 @@
  * made. STATUS_INPUT where two facets disagree on the side. */
 MUST_CHECK enum status rigid_join_facets(struct rigid_surface *surface, struct error *error);
 
+/* An edge of a triangle; it goes from corner k to k + 1. */
+struct half_edge {
+    int32_t low, high; /* its vertices */
+    int32_t opposite;  /* the other vertex of the triangle */
+    bool upward;       /* from low to high */
+    int64_t slot;      /* facet * 3 + k */
+};
+
+/* 3D: edges[facet_count * 3] of a surface, those on one edge together. */
+void rigid_list_edges(const struct rigid_surface *surface, struct half_edge *edges);
+
+/* The end of the run of half-edges on one edge that begins at `first`. */
+int64_t rigid_edge_end(const struct half_edge *edges, int64_t first, int64_t count);
+
 /* Fill branch, branch_count and in_order. */
 MUST_CHECK enum status rigid_grow_tree(struct rigid_surface *surface, struct error *error);
-
-static inline double distance2(int dim, const double *a, const double *b)
-{
-    double sum = 0.0;
-    for (int i = 0; i < dim; i++) {
-        sum += (a[i] - b[i]) * (a[i] - b[i]);
-    }
-    return sum;
-}
 
 /* Make v unit; a zero vector stays zero. */
 static inline void normalise(int dim, double *v)

@@ -90,14 +90,6 @@ done:
     return status;
 }
 
-/* An edge of a triangle; it goes from corner k to k + 1. */
-struct half_edge {
-    int32_t low, high; /* its vertices */
-    int32_t opposite;  /* the other vertex of the triangle */
-    bool upward;       /* from low to high */
-    int64_t slot;      /* facet * 3 + k */
-};
-
 static int compare_edges(const void *left, const void *right)
 {
     const struct half_edge *a = left, *b = right;
@@ -114,6 +106,30 @@ static int compare_edges(const void *left, const void *right)
         return b->upward ? -1 : 1;
     }
     return (a->slot > b->slot) - (a->slot < b->slot);
+}
+
+void rigid_list_edges(const struct rigid_surface *surface, struct half_edge *edges)
+{
+    int64_t count = surface->facet_count * 3;
+    for (int64_t slot = 0; slot < count; slot++) {
+        int32_t from = surface->facet[slot], to = surface->facet[slot / 3 * 3 + (slot + 1) % 3];
+        bool upward = from < to;
+        edges[slot] = (struct half_edge){.low = upward ? from : to,
+                                         .high = upward ? to : from,
+                                         .opposite = surface->facet[slot / 3 * 3 + (slot + 2) % 3],
+                                         .upward = upward,
+                                         .slot = slot};
+    }
+    qsort(edges, (size_t)count, sizeof *edges, compare_edges);
+}
+
+int64_t rigid_edge_end(const struct half_edge *edges, int64_t first, int64_t count)
+{
+    int64_t end = first + 1;
+    while (end < count && edges[end].low == edges[first].low && edges[end].high == edges[first].high) {
+        end++;
+    }
+    return end;
 }
 
 /* 3D: normals and rims of the `count` half-edges that lie on one edge. */
@@ -153,21 +169,9 @@ static enum status join_edges(struct rigid_surface *surface, struct error *error
     TRY(NEW_ARRAY(&edges, count, error));
     TRY(NEW_ARRAY(&surface->edge_normal, count * 3, error));
     TRY(NEW_ARRAY(&surface->edge_is_rim, count, error));
-    for (int64_t slot = 0; slot < count; slot++) {
-        int32_t from = surface->facet[slot], to = surface->facet[slot / 3 * 3 + (slot + 1) % 3];
-        bool upward = from < to;
-        edges[slot] = (struct half_edge){.low = upward ? from : to,
-                                         .high = upward ? to : from,
-                                         .opposite = surface->facet[slot / 3 * 3 + (slot + 2) % 3],
-                                         .upward = upward,
-                                         .slot = slot};
-    }
-    qsort(edges, (size_t)count, sizeof *edges, compare_edges);
+    rigid_list_edges(surface, edges);
     for (int64_t first = 0, last; first < count; first = last) {
-        for (last = first + 1;
-             last < count && edges[last].low == edges[first].low && edges[last].high == edges[first].high;) {
-            last++;
-        }
+        last = rigid_edge_end(edges, first, count);
         TRY(join_edge(surface, edges + first, last - first, error));
     }
 done:
@@ -182,7 +186,7 @@ static double corner_angle(const struct rigid_surface *surface, int64_t f, int k
     const double *x = surface->vertex + (int64_t)corner[k] * 3;
     const double *next = surface->vertex + (int64_t)corner[(k + 1) % 3] * 3;
     const double *previous = surface->vertex + (int64_t)corner[(k + 2) % 3] * 3;
-    double dot = 0.0, one = distance2(3, x, next), other = distance2(3, x, previous);
+    double dot = 0.0, one = vector_distance2(3, x, next), other = vector_distance2(3, x, previous);
     for (int a = 0; a < 3; a++) {
         dot += (next[a] - x[a]) * (previous[a] - x[a]);
     }
@@ -211,7 +215,7 @@ enum status rigid_join_facets(struct rigid_surface *surface, struct error *error
         int64_t vertex = surface->facet[c];
         const double *mean = surface->vertex_normal + vertex * surface->dim;
         const double *normal = surface->normal + c / surface->dim * surface->dim;
-        double half = 0.5 * sqrt(distance2(surface->dim, mean, normal));
+        double half = 0.5 * sqrt(vector_distance2(surface->dim, mean, normal));
         surface->turn[vertex] = fmax(surface->turn[vertex], 2.0 * asin(fmin(half, 1.0)));
     }
 done:

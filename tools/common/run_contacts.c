@@ -22,22 +22,12 @@ static double *deformed(const struct run *run)
     return x;
 }
 
-/* The largest factor that a load curve takes. */
-static double largest_factor(const struct load_curve *curve)
-{
-    double largest = curve->count > 0 ? 0.0 : 1.0;
-    for (int64_t i = 0; i < curve->count; i++) {
-        largest = fmax(largest, fabs(curve->factor[i]));
-    }
-    return largest;
-}
-
 /* How far the rows of conditions move the body at most, m. */
 static double prescribed_motion(const struct solid_system *system, const struct constraint_rows *rows)
 {
     double most = 0.0;
     for (int64_t r = 0; r < rows->count; r++) {
-        most = fmax(most, fabs(rows->target[r]) * largest_factor(&system->curves[rows->curve[r]]));
+        most = fmax(most, fabs(rows->target[r]) * curve_largest(&system->curves[rows->curve[r]]));
     }
     return most;
 }
@@ -53,13 +43,13 @@ static double own_motion(const struct solid_system *system, const struct contact
     for (int64_t v = 0; v < contact->surface.vertex_count; v++) {
         way = fmax(way, rigid_motion_way(motion, contact->dim, contact->surface.vertex + v * contact->dim));
     }
-    return way * fmax(largest_factor(&system->curves[motion->translation_curve]),
-                      largest_factor(&system->curves[motion->rotation_curve]));
+    return way * fmax(curve_largest(&system->curves[motion->translation_curve]),
+                      curve_largest(&system->curves[motion->rotation_curve]));
 }
 
 /* How far the surface is from the points of its contact at rest, at least, m: by the boxes around both, and
- * by the points, which in front of an open rim tell less. */
-static double distance_at_rest(const struct contact *contact)
+ * by the points, which in front of an open rim tell less, until one is within `enough`. */
+static double distance_at_rest(const struct contact *contact, double enough)
 {
     const struct rigid_branch *box = contact->surface.branch;
     double between2 = 0.0, nearest = INFINITY;
@@ -72,7 +62,7 @@ static double distance_at_rest(const struct contact *contact)
         double gap = fmax(0.0, fmax(box->low[a] - high, low - box->high[a]));
         between2 += gap * gap;
     }
-    for (int64_t p = 0; p < contact->count; p++) {
+    for (int64_t p = 0; p < contact->count && nearest > enough; p++) {
         double distance =
             rigid_closest(&contact->surface, contact->rest + p * contact->dim, INFINITY).distance;
         nearest = fmin(nearest, distance);
@@ -84,6 +74,19 @@ static double distance_at_rest(const struct contact *contact)
  * than so many, no scene means it. */
 static const double many_sizes = 10.0, most_sizes = 1e4;
 
+static void check_motion(const struct run *run, double prescribed)
+{
+    static const char text[] = "%s: a displacement of %.3g m is prescribed, %.3g times the size of the body: "
+                               "lengths without a unit are in m";
+    double sizes = prescribed / run->model->assembly.extent;
+    if (sizes > most_sizes) {
+        tool_fail(run->tool, STATUS_INPUT, text, run->scene->path, prescribed, sizes);
+    }
+    if (sizes > many_sizes) {
+        tool_note(run->tool, text, run->scene->path, prescribed, sizes);
+    }
+}
+
 void run_contacts_begin(const struct run *run)
 {
     const struct solid_system *system = &run->model->system;
@@ -93,27 +96,15 @@ void run_contacts_begin(const struct run *run)
                                        run->scene->initial.table != NULL);
     double prescribed =
         fmax(prescribed_motion(system, &system->rows), prescribed_motion(system, &system->penalties));
-    if (prescribed > most_sizes * input->extent) {
-        tool_fail(
-            run->tool, STATUS_INPUT,
-            "%s: a displacement of %.3g m is prescribed, %.3g times the size of the body: lengths without a "
-            "unit are in m",
-            run->scene->path, prescribed, prescribed / input->extent);
-    }
-    if (prescribed > many_sizes * input->extent) {
-        tool_note(
-            run->tool,
-            "%s: a displacement of %.3g m is prescribed, %.3g times the size of the body: lengths without "
-            "a unit are in m",
-            run->scene->path, prescribed, prescribed / input->extent);
-    }
+    check_motion(run, prescribed);
     for (int64_t c = 0; c < system->contact_count && !anywhere; c++) {
         const struct contact *contact = &system->contacts[c];
         if (contact->surface.facet_count == 0) {
             continue;
         }
-        double distance = distance_at_rest(contact), motion = own_motion(system, contact);
-        if (distance > input->extent + motion + prescribed) {
+        double motion = own_motion(system, contact), most = input->extent + motion + prescribed;
+        double distance = distance_at_rest(contact, most);
+        if (distance > most) {
             tool_fail(
                 run->tool, STATUS_INPUT,
                 "%s: the rigid surface is %.3g m from the facets, farther than the body's size of %.3g m "
