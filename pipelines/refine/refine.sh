@@ -2,7 +2,7 @@
 # A scene on meshes that are refined where it must be: refine.sh SCENE GEO TOL OUT
 #
 # Each round meshes the geometry by gmsh, or a label image (GEO ends in .nii or .nii.gz) by voxels, at sizes s and 2 s, solves the scene on both, and estimates the error of the finer solution
-# (fielderr). While its mean is above TOL (0.2mm; m without a unit), the next round's sizes come from sizefield. In the folder OUT stay
+# (fielderr, of order 1: that of singular solutions, so that where a solution is smooth the estimate is too large). While its mean is above TOL (0.2mm; m without a unit), the next round's sizes come from sizefield. In the folder OUT stay
 # those of the round of least estimate: body.msh, sizes.pos (of an image body.mts, sizes.mts), u.dat, coarse.dat, errors.tsv; and rounds.tsv, a row for each round:
 #   round, nodes, mean_mm over the body and max_mm of the nodes (estimated), seconds (processor time: nodes to mtled on the finer mesh), all_seconds (all of the
 #   round, gmsh and the coarser mesh as well)
@@ -10,7 +10,7 @@
 # Environment: UNIT of the geometry, which is no image, NODES at most (default 20000), ROUNDS at most (default 8), GMSH more arguments for gmsh,
 # of an image SPACING of the first round's lattice, such as 6mm, and VOXELS more arguments for voxels (-l labels.tsv; not -h),
 # REFINE_GROUPS arguments for groups (GROUPS of make; bash has an array of that name), quoted as in a shell: -u mm -f 'held=low:z,5',
-# SUPPORT arguments for support (-i tumour), START a factor for the sizes of the first round (default 1), LEAST a length with unit below which no size goes (sizefield), GRADED=no: all sizes
+# ORDER of the error for fielderr (default 1), SUPPORT arguments for support (-i tumour), START a factor for the sizes of the first round (default 1), LEAST a length with unit below which no size goes (sizefield), GRADED=no: all sizes
 # made smaller alike.
 #
 # Exit status: 0 below TOL; 1 the budget of nodes or rounds is spent, or a round failed: the one of least estimate is kept; 2 wrong usage.
@@ -188,7 +188,7 @@ attempt() {
     what="the scene at twice the size"
     { time solve "$work/coarse_$body" "$work/coarse.dat"; } 2> "$work/coarse.time" || return 1
     what=fielderr
-    { time fielderr --skip-outside "$work/u.dat" "$work/coarse.dat" > "$work/errors.tsv" 2> "$work/log"; } 2> "$work/estimate.time" || return 1
+    { time fielderr -p "${ORDER:-1}" --skip-outside "$work/u.dat" "$work/coarse.dat" > "$work/errors.tsv" 2> "$work/log"; } 2> "$work/estimate.time" || return 1
 }
 
 printf 'round\tnodes\tmean_mm\tmax_mm\tseconds\tall_seconds\n' | tee "$out/rounds.tsv"
