@@ -1,9 +1,8 @@
 # make foreign: meshes as other programs make them (voxels, slivers, surfaces meshed anew, bodies with a gap), held at one end and pushed by 12 %, as a new user would
 #
 # None has named parts of the boundary: groups makes them. A row for each mesh, whatever comes of it; at the end the share
-# that ran by default within 3 000 steps. Lips and bodies that the push presses into each other are refused: contact of a
-# body with itself is not modelled. These are pulled by as much in a row of their own. FOREIGN_SECONDS bounds each run. Times
-# are of one thread.
+# that ran by default within 3 000 steps. Lips and bodies that the push presses into each other are pulled by as much in a row of
+# their own. FOREIGN_SECONDS bounds each run. Times are of one thread.
 FOREIGN := $(OUT)/foreign
 FOREIGN_SECONDS ?= 200
 FOREIGN_MESHES := cylinder graded ring second-order cup slit cavity stl-volume voxels-hex voxels-tet delaunay-1 delaunay-2 \

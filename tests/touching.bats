@@ -176,13 +176,67 @@ notch_scene() { # FACETS AGAINST [MORE OUTPUT]
     done
 }
 
-@test "bodies that go through each other are told with the section that lets them touch" {
+@test "bodies that go through each other are computed once more, with contact: as where the scene asks for it" {
     stack
-    stack_scene | sed '/^\[contact/,/^against/d' > none.scene
-    refused 1 ": let it touch itself ([contact NAME] facets = *, against = *), or allow it" mtled none.scene stack.mts
-    stack_scene | sed 's/^facets = low/facets = */; s/^against.*/against = */' > all.scene
-    mtled all.scene stack.mts > u.dat
-    rows reactions u.dat | awk 'NR == 1 { exit !($2 > 20) }'
+    stack_scene | sed '/^\[contact/,/^against/d; s/^gaps = yes/&\nframes = 2\nenergy = yes/' > none.scene
+    { cat none.scene; printf '[contact itself]\nfacets = *\nagainst = *\n'; } > all.scene
+    mtled all.scene stack.mts > all.dat
+    rows reactions all.dat | awk 'NR == 1 { exit !($2 > 20) }'
+    run -0 --separate-stderr mtled -v none.scene stack.mts
+    [[ $stderr == *"mtled: none.scene: the body folds from "*" of the load on: "*": once more, with contact of the body with itself"* ]]
+    [[ $stderr == *$'steps without contact of the body with itself\t'* ]]
+    cmp <(bare all.dat) <(bare <(printf '%s\n' "$output"))
+    mtled none.scene - < stack.mts 2> note > piped.dat # a pipe cannot be read twice
+    cmp <(rows u all.dat) <(rows u piped.dat)
+    # With a rigid surface that moves: the curves of what was there stay.
+    printf '%s\n' '-1 0.1' '2 0.1' > plate.tsv
+    plate=$'[contact plate]\nfacets = ymax\nrigid = plate.tsv\nunit = m\nside = right\ntranslation = 0, -0.005\ncurve = linear\n'
+    for name in none all; do
+        { sed '/displacement top/,/normal/d' $name.scene | sed '/^\[contact/,$d'; printf '%s' "$plate"; } > $name-plate.scene
+        sed -n '/^\[contact itself/,$p' $name.scene >> $name-plate.scene
+        sed -i '/^frames/d' $name-plate.scene
+        mtled $name-plate.scene stack.mts > $name-plate.dat 2> $name.said
+    done
+    grep -q 'once more, with contact' none.said
+    cmp <(bare none-plate.dat) <(bare all-plate.dat)
+    # Where folds are allowed nothing is done about them.
+    sed 's/^\[output\]/&\nfolds = allowed/' none.scene > allowed.scene
+    run -0 --separate-stderr mtled allowed.scene stack.mts
+    [[ $stderr == *"the body folds from"* && $stderr != *"once more"* ]]
+}
+
+@test "the same in time; ended and taken up while it is computed once more; in several processes" {
+    stack
+    block dynamic 'gravity = 0, -9.81' | sed 's/^E = .*/E = 30000/' > fall.scene
+    printf '[displacement bottom]\nfacets = ymin\nnormal = 0\n[displacement left]\nfacets = xmin\nnormal = 0\n' >> fall.scene
+    printf '[output]\nenergy = yes\n[solver]\nend_time = 0.05\n' >> fall.scene
+    { cat fall.scene; printf '[contact itself]\nfacets = *\nagainst = *\n'; } > all.scene
+    mtled all.scene stack.mts > all.dat
+    mtled fall.scene stack.mts > u.dat 2> said
+    grep -q 'the body folds from t = .* s on: .*: once more, with contact of the body with itself' said
+    cmp <(bare all.dat) <(bare u.dat)
+    stack_scene | sed '/^\[contact/,/^against/d; s/^gaps = yes/&\nframes = 2\n[solver]\nramp_steps = 1000/' > run.scene
+    cp stack.mts table.mts
+    mtled run.scene table.mts > whole.dat 2> note
+    rm -f run.ckpt*
+    mtled -c run.ckpt -o out.dat run.scene table.mts 2> said &
+    for ((i = 0; i < 600; i++)); do
+        ! grep -q 'once more' said || break
+        sleep 0.05
+    done
+    grep -q 'once more' said
+    sleep 0.3
+    kill -TERM $!
+    wait $! && false || [ $? -eq 143 ]
+    run -0 --separate-stderr mtled -c run.ckpt -o out.dat run.scene table.mts
+    [[ $stderr == "mtled: going on from step "* && $stderr != *"once more"* ]]
+    cmp whole.dat out.dat
+    if [ -x "$BUILD/bin/mtled-mpi" ]; then
+        export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
+        mpirun --quiet --oversubscribe --bind-to none -n 2 mtled-mpi -q -o two.dat run.scene table.mts 2> note
+        [ "$(grep -c 'once more' note)" -eq 1 ]
+        cmp <(bare whole.dat) <(bare two.dat)
+    fi
 }
 
 @test "a body that rests on another one is held by it where that is held; two that hold only each other are not" {

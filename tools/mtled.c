@@ -181,11 +181,13 @@ int main(int argc, char *argv[])
     run_folds_begin(&run);
     run_stability_begin(&run);
     stream_give_back(&stream);
-    if (scene.analysis == SCENE_DYNAMIC) {
-        run_dynamic(&run);
-    } else {
-        run_quasi_static(&run);
-    }
+    do {
+        if (scene.analysis == SCENE_DYNAMIC) {
+            run_dynamic(&run);
+        } else {
+            run_quasi_static(&run);
+        }
+    } while (run_again(&run));
     run_checkpoint_end(&run);
     run_put_results(&run);
     run_drop_tables(&stream);

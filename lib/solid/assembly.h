@@ -100,6 +100,11 @@ void assembly_complete(struct assembly *input);
 MUST_CHECK enum status assembly_build(struct assembly *input, struct solid_system *system, struct error *note,
                                       struct error *error);
 
+/* The contacts of the system anew, as at rest: those of `input`, which may have become other ones. Errors:
+ * as assembly_build. */
+MUST_CHECK enum status assembly_renew_contacts(const struct assembly *input, struct solid_system *system,
+                                               struct error *error);
+
 /* The parts of assembly_build, in their own files: displacements, measured points, loads,
  * contacts, and softer cells at the ends of what is held by averages (of smoothed cells). */
 MUST_CHECK enum status assembly_add_conditions(const struct assembly *input, struct solid_system *system,

@@ -159,6 +159,13 @@ done:
     return status;
 }
 
+enum status assembly_renew_contacts(const struct assembly *input, struct solid_system *system,
+                                    struct error *error)
+{
+    system_free_contacts(system);
+    return assembly_add_contacts(input, system, error);
+}
+
 enum status assembly_add_contacts(const struct assembly *input, struct solid_system *system,
                                   struct error *error)
 {

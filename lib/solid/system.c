@@ -22,21 +22,12 @@ void system_free(struct solid_system *system)
         boundary_averages_free(&system->pressures[i].corners);
         boundary_averages_free(&system->pressures[i].points);
     }
-    for (int64_t i = 0; i < system->contact_count; i++) {
-        contact_free(&system->contacts[i]);
-        boundary_averages_free(&system->contact_points[i]);
-        if (system->contact_averages != NULL) {
-            boundary_averages_free(&system->contact_averages[i]);
-        }
-    }
+    system_free_contacts(system);
     for (int64_t i = 0; i < system->curve_count; i++) {
         curve_free(&system->curves[i]);
     }
     free(system->loads);
     free(system->pressures);
-    free(system->contacts);
-    free(system->contact_points);
-    free(system->contact_averages);
     free(system->curves);
     free(system->lumped_mass);
     free(system->factor);

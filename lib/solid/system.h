@@ -112,6 +112,9 @@ struct deformation system_residual(struct solid_system *system, const double *u,
 /* Take the step whose state was evaluated last: see contact_accept. Evaluations alone change no state. */
 void system_accept(struct solid_system *system);
 
+/* Leaves a system without contacts. */
+void system_free_contacts(struct solid_system *system);
+
 /* contact_augment, and the largest contact_miss, of all contacts. */
 void system_augment_contacts(struct solid_system *system);
 double system_contact_miss(const struct solid_system *system);

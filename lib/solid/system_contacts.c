@@ -4,6 +4,24 @@
 #include "base/clock.h"
 
 #include <math.h>
+#include <stdlib.h>
+
+void system_free_contacts(struct solid_system *system)
+{
+    for (int64_t i = 0; i < system->contact_count; i++) {
+        contact_free(&system->contacts[i]);
+        boundary_averages_free(&system->contact_points[i]);
+        if (system->contact_averages != NULL) {
+            boundary_averages_free(&system->contact_averages[i]);
+        }
+    }
+    free(system->contacts);
+    free(system->contact_points);
+    free(system->contact_averages);
+    system->contacts = NULL;
+    system->contact_points = system->contact_averages = NULL;
+    system->contact_count = 0;
+}
 
 void system_measure_contacts(struct solid_system *system, const double *u, bool all)
 {

@@ -11,8 +11,8 @@ way=-.12
 [[ $name != *-pulled ]] || way=.12
 status=0
 
-# told PATTERN FILE: what stands behind the tab of a line of a report.
-told() { [ -s "$2" ] || { echo -; return; }; awk -F '\t' -v name="$1" '$1 == name { value = $2 } END { print (value == "" ? "-" : value) }' "$2"; }
+# told NAME FILE: what stands behind the tab of a line of a report.
+told() { [ -s "$2" ] || { echo -; return; }; awk -F '\t' -v name="$1" '$1 == name { value = $2 } $1 == name " without contact of the body with itself" { before = $2 } END { print (value == "" ? "-" : value + before) }' "$2"; }
 
 fail() {
     printf '%s\t%s\t%s\t%s\t%s\t%s\t%.1f\t%s\t%s\n' "$name" "${nodes:--}" "${cells:--}" "${quality:--}" "$status" \

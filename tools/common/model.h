@@ -61,6 +61,9 @@ MUST_CHECK enum status model_nodes(struct model *model, const struct scene_label
 MUST_CHECK enum status model_between(struct model *model, const struct scene_contact *section,
                                      struct contact_condition *contact, struct error *error);
 
+/* The contacts anew, as at rest: those of the scene, which may have got more of them. */
+MUST_CHECK enum status model_renew_contacts(struct model *model, struct error *error);
+
 /* u, v[node_count * dim]: the state at the begin that the scene's [initial] gives, m and m/s, as parameters.
  */
 MUST_CHECK enum status model_initial(const struct model *model, double *u, double *v, struct error *error);

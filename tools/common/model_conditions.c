@@ -218,32 +218,50 @@ done:
     return status;
 }
 
+/* The contacts that the scene has more of: what was added stays, as its curves belong to the system. */
+static enum status add_contacts(struct model *model, struct error *error)
+{
+    const struct scene *scene = model->scene;
+    struct assembly *input = &model->assembly;
+    struct contact_condition *contacts;
+    RETURN_IF_ERROR(MODEL_ARRAY(model, &contacts, scene->contact_count, error));
+    for (int64_t c = 0; c < input->contact_count; c++) {
+        contacts[c] = input->contacts[c];
+    }
+    input->contacts = contacts;
+    for (; input->contact_count < scene->contact_count; input->contact_count++) {
+        int64_t c = input->contact_count;
+        RETURN_IF_ERROR(add_contact(model, &scene->contacts[c], &contacts[c], error));
+    }
+    return STATUS_OK;
+}
+
 enum status model_conditions(struct model *model, struct error *error)
 {
     enum status status;
     const struct scene *scene = model->scene;
     struct assembly *input = &model->assembly;
     struct condition *conditions;
-    struct contact_condition *contacts;
     input->in_time = scene->analysis == SCENE_DYNAMIC;
     input->pointwise_volume = scene->solver.volume == SCENE_POINTWISE_VOLUME;
     input->node_values = scene->solver.constraint_points == SCENE_NODE_VALUES;
     input->direct = scene->solver.constraints == SCENE_DIRECT;
     TRY(MODEL_ARRAY(model, &conditions, scene->displacement_count, error));
-    TRY(MODEL_ARRAY(model, &contacts, scene->contact_count, error));
     input->conditions = conditions;
-    input->contacts = contacts;
     for (; input->condition_count < scene->displacement_count; input->condition_count++) {
         TRY(add_displacement(model, &scene->displacements[input->condition_count],
                              &conditions[input->condition_count], error));
     }
     TRY(add_loads(model, error));
-    for (; input->contact_count < scene->contact_count; input->contact_count++) {
-        TRY(add_contact(model, &scene->contacts[input->contact_count], &contacts[input->contact_count],
-                        error));
-    }
+    TRY(add_contacts(model, error));
 done:
     return status;
+}
+
+enum status model_renew_contacts(struct model *model, struct error *error)
+{
+    RETURN_IF_ERROR(add_contacts(model, error));
+    return assembly_renew_contacts(&model->assembly, &model->system, error);
 }
 
 enum status model_initial(const struct model *model, double *u, double *v, struct error *error)

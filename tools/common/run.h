@@ -19,7 +19,7 @@ struct display {
 
 struct run {
     const struct tool *tool;
-    const struct scene *scene;
+    struct scene *scene; /* see run_again */
     struct model *model;
     const struct parts_input *parts;
     struct stream *stream; /* receives what the scene's [output] asks for */
@@ -29,6 +29,8 @@ struct run {
     struct run_stability stability;
     bool verbose;
     bool text;           /* the form of what is written */
+    bool again;          /* the run has ended for run_again */
+    bool touches_itself; /* the scene has got a contact of the body with itself: state of the run */
     double *u;           /* parameters, node_count * dim, m */
     double last_good;    /* the time, as in struct progress, of which u is the state; negative: none */
     int64_t evaluations; /* of forces */
@@ -43,6 +45,14 @@ void run_clear_progress(const struct display *display);
  * good state are written, as a stream that is not whole. `status` as in tool_fail. */
 _Noreturn void run_fail(struct run *run, enum status status, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
+
+/* Where the parts of a body have passed through each other (run->again), and nothing in the scene lets them
+ * touch, the scene gets a contact of the whole boundary with itself, as `facets = *, against = *`, what the
+ * run has made is removed, and true returned: it is to be computed once more. */
+bool run_again(struct run *run);
+
+/* Give the scene that contact. */
+void run_touch_itself(struct run *run);
 
 /* The sections that only the computation needs leave the stream; the rest passes through. */
 void run_drop_tables(struct stream *stream);

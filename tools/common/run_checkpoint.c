@@ -73,6 +73,12 @@ static void resume(struct run *run)
     checkpoint->is_restored = true;
     checkpoint->is_ours = source == CHECKPOINT_NEWEST;
     take_frames(run);
+    bool touches_itself = false;
+    const struct state_value value = {"touches_itself", STATE_FLAGS, &touches_itself, 1};
+    TOOL_TRY(run->tool, state_visit(&checkpoint->state, NULL, &value, 1, &error));
+    if (touches_itself) {
+        run_touch_itself(run);
+    }
 }
 
 void run_checkpoint_begin(struct run *run)
@@ -132,6 +138,8 @@ static enum status visit_whole(void *owner, const struct state *state, struct er
     TRY(whole->progress->state(whole->progress->run, state, error));
     TRY(run_folds_state(whole->run, state, error));
     TRY(run_stability_state(whole->run, state, error));
+    const struct state_value value = {"touches_itself", STATE_FLAGS, &whole->run->touches_itself, 1};
+    TRY(state_visit(state, NULL, &value, 1, error));
 done:
     return status;
 }

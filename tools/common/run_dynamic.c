@@ -36,6 +36,9 @@ static void judge(struct run *run, const struct dynamics_report *report)
 {
     const struct scene *scene = run->scene;
     char place[96] = "";
+    if (report->outcome != DYNAMICS_STOPPED && run_folds_let_touch(run)) {
+        return;
+    }
     switch (report->outcome) {
     case DYNAMICS_DONE:
         run_folds_judge(run);
@@ -130,19 +133,19 @@ void run_dynamic(struct run *run)
     double started = clock_seconds();
     enum status status = dynamics_run(&run->model->system, &options, run->u, velocity, run->model->row_force,
                                       output->energy ? &log : NULL, &report, &error);
-    run->solve_seconds = clock_seconds() - started;
+    run->solve_seconds += clock_seconds() - started;
     run_clear_progress(&run->display);
     free(velocity);
     tool_check(run->tool, status, &error);
-    if (output->energy) {
-        put_energy(run, &log);
-    }
     run->last_good = report.last_good;
     run->evaluations = report.force_evaluations;
     run_folds_look(run, run->u, report.time, true);
     judge(run, &report);
+    if (output->energy && !run->again) {
+        put_energy(run, &log);
+    }
     energy_log_free(&log);
-    if (run->verbose) {
+    if (run->verbose && !run->again) {
         tell_report(run, &report);
     }
 }

@@ -102,6 +102,12 @@ void run_folds_free(struct run *run)
     free(run->folds.touched);
 }
 
+void run_folds_forget(struct run *run)
+{
+    memset(run->folds.now, 0, sizeof run->folds.now);
+    memset(run->folds.past, 0, sizeof run->folds.past);
+}
+
 /* A surface that is no further away than this share of a facet's size stands against it. */
 static const double near_share = 0.25;
 
@@ -135,7 +141,8 @@ static void note(struct run_folds *folds, int which, const struct fold *fold, do
         *now = (struct fold_spell){.seen = false};
         return;
     }
-    if (!now->seen) {
+    bool graver = now->fold.kind == FOLD_FLAT && fold->kind != FOLD_FLAT;
+    if (!now->seen || graver) {
         *now = (struct fold_spell){.seen = true, .since = time, .until = INFINITY, .fold = *fold};
     }
     now->counts = now->counts || counts;
@@ -154,13 +161,10 @@ void run_folds_look(struct run *run, const double *u, double time, bool is_frame
         tool_check(run->tool, folds_find_overlaps(&folds->folds, folds->field, &overlap, &error), &error);
         fold = overlap.kind != FOLD_NONE ? overlap : fold;
     }
-    struct fold none = {.kind = FOLD_NONE}, noted = fold;
-    bool is_flat = fold.kind == FOLD_FLAT;
-    if (!is_flat) {
-        noted = folds_find_beyond(&folds->folds, folds->field, folds->stopped);
-    }
-    note(folds, FOLDED, is_flat ? &none : &fold, time, counts);
-    note(folds, NOTED, &noted, time, counts);
+    struct fold none = {.kind = FOLD_NONE};
+    struct fold beyond = folds_find_beyond(&folds->folds, folds->field, folds->stopped);
+    note(folds, FOLDED, fold.kind == FOLD_FLAT ? &none : &fold, time, counts);
+    note(folds, NOTED, beyond.kind == FOLD_NONE && fold.kind == FOLD_FLAT ? &fold : &beyond, time, counts);
 }
 
 /* A spell. */
@@ -259,28 +263,30 @@ void run_folds_describe(const struct run *run, int which, char *text, size_t siz
     }
 }
 
-/* The remedy against a fold: where parts of the boundary have passed through each other, to let them touch.
- */
-static const char *let_touch(const struct run *run, const char *otherwise)
+bool run_folds_let_touch(struct run *run)
 {
     const struct run_folds *folds = &run->folds;
     const struct fold_spell *spell = folds->now[FOLDED].seen ? &folds->now[FOLDED] : &folds->past[FOLDED];
     enum fold_kind kind = spell->fold.kind;
+    char text[400];
+    bool between = run->scene->output.folds_allowed;
     for (int64_t c = 0; c < run->scene->contact_count; c++) {
-        if (run->scene->contacts[c].against.count > 0) {
-            return otherwise;
-        }
+        between = between || run->scene->contacts[c].against.count > 0;
     }
-    return kind == FOLD_CREASE || kind == FOLD_CROSSING || kind == FOLD_WITHIN
-               ? "let it touch itself ([contact NAME] facets = *, against = *)"
-               : otherwise;
+    if (between || !(kind == FOLD_CREASE || kind == FOLD_CROSSING || kind == FOLD_WITHIN)) {
+        return false;
+    }
+    run_folds_describe(run, FOLDED, text, sizeof text);
+    tool_note(run->tool, "%s: %s: once more, with contact of the body with itself", run->scene->path, text);
+    run->again = true;
+    return true;
 }
 
 void run_folds_judge(struct run *run)
 {
     char text[400];
     run_folds_describe(run, FOLDED, text, sizeof text);
-    const char *remedy = let_touch(run, "press less, refine there");
+    const char *remedy = "press less, refine there";
     if (text[0] == '\0') {
         run_stability_describe(run, text, sizeof text);
         remedy = "press less, hold it there";

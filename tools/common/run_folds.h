@@ -44,6 +44,13 @@ MUST_CHECK enum status run_folds_state(struct run *run, const struct state *stat
 /* Where and from when on, for FOLDED or NOTED, into text[size]; empty when that was not seen. */
 void run_folds_describe(const struct run *run, int which, char *text, size_t size);
 
+/* Forget what was seen. */
+void run_folds_forget(struct run *run);
+
+/* Whether parts of the boundary have passed through each other, and contact would hold them apart: tells so,
+ * and the run is to end without a verdict (run->again). */
+bool run_folds_let_touch(struct run *run);
+
 /* After the last step: a body that folds ends the run with a verdict, unless the scene allows it; what is to
  * be noted is. */
 void run_folds_judge(struct run *run);

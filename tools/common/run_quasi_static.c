@@ -7,6 +7,9 @@ static void judge(struct run *run, const struct relaxation_report *report)
 {
     const struct scene *scene = run->scene;
     char place[96] = "", load[48] = "";
+    if (report->outcome != RELAXATION_STOPPED && run_folds_let_touch(run)) {
+        return;
+    }
     if (report->load < 1.0) {
         snprintf(load, sizeof load, " (at %.3g of the load)", report->load);
     }
@@ -79,7 +82,7 @@ void run_quasi_static(struct run *run)
     double started = clock_seconds();
     enum status status =
         relaxation_run(&run->model->system, &options, run->u, run->model->row_force, &report, &error);
-    run->solve_seconds = clock_seconds() - started;
+    run->solve_seconds += clock_seconds() - started;
     run_clear_progress(&run->display);
     tool_check(run->tool, status, &error);
     run->last_good = report.load;
@@ -87,6 +90,12 @@ void run_quasi_static(struct run *run)
     run_folds_look(run, run->u, report.load, true);
     run_stability_look(run, report.load);
     judge(run, &report);
+    if (run->again) {
+        if (run->verbose) {
+            fprintf(stderr, "steps without contact of the body with itself\t%lld\n", (long long)report.steps);
+        }
+        return;
+    }
     put_error(run, &report);
     if (run->verbose) {
         fprintf(stderr,
