@@ -215,7 +215,7 @@ notch_scene() { # FACETS AGAINST [MORE OUTPUT]
     mtled fall.scene stack.mts > u.dat 2> said
     grep -q 'the body folds from t = .* s on: .*: once more, with contact of the body with itself' said
     cmp <(bare all.dat) <(bare u.dat)
-    stack_scene | sed '/^\[contact/,/^against/d; s/^gaps = yes/&\nframes = 2\n[solver]\nramp_steps = 1000/' > run.scene
+    stack_scene | sed '/^\[contact/,/^against/d; s/^gaps = yes/&\nframes = 2\n[solver]\nramp_steps = 3000/' > run.scene
     cp stack.mts table.mts
     mtled run.scene table.mts > whole.dat 2> note
     rm -f run.ckpt*
@@ -225,7 +225,6 @@ notch_scene() { # FACETS AGAINST [MORE OUTPUT]
         sleep 0.05
     done
     grep -q 'once more' said
-    sleep 0.3
     kill -TERM $!
     wait $! && false || [ $? -eq 143 ]
     run -0 --separate-stderr mtled -c run.ckpt -o out.dat run.scene table.mts
