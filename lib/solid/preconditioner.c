@@ -79,6 +79,8 @@ enum status preconditioner_build(struct solid_system *system, bool coarse,
     TRY(NEW_ARRAY(&preconditioner->normal, preconditioner->contact_node_count * preconditioner->dim, error));
     TRY(NEW_ARRAY(&preconditioner->creased, preconditioner->contact_node_count, error));
     TRY(NEW_ARRAY(&preconditioner->turned, preconditioner->contact_node_count, error));
+    TRY(NEW_ARRAY(&preconditioner->idle, 2 * preconditioner->contact_node_count, error));
+    TRY(NEW_ARRAY(&preconditioner->patience, 2 * preconditioner->contact_node_count, error));
     TRY(NEW_ARRAY(&preconditioner->body, cells, error));
     TRY(NEW_ARRAY(&preconditioner->weight, cells, error));
     TRY(NEW_ARRAY(&preconditioner->free_weight, cells, error));
@@ -116,6 +118,8 @@ void preconditioner_free(struct preconditioner *preconditioner)
     free(preconditioner->normal);
     free(preconditioner->creased);
     free(preconditioner->turned);
+    free(preconditioner->idle);
+    free(preconditioner->patience);
     free(preconditioner->weight);
     free(preconditioner->free_weight);
     free(preconditioner->held);
@@ -308,6 +312,8 @@ enum status preconditioner_state(struct preconditioner *preconditioner, const st
          preconditioner->contact_node_count * preconditioner->dim},
         {"creased", STATE_FLAGS, preconditioner->creased, preconditioner->contact_node_count},
         {"turned", STATE_FLAGS, preconditioner->turned, preconditioner->contact_node_count},
+        {"idle", STATE_COUNTS, preconditioner->idle, 2 * preconditioner->contact_node_count},
+        {"patience", STATE_COUNTS, preconditioner->patience, 2 * preconditioner->contact_node_count},
     };
     return state_visit(state, "inertia", values, sizeof values / sizeof *values, error);
 }

@@ -257,6 +257,21 @@ static bool has_turned(const struct contact_node *node, int dim, const double *c
     return cosine < least_cosine;
 }
 
+/* At a check, `i` as in idle: whether a contact node that no longer needs to be counted in is left out. Each
+ * time it has been, it stays for twice as many checks: a node that is left out too soon comes back, and as M
+ * changes each time, that could go on for ever. */
+static bool leaves(struct preconditioner *preconditioner, int64_t i)
+{
+    int64_t *idle = &preconditioner->idle[i], *patience = &preconditioner->patience[i];
+    if (*idle < *patience) {
+        ++*idle;
+        return false;
+    }
+    *idle = 0;
+    *patience = *patience > 0 ? 2 * *patience : 1;
+    return true;
+}
+
 /* Set whether contact node `at` is taken to lie in a crease, where it is held in all directions: it has
  * turned twice in a short time. A node that slides from facet to facet turns only once. Returns whether this
  * has changed. */
@@ -264,9 +279,11 @@ static bool follow_crease(struct preconditioner *preconditioner, const struct co
                           bool leave)
 {
     bool *turned = &preconditioner->turned[at], *creased = &preconditioner->creased[at], was = *creased;
+    int64_t i = preconditioner->contact_node_count + at;
     bool again = *turned && node->turned;
     *turned = *turned || node->turned;
-    *creased = again || (*creased && (!leave || *turned));
+    preconditioner->idle[i] = *turned ? 0 : preconditioner->idle[i];
+    *creased = again || (*creased && (!leave || *turned || !leaves(preconditioner, i)));
     *turned = *turned && !leave;
     return *creased != was;
 }
@@ -282,10 +299,11 @@ static bool follow_node(struct preconditioner *preconditioner, const struct cont
     bool *counts = &preconditioner->active[at], pressed = node.pressure > 0.0;
     bool creased = follow_crease(preconditioner, &node, at, leave);
     if (!pressed && !preconditioner->has_rigid_mode && !(node.gap < near_share * length)) {
-        bool left = *counts && leave;
-        *counts = *counts && !leave;
+        bool left = *counts && leave && leaves(preconditioner, at);
+        *counts = *counts && !left;
         return left || creased;
     }
+    preconditioner->idle[at] = 0;
     if (*counts ? !pressed || !has_turned(&node, contact->dim, normal) : !pressed && !leave) {
         return creased;
     }
