@@ -236,15 +236,29 @@ static double apart_across_edges(const struct folds *folds, int64_t f, int64_t g
     return least;
 }
 
+/* Whether a part of the body stands against a node of the facet. */
+static bool is_touched(const struct folds *folds, int64_t f)
+{
+    bool touched = false;
+    for (int k = 0; k < folds->input.dim && folds->touched != NULL; k++) {
+        touched = touched || folds->touched[folds->input.facet[f * folds->input.dim + k]];
+    }
+    return touched;
+}
+
 /* Whether two facets that meet are through each other by more than a twentieth of the smaller one: so far
  * must one of them be moved to set them apart. Less is no more than what a field at the nodes is uncertain
  * by, as conditions and contacts hold averages: a node on a support is beyond its plane by round-off and
- * more. */
+ * more. Where parts of the body press on each other the corner of one may sink into the chord of the other:
+ * by a tenth of the larger facet, as cells may that are inverted. */
 static bool are_deep(const struct folds *folds, int64_t f, int64_t g)
 {
     double width[2];
     double depth = fmin(reach_behind(folds, f, g, &width[0]), reach_behind(folds, g, f, &width[1]));
     depth = folds->input.dim == 3 ? fmin(depth, apart_across_edges(folds, f, g)) : depth;
+    if (is_touched(folds, f) && is_touched(folds, g)) {
+        return depth > turned_share * fmax(width[0], width[1]);
+    }
     return depth > beyond_facet * fmin(width[0], width[1]);
 }
 

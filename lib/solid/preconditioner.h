@@ -51,8 +51,8 @@ struct preconditioner {
     double *normal;       /* contact_node_count * dim: and the surface's normals there */
     bool *creased; /* contact_node_count: held in all directions, as it lies in a crease of the surface */
     bool *turned;  /* contact_node_count: it has turned (contact.h) since A last left nodes out */
-    int64_t *idle;     /* contact_node_count, as active nodes, and as many, as creased ones: checks in a row in
-                          which the node could have been left out, */
+    int64_t *idle; /* contact_node_count, as active nodes, and as many, as creased ones: checks in a row in
+                      which the node could have been left out, */
     int64_t *patience; /* and how many of them it stays counted in */
     int64_t contact_node_count;
     double *weight;      /* Z^T D Z */

@@ -12,6 +12,9 @@ static const double unstable_rise = 6.0;                /* over what is usual: a
 static const int64_t hover_steps = 50;                  /* without half the error: is a mode unstable? */
 /* Bulk modulus by shear modulus that volume changes meet: so few steps as at Poisson's ratio .49. */
 static const double bulk_limit = 50.0;
+/* An error that stays below this is accepted where contacts act: points that go to and fro between facets
+ * leave one. */
+static const double most_hovering = 1e-3;
 static const int64_t calm_steps = 20; /* after that was mended, before the next look */
 /* At every check: the mode is kept, so that it sharpens; while the load grows another may overtake it. */
 static const int iterations = 1, iterations_loading = 2;
@@ -256,6 +259,10 @@ static bool ends(struct relaxation *r, enum relaxation_outcome *outcome, struct 
     relaxation_note_best(r);
     if (whole && *error_now <= relaxation_round_off(r) && relaxation_stays(r, 2.0, 200) &&
         multipliers_hold(r)) {
+        return true;
+    }
+    if (whole && r->system->contact_count > 0 && *error_now <= most_hovering &&
+        relaxation_stays(r, 20.0, 1000) && multipliers_hold(r)) {
         return true;
     }
     *outcome = RELAXATION_STALLED;

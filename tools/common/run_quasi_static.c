@@ -15,8 +15,11 @@ static void judge(struct run *run, const struct relaxation_report *report)
     }
     if (report->outcome == RELAXATION_CONVERGED) {
         if (report->error > scene->solver.tolerance) {
-            tool_note(run->tool, "%s: estimated error %.2g, not %.2g: round-off admits no less", scene->path,
-                      report->error, scene->solver.tolerance);
+            tool_note(run->tool, "%s: estimated error %.2g, not %.2g: %s less", scene->path, report->error,
+                      scene->solver.tolerance,
+                      run->model->system.contact_count > 0
+                          ? "contacts, whose points go from facet to facet, admit no"
+                          : "round-off admits no");
         }
         run_contacts_give_way(run, report->penetration, report->penetration_allowed, report->largest_move);
         run_folds_judge(run);
