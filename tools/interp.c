@@ -201,14 +201,12 @@ done:
 static enum status copy_points(const struct stream *stream, int dim, struct points *points,
                                struct error *error)
 {
-    enum status status;
     const struct section *x;
-    TRY(stream_need(stream, "points.x", TYPE_F8, dim, "ipoints", &x, error));
+    RETURN_IF_ERROR(stream_need(stream, "points.x", TYPE_F8, dim, "ipoints", &x, error));
     points->count = x->rows;
-    TRY(NEW_ARRAY(&points->x, x->rows * dim, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&points->x, x->rows * dim, error));
     memcpy(points->x, x->data, (size_t)(x->rows * dim) * sizeof(double));
-done:
-    return status;
+    return STATUS_OK;
 }
 
 /* Whether a section is a field at the nodes: not one of those that describe the discretisation. */

@@ -13,11 +13,11 @@ enum status names_read(const struct section *section, struct names *names, struc
 
 enum status names_of(const struct section *section, const char *key, struct names *names, struct error *error)
 {
-    enum status status;
     size_t size = strlen(section->attributes) + 1;
     *names = (struct names){0};
-    TRY(NEW_ARRAY(&names->list, 2 * (int64_t)size, error)); /* and behind it the same, cut at the commas */
-    TRY(NEW_ARRAY(&names->name, (int64_t)size, error));
+    /* And behind it the same, cut at the commas. */
+    RETURN_IF_ERROR(NEW_ARRAY(&names->list, 2 * (int64_t)size, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&names->name, (int64_t)size, error));
     char *rest = NULL;
     if (section_attribute(section, key, names->list, size) && names->list[0] != '\0') {
         rest = memcpy(names->list + size, names->list, size);
@@ -25,8 +25,7 @@ enum status names_of(const struct section *section, const char *key, struct name
     while (rest != NULL) {
         names->name[names->count++] = strsep(&rest, ",");
     }
-done:
-    return status;
+    return STATUS_OK;
 }
 
 void names_free(struct names *names)

@@ -29,11 +29,10 @@ struct comparison_request comparison_parse(const struct tool *tool)
 
 static enum status view_side(struct side *side, const char *field, struct error *error)
 {
-    enum status status;
     struct nodal_field *view = &side->field;
-    TRY(stream_cells(&side->stream, false, &view->cells, error));
-    TRY(stream_field(&side->stream, field, view->cells.node_count, &side->section, error));
-    TRY(solved_read(&side->stream, &side->solved, error));
+    RETURN_IF_ERROR(stream_cells(&side->stream, false, &view->cells, error));
+    RETURN_IF_ERROR(stream_field(&side->stream, field, view->cells.node_count, &side->section, error));
+    RETURN_IF_ERROR(solved_read(&side->stream, &side->solved, error));
     const struct section *parameters = solved_parameters(&side->stream, &side->solved, side->section);
     view->cols = side->section->cols;
     view->values = side->section->data;
@@ -43,8 +42,7 @@ static enum status view_side(struct side *side, const char *field, struct error 
         view->support = &side->solved.recorded.support;
         view->shapes = &side->solved.recorded.shapes;
     }
-done:
-    return status;
+    return STATUS_OK;
 }
 
 void side_read(const struct tool *tool, const char *file, const char *field, struct side *side)

@@ -139,8 +139,8 @@ static enum status choose_box(const struct term *term)
     double values[6];
     int count;
     struct shape shape = {.kind = SHAPE_BOX, .slack = SLACK * term->body->diagonal};
-    enum status status;
-    TRY(take_numbers(term, 2 * dim, 2 * dim, dim == 2 ? "X0,Y0,X1,Y1" : "X0,Y0,Z0,X1,Y1,Z1", values, &count));
+    RETURN_IF_ERROR(
+        take_numbers(term, 2 * dim, 2 * dim, dim == 2 ? "X0,Y0,X1,Y1" : "X0,Y0,Z0,X1,Y1,Z1", values, &count));
     scale(count, values, term->unit);
     for (int k = 0; k < dim; k++) {
         shape.a[k] = values[k];
@@ -152,8 +152,7 @@ static enum status choose_box(const struct term *term)
         }
     }
     items_in_shape(&term->body->items[term->kind], &shape, term->chosen);
-done:
-    return status;
+    return STATUS_OK;
 }
 
 static enum status choose_ball(const struct term *term)
@@ -162,8 +161,8 @@ static enum status choose_ball(const struct term *term)
     double values[4];
     int count;
     struct shape shape = {.kind = SHAPE_BALL, .slack = SLACK * term->body->diagonal};
-    enum status status;
-    TRY(take_numbers(term, dim + 1, dim + 1, dim == 2 ? "X,Y,RADIUS" : "X,Y,Z,RADIUS", values, &count));
+    RETURN_IF_ERROR(
+        take_numbers(term, dim + 1, dim + 1, dim == 2 ? "X,Y,RADIUS" : "X,Y,Z,RADIUS", values, &count));
     scale(count, values, term->unit);
     memcpy(shape.a, values, (size_t)dim * sizeof *values);
     shape.size = values[dim];
@@ -171,8 +170,7 @@ static enum status choose_ball(const struct term *term)
         return fail(term->error, STATUS_INPUT, "%.100s: the radius is not positive", term->text);
     }
     items_in_shape(&term->body->items[term->kind], &shape, term->chosen);
-done:
-    return status;
+    return STATUS_OK;
 }
 
 /* half:POINT,NORMAL and plane:POINT,NORMAL[,DISTANCE] */
@@ -183,16 +181,15 @@ static enum status choose_plane(const struct term *term)
     int count;
     bool half = term->text[0] == 'h';
     struct shape shape = {.kind = half ? SHAPE_HALF : SHAPE_PLANE, .slack = SLACK * term->body->diagonal};
-    enum status status;
-    TRY(take_numbers(term, 2 * dim, 2 * dim + !half,
-                     half ? (dim == 2 ? "X,Y,NX,NY" : "X,Y,Z,NX,NY,NZ")
-                          : (dim == 2 ? "X,Y,NX,NY[,DISTANCE]" : "X,Y,Z,NX,NY,NZ[,DISTANCE]"),
-                     values, &count));
+    RETURN_IF_ERROR(take_numbers(term, 2 * dim, 2 * dim + !half,
+                                 half ? (dim == 2 ? "X,Y,NX,NY" : "X,Y,Z,NX,NY,NZ")
+                                      : (dim == 2 ? "X,Y,NX,NY[,DISTANCE]" : "X,Y,Z,NX,NY,NZ[,DISTANCE]"),
+                                 values, &count));
     for (int k = 0; k < dim; k++) {
         shape.a[k] = values[k] * term->unit;
         shape.b[k] = values[dim + k];
     }
-    TRY(check_direction(term, shape.b));
+    RETURN_IF_ERROR(check_direction(term, shape.b));
     shape.size = half ? 0 : FLATNESS * term->body->diagonal;
     if (count > 2 * dim) {
         shape.size = values[2 * dim] * term->unit;
@@ -201,8 +198,7 @@ static enum status choose_plane(const struct term *term)
         }
     }
     items_in_shape(&term->body->items[term->kind], &shape, term->chosen);
-done:
-    return status;
+    return STATUS_OK;
 }
 
 /* low:AXIS,PART% and high:AXIS,PART%: everything within a part of the body's box from one of its ends. */
@@ -250,15 +246,13 @@ static enum status choose_end(const struct term *term)
 static enum status table_segments(const struct table *table, struct pieces *pieces, double **x,
                                   struct error *error)
 {
-    enum status status;
-    TRY(NEW_ARRAY(x, (table->rows - table->block_count) * 4, error));
+    RETURN_IF_ERROR(NEW_ARRAY(x, (table->rows - table->block_count) * 4, error));
     for (int64_t b = 0; b < table->block_count; b++) {
         for (int64_t r = table->block_ptr[b]; r + 1 < table->block_ptr[b + 1]; r++) {
             memcpy(*x + 4 * pieces->count++, table->values + 2 * r, 4 * sizeof **x);
         }
     }
-done:
-    return status;
+    return STATUS_OK;
 }
 
 /* near:DISTANCE,FILE (points) and along:DISTANCE,FILE (a surface) */

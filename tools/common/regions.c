@@ -36,7 +36,6 @@ void regions_free(struct regions *regions)
 enum status regions_choose(const struct regions *regions, const char *name, bool **chosen,
                            struct error *error)
 {
-    enum status status;
     char list[256];
     *chosen = NULL;
     if (name == NULL) {
@@ -47,10 +46,9 @@ enum status regions_choose(const struct regions *regions, const char *name, bool
         return fail(error, STATUS_INPUT, "--region: no region '%s'; there are: %s", name,
                     names_text(&regions->names, list));
     }
-    TRY(NEW_ARRAY(chosen, regions->node_count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(chosen, regions->node_count, error));
     for (int64_t n = 0; n < regions->node_count; n++) {
         (*chosen)[n] = regions->member[n * regions->names.count + region];
     }
-done:
-    return status;
+    return STATUS_OK;
 }

@@ -165,7 +165,6 @@ static enum status view_part(const struct rejoin *rejoin, int64_t k, const char 
 
 enum status rejoin_check_large(const struct rejoin *rejoin, struct error *error)
 {
-    enum status status = STATUS_OK;
     for (int64_t k = 0; k < rejoin->part_count; k++) {
         struct neighbours of;
         const struct rejoin_part *part = &rejoin->part[k];
@@ -173,13 +172,12 @@ enum status rejoin_check_large(const struct rejoin *rejoin, struct error *error)
         if (stream_find(&part->stream, "face.ptr") == NULL || values == NULL) {
             continue; /* all find out alike */
         }
-        TRY(view_part(rejoin, k, "face", ROWS_OF_FACES, &of, error));
+        RETURN_IF_ERROR(view_part(rejoin, k, "face", ROWS_OF_FACES, &of, error));
         if (!part->elsewhere && values->rows != of.ptr[of.count]) {
             return fail(error, STATUS_INPUT, "%s: face.phi: does not fit face.idx", part->file);
         }
     }
-done:
-    return status;
+    return STATUS_OK;
 }
 
 static void view_lists(const struct rejoin *rejoin, struct joined_lists *joined)

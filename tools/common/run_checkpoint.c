@@ -128,12 +128,9 @@ struct whole_state {
 static enum status visit_whole(void *owner, const struct state *state, struct error *error)
 {
     const struct whole_state *whole = owner;
-    enum status status;
-    TRY(whole->progress->state(whole->progress->run, state, error));
-    TRY(run_folds_state(whole->run, state, error));
-    TRY(run_stability_state(whole->run, state, error));
-done:
-    return status;
+    RETURN_IF_ERROR(whole->progress->state(whole->progress->run, state, error));
+    RETURN_IF_ERROR(run_folds_state(whole->run, state, error));
+    return run_stability_state(whole->run, state, error);
 }
 
 static enum status write_now(struct run *run, const struct progress *progress, struct error *error)

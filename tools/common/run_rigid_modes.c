@@ -109,23 +109,20 @@ done:
 
 static enum status bodies_find(const struct model *model, struct bodies *bodies, struct error *error)
 {
-    enum status status;
     const struct cells *cells = &model->assembly.cells;
     const struct solid_system *system = &model->system;
     *bodies = (struct bodies){0};
-    TRY(NEW_ARRAY(&bodies->of_node, cells->node_count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&bodies->of_node, cells->node_count, error));
     join_cells(cells, bodies);
-    TRY(NEW_ARRAY(&bodies->cell, bodies->count, error));
-    TRY(NEW_ARRAY(&bodies->touches, bodies->count, error));
-    TRY(NEW_ARRAY(&bodies->moves, bodies->count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&bodies->cell, bodies->count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&bodies->touches, bodies->count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&bodies->moves, bodies->count, error));
     for (int64_t c = 0; c < cells->count; c++) {
         bodies->cell[bodies->of_node[cells->node[c * (cells->dim + 1)]]] = c;
     }
-    TRY(NEW_ARRAY(&bodies->stays, bodies->count, error));
-    TRY(system_rigid_modes(system, bodies->count, bodies->of_node, bodies->moves, error));
-    TRY(find_touching(system, bodies, error));
-done:
-    return status;
+    RETURN_IF_ERROR(NEW_ARRAY(&bodies->stays, bodies->count, error));
+    RETURN_IF_ERROR(system_rigid_modes(system, bodies->count, bodies->of_node, bodies->moves, error));
+    return find_touching(system, bodies, error);
 }
 
 static void bodies_free(struct bodies *bodies)
