@@ -3,33 +3,38 @@
 #include "base/memory.h"
 #include "io/textfile.h"
 
-#include <ini.h>
 #include <stdbool.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <zlib.h>
 
-enum { FILE_LIMIT = 64 << 10, HEADER_LIMIT = 49 }; /* libinih cuts headers beyond 49 bytes silently */
+/* Bytes of a file, of a line without blanks and comment, of a header between its brackets. */
+enum { FILE_LIMIT = 64 << 10, LINE_LIMIT = 198, HEADER_LIMIT = 49 };
 
-/* libinih reports neither lines, nor empty sections, nor anything repeated or cut. So we hand it one cleaned
- * line at a time, so that the line of each entry is known, and check the headers ourselves. */
 struct reading {
     struct ini_file *file;
-    const char *at; /* rest of the text */
-    int64_t line;   /* line handed over last, from 1 */
-    enum status status;
+    int64_t line; /* from 1 */
     struct error *error;
 };
+
+static enum status fail_line(struct reading *reading, const char *what)
+{
+    return fail(reading->error, STATUS_INPUT, "%s:%lld: %s", reading->file->path, (long long)reading->line,
+                what);
+}
 
 static bool is_blank(char c)
 {
     return c == ' ' || c == '\t';
 }
 
-static enum status fail_line(struct reading *reading, const char *what)
+size_t ini_trimmed(const char *text, size_t length)
 {
-    return fail(reading->error, STATUS_INPUT, "%s:%lld: %s", reading->file->path, (long long)reading->line,
-                what);
+    while (length > 0 && is_blank(text[length - 1])) {
+        length--;
+    }
+    return length;
 }
 
 /* Bytes of the line without comment and without blanks at its end. */
@@ -40,10 +45,7 @@ static size_t content_length(const char *line, size_t length)
             length = i;
         }
     }
-    while (length > 0 && is_blank(line[length - 1])) {
-        length--;
-    }
-    return length;
+    return ini_trimmed(line, length);
 }
 
 static bool is_word(const char *text, size_t length)
@@ -53,160 +55,110 @@ static bool is_word(const char *text, size_t length)
 }
 
 /* Append the section of a header line `[kind NAME]`. */
-static enum status add_section(struct reading *reading, const char *header, size_t length)
+static enum status add_section(struct reading *reading, char *header, size_t length)
 {
-    const char *kind = header + 1;
-    const char *end = header + length - 1;
+    char *kind = header + 1, *end = header + length - 1;
     if (*end != ']' || length > HEADER_LIMIT + 2) {
         return fail_line(reading, "section header is not [kind] or [kind NAME], within 49 bytes");
     }
     size_t kind_length = strcspn(kind, " \t]");
-    const char *name = kind + kind_length + strspn(kind + kind_length, " \t");
+    char *name = kind + kind_length + strspn(kind + kind_length, " \t");
     size_t name_length = (size_t)(end - name);
     if (!is_word(kind, kind_length) || (name_length > 0 && !is_word(name, name_length))) {
         return fail_line(reading,
                          "section header is not [kind] or [kind NAME] of letters, digits, '_', '.', '-'");
     }
+    kind[kind_length] = '\0';
+    *end = '\0';
     struct ini_file *file = reading->file;
-    RETURN_IF_ERROR(RESIZE_ARRAY(&file->sections, file->section_count + 1, reading->error));
-    struct ini_section *section = &file->sections[file->section_count++];
-    *section = (struct ini_section){
-        .kind = strndup(kind, kind_length), .name = strndup(name, name_length), .line = reading->line};
-    if (section->kind == NULL || section->name == NULL) {
-        return fail_memory(reading->error, file->path);
-    }
-    for (const struct ini_section *other = file->sections; other < section; other++) {
-        if (strcmp(other->kind, section->kind) == 0 && strcmp(other->name, section->name) == 0) {
-            return fail(reading->error, STATUS_INPUT, "%s:%lld: [%.*s]: already in line %lld: join the two",
-                        file->path, (long long)reading->line, (int)length - 2, kind, (long long)other->line);
+    for (int64_t s = 0; s < file->section_count; s++) {
+        const struct ini_section *other = &file->sections[s];
+        if (strcmp(other->kind, kind) == 0 && strcmp(other->name, name) == 0) {
+            return fail(reading->error, STATUS_INPUT, "%s:%lld: [%s%s%s]: already in line %lld: join the two",
+                        file->path, (long long)reading->line, kind, *name ? " " : "", name,
+                        (long long)other->line);
         }
     }
+    RETURN_IF_ERROR(RESIZE_ARRAY(&file->sections, file->section_count + 1, reading->error));
+    file->sections[file->section_count++] =
+        (struct ini_section){.kind = kind, .name = name, .line = reading->line};
     return STATUS_OK;
 }
 
-/* Check a line of content before libinih sees it. */
-static enum status look_at_line(struct reading *reading, const char *line, size_t length, size_t room)
+/* An entry of the section seen last. */
+static enum status add_entry(struct reading *reading, const char *key, char *value)
 {
+    struct ini_section *section = &reading->file->sections[reading->file->section_count - 1];
+    const struct ini_entry *other = ini_find(section, key);
+    char what[64] = "has no value";
+    if (other != NULL) {
+        snprintf(what, sizeof what, "already in line %lld", (long long)other->line);
+    }
+    if (other != NULL || *value == '\0') {
+        return fail(reading->error, STATUS_INPUT, "%s:%lld: [%s%s%s]: %s: %s", reading->file->path,
+                    (long long)reading->line, section->kind, *section->name ? " " : "", section->name, key,
+                    what);
+    }
+    RETURN_IF_ERROR(RESIZE_ARRAY(&section->entries, section->entry_count + 1, reading->error));
+    section->entries[section->entry_count++] =
+        (struct ini_entry){.key = key, .value = value, .line = reading->line};
+    return STATUS_OK;
+}
+
+/* A line without blanks at its begin; what is behind its content is cut off. */
+static enum status read_line(struct reading *reading, char *line, size_t length)
+{
+    line[length] = '\0';
     if (length == 0) {
         return STATUS_OK;
     }
-    if (length + 2 > room) {
-        return fail(reading->error, STATUS_INPUT, "%s:%lld: longer than %zu bytes without blanks and comment",
-                    reading->file->path, (long long)reading->line, room - 2);
+    if (length > LINE_LIMIT) {
+        return fail(reading->error, STATUS_INPUT, "%s:%lld: longer than %d bytes without blanks and comment",
+                    reading->file->path, (long long)reading->line, LINE_LIMIT);
     }
     if (line[0] == '[') {
         return add_section(reading, line, length);
     }
-    size_t key_length = 0;
-    while (key_length < length && line[key_length] != '=') {
-        key_length++;
-    }
-    if (key_length == length) {
+    char *equals = strchr(line, '=');
+    if (equals == NULL) {
         return fail_line(reading, "neither [kind NAME], nor key = value, nor a comment");
     }
-    while (key_length > 0 && is_blank(line[key_length - 1])) {
-        key_length--;
-    }
+    size_t key_length = ini_trimmed(line, (size_t)(equals - line));
     if (!is_word(line, key_length)) {
         return fail_line(reading, "key before '=' is not one word of letters, digits, '_', '.', '-'");
     }
-    return reading->file->section_count > 0 ? STATUS_OK
-                                            : fail_line(reading, "stands before the first [section]");
-}
-
-/* fgets for libinih: the next line, cleaned; leading blanks would make it a continuation of the last value.
- */
-static char *next_line(char *buffer, int room, void *user)
-{
-    struct reading *reading = user;
-    if (reading->status != STATUS_OK || *reading->at == '\0') {
-        return NULL;
+    if (reading->file->section_count == 0) {
+        return fail_line(reading, "stands before the first [section]");
     }
-    size_t length = strcspn(reading->at, "\n");
-    const char *line = reading->at + strspn(reading->at, " \t");
-    const char *end = reading->at + length;
-    reading->at = end + 1; /* textfile_read guarantees the newline */
-    reading->line++;
-    length = content_length(line, line < end ? (size_t)(end - line) : 0);
-    reading->status = look_at_line(reading, line, length, (size_t)room);
-    if (reading->status != STATUS_OK) {
-        return NULL;
-    }
-    memcpy(buffer, line, length);
-    memcpy(buffer + length, "\n", 2);
-    return buffer;
-}
-
-/* An entry of the section seen last. */
-static enum status add_entry(struct reading *reading, const char *key, const char *value)
-{
-    struct ini_section *section = &reading->file->sections[reading->file->section_count - 1];
-    const struct ini_entry *other = ini_find(section, key);
-    if (other != NULL) {
-        return fail(reading->error, STATUS_INPUT, "%s:%lld: [%s%s%s]: %s: already in line %lld",
-                    reading->file->path, (long long)reading->line, section->kind, *section->name ? " " : "",
-                    section->name, key, (long long)other->line);
-    }
-    if (*value == '\0') {
-        return fail(reading->error, STATUS_INPUT, "%s:%lld: [%s%s%s]: %s: has no value", reading->file->path,
-                    (long long)reading->line, section->kind, *section->name ? " " : "", section->name, key);
-    }
-    RETURN_IF_ERROR(RESIZE_ARRAY(&section->entries, section->entry_count + 1, reading->error));
-    struct ini_entry *entry = &section->entries[section->entry_count++];
-    *entry = (struct ini_entry){.key = strdup(key), .value = strdup(value), .line = reading->line};
-    return entry->key != NULL && entry->value != NULL ? STATUS_OK
-                                                      : fail_memory(reading->error, reading->file->path);
-}
-
-static int take_entry(void *user, const char *section, const char *key, const char *value)
-{
-    struct reading *reading = user;
-    (void)section; /* its kind and name are known from its header already */
-    if (reading->status == STATUS_OK) {
-        reading->status = add_entry(reading, key, value);
-    }
-    return reading->status == STATUS_OK;
+    line[key_length] = '\0';
+    return add_entry(reading, line, equals + 1 + strspn(equals + 1, " \t"));
 }
 
 enum status ini_read(const char *path, struct ini_file *file, struct error *error)
 {
-    struct textfile text = {0};
-    enum status status = STATUS_OK;
-    *file = (struct ini_file){.path = strdup(path)};
-    if (file->path == NULL) {
-        TRY(fail_memory(error, path));
-    }
-    TRY(textfile_read(path, FILE_LIMIT, &text, error));
+    struct textfile text;
+    struct reading reading = {.file = file, .error = error};
+    *file = (struct ini_file){.path = path};
+    RETURN_IF_ERROR(textfile_read(path, FILE_LIMIT, &text, error));
+    file->text = text.text;
     file->checksum = (uint32_t)crc32(0, (const unsigned char *)text.text, (unsigned)text.size);
-
-    struct reading reading = {.file = file, .at = text.text, .error = error};
-    int result = ini_parse_stream(next_line, &reading, take_entry, &reading);
-    TRY(reading.status);
-    if (result != 0) { /* nothing that passed look_at_line should fail */
-        TRY(fail(error, STATUS_INPUT, "%s:%d: not an INI line", path, result));
+    for (char *at = file->text, *next; *at != '\0'; at = next) {
+        char *end = strchr(at, '\n'),
+             *line = at + strspn(at, " \t"); /* textfile_read guarantees the newline */
+        next = end + 1;
+        reading.line++;
+        RETURN_IF_ERROR(read_line(&reading, line, content_length(line, (size_t)(end - line))));
     }
-done:
-    textfile_free(&text);
-    if (status != STATUS_OK) {
-        ini_free(file);
-    }
-    return status;
+    return STATUS_OK;
 }
 
 void ini_free(struct ini_file *file)
 {
     for (int64_t s = 0; s < file->section_count; s++) {
-        struct ini_section *section = &file->sections[s];
-        for (int64_t e = 0; e < section->entry_count; e++) {
-            free(section->entries[e].key);
-            free(section->entries[e].value);
-        }
-        free(section->entries);
-        free(section->kind);
-        free(section->name);
+        free(file->sections[s].entries);
     }
     free(file->sections);
-    free(file->path);
+    free(file->text);
     *file = (struct ini_file){0};
 }
 

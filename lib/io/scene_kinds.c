@@ -24,7 +24,8 @@ static enum status read_scene(const struct place *place, struct scene *scene)
     RETURN_IF_ERROR(place_choice(place, "analysis", analyses, &analysis));
     scene->analysis = (enum scene_analysis)analysis;
     RETURN_IF_ERROR(place_vector(place, "gravity", scene->dim, scene->gravity, NULL));
-    return place_text(place, "title", &scene->title);
+    place_text(place, "title", &scene->title);
+    return STATUS_OK;
 }
 
 static enum status read_elasticity(const struct place *place, struct scene_material *material)

@@ -67,7 +67,7 @@ TEST(scenes)
                "[contact b]\nfacets = f\nagainst = g, h\n"
                "[pressure p]\nfacets = f\nvalue = 1\ncurve = c\n"
                "[force p]\nnodes = f\ncomponents = 0,1\n");
-    fail_each(try_scene, 90);
+    fail_each(try_scene, 30);
 }
 
 TEST(tables)
