@@ -43,6 +43,9 @@ enum status fail(struct error *error, enum status status, const char *format, ..
 enum status fail_in(struct error *error, enum status status, const char *context, ...)
     __attribute__((format(printf, 3, 4)));
 
+/* Print behind the text that text[size] holds, as far as there is room. */
+void text_append(char *text, size_t size, const char *format, ...) __attribute__((format(printf, 3, 4)));
+
 /* fail() with the out-of-memory message for `what`. */
 enum status fail_memory(struct error *error, const char *what);
 

@@ -21,8 +21,7 @@ struct mesh_draft {
     struct error *error;
 };
 
-/* Append a name (copied) or a note (printf-style). */
-MUST_CHECK enum status mesh_add_name(struct mesh_names *names, const char *name, struct error *error);
+/* Append a note (printf-style). */
 MUST_CHECK enum status mesh_add_note(struct mesh_draft *draft, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
 

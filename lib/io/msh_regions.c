@@ -171,10 +171,8 @@ static bool is_listed(const char *list, const char *name)
 static enum status check_wanted(const struct mesh_draft *draft, const struct mesh_names *present)
 {
     char list[256] = "";
-    size_t used = 0;
-    for (int32_t i = 0; i < present->count && used + 1 < sizeof list; i++) {
-        used +=
-            (size_t)snprintf(list + used, sizeof list - used, "%s%s", i > 0 ? ", " : "", present->name[i]);
+    for (int32_t i = 0; i < present->count; i++) {
+        text_append(list, sizeof list, "%s%s", i > 0 ? ", " : "", present->name[i]);
     }
     for (const char *at = draft->options->regions; at != NULL; at = strchr(at, ',')) {
         at += *at == ',';

@@ -54,11 +54,9 @@ enum status place_forbid(const struct place *place, const char *key, const char 
 /* "a, b, c" of a NULL-terminated list. */
 static void join(const char *const words[], char *text, size_t size)
 {
-    size_t length = 0;
     text[0] = '\0';
-    for (int i = 0; words[i] != NULL && length < size; i++) {
-        int added = snprintf(text + length, size - length, "%s%s", i > 0 ? ", " : "", words[i]);
-        length += added > 0 ? (size_t)added : 0;
+    for (int i = 0; words[i] != NULL; i++) {
+        text_append(text, size, "%s%s", i > 0 ? ", " : "", words[i]);
     }
 }
 

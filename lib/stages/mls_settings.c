@@ -58,7 +58,6 @@ void mls_describe(const struct mls *mls, const char *prefix, char *text, size_t 
     snprintf(text, size, "%sbasis=%s %sweight=%s %smu_absolute=%d %smu=", prefix, basis_names[mls->basis],
              prefix, weight_names[mls->weight], prefix, mls->mu_absolute, prefix);
     for (int k = 0; k < mls_second_order_count(mls->dim); k++) {
-        size_t length = strlen(text);
-        snprintf(text + length, size - length, "%s%.17g", k > 0 ? "," : "", mls->mu[k]);
+        text_append(text, size, "%s%.17g", k > 0 ? "," : "", mls->mu[k]);
     }
 }

@@ -47,10 +47,9 @@ int64_t names_find(const struct names *names, const char *name)
 
 const char *names_text(const struct names *names, char text[256])
 {
-    snprintf(text, 256, "none");
+    snprintf(text, 256, "%s", names->count == 0 ? "none" : "");
     for (int64_t i = 0; i < names->count; i++) {
-        size_t length = i == 0 ? 0 : strlen(text);
-        snprintf(text + length, 256 - length, "%s%s", i == 0 ? "" : ", ", names->name[i]);
+        text_append(text, 256, "%s%s", i == 0 ? "" : ", ", names->name[i]);
     }
     return text;
 }

@@ -385,13 +385,12 @@ done:
 static enum status fail_unknown(const struct term *term, enum group_kind kind)
 {
     const struct group_list *list = &term->body->groups[kind];
-    char names[256] = "none";
+    char names[256] = "";
     for (int64_t g = 0; g < list->count; g++) {
-        size_t length = g == 0 ? 0 : strlen(names);
-        snprintf(names + length, sizeof names - length, "%s%s", g == 0 ? "" : ", ", list->group[g].name);
+        text_append(names, sizeof names, "%s%s", g == 0 ? "" : ", ", list->group[g].name);
     }
     return fail(term->error, STATUS_INPUT, "'%.60s' is no term of -h, and no name of %s; there are: %s",
-                term->text, group_kind_names[kind], names);
+                term->text, group_kind_names[kind], list->count > 0 ? names : "none");
 }
 
 /* The items of a group of some kind, as items of the kind that is being chosen. */

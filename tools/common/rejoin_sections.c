@@ -436,8 +436,7 @@ void rejoin_sections(const struct rejoin *rejoin, struct stream *stream)
     const struct stream *first = &rejoin->part[0].stream;
     for (int64_t i = 0; i < first->section_count; i++) {
         if (!put_section(rejoin, stream, first->sections[i].name)) {
-            size_t length = strlen(left_out);
-            snprintf(left_out + length, sizeof left_out - length, " %s", first->sections[i].name);
+            text_append(left_out, sizeof left_out, " %s", first->sections[i].name);
         }
     }
     if (left_out[0] != '\0') {

@@ -31,8 +31,7 @@ static void fill_one(const struct tool *tool, struct stream *stream, const char 
     tool_check(tool, status, &error);
     char *argv[] = {(char *)(uintptr_t)stage, NULL};
     tool_check(tool, stream_add_provenance(stream, 1, argv, &error), &error);
-    size_t length = strlen(ran);
-    snprintf(ran + length, size - length, "%s%s", length > 0 ? ", " : "", stage);
+    text_append(ran, size, "%s%s", ran[0] != '\0' ? ", " : "", stage);
 }
 
 void stage_fill(const struct tool *tool, struct stream *stream, const char *upto)
