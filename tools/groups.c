@@ -352,7 +352,6 @@ int main(int argc, char *argv[])
     struct tool tool;
     struct stream stream;
     struct group_body body;
-    struct error error;
     tool_begin(&tool, usage, 0, 1, argc, argv);
     if (tool_first_given(&tool, changes) == NULL && !tool_given(&tool, "verbose")) {
         tool_fail(&tool, STATUS_INPUT, "nothing to do: give -f, -n, -r, -m, -d or -v (see -h)");
@@ -362,13 +361,13 @@ int main(int argc, char *argv[])
     if (stream_find(&stream, "part.node") != NULL) {
         tool_fail(&tool, STATUS_INPUT, "the input is one part of a body: make groups before it is cut");
     }
-    tool_check(&tool, group_body_read(&stream, &body, &error), &error);
+    TOOL_TRY(&tool, group_body_read(&stream, &body, &error));
     for (int i = 0; i < tool.options.use_count; i++) {
         const struct option_use *use = &tool.options.use[i];
         struct request request = {&body, use, unit, tool_given(&tool, "replace")};
-        enum status status = use->option->repeats ? carry_out(&request, &error) : STATUS_OK;
-        if (status != STATUS_OK) {
-            tool_fail(&tool, status, "--%s %.80s: %s", use->option->name, use->value, error.text);
+        if (use->option->repeats) {
+            TOOL_TRY(&tool, fail_in(&error, carry_out(&request, &error), "--%s %.80s", use->option->name,
+                                    use->value));
         }
     }
     finish(&tool, &body, &stream, tool_given(&tool, "verbose"));

@@ -29,6 +29,9 @@ enum status fail_in(struct error *error, enum status status, const char *context
 {
     char joined[2 * sizeof error->text];
     va_list arguments;
+    if (status == STATUS_OK) {
+        return status;
+    }
     va_start(arguments, context);
     vsnprintf(joined, sizeof error->text, context, arguments);
     va_end(arguments);

@@ -39,7 +39,8 @@ struct error {
 enum status fail(struct error *error, enum status status, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 
-/* Put "context: " in front of the message of `error`; return `status`. */
+/* Put "context: " in front of the message of `error`, unless `status` is STATUS_OK; return `status`. So the
+ * status of a call may stand in its place: fail_in(error, call(..., error), "...") */
 enum status fail_in(struct error *error, enum status status, const char *context, ...)
     __attribute__((format(printf, 3, 4)));
 

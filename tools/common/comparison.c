@@ -47,13 +47,9 @@ static enum status view_side(struct side *side, const char *field, struct error 
 
 void side_read(const struct tool *tool, const char *file, const char *field, struct side *side)
 {
-    struct error error;
     *side = (struct side){.name = strcmp(file, "-") == 0 ? "standard input" : file};
     tool_read(tool, file, &side->stream);
-    enum status status = view_side(side, field, &error);
-    if (status != STATUS_OK) {
-        tool_fail(tool, status, "%s: %s", side->name, error.text);
-    }
+    TOOL_TRY(tool, fail_in(&error, view_side(side, field, &error), "%s", side->name));
 }
 
 void sides_check(const struct tool *tool, const struct side *first, const struct side *second,

@@ -28,16 +28,10 @@ static enum status add_curve(struct model *model, const struct scene_label *labe
         grown[input->curve_count] = curve_of_kind(kinds[curve->kind]);
     } else {
         double end = input->in_time ? model->scene->solver.end_time : 1.0;
-        status = table_read(curve->file, 2, 2, &table, error);
-        if (status != STATUS_OK) {
-            fail_in(error, status, "%s: curve: not smooth, linear or step, and as a file", label->where);
-            goto done;
-        }
-        status = curve_tabulate(&grown[input->curve_count], table.rows, table.values, end, error);
-        if (status != STATUS_OK) {
-            fail_in(error, status, "%s: curve %s", label->where, curve->file);
-            goto done;
-        }
+        TRY(fail_in(error, table_read(curve->file, 2, 2, &table, error),
+                    "%s: curve: not smooth, linear or step, and as a file", label->where));
+        TRY(fail_in(error, curve_tabulate(&grown[input->curve_count], table.rows, table.values, end, error),
+                    "%s: curve %s", label->where, curve->file));
     }
     *index = (int32_t)input->curve_count++;
 done:

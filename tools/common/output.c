@@ -122,11 +122,14 @@ void output_abandon(struct output *output)
     *output = (struct output){.descriptor = -1, .name = output->name};
 }
 
-enum status output_commit(struct output *output, struct error *error)
+enum status output_end(struct output *output, enum status status, struct error *error)
 {
     int descriptor = output->descriptor;
+    if (status != STATUS_OK) {
+        output_abandon(output);
+        return fail_in(error, status, "%s", output->name);
+    }
     output->descriptor = -1;
-    enum status status = STATUS_OK;
     /* Some file systems tell only now that the space is used up. */
     if (output->temporary != NULL && fsync(descriptor) != 0) {
         status = fail_output(output, error);

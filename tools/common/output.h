@@ -16,8 +16,9 @@ struct output {
  * at a time. */
 MUST_CHECK enum status output_open(struct output *output, const char *name, struct error *error);
 
-/* Close and give the file its name. STATUS_SYSTEM, with nothing left behind, when that fails. */
-MUST_CHECK enum status output_commit(struct output *output, struct error *error);
+/* End what was written with `status`: close, and give the file its name, or leave nothing behind where that
+ * or the writing failed; the message then begins with its name. */
+MUST_CHECK enum status output_end(struct output *output, enum status status, struct error *error);
 
 /* Close and leave nothing behind; the file that had the name before stays as it was. */
 void output_abandon(struct output *output);

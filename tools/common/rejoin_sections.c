@@ -138,7 +138,6 @@ bool rejoin_is_large(const char *name)
 static enum status view_part(const struct rejoin *rejoin, int64_t k, const char *prefix, enum rows_of rows,
                              struct neighbours *of, struct error *error)
 {
-    enum status status;
     char name[64];
     const struct rejoin_part *part = &rejoin->part[k];
     *of = (struct neighbours){0};
@@ -146,10 +145,9 @@ static enum status view_part(const struct rejoin *rejoin, int64_t k, const char 
     if (part->elsewhere && rejoin_is_large(name)) {
         return STATUS_OK;
     }
-    status = stream_neighbours(&part->stream, prefix, part->count[rows], part->cells.node_count, of, error);
-    if (status != STATUS_OK) {
-        return fail_in(error, status, "%s", part->file);
-    }
+    RETURN_IF_ERROR(fail_in(
+        error, stream_neighbours(&part->stream, prefix, part->count[rows], part->cells.node_count, of, error),
+        "%s", part->file));
     for (int64_t r = 0; r < of->count; r++) {
         for (int64_t i = of->ptr[r]; i < of->ptr[r + 1] && part->to[rows][r] >= 0; i++) {
             if (part->at_edge[of->idx[i]]) {

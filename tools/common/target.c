@@ -31,15 +31,9 @@ void target_close(const struct tool *tool, struct target *target, enum status st
     if (status == STATUS_OK && cause != 0) {
         status = fail(error, STATUS_SYSTEM, "%s", strerror(cause));
     }
-    if (status != STATUS_OK && named) {
-        output_abandon(&target->output);
-    }
-    if (status != STATUS_OK) {
-        tool_fail(tool, status, "%s: %s", named ? target->name : "standard output", error->text);
-    }
-    if (named) {
-        tool_check(tool, output_commit(&target->output, error), error);
-    }
+    tool_check(tool,
+               named ? output_end(&target->output, status, error) : fail_in(error, status, "standard output"),
+               error);
 }
 
 void target_end(const struct tool *tool, struct target *target)
