@@ -43,8 +43,7 @@ static const char usage[] =
     "  interp -p fine.mts coarse.dat | fieldcmp - fine.dat\n"
     "  interp -f u -p grid.tsv -u mm --skip-outside -t u.dat\n";
 
-#include "stage_fill.h"
-#include "mls_options.h"
+#include "stage_options.h"
 #include "stages/solved.h"
 
 #include "approx/field.h"

@@ -39,7 +39,7 @@ static const char usage[] =
     "  gmsh -2 graded.geo -o graded.msh\n"
     "  sizefield -b u.dat | voxels -h 6mm --sizes - labels.nii.gz > finer.mts\n";
 
-#include "target.h"
+#include "output.h"
 #include "tool.h"
 #include "stages/views.h"
 

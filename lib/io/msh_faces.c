@@ -1,4 +1,4 @@
-#include "io/msh_faces.h"
+#include "io/msh_build.h"
 
 #include "base/memory.h"
 

@@ -2,7 +2,7 @@
 
 #include "base/eigen.h"
 #include "base/memory.h"
-#include "frames.h"
+#include "io/sections.h"
 #include "io/vtk.h"
 
 #include <math.h>

@@ -1,8 +1,23 @@
-#include "stage_fill.h"
+#include "stage_options.h"
 
+#include "stages/mls_settings.h"
 #include "stages/stages.h"
 
 #include <string.h>
+
+void mls_parse(const struct tool *tool, struct mls *mls)
+{
+    const struct mls_texts texts = {tool_value(tool, "basis"), tool_value(tool, "weight"),
+                                    tool_value(tool, "mu"), tool_value(tool, "mu-unit")};
+    TOOL_TRY(tool, mls_apply(&texts, mls, &error));
+}
+
+void radius_parse(const struct tool *tool, struct support_options *support)
+{
+    tool_excludes(tool, "factor", "radius");
+    support->factor = tool_number(tool, "factor", 0.1, 100, support->factor);
+    support->radius = tool_length(tool, "radius", support->radius);
+}
 
 /* A stage that has never run leaves none of its sections. */
 static void fill_one(const struct tool *tool, struct stream *stream, const char *stage, char *ran,
