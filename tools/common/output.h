@@ -12,7 +12,7 @@ struct output {
 };
 
 /* Begin to write: a temporary file in the same folder, removed if the program ends by exit() or by SIGINT,
- * SIGTERM, SIGHUP or SIGXCPU before output_commit. An existing device or pipe is opened as it is. One output
+ * SIGTERM, SIGHUP or SIGXCPU before output_end. An existing device or pipe is opened as it is. One output
  * at a time. */
 MUST_CHECK enum status output_open(struct output *output, const char *name, struct error *error);
 

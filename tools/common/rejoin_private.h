@@ -4,10 +4,6 @@
 
 #include "rejoin.h"
 
-/* Exits with the name of the part in front of the message, unless the status is STATUS_OK. */
-void rejoin_check(const struct rejoin *rejoin, const struct rejoin_part *part, enum status status,
-                  const struct error *error);
-
 /* part->to[kind] of `count` rows, for the caller to fill. */
 int32_t *rejoin_new_rows(const struct rejoin *rejoin, struct rejoin_part *part, enum rows_of kind,
                          int64_t count);
