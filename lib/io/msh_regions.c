@@ -1,3 +1,4 @@
+#include "base/lists.h"
 #include "base/memory.h"
 #include "io/msh_build.h"
 
@@ -78,12 +79,8 @@ static int compare_cells(const void *left, const void *right)
 {
     const struct keyed_cell *a = left;
     const struct keyed_cell *b = right;
-    for (int k = 0; k < MOST_CORNERS; k++) {
-        if (a->node[k] != b->node[k]) {
-            return a->node[k] < b->node[k] ? -1 : 1;
-        }
-    }
-    return (a->element > b->element) - (a->element < b->element);
+    int nodes = compare_numbers(MOST_CORNERS, a->node, b->node);
+    return nodes != 0 ? nodes : (a->element > b->element) - (a->element < b->element);
 }
 
 static void key_cell(const struct msh *msh, int64_t element, struct keyed_cell *key)

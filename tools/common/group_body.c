@@ -3,6 +3,7 @@
 #include "stages/views.h"
 
 #include "base/box.h"
+#include "base/lists.h"
 #include "base/memory.h"
 
 #include <stdio.h>
@@ -93,14 +94,7 @@ struct keyed {
 
 static int compare_keys(const void *left, const void *right)
 {
-    const struct keyed *a = left;
-    const struct keyed *b = right;
-    for (int k = 0; k < 3; k++) {
-        if (a->key[k] != b->key[k]) {
-            return a->key[k] < b->key[k] ? -1 : 1;
-        }
-    }
-    return 0;
+    return compare_numbers(3, ((const struct keyed *)left)->key, ((const struct keyed *)right)->key);
 }
 
 /* facet[rows]: the boundary's facet that each row of `facets` is; the boundary takes over its order of nodes,

@@ -1,6 +1,7 @@
 #include "label_mesh.h"
 
 #include "approx/cells.h"
+#include "base/lists.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -12,14 +13,7 @@ struct member {
 
 static int compare_members(const void *left, const void *right)
 {
-    const struct member *a = left, *b = right;
-    if (a->inner != b->inner) {
-        return a->inner < b->inner ? -1 : 1;
-    }
-    if (a->outer != b->outer) {
-        return a->outer < b->outer ? -1 : 1;
-    }
-    return (a->item > b->item) - (a->item < b->item);
+    return compare_numbers(3, left, right);
 }
 
 static bool same_group(const struct member *a, const struct member *b)
