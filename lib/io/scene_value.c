@@ -51,6 +51,14 @@ enum status place_forbid(const struct place *place, const char *key, const char 
     return !place_has(place, key) ? STATUS_OK : place_fail(place, key, "not allowed: %s", why);
 }
 
+enum status place_forbid_all(const struct place *place, const char *const keys[], const char *why)
+{
+    for (int i = 0; keys[i] != NULL; i++) {
+        RETURN_IF_ERROR(place_forbid(place, keys[i], why));
+    }
+    return STATUS_OK;
+}
+
 /* "a, b, c" of a NULL-terminated list. */
 static void join(const char *const words[], char *text, size_t size)
 {

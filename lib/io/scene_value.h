@@ -40,6 +40,9 @@ MUST_CHECK enum status place_require(const struct place *place, const char *key,
 /* An error if the key is there; `why` follows the message "not allowed: ". */
 MUST_CHECK enum status place_forbid(const struct place *place, const char *key, const char *why);
 
+/* The same of all keys of a NULL-terminated list. */
+MUST_CHECK enum status place_forbid_all(const struct place *place, const char *const keys[], const char *why);
+
 /* An error unless exactly one of the keys (a NULL-terminated list) is there. */
 MUST_CHECK enum status place_require_one(const struct place *place, const char *const keys[]);
 
