@@ -388,3 +388,12 @@ END
     sed -i '/^moments = /d' far.scene
     refused 2 "moments_about: not allowed: it goes with moments = yes" mtled far.scene square.mts
 }
+
+@test "a facet with a node that is not there is refused before it is used" {
+    pressed_block > block.scene
+    cloud -d 2 -k regular -n 4 --box 0,0.1,0,0.1 -t | awk '
+        /^# / { on = $2 == "facets" }
+        on && NF == 2 && ++k == 7 { $1 = 100000000 }
+        { print }' > bad.mts
+    refused 2 "facets: no node 100000000" mtled block.scene bad.mts
+}

@@ -64,7 +64,7 @@ setup() {
 @test "every option that a usage text declares is one that the program looks at" {
     for tool in "${tools[@]}"; do
         shared=()
-        grep -qE 'radius_parse|mls_parse' "$top/tools/$tool.c" && shared+=("$top/tools/common/mls_options.c")
+        grep -qE 'radius_parse|mls_parse' "$top/tools/$tool.c" && shared+=("$top/tools/common/stage_options.c")
         grep -q comparison_parse "$top/tools/$tool.c" && shared+=("$top/tools/common/comparison.c")
         grep -q tool_image_method "$top/tools/$tool.c" && shared+=("$top/tools/common/images.c")
         grep -q label_parts_make "$top/tools/$tool.c" && shared+=("$top/tools/common/label_part.c")

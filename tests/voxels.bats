@@ -352,7 +352,7 @@ rim() {
     refused 2 "no label 'skull'" voxels -h 5mm --surface 'label_1|skull' two.nii.gz
     refused 2 "these labels do not touch" voxels -h 5mm --surface 'label_1|label_1' two.nii.gz
     refused 2 "--gap goes with --surface" voxels -h 5mm --gap 1mm two.nii.gz
-    refused 2 "--surface goes without -b and -t" voxels -h 5mm -t --surface label_1 two.nii.gz
+    refused 2 "--surface goes without -t" voxels -h 5mm -t --surface label_1 two.nii.gz
 
     # A body within the surface moves freely up to the gap.
     voxels -h 6mm sphere.nii.gz | groups -f held=low:z,20% > body.mts 2> said

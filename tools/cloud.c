@@ -114,10 +114,7 @@ static enum status put_field(struct stream *stream, const struct cloud *cloud, e
                              struct error *error)
 {
     double *values;
-    enum status status = NEW_ARRAY(&values, cloud->node_count, error);
-    if (status != STATUS_OK) {
-        return status;
-    }
+    RETURN_IF_ERROR(NEW_ARRAY(&values, cloud->node_count, error));
     for (int64_t n = 0; n < cloud->node_count; n++) {
         values[n] = cloud_function_value(function, cloud->dim, &cloud->x[n * cloud->dim]);
     }

@@ -249,7 +249,6 @@ static enum status note_overlaps(const struct tool *tool, const struct group_bod
     for (int64_t g = 0; g < list->count; g++) {
         const struct group *fresh = &list->group[g];
         char others[256] = "";
-        size_t length = 0;
         for (int64_t i = 0; i < fresh->count && fresh->expression != NULL; i++) {
             marked[fresh->item[i]] = true;
         }
@@ -259,13 +258,12 @@ static enum status note_overlaps(const struct tool *tool, const struct group_bod
                 h == g || strstr(fresh->expression, other->name) != NULL ||
                 (other->expression != NULL && (h > g || strstr(other->expression, fresh->name) != NULL));
             int64_t common = related ? 0 : count_marked(other, marked);
-            if (common > 0 && length < sizeof others - 1) {
-                snprintf(others + length, sizeof others - length, "%s%s (%lld)", length > 0 ? ", " : "",
-                         other->name, (long long)common);
-                length = strlen(others);
+            if (common > 0) {
+                text_append(others, sizeof others, "%s%s (%lld)", others[0] != '\0' ? ", " : "", other->name,
+                            (long long)common);
             }
         }
-        if (length > 0) {
+        if (others[0] != '\0') {
             tool_note(tool, "facets %s overlap %s: conditions on both would meet twice there", fresh->name,
                       others);
         }
@@ -306,20 +304,18 @@ static void report(const struct tool *tool, const struct group_body *body, enum 
             size += sqrt(square);
         }
     }
-    char *at = text;
-    char *end = text + sizeof text;
-    at += snprintf(at, sizeof text, "%lld", (long long)group->count);
+    text_append(text, sizeof text, "%lld", (long long)group->count);
     if (kind != GROUP_NODES) {
         bool region = kind == GROUP_REGION;
         int power = dim - !region;
-        at += snprintf(at, (size_t)(end - at), ", %s %.4g m%.0d", of_dim[region][dim - 2], size,
-                       power == 1 ? 0 : power);
+        text_append(text, sizeof text, ", %s %.4g m%.0d", of_dim[region][dim - 2], size,
+                    power == 1 ? 0 : power);
     }
-    at += snprintf(at, (size_t)(end - at), ", box %s%s", cell_report_box(&box, place),
-                   kind == GROUP_FACETS ? ", mean normal" : "");
+    text_append(text, sizeof text, ", box %s%s", cell_report_box(&box, place),
+                kind == GROUP_FACETS ? ", mean normal" : "");
     for (int k = 0; k < dim && kind == GROUP_FACETS; k++) {
         double share = size > 0 ? sum[k] / size : 0;
-        at += snprintf(at, (size_t)(end - at), " %.3g", fabs(share) < 1e-9 ? 0 : share);
+        text_append(text, sizeof text, " %.3g", fabs(share) < 1e-9 ? 0 : share);
     }
     tool_note(tool, "%s %s: %s", group_kind_names[kind], group->name, text);
 }
@@ -356,7 +352,6 @@ int main(int argc, char *argv[])
     struct tool tool;
     struct stream stream;
     struct group_body body;
-    struct error error;
     tool_begin(&tool, usage, 0, 1, argc, argv);
     if (tool_first_given(&tool, changes) == NULL && !tool_given(&tool, "verbose")) {
         tool_fail(&tool, STATUS_INPUT, "nothing to do: give -f, -n, -r, -m, -d or -v (see -h)");
@@ -366,13 +361,13 @@ int main(int argc, char *argv[])
     if (stream_find(&stream, "part.node") != NULL) {
         tool_fail(&tool, STATUS_INPUT, "the input is one part of a body: make groups before it is cut");
     }
-    tool_check(&tool, group_body_read(&stream, &body, &error), &error);
+    TOOL_TRY(&tool, group_body_read(&stream, &body, &error));
     for (int i = 0; i < tool.options.use_count; i++) {
         const struct option_use *use = &tool.options.use[i];
         struct request request = {&body, use, unit, tool_given(&tool, "replace")};
-        enum status status = use->option->repeats ? carry_out(&request, &error) : STATUS_OK;
-        if (status != STATUS_OK) {
-            tool_fail(&tool, status, "--%s %.80s: %s", use->option->name, use->value, error.text);
+        if (use->option->repeats) {
+            TOOL_TRY(&tool, fail_in(&error, carry_out(&request, &error), "--%s %.80s", use->option->name,
+                                    use->value));
         }
     }
     finish(&tool, &body, &stream, tool_given(&tool, "verbose"));

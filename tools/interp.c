@@ -43,8 +43,7 @@ static const char usage[] =
     "  interp -p fine.mts coarse.dat | fieldcmp - fine.dat\n"
     "  interp -f u -p grid.tsv -u mm --skip-outside -t u.dat\n";
 
-#include "stage_fill.h"
-#include "mls_options.h"
+#include "stage_options.h"
 #include "stages/solved.h"
 
 #include "approx/field.h"
@@ -104,26 +103,24 @@ static void read_table(const struct tool *tool, const char *file, const char *un
 static void read_nodes(const struct tool *tool, const char *file, int dim, struct points *points)
 {
     struct stream other;
-    struct error error;
+    struct error why;
     int other_dim;
     const double *x;
     const char *name;
     int descriptor = tool_open(tool, file, &name);
-    enum status status = stream_read(&other, descriptor, name, &error);
+    enum status status = stream_read(&other, descriptor, name, &why);
     if (status != STATUS_OK) {
-        tool_fail(tool, status, "%s (a table of coordinates needs -u)", error.text);
+        tool_fail(tool, status, "%s (a table of coordinates needs -u)", why.text);
     }
     if (descriptor != STDIN_FILENO) {
         close(descriptor);
     }
-    status = stream_nodes(&other, &other_dim, &points->count, &x, &error);
-    if (status == STATUS_OK && other_dim != dim) {
-        status = fail(&error, STATUS_INPUT, "nodes.x: points in %dD, the field is in %dD", other_dim, dim);
+    TOOL_TRY(tool, fail_in(&error, stream_nodes(&other, &other_dim, &points->count, &x, &error), "%s", file));
+    if (other_dim != dim) {
+        tool_fail(tool, STATUS_INPUT, "%s: nodes.x: points in %dD, the field is in %dD", file, other_dim,
+                  dim);
     }
-    if (status != STATUS_OK) {
-        tool_fail(tool, status, "%s: %s", file, error.text);
-    }
-    tool_check(tool, NEW_ARRAY(&points->x, points->count * dim, &error), &error);
+    TOOL_TRY(tool, NEW_ARRAY(&points->x, points->count * dim, &error));
     memcpy(points->x, x, (size_t)(points->count * dim) * sizeof *x);
     stream_free(&other);
 }
@@ -201,14 +198,12 @@ done:
 static enum status copy_points(const struct stream *stream, int dim, struct points *points,
                                struct error *error)
 {
-    enum status status;
     const struct section *x;
-    TRY(stream_need(stream, "points.x", TYPE_F8, dim, "ipoints", &x, error));
+    RETURN_IF_ERROR(stream_need(stream, "points.x", TYPE_F8, dim, "ipoints", &x, error));
     points->count = x->rows;
-    TRY(NEW_ARRAY(&points->x, x->rows * dim, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&points->x, x->rows * dim, error));
     memcpy(points->x, x->data, (size_t)(x->rows * dim) * sizeof(double));
-done:
-    return status;
+    return STATUS_OK;
 }
 
 /* Whether a section is a field at the nodes: not one of those that describe the discretisation. */

@@ -45,7 +45,7 @@ static const char usage[] =
     "  nodes -u mm body.msh | ipoints -a 0.02 -k 2 | support -k 2 | shapefn > table.mts\n"
     "  cloud -d 2 -k regular -n 18 --box -4,4,-4,4 | ipoints --lattice 81,81 > lattice.mts\n";
 
-#include "mls_options.h"
+#include "stage_options.h"
 #include "stages/stages.h"
 
 static void parse_lattice(const struct tool *tool, const char *text, int64_t lattice[3])

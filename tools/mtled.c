@@ -70,7 +70,7 @@ static const char usage[] =
     "  mpirun -n 4 mtled-mpi -o u.dat brain2d.scene part.%d.mts    by processes (make mpi); same bytes\n";
 
 #include "overwrite.h"
-#include "stage_fill.h"
+#include "stage_options.h"
 #include "process.h"
 #include "run.h"
 

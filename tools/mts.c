@@ -76,17 +76,13 @@ static int list(struct tool *tool)
 static int print(struct tool *tool)
 {
     struct stream stream;
-    struct error error;
     const char *name = tool->operands[1];
     tool_read(tool, tool->operands[2], &stream);
     const struct section *section = stream_find(&stream, name);
     if (section == NULL) {
         tool_fail(tool, STATUS_INPUT, "no section %s: see mts list", name);
     }
-    enum status status = stream_write_rows(section, STDOUT_FILENO, &error);
-    if (status != STATUS_OK) {
-        tool_fail(tool, status, "standard output: %s", error.text);
-    }
+    TOOL_TRY(tool, fail_in(&error, stream_write_rows(section, STDOUT_FILENO, &error), "standard output"));
     stream_free(&stream);
     return tool_end(tool);
 }

@@ -1,7 +1,7 @@
 static const char usage[] =
     "nodes - gmsh mesh to node cloud, background cells, facets and node sets\n"
     "\n"
-    "usage: nodes -u UNIT [-r REGION,...] [--midside drop|use] [-v] [-b | -t] [-o FILE] [MESH]\n"
+    "usage: nodes -u UNIT [-r REGION,...] [--midside drop|use] [-v] [-t] [-o FILE] [MESH]\n"
     "       nodes -l [MESH]\n"
     "\n"
     "Reads a mesh of gmsh (MSH 1, 2 or 4, ASCII or binary, partitioned or not; triangles and quadrangles\n"
@@ -44,8 +44,7 @@ static const char usage[] =
     "  -v, --verbose           report on standard error: box, volume, connected bodies, poorest cells by\n"
     "                          quality (radius of the inscribed to that of the circumscribed sphere,\n"
     "                          1 for a regular cell)\n"
-    "  -b, --binary            write binary (default)\n"
-    "  -t, --text              write text\n"
+    "  -t, --text              write text instead of binary\n"
     "  -o, --output FILE       write to FILE, none of the inputs, which appears only when whole\n"
     "\n"
     "Examples:\n"
@@ -151,9 +150,7 @@ static void report(const struct tool *tool, const struct mesh *mesh, bool verbos
 static struct mesh_options parse(const struct tool *tool)
 {
     static const char *const choices[] = {"drop", "use"};
-    static const char *const of_stream[] = {"unit",   "regions", "midside", "verbose",
-                                            "binary", "text",    "output",  NULL};
-    tool_excludes(tool, "binary", "text");
+    static const char *const of_stream[] = {"unit", "regions", "midside", "verbose", "text", "output", NULL};
     if (tool_given(tool, "list") && tool_first_given(tool, of_stream) != NULL) {
         tool_fail(tool, STATUS_INPUT, "-l goes with no other option");
     }

@@ -37,7 +37,7 @@ static const char usage[] =
     "  unpart part.?.mts.table > table.mts\n";
 
 #include "cut_body.h"
-#include "mls_options.h"
+#include "stage_options.h"
 
 #include <stdlib.h>
 #include <string.h>

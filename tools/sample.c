@@ -48,7 +48,7 @@ static const char usage[] =
 #include "image_body.h"
 #include "images.h"
 #include "sample_points.h"
-#include "target.h"
+#include "output.h"
 #include "tissue.h"
 #include "stages/views.h"
 

@@ -30,8 +30,7 @@ static const char usage[] =
     "  nodes -u mm body.msh | shapefn | mtled scene > u.dat\n"
     "  nodes -u mm body.msh | ipoints -g 4 | support -R 9mm | shapefn --mu 1e-7 --mu-unit mm > table.mts\n";
 
-#include "stage_fill.h"
-#include "mls_options.h"
+#include "stage_options.h"
 #include "stages/stages.h"
 
 /* What the shape functions are, for whoever evaluates them elsewhere. */

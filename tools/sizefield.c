@@ -39,7 +39,7 @@ static const char usage[] =
     "  gmsh -2 graded.geo -o graded.msh\n"
     "  sizefield -b u.dat | voxels -h 6mm --sizes - labels.nii.gz > finer.mts\n";
 
-#include "target.h"
+#include "output.h"
 #include "tool.h"
 #include "stages/views.h"
 
@@ -82,11 +82,10 @@ static enum status recover(const struct stream *stream, const char *field, struc
         TRY(stream_regions(stream, cells, &regions, error));
     }
     TRY(NEW_ARRAY(squared, cells->count, error));
-    status = field_error_recovered(cells, regions.of_cell, (int32_t)regions.names.count, section->cols,
-                                   section->data, *squared, error);
-    if (status != STATUS_OK) {
-        status = fail_in(error, status, "%s", field);
-    }
+    TRY(fail_in(error,
+                field_error_recovered(cells, regions.of_cell, (int32_t)regions.names.count, section->cols,
+                                      section->data, *squared, error),
+                "%s", field));
 done:
     names_free(&regions.names);
     return status;

@@ -51,8 +51,7 @@ static const char usage[] =
     "  nodes -u mm body.msh | ipoints | support -k 2 > lists.mts\n"
     "  nodes -u mm body.msh | ipoints -g 4 | support -R 8mm --mu 1e-7 --mu-unit mm | shapefn > a.mts\n";
 
-#include "stage_fill.h"
-#include "mls_options.h"
+#include "stage_options.h"
 #include "stages/stages.h"
 
 #include <stdlib.h>

@@ -42,7 +42,7 @@ static const char usage[] =
     "  tovtk -o u.vtu u.dat && paraview u.vtu\n";
 
 #include "plot.h"
-#include "target.h"
+#include "output.h"
 
 #include <stdlib.h>
 #include <string.h>

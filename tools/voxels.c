@@ -2,7 +2,7 @@ static const char usage[] =
     "voxels - label image to node cloud, background cells, facets and node sets\n"
     "\n"
     "usage: voxels -h LENGTH [--fine LENGTH[:NAME,...]] [--sizes FILE] [-l TABLE]\n"
-    "              [--part NAME=PLACE]... [-s AXIS=PLACE] [--largest] [-u UNIT] [-v] [-b | -t] [-o FILE]\n"
+    "              [--part NAME=PLACE]... [-s AXIS=PLACE] [--largest] [-u UNIT] [-v] [-t] [-o FILE]\n"
     "              [IMAGE]\n"
     "       voxels -h LENGTH --surface NAME[|NAME] [--gap LENGTH] [--fine LENGTH[:NAME,...]] [-l TABLE]\n"
     "              [-s AXIS=PLACE] [--largest] [-u UNIT] [-v] [-o FILE] [IMAGE]\n"
@@ -54,8 +54,7 @@ static const char usage[] =
     "  -u, --unit UNIT         unit of the file's lengths, instead of what it says: m, cm, mm, um, or a\n"
     "                          number of metres\n"
     "  -v, --verbose           report on standard error: volumes in voxels and cells, nodes, angles\n"
-    "  -b, --binary            write binary (default)\n"
-    "  -t, --text              write text\n"
+    "  -t, --text              write text instead of binary\n"
     "  -o, --output FILE       write to FILE, which appears only when whole\n"
     "\n"
     "Examples:\n"
@@ -242,9 +241,8 @@ static void check_options(const struct tool *tool)
     if (!tool_given(tool, "spacing")) {
         tool_fail(tool, STATUS_INPUT, "the spacing is missing: give -h LENGTH, as -h 6mm");
     }
-    tool_excludes(tool, "binary", "text");
-    if (tool_given(tool, "surface") && (tool_given(tool, "binary") || tool_given(tool, "text"))) {
-        tool_fail(tool, STATUS_INPUT, "--surface goes without -b and -t: it writes a table");
+    if (tool_given(tool, "surface") && tool_given(tool, "text")) {
+        tool_fail(tool, STATUS_INPUT, "--surface goes without -t: it writes a table");
     }
     tool_excludes(tool, "surface", "part");
     tool_requires(tool, "gap", "surface");

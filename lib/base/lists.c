@@ -23,8 +23,16 @@ enum status lists_by_row(int64_t items, int per, const int32_t *row, int64_t row
     return STATUS_OK;
 }
 
+int compare_numbers(int count, const int32_t *a, const int32_t *b)
+{
+    int k = 0;
+    while (k < count && a[k] == b[k]) {
+        k++;
+    }
+    return k == count ? 0 : a[k] < b[k] ? -1 : 1;
+}
+
 int compare_int32(const void *left, const void *right)
 {
-    int32_t a = *(const int32_t *)left, b = *(const int32_t *)right;
-    return (a > b) - (a < b);
+    return compare_numbers(1, left, right);
 }

@@ -12,6 +12,11 @@
 MUST_CHECK enum status lists_by_row(int64_t items, int per, const int32_t *row, int64_t rows, int64_t **ptr,
                                     int32_t **idx, struct error *error);
 
+/* Below, at or above 0 as the first numbers that differ, of `count` in each list, ascend, are none or
+ * descend.
+ */
+int compare_numbers(int count, const int32_t *a, const int32_t *b);
+
 /* For qsort and bsearch of int32_t, ascending. */
 int compare_int32(const void *left, const void *right);
 

@@ -97,3 +97,24 @@ enum status array_grow_list(void *pointer, int64_t needed, int64_t *room, size_t
     *room = larger;
     return STATUS_OK;
 }
+
+enum status owned_add(struct owned *owned, void *memory, const char *name, struct error *error)
+{
+    void **grown = memory == NULL ? NULL : array_grow(owned->item, owned->count + 1, sizeof *grown);
+    if (grown == NULL) {
+        free(memory);
+        return fail_memory(error, name);
+    }
+    owned->item = grown;
+    owned->item[owned->count++] = memory;
+    return STATUS_OK;
+}
+
+void owned_free(struct owned *owned)
+{
+    for (int64_t i = 0; i < owned->count; i++) {
+        free(owned->item[i]);
+    }
+    free(owned->item);
+    *owned = (struct owned){0};
+}

@@ -49,6 +49,17 @@ enum status array_resize(void *pointer, int64_t count, size_t size, const char *
 enum status array_grow_list(void *pointer, int64_t needed, int64_t *room, size_t size, const char *name,
                             struct error *error);
 
+/* Memory of one owner, freed all at once. */
+struct owned {
+    int64_t count;
+    void **item; /* count */
+};
+
+/* Add memory from malloc, which is freed on failure; STATUS_SYSTEM, with an error naming it, also for NULL.
+ */
+MUST_CHECK enum status owned_add(struct owned *owned, void *memory, const char *name, struct error *error);
+void owned_free(struct owned *owned);
+
 /* Evaluate a status expression; on failure, leave through the label `done` with `status` set.
  * The functions of lib/ have one exit path, which frees. */
 #define TRY(expression)                                                                                      \

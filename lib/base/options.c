@@ -292,8 +292,7 @@ enum status parse_choice(const char *text, const char *what, const char *const c
             *index = i;
             return STATUS_OK;
         }
-        size_t length = strlen(list);
-        snprintf(list + length, sizeof list - length, "%s%s", i > 0 ? ", " : "", choices[i]);
+        text_append(list, sizeof list, "%s%s", i > 0 ? ", " : "", choices[i]);
     }
     return fail(error, STATUS_INPUT, "%s: '%s' is none of %s", what, text, list);
 }

@@ -29,15 +29,26 @@ enum status fail_in(struct error *error, enum status status, const char *context
 {
     char joined[2 * sizeof error->text];
     va_list arguments;
+    if (status == STATUS_OK) {
+        return status;
+    }
     va_start(arguments, context);
     vsnprintf(joined, sizeof error->text, context, arguments);
     va_end(arguments);
-    size_t length = strlen(joined);
-    snprintf(joined + length, sizeof joined - length, ": %s", error->text);
+    text_append(joined, sizeof joined, ": %s", error->text);
     memcpy(error->text, joined, sizeof error->text);
     error->text[sizeof error->text - 1] = '\0';
     make_one_line(error->text);
     return status;
+}
+
+void text_append(char *text, size_t size, const char *format, ...)
+{
+    size_t length = strlen(text);
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(text + length, size - length, format, arguments);
+    va_end(arguments);
 }
 
 enum status fail_memory(struct error *error, const char *what)

@@ -39,9 +39,13 @@ struct error {
 enum status fail(struct error *error, enum status status, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 
-/* Put "context: " in front of the message of `error`; return `status`. */
+/* Put "context: " in front of the message of `error`, unless `status` is STATUS_OK; return `status`. So the
+ * status of a call may stand in its place: fail_in(error, call(..., error), "...") */
 enum status fail_in(struct error *error, enum status status, const char *context, ...)
     __attribute__((format(printf, 3, 4)));
+
+/* Print behind the text that text[size] holds, as far as there is room. */
+void text_append(char *text, size_t size, const char *format, ...) __attribute__((format(printf, 3, 4)));
 
 /* fail() with the out-of-memory message for `what`. */
 enum status fail_memory(struct error *error, const char *what);

@@ -150,10 +150,8 @@ static enum status write_new(const char *name, const struct stream *stream, stru
     if (descriptor < 0) {
         return fail_file(name, error);
     }
-    enum status status = stream_write(stream, descriptor, false, error);
-    if (status != STATUS_OK) {
-        fail_in(error, status, "%s", name);
-    } else if (fsync(descriptor) != 0) {
+    enum status status = fail_in(error, stream_write(stream, descriptor, false, error), "%s", name);
+    if (status == STATUS_OK && fsync(descriptor) != 0) {
         status = fail_file(name, error);
     }
     if (close(descriptor) != 0 && status == STATUS_OK) {

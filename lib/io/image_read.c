@@ -320,9 +320,8 @@ enum status image_read_from(struct image *image, int descriptor, const char *nam
     image_source_close(&source);
     if (status != STATUS_OK) {
         image_free(image);
-        return fail_in(error, status, "%s", name);
     }
-    return STATUS_OK;
+    return fail_in(error, status, "%s", name);
 }
 
 enum status image_read(struct image *image, const char *path, struct error *error)

@@ -50,8 +50,7 @@ void image_to_voxel(const struct image *image, double inverse[3][4])
 
 void nifti_note(struct image *image, const char *text)
 {
-    size_t length = strlen(image->note);
-    snprintf(image->note + length, sizeof image->note - length, "%s%s", length > 0 ? "; " : "", text);
+    text_append(image->note, sizeof image->note, "%s%s", image->note[0] != '\0' ? "; " : "", text);
 }
 
 /* NIfTI-1 standard, "quaternion representation of rotation matrix"; lengths and signs in pixdim. */

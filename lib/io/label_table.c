@@ -138,11 +138,7 @@ enum status label_table_read(const char *path, struct label_table *table, struct
     TRY(textfile_read(path, size_limit, &file, error));
     for (char *rest = file.text; *rest != '\0'; number++) {
         char *line = strsep(&rest, "\n");
-        status = add_row(table, line, error);
-        if (status != STATUS_OK) {
-            (void)fail_in(error, status, "%s:%lld", path, (long long)number);
-            goto done;
-        }
+        TRY(fail_in(error, add_row(table, line, error), "%s:%lld", path, (long long)number));
     }
     if (table->range_count == 0 && !table->others) {
         status = fail(error, STATUS_INPUT, "%s: names no label", path);

@@ -66,6 +66,9 @@ struct mesh_names {
     char **name; /* count, distinct, without blanks and commas */
 };
 
+/* Append a name, a copy. */
+MUST_CHECK enum status mesh_add_name(struct mesh_names *names, const char *name, struct error *error);
+
 /* A mesh of simplices in metres. The arrays are those of the stream (see lib/README.md). */
 struct mesh {
     int dim; /* 2 or 3 */

@@ -21,8 +21,7 @@ struct mesh_draft {
     struct error *error;
 };
 
-/* Append a name (copied) or a note (printf-style). */
-MUST_CHECK enum status mesh_add_name(struct mesh_names *names, const char *name, struct error *error);
+/* Append a note (printf-style). */
 MUST_CHECK enum status mesh_add_note(struct mesh_draft *draft, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
 
@@ -60,5 +59,60 @@ MUST_CHECK enum status mesh_check_coincident(struct mesh_draft *draft);
 
 /* Facets and node sets from the elements of lower dimension. */
 MUST_CHECK enum status mesh_build_facets(struct mesh_draft *draft);
+
+/* ---- msh_split.c: splitting elements into simplices, so that elements with a common face split it in the
+ * same way ---- */
+
+/* Elements of first order that an element is made of: places in its list of nodes. */
+struct msh_pieces {
+    int type;  /* of each piece */
+    int count; /* 0: an element of second order that cannot be split at its midside nodes */
+    int8_t node[8][8];
+};
+
+/* With `midside`, an element of second order is split at its midside nodes; without, it is the one of first
+ * order on its corners. */
+const struct msh_pieces *msh_pieces(int type, bool midside);
+
+#define MSH_MOST_SIMPLICES 6
+
+/* Split an element of first order with these nodes in gmsh's order, into simplices of its
+ * dimension: simplices[i][0 .. dim]. Returns how many. Their orientation is left open. A quadrangle, and each
+ * quadrangular face, is split along the diagonal through its lowest node. With `other`, a quadrangle is split
+ * along the other one (that is for meshes of the plane, whose cells share no quadrangles). */
+int msh_split(int type, const int32_t node[], bool other, int32_t simplices[MSH_MOST_SIMPLICES][4]);
+
+/* ---- msh_faces.c: the faces (edges in 2D) of a mesh of simplices, to be found by their nodes ---- */
+
+struct msh_face {
+    int32_t rest[2]; /* its nodes but the lowest, ascending; in 2D the second is -1 */
+    int32_t cell;
+    int8_t opposite; /* which node of the cell is not on it */
+    bool odd;        /* the outward order of the nodes is an odd permutation of the ascending one */
+};
+
+struct msh_faces {
+    int dim;
+    const int32_t *cells;  /* the caller's, cell_count x (dim + 1), positively oriented */
+    int64_t *ptr;          /* node_count + 1: faces by their lowest node */
+    struct msh_face *face; /* cell_count x (dim + 1); those of the same nodes stand side by side */
+};
+
+/* Where a mesh is no mesh: two cells on the same side of a face, or three cells on one. */
+struct msh_overlap {
+    int32_t cell[2]; /* -1 when there is none */
+};
+
+MUST_CHECK enum status msh_faces_make(struct msh_faces *faces, int dim, int64_t node_count,
+                                      int64_t cell_count, const int32_t cells[], struct msh_overlap *overlap,
+                                      struct error *error);
+void msh_faces_free(struct msh_faces *faces);
+
+/* Index of the first face with these `dim` nodes, in any order; *count receives how many cells share it. */
+int64_t msh_faces_find(const struct msh_faces *faces, const int32_t node[], int *count);
+
+/* The nodes of a face, oriented outward from its cell: in 2D the cell is on the left from first to second
+ * node, in 3D the right-hand normal points out. */
+void msh_face_nodes(const struct msh_faces *faces, int64_t face, int32_t node[]);
 
 #endif

@@ -1,7 +1,6 @@
 #include "base/memory.h"
 #include "base/vector.h"
 #include "io/msh_build.h"
-#include "io/msh_split.h"
 
 #include <math.h>
 #include <string.h>

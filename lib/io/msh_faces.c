@@ -1,5 +1,6 @@
-#include "io/msh_faces.h"
+#include "io/msh_build.h"
 
+#include "base/lists.h"
 #include "base/memory.h"
 
 #include <stdlib.h>
@@ -34,12 +35,8 @@ static int compare_faces(const void *left, const void *right)
 {
     const struct msh_face *a = left;
     const struct msh_face *b = right;
-    for (int k = 0; k < 2; k++) {
-        if (a->rest[k] != b->rest[k]) {
-            return a->rest[k] < b->rest[k] ? -1 : 1;
-        }
-    }
-    return (a->cell > b->cell) - (a->cell < b->cell);
+    int nodes = compare_numbers(2, a->rest, b->rest);
+    return nodes != 0 ? nodes : compare_numbers(1, &a->cell, &b->cell);
 }
 
 static bool same_nodes(const struct msh_face *a, const struct msh_face *b)

@@ -1,7 +1,6 @@
 #include "base/lists.h"
 #include "base/memory.h"
 #include "io/msh_build.h"
-#include "io/msh_faces.h"
 
 #include <stdlib.h>
 #include <string.h>

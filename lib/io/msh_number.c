@@ -1,5 +1,6 @@
 #include "base/memory.h"
 #include "io/msh_private.h"
+#include "io/stream_private.h"
 
 #include <stdarg.h>
 #include <stdio.h>
@@ -87,16 +88,10 @@ static int64_t whole_of_text(struct msh_reader *r, const char *what)
     int length;
     const char *word = next_word(r, what, &length);
     int64_t number = 0;
-    bool has_sign = length > 0 && (word[0] == '-' || word[0] == '+');
-    bool good = length > has_sign;
-    for (int i = has_sign; i < length && good; i++) {
-        good = word[i] >= '0' && word[i] <= '9' && !__builtin_mul_overflow(number, (int64_t)10, &number) &&
-               !__builtin_add_overflow(number, (int64_t)(word[i] - '0'), &number);
-    }
-    if (!good) {
+    if (number_parse_integer(word, word + length, -INT64_MAX, INT64_MAX, &number) == NULL) {
         msh_fail(r, "%s: '%.*s' is not a whole number", what, length, word);
     }
-    return has_sign && word[0] == '-' ? -number : number;
+    return number;
 }
 
 static int64_t whole(struct msh_reader *r, const char *what, bool wide, int64_t least, int64_t most)

@@ -301,7 +301,7 @@ enum status msh_read(struct msh *msh, int descriptor, const char *name, struct e
     } else {
         free(bytes.data);
     }
-    return status == STATUS_OK ? status : fail_in(error, status, "%s", name);
+    return fail_in(error, status, "%s", name);
 }
 
 void msh_free(struct msh *msh)

@@ -1,3 +1,4 @@
+#include "base/lists.h"
 #include "base/memory.h"
 #include "io/msh_build.h"
 
@@ -78,12 +79,8 @@ static int compare_cells(const void *left, const void *right)
 {
     const struct keyed_cell *a = left;
     const struct keyed_cell *b = right;
-    for (int k = 0; k < MOST_CORNERS; k++) {
-        if (a->node[k] != b->node[k]) {
-            return a->node[k] < b->node[k] ? -1 : 1;
-        }
-    }
-    return (a->element > b->element) - (a->element < b->element);
+    int nodes = compare_numbers(MOST_CORNERS, a->node, b->node);
+    return nodes != 0 ? nodes : (a->element > b->element) - (a->element < b->element);
 }
 
 static void key_cell(const struct msh *msh, int64_t element, struct keyed_cell *key)
@@ -171,10 +168,8 @@ static bool is_listed(const char *list, const char *name)
 static enum status check_wanted(const struct mesh_draft *draft, const struct mesh_names *present)
 {
     char list[256] = "";
-    size_t used = 0;
-    for (int32_t i = 0; i < present->count && used + 1 < sizeof list; i++) {
-        used +=
-            (size_t)snprintf(list + used, sizeof list - used, "%s%s", i > 0 ? ", " : "", present->name[i]);
+    for (int32_t i = 0; i < present->count; i++) {
+        text_append(list, sizeof list, "%s%s", i > 0 ? ", " : "", present->name[i]);
     }
     for (const char *at = draft->options->regions; at != NULL; at = strchr(at, ',')) {
         at += *at == ',';

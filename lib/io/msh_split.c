@@ -1,4 +1,4 @@
-#include "io/msh_split.h"
+#include "io/msh_build.h"
 
 #include "io/msh.h"
 

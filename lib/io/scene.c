@@ -25,13 +25,11 @@ static enum status add_item(const struct place *place, const struct scene_kind *
     memset(item, 0, kind->item_size);
     ++*count;
     const struct ini_section *section = place->section;
-    struct scene_label label = {.name = strdup(section->name)};
-    if (asprintf(&label.where, "%s:%lld: [%s %s]", scene->path, (long long)section->line, section->kind,
-                 section->name) < 0) {
-        label.where = NULL;
-    }
+    struct scene_label label = {.name = section->name};
+    RETURN_IF_ERROR(place_print(place, &label.where, "%s:%lld: [%s %s]", scene->path,
+                                (long long)section->line, section->kind, section->name));
     memcpy(item, &label, sizeof label);
-    return label.name != NULL && label.where != NULL ? STATUS_OK : fail_memory(place->error, scene->path);
+    return STATUS_OK;
 }
 
 static enum status read_section(const struct place *place, struct scene *scene)
@@ -56,7 +54,8 @@ static enum status read_sections(const struct ini_file *file, struct scene *scen
 {
     for (int round = 0; round < 2; round++) {
         for (int64_t s = 0; s < file->section_count; s++) {
-            struct place place = {.file = file, .section = &file->sections[s], .error = error};
+            struct place place = {
+                .file = file, .section = &file->sections[s], .owned = &scene->owned, .error = error};
             if ((strcmp(place.section->kind, "scene") == 0) == (round == 0)) {
                 RETURN_IF_ERROR(read_section(&place, scene));
             }
@@ -100,16 +99,21 @@ static enum status check_whole(const struct scene *scene, struct error *error)
     return check_regions(scene, error);
 }
 
+static enum status read_file(struct ini_file *file, struct scene *scene, struct error *error)
+{
+    char *path = strdup(scene->path);
+    RETURN_IF_ERROR(owned_add(&scene->owned, path, scene->path, error));
+    scene->path = path;
+    return ini_read(path, &scene->owned, file, error);
+}
+
 enum status scene_read(const char *path, struct scene *scene, struct error *error)
 {
     struct ini_file file = {0};
-    enum status status = STATUS_OK;
-    *scene = (struct scene){.path = strdup(path), .title = strdup("")};
+    enum status status;
+    *scene = (struct scene){.path = path, .title = ""};
     scene->solver = (struct scene_solver){.tolerance = 1e-5, .time_step_margin = .9};
-    if (scene->path == NULL || scene->title == NULL) {
-        TRY(fail_memory(error, path));
-    }
-    TRY(ini_read(path, &file, error));
+    TRY(read_file(&file, scene, error));
     scene->checksum = file.checksum;
     TRY(read_sections(&file, scene, error));
     TRY(check_whole(scene, error));
@@ -119,4 +123,16 @@ done:
         scene_free(scene);
     }
     return status;
+}
+
+void scene_free(struct scene *scene)
+{
+    owned_free(&scene->owned);
+    free(scene->materials);
+    free(scene->displacements);
+    free(scene->contacts);
+    free(scene->pressures);
+    free(scene->tractions);
+    free(scene->forces);
+    *scene = (struct scene){0};
 }

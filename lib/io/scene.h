@@ -30,7 +30,7 @@
 #ifndef IO_SCENE_H
 #define IO_SCENE_H
 
-#include "base/status.h"
+#include "base/memory.h"
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -64,13 +64,14 @@ struct name_list {
 };
 
 struct scene_label {
-    char *name;  /* "craniotomy" */
-    char *where; /* in front of messages about the section: "brain.scene:12: [displacement craniotomy]" */
+    const char *name; /* "craniotomy" */
+    const char
+        *where; /* in front of messages about the section: "brain.scene:12: [displacement craniotomy]" */
 };
 
 struct scene_curve {
     enum scene_curve_kind kind;
-    char *file; /* rows (time, factor); NULL but for SCENE_CURVE_FILE */
+    const char *file; /* rows (time, factor); NULL but for SCENE_CURVE_FILE */
 };
 
 struct scene_material {
@@ -82,7 +83,7 @@ struct scene_material {
     double density;        /* kg/m3, > 0; not given: 1000, which has no effect at rest without gravity */
     double mooney_ratio;   /* C01/C10 >= 0, mooney-rivlin only */
     double ogden_alpha;    /* not 0, ogden only */
-    char *table;       /* NULL, or rows (dim coordinates, E in Pa, nu), one per integration point in order */
+    const char *table; /* NULL, or rows (dim coordinates, E in Pa, nu), one per integration point in order */
     double table_unit; /* m per unit of the table's coordinates */
 };
 
@@ -91,8 +92,8 @@ struct scene_displacement {
     struct name_list facets, nodes; /* exactly one is given, none with SCENE_POINTS; nodes never with
                                        SCENE_NORMAL */
     enum scene_prescription kind;
-    char *table;       /* SCENE_TABLE: rows (dim coordinates, dim displacement components); SCENE_POINTS: the
-                          same of measured points, and perhaps a standard deviation; components may be open */
+    const char *table; /* SCENE_TABLE: rows (dim coordinates, dim displacement components); SCENE_POINTS: the
+                    same of measured points, and perhaps a standard deviation; components may be open */
     double table_unit; /* m per unit of the table */
     double components[3]; /* SCENE_COMPONENTS: m, dim of them */
     bool is_free[3];      /* SCENE_COMPONENTS: this component is not prescribed; never all of them */
@@ -106,7 +107,7 @@ struct scene_contact {
     struct scene_label label;
     struct name_list facets;  /* at least one */
     struct name_list against; /* facets of the body, instead of a rigid surface and its keys */
-    char *rigid;              /* 2D: points of polylines; 3D: triangles (see surface_read) */
+    const char *rigid;        /* 2D: points of polylines; 3D: triangles (see surface_read) */
     double rigid_unit;        /* m per unit of the file */
     enum scene_side side;     /* left, right in 2D; front, back in 3D */
     double stiffness;         /* Pa/m, > 0; 0: not given, chosen by the solver */
@@ -140,7 +141,8 @@ struct scene_load {
 
 /* State at the begin of a dynamic scene. */
 struct scene_initial {
-    char *table; /* NULL: at rest; or rows (dim coordinates, displacement, velocity), one per node in order */
+    const char
+        *table; /* NULL: at rest; or rows (dim coordinates, displacement, velocity), one per node in order */
     double table_unit; /* m per unit of the table, whose velocities are in that unit per second */
 };
 
@@ -165,9 +167,9 @@ struct scene_solver {
 };
 
 struct scene {
-    char *path;        /* the scene file */
+    const char *path;  /* the scene file */
     uint32_t checksum; /* CRC-32 of its bytes */
-    char *title;       /* "" when absent */
+    const char *title; /* "" when absent */
     int dim;           /* 2 or 3 */
     enum scene_analysis analysis;
     double gravity[3]; /* m/s2 */
@@ -186,6 +188,7 @@ struct scene {
     struct scene_initial initial;
     struct scene_output output;
     struct scene_solver solver;
+    struct owned owned; /* the texts and lists of names above */
 };
 
 /* Read a scene file. It reads no other file: the tables are named by path, for the caller to read. Errors, as

@@ -5,6 +5,7 @@
 
 #include <ini.h>
 #include <stdbool.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <zlib.h>
@@ -15,6 +16,7 @@ enum { FILE_LIMIT = 64 << 10, HEADER_LIMIT = 49 }; /* libinih cuts headers beyon
  * line at a time, so that the line of each entry is known, and check the headers ourselves. */
 struct reading {
     struct ini_file *file;
+    struct owned *words;
     const char *at; /* rest of the text */
     int64_t line;   /* line handed over last, from 1 */
     enum status status;
@@ -24,6 +26,14 @@ struct reading {
 static bool is_blank(char c)
 {
     return c == ' ' || c == '\t';
+}
+
+size_t ini_trimmed(const char *text, size_t length)
+{
+    while (length > 0 && is_blank(text[length - 1])) {
+        length--;
+    }
+    return length;
 }
 
 static enum status fail_line(struct reading *reading, const char *what)
@@ -40,10 +50,15 @@ static size_t content_length(const char *line, size_t length)
             length = i;
         }
     }
-    while (length > 0 && is_blank(line[length - 1])) {
-        length--;
-    }
-    return length;
+    return ini_trimmed(line, length);
+}
+
+/* A word that the caller owns; NULL on failure. */
+static char *keep(struct reading *reading, const char *text, size_t length)
+{
+    char *word = strndup(text, length);
+    reading->status = owned_add(reading->words, word, reading->file->path, reading->error);
+    return reading->status == STATUS_OK ? word : NULL;
 }
 
 static bool is_word(const char *text, size_t length)
@@ -70,11 +85,10 @@ static enum status add_section(struct reading *reading, const char *header, size
     struct ini_file *file = reading->file;
     RETURN_IF_ERROR(RESIZE_ARRAY(&file->sections, file->section_count + 1, reading->error));
     struct ini_section *section = &file->sections[file->section_count++];
-    *section = (struct ini_section){
-        .kind = strndup(kind, kind_length), .name = strndup(name, name_length), .line = reading->line};
-    if (section->kind == NULL || section->name == NULL) {
-        return fail_memory(reading->error, file->path);
-    }
+    *section = (struct ini_section){.kind = keep(reading, kind, kind_length),
+                                    .name = keep(reading, name, name_length),
+                                    .line = reading->line};
+    RETURN_IF_ERROR(reading->status);
     for (const struct ini_section *other = file->sections; other < section; other++) {
         if (strcmp(other->kind, section->kind) == 0 && strcmp(other->name, section->name) == 0) {
             return fail(reading->error, STATUS_INPUT, "%s:%lld: [%.*s]: already in line %lld: join the two",
@@ -97,17 +111,11 @@ static enum status look_at_line(struct reading *reading, const char *line, size_
     if (line[0] == '[') {
         return add_section(reading, line, length);
     }
-    size_t key_length = 0;
-    while (key_length < length && line[key_length] != '=') {
-        key_length++;
-    }
-    if (key_length == length) {
+    const char *equals = memchr(line, '=', length);
+    if (equals == NULL) {
         return fail_line(reading, "neither [kind NAME], nor key = value, nor a comment");
     }
-    while (key_length > 0 && is_blank(line[key_length - 1])) {
-        key_length--;
-    }
-    if (!is_word(line, key_length)) {
+    if (!is_word(line, ini_trimmed(line, (size_t)(equals - line)))) {
         return fail_line(reading, "key before '=' is not one word of letters, digits, '_', '.', '-'");
     }
     return reading->file->section_count > 0 ? STATUS_OK
@@ -142,20 +150,21 @@ static enum status add_entry(struct reading *reading, const char *key, const cha
 {
     struct ini_section *section = &reading->file->sections[reading->file->section_count - 1];
     const struct ini_entry *other = ini_find(section, key);
+    char what[64] = "has no value";
     if (other != NULL) {
-        return fail(reading->error, STATUS_INPUT, "%s:%lld: [%s%s%s]: %s: already in line %lld",
-                    reading->file->path, (long long)reading->line, section->kind, *section->name ? " " : "",
-                    section->name, key, (long long)other->line);
+        snprintf(what, sizeof what, "already in line %lld", (long long)other->line);
     }
-    if (*value == '\0') {
-        return fail(reading->error, STATUS_INPUT, "%s:%lld: [%s%s%s]: %s: has no value", reading->file->path,
-                    (long long)reading->line, section->kind, *section->name ? " " : "", section->name, key);
+    if (other != NULL || *value == '\0') {
+        return fail(reading->error, STATUS_INPUT, "%s:%lld: [%s%s%s]: %s: %s", reading->file->path,
+                    (long long)reading->line, section->kind, *section->name ? " " : "", section->name, key,
+                    what);
     }
     RETURN_IF_ERROR(RESIZE_ARRAY(&section->entries, section->entry_count + 1, reading->error));
     struct ini_entry *entry = &section->entries[section->entry_count++];
-    *entry = (struct ini_entry){.key = strdup(key), .value = strdup(value), .line = reading->line};
-    return entry->key != NULL && entry->value != NULL ? STATUS_OK
-                                                      : fail_memory(reading->error, reading->file->path);
+    *entry = (struct ini_entry){.key = keep(reading, key, strlen(key)), .line = reading->line};
+    RETURN_IF_ERROR(reading->status);
+    entry->value = keep(reading, value, strlen(value));
+    return reading->status;
 }
 
 static int take_entry(void *user, const char *section, const char *key, const char *value)
@@ -168,45 +177,27 @@ static int take_entry(void *user, const char *section, const char *key, const ch
     return reading->status == STATUS_OK;
 }
 
-enum status ini_read(const char *path, struct ini_file *file, struct error *error)
+enum status ini_read(const char *path, struct owned *words, struct ini_file *file, struct error *error)
 {
     struct textfile text = {0};
-    enum status status = STATUS_OK;
-    *file = (struct ini_file){.path = strdup(path)};
-    if (file->path == NULL) {
-        TRY(fail_memory(error, path));
-    }
-    TRY(textfile_read(path, FILE_LIMIT, &text, error));
+    *file = (struct ini_file){.path = path};
+    RETURN_IF_ERROR(textfile_read(path, FILE_LIMIT, &text, error));
     file->checksum = (uint32_t)crc32(0, (const unsigned char *)text.text, (unsigned)text.size);
-
-    struct reading reading = {.file = file, .at = text.text, .error = error};
+    struct reading reading = {.file = file, .words = words, .at = text.text, .error = error};
     int result = ini_parse_stream(next_line, &reading, take_entry, &reading);
-    TRY(reading.status);
-    if (result != 0) { /* nothing that passed look_at_line should fail */
-        TRY(fail(error, STATUS_INPUT, "%s:%d: not an INI line", path, result));
+    if (reading.status == STATUS_OK && result != 0) { /* nothing that passed look_at_line should fail */
+        reading.status = fail(error, STATUS_INPUT, "%s:%d: not an INI line", path, result);
     }
-done:
     textfile_free(&text);
-    if (status != STATUS_OK) {
-        ini_free(file);
-    }
-    return status;
+    return reading.status;
 }
 
 void ini_free(struct ini_file *file)
 {
     for (int64_t s = 0; s < file->section_count; s++) {
-        struct ini_section *section = &file->sections[s];
-        for (int64_t e = 0; e < section->entry_count; e++) {
-            free(section->entries[e].key);
-            free(section->entries[e].value);
-        }
-        free(section->entries);
-        free(section->kind);
-        free(section->name);
+        free(file->sections[s].entries);
     }
     free(file->sections);
-    free(file->path);
     *file = (struct ini_file){0};
 }
 

@@ -2,40 +2,43 @@
 #ifndef IO_SCENE_INI_H
 #define IO_SCENE_INI_H
 
-#include "base/status.h"
+#include "base/memory.h"
 
 #include <stdint.h>
 
 struct ini_entry {
-    char *key;
-    char *value; /* not empty, without blanks at its ends */
+    const char *key;
+    char *value; /* not empty, without blanks at its ends; whoever reads it may cut it up */
     int64_t line;
 };
 
 /* `[kind NAME]` or `[kind]`. */
 struct ini_section {
-    char *kind;
-    char *name; /* "" when the header has none */
+    const char *kind;
+    const char *name; /* "" when the header has none */
     int64_t line;
     struct ini_entry *entries; /* keys differ */
     int64_t entry_count;
 };
 
 struct ini_file {
-    char *path;
+    const char *path;             /* the caller's */
     uint32_t checksum;            /* CRC-32 of its bytes */
     struct ini_section *sections; /* kind and name together differ */
     int64_t section_count;
 };
 
-/* Read an INI file. Errors as `FILE:LINE: ...`: those of textfile_read, over-long lines, headers that are not
- * `[kind]` or `[kind NAME]`, keys without value or outside any section, repeated sections and keys. On
- * failure the file is empty. */
-MUST_CHECK enum status ini_read(const char *path, struct ini_file *file, struct error *error);
+/* Read an INI file; `path` and `words`, which its words are added to, have to outlive it. Errors as `FILE:LINE: ...`: those of textfile_read, over-long
+ * lines, headers that are not `[kind]` or `[kind NAME]`, keys without value or outside any section, repeated
+ * sections and keys. To be freed also on failure. */
+MUST_CHECK enum status ini_read(const char *path, struct owned *words, struct ini_file *file, struct error *error);
 
 void ini_free(struct ini_file *file);
 
 /* The entry of that key, or NULL. */
 const struct ini_entry *ini_find(const struct ini_section *section, const char *key);
+
+/* The length of a text without the blanks at its end. */
+size_t ini_trimmed(const char *text, size_t length);
 
 #endif

@@ -24,7 +24,8 @@ static enum status read_scene(const struct place *place, struct scene *scene)
     RETURN_IF_ERROR(place_choice(place, "analysis", analyses, &analysis));
     scene->analysis = (enum scene_analysis)analysis;
     RETURN_IF_ERROR(place_vector(place, "gravity", scene->dim, scene->gravity, NULL));
-    return place_text(place, "title", &scene->title);
+    place_text(place, "title", &scene->title);
+    return STATUS_OK;
 }
 
 static enum status read_elasticity(const struct place *place, struct scene_material *material)
@@ -91,8 +92,7 @@ static enum status read_material(const struct place *place, struct scene *scene)
     RETURN_IF_ERROR(place_number(place, "rho", range_positive, &material->density));
     RETURN_IF_ERROR(place_table(place, "table", &material->table, &material->table_unit));
     if (material->table != NULL) {
-        RETURN_IF_ERROR(place_forbid(place, "E", "the table gives E and nu"));
-        RETURN_IF_ERROR(place_forbid(place, "nu", "the table gives E and nu"));
+        RETURN_IF_ERROR(place_forbid_all(place, KEYS{"E", "nu", NULL}, "the table gives E and nu"));
     } else {
         RETURN_IF_ERROR(read_elasticity(place, material));
     }
@@ -118,8 +118,7 @@ static enum status read_displacement(const struct place *place, struct scene *sc
     if (place_has(place, "points")) {
         return read_points(place, displacement);
     }
-    RETURN_IF_ERROR(place_forbid(place, "reach", "it goes with points"));
-    RETURN_IF_ERROR(place_forbid(place, "model_error", "it goes with points"));
+    RETURN_IF_ERROR(place_forbid_all(place, KEYS{"reach", "model_error", NULL}, "it goes with points"));
     RETURN_IF_ERROR(place_require_one(place, KEYS{"table", "components", "normal", NULL}));
     RETURN_IF_ERROR(place_names(place, "facets", &displacement->facets));
     RETURN_IF_ERROR(place_names(place, "nodes", &displacement->nodes));
@@ -149,9 +148,8 @@ static enum status read_motion(const struct place *place, int dim, struct scene_
     contact->moves = turns || place_has(place, "translation");
     contact->axis[2] = dim == 2 ? 1.0 : 0.0;
     if (!turns) {
-        RETURN_IF_ERROR(place_forbid(place, "axis_point", "no angle is given"));
-        RETURN_IF_ERROR(place_forbid(place, "axis", "no angle is given"));
-        RETURN_IF_ERROR(place_forbid(place, "angle_curve", "no angle is given"));
+        RETURN_IF_ERROR(
+            place_forbid_all(place, KEYS{"axis_point", "axis", "angle_curve", NULL}, "no angle is given"));
     }
     if (!contact->moves) {
         RETURN_IF_ERROR(place_forbid(place, "curve", "the surface has neither translation nor angle"));
@@ -194,11 +192,8 @@ static enum status read_motion(const struct place *place, int dim, struct scene_
 static enum status read_against(const struct place *place, struct scene_contact *contact)
 {
     static const char *const rigid[] = {"rigid",      "unit", "side",  "translation", "angle",
-                                        "axis_point", "axis", "curve", "angle_curve"};
-    for (size_t i = 0; i < sizeof rigid / sizeof *rigid; i++) {
-        RETURN_IF_ERROR(
-            place_forbid(place, rigid[i], "against names facets of the body, not a rigid surface"));
-    }
+                                        "axis_point", "axis", "curve", "angle_curve", NULL};
+    RETURN_IF_ERROR(place_forbid_all(place, rigid, "against names facets of the body, not a rigid surface"));
     RETURN_IF_ERROR(place_names(place, "against", &contact->against));
     return place_number(place, "stiffness", range_positive, &contact->stiffness);
 }
@@ -251,9 +246,8 @@ static enum status read_pressure(const struct place *place, struct scene *scene)
     if (place_has(place, "density")) {
         RETURN_IF_ERROR(read_fluid(place, scene, load));
     } else {
-        for (const char *const *key = KEYS{"level", "side", "gravity", NULL}; *key != NULL; key++) {
-            RETURN_IF_ERROR(place_forbid(place, *key, "it goes with density"));
-        }
+        RETURN_IF_ERROR(
+            place_forbid_all(place, KEYS{"level", "side", "gravity", NULL}, "it goes with density"));
     }
     return place_curve(place, "curve", &load->curve);
 }

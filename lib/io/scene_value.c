@@ -35,7 +35,7 @@ bool place_has(const struct place *place, const char *key)
     return ini_find(place->section, key) != NULL;
 }
 
-static const char *text_of(const struct place *place, const char *key)
+static char *text_of(const struct place *place, const char *key)
 {
     const struct ini_entry *entry = ini_find(place->section, key);
     return entry != NULL ? entry->value : NULL;
@@ -51,14 +51,20 @@ enum status place_forbid(const struct place *place, const char *key, const char 
     return !place_has(place, key) ? STATUS_OK : place_fail(place, key, "not allowed: %s", why);
 }
 
+enum status place_forbid_all(const struct place *place, const char *const keys[], const char *why)
+{
+    for (int i = 0; keys[i] != NULL; i++) {
+        RETURN_IF_ERROR(place_forbid(place, keys[i], why));
+    }
+    return STATUS_OK;
+}
+
 /* "a, b, c" of a NULL-terminated list. */
 static void join(const char *const words[], char *text, size_t size)
 {
-    size_t length = 0;
     text[0] = '\0';
-    for (int i = 0; words[i] != NULL && length < size; i++) {
-        int added = snprintf(text + length, size - length, "%s%s", i > 0 ? ", " : "", words[i]);
-        length += added > 0 ? (size_t)added : 0;
+    for (int i = 0; words[i] != NULL; i++) {
+        text_append(text, size, "%s%s", i > 0 ? ", " : "", words[i]);
     }
 }
 
@@ -171,100 +177,79 @@ enum status place_yes(const struct place *place, const char *key, bool *value)
     return status;
 }
 
-static bool is_blank(char c)
+/* The next item of a comma list, without blanks at its ends, cut off; NULL behind the last. */
+static char *next_item(char **list)
 {
-    return c == ' ' || c == '\t';
-}
-
-/* Copy the next item of a comma list, without blanks at its ends; *at moves behind its comma, or to NULL
- * after the last. NULL when out of memory. */
-static char *next_item(const char **at)
-{
-    const char *begin = *at;
-    const char *end = begin + strcspn(begin, ",");
-    *at = *end == ',' ? end + 1 : NULL;
-    while (begin < end && is_blank(*begin)) {
-        begin++;
+    char *item = strsep(list, ",");
+    if (item != NULL) {
+        item += strspn(item, " \t");
+        item[ini_trimmed(item, strlen(item))] = '\0';
     }
-    while (end > begin && is_blank(end[-1])) {
-        end--;
-    }
-    return strndup(begin, (size_t)(end - begin));
+    return item;
 }
 
 enum status place_vector(const struct place *place, const char *key, int dim, double values[3],
                          bool is_free[3])
 {
-    const char *at = text_of(place, key);
-    char *item = NULL;
+    char *list = text_of(place, key), *item;
     int count = 0;
-    enum status status = STATUS_OK;
-    if (at == NULL) {
+    if (list == NULL) {
         return STATUS_OK;
     }
-    for (; at != NULL; count++) {
-        free(item);
-        item = next_item(&at);
-        if (item == NULL) {
-            TRY(fail_memory(place->error, place->file->path));
-        }
-        if (count >= dim) {
-            continue;
-        }
-        if (is_free != NULL && strcmp(item, "free") == 0) {
+    for (; (item = next_item(&list)) != NULL; count++) {
+        if (count < dim && is_free != NULL && strcmp(item, "free") == 0) {
             is_free[count] = true;
-        } else {
-            TRY(number(place, key, item, &values[count]));
+        } else if (count < dim) {
+            RETURN_IF_ERROR(number(place, key, item, &values[count]));
         }
     }
-    if (count != dim) {
-        TRY(place_fail(place, key, "has %d components: dim = %d needs %d", count, dim, dim));
-    }
-done:
-    free(item);
-    return status;
+    return count == dim ? STATUS_OK
+                        : place_fail(place, key, "has %d components: dim = %d needs %d", count, dim, dim);
 }
 
 enum status place_names(const struct place *place, const char *key, struct name_list *list)
 {
-    const char *at = text_of(place, key);
-    while (at != NULL) {
-        RETURN_IF_ERROR(RESIZE_ARRAY(&list->names, list->count + 1, place->error));
-        char *item = next_item(&at);
-        if (item == NULL) {
-            return fail_memory(place->error, place->file->path);
-        }
-        list->names[list->count++] = item;
+    char *rest = text_of(place, key), *item;
+    if (rest == NULL) {
+        return STATUS_OK;
+    }
+    list->names = array_new((int64_t)strlen(rest) + 1, sizeof *list->names); /* more than enough */
+    RETURN_IF_ERROR(owned_add(place->owned, list->names, place->file->path, place->error));
+    while ((item = next_item(&rest)) != NULL) {
         if (item[0] == '\0') {
             return place_fail(place, key, "has an empty name: write names with single commas between");
         }
-        for (int64_t i = 0; i < list->count - 1; i++) {
+        for (int64_t i = 0; i < list->count; i++) {
             if (strcmp(list->names[i], item) == 0) {
                 return place_fail(place, key, "names '%s' twice", item);
             }
         }
+        list->names[list->count++] = item;
     }
     return STATUS_OK;
 }
 
-enum status place_file(const struct place *place, const char *key, char **path)
+enum status place_print(const struct place *place, const char **text, const char *format, ...)
 {
-    const char *text = text_of(place, key);
+    char *printed;
+    va_list arguments;
+    va_start(arguments, format);
+    *text = printed = vasprintf(&printed, format, arguments) < 0 ? NULL : printed;
+    va_end(arguments);
+    return owned_add(place->owned, printed, place->file->path, place->error);
+}
+
+enum status place_file(const struct place *place, const char *key, const char **path)
+{
+    const char *text = text_of(place, key), *scene = place->file->path, *slash = strrchr(scene, '/');
     if (text == NULL) {
         return STATUS_OK;
     }
-    const char *slash = strrchr(place->file->path, '/');
-    size_t folder = text[0] != '/' && slash != NULL ? (size_t)(slash - place->file->path) + 1 : 0;
-    size_t size = folder + strlen(text) + 1;
-    *path = array_grow(NULL, (int64_t)size, 1);
-    if (*path == NULL) {
-        return fail_memory(place->error, place->file->path);
-    }
-    snprintf(*path, size, "%.*s%s", (int)folder, place->file->path, text);
-    return STATUS_OK;
+    int folder = text[0] != '/' && slash != NULL ? (int)(slash - scene) + 1 : 0;
+    return place_print(place, path, "%.*s%s", folder, scene, text);
 }
 
-enum status place_table(const struct place *place, const char *key, char **path, double *metres)
+enum status place_table(const struct place *place, const char *key, const char **path, double *metres)
 {
     const char *unit = text_of(place, "unit");
     struct error why;
@@ -280,19 +265,10 @@ enum status place_table(const struct place *place, const char *key, char **path,
     return place_file(place, key, path);
 }
 
-enum status place_text(const struct place *place, const char *key, char **value)
+void place_text(const struct place *place, const char *key, const char **value)
 {
     const char *text = text_of(place, key);
-    char *copy = text != NULL ? strdup(text) : NULL;
-    if (text == NULL) {
-        return STATUS_OK;
-    }
-    if (copy == NULL) {
-        return fail_memory(place->error, place->file->path);
-    }
-    free(*value);
-    *value = copy;
-    return STATUS_OK;
+    *value = text != NULL ? text : *value;
 }
 
 enum status place_curve(const struct place *place, const char *key, struct scene_curve *curve)

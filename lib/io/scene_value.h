@@ -15,6 +15,7 @@
 struct place {
     const struct ini_file *file;
     const struct ini_section *section;
+    struct owned *owned; /* of the scene */
     struct error *error;
 };
 
@@ -38,6 +39,9 @@ MUST_CHECK enum status place_require(const struct place *place, const char *key,
 
 /* An error if the key is there; `why` follows the message "not allowed: ". */
 MUST_CHECK enum status place_forbid(const struct place *place, const char *key, const char *why);
+
+/* The same of all keys of a NULL-terminated list. */
+MUST_CHECK enum status place_forbid_all(const struct place *place, const char *const keys[], const char *why);
 
 /* An error unless exactly one of the keys (a NULL-terminated list) is there. */
 MUST_CHECK enum status place_require_one(const struct place *place, const char *const keys[]);
@@ -68,14 +72,19 @@ MUST_CHECK enum status place_vector(const struct place *place, const char *key, 
 MUST_CHECK enum status place_names(const struct place *place, const char *key, struct name_list *list);
 
 /* A file, relative to the scene's folder unless absolute. */
-MUST_CHECK enum status place_file(const struct place *place, const char *key, char **path);
+MUST_CHECK enum status place_file(const struct place *place, const char *key, const char **path);
 
 /* A file of lengths: the key and `unit`, whose size in metres is stored; one is an error without the other.
  */
-MUST_CHECK enum status place_table(const struct place *place, const char *key, char **path, double *metres);
+MUST_CHECK enum status place_table(const struct place *place, const char *key, const char **path,
+                                   double *metres);
 
-/* A copy of the whole text; the old *value is freed. */
-MUST_CHECK enum status place_text(const struct place *place, const char *key, char **value);
+/* The whole text. */
+void place_text(const struct place *place, const char *key, const char **value);
+
+/* A text as of printf, which the scene owns. */
+MUST_CHECK enum status place_print(const struct place *place, const char **text, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
 
 MUST_CHECK enum status place_curve(const struct place *place, const char *key, struct scene_curve *curve);
 

@@ -1,5 +1,7 @@
 #include "io/sections.h"
 
+#include "base/options.h"
+
 #include <string.h>
 
 const struct section_kind section_kinds[SECTION_KINDS] = {
@@ -88,4 +90,18 @@ void sections_remove(struct stream *stream, enum section_stage first, enum secti
             stream_remove(stream, stream->sections[i].name);
         }
     }
+}
+
+int64_t frame_of(const char *name, size_t *length)
+{
+    static const char infix[] = ".frame.";
+    struct error ignored;
+    int64_t frame;
+    const char *at = strstr(name, infix);
+    *length = strlen(name);
+    if (at == NULL || parse_integer(at + strlen(infix), name, 0, INT32_MAX, &frame, &ignored) != STATUS_OK) {
+        return FRAME_NONE;
+    }
+    *length = (size_t)(at - name);
+    return frame;
 }

@@ -41,4 +41,12 @@ enum section_stage section_stage(const char *name);
 /* Remove what the stages first .. last have made. */
 void sections_remove(struct stream *stream, enum section_stage first, enum section_stage last);
 
+/* Sections of frames: X.frame.K is section X in state K of a run; 0 is the state at its begin. */
+
+/* What frame_of gives for a section that belongs to no frame. */
+#define FRAME_NONE (-1)
+
+/* K of a section X.frame.K; FRAME_NONE for another section. *length receives that of X. */
+int64_t frame_of(const char *name, size_t *length);
+
 #endif

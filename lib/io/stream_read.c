@@ -276,9 +276,8 @@ done:
     freelocale(c_locale);
     if (status != STATUS_OK) {
         stream_free(stream);
-        fail_in(error, status, "%s", name);
     }
-    return status;
+    return fail_in(error, status, "%s", name);
 }
 
 enum status stream_read(struct stream *stream, int descriptor, const char *name, struct error *error)

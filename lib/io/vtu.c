@@ -1,12 +1,101 @@
 /* VTK XML files: the format is described in "VTK File Formats" (Kitware), section XML. */
 #include "io/vtk.h"
 
-#include "io/vtk_field.h"
-
+#include <errno.h>
 #include <inttypes.h>
 #include <string.h>
 
 _Static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "values are written as they lie in memory");
+
+/* ---- sections ---- */
+
+/* Copy item `index` of a comma list into text[size]; false when there is none. */
+static bool list_item(const char *list, int64_t index, char *text, size_t size)
+{
+    for (; index > 0; index--) {
+        list = strchr(list, ',');
+        if (list == NULL) {
+            return false;
+        }
+        list++;
+    }
+    size_t length = strcspn(list, ",");
+    if (length == 0 || length >= size) {
+        return false;
+    }
+    memcpy(text, list, length);
+    text[length] = '\0';
+    return true;
+}
+
+/* Copy the name of a column, from attribute cols=, into text[size]; false when it has none. */
+static bool column_name(const struct section *section, int64_t column, char *text, size_t size)
+{
+    char names[1024];
+    return section_attribute(section, "cols", names, sizeof names) && list_item(names, column, text, size);
+}
+
+/* The column of that name, or -1. */
+static int64_t find_column(const struct section *section, const char *wanted)
+{
+    char name[64];
+    for (int64_t column = 0; column < section->cols; column++) {
+        if (column_name(section, column, name, sizeof name) && strcmp(name, wanted) == 0) {
+            return column;
+        }
+    }
+    return -1;
+}
+
+static bool is_floating(const struct section *section)
+{
+    return section->type == TYPE_F4 || section->type == TYPE_F8;
+}
+
+bool vtk_tensor(const struct section *section, int64_t from[6])
+{
+    static const char *const names[6] = {"xx", "yy", "zz", "xy", "yz", "xz"};
+    int64_t found = 0;
+    if (!is_floating(section) || (section->cols != 4 && section->cols != 6)) {
+        return false;
+    }
+    for (int k = 0; k < 6; k++) {
+        from[k] = find_column(section, names[k]);
+        found += from[k] >= 0;
+    }
+    return found == section->cols && (section->cols == 6 || (from[4] < 0 && from[5] < 0));
+}
+
+/* Print an element of a section so that it reads back exactly. */
+static void print_element(FILE *file, const struct section *section, int64_t index)
+{
+    switch (section->type) {
+    case TYPE_I4:
+        fprintf(file, "%" PRId32, ((const int32_t *)section->data)[index]);
+        break;
+    case TYPE_I8:
+        fprintf(file, "%" PRId64, ((const int64_t *)section->data)[index]);
+        break;
+    case TYPE_F4:
+        fprintf(file, "%.9g", (double)((const float *)section->data)[index]);
+        break;
+    case TYPE_F8:
+        fprintf(file, "%.17g", ((const double *)section->data)[index]);
+        break;
+    }
+}
+
+/* Flush; the status of all that was written to the file. */
+static enum status check_written(FILE *file, struct error *error)
+{
+    errno = 0;
+    if (fflush(file) == 0 && ferror(file) == 0) {
+        return STATUS_OK;
+    }
+    return fail(error, STATUS_SYSTEM, "cannot write: %s", errno != 0 ? strerror(errno) : "write error");
+}
+
+/* ---- files ---- */
 
 enum { VTK_VERTEX = 1, VTK_TRIANGLE = 5, VTK_TETRA = 10 };
 
@@ -101,7 +190,7 @@ static struct layout layout_of(const struct vtk_mesh *mesh, const struct section
     layout.is_tensor = vtk_tensor(section, layout.tensor);
     if (layout.is_tensor) {
         layout.count = 6;
-    } else if (vtk_is_floating(section) && mesh->dim == 2 && section->cols == 2) {
+    } else if (is_floating(section) && mesh->dim == 2 && section->cols == 2) {
         layout.count = 3;
     }
     return layout;
@@ -130,7 +219,7 @@ static void put_rows(struct writer *writer, const struct section *section, const
             if (column < 0) {
                 fputc('0', writer->file);
             } else {
-                vtk_print_element(writer->file, section, index);
+                print_element(writer->file, section, index);
             }
         }
         fputs(writer->text ? "\n" : "", writer->file);
@@ -145,12 +234,12 @@ static void put_field(struct writer *writer, const struct vtk_mesh *mesh, const 
     struct layout layout = layout_of(mesh, field->section);
     char name[64];
     begin_array(writer, types[field->section->type], field->name, layout.count);
-    bool is_named = layout.count > 1 && vtk_column_name(field->section, 0, name, sizeof name);
+    bool is_named = layout.count > 1 && column_name(field->section, 0, name, sizeof name);
     for (int64_t k = 0; is_named && k < layout.count; k++) {
         int64_t column = layout_column(&layout, field->section, k);
         if (column < 0) {
             fprintf(writer->file, " ComponentName%" PRId64 "=\"%s\"", k, added[k]);
-        } else if (vtk_column_name(field->section, column, name, sizeof name)) {
+        } else if (column_name(field->section, column, name, sizeof name)) {
             fprintf(writer->file, " ComponentName%" PRId64 "=\"", k);
             print_escaped(writer->file, name);
             fputc('"', writer->file);
@@ -164,7 +253,7 @@ static void put_field(struct writer *writer, const struct vtk_mesh *mesh, const 
 static void put_region_names(struct writer *writer, const char *names)
 {
     char name[256], label[300];
-    for (int64_t i = 0; vtk_list_item(names, i, name, sizeof name); i++) {
+    for (int64_t i = 0; list_item(names, i, name, sizeof name); i++) {
         fputs(i == 0 ? "<FieldData>\n" : "", writer->file);
         snprintf(label, sizeof label, "region.%s", name);
         fputs("<DataArray type=\"Int64\" Name=\"", writer->file);
@@ -174,7 +263,7 @@ static void put_region_names(struct writer *writer, const char *names)
         put_integer(writer, i, 8);
         end_array(writer);
     }
-    fputs(vtk_list_item(names, 0, name, sizeof name) ? "</FieldData>\n" : "", writer->file);
+    fputs(list_item(names, 0, name, sizeof name) ? "</FieldData>\n" : "", writer->file);
 }
 
 static void put_cells(struct writer *writer, const struct vtk_mesh *mesh)
@@ -241,7 +330,7 @@ enum status vtu_write(FILE *file, const struct vtk_mesh *mesh, const struct vtk_
     put_fields(&writer, mesh, fields, field_count, false);
     put_fields(&writer, mesh, fields, field_count, true);
     fputs("</Piece>\n</UnstructuredGrid>\n</VTKFile>\n", file);
-    return vtk_check_written(file, error);
+    return check_written(file, error);
 }
 
 enum status pvd_write(FILE *file, int64_t count, char *const names[], const double *times,
@@ -254,5 +343,5 @@ enum status pvd_write(FILE *file, int64_t count, char *const names[], const doub
         fputs("\"/>\n", file);
     }
     fputs("</Collection>\n</VTKFile>\n", file);
-    return vtk_check_written(file, error);
+    return check_written(file, error);
 }

@@ -47,7 +47,6 @@ done:
 enum status stage_sides(const struct stream *stream, const char *prefix, const int32_t **side,
                         struct error *error)
 {
-    enum status status = STATUS_OK;
     char name[64];
     struct cells cells;
     const struct section *section;
@@ -56,8 +55,8 @@ enum status stage_sides(const struct stream *stream, const char *prefix, const i
     if (stream_find(stream, name) == NULL) {
         return STATUS_OK;
     }
-    TRY(stream_need(stream, name, TYPE_I4, 1, "support", &section, error));
-    TRY(stream_cells(stream, true, &cells, error));
+    RETURN_IF_ERROR(stream_need(stream, name, TYPE_I4, 1, "support", &section, error));
+    RETURN_IF_ERROR(stream_cells(stream, true, &cells, error));
     *side = section->data;
     for (int64_t c = 0; c < section->rows; c++) {
         if ((*side)[c] < 0 || (*side)[c] >= cells.count) {
@@ -68,21 +67,19 @@ enum status stage_sides(const struct stream *stream, const char *prefix, const i
         return fail(error, STATUS_INPUT, "%s: %lld rows for %lld cells: run support again", name,
                     (long long)section->rows, (long long)cells.count);
     }
-done:
-    return status;
+    return STATUS_OK;
 }
 
 enum status stage_own_part(const struct stream *stream, int64_t node_count, struct support_options *options,
                            struct error *error)
 {
-    enum status status = STATUS_OK;
     const struct section *node = stream_find(stream, "part.node"), *owner;
     char value[64];
     int64_t part = 0;
     if (node == NULL) {
         return STATUS_OK;
     }
-    TRY(stream_need(stream, "part.owner", TYPE_I4, 1, "part", &owner, error));
+    RETURN_IF_ERROR(stream_need(stream, "part.owner", TYPE_I4, 1, "part", &owner, error));
     if (owner->rows != node_count) {
         return fail(error, STATUS_INPUT, "part.owner: %lld rows for %lld nodes: cut again",
                     (long long)owner->rows, (long long)node_count);
@@ -90,9 +87,8 @@ enum status stage_own_part(const struct stream *stream, int64_t node_count, stru
     if (!section_attribute(node, "part", value, sizeof value)) {
         return fail(error, STATUS_INPUT, "part.node: no part=: not written by part");
     }
-    TRY(parse_integer(value, "part.node: part", 0, INT32_MAX, &part, error));
+    RETURN_IF_ERROR(parse_integer(value, "part.node: part", 0, INT32_MAX, &part, error));
     options->owner = owner->data;
     options->part = (int32_t)part;
-done:
-    return status;
+    return STATUS_OK;
 }

@@ -18,24 +18,21 @@ struct ipoints_options ipoints_defaults(void)
 /* Room for so many points. */
 static enum status new_points(int64_t count, int dim, struct adaptive_points *points, struct error *error)
 {
-    enum status status;
-    TRY(NEW_ARRAY(&points->x, count * dim, error));
-    TRY(NEW_ARRAY(&points->weight, count, error));
-    TRY(NEW_ARRAY(&points->cell, count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&points->x, count * dim, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&points->weight, count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&points->cell, count, error));
     points->count = count;
-done:
-    return status;
+    return STATUS_OK;
 }
 
 /* One point for each smoothed cell, or those of a rule. */
 static enum status cell_points(const struct cells *cells, int per_cell, struct adaptive_points *points,
                                struct error *error)
 {
-    enum status status;
     struct quadrature_rule rule;
     int dim = cells->dim;
-    TRY(quadrature_cell_rule(dim, per_cell, &rule, error));
-    TRY(new_points(cells->count * per_cell, dim, points, error));
+    RETURN_IF_ERROR(quadrature_cell_rule(dim, per_cell, &rule, error));
+    RETURN_IF_ERROR(new_points(cells->count * per_cell, dim, points, error));
     for (int64_t c = 0; c < cells->count; c++) {
         double volume = cell_volume(cells, c);
         quadrature_positions(&rule, dim, cells->x, cells->node + c * (dim + 1),
@@ -45,8 +42,7 @@ static enum status cell_points(const struct cells *cells, int per_cell, struct a
             points->cell[c * per_cell + q] = (int32_t)c;
         }
     }
-done:
-    return status;
+    return STATUS_OK;
 }
 
 /* n[dim] points along each axis, from one number for all or one for each; *count receives their product. */
@@ -72,13 +68,12 @@ static enum status count_lattice(const int64_t wanted[3], int dim, int64_t n[3],
 static enum status lattice_points(const struct cells *nodes, const int64_t wanted[3],
                                   struct adaptive_points *points, struct error *error)
 {
-    enum status status;
     int dim = nodes->dim;
     int64_t count = 0, n[3];
     double step[3];
     struct box box = box_of(dim, nodes->node_count, nodes->x);
-    TRY(count_lattice(wanted, dim, n, &count, error));
-    TRY(new_points(count, dim, points, error));
+    RETURN_IF_ERROR(count_lattice(wanted, dim, n, &count, error));
+    RETURN_IF_ERROR(new_points(count, dim, points, error));
     for (int a = 0; a < dim; a++) {
         step[a] = (box.high[a] - box.low[a]) / (double)(n[a] - 1);
     }
@@ -93,8 +88,7 @@ static enum status lattice_points(const struct cells *nodes, const int64_t wante
             points->weight[p] *= i == 0 || i == n[a] - 1 ? 0.5 * step[a] : step[a];
         }
     }
-done:
-    return status;
+    return STATUS_OK;
 }
 
 /* What the shape functions of adaptive integration are made from: the settings and radii recorded in the
@@ -102,19 +96,17 @@ done:
 static enum status adaptive_radii(const struct stream *stream, const struct ipoints_options *options,
                                   const struct cells *cells, double *radius, struct error *error)
 {
-    enum status status;
     const struct section *recorded = stream_find(stream, "support.radius");
     if (recorded == NULL || options->given_radius) {
         return stage_radii(stream, &options->refinement.support, cells->node_count, cells->x, radius, error);
     }
-    TRY(stream_need(stream, "support.radius", TYPE_F8, 1, "support", &recorded, error));
+    RETURN_IF_ERROR(stream_need(stream, "support.radius", TYPE_F8, 1, "support", &recorded, error));
     if (recorded->rows != cells->node_count) {
         return fail(error, STATUS_INPUT, "support.radius: %lld rows for %lld nodes: run support again",
                     (long long)recorded->rows, (long long)cells->node_count);
     }
     memcpy(radius, recorded->data, (size_t)recorded->rows * sizeof *radius);
-done:
-    return status;
+    return STATUS_OK;
 }
 
 static enum status adaptive_cell_points(const struct stream *stream, const struct ipoints_options *options,
@@ -134,16 +126,14 @@ done:
 static enum status put_points(struct stream *stream, int dim, const char *rule,
                               struct adaptive_points *points, struct error *error)
 {
-    enum status status;
     char vector[64], attributes[96];
     int64_t count = points->count;
     snprintf(attributes, sizeof attributes, "%s rule=%s", vector_attributes(dim, "m", vector), rule);
-    TRY(stream_put(stream, "points.x", TYPE_F8, count, dim, attributes, array_take(&points->x), true, error));
-    TRY(stream_put(stream, "points.weight", TYPE_F8, count, 1, dim == 2 ? "unit=m2" : "unit=m3",
-                   array_take(&points->weight), true, error));
-    TRY(stream_put(stream, "points.cell", TYPE_I4, count, 1, "", array_take(&points->cell), true, error));
-done:
-    return status;
+    RETURN_IF_ERROR(
+        stream_put(stream, "points.x", TYPE_F8, count, dim, attributes, array_take(&points->x), true, error));
+    RETURN_IF_ERROR(stream_put(stream, "points.weight", TYPE_F8, count, 1, dim == 2 ? "unit=m2" : "unit=m3",
+                               array_take(&points->weight), true, error));
+    return stream_put(stream, "points.cell", TYPE_I4, count, 1, "", array_take(&points->cell), true, error);
 }
 
 /* Faces, and their quadrature points. */

@@ -13,11 +13,11 @@ enum status names_read(const struct section *section, struct names *names, struc
 
 enum status names_of(const struct section *section, const char *key, struct names *names, struct error *error)
 {
-    enum status status;
     size_t size = strlen(section->attributes) + 1;
     *names = (struct names){0};
-    TRY(NEW_ARRAY(&names->list, 2 * (int64_t)size, error)); /* and behind it the same, cut at the commas */
-    TRY(NEW_ARRAY(&names->name, (int64_t)size, error));
+    /* And behind it the same, cut at the commas. */
+    RETURN_IF_ERROR(NEW_ARRAY(&names->list, 2 * (int64_t)size, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&names->name, (int64_t)size, error));
     char *rest = NULL;
     if (section_attribute(section, key, names->list, size) && names->list[0] != '\0') {
         rest = memcpy(names->list + size, names->list, size);
@@ -25,8 +25,7 @@ enum status names_of(const struct section *section, const char *key, struct name
     while (rest != NULL) {
         names->name[names->count++] = strsep(&rest, ",");
     }
-done:
-    return status;
+    return STATUS_OK;
 }
 
 void names_free(struct names *names)
@@ -48,10 +47,9 @@ int64_t names_find(const struct names *names, const char *name)
 
 const char *names_text(const struct names *names, char text[256])
 {
-    snprintf(text, 256, "none");
+    snprintf(text, 256, "%s", names->count == 0 ? "none" : "");
     for (int64_t i = 0; i < names->count; i++) {
-        size_t length = i == 0 ? 0 : strlen(text);
-        snprintf(text + length, 256 - length, "%s%s", i == 0 ? "" : ", ", names->name[i]);
+        text_append(text, 256, "%s%s", i == 0 ? "" : ", ", names->name[i]);
     }
     return text;
 }

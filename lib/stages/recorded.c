@@ -60,7 +60,6 @@ static bool find_attribute(const struct section *section, const char *key, char 
 enum status stage_recorded(const struct stream *stream, const char *prefix, int dim,
                            struct recorded *recorded, struct error *error)
 {
-    enum status status;
     struct support_options *options = &recorded->support;
     char name[64], value[64], what[96];
     int choice = REACH_CELLS;
@@ -72,12 +71,12 @@ enum status stage_recorded(const struct stream *stream, const char *prefix, int 
     if (radius == NULL) {
         return STATUS_OK;
     }
-    TRY(stage_sides(stream, prefix, &options->side, error));
-    TRY(read_mls(radius, "", &options->mls, error));
+    RETURN_IF_ERROR(stage_sides(stream, prefix, &options->side, error));
+    RETURN_IF_ERROR(read_mls(radius, "", &options->mls, error));
     recorded->shapes = options->mls;
-    TRY(read_mls(radius, "shape_", &recorded->shapes, error));
+    RETURN_IF_ERROR(read_mls(radius, "shape_", &recorded->shapes, error));
     if (find_attribute(radius, "reach", value, what)) {
-        TRY(parse_choice(value, what, reach_names, REACH_RULE_COUNT, &choice, error));
+        RETURN_IF_ERROR(parse_choice(value, what, reach_names, REACH_RULE_COUNT, &choice, error));
         options->reach = (enum reach_rule)choice;
     }
     const struct {
@@ -86,15 +85,14 @@ enum status stage_recorded(const struct stream *stream, const char *prefix, int 
     } counts[] = {{"least", &options->least}, {"most", &options->most}, {"widen", &widen}};
     for (int i = 0; i < 3; i++) {
         if (find_attribute(radius, counts[i].key, value, what)) {
-            TRY(parse_integer(value, what, 0, 1000000, counts[i].count, error));
+            RETURN_IF_ERROR(parse_integer(value, what, 0, 1000000, counts[i].count, error));
         }
     }
     options->widen = widen != 0;
     if (find_attribute(radius, "bound", value, what)) {
-        TRY(parse_double(value, what, 1.0, 1e6, &options->gradient_bound, error));
+        RETURN_IF_ERROR(parse_double(value, what, 1.0, 1e6, &options->gradient_bound, error));
     }
-done:
-    return status;
+    return STATUS_OK;
 }
 
 enum status stage_record(struct stream *stream, const struct recorded *recorded, int64_t node_count,

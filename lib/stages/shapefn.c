@@ -33,29 +33,27 @@ struct tabulated {
 static enum status view_points(const struct stream *stream, const char *section, const char *prefix,
                                struct tabulated *of, struct error *error)
 {
-    enum status status;
     int dim;
     const struct section *points, *radius;
-    TRY(stream_nodes(stream, &dim, &of->node_count, &of->nodes, error));
-    TRY(stream_need(stream, section, TYPE_F8, dim, "ipoints", &points, error));
-    TRY(stream_need(stream, "support.radius", TYPE_F8, 1, "support", &radius, error));
-    TRY(stream_neighbours(stream, prefix, points->rows, of->node_count, &of->lists, error));
+    RETURN_IF_ERROR(stream_nodes(stream, &dim, &of->node_count, &of->nodes, error));
+    RETURN_IF_ERROR(stream_need(stream, section, TYPE_F8, dim, "ipoints", &points, error));
+    RETURN_IF_ERROR(stream_need(stream, "support.radius", TYPE_F8, 1, "support", &radius, error));
+    RETURN_IF_ERROR(stream_neighbours(stream, prefix, points->rows, of->node_count, &of->lists, error));
     if (radius->rows != of->node_count || of->lists.widen == NULL) {
-        TRY(fail(error, STATUS_INPUT, "support.radius, %s.widen: do not fit: run support again", prefix));
+        return fail(error, STATUS_INPUT, "support.radius, %s.widen: do not fit: run support again", prefix);
     }
-    TRY(check_numbers(points, false, error));
-    TRY(check_numbers(radius, true, error));
+    RETURN_IF_ERROR(check_numbers(points, false, error));
+    RETURN_IF_ERROR(check_numbers(radius, true, error));
     for (int64_t p = 0; p < points->rows; p++) {
         if (!(of->lists.widen[p] >= 1.0) || !isfinite(of->lists.widen[p])) {
-            TRY(fail(error, STATUS_INPUT, "%s.widen: row %lld: %g is no factor", prefix, (long long)p,
-                     of->lists.widen[p]));
+            return fail(error, STATUS_INPUT, "%s.widen: row %lld: %g is no factor", prefix, (long long)p,
+                        of->lists.widen[p]);
         }
     }
     of->x = points->data;
     of->radius = radius->data;
     of->section = section;
-done:
-    return status;
+    return STATUS_OK;
 }
 
 /* Tabulate phi (and gradients) at the points of one section on the lists of one prefix. */
@@ -88,13 +86,10 @@ done:
 static enum status put_table(struct stream *stream, const char *prefix, int64_t rows, int64_t **ptr,
                              int32_t **idx, double **phi, struct error *error)
 {
-    enum status status;
     int64_t pairs = (*ptr)[rows];
-    TRY(stream_put_member(stream, prefix, "ptr", TYPE_I8, rows + 1, 1, "", ptr, error));
-    TRY(stream_put_member(stream, prefix, "idx", TYPE_I4, pairs, 1, "", idx, error));
-    TRY(stream_put_member(stream, prefix, "phi", TYPE_F8, pairs, 1, "", phi, error));
-done:
-    return status;
+    RETURN_IF_ERROR(stream_put_member(stream, prefix, "ptr", TYPE_I8, rows + 1, 1, "", ptr, error));
+    RETURN_IF_ERROR(stream_put_member(stream, prefix, "idx", TYPE_I4, pairs, 1, "", idx, error));
+    return stream_put_member(stream, prefix, "phi", TYPE_F8, pairs, 1, "", phi, error);
 }
 
 /* The values at points on the boundary, and the averages over faces of smoothed cells. What lies at the
@@ -138,18 +133,15 @@ done:
 
 enum status stage_shapefn(struct stream *stream, const struct mls *mls, struct error *error)
 {
-    enum status status;
     const struct section *points;
     sections_remove(stream, MADE_WITH_SHAPES, MADE_WITH_SHAPES);
-    TRY(stream_need(stream, "points.x", TYPE_F8, mls->dim, "ipoints", &points, error));
+    RETURN_IF_ERROR(stream_need(stream, "points.x", TYPE_F8, mls->dim, "ipoints", &points, error));
     bool smoothed = points_are_smoothed(points);
     if (stream_find(stream, "faces") != NULL || smoothed) {
-        TRY(put_faces(stream, mls, smoothed, error));
+        RETURN_IF_ERROR(put_faces(stream, mls, smoothed, error));
     }
     if (!smoothed) {
-        TRY(tabulate(stream, mls, "points.x", "nbr", "shape.phi", true, error));
+        RETURN_IF_ERROR(tabulate(stream, mls, "points.x", "nbr", "shape.phi", true, error));
     }
-    TRY(tabulate(stream, mls, "nodes.x", "node", "node.phi", false, error));
-done:
-    return status;
+    return tabulate(stream, mls, "nodes.x", "node", "node.phi", false, error);
 }

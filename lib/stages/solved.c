@@ -16,7 +16,6 @@ enum status solved_read(const struct stream *stream, struct solved *solved, stru
 enum status supports_read(const struct stream *stream, const char *of, struct solved *solved,
                           struct error *error)
 {
-    enum status status = STATUS_OK;
     int dim;
     int64_t node_count;
     const double *x;
@@ -27,9 +26,9 @@ enum status supports_read(const struct stream *stream, const char *of, struct so
     if (radius == NULL) {
         return STATUS_OK;
     }
-    TRY(stream_nodes(stream, &dim, &node_count, &x, error));
-    TRY(stream_need(stream, radius->name, TYPE_F8, 1, "mtled", &radius, error));
-    TRY(stage_recorded(stream, of, dim, &solved->recorded, error));
+    RETURN_IF_ERROR(stream_nodes(stream, &dim, &node_count, &x, error));
+    RETURN_IF_ERROR(stream_need(stream, radius->name, TYPE_F8, 1, "mtled", &radius, error));
+    RETURN_IF_ERROR(stage_recorded(stream, of, dim, &solved->recorded, error));
     if (radius->rows != node_count) {
         return fail(error, STATUS_INPUT, "%s: %lld rows for %lld nodes", radius->name,
                     (long long)radius->rows, (long long)node_count);
@@ -41,8 +40,7 @@ enum status supports_read(const struct stream *stream, const char *of, struct so
                         (long long)i, solved->radius[i]);
         }
     }
-done:
-    return status;
+    return STATUS_OK;
 }
 
 const struct section *solved_parameters(const struct stream *stream, const struct solved *solved,

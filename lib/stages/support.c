@@ -96,13 +96,12 @@ done:
 static enum status places_of_points(const struct stream *stream, const struct cells *cells, int64_t points,
                                     struct reach_places *places, struct error *error)
 {
-    enum status status = STATUS_OK;
     const struct section *section = stream_find(stream, "points.cell");
     *places = (struct reach_places){0};
     if (section == NULL) {
         return STATUS_OK;
     }
-    TRY(stream_need(stream, "points.cell", TYPE_I4, 1, "ipoints", &section, error));
+    RETURN_IF_ERROR(stream_need(stream, "points.cell", TYPE_I4, 1, "ipoints", &section, error));
     if (section->rows != points) {
         return fail(error, STATUS_INPUT, "points.cell: %lld rows for %lld points: run ipoints again",
                     (long long)section->rows, (long long)points);
@@ -114,8 +113,7 @@ static enum status places_of_points(const struct stream *stream, const struct ce
         }
     }
     *places = (struct reach_places){.cell = cell, .points_per_row = 1};
-done:
-    return status;
+    return STATUS_OK;
 }
 
 /* The cells at the points of faces, in arrays of the caller's; to be found by place where faces.cell is not
@@ -124,21 +122,19 @@ static enum status places_of_face_points(const struct stream *stream, const stru
                                          int64_t points, int64_t **ptr, int32_t **cell,
                                          struct reach_places *places, struct error *error)
 {
-    enum status status = STATUS_OK;
     struct faces faces;
     *places = (struct reach_places){0};
     if (cells->count == 0 || stream_find(stream, "faces.cell") == NULL) {
         return STATUS_OK;
     }
-    TRY(stream_faces(stream, cells, &faces, error));
+    RETURN_IF_ERROR(stream_faces(stream, cells, &faces, error));
     if (face_row_point(&faces, faces.row_count) != points) {
-        TRY(fail(error, STATUS_INPUT, "facepoints.x: does not fit faces.row: run ipoints again"));
+        return fail(error, STATUS_INPUT, "facepoints.x: does not fit faces.row: run ipoints again");
     }
-    TRY(face_rows_cells(cells->node_count, &faces, ptr, cell, error));
+    RETURN_IF_ERROR(face_rows_cells(cells->node_count, &faces, ptr, cell, error));
     *places = (struct reach_places){
         .ptr = *ptr, .cell = *cell, .points_per_row = OWN_POINTS(cells->dim), .long_rows = faces.own_count};
-done:
-    return status;
+    return STATUS_OK;
 }
 
 /* The rows of faces, and their points, as the sides have them. */

@@ -8,11 +8,10 @@
 /* The integration points. */
 static enum status read_points(const struct stream *stream, struct assembly *input, struct error *error)
 {
-    enum status status;
     const struct section *points, *weight, *cell;
-    TRY(stream_need(stream, "points.x", TYPE_F8, input->cells.dim, "ipoints", &points, error));
-    TRY(stream_need(stream, "points.weight", TYPE_F8, 1, "ipoints", &weight, error));
-    TRY(stream_need(stream, "points.cell", TYPE_I4, 1, "ipoints", &cell, error));
+    RETURN_IF_ERROR(stream_need(stream, "points.x", TYPE_F8, input->cells.dim, "ipoints", &points, error));
+    RETURN_IF_ERROR(stream_need(stream, "points.weight", TYPE_F8, 1, "ipoints", &weight, error));
+    RETURN_IF_ERROR(stream_need(stream, "points.cell", TYPE_I4, 1, "ipoints", &cell, error));
     input->smoothed = points_are_smoothed(points);
     input->point_count = points->rows;
     input->x = points->data;
@@ -20,18 +19,18 @@ static enum status read_points(const struct stream *stream, struct assembly *inp
     input->point_cell = cell->data;
     if (weight->rows != points->rows || cell->rows != points->rows ||
         (input->smoothed && points->rows != input->cells.count)) {
-        TRY(fail(error, STATUS_INPUT, "points.x, points.weight, points.cell: do not fit: run ipoints again"));
+        return fail(error, STATUS_INPUT,
+                    "points.x, points.weight, points.cell: do not fit: run ipoints again");
     }
     for (int64_t q = 0; q < input->point_count; q++) {
         int32_t of_point = input->point_cell[q];
         if (of_point < 0 || of_point >= input->cells.count) {
-            TRY(fail(error, STATUS_INPUT,
-                     "points.cell: row %lld: no cell %d: an evaluation lattice cannot be integrated over",
-                     (long long)q, of_point));
+            return fail(error, STATUS_INPUT,
+                        "points.cell: row %lld: no cell %d: an evaluation lattice cannot be integrated over",
+                        (long long)q, of_point);
         }
     }
-done:
-    return status;
+    return STATUS_OK;
 }
 
 /* A table of shapefn: sections PREFIX.ptr and .idx, and values or gradients on these lists. */
@@ -54,32 +53,30 @@ done:
 /* The tables over points or faces, over the boundary, and over the nodes. */
 static enum status read_tables(const struct stream *stream, struct assembly *input, struct error *error)
 {
-    enum status status;
     int dim = input->cells.dim, per_face = OWN_POINTS(dim);
     int64_t nodes = input->cells.node_count, points = input->point_count;
-    TRY(stream_faces(stream, &input->cells, &input->faces, error));
+    RETURN_IF_ERROR(stream_faces(stream, &input->cells, &input->faces, error));
     if (input->smoothed) {
-        TRY(read_table(stream, "face", "face.phi", 1, input->faces.row_count, nodes, &input->lists,
-                       &input->phi, error));
+        RETURN_IF_ERROR(read_table(stream, "face", "face.phi", 1, input->faces.row_count, nodes,
+                                   &input->lists, &input->phi, error));
     } else {
-        TRY(read_table(stream, "nbr", "shape.phi", 1, points, nodes, &input->lists, &input->phi, error));
-        TRY(read_table(stream, "nbr", "shape.dphi", dim, points, nodes, &input->lists, &input->dphi, error));
+        RETURN_IF_ERROR(
+            read_table(stream, "nbr", "shape.phi", 1, points, nodes, &input->lists, &input->phi, error));
+        RETURN_IF_ERROR(
+            read_table(stream, "nbr", "shape.dphi", dim, points, nodes, &input->lists, &input->dphi, error));
     }
-    TRY(read_table(stream, "boundary", "boundary.phi", 1, input->faces.boundary_count * per_face, nodes,
-                   &input->boundary_lists, &input->boundary_phi, error));
-    TRY(read_table(stream, "node", "node.phi", 1, nodes, nodes, &input->node_lists, &input->node_phi, error));
-done:
-    return status;
+    RETURN_IF_ERROR(read_table(stream, "boundary", "boundary.phi", 1, input->faces.boundary_count * per_face,
+                               nodes, &input->boundary_lists, &input->boundary_phi, error));
+    return read_table(stream, "node", "node.phi", 1, nodes, nodes, &input->node_lists, &input->node_phi,
+                      error);
 }
 
 enum status stage_tables(const struct stream *stream, struct assembly *input, struct error *error)
 {
-    enum status status;
-    TRY(stream_cells(stream, true, &input->cells, error));
-    TRY(read_points(stream, input, error));
-    TRY(read_tables(stream, input, error));
-    TRY(stage_sides(stream, "support", &input->cell_side, error));
+    RETURN_IF_ERROR(stream_cells(stream, true, &input->cells, error));
+    RETURN_IF_ERROR(read_points(stream, input, error));
+    RETURN_IF_ERROR(read_tables(stream, input, error));
+    RETURN_IF_ERROR(stage_sides(stream, "support", &input->cell_side, error));
     assembly_complete(input);
-done:
-    return status;
+    return STATUS_OK;
 }

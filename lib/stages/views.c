@@ -11,10 +11,7 @@ enum status stream_nodes(const struct stream *stream, int *dim, int64_t *node_co
                          struct error *error)
 {
     const struct section *nodes;
-    enum status status = stream_need(stream, "nodes.x", TYPE_F8, 0, "nodes", &nodes, error);
-    if (status != STATUS_OK) {
-        return status;
-    }
+    RETURN_IF_ERROR(stream_need(stream, "nodes.x", TYPE_F8, 0, "nodes", &nodes, error));
     if ((nodes->cols != 2 && nodes->cols != 3) || nodes->rows < 1 || nodes->rows > INT32_MAX) {
         return fail(error, STATUS_INPUT,
                     "nodes.x: %lld rows of %lld columns: not a cloud in 2 or 3 dimensions",
@@ -34,47 +31,41 @@ enum status stream_nodes(const struct stream *stream, int *dim, int64_t *node_co
 
 enum status stream_cells(const struct stream *stream, bool needed, struct cells *cells, struct error *error)
 {
-    enum status status;
     const struct section *section = stream_find(stream, "cells");
     *cells = (struct cells){0};
-    TRY(stream_nodes(stream, &cells->dim, &cells->node_count, &cells->x, error));
+    RETURN_IF_ERROR(stream_nodes(stream, &cells->dim, &cells->node_count, &cells->x, error));
     if (section == NULL && !needed) {
         return STATUS_OK;
     }
-    TRY(stream_need(stream, "cells", TYPE_I4, cells->dim + 1, "nodes", &section, error));
+    RETURN_IF_ERROR(stream_need(stream, "cells", TYPE_I4, cells->dim + 1, "nodes", &section, error));
     cells->count = section->rows;
     cells->node = section->data;
-    TRY(cells_check(cells, error));
-done:
-    return status;
+    return cells_check(cells, error);
 }
 
 enum status stream_field(const struct stream *stream, const char *name, int64_t node_count,
                          const struct section **field, struct error *error)
 {
-    enum status status;
-    TRY(stream_need(stream, name, TYPE_F8, 0, "mtled", field, error));
+    RETURN_IF_ERROR(stream_need(stream, name, TYPE_F8, 0, "mtled", field, error));
     if ((*field)->cols > 3 || (*field)->rows != node_count) {
         return fail(error, STATUS_INPUT,
                     "%s: %lld rows of %lld columns: not a field of 1 to 3 columns on %lld nodes", name,
                     (long long)(*field)->rows, (long long)(*field)->cols, (long long)node_count);
     }
-done:
-    return status;
+    return STATUS_OK;
 }
 
 enum status stream_regions(const struct stream *stream, const struct cells *cells,
                            struct cell_regions *regions, struct error *error)
 {
-    enum status status;
     const struct section *section;
     *regions = (struct cell_regions){0};
-    TRY(stream_need(stream, "cells.region", TYPE_I4, 1, "nodes", &section, error));
+    RETURN_IF_ERROR(stream_need(stream, "cells.region", TYPE_I4, 1, "nodes", &section, error));
     if (section->rows != cells->count) {
         return fail(error, STATUS_INPUT, "cells.region: has %lld rows, cells %lld: does not fit",
                     (long long)section->rows, (long long)cells->count);
     }
-    TRY(names_read(section, &regions->names, error));
+    RETURN_IF_ERROR(names_read(section, &regions->names, error));
     regions->of_cell = section->data;
     for (int64_t c = 0; c < cells->count; c++) {
         if (regions->of_cell[c] < 0 || regions->of_cell[c] >= regions->names.count) {
@@ -82,40 +73,36 @@ enum status stream_regions(const struct stream *stream, const struct cells *cell
                         regions->of_cell[c]);
         }
     }
-done:
-    return status;
+    return STATUS_OK;
 }
 
 enum status stream_facets(const struct stream *stream, bool needed, int dim, struct named_facets *facets,
                           struct error *error)
 {
-    enum status status = STATUS_OK;
     const struct section *facet, *set;
     *facets = (struct named_facets){0};
     if (!needed && stream_find(stream, "facets") == NULL) {
         return STATUS_OK;
     }
-    TRY(stream_need(stream, "facets", TYPE_I4, dim, "nodes", &facet, error));
-    TRY(stream_need(stream, "facets.set", TYPE_I4, 1, "nodes", &set, error));
+    RETURN_IF_ERROR(stream_need(stream, "facets", TYPE_I4, dim, "nodes", &facet, error));
+    RETURN_IF_ERROR(stream_need(stream, "facets.set", TYPE_I4, 1, "nodes", &set, error));
     if (set->rows != facet->rows) {
         return fail(error, STATUS_INPUT, "facets.set: does not fit facets");
     }
     *facets = (struct named_facets){.count = facet->rows, .facet = facet->data, .set = set->data};
-done:
-    return status;
+    return STATUS_OK;
 }
 
 /* Own rows of faces stand first, which those on the boundary have; then those of edges, as they come. */
 static enum status view_rows(const struct stream *stream, struct faces *faces, struct error *error)
 {
-    enum status status = STATUS_OK;
     const struct section *row;
     int64_t bad = -1;
     faces->own_count = faces->row_count = faces->count;
     if (!faces_may_share(faces)) {
         return STATUS_OK;
     }
-    TRY(stream_need(stream, "faces.row", TYPE_I4, FACE_ROWS(faces->dim), "ipoints", &row, error));
+    RETURN_IF_ERROR(stream_need(stream, "faces.row", TYPE_I4, FACE_ROWS(faces->dim), "ipoints", &row, error));
     if (row->rows != faces->count) {
         return fail(error, STATUS_INPUT, "faces.row: does not fit faces: run ipoints again");
     }
@@ -141,17 +128,15 @@ static enum status view_rows(const struct stream *stream, struct faces *faces, s
         return fail(error, STATUS_INPUT, "faces.row: row %lld: not rows of this face: run ipoints again",
                     (long long)bad);
     }
-done:
-    return status;
+    return STATUS_OK;
 }
 
 enum status stream_faces(const struct stream *stream, const struct cells *cells, struct faces *faces,
                          struct error *error)
 {
-    enum status status;
     const struct section *node, *cell;
-    TRY(stream_need(stream, "faces", TYPE_I4, cells->dim, "ipoints", &node, error));
-    TRY(stream_need(stream, "faces.cell", TYPE_I4, 2, "ipoints", &cell, error));
+    RETURN_IF_ERROR(stream_need(stream, "faces", TYPE_I4, cells->dim, "ipoints", &node, error));
+    RETURN_IF_ERROR(stream_need(stream, "faces.cell", TYPE_I4, 2, "ipoints", &cell, error));
     *faces = (struct faces){.dim = cells->dim, .count = node->rows, .node = node->data, .cell = cell->data};
     if (cell->rows != faces->count) {
         return fail(error, STATUS_INPUT, "faces.cell: does not fit faces: run ipoints again");
@@ -175,9 +160,7 @@ enum status stream_faces(const struct stream *stream, const struct cells *cells,
                         (long long)f);
         }
     }
-    TRY(view_rows(stream, faces, error));
-done:
-    return status;
+    return view_rows(stream, faces, error);
 }
 
 bool points_are_smoothed(const struct section *points)
@@ -190,7 +173,6 @@ bool points_are_smoothed(const struct section *points)
 static enum status view_around(const struct stream *stream, const char *prefix, int64_t pairs,
                                struct around *around, struct error *error)
 {
-    enum status status;
     char name[64];
     int dim;
     int64_t node_count;
@@ -201,10 +183,10 @@ static enum status view_around(const struct stream *stream, const char *prefix, 
     if (stream_find(stream, name) == NULL) {
         return STATUS_OK;
     }
-    TRY(stream_nodes(stream, &dim, &node_count, &x, error));
-    TRY(stream_need(stream, name, TYPE_I8, 1, "support", &pair, error));
+    RETURN_IF_ERROR(stream_nodes(stream, &dim, &node_count, &x, error));
+    RETURN_IF_ERROR(stream_need(stream, name, TYPE_I8, 1, "support", &pair, error));
     snprintf(name, sizeof name, "%s.image", prefix);
-    TRY(stream_need(stream, name, TYPE_F8, dim, "support", &image, error));
+    RETURN_IF_ERROR(stream_need(stream, name, TYPE_F8, dim, "support", &image, error));
     *around = (struct around){.count = pair->rows, .pair = pair->data, .offset = image->data};
     if (image->rows != pair->rows) {
         return fail(error, STATUS_INPUT, "%s: does not fit %s.around: run support again", name, prefix);
@@ -220,20 +202,18 @@ static enum status view_around(const struct stream *stream, const char *prefix, 
             return fail(error, STATUS_INPUT, "%s: row %lld: not a finite offset", name, (long long)(i / dim));
         }
     }
-done:
-    return status;
+    return STATUS_OK;
 }
 
 enum status stream_neighbours(const struct stream *stream, const char *prefix, int64_t rows, int64_t columns,
                               struct neighbours *lists, struct error *error)
 {
-    enum status status;
     char name[64];
     const struct section *ptr, *idx, *widen;
     snprintf(name, sizeof name, "%s.ptr", prefix);
-    TRY(stream_need(stream, name, TYPE_I8, 1, "support", &ptr, error));
+    RETURN_IF_ERROR(stream_need(stream, name, TYPE_I8, 1, "support", &ptr, error));
     snprintf(name, sizeof name, "%s.idx", prefix);
-    TRY(stream_need(stream, name, TYPE_I4, 1, "support", &idx, error));
+    RETURN_IF_ERROR(stream_need(stream, name, TYPE_I4, 1, "support", &idx, error));
     snprintf(name, sizeof name, "%s.widen", prefix);
     widen = stream_find(stream, name);
     *lists = (struct neighbours){.count = rows, .ptr = ptr->data, .idx = idx->data};
@@ -263,9 +243,7 @@ enum status stream_neighbours(const struct stream *stream, const char *prefix, i
             }
         }
     }
-    TRY(view_around(stream, prefix, idx->rows, &lists->around, error));
-done:
-    return status;
+    return view_around(stream, prefix, idx->rows, &lists->around, error);
 }
 
 enum status stream_put_member(struct stream *stream, const char *prefix, const char *name,

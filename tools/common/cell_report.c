@@ -44,21 +44,21 @@ const char *cell_report_describe(const struct cells *cells, const struct poor_ce
 {
     double centre[3];
     cell_centroid(cells, poor->cell, centre);
-    int length = snprintf(text, 128, "quality %.2g at", poor->quality);
+    snprintf(text, 128, "quality %.2g at", poor->quality);
     for (int k = 0; k < cells->dim; k++) {
-        length += snprintf(text + length, (size_t)(128 - length), " %.4g", centre[k]);
+        text_append(text, 128, " %.4g", centre[k]);
     }
-    snprintf(text + length, (size_t)(128 - length), " m");
+    text_append(text, 128, " m");
     return text;
 }
 
 const char *cell_report_box(const struct box *box, char text[128])
 {
-    int length = 0;
+    text[0] = '\0';
     for (int k = 0; k < 2 * box->dim; k++) {
-        length += snprintf(text + length, (size_t)(128 - length), "%s%.4g ", k == box->dim ? "to " : "",
-                           k < box->dim ? box->low[k] : box->high[k - box->dim]);
+        text_append(text, 128, "%s%.4g ", k == box->dim ? "to " : "",
+                    k < box->dim ? box->low[k] : box->high[k - box->dim]);
     }
-    snprintf(text + length, (size_t)(128 - length), "m");
+    text_append(text, 128, "m");
     return text;
 }

@@ -29,11 +29,10 @@ struct comparison_request comparison_parse(const struct tool *tool)
 
 static enum status view_side(struct side *side, const char *field, struct error *error)
 {
-    enum status status;
     struct nodal_field *view = &side->field;
-    TRY(stream_cells(&side->stream, false, &view->cells, error));
-    TRY(stream_field(&side->stream, field, view->cells.node_count, &side->section, error));
-    TRY(solved_read(&side->stream, &side->solved, error));
+    RETURN_IF_ERROR(stream_cells(&side->stream, false, &view->cells, error));
+    RETURN_IF_ERROR(stream_field(&side->stream, field, view->cells.node_count, &side->section, error));
+    RETURN_IF_ERROR(solved_read(&side->stream, &side->solved, error));
     const struct section *parameters = solved_parameters(&side->stream, &side->solved, side->section);
     view->cols = side->section->cols;
     view->values = side->section->data;
@@ -43,19 +42,14 @@ static enum status view_side(struct side *side, const char *field, struct error 
         view->support = &side->solved.recorded.support;
         view->shapes = &side->solved.recorded.shapes;
     }
-done:
-    return status;
+    return STATUS_OK;
 }
 
 void side_read(const struct tool *tool, const char *file, const char *field, struct side *side)
 {
-    struct error error;
     *side = (struct side){.name = strcmp(file, "-") == 0 ? "standard input" : file};
     tool_read(tool, file, &side->stream);
-    enum status status = view_side(side, field, &error);
-    if (status != STATUS_OK) {
-        tool_fail(tool, status, "%s: %s", side->name, error.text);
-    }
+    TOOL_TRY(tool, fail_in(&error, view_side(side, field, &error), "%s", side->name));
 }
 
 void sides_check(const struct tool *tool, const struct side *first, const struct side *second,
@@ -79,6 +73,57 @@ static bool has_unknown(const struct tool *tool, const struct side *side, const 
         }
     }
     return false;
+}
+
+static enum status regions_read(const struct stream *stream, const struct cells *cells,
+                                struct regions *regions, struct error *error)
+{
+    enum status status;
+    struct cell_regions of;
+    int corners = cells->dim + 1;
+    *regions = (struct regions){.node_count = cells->node_count};
+    if (stream_find(stream, "cells.region") == NULL || cells->count == 0) {
+        return STATUS_OK;
+    }
+    status = stream_regions(stream, cells, &of, error);
+    regions->names = of.names;
+    TRY(status);
+    int64_t count = of.names.count;
+    TRY(NEW_ARRAY(&regions->member, cells->node_count * count, error));
+    for (int64_t i = 0; i < cells->count * corners; i++) {
+        regions->member[cells->node[i] * count + of.of_cell[i / corners]] = true;
+    }
+done:
+    return status;
+}
+
+static void regions_free(struct regions *regions)
+{
+    names_free(&regions->names);
+    free(regions->member);
+    *regions = (struct regions){0};
+}
+
+/* *chosen[node_count], allocated: the nodes of the region `name`, an error that lists the regions if there is
+ * none; NULL (all nodes) without a name. */
+static enum status regions_choose(const struct regions *regions, const char *name, bool **chosen,
+                                  struct error *error)
+{
+    char list[256];
+    *chosen = NULL;
+    if (name == NULL) {
+        return STATUS_OK;
+    }
+    int64_t region = names_find(&regions->names, name);
+    if (region < 0) {
+        return fail(error, STATUS_INPUT, "--region: no region '%s'; there are: %s", name,
+                    names_text(&regions->names, list));
+    }
+    RETURN_IF_ERROR(NEW_ARRAY(chosen, regions->node_count, error));
+    for (int64_t n = 0; n < regions->node_count; n++) {
+        (*chosen)[n] = regions->member[n * regions->names.count + region];
+    }
+    return STATUS_OK;
 }
 
 void findings_make(const struct tool *tool, const struct comparison_request *request, const struct side *a,

@@ -3,11 +3,17 @@
 #ifndef TOOLS_COMPARISON_H
 #define TOOLS_COMPARISON_H
 
-#include "regions.h"
 #include "stages/solved.h"
 #include "tool.h"
 
 #include "approx/field_compare.h"
+
+/* The regions of a stream's cells: their names, and which nodes belong to each; none where there are none. */
+struct regions {
+    int64_t node_count;
+    struct names names;
+    bool *member; /* node_count * names.count: a node is of the region of every cell at it */
+};
 
 /* A stream and its field. */
 struct side {

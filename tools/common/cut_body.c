@@ -87,8 +87,7 @@ void cut_body_keep_sections(struct cut_body *whole)
             kept = kept || strcmp(section->name, known[k]) == 0;
         }
         if (!kept) {
-            size_t length = strlen(dropped);
-            snprintf(dropped + length, sizeof dropped - length, " %s", section->name);
+            text_append(dropped, sizeof dropped, " %s", section->name);
             stream_remove(stream, section->name);
         }
     }

@@ -2,7 +2,7 @@
 
 #include "base/eigen.h"
 #include "base/memory.h"
-#include "frames.h"
+#include "io/sections.h"
 #include "io/vtk.h"
 
 #include <math.h>
@@ -132,7 +132,6 @@ static bool has_section(const struct stream *stream, const char *name, const cha
 
 enum status derived_add_invariants(const struct stream *stream, struct derived *derived, struct error *error)
 {
-    enum status status = STATUS_OK;
     for (int64_t s = 0; s < stream->section_count; s++) {
         const struct section *section = &stream->sections[s];
         size_t length;
@@ -146,8 +145,8 @@ enum status derived_add_invariants(const struct stream *stream, struct derived *
                 (what->given != NULL && has_section(stream, what->given, tail))) {
                 continue;
             }
-            TRY(append(derived, what->base, what->name, tail, TYPE_F8, section->rows, what->cols,
-                       what->attributes, error));
+            RETURN_IF_ERROR(append(derived, what->base, what->name, tail, TYPE_F8, section->rows, what->cols,
+                                   what->attributes, error));
             double *values = last_data(derived);
             for (int64_t row = 0; row < section->rows; row++) {
                 double A[9];
@@ -156,8 +155,7 @@ enum status derived_add_invariants(const struct stream *stream, struct derived *
             }
         }
     }
-done:
-    return status;
+    return STATUS_OK;
 }
 
 /* One section of ones and zeros for each name; *first receives the index of the first, *count how many. */
@@ -193,55 +191,49 @@ static enum status mark(struct derived *derived, int64_t item, const char *secti
 static enum status add_facet_groups(const struct stream *stream, int dim, int64_t node_count,
                                     struct derived *derived, struct error *error)
 {
-    enum status status;
     struct named_facets facets;
     int64_t first, count;
-    TRY(stream_facets(stream, false, dim, &facets, error));
+    RETURN_IF_ERROR(stream_facets(stream, false, dim, &facets, error));
     if (facets.count == 0) {
         return STATUS_OK;
     }
-    TRY(append_groups(stream_find(stream, "facets.set"), "facets", node_count, derived, &first, &count,
-                      error));
+    RETURN_IF_ERROR(append_groups(stream_find(stream, "facets.set"), "facets", node_count, derived, &first,
+                                  &count, error));
     for (int64_t f = 0; f < facets.count; f++) {
         if (facets.set[f] < 0 || facets.set[f] >= count) {
             return fail(error, STATUS_INPUT, "facets.set: row %lld: index %d is not within its %lld names",
                         (long long)f, facets.set[f], (long long)count);
         }
         for (int k = 0; k < dim; k++) {
-            TRY(mark(derived, first + facets.set[f], "facets", f, facets.facet[f * dim + k], error));
+            RETURN_IF_ERROR(
+                mark(derived, first + facets.set[f], "facets", f, facets.facet[f * dim + k], error));
         }
     }
-done:
-    return status;
+    return STATUS_OK;
 }
 
 static enum status add_node_sets(const struct stream *stream, int64_t node_count, struct derived *derived,
                                  struct error *error)
 {
-    enum status status;
     struct neighbours sets;
     const struct section *ptr = stream_find(stream, "sets.ptr");
     int64_t first, count;
     if (ptr == NULL) {
         return STATUS_OK;
     }
-    TRY(append_groups(ptr, "set", node_count, derived, &first, &count, error));
-    TRY(stream_neighbours(stream, "sets", count, node_count, &sets, error));
+    RETURN_IF_ERROR(append_groups(ptr, "set", node_count, derived, &first, &count, error));
+    RETURN_IF_ERROR(stream_neighbours(stream, "sets", count, node_count, &sets, error));
     for (int64_t s = 0; s < count; s++) {
         for (int64_t i = sets.ptr[s]; i < sets.ptr[s + 1]; i++) {
-            TRY(mark(derived, first + s, "sets.idx", i, sets.idx[i], error));
+            RETURN_IF_ERROR(mark(derived, first + s, "sets.idx", i, sets.idx[i], error));
         }
     }
-done:
-    return status;
+    return STATUS_OK;
 }
 
 enum status derived_add_groups(const struct stream *stream, int dim, int64_t node_count,
                                struct derived *derived, struct error *error)
 {
-    enum status status;
-    TRY(add_facet_groups(stream, dim, node_count, derived, error));
-    TRY(add_node_sets(stream, node_count, derived, error));
-done:
-    return status;
+    RETURN_IF_ERROR(add_facet_groups(stream, dim, node_count, derived, error));
+    return add_node_sets(stream, node_count, derived, error);
 }

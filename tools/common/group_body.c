@@ -3,6 +3,7 @@
 #include "stages/views.h"
 
 #include "base/box.h"
+#include "base/lists.h"
 #include "base/memory.h"
 
 #include <stdio.h>
@@ -65,7 +66,6 @@ static enum status add_named(struct group_list *list, const struct section *sect
 static enum status sort_items(struct group_list *list, const struct section *section, const int32_t *item,
                               struct error *error)
 {
-    enum status status = STATUS_OK;
     const int32_t *of_group = section->data;
     for (int64_t i = 0; i < section->rows; i++) {
         if (of_group[i] < 0 || of_group[i] >= list->count) {
@@ -75,15 +75,14 @@ static enum status sort_items(struct group_list *list, const struct section *sec
         list->group[of_group[i]].count++;
     }
     for (int64_t g = 0; g < list->count; g++) {
-        TRY(NEW_ARRAY(&list->group[g].item, list->group[g].count, error));
+        RETURN_IF_ERROR(NEW_ARRAY(&list->group[g].item, list->group[g].count, error));
         list->group[g].count = 0;
     }
     for (int64_t i = 0; i < section->rows; i++) {
         struct group *group = &list->group[of_group[i]];
         group->item[group->count++] = item != NULL ? item[i] : (int32_t)i;
     }
-done:
-    return status;
+    return STATUS_OK;
 }
 
 /* ---- reading ---- */
@@ -95,14 +94,7 @@ struct keyed {
 
 static int compare_keys(const void *left, const void *right)
 {
-    const struct keyed *a = left;
-    const struct keyed *b = right;
-    for (int k = 0; k < 3; k++) {
-        if (a->key[k] != b->key[k]) {
-            return a->key[k] < b->key[k] ? -1 : 1;
-        }
-    }
-    return 0;
+    return compare_numbers(3, ((const struct keyed *)left)->key, ((const struct keyed *)right)->key);
 }
 
 /* facet[rows]: the boundary's facet that each row of `facets` is; the boundary takes over its order of nodes,
@@ -158,24 +150,22 @@ done:
 
 static enum status read_sets(const struct stream *stream, struct group_body *body, struct error *error)
 {
-    enum status status;
     struct group_list *list = &body->groups[GROUP_NODES];
     struct neighbours sets;
     const struct section *ptr = stream_find(stream, "sets.ptr");
     if (ptr == NULL) {
         return STATUS_OK;
     }
-    TRY(add_named(list, ptr, error));
-    TRY(stream_neighbours(stream, "sets", list->count, body->cells.node_count, &sets, error));
+    RETURN_IF_ERROR(add_named(list, ptr, error));
+    RETURN_IF_ERROR(stream_neighbours(stream, "sets", list->count, body->cells.node_count, &sets, error));
     for (int64_t g = 0; g < list->count; g++) {
         struct group *group = &list->group[g];
-        TRY(NEW_ARRAY(&group->item, sets.ptr[g + 1] - sets.ptr[g], error));
+        RETURN_IF_ERROR(NEW_ARRAY(&group->item, sets.ptr[g + 1] - sets.ptr[g], error));
         for (int64_t i = sets.ptr[g]; i < sets.ptr[g + 1]; i++) {
             group->item[group->count++] = sets.idx[i];
         }
     }
-done:
-    return status;
+    return STATUS_OK;
 }
 
 static enum status read_regions(const struct stream *stream, struct group_body *body, struct error *error)
@@ -196,11 +186,10 @@ done:
 
 enum status group_body_read(const struct stream *stream, struct group_body *body, struct error *error)
 {
-    enum status status;
     *body = (struct group_body){0};
     struct cells *cells = &body->cells;
-    TRY(stream_cells(stream, false, cells, error));
-    TRY(NEW_ARRAY(&body->node, cells->node_count, error));
+    RETURN_IF_ERROR(stream_cells(stream, false, cells, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&body->node, cells->node_count, error));
     for (int64_t n = 0; n < cells->node_count; n++) {
         body->node[n] = (int32_t)n;
     }
@@ -208,17 +197,16 @@ enum status group_body_read(const struct stream *stream, struct group_body *body
     body->diagonal = box_diagonal(&box);
     body->items[GROUP_NODES] = (struct items){cells->dim, cells->node_count, 1, body->node, cells->x};
     if (cells->count > 0) {
-        TRY(faces_build(cells, true, &body->boundary, error));
-        TRY(read_facets(stream, body, error));
-        TRY(read_regions(stream, body, error));
+        RETURN_IF_ERROR(faces_build(cells, true, &body->boundary, error));
+        RETURN_IF_ERROR(read_facets(stream, body, error));
+        RETURN_IF_ERROR(read_regions(stream, body, error));
     }
-    TRY(read_sets(stream, body, error));
+    RETURN_IF_ERROR(read_sets(stream, body, error));
     body->items[GROUP_FACETS] =
         (struct items){cells->dim, body->boundary.count, cells->dim, body->boundary.node, cells->x};
     body->items[GROUP_REGION] =
         (struct items){cells->dim, cells->count, cells->dim + 1, cells->node, cells->x};
-done:
-    return status;
+    return STATUS_OK;
 }
 
 void group_body_free(struct group_body *body)

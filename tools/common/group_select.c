@@ -43,10 +43,7 @@ static enum status grow(const struct group_body *body, enum group_kind kind, con
     const struct items *items = &body->items[kind];
     bool shrunk = word[0] == 's';
     int64_t rings = 0;
-    enum status status = parse_integer(strchr(word, ':') + 1, word, 1, 1000, &rings, error);
-    if (status != STATUS_OK) {
-        return status;
-    }
+    RETURN_IF_ERROR(parse_integer(strchr(word, ':') + 1, word, 1, 1000, &rings, error));
     int signed_rings = shrunk ? -(int)rings : (int)rings;
     if (kind != GROUP_NODES) {
         return items_grow(items->count, items->corners, items->item, body->cells.node_count, signed_rings,

@@ -123,10 +123,7 @@ done:
 
 enum status group_body_write(const struct group_body *body, struct stream *stream, struct error *error)
 {
-    enum status status = STATUS_OK;
-    TRY(body->groups[GROUP_FACETS].changed ? write_facets(body, stream, error) : STATUS_OK);
-    TRY(body->groups[GROUP_NODES].changed ? write_sets(body, stream, error) : STATUS_OK);
-    TRY(body->groups[GROUP_REGION].changed ? write_regions(body, stream, error) : STATUS_OK);
-done:
-    return status;
+    RETURN_IF_ERROR(body->groups[GROUP_FACETS].changed ? write_facets(body, stream, error) : STATUS_OK);
+    RETURN_IF_ERROR(body->groups[GROUP_NODES].changed ? write_sets(body, stream, error) : STATUS_OK);
+    return body->groups[GROUP_REGION].changed ? write_regions(body, stream, error) : STATUS_OK;
 }

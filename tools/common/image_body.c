@@ -139,12 +139,12 @@ static struct box image_box(const struct image *image)
 
 static const char *box_text(const struct box *box, char text[160])
 {
-    int length = 0;
+    text[0] = '\0';
     for (int i = 0; i < box->dim; i++) {
-        length += snprintf(text + length, 160 - (size_t)length, "%s%c %.4g to %.4g", i > 0 ? ", " : "",
-                           "xyz"[i], 1e3 * box -> low[i], 1e3 * box -> high[i]);
+        text_append(text, 160, "%s%c %.4g to %.4g", i > 0 ? ", " : "", "xyz"[i], 1e3 * box -> low[i],
+                    1e3 * box -> high[i]);
     }
-    snprintf(text + length, 160 - (size_t)length, " mm");
+    text_append(text, 160, " mm");
     return text;
 }
 

@@ -44,22 +44,14 @@ void tool_check_image_output(const struct tool *tool)
 
 void tool_write_image(const struct tool *tool, const struct image *image)
 {
-    struct error error;
     struct output output;
     if (tool->output == NULL) {
-        enum status status = image_write(image, STDOUT_FILENO, true, &error);
-        if (status != STATUS_OK) {
-            tool_fail(tool, status, "standard output: %s", error.text);
-        }
+        TOOL_TRY(tool, fail_in(&error, image_write(image, STDOUT_FILENO, true, &error), "standard output"));
         return;
     }
-    tool_check(tool, output_open(&output, tool->output, &error), &error);
-    enum status status = image_write(image, output.descriptor, !ends_in(tool->output, ".nii"), &error);
-    if (status != STATUS_OK) {
-        output_abandon(&output);
-        tool_fail(tool, status, "%s: %s", tool->output, error.text);
-    }
-    tool_check(tool, output_commit(&output, &error), &error);
+    bool gzip = !ends_in(tool->output, ".nii");
+    TOOL_TRY(tool, output_open(&output, tool->output, &error));
+    TOOL_TRY(tool, output_end(&output, image_write(image, output.descriptor, gzip, &error), &error));
 }
 
 const char *image_text(const struct image *image, char text[128])

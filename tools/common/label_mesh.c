@@ -1,6 +1,7 @@
 #include "label_mesh.h"
 
 #include "approx/cells.h"
+#include "base/lists.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -12,14 +13,7 @@ struct member {
 
 static int compare_members(const void *left, const void *right)
 {
-    const struct member *a = left, *b = right;
-    if (a->inner != b->inner) {
-        return a->inner < b->inner ? -1 : 1;
-    }
-    if (a->outer != b->outer) {
-        return a->outer < b->outer ? -1 : 1;
-    }
-    return (a->item > b->item) - (a->item < b->item);
+    return compare_numbers(3, left, right);
 }
 
 static bool same_group(const struct member *a, const struct member *b)
@@ -30,19 +24,16 @@ static bool same_group(const struct member *a, const struct member *b)
 static enum status add_name(struct mesh_names *names, const char *first, const char *second,
                             struct error *error)
 {
-    size_t length = strlen(first) + (second != NULL ? strlen(second) + 1 : 0);
-    char **grown = array_grow(names->name, names->count + 1, sizeof *grown);
-    if (grown == NULL) {
-        return fail_memory(error, "names");
+    char *joined;
+    if (second == NULL) {
+        return mesh_add_name(names, first, error);
     }
-    names->name = grown;
-    grown[names->count] = array_new((int64_t)length + 1, 1);
-    if (grown[names->count] == NULL) {
+    if (asprintf(&joined, "%s|%s", first, second) < 0) {
         return fail_memory(error, "a name");
     }
-    snprintf(grown[names->count++], length + 1, "%s%s%s", first, second != NULL ? "|" : "",
-             second != NULL ? second : "");
-    return STATUS_OK;
+    enum status status = mesh_add_name(names, joined, error);
+    free(joined);
+    return status;
 }
 
 static enum status make_regions(const struct label_image *image, const struct stuffing *stuffing,

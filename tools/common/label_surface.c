@@ -1,6 +1,6 @@
 #include "label_surface.h"
 
-#include "target.h"
+#include "output.h"
 
 #include "approx/cells.h"
 

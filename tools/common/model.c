@@ -70,26 +70,11 @@ void model_free(struct model *model)
         curve_free(&model->assembly.curves[i]);
     }
     free(model->assembly.curves);
-    for (int64_t i = 0; i < model->owned_count; i++) {
-        free(model->owned[i]);
-    }
-    free(model->owned);
+    owned_free(&model->owned);
     material_list_free(&model->assembly.materials);
     system_free(&model->system);
     free(model->row_force);
     *model = (struct model){0};
-}
-
-enum status model_own(struct model *model, void *array, struct error *error)
-{
-    void **grown = array == NULL ? NULL : array_grow(model->owned, model->owned_count + 1, sizeof *grown);
-    if (grown == NULL) {
-        free(array);
-        return fail_memory(error, "conditions");
-    }
-    model->owned = grown;
-    model->owned[model->owned_count++] = array;
-    return STATUS_OK;
 }
 
 double model_away(const struct model *model, const double *row, double unit, const double *x)

@@ -14,8 +14,7 @@ struct model {
     const struct stream *stream;
     const struct scene *scene;
     struct assembly assembly; /* what they give: views into the stream, and arrays of its own */
-    int64_t owned_count;
-    void **owned; /* owned_count: these */
+    struct owned owned;       /* these */
     struct solid_system system;
     struct error note;       /* a remark on the scene that is no error; empty text: none */
     struct error interfaces; /* another, on interfaces between materials */
@@ -46,7 +45,10 @@ MUST_CHECK enum status model_points(struct model *model, const struct scene_disp
     model_own((model), *(pointer) = array_new((count), sizeof **(pointer)), (error))
 
 /* An array that the model frees, also on failure; STATUS_SYSTEM where it is NULL. */
-MUST_CHECK enum status model_own(struct model *model, void *array, struct error *error);
+static inline enum status model_own(struct model *model, void *array, struct error *error)
+{
+    return owned_add(&model->owned, array, "conditions", error);
+}
 
 /* The facets of the named groups, and the nodes of the named sets, ascending; the model owns them. An error
  * lists the groups that exist. */

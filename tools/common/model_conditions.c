@@ -28,16 +28,10 @@ static enum status add_curve(struct model *model, const struct scene_label *labe
         grown[input->curve_count] = curve_of_kind(kinds[curve->kind]);
     } else {
         double end = input->in_time ? model->scene->solver.end_time : 1.0;
-        status = table_read(curve->file, 2, 2, &table, error);
-        if (status != STATUS_OK) {
-            fail_in(error, status, "%s: curve: not smooth, linear or step, and as a file", label->where);
-            goto done;
-        }
-        status = curve_tabulate(&grown[input->curve_count], table.rows, table.values, end, error);
-        if (status != STATUS_OK) {
-            fail_in(error, status, "%s: curve %s", label->where, curve->file);
-            goto done;
-        }
+        TRY(fail_in(error, table_read(curve->file, 2, 2, &table, error),
+                    "%s: curve: not smooth, linear or step, and as a file", label->where));
+        TRY(fail_in(error, curve_tabulate(&grown[input->curve_count], table.rows, table.values, end, error),
+                    "%s: curve %s", label->where, curve->file));
     }
     *index = (int32_t)input->curve_count++;
 done:
@@ -112,27 +106,24 @@ static enum status set_fluid(const struct model *model, const struct scene_load 
 static enum status add_load(struct model *model, const struct scene_load *section, enum load_kind kind,
                             struct load *load, struct error *error)
 {
-    enum status status;
     *load =
         (struct load){.kind = kind,
                       .pressure = section->pressure,
                       .components = {section->components[0], section->components[1], section->components[2]}};
     if (kind == LOAD_FORCE) {
-        TRY(model_nodes(model, &section->label, &section->nodes, &load->nodes, &load->node_count, error));
+        RETURN_IF_ERROR(
+            model_nodes(model, &section->label, &section->nodes, &load->nodes, &load->node_count, error));
     } else {
-        TRY(model_facets(model, &section->label, &section->facets, &load->facets, error));
+        RETURN_IF_ERROR(model_facets(model, &section->label, &section->facets, &load->facets, error));
     }
     if (section->density > 0.0) {
-        TRY(set_fluid(model, section, load, error));
+        RETURN_IF_ERROR(set_fluid(model, section, load, error));
     }
-    TRY(add_curve(model, &section->label, &section->curve, &load->curve, error));
-done:
-    return status;
+    return add_curve(model, &section->label, &section->curve, &load->curve, error);
 }
 
 static enum status add_loads(struct model *model, struct error *error)
 {
-    enum status status;
     const struct scene *scene = model->scene;
     struct assembly *input = &model->assembly;
     const struct {
@@ -145,20 +136,20 @@ static enum status add_loads(struct model *model, struct error *error)
     /* In time gravity is there from the begin; a state of rest is approached gently. */
     const struct scene_curve curve = {.kind = input->in_time ? SCENE_CURVE_STEP : SCENE_CURVE_SMOOTH};
     struct load *loads;
-    TRY(MODEL_ARRAY(model, &loads, scene->traction_count + scene->force_count + scene->pressure_count,
-                    error));
+    RETURN_IF_ERROR(MODEL_ARRAY(model, &loads,
+                                scene->traction_count + scene->force_count + scene->pressure_count, error));
     input->loads = loads;
     memcpy(input->gravity, scene->gravity, sizeof input->gravity);
     if (assembly_has_gravity(input)) {
-        TRY(add_curve(model, NULL, &curve, &input->gravity_curve, error));
+        RETURN_IF_ERROR(add_curve(model, NULL, &curve, &input->gravity_curve, error));
     }
     for (int k = 0; k < 3; k++) {
         for (int64_t i = 0; i < kinds[k].count; i++) {
-            TRY(add_load(model, &kinds[k].sections[i], kinds[k].kind, &loads[input->load_count++], error));
+            RETURN_IF_ERROR(
+                add_load(model, &kinds[k].sections[i], kinds[k].kind, &loads[input->load_count++], error));
         }
     }
-done:
-    return status;
+    return STATUS_OK;
 }
 
 /* Corners of a rigid surface's facets, m: consecutive points of each polyline, or triangles. */
@@ -194,14 +185,13 @@ done:
 static enum status add_contact(struct model *model, const struct scene_contact *section,
                                struct contact_condition *contact, struct error *error)
 {
-    enum status status;
     struct rigid_motion *motion = &contact->motion;
     *contact = (struct contact_condition){.where = section->label.where, .stiffness = section->stiffness};
     if (section->against.count > 0) {
         return model_between(model, section, contact, error);
     }
-    TRY(model_facets(model, &section->label, &section->facets, &contact->facets, error));
-    TRY(read_surface(model, section, contact, error));
+    RETURN_IF_ERROR(model_facets(model, &section->label, &section->facets, &contact->facets, error));
+    RETURN_IF_ERROR(read_surface(model, section, contact, error));
     motion->moves = section->moves;
     if (!section->moves) {
         return STATUS_OK;
@@ -212,10 +202,8 @@ static enum status add_contact(struct model *model, const struct scene_contact *
         motion->point[i] = section->axis_point[i];
         motion->axis[i] = section->angle != 0.0 ? section->axis[i] : (double)(i == 2);
     }
-    TRY(add_curve(model, &section->label, &section->curve, &motion->translation_curve, error));
-    TRY(add_curve(model, &section->label, &section->angle_curve, &motion->rotation_curve, error));
-done:
-    return status;
+    RETURN_IF_ERROR(add_curve(model, &section->label, &section->curve, &motion->translation_curve, error));
+    return add_curve(model, &section->label, &section->angle_curve, &motion->rotation_curve, error);
 }
 
 /* The contacts that the scene has more of: what was added stays, as its curves belong to the system. */
@@ -238,7 +226,6 @@ static enum status add_contacts(struct model *model, struct error *error)
 
 enum status model_conditions(struct model *model, struct error *error)
 {
-    enum status status;
     const struct scene *scene = model->scene;
     struct assembly *input = &model->assembly;
     struct condition *conditions;
@@ -246,16 +233,14 @@ enum status model_conditions(struct model *model, struct error *error)
     input->pointwise_volume = scene->solver.volume == SCENE_POINTWISE_VOLUME;
     input->node_values = scene->solver.constraint_points == SCENE_NODE_VALUES;
     input->direct = scene->solver.constraints == SCENE_DIRECT;
-    TRY(MODEL_ARRAY(model, &conditions, scene->displacement_count, error));
+    RETURN_IF_ERROR(MODEL_ARRAY(model, &conditions, scene->displacement_count, error));
     input->conditions = conditions;
     for (; input->condition_count < scene->displacement_count; input->condition_count++) {
-        TRY(add_displacement(model, &scene->displacements[input->condition_count],
-                             &conditions[input->condition_count], error));
+        RETURN_IF_ERROR(add_displacement(model, &scene->displacements[input->condition_count],
+                                         &conditions[input->condition_count], error));
     }
-    TRY(add_loads(model, error));
-    TRY(add_contacts(model, error));
-done:
-    return status;
+    RETURN_IF_ERROR(add_loads(model, error));
+    return add_contacts(model, error);
 }
 
 enum status model_renew_contacts(struct model *model, struct error *error)

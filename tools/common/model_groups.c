@@ -19,6 +19,11 @@ enum status model_facets(struct model *model, const struct scene_label *label, c
                     label->where);
     }
     TRY(stream_facets(model->stream, true, dim, &facets, error));
+    for (int64_t i = 0; i < facets.count * dim; i++) {
+        if (facets.facet[i] < 0 || facets.facet[i] >= model->assembly.cells.node_count) {
+            TRY(fail(error, STATUS_INPUT, "facets: no node %d", facets.facet[i]));
+        }
+    }
     TRY(stream_need(model->stream, "facets.set", TYPE_I4, 1, "nodes", &groups, error));
     TRY(names_read(groups, &present, error));
     TRY(NEW_ARRAY(&wanted, present.count, error));

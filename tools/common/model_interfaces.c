@@ -58,8 +58,7 @@ static void remedy(const struct names *names, const double *modulus, char text[2
             stiffest = !done[r] && (stiffest < 0 || modulus[r] > modulus[stiffest]) ? r : stiffest;
         }
         done[stiffest] = true;
-        size_t length = strlen(text);
-        snprintf(text + length, 256 - length, "%s%s", k > 0 ? "," : "", names->name[stiffest]);
+        text_append(text, 256, "%s%s", k > 0 ? "," : "", names->name[stiffest]);
     }
 }
 

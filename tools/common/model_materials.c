@@ -136,18 +136,17 @@ done:
 
 enum status model_materials(struct model *model, struct error *error)
 {
-    enum status status;
     const struct scene *scene = model->scene;
     int64_t points = model->assembly.point_count;
     struct material_list *list = &model->assembly.materials;
-    TRY(materials_of_cells(model, error));
+    RETURN_IF_ERROR(materials_of_cells(model, error));
     list->items = array_grow(NULL, scene->material_count, sizeof *list->items);
     if (list->items == NULL) {
         return fail_memory(error, "materials");
     }
-    TRY(NEW_ARRAY(&list->of_point, points, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&list->of_point, points, error));
     /* At most one for each section and for each point. */
-    TRY(NEW_ARRAY(&list->section, scene->material_count + points, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&list->section, scene->material_count + points, error));
     list->count = scene->material_count;
     for (int64_t m = 0; m < scene->material_count; m++) {
         set_material(&scene->materials[m], &list->items[m]);
@@ -158,9 +157,8 @@ enum status model_materials(struct model *model, struct error *error)
     }
     for (int64_t m = 0; m < scene->material_count; m++) {
         if (scene->materials[m].table != NULL) {
-            TRY(add_point_table(model, m, error));
+            RETURN_IF_ERROR(add_point_table(model, m, error));
         }
     }
-done:
-    return status;
+    return STATUS_OK;
 }

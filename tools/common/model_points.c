@@ -29,13 +29,12 @@ static enum status fail_at(const struct point_section *p, int64_t row, struct er
 
 static enum status read_section(struct point_section *p, struct error *error)
 {
-    enum status status;
     int dim = p->model->assembly.cells.dim;
     double *values;
     double unit = p->section->table_unit;
-    TRY(table_read_open(p->section->table, 2 * dim, 2 * dim + 1, dim, 2 * dim, &p->table, error));
+    RETURN_IF_ERROR(table_read_open(p->section->table, 2 * dim, 2 * dim + 1, dim, 2 * dim, &p->table, error));
     int64_t rows = p->table.rows, cols = p->table.cols;
-    TRY(MODEL_ARRAY(p->model, &values, rows * (2 * dim + 1), error));
+    RETURN_IF_ERROR(MODEL_ARRAY(p->model, &values, rows * (2 * dim + 1), error));
     double *x = values, *u = x + rows * dim, *deviation = u + rows * dim;
     p->condition->measured = (struct measured){dim, rows, x, u, deviation};
     for (int64_t i = 0; i < rows; i++) {
@@ -55,8 +54,7 @@ static enum status read_section(struct point_section *p, struct error *error)
                            "its standard deviation is negative: give a length, 0 for an exact point");
         }
     }
-done:
-    return status;
+    return STATUS_OK;
 }
 
 /* The model owns the arrays that the condition points to. */

@@ -122,11 +122,14 @@ void output_abandon(struct output *output)
     *output = (struct output){.descriptor = -1, .name = output->name};
 }
 
-enum status output_commit(struct output *output, struct error *error)
+enum status output_end(struct output *output, enum status status, struct error *error)
 {
     int descriptor = output->descriptor;
+    if (status != STATUS_OK) {
+        output_abandon(output);
+        return fail_in(error, status, "%s", output->name);
+    }
     output->descriptor = -1;
-    enum status status = STATUS_OK;
     /* Some file systems tell only now that the space is used up. */
     if (output->temporary != NULL && fsync(descriptor) != 0) {
         status = fail_output(output, error);
@@ -143,4 +146,44 @@ enum status output_commit(struct output *output, struct error *error)
     }
     output_abandon(output);
     return status;
+}
+
+/* ---- printing ---- */
+
+void target_open(const struct tool *tool, struct target *target, const char *name)
+{
+    *target = (struct target){.name = name, .file = stdout};
+    if (name == NULL) {
+        return;
+    }
+    TOOL_TRY(tool, output_open(&target->output, name, &error));
+    int descriptor = dup(target->output.descriptor); /* the output closes its own */
+    target->file = descriptor >= 0 ? fdopen(descriptor, "w") : NULL;
+    if (target->file == NULL) {
+        int cause = errno;
+        output_abandon(&target->output);
+        tool_fail(tool, STATUS_SYSTEM, "%s: %s", name, strerror(cause));
+    }
+    errno = 0;
+}
+
+void target_close(const struct tool *tool, struct target *target, enum status status, struct error *error)
+{
+    bool named = target->name != NULL;
+    int cause = named && ferror(target->file) != 0 ? errno : 0;
+    if (named && fclose(target->file) != 0 && cause == 0) {
+        cause = errno;
+    }
+    if (status == STATUS_OK && cause != 0) {
+        status = fail(error, STATUS_SYSTEM, "%s", strerror(cause));
+    }
+    tool_check(tool,
+               named ? output_end(&target->output, status, error) : fail_in(error, status, "standard output"),
+               error);
+}
+
+void target_end(const struct tool *tool, struct target *target)
+{
+    struct error error;
+    target_close(tool, target, STATUS_OK, &error);
 }

@@ -2,7 +2,7 @@
 #ifndef TOOLS_OUTPUT_H
 #define TOOLS_OUTPUT_H
 
-#include "base/status.h"
+#include "tool.h"
 
 struct output {
     int descriptor;   /* to write to */
@@ -12,14 +12,32 @@ struct output {
 };
 
 /* Begin to write: a temporary file in the same folder, removed if the program ends by exit() or by SIGINT,
- * SIGTERM, SIGHUP or SIGXCPU before output_commit. An existing device or pipe is opened as it is. One output
+ * SIGTERM, SIGHUP or SIGXCPU before output_end. An existing device or pipe is opened as it is. One output
  * at a time. */
 MUST_CHECK enum status output_open(struct output *output, const char *name, struct error *error);
 
-/* Close and give the file its name. STATUS_SYSTEM, with nothing left behind, when that fails. */
-MUST_CHECK enum status output_commit(struct output *output, struct error *error);
+/* End what was written with `status`: close, and give the file its name, or leave nothing behind where that
+ * or the writing failed; the message then begins with its name. */
+MUST_CHECK enum status output_end(struct output *output, enum status status, struct error *error);
 
 /* Close and leave nothing behind; the file that had the name before stays as it was. */
 void output_abandon(struct output *output);
+
+/* A file that a tool prints to: its output file, or standard output. */
+struct target {
+    FILE *file;       /* to print to */
+    const char *name; /* NULL: standard output */
+    struct output output;
+};
+
+/* Begin the file `name`; NULL: standard output. Exits on failure. */
+void target_open(const struct tool *tool, struct target *target, const char *name);
+
+/* Give the file its name if the printing went well, which `status` and *error say and the file itself; exit
+ * if not. */
+void target_close(const struct tool *tool, struct target *target, enum status status, struct error *error);
+
+/* The same where printing itself does not fail. */
+void target_end(const struct tool *tool, struct target *target);
 
 #endif

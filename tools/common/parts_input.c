@@ -58,8 +58,7 @@ static enum status count_parts(const char *file, const struct stream *stream, in
     if (node == NULL || !section_attribute(node, "parts", value, sizeof value)) {
         return fail(error, STATUS_INPUT, "%s: no section part.node: not a part of a body", file);
     }
-    enum status status = parse_integer(value, "part.node: parts", 1, most_parts, count, error);
-    return status != STATUS_OK ? fail_in(error, status, "%s", file) : status;
+    return fail_in(error, parse_integer(value, "part.node: parts", 1, most_parts, count, error), "%s", file);
 }
 
 /* Check that the last part stated in the header exists, before memory is allocated for all. */

@@ -67,11 +67,10 @@ static char *take_text(struct pack *pack)
 
 static enum status unpack_stream(struct pack *pack, struct stream *stream, struct error *error)
 {
-    enum status status = STATUS_OK;
     int64_t counts[2], shape[3];
     stream_init(stream);
     memcpy(counts, take(pack, sizeof counts), sizeof counts);
-    TRY(NEW_ARRAY(&stream->provenance, counts[0], error));
+    RETURN_IF_ERROR(NEW_ARRAY(&stream->provenance, counts[0], error));
     for (; stream->provenance_count < counts[0]; stream->provenance_count++) {
         stream->provenance[stream->provenance_count] = strdup(take_text(pack));
         if (stream->provenance[stream->provenance_count] == NULL) {
@@ -83,17 +82,15 @@ static enum status unpack_stream(struct pack *pack, struct stream *stream, struc
         const char *name = take_text(pack), *attributes = take_text(pack);
         enum element_type type = (enum element_type)shape[0];
         void *data = take(pack, (size_t)(shape[1] * shape[2]) * element_size(type));
-        TRY(stream_put(stream, name, type, shape[1], shape[2], attributes, data, false, error));
+        RETURN_IF_ERROR(stream_put(stream, name, type, shape[1], shape[2], attributes, data, false, error));
     }
-done:
-    return status;
+    return STATUS_OK;
 }
 
 /* What this process has read, as bytes; units[count]: how much each process has. */
 static enum status pack_own(const struct rejoin *rejoin, struct pack *own, int64_t **units,
                             struct error *error)
 {
-    enum status status = STATUS_OK;
     *own = (struct pack){0};
     for (int pass = 0; pass < 2; pass++) {
         own->size = 0;
@@ -103,12 +100,10 @@ static enum status pack_own(const struct rejoin *rejoin, struct pack *own, int64
             }
         }
         if (pass == 0) {
-            TRY(NEW_ARRAY(&own->at, (int64_t)own->size, error));
+            RETURN_IF_ERROR(NEW_ARRAY(&own->at, (int64_t)own->size, error));
         }
     }
-    TRY(ranks_list(process_ranks(), (int64_t)(own->size + UNIT_SENT - 1) / UNIT_SENT, units, error));
-done:
-    return status;
+    return ranks_list(process_ranks(), (int64_t)(own->size + UNIT_SENT - 1) / UNIT_SENT, units, error);
 }
 
 enum status parts_share_small(struct rejoin *rejoin, const int64_t *first, void **packed, struct error *error)

@@ -112,9 +112,8 @@ static int compare_frames(const void *a, const void *b)
 
 static enum status find_frames(struct plot *plot, struct error *error)
 {
-    enum status status = STATUS_OK;
     int64_t count = 0;
-    TRY(NEW_ARRAY(&plot->frames, plot->stream.section_count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&plot->frames, plot->stream.section_count, error));
     for (int64_t s = 0; s < plot->stream.section_count; s++) {
         size_t length;
         int64_t frame = frame_of(plot->stream.sections[s].name, &length);
@@ -128,8 +127,7 @@ static enum status find_frames(struct plot *plot, struct error *error)
             plot->frames[plot->frame_count++] = plot->frames[i];
         }
     }
-done:
-    return status;
+    return STATUS_OK;
 }
 
 enum status plot_time(const struct plot *plot, int64_t frame, double *time, struct error *error)
@@ -151,38 +149,34 @@ static enum status find_mesh(struct plot *plot, struct error *error)
 {
     const struct section *region = stream_find(&plot->stream, "cells.region");
     struct cells cells;
-    enum status status = STATUS_OK;
     struct vtk_mesh *mesh = &plot->mesh;
-    TRY(stream_nodes(&plot->stream, &mesh->dim, &mesh->node_count, &mesh->x, error));
-    TRY(stream_cells(&plot->stream, false, &cells, error));
+    RETURN_IF_ERROR(stream_nodes(&plot->stream, &mesh->dim, &mesh->node_count, &mesh->x, error));
+    RETURN_IF_ERROR(stream_cells(&plot->stream, false, &cells, error));
     mesh->cell_count = cells.count;
     mesh->node = cells.count > 0 ? cells.node : NULL;
     mesh->region_names = plot->names;
     if (mesh->node != NULL && region != NULL) {
-        TRY(stream_need(&plot->stream, "cells.region", TYPE_I4, 1, "nodes", &region, error));
+        RETURN_IF_ERROR(stream_need(&plot->stream, "cells.region", TYPE_I4, 1, "nodes", &region, error));
         if (region->rows != cells.count) {
-            TRY(fail(error, STATUS_INPUT, "cells.region: has %lld rows, cells %lld", (long long)region->rows,
-                     (long long)cells.count));
+            return fail(error, STATUS_INPUT, "cells.region: has %lld rows, cells %lld",
+                        (long long)region->rows, (long long)cells.count);
         }
         mesh->region = region->data;
         section_attribute(region, "names", plot->names, sizeof plot->names);
     }
-done:
-    return status;
+    return STATUS_OK;
 }
 
 /* Fields: those of the stream, what follows from them, and the groups. */
 static enum status find_fields(struct plot *plot, struct error *error)
 {
-    enum status status;
     int64_t most;
-    TRY(derived_add_invariants(&plot->stream, &plot->derived, error));
-    TRY(derived_add_groups(&plot->stream, plot->mesh.dim, plot->mesh.node_count, &plot->derived, error));
+    RETURN_IF_ERROR(derived_add_invariants(&plot->stream, &plot->derived, error));
+    RETURN_IF_ERROR(
+        derived_add_groups(&plot->stream, plot->mesh.dim, plot->mesh.node_count, &plot->derived, error));
     most = plot->stream.section_count + plot->derived.count;
-    TRY(NEW_ARRAY(&plot->fields, most, error));
-    TRY(NEW_ARRAY(&plot->labels, most, error));
-done:
-    return status;
+    RETURN_IF_ERROR(NEW_ARRAY(&plot->fields, most, error));
+    return NEW_ARRAY(&plot->labels, most, error);
 }
 
 int64_t plot_frame(const struct plot *plot, int64_t i)
@@ -197,12 +191,9 @@ int64_t plot_state_count(const struct plot *plot)
 
 enum status plot_find(struct plot *plot, struct error *error)
 {
-    enum status status;
-    TRY(find_mesh(plot, error));
-    TRY(find_frames(plot, error));
-    TRY(find_fields(plot, error));
-done:
-    return status;
+    RETURN_IF_ERROR(find_mesh(plot, error));
+    RETURN_IF_ERROR(find_frames(plot, error));
+    return find_fields(plot, error);
 }
 
 void plot_free(struct plot *plot)

@@ -3,7 +3,7 @@
 #define TOOLS_PLOT_H
 
 #include "derived.h"
-#include "frames.h"
+#include "io/sections.h"
 #include "io/vtk.h"
 
 struct plot_label;

@@ -10,14 +10,6 @@ static const char *file_of(const struct rejoin *rejoin, int64_t k)
     return rejoin->part[k].file;
 }
 
-void rejoin_check(const struct rejoin *rejoin, const struct rejoin_part *part, enum status status,
-                  const struct error *error)
-{
-    if (status != STATUS_OK) {
-        tool_fail(rejoin->tool, status, "%s: %s", part->file, error->text);
-    }
-}
-
 static int64_t attribute(const struct rejoin *rejoin, const struct rejoin_part *part, const char *key)
 {
     struct error error;
@@ -35,10 +27,10 @@ static int64_t attribute(const struct rejoin *rejoin, const struct rejoin_part *
 static const int32_t *numbers(const struct rejoin *rejoin, const struct rejoin_part *part, const char *name,
                               int64_t rows, int64_t least, int64_t below, bool ascending)
 {
-    struct error error;
     const struct section *section;
-    rejoin_check(rejoin, part, stream_need(&part->stream, name, TYPE_I4, 1, "part", &section, &error),
-                 &error);
+    TOOL_TRY(rejoin->tool,
+             fail_in(&error, stream_need(&part->stream, name, TYPE_I4, 1, "part", &section, &error), "%s",
+                     part->file));
     const int32_t *value = section->data;
     if (section->rows != rows) {
         tool_fail(rejoin->tool, STATUS_INPUT,
@@ -56,7 +48,6 @@ static const int32_t *numbers(const struct rejoin *rejoin, const struct rejoin_p
 
 static void view_part(struct rejoin *rejoin, struct rejoin_part *part)
 {
-    struct error error;
     const char *file = part->file;
     const struct section *node = stream_find(&part->stream, "part.node");
     if (node == NULL) {
@@ -67,7 +58,8 @@ static void view_part(struct rejoin *rejoin, struct rejoin_part *part)
     if (!section_attribute(node, "cut", part->cut, sizeof part->cut)) {
         tool_fail(rejoin->tool, STATUS_INPUT, "%s: part.node: no cut=: not written by part", file);
     }
-    rejoin_check(rejoin, part, stream_cells(&part->stream, true, &part->cells, &error), &error);
+    TOOL_TRY(rejoin->tool,
+             fail_in(&error, stream_cells(&part->stream, true, &part->cells, &error), "%s", file));
     part->node =
         numbers(rejoin, part, "part.node", part->cells.node_count, 0, attribute(rejoin, part, "nodes"), true);
     part->owner = numbers(rejoin, part, "part.owner", part->cells.node_count, 0, part->parts, false);

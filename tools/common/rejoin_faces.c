@@ -3,11 +3,12 @@
 #include "stages/stages.h"
 
 #include "approx/face_rows.h"
+#include "base/lists.h"
 
 #include <stdlib.h>
 
 /* The face of the whole that is a part's face, whose first cell is its own; they have the same nodes in the
- * same order. */
+ * same order. begin, face: the faces of each cell. */
 static int64_t find_face(const struct rejoin *rejoin, const struct rejoin_part *part, const int64_t *begin,
                          const int32_t *face, int64_t local)
 {
@@ -84,7 +85,6 @@ static int32_t *whole_sides(const struct rejoin *rejoin)
 
 void rejoin_map_faces(struct rejoin *rejoin)
 {
-    struct error error;
     int32_t *side = whole_sides(rejoin);
     const struct tool *tool = rejoin->tool;
     const struct section *points = stream_find(&rejoin->part[0].stream, "points.x");
@@ -98,30 +98,21 @@ void rejoin_map_faces(struct rejoin *rejoin)
                                 .node = rejoin->cell};
     for (int64_t k = 0; k < rejoin->part_count; k++) {
         struct rejoin_part *part = &rejoin->part[k];
-        rejoin_check(rejoin, part, stream_faces(&part->stream, &part->cells, &part->faces, &error), &error);
+        TOOL_TRY(tool, fail_in(&error, stream_faces(&part->stream, &part->cells, &part->faces, &error), "%s",
+                               part->file));
     }
-    tool_check(tool, faces_build(&whole, boundary_only, &rejoin->faces, &error), &error);
+    TOOL_TRY(tool, faces_build(&whole, boundary_only, &rejoin->faces, &error));
     if (side != NULL) {
         free(rejoin->faces.row);
-        tool_check(tool, face_rows_number(whole.node_count, side, &rejoin->faces, &error), &error);
+        TOOL_TRY(tool, face_rows_number(whole.node_count, side, &rejoin->faces, &error));
         free(side);
     }
     const struct faces *faces = &rejoin->faces;
-    tool_check(tool, NEW_ARRAY(&begin, whole.count + 2, &error), &error);
-    tool_check(tool, NEW_ARRAY(&face, faces->count, &error), &error);
-    tool_check(tool, NEW_ARRAY(&first_face, faces->row_count, &error), &error);
+    TOOL_TRY(tool, lists_by_row(faces->count, 2, faces->cell, whole.count, &begin, &face, &error));
+    TOOL_TRY(tool, NEW_ARRAY(&first_face, faces->row_count, &error));
     int rows = FACE_ROWS(rejoin->dim);
     for (int64_t i = faces->count * rows - 1; i >= 0; i--) {
         first_face[face_row(faces, i / rows, (int)(i % rows))] = (int32_t)(i / rows);
-    }
-    for (int64_t f = 0; f < faces->count; f++) {
-        begin[faces->cell[2 * f] + 2]++;
-    }
-    for (int64_t c = 1; c <= whole.count; c++) {
-        begin[c + 1] += begin[c];
-    }
-    for (int64_t f = 0; f < faces->count; f++) {
-        face[begin[faces->cell[2 * f] + 1]++] = (int32_t)f;
     }
     for (int64_t k = 0; k < rejoin->part_count; k++) {
         struct rejoin_part *part = &rejoin->part[k];

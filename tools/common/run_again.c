@@ -2,44 +2,22 @@
  * So this contact, whose search takes time in each step, is modelled where a scene needs it. */
 #include "run.h"
 
-#include <stdlib.h>
+#include <stdio.h>
 #include <string.h>
-
-static char *copy(const struct run *run, const char *text)
-{
-    char *new = strdup(text);
-    if (new == NULL) {
-        tool_fail(run->tool, STATUS_SYSTEM, "out of memory");
-    }
-    return new;
-}
-
-/* A list of one name. */
-static struct name_list list_of(const struct run *run, const char *name)
-{
-    struct name_list list = {.count = 1};
-    TOOL_TRY(run->tool, NEW_ARRAY(&list.names, 1, &error));
-    list.names[0] = copy(run, name);
-    return list;
-}
 
 void run_touch_itself(struct run *run)
 {
+    static char *whole[] = {"*"};
+    const struct name_list boundary = {.names = whole, .count = 1};
     struct scene *scene = run->scene;
-    struct scene_contact *contacts;
-    char where[400];
-    TOOL_TRY(run->tool, NEW_ARRAY(&contacts, scene->contact_count + 1, &error));
-    if (scene->contact_count > 0) {
-        memcpy(contacts, scene->contacts, (size_t)scene->contact_count * sizeof *contacts);
+    char *where;
+    if (asprintf(&where, "%s: contact of the body with itself", scene->path) < 0) {
+        where = NULL;
     }
-    free(scene->contacts);
-    scene->contacts = contacts;
-    snprintf(where, sizeof where, "%s: contact of the body with itself", scene->path);
-    contacts[scene->contact_count] =
-        (struct scene_contact){.label = {.name = copy(run, "itself"), .where = copy(run, where)},
-                               .facets = list_of(run, "*"),
-                               .against = list_of(run, "*")};
-    scene->contact_count++;
+    TOOL_TRY(run->tool, owned_add(&scene->owned, where, scene->path, &error));
+    TOOL_TRY(run->tool, RESIZE_ARRAY(&scene->contacts, scene->contact_count + 1, &error));
+    scene->contacts[scene->contact_count++] = (struct scene_contact){
+        .label = {.name = "itself", .where = where}, .facets = boundary, .against = boundary};
     run->touches_itself = true;
 }
 

@@ -1,11 +1,47 @@
 #include "run.h"
 
-#include "interrupt.h"
-
 #include "base/processor.h"
 
 #include <string.h>
 #include <unistd.h>
+
+/* ---- signals: a run that is asked to end finishes its step ---- */
+
+static const int numbers[] = {SIGINT, SIGTERM, SIGHUP};
+static volatile sig_atomic_t caught;
+
+static void on_signal(int number)
+{
+    caught = number;
+}
+
+/* From now on SIGINT, SIGTERM and SIGHUP, unless ignored, only set the flag returned: their number, 0 before.
+ * The second one of a kind ends the process at once. */
+static const volatile sig_atomic_t *catch_signals(void)
+{
+    struct sigaction action = {.sa_handler = on_signal, .sa_flags = SA_RESTART | (int)SA_RESETHAND};
+    sigemptyset(&action.sa_mask);
+    for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++) {
+        struct sigaction present;
+        if (sigaction(numbers[i], NULL, &present) == 0 && present.sa_handler != SIG_IGN) {
+            sigaction(numbers[i], &action, NULL);
+        }
+    }
+    return &caught;
+}
+
+/* Let them do what they do by default again. */
+static void release_signals(void)
+{
+    for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++) {
+        struct sigaction present;
+        if (sigaction(numbers[i], NULL, &present) == 0 && present.sa_handler == on_signal) {
+            signal(numbers[i], SIG_DFL);
+        }
+    }
+}
+
+/* ---- checkpoints ---- */
 
 /* Put a section of another stream, which outlives this one. */
 static void share(const struct run *run, struct stream *stream, const struct section *section)
@@ -96,7 +132,7 @@ void run_checkpoint_begin(struct run *run)
         resume(run);
     }
     checkpoint->last = clock_seconds();
-    checkpoint->interrupted = interrupt_catch();
+    checkpoint->interrupted = catch_signals();
 }
 
 const struct state *run_checkpoint_state(const struct run *run)
@@ -134,14 +170,11 @@ struct whole_state {
 static enum status visit_whole(void *owner, const struct state *state, struct error *error)
 {
     const struct whole_state *whole = owner;
-    enum status status;
-    TRY(whole->progress->state(whole->progress->run, state, error));
-    TRY(run_folds_state(whole->run, state, error));
-    TRY(run_stability_state(whole->run, state, error));
     const struct state_value value = {"touches_itself", STATE_FLAGS, &whole->run->touches_itself, 1};
-    TRY(state_visit(state, NULL, &value, 1, error));
-done:
-    return status;
+    RETURN_IF_ERROR(whole->progress->state(whole->progress->run, state, error));
+    RETURN_IF_ERROR(run_folds_state(whole->run, state, error));
+    RETURN_IF_ERROR(run_stability_state(whole->run, state, error));
+    return state_visit(state, NULL, &value, 1, error);
 }
 
 static enum status write_now(struct run *run, const struct progress *progress, struct error *error)
@@ -197,7 +230,7 @@ bool run_checkpoint_tell(struct run *run, const struct progress *progress)
 void run_checkpoint_end(struct run *run)
 {
     (void)run;
-    interrupt_release();
+    release_signals();
 }
 
 void run_checkpoint_stop(struct run *run, int64_t steps)

@@ -1,8 +1,8 @@
 #include "run.h"
 
+#include "approx/field_compare.h"
 #include "solid/dynamics.h"
 
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -19,22 +19,12 @@ static void place_of(const struct run *run, const double *x, int64_t row, char p
 /* Contacts may give way by this share of the largest displacement at the end, as in quasi-static scenes. */
 static const double most_given = 1e-3;
 
-/* The largest displacement of the nodes' parameters, m. */
-static double largest_move(const struct run *run)
-{
-    int dim = run->scene->dim;
-    double most = 0.0;
-    for (int64_t n = 0; n < run->model->system.node_count; n++) {
-        const double *u = run->u + n * dim;
-        most = fmax(most, hypot(hypot(u[0], u[1]), dim == 3 ? u[2] : 0.0));
-    }
-    return most;
-}
-
 /* A verdict other than done ends the run, naming where it went wrong and what to change. */
 static void judge(struct run *run, const struct dynamics_report *report)
 {
     const struct scene *scene = run->scene;
+    const struct solid_system *system = &run->model->system;
+    double largest_move = field_largest(system->node_count, system->dim, run->u);
     char place[96] = "";
     if (report->outcome != DYNAMICS_STOPPED && run_folds_let_touch(run)) {
         return;
@@ -42,8 +32,7 @@ static void judge(struct run *run, const struct dynamics_report *report)
     switch (report->outcome) {
     case DYNAMICS_DONE:
         run_folds_judge(run);
-        run_contacts_give_way(run, system_contact_miss(&run->model->system), most_given * largest_move(run),
-                              largest_move(run));
+        run_contacts_give_way(run, system_contact_miss(system), most_given * largest_move, largest_move);
         run_contacts_judge(run, 0.0, most_inside);
         return;
     case DYNAMICS_INVERTED:

@@ -11,7 +11,6 @@
 
 static enum status build(const struct assembly *input, struct run_folds *folds, struct error *error)
 {
-    enum status status;
     const struct cells *cells = &input->cells;
     struct fold_input body = {.dim = cells->dim,
                               .node_count = cells->node_count,
@@ -20,15 +19,14 @@ static enum status build(const struct assembly *input, struct run_folds *folds, 
                               .cell = cells->node,
                               .facet_count = input->boundary.count,
                               .facet = input->boundary.node};
-    TRY(assembly_held_faces(input, 1, &folds->held, error));
+    RETURN_IF_ERROR(assembly_held_faces(input, 1, &folds->held, error));
     body.held = folds->held;
-    TRY(NEW_ARRAY(&folds->field, cells->node_count * cells->dim, error));
-    TRY(NEW_ARRAY(&folds->stopped, cells->node_count, error));
-    TRY(NEW_ARRAY(&folds->touched, cells->node_count, error));
-    TRY(folds_build(&body, &folds->folds, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&folds->field, cells->node_count * cells->dim, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&folds->stopped, cells->node_count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&folds->touched, cells->node_count, error));
+    RETURN_IF_ERROR(folds_build(&body, &folds->folds, error));
     folds->folds.touched = folds->touched;
-done:
-    return status;
+    return STATUS_OK;
 }
 
 /* The names of the groups that a facet of the boundary is in, or "unnamed". */
@@ -171,7 +169,6 @@ void run_folds_look(struct run *run, const double *u, double time, bool is_frame
 static enum status spell_state(struct fold_spell *spell, const char *prefix, const struct state *state,
                                struct error *error)
 {
-    enum status status;
     struct fold *fold = &spell->fold;
     int64_t *counts = spell->kept;
     counts[0] = (int64_t)fold->kind;
@@ -183,25 +180,21 @@ static enum status spell_state(struct fold_spell *spell, const char *prefix, con
         {"seen", STATE_FLAGS, &spell->seen, 1},     {"since", STATE_NUMBERS, &spell->since, 1},
         {"until", STATE_NUMBERS, &spell->until, 1}, {"fold", STATE_COUNTS, counts, 5},
         {"place", STATE_NUMBERS, fold->place, 3},   {"counts", STATE_FLAGS, &spell->counts, 1}};
-    TRY(state_visit(state, prefix, values, sizeof values / sizeof *values, error));
+    RETURN_IF_ERROR(state_visit(state, prefix, values, sizeof values / sizeof *values, error));
     fold->kind = (enum fold_kind)counts[0];
     fold->count = counts[1];
     fold->cell = counts[2] - 1;
     fold->facet[0] = counts[3] - 1;
     fold->facet[1] = counts[4] - 1;
-done:
-    return status;
+    return STATUS_OK;
 }
 
 enum status run_folds_state(struct run *run, const struct state *state, struct error *error)
 {
-    enum status status;
-    TRY(spell_state(&run->folds.now[FOLDED], "folds.now", state, error));
-    TRY(spell_state(&run->folds.past[FOLDED], "folds.past", state, error));
-    TRY(spell_state(&run->folds.now[NOTED], "noted.now", state, error));
-    TRY(spell_state(&run->folds.past[NOTED], "noted.past", state, error));
-done:
-    return status;
+    RETURN_IF_ERROR(spell_state(&run->folds.now[FOLDED], "folds.now", state, error));
+    RETURN_IF_ERROR(spell_state(&run->folds.past[FOLDED], "folds.past", state, error));
+    RETURN_IF_ERROR(spell_state(&run->folds.now[NOTED], "noted.now", state, error));
+    return spell_state(&run->folds.past[NOTED], "noted.past", state, error);
 }
 
 void run_folds_describe(const struct run *run, int which, char *text, size_t size)

@@ -1,5 +1,5 @@
 /* Forces and moments of the conditions and contacts of a scene. */
-#include "frames.h"
+#include "io/sections.h"
 #include "run.h"
 
 #include <math.h>

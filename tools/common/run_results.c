@@ -1,5 +1,5 @@
 /* The sections that a run adds to its stream. */
-#include "frames.h"
+#include "io/sections.h"
 #include "run.h"
 
 #include "solid/energy.h"

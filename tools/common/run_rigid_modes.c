@@ -2,6 +2,7 @@
 #include "run.h"
 
 #include "approx/support.h"
+#include "base/sets.h"
 #include "solid/contact_between.h"
 #include "solid/rigid_modes.h"
 
@@ -19,16 +20,6 @@ struct bodies {
     struct rigid_modes *moves; /* count */
 };
 
-/* The first of the nodes that node n is joined with; the chains in `first` are shortened on the way. */
-static int32_t first_of(int32_t *first, int32_t n)
-{
-    while (first[n] != n) {
-        first[n] = first[first[n]];
-        n = first[n];
-    }
-    return n;
-}
-
 /* of_node[n]: the first node of its body; then its number. Nodes in no cell are bodies of their own. */
 static void join_cells(const struct cells *cells, struct bodies *bodies)
 {
@@ -39,9 +30,7 @@ static void join_cells(const struct cells *cells, struct bodies *bodies)
     }
     for (int64_t c = 0; c < cells->count; c++) {
         for (int k = 1; k < corners; k++) {
-            int32_t a = first_of(first, cells->node[c * corners]),
-                    b = first_of(first, cells->node[c * corners + k]);
-            first[a > b ? a : b] = a > b ? b : a;
+            set_join(first, cells->node[c * corners], cells->node[c * corners + k]);
         }
     }
     for (int64_t n = 0; n < cells->node_count; n++) {
@@ -109,23 +98,20 @@ done:
 
 static enum status bodies_find(const struct model *model, struct bodies *bodies, struct error *error)
 {
-    enum status status;
     const struct cells *cells = &model->assembly.cells;
     const struct solid_system *system = &model->system;
     *bodies = (struct bodies){0};
-    TRY(NEW_ARRAY(&bodies->of_node, cells->node_count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&bodies->of_node, cells->node_count, error));
     join_cells(cells, bodies);
-    TRY(NEW_ARRAY(&bodies->cell, bodies->count, error));
-    TRY(NEW_ARRAY(&bodies->touches, bodies->count, error));
-    TRY(NEW_ARRAY(&bodies->moves, bodies->count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&bodies->cell, bodies->count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&bodies->touches, bodies->count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&bodies->moves, bodies->count, error));
     for (int64_t c = 0; c < cells->count; c++) {
         bodies->cell[bodies->of_node[cells->node[c * (cells->dim + 1)]]] = c;
     }
-    TRY(NEW_ARRAY(&bodies->stays, bodies->count, error));
-    TRY(system_rigid_modes(system, bodies->count, bodies->of_node, bodies->moves, error));
-    TRY(find_touching(system, bodies, error));
-done:
-    return status;
+    RETURN_IF_ERROR(NEW_ARRAY(&bodies->stays, bodies->count, error));
+    RETURN_IF_ERROR(system_rigid_modes(system, bodies->count, bodies->of_node, bodies->moves, error));
+    return find_touching(system, bodies, error);
 }
 
 static void bodies_free(struct bodies *bodies)
@@ -155,18 +141,13 @@ static void direction_text(int dim, const double *direction, char text[96])
 static void moves_text(int dim, double size, const struct rigid_modes *moves, char *text, size_t room)
 {
     char what[96], where[96];
-    size_t at = 0;
-    text[0] = '\0';
-    if (moves->translations == dim) {
-        at += (size_t)snprintf(text, room, "may move along any direction");
-    }
+    snprintf(text, room, "%s", moves->translations == dim ? "may move along any direction" : "");
     for (int k = 0; k < moves->translations && moves->translations < dim; k++) {
         direction_text(dim, moves->along[k], what);
-        at += (size_t)snprintf(text + at, at < room ? room - at : 0, "%smay move along %s",
-                               at > 0 ? ", " : "", what);
+        text_append(text, room, "%smay move along %s", text[0] != '\0' ? ", " : "", what);
     }
     if (moves->turns == (dim == 2 ? 1 : 3) && moves->translations == dim) {
-        (void)snprintf(text + at, at < room ? room - at : 0, " and turn about any axis");
+        text_append(text, room, " and turn about any axis");
         return;
     }
     for (int k = 0; k < moves->turns; k++) {
@@ -176,11 +157,9 @@ static void moves_text(int dim, double size, const struct rigid_modes *moves, ch
         }
         point_text(dim, through, where);
         direction_text(dim, moves->axis[k], what);
-        at += dim == 2 ? (size_t)snprintf(text + at, at < room ? room - at : 0, "%smay turn about %s",
-                                          at > 0 ? ", " : "", where)
-                       : (size_t)snprintf(text + at, at < room ? room - at : 0,
-                                          "%smay turn about the axis through %s along %s", at > 0 ? ", " : "",
-                                          where, what);
+        text_append(text, room, "%smay turn about %s%s%s%s", text[0] != '\0' ? ", " : "",
+                    dim == 2 ? "" : "the axis through ", where, dim == 2 ? "" : " along ",
+                    dim == 2 ? "" : what);
     }
 }
 

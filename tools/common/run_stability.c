@@ -1,5 +1,7 @@
 #include "run.h"
 
+#include "approx/field_compare.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -31,25 +33,12 @@ void run_stability_free(struct run *run)
     free(run->stability.near);
 }
 
-static double largest_displacement(const struct run *run, const double *u)
-{
-    int dim = run->scene->dim;
-    double largest2 = 0.0;
-    for (int64_t n = 0; n < run->model->system.node_count; n++) {
-        double size2 = 0.0;
-        for (int64_t i = n * dim; i < (n + 1) * dim; i++) {
-            size2 += u[i] * u[i];
-        }
-        largest2 = fmax(largest2, size2);
-    }
-    return sqrt(largest2);
-}
-
 void run_stability_follow(struct run *run, const struct progress *progress)
 {
     struct run_stability *stability = &run->stability;
+    const struct solid_system *system = &run->model->system;
     int64_t last = (stability->looks + RUN_STABILITY_LOOKS - 1) % RUN_STABILITY_LOOKS;
-    if (stability->left || run->scene->analysis == SCENE_DYNAMIC || run->model->system.contact_count > 0) {
+    if (stability->left || run->scene->analysis == SCENE_DYNAMIC || system->contact_count > 0) {
         return;
     }
     if (progress->time != stability->load || !isfinite(progress->move)) {
@@ -72,7 +61,7 @@ void run_stability_follow(struct run *run, const struct progress *progress)
         stability->least = move;
         memcpy(stability->near, progress->u, (size_t)parameter_count(run) * sizeof *progress->u);
     } else if (move > growth * stability->least &&
-               move > least_share * largest_displacement(run, progress->u)) {
+               move > least_share * field_largest(system->node_count, system->dim, progress->u)) {
         stability->left = true;
         stability->since = stability->negative ? stability->since : progress->time;
     }

@@ -1,6 +1,6 @@
 #include "sample_points.h"
 
-#include "stage_fill.h"
+#include "stage_options.h"
 
 #include "stages/views.h"
 

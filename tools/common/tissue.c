@@ -30,10 +30,7 @@ enum status tissue_read(const char *path, struct tissue *tissue, struct error *e
             status =
                 fail(error, STATUS_INPUT, "%s: the values of the image (first column) must ascend", where);
         }
-        if (status != STATUS_OK) {
-            status = fail_in(error, status, "%s", path);
-            goto done;
-        }
+        TRY(fail_in(error, status, "%s", path));
     }
 done:
     if (status != STATUS_OK) {

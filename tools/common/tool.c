@@ -290,14 +290,10 @@ void tool_write(const struct tool *tool, struct stream *stream, bool text)
 
 static enum status write_stdout(const struct stream *stream, bool text, struct error *error)
 {
-    enum status status;
     if (!text && isatty(STDOUT_FILENO)) {
         return fail(error, STATUS_INPUT, "no binary to a terminal: ask for text with -t, or redirect it");
     }
-    status = stream_write(stream, STDOUT_FILENO, text, error);
-    if (status != STATUS_OK) {
-        return fail_in(error, status, "standard output");
-    }
+    RETURN_IF_ERROR(fail_in(error, stream_write(stream, STDOUT_FILENO, text, error), "standard output"));
     stdout_closed = close(STDOUT_FILENO) == 0;
     return stdout_closed ? STATUS_OK : fail(error, STATUS_SYSTEM, "standard output: %s", strerror(errno));
 }
@@ -305,20 +301,12 @@ static enum status write_stdout(const struct stream *stream, bool text, struct e
 static enum status write_output(const struct tool *tool, const struct stream *stream, bool text,
                                 struct error *error)
 {
-    enum status status;
     struct output output;
     if (tool->output == NULL) {
         return write_stdout(stream, text, error);
     }
-    TRY(output_open(&output, tool->output, error));
-    status = stream_write(stream, output.descriptor, text, error);
-    if (status != STATUS_OK) {
-        output_abandon(&output);
-        return fail_in(error, status, "%s", tool->output);
-    }
-    status = output_commit(&output, error);
-done:
-    return status;
+    RETURN_IF_ERROR(output_open(&output, tool->output, error));
+    return output_end(&output, stream_write(stream, output.descriptor, text, error), error);
 }
 
 /* Of several processes the first one writes, and all know how that went. */

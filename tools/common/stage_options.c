@@ -1,8 +1,23 @@
-#include "stage_fill.h"
+#include "stage_options.h"
 
+#include "stages/mls_settings.h"
 #include "stages/stages.h"
 
 #include <string.h>
+
+void mls_parse(const struct tool *tool, struct mls *mls)
+{
+    const struct mls_texts texts = {tool_value(tool, "basis"), tool_value(tool, "weight"),
+                                    tool_value(tool, "mu"), tool_value(tool, "mu-unit")};
+    TOOL_TRY(tool, mls_apply(&texts, mls, &error));
+}
+
+void radius_parse(const struct tool *tool, struct support_options *support)
+{
+    tool_excludes(tool, "factor", "radius");
+    support->factor = tool_number(tool, "factor", 0.1, 100, support->factor);
+    support->radius = tool_length(tool, "radius", support->radius);
+}
 
 /* A stage that has never run leaves none of its sections. */
 static void fill_one(const struct tool *tool, struct stream *stream, const char *stage, char *ran,
@@ -31,8 +46,7 @@ static void fill_one(const struct tool *tool, struct stream *stream, const char 
     tool_check(tool, status, &error);
     char *argv[] = {(char *)(uintptr_t)stage, NULL};
     tool_check(tool, stream_add_provenance(stream, 1, argv, &error), &error);
-    size_t length = strlen(ran);
-    snprintf(ran + length, size - length, "%s%s", length > 0 ? ", " : "", stage);
+    text_append(ran, size, "%s%s", ran[0] != '\0' ? ", " : "", stage);
 }
 
 void stage_fill(const struct tool *tool, struct stream *stream, const char *upto)
