@@ -95,6 +95,38 @@ confined() {
     done
 }
 
+# The walls around it are rigid surfaces that it leans on, and the top is bonded to what presses.
+@test "a body that contacts close in has its whole bulk modulus at the edges of what is clamped" {
+    cloud -d 3 -k jittered -n 6 --box 0,0.1,0,0.1,0,0.1 --jitter 0.1 | shapefn > closed.mts 2> note
+    for axis in 1 2; do
+        for place in 0 0.1; do
+            awk -v axis="$axis" -v place="$place" 'BEGIN {
+                split("-1 -1 1 -1 1 1 -1 -1 1 1 -1 1", at, " ")
+                for (i = 1; i < 12; i += 2) {
+                    printf "%s%s", axis == 1 ? place " " at[i] " " at[i + 1] : at[i] " " place " " at[i + 1], i == 5 || i == 11 ? "\n" : " "
+                }
+            }' > "wall$axis.$place.tsv"
+        done
+    done
+    for nu in 0.3 0.49 0.495; do
+        {
+            printf '[scene]\ndim = 3\nanalysis = quasi-static\n[material m]\nregion = body\nE = 3000\nnu = %s\n' "$nu"
+            printf '[displacement bottom]\nfacets = zmin\ncomponents = 0, 0, 0\n[displacement top]\nfacets = zmax\ncomponents = 0, 0, -0.001\n'
+            while read -r side axis place facing; do
+                printf '[contact %s]\nfacets = %s\nrigid = wall%s.%s.tsv\nunit = m\nside = %s\n' "$side" "$side" "$axis" "$place" "$facing"
+            done <<< $'xmin 1 0 front\nxmax 1 0.1 back\nymin 2 0 back\nymax 2 0.1 front'
+            printf '[output]\nreactions = yes\n'
+        } > closed.scene
+        mtled closed.scene closed.mts > u.dat
+        rows reactions u.dat | awk -v nu="$nu" 'NR == 2 {
+            shear = 1500 / (1 + nu); bulk = 1000 / (1 - 2 * nu); s = 0.99
+            e = $3 / (0.01 * (2 / 3 * shear * s ^ (-5 / 3) * (s * s - 1) + bulk * (s - 1))) - 1
+            print nu, e
+            exit !(e < 2e-3 && e > -2e-3)
+        }'
+    done
+}
+
 @test "the same group in two sections: they share its force, and the result stays" {
     cloud -d 3 -k regular -n 4 --box 0,0.1,0,0.1,0,0.1 | shapefn > cube.mts 2> note
     { head3; printf '[displacement bottom]\nfacets = zmin\ncomponents = 0, 0, 0\n[displacement top]\nfacets = zmax\ncomponents = 0, 0, -0.005\n'; } > once.scene
