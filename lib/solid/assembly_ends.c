@@ -102,10 +102,10 @@ done:
     return status;
 }
 
-/* In three dimensions only: triangles are right to .2 % as they are. A clamped side ends where it meets a free
- * one at an edge, and not one that slides, as a plane of symmetry does: there it goes on beyond it. A side that
- * may be in contact counts as free, whether it touches or not: the treatment of edges takes nothing from a
- * pressure that is uniform there. */
+/* In three dimensions only: triangles are right to .2 % as they are. A clamped side ends where it meets a
+ * free one at an edge, and not one that slides, as a plane of symmetry does: there it goes on beyond it. A
+ * side that may be in contact counts as free, whether it touches or not: the treatment of edges takes nothing
+ * from a pressure that is uniform there. */
 enum status assembly_edge_nodes(const struct assembly *input, bool **at_edge, struct error *error)
 {
     enum status status = STATUS_OK;

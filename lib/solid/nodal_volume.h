@@ -36,9 +36,9 @@
  *   sum_q w_q s_q / 2 sum_a (1 - theta_a) N_a(q) y_q^2  +  sum_a theta_a S_a / 2 Y_a^2,
  *   S_a = sum_q N_a(q) w_q s_q,    Y_a = sum_q N_a(q) w_q s_q y_q / S_a,
  *
- * and p_q has s_q sum_a N_a(q) (theta_a Y_a + (1 - theta_a) y_q) in place of s_q y_q. A uniform change of volume
- * meets kappa at edges as elsewhere, so that nothing is lost where contacts close the body in. Cells that have
- * no other nodes stay as they are.
+ * and p_q has s_q sum_a N_a(q) (theta_a Y_a + (1 - theta_a) y_q) in place of s_q y_q. A uniform change of
+ * volume meets kappa at edges as elsewhere, so that nothing is lost where contacts close the body in. Cells
+ * that have no other nodes stay as they are.
  *
  * Groups of materials do not share nodal volumes, since the pressure jumps between them. */
 #ifndef SOLID_NODAL_VOLUME_H

@@ -182,9 +182,9 @@ void run_contacts_give_way(struct run *run, double miss, double allowed, double 
               remedy);
 }
 
-/* To first order the energy of the contacts is the work of their forces along what they give way by. The stored
- * energy is that much less, and it goes with the square of the way that the body is pressed: of the forces, which
- * go with the way, half that part is missing. */
+/* To first order the energy of the contacts is the work of their forces along what they give way by. The
+ * stored energy is that much less, and it goes with the square of the way that the body is pressed: of the
+ * forces, which go with the way, half that part is missing. */
 void run_contacts_missing(struct run *run)
 {
     struct solid_system *system = &run->model->system;
@@ -193,12 +193,14 @@ void run_contacts_missing(struct run *run)
     double stored = energy_internal(system, run->u);
     double missing = stored > 0.0 ? energy_contact(system) / (2.0 * stored) : 0.0;
     /* More than half is no part of what is stored, but of what round-off leaves of a body at rest. */
-    if (missing > most_missing && missing < 0.5 && (wants_forces(output) || output->stress || output->pressure)) {
-        tool_note(run->tool,
-                  "%s: forces and pressures may be %.2g %% too small, as contacts still give way a little: where "
-                  "these close in a body that is hardly compressible, prescribe `normal` on sides that stay in "
-                  "contact",
-                  run->scene->path, 100.0 * missing);
+    if (missing > most_missing && missing < 0.5 &&
+        (wants_forces(output) || output->stress || output->pressure)) {
+        tool_note(
+            run->tool,
+            "%s: forces and pressures may be %.2g %% too small, as contacts still give way a little: where "
+            "these close in a body that is hardly compressible, prescribe `normal` on sides that stay in "
+            "contact",
+            run->scene->path, 100.0 * missing);
     }
 }
 
