@@ -56,8 +56,10 @@ static enum status build_body(struct assembly *input, struct solid_system *syste
     struct material_list *materials = &input->materials;
     int32_t *vertex = NULL;
     double *coordinate = NULL;
+    bool *at_edge = NULL;
     if (input->smoothed && assembly_holds_averages(input)) {
         TRY(assembly_soften_ends(input, materials, error));
+        TRY(assembly_edge_nodes(input, &at_edge, error));
     }
     if (!input->pointwise_volume) {
         TRY(list_vertices(input, &vertex, &coordinate, error));
@@ -89,12 +91,14 @@ static enum status build_body(struct assembly *input, struct solid_system *syste
                               .group = materials->section,
                               .vertex = vertex,
                               .barycentric = coordinate,
+                              .at_edge = at_edge,
                               .smoothed = input->smoothed ? &smoothed : NULL,
                               .ranks = input->ranks};
     TRY(body_build(&body, &system->body, error));
 done:
     free(vertex);
     free(coordinate);
+    free(at_edge);
     return status;
 }
 

@@ -121,6 +121,10 @@ MUST_CHECK enum status assembly_add_contacts(const struct assembly *input, struc
 MUST_CHECK enum status assembly_soften_ends(const struct assembly *input, struct material_list *list,
                                             struct error *error);
 
+/* (*at_edge)[node_count]: nodes at edges between clamped and free sides, in 3D; NULL: there are none. The
+ * caller's to free. */
+MUST_CHECK enum status assembly_edge_nodes(const struct assembly *input, bool **at_edge, struct error *error);
+
 bool assembly_has_gravity(const struct assembly *input);
 
 /* Whether displacements are prescribed to averages over the facets of the boundary, not at nodes. */

@@ -34,6 +34,7 @@ struct body_input {
     /* For nodal volumes; NULL: the pointwise volumetric law throughout. */
     const int32_t *vertex;     /* point_count * (dim + 1): vertices of the background cell of each point */
     const double *barycentric; /* point_count * (dim + 1): its barycentric coordinates there, sum 1 */
+    const bool *at_edge;       /* node_count: nodes that own no nodal volume (nodal_volume.h); NULL: none */
     const struct smoothed_cells_input *smoothed; /* the points are cells, in their order; NULL: any points */
     const struct ranks *ranks;                   /* processes that compute the body together; NULL: one */
 };
@@ -83,6 +84,9 @@ struct nodal_volumes {
     int64_t *ptr;    /* count + 1 */
     int32_t *slot;   /* ptr[count]: the places of a nodal volume in these two, ascending */
     double *strain;  /* point_count: y at the last evaluation */
+    double *direct;  /* point_count: what s acts on: y, or near edges means of it; NULL: no edges, y itself */
+    double *modulus; /* count: S of nodal volumes that have a cell at an edge, N m (2D: N); 0 of others; */
+    double *mean;    /* and Y of these, 0 of others */
     double *content; /* rows of the slices: b, m3 (2D: m2) */
     double *pressure; /* likewise: pi, Pa */
     struct nodal_pressures pressures;

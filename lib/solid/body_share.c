@@ -266,4 +266,7 @@ void body_share_collect(struct body *body)
     if (body->averaged) {
         ranks_gather(share->ranks, body->volumes.strain, sizeof *body->volumes.strain, share->point_first);
     }
+    if (body->averaged && body->volumes.direct != NULL) {
+        ranks_gather(share->ranks, body->volumes.direct, sizeof *body->volumes.direct, share->point_first);
+    }
 }

@@ -116,12 +116,14 @@ KERNEL_INLINE void kernel_pressures(const struct body *body, const struct block 
     }
     const int32_t *volume = body->volumes.of_point + block->first_point * (dim + 1);
     const double *share = body->volumes.share + block->first_point * (dim + 1);
+    const double *direct = body->volumes.direct != NULL ? body->volumes.direct : body->volumes.strain;
+    direct += block->first_point;
     for (int64_t i = 0; i < block->point_count; i++) {
         double sum = 0.0;
         for (int64_t k = i * (dim + 1); k < (i + 1) * (dim + 1); k++) {
             sum += share[k] * body->volumes.pressure[volume[k]];
         }
-        pressure[i] = sum + weight[i] * nodal_volume_modulus(&body->materials[material[i]]) * (J[i] - 1.0);
+        pressure[i] = sum + weight[i] * nodal_volume_modulus(&body->materials[material[i]]) * direct[i];
     }
 }
 

@@ -47,6 +47,50 @@ done:
     return status;
 }
 
+/* share[dim + 1] of point q: equal to its barycentric coordinates by its volume, but none of nodes at edges
+ * if there are others. Returns whether there are such nodes. */
+static bool share_out(const struct body_input *input, const struct body *body, int64_t q, double *share)
+{
+    int vertices = body->dim + 1;
+    int64_t from = body->order[q] * vertices;
+    double others = 0.0;
+    bool at_edge = false;
+    for (int k = 0; k < vertices; k++) {
+        bool leaves = input->at_edge != NULL && input->at_edge[input->vertex[from + k]];
+        share[k] = leaves ? 0.0 : input->barycentric[from + k] * body->weight[q];
+        others += leaves ? 0.0 : input->barycentric[from + k];
+        at_edge = at_edge || leaves;
+    }
+    at_edge = at_edge && others > 0.0;
+    for (int k = 0; k < vertices && others < 1.0; k++) {
+        share[k] = at_edge ? share[k] / others : input->barycentric[from + k] * body->weight[q];
+    }
+    return at_edge;
+}
+
+/* S of the nodal volumes that have a point at an edge. */
+static enum status sum_moduli(const bool *at_edge, struct body *body, struct error *error)
+{
+    enum status status;
+    struct nodal_volumes *volumes = &body->volumes;
+    int vertices = body->dim + 1;
+    TRY(NEW_ARRAY(&volumes->direct, body->point_count, error));
+    TRY(NEW_ARRAY(&volumes->modulus, volumes->count, error));
+    TRY(NEW_ARRAY(&volumes->mean, volumes->count, error));
+    for (int64_t a = 0; a < volumes->count; a++) {
+        double sum = 0.0;
+        bool is_near = false;
+        for (int64_t i = volumes->ptr[a]; i < volumes->ptr[a + 1]; i++) {
+            int64_t slot = volumes->slot[i], q = slot / vertices;
+            is_near = is_near || at_edge[q];
+            sum += volumes->share[slot] * nodal_volume_modulus(&body->materials[body->material[q]]);
+        }
+        volumes->modulus[a] = is_near ? sum : 0.0;
+    }
+done:
+    return status;
+}
+
 enum status nodal_volumes_build(const struct body_input *input, struct body *body, struct error *error)
 {
     enum status status;
@@ -54,25 +98,34 @@ enum status nodal_volumes_build(const struct body_input *input, struct body *bod
     int vertices = body->dim + 1;
     int64_t slots = body->point_count * vertices;
     struct key *keys = NULL;
+    bool *at_edge = NULL; /* points of cells with a node at an edge and others */
     TRY(NEW_ARRAY(&keys, slots, error));
     TRY(NEW_ARRAY(&volumes->of_point, slots, error));
     TRY(NEW_ARRAY(&volumes->share, slots, error));
     TRY(NEW_ARRAY(&volumes->slot, slots, error));
     TRY(NEW_ARRAY(&volumes->strain, body->point_count, error));
+    TRY(NEW_ARRAY(&at_edge, body->point_count, error));
     for (int64_t s = 0; s < slots; s++) {
         int64_t q = s / vertices, from = body->order[q] * vertices + s % vertices;
         int32_t material = body->material[q];
-        bool carries = nodal_pressure_modulus(&body->materials[material]) > 0.0;
         keys[s] = (struct key){input->vertex[from], input->group ? input->group[material] : material, s};
-        volumes->share[s] = carries ? input->barycentric[from] * body->weight[q] : 0.0;
+    }
+    for (int64_t q = 0; q < body->point_count; q++) {
+        if (nodal_pressure_modulus(&body->materials[body->material[q]]) > 0.0) {
+            at_edge[q] = share_out(input, body, q, volumes->share + q * vertices);
+        }
     }
     TRY(number_volumes(volumes, keys, slots, error));
+    if (input->at_edge != NULL) {
+        TRY(sum_moduli(at_edge, body, error));
+    }
     TRY(body_share_volumes(body, error));
     TRY(nodal_pressures_build(body, error));
     TRY(NEW_ARRAY(&volumes->content, volumes->pressures.slices * NODAL_PRESSURE_ROWS, error));
     TRY(NEW_ARRAY(&volumes->pressure, volumes->pressures.slices * NODAL_PRESSURE_ROWS, error));
 done:
     free(keys);
+    free(at_edge);
     return status;
 }
 
@@ -114,12 +167,48 @@ static inline __attribute__((always_inline)) void sum_content(struct body *body,
     body_share_gather(share, volumes->content, sizeof *volumes->content, share->volume_first);
 }
 
+/* What s acts on, of a body with edges. */
+static void average_strains(struct body *body)
+{
+    struct nodal_volumes *volumes = &body->volumes;
+    struct body_share *share = &body->share;
+    int rank = ranks_rank(share->ranks), vertices = body->dim + 1;
+#pragma omp for schedule(static)
+    for (int64_t a = share->volume_first[rank]; a < share->volume_first[rank + 1]; a++) {
+        double sum = 0.0;
+        if (!(volumes->modulus[a] > 0.0)) {
+            continue;
+        }
+        for (int64_t i = volumes->ptr[a]; i < volumes->ptr[a + 1]; i++) {
+            int64_t slot = volumes->slot[i], q = slot / vertices;
+            double modulus = nodal_volume_modulus(&body->materials[body->material[q]]);
+            sum += volumes->share[slot] * modulus * volumes->strain[q];
+        }
+        volumes->mean[a] = sum / volumes->modulus[a];
+    }
+    body_share_gather(share, volumes->mean, sizeof *volumes->mean, share->volume_first);
+#pragma omp for schedule(static)
+    for (int64_t q = share->begin_point; q < share->end_point; q++) {
+        double change = 0.0;
+        for (int64_t slot = q * vertices; slot < (q + 1) * vertices; slot++) {
+            int32_t a = volumes->of_point[slot];
+            change += volumes->modulus[a] > 0.0
+                          ? volumes->share[slot] * (volumes->mean[a] - volumes->strain[q])
+                          : 0.0;
+        }
+        volumes->direct[q] = volumes->strain[q] + change / body->weight[q];
+    }
+}
+
 void nodal_volumes_evaluate(struct body *body)
 {
     if (body->dim == 2) {
         sum_content(body, 3);
     } else {
         sum_content(body, 4);
+    }
+    if (body->volumes.direct != NULL) {
+        average_strains(body);
     }
     nodal_pressures_solve(&body->volumes.pressures, body->volumes.content, body->volumes.pressure);
 }
@@ -136,24 +225,31 @@ static double carried(const struct body *body, int64_t point)
     return sum / body->weight[point];
 }
 
+/* dU/dy of a point at the last evaluation, Pa. */
+static double conjugate(const struct body *body, int64_t point)
+{
+    const struct nodal_volumes *volumes = &body->volumes;
+    const double *direct = volumes->direct != NULL ? volumes->direct : volumes->strain;
+    return carried(body, point) +
+           nodal_volume_modulus(&body->materials[body->material[point]]) * direct[point];
+}
+
 double nodal_volume_pressure(const struct body *body, int64_t point)
 {
-    const struct material *material = &body->materials[body->material[point]];
-    return (carried(body, point) + nodal_volume_modulus(material) * body->volumes.strain[point]) *
-           material_volume_slope(material, body->J[point]);
+    return conjugate(body, point) *
+           material_volume_slope(&body->materials[body->material[point]], body->J[point]);
 }
 
 double nodal_volume_energy(const struct body *body, int64_t point)
 {
-    const struct material *material = &body->materials[body->material[point]];
-    double strain = body->volumes.strain[point];
-    return 0.5 * (carried(body, point) + nodal_volume_modulus(material) * strain) * strain;
+    return 0.5 * conjugate(body, point) * body->volumes.strain[point];
 }
 
 void nodal_volumes_free(struct nodal_volumes *volumes)
 {
-    void *arrays[] = {volumes->of_point, volumes->share,   volumes->ptr,     volumes->slot,
-                      volumes->strain,   volumes->content, volumes->pressure};
+    void *arrays[] = {volumes->of_point, volumes->share,   volumes->ptr,      volumes->slot,
+                      volumes->strain,   volumes->content, volumes->pressure, volumes->direct,
+                      volumes->modulus,  volumes->mean};
     nodal_pressures_free(&volumes->pressures);
     for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) {
         free(arrays[i]);

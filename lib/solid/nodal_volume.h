@@ -26,6 +26,20 @@
  *
  *   p_q = ( sum_a N_a(q) pi_a + s_q y_q ) y'(J_q).
  *
+ * At edges between clamped and free sides the pressure is singular. A nodal pressure there cannot follow it,
+ * the displacement of the clamped side does not answer, and the body would be too stiff. Nodes at such edges
+ * own no nodal volume: the other nodes of their cells share it, N_a being scaled to the sum 1, as multipliers
+ * of mortar methods are constant in the last element of an interface (Bernardi, Maday and Patera 1994). And
+ * where a nodal volume has a cell at an edge, s acts on it as a whole, not on its points: with theta_a = 1 of
+ * these volumes, 0 of others, the first term of the energy is
+ *
+ *   sum_q w_q s_q / 2 sum_a (1 - theta_a) N_a(q) y_q^2  +  sum_a theta_a S_a / 2 Y_a^2,
+ *   S_a = sum_q N_a(q) w_q s_q,    Y_a = sum_q N_a(q) w_q s_q y_q / S_a,
+ *
+ * and p_q has s_q sum_a N_a(q) (theta_a Y_a + (1 - theta_a) y_q) in place of s_q y_q. A uniform change of
+ * volume meets kappa at edges as elsewhere, so that nothing is lost where contacts close the body in. Cells
+ * that have no other nodes stay as they are.
+ *
  * Groups of materials do not share nodal volumes, since the pressure jumps between them. */
 #ifndef SOLID_NODAL_VOLUME_H
 #define SOLID_NODAL_VOLUME_H

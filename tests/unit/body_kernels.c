@@ -132,6 +132,90 @@ TEST(nodal_volumes)
     }
 }
 
+/* at_edge[nodes]: nodes on two sides of the first axis' lower side. */
+static bool *edge_nodes(const struct sample *sample)
+{
+    bool *at_edge;
+    ARRAY(at_edge, sample->cloud.node_count);
+    for (int64_t n = 0; n < sample->cloud.node_count; n++) {
+        const double *x = sample->cloud.x + n * sample->dim;
+        at_edge[n] = x[0] <= 0.0 && (x[1] <= 0.0 || x[1] >= sample_size);
+    }
+    return at_edge;
+}
+
+/* f . v = d/dt W(u + t v) in a random direction. */
+static void check_work(const struct sample *sample, struct body *body, struct random *random)
+{
+    int64_t count = sample->cloud.node_count * sample->dim;
+    double *force = zeros(count, sizeof *force), *at = zeros(count, sizeof *at);
+    double *u = deformed_field(sample, body, force, random), *v = random_field(sample, 1.0, random);
+    double work = 0.0, sum = 0.0, value[4], h = 2e-7;
+    (void)body_force(body, u, force);
+    for (int k = 0; k < 4; k++) {
+        for (int64_t i = 0; i < count; i++) {
+            at[i] = u[i] + h * (k < 2 ? k - 2 : k - 1) * v[i];
+        }
+        value[k] = body_energy(body, at);
+    }
+    for (int64_t i = 0; i < count; i++) {
+        work += force[i] * v[i];
+        sum += fabs(force[i] * v[i]);
+    }
+    NEAR_TO(work, (value[0] - 8.0 * value[1] + 8.0 * value[2] - value[3]) / (12.0 * h), 2e-7 * sum);
+}
+
+/* Nodes at edges have no nodal volume, the others share all; means are taken at some nodes only. */
+static void check_shares(const struct sample *sample, const struct body *body, const bool *at_edge)
+{
+    const struct nodal_volumes *volumes = &body->volumes;
+    int vertices = body->dim + 1;
+    double volume = 0.0, whole = 0.0;
+    int64_t means = 0;
+    for (int64_t q = 0; q < body->point_count; q++) {
+        whole += body->weight[q];
+        for (int64_t s = q * vertices; s < (q + 1) * vertices; s++) {
+            int32_t node = sample->vertex[body->order[q] * vertices + s - q * vertices];
+            volume += volumes->share[s];
+            assert_true(at_edge[node] == !(volumes->share[s] > 0.0));
+        }
+    }
+    NEAR_TO(volume, whole, 1e-15);
+    for (int64_t a = 0; a < volumes->count; a++) {
+        means += volumes->modulus[a] > 0.0;
+    }
+    assert_true(means > 3 && means < volumes->count / 2);
+}
+
+/* Of bodies with edges forces are the gradient of the energy, also where materials share nodal volumes; a
+ * uniform change of volume meets the bulk modulus. */
+TEST(edges)
+{
+    struct random random = {5};
+    for (int dim = 2; dim <= 3; dim++) {
+        struct sample sample = make_sample(dim, true, 5);
+        bool *at_edge = edge_nodes(&sample);
+        struct setup one = one_material(MATERIAL_NEO_HOOKEAN, true), three = three_materials(true);
+        one.faces = three.faces = true;
+        one.at_edge = three.at_edge = at_edge;
+        three.group = (int32_t[]){0, 0, 1};
+        struct body body = make_body(&sample, &one), mixed = make_body(&sample, &three);
+        double *u = linear_field(&sample, (double[]){1.01, 0, 0, 0, 1.01, 0, 0, 0, 1.01}, NULL);
+        double pressure = material_pressure(&one.material[0], dim == 2 ? 1.0201 : 1.030301);
+        (void)body_energy(&body, u);
+        for (int64_t q = 0; q < body.point_count; q++) {
+            NEAR_TO(nodal_volume_pressure(&body, q), pressure, 1e-9 * pressure);
+        }
+        check_shares(&sample, &body, at_edge);
+        check_work(&sample, &body, &random);
+        check_work(&sample, &mixed, &random);
+        body_free(&body);
+        body_free(&mixed);
+        free(at_edge);
+        sample_free(&sample);
+    }
+}
+
 /* A body of one material, of that Poisson's ratio. */
 static struct body make_alike(const struct sample *sample, double poisson_ratio)
 {

@@ -16,6 +16,8 @@ struct setup {
     int model_count; /* points take the models in turn, by their place */
     struct material material[MATERIALS];
     const struct ranks *ranks; /* NULL: one process */
+    const bool *at_edge;       /* of each node; NULL: none */
+    const int32_t *group;      /* of each material; NULL: each by itself */
 };
 
 static inline struct material make_material(enum material_model model, double youngs_modulus)
@@ -61,6 +63,8 @@ static inline struct body make_body(const struct sample *sample, const struct se
     input.smoothed = setup->faces ? &smoothed : NULL;
     input.vertex = setup->averaged ? sample->vertex : NULL;
     input.ranks = setup->ranks;
+    input.at_edge = setup->at_edge;
+    input.group = setup->group;
     GOOD(body_build(&input, &body, &error));
     free(material);
     return body;

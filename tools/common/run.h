@@ -71,6 +71,10 @@ void run_contacts_begin(const struct run *run);
  * exits with a verdict where that is more than a tenth of the motion. */
 void run_contacts_give_way(struct run *run, double miss, double allowed, double motion);
 
+/* Of the final state of a quasi-static scene, which was evaluated last: notes what of the forces is missing
+ * because contacts still give way. */
+void run_contacts_missing(struct run *run);
+
 /* Of the final state: exits with a verdict where a rigid surface is in the body by more than `slack`, m, and
  * `share` of a facet's width, and no node presses; and notes contacts that press on less than three nodes
  * across, and those that never pressed. */

@@ -2,6 +2,7 @@
 #include "run.h"
 
 #include "solid/contact_patch.h"
+#include "solid/energy.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -9,6 +10,9 @@
 
 /* More than this part of a contact's force on patches that are less than three nodes across. */
 static const double most_thin = 0.5;
+
+/* More than this part of the forces that is missing because contacts still give way. */
+static const double most_missing = 0.01;
 
 /* Positions of the nodes. */
 static double *deformed(const struct run *run)
@@ -176,6 +180,28 @@ void run_contacts_give_way(struct run *run, double miss, double allowed, double 
     }
     tool_note(run->tool, "%s: contacts give way by %.2g m, not %.2g m: %s", run->scene->path, miss, allowed,
               remedy);
+}
+
+/* To first order the energy of the contacts is the work of their forces along what they give way by. The
+ * stored energy is that much less, and it goes with the square of the way that the body is pressed: of the
+ * forces, which go with the way, half that part is missing. */
+void run_contacts_missing(struct run *run)
+{
+    struct solid_system *system = &run->model->system;
+    const struct scene_output *output = &run->scene->output;
+    system_measure_contacts(system, run->u, false);
+    double stored = energy_internal(system, run->u);
+    double missing = stored > 0.0 ? energy_contact(system) / (2.0 * stored) : 0.0;
+    /* More than half is no part of what is stored, but of what round-off leaves of a body at rest. */
+    if (missing > most_missing && missing < 0.5 &&
+        (wants_forces(output) || output->stress || output->pressure)) {
+        tool_note(
+            run->tool,
+            "%s: forces and pressures may be %.2g %% too small, as contacts still give way a little: where "
+            "these close in a body that is hardly compressible, prescribe `normal` on sides that stay in "
+            "contact",
+            run->scene->path, 100.0 * missing);
+    }
 }
 
 /* Exits where a surface has gone into the body between its nodes. */

@@ -22,6 +22,9 @@ static void judge(struct run *run, const struct relaxation_report *report)
                           : "round-off admits no");
         }
         run_contacts_give_way(run, report->penetration, report->penetration_allowed, report->largest_move);
+        if (run->model->system.contact_count > 0) {
+            run_contacts_missing(run);
+        }
         run_folds_judge(run);
         run_contacts_judge(run, report->penetration_allowed, 0.0);
         return;
