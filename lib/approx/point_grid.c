@@ -271,15 +271,22 @@ static void sort_ascending(int32_t *index, int64_t count)
     }
 }
 
-enum status point_grid_query_box(const struct point_grid *grid, const double *low, const double *high,
-                                 double factor, struct index_list *list, struct error *error)
+enum status point_grid_list_box(const struct point_grid *grid, const double *low, const double *high,
+                                double factor, struct index_list *list, struct error *error)
 {
-    int64_t first = list->count;
     for (int l = 0; l < grid->level_count; l++) {
         if (grid->level[l].start != NULL) {
             RETURN_IF_ERROR(query_level(grid, &grid->level[l], low, high, factor, list, error));
         }
     }
+    return STATUS_OK;
+}
+
+enum status point_grid_query_box(const struct point_grid *grid, const double *low, const double *high,
+                                 double factor, struct index_list *list, struct error *error)
+{
+    int64_t first = list->count;
+    RETURN_IF_ERROR(point_grid_list_box(grid, low, high, factor, list, error));
     RETURN_IF_ERROR(index_list_reserve(list, list->count - first, error)); /* scratch for sorting */
     sort_ascending(list->index + first, list->count - first);
     return STATUS_OK;

@@ -51,6 +51,11 @@ MUST_CHECK enum status point_grid_query_box(const struct point_grid *grid, const
                                             const double *high, double factor, struct index_list *list,
                                             struct error *error);
 
+/* The same in no particular order. */
+MUST_CHECK enum status point_grid_list_box(const struct point_grid *grid, const double *low,
+                                           const double *high, double factor, struct index_list *list,
+                                           struct error *error);
+
 /* Room for `count` more indices. */
 MUST_CHECK enum status index_list_reserve(struct index_list *list, int64_t count, struct error *error);
 

@@ -26,6 +26,12 @@ struct reach_facet {
     double middle[3], radius;   /* of a ball around it */
 };
 
+/* A facet that may hide a node from points of its support: the node is beyond the facet, or on it without
+ * being its own. */
+struct reach_shadow {
+    int32_t facet, node;
+};
+
 /* The cells and the grid are the caller's and must outlive this. */
 struct reach {
     struct cells cells;
@@ -35,12 +41,10 @@ struct reach {
     int32_t *star;
     int64_t facet_count;
     struct reach_facet *facet;
-    int64_t *opposing_ptr; /* node_count + 1: the facets within its radius that hide a node from points behind
-                              them (CSR) */
-    int32_t *opposing;
-    float *opposing_view[8]; /* with `opposing`, from the node: the facet's normal, the height of the node
-                                above its plane, the middle and the radius of its ball */
-    bool *corner;            /* node_count: paths may bend there */
+    int64_t shadow_count, shadow_capacity;
+    struct reach_shadow *shadow; /* by facets, ascending */
+    bool *shadowed;              /* node_count: whether there are shadows of the node */
+    bool *corner;                /* node_count: paths may bend there */
     int64_t *edge_ptr; /* node_count + 1: 3D: the other ends of the re-entrant edges at each node (CSR) */
     int32_t *edge;
     int64_t *seen_ptr; /* node_count + 1: the corners that a node, within its radius, is in sight of (CSR) */
@@ -92,26 +96,31 @@ static inline const int32_t *reach_places_cells(const struct reach_places *place
     return places->cell + first;
 }
 
+/* The shadows that hold each of some points, by their numbers in reach->shadow (CSR); some may pass close by.
+ */
+struct reach_shadows {
+    int64_t *ptr;
+    int32_t *shadow;
+};
+/* Of the points x[count * dim]. */
+MUST_CHECK enum status reach_shadows_build(const struct reach *reach, int64_t count, const double *x,
+                                           struct reach_shadows *shadows, struct error *error);
+void reach_shadows_free(struct reach_shadows *shadows);
+
 /* Scratch space for one thread, all zero at first; grows on demand. */
 struct reach_work {
-    const double *x; /* the point that is looked from */
+    int64_t point;   /* the number of the point that is looked from, */
+    const double *x; /* and its place */
     double from[3];  /* itself; or for a point outside, its place in the nearest cell */
     bool outside;
-    const int32_t *cell;   /* the cells that it lies in */
-    int64_t cell_count;    /* -1: not looked for yet */
-    struct index_list own; /* what `cell` may view */
-    uint32_t serial;       /* of the point */
-    uint32_t *mark;        /* node_count: 2 serial, and 1 more for a node that is hidden */
-    uint32_t pass;         /* serial of the search for paths */
-    uint32_t *passed;      /* node_count: the last pass that put down a length and a node before */
-    double *length;        /* node_count: of the shortest path, infinite: none yet */
-    int32_t *before;       /* node_count: the node before on that path, -1: the point itself */
-    int64_t row;           /* of the points, see reach_places; their ball: */
-    double row_middle[3], row_radius;
-    uint32_t row_serial, *listed;   /* node_count: the last row that facets are listed for */
-    int32_t *near_begin, *near_end; /* node_count: for the candidates, the facets that may lie
-                                       between, in `near` */
-    struct index_list near;
+    const int32_t *cell;       /* the cells that it lies in */
+    int64_t cell_count;        /* -1: not looked for yet */
+    struct index_list own;     /* what `cell` may view */
+    uint32_t serial;           /* of the point */
+    uint32_t *mark;            /* node_count: 2 serial, and 1 more for a node that is hidden */
+    double *length;            /* node_count: of the shortest path, infinite: none, or none yet; */
+    int32_t *before;           /* the node before on that path, -1: the point itself */
+    struct index_list reached; /* nodes that the last search for paths may have put a length down for */
     struct index_list hidden, stack, visited;
     int64_t changed;  /* candidates of the last filter that were out of sight */
     int64_t around;   /* neighbours of the last filter that are seen around corners */
@@ -120,20 +129,16 @@ struct reach_work {
 };
 void reach_work_free(struct reach_work *work);
 
-/* The point to evaluate next: point p of x[][dim], at x; the points of its row stand beside it. */
+/* The point to evaluate next: point p, at x. */
 MUST_CHECK enum status reach_begin(const struct reach *reach, const struct reach_places *places, int64_t p,
                                    const double *x, struct reach_work *work, struct error *error);
-
-/* List the facets that may lie between the points of the row and each candidate index[count]: nodes that are
- * nearer than their radius. Call before the first reach_filter() of a point. */
-MUST_CHECK enum status reach_list_facets(const struct reach *reach, const int32_t *index, int64_t count,
-                                         struct reach_work *work, struct error *error);
 
 /* Of the candidates index[*count], nodes that are nearer than `widen` times their radius, keep those whose
  * shortest path is as well. Where work->around > 0, work->image[*count * dim] holds the offset to each of
  * them: straight to a node in sight, and along the first leg of the path, as long as the path is, to others.
  */
-MUST_CHECK enum status reach_filter(const struct reach *reach, double widen, int32_t *index, int64_t *count,
-                                    struct reach_work *work, struct error *error);
+MUST_CHECK enum status reach_filter(const struct reach *reach, const struct reach_shadows *shadows,
+                                    double widen, int32_t *index, int64_t *count, struct reach_work *work,
+                                    struct error *error);
 
 #endif

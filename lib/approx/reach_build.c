@@ -10,25 +10,25 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Pairs (row, value), to become a CSR. */
-struct pair_list {
-    int64_t count, capacity;
-    int32_t *row, *value;
-};
-
-static enum status add_pair(struct pair_list *pairs, int32_t row, int32_t value, struct error *error)
+enum status pair_list_add(struct pair_list *pairs, int32_t row, int32_t value, struct error *error)
 {
-    int64_t capacity = pairs->capacity;
-    RETURN_IF_ERROR(GROW_ARRAY(&pairs->row, pairs->count + 1, &capacity, error));
+    RETURN_IF_ERROR(GROW_ARRAY(&pairs->row, pairs->count + 1, &pairs->row_capacity, error));
     RETURN_IF_ERROR(GROW_ARRAY(&pairs->value, pairs->count + 1, &pairs->capacity, error));
     pairs->row[pairs->count] = row;
     pairs->value[pairs->count++] = value;
     return STATUS_OK;
 }
 
-/* (*ptr)[rows + 1], (*idx): the values of each row in their order. */
-static enum status file_pairs(const struct pair_list *pairs, int64_t rows, int64_t **ptr, int32_t **idx,
-                              struct error *error)
+enum status pair_list_append(struct pair_list *pairs, const struct pair_list *more, struct error *error)
+{
+    for (int64_t i = 0; i < more->count; i++) {
+        RETURN_IF_ERROR(pair_list_add(pairs, more->row[i], more->value[i], error));
+    }
+    return STATUS_OK;
+}
+
+enum status pair_list_file(const struct pair_list *pairs, int64_t rows, int64_t **ptr, int32_t **idx,
+                           struct error *error)
 {
     RETURN_IF_ERROR(lists_by_row(pairs->count, 1, pairs->row, rows, ptr, idx, error));
     for (int64_t i = 0; i < pairs->count; i++) {
@@ -37,7 +37,7 @@ static enum status file_pairs(const struct pair_list *pairs, int64_t rows, int64
     return STATUS_OK;
 }
 
-static void pair_list_free(struct pair_list *pairs)
+void pair_list_free(struct pair_list *pairs)
 {
     free(pairs->row);
     free(pairs->value);
@@ -99,61 +99,38 @@ static enum status set_facets(const struct faces *faces, struct reach *reach, st
     return STATUS_OK;
 }
 
-static double height_above(const struct reach *reach, const struct reach_facet *facet, int32_t node)
-{
-    double height = -facet->offset;
-    for (int a = 0; a < reach->cells.dim; a++) {
-        height += facet->normal[a] * reach->cells.x[(int64_t)node * reach->cells.dim + a];
-    }
-    return height;
-}
-
 static bool is_of_facet(int dim, const struct reach_facet *facet, int32_t node)
 {
     return facet->node[0] == node || facet->node[1] == node || (dim == 3 && facet->node[2] == node);
 }
 
-/* Nodes whose supports reach a facet and that are beyond it, or on it without being its own. */
-static enum status file_opposing(struct reach *reach, struct error *error)
+/* The shadows: of nodes whose supports reach a facet and that are beyond it, or on it without being its own.
+ */
+static enum status list_shadows(struct reach *reach, struct error *error)
 {
     enum status status = STATUS_OK;
-    struct pair_list pairs = {0};
     struct index_list near = {0};
     int dim = reach->cells.dim;
+    TRY(NEW_ARRAY(&reach->shadowed, reach->cells.node_count, error));
     for (int64_t f = 0; f < reach->facet_count; f++) {
         const struct reach_facet *facet = &reach->facet[f];
         struct box box = box_of_nodes(dim, reach->cells.x, facet->node, dim);
         near.count = 0;
         TRY(point_grid_query_box(reach->grid, box.low, box.high, 1.0, &near, error));
+        TRY(GROW_ARRAY(&reach->shadow, reach->shadow_count + near.count, &reach->shadow_capacity, error));
         for (int64_t i = 0; i < near.count; i++) {
             int32_t node = near.index[i];
-            double height = height_above(reach, facet, node),
-                   tolerance = REACH_ON_PLANE * reach->grid->radius[node];
             const double *x = reach->cells.x + (int64_t)node * dim;
+            double height = reach_height_above(dim, facet, x),
+                   tolerance = REACH_ON_PLANE * reach->grid->radius[node];
             if (height > tolerance || (height >= -tolerance && !is_of_facet(dim, facet, node) &&
                                        vector_distance(dim, facet->middle, x) <= facet->radius)) {
-                TRY(add_pair(&pairs, node, (int32_t)f, error));
+                reach->shadow[reach->shadow_count++] = (struct reach_shadow){(int32_t)f, node};
+                reach->shadowed[node] = true;
             }
-        }
-    }
-    TRY(file_pairs(&pairs, reach->cells.node_count, &reach->opposing_ptr, &reach->opposing, error));
-    for (int a = 0; a < 8; a++) {
-        TRY(NEW_ARRAY(&reach->opposing_view[a], pairs.count + REACH_BLOCK, error));
-    }
-    for (int32_t n = 0; n < reach->cells.node_count; n++) {
-        for (int64_t i = reach->opposing_ptr[n]; i < reach->opposing_ptr[n + 1]; i++) {
-            const struct reach_facet *facet = &reach->facet[reach->opposing[i]];
-            for (int a = 0; a < dim; a++) {
-                reach->opposing_view[a][i] = (float)facet->normal[a];
-                reach->opposing_view[4 + a][i] =
-                    (float)(facet->middle[a] - reach->cells.x[(int64_t)n * dim + a]);
-            }
-            reach->opposing_view[3][i] = (float)height_above(reach, facet, n);
-            reach->opposing_view[7][i] = (float)facet->radius;
         }
     }
 done:
-    pair_list_free(&pairs);
     free(near.index);
     return status;
 }
@@ -213,7 +190,7 @@ static bool is_reentrant(const struct reach *reach, const struct ridge *first, c
     const double *ridge = reach->cells.x + (int64_t)first->node[0] * dim;
     const double *ends[2] = {reach->cells.x + (int64_t)first->opposite * dim,
                              reach->cells.x + (int64_t)second->opposite * dim};
-    double height = height_above(reach, &reach->facet[first->facet], second->opposite);
+    double height = reach_height_above(dim, &reach->facet[first->facet], ends[1]);
     double tolerance = REACH_ON_PLANE * reach->grid->radius[first->node[0]], u[2][3], along[2][2] = {{0.0}};
     double edge[3] = {0.0, 0.0, 0.0}, product = 0.0;
     if (fabs(height) > tolerance) {
@@ -258,8 +235,8 @@ static enum status find_corners(struct reach *reach, struct reach_work *work, st
         reach->corner[a] = true;
         if (b >= 0) {
             reach->corner[b] = true;
-            TRY(add_pair(&edges, a, b, error));
-            TRY(add_pair(&edges, b, a, error));
+            TRY(pair_list_add(&edges, a, b, error));
+            TRY(pair_list_add(&edges, b, a, error));
         }
     }
     for (int64_t n = 0; n < reach->cells.node_count; n++) {
@@ -267,7 +244,7 @@ static enum status find_corners(struct reach *reach, struct reach_work *work, st
             TRY(hangs_together(reach, (int32_t)n, work, &reach->corner[n], error));
         }
     }
-    TRY(file_pairs(&edges, reach->cells.node_count, &reach->edge_ptr, &reach->edge, error));
+    TRY(pair_list_file(&edges, reach->cells.node_count, &reach->edge_ptr, &reach->edge, error));
 done:
     free(ridges);
     pair_list_free(&edges);
@@ -278,27 +255,28 @@ static enum status file_views(struct reach *reach, struct reach_work *work, stru
 {
     enum status status = STATUS_OK;
     struct pair_list pairs = {0};
+    struct reach_shadows shadows = {0};
     struct index_list near = {0};
     int dim = reach->cells.dim;
+    const struct reach_places nodes = {.nodes = true};
+    TRY(reach_shadows_build(reach, reach->cells.node_count, reach->cells.x, &shadows, error));
     for (int64_t n = 0; n < reach->cells.node_count; n++) {
         const double *x = reach->cells.x + n * dim;
-        near.count = 0;
-        if (reach->corner[n]) {
-            TRY(point_grid_query(reach->grid, x, 1.0, &near, error));
-            TRY(reach_work_reserve(reach, work, error));
-            reach_begin_row(reach, x, 1, work);
-            TRY(reach_list_facets(reach, near.index, near.count, work, error));
+        int64_t hidden;
+        if (!reach->corner[n]) {
+            continue;
         }
+        near.count = 0;
+        TRY(point_grid_query(reach->grid, x, 1.0, &near, error));
+        TRY(reach_begin(reach, &nodes, n, x, work, error));
+        TRY(reach_mark_shadows(reach, &shadows, n, work, &hidden, error));
         for (int64_t i = 0; i < near.count; i++) {
-            bool seen;
-            TRY(reach_sees(reach, x, reach->star + reach->star_ptr[n],
-                           reach->star_ptr[n + 1] - reach->star_ptr[n], near.index[i], work, &seen, error));
-            if (seen && near.index[i] != n) {
-                TRY(add_pair(&pairs, near.index[i], (int32_t)n, error));
+            if (!reach_is_hidden(work, near.index[i]) && near.index[i] != n) {
+                TRY(pair_list_add(&pairs, near.index[i], (int32_t)n, error));
             }
         }
     }
-    TRY(file_pairs(&pairs, reach->cells.node_count, &reach->seen_ptr, &reach->seen, error));
+    TRY(pair_list_file(&pairs, reach->cells.node_count, &reach->seen_ptr, &reach->seen, error));
     TRY(NEW_ARRAY(&reach->seen_length, pairs.count, error));
     for (int64_t n = 0; n < reach->cells.node_count; n++) {
         for (int64_t i = reach->seen_ptr[n]; i < reach->seen_ptr[n + 1]; i++) {
@@ -307,6 +285,7 @@ static enum status file_views(struct reach *reach, struct reach_work *work, stru
         }
     }
 done:
+    reach_shadows_free(&shadows);
     pair_list_free(&pairs);
     free(near.index);
     return status;
@@ -337,7 +316,7 @@ enum status reach_build(const struct cells *cells, const struct point_grid *grid
     reach->grid = grid;
     TRY(faces_build(cells, true, &faces, error));
     TRY(set_facets(&faces, reach, error));
-    TRY(file_opposing(reach, error));
+    TRY(list_shadows(reach, error));
     TRY(find_corners(reach, &work, error));
     TRY(file_views(reach, &work, error));
 done:

@@ -17,12 +17,11 @@ enum status reach_work_reserve(const struct reach *reach, struct reach_work *wor
 {
     if (work->mark == NULL) {
         RETURN_IF_ERROR(NEW_ARRAY(&work->mark, reach->cells.node_count, error));
-        RETURN_IF_ERROR(NEW_ARRAY(&work->passed, reach->cells.node_count, error));
         RETURN_IF_ERROR(NEW_ARRAY(&work->length, reach->cells.node_count, error));
         RETURN_IF_ERROR(NEW_ARRAY(&work->before, reach->cells.node_count, error));
-        RETURN_IF_ERROR(NEW_ARRAY(&work->listed, reach->cells.node_count, error));
-        RETURN_IF_ERROR(NEW_ARRAY(&work->near_begin, reach->cells.node_count, error));
-        RETURN_IF_ERROR(NEW_ARRAY(&work->near_end, reach->cells.node_count, error));
+        for (int64_t n = 0; n < reach->cells.node_count; n++) {
+            work->length[n] = INFINITY;
+        }
     }
     return STATUS_OK;
 }
@@ -31,14 +30,10 @@ void reach_work_free(struct reach_work *work)
 {
     free(work->own.index);
     free(work->mark);
-    free(work->passed);
     free(work->length);
     free(work->before);
-    free(work->listed);
-    free(work->near_begin);
-    free(work->near_end);
-    free(work->near.index);
     free(work->hidden.index);
+    free(work->reached.index);
     free(work->stack.index);
     free(work->visited.index);
     free(work->image);
@@ -52,14 +47,10 @@ static bool shorten(const struct reach *reach, int32_t node, double limit, struc
     double least = fmin(work->length[node], limit);
     bool shorter = false;
     for (int64_t i = reach->seen_ptr[node]; i < reach->seen_ptr[node + 1]; i++) {
-        int32_t corner = reach->seen[i];
-        if (work->passed[corner] != work->pass || !(work->length[corner] < least)) {
-            continue;
-        }
-        double length = work->length[corner] + reach->seen_length[i];
+        double length = work->length[reach->seen[i]] + reach->seen_length[i];
         if (length < least) {
             least = work->length[node] = length;
-            work->before[node] = corner;
+            work->before[node] = reach->seen[i];
             shorter = true;
         }
     }
@@ -71,12 +62,12 @@ enum status reach_paths(const struct reach *reach, double widen, const int32_t *
 {
     int dim = reach->cells.dim;
     double limit = dim == 3 ? most_slack * widen : widen;
-    if (++work->pass == UINT32_MAX) {
-        memset(work->passed, 0, (size_t)reach->cells.node_count * sizeof *work->passed);
-        work->pass = 1;
+    for (int64_t i = 0; i < work->reached.count; i++) {
+        work->length[work->reached.index[i]] = INFINITY;
     }
-    work->hidden.count = 0;
+    work->hidden.count = work->reached.count = 0;
     RETURN_IF_ERROR(index_list_reserve(&work->hidden, count, error));
+    RETURN_IF_ERROR(index_list_reserve(&work->reached, count, error));
     for (int64_t i = 0; i < count; i++) {
         int32_t node = index[i];
         if (reach_is_hidden(work, node)) {
@@ -90,7 +81,7 @@ enum status reach_paths(const struct reach *reach, double widen, const int32_t *
             continue;
         }
         work->before[node] = -1;
-        work->passed[node] = work->pass;
+        work->reached.index[work->reached.count++] = node;
     }
     /* Each pass over all settles paths of one bend more, at least. */
     for (bool shorter = true; shorter;) {
@@ -121,6 +112,10 @@ static double shortest_over_edge(const double *a, const double *b, const double 
     /* Squares of the distances from the line, and places along it in lengths of the edge. */
     double off_p2 = pp - pu * pu / length2, off_q2 = qq - qu * qu / length2, least = 1e-12 * length2;
     double along_p = pu / length2, along_q = qu / length2, t = 0.0;
+    *passes = 0.0;
+    if (along_p <= 0.0 && along_q <= 0.0) {
+        return INFINITY;
+    }
     double off_p = sqrt(fmax(off_p2, 0.0)), off_q = sqrt(fmax(off_q2, 0.0));
     if (off_p2 > least && off_q2 > least) {
         t = (along_p * off_q + along_q * off_p) / (off_p + off_q);

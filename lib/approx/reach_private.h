@@ -3,15 +3,25 @@
 #define APPROX_REACH_PRIVATE_H
 
 #include "approx/reach.h"
+#include "base/vector.h"
 
 /* A point nearer to a plane than this share of the support radius lies on it. */
 #define REACH_ON_PLANE 1e-9
 
-/* Opposing facets are tested in blocks; their views are longer by one. */
-#define REACH_BLOCK 16
-
-/* The next row of points: x[count * dim]. */
-void reach_begin_row(const struct reach *reach, const double *x, int64_t count, struct reach_work *work);
+/* Pairs (row, value), to become a CSR. */
+struct pair_list {
+    int64_t count, row_capacity, capacity;
+    int32_t *row, *value;
+};
+MUST_CHECK enum status pair_list_add(struct pair_list *pairs, int32_t row, int32_t value,
+                                     struct error *error);
+/* Take up those of another. */
+MUST_CHECK enum status pair_list_append(struct pair_list *pairs, const struct pair_list *more,
+                                        struct error *error);
+/* (*ptr)[rows + 1], (*idx): the values of each row in their order. */
+MUST_CHECK enum status pair_list_file(const struct pair_list *pairs, int64_t rows, int64_t **ptr,
+                                      int32_t **idx, struct error *error);
+void pair_list_free(struct pair_list *pairs);
 
 /* Whether the segment from x, in any of the cells, to a node stays within cells that follow each other by
  * faces. For node -1, no cell's, work->visited is left with the cells around x that hang together. */
@@ -19,10 +29,11 @@ MUST_CHECK enum status reach_walk(const struct reach *reach, const double *x, co
                                   int64_t cell_count, int32_t node, struct reach_work *work, bool *arrives,
                                   struct error *error);
 
-/* The same for a candidate, without a walk where the facets tell. */
-MUST_CHECK enum status reach_sees(const struct reach *reach, const double *x, const int32_t *cell,
-                                  int64_t cell_count, int32_t node, struct reach_work *work, bool *arrives,
-                                  struct error *error);
+/* Mark the nodes that are hidden from point p, which is that of `work`, of those nearer than their radius: by
+ * the facets, and by a walk where these leave it undecided. *hidden: how many. */
+MUST_CHECK enum status reach_mark_shadows(const struct reach *reach, const struct reach_shadows *shadows,
+                                          int64_t p, struct reach_work *work, int64_t *hidden,
+                                          struct error *error);
 
 /* Set the cells of work to those that contain x; or to the nearest, and work->from to the place in it from
  * which is looked instead. Of the cells at the nodes whose supports contain x; none: none. */
@@ -42,6 +53,12 @@ void reach_first_bend(const struct reach *reach, int32_t node, const struct reac
 /* Scratch for the nodes. */
 MUST_CHECK enum status reach_work_reserve(const struct reach *reach, struct reach_work *work,
                                           struct error *error);
+
+/* How far x is above the plane of a facet, m. */
+static inline double reach_height_above(int dim, const struct reach_facet *facet, const double *x)
+{
+    return vector_dot(dim, facet->normal, x) - facet->offset;
+}
 
 static inline bool reach_is_hidden(const struct reach_work *work, int32_t node)
 {

@@ -10,8 +10,6 @@
 
 /* Barycentric coordinates within this of 0 are on a face. */
 static const double on_face = 1e-9;
-/* A segment passes a facet where it meets its plane nearer than this, barycentric, to the facet. */
-static const double beside_facet = 1e-6;
 
 /* The barycentric coordinates of two points in a cell. */
 static void barycentric(const struct cells *cells, int64_t cell, const double *x, const double *y,
@@ -124,56 +122,6 @@ enum status reach_walk(const struct reach *reach, const double *x, const int32_t
         }
     }
     return STATUS_OK;
-}
-
-/* How a segment passes a facet: not; through it, out of the body; or too near its rim or its ends to say. */
-enum passage { PASSES_NOT, PASSES, PASSES_CLOSE };
-
-/* `own`: x lies in the facet's cell and in no other, so that the way out of it is a way out of the body. */
-static enum passage passage_of(const struct reach *reach, const struct reach_facet *facet, double radius,
-                               const double *x, bool own, const double *y)
-{
-    int dim = reach->cells.dim;
-    double of_x = vector_dot(dim, facet->normal, x) - facet->offset;
-    double of_y = vector_dot(dim, facet->normal, y) - facet->offset, tolerance = REACH_ON_PLANE * radius;
-    if (of_y <= tolerance) {
-        return of_y < -tolerance ? PASSES_NOT : PASSES_CLOSE; /* the target is on the facet, from elsewhere */
-    }
-    if (of_x > tolerance) {
-        return PASSES_NOT;
-    }
-    double t = of_x < 0.0 ? of_x / (of_x - of_y) : 0.0, second = -facet->from[0], third = -facet->from[1];
-    for (int a = 0; a < dim; a++) {
-        double place = x[a] + t * (y[a] - x[a]);
-        second += facet->dual[0][a] * place;
-        third += facet->dual[1][a] * place;
-    }
-    double within = 1.0 - second - third;
-    within = second < within ? second : within;
-    within = dim == 3 && third < within ? third : within;
-    if (within < -beside_facet) {
-        return PASSES_NOT;
-    }
-    return within > beside_facet && (own || of_x < -tolerance) ? PASSES : PASSES_CLOSE;
-}
-
-enum status reach_sees(const struct reach *reach, const double *x, const int32_t *cell, int64_t cell_count,
-                       int32_t node, struct reach_work *work, bool *arrives, struct error *error)
-{
-    const double *y = reach->cells.x + (int64_t)node * reach->cells.dim;
-    bool close = false;
-    *arrives = true;
-    for (int32_t i = work->near_begin[node]; i < work->near_end[node]; i++) {
-        const struct reach_facet *facet = &reach->facet[work->near.index[i]];
-        bool own = cell_count == 1 && facet->cell == cell[0];
-        enum passage passage = passage_of(reach, facet, reach->grid->radius[node], x, own, y);
-        if (passage == PASSES) {
-            *arrives = false;
-            return STATUS_OK;
-        }
-        close = close || passage == PASSES_CLOSE;
-    }
-    return close ? reach_walk(reach, x, cell, cell_count, node, work, arrives, error) : STATUS_OK;
 }
 
 /* The point of a cell that has x's barycentric coordinates but for negative ones; returns its distance from

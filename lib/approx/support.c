@@ -35,19 +35,21 @@ static void worker_free(struct worker *worker)
     mls_work_free(&worker->work);
 }
 
-static bool is_finite(int dim, const double *x)
-{
-    for (int a = 0; a < dim; a++) {
-        if (!isfinite(x[a])) {
-            return false;
-        }
-    }
-    return true;
-}
-
 static long long row_of(const struct search *search, int64_t p)
 {
     return search->places.row != NULL ? search->places.row[p] : p;
+}
+
+static enum status check_finite(const struct search *search, int64_t count, struct error *error)
+{
+    int dim = search->grid->dim;
+    for (int64_t i = 0; i < count * dim; i++) {
+        if (!isfinite(search->x[i])) {
+            return fail(error, STATUS_INPUT, "%s: row %lld: not a finite coordinate", search->what,
+                        row_of(search, i / dim));
+        }
+    }
+    return STATUS_OK;
 }
 
 /* The message for a point without a good support; the radius in it reveals a stray node. */
@@ -76,15 +78,9 @@ static enum status fail_support(const struct search *search, int64_t row, const 
 static enum status build_chunk(const struct search *search, int64_t first, int64_t last,
                                struct support_lists *lists, struct worker *worker, struct error *error)
 {
-    const struct point_grid *grid = search->grid;
-    int dim = grid->dim;
     worker->list.count = worker->around_count = 0;
     for (int64_t p = first; p < last; p++) {
         bool serves;
-        if (!is_finite(dim, search->x + p * dim)) {
-            return fail(error, STATUS_INPUT, "%s: row %lld: not a finite coordinate", search->what,
-                        row_of(search, p));
-        }
         int64_t before = worker->list.count;
         RETURN_IF_ERROR(support_find(search, p, worker, &lists->widen[p], &serves, error));
         const int32_t *index = worker->list.index + before;
@@ -183,11 +179,15 @@ enum status support_build_within(const struct support_options *options, const st
     enum status status;
     struct index_list all = {0};
     *lists = (struct support_lists){.count = count, .widest = 1.0};
+    struct search search = {.options = options, .grid = grid, .reach = reach, .x = x, .what = what};
     TRY(NEW_ARRAY(&lists->ptr, count + 1, error));
     TRY(NEW_ARRAY(&lists->widen, count, error));
-    struct search search = {.options = options, .grid = grid, .reach = reach, .x = x, .what = what};
     if (places != NULL) {
         search.places = *places;
+    }
+    TRY(check_finite(&search, count, error));
+    if (reach != NULL) {
+        TRY(reach_shadows_build(reach, count, x, &search.shadows, error));
     }
     TRY(build_chunks(&search, lists, &all, error));
     lists->idx = array_grow(all.index, all.count, sizeof *all.index); /* no longer than it need be */
@@ -196,6 +196,7 @@ enum status support_build_within(const struct support_options *options, const st
     }
     all.index = NULL;
 done:
+    reach_shadows_free(&search.shadows);
     free(all.index);
     if (status != STATUS_OK) {
         support_free(lists);

@@ -154,10 +154,8 @@ enum status support_find(const struct search *search, int64_t p, struct worker *
         int32_t *index = worker->list.index + first;
         double *image = NULL;
         if (search->reach != NULL) {
-            if (*widen == 1.0) {
-                RETURN_IF_ERROR(reach_list_facets(search->reach, index, count, &worker->reach, error));
-            }
-            RETURN_IF_ERROR(reach_filter(search->reach, *widen, index, &count, &worker->reach, error));
+            RETURN_IF_ERROR(
+                reach_filter(search->reach, &search->shadows, *widen, index, &count, &worker->reach, error));
             image = worker->reach.around > 0 ? worker->reach.image : NULL;
         }
         RETURN_IF_ERROR(keep_nearest(grid, x, options->most, index, image, &count, worker, error));

@@ -12,6 +12,7 @@ struct search {
     const struct point_grid *grid;
     const struct reach *reach; /* NULL: supports are as large as their radii */
     struct reach_places places;
+    struct reach_shadows shadows; /* of the points, within reach */
     const double *x;
     const char *what;
 };

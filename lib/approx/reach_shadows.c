@@ -1,0 +1,210 @@
+/* Shadows of facets: what of the supports of nodes a facet of the boundary may hide.
+ *
+ * The shadow of a facet from a node beyond its plane is the part of the node's ball from which the node is
+ * looked at through the facet. Each shadow looks for the points that it holds, of all points at once, so that
+ * the work goes with what is hidden, and not with the facets that might hide something. */
+#include "approx/reach_private.h"
+
+#include "base/box.h"
+#include "base/memory.h"
+#include "base/vector.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+/* A segment passes a facet where it meets its plane nearer than this, barycentric, to the facet. */
+static const double beside_facet = 1e-6;
+
+/* How the segment from x to a node passes a facet: not; through it, out of the body; or too near its rim or
+ * its ends to say. */
+enum passage { PASSES_NOT, PASSES, PASSES_CLOSE };
+
+/* of_x, of_y: heights of x and of the node at y above the facet; `own`: x lies in the facet's cell and in no
+ * other, so that the way out of it is a way out of the body. */
+static enum passage passage_of(int dim, const struct reach_facet *facet, double tolerance, const double *x,
+                               double of_x, bool own, const double *y, double of_y)
+{
+    if (of_y <= tolerance) {
+        return of_y < -tolerance ? PASSES_NOT : PASSES_CLOSE; /* the target is on the facet, from elsewhere */
+    }
+    double t = of_x < 0.0 ? of_x / (of_x - of_y) : 0.0, second = -facet->from[0], third = -facet->from[1];
+    for (int a = 0; a < dim; a++) {
+        double place = x[a] + t * (y[a] - x[a]);
+        second += facet->dual[0][a] * place;
+        third += facet->dual[1][a] * place;
+    }
+    double within = 1.0 - second - third;
+    within = second < within ? second : within;
+    within = dim == 3 && third < within ? third : within;
+    if (within < -beside_facet) {
+        return PASSES_NOT;
+    }
+    return within > beside_facet && (own || of_x < -tolerance) ? PASSES : PASSES_CLOSE;
+}
+
+/* A box around a shadow: around the facet, and the ends of a pyramid with that base that is no shorter than
+ * the radius, within the node's ball. That ball for a node on the facet, or too near to it. */
+static struct box box_of_shadow(const struct reach *reach, const struct reach_facet *facet, int32_t node,
+                                bool beyond)
+{
+    int dim = reach->cells.dim;
+    const double *y = reach->cells.x + (int64_t)node * dim;
+    double radius = reach->grid->radius[node], ray[3][3] = {{0.0}};
+    double cosine = 1.0;
+    struct box box = box_of(dim, 0, NULL);
+    for (int k = 0; k < dim; k++) {
+        double vertex[3];
+        /* Beyond the vertices by more than what passes beside them. */
+        vector_between(dim, facet->middle, reach->cells.x + (int64_t)facet->node[k] * dim, 1.0 + 1e-5,
+                       vertex);
+        vector_subtract(dim, vertex, y, ray[k]);
+        box_add(&box, 1, vertex);
+        double length = vector_length(dim, ray[k]);
+        for (int a = 0; a < dim; a++) {
+            ray[k][a] /= length;
+        }
+        for (int i = 0; i < k; i++) {
+            double product = vector_dot(dim, ray[i], ray[k]);
+            cosine = product < cosine ? product : cosine;
+        }
+    }
+    /* The points of the plane through the ends of unit vectors are at least so far from where they begin. */
+    double near2 = (1.0 + (dim - 1) * cosine) / dim;
+    bool narrow = beyond && near2 > 0.01;
+    for (int k = 0; k < dim && narrow; k++) {
+        double end[3];
+        for (int a = 0; a < dim; a++) {
+            end[a] = y[a] + radius / sqrt(near2) * ray[k][a];
+        }
+        box_add(&box, 1, end);
+    }
+    for (int a = 0; a < dim; a++) {
+        box.low[a] = narrow ? fmax(box.low[a] - 1e-6 * radius, y[a] - radius) : y[a] - radius;
+        box.high[a] = narrow ? fmin(box.high[a] + 1e-6 * radius, y[a] + radius) : y[a] + radius;
+    }
+    return box;
+}
+
+/* List the points that a shadow may hold; `near`: scratch. */
+static enum status list_points(const struct reach *reach, const struct point_grid *points, int32_t shadow,
+                               struct index_list *near, struct pair_list *pairs, struct error *error)
+{
+    int dim = reach->cells.dim;
+    int32_t node = reach->shadow[shadow].node;
+    const struct reach_facet *facet = &reach->facet[reach->shadow[shadow].facet];
+    const double *y = reach->cells.x + (int64_t)node * dim;
+    double radius = reach->grid->radius[node], tolerance = REACH_ON_PLANE * radius;
+    double of_y = reach_height_above(dim, facet, y);
+    struct box box = box_of_shadow(reach, facet, node, of_y > tolerance);
+    near->count = 0;
+    RETURN_IF_ERROR(point_grid_list_box(points, box.low, box.high, 1e-6, near, error));
+    for (int64_t i = 0; i < near->count; i++) {
+        const double *x = points->x + (int64_t)near->index[i] * dim;
+        double of_x = reach_height_above(dim, facet, x);
+        if (of_x <= tolerance && vector_distance2(dim, y, x) < radius * radius &&
+            passage_of(dim, facet, tolerance, x, of_x, false, y, of_y) != PASSES_NOT) {
+            RETURN_IF_ERROR(pair_list_add(pairs, near->index[i], shadow, error));
+        }
+    }
+    return STATUS_OK;
+}
+
+/* All threads' pairs go to `all`, in whatever order: it does not matter to a point. */
+static enum status list_all(const struct reach *reach, const struct point_grid *points, struct pair_list *all,
+                            struct error *error)
+{
+    enum status failure = STATUS_OK;
+#pragma omp parallel
+    {
+        enum status status = STATUS_OK;
+        struct error own;
+        struct index_list near = {0};
+        struct pair_list pairs = {0};
+#pragma omp for schedule(dynamic, 256)
+        for (int64_t s = 0; s < reach->shadow_count; s++) {
+            status =
+                status == STATUS_OK ? list_points(reach, points, (int32_t)s, &near, &pairs, &own) : status;
+        }
+#pragma omp critical
+        {
+            status = status == STATUS_OK ? pair_list_append(all, &pairs, &own) : status;
+            if (status != STATUS_OK && failure == STATUS_OK) {
+                failure = status;
+                *error = own;
+            }
+        }
+        free(near.index);
+        pair_list_free(&pairs);
+    }
+    return failure;
+}
+
+enum status reach_shadows_build(const struct reach *reach, int64_t count, const double *x,
+                                struct reach_shadows *shadows, struct error *error)
+{
+    enum status status;
+    struct point_grid points = {0};
+    struct pair_list pairs = {0};
+    double *size = NULL, least = INFINITY;
+    *shadows = (struct reach_shadows){0};
+    for (int64_t n = 0; n < reach->cells.node_count; n++) {
+        least = fmin(least, reach->grid->radius[n]);
+    }
+    /* Bins of a quarter of the smallest radius, or larger ones if these were too many. */
+    TRY(NEW_ARRAY(&size, count, error));
+    for (int64_t p = 0; p < count; p++) {
+        size[p] = 0.5 * least;
+    }
+    if (reach->shadow_count > 0) {
+        TRY(point_grid_build(&points, reach->cells.dim, count, x, size, error));
+        TRY(list_all(reach, &points, &pairs, error));
+    }
+    TRY(pair_list_file(&pairs, count, &shadows->ptr, &shadows->shadow, error));
+done:
+    free(size);
+    point_grid_free(&points);
+    pair_list_free(&pairs);
+    if (status != STATUS_OK) {
+        reach_shadows_free(shadows);
+    }
+    return status;
+}
+
+void reach_shadows_free(struct reach_shadows *shadows)
+{
+    free(shadows->ptr);
+    free(shadows->shadow);
+    *shadows = (struct reach_shadows){0};
+}
+
+enum status reach_mark_shadows(const struct reach *reach, const struct reach_shadows *shadows, int64_t p,
+                               struct reach_work *work, int64_t *hidden, struct error *error)
+{
+    int dim = reach->cells.dim;
+    *hidden = 0;
+    for (int64_t i = shadows->ptr[p]; i < shadows->ptr[p + 1]; i++) {
+        struct reach_shadow shadow = reach->shadow[shadows->shadow[i]];
+        const struct reach_facet *facet = &reach->facet[shadow.facet];
+        const double *y = reach->cells.x + (int64_t)shadow.node * dim;
+        bool own = work->cell_count == 1 && facet->cell == work->cell[0];
+        if (!reach_is_hidden(work, shadow.node) &&
+            passage_of(dim, facet, REACH_ON_PLANE * reach->grid->radius[shadow.node], work->x,
+                       reach_height_above(dim, facet, work->x), own, y,
+                       reach_height_above(dim, facet, y)) == PASSES) {
+            work->mark[shadow.node] = 2 * work->serial + 1;
+            ++*hidden;
+        }
+    }
+    /* The others pass close by. */
+    for (int64_t i = shadows->ptr[p]; i < shadows->ptr[p + 1]; i++) {
+        int32_t node = reach->shadow[shadows->shadow[i]].node;
+        if (work->mark[node] / 2 != work->serial) {
+            bool seen;
+            RETURN_IF_ERROR(
+                reach_walk(reach, work->x, work->cell, work->cell_count, node, work, &seen, error));
+            work->mark[node] = 2 * work->serial + !seen;
+            *hidden += !seen;
+        }
+    }
+    return STATUS_OK;
+}
