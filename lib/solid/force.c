@@ -114,7 +114,7 @@ static void return_forces(const struct body *body, double *force)
 {
     int dim = body->dim, stride = VECTOR_STRIDE(dim);
 #pragma omp for schedule(static)
-    for (int64_t n = 0; n < body->node_count; n++) {
+    for (int64_t n = body->share.begin_node; n < body->share.end_node; n++) {
         for (int a = 0; a < dim; a++) {
             force[body->node_order[n] * dim + a] = body->force[n * stride + a];
         }
@@ -137,7 +137,7 @@ static void set_state(struct body *body, const double *u)
     }
 }
 
-/* Internal forces at u. */
+/* Internal forces on own nodes at u. */
 static void evaluate(struct body *body, const double *u, double *force)
 {
     struct body_share *share = &body->share;
@@ -157,13 +157,12 @@ static void evaluate(struct body *body, const double *u, double *force)
             body_share_exchange(share, &share->rows, stride, body->derivative);
             apply_transposed(body, body->derivative, body->force);
         }
-        body_share_gather(share, body->force, (size_t)stride * sizeof *body->force, share->node_first);
         body_share_gather(share, body->blocks, sizeof *body->blocks, share->block_first);
         return_forces(body, force);
     }
 }
 
-struct deformation body_force(struct body *body, const double *u, double *force)
+struct deformation body_own_force(struct body *body, const double *u, double *force)
 {
     struct deformation deformation = {.least_jacobian = INFINITY};
     int64_t worst = 0;
@@ -177,6 +176,31 @@ struct deformation body_force(struct body *body, const double *u, double *force)
     }
     deformation.point = body->order[worst];
     return deformation;
+}
+
+struct deformation body_force(struct body *body, const double *u, double *force)
+{
+    struct deformation deformation = body_own_force(body, u, force);
+    body_gather(body, force);
+    return deformation;
+}
+
+void body_gather(struct body *body, double *vector)
+{
+    const struct body_share *share = &body->share;
+    const int64_t *node = body->node_order;
+    double *by_place = body->force; /* scratch here */
+    size_t size = (size_t)body->dim * sizeof *vector;
+    if (share->ranks == NULL) {
+        return;
+    }
+    for (int64_t p = share->begin_node; p < share->end_node; p++) {
+        memcpy(by_place + p * body->dim, vector + node[p] * body->dim, size);
+    }
+    ranks_gather(share->ranks, by_place, size, share->node_first);
+    for (int64_t p = 0; p < body->node_count; p++) {
+        memcpy(vector + node[p] * body->dim, by_place + p * body->dim, size);
+    }
 }
 
 double body_volume(const struct body *body)
