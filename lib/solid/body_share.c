@@ -97,7 +97,13 @@ enum status body_share_volumes(struct body *body, struct error *error)
     const struct nodal_volumes *volumes = &body->volumes;
     int rank = ranks_rank(share->ranks), vertices = body->dim + 1;
     bool *wanted = NULL;
-    TRY(ranks_share(share->ranks, volumes->count, NULL, &share->volume_first, error));
+    int64_t slices = (volumes->count + NODAL_PRESSURE_ROWS - 1) / NODAL_PRESSURE_ROWS;
+    TRY(ranks_share(share->ranks, slices, NULL, &share->slice_first, error));
+    TRY(NEW_ARRAY(&share->volume_first, ranks_count(share->ranks) + 1, error));
+    for (int r = 0; r <= ranks_count(share->ranks); r++) {
+        int64_t row = share->slice_first[r] * NODAL_PRESSURE_ROWS;
+        share->volume_first[r] = row < volumes->count ? row : volumes->count;
+    }
     if (share->ranks != NULL) {
         TRY(NEW_ARRAY(&wanted, body->point_count, error));
         int64_t begin = volumes->ptr[share->volume_first[rank]];
@@ -108,6 +114,38 @@ enum status body_share_volumes(struct body *body, struct error *error)
         TRY(halo_build(share->ranks, body->point_count, wanted, 1, owner_of_point, body, &share->strains,
                        error));
     }
+done:
+    free(wanted);
+    return status;
+}
+
+static int owner_of_volume(const void *body, int64_t volume)
+{
+    const struct body_share *share = &((const struct body *)body)->share;
+    return ranks_owner(share->ranks, share->volume_first, volume);
+}
+
+enum status body_share_pressures(struct body *body, struct error *error)
+{
+    enum status status = STATUS_OK;
+    struct body_share *share = &body->share;
+    const struct nodal_pressures *pressures = &body->volumes.pressures;
+    const int64_t *first = share->slice_first + ranks_rank(share->ranks);
+    int vertices = body->dim + 1;
+    bool *wanted = NULL;
+    if (share->ranks == NULL) {
+        return STATUS_OK;
+    }
+    TRY(NEW_ARRAY(&wanted, body->volumes.count, error));
+    for (int64_t i = pressures->ptr[first[0]] * NODAL_PRESSURE_ROWS;
+         i < pressures->ptr[first[1]] * NODAL_PRESSURE_ROWS; i++) {
+        wanted[pressures->idx[i]] = true;
+    }
+    for (int64_t i = share->begin_point * vertices; i < share->end_point * vertices; i++) {
+        wanted[body->volumes.of_point[i]] = true;
+    }
+    TRY(halo_build(share->ranks, body->volumes.count, wanted, 1, owner_of_volume, body, &share->pressures,
+                   error));
 done:
     free(wanted);
     return status;
@@ -225,10 +263,12 @@ void body_share_free(struct body_share *share)
     free(share->block_first);
     free(share->point_first);
     free(share->node_first);
+    free(share->slice_first);
     free(share->volume_first);
     stretches_free(&share->values);
     stretches_free(&share->sums);
     halo_free(&share->strains);
+    halo_free(&share->pressures);
     halo_free(&share->corners);
     halo_free(&share->rows);
 }
@@ -251,6 +291,12 @@ void body_share_exchange(const struct body_share *share, struct halo *halo, int 
     }
 }
 
+void body_share_collect_pressures(struct body *body)
+{
+    ranks_gather(body->share.ranks, body->volumes.pressure, sizeof *body->volumes.pressure,
+                 body->share.volume_first);
+}
+
 void body_share_collect(struct body *body)
 {
     const struct body_share *share = &body->share;
@@ -265,5 +311,6 @@ void body_share_collect(struct body *body)
     ranks_gather(share->ranks, body->J, sizeof *body->J, share->point_first);
     if (body->averaged) {
         ranks_gather(share->ranks, body->volumes.strain, sizeof *body->volumes.strain, share->point_first);
+        body_share_collect_pressures(body);
     }
 }

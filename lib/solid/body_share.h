@@ -20,11 +20,13 @@ struct body_share {
     int64_t *block_first;      /* of each process, as below: its blocks, */
     int64_t *point_first;      /* the points in them, */
     int64_t *node_first;       /* its nodes in the body's order, */
-    int64_t *volume_first;     /* and its nodal volumes */
+    int64_t *slice_first;      /* its nodal pressures, by slices, */
+    int64_t *volume_first;     /* and the nodal volumes of these */
     int64_t begin_block, end_block, begin_point, end_point, begin_node, end_node; /* of this one */
     struct stretches values; /* rows of the operator that are computed here */
     struct stretches sums;   /* smoothed cells: rows whose forces are summed here */
     struct halo strains;     /* of points: for nodal volumes */
+    struct halo pressures;   /* of nodal volumes: those beside own ones, and at own points */
     struct halo corners;     /* of smoothed cells: forces on rows that are summed here */
     struct halo rows;        /* forces on rows, for own nodes */
 };
@@ -32,8 +34,10 @@ struct body_share {
 /* Share out the blocks of a body that are cut, and its nodes. */
 MUST_CHECK enum status body_share_cut(const struct body_input *input, struct body *body, struct error *error);
 
-/* Share out the nodal volumes, and list the strains that they need. */
+/* Share out the nodal volumes, and list the strains that they need. When A is there: what the pressures need.
+ */
 MUST_CHECK enum status body_share_volumes(struct body *body, struct error *error);
+MUST_CHECK enum status body_share_pressures(struct body *body, struct error *error);
 
 /* The process that owns a node, the caller's number. `body`: a struct body, untyped for use as a callback. */
 int body_share_owner(const void *body, int64_t node);
@@ -53,7 +57,8 @@ void body_share_free(struct body_share *share);
 void body_share_gather(const struct body_share *share, void *items, size_t size, const int64_t *first);
 void body_share_exchange(const struct body_share *share, struct halo *halo, int width, double *x);
 
-/* The state of all points at the last evaluation, here. */
+/* The nodal pressures of all at the last evaluation, here; and the state of all points. */
+void body_share_collect_pressures(struct body *body);
 void body_share_collect(struct body *body);
 
 #endif

@@ -111,7 +111,6 @@ static inline __attribute__((always_inline)) void sum_content(struct body *body,
         }
         volumes->content[a] = sum;
     }
-    body_share_gather(share, volumes->content, sizeof *volumes->content, share->volume_first);
 }
 
 void nodal_volumes_evaluate(struct body *body)
@@ -121,7 +120,7 @@ void nodal_volumes_evaluate(struct body *body)
     } else {
         sum_content(body, 4);
     }
-    nodal_pressures_solve(&body->volumes.pressures, body->volumes.content, body->volumes.pressure);
+    nodal_pressures_solve(body);
 }
 
 /* sum_a N_a(q) pi_a */

@@ -55,8 +55,9 @@ double nodal_volume_energy(const struct body *body, int64_t point);
 MUST_CHECK enum status nodal_pressures_build(struct body *body, struct error *error);
 void nodal_pressures_free(struct nodal_pressures *pressures);
 
-/* value[count] = A^-1 content[count], by all threads of a parallel region together. */
-void nodal_pressures_solve(const struct nodal_pressures *pressures, const double *content, double *value);
+/* body->volumes.pressure = A^-1 content, by all threads of a parallel region together. Of several processes
+ * each needs the content of its own volumes, and has the pressures of these and at its own points. */
+void nodal_pressures_solve(struct body *body);
 
 /* The part k of the bulk modulus, Pa, and epsilon / mu, 1/Pa. */
 double nodal_pressure_modulus(const struct material *material);
