@@ -206,12 +206,84 @@ static int owner_of_row(const void *context, int64_t row)
                : 0;
 }
 
+/* Mark the blocks of points. */
+static void mark_blocks(const struct body *body, const bool *is_sent, bool *marked)
+{
+    for (int64_t b = body->share.begin_block; b < body->share.end_block; b++) {
+        const struct block *block = &body->blocks[b];
+        for (int64_t q = block->first_point; q < block->first_point + block->point_count; q++) {
+            marked[b] = marked[b] || is_sent[q];
+        }
+    }
+}
+
+/* The order of own blocks. */
+static enum status order_blocks(struct body *body, struct error *error)
+{
+    enum status status;
+    struct body_share *share = &body->share;
+    bool *is_sent = NULL, *at_border = NULL;
+    int64_t count = 0;
+    TRY(NEW_ARRAY(&is_sent, body->point_count, error));
+    TRY(NEW_ARRAY(&at_border, body->block_count, error));
+    TRY(NEW_ARRAY(&share->block, share->end_block - share->begin_block, error));
+    for (int64_t i = 0; share->strains.ranks != NULL && i < share->strains.send_first[share->ranks->count];
+         i++) {
+        is_sent[share->strains.send[i]] = true;
+    }
+    for (int64_t i = 0; share->corners.ranks != NULL && i < share->corners.send_first[share->ranks->count];
+         i++) {
+        is_sent[point_of_corner(body, share->corners.send[i])] = true;
+    }
+    for (int64_t i = 0;
+         !body->smoothed && share->rows.ranks != NULL && i < share->rows.send_first[share->ranks->count];
+         i++) {
+        is_sent[share->rows.send[i] / body->dim] = true;
+    }
+    mark_blocks(body, is_sent, at_border);
+    for (int pass = 0; pass < 2; pass++) {
+        for (int64_t b = share->begin_block; b < share->end_block; b++) {
+            if (at_border[b] == (pass == 0)) {
+                share->block[count++] = b;
+            }
+        }
+        share->border_count = pass == 0 ? count : share->border_count;
+    }
+done:
+    free(is_sent);
+    free(at_border);
+    return status;
+}
+
+/* Of the rows that are summed here those for others, and the rest. */
+static enum status order_sums(struct body *body, struct error *error)
+{
+    enum status status;
+    struct body_share *share = &body->share;
+    int64_t rows = row_count(body);
+    bool *is_sent = NULL, *is_inner = NULL;
+    TRY(NEW_ARRAY(&is_sent, rows, error));
+    TRY(NEW_ARRAY(&is_inner, rows, error));
+    for (int64_t i = 0; i < share->rows.send_first[share->ranks->count]; i++) {
+        is_sent[share->rows.send[i]] = true;
+    }
+    for (int64_t r = 0; r < rows; r++) {
+        is_inner[r] = !is_sent[r] && owner_of_row(body, r) == share->ranks->rank;
+    }
+    TRY(stretches_of(0, rows, is_sent, &share->sums, error));
+    TRY(stretches_of(0, rows, is_inner, &share->inner_sums, error));
+done:
+    free(is_sent);
+    free(is_inner);
+    return status;
+}
+
 static int owner_of_corner(const void *body, int64_t corner)
 {
     return owner_of_point(body, point_of_corner(body, corner));
 }
 
-/* The rows that are summed here, and the corners that this takes. */
+/* The corners that the rows that are summed here take. */
 static enum status share_corners(struct body *body, struct error *error)
 {
     enum status status;
@@ -227,7 +299,6 @@ static enum status share_corners(struct body *body, struct error *error)
             corners[averages->corner[i]] = true;
         }
     }
-    TRY(stretches_of(0, rows, sums, &share->sums, error));
     TRY(halo_build(share->ranks, 2 * averages->corner_count, corners, VECTOR_STRIDE(body->dim),
                    owner_of_corner, body, &share->corners, error));
 done:
@@ -241,13 +312,16 @@ enum status body_share_rows(struct body *body, const bool *wanted, struct error 
     enum status status;
     struct body_share *share = &body->share;
     if (share->ranks == NULL) {
-        return stretches_of(0, row_count(body), NULL, &share->sums, error);
+        TRY(order_blocks(body, error));
+        return stretches_of(0, row_count(body), NULL, &share->inner_sums, error);
     }
     if (body->smoothed) {
         TRY(share_corners(body, error));
     }
     TRY(halo_build(share->ranks, row_count(body), wanted, VECTOR_STRIDE(body->dim), owner_of_row, body,
                    &share->rows, error));
+    TRY(order_blocks(body, error));
+    TRY(body->smoothed ? order_sums(body, error) : STATUS_OK);
 done:
     return status;
 }
@@ -267,50 +341,10 @@ void body_share_free(struct body_share *share)
     free(share->volume_first);
     stretches_free(&share->values);
     stretches_free(&share->sums);
+    stretches_free(&share->inner_sums);
+    free(share->block);
     halo_free(&share->strains);
     halo_free(&share->pressures);
     halo_free(&share->corners);
     halo_free(&share->rows);
-}
-
-void body_share_gather(const struct body_share *share, void *items, size_t size, const int64_t *first)
-{
-    if (share->ranks != NULL) {
-#pragma omp master
-        ranks_gather(share->ranks, items, size, first);
-#pragma omp barrier
-    }
-}
-
-void body_share_exchange(const struct body_share *share, struct halo *halo, int width, double *x)
-{
-    if (share->ranks != NULL) {
-#pragma omp master
-        halo_exchange(halo, width, x);
-#pragma omp barrier
-    }
-}
-
-void body_share_collect_pressures(struct body *body)
-{
-    ranks_gather(body->share.ranks, body->volumes.pressure, sizeof *body->volumes.pressure,
-                 body->share.volume_first);
-}
-
-void body_share_collect(struct body *body)
-{
-    const struct body_share *share = &body->share;
-    int components = body->dim * body->dim;
-    for (int k = 0; k < components; k++) {
-        ranks_gather(share->ranks, body->F + k * body->point_count, sizeof *body->F, share->point_first);
-        if (body->smoothed) {
-            ranks_gather(share->ranks, body->cells.interpolant + k * body->point_count, sizeof *body->F,
-                         share->point_first);
-        }
-    }
-    ranks_gather(share->ranks, body->J, sizeof *body->J, share->point_first);
-    if (body->averaged) {
-        ranks_gather(share->ranks, body->volumes.strain, sizeof *body->volumes.strain, share->point_first);
-        body_share_collect_pressures(body);
-    }
 }

@@ -91,17 +91,12 @@ double nodal_pressure_compliance(const struct material *material)
     return stabilisation / material->shear_modulus;
 }
 
-/* y of the points, and b. */
+/* b */
 static inline __attribute__((always_inline)) void sum_content(struct body *body, int vertices)
 {
     struct nodal_volumes *volumes = &body->volumes;
     struct body_share *share = &body->share;
     int rank = ranks_rank(share->ranks);
-#pragma omp for schedule(static)
-    for (int64_t q = share->begin_point; q < share->end_point; q++) {
-        volumes->strain[q] = material_volume_strain(&body->materials[body->material[q]], body->J[q]);
-    }
-    body_share_exchange(share, &share->strains, 1, volumes->strain);
 #pragma omp for schedule(static)
     for (int64_t a = share->volume_first[rank]; a < share->volume_first[rank + 1]; a++) {
         double sum = 0.0;
@@ -110,6 +105,14 @@ static inline __attribute__((always_inline)) void sum_content(struct body *body,
             sum += volumes->share[slot] * volumes->strain[slot / vertices];
         }
         volumes->content[a] = sum;
+    }
+}
+
+void nodal_volumes_strain(struct body *body, int64_t b)
+{
+    const struct block *block = &body->blocks[b];
+    for (int64_t q = block->first_point; q < block->first_point + block->point_count; q++) {
+        body->volumes.strain[q] = material_volume_strain(&body->materials[body->material[q]], body->J[q]);
     }
 }
 

@@ -37,7 +37,10 @@ MUST_CHECK enum status nodal_volumes_build(const struct body_input *input, struc
                                            struct error *error);
 void nodal_volumes_free(struct nodal_volumes *volumes);
 
-/* Set body->volumes from body->J. To be called by all threads of a parallel region together. */
+/* Set y of the points of block b from body->J. */
+void nodal_volumes_strain(struct body *body, int64_t b);
+
+/* Set b and pi from y. To be called by all threads of a parallel region together. */
 void nodal_volumes_evaluate(struct body *body);
 
 /* The part s of the bulk modulus, Pa. */
