@@ -192,13 +192,19 @@ done:
     return status;
 }
 
+/* Without smoothed cells. */
+static int64_t point_of_row(const struct body *body, int64_t row)
+{
+    return row / body->dim;
+}
+
 /* Who has the forces on a row. One without corners has none. */
 static int owner_of_row(const void *context, int64_t row)
 {
     const struct body *body = context;
     const struct field_averages *averages = &body->cells.averages;
     if (!body->smoothed) {
-        return owner_of_point(body, row / body->dim);
+        return owner_of_point(body, point_of_row(body, row));
     }
     int64_t at = averages->corner_ptr[row];
     return at < averages->corner_ptr[row + 1]
@@ -206,15 +212,28 @@ static int owner_of_row(const void *context, int64_t row)
                : 0;
 }
 
-/* Mark the blocks of points. */
-static void mark_blocks(const struct body *body, const bool *is_sent, bool *marked)
+static int64_t point_itself(const struct body *body, int64_t point)
 {
-    for (int64_t b = body->share.begin_block; b < body->share.end_block; b++) {
-        const struct block *block = &body->blocks[b];
-        for (int64_t q = block->first_point; q < block->first_point + block->point_count; q++) {
-            marked[b] = marked[b] || is_sent[q];
-        }
+    (void)body;
+    return point;
+}
+
+/* Mark the points from which the items that are sent are computed. */
+static void mark_sent(const struct body *body, const struct halo *halo,
+                      int64_t (*point_of)(const struct body *body, int64_t item), bool *is_sent)
+{
+    for (int64_t i = 0; halo->ranks != NULL && i < halo->send_first[halo->ranks->count]; i++) {
+        is_sent[point_of(body, halo->send[i])] = true;
     }
+}
+
+static bool has_sent(const struct block *block, const bool *is_sent)
+{
+    bool some = false;
+    for (int64_t q = block->first_point; q < block->first_point + block->point_count; q++) {
+        some = some || is_sent[q];
+    }
+    return some;
 }
 
 /* The order of own blocks. */
@@ -222,36 +241,24 @@ static enum status order_blocks(struct body *body, struct error *error)
 {
     enum status status;
     struct body_share *share = &body->share;
-    bool *is_sent = NULL, *at_border = NULL;
-    int64_t count = 0;
+    bool *is_sent = NULL;
+    int64_t border = 0, inner = 0;
     TRY(NEW_ARRAY(&is_sent, body->point_count, error));
-    TRY(NEW_ARRAY(&at_border, body->block_count, error));
     TRY(NEW_ARRAY(&share->block, share->end_block - share->begin_block, error));
-    for (int64_t i = 0; share->strains.ranks != NULL && i < share->strains.send_first[share->ranks->count];
-         i++) {
-        is_sent[share->strains.send[i]] = true;
+    mark_sent(body, &share->strains, point_itself, is_sent);
+    mark_sent(body, &share->corners, point_of_corner, is_sent);
+    if (!body->smoothed) {
+        mark_sent(body, &share->rows, point_of_row, is_sent);
     }
-    for (int64_t i = 0; share->corners.ranks != NULL && i < share->corners.send_first[share->ranks->count];
-         i++) {
-        is_sent[point_of_corner(body, share->corners.send[i])] = true;
+    for (int64_t b = share->begin_block; b < share->end_block; b++) {
+        share->border_count += has_sent(&body->blocks[b], is_sent);
     }
-    for (int64_t i = 0;
-         !body->smoothed && share->rows.ranks != NULL && i < share->rows.send_first[share->ranks->count];
-         i++) {
-        is_sent[share->rows.send[i] / body->dim] = true;
-    }
-    mark_blocks(body, is_sent, at_border);
-    for (int pass = 0; pass < 2; pass++) {
-        for (int64_t b = share->begin_block; b < share->end_block; b++) {
-            if (at_border[b] == (pass == 0)) {
-                share->block[count++] = b;
-            }
-        }
-        share->border_count = pass == 0 ? count : share->border_count;
+    for (int64_t b = share->begin_block; b < share->end_block; b++) {
+        bool at_border = has_sent(&body->blocks[b], is_sent);
+        share->block[at_border ? border++ : share->border_count + inner++] = b;
     }
 done:
     free(is_sent);
-    free(at_border);
     return status;
 }
 
