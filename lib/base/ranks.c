@@ -225,7 +225,7 @@ void halo_free(struct halo *halo)
     *halo = (struct halo){0};
 }
 
-void halo_exchange(struct halo *halo, int width, double *x)
+void halo_begin(struct halo *halo, int width, const double *x)
 {
     const struct ranks *ranks = halo->ranks;
     size_t size = (size_t)width * sizeof *x;
@@ -235,8 +235,24 @@ void halo_exchange(struct halo *halo, int width, double *x)
     for (int64_t i = 0; i < halo->send_first[ranks->count]; i++) {
         memcpy(halo->sent + i * width, x + halo->send[i] * width, size);
     }
-    ranks->exchange(ranks, size, halo->sent, halo->send_first, halo->received, halo->receive_first);
+    ranks->begin(ranks, size, halo->sent, halo->send_first, halo->received, halo->receive_first);
+}
+
+void halo_finish(struct halo *halo, int width, double *x)
+{
+    const struct ranks *ranks = halo->ranks;
+    size_t size = (size_t)width * sizeof *x;
+    if (ranks == NULL) {
+        return;
+    }
+    ranks->finish(ranks);
     for (int64_t i = 0; i < halo->receive_first[ranks->count]; i++) {
         memcpy(x + halo->receive[i] * width, halo->received + i * width, size);
     }
+}
+
+void halo_exchange(struct halo *halo, int width, double *x)
+{
+    halo_begin(halo, width, x);
+    halo_finish(halo, width, x);
 }

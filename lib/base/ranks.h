@@ -22,6 +22,10 @@ struct ranks {
      * receive[receive_first[r]] and behind. Processes that have nothing for each other do not wait. */
     void (*exchange)(const struct ranks *ranks, size_t size, const void *send, const int64_t *send_first,
                      void *receive, const int64_t *receive_first);
+    /* The same in two halves, between which the process goes on computing, and calls no other of these. */
+    void (*begin)(const struct ranks *ranks, size_t size, const void *send, const int64_t *send_first,
+                  void *receive, const int64_t *receive_first);
+    void (*finish)(const struct ranks *ranks);
     /* x[count] to process `to`; and from process `from`. */
     void (*send)(const struct ranks *ranks, int to, const double *x, int64_t count);
     void (*receive)(const struct ranks *ranks, int from, double *x, int64_t count);
@@ -90,7 +94,10 @@ MUST_CHECK enum status halo_build(const struct ranks *ranks, int64_t items, cons
                                   struct halo *halo, struct error *error);
 void halo_free(struct halo *halo);
 
-/* x[item * width] and behind it, for the items of others. */
+/* x[item * width] and behind it, for the items of others: in two halves, between which other items of x may
+ * change; and at once. */
+void halo_begin(struct halo *halo, int width, const double *x);
+void halo_finish(struct halo *halo, int width, double *x);
 void halo_exchange(struct halo *halo, int width, double *x);
 
 #endif

@@ -168,6 +168,7 @@ enum status assembly_build(struct assembly *input, struct solid_system *system, 
     TRY(assembly_add_conditions(input, system, note, error));
     TRY(assembly_add_points(input, system, note, error));
     TRY(assembly_add_contacts(input, system, error));
+    TRY(system_share_penalties(system, error));
 done:
     if (status != STATUS_OK) {
         system_free(system);

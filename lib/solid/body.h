@@ -141,6 +141,11 @@ struct deformation {
  * N, in 2D N/m. With an inverted point the forces mean nothing. */
 struct deformation body_force(struct body *body, const double *u, double *force);
 
+/* The same of the nodes of this process alone; and a vector of the nodes[node_count * dim] of which each
+ * process has the values of its own nodes: afterwards all have all. */
+struct deformation body_own_force(struct body *body, const double *u, double *force);
+void body_gather(struct body *body, double *vector);
+
 /* Let changes of volume meet no modulus above `most` shear moduli; INFINITY: as the materials have it. What
  * the limit leaves out the pressures make up for by augmentations, from none (augmented Lagrangian: Simo and
  * Taylor 1991). Without nodal volumes: nothing. */

@@ -97,7 +97,13 @@ enum status body_share_volumes(struct body *body, struct error *error)
     const struct nodal_volumes *volumes = &body->volumes;
     int rank = ranks_rank(share->ranks), vertices = body->dim + 1;
     bool *wanted = NULL;
-    TRY(ranks_share(share->ranks, volumes->count, NULL, &share->volume_first, error));
+    int64_t slices = (volumes->count + NODAL_PRESSURE_ROWS - 1) / NODAL_PRESSURE_ROWS;
+    TRY(ranks_share(share->ranks, slices, NULL, &share->slice_first, error));
+    TRY(NEW_ARRAY(&share->volume_first, ranks_count(share->ranks) + 1, error));
+    for (int r = 0; r <= ranks_count(share->ranks); r++) {
+        int64_t row = share->slice_first[r] * NODAL_PRESSURE_ROWS;
+        share->volume_first[r] = row < volumes->count ? row : volumes->count;
+    }
     if (share->ranks != NULL) {
         TRY(NEW_ARRAY(&wanted, body->point_count, error));
         int64_t begin = volumes->ptr[share->volume_first[rank]];
@@ -108,6 +114,38 @@ enum status body_share_volumes(struct body *body, struct error *error)
         TRY(halo_build(share->ranks, body->point_count, wanted, 1, owner_of_point, body, &share->strains,
                        error));
     }
+done:
+    free(wanted);
+    return status;
+}
+
+static int owner_of_volume(const void *body, int64_t volume)
+{
+    const struct body_share *share = &((const struct body *)body)->share;
+    return ranks_owner(share->ranks, share->volume_first, volume);
+}
+
+enum status body_share_pressures(struct body *body, struct error *error)
+{
+    enum status status = STATUS_OK;
+    struct body_share *share = &body->share;
+    const struct nodal_pressures *pressures = &body->volumes.pressures;
+    const int64_t *first = share->slice_first + ranks_rank(share->ranks);
+    int vertices = body->dim + 1;
+    bool *wanted = NULL;
+    if (share->ranks == NULL) {
+        return STATUS_OK;
+    }
+    TRY(NEW_ARRAY(&wanted, body->volumes.count, error));
+    for (int64_t i = pressures->ptr[first[0]] * NODAL_PRESSURE_ROWS;
+         i < pressures->ptr[first[1]] * NODAL_PRESSURE_ROWS; i++) {
+        wanted[pressures->idx[i]] = true;
+    }
+    for (int64_t i = share->begin_point * vertices; i < share->end_point * vertices; i++) {
+        wanted[body->volumes.of_point[i]] = true;
+    }
+    TRY(halo_build(share->ranks, body->volumes.count, wanted, 1, owner_of_volume, body, &share->pressures,
+                   error));
 done:
     free(wanted);
     return status;
@@ -154,13 +192,19 @@ done:
     return status;
 }
 
+/* Without smoothed cells. */
+static int64_t point_of_row(const struct body *body, int64_t row)
+{
+    return row / body->dim;
+}
+
 /* Who has the forces on a row. One without corners has none. */
 static int owner_of_row(const void *context, int64_t row)
 {
     const struct body *body = context;
     const struct field_averages *averages = &body->cells.averages;
     if (!body->smoothed) {
-        return owner_of_point(body, row / body->dim);
+        return owner_of_point(body, point_of_row(body, row));
     }
     int64_t at = averages->corner_ptr[row];
     return at < averages->corner_ptr[row + 1]
@@ -168,12 +212,85 @@ static int owner_of_row(const void *context, int64_t row)
                : 0;
 }
 
+static int64_t point_itself(const struct body *body, int64_t point)
+{
+    (void)body;
+    return point;
+}
+
+/* Mark the points from which the items that are sent are computed. */
+static void mark_sent(const struct body *body, const struct halo *halo,
+                      int64_t (*point_of)(const struct body *body, int64_t item), bool *is_sent)
+{
+    for (int64_t i = 0; halo->ranks != NULL && i < halo->send_first[halo->ranks->count]; i++) {
+        is_sent[point_of(body, halo->send[i])] = true;
+    }
+}
+
+static bool has_sent(const struct block *block, const bool *is_sent)
+{
+    bool some = false;
+    for (int64_t q = block->first_point; q < block->first_point + block->point_count; q++) {
+        some = some || is_sent[q];
+    }
+    return some;
+}
+
+/* The order of own blocks. */
+static enum status order_blocks(struct body *body, struct error *error)
+{
+    enum status status;
+    struct body_share *share = &body->share;
+    bool *is_sent = NULL;
+    int64_t border = 0, inner = 0;
+    TRY(NEW_ARRAY(&is_sent, body->point_count, error));
+    TRY(NEW_ARRAY(&share->block, share->end_block - share->begin_block, error));
+    mark_sent(body, &share->strains, point_itself, is_sent);
+    mark_sent(body, &share->corners, point_of_corner, is_sent);
+    if (!body->smoothed) {
+        mark_sent(body, &share->rows, point_of_row, is_sent);
+    }
+    for (int64_t b = share->begin_block; b < share->end_block; b++) {
+        share->border_count += has_sent(&body->blocks[b], is_sent);
+    }
+    for (int64_t b = share->begin_block; b < share->end_block; b++) {
+        bool at_border = has_sent(&body->blocks[b], is_sent);
+        share->block[at_border ? border++ : share->border_count + inner++] = b;
+    }
+done:
+    free(is_sent);
+    return status;
+}
+
+/* Of the rows that are summed here those for others, and the rest. */
+static enum status order_sums(struct body *body, struct error *error)
+{
+    enum status status;
+    struct body_share *share = &body->share;
+    int64_t rows = row_count(body);
+    bool *is_sent = NULL, *is_inner = NULL;
+    TRY(NEW_ARRAY(&is_sent, rows, error));
+    TRY(NEW_ARRAY(&is_inner, rows, error));
+    for (int64_t i = 0; i < share->rows.send_first[share->ranks->count]; i++) {
+        is_sent[share->rows.send[i]] = true;
+    }
+    for (int64_t r = 0; r < rows; r++) {
+        is_inner[r] = !is_sent[r] && owner_of_row(body, r) == share->ranks->rank;
+    }
+    TRY(stretches_of(0, rows, is_sent, &share->sums, error));
+    TRY(stretches_of(0, rows, is_inner, &share->inner_sums, error));
+done:
+    free(is_sent);
+    free(is_inner);
+    return status;
+}
+
 static int owner_of_corner(const void *body, int64_t corner)
 {
     return owner_of_point(body, point_of_corner(body, corner));
 }
 
-/* The rows that are summed here, and the corners that this takes. */
+/* The corners that the rows that are summed here take. */
 static enum status share_corners(struct body *body, struct error *error)
 {
     enum status status;
@@ -189,7 +306,6 @@ static enum status share_corners(struct body *body, struct error *error)
             corners[averages->corner[i]] = true;
         }
     }
-    TRY(stretches_of(0, rows, sums, &share->sums, error));
     TRY(halo_build(share->ranks, 2 * averages->corner_count, corners, VECTOR_STRIDE(body->dim),
                    owner_of_corner, body, &share->corners, error));
 done:
@@ -203,13 +319,16 @@ enum status body_share_rows(struct body *body, const bool *wanted, struct error 
     enum status status;
     struct body_share *share = &body->share;
     if (share->ranks == NULL) {
-        return stretches_of(0, row_count(body), NULL, &share->sums, error);
+        TRY(order_blocks(body, error));
+        return stretches_of(0, row_count(body), NULL, &share->inner_sums, error);
     }
     if (body->smoothed) {
         TRY(share_corners(body, error));
     }
     TRY(halo_build(share->ranks, row_count(body), wanted, VECTOR_STRIDE(body->dim), owner_of_row, body,
                    &share->rows, error));
+    TRY(order_blocks(body, error));
+    TRY(body->smoothed ? order_sums(body, error) : STATUS_OK);
 done:
     return status;
 }
@@ -225,48 +344,14 @@ void body_share_free(struct body_share *share)
     free(share->block_first);
     free(share->point_first);
     free(share->node_first);
+    free(share->slice_first);
     free(share->volume_first);
     stretches_free(&share->values);
     stretches_free(&share->sums);
+    stretches_free(&share->inner_sums);
+    free(share->block);
     halo_free(&share->strains);
+    halo_free(&share->pressures);
     halo_free(&share->corners);
     halo_free(&share->rows);
-}
-
-void body_share_gather(const struct body_share *share, void *items, size_t size, const int64_t *first)
-{
-    if (share->ranks != NULL) {
-#pragma omp master
-        ranks_gather(share->ranks, items, size, first);
-#pragma omp barrier
-    }
-}
-
-void body_share_exchange(const struct body_share *share, struct halo *halo, int width, double *x)
-{
-    if (share->ranks != NULL) {
-#pragma omp master
-        halo_exchange(halo, width, x);
-#pragma omp barrier
-    }
-}
-
-void body_share_collect(struct body *body)
-{
-    const struct body_share *share = &body->share;
-    int components = body->dim * body->dim;
-    for (int k = 0; k < components; k++) {
-        ranks_gather(share->ranks, body->F + k * body->point_count, sizeof *body->F, share->point_first);
-        if (body->smoothed) {
-            ranks_gather(share->ranks, body->cells.interpolant + k * body->point_count, sizeof *body->F,
-                         share->point_first);
-        }
-    }
-    ranks_gather(share->ranks, body->J, sizeof *body->J, share->point_first);
-    if (body->averaged) {
-        ranks_gather(share->ranks, body->volumes.strain, sizeof *body->volumes.strain, share->point_first);
-    }
-    if (body->averaged && body->volumes.direct != NULL) {
-        ranks_gather(share->ranks, body->volumes.direct, sizeof *body->volumes.direct, share->point_first);
-    }
 }

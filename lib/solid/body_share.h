@@ -4,9 +4,9 @@
  *
  * An evaluation takes the displacements of all nodes. It computes the rows of the operator that own points or
  * cells need, the stresses there, and, with the rows of the transposed operator, the forces on own nodes.
- * These are gathered. In between, processes exchange rows at their borders: those with own nodes in them that
- * others have computed. With smoothed cells a row has forces from all cells around it; the process of the
- * first of these cells sums them. */
+ * In between, processes exchange rows at their borders: those with own nodes in them that others have
+ * computed. With smoothed cells a row has forces from all cells around it; the process of the first of these
+ * cells sums them. What others need is computed first, and sent while the rest is computed. */
 #ifndef SOLID_BODY_SHARE_H
 #define SOLID_BODY_SHARE_H
 
@@ -20,20 +20,27 @@ struct body_share {
     int64_t *block_first;      /* of each process, as below: its blocks, */
     int64_t *point_first;      /* the points in them, */
     int64_t *node_first;       /* its nodes in the body's order, */
-    int64_t *volume_first;     /* and its nodal volumes */
+    int64_t *slice_first;      /* its nodal pressures, by slices, */
+    int64_t *volume_first;     /* and the nodal volumes of these */
     int64_t begin_block, end_block, begin_point, end_point, begin_node, end_node; /* of this one */
-    struct stretches values; /* rows of the operator that are computed here */
-    struct stretches sums;   /* smoothed cells: rows whose forces are summed here */
-    struct halo strains;     /* of points: for nodal volumes */
-    struct halo corners;     /* of smoothed cells: forces on rows that are summed here */
-    struct halo rows;        /* forces on rows, for own nodes */
+    int64_t *block;              /* blocks of this process in the order in which they are worked on, */
+    int64_t border_count;        /* first those at its border, from which others need strains or forces */
+    struct stretches values;     /* rows of the operator that are computed here */
+    struct stretches sums;       /* smoothed cells: rows whose forces are summed here, for others, */
+    struct stretches inner_sums; /* and for this process alone */
+    struct halo strains;         /* of points: for nodal volumes */
+    struct halo pressures;       /* of nodal volumes: those beside own ones, and at own points */
+    struct halo corners;         /* of smoothed cells: forces on rows that are summed here */
+    struct halo rows;            /* forces on rows, for own nodes */
 };
 
 /* Share out the blocks of a body that are cut, and its nodes. */
 MUST_CHECK enum status body_share_cut(const struct body_input *input, struct body *body, struct error *error);
 
-/* Share out the nodal volumes, and list the strains that they need. */
+/* Share out the nodal volumes, and list the strains that they need. When A is there: what the pressures need.
+ */
 MUST_CHECK enum status body_share_volumes(struct body *body, struct error *error);
+MUST_CHECK enum status body_share_pressures(struct body *body, struct error *error);
 
 /* The process that owns a node, the caller's number. `body`: a struct body, untyped for use as a callback. */
 int body_share_owner(const void *body, int64_t node);
@@ -51,9 +58,12 @@ void body_share_free(struct body_share *share);
 
 /* To be called by all threads of a parallel region together: all have all items; and halos. */
 void body_share_gather(const struct body_share *share, void *items, size_t size, const int64_t *first);
+void body_share_begin(const struct body_share *share, struct halo *halo, int width, const double *x);
+void body_share_finish(const struct body_share *share, struct halo *halo, int width, double *x);
 void body_share_exchange(const struct body_share *share, struct halo *halo, int width, double *x);
 
-/* The state of all points at the last evaluation, here. */
+/* The nodal pressures of all at the last evaluation, here; and the state of all points. */
+void body_share_collect_pressures(struct body *body);
 void body_share_collect(struct body *body);
 
 #endif

@@ -133,9 +133,8 @@ static double along(const struct constraint_rows *rows, int64_t r, const double 
     return sum;
 }
 
-/* Of the lists from `begin` to before `end`. */
-static void take_values(const struct constraint_rows *rows, int64_t begin, int64_t end, const double *u,
-                        double *value)
+void constraint_rows_take(const struct constraint_rows *rows, int64_t begin, int64_t end, const double *u,
+                          double *value)
 {
     for (int64_t l = begin; l < end; l++) {
         struct average average = average_of_list(rows, l);
@@ -149,7 +148,7 @@ static void take_values(const struct constraint_rows *rows, int64_t begin, int64
 
 void constraint_rows_values(const struct constraint_rows *rows, const double *u, double *value)
 {
-    take_values(rows, 0, rows->list_count, u, value);
+    constraint_rows_take(rows, 0, rows->list_count, u, value);
 }
 
 double constraint_rows_value(const struct constraint_rows *rows, int64_t r, const double *u)
@@ -268,9 +267,12 @@ static enum status share(struct constraint *constraint, struct error *error)
     const struct constraint_rows *rows = constraint->rows;
     const struct ranks *ranks = constraint->inverse->ranks;
     double *work = NULL;
+    bool *wanted = NULL;
     if (ranks == NULL) {
         return STATUS_OK;
     }
+    TRY(inverse_factor_wanted(constraint->inverse, &wanted, error));
+    TRY(constraint_rows_keep(constraint->inverse_rows, wanted, &constraint->here, error));
     TRY(NEW_ARRAY(&work, rows->list_count, error));
     for (int64_t l = 0; l < rows->list_count; l++) {
         work[l] = (double)(rows->ptr[l + 1] - rows->ptr[l]);
@@ -284,6 +286,7 @@ static enum status share(struct constraint *constraint, struct error *error)
     constraint->ranks = ranks;
 done:
     free(work);
+    free(wanted);
     return status;
 }
 
@@ -321,6 +324,7 @@ void constraint_free(struct constraint *constraint)
     free(constraint->list_first);
     free(constraint->row_first);
     free(constraint->place_first);
+    constraint_rows_free_kept(&constraint->here);
     envelope_free(&constraint->factor);
     *constraint = (struct constraint){0};
 }
@@ -333,7 +337,7 @@ void constraint_values(const struct constraint *constraint, const double *u, dou
         return;
     }
     const int64_t *first = constraint->list_first + ranks->rank;
-    take_values(constraint->rows, first[0], first[1], u, value);
+    constraint_rows_take(constraint->rows, first[0], first[1], u, value);
     ranks_gather(ranks, value, sizeof *value, constraint->row_first);
 }
 
@@ -352,7 +356,8 @@ void constraint_spread(const struct constraint *constraint, const double *amount
     int64_t size = constraint->node_count * dim;
     double *on_inverse = constraint->scratch, *move = constraint->scratch + size;
     memset(on_inverse, 0, (size_t)size * sizeof *on_inverse);
-    constraint_rows_spread(constraint->inverse_rows, amount, constraint->mass, on_inverse);
+    constraint_rows_spread(constraint->ranks != NULL ? &constraint->here : constraint->inverse_rows, amount,
+                           constraint->mass, on_inverse);
     inverse_factor_apply_transposed(constraint->inverse, dim, on_inverse, move);
     for (int64_t i = 0; i < size; i++) {
         u[i] += move[i];

@@ -51,9 +51,20 @@ double constraint_rows_value(const struct constraint_rows *rows, int64_t r, cons
 void constraint_rows_missing(const struct constraint_rows *rows, const double *factor, const double *u,
                              double *missing);
 
+/* The values of the rows of the lists from `begin` to before `end`. */
+void constraint_rows_take(const struct constraint_rows *rows, int64_t begin, int64_t end, const double *u,
+                          double *value);
+
 /* The transpose: u_j += amount_r phi_j direction_r, divided by mass[node] unless mass is NULL. */
 void constraint_rows_spread(const struct constraint_rows *rows, const double *amount, const double *mass,
                             double *u);
+
+/* The rows with those of their pairs alone whose nodes are wanted[]: lists may be empty. What they spread to
+ * these nodes is the same to the last bit. All but pairs is shared with `rows`: free with
+ * constraint_rows_free_kept. */
+MUST_CHECK enum status constraint_rows_keep(const struct constraint_rows *rows, const bool *wanted,
+                                            struct constraint_rows *kept, struct error *error);
+void constraint_rows_free_kept(struct constraint_rows *kept);
 
 struct inverse_factor;
 
@@ -67,11 +78,12 @@ struct constraint {
     double *scratch;                            /* 2 * node_count * dim, with these */
     struct envelope factor;
     const struct ranks
-        *ranks;           /* processes that share `inverse`, and what follows; NULL: one. Of each process */
-    int64_t *list_first;  /* the lists whose averages it takes, */
-    int64_t *row_first;   /* their rows, */
-    int64_t *place_first; /* and the stretch of the factor that it solves with */
-    double *multiplier;   /* count: of the last projection, N s2 in the step's scaling */
+        *ranks; /* processes that share `inverse`, and what follows; NULL: one. Of each process */
+    struct constraint_rows here; /* what of inverse_rows the rows of L^T need that it applies, */
+    int64_t *list_first;         /* the lists whose averages it takes, */
+    int64_t *row_first;          /* their rows, */
+    int64_t *place_first;        /* and the stretch of the factor that it solves with */
+    double *multiplier;          /* count: of the last projection, N s2 in the step's scaling */
 };
 
 /* Factor G M^-1 G^T; `inverse` and `inverse_rows` NULL: M is diagonal. Rows that depend on others are dropped

@@ -82,21 +82,39 @@ static void apply_transposed(const struct body *body, const double *x, double *y
     }
 }
 
-static void sum_corners(struct body *body)
+static void sum_corners(struct body *body, const struct stretches *rows)
 {
-    const struct stretches *rows = &body->share.sums;
 #pragma omp for schedule(static)
     for (int64_t i = 0; i < rows->count; i++) {
         body->kernels->sum_corners(&body->cells.averages, rows->items[i].begin, rows->items[i].end);
     }
 }
 
-static void for_blocks(struct body *body, void (*work)(struct body *body, int64_t block))
+/* Of own blocks, in the order in which they are worked on. */
+static void for_blocks(struct body *body, int64_t first, int64_t last,
+                       void (*work)(struct body *body, int64_t block))
 {
 #pragma omp for schedule(static)
-    for (int64_t b = body->share.begin_block; b < body->share.end_block; b++) {
-        work(body, b);
+    for (int64_t i = first; i < last; i++) {
+        work(body, body->share.block[i]);
     }
+}
+
+/* All own blocks; `halo`, values of what the blocks have worked out, is exchanged while those are worked on
+ * that no other process needs. NULL: no such values. */
+static void for_all_blocks(struct body *body, void (*work)(struct body *body, int64_t block),
+                           struct halo *halo, int width, double *values)
+{
+    const struct body_share *share = &body->share;
+    int64_t border = share->border_count, count = share->end_block - share->begin_block;
+    if (share->ranks == NULL || halo == NULL) {
+        for_blocks(body, 0, count, work);
+        return;
+    }
+    for_blocks(body, 0, border, work);
+    body_share_begin(share, halo, width, values);
+    for_blocks(body, border, count, work);
+    body_share_finish(share, halo, width, values);
 }
 
 static void place_nodes(struct body *body, const double *u)
@@ -114,10 +132,23 @@ static void return_forces(const struct body *body, double *force)
 {
     int dim = body->dim, stride = VECTOR_STRIDE(dim);
 #pragma omp for schedule(static)
-    for (int64_t n = 0; n < body->node_count; n++) {
+    for (int64_t n = body->share.begin_node; n < body->share.end_node; n++) {
         for (int a = 0; a < dim; a++) {
             force[body->node_order[n] * dim + a] = body->force[n * stride + a];
         }
+    }
+}
+
+/* F and J of a block, and its volumetric strains. */
+static void set_block(struct body *body, int64_t b)
+{
+    if (body->smoothed) {
+        body->kernels->cell_gradients(body, b);
+    } else {
+        body->kernels->point_gradients(body, b);
+    }
+    if (body->averaged) {
+        nodal_volumes_strain(body, b);
     }
 }
 
@@ -125,19 +156,14 @@ static void return_forces(const struct body *body, double *force)
 static void set_state(struct body *body, const double *u)
 {
     place_nodes(body, u);
-    if (body->smoothed) {
-        apply(body, body->u, body->cells.averages.value);
-        for_blocks(body, body->kernels->cell_gradients);
-    } else {
-        apply(body, body->u, body->derivative);
-        for_blocks(body, body->kernels->point_gradients);
-    }
+    apply(body, body->u, body->smoothed ? body->cells.averages.value : body->derivative);
+    for_all_blocks(body, set_block, body->averaged ? &body->share.strains : NULL, 1, body->volumes.strain);
     if (body->averaged) {
         nodal_volumes_evaluate(body);
     }
 }
 
-/* Internal forces at u. */
+/* Internal forces on own nodes at u. */
 static void evaluate(struct body *body, const double *u, double *force)
 {
     struct body_share *share = &body->share;
@@ -147,23 +173,22 @@ static void evaluate(struct body *body, const double *u, double *force)
     {
         set_state(body, u);
         if (body->smoothed) {
-            for_blocks(body, stress_cell_block);
-            body_share_exchange(share, &share->corners, stride, averages->corner_force);
-            sum_corners(body);
-            body_share_exchange(share, &share->rows, stride, averages->force);
+            for_all_blocks(body, stress_cell_block, &share->corners, stride, averages->corner_force);
+            sum_corners(body, &share->sums);
+            body_share_begin(share, &share->rows, stride, averages->force);
+            sum_corners(body, &share->inner_sums);
+            body_share_finish(share, &share->rows, stride, averages->force);
             apply_transposed(body, averages->force, body->force);
         } else {
-            for_blocks(body, stress_point_block);
-            body_share_exchange(share, &share->rows, stride, body->derivative);
+            for_all_blocks(body, stress_point_block, &share->rows, stride, body->derivative);
             apply_transposed(body, body->derivative, body->force);
         }
-        body_share_gather(share, body->force, (size_t)stride * sizeof *body->force, share->node_first);
         body_share_gather(share, body->blocks, sizeof *body->blocks, share->block_first);
         return_forces(body, force);
     }
 }
 
-struct deformation body_force(struct body *body, const double *u, double *force)
+struct deformation body_own_force(struct body *body, const double *u, double *force)
 {
     struct deformation deformation = {.least_jacobian = INFINITY};
     int64_t worst = 0;
@@ -177,6 +202,35 @@ struct deformation body_force(struct body *body, const double *u, double *force)
     }
     deformation.point = body->order[worst];
     return deformation;
+}
+
+struct deformation body_force(struct body *body, const double *u, double *force)
+{
+    struct deformation deformation = body_own_force(body, u, force);
+    body_gather(body, force);
+    return deformation;
+}
+
+void body_gather(struct body *body, double *vector)
+{
+    const struct body_share *share = &body->share;
+    const int64_t *node = body->node_order;
+    double *by_place = body->force; /* scratch here */
+    int dim = body->dim;
+    if (share->ranks == NULL) {
+        return;
+    }
+    for (int64_t p = share->begin_node; p < share->end_node; p++) {
+        for (int a = 0; a < dim; a++) {
+            by_place[p * dim + a] = vector[node[p] * dim + a];
+        }
+    }
+    ranks_gather(share->ranks, by_place, (size_t)dim * sizeof *vector, share->node_first);
+    for (int64_t p = 0; p < body->node_count; p++) {
+        for (int a = 0; a < dim; a++) {
+            vector[node[p] * dim + a] = by_place[p * dim + a];
+        }
+    }
 }
 
 double body_volume(const struct body *body)

@@ -86,18 +86,18 @@ static void solve_row(const struct lower *lower, int64_t count, const int32_t *l
     }
 }
 
-/* The other rows of S that a stretch of rows of L is made of. */
+/* The other rows of S that a stretch of rows of L is made of; rows->idx has their lists. */
 static enum status add_rows(const struct solid_system *system, int64_t first, int64_t last,
-                            struct lower *lower, struct near *near, struct error *error)
+                            const struct sparse *rows, const int64_t *length, struct lower *lower,
+                            struct error *error)
 {
     enum status status;
+    int64_t own = system->body.share.begin_node;
     bool *wanted = NULL;
-    int32_t list[MOST_ENTRIES];
     TRY(NEW_ARRAY(&wanted, system->node_count, error));
     for (int64_t p = first; p < last; p++) {
-        int64_t count = choose(system, lower, (int32_t)system->body.node_order[p], near, list);
-        for (int64_t k = 0; k < count; k++) {
-            wanted[list[k]] = true;
+        for (int64_t k = 0; k < length[p]; k++) {
+            wanted[rows->idx[(p - own) * MOST_ENTRIES + k]] = true;
         }
     }
     TRY(system->body.share.ranks != NULL ? lower_fetch(wanted, lower, error)
@@ -122,16 +122,20 @@ static enum status make_rows(const struct solid_system *system, int64_t first, i
         most = entries > most ? entries : most;
     }
     TRY(NEW_ARRAY(&near, most * chunks.count, error));
-    if (!whole) {
-        TRY(add_rows(system, first, last, lower, near, error));
-    }
 #pragma omp parallel for schedule(static, 1) num_threads(chunks.threads)
     for (int64_t c = 0; c < chunks.count; c++) {
         for (int64_t p = first + chunks_begin(&chunks, c); p < first + chunks_begin(&chunks, c + 1); p++) {
-            int32_t *list = rows->idx + (p - own) * MOST_ENTRIES;
-            length[p] = choose(system, lower, (int32_t)node[p], near + c * most, list);
-            solve_row(lower, length[p], list, rows->value + (p - own) * MOST_ENTRIES);
+            length[p] = choose(system, lower, (int32_t)node[p], near + c * most,
+                               rows->idx + (p - own) * MOST_ENTRIES);
         }
+    }
+    if (!whole) {
+        TRY(add_rows(system, first, last, rows, length, lower, error));
+    }
+#pragma omp parallel for schedule(static) num_threads(chunks.threads)
+    for (int64_t p = first; p < last; p++) {
+        int64_t at = (p - own) * MOST_ENTRIES;
+        solve_row(lower, length[p], rows->idx + at, rows->value + at);
     }
 done:
     free(near);
@@ -264,6 +268,17 @@ void inverse_factor_free(struct inverse_factor *factor)
     factor->first = NULL;
 }
 
+enum status inverse_factor_wanted(const struct inverse_factor *factor, bool **wanted, struct error *error)
+{
+    const struct sparse *matrix = &factor->transposed;
+    const int64_t *first = factor->first + ranks_rank(factor->ranks);
+    enum status status = NEW_ARRAY(wanted, matrix->row_count, error);
+    for (int64_t i = matrix->ptr[first[0]]; status == STATUS_OK && i < matrix->ptr[first[1]]; i++) {
+        (*wanted)[matrix->idx[i]] = true;
+    }
+    return status;
+}
+
 /* The rows of own nodes, and those of the others. */
 static void apply(const struct inverse_factor *factor, const struct sparse *matrix, int dim, const double *x,
                   double *y)
@@ -283,20 +298,36 @@ void inverse_factor_apply_transposed(const struct inverse_factor *factor, int di
     apply(factor, &factor->transposed, dim, x, y);
 }
 
-void inverse_factor_solve_transposed(const struct inverse_factor *factor, int dim, double *x)
+/* The width is known when compiling; sums stay in registers. */
+static inline __attribute__((always_inline)) void solve_transposed(const struct sparse *matrix, int width,
+                                                                   double *x)
 {
-    const struct sparse *matrix = &factor->transposed;
     for (int64_t n = matrix->row_count; n-- > 0;) {
         int64_t first = matrix->ptr[n];
+        double sum[3] = {0.0, 0.0, 0.0};
+        for (int a = 0; a < width; a++) {
+            sum[a] = x[n * width + a];
+        }
         for (int64_t i = first + 1; i < matrix->ptr[n + 1]; i++) {
-            const double *at = x + (int64_t)matrix->idx[i] * dim;
-            for (int a = 0; a < dim; a++) {
-                x[n * dim + a] -= matrix->value[i] * at[a];
+            const double *at = x + (int64_t)matrix->idx[i] * width;
+            for (int a = 0; a < width; a++) {
+                sum[a] -= matrix->value[i] * at[a];
             }
         }
-        for (int a = 0; a < dim; a++) {
-            x[n * dim + a] /= matrix->value[first];
+        for (int a = 0; a < width; a++) {
+            x[n * width + a] = sum[a] / matrix->value[first];
         }
+    }
+}
+
+void inverse_factor_solve_transposed(const struct inverse_factor *factor, int dim, double *x)
+{
+    if (dim == 1) {
+        solve_transposed(&factor->transposed, 1, x);
+    } else if (dim == 2) {
+        solve_transposed(&factor->transposed, 2, x);
+    } else {
+        solve_transposed(&factor->transposed, 3, x);
     }
 }
 

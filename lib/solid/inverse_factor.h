@@ -18,6 +18,7 @@
 #include "base/sparse.h"
 #include "solid/constraint.h"
 
+#include <stdbool.h>
 #include <stdint.h>
 
 struct solid_system;
@@ -36,6 +37,10 @@ MUST_CHECK enum status inverse_factor_build(const struct solid_system *system, s
 MUST_CHECK enum status inverse_factor_build_by(const struct solid_system *system, int64_t stretch,
                                                struct inverse_factor *factor, struct error *error);
 void inverse_factor_free(struct inverse_factor *factor);
+
+/* (*wanted)[node_count], to be freed: the nodes whose values this process needs to apply its rows of L^T. */
+MUST_CHECK enum status inverse_factor_wanted(const struct inverse_factor *factor, bool **wanted,
+                                             struct error *error);
 
 /* y = L x, and y = L^T x, of vectors of node_count * dim, not the same. */
 void inverse_factor_apply(const struct inverse_factor *factor, int dim, const double *x, double *y);

@@ -137,6 +137,7 @@ enum status nodal_pressures_build(struct body *body, struct error *error)
     TRY(NEW_ARRAY(&pressures->entry, count, error));
     memset(seen, -1, (size_t)count * sizeof *seen);
     set_columns(body, seen, pressures);
+    TRY(body_share_pressures(body, error));
     body_limit_bulk(body, INFINITY);
 done:
     free(seen);
@@ -198,6 +199,7 @@ double body_augment(struct body *body, bool steady, double strain)
 {
     struct nodal_pressures *pressures = &body->volumes.pressures;
     const double *value = body->volumes.pressure, *weight = pressures->weight;
+    body_share_collect_pressures(body);
     double now2 = 0.0, before2 = 0.0, both = 0.0, value2 = 0.0, least = strain * pressures->least_shear;
     int64_t count = pressures->slices * ROWS;
     for (int64_t a = 0; a < count; a++) {
@@ -241,23 +243,29 @@ iterate(const struct nodal_pressures *pressures, int64_t first, int64_t end, dou
     }
 }
 
-void nodal_pressures_solve(const struct nodal_pressures *pressures, const double *content, double *value)
+void nodal_pressures_solve(struct body *body)
 {
+    const struct nodal_pressures *pressures = &body->volumes.pressures;
+    const double *content = body->volumes.content;
+    struct body_share *share = &body->share;
     int64_t count = pressures->slices * ROWS;
+    int64_t begin = share->slice_first[ranks_rank(share->ranks)];
+    int64_t last_slice = share->slice_first[ranks_rank(share->ranks) + 1];
     double *residual = pressures->scratch, *move = residual + count, *next = move + count;
+    double *value = body->volumes.pressure;
     double centre = pressures->centre / pressures->half, last = 1.0 / centre;
 #pragma omp for schedule(static)
-    for (int64_t a = 0; a < count; a++) {
+    for (int64_t a = begin * ROWS; a < last_slice * ROWS; a++) {
         residual[a] = content[a] + pressures->weight[a] * pressures->held[a];
         move[a] = pressures->inverse[a] * residual[a] / pressures->centre;
         value[a] = pressures->scale * move[a];
     }
     for (int k = 1; k < pressures->iterations; k++) {
         double now = 1.0 / (2.0 * centre - last), *swap = move;
+        body_share_exchange(share, &share->pressures, 1, move);
 #pragma omp for schedule(static)
-        for (int64_t first = 0; first < pressures->slices; first += SLICES_AT_ONCE) {
-            int64_t end =
-                first + SLICES_AT_ONCE < pressures->slices ? first + SLICES_AT_ONCE : pressures->slices;
+        for (int64_t first = begin; first < last_slice; first += SLICES_AT_ONCE) {
+            int64_t end = first + SLICES_AT_ONCE < last_slice ? first + SLICES_AT_ONCE : last_slice;
             iterate(pressures, first, end, now * last, 2.0 * now / pressures->half, move, residual, next,
                     value);
         }
@@ -265,6 +273,7 @@ void nodal_pressures_solve(const struct nodal_pressures *pressures, const double
         next = swap;
         last = now;
     }
+    body_share_exchange(share, &share->pressures, 1, value);
 }
 
 void nodal_pressures_free(struct nodal_pressures *pressures)

@@ -144,17 +144,12 @@ double nodal_pressure_compliance(const struct material *material)
     return stabilisation / material->shear_modulus;
 }
 
-/* y of the points, and b. */
+/* b */
 static inline __attribute__((always_inline)) void sum_content(struct body *body, int vertices)
 {
     struct nodal_volumes *volumes = &body->volumes;
     struct body_share *share = &body->share;
     int rank = ranks_rank(share->ranks);
-#pragma omp for schedule(static)
-    for (int64_t q = share->begin_point; q < share->end_point; q++) {
-        volumes->strain[q] = material_volume_strain(&body->materials[body->material[q]], body->J[q]);
-    }
-    body_share_exchange(share, &share->strains, 1, volumes->strain);
 #pragma omp for schedule(static)
     for (int64_t a = share->volume_first[rank]; a < share->volume_first[rank + 1]; a++) {
         double sum = 0.0;
@@ -164,7 +159,14 @@ static inline __attribute__((always_inline)) void sum_content(struct body *body,
         }
         volumes->content[a] = sum;
     }
-    body_share_gather(share, volumes->content, sizeof *volumes->content, share->volume_first);
+}
+
+void nodal_volumes_strain(struct body *body, int64_t b)
+{
+    const struct block *block = &body->blocks[b];
+    for (int64_t q = block->first_point; q < block->first_point + block->point_count; q++) {
+        body->volumes.strain[q] = material_volume_strain(&body->materials[body->material[q]], body->J[q]);
+    }
 }
 
 /* What s acts on, of a body with edges. */
@@ -186,7 +188,7 @@ static void average_strains(struct body *body)
         }
         volumes->mean[a] = sum / volumes->modulus[a];
     }
-    body_share_gather(share, volumes->mean, sizeof *volumes->mean, share->volume_first);
+    body_share_exchange(share, &share->pressures, 1, volumes->mean);
 #pragma omp for schedule(static)
     for (int64_t q = share->begin_point; q < share->end_point; q++) {
         double change = 0.0;
@@ -210,7 +212,7 @@ void nodal_volumes_evaluate(struct body *body)
     if (body->volumes.direct != NULL) {
         average_strains(body);
     }
-    nodal_pressures_solve(&body->volumes.pressures, body->volumes.content, body->volumes.pressure);
+    nodal_pressures_solve(body);
 }
 
 /* sum_a N_a(q) pi_a */

@@ -51,7 +51,10 @@ MUST_CHECK enum status nodal_volumes_build(const struct body_input *input, struc
                                            struct error *error);
 void nodal_volumes_free(struct nodal_volumes *volumes);
 
-/* Set body->volumes from body->J. To be called by all threads of a parallel region together. */
+/* Set y of the points of block b from body->J. */
+void nodal_volumes_strain(struct body *body, int64_t b);
+
+/* Set b and pi from y. To be called by all threads of a parallel region together. */
 void nodal_volumes_evaluate(struct body *body);
 
 /* The part s of the bulk modulus, Pa. */
@@ -69,8 +72,9 @@ double nodal_volume_energy(const struct body *body, int64_t point);
 MUST_CHECK enum status nodal_pressures_build(struct body *body, struct error *error);
 void nodal_pressures_free(struct nodal_pressures *pressures);
 
-/* value[count] = A^-1 content[count], by all threads of a parallel region together. */
-void nodal_pressures_solve(const struct nodal_pressures *pressures, const double *content, double *value);
+/* body->volumes.pressure = A^-1 content, by all threads of a parallel region together. Of several processes
+ * each needs the content of its own volumes, and has the pressures of these and at its own points. */
+void nodal_pressures_solve(struct body *body);
 
 /* The part k of the bulk modulus, Pa, and epsilon / mu, 1/Pa. */
 double nodal_pressure_modulus(const struct material *material);

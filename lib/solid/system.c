@@ -33,6 +33,7 @@ void system_free(struct solid_system *system)
     free(system->factor);
     constraint_rows_free(&system->rows);
     constraint_rows_free(&system->penalties);
+    constraint_rows_free_kept(&system->penalties_here);
     free(system->penalty_stiffness);
     free(system->penalty_force);
     body_free(&system->body);
@@ -251,17 +252,18 @@ static void negate(const struct solid_system *system, double *force)
 void system_resist(struct solid_system *system, const double *u, double *force)
 {
     double started = clock_seconds();
-    (void)body_force(&system->body, u, force);
+    (void)body_own_force(&system->body, u, force);
     system->cost.force += clock_seconds() - started;
     negate(system, force);
     system_add_penalties(system, u, force);
     negate(system, force);
+    body_gather(&system->body, force);
 }
 
 struct deformation system_residual(struct solid_system *system, const double *u, double *residual)
 {
     double started = clock_seconds();
-    struct deformation deformation = body_force(&system->body, u, residual);
+    struct deformation deformation = body_own_force(&system->body, u, residual);
     double forced = clock_seconds();
     negate(system, residual);
     system_add_loads(system, u, residual);
@@ -272,10 +274,12 @@ struct deformation system_residual(struct solid_system *system, const double *u,
         contact_move(&system->contacts[c], system->factor);
         contact_force(&system->contacts[c], u, residual);
     }
-    system->cost.force += forced - started;
+    double touched = clock_seconds();
+    body_gather(&system->body, residual);
+    system->cost.force += forced - started + clock_seconds() - touched;
     system->cost.loads += loaded - forced;
     system->cost.constraints += held - loaded;
-    system->cost.contact += clock_seconds() - held;
+    system->cost.contact += touched - held;
     return deformation;
 }
 

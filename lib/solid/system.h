@@ -72,6 +72,7 @@ struct solid_system {
      * quadrature points of the constrained facets hold the field to the same targets. Their forces vanish
      * where the field meets these, so that a linear field stays exact. */
     struct constraint_rows penalties;
+    struct constraint_rows penalties_here; /* of several processes: of the penalties what own nodes have */
     int64_t spring_count; /* the last of the penalties: they hold measured points and back no condition */
     double *penalty_stiffness; /* penalties.count, N/m (2D: N/m2) */
     double *penalty_force;     /* penalties.count: scratch */
@@ -130,7 +131,8 @@ double system_longest_way(const struct solid_system *system);
  * loads and contacts. */
 void system_resist(struct solid_system *system, const double *u, double *force);
 
-/* Forces of the constraint penalties, added to force; and their energy. */
+/* Forces of the constraint penalties, added to force, of several processes to that of own nodes; and their
+ * energy. */
 void system_add_penalties(struct solid_system *system, const double *u, double *force);
 double system_penalty_energy(const struct solid_system *system, const double *u);
 
@@ -139,6 +141,9 @@ MUST_CHECK enum status system_append_penalty(struct solid_system *system, const 
                                              const double *direction, double target, int32_t curve,
                                              int32_t section, int32_t node, double stiffness,
                                              struct error *error);
+
+/* Of several processes, once all penalties are there: what of them is for own nodes. */
+MUST_CHECK enum status system_share_penalties(struct solid_system *system, struct error *error);
 
 /* Force of constraint penalty r at u along its direction, N (2D: N/m). */
 double system_penalty_force(const struct solid_system *system, int64_t r, const double *u);

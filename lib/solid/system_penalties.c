@@ -3,6 +3,8 @@
 
 #include "base/memory.h"
 
+#include <stdlib.h>
+
 enum status system_append_penalty(struct solid_system *system, const struct average *average,
                                   const double *direction, double target, int32_t curve, int32_t section,
                                   int32_t node, double stiffness, struct error *error)
@@ -24,6 +26,24 @@ enum status system_append_penalty(struct solid_system *system, const struct aver
     return STATUS_OK;
 }
 
+enum status system_share_penalties(struct solid_system *system, struct error *error)
+{
+    enum status status = STATUS_OK;
+    const struct body *body = &system->body;
+    bool *own = NULL;
+    if (body->share.ranks == NULL) {
+        return STATUS_OK;
+    }
+    TRY(NEW_ARRAY(&own, body->node_count, error));
+    for (int64_t p = body->share.begin_node; p < body->share.end_node; p++) {
+        own[body->node_order[p]] = true;
+    }
+    TRY(constraint_rows_keep(&system->penalties, own, &system->penalties_here, error));
+done:
+    free(own);
+    return status;
+}
+
 double system_penalty_force(const struct solid_system *system, int64_t r, const double *u)
 {
     const struct constraint_rows *penalties = &system->penalties;
@@ -34,13 +54,20 @@ double system_penalty_force(const struct solid_system *system, int64_t r, const 
 void system_add_penalties(struct solid_system *system, const double *u, double *force)
 {
     const struct constraint_rows *penalties = &system->penalties;
+    const struct constraint_rows *here =
+        system->body.share.ranks != NULL ? &system->penalties_here : penalties;
     double *pull = system->penalty_force;
-    constraint_rows_values(penalties, u, pull);
-    for (int64_t r = 0; r < penalties->count; r++) {
-        double target = penalties->target[r] * system->factor[penalties->curve[r]];
-        pull[r] = system->penalty_stiffness[r] * (target - pull[r]);
+    for (int64_t l = 0; l < here->list_count; l++) {
+        if (here->ptr[l] == here->ptr[l + 1]) {
+            continue;
+        }
+        constraint_rows_take(penalties, l, l + 1, u, pull);
+        for (int64_t r = penalties->first[l]; r < penalties->first[l + 1]; r++) {
+            double target = penalties->target[r] * system->factor[penalties->curve[r]];
+            pull[r] = system->penalty_stiffness[r] * (target - pull[r]);
+        }
     }
-    constraint_rows_spread(penalties, pull, NULL, force);
+    constraint_rows_spread(here, pull, NULL, force);
 }
 
 double system_penalty_energy(const struct solid_system *system, const double *u)

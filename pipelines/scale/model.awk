@@ -11,10 +11,13 @@
 #
 # These are bodies whose vectors are cut as well. mtled-mpi (rows "mtled-mpi, strong" and "mtled-mpi, weak") keeps them whole. It sends
 #   - to each neighbour 3 messages: volume ratios, forces of corners, forces on faces and vertices; for each node that is needed that is
-#     `row_bytes`, 13 faces and vertices of 32 bytes, and half as much for the corners;
-#   - to all others the forces (32 bytes a node), nodal volumes (8), and L and L^T of the preconditioner (24 each), log2(parts) messages each;
-# and `replicated` of the computing, vectors, conditions and the coarse space, is done by all: twice the processor time of two processes by that
-# of one, less 1, of a quasi-static cube of 15 625 nodes held on two sides.
+#     `row_bytes`, 13 faces and vertices of 32 bytes, and half as much for the corners. These bytes travel while what no other process needs is
+#     computed, and only what takes longer than that is waited for;
+#   - to each neighbour `passes` messages more, of the pressures at half of these nodes;
+#   - to all others, of each own node, the force, what L and L^T of the preconditioner make of it, and what L^T makes of the forces of the
+#     conditions, twice: 24 bytes each; and `small` shorter ones, of conditions and the coarse space. That is log2(parts) messages each;
+# and `replicated` of the computing is done by all, or again at borders: of a quasi-static cube of 15 625 nodes held on two sides, twice the
+# processor time of two processes by that of one, less 1, is below a tenth, and a third of four times that of four, less 1, above it.
 
 BEGIN {
     FS = OFS = "\t"
@@ -23,9 +26,9 @@ BEGIN {
     passes = 7
     each = 50000
     row_bytes = 1.5 * 13 * 32
-    gathered_bytes = 32 + 8 + 24 + 24
-    gathers = 4
-    replicated = 0.2
+    large = 5
+    small = 7
+    replicated = 0.1
 }
 FNR == NR { if ($1 == "mtled, an evaluation" && $2 > largest) { largest = $2; kernel = 1e-6 * $3 } next }
 /^parts/ { next }
@@ -47,11 +50,13 @@ END {
     for (p = 2; p <= 64; p *= 2) whole_vectors("weak", p, each, halo, 26, 0.03)
 }
 
-function whole_vectors(kind, p, own_nodes, halo_nodes, beside, uneven,    computing, waiting, alone) {
+function whole_vectors(kind, p, own_nodes, halo_nodes, beside, uneven,    computing, inner, travelling, waiting, alone) {
     alone = p * own_nodes * kernel
-    computing = own_nodes * kernel * (1 - replicated) * (1 + uneven) + alone * replicated
-    waiting = 3 * beside * latency + row_bytes * halo_nodes / bandwidth + gathers * log(p) / log(2) * latency \
-        + gathered_bytes * (p - 1) * own_nodes / bandwidth
+    inner = own_nodes * kernel * (1 - replicated)
+    computing = inner * (1 + uneven) + alone * replicated
+    travelling = row_bytes * halo_nodes / bandwidth
+    waiting = ((3 + passes) * beside + (large + small) * log(p) / log(2)) * latency + 8 * passes * halo_nodes / 2 / bandwidth \
+        + 24 * large * (p - 1) * own_nodes / bandwidth + (travelling > inner ? travelling - inner : 0)
     tell("mtled-mpi, " kind, p, own_nodes, halo_nodes, computing, waiting, alone)
 }
 

@@ -252,7 +252,7 @@ TEST(nodal_pressures)
         for (int64_t a = 0; a < volumes->count; a++) {
             volumes->content[a] = sin(1.0 + (double)(a * a % 89)) / pressures->inverse[a];
         }
-        nodal_pressures_solve(pressures, volumes->content, volumes->pressure);
+        nodal_pressures_solve(&body);
         for (int64_t a = 0; a < volumes->count; a++) {
             double sum = -volumes->content[a];
             int64_t slice = a / NODAL_PRESSURE_ROWS, i = a % NODAL_PRESSURE_ROWS;

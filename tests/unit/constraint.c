@@ -112,6 +112,32 @@ TEST(dependent_rows_share)
     system_free(&line.system);
 }
 
+/* Rows with some nodes alone put on these what all put on them, to the last bit, and nothing elsewhere. */
+TEST(rows_of_some_nodes)
+{
+    static const double force[4] = {0.3, -0.7, 1.1, 0.13};
+    const bool wanted[NODES] = {[3] = true, [4] = true, [7] = true};
+    struct line line;
+    struct error error;
+    struct constraint_rows kept;
+    double all[2 * NODES] = {0.0}, some[2 * NODES] = {0.0};
+    line_begin(&line);
+    hold(&line, 0, 2, 0.1, 0); /* none of its nodes */
+    hold(&line, 2, 5, 0.3, 0);
+    hold(&line, 3, 7, 0.2, 1);
+    hold(&line, 4, 8, 0.5, 0);
+    GOOD(constraint_rows_keep(&line.system.rows, wanted, &kept, &error));
+    assert_true(kept.ptr[1] == 0 && kept.ptr[2] == 2 && kept.list_count == line.system.rows.list_count);
+    constraint_rows_spread(&line.system.rows, force, line.mass, all);
+    constraint_rows_spread(&kept, force, line.mass, some);
+    for (int i = 0; i < 2 * NODES; i++) {
+        double expected = wanted[i / 2] ? all[i] : 0.0;
+        assert_memory_equal(&some[i], &expected, sizeof expected);
+    }
+    constraint_rows_free_kept(&kept);
+    system_free(&line.system);
+}
+
 /* Targets that disagree are a verdict with both sections, the node, its place and the difference. */
 TEST(disagreement_is_named)
 {

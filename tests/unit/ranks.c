@@ -10,12 +10,20 @@
 
 enum { MOST = 7 };
 
+/* What a process has begun to receive. */
+struct exchange {
+    size_t size;
+    void *receive;
+    const int64_t *receive_first;
+};
+
 /* What the threads that stand for processes share. */
 struct team {
     int count;
     pthread_barrier_t barrier;
     const void *items[MOST]; /* of each process */
     const int64_t *first[MOST];
+    struct exchange begun[MOST];
     int64_t value[MOST];
     pthread_mutex_t lock;
     pthread_cond_t changed;
@@ -52,19 +60,33 @@ static void gather(const struct ranks *ranks, void *items, size_t size, const in
     wait_for_all(ranks);
 }
 
-static void exchange(const struct ranks *ranks, size_t size, const void *send, const int64_t *send_first,
-                     void *receive, const int64_t *receive_first)
+static void begin(const struct ranks *ranks, size_t size, const void *send, const int64_t *send_first,
+                  void *receive, const int64_t *receive_first)
 {
     struct team *team = ranks->context;
     team->items[ranks->rank] = send;
     team->first[ranks->rank] = send_first;
+    team->begun[ranks->rank] = (struct exchange){size, receive, receive_first};
+}
+
+static void finish(const struct ranks *ranks)
+{
+    struct team *team = ranks->context;
+    struct exchange *mine = &team->begun[ranks->rank];
     wait_for_all(ranks);
     for (int r = 0; r < ranks->count; r++) {
-        memcpy((char *)receive + (size_t)receive_first[r] * size,
-               (const char *)team->items[r] + (size_t)team->first[r][ranks->rank] * size,
-               (size_t)(receive_first[r + 1] - receive_first[r]) * size);
+        memcpy((char *)mine->receive + (size_t)mine->receive_first[r] * mine->size,
+               (const char *)team->items[r] + (size_t)team->first[r][ranks->rank] * mine->size,
+               (size_t)(mine->receive_first[r + 1] - mine->receive_first[r]) * mine->size);
     }
     wait_for_all(ranks);
+}
+
+static void exchange(const struct ranks *ranks, size_t size, const void *send, const int64_t *send_first,
+                     void *receive, const int64_t *receive_first)
+{
+    begin(ranks, size, send, send_first, receive, receive_first);
+    finish(ranks);
 }
 
 static void send_to(const struct ranks *ranks, int to, const double *x, int64_t count)
@@ -115,7 +137,8 @@ static void run_team(int count, struct member *members, void *(*work)(void *memb
     pthread_mutex_init(&team.lock, NULL);
     pthread_cond_init(&team.changed, NULL);
     for (int r = 0; r < count; r++) {
-        members[r].ranks = (struct ranks){count, r, gather, exchange, send_to, receive_from, most, &team};
+        members[r].ranks =
+            (struct ranks){count, r, gather, exchange, begin, finish, send_to, receive_from, most, &team};
         assert_int_equal(pthread_create(&threads[r], NULL, work, &members[r]), 0);
     }
     for (int r = 0; r < count; r++) {

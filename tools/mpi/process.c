@@ -18,7 +18,8 @@ static const double most_wait = 10.0;
 static struct {
     struct ranks ranks;
     int *count, *place;        /* scratch: of each process */
-    MPI_Request *requests;     /* 2 of each */
+    MPI_Request *requests;     /* 2 of each, */
+    int begun;                 /* and how many of them are of the exchange that has begun */
     MPI_Comm ends;             /* on which processes tell that they fail */
     double sent, waited, spun; /* bytes; seconds of sending and waiting, and of the processor in these */
     bool patient;              /* waiting processes sleep, else they spin */
@@ -96,8 +97,8 @@ static void gather(const struct ranks *ranks, void *items, size_t size, const in
     end_message(&message);
 }
 
-static void exchange(const struct ranks *ranks, size_t size, const void *send, const int64_t *send_first,
-                     void *receive, const int64_t *receive_first)
+static void begin(const struct ranks *ranks, size_t size, const void *send, const int64_t *send_first,
+                  void *receive, const int64_t *receive_first)
 {
     struct cost_of_message message = begin_message();
     MPI_Datatype type = type_of(size);
@@ -119,9 +120,24 @@ static void exchange(const struct ranks *ranks, size_t size, const void *send, c
             own.sent += (double)count * (double)size;
         }
     }
-    wait_for(requests, own.requests);
-    MPI_Type_free(&type);
+    own.begun = requests;
+    MPI_Type_free(&type); /* once these are done */
     end_message(&message);
+}
+
+static void finish(const struct ranks *ranks)
+{
+    struct cost_of_message message = begin_message();
+    (void)ranks;
+    wait_for(own.begun, own.requests);
+    end_message(&message);
+}
+
+static void exchange(const struct ranks *ranks, size_t size, const void *send, const int64_t *send_first,
+                     void *receive, const int64_t *receive_first)
+{
+    begin(ranks, size, send, send_first, receive, receive_first);
+    finish(ranks);
 }
 
 static void send_to(const struct ranks *ranks, int to, const double *x, int64_t count)
@@ -159,8 +175,13 @@ void process_begin(int *argc, char ***argv)
     static char name[] = "mtled"; /* what is computed, and what is said of it, is the same */
     int provided;
     struct ranks *ranks = &own.ranks;
-    *ranks = (struct ranks){
-        .gather = gather, .exchange = exchange, .send = send_to, .receive = receive_from, .most = most};
+    *ranks = (struct ranks){.gather = gather,
+                            .exchange = exchange,
+                            .begin = begin,
+                            .finish = finish,
+                            .send = send_to,
+                            .receive = receive_from,
+                            .most = most};
     const char *policy = getenv("OMP_WAIT_POLICY");
     own.patient = policy != NULL && strcasecmp(policy, "passive") == 0;
     MPI_Init_thread(argc, argv, MPI_THREAD_FUNNELED, &provided);
