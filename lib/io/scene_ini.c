@@ -85,9 +85,9 @@ static enum status add_section(struct reading *reading, const char *header, size
     struct ini_file *file = reading->file;
     RETURN_IF_ERROR(RESIZE_ARRAY(&file->sections, file->section_count + 1, reading->error));
     struct ini_section *section = &file->sections[file->section_count++];
-    *section = (struct ini_section){.kind = keep(reading, kind, kind_length),
-                                    .name = keep(reading, name, name_length),
-                                    .line = reading->line};
+    *section = (struct ini_section){.kind = keep(reading, kind, kind_length), .line = reading->line};
+    RETURN_IF_ERROR(reading->status);
+    section->name = keep(reading, name, name_length);
     RETURN_IF_ERROR(reading->status);
     for (const struct ini_section *other = file->sections; other < section; other++) {
         if (strcmp(other->kind, section->kind) == 0 && strcmp(other->name, section->name) == 0) {
