@@ -121,8 +121,8 @@ done:
     return status;
 }
 
-/* Mean spacing of the points around row `row`, in the table's unit: n of them within a radius r have pi r^2 / n
- * of the plane each, or 4/3 pi r^3 / n of space, if they lie throughout the body; on its boundary they are
+/* Mean spacing of the points around row `row`, in the table's unit: n of them within a radius r have pi r^2 /
+ * n of the plane each, or 4/3 pi r^3 / n of space, if they lie throughout the body; on its boundary they are
  * closer. */
 static enum status spacing_around(const struct scattered_fit *fit, int64_t row, double *spacing,
                                   struct error *error)

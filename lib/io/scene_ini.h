@@ -28,10 +28,11 @@ struct ini_file {
     int64_t section_count;
 };
 
-/* Read an INI file; `path` and `words`, which its words are added to, have to outlive it. Errors as `FILE:LINE: ...`: those of textfile_read, over-long
- * lines, headers that are not `[kind]` or `[kind NAME]`, keys without value or outside any section, repeated
- * sections and keys. To be freed also on failure. */
-MUST_CHECK enum status ini_read(const char *path, struct owned *words, struct ini_file *file, struct error *error);
+/* Read an INI file; `path` and `words`, which its words are added to, have to outlive it. Errors as
+ * `FILE:LINE: ...`: those of textfile_read, over-long lines, headers that are not `[kind]` or `[kind NAME]`,
+ * keys without value or outside any section, repeated sections and keys. To be freed also on failure. */
+MUST_CHECK enum status ini_read(const char *path, struct owned *words, struct ini_file *file,
+                                struct error *error);
 
 void ini_free(struct ini_file *file);
 
