@@ -2,7 +2,7 @@
 # body in parts; time of an evaluation on up to 1 024 processes, by a model
 #
 # Everything lies in build/out/scale: stages.tsv, parts.tsv, model.tsv. `make scale NODES=1000000` does something else: the whole pipe on a cube of
-# so many nodes, to the displacements, in build/out/scale/NODES/pipe.tsv, with all processors (OMP_NUM_THREADS). A million nodes take 25 GB of disk.
+# so many nodes, to the displacements, in build/out/scale/NODES/pipe.tsv, with all processors (OMP_NUM_THREADS). A million nodes take 12 GB of disk, 16 GB of memory.
 SCALE := $(OUT)/scale
 SCALE_SIZES ?= 22 47
 SCALE_PARTS ?= 2 4 8 16 32 64 128 256 512 1024

@@ -76,6 +76,23 @@ lid() {
     { block quasi-static && held_below && printf '[contact lid]\nfacets = ymax\nside = right\n' && printf '%s\n' "$@"; } > lid.scene
 }
 
+@test "a disc that sinks into a cup not much larger comes to rest, and weighs what it weighs" {
+    # Nodes lie in the creases of the wall's polygon.
+    for case in '51 7' '52 5' '52 4'; do
+        read -r cup size <<< "$case"
+        printf 'SetFactory("OpenCASCADE");Disk(1)={0,0,0,.05};Rectangle(4)={0,-1,0,1,2};\n' > disc.geo
+        printf 'BooleanIntersection(5)={Surface{1};Delete;}{Surface{4};Delete;};Physical Surface("body")={5};\n' >> disc.geo
+        gmsh -v 1 -2 -clmin "${size}e-3" -clmax "${size}e-3" disc.geo -o disc.msh
+        nodes -u m disc.msh 2> note | groups -f sx=plane:0,0,1,0 -f 'out=all without sx' | shapefn > disc.mts 2> note
+        awk -v R="$cup" 'BEGIN { for (i = 0; i < 400; i++) { t = -3.24159265358979 + 3.34159265358979 * i / 399; printf "%.12g %.12g\n", R * cos(t), R - 50 + R * sin(t) } }' > cup.tsv
+        { block quasi-static 'gravity = 0, -9.81'; printf '[displacement sx]\nfacets = sx\nnormal = 0\n'
+            printf '[contact cup]\nfacets = out\nrigid = cup.tsv\nunit = mm\nside = left\n[output]\nreactions = yes\n[solver]\nmax_steps = 1000\n'; } > cup.scene
+        mtled cup.scene disc.mts > u.dat
+        # A polygon is a little less than a disc.
+        rows reactions u.dat | awk 'NR == 2 { print $2; exit !($2 < 38.52 && $2 > 38.25) }'
+    done
+}
+
 @test "a rigid surface out of all reach is refused with its distance; one that is never touched is told" {
     lid 'rigid = plate.tsv' 'unit = m' 'translation = 0, -0.01' 'curve = linear'
     printf '%s\n' '-1000 100' '1000 100' > plate.tsv

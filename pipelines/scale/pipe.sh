@@ -12,8 +12,8 @@ mkdir -p "$folder"
 touch "$rows"
 
 free=$(df --output=avail -B 1000 "$folder" | tail -n 1)
-if ! [ -s "$folder/shapefn.mts" ] && [ "$free" -lt $((25 * nodes)) ]; then
-    echo "pipe.sh: $folder: $((free / 1000000)) GB are free: $nodes nodes need $((25 * nodes / 1000000 + 1)) GB: set OUT to a folder on another disk" >&2
+if ! [ -s "$folder/shapefn.mts" ] && [ "$free" -lt $((12 * nodes)) ]; then
+    echo "pipe.sh: $folder: $((free / 1000000)) GB are free: $nodes nodes need $((12 * nodes / 1000000 + 1)) GB: set OUT to a folder on another disk" >&2
     exit 3
 fi
 
