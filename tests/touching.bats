@@ -238,6 +238,29 @@ notch_scene() { # FACETS AGAINST [MORE OUTPUT]
     fi
 }
 
+@test "a soft block that bulges around the corner of a stiff one: the corner sinks into its chord, and that is no fold" {
+    gmsh_body 2 pair << 'END'
+Mesh.MeshSizeFactor = 0.5;
+Point(1) = {0, 0, 0, 20}; Point(2) = {100, 0, 0, 20}; Point(3) = {100, 50, 0, 20}; Point(4) = {0, 50, 0, 20};
+Point(5) = {0, 50, 0, 13}; Point(6) = {100, 50, 0, 13}; Point(7) = {100, 100, 0, 13}; Point(8) = {0, 100, 0, 13};
+Line(1) = {1, 2}; Line(2) = {2, 3}; Line(3) = {3, 4}; Line(4) = {4, 1};
+Line(5) = {5, 6}; Line(6) = {6, 7}; Line(7) = {7, 8}; Line(8) = {8, 5};
+Curve Loop(1) = {1:4}; Plane Surface(1) = {1}; Curve Loop(2) = {5:8}; Plane Surface(2) = {2};
+Physical Surface("body") = {1}; Physical Surface("stiff") = {2}; Physical Curve("bottom") = {1}; Physical Curve("low") = {3};
+Physical Curve("up") = {5}; Physical Curve("top") = {7}; Physical Curve("left") = {4, 8};
+END
+    { block quasi-static | sed 's/^nu = .*/nu = 0.49/'; printf '[material stiff]\nregion = stiff\nE = 6000\nnu = 0.2\n'
+        printf '[displacement bottom]\nfacets = bottom\nnormal = 0\n[displacement left]\nfacets = left\nnormal = 0\n'
+        printf '[contact pair]\nfacets = up\nagainst = low\n[pressure top]\nfacets = top\nvalue = 400\n[output]\nreactions = yes\n'; } > pair.scene
+    for load in 400 600; do
+        sed "s/^value = .*/value = $load/" pair.scene > press.scene
+        mtled press.scene pair.mts > u.dat
+        # What presses goes through: the load on the width that the top has by now.
+        rows reactions u.dat | awk -v p="$load" 'NR == 1 { down = $2 } NR == 3 { through = $2 }
+            { print } END { s = (through - down) / down; exit !(down > 0.1 * p && down < 0.103 * p && s * s < 1e-8) }'
+    done
+}
+
 @test "a body that rests on another one is held by it where that is held; two that hold only each other are not" {
     stack
     stack_scene | sed '/displacement top/,/normal/d; s/^analysis.*/&\ngravity = 0, -9.81/' > rest.scene
