@@ -34,6 +34,7 @@ bool run_again(struct run *run)
     memset(run->u, 0, (size_t)(system->node_count * system->dim) * sizeof *run->u);
     memset(run->model->row_force, 0, (size_t)system->rows.count * sizeof *run->model->row_force);
     run_drop_frames(run->stream);
+    stream_remove(run->stream, "energy");
     run_folds_forget(run);
     run_stability_free(run);
     run_stability_begin(run);

@@ -126,13 +126,13 @@ void run_dynamic(struct run *run)
     run_clear_progress(&run->display);
     free(velocity);
     tool_check(run->tool, status, &error);
+    if (output->energy) {
+        put_energy(run, &log);
+    }
     run->last_good = report.last_good;
     run->evaluations = report.force_evaluations;
     run_folds_look(run, run->u, report.time, true);
     judge(run, &report);
-    if (output->energy && !run->again) {
-        put_energy(run, &log);
-    }
     energy_log_free(&log);
     if (run->verbose && !run->again) {
         tell_report(run, &report);
