@@ -218,12 +218,13 @@ for ((round = 1; round <= rounds; round++)); do
     # Grading may move nodes about without many more of them: then ask for more.
     if holds "$nodes > 1.05 * ${before:-0}"; then
         stuck=0
-    elif [ -n "$least" ] || ((++stuck == 4)); then
+    elif ((++stuck == (${#least} > 0 ? 2 : 4))); then
         fail 1 "the sizes become no smaller${least:+ than $least (LEAST)}; kept: $kept"
     fi
     before=$nodes
-    # A round at a time: the errors tell little of sizes far from those they were found with.
-    share=$(awk -v s="$(calc "0.8 * $wanted / $estimate / 2 ^ $stuck")" 'BEGIN { print (s < 0.25 ? 0.25 : s) }')
+    # A round at a time: the errors tell little of sizes far from those they were found with; and estimates wander, so that
+    # asking for a little less again and again leads nowhere.
+    share=$(awk -v s="$(calc "0.8 * $wanted / $estimate / 2 ^ $stuck")" 'BEGIN { print (s < 0.25 ? 0.25 : s > 0.5 ? 0.5 : s) }')
     if [ "${GRADED-}" = no ]; then
         # Errors of an order of 1.5 or a little more; no more nodes than there may be.
         factor=$(awk -v f="$factor" -v s="$share" -v room="$(calc "$nodes / $budget")" -v dim="$dim" \
