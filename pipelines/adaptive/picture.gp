@@ -10,7 +10,7 @@ set grid
 set multiplot layout 1, words(cases)
 do for [body in cases] {
     set title body noenhanced
-    if (body eq word(cases, words(cases))) { set key left bottom Left reverse samplen 2 } else { unset key }
+    if (body eq word(cases, words(cases))) { set key right top Left reverse samplen 2 } else { unset key }
     plot for [kind in "even graded"] data \
             using (strcol(1) eq body && strcol(2) eq kind ? $3 : NaN):7 with linespoints pt 7 ps 0.9 lw 2 \
             lc rgb (kind eq "even" ? "#2874a6" : "#b5367a") title kind, \
