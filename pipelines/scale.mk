@@ -2,7 +2,8 @@
 # body in parts; time of an evaluation on up to 1 024 processes, by a model
 #
 # Everything lies in build/out/scale: stages.tsv, parts.tsv, model.tsv. `make scale NODES=1000000` does something else: the whole pipe on a cube of
-# so many nodes, to the displacements, in build/out/scale/NODES/pipe.tsv, with all processors (OMP_NUM_THREADS). A million nodes take 12 GB of disk, 16 GB of memory.
+# so many nodes, to the displacements, in build/out/scale/NODES/pipe.tsv, with all processors (OMP_NUM_THREADS); `make scale BRAIN=1000000` does so on
+# the whole brain with its skull, in build/out/scale/brain-NODES. A million nodes take 12 GB of disk, 16 GB of memory.
 SCALE := $(OUT)/scale
 SCALE_SIZES ?= 22 47
 SCALE_PARTS ?= 2 4 8 16 32 64 128 256 512 1024
@@ -12,7 +13,7 @@ SCALE_SCRIPTS := pipelines/scale
 SCALE_PROGRAMS := $(addprefix $(BUILD)/bin/,cloud ipoints support shapefn mtled part)
 
 .PHONY: scale
-scale: $(if $(NODES),$(SCALE)/$(NODES)/pipe.tsv,$(SCALE)/stages.tsv $(SCALE)/parts.tsv $(SCALE)/model.tsv)
+scale: $(if $(NODES)$(BRAIN),$(NODES:%=$(SCALE)/%/pipe.tsv) $(BRAIN:%=$(SCALE)/brain-%/pipe.tsv),$(SCALE)/stages.tsv $(SCALE)/parts.tsv $(SCALE)/model.tsv)
 	@for table in $^; do awk -F '\t' '{ for (i = 1; i <= NF; i++) printf "%-" (i == 1 ? 21 : 14) "s ", $$i; print "" }' \
 	    $$table; echo; done
 
@@ -22,9 +23,17 @@ $(SCALE_SIZES:%=$(SCALE)/%.rows): $(SCALE)/%.rows: $(SCALE_SCRIPTS)/stages.sh $(
 	@mkdir -p $(@D)
 	bash $< $* $(@D) > $@
 
+define SCALE_PIPE
+(printf 'stage\tnodes\tprocessor_s\twall_s\tus_per_node\tB_written\tB_peak\tB_not_mapped\tGB_peak\tsteps\n'; cat $(@D)/pipe.rows) > $@
+endef
+
 $(SCALE)/%/pipe.tsv: $(SCALE_SCRIPTS)/pipe.sh $(SCALE_SCRIPTS)/measured.py $(SCALE_PROGRAMS)
 	bash $< $* $(@D)
-	(printf 'stage\tnodes\tprocessor_s\twall_s\tus_per_node\tB_written\tB_peak\tB_not_mapped\tGB_peak\tsteps\n'; cat $(@D)/pipe.rows) > $@
+	$(SCALE_PIPE)
+
+$(SCALE)/brain-%/pipe.tsv: $(SCALE_SCRIPTS)/pipe.sh $(SCALE_SCRIPTS)/measured.py $(SCALE_PROGRAMS) $(BUILD)/bin/nodes
+	bash $< $* $(@D) examples/brain3d
+	$(SCALE_PIPE)
 
 # Wider supports are not asked for: the halo is that of an evaluation.
 $(SCALE)/cut.mts: $(BUILD)/bin/cloud

@@ -1,12 +1,15 @@
 #!/bin/bash
-# pipe.sh NODES FOLDER: the whole pipe on a cube of about so many nodes, compressed by 1 % between plates to a tolerance of 1e-4, one stage after
-# the other through files, each removed when the next stage has read it. A row of FOLDER/pipe.rows for each stage. Called again, it goes on behind
-# the last stage that is there. What the stages say is in FOLDER/*.log.
+# pipe.sh NODES FOLDER [BRAIN]: the whole pipe to a tolerance of 1e-4, one stage after the other through files, each removed when the next stage has
+# read it: on a cube of about so many nodes, compressed by 1 % between plates, or, with BRAIN, the folder of the whole brain's geometry and scene,
+# on that brain. A row of FOLDER/pipe.rows for each stage. Called again, it goes on behind the last stage that is there. What the stages say is in
+# FOLDER/*.log.
 set -eu -o pipefail
 folder=$2
+brain=${3-}
 here=$(dirname "$0")
 n=$(awk -v nodes="$1" 'BEGIN { printf "%.0f", nodes ^ (1 / 3) }')
 nodes=$((n * n * n))
+scene=$folder/cube.scene
 rows=$folder/pipe.rows
 mkdir -p "$folder"
 touch "$rows"
@@ -31,11 +34,26 @@ stage() {
     [ "$input" = - ] || rm "$input"
 }
 
-printf '%s\n' '[scene]' 'dim = 3' 'analysis = quasi-static' '[material body]' 'region = body' 'E = 3000' 'nu = 0.49' 'rho = 1000' \
-    '[displacement bottom]' 'facets = zmin' 'components = 0, 0, 0' '[displacement top]' 'facets = zmax' 'components = 0, 0, -0.001' \
-    '[solver]' 'tolerance = 1e-4' > "$folder/cube.scene"
-stage cloud - cloud -d 3 -k jittered --jitter 0.15 -n "$n" --box 0,0.1,0,0.1,0,0.1
-stage ipoints "$folder/cloud.mts" ipoints
+if [ -z "$brain" ]; then
+    printf '%s\n' '[scene]' 'dim = 3' 'analysis = quasi-static' '[material body]' 'region = body' 'E = 3000' 'nu = 0.49' 'rho = 1000' \
+        '[displacement bottom]' 'facets = zmin' 'components = 0, 0, 0' '[displacement top]' 'facets = zmax' 'components = 0, 0, -0.001' \
+        '[solver]' 'tolerance = 1e-4' > "$scene"
+    stage cloud - cloud -d 3 -k jittered --jitter 0.15 -n "$n" --box 0,0.1,0,0.1,0,0.1
+    cloud=$folder/cloud.mts
+else
+    scene=$brain/brain3d.scene
+    if [ ! -s "$folder/brain.msh" ]; then
+        cp "$brain/brain3d.geo" "$folder"
+        gzip -dc "$brain/brain3d_surfaces.msh.gz" > "$folder/brain3d_surfaces.msh"
+        # The size of the cells far inside: 139 mm over the cube root of the nodes, so that a million are asked for and come.
+        gmsh -3 -nt 1 -v 2 -bin "$folder/brain3d.geo" -setnumber lc "$(awk -v n="$n" 'BEGIN { print 139 / n }')" -o "$folder/new.msh" >&2
+        mv "$folder/new.msh" "$folder/brain.msh"
+    fi
+    nodes=$(nodes -v -u mm "$folder/brain.msh" 2>&1 > /dev/null | awk '$3 == "nodes," { print $2; exit }')
+    stage nodes - nodes -u mm "$folder/brain.msh"
+    cloud=$folder/nodes.mts
+fi
+stage ipoints "$cloud" ipoints
 stage support "$folder/ipoints.mts" support
 stage shapefn "$folder/support.mts" shapefn
-stage mtled "$folder/shapefn.mts" mtled -v -q "$folder/cube.scene"
+stage mtled "$folder/shapefn.mts" mtled -v -q "$scene"
