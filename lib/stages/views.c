@@ -242,8 +242,8 @@ enum status stream_neighbours(const struct stream *stream, const char *prefix, i
         lists->widen = widen->data;
     }
     if (ptr->rows != rows + 1 || lists->ptr[0] != 0 || lists->ptr[rows] != idx->rows) {
-        return fail(error, STATUS_INPUT, "%s.ptr: does not fit its points and %s.idx: run support again",
-                    prefix, prefix);
+        return fail(error, STATUS_INPUT, "%s.ptr: does not fit its lists and %s.idx: run %s again", prefix,
+                    prefix, strcmp(prefix, "sets") == 0 ? "nodes" : "support");
     }
     for (int64_t p = 0; p < rows; p++) {
         if (lists->ptr[p + 1] < lists->ptr[p]) {
