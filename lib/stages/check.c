@@ -39,7 +39,7 @@ static enum status check_shape(const struct stream *stream, const struct section
         return fail(error, STATUS_INPUT, "%s: %lld columns instead of 2 or 3", section->name,
                     (long long)section->cols);
     }
-    if (dim > 0 && section->cols != cols) {
+    if ((kind->cols > 0 || dim > 0) && section->cols != cols) {
         return fail(error, STATUS_INPUT, "%s: %lld columns instead of %lld", section->name,
                     (long long)section->cols, (long long)cols);
     }

@@ -1,5 +1,5 @@
 /* The sections of the whole from the rows that the parts own, by the table of sections (io/sections.h). */
-#include "rejoin_private.h"
+#include "rejoin.h"
 
 #include "approx/face_rows.h"
 #include "io/sections.h"
@@ -213,7 +213,7 @@ enum status rejoin_check_large(const struct rejoin *rejoin, struct error *error)
         const struct rejoin_part *part = &rejoin->part[k];
         const struct section *values = stream_find(&part->stream, "face.phi");
         if (stream_find(&part->stream, "face.ptr") == NULL || values == NULL) {
-            continue; /* all find out alike */
+            continue; /* every process finds that out for itself */
         }
         TRY(view_part(rejoin, k, &lists, error));
         if (!part->elsewhere && values->rows != lists.of[k].ptr[lists.of[k].count]) {

@@ -122,7 +122,7 @@ static void mark_stopped(const struct run *run, bool *stopped, bool *touched)
     }
 }
 
-/* Take what was found at a time into the spells. */
+/* Record what a search at `time` has found: a spell begins, lasts or ends. */
 static void note(struct run_folds *folds, int which, const struct fold *fold, double time, bool counts)
 {
     struct fold_spell *now = &folds->now[which], *past = &folds->past[which];
