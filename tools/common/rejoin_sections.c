@@ -56,14 +56,12 @@ static const struct section *section_of(const struct rejoin *rejoin, int64_t k, 
                                         const struct section *like)
 {
     const struct section *section = stream_find(&rejoin->part[k].stream, name);
-    if (section == NULL) {
+    bool same = section != NULL && section->type == like->type && section->cols == like->cols &&
+                strcmp(section->attributes, like->attributes) == 0;
+    if (!same) {
         tool_fail(rejoin->tool, STATUS_INPUT,
-                  "%s: no section %s, but in %s: run the same stages on all parts", rejoin->part[k].file,
-                  name, rejoin->part[0].file);
-    }
-    if (section->type != like->type || section->cols != like->cols ||
-        strcmp(section->attributes, like->attributes) != 0) {
-        tool_fail(rejoin->tool, STATUS_INPUT, "%s: %s: not made as in %s: run the same stages on all parts",
+                  section == NULL ? "%s: no section %s, but in %s: run the same stages on all parts"
+                                  : "%s: %s: not made as in %s: run the same stages on all parts",
                   rejoin->part[k].file, name, rejoin->part[0].file);
     }
     return section;
