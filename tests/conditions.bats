@@ -437,5 +437,5 @@ END
         /^# / { on = $2 == "facets" }
         on && NF == 2 && ++k == 7 { $1 = 100000000 }
         { print }' > bad.mts
-    refused 2 "facets: no node 100000000" mtled block.scene bad.mts
+    refused 2 "facets: row 6: no node 100000000" mtled block.scene bad.mts
 }

@@ -163,19 +163,20 @@ violates() {
     violates 'nodes.x: row 3: nan is not finite' nodes.x 's/^0 1$/nan 1/'
     violates 'cells: row 1: index 4 is not within the 4 of nodes.x' cells 's/^0 2 3/0 2 4/'
     violates 'cells: row 0: index -1' cells 's/^0 1 2/-1 1 2/'
-    violates 'cells: row 1: no positive volume' cells 's/^0 2 3/0 3 2/'
+    violates 'cells: row 1: inverted or of no volume (-0.5)' cells 's/^0 2 3/0 3 2/'
     violates 'cells: type i8 instead of i4' cells 's/ i4 / i8 /'
-    violates 'cells.region: row 1: index 1 is not within the 1 of names' cells.region 's/,white//'
-    violates 'cells.region: no attribute names=' cells.region 's/ names=.*//'
+    violates 'cells.region: row 1: no region 1 in names=' cells.region 's/,white//'
+    violates 'cells.region: row 0: no region 0 in names=' cells.region 's/ names=.*//'
     violates 'facets: row 0: index 9' facets 's/^0 1/0 9/'
-    violates 'sets.ptr: row 1: ends with 1, the list has 2' sets.ptr 's/^2$/1/'
-    violates 'sets.idx: list 0: 1 does not ascend to 1' sets.idx 's/^3$/1/'
+    violates 'sets.ptr: does not fit its lists and sets.idx' sets.ptr 's/^2$/1/'
+    violates 'sets.idx: row 1: 1 does not ascend to 1' sets.idx 's/^3$/1/'
     violates 'points.weight: row 1: 0 is not finite and positive' points.weight 's/^0.25/0/'
     violates 'points.cell: row 1: index -2' points.cell 's/^-1/-2/'
     violates 'support.radius: row 0: inf' support.radius '2s/.*/inf/;s/^2$/inf/'
-    violates 'nbr.ptr: row 2: falls from 2 to 1' nbr.ptr 's/^5/1/'
-    violates 'nbr.ptr: row 0: does not begin with 0' nbr.ptr 's/^0/1/'
-    violates 'nbr.idx: list 1: 2 does not ascend to 2' nbr.idx 's/^3/2/'
+    violates 'nbr.ptr: row 2: decreases' nbr.ptr 's/^2$/7/'
+    violates 'nbr.ptr: does not fit its lists and nbr.idx' nbr.ptr 's/^5/1/'
+    violates 'nbr.ptr: does not fit its lists and nbr.idx' nbr.ptr 's/^0/1/'
+    violates 'nbr.idx: row 4: 2 does not ascend to 2' nbr.idx 's/^3/2/'
     violates 'nbr.widen: row 0: 0.5 is not finite and at least 1' nbr.widen 's/^1$/0.5/'
     violates 'shape.phi: list 1: sums to 1 +1e-06' shape.phi 's/^1$/1.000001/'
     violates 'shape.dphi: row 2: nan' shape.dphi 's/^1 0/nan 0/'
@@ -185,7 +186,7 @@ violates() {
 @test "check compares the shapes of sections" {
     square | mts drop nbr.idx | mts binary > damaged
     run -1 mts check damaged
-    [ "$output" = "nbr.ptr: stands without nbr.idx" ]
+    [ "$output" = "no section nbr.idx: run support" ]
     square | sed '/^# u /,$d' > damaged
     printf '# u f8 3 2 enc=text\n0 0\n0 0\n0 0\n\n\n# end 17\n' >> damaged
     run -1 mts check damaged
@@ -194,39 +195,40 @@ violates() {
     printf '# points.weight f8 1 2\n0.5 0.25\n\n\n# end 17\n' >> damaged
     run -1 mts check damaged
     [ "$output" = "points.weight: 2 columns instead of 1" ]
-    violates 'nbr.ptr: 1 columns of i4 instead of 1 of i8' nbr.ptr 's/ i8 / i4 /'
+    violates 'nbr.ptr: type i4 instead of i8' nbr.ptr 's/ i8 / i4 /'
     square > whole
     shortened nbr.ptr whole > damaged
     run -1 mts check damaged
     [ "${lines[0]}" = "nbr.ptr: 2 rows, but points.x has 2: need one more" ]
     square | sed '/^# u /,$d' > damaged
-    printf '# faces.cell i4 2 2\n0 -1\n0 1\n\n\n# facepoints.x f8 3 2\n0 0\n0 0\n0 0\n\n\n# end 18\n' >> damaged
+    printf '# faces i4 2 2\n0 1\n0 2\n\n\n# faces.cell i4 2 2\n0 -1\n0 1\n\n\n' >> damaged
+    printf '# facepoints.x f8 3 2\n0 0\n0 0\n0 0\n\n\n# end 19\n' >> damaged
     run -1 mts check damaged
-    [[ $output == *"facepoints.x: 3 points on 2 faces"* ]]
-    sed 's/^0 -1$/0 1 /;/^0 1$/s/1/-1/' damaged > swapped
+    [[ $output == *"facepoints.x: 3 rows, but the faces ask for 4"* ]]
+    sed '/^# faces.cell/,/^$/ { s/^0 -1$/0 1 /; /^0 1$/ s/1/-1/; }' damaged > swapped
     run -1 mts check swapped
     [[ $output == *"faces.cell: row 1: on the boundary, after faces between cells"* ]]
     shapefn <(cloud -d 2 -k regular -n 3 --box 0,1,0,1) 2> note | mts text > whole
     mts check whole
     shortened boundary.ptr whole > damaged
     run -1 mts check damaged
-    [[ $output == *"boundary.ptr: 15 points on 8 faces of the boundary"* ]]
+    [[ $output == *"boundary.ptr: 16 rows, but the faces ask for 17"* ]]
     shortened face.ptr whole > damaged
     run -1 mts check damaged
-    [[ $output == *"face.ptr: 16 rows, but faces has 16: need one more"* ]]
+    [[ $output == *"face.ptr: 16 rows, but the faces ask for 17"* ]]
     cloud -d 3 -k regular -n 4 --box 0,1,0,1,0,1 | ipoints | mts text > box
     mts check box
     shapefn <(ipoints box) 2> note | mts text > whole
     mts check whole
     awk '$2 == "faces.row" { print; getline; print 0, 1, 0; next } { print }' whole > damaged
     run -1 mts check damaged
-    [[ $output == *"faces.row: row 0: 0 1 0: not numbered as they come"* ]]
+    [[ $output == *"faces.row: row 0: not rows of this face"* ]]
     shortened facepoints.x box > damaged
     run -1 mts check damaged
-    [[ $output == *"facepoints.x: "*" points, but faces.row asks for "* ]]
+    [[ $output == *"facepoints.x: "*" rows, but the faces ask for "* ]]
     shortened face.ptr whole > damaged
     run -1 mts check damaged
-    [[ $output == *"face.ptr: "*" rows, but faces.row has "*": need one more"* ]]
+    [[ $output == *"face.ptr: "*" rows, but the faces ask for "* ]]
     shortened faces.row whole > damaged
     run -1 mts check damaged
     [[ $output == *"faces.row: "*" rows, but faces has "* ]]
@@ -274,7 +276,7 @@ violates() {
 # end 2
 END
     run -1 mts check poor.mts
-    [[ "${lines[0]}" == "cells: row 3: no positive volume" ]]
+    [[ "${lines[0]}" == "cells: row 3: inverted or of no volume"* ]]
     [ ${#lines[@]} -eq 1 ]
     sed 's/^4 6 7$/5 7 6/; s/^5.0001 0.5/6 1/' poor.mts > good.mts
     run -0 mts check good.mts

@@ -170,13 +170,13 @@ cut_and_compute() {
     refuse "facets: row 0: no node 900" facets 900
     refuse "facets: row 0: no node -1" facets -1
     refuse "sets.idx: row 0: no node 900" sets.idx 900
-    refuse "sets.ptr: does not fit sets.idx" sets.ptr 1
-    refuse "sets.ptr: row 0: decreases, or is beyond" sets.ptr -1
+    refuse "sets.ptr: does not fit its lists and sets.idx" sets.ptr 1
+    refuse "sets.ptr: does not fit its lists and sets.idx" sets.ptr -1
     refuse "cells: row 0: " cells 900
     shortened facets.set square.dat > damaged.dat
     refused 2 "facets.set: does not fit facets" part -k 2 -v damaged.dat
     shortened cells.region square.dat > damaged.dat
-    refused 2 "cells.region: does not fit cells" part -k 2 -v damaged.dat
+    refused 2 "cells.region: has 41 rows, cells 42: does not fit" part -k 2 -v damaged.dat
     part -t -k 2 -o part.%d.dat square.dat
     for section in part.node part.owner part.cell part.facet facets sets.idx sets.ptr; do
         for value in -1 900 2000000000; do

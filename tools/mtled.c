@@ -121,6 +121,87 @@ static void check_scene(const struct tool *tool)
     }
 }
 
+/* Usage errors before any input is read; returns the seconds between checkpoints. */
+static double parse(struct tool *tool)
+{
+    const char *input = tool->operands[1];
+    tool_requires(tool, "every", "checkpoint");
+    tool_leave_out(tool, "checkpoint");
+    tool_leave_out(tool, "every");
+    check_checkpoint(tool);
+    check_scene(tool);
+    if (process_ranks() != NULL && (input == NULL || strcmp(input, "-") == 0)) {
+        tool_fail(tool, STATUS_INPUT,
+                  "several processes cannot share standard input: name the stream's file");
+    }
+    return tool_number(tool, "every", 0.0, 1e9, 60.0);
+}
+
+/* The stream, from one file or from those of all parts, without earlier results. */
+static void read_stream(const struct tool *tool, struct stream *stream, struct parts_input *parts)
+{
+    const char *input = tool->operands[1];
+    if (parts_are_named(input)) {
+        parts_read(tool, input, stream, parts);
+    } else {
+        tool_read(tool, input, stream);
+    }
+    drop_results(stream);
+    if (stream_find(stream, "part.node") != NULL) {
+        tool_fail(tool, STATUS_INPUT, "the input is one part of a body: name all, as part.%%d.mts");
+    }
+}
+
+/* The model, at rest or where a checkpoint left it. */
+static void prepare(struct run *run)
+{
+    struct model *model = run->model;
+    run_put_supports(run);
+    run_checkpoint_begin(run);
+    TOOL_TRY(run->tool, model_build(run->stream, run->parts->face_reader, run->scene, model, &error));
+    if (model->note.text[0] != '\0') {
+        tool_note(run->tool, "%s", model->note.text);
+    }
+    if (model->interfaces.text[0] != '\0') {
+        tool_note(run->tool, "%s", model->interfaces.text);
+    }
+    run->u = run_new_values(run, model->system.node_count * run->scene->dim);
+    run->prepare_seconds = clock_seconds() - run->display.started;
+    run_contacts_begin(run);
+    run_folds_begin(run);
+    run_stability_begin(run);
+    stream_give_back(run->stream);
+}
+
+static void compute(struct run *run)
+{
+    do {
+        if (run->scene->analysis == SCENE_DYNAMIC) {
+            run_dynamic(run);
+        } else {
+            run_quasi_static(run);
+        }
+    } while (run_again(run));
+    run_checkpoint_end(run);
+}
+
+/* The results; and with -v what they cost. */
+static void write_results(struct run *run)
+{
+    run_put_results(run);
+    run_drop_tables(run->stream);
+    double started = clock_seconds();
+    tool_write(run->tool, run->stream, run->text);
+    run->write_seconds = clock_seconds() - started;
+    run_checkpoint_remove(run);
+    if (run->verbose) {
+        run_report_cost(run);
+    }
+    if (tool_given(run->tool, "verbose")) {
+        process_report(run->evaluations);
+    }
+}
+
 int main(int argc, char *argv[])
 {
     struct tool tool;
@@ -130,30 +211,6 @@ int main(int argc, char *argv[])
     struct parts_input parts = {.given = false};
     process_begin(&argc, &argv);
     tool_begin(&tool, usage, 1, 2, argc, argv);
-    tool_requires(&tool, "every", "checkpoint");
-    tool_leave_out(&tool, "checkpoint");
-    tool_leave_out(&tool, "every");
-    check_checkpoint(&tool);
-    check_scene(&tool);
-    double every = tool_number(&tool, "every", 0.0, 1e9, 60.0); /* seconds between checkpoints */
-    double started = clock_seconds();
-    if (process_ranks() != NULL && (tool.operand_count < 2 || strcmp(tool.operands[1], "-") == 0)) {
-        tool_fail(&tool, STATUS_INPUT,
-                  "several processes cannot share standard input: name the stream's file");
-    }
-    TOOL_TRY(&tool, scene_read(tool.operands[0], &scene, &error));
-    if (parts_are_named(tool.operands[1])) {
-        parts_read(&tool, tool.operands[1], &stream, &parts);
-    } else {
-        tool_read(&tool, tool.operand_count > 1 ? tool.operands[1] : NULL, &stream);
-    }
-    drop_results(&stream);
-    if (stream_find(&stream, "part.node") != NULL) {
-        tool_fail(&tool, STATUS_INPUT, "the input is one part of a body: name all, as part.%%d.mts");
-    }
-    double read = clock_seconds() - started;
-    stage_fill(&tool, &stream, "shapefn");
-
     struct run run = {
         .tool = &tool,
         .scene = &scene,
@@ -162,45 +219,17 @@ int main(int argc, char *argv[])
         .parts = &parts,
         .verbose = tool_given(&tool, "verbose") && process_speaks(),
         .text = !tool_given(&tool, "binary"),
-        .checkpoint = {.file = tool_value(&tool, "checkpoint"), .interval = every},
-        .read_seconds = read,
-        .display = {.shown = !tool_given(&tool, "quiet") && process_speaks() && isatty(STDERR_FILENO),
-                    .started = clock_seconds()}};
-    run_put_supports(&run);
-    run_checkpoint_begin(&run);
-    TOOL_TRY(&tool, model_build(&stream, parts.face_reader, &scene, &model, &error));
-    if (model.note.text[0] != '\0') {
-        tool_note(&tool, "%s", model.note.text);
-    }
-    if (model.interfaces.text[0] != '\0') {
-        tool_note(&tool, "%s", model.interfaces.text);
-    }
-    TOOL_TRY(&tool, NEW_ARRAY(&run.u, model.system.node_count * scene.dim, &error));
-    run.prepare_seconds = clock_seconds() - run.display.started;
-    run_contacts_begin(&run);
-    run_folds_begin(&run);
-    run_stability_begin(&run);
-    stream_give_back(&stream);
-    do {
-        if (scene.analysis == SCENE_DYNAMIC) {
-            run_dynamic(&run);
-        } else {
-            run_quasi_static(&run);
-        }
-    } while (run_again(&run));
-    run_checkpoint_end(&run);
-    run_put_results(&run);
-    run_drop_tables(&stream);
-    started = clock_seconds();
-    tool_write(&tool, &stream, run.text);
-    run.write_seconds = clock_seconds() - started;
-    run_checkpoint_remove(&run);
-    if (run.verbose) {
-        run_report_cost(&run);
-    }
-    if (tool_given(&tool, "verbose")) {
-        process_report(run.evaluations);
-    }
+        .checkpoint = {.file = tool_value(&tool, "checkpoint"), .interval = parse(&tool)},
+        .display = {.shown = !tool_given(&tool, "quiet") && process_speaks() && isatty(STDERR_FILENO)}};
+    double started = clock_seconds();
+    TOOL_TRY(&tool, scene_read(tool.operands[0], &scene, &error));
+    read_stream(&tool, &stream, &parts);
+    run.read_seconds = clock_seconds() - started;
+    stage_fill(&tool, &stream, "shapefn");
+    run.display.started = clock_seconds();
+    prepare(&run);
+    compute(&run);
+    write_results(&run);
     run_folds_free(&run);
     run_stability_free(&run);
     model_free(&model);

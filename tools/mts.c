@@ -40,7 +40,7 @@ static const char usage[] =
 #include "tool.h"
 
 #include "cell_report.h"
-#include "io/invariants.h"
+#include "stages/check.h"
 #include "stages/views.h"
 
 #include <fnmatch.h>
@@ -146,7 +146,8 @@ static int check(struct tool *tool)
 {
     struct stream stream;
     tool_read(tool, tool->operands[1], &stream);
-    int64_t count = stream_check(&stream, print_violation, NULL);
+    int64_t count;
+    TOOL_TRY(tool, stream_check(&stream, print_violation, NULL, &count, &error));
     count += tell_cells(tool, &stream);
     stream_free(&stream);
     int status = tool_end(tool);

@@ -94,7 +94,6 @@ static const double *find_field(const struct tool *tool, const struct stream *st
 {
     const struct section *u;
     TOOL_TRY(tool, stream_cells(stream, true, cells, &error));
-    TOOL_TRY(tool, cells_check(cells, &error));
     TOOL_TRY(tool, stream_need(stream, name, TYPE_F8, cells->dim, "mtled", &u, &error));
     if (u->rows != cells->node_count) {
         tool_fail(tool, STATUS_INPUT, "%s: %lld rows for %lld nodes", name, (long long)u->rows,
@@ -217,6 +216,34 @@ static void build_motion(const struct tool *tool, const struct stream *stream, c
     tool_check(tool, status, &error);
 }
 
+/* The axes of the image, and of the grid that is written on, in the order of the body's. */
+static void turn_images(const struct tool *tool, int dim, struct image *image, struct image *like,
+                        struct image_axes *axes)
+{
+    image_to_body(tool, image, dim, axes);
+    int across = axes->world[2];
+    if (tool_given(tool, "like")) {
+        image_to_body(tool, like, dim, axes);
+    }
+    if (across != axes->world[2]) {
+        tool_fail(tool, STATUS_INPUT, "--like %s: lies in another plane than %s", tool_value(tool, "like"),
+                  tool->operands[0]);
+    }
+}
+
+/* For each voxel of the grid the cell that it lies in where the result shows the body. */
+static int32_t *find_seen(const struct tool *tool, const struct image *grid, const struct cells *cells,
+                          const double *seen, int64_t *doubly)
+{
+    int64_t inside = 0;
+    int32_t *owner = find_owners(tool, grid, cells, seen, doubly);
+    for (size_t v = 0; v < image_voxels(grid); v++) {
+        inside += owner[v] >= 0;
+    }
+    check_image_overlap(tool, grid, cells, seen, inside);
+    return owner;
+}
+
 int main(int argc, char *argv[])
 {
     struct tool tool;
@@ -237,28 +264,15 @@ int main(int argc, char *argv[])
     }
     tool_read(&tool, tool.operands[1], &stream);
     const double *u = find_field(&tool, &stream, request.section, &cells);
-    const struct image *grid = tool_given(&tool, "like") ? &like : &image;
-    image_to_body(&tool, &image, cells.dim, &axes);
-    if (tool_given(&tool, "like")) {
-        int across = axes.world[2];
-        image_to_body(&tool, &like, cells.dim, &axes);
-        if (across != axes.world[2]) {
-            tool_fail(&tool, STATUS_INPUT, "--like %s: lies in another plane than %s",
-                      tool_value(&tool, "like"), tool.operands[0]);
-        }
-    }
+    turn_images(&tool, cells.dim, &image, &like, &axes);
     build_motion(&tool, &stream, request.section, &cells, u, &motion);
+    const struct image *grid = tool_given(&tool, "like") ? &like : &image;
     const double *seen = request.inverse ? cells.x : motion.moved;
-    int32_t *owner = find_owners(&tool, grid, &cells, seen, &report.doubly), *other = NULL;
-    int64_t inside = 0, ignored;
-    for (size_t v = 0; v < image_voxels(grid); v++) {
-        inside += owner[v] >= 0;
-    }
-    check_image_overlap(&tool, grid, &cells, seen, inside);
+    const double *unseen = request.inverse ? motion.moved : cells.x;
+    int64_t ignored;
+    int32_t *owner = find_seen(&tool, grid, &cells, seen, &report.doubly), *other = NULL;
     if (!request.field) {
-        other = find_owners(&tool, grid, &cells, request.inverse ? motion.moved : cells.x, &ignored);
-    }
-    if (!request.field) {
+        other = find_owners(&tool, grid, &cells, unseen, &ignored);
         tell_not_finite(&tool, &image, tool.operands[0]);
     }
     new_result(&tool, request.field ? NULL : &image, grid, &result);

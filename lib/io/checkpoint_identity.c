@@ -12,15 +12,12 @@
 
 enum { BLOCK = 1 << 16 };
 
-/* Go on with the bytes of a file; nothing for NULL. */
+/* Go on with the bytes of a file. */
 static enum status add_file(const char *file, uLong *crc, struct error *error)
 {
     enum status status = STATUS_OK;
     unsigned char *block = NULL;
     ssize_t count = 0;
-    if (file == NULL) {
-        return STATUS_OK;
-    }
     int descriptor = open(file, O_RDONLY | O_CLOEXEC);
     TRY(NEW_ARRAY(&block, BLOCK, error));
     while (descriptor >= 0 && (count = read(descriptor, block, BLOCK)) > 0) {
@@ -35,34 +32,6 @@ done:
     }
     free(block);
     return status;
-}
-
-static enum status add_loads(const struct scene_load *loads, int64_t count, uLong *crc, struct error *error)
-{
-    for (int64_t i = 0; i < count; i++) {
-        RETURN_IF_ERROR(add_file(loads[i].curve.file, crc, error));
-    }
-    return STATUS_OK;
-}
-
-static enum status add_scene(const struct scene *scene, uLong *crc, struct error *error)
-{
-    for (int64_t i = 0; i < scene->material_count; i++) {
-        RETURN_IF_ERROR(add_file(scene->materials[i].table, crc, error));
-    }
-    for (int64_t i = 0; i < scene->displacement_count; i++) {
-        RETURN_IF_ERROR(add_file(scene->displacements[i].table, crc, error));
-        RETURN_IF_ERROR(add_file(scene->displacements[i].curve.file, crc, error));
-    }
-    for (int64_t i = 0; i < scene->contact_count; i++) {
-        RETURN_IF_ERROR(add_file(scene->contacts[i].rigid, crc, error));
-        RETURN_IF_ERROR(add_file(scene->contacts[i].curve.file, crc, error));
-        RETURN_IF_ERROR(add_file(scene->contacts[i].angle_curve.file, crc, error));
-    }
-    RETURN_IF_ERROR(add_file(scene->initial.table, crc, error));
-    RETURN_IF_ERROR(add_loads(scene->pressures, scene->pressure_count, crc, error));
-    RETURN_IF_ERROR(add_loads(scene->tractions, scene->traction_count, crc, error));
-    return add_loads(scene->forces, scene->force_count, crc, error);
 }
 
 static uLong add_section(uLong crc, const struct section *section)
@@ -88,8 +57,10 @@ enum status checkpoint_identify(const struct scene *scene, const struct stream *
                                 struct checkpoint_identity *identity, struct error *error)
 {
     uLong crc = scene->checksum;
-    enum status status = add_scene(scene, &crc, error);
+    for (int64_t i = 0; i < scene->files.count; i++) {
+        RETURN_IF_ERROR(add_file(scene->files.names[i], &crc, error));
+    }
     identity->scene = (uint32_t)crc;
     identity->input = checkpoint_identify_input(input);
-    return status;
+    return STATUS_OK;
 }

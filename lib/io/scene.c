@@ -8,8 +8,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Append a zeroed item with its label. */
-static enum status add_item(const struct place *place, const struct scene_kind *kind, struct scene *scene)
+/* Append *added, zeroed but for its label. */
+static enum status add_item(const struct place *place, const struct scene_kind *kind, struct scene *scene,
+                            void **added)
 {
     /* The arrays differ in type: their pointers and the items are copied as bytes. */
     int64_t *count = (int64_t *)(void *)((char *)scene + kind->count);
@@ -25,10 +26,12 @@ static enum status add_item(const struct place *place, const struct scene_kind *
     memset(item, 0, kind->item_size);
     ++*count;
     const struct ini_section *section = place->section;
-    struct scene_label label = {.name = section->name};
-    RETURN_IF_ERROR(place_print(place, &label.where, "%s:%lld: [%s %s]", scene->path,
-                                (long long)section->line, section->kind, section->name));
+    char *where;
+    RETURN_IF_ERROR(place_print(place, &where, "%s:%lld: [%s %s]", scene->path, (long long)section->line,
+                                section->kind, section->name));
+    const struct scene_label label = {.name = section->name, .where = where};
     memcpy(item, &label, sizeof label);
+    *added = item;
     return STATUS_OK;
 }
 
@@ -43,10 +46,14 @@ static enum status read_section(const struct place *place, struct scene *scene)
     if (!kind->has_items && section->name[0] != '\0') {
         return place_fail(place, NULL, "takes no name: write [%s]", section->kind);
     }
+    void *values = scene; /* that the keys fill */
     if (kind->has_items) {
-        RETURN_IF_ERROR(add_item(place, kind, scene));
+        RETURN_IF_ERROR(add_item(place, kind, scene, &values));
     }
-    return kind->read(place, scene);
+    for (const struct scene_key *key = kind->keys; key->name != NULL; key++) {
+        RETURN_IF_ERROR(place_read(place, key, scene->dim, values));
+    }
+    return kind->check != NULL ? kind->check(place, scene) : STATUS_OK;
 }
 
 /* [scene] first: the others depend on its dimension and analysis. */
@@ -55,7 +62,7 @@ static enum status read_sections(const struct ini_file *file, struct scene *scen
     for (int round = 0; round < 2; round++) {
         for (int64_t s = 0; s < file->section_count; s++) {
             struct place place = {
-                .file = file, .section = &file->sections[s], .owned = &scene->owned, .error = error};
+                .file = file, .section = &file->sections[s], .scene = scene, .error = error};
             if ((strcmp(place.section->kind, "scene") == 0) == (round == 0)) {
                 RETURN_IF_ERROR(read_section(&place, scene));
             }
@@ -128,6 +135,7 @@ done:
 void scene_free(struct scene *scene)
 {
     owned_free(&scene->owned);
+    free(scene->files.names);
     free(scene->materials);
     free(scene->displacements);
     free(scene->contacts);

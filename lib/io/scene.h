@@ -188,7 +188,8 @@ struct scene {
     struct scene_initial initial;
     struct scene_output output;
     struct scene_solver solver;
-    struct owned owned; /* the texts and lists of names above */
+    struct name_list files; /* all that it names: tables, surfaces, curves */
+    struct owned owned;     /* the texts and lists of names above */
 };
 
 /* Read a scene file. It reads no other file: the tables are named by path, for the caller to read. Errors, as

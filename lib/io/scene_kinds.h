@@ -6,11 +6,12 @@
 #include "io/scene.h"
 #include "io/scene_value.h"
 
-/* How the sections of a kind are read, and the array of the scene that they extend, if any. */
+/* A kind of section, and the array of the scene that its sections extend, if any. */
 struct scene_kind {
     const char *name;
-    const char *const *keys; /* all that it may have; NULL-terminated */
-    enum status (*read)(const struct place *place, struct scene *scene);
+    const struct scene_key *keys; /* all that it may have; the last one has no name */
+    /* What the keys have to be together, when all have been read; NULL: nothing. */
+    enum status (*check)(const struct place *place, struct scene *scene);
     bool has_items;
     size_t items, count; /* offsets in struct scene of the array and its count */
     size_t item_size;    /* items begin with a struct scene_label */

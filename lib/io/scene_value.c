@@ -9,11 +9,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-const struct range range_any = {-DBL_MAX, DBL_MAX, false, false};
-const struct range range_positive = {0, DBL_MAX, true, false};
-const struct range range_not_negative = {0, DBL_MAX, false, false};
-const struct range range_open_share = {0, 1, true, true};
-
 enum status place_fail(const struct place *place, const char *key, const char *format, ...)
 {
     char message[sizeof place->error->text];
@@ -117,18 +112,24 @@ static enum status number(const struct place *place, const char *key, const char
                                                   : "");
 }
 
-enum status place_number(const struct place *place, const char *key, struct range range, double *value)
+/* Bounds of a number; an open bound is excluded. */
+struct range {
+    double least, most;
+    bool open_least, open_most;
+};
+
+static enum status read_number(const struct place *place, const char *key, const char *text,
+                               enum value_type type, double *value)
 {
-    const char *text = text_of(place, key);
-    double given;
-    if (text == NULL) {
-        return STATUS_OK;
-    }
-    RETURN_IF_ERROR(number(place, key, text, &given));
-    bool above = range.open_least ? given > range.least : given >= range.least;
-    bool below = range.open_most ? given < range.most : given <= range.most;
+    static const struct range ranges[] = {[VALUE_NUMBER] = {-DBL_MAX, DBL_MAX, false, false},
+                                          [VALUE_POSITIVE] = {0, DBL_MAX, true, false},
+                                          [VALUE_NOT_NEGATIVE] = {0, DBL_MAX, false, false},
+                                          [VALUE_SHARE] = {0, 1, true, true}};
+    struct range range = ranges[type];
+    RETURN_IF_ERROR(number(place, key, text, value));
+    bool above = range.open_least ? *value > range.least : *value >= range.least;
+    bool below = range.open_most ? *value < range.most : *value <= range.most;
     if (above && below) {
-        *value = given;
         return STATUS_OK;
     }
     if (range.most < DBL_MAX) {
@@ -139,42 +140,47 @@ enum status place_number(const struct place *place, const char *key, struct rang
                       range.least);
 }
 
-enum status place_count(const struct place *place, const char *key, int64_t most, int64_t *value)
+static enum status read_dim(const struct place *place, const char *key, const char *text, int *dim)
 {
-    const char *text = text_of(place, key);
-    if (text == NULL) {
-        return STATUS_OK;
+    double value;
+    RETURN_IF_ERROR(number(place, key, text, &value));
+    if (value != 2 && value != 3) {
+        return place_fail(place, key, "%g is neither 2 nor 3", value);
     }
+    *dim = (int)value;
+    return STATUS_OK;
+}
+
+static enum status read_count(const struct place *place, const char *key, const char *text, int64_t most,
+                              int64_t *value)
+{
     struct error why;
     return parse_integer(text, key, 1, most, value, &why) == STATUS_OK
                ? STATUS_OK
                : place_fail(place, key, "'%s' is not a whole number within [1, %lld]", text, (long long)most);
 }
 
-enum status place_choice(const struct place *place, const char *key, const char *const words[], int *index)
+static enum status read_choice(const struct place *place, const char *key, const char *text,
+                               const char *const words[], int *index)
 {
-    const char *text = text_of(place, key);
-    if (text == NULL) {
-        return STATUS_OK;
-    }
-    for (int i = 0; words[i] != NULL; i++) {
-        if (strcmp(text, words[i]) == 0) {
-            *index = i;
+    char list[256];
+    for (*index = 0; words[*index] != NULL; ++*index) {
+        if (strcmp(text, words[*index]) == 0) {
             return STATUS_OK;
         }
     }
-    char list[256];
     join(words, list, sizeof list);
     return place_fail(place, key, "'%s' is none of %s", text, list);
 }
 
-enum status place_yes(const struct place *place, const char *key, bool *value)
+static enum status read_yes(const struct place *place, const char *key, const char *text,
+                            const char *const words[], bool *value)
 {
-    static const char *const words[] = {"no", "yes", NULL};
-    int index = *value;
-    enum status status = place_choice(place, key, words, &index);
+    static const char *const no_yes[] = {"no", "yes", NULL};
+    int index;
+    RETURN_IF_ERROR(read_choice(place, key, text, words != NULL ? words : no_yes, &index));
     *value = index == 1;
-    return status;
+    return STATUS_OK;
 }
 
 /* The next item of a comma list, without blanks at its ends, cut off; NULL behind the last. */
@@ -188,14 +194,12 @@ static char *next_item(char **list)
     return item;
 }
 
-enum status place_vector(const struct place *place, const char *key, int dim, double values[3],
-                         bool is_free[3])
+/* dim numbers; where is_free is not NULL, `free` stands for an absent component. */
+static enum status read_vector(const struct place *place, const char *key, char *list, int dim,
+                               double values[3], bool is_free[3])
 {
-    char *list = text_of(place, key), *item;
+    char *item;
     int count = 0;
-    if (list == NULL) {
-        return STATUS_OK;
-    }
     for (; (item = next_item(&list)) != NULL; count++) {
         if (count < dim && is_free != NULL && strcmp(item, "free") == 0) {
             is_free[count] = true;
@@ -207,14 +211,11 @@ enum status place_vector(const struct place *place, const char *key, int dim, do
                         : place_fail(place, key, "has %d components: dim = %d needs %d", count, dim, dim);
 }
 
-enum status place_names(const struct place *place, const char *key, struct name_list *list)
+static enum status read_names(const struct place *place, const char *key, char *rest, struct name_list *list)
 {
-    char *rest = text_of(place, key), *item;
-    if (rest == NULL) {
-        return STATUS_OK;
-    }
+    char *item;
     list->names = array_new((int64_t)strlen(rest) + 1, sizeof *list->names); /* more than enough */
-    RETURN_IF_ERROR(owned_add(place->owned, list->names, place->file->path, place->error));
+    RETURN_IF_ERROR(owned_add(&place->scene->owned, list->names, place->file->path, place->error));
     while ((item = next_item(&rest)) != NULL) {
         if (item[0] == '\0') {
             return place_fail(place, key, "has an empty name: write names with single commas between");
@@ -229,58 +230,95 @@ enum status place_names(const struct place *place, const char *key, struct name_
     return STATUS_OK;
 }
 
-enum status place_print(const struct place *place, const char **text, const char *format, ...)
+enum status place_print(const struct place *place, char **text, const char *format, ...)
 {
-    char *printed;
     va_list arguments;
     va_start(arguments, format);
-    *text = printed = vasprintf(&printed, format, arguments) < 0 ? NULL : printed;
+    *text = vasprintf(text, format, arguments) < 0 ? NULL : *text;
     va_end(arguments);
-    return owned_add(place->owned, printed, place->file->path, place->error);
+    return owned_add(&place->scene->owned, *text, place->file->path, place->error);
 }
 
-enum status place_file(const struct place *place, const char *key, const char **path)
+/* A file that the scene names. */
+static enum status read_file(const struct place *place, const char *text, const char **path)
 {
-    const char *text = text_of(place, key), *scene = place->file->path, *slash = strrchr(scene, '/');
-    if (text == NULL) {
-        return STATUS_OK;
-    }
+    struct name_list *files = &place->scene->files;
+    const char *scene = place->file->path, *slash = strrchr(scene, '/');
     int folder = text[0] != '/' && slash != NULL ? (int)(slash - scene) + 1 : 0;
-    return place_print(place, path, "%.*s%s", folder, scene, text);
+    RETURN_IF_ERROR(RESIZE_ARRAY(&files->names, files->count + 1, place->error));
+    char **name = &files->names[files->count];
+    RETURN_IF_ERROR(place_print(place, name, "%.*s%s", folder, scene, text));
+    files->count++;
+    *path = *name;
+    return STATUS_OK;
 }
 
-enum status place_table(const struct place *place, const char *key, const char **path, double *metres)
+static enum status read_table(const struct place *place, const char *key, const char *text, const char **path)
 {
-    const char *unit = text_of(place, "unit");
+    return place_has(place, "unit") ? read_file(place, text, path)
+                                    : place_fail(place, key, "needs unit = m, cm, mm or um of its lengths");
+}
+
+/* The unit of a file, which the section has to name by one of these keys. */
+static enum status read_unit(const struct place *place, const char *key, const char *text, double *metres)
+{
     struct error why;
-    if (!place_has(place, key)) {
-        return place_forbid(place, "unit", "it is the unit of a file, and none is named");
+    if (!place_has(place, "table") && !place_has(place, "points") && !place_has(place, "rigid")) {
+        return place_forbid(place, key, "it is the unit of a file, and none is named");
     }
-    if (unit == NULL) {
-        return place_fail(place, key, "needs unit = m, cm, mm or um of its lengths");
-    }
-    if (parse_length_unit(unit, "unit", metres, &why) != STATUS_OK) {
-        return place_fail(place, "unit", "'%s' is none of m, cm, mm, um", unit);
-    }
-    return place_file(place, key, path);
+    return parse_length_unit(text, key, metres, &why) == STATUS_OK
+               ? STATUS_OK
+               : place_fail(place, key, "'%s' is none of m, cm, mm, um", text);
 }
 
-void place_text(const struct place *place, const char *key, const char **value)
-{
-    const char *text = text_of(place, key);
-    *value = text != NULL ? text : *value;
-}
-
-enum status place_curve(const struct place *place, const char *key, struct scene_curve *curve)
+static enum status read_curve(const struct place *place, const char *text, struct scene_curve *curve)
 {
     static const char *const words[] = {"smooth", "linear", "step"};
-    const char *text = text_of(place, key);
-    for (int i = 0; text != NULL && i < 3; i++) {
+    for (int i = 0; i < 3; i++) {
         if (strcmp(text, words[i]) == 0) {
             curve->kind = (enum scene_curve_kind)i;
             return STATUS_OK;
         }
     }
-    curve->kind = text != NULL ? SCENE_CURVE_FILE : SCENE_CURVE_SMOOTH;
-    return place_file(place, key, &curve->file);
+    curve->kind = SCENE_CURVE_FILE;
+    return read_file(place, text, &curve->file);
+}
+
+enum status place_read(const struct place *place, const struct scene_key *key, int dim, void *item)
+{
+    char *text = text_of(place, key->name);
+    void *value = (char *)item + key->at;
+    bool *is_free = key->free > 0 ? (void *)((char *)item + key->free) : NULL;
+    if (text == NULL) {
+        return key->missing != NULL ? place_require(place, key->name, key->missing) : STATUS_OK;
+    }
+    switch (key->type) {
+    case VALUE_NUMBER:
+    case VALUE_POSITIVE:
+    case VALUE_NOT_NEGATIVE:
+    case VALUE_SHARE:
+        return read_number(place, key->name, text, key->type, value);
+    case VALUE_DIM:
+        return read_dim(place, key->name, text, value);
+    case VALUE_COUNT:
+        return read_count(place, key->name, text, key->most, value);
+    case VALUE_CHOICE:
+        return read_choice(place, key->name, text, key->words, value);
+    case VALUE_YES:
+        return read_yes(place, key->name, text, key->words, value);
+    case VALUE_VECTOR:
+        return read_vector(place, key->name, text, dim, value, is_free);
+    case VALUE_NAMES:
+        return read_names(place, key->name, text, value);
+    case VALUE_TABLE:
+        return read_table(place, key->name, text, value);
+    case VALUE_UNIT:
+        return read_unit(place, key->name, text, value);
+    case VALUE_CURVE:
+        return read_curve(place, text, value);
+    case VALUE_TEXT:
+    default:
+        *(const char **)value = text;
+        return STATUS_OK;
+    }
 }

@@ -1,7 +1,5 @@
-/* Typed values of one section of a scene. Inside of lib/io only.
- *
- * Every function looks up `key`, leaves *value alone when the key is absent, and reports a bad value as
- * `FILE:LINE: [kind NAME]: key: what: remedy`. */
+/* One section of a scene: its values, read as its keys are declared, and what has to be said of them. Inside
+ * of lib/io only. Errors are `FILE:LINE: [kind NAME]: key: what: remedy`. */
 #ifndef IO_SCENE_VALUE_H
 #define IO_SCENE_VALUE_H
 
@@ -15,17 +13,41 @@
 struct place {
     const struct ini_file *file;
     const struct ini_section *section;
-    struct owned *owned; /* of the scene */
+    struct scene *scene; /* owns texts and lists */
     struct error *error;
 };
 
-/* Bounds of a number; an open bound is excluded. */
-struct range {
-    double least, most;
-    bool open_least, open_most;
+/* What a key's value is, and what it is stored as. */
+enum value_type {
+    VALUE_NUMBER, /* double; those that follow are bounded: */
+    VALUE_POSITIVE,
+    VALUE_NOT_NEGATIVE,
+    VALUE_SHARE,  /* within (0, 1) */
+    VALUE_DIM,    /* int: 2 or 3 */
+    VALUE_COUNT,  /* int64_t: within [1, most] */
+    VALUE_CHOICE, /* an enum: the index of one of the words */
+    VALUE_YES,    /* bool: no or yes, or the two words */
+    VALUE_VECTOR, /* double[3], of which dim are given */
+    VALUE_NAMES,  /* struct name_list: a comma list of different names */
+    VALUE_TABLE,  /* const char *: a file of lengths, relative to the scene's folder unless absolute */
+    VALUE_UNIT,   /* double: the unit of such a file in m; one is an error without the other */
+    VALUE_CURVE,  /* struct scene_curve */
+    VALUE_TEXT    /* const char * */
 };
 
-extern const struct range range_any, range_positive, range_not_negative, range_open_share;
+struct scene_key {
+    const char *name;
+    enum value_type type;
+    size_t at;           /* offset of the value in the item or, of a section without items, in the scene */
+    const char *missing; /* the remedy where it is missing; NULL: it need not be there */
+    const char *const *words; /* NULL-terminated */
+    int64_t most;
+    size_t free; /* VALUE_VECTOR: offset of bool[3], set where a component is `free`; 0: none may be */
+};
+
+/* Read the value of a key into *item, which stays as it is where the key is absent. */
+MUST_CHECK enum status place_read(const struct place *place, const struct scene_key *key, int dim,
+                                  void *item);
 
 /* fail() with STATUS_INPUT at a key's line, or with key NULL at the section's. */
 enum status place_fail(const struct place *place, const char *key, const char *format, ...)
@@ -53,39 +75,8 @@ enum status place_unknown(const struct place *place, const char *key, const char
 /* An error unless all keys of the section are among `keys` (a NULL-terminated list). */
 MUST_CHECK enum status place_only_keys(const struct place *place, const char *const keys[]);
 
-MUST_CHECK enum status place_number(const struct place *place, const char *key, struct range range,
-                                    double *value);
-
-MUST_CHECK enum status place_count(const struct place *place, const char *key, int64_t most, int64_t *value);
-
-/* One of a NULL-terminated list of words: its index. */
-MUST_CHECK enum status place_choice(const struct place *place, const char *key, const char *const words[],
-                                    int *index);
-
-MUST_CHECK enum status place_yes(const struct place *place, const char *key, bool *value);
-
-/* A vector of `dim` numbers; where is_free is not NULL, `free` stands for an absent component. */
-MUST_CHECK enum status place_vector(const struct place *place, const char *key, int dim, double values[3],
-                                    bool is_free[3]);
-
-/* A comma list of different names. */
-MUST_CHECK enum status place_names(const struct place *place, const char *key, struct name_list *list);
-
-/* A file, relative to the scene's folder unless absolute. */
-MUST_CHECK enum status place_file(const struct place *place, const char *key, const char **path);
-
-/* A file of lengths: the key and `unit`, whose size in metres is stored; one is an error without the other.
- */
-MUST_CHECK enum status place_table(const struct place *place, const char *key, const char **path,
-                                   double *metres);
-
-/* The whole text. */
-void place_text(const struct place *place, const char *key, const char **value);
-
 /* A text as of printf, which the scene owns. */
-MUST_CHECK enum status place_print(const struct place *place, const char **text, const char *format, ...)
+MUST_CHECK enum status place_print(const struct place *place, char **text, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
-
-MUST_CHECK enum status place_curve(const struct place *place, const char *key, struct scene_curve *curve);
 
 #endif

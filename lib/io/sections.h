@@ -1,12 +1,22 @@
-/* The sections that the programs know: the one table from which come what `mts check` expects of each, and
- * which sections are void when an earlier stage is run again. */
+/* The sections that the programs know: the one table from which come what `mts check` expects of each, which
+ * sections are void when an earlier stage is run again, and how a body is cut into parts and put together. */
 #ifndef IO_SECTIONS_H
 #define IO_SECTIONS_H
 
 #include "io/stream.h"
 
-/* What the values of a section must be; ANY: lists and results, which are checked otherwise or not at all. */
-enum content { ANY, FINITE, POSITIVE, AT_LEAST_ONE, INDEX, INDEX_OR_NONE };
+/* What the values of a section must be. */
+enum content {
+    ANY, /* what the views check (stages/views.h), and results */
+    FINITE,
+    POSITIVE,
+    AT_LEAST_ONE,
+    UNITY,         /* finite; sums to 1 over each list of the pairs */
+    INDEX,         /* of a row of section index_of */
+    INDEX_OR_NONE, /* the same, or -1 */
+    BELOW,         /* no index, but a number from 0 that is less than the rows of index_of */
+    LIST           /* where each list begins in the .idx of the same name, and the last one ends */
+};
 
 /* The columns of a section: a number, or one of these. */
 enum { COLS_DIM = -1, COLS_DIM_PLUS_1 = -2, COLS_ANY = -3 };
@@ -25,14 +35,18 @@ struct section_kind {
     const char *name;
     enum element_type type;
     int cols;
-    const char *rows_of; /* a section with equally many rows, or NULL */
+    const char *rows_of; /* the section for each of whose rows it has one (LIST: and one more), or what the
+                            faces ask for; NULL: it has rows of its own */
     enum content content;
-    const char *index_of; /* the section whose rows the indices count; "names": the list in the attributes */
+    const char *index_of; /* the section whose rows its numbers count, or NULL */
     enum section_stage stage;
 };
 
 enum { SECTION_KINDS = 58 };
 extern const struct section_kind section_kinds[SECTION_KINDS];
+
+/* What is known of a section; of a frame, X.frame.K, what is of X. NULL: nothing. */
+const struct section_kind *section_kind_of(const char *name);
 
 /* The stage of a section; one before the results also of a section that the table lacks, by the part of its
  * name before the first dot (nbr.more: MADE_WITH_SUPPORT). */

@@ -55,6 +55,20 @@ enum status stream_field(const struct stream *stream, const char *name, int64_t 
     return STATUS_OK;
 }
 
+/* Numbers of `what`, found `where`, each within [0, bound). */
+static enum status check_numbers(const struct section *section, const char *what, const char *where,
+                                 int64_t bound, struct error *error)
+{
+    const int32_t *number = section->data;
+    for (int64_t i = 0; i < section->rows * section->cols; i++) {
+        if (number[i] < 0 || number[i] >= bound) {
+            return fail(error, STATUS_INPUT, "%s: row %lld: no %s %d%s", section->name,
+                        (long long)(i / section->cols), what, number[i], where);
+        }
+    }
+    return STATUS_OK;
+}
+
 enum status stream_regions(const struct stream *stream, const struct cells *cells,
                            struct cell_regions *regions, struct error *error)
 {
@@ -67,30 +81,42 @@ enum status stream_regions(const struct stream *stream, const struct cells *cell
     }
     RETURN_IF_ERROR(names_read(section, &regions->names, error));
     regions->of_cell = section->data;
-    for (int64_t c = 0; c < cells->count; c++) {
-        if (regions->of_cell[c] < 0 || regions->of_cell[c] >= regions->names.count) {
-            return fail(error, STATUS_INPUT, "cells.region: row %lld: no region %d in names=", (long long)c,
-                        regions->of_cell[c]);
-        }
-    }
-    return STATUS_OK;
+    return check_numbers(section, "region", " in names=", regions->names.count, error);
 }
 
-enum status stream_facets(const struct stream *stream, bool needed, int dim, struct named_facets *facets,
-                          struct error *error)
+enum status stream_facets(const struct stream *stream, bool needed, const struct cells *cells,
+                          struct named_facets *facets, struct error *error)
 {
-    const struct section *facet, *set;
+    const struct section *facet, *group;
     *facets = (struct named_facets){0};
     if (!needed && stream_find(stream, "facets") == NULL) {
         return STATUS_OK;
     }
-    RETURN_IF_ERROR(stream_need(stream, "facets", TYPE_I4, dim, "nodes", &facet, error));
-    RETURN_IF_ERROR(stream_need(stream, "facets.set", TYPE_I4, 1, "nodes", &set, error));
-    if (set->rows != facet->rows) {
+    RETURN_IF_ERROR(stream_need(stream, "facets", TYPE_I4, cells->dim, "nodes", &facet, error));
+    RETURN_IF_ERROR(stream_need(stream, "facets.set", TYPE_I4, 1, "nodes", &group, error));
+    if (group->rows != facet->rows) {
         return fail(error, STATUS_INPUT, "facets.set: does not fit facets");
     }
-    *facets = (struct named_facets){.count = facet->rows, .facet = facet->data, .set = set->data};
+    RETURN_IF_ERROR(check_numbers(facet, "node", "", cells->node_count, error));
+    RETURN_IF_ERROR(names_read(group, &facets->names, error));
+    RETURN_IF_ERROR(check_numbers(group, "group", " in names=", facets->names.count, error));
+    facets->count = facet->rows;
+    facets->facet = facet->data;
+    facets->group = group->data;
     return STATUS_OK;
+}
+
+enum status stream_sets(const struct stream *stream, bool needed, int64_t node_count, struct named_sets *sets,
+                        struct error *error)
+{
+    const struct section *ptr;
+    *sets = (struct named_sets){0};
+    if (!needed && stream_find(stream, "sets.ptr") == NULL) {
+        return STATUS_OK;
+    }
+    RETURN_IF_ERROR(stream_need(stream, "sets.ptr", TYPE_I8, 1, "nodes", &ptr, error));
+    RETURN_IF_ERROR(names_read(ptr, &sets->names, error));
+    return stream_neighbours(stream, "sets", sets->names.count, node_count, &sets->lists, error);
 }
 
 /* Own rows of faces stand first, which those on the boundary have; then those of edges, as they come. */
@@ -141,12 +167,7 @@ enum status stream_faces(const struct stream *stream, const struct cells *cells,
     if (cell->rows != faces->count) {
         return fail(error, STATUS_INPUT, "faces.cell: does not fit faces: run ipoints again");
     }
-    for (int64_t i = 0; i < faces->count * faces->dim; i++) {
-        if (faces->node[i] < 0 || faces->node[i] >= cells->node_count) {
-            return fail(error, STATUS_INPUT, "faces: row %lld: no node %d", (long long)(i / faces->dim),
-                        faces->node[i]);
-        }
-    }
+    RETURN_IF_ERROR(check_numbers(node, "node", "", cells->node_count, error));
     for (int64_t f = 0; f < faces->count; f++) {
         for (int k = 0; k < 2; k++) {
             int32_t at = faces->cell[2 * f + k];
@@ -221,20 +242,15 @@ enum status stream_neighbours(const struct stream *stream, const char *prefix, i
         lists->widen = widen->data;
     }
     if (ptr->rows != rows + 1 || lists->ptr[0] != 0 || lists->ptr[rows] != idx->rows) {
-        return fail(error, STATUS_INPUT, "%s.ptr: does not fit its points and %s.idx: run support again",
-                    prefix, prefix);
+        return fail(error, STATUS_INPUT, "%s.ptr: does not fit its lists and %s.idx: run %s again", prefix,
+                    prefix, strcmp(prefix, "sets") == 0 ? "nodes" : "support");
     }
     for (int64_t p = 0; p < rows; p++) {
         if (lists->ptr[p + 1] < lists->ptr[p]) {
             return fail(error, STATUS_INPUT, "%s.ptr: row %lld: decreases", prefix, (long long)p + 1);
         }
     }
-    for (int64_t i = 0; i < idx->rows; i++) {
-        if (lists->idx[i] < 0 || lists->idx[i] >= columns) {
-            return fail(error, STATUS_INPUT, "%s.idx: row %lld: no node %d", prefix, (long long)i,
-                        lists->idx[i]);
-        }
-    }
+    RETURN_IF_ERROR(check_numbers(idx, "node", "", columns, error));
     for (int64_t p = 0; p < rows; p++) {
         for (int64_t i = lists->ptr[p] + 1; i < lists->ptr[p + 1]; i++) {
             if (lists->idx[i] <= lists->idx[i - 1]) {

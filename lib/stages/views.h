@@ -28,16 +28,24 @@ struct cell_regions {
 MUST_CHECK enum status stream_regions(const struct stream *stream, const struct cells *cells,
                                       struct cell_regions *regions, struct error *error);
 
-/* Named facets of the boundary: facet[count * dim] node indices, set[count] the group of each. */
+/* Named facets of the boundary, checked: facet[count * dim] nodes of the cells, group[count] a name for each.
+ * count is 0 when there are none, an error if they are needed; names are to be freed, also on failure. */
 struct named_facets {
     int64_t count;
-    const int32_t *facet, *set;
+    const int32_t *facet, *group;
+    struct names names;
 };
-
-/* Named facets of the boundary, their nodes unchecked. facets->count is 0 when there are none, an error if
- * they are needed. */
-MUST_CHECK enum status stream_facets(const struct stream *stream, bool needed, int dim,
+MUST_CHECK enum status stream_facets(const struct stream *stream, bool needed, const struct cells *cells,
                                      struct named_facets *facets, struct error *error);
+
+/* Named sets of nodes, checked: a list, ascending, for each name. No names when there are none, an error if
+ * they are needed; names are to be freed, also on failure. */
+struct named_sets {
+    struct neighbours lists;
+    struct names names;
+};
+MUST_CHECK enum status stream_sets(const struct stream *stream, bool needed, int64_t node_count,
+                                   struct named_sets *sets, struct error *error);
 
 /* Faces of the cells, checked; those on the boundary come first. The view is not to be freed. */
 MUST_CHECK enum status stream_faces(const struct stream *stream, const struct cells *cells,

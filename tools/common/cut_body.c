@@ -1,92 +1,66 @@
 #include "cut_body.h"
 
+#include "io/sections.h"
+
 #include <stdlib.h>
 #include <string.h>
 
-/* Is this a field at the nodes? */
-static bool is_nodal(const struct cut_body *whole, const struct section *section)
+/* What is cut of a section: its rows by "nodes.x" or "cells", or, by what they name, those of "facets" or
+ * "sets.idx"; NULL: it is left out. */
+static const char *rows_of(const struct cut_body *whole, const struct section *section)
 {
-    static const char *const fields[] = {"u", "parameters", "u.frame.", "parameters.frame."};
-    for (int i = 0; i < 4; i++) {
-        if (i < 2 ? strcmp(section->name, fields[i]) == 0
-                  : strncmp(section->name, fields[i], strlen(fields[i])) == 0) {
-            return section->rows == whole->cells.node_count;
+    static const char *const cut[] = {"nodes.x", "cells", "facets", "sets.idx"};
+    const struct section_kind *kind = section_kind_of(section->name);
+    if (kind == NULL || (kind->stage != MADE_WITH_CLOUD && kind->stage != MADE_WITH_RESULTS)) {
+        return NULL;
+    }
+    const char *rows = kind->content == LIST   ? "sets.idx"
+                       : kind->rows_of != NULL ? kind->rows_of
+                                               : kind->name;
+    bool fits = strcmp(rows, "nodes.x") != 0 || section->rows == whole->cells.node_count;
+    for (size_t i = 0; i < sizeof cut / sizeof *cut && fits; i++) {
+        if (strcmp(rows, cut[i]) == 0) {
+            return cut[i];
         }
     }
-    return strcmp(section->name, "nodes.x") == 0 ||
-           (strcmp(section->name, "parameters.radius") == 0 && section->rows == whole->cells.node_count);
+    return NULL;
 }
 
-/* Numbers of nodes. */
-static void check_nodes(const struct cut_body *whole, const char *name, int64_t cols)
+static bool has(const struct cut_body *whole, const char *name, const char *other)
 {
-    const struct section *section;
-    TOOL_TRY(whole->tool, stream_need(whole->stream, name, TYPE_I4, cols, "nodes", &section, &error));
-    const int32_t *node = section->data;
-    for (int64_t i = 0; i < section->rows * cols; i++) {
-        if (node[i] < 0 || node[i] >= whole->cells.node_count) {
-            tool_fail(whole->tool, STATUS_INPUT, "%s: row %lld: no node %d", name, (long long)(i / cols),
-                      node[i]);
-        }
-    }
+    return stream_find(whole->stream, name) != NULL || stream_find(whole->stream, other) != NULL;
 }
 
-static void check_rows(const struct cut_body *whole, const char *name, const char *like)
-{
-    const struct section *section = stream_find(whole->stream, name),
-                         *other = stream_find(whole->stream, like);
-    if ((section != NULL) != (other != NULL) || (section != NULL && section->rows != other->rows)) {
-        tool_fail(whole->tool, STATUS_INPUT, "%s: does not fit %s: run nodes again", name, like);
-    }
-}
-
-/* Check the groups of a body that is cut here and has not been checked before. */
+/* Check what goes with the cells of a body: the others of its sections are cut as they are. */
 static void check_groups(const struct cut_body *whole)
 {
-    const struct section *ptr, *idx;
+    const struct tool *tool = whole->tool;
+    const struct cells *cells = &whole->cells;
+    struct cell_regions regions = {0};
+    struct named_facets facets;
+    struct named_sets sets;
+    const int32_t *side;
     if (stream_find(whole->stream, "cells.region") != NULL) {
-        check_rows(whole, "cells.region", "cells");
+        TOOL_TRY(tool, stream_regions(whole->stream, cells, &regions, &error));
     }
-    if (stream_find(whole->stream, "parameters.side") != NULL) {
-        check_rows(whole, "parameters.side", "cells");
-    }
-    check_rows(whole, "facets.set", "facets");
-    if (stream_find(whole->stream, "facets") != NULL) {
-        check_nodes(whole, "facets", whole->cells.dim);
-    }
-    if (stream_find(whole->stream, "sets.ptr") == NULL && stream_find(whole->stream, "sets.idx") == NULL) {
-        return;
-    }
-    TOOL_TRY(whole->tool, stream_need(whole->stream, "sets.ptr", TYPE_I8, 1, "nodes", &ptr, &error));
-    check_nodes(whole, "sets.idx", 1);
-    idx = stream_find(whole->stream, "sets.idx");
-    const int64_t *begin = ptr->data;
-    for (int64_t s = 0; s < ptr->rows; s++) {
-        if (begin[s] < (s > 0 ? begin[s - 1] : 0) || begin[s] > idx->rows) {
-            tool_fail(whole->tool, STATUS_INPUT, "sets.ptr: row %lld: decreases, or is beyond sets.idx",
-                      (long long)s);
-        }
-    }
-    if (ptr->rows < 1 || begin[0] != 0 || begin[ptr->rows - 1] != idx->rows) {
-        tool_fail(whole->tool, STATUS_INPUT, "sets.ptr: does not fit sets.idx: run nodes again");
-    }
+    TOOL_TRY(tool, stage_sides(whole->stream, "parameters", &side, &error));
+    TOOL_TRY(tool, stream_facets(whole->stream, has(whole, "facets", "facets.set"), cells, &facets, &error));
+    TOOL_TRY(tool, stream_sets(whole->stream, has(whole, "sets.ptr", "sets.idx"), cells->node_count, &sets,
+                               &error));
+    names_free(&regions.names);
+    names_free(&facets.names);
+    names_free(&sets.names);
 }
 
 /* Take out what cannot be cut, and keep what the rest was. */
 void cut_body_keep_sections(struct cut_body *whole)
 {
-    static const char *const known[] = {"cells",    "cells.region", "facets",         "facets.set",
-                                        "sets.ptr", "sets.idx",     "parameters.side"};
     struct stream *stream = whole->stream;
     char dropped[256] = "";
     check_groups(whole);
     for (int64_t i = stream->section_count - 1; i >= 0; i--) {
         const struct section *section = &stream->sections[i];
-        bool kept = is_nodal(whole, section);
-        for (size_t k = 0; k < sizeof known / sizeof *known; k++) {
-            kept = kept || strcmp(section->name, known[k]) == 0;
-        }
-        if (!kept) {
+        if (rows_of(whole, section) == NULL) {
             text_append(dropped, sizeof dropped, " %s", section->name);
             stream_remove(stream, section->name);
         }
@@ -231,10 +205,12 @@ void cut_body_make_part(const struct cut_body *whole, int32_t number, const stru
     }
     for (int64_t i = 0; i < whole->section_count; i++) {
         const struct section *section = &whole->sections[i];
-        if (is_nodal(whole, section)) {
+        const char *rows = rows_of(whole, section);
+        if (strcmp(rows, "nodes.x") == 0) {
             put_rows(whole, section, body->node, body->node_count, NULL);
-        } else if (strncmp(section->name, "cells", 5) == 0 || strcmp(section->name, "parameters.side") == 0) {
-            put_rows(whole, section, body->cell, body->cell_count, section->cols > 1 ? place : NULL);
+        } else if (strcmp(rows, "cells") == 0) {
+            put_rows(whole, section, body->cell, body->cell_count,
+                     strcmp(section->name, "cells") == 0 ? place : NULL);
         }
     }
     snprintf(attributes, sizeof attributes, "part=%d parts=%d cut=%08x nodes=%lld cells=%lld widen=%.17g",

@@ -158,82 +158,58 @@ enum status derived_add_invariants(const struct stream *stream, struct derived *
     return STATUS_OK;
 }
 
-/* One section of ones and zeros for each name; *first receives the index of the first, *count how many. */
-static enum status append_groups(const struct section *named, const char *kind, int64_t node_count,
-                                 struct derived *derived, int64_t *first, int64_t *count, struct error *error)
+/* Append a section of zeros for each name: KIND.NAME. */
+static enum status append_groups(const struct names *names, const char *kind, int64_t node_count,
+                                 struct derived *derived, struct error *error)
+{
+    for (int64_t i = 0; i < names->count; i++) {
+        RETURN_IF_ERROR(append(derived, kind, names->name[i], "", TYPE_I4, node_count, 1, "", error));
+    }
+    return STATUS_OK;
+}
+
+static void mark(const struct derived *derived, int64_t item, int32_t node)
+{
+    ((int32_t *)derived->items[item].data)[node] = 1;
+}
+
+static enum status add_facet_groups(const struct stream *stream, const struct cells *cells,
+                                    struct derived *derived, struct error *error)
 {
     enum status status;
-    struct names names = {0};
-    *first = derived->count;
-    TRY(names_read(named, &names, error));
-    for (int64_t i = 0; i < names.count; i++) {
-        if (names.name[i][0] != '\0') {
-            TRY(append(derived, kind, names.name[i], "", TYPE_I4, node_count, 1, "", error));
-        }
+    struct named_facets facets;
+    int64_t first = derived->count;
+    TRY(stream_facets(stream, false, cells, &facets, error));
+    TRY(append_groups(&facets.names, "facets", cells->node_count, derived, error));
+    for (int64_t i = 0; i < facets.count * cells->dim; i++) {
+        mark(derived, first + facets.group[i / cells->dim], facets.facet[i]);
     }
-    *count = derived->count - *first;
 done:
-    names_free(&names);
+    names_free(&facets.names);
     return status;
 }
 
-static enum status mark(struct derived *derived, int64_t item, const char *section, int64_t row, int32_t node,
-                        struct error *error)
+static enum status add_node_sets(const struct stream *stream, const struct cells *cells,
+                                 struct derived *derived, struct error *error)
 {
-    struct section *group = &derived->items[item];
-    if (node < 0 || node >= group->rows) {
-        return fail(error, STATUS_INPUT, "%s: row %lld: no node %d", section, (long long)row, node);
-    }
-    ((int32_t *)group->data)[node] = 1;
-    return STATUS_OK;
-}
-
-static enum status add_facet_groups(const struct stream *stream, int dim, int64_t node_count,
-                                    struct derived *derived, struct error *error)
-{
-    struct named_facets facets;
-    int64_t first, count;
-    RETURN_IF_ERROR(stream_facets(stream, false, dim, &facets, error));
-    if (facets.count == 0) {
-        return STATUS_OK;
-    }
-    RETURN_IF_ERROR(append_groups(stream_find(stream, "facets.set"), "facets", node_count, derived, &first,
-                                  &count, error));
-    for (int64_t f = 0; f < facets.count; f++) {
-        if (facets.set[f] < 0 || facets.set[f] >= count) {
-            return fail(error, STATUS_INPUT, "facets.set: row %lld: index %d is not within its %lld names",
-                        (long long)f, facets.set[f], (long long)count);
-        }
-        for (int k = 0; k < dim; k++) {
-            RETURN_IF_ERROR(
-                mark(derived, first + facets.set[f], "facets", f, facets.facet[f * dim + k], error));
+    enum status status;
+    struct named_sets sets;
+    int64_t first = derived->count;
+    TRY(stream_sets(stream, false, cells->node_count, &sets, error));
+    TRY(append_groups(&sets.names, "set", cells->node_count, derived, error));
+    for (int64_t s = 0; s < sets.lists.count; s++) {
+        for (int64_t i = sets.lists.ptr[s]; i < sets.lists.ptr[s + 1]; i++) {
+            mark(derived, first + s, sets.lists.idx[i]);
         }
     }
-    return STATUS_OK;
+done:
+    names_free(&sets.names);
+    return status;
 }
 
-static enum status add_node_sets(const struct stream *stream, int64_t node_count, struct derived *derived,
-                                 struct error *error)
-{
-    struct neighbours sets;
-    const struct section *ptr = stream_find(stream, "sets.ptr");
-    int64_t first, count;
-    if (ptr == NULL) {
-        return STATUS_OK;
-    }
-    RETURN_IF_ERROR(append_groups(ptr, "set", node_count, derived, &first, &count, error));
-    RETURN_IF_ERROR(stream_neighbours(stream, "sets", count, node_count, &sets, error));
-    for (int64_t s = 0; s < count; s++) {
-        for (int64_t i = sets.ptr[s]; i < sets.ptr[s + 1]; i++) {
-            RETURN_IF_ERROR(mark(derived, first + s, "sets.idx", i, sets.idx[i], error));
-        }
-    }
-    return STATUS_OK;
-}
-
-enum status derived_add_groups(const struct stream *stream, int dim, int64_t node_count,
+enum status derived_add_groups(const struct stream *stream, const struct cells *cells,
                                struct derived *derived, struct error *error)
 {
-    RETURN_IF_ERROR(add_facet_groups(stream, dim, node_count, derived, error));
-    return add_node_sets(stream, node_count, derived, error);
+    RETURN_IF_ERROR(add_facet_groups(stream, cells, derived, error));
+    return add_node_sets(stream, cells, derived, error);
 }

@@ -23,7 +23,7 @@ MUST_CHECK enum status derived_add_invariants(const struct stream *stream, struc
 
 /* Append the groups of facets and the node sets: sections facets.NAME and set.NAME, 1 at the nodes of the
  * group and 0 elsewhere. STATUS_INPUT for groups that do not fit the nodes. */
-MUST_CHECK enum status derived_add_groups(const struct stream *stream, int dim, int64_t node_count,
+MUST_CHECK enum status derived_add_groups(const struct stream *stream, const struct cells *cells,
                                           struct derived *derived, struct error *error);
 
 void derived_free(struct derived *derived);

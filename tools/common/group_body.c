@@ -50,35 +50,27 @@ static enum status add_group(struct group_list *list, const char *name, struct e
     return STATUS_OK;
 }
 
-/* The groups that a section names, all empty. */
-static enum status add_named(struct group_list *list, const struct section *section, struct error *error)
+/* Empty groups of these names. */
+static enum status add_named(struct group_list *list, const struct names *names, struct error *error)
 {
-    struct names names;
-    enum status status = names_read(section, &names, error);
-    for (int64_t i = 0; i < names.count && status == STATUS_OK; i++) {
-        status = add_group(list, names.name[i], error);
+    for (int64_t i = 0; i < names->count; i++) {
+        RETURN_IF_ERROR(add_group(list, names->name[i], error));
     }
-    names_free(&names);
-    return status;
+    return STATUS_OK;
 }
 
-/* Sort items by the group that of_group[] names: those of group g in the order of the section. */
-static enum status sort_items(struct group_list *list, const struct section *section, const int32_t *item,
-                              struct error *error)
+/* Sort items by the group that of_group[count] says: those of a group keep their order. */
+static enum status sort_items(struct group_list *list, int64_t count, const int32_t *of_group,
+                              const int32_t *item, struct error *error)
 {
-    const int32_t *of_group = section->data;
-    for (int64_t i = 0; i < section->rows; i++) {
-        if (of_group[i] < 0 || of_group[i] >= list->count) {
-            return fail(error, STATUS_INPUT, "%s: row %lld: no name %d in names=", section->name,
-                        (long long)i, of_group[i]);
-        }
+    for (int64_t i = 0; i < count; i++) {
         list->group[of_group[i]].count++;
     }
     for (int64_t g = 0; g < list->count; g++) {
         RETURN_IF_ERROR(NEW_ARRAY(&list->group[g].item, list->group[g].count, error));
         list->group[g].count = 0;
     }
-    for (int64_t i = 0; i < section->rows; i++) {
+    for (int64_t i = 0; i < count; i++) {
         struct group *group = &list->group[of_group[i]];
         group->item[group->count++] = item != NULL ? item[i] : (int32_t)i;
     }
@@ -134,51 +126,49 @@ static enum status read_facets(const struct stream *stream, struct group_body *b
 {
     enum status status;
     struct named_facets named;
+    struct group_list *list = &body->groups[GROUP_FACETS];
     int32_t *facet = NULL;
-    TRY(stream_facets(stream, false, body->cells.dim, &named, error));
-    if (named.count == 0) {
-        return STATUS_OK;
-    }
+    TRY(stream_facets(stream, false, &body->cells, &named, error));
     TRY(NEW_ARRAY(&facet, named.count, error));
     TRY(find_facets(body, &named, facet, error));
-    TRY(add_named(&body->groups[GROUP_FACETS], stream_find(stream, "facets.set"), error));
-    TRY(sort_items(&body->groups[GROUP_FACETS], stream_find(stream, "facets.set"), facet, error));
+    TRY(add_named(list, &named.names, error));
+    TRY(sort_items(list, named.count, named.group, facet, error));
 done:
     free(facet);
+    names_free(&named.names);
     return status;
 }
 
 static enum status read_sets(const struct stream *stream, struct group_body *body, struct error *error)
 {
+    enum status status;
     struct group_list *list = &body->groups[GROUP_NODES];
-    struct neighbours sets;
-    const struct section *ptr = stream_find(stream, "sets.ptr");
-    if (ptr == NULL) {
-        return STATUS_OK;
-    }
-    RETURN_IF_ERROR(add_named(list, ptr, error));
-    RETURN_IF_ERROR(stream_neighbours(stream, "sets", list->count, body->cells.node_count, &sets, error));
+    struct named_sets sets;
+    TRY(stream_sets(stream, false, body->cells.node_count, &sets, error));
+    TRY(add_named(list, &sets.names, error));
     for (int64_t g = 0; g < list->count; g++) {
         struct group *group = &list->group[g];
-        RETURN_IF_ERROR(NEW_ARRAY(&group->item, sets.ptr[g + 1] - sets.ptr[g], error));
-        for (int64_t i = sets.ptr[g]; i < sets.ptr[g + 1]; i++) {
-            group->item[group->count++] = sets.idx[i];
+        TRY(NEW_ARRAY(&group->item, sets.lists.ptr[g + 1] - sets.lists.ptr[g], error));
+        for (int64_t i = sets.lists.ptr[g]; i < sets.lists.ptr[g + 1]; i++) {
+            group->item[group->count++] = sets.lists.idx[i];
         }
     }
-    return STATUS_OK;
+done:
+    names_free(&sets.names);
+    return status;
 }
 
 static enum status read_regions(const struct stream *stream, struct group_body *body, struct error *error)
 {
-    enum status status = STATUS_OK;
-    struct cell_regions regions = {0};
-    const struct section *section = stream_find(stream, "cells.region");
-    if (section == NULL || body->cells.count == 0) {
+    enum status status;
+    struct cell_regions regions;
+    struct group_list *list = &body->groups[GROUP_REGION];
+    if (stream_find(stream, "cells.region") == NULL) {
         return STATUS_OK;
     }
     TRY(stream_regions(stream, &body->cells, &regions, error));
-    TRY(add_named(&body->groups[GROUP_REGION], section, error));
-    TRY(sort_items(&body->groups[GROUP_REGION], section, NULL, error));
+    TRY(add_named(list, &regions.names, error));
+    TRY(sort_items(list, body->cells.count, regions.of_cell, NULL, error));
 done:
     names_free(&regions.names);
     return status;

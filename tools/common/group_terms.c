@@ -10,42 +10,29 @@
 
 /* ---- items of one kind by those of another ---- */
 
-/* Terms of the boundary go with facets, and with nodes: those of such facets. */
-static enum status choose_by_facets(const struct term *term, const bool *facets)
-{
-    const struct faces *boundary = &term->body->boundary;
-    if (term->kind == GROUP_REGION) {
-        return fail(term->error, STATUS_INPUT, "%.100s: chooses facets: not for regions", term->text);
-    }
-    memset(term->chosen, 0, (size_t)term->body->items[term->kind].count * sizeof *term->chosen);
-    for (int64_t f = 0; f < boundary->count; f++) {
-        if (term->kind == GROUP_FACETS) {
-            term->chosen[f] = facets[f];
-        }
-        for (int k = 0; k < boundary->dim && facets[f] && term->kind == GROUP_NODES; k++) {
-            term->chosen[boundary->node[f * boundary->dim + k]] = true;
-        }
-    }
-    return STATUS_OK;
-}
-
-/* Terms of cells go with all kinds: facets and nodes of such cells. */
-static void choose_by_cells(const struct term *term, const bool *cells)
+/* Choose by items of some kind: these, or the nodes of such facets or cells, the facets of such cells, the
+ * facets or cells all of whose nodes are such. Facets choose no cells. */
+static enum status choose_by(const struct term *term, enum group_kind from, const bool *in)
 {
     const struct group_body *body = term->body;
-    int corners = body->cells.dim + 1;
-    memset(term->chosen, 0, (size_t)body->items[term->kind].count * sizeof *term->chosen);
-    for (int64_t c = 0; c < body->cells.count && term->kind != GROUP_FACETS; c++) {
-        if (term->kind == GROUP_REGION) {
-            term->chosen[c] = cells[c];
+    const struct items *given = &body->items[from], *wanted = &body->items[term->kind];
+    bool *chosen = term->chosen;
+    if (from == GROUP_FACETS && term->kind == GROUP_REGION) {
+        return fail(term->error, STATUS_INPUT, "%.100s: chooses facets: not for regions", term->text);
+    }
+    for (int64_t i = 0; i < wanted->count; i++) {
+        chosen[i] = from == term->kind ? in[i] : from == GROUP_NODES;
+        if (from == GROUP_REGION && term->kind == GROUP_FACETS) {
+            chosen[i] = in[body->boundary.cell[2 * i]];
         }
-        for (int k = 0; k < corners && cells[c] && term->kind == GROUP_NODES; k++) {
-            term->chosen[body->cells.node[c * corners + k]] = true;
+        for (int k = 0; k < wanted->corners && from == GROUP_NODES && from != term->kind; k++) {
+            chosen[i] = chosen[i] && in[wanted->item[i * wanted->corners + k]];
         }
     }
-    for (int64_t f = 0; f < body->boundary.count && term->kind == GROUP_FACETS; f++) {
-        term->chosen[f] = cells[body->boundary.cell[2 * f]];
+    for (int64_t i = 0; i < given->count * given->corners && term->kind == GROUP_NODES; i++) {
+        chosen[given->item[i]] |= in[i / given->corners];
     }
+    return STATUS_OK;
 }
 
 static enum status choose_all(const struct term *term)
@@ -63,7 +50,7 @@ static enum status choose_boundary(const struct term *term)
     bool *facets = NULL;
     TRY(NEW_ARRAY(&facets, term->body->boundary.count, term->error));
     memset(facets, true, (size_t)term->body->boundary.count * sizeof *facets);
-    TRY(choose_by_facets(term, facets));
+    TRY(choose_by(term, GROUP_FACETS, facets));
 done:
     free(facets);
     return status;
@@ -92,7 +79,7 @@ static enum status choose_normal(const struct term *term)
     TRY(check_degrees(term, values[dim]));
     TRY(NEW_ARRAY(&facing, term->body->boundary.count, term->error));
     items_facing(&term->body->items[GROUP_FACETS], values, values[dim], facing);
-    TRY(choose_by_facets(term, facing));
+    TRY(choose_by(term, GROUP_FACETS, facing));
 done:
     free(facing);
     return status;
@@ -152,11 +139,7 @@ static enum status choose_part(const struct term *term)
     for (int64_t i = 0; i < items->count; i++) {
         in[i] = part[i] == wanted;
     }
-    if (side) {
-        TRY(choose_by_facets(term, in));
-    } else {
-        choose_by_cells(term, in);
-    }
+    TRY(choose_by(term, side ? GROUP_FACETS : GROUP_REGION, in));
 done:
     free(part);
     free(in);
@@ -191,21 +174,7 @@ static enum status choose_named(const struct term *term, enum group_kind from, c
     for (int64_t i = 0; i < list->group[place].count; i++) {
         in[list->group[place].item[i]] = true;
     }
-    if (from == term->kind) {
-        memcpy(term->chosen, in, (size_t)items->count * sizeof *in);
-    } else if (from == GROUP_FACETS) {
-        TRY(choose_by_facets(term, in));
-    } else if (from == GROUP_REGION) {
-        choose_by_cells(term, in);
-    } else { /* of nodes: facets or cells all of whose nodes are in the set */
-        const struct items *to = &term->body->items[term->kind];
-        for (int64_t i = 0; i < to->count; i++) {
-            term->chosen[i] = true;
-            for (int k = 0; k < to->corners; k++) {
-                term->chosen[i] = term->chosen[i] && in[to->item[i * to->corners + k]];
-            }
-        }
-    }
+    TRY(choose_by(term, from, in));
 done:
     free(in);
     return status;

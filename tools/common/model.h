@@ -63,7 +63,7 @@ MUST_CHECK enum status model_nodes(struct model *model, const struct scene_label
 MUST_CHECK enum status model_between(struct model *model, const struct scene_contact *section,
                                      struct contact_condition *contact, struct error *error);
 
-/* The contacts anew, as at rest: those of the scene, which may have got more of them. */
+/* Build the contacts again, at rest, with those that have been added to the scene since. */
 MUST_CHECK enum status model_renew_contacts(struct model *model, struct error *error);
 
 /* u, v[node_count * dim]: the state at the begin that the scene's [initial] gives, m and m/s, as parameters.

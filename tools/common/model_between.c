@@ -49,8 +49,8 @@ static double mean_width(const struct model *model, const struct facet_set *set)
     return sum / (double)set->count;
 }
 
-/* The facets of both lists, each once in each: how many of the listed ones are left, and how many of these
- * are in both lists. */
+/* Sort the facets by their nodes and drop those that stand twice in one list. Returns how many are left;
+ * *common receives how many facets are in both lists. */
 static int64_t sort_out(struct listed *listed, int64_t count, int64_t *common)
 {
     int64_t left = 0;

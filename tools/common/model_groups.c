@@ -3,13 +3,26 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* wanted[present->count]: whether each of the groups, which are `what`, is among the names. */
+static enum status choose(const struct scene_label *label, const struct name_list *names, const char *what,
+                          const struct names *present, bool *wanted, struct error *error)
+{
+    for (int64_t i = 0; i < names->count; i++) {
+        int64_t group = names_find(present, names->names[i]);
+        if (group < 0) {
+            return fail(error, STATUS_INPUT, "%s: the mesh has no %s '%s'; present: %s", label->where, what,
+                        names->names[i], present->count > 0 ? present->list : "none");
+        }
+        wanted[group] = true;
+    }
+    return STATUS_OK;
+}
+
 enum status model_facets(struct model *model, const struct scene_label *label, const struct name_list *names,
                          struct facet_set *set, struct error *error)
 {
     enum status status;
-    const struct section *groups;
-    struct named_facets facets;
-    struct names present = {0};
+    struct named_facets facets = {0};
     bool *wanted = NULL;
     int32_t *chosen;
     int dim = model->assembly.cells.dim;
@@ -18,27 +31,12 @@ enum status model_facets(struct model *model, const struct scene_label *label, c
         return fail(error, STATUS_INPUT, "%s: no named facets: give the mesh physical groups, or run groups",
                     label->where);
     }
-    TRY(stream_facets(model->stream, true, dim, &facets, error));
-    for (int64_t i = 0; i < facets.count * dim; i++) {
-        if (facets.facet[i] < 0 || facets.facet[i] >= model->assembly.cells.node_count) {
-            TRY(fail(error, STATUS_INPUT, "facets: no node %d", facets.facet[i]));
-        }
-    }
-    TRY(stream_need(model->stream, "facets.set", TYPE_I4, 1, "nodes", &groups, error));
-    TRY(names_read(groups, &present, error));
-    TRY(NEW_ARRAY(&wanted, present.count, error));
-    for (int64_t i = 0; i < names->count; i++) {
-        int64_t group = names_find(&present, names->names[i]);
-        if (group < 0) {
-            status = fail(error, STATUS_INPUT, "%s: the mesh has no facet group '%s'; present: %s",
-                          label->where, names->names[i], present.count > 0 ? present.list : "none");
-            goto done;
-        }
-        wanted[group] = true;
-    }
+    TRY(stream_facets(model->stream, true, &model->assembly.cells, &facets, error));
+    TRY(NEW_ARRAY(&wanted, facets.names.count, error));
+    TRY(choose(label, names, "facet group", &facets.names, wanted, error));
     TRY(MODEL_ARRAY(model, &chosen, facets.count * dim, error));
     for (int64_t f = 0; f < facets.count; f++) {
-        if (facets.set[f] >= 0 && facets.set[f] < present.count && wanted[facets.set[f]]) {
+        if (wanted[facets.group[f]]) {
             memcpy(chosen + set->count * dim, facets.facet + f * dim, (size_t)dim * sizeof *chosen);
             set->count++;
         }
@@ -48,7 +46,7 @@ enum status model_facets(struct model *model, const struct scene_label *label, c
         status = fail(error, STATUS_INPUT, "%s: its facet groups are empty", label->where);
     }
 done:
-    names_free(&present);
+    names_free(&facets.names);
     free(wanted);
     return status;
 }
@@ -57,27 +55,18 @@ enum status model_nodes(struct model *model, const struct scene_label *label, co
                         const int32_t **nodes, int64_t *count, struct error *error)
 {
     enum status status;
-    const struct section *ptr, *idx;
-    struct neighbours sets;
-    struct names present = {0};
-    bool *member = NULL;
+    struct named_sets sets = {0};
+    bool *wanted = NULL, *member = NULL;
     int32_t *chosen;
     int64_t node_count = model->assembly.cells.node_count;
     *count = 0;
-    TRY(stream_need(model->stream, "sets.ptr", TYPE_I8, 1, "nodes", &ptr, error));
-    TRY(stream_need(model->stream, "sets.idx", TYPE_I4, 1, "nodes", &idx, error));
-    TRY(stream_neighbours(model->stream, "sets", ptr->rows - 1, node_count, &sets, error));
-    TRY(names_read(ptr, &present, error));
+    TRY(stream_sets(model->stream, true, node_count, &sets, error));
+    TRY(NEW_ARRAY(&wanted, sets.names.count, error));
+    TRY(choose(label, names, "node set", &sets.names, wanted, error));
     TRY(NEW_ARRAY(&member, node_count, error));
-    for (int64_t i = 0; i < names->count; i++) {
-        int64_t set = names_find(&present, names->names[i]);
-        if (set < 0 || set >= sets.count) {
-            status = fail(error, STATUS_INPUT, "%s: the mesh has no node set '%s'; present: %s", label->where,
-                          names->names[i], present.count > 0 ? present.list : "none");
-            goto done;
-        }
-        for (int64_t k = sets.ptr[set]; k < sets.ptr[set + 1]; k++) {
-            member[sets.idx[k]] = true;
+    for (int64_t set = 0; set < sets.lists.count; set++) {
+        for (int64_t k = sets.lists.ptr[set]; k < sets.lists.ptr[set + 1] && wanted[set]; k++) {
+            member[sets.lists.idx[k]] = true;
         }
     }
     TRY(MODEL_ARRAY(model, &chosen, node_count, error));
@@ -88,7 +77,8 @@ enum status model_nodes(struct model *model, const struct scene_label *label, co
         }
     }
 done:
-    names_free(&present);
+    names_free(&sets.names);
+    free(wanted);
     free(member);
     return status;
 }

@@ -22,9 +22,10 @@ static double modulus_of(const struct material_list *materials, int32_t cell)
     return materials->items[materials->of_cell[cell]].shear_modulus;
 }
 
-/* The largest jump at which supports do not stop, and at which what lies there belongs to the softer side. */
-static void look(const struct assembly *input, const int32_t *region, struct worst *crossed,
-                 struct worst *softer)
+/* *crossed: the interface with the largest jump of the modulus among those that supports reach across;
+ * *softer: among those where supports stop, but what lies on the interface belongs to the softer side. */
+static void find_worst(const struct assembly *input, const int32_t *region, struct worst *crossed,
+                       struct worst *softer)
 {
     const int32_t *side = input->cell_side;
     for (int64_t f = input->faces.boundary_count; f < input->faces.count; f++) {
@@ -76,7 +77,7 @@ enum status model_interfaces(struct model *model, struct error *error)
     for (int32_t c = 0; c < input->cells.count; c++) {
         modulus[regions.of_cell[c]] = modulus_of(&input->materials, c);
     }
-    look(input, regions.of_cell, &crossed, &softer);
+    find_worst(input, regions.of_cell, &crossed, &softer);
     remedy(&regions.names, modulus, order);
     const struct worst *worst = softer.ratio > 1.0 ? &softer : &crossed;
     const char *first = regions.names.name[worst->region[0]], *second = regions.names.name[worst->region[1]];

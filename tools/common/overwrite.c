@@ -54,7 +54,7 @@ static bool is_stream(const char *name)
     return is;
 }
 
-/* Whether it is a regular file, which writing replaces, and an input of that name is the same one. */
+/* Whether writing `output` replaces the file `input`. Devices and pipes are not replaced. */
 static bool replaces(const char *output, const char *input)
 {
     struct stat present;

@@ -117,7 +117,7 @@ static uint32_t identify(const struct tool *tool, const struct rejoin *rejoin, c
     return (uint32_t)crc;
 }
 
-/* Who reads each row over the faces: whose part it is. */
+/* For each row of face averages the process that has read it: the one whose part owns the row. */
 static void list_readers(const struct tool *tool, const struct rejoin *rejoin, const int64_t *first,
                          struct parts_input *parts)
 {

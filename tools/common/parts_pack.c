@@ -5,10 +5,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* What is packed goes in units of so many bytes, so that values are aligned. */
+/* Everything is packed in units of UNIT bytes, so that values are aligned; sent in units of UNIT_SENT. */
 enum { UNIT = 8, UNIT_SENT = 64 };
 
-/* Bytes one behind the other; NULL in the place of `at`: they are counted only. */
+/* A buffer that is appended to. Where `at` is NULL, bytes are counted and not stored. */
 struct pack {
     char *at;
     size_t size;
@@ -52,7 +52,7 @@ static void pack_stream(struct pack *pack, const struct stream *stream)
     }
 }
 
-/* The converse: of what these processes have packed. */
+/* The converse of pack_bytes: the next `size` bytes, in place. */
 static char *take(struct pack *pack, size_t size)
 {
     char *bytes = pack->at + pack->size;

@@ -147,22 +147,19 @@ enum status plot_time(const struct plot *plot, int64_t frame, double *time, stru
 
 static enum status find_mesh(struct plot *plot, struct error *error)
 {
-    const struct section *region = stream_find(&plot->stream, "cells.region");
-    struct cells cells;
-    struct vtk_mesh *mesh = &plot->mesh;
-    RETURN_IF_ERROR(stream_nodes(&plot->stream, &mesh->dim, &mesh->node_count, &mesh->x, error));
-    RETURN_IF_ERROR(stream_cells(&plot->stream, false, &cells, error));
-    mesh->cell_count = cells.count;
-    mesh->node = cells.count > 0 ? cells.node : NULL;
-    mesh->region_names = plot->names;
-    if (mesh->node != NULL && region != NULL) {
-        RETURN_IF_ERROR(stream_need(&plot->stream, "cells.region", TYPE_I4, 1, "nodes", &region, error));
-        if (region->rows != cells.count) {
-            return fail(error, STATUS_INPUT, "cells.region: has %lld rows, cells %lld",
-                        (long long)region->rows, (long long)cells.count);
-        }
-        mesh->region = region->data;
-        section_attribute(region, "names", plot->names, sizeof plot->names);
+    struct cells *cells = &plot->cells;
+    struct cell_regions *regions = &plot->regions;
+    RETURN_IF_ERROR(stream_cells(&plot->stream, false, cells, error));
+    plot->mesh = (struct vtk_mesh){.dim = cells->dim,
+                                   .node_count = cells->node_count,
+                                   .x = cells->x,
+                                   .cell_count = cells->count,
+                                   .node = cells->count > 0 ? cells->node : NULL,
+                                   .region_names = ""};
+    if (cells->count > 0 && stream_find(&plot->stream, "cells.region") != NULL) {
+        RETURN_IF_ERROR(stream_regions(&plot->stream, cells, regions, error));
+        plot->mesh.region = regions->of_cell;
+        plot->mesh.region_names = regions->names.list;
     }
     return STATUS_OK;
 }
@@ -172,8 +169,7 @@ static enum status find_fields(struct plot *plot, struct error *error)
 {
     int64_t most;
     RETURN_IF_ERROR(derived_add_invariants(&plot->stream, &plot->derived, error));
-    RETURN_IF_ERROR(
-        derived_add_groups(&plot->stream, plot->mesh.dim, plot->mesh.node_count, &plot->derived, error));
+    RETURN_IF_ERROR(derived_add_groups(&plot->stream, &plot->cells, &plot->derived, error));
     most = plot->stream.section_count + plot->derived.count;
     RETURN_IF_ERROR(NEW_ARRAY(&plot->fields, most, error));
     return NEW_ARRAY(&plot->labels, most, error);
@@ -200,6 +196,7 @@ void plot_free(struct plot *plot)
 {
     stream_free(&plot->stream);
     derived_free(&plot->derived);
+    names_free(&plot->regions.names);
     free(plot->fields);
     free(plot->labels);
     free(plot->frames);

@@ -11,13 +11,14 @@ struct plot_label;
 struct plot {
     struct stream stream;
     struct derived derived; /* fields that follow from the stream's */
-    struct vtk_mesh mesh;
+    struct cells cells;
+    struct cell_regions regions;
+    struct vtk_mesh mesh;      /* these */
     struct vtk_field *fields;  /* of the frame chosen last; room for every section */
     struct plot_label *labels; /* the names of those of frames */
     int64_t field_count;
     int64_t *frames; /* the numbers of the frames, ascending */
     int64_t frame_count;
-    char names[1 << 16]; /* of the regions */
 };
 
 /* Find mesh, fields, those of the groups too, and frames of plot->stream, the rest of *plot being zero.

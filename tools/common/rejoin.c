@@ -1,4 +1,4 @@
-#include "rejoin_private.h"
+#include "rejoin.h"
 
 #include "approx/partition.h"
 
@@ -67,7 +67,7 @@ static void view_part(struct rejoin *rejoin, struct rejoin_part *part)
         numbers(rejoin, part, "part.cell", part->cells.count, 0, attribute(rejoin, part, "cells"), true);
 }
 
-/* Of as many parts as there are to be, none is missing if none stands twice. */
+/* Exit where a number from 0 to parts - 1 belongs to none of the parts that were read. */
 static void check_numbers(const struct rejoin *rejoin)
 {
     int64_t parts = rejoin->part[0].parts, number = 0;
@@ -221,7 +221,8 @@ static void map_body(struct rejoin *rejoin)
     }
 }
 
-/* Nodes at which a part lacks cells: no list of what is its own may hold them. */
+/* Mark the nodes of each part that have cells outside of it. Supports there may differ from those of the
+ * whole body: no list that the part owns may hold such a node. */
 static void find_edges(struct rejoin *rejoin)
 {
     int vertices = rejoin->dim + 1;

@@ -24,14 +24,15 @@ enum rows_of {
 struct rejoin_part {
     const char *file;
     struct stream stream;
-    bool elsewhere;  /* another process has its large tables: here they have no rows, but their heads */
+    bool
+        elsewhere; /* another process holds its large tables: here these sections have headers, but no rows */
     int64_t read_as; /* the number of its file, where files have numbers */
     int64_t number, parts;
     char cut[16];
     struct cells cells;
     const int32_t *node, *owner, *cell; /* part.node, part.owner, part.cell */
     struct faces faces;                 /* local; count 0 without */
-    bool *at_edge;                      /* of nodes: not all of their cells are in this part */
+    bool *at_edge;                      /* for each node: some of its cells are not in this part */
     int32_t *
         to[ROWS_KINDS]; /* of each of its rows the row in the whole, -1: another part's; NULL: no such rows */
     int64_t count[ROWS_KINDS];
@@ -55,11 +56,12 @@ void rejoin_begin(struct rejoin *rejoin, const struct tool *tool, char *const fi
 /* The same of parts that have been read: part_count, and of each part file, stream and elsewhere are set. */
 void rejoin_streams(struct rejoin *rejoin);
 
-/* Is that a section of a large table? */
+/* Whether this section belongs to a large table, which each process holds for its own parts only. */
 bool rejoin_is_large(const char *name);
 
-/* Whether the large tables of the parts that are here can be put together. Several processes do not have the
- * same, and have to agree on it; all else they find out alike. */
+/* Check the large tables of the parts that this process has read. Processes hold different ones, so that one
+ * may find a fault that others do not see: they have to agree on the status. Everything else is the same for
+ * all. */
 MUST_CHECK enum status rejoin_check_large(const struct rejoin *rejoin, struct error *error);
 
 /* Put all sections that can be put together into the stream, in the order of part 0. Of large tables rows of
@@ -67,5 +69,17 @@ MUST_CHECK enum status rejoin_check_large(const struct rejoin *rejoin, struct er
 void rejoin_sections(const struct rejoin *rejoin, struct stream *stream);
 
 void rejoin_free(struct rejoin *rejoin);
+
+/* ---- private to rejoin*.c: which rows of each part are its own, and where they stand in the whole ---- */
+
+/* part->to[kind] of `count` rows, for the caller to fill. */
+int32_t *rejoin_new_rows(const struct rejoin *rejoin, struct rejoin_part *part, enum rows_of kind,
+                         int64_t count);
+
+/* Exits unless every row of the whole comes from one part; `called`: the section's name. */
+void rejoin_check_rows(const struct rejoin *rejoin, enum rows_of kind, const char *called);
+
+/* The faces, the rows that they are averaged over, and the points of these. */
+void rejoin_map_faces(struct rejoin *rejoin);
 
 #endif

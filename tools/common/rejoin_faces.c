@@ -1,4 +1,4 @@
-#include "rejoin_private.h"
+#include "rejoin.h"
 
 #include "stages/stages.h"
 

@@ -30,7 +30,7 @@ static const volatile sig_atomic_t *catch_signals(void)
     return &caught;
 }
 
-/* Let them do what they do by default again. */
+/* Give the signals their default actions back. */
 static void release_signals(void)
 {
     for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++) {

@@ -29,29 +29,24 @@ static enum status build(const struct assembly *input, struct run_folds *folds, 
     return STATUS_OK;
 }
 
-/* The names of the groups that a facet of the boundary is in, or "unnamed". */
+/* The name of a group that a facet of the boundary is in, or "the boundary". */
 static void name_facet(const struct run *run, int64_t f, char *name, size_t size)
 {
-    const struct stream *stream = run->stream;
-    const struct section *facets = stream_find(stream, "facets"), *set = stream_find(stream, "facets.set");
     int dim = run->scene->dim;
-    struct names names = {0};
-    struct error error;
+    struct named_facets facets;
+    struct error ignored;
     int32_t key[3], other[3];
+    enum status status = stream_facets(run->stream, false, &run->model->assembly.cells, &facets, &ignored);
     snprintf(name, size, "the boundary");
-    if (facets == NULL || set == NULL || names_read(set, &names, &error) != STATUS_OK) {
-        return;
-    }
     face_key(dim, run->folds.folds.input.facet + f * dim, key);
-    for (int64_t i = 0; i < facets->rows && i < set->rows; i++) {
-        face_key(dim, (const int32_t *)facets->data + i * dim, other);
+    for (int64_t i = 0; i < facets.count && status == STATUS_OK; i++) {
+        face_key(dim, facets.facet + i * dim, other);
         if (memcmp(key, other, sizeof key) == 0) {
-            int32_t group = ((const int32_t *)set->data)[i];
-            snprintf(name, size, "%s", group >= 0 && group < names.count ? names.name[group] : "");
+            snprintf(name, size, "%s", facets.names.name[facets.group[i]]);
             break;
         }
     }
-    names_free(&names);
+    names_free(&facets.names);
 }
 
 /* Bodies that interpenetrate at rest are an error, unless the scene allows folds. */
@@ -127,7 +122,7 @@ static void mark_stopped(const struct run *run, bool *stopped, bool *touched)
     }
 }
 
-/* Take what was found at a time into the spells. */
+/* Record what a search at `time` has found: a spell begins, lasts or ends. */
 static void note(struct run_folds *folds, int which, const struct fold *fold, double time, bool counts)
 {
     struct fold_spell *now = &folds->now[which], *past = &folds->past[which];

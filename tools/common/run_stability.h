@@ -18,8 +18,8 @@ struct run_stability {
     double load;                      /* that is held */
     double move[RUN_STABILITY_LOOKS]; /* of the last looks, m: in turn */
     int64_t looks;                    /* since then */
-    double least;                     /* least of the largest of so many moves, m; when it was, */
-    double *near;                     /* the parameters, node_count * dim */
+    double least;                     /* the smallest value so far of the largest of these moves, m */
+    double *near;                     /* the parameters when `least` was found, node_count * dim */
     /* What was seen first. */
     bool left;     /* the body has left `near`, which is kept, */
     bool negative; /* or: the stiffness has a negative eigenvalue */

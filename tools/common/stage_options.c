@@ -19,7 +19,7 @@ void radius_parse(const struct tool *tool, struct support_options *support)
     support->radius = tool_length(tool, "radius", support->radius);
 }
 
-/* A stage that has never run leaves none of its sections. */
+/* Run a stage with its defaults, add its provenance, and append its name to ran[size]. */
 static void fill_one(const struct tool *tool, struct stream *stream, const char *stage, char *ran,
                      size_t size)
 {

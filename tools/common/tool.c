@@ -127,7 +127,7 @@ static void parse_options(struct tool *tool)
     }
 }
 
-/* Mapped input that another program cuts short while we read it has no end line either. */
+/* SIGBUS: another program has cut a mapped input file short while it was read. */
 static void on_lost_mapping(int number)
 {
     static const char message[] = ": an input file was cut short or could not be read while in use\n";

@@ -1,0 +1,244 @@
+#include "stages/check.h"
+
+#include "approx/face_rows.h"
+#include "base/memory.h"
+#include "io/sections.h"
+#include "stages/views.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+static const double unity_tolerance = 1e-9;
+
+/* ---- each section by itself ---- */
+
+/* The dimension, from the coordinates that there are; 0 when there are none. */
+static int find_dimension(const struct stream *stream)
+{
+    const struct section *nodes = stream_find(stream, "nodes.x"), *points = stream_find(stream, "points.x");
+    const struct section *x = nodes != NULL ? nodes : points;
+    return x != NULL && (x->cols == 2 || x->cols == 3) ? (int)x->cols : 0;
+}
+
+static enum status check_shape(const struct stream *stream, const struct section *section,
+                               const struct section_kind *kind, struct error *error)
+{
+    int dim = find_dimension(stream);
+    int64_t cols = kind->cols == COLS_DIM          ? dim
+                   : kind->cols == COLS_DIM_PLUS_1 ? dim + 1
+                   : kind->cols == COLS_ANY        ? section->cols
+                                                   : kind->cols;
+    const struct section *other = kind->rows_of != NULL ? stream_find(stream, kind->rows_of) : NULL;
+    int64_t more = kind->content == LIST ? 1 : 0;
+    if (section->type != kind->type) {
+        return fail(error, STATUS_INPUT, "%s: type %s instead of %s", section->name,
+                    element_type_name(section->type), element_type_name(kind->type));
+    }
+    if (kind->cols == COLS_DIM && section->cols != 2 && section->cols != 3) {
+        return fail(error, STATUS_INPUT, "%s: %lld columns instead of 2 or 3", section->name,
+                    (long long)section->cols);
+    }
+    if ((kind->cols > 0 || dim > 0) && section->cols != cols) {
+        return fail(error, STATUS_INPUT, "%s: %lld columns instead of %lld", section->name,
+                    (long long)section->cols, (long long)cols);
+    }
+    if (other != NULL && section->rows != other->rows + more) {
+        return fail(error, STATUS_INPUT, "%s: %lld rows, but %s has %lld%s", section->name,
+                    (long long)section->rows, other->name, (long long)other->rows,
+                    more > 0 ? ": need one more" : "");
+    }
+    return STATUS_OK;
+}
+
+static enum status check_numbers(const struct section *section, enum content content, struct error *error)
+{
+    static const char *const required[] = {[FINITE] = "finite",
+                                           [UNITY] = "finite",
+                                           [POSITIVE] = "finite and positive",
+                                           [AT_LEAST_ONE] = "finite and at least 1"};
+    const double *values = section->data;
+    for (int64_t i = 0; i < section->rows * section->cols; i++) {
+        double value = values[i];
+        if (!isfinite(value) || (content == POSITIVE && !(value > 0.0)) ||
+            (content == AT_LEAST_ONE && !(value >= 1.0))) {
+            return fail(error, STATUS_INPUT, "%s: row %lld: %.17g is not %s", section->name,
+                        (long long)(i / section->cols), value, required[content]);
+        }
+    }
+    return STATUS_OK;
+}
+
+static enum status check_indices(const struct stream *stream, const struct section *section,
+                                 const struct section_kind *kind, struct error *error)
+{
+    const struct section *other = stream_find(stream, kind->index_of);
+    int64_t bound = other != NULL ? other->rows : INT32_MAX;
+    const int32_t *values = section->data;
+    for (int64_t i = 0; i < section->rows * section->cols; i++) {
+        if (values[i] < (kind->content == INDEX_OR_NONE ? -1 : 0) || values[i] >= bound) {
+            return fail(error, STATUS_INPUT, "%s: row %lld: index %d is not within the %lld of %s",
+                        section->name, (long long)(i / section->cols), values[i], (long long)bound,
+                        kind->index_of);
+        }
+    }
+    return STATUS_OK;
+}
+
+static enum status check_section(const struct stream *stream, const struct section *section,
+                                 struct error *error)
+{
+    const struct section_kind *kind = section_kind_of(section->name);
+    if (kind == NULL || (kind->content == ANY && kind->cols == COLS_ANY)) {
+        return STATUS_OK;
+    }
+    RETURN_IF_ERROR(check_shape(stream, section, kind, error));
+    if (kind->index_of != NULL) {
+        return check_indices(stream, section, kind, error);
+    }
+    return kind->type == TYPE_F8 && kind->content != ANY ? check_numbers(section, kind->content, error)
+                                                         : STATUS_OK;
+}
+
+/* ---- sections together, each as the table says ---- */
+
+/* Shape functions sum to 1 over each list. */
+static enum status check_unity(const struct neighbours *lists, const struct section *phi, struct error *error)
+{
+    const double *value = phi->data;
+    for (int64_t row = 0; row < lists->count; row++) {
+        double sum = 0;
+        for (int64_t i = lists->ptr[row]; i < lists->ptr[row + 1]; i++) {
+            sum += value[i];
+        }
+        if (!(fabs(sum - 1) <= unity_tolerance)) {
+            return fail(error, STATUS_INPUT, "%s: list %lld: sums to 1 %+.3g", phi->name, (long long)row,
+                        sum - 1);
+        }
+    }
+    return STATUS_OK;
+}
+
+/* The lists PREFIX.ptr, PREFIX.idx, and the shape functions on them. */
+static enum status check_lists(const struct stream *stream, const char *prefix, struct error *error)
+{
+    char ptr_name[64], idx_name[64];
+    struct neighbours lists;
+    snprintf(ptr_name, sizeof ptr_name, "%s.ptr", prefix);
+    snprintf(idx_name, sizeof idx_name, "%s.idx", prefix);
+    const struct section *ptr = stream_find(stream, ptr_name), *nodes = stream_find(stream, "nodes.x");
+    if (ptr == NULL && stream_find(stream, idx_name) == NULL) {
+        return STATUS_OK;
+    }
+    int64_t rows = ptr != NULL && ptr->rows > 0 ? ptr->rows - 1 : 0;
+    RETURN_IF_ERROR(
+        stream_neighbours(stream, prefix, rows, nodes != NULL ? nodes->rows : INT32_MAX, &lists, error));
+    for (int k = 0; k < SECTION_KINDS; k++) {
+        const struct section_kind *kind = &section_kinds[k];
+        const struct section *phi = stream_find(stream, kind->name);
+        if (kind->content == UNITY && strcmp(kind->rows_of, idx_name) == 0 && phi != NULL) {
+            RETURN_IF_ERROR(check_unity(&lists, phi, error));
+        }
+    }
+    return STATUS_OK;
+}
+
+/* Regions, facets and node sets. */
+static enum status check_groups(const struct stream *stream, const struct cells *cells, struct error *error)
+{
+    struct cell_regions regions = {0};
+    struct named_facets facets = {0};
+    struct named_sets sets = {0};
+    enum status status = STATUS_OK;
+    if (cells->count > 0 && stream_find(stream, "cells.region") != NULL) {
+        TRY(stream_regions(stream, cells, &regions, error));
+    }
+    if (cells->node_count > 0) {
+        TRY(stream_facets(stream, false, cells, &facets, error));
+        TRY(stream_sets(stream, false, cells->node_count, &sets, error));
+    }
+done:
+    names_free(&regions.names);
+    names_free(&facets.names);
+    names_free(&sets.names);
+    return status;
+}
+
+/* Faces, and what has a row for each of the rows or points that they ask for. */
+static enum status check_faces(const struct stream *stream, const struct cells *cells, struct error *error)
+{
+    struct faces faces;
+    if (cells->count == 0 || stream_find(stream, "faces") == NULL) {
+        return STATUS_OK;
+    }
+    RETURN_IF_ERROR(stream_faces(stream, cells, &faces, error));
+    const struct {
+        const char *name;
+        int64_t rows;
+    } asked[] = {{"facepoints.x", face_row_point(&faces, faces.row_count)},
+                 {"face.ptr", faces.row_count + 1},
+                 {"boundary.ptr", faces.boundary_count * OWN_POINTS(faces.dim) + 1}};
+    for (size_t i = 0; i < sizeof asked / sizeof *asked; i++) {
+        const struct section *section = stream_find(stream, asked[i].name);
+        if (section != NULL && section->rows != asked[i].rows) {
+            return fail(error, STATUS_INPUT, "%s: %lld rows, but the faces ask for %lld", section->name,
+                        (long long)section->rows, (long long)asked[i].rows);
+        }
+    }
+    return STATUS_OK;
+}
+
+/* ---- all of it ---- */
+
+struct check {
+    violation_function *report;
+    void *context;
+    int64_t count;
+    enum status status; /* STATUS_SYSTEM, with this error: no memory to check with */
+    struct error error;
+};
+
+static void tell(struct check *check, enum status status, const struct error *error)
+{
+    if (status == STATUS_INPUT) {
+        check->report(check->context, error->text);
+        check->count++;
+    } else if (status != STATUS_OK) {
+        check->status = status;
+        check->error = *error;
+    }
+}
+
+static void check_together(const struct stream *stream, struct check *check, struct error *error)
+{
+    static const char *const prefixes[] = {"nbr", "facepoint", "node", "face", "boundary"};
+    struct cells cells = {0};
+    if (stream_find(stream, "nodes.x") != NULL) {
+        tell(check, stream_cells(stream, false, &cells, error), error);
+    }
+    if (check->count > 0) {
+        return;
+    }
+    tell(check, check_groups(stream, &cells, error), error);
+    tell(check, check_faces(stream, &cells, error), error);
+    for (size_t i = 0; i < sizeof prefixes / sizeof *prefixes; i++) {
+        tell(check, check_lists(stream, prefixes[i], error), error);
+    }
+}
+
+enum status stream_check(const struct stream *stream, violation_function *report, void *context,
+                         int64_t *count, struct error *error)
+{
+    struct check check = {.report = report, .context = context};
+    for (int64_t i = 0; i < stream->section_count; i++) {
+        tell(&check, check_section(stream, &stream->sections[i], error), error);
+    }
+    if (check.count == 0) {
+        check_together(stream, &check, error);
+    }
+    *count = check.count;
+    if (check.status != STATUS_OK) {
+        *error = check.error;
+    }
+    return check.status;
+}
