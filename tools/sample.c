@@ -149,8 +149,9 @@ static void sample_image(const struct tool *tool, const struct request *request,
         }
     }
     if (request->points == NULL && rows->count > 1 && widest < 1) {
-        tool_fail(tool, STATUS_INPUT, "%s: all points lie within %.2g of a voxel of %s: another space, or unit?",
-                  rows->what, widest, name);
+        tool_fail(tool, STATUS_INPUT,
+                  "%s: all points lie within %.2g of a voxel of %s: another space, or unit?", rows->what,
+                  widest, name);
     }
     if (outside == 0) {
         return;

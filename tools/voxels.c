@@ -108,7 +108,8 @@ static void report_labels(const struct tool *tool, const struct label_image *ima
     }
     for (int32_t l = 0; l <= image->table.name_count; l++) {
         if (!image->keep[l] && lost[l] > 0) {
-            tool_note(tool, "%s: %.3g %s of gaps and cavities narrower than the spacing are filled: see --fine",
+            tool_note(tool,
+                      "%s: %.3g %s of gaps and cavities narrower than the spacing are filled: see --fine",
                       label_image_name(image, l), shown(dim, (double)lost[l] * image->voxel_volume), unit);
         }
     }

@@ -54,7 +54,8 @@ static bool is_near(const struct grid *grid, const struct stuffing *stuffing, co
     const int64_t *n = grid->size;
     const int64_t at[3] = {voxel % n[0], voxel / n[0] % n[1], voxel / n[0] / n[1]};
     for (int k = 0; k < (n[2] > 1 ? 27 : 9); k++) {
-        const int64_t next[3] = {at[0] + k % 3 - 1, at[1] + k / 3 % 3 - 1, at[2] + (n[2] > 1 ? k / 9 - 1 : 0)};
+        const int64_t next[3] = {at[0] + k % 3 - 1, at[1] + k / 3 % 3 - 1,
+                                 at[2] + (n[2] > 1 ? k / 9 - 1 : 0)};
         bool within = true;
         for (int d = 0; d < 3; d++) {
             within = within && next[d] >= 0 && next[d] < n[d];

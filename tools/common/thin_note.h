@@ -5,8 +5,8 @@
 #include "approx/cells.h"
 #include "tool.h"
 
-/* Note where a tenth of the boundary or more is on parts about one cell thick. Exits with a message where memory
- * fails. */
+/* Note where a tenth of the boundary or more is on parts about one cell thick. Exits with a message where
+ * memory fails. */
 void tool_note_thin(const struct tool *tool, const struct cells *cells);
 
 #endif
