@@ -54,6 +54,14 @@ setup() { enter_loosely; }
     [[ "$output" != *"# cells"* ]]
 }
 
+@test "a plate of two cells is noted to bend too stiffly, as by nodes; a block and scattered nodes are not" {
+    cloud -d 3 -k regular -n 13,5,3 --box 0,0.06,0,0.02,0,0.004 2> said > plate.mts
+    grep -qE "^cloud: [78][0-9] % of the boundary is on parts about one cell thick, .* they bend too stiffly" said
+    cloud -d 3 -k regular -n 5 --box 0,1,0,1,0,1 2> said > block.mts
+    cloud -d 3 -k halton -n 50 --box 0,1,0,1,0,0.01 2>> said > scattered.mts
+    [ ! -s said ]
+}
+
 @test "usage errors" {
     refused 2 "--kind is missing" cloud -d 2 -n 4 --box 0,1,0,1
     refused 2 "--box is missing" cloud -d 2 -k regular -n 4

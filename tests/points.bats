@@ -203,8 +203,12 @@ END
     sed -i 's/$/ .1/' rows.tsv
     mtled run.scene block.mts > u.dat
     { cat run.scene; printf '[displacement side]\nfacets = ymin\ncomponents = 0, 0\n'; } > side.scene
-    for i in 0 1 2 3 4; do echo "$((50 + i)) 0 1 1"; done > rows.tsv
+    for i in 0 1 2 3 4; do echo "$((50 + i)) 0 0 0"; done > rows.tsv
     refused 2 "too many points for the nodes there, or one on what another section holds" mtled side.scene block.mts
+    echo "50 0 - 1" > rows.tsv
+    refused 2 "points rows.tsv:1: at (0.05, 0): contradicts [displacement side], which holds a node " mtled side.scene block.mts
+    echo "50 0 - 1 .1" > rows.tsv
+    mtled -q side.scene block.mts > u.dat
     # A stated reach
     printf '10 20 1 1\n50 104 1 1\n' > rows.tsv
     mtled run.scene block.mts > u.dat

@@ -73,6 +73,16 @@ exact='{ e = 100 + 50 * sin(300 * $1) * cos(200 * $2 + 1) + 30 * sin(250 * $3) }
     [ -z "$output" ]
 }
 
+@test "an image a thousand times larger than the body, which one voxel would hold, is refused" {
+    "$BUILD/tests/helper/phantom" sphere@metres > metres.nii.gz
+    voxels -u mm -h 8mm metres.nii.gz > sphere.mts
+    printf '0 1000 0.3\n1 3000 0.49\n' > stiffness
+    refused 2 "nodes.x: all points lie within 0.048 of a voxel of metres.nii.gz: another space, or unit?" sample metres.nii.gz sphere.mts
+    refused 2 "another space, or unit" sample --material stiffness metres.nii.gz sphere.mts
+    printf '0 0 0\n1 0 0\n' > points.tsv
+    sample -u mm -p points.tsv metres.nii.gz
+}
+
 @test "stiffness from values: a table that a scene reads, with the same result as its own numbers" {
     pressed_block > uniform.scene
     sed 's/^E = .*/table = stiffness.tsv/; s/^nu = .*/unit = m/' uniform.scene > table.scene

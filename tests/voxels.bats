@@ -157,6 +157,30 @@ END
     refused 2 "is not less than the spacing" voxels -h 6mm --fine 6mm thin.nii.gz
 }
 
+@test "gaps that the lattice fills are told: a thin label that is left out, two balls nearer to each other than the spacing" {
+    phantom thin > thin.nii.gz
+    printf '1 body\n2 fluid -\n' > names
+    voxels -h 6mm -l names thin.nii.gz 2> said > coarse.mts
+    grep -qE "^voxels: fluid: [12]\.[0-9]+ ml of gaps and cavities narrower than the spacing are filled: see --fine$" said
+    voxels -h 6mm --fine 1.5mm:fluid -l names thin.nii.gz 2> said > fine.mts
+    run -1 grep "are filled" said
+    grep -q "^voxels: 2 connected bodies" said
+    phantom balls > balls.nii.gz
+    voxels -h 5mm balls.nii.gz 2> said > body.mts
+    grep -qE "^voxels: outside: 0\.[0-9]+ ml of gaps .* are filled: see --fine$" said
+    voxels -h 5mm --fine 1.25mm balls.nii.gz 2> said > body.mts
+    run -1 grep "are filled" said
+    grep -q "^voxels: 2 connected bodies" said
+}
+
+@test "a layer one cell thick is noted to bend too stiffly, as by nodes" {
+    phantom layer > layer.nii.gz
+    voxels -h 2mm layer.nii.gz 2> said > layer.mts
+    grep -qE "^voxels: [789][0-9] % of the boundary is on parts about one cell thick, .* they bend too stiffly" said
+    voxels -h 2mm --surface label_1 layer.nii.gz 2> said > layer.tsv
+    [ ! -s said ]
+}
+
 # sizes LEAST GRADATION X Y Z: a stream of sizes over 100 mm about the origin, LEAST at a place, growing with the distance (mm)
 sizes() {
     cloud -d 3 -k regular -n 21 --box -0.05,0.05,-0.05,0.05,-0.05,0.05 -t -o cloud.dat

@@ -43,6 +43,7 @@ static const char usage[] =
 
 #include "approx/cloud.h"
 #include "io/msh.h"
+#include "thin_note.h"
 #include "tool.h"
 
 #include <stdlib.h>
@@ -155,6 +156,8 @@ int main(int argc, char *argv[])
     if (wanted.kind != CLOUD_HALTON && cloud.cell_count == 0) {
         tool_note(&tool, "jitter %g turns tetrahedra over: cells and facets are left out", wanted.jitter);
     }
+    struct cells cells = {cloud.dim, cloud.node_count, cloud.x, cloud.cell_count, cloud.cells};
+    tool_note_thin(&tool, &cells);
     int32_t *region = NULL;
     TOOL_TRY(&tool, NEW_ARRAY(&region, cloud.cell_count, &error));
     stream_init(&stream);

@@ -54,10 +54,9 @@ static const char usage[] =
 
 #include "cell_report.h"
 #include "io/msh.h"
+#include "thin_note.h"
 #include "tool.h"
 
-#include "approx/support.h"
-#include "approx/thin.h"
 #include "base/box.h"
 
 #include <math.h>
@@ -97,27 +96,6 @@ static void list_groups(const struct tool *tool, const struct msh *msh)
 #define LARGEST_DIAGONAL 10.0
 #define SMALLEST_DIAGONAL 1e-3
 
-/* A body is thin where its thickness is less than this, in lengths of cells. A clamped plate of 60 x 20 x 4
- * mm, nu .49, is too stiff by half with cells as long as it is thick, by a tenth with half of that, by 4 %
- * with a third (mixed elements on the finest cells). Reported from this share of the boundary on. */
-#define THIN 1.5
-#define THIN_SHARE 0.1
-
-static void note_thin(const struct tool *tool, const struct cells *cells)
-{
-    struct thin_report thin;
-    char place[96];
-    TOOL_TRY(tool, cells_find_thin(cells, THIN, &thin, &error));
-    if (thin.share > THIN_SHARE) {
-        point_text(cells->dim, thin.place, place);
-        tool_note(tool,
-                  "%.0f %% of the boundary is on parts about one cell thick, the thinnest %.2g of a cell at "
-                  "%s m: they bend too stiffly, up to several times where thinner than their cells are long; "
-                  "by about a tenth with cells half as long as they are thick",
-                  100.0 * thin.share, thin.least, place);
-    }
-}
-
 static void report(const struct tool *tool, const struct mesh *mesh, bool verbose)
 {
     struct box box = box_of(mesh->dim, mesh->node_count, mesh->x);
@@ -128,7 +106,7 @@ static void report(const struct tool *tool, const struct mesh *mesh, bool verbos
     if (diagonal > LARGEST_DIAGONAL || diagonal < SMALLEST_DIAGONAL) {
         tool_note(tool, "the body is %.3g m across: is the unit of -u right?", diagonal);
     }
-    note_thin(tool, &cells);
+    tool_note_thin(tool, &cells);
     if (!verbose) {
         return;
     }

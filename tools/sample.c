@@ -128,6 +128,7 @@ static void sample_image(const struct tool *tool, const struct request *request,
                          const char *name, struct sample_points *rows, int64_t first)
 {
     double inverse[3][4];
+    double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY}, widest = 0;
     int64_t outside = 0, first_outside = -1;
     image_to_voxel(image, inverse);
     for (int64_t p = 0; p < rows->count; p++) {
@@ -135,12 +136,22 @@ static void sample_image(const struct tool *tool, const struct request *request,
         double *value = rows->value + p * rows->cols + first;
         memcpy(place, rows->x + p * rows->dim, (size_t)rows->dim * sizeof *place);
         image_map(&inverse[0][0], place, voxel);
+        for (int d = 0; d < 3; d++) {
+            low[d] = fmin(low[d], voxel[d]);
+            high[d] = fmax(high[d], voxel[d]);
+            widest = fmax(widest, high[d] - low[d]);
+        }
         if (!image_sample(image, request->method, voxel, value) || !are_finite(value, image->components)) {
             first_outside = outside++ == 0 ? p : first_outside;
             for (size_t c = 0; c < image->components; c++) {
                 value[c] = request->outside;
             }
         }
+    }
+    if (request->points == NULL && rows->count > 1 && widest < 1) {
+        tool_fail(tool, STATUS_INPUT,
+                  "%s: all points lie within %.2g of a voxel of %s: another space, or unit?", rows->what,
+                  widest, name);
     }
     if (outside == 0) {
         return;

@@ -18,9 +18,9 @@ static const char usage[] =
     "shares. Their nodes are moved by at most .55 voxels to keep the volume of each label. Angles of cells\n"
     "are between 8 and 165 degrees.\n"
     "\n"
-    "Parts of a label thinner than LENGTH may be lost, and bodies about a single lattice point are left\n"
-    "out; both is told: --fine keeps more. Bodies that hang together by a node or an edge are cut apart;\n"
-    "between parts of one body a gap is filled there, and crevices are at their tips.\n"
+    "Parts of a label thinner than LENGTH may be lost, gaps as narrow filled, bodies about a single\n"
+    "lattice point left out; all is told: --fine keeps more. Bodies that hang together by a node or an\n"
+    "edge are cut apart; between parts of one body a gap is filled there, and crevices are at their tips.\n"
     "\n"
     "A part of the boundary gets a name by --part, with nodes on its rim; others, of whole facets, by\n"
     "groups.\n"
@@ -68,6 +68,7 @@ static const char usage[] =
 #include "label_part.h"
 #include "label_sizes.h"
 #include "label_surface.h"
+#include "thin_note.h"
 
 #include "approx/cells.h"
 #include "approx/parts.h"
@@ -96,7 +97,7 @@ static void report_labels(const struct tool *tool, const struct label_image *ima
     const char *unit = dim == 3 ? "ml" : "cm2";
     TOOL_TRY(tool, NEW_ARRAY(&volume, image->labels.count, &error));
     TOOL_TRY(tool, NEW_ARRAY(&lost, image->labels.count, &error));
-    TOOL_TRY(tool, stuffing_lost(&image->labels, stuffing, lost, &error));
+    TOOL_TRY(tool, stuffing_lost(&image->labels, image->keep, stuffing, lost, &error));
     TOOL_TRY(tool, NEW_ARRAY(&voxels, image->labels.count, &error));
     for (int64_t c = 0; c < cells->count; c++) {
         volume[image->region[stuffing->label[c]]] += cell_volume(cells, c);
@@ -104,6 +105,13 @@ static void report_labels(const struct tool *tool, const struct label_image *ima
     for (int32_t l = 1; l < image->labels.count; l++) {
         voxels[image->region[l]] += image->volume[l];
         lost[image->region[l]] += image->region[l] != l ? lost[l] : 0;
+    }
+    for (int32_t l = 0; l <= image->table.name_count; l++) {
+        if (!image->keep[l] && lost[l] > 0) {
+            tool_note(tool,
+                      "%s: %.3g %s of gaps and cavities narrower than the spacing are filled: see --fine",
+                      label_image_name(image, l), shown(dim, (double)lost[l] * image->voxel_volume), unit);
+        }
     }
     for (int32_t l = 1; l <= image->table.name_count; l++) {
         double before = shown(dim, voxels[l]), after = shown(dim, volume[l]);
@@ -181,7 +189,7 @@ static void report_cells(const struct tool *tool, const struct cells *cells, dou
 }
 
 static void report(const struct tool *tool, const struct label_image *image, const struct stuffing *stuffing,
-                   double spacing, bool verbose)
+                   double spacing, bool surface, bool verbose)
 {
     struct cells cells = {stuffing->dim, stuffing->node_count, stuffing->x, stuffing->cell_count,
                           stuffing->cell};
@@ -207,6 +215,9 @@ static void report(const struct tool *tool, const struct label_image *image, con
     report_labels(tool, image, stuffing, &cells, verbose);
     report_bodies(tool, &cells, verbose);
     report_cells(tool, &cells, spacing, verbose);
+    if (!surface) {
+        tool_note_thin(tool, &cells);
+    }
     if (verbose) {
         tool_note(tool, "nodes of interfaces: farthest %.2g voxels off, %lld of them more than %g",
                   stuffing->farthest / labels_voxel(&image->labels), (long long)stuffing->astray,
@@ -293,7 +304,7 @@ int main(int argc, char *argv[])
                   length);
     }
     tool_check(&tool, status, &error);
-    report(&tool, &image, &stuffing, spacing, tool_given(&tool, "verbose"));
+    report(&tool, &image, &stuffing, spacing, tool_given(&tool, "surface"), tool_given(&tool, "verbose"));
     if (tool_given(&tool, "surface")) {
         label_surface_write(&tool, &stuffing, &surface);
     } else {

@@ -66,9 +66,10 @@ MUST_CHECK enum status stuffing_make(const struct labels *labels, const struct s
 void stuffing_free(struct stuffing *stuffing);
 
 /* lost[labels->count]: voxels of each label that neither lie in a cell of it nor touch one that does: parts
- * too thin for the lattice, and sharp edges. */
-MUST_CHECK enum status stuffing_lost(const struct labels *labels, const struct stuffing *stuffing,
-                                     int64_t *lost, struct error *error);
+ * too thin for the lattice, and sharp edges. Of labels that are not kept, the outside with them, voxels that
+ * neither lie outside of the cells nor touch one that does: gaps and cavities that are filled. */
+MUST_CHECK enum status stuffing_lost(const struct labels *labels, const bool *keep,
+                                     const struct stuffing *stuffing, int64_t *lost, struct error *error);
 
 /* Least and largest dihedral angle (2D: angle) of a simplex with corners x[dim + 1], degrees; 0 and 180 for
  * one without volume or inverted. */

@@ -46,28 +46,30 @@ static int sign_of(const struct labels *labels, const struct grid *grid)
     return determinant3(edge[0], edge[1], edge[2]) > 0 ? 1 : -1;
 }
 
-/* Whether a voxel or one that touches it lies in a cell of the label. */
+/* Whether a cell of the label lies at a voxel or at one that touches it; of a label that is not kept, whether
+ * no cell does, or the grid ends there. */
 static bool is_near(const struct grid *grid, const struct stuffing *stuffing, const int32_t *owner,
-                    int64_t voxel, int32_t label)
+                    int64_t voxel, int32_t label, bool kept)
 {
     const int64_t *n = grid->size;
     const int64_t at[3] = {voxel % n[0], voxel / n[0] % n[1], voxel / n[0] / n[1]};
-    for (int k = 0; k < 27; k++) {
-        const int64_t next[3] = {at[0] + k % 3 - 1, at[1] + k / 3 % 3 - 1, at[2] + k / 9 - 1};
+    for (int k = 0; k < (n[2] > 1 ? 27 : 9); k++) {
+        const int64_t next[3] = {at[0] + k % 3 - 1, at[1] + k / 3 % 3 - 1,
+                                 at[2] + (n[2] > 1 ? k / 9 - 1 : 0)};
         bool within = true;
         for (int d = 0; d < 3; d++) {
             within = within && next[d] >= 0 && next[d] < n[d];
         }
         int32_t cell = within ? owner[(next[2] * n[1] + next[1]) * n[0] + next[0]] : -1;
-        if (cell >= 0 && stuffing->label[cell] == label) {
+        if (kept ? cell >= 0 && stuffing->label[cell] == label : cell < 0) {
             return true;
         }
     }
     return false;
 }
 
-enum status stuffing_lost(const struct labels *labels, const struct stuffing *stuffing, int64_t *lost,
-                          struct error *error)
+enum status stuffing_lost(const struct labels *labels, const bool *keep, const struct stuffing *stuffing,
+                          int64_t *lost, struct error *error)
 {
     enum status status;
     struct grid grid = grid_of(labels);
@@ -91,9 +93,9 @@ enum status stuffing_lost(const struct labels *labels, const struct stuffing *st
     cells.x = x;
     TRY(raster_cells(&cells, sign_of(labels, &grid), grid.size, owner, &doubly, error));
     for (int64_t v = 0; v < voxels; v++) {
-        int32_t label = labels->label[v];
-        if (label != 0 && (owner[v] < 0 || stuffing->label[owner[v]] != label)) {
-            lost[label] += !is_near(&grid, stuffing, owner, v, label);
+        int32_t label = labels->label[v], there = owner[v] >= 0 ? stuffing->label[owner[v]] : -1;
+        if (there != (keep[label] ? label : -1)) {
+            lost[label] += !is_near(&grid, stuffing, owner, v, label, keep[label]);
         }
     }
 done:

@@ -3,6 +3,7 @@
 #include "solid/assembly.h"
 
 #include "base/memory.h"
+#include "base/vector.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -217,11 +218,53 @@ done:
     return status;
 }
 
+/* How far what a row prescribes is off what was measured at a point, along the row's direction; 0 where the
+ * measured component is not known. */
+static double off_row(const struct point_condition *p, int64_t i, int64_t row)
+{
+    const struct constraint_rows *rows = &p->system->rows;
+    int dim = p->measured->dim;
+    double along = 0.0;
+    for (int a = 0; a < dim; a++) {
+        double part = rows->direction[row * dim + a];
+        along += part == 0.0 ? 0.0 : part * p->measured->u[i * dim + a];
+    }
+    return isnan(along) ? 0.0 : fabs(along - rows->target[row]);
+}
+
+/* Exact points beside places that other sections hold, along which the displacement differs by more than they
+ * are apart. */
+static enum status compare_held(const struct point_condition *p, struct error *error)
+{
+    const struct constraint_rows *rows = &p->system->rows;
+    int dim = p->measured->dim;
+    char what[256];
+    for (int64_t i = 0; i < p->measured->count; i++) {
+        for (int64_t r = 0; r < rows->count && !(p->measured->deviation[i] > 0.0); r++) {
+            const struct condition *other = &p->input->conditions[rows->section[r]];
+            double off = off_row(p, i, r),
+                   distance = vector_distance(dim, p->measured->x + i * dim,
+                                              p->input->cells.x + (int64_t)rows->node[r] * dim);
+            if (other->kind == CONDITION_POINTS || !(off > distance + 1e-9 * p->input->extent)) {
+                continue;
+            }
+            snprintf(
+                what, sizeof what,
+                "contradicts [displacement %s], which holds a node %.3g m away: their displacements differ "
+                "by %.3g m, which turns over what is between: give a standard deviation, or leave it out",
+                other->name, distance, off);
+            return fail_at(p, i, error, what);
+        }
+    }
+    return STATUS_OK;
+}
+
 static enum status add_condition(struct point_condition *p, struct error *note, struct error *error)
 {
     enum status status;
     int64_t first = p->system->rows.count;
     TRY(compare_rows(p, note, error));
+    TRY(compare_held(p, error));
     TRY(look_at_nodes(p, error));
     TRY(set_energy(p, error));
     for (int64_t i = 0; i < p->measured->count; i++) {

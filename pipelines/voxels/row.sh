@@ -41,7 +41,7 @@ push=$(mts print nodes.x "$work/named.mts" | awk '
 } > "$work/push.scene"
 : > "$work/log"
 shapefn "$work/named.mts" 2> "$work/shapefn" | mtled -v "$work/push.scene" > "$work/u.dat" 2> "$work/log" || status=$?
-# Crevices that the push closes are told: contact of a body with itself is not modelled.
+# Crevices that the push closes are told; folds are allowed.
 message=$(grep -a '^mtled: ' "$work/log" | sed 's/^mtled: [^ ]*push.scene: //' | tail -n 1 | tr '\t' ' ' | cut -c 1-160)
 printf '%s\t%s\t%s\t%s\t%s\t%s\t%s\t%s\t%s\t%s\t%s\t%s\t%s\t%s\t%s\n' "$name" \
     "$(seen '^voxels: spacing .*: ([0-9]+) nodes, .*')" "$(seen '^voxels: spacing .* nodes, ([0-9]+) cells.*')" "$valid" \

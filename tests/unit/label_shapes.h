@@ -103,6 +103,10 @@ static inline int shape_label(const char *name, const struct shape_seeds *seeds,
         bool high = x[0] > 0 && x[1] > 0 && x[0] < 18 && x[1] < 18;
         return fabs(x[2]) < 12 && (low || high);
     }
+    if (strcmp(name, "balls") == 0) { /* two, a voxel apart */
+        static const double low[3] = {-8.5, -8.5, -8.5}, high[3] = {8.5, 8.5, 8.5};
+        return shape_square(x, low) < 14.2 * 14.2 || shape_square(x, high) < 14.2 * 14.2;
+    }
     if (strcmp(name, "blobs") == 0) {
         return shape_blobs(seeds, x);
     }

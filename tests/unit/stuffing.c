@@ -395,14 +395,34 @@ TEST(what_is_lost)
     struct error error;
     struct stuffing_options options = {.spacing = 8e-3, .keep = all_kept};
     struct stuffing stuffing = make(&labels, &options);
-    GOOD(stuffing_lost(&labels, &stuffing, lost, &error));
+    GOOD(stuffing_lost(&labels, options.keep, &stuffing, lost, &error));
     assert_true((double)lost[2] > 0.7 * (double)total && lost[2] <= total);
     stuffing_free(&stuffing);
     options.spacing = 2e-3;
     stuffing = make(&labels, &options);
-    GOOD(stuffing_lost(&labels, &stuffing, lost, &error));
+    GOOD(stuffing_lost(&labels, options.keep, &stuffing, lost, &error));
     assert_int_equal(lost[2], 0);
     stuffing_free(&stuffing);
+    free(shape.label);
+}
+
+/* A thin label that is left out cuts the cylinder in two: the coarse lattice fills the gap. */
+TEST(what_is_filled)
+{
+    struct label_shape shape;
+    static const bool keep[3] = {false, true, false};
+    int64_t lost[3];
+    struct error error;
+    assert_true(label_shape_make("thin", 1, millimetre, &shape));
+    struct labels labels = labels_of(&shape);
+    for (int coarse = 0; coarse < 2; coarse++) {
+        struct stuffing_options options = {.spacing = coarse ? 6e-3 : 2e-3, .keep = keep};
+        struct stuffing stuffing = make(&labels, &options);
+        GOOD(stuffing_lost(&labels, keep, &stuffing, lost, &error));
+        assert_int_equal(lost[0], 0);
+        assert_int_equal(lost[2] > 1000, coarse);
+        stuffing_free(&stuffing);
+    }
     free(shape.label);
 }
 

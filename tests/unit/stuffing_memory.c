@@ -35,7 +35,7 @@ static enum status try_stuffing(struct error *error)
     }
     enum status status = stuffing_make(&labels, &options, &stuffing, error);
     if (status == STATUS_OK) {
-        status = stuffing_lost(&labels, &stuffing, lost, error);
+        status = stuffing_lost(&labels, keep, &stuffing, lost, error);
     }
     stuffing_free(&stuffing);
     return status;
