@@ -101,8 +101,8 @@ struct folds {
     double *y;              /* node_count * dim: positions */
     double largest;         /* of their coordinates, m */
     struct fold_box *boxes; /* facet_count, by low[0] */
-    double *plane; /* facet_count * 7: of the support that begins with each facet: the sum of its area
-                    * vectors,  of its corners, their number */
+    double *plane;      /* facet_count * 7: of the support that begins with each facet: the sum of its area
+                         * vectors,  of its corners, their number */
     struct fold *found; /* of several processes: what each has found in its share, */
     int64_t *in_turn;   /* 0, 1, 2 and so on */
 };
