@@ -331,6 +331,23 @@ one_line() {
     cmp whole.dat out.dat
 }
 
+@test "mtled under mpirun is mtled-mpi; without it one line and no results" {
+    cloud -d 2 -k jittered -n 8 --box 0,0.1,0,0.1 --jitter 0.2 > square.mts
+    pressed_block > block.scene
+    in_parts 3 square.mts
+    mtled -q block.scene part.%d.mts > one.dat
+    mpirun --quiet --oversubscribe --bind-to none -n 2 mtled -q block.scene part.%d.mts > many.dat
+    cmp one.dat many.dat
+    mpirun --quiet -n 1 mtled -q -o lone.dat block.scene part.%d.mts
+    cmp one.dat lone.dat
+    mkdir apart
+    cp "$BUILD/bin/mtled" apart
+    SECONDS=0
+    one_line 2 'it is built by make mpi' mpirun --quiet --oversubscribe --bind-to none -n 3 apart/mtled -o out.dat block.scene part.%d.mts
+    [ ! -e out.dat ]
+    [ $SECONDS -lt 10 ]
+}
+
 @test "the report tells what was sent" {
     cube 6 | shapefn > table.mts 2> note
     { pressed_block | sed 's/^dim = 2/dim = 3/; s/ymin/zmin/; s/ymax/zmax/; s/^components = 0, /&0, /'; } > run.scene

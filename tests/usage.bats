@@ -115,10 +115,11 @@ setup() {
     [ "$(grep -c '<DataSet' frames.pvd)" -ge 10 ]
 }
 
-@test "no program can start another one" {
+@test "no program can start another one, but mtled, which mtled-mpi replaces under mpirun" {
     for tool in "${tools[@]}"; do
         nm -D "$BUILD/bin/$tool" > imports
         grep -q ' U ' imports
+        [ "$tool" != mtled ] || sed -i '/ U execv@/d' imports
         run -1 grep -E ' U (system|popen|f?exec(l|le|lp|v|ve|vp|vpe)|execveat|fork|vfork|posix_spawnp?|wordexp)(@|$)' imports
     done
 }

@@ -67,7 +67,7 @@ static const char usage[] =
     "\n"
     "Examples:\n"
     "  nodes -u mm body.msh | shapefn | mtled brain2d.scene > u.dat\n"
-    "  mpirun -n 4 mtled-mpi -o u.dat brain2d.scene part.%d.mts    by processes (make mpi); same bytes\n";
+    "  mpirun -n 4 mtled -o u.dat brain2d.scene part.%d.mts    by processes (make mpi); same bytes\n";
 
 #include "overwrite.h"
 #include "stage_options.h"
@@ -76,9 +76,38 @@ static const char usage[] =
 
 #include "io/sections.h"
 
+#include <limits.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
+
+/* A number that mpirun gives each process in the environment, by Open MPI or by others; -1: none. */
+static long from_mpirun(const char *name, const char *other)
+{
+    const char *value = getenv(name) != NULL ? getenv(name) : getenv(other);
+    return value != NULL ? strtol(value, NULL, 10) : -1;
+}
+
+/* Where mpirun has started several processes that know nothing of each other, mtled-mpi, which lies beside
+ * this program, takes its place: else all would compute the same and write the same files. */
+static void become_mpi(char *argv[])
+{
+    char file[PATH_MAX + sizeof "-mpi"];
+    ssize_t length = readlink("/proc/self/exe", file, PATH_MAX);
+    if (process_ranks() != NULL || from_mpirun("OMPI_COMM_WORLD_SIZE", "PMI_SIZE") <= 1) {
+        return;
+    }
+    if (length > 0) {
+        memcpy(file + length, "-mpi", sizeof "-mpi");
+        execv(file, argv);
+    }
+    if (from_mpirun("OMPI_COMM_WORLD_RANK", "PMI_RANK") > 0) {
+        sleep(10); /* mpirun ends this process when the first one has said why */
+    } else {
+        fprintf(stderr, "mtled: no mtled-mpi beside it, which mpirun needs: it is built by make mpi\n");
+    }
+    exit((int)STATUS_INPUT);
+}
 
 /* The results of an earlier run on the same stream. */
 static void drop_results(struct stream *stream)
@@ -210,6 +239,7 @@ int main(int argc, char *argv[])
     struct model model;
     struct parts_input parts = {.given = false};
     process_begin(&argc, &argv);
+    become_mpi(argv);
     tool_begin(&tool, usage, 1, 2, argc, argv);
     struct run run = {
         .tool = &tool,

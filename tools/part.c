@@ -33,7 +33,7 @@ static const char usage[] =
     "Examples:\n"
     "  nodes -u mm body.msh | part -k 8 -o part.%d.mts\n"
     "  ls part.?.mts | xargs -P 8 -I {} shapefn -o {}.table {}\n"
-    "  mpirun -n 4 mtled-mpi -o u.dat body.scene part.%d.mts.table\n"
+    "  mpirun -n 4 mtled -o u.dat body.scene part.%d.mts.table\n"
     "  unpart part.?.mts.table > table.mts\n";
 
 #include "cut_body.h"

@@ -225,7 +225,7 @@ void halo_free(struct halo *halo)
     *halo = (struct halo){0};
 }
 
-void halo_begin(struct halo *halo, int width, const double *x)
+void halo_begin(const struct halo *halo, int width, const double *x)
 {
     const struct ranks *ranks = halo->ranks;
     size_t size = (size_t)width * sizeof *x;
@@ -238,7 +238,7 @@ void halo_begin(struct halo *halo, int width, const double *x)
     ranks->begin(ranks, size, halo->sent, halo->send_first, halo->received, halo->receive_first);
 }
 
-void halo_finish(struct halo *halo, int width, double *x)
+void halo_finish(const struct halo *halo, int width, double *x)
 {
     const struct ranks *ranks = halo->ranks;
     size_t size = (size_t)width * sizeof *x;
@@ -251,7 +251,7 @@ void halo_finish(struct halo *halo, int width, double *x)
     }
 }
 
-void halo_exchange(struct halo *halo, int width, double *x)
+void halo_exchange(const struct halo *halo, int width, double *x)
 {
     halo_begin(halo, width, x);
     halo_finish(halo, width, x);

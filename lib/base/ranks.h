@@ -96,8 +96,8 @@ void halo_free(struct halo *halo);
 
 /* x[item * width] and behind it, for the items of others: in two halves, between which other items of x may
  * change; and at once. */
-void halo_begin(struct halo *halo, int width, const double *x);
-void halo_finish(struct halo *halo, int width, double *x);
-void halo_exchange(struct halo *halo, int width, double *x);
+void halo_begin(const struct halo *halo, int width, const double *x);
+void halo_finish(const struct halo *halo, int width, double *x);
+void halo_exchange(const struct halo *halo, int width, double *x);
 
 #endif

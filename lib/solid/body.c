@@ -232,6 +232,7 @@ enum status body_build(const struct body_input *input, struct body *body, struct
     body->threads = worthwhile_threads(body);
     TRY(row_operator_finish(&body->rows, body->share.begin_node, body->share.end_node, body->threads,
                             VECTOR_STRIDE(body->dim), error));
+    TRY(body_share_nodes(body, error));
     TRY(body_make_bounds(body, error));
 done:
     if (status != STATUS_OK) {

@@ -333,6 +333,21 @@ done:
     return status;
 }
 
+enum status body_share_nodes(struct body *body, struct error *error)
+{
+    enum status status;
+    const struct sparse *matrix = &body->rows.matrix;
+    bool *wanted = NULL;
+    TRY(NEW_ARRAY(&wanted, body->node_count, error));
+    for (int64_t i = 0; i < matrix->ptr[matrix->row_count]; i++) {
+        wanted[row_operator_column(matrix->idx[i])] = true;
+    }
+    TRY(stretches_of(0, body->node_count, wanted, &body->share.placed, error));
+done:
+    free(wanted);
+    return status;
+}
+
 bool body_share_has_node(const struct body *body, int64_t node)
 {
     int64_t place = body->node_place[node];
@@ -347,6 +362,7 @@ void body_share_free(struct body_share *share)
     free(share->slice_first);
     free(share->volume_first);
     stretches_free(&share->values);
+    stretches_free(&share->placed);
     stretches_free(&share->sums);
     stretches_free(&share->inner_sums);
     free(share->block);

@@ -25,7 +25,8 @@ struct body_share {
     int64_t begin_block, end_block, begin_point, end_point, begin_node, end_node; /* of this one */
     int64_t *block;              /* blocks of this process in the order in which they are worked on, */
     int64_t border_count;        /* first those at its border, from which others need strains or forces */
-    struct stretches values;     /* rows of the operator that are computed here */
+    struct stretches values;     /* rows of the operator that are computed here, */
+    struct stretches placed;     /* and the nodes in them, in the body's order */
     struct stretches sums;       /* smoothed cells: rows whose forces are summed here, for others, */
     struct stretches inner_sums; /* and for this process alone */
     struct halo strains;         /* of points: for nodal volumes */
@@ -50,6 +51,9 @@ MUST_CHECK enum status body_share_values(const struct body *body, bool **wanted,
 
 /* The halos of rows, when operator and transpose are there; wanted[rows]: those that own nodes are in. */
 MUST_CHECK enum status body_share_rows(struct body *body, const bool *wanted, struct error *error);
+
+/* The nodes whose displacements own rows need, once row_operator_finish has been called. */
+MUST_CHECK enum status body_share_nodes(struct body *body, struct error *error);
 
 /* Is this node, the caller's number, of this process? */
 bool body_share_has_node(const struct body *body, int64_t node);

@@ -247,6 +247,11 @@ enum status folds_build(const struct fold_input *input, struct folds *folds, str
     TRY(NEW_ARRAY(&folds->y, size, error));
     TRY(NEW_ARRAY(&folds->boxes, input->facet_count, error));
     TRY(NEW_ARRAY(&folds->plane, input->facet_count * 7, error));
+    TRY(NEW_ARRAY(&folds->found, ranks_count(input->ranks), error));
+    TRY(NEW_ARRAY(&folds->in_turn, ranks_count(input->ranks) + 1, error));
+    for (int r = 0; r <= ranks_count(input->ranks); r++) {
+        folds->in_turn[r] = r;
+    }
     TRY(list_sides(input, &sides, error));
     TRY(build_rings(folds, sides, error));
     TRY(find_supports(folds, sides, error));
@@ -288,5 +293,7 @@ void folds_free(struct folds *folds)
     free(folds->y);
     free(folds->boxes);
     free(folds->plane);
+    free(folds->found);
+    free(folds->in_turn);
     *folds = (struct folds){0};
 }

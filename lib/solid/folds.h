@@ -14,6 +14,7 @@
 #ifndef SOLID_FOLDS_H
 #define SOLID_FOLDS_H
 
+#include "base/ranks.h"
 #include "base/status.h"
 
 #include <stdbool.h>
@@ -49,6 +50,7 @@ struct fold_input {
     const int32_t *facet; /* facet_count * dim: the boundary, oriented outward */
     const bool
         *held; /* facet_count: whether the displacement is prescribed there, if only along one direction */
+    const struct ranks *ranks; /* processes that look together, each at a share; NULL: one */
 };
 
 /* Where facets meet: a node (2D) or an edge (3D) of the boundary. */
@@ -99,8 +101,10 @@ struct folds {
     double *y;              /* node_count * dim: positions */
     double largest;         /* of their coordinates, m */
     struct fold_box *boxes; /* facet_count, by low[0] */
-    double *plane; /* facet_count * 7: of the support that begins with each facet: the sum of its area
-                    * vectors,  of its corners, their number */
+    double *plane;      /* facet_count * 7: of the support that begins with each facet: the sum of its area
+                         * vectors,  of its corners, their number */
+    struct fold *found; /* of several processes: what each has found in its share, */
+    int64_t *in_turn;   /* 0, 1, 2 and so on */
 };
 
 /* STATUS_SYSTEM for memory. */

@@ -31,6 +31,31 @@ static void name_facets(const struct folds *folds, int64_t facet, int64_t other,
     }
 }
 
+/* The share of this process of so many items: from the first to before the second. */
+static void share_of(const struct folds *folds, int64_t count, int64_t share[2])
+{
+    const struct ranks *ranks = folds->input.ranks;
+    share[0] = count * ranks_rank(ranks) / ranks_count(ranks);
+    share[1] = count * (ranks_rank(ranks) + 1) / ranks_count(ranks);
+}
+
+/* From what each process has found in its share: the gravest kind, its first one, and how many there are. */
+static void put_together(const struct folds *folds, struct fold *fold)
+{
+    const struct ranks *ranks = folds->input.ranks;
+    folds->found[ranks_rank(ranks)] = *fold;
+    ranks_gather(ranks, folds->found, sizeof *fold, folds->in_turn);
+    *fold = folds->found[0];
+    for (int r = 1; r < ranks_count(ranks); r++) {
+        const struct fold *found = &folds->found[r];
+        if (found->kind == fold->kind) {
+            fold->count += found->count;
+        } else if (fold->kind == FOLD_NONE || (found->kind != FOLD_NONE && found->kind < fold->kind)) {
+            *fold = *found;
+        }
+    }
+}
+
 /* Whether something presses the cell flat: all nodes are held or stopped, not all of them held. */
 static bool is_flattened(const struct folds *folds, const int32_t *node, const bool *stopped)
 {
@@ -77,7 +102,9 @@ static void find_cells(const struct folds *folds, const bool *stopped, struct fo
 {
     const struct fold_input *input = &folds->input;
     int dim = input->dim, corners = dim + 1;
-    for (int64_t c = 0; c < input->cell_count; c++) {
+    int64_t share[2];
+    share_of(folds, input->cell_count, share);
+    for (int64_t c = share[0]; c < share[1]; c++) {
         const int32_t *node = input->cell + c * corners;
         double volume = cell_size(folds, node);
         if (volume > 0.0 || is_flattened(folds, node, stopped)) {
@@ -94,6 +121,7 @@ static void find_cells(const struct folds *folds, const bool *stopped, struct fo
         }
         fold->count += kind == fold->kind;
     }
+    put_together(folds, fold);
 }
 
 /* Angle that a cell takes around the ring that its first nodes are; negative where it is inverted. */
@@ -130,7 +158,9 @@ static double most_angle(const struct folds *folds, const struct fold_ring *ring
 static bool find_creases(const struct folds *folds, struct fold *fold)
 {
     int corners = folds->input.dim + 1;
-    for (int64_t r = 0; r < folds->ring_count; r++) {
+    int64_t share[2];
+    share_of(folds, folds->ring_count, share);
+    for (int64_t r = share[0]; r < share[1]; r++) {
         double sum = 0.0;
         for (int64_t i = folds->ring_ptr[r]; i < folds->ring_ptr[r + 1]; i++) {
             sum += angle_around(folds, folds->ring_cell + i * corners, folds->ring_turn[i]);
@@ -140,6 +170,7 @@ static bool find_creases(const struct folds *folds, struct fold *fold)
         }
     }
     fold->kind = fold->count > 0 ? FOLD_CREASE : FOLD_NONE;
+    put_together(folds, fold);
     return fold->count > 0;
 }
 
@@ -302,9 +333,10 @@ static void sort_boxes(struct folds *folds)
 
 static void find_crossings(struct folds *folds, struct fold *fold)
 {
-    int64_t count = folds->input.facet_count;
+    int64_t count = folds->input.facet_count, share[2];
     sort_boxes(folds);
-    for (int64_t i = 0; i < count; i++) {
+    share_of(folds, count, share);
+    for (int64_t i = share[0]; i < share[1]; i++) {
         const struct fold_box *boxes = folds->boxes;
         int64_t f = boxes[i].facet;
         for (int64_t k = i + 1; k < count && boxes[k].low[0] <= boxes[i].high[0]; k++) {
@@ -319,6 +351,7 @@ static void find_crossings(struct folds *folds, struct fold *fold)
         }
     }
     fold->kind = fold->count > 0 ? FOLD_CROSSING : FOLD_NONE;
+    put_together(folds, fold);
 }
 
 void folds_fill_planes(struct folds *folds, const double *y)

@@ -120,10 +120,13 @@ static void for_all_blocks(struct body *body, void (*work)(struct body *body, in
 static void place_nodes(struct body *body, const double *u)
 {
     int dim = body->dim, stride = VECTOR_STRIDE(dim);
+    const struct stretches *placed = &body->share.placed;
 #pragma omp for schedule(static)
-    for (int64_t n = 0; n < body->node_count; n++) {
-        for (int a = 0; a < dim; a++) {
-            body->u[n * stride + a] = u[body->node_order[n] * dim + a];
+    for (int64_t i = 0; i < placed->count; i++) {
+        for (int64_t n = placed->items[i].begin; n < placed->items[i].end; n++) {
+            for (int a = 0; a < dim; a++) {
+                body->u[n * stride + a] = u[body->node_order[n] * dim + a];
+            }
         }
     }
 }

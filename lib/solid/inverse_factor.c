@@ -231,6 +231,12 @@ enum status inverse_factor_build(const struct solid_system *system, struct inver
     return inverse_factor_build_by(system, STRETCH, factor, error);
 }
 
+static int owner(const void *factor, int64_t node)
+{
+    const struct inverse_factor *of = factor;
+    return ranks_owner(of->ranks, of->first, node);
+}
+
 enum status inverse_factor_build_by(const struct solid_system *system, int64_t stretch,
                                     struct inverse_factor *factor, struct error *error)
 {
@@ -239,6 +245,7 @@ enum status inverse_factor_build_by(const struct solid_system *system, int64_t s
     struct sparse by_place = {0};
     const struct body_share *share = &system->body.share;
     int64_t nodes = system->node_count, *length = NULL;
+    bool *wanted = NULL;
     *factor = (struct inverse_factor){.ranks = share->ranks};
     TRY(ranks_share(factor->ranks, nodes, NULL, &factor->first, error));
     TRY(lower_begin(system, &lower, error));
@@ -250,7 +257,10 @@ enum status inverse_factor_build_by(const struct solid_system *system, int64_t s
     lower_free(&lower);
     TRY(sort_rows(&system->body, &by_place, &factor->rows, error));
     TRY(sparse_transpose(&factor->rows, &factor->transposed, error));
+    TRY(inverse_factor_wanted(factor, &wanted, error));
+    TRY(halo_build(factor->ranks, nodes, wanted, 3, owner, factor, &factor->halo, error));
 done:
+    free(wanted);
     free(length);
     sparse_free(&by_place);
     lower_free(&lower);
@@ -264,6 +274,7 @@ void inverse_factor_free(struct inverse_factor *factor)
 {
     sparse_free(&factor->rows);
     sparse_free(&factor->transposed);
+    halo_free(&factor->halo);
     free(factor->first);
     factor->first = NULL;
 }
@@ -279,23 +290,18 @@ enum status inverse_factor_wanted(const struct inverse_factor *factor, bool **wa
     return status;
 }
 
-/* The rows of own nodes, and those of the others. */
-static void apply(const struct inverse_factor *factor, const struct sparse *matrix, int dim, const double *x,
-                  double *y)
-{
-    int rank = ranks_rank(factor->ranks);
-    sparse_apply_rows(matrix, factor->first[rank], factor->first[rank + 1], dim, x, y);
-    ranks_gather(factor->ranks, y, (size_t)dim * sizeof *y, factor->first);
-}
-
 void inverse_factor_apply(const struct inverse_factor *factor, int dim, const double *x, double *y)
 {
-    apply(factor, &factor->rows, dim, x, y);
+    const int64_t *first = factor->first + ranks_rank(factor->ranks);
+    sparse_apply_rows(&factor->rows, first[0], first[1], dim, x, y);
+    halo_exchange(&factor->halo, dim, y);
 }
 
 void inverse_factor_apply_transposed(const struct inverse_factor *factor, int dim, const double *x, double *y)
 {
-    apply(factor, &factor->transposed, dim, x, y);
+    const int64_t *first = factor->first + ranks_rank(factor->ranks);
+    sparse_apply_rows(&factor->transposed, first[0], first[1], dim, x, y);
+    ranks_gather(factor->ranks, y, (size_t)dim * sizeof *y, factor->first);
 }
 
 /* The width is known when compiling; sums stay in registers. */

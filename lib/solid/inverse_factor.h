@@ -27,7 +27,8 @@ struct inverse_factor {
     struct sparse rows, transposed; /* L, the diagonal last in each row, and L^T, the diagonal first; without
                                        rows there is none */
     const struct ranks *ranks;      /* NULL: one process; else all have all of L, */
-    int64_t *first;                 /* and each applies the rows of its own nodes */
+    int64_t *first;                 /* and each applies the rows of its own nodes; */
+    struct halo halo;               /* what these rows of L^T need of the other nodes */
 };
 
 /* For a system whose body is made of smoothed cells and that knows the values at its nodes. */
@@ -42,7 +43,8 @@ void inverse_factor_free(struct inverse_factor *factor);
 MUST_CHECK enum status inverse_factor_wanted(const struct inverse_factor *factor, bool **wanted,
                                              struct error *error);
 
-/* y = L x, and y = L^T x, of vectors of node_count * dim, not the same. */
+/* y = L x, of several processes where its own rows of L^T need it, and y = L^T x, of vectors of
+ * node_count * dim, dim at most 3, not the same. */
 void inverse_factor_apply(const struct inverse_factor *factor, int dim, const double *x, double *y);
 void inverse_factor_apply_transposed(const struct inverse_factor *factor, int dim, const double *x,
                                      double *y);

@@ -13,9 +13,10 @@
 #   - to each neighbour 3 messages: volume ratios, forces of corners, forces on faces and vertices; for each node that is needed that is
 #     `row_bytes`, 13 faces and vertices of 32 bytes, and half as much for the corners. These bytes travel while what no other process needs is
 #     computed, and only what takes longer than that is waited for;
-#   - to each neighbour `passes` messages more, of the pressures at half of these nodes;
-#   - to all others, of each own node, the force, what L and L^T of the preconditioner make of it, and what L^T makes of the forces of the
-#     conditions, twice: 24 bytes each; and `small` shorter ones, of conditions and the coarse space. That is log2(parts) messages each;
+#   - to each neighbour `passes` messages more, of the pressures at half of these nodes, and one of what L of the preconditioner makes of the
+#     force: 24 bytes a node;
+#   - to all others, of each own node, the force, what L^T makes of that, and what L^T makes of the forces of the conditions, twice: 24 bytes
+#     each; and `small` shorter ones, of conditions and the coarse space. That is log2(parts) messages each;
 # and `replicated` of the computing is done by all, or again at borders: of a quasi-static cube of 15 625 nodes held on two sides, twice the
 # processor time of two processes by that of one, less 1, is below a tenth, and a third of four times that of four, less 1, above it.
 
@@ -26,7 +27,7 @@ BEGIN {
     passes = 7
     each = 50000
     row_bytes = 1.5 * 13 * 32
-    large = 5
+    large = 4
     small = 7
     replicated = 0.1
 }
@@ -55,7 +56,7 @@ function whole_vectors(kind, p, own_nodes, halo_nodes, beside, uneven,    comput
     inner = own_nodes * kernel * (1 - replicated)
     computing = inner * (1 + uneven) + alone * replicated
     travelling = row_bytes * halo_nodes / bandwidth
-    waiting = ((3 + passes) * beside + (large + small) * log(p) / log(2)) * latency + 8 * passes * halo_nodes / 2 / bandwidth \
+    waiting = ((4 + passes) * beside + (large + small) * log(p) / log(2)) * latency + (8 * passes / 2 + 24) * halo_nodes / bandwidth \
         + 24 * large * (p - 1) * own_nodes / bandwidth + (travelling > inner ? travelling - inner : 0)
     tell("mtled-mpi, " kind, p, own_nodes, halo_nodes, computing, waiting, alone)
 }

@@ -1,6 +1,7 @@
-/* The processes of a run: one, or those that mpirun has started of mtled-mpi. All do the same (base/ranks.h);
- * the first one alone writes and says what is to be said. tools/common/process.c is of one process, and costs
- * nothing; tools/mpi/process.c stands in its place in mtled-mpi. */
+/* The processes of a run: one, or those that mpirun has started. All do the same (base/ranks.h); the first
+ * one alone writes and says what is to be said. tools/common/process.c is of one process, and costs nothing;
+ * tools/mpi/process.c stands in its place in mtled-mpi, which mtled calls where mpirun has started several.
+ */
 #ifndef TOOLS_PROCESS_H
 #define TOOLS_PROCESS_H
 

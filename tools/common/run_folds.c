@@ -3,6 +3,7 @@
 #include "stages/names.h"
 
 #include "approx/cells.h"
+#include "approx/field.h"
 #include "solid/contact_between.h"
 
 #include <math.h>
@@ -18,12 +19,14 @@ static enum status build(const struct assembly *input, struct run_folds *folds, 
                               .cell_count = cells->count,
                               .cell = cells->node,
                               .facet_count = input->boundary.count,
-                              .facet = input->boundary.node};
+                              .facet = input->boundary.node,
+                              .ranks = process_ranks()};
     RETURN_IF_ERROR(assembly_held_faces(input, 1, &folds->held, error));
     body.held = folds->held;
     RETURN_IF_ERROR(NEW_ARRAY(&folds->field, cells->node_count * cells->dim, error));
     RETURN_IF_ERROR(NEW_ARRAY(&folds->stopped, cells->node_count, error));
     RETURN_IF_ERROR(NEW_ARRAY(&folds->touched, cells->node_count, error));
+    RETURN_IF_ERROR(ranks_share(body.ranks, cells->node_count, NULL, &folds->node_first, error));
     RETURN_IF_ERROR(folds_build(&body, &folds->folds, error));
     folds->folds.touched = folds->touched;
     return STATUS_OK;
@@ -91,6 +94,7 @@ void run_folds_free(struct run *run)
     folds_free(&run->folds.folds);
     free(run->folds.held);
     free(run->folds.field);
+    free(run->folds.node_first);
     free(run->folds.stopped);
     free(run->folds.touched);
 }
@@ -141,11 +145,22 @@ static void note(struct run_folds *folds, int which, const struct fold *fold, do
     now->counts = now->counts || counts;
 }
 
+/* The field at the nodes; each process computes a share of it. */
+static void evaluate_field(const struct assembly *input, const double *u, struct run_folds *folds)
+{
+    const struct ranks *ranks = process_ranks();
+    int64_t begin = folds->node_first[ranks_rank(ranks)], end = folds->node_first[ranks_rank(ranks) + 1];
+    int dim = input->cells.dim;
+    field_evaluate(end - begin, input->node_lists.ptr + begin, input->node_lists.idx, input->node_phi, dim, u,
+                   folds->field + begin * dim);
+    ranks_gather(ranks, folds->field, (size_t)dim * sizeof *folds->field, folds->node_first);
+}
+
 void run_folds_look(struct run *run, const double *u, double time, bool is_frame)
 {
     struct run_folds *folds = &run->folds;
     bool counts = is_frame || run->scene->analysis == SCENE_DYNAMIC;
-    assembly_nodal_field(&run->model->assembly, u, folds->field);
+    evaluate_field(&run->model->assembly, u, folds);
     mark_stopped(run, folds->stopped, folds->touched);
     struct fold fold = folds_find(&folds->folds, folds->field, folds->stopped);
     if (is_frame && (fold.kind == FOLD_NONE || fold.kind == FOLD_FLAT)) {

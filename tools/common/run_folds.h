@@ -25,6 +25,7 @@ struct run_folds {
     struct folds folds;
     bool *held;              /* whether the displacement is prescribed at each face of the boundary */
     double *field;           /* scratch: node_count * dim */
+    int64_t *node_first;     /* the nodes at which each process evaluates it */
     bool *stopped, *touched; /* scratch: node_count */
     bool reported;           /* in the message that ends the run */
     struct fold_spell now[FOLD_SPELLS];
