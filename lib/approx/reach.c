@@ -21,11 +21,11 @@ enum status reach_begin(const struct reach *reach, const struct reach_places *pl
     work->x = x;
     work->outside = false;
     memcpy(work->from, x, (size_t)reach->cells.dim * sizeof *x);
-    work->cell_count = -1;
+    work->cell_count = work->node = -1;
     if (places->nodes) {
-        int64_t node = places->node != NULL ? places->node[p] : p;
-        work->cell = reach->star + reach->star_ptr[node];
-        work->cell_count = reach->star_ptr[node + 1] - reach->star_ptr[node];
+        work->node = places->node != NULL ? places->node[p] : p;
+        work->cell = reach->star + reach->star_ptr[work->node];
+        work->cell_count = reach->star_ptr[work->node + 1] - reach->star_ptr[work->node];
     } else if (places->cell != NULL) {
         work->cell = reach_places_cells(places, p, &work->cell_count);
         work->cell_count = work->cell_count > 0 && work->cell[0] >= 0 ? work->cell_count : -1;
@@ -45,6 +45,13 @@ static enum status mark_hidden(const struct reach *reach, const struct reach_sha
         }
     }
     if (work->cell_count <= 0) {
+        return STATUS_OK;
+    }
+    if (widen <= 1.0 && work->node >= 0) {
+        *hidden = reach->hidden_ptr[work->node + 1] - reach->hidden_ptr[work->node];
+        for (int64_t i = 0; i < *hidden; i++) {
+            work->mark[reach->hidden[reach->hidden_ptr[work->node] + i]] = 2 * work->serial + 1;
+        }
         return STATUS_OK;
     }
     if (widen <= 1.0 && !work->outside) {
@@ -129,5 +136,7 @@ void reach_free(struct reach *reach)
     free(reach->seen_ptr);
     free(reach->seen);
     free(reach->seen_length);
+    free(reach->hidden_ptr);
+    free(reach->hidden);
     *reach = (struct reach){0};
 }

@@ -251,10 +251,11 @@ done:
     return status;
 }
 
+/* What each node sees and does not see of the others. */
 static enum status file_views(struct reach *reach, struct reach_work *work, struct error *error)
 {
     enum status status = STATUS_OK;
-    struct pair_list pairs = {0};
+    struct pair_list seen = {0}, hidden = {0};
     struct reach_shadows shadows = {0};
     struct index_list near = {0};
     int dim = reach->cells.dim;
@@ -262,22 +263,25 @@ static enum status file_views(struct reach *reach, struct reach_work *work, stru
     TRY(reach_shadows_build(reach, reach->cells.node_count, reach->cells.x, &shadows, error));
     for (int64_t n = 0; n < reach->cells.node_count; n++) {
         const double *x = reach->cells.x + n * dim;
-        int64_t hidden;
-        if (!reach->corner[n]) {
+        int64_t unused;
+        if (!reach->corner[n] && shadows.ptr[n] == shadows.ptr[n + 1]) {
             continue;
         }
         near.count = 0;
         TRY(point_grid_query(reach->grid, x, 1.0, &near, error));
         TRY(reach_begin(reach, &nodes, n, x, work, error));
-        TRY(reach_mark_shadows(reach, &shadows, n, work, &hidden, error));
+        TRY(reach_mark_shadows(reach, &shadows, n, work, &unused, error));
         for (int64_t i = 0; i < near.count; i++) {
-            if (!reach_is_hidden(work, near.index[i]) && near.index[i] != n) {
-                TRY(pair_list_add(&pairs, near.index[i], (int32_t)n, error));
+            if (reach_is_hidden(work, near.index[i])) {
+                TRY(pair_list_add(&hidden, (int32_t)n, near.index[i], error));
+            } else if (reach->corner[n] && near.index[i] != n) {
+                TRY(pair_list_add(&seen, near.index[i], (int32_t)n, error));
             }
         }
     }
-    TRY(pair_list_file(&pairs, reach->cells.node_count, &reach->seen_ptr, &reach->seen, error));
-    TRY(NEW_ARRAY(&reach->seen_length, pairs.count, error));
+    TRY(pair_list_file(&hidden, reach->cells.node_count, &reach->hidden_ptr, &reach->hidden, error));
+    TRY(pair_list_file(&seen, reach->cells.node_count, &reach->seen_ptr, &reach->seen, error));
+    TRY(NEW_ARRAY(&reach->seen_length, seen.count, error));
     for (int64_t n = 0; n < reach->cells.node_count; n++) {
         for (int64_t i = reach->seen_ptr[n]; i < reach->seen_ptr[n + 1]; i++) {
             reach->seen_length[i] = vector_distance(dim, reach->cells.x + (int64_t)reach->seen[i] * dim,
@@ -286,7 +290,8 @@ static enum status file_views(struct reach *reach, struct reach_work *work, stru
     }
 done:
     reach_shadows_free(&shadows);
-    pair_list_free(&pairs);
+    pair_list_free(&seen);
+    pair_list_free(&hidden);
     free(near.index);
     return status;
 }

@@ -101,9 +101,13 @@ static enum status list_points(const struct reach *reach, const struct point_gri
     for (int64_t i = 0; i < near->count; i++) {
         const double *x = points->x + (int64_t)near->index[i] * dim;
         double of_x = reach_height_above(dim, facet, x);
-        if (of_x <= tolerance && vector_distance2(dim, y, x) < radius * radius &&
-            passage_of(dim, facet, tolerance, x, of_x, false, y, of_y) != PASSES_NOT) {
-            RETURN_IF_ERROR(pair_list_add(pairs, near->index[i], shadow, error));
+        if (of_x > tolerance || !(vector_distance2(dim, y, x) < radius * radius)) {
+            continue;
+        }
+        enum passage passage = passage_of(dim, facet, tolerance, x, of_x, false, y, of_y);
+        if (passage != PASSES_NOT) {
+            RETURN_IF_ERROR(
+                pair_list_add(pairs, near->index[i], passage == PASSES ? ~shadow : shadow, error));
         }
     }
     return STATUS_OK;
@@ -177,27 +181,34 @@ void reach_shadows_free(struct reach_shadows *shadows)
     *shadows = (struct reach_shadows){0};
 }
 
+static int32_t shadow_number(int32_t filed)
+{
+    return filed < 0 ? ~filed : filed;
+}
+
 enum status reach_mark_shadows(const struct reach *reach, const struct reach_shadows *shadows, int64_t p,
                                struct reach_work *work, int64_t *hidden, struct error *error)
 {
     int dim = reach->cells.dim;
     *hidden = 0;
     for (int64_t i = shadows->ptr[p]; i < shadows->ptr[p + 1]; i++) {
-        struct reach_shadow shadow = reach->shadow[shadows->shadow[i]];
-        const struct reach_facet *facet = &reach->facet[shadow.facet];
-        const double *y = reach->cells.x + (int64_t)shadow.node * dim;
-        bool own = work->cell_count == 1 && facet->cell == work->cell[0];
-        if (!reach_is_hidden(work, shadow.node) &&
-            passage_of(dim, facet, REACH_ON_PLANE * reach->grid->radius[shadow.node], work->x,
-                       reach_height_above(dim, facet, work->x), own, y,
-                       reach_height_above(dim, facet, y)) == PASSES) {
+        bool holds = shadows->shadow[i] < 0;
+        struct reach_shadow shadow = reach->shadow[shadow_number(shadows->shadow[i])];
+        if (!holds && work->cell_count == 1 && reach->facet[shadow.facet].cell == work->cell[0]) {
+            const struct reach_facet *facet = &reach->facet[shadow.facet];
+            const double *y = reach->cells.x + (int64_t)shadow.node * dim;
+            holds = passage_of(dim, facet, REACH_ON_PLANE * reach->grid->radius[shadow.node], work->x,
+                               reach_height_above(dim, facet, work->x), true, y,
+                               reach_height_above(dim, facet, y)) == PASSES;
+        }
+        if (holds && !reach_is_hidden(work, shadow.node)) {
             work->mark[shadow.node] = 2 * work->serial + 1;
             ++*hidden;
         }
     }
     /* The others pass close by. */
     for (int64_t i = shadows->ptr[p]; i < shadows->ptr[p + 1]; i++) {
-        int32_t node = reach->shadow[shadows->shadow[i]].node;
+        int32_t node = reach->shadow[shadow_number(shadows->shadow[i])].node;
         if (work->mark[node] / 2 != work->serial) {
             bool seen;
             RETURN_IF_ERROR(

@@ -186,7 +186,7 @@ enum status support_build_within(const struct support_options *options, const st
         search.places = *places;
     }
     TRY(check_finite(&search, count, error));
-    if (reach != NULL) {
+    if (reach != NULL && !search.places.nodes) {
         TRY(reach_shadows_build(reach, count, x, &search.shadows, error));
     }
     TRY(build_chunks(&search, lists, &all, error));
