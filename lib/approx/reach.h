@@ -71,7 +71,6 @@ struct reach_places {
     const int64_t *ptr;     /* or, unless NULL, the cells of row r from ptr[r] to ptr[r + 1] */
     int64_t points_per_row; /* of rows of points, */
     int64_t long_rows;      /* of the first so many, others have one point; 0: of all */
-    const int64_t *row;     /* the number of each point in messages; NULL: p */
 };
 
 /* The row of point p; *first: its first point. */
@@ -105,8 +104,9 @@ struct reach_shadows {
     int64_t *ptr;
     int32_t *shadow;
 };
-/* Of the points x[count * dim]. */
+/* Of the points x[count * dim]; with body_of[count] (else NULL) of those of that body alone. */
 MUST_CHECK enum status reach_shadows_build(const struct reach *reach, int64_t count, const double *x,
+                                           const int32_t *body_of, int32_t body,
                                            struct reach_shadows *shadows, struct error *error);
 void reach_shadows_free(struct reach_shadows *shadows);
 

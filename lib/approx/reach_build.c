@@ -260,7 +260,7 @@ static enum status file_views(struct reach *reach, struct reach_work *work, stru
     struct index_list near = {0};
     int dim = reach->cells.dim;
     const struct reach_places nodes = {.nodes = true};
-    TRY(reach_shadows_build(reach, reach->cells.node_count, reach->cells.x, &shadows, error));
+    TRY(reach_shadows_build(reach, reach->cells.node_count, reach->cells.x, NULL, 0, &shadows, error));
     for (int64_t n = 0; n < reach->cells.node_count; n++) {
         const double *x = reach->cells.x + n * dim;
         int64_t unused;

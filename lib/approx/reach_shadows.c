@@ -85,8 +85,15 @@ static struct box box_of_shadow(const struct reach *reach, const struct reach_fa
     return box;
 }
 
+/* The points that shadows are looked for of. */
+struct shaded {
+    struct point_grid grid;
+    const int32_t *body_of; /* NULL: all points; else those with this number: */
+    int32_t body;
+};
+
 /* List the points that a shadow may hold; `near`: scratch. */
-static enum status list_points(const struct reach *reach, const struct point_grid *points, int32_t shadow,
+static enum status list_points(const struct reach *reach, const struct shaded *points, int32_t shadow,
                                struct index_list *near, struct pair_list *pairs, struct error *error)
 {
     int dim = reach->cells.dim;
@@ -97,10 +104,13 @@ static enum status list_points(const struct reach *reach, const struct point_gri
     double of_y = reach_height_above(dim, facet, y);
     struct box box = box_of_shadow(reach, facet, node, of_y > tolerance);
     near->count = 0;
-    RETURN_IF_ERROR(point_grid_list_box(points, box.low, box.high, 1e-6, near, error));
+    RETURN_IF_ERROR(point_grid_list_box(&points->grid, box.low, box.high, 1e-6, near, error));
     for (int64_t i = 0; i < near->count; i++) {
-        const double *x = points->x + (int64_t)near->index[i] * dim;
+        const double *x = points->grid.x + (int64_t)near->index[i] * dim;
         double of_x = reach_height_above(dim, facet, x);
+        if (points->body_of != NULL && points->body_of[near->index[i]] != points->body) {
+            continue;
+        }
         if (of_x > tolerance || !(vector_distance2(dim, y, x) < radius * radius)) {
             continue;
         }
@@ -114,7 +124,7 @@ static enum status list_points(const struct reach *reach, const struct point_gri
 }
 
 /* All threads' pairs go to `all`, in whatever order: it does not matter to a point. */
-static enum status list_all(const struct reach *reach, const struct point_grid *points, struct pair_list *all,
+static enum status list_all(const struct reach *reach, const struct shaded *points, struct pair_list *all,
                             struct error *error)
 {
     enum status failure = STATUS_OK;
@@ -144,10 +154,11 @@ static enum status list_all(const struct reach *reach, const struct point_grid *
 }
 
 enum status reach_shadows_build(const struct reach *reach, int64_t count, const double *x,
-                                struct reach_shadows *shadows, struct error *error)
+                                const int32_t *body_of, int32_t body, struct reach_shadows *shadows,
+                                struct error *error)
 {
     enum status status;
-    struct point_grid points = {0};
+    struct shaded points = {.body_of = body_of, .body = body};
     struct pair_list pairs = {0};
     double *size = NULL, least = INFINITY;
     *shadows = (struct reach_shadows){0};
@@ -160,13 +171,13 @@ enum status reach_shadows_build(const struct reach *reach, int64_t count, const 
         size[p] = 0.5 * least;
     }
     if (reach->shadow_count > 0) {
-        TRY(point_grid_build(&points, reach->cells.dim, count, x, size, error));
+        TRY(point_grid_build(&points.grid, reach->cells.dim, count, x, size, error));
         TRY(list_all(reach, &points, &pairs, error));
     }
     TRY(pair_list_file(&pairs, count, &shadows->ptr, &shadows->shadow, error));
 done:
     free(size);
-    point_grid_free(&points);
+    point_grid_free(&points.grid);
     pair_list_free(&pairs);
     if (status != STATUS_OK) {
         reach_shadows_free(shadows);

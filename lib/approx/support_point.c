@@ -82,12 +82,10 @@ static double spacing_within(const struct support_options *options, const struct
 }
 
 /* Whether a support serves: enough nodes, a well-conditioned moment matrix, bounded gradients. */
-static enum status judge(const struct search *search, const double *x, double widen, const int32_t *index,
-                         const double *image, int64_t count, struct worker *worker, bool *serves,
-                         struct error *error)
+static enum status judge(const struct support_options *options, const struct point_grid *grid,
+                         const double *x, double widen, const int32_t *index, const double *image,
+                         int64_t count, struct worker *worker, bool *serves, struct error *error)
 {
-    const struct support_options *options = search->options;
-    const struct point_grid *grid = search->grid;
     enum mls_verdict verdict;
     struct mls_support support = {.x = x,
                                   .nodes = grid->x,
@@ -141,11 +139,14 @@ enum status support_find(const struct search *search, int64_t p, struct worker *
                          bool *serves, struct error *error)
 {
     const struct support_options *options = search->options;
-    const struct point_grid *grid = search->grid;
+    int32_t body = search_body(search, p);
+    const struct point_grid *grid = search->body[body].grid;
+    const struct reach *reach = search->body[body].reach;
+    struct reach_work *work = &worker->reach[body];
     const double *x = search->x + p * grid->dim;
     int64_t first = worker->list.count;
-    if (search->reach != NULL) {
-        RETURN_IF_ERROR(reach_begin(search->reach, &search->places, p, x, &worker->reach, error));
+    if (reach != NULL) {
+        RETURN_IF_ERROR(reach_begin(reach, &search->places, p, x, work, error));
     }
     for (*widen = 1.0; *widen <= SUPPORT_WIDEN_LIMIT; *widen *= widen_step) {
         worker->list.count = first;
@@ -153,16 +154,15 @@ enum status support_find(const struct search *search, int64_t p, struct worker *
         int64_t count = worker->list.count - first;
         int32_t *index = worker->list.index + first;
         double *image = NULL;
-        if (search->reach != NULL) {
-            RETURN_IF_ERROR(
-                reach_filter(search->reach, &search->shadows, *widen, index, &count, &worker->reach, error));
-            image = worker->reach.around > 0 ? worker->reach.image : NULL;
+        if (reach != NULL) {
+            RETURN_IF_ERROR(reach_filter(reach, &search->shadows[body], *widen, index, &count, work, error));
+            image = work->around > 0 ? work->image : NULL;
         }
         RETURN_IF_ERROR(keep_nearest(grid, x, options->most, index, image, &count, worker, error));
         worker->list.count = first + count;
         *serves = true;
         if (options->widen) {
-            RETURN_IF_ERROR(judge(search, x, *widen, index, image, count, worker, serves, error));
+            RETURN_IF_ERROR(judge(options, grid, x, *widen, index, image, count, worker, serves, error));
         }
         if (*serves) {
             return image != NULL ? note_around(grid, x, image, first, worker, error) : STATUS_OK;
