@@ -8,6 +8,7 @@
 #include <stdlib.h>
 
 const char *const basis_names[BASIS_COUNT] = {"mls1", "mls2", "mmls2"};
+const char *const weight_names[WEIGHT_COUNT] = {"quartic", "regularised"};
 
 struct mls mls_default(int dim)
 {

@@ -1,7 +1,6 @@
 #include "approx/mls_kernel.h"
 
 #include "approx/mls_vector.h"
-#include "approx/weight_formulas.h"
 #include "base/processor.h"
 
 /* One point's neighbours in local scaled coordinates. */

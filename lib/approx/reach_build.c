@@ -1,6 +1,7 @@
 /* Preparation of a body for queries of reach: facets, re-entrant corners, and which nodes see which. */
 #include "approx/reach_private.h"
 
+#include "approx/parts.h"
 #include "base/box.h"
 #include "base/lists.h"
 #include "base/memory.h"
@@ -135,35 +136,6 @@ done:
     return status;
 }
 
-/* Where facets meet: a node, in 3D an edge; and the vertex of the facet that is not there. */
-struct ridge {
-    int32_t node[2]; /* ascending; 2D: the second is -1 */
-    int32_t facet, opposite;
-};
-
-static int compare_ridges(const void *left, const void *right)
-{
-    const struct ridge *a = left, *b = right;
-    if (a->node[0] != b->node[0]) {
-        return a->node[0] < b->node[0] ? -1 : 1;
-    }
-    return a->node[1] != b->node[1] ? (a->node[1] < b->node[1] ? -1 : 1) : a->facet - b->facet;
-}
-
-static void list_ridges(const struct reach *reach, struct ridge *ridges)
-{
-    int dim = reach->cells.dim;
-    for (int64_t i = 0; i < reach->facet_count * dim; i++) {
-        const int32_t *node = reach->facet[i / dim].node;
-        int k = (int)(i % dim);
-        int32_t a = node[(k + 1) % dim], b = dim == 3 ? node[(k + 2) % dim] : -1;
-        bool turned = b >= 0 && b < a;
-        ridges[i] = (struct ridge){
-            .node = {turned ? b : a, turned ? a : b}, .facet = (int32_t)(i / dim), .opposite = node[k]};
-    }
-    qsort(ridges, (size_t)(reach->facet_count * dim), sizeof *ridges, compare_ridges);
-}
-
 /* Whether the cells at a node hang together by faces at it. */
 static enum status hangs_together(const struct reach *reach, int32_t node, struct reach_work *work,
                                   bool *together, struct error *error)
@@ -213,21 +185,19 @@ static bool is_reentrant(const struct reach *reach, const struct ridge *first, c
 }
 
 /* Corners: nodes of re-entrant ridges. Where more than two facets meet the body only touches itself. */
-static enum status find_corners(struct reach *reach, struct reach_work *work, struct error *error)
+static enum status find_corners(const struct faces *faces, struct reach *reach, struct reach_work *work,
+                                struct error *error)
 {
     enum status status;
     struct pair_list edges = {0};
     struct ridge *ridges = NULL;
     int dim = reach->cells.dim;
-    int64_t count = reach->facet_count * dim;
+    int64_t count = faces->count * dim;
     TRY(NEW_ARRAY(&ridges, count, error));
     TRY(NEW_ARRAY(&reach->corner, reach->cells.node_count, error));
-    list_ridges(reach, ridges);
+    ridges_list(dim, faces->count, faces->node, ridges);
     for (int64_t i = 0, end; i < count; i = end) {
-        for (end = i + 1; end < count && ridges[end].node[0] == ridges[i].node[0] &&
-                          ridges[end].node[1] == ridges[i].node[1];
-             end++) {
-        }
+        end = ridges_end(count, ridges, i);
         int32_t a = ridges[i].node[0], b = ridges[i].node[1];
         if (end - i != 2 || !is_reentrant(reach, &ridges[i], &ridges[i + 1])) {
             continue;
@@ -322,7 +292,7 @@ enum status reach_build(const struct cells *cells, const struct point_grid *grid
     TRY(faces_build(cells, true, &faces, error));
     TRY(set_facets(&faces, reach, error));
     TRY(list_shadows(reach, error));
-    TRY(find_corners(reach, &work, error));
+    TRY(find_corners(&faces, reach, &work, error));
     TRY(file_views(reach, &work, error));
 done:
     faces_free(&faces);
