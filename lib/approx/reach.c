@@ -76,12 +76,7 @@ static enum status keep(const struct reach *reach, double widen, int32_t *index,
 {
     int dim = reach->cells.dim;
     int64_t kept = 0;
-    if (*count > work->capacity) {
-        free(work->image);
-        work->capacity = 0;
-        RETURN_IF_ERROR(NEW_ARRAY(&work->image, 2 * *count * dim, error));
-        work->capacity = 2 * *count;
-    }
+    RETURN_IF_ERROR(GROW_ARRAY(&work->image, *count * dim, &work->image_room, error));
     for (int64_t i = 0; i < *count; i++) {
         int32_t node = index[i];
         double *image = work->image + kept * dim, bend[3], length;

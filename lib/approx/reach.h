@@ -126,10 +126,10 @@ struct reach_work {
     int32_t *before;           /* the node before on that path, -1: the point itself */
     struct index_list reached; /* nodes that the last search for paths may have put a length down for */
     struct index_list hidden, stack, visited;
-    int64_t changed;  /* candidates of the last filter that were out of sight */
-    int64_t around;   /* neighbours of the last filter that are seen around corners */
-    int64_t capacity; /* neighbours that `image` serves */
-    double *image;    /* those neighbours' offsets from the point to where they seem to be: see mls_support */
+    int64_t changed; /* candidates of the last filter that were out of sight */
+    int64_t around;  /* neighbours of the last filter that are seen around corners */
+    int64_t image_room;
+    double *image; /* those neighbours' offsets from the point to where they seem to be: see mls_support */
 };
 void reach_work_free(struct reach_work *work);
 

@@ -35,6 +35,7 @@ static void worker_free(int64_t body_count, struct worker *worker)
     }
     free(worker->reach);
     free(worker->order);
+    free(worker->gradient);
     mls_work_free(&worker->work);
 }
 

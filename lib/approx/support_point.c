@@ -28,13 +28,7 @@ static enum status keep_nearest(const struct point_grid *grid, const double *x, 
     if (most <= 0 || *count <= most) {
         return STATUS_OK;
     }
-    if (*count > worker->capacity) {
-        int64_t capacity = 2 * *count + 64;
-        free(worker->order);
-        worker->capacity = 0;
-        RETURN_IF_ERROR(NEW_ARRAY(&worker->order, capacity, error));
-        worker->capacity = capacity;
-    }
+    RETURN_IF_ERROR(GROW_ARRAY(&worker->order, *count, &worker->order_room, error));
     double *distance2 = worker->order;
     for (int64_t i = 0; i < *count; i++) {
         distance2[i] = neighbour_distance2(grid, x, index[i], image != NULL ? image + i * dim : NULL);
@@ -94,18 +88,22 @@ static enum status judge(const struct support_options *options, const struct poi
                                   .neighbours = index,
                                   .count = count,
                                   .image = image};
-    double largest;
+    double largest2 = 0.0;
     *serves = false;
     if (count < options->least) {
         return STATUS_OK;
     }
     double spacing = spacing_within(options, grid, x, index, image, count, widen);
-    enum status status =
-        mls_largest_gradient(&options->mls, &support, &worker->work, &largest, &verdict, error);
-    if (status == STATUS_OK && verdict == MLS_GOOD) {
-        *serves = largest * spacing <= options->gradient_bound;
+    int dim = grid->dim;
+    RETURN_IF_ERROR(GROW_ARRAY(&worker->gradient, count * dim, &worker->gradient_room, error));
+    RETURN_IF_ERROR(
+        mls_evaluate(&options->mls, &support, &worker->work, NULL, worker->gradient, &verdict, error));
+    for (int64_t i = 0; i < count && verdict == MLS_GOOD; i++) {
+        double square = vector_dot(dim, worker->gradient + i * dim, worker->gradient + i * dim);
+        largest2 = square > largest2 ? square : largest2;
     }
-    return status;
+    *serves = verdict == MLS_GOOD && sqrt(largest2) * spacing <= options->gradient_bound;
+    return STATUS_OK;
 }
 
 /* Put down the neighbours of the list from `first` on that are seen around corners: those whose images are
@@ -123,14 +121,12 @@ static enum status note_around(const struct point_grid *grid, const double *x, c
         if (straight) {
             continue;
         }
-        if (worker->around_count == worker->around_capacity) {
-            int64_t capacity = 2 * worker->around_capacity + 64;
-            RETURN_IF_ERROR(RESIZE_ARRAY(&worker->around_pair, capacity, error));
-            RETURN_IF_ERROR(RESIZE_ARRAY(&worker->around_offset, capacity * dim, error));
-            worker->around_capacity = capacity;
-        }
-        worker->around_pair[worker->around_count] = i;
-        memcpy(worker->around_offset + worker->around_count++ * dim, image, (size_t)dim * sizeof *image);
+        int64_t at = worker->around_count;
+        RETURN_IF_ERROR(GROW_ARRAY(&worker->around_pair, at + 1, &worker->pair_room, error));
+        RETURN_IF_ERROR(GROW_ARRAY(&worker->around_offset, (at + 1) * dim, &worker->offset_room, error));
+        worker->around_pair[at] = i;
+        memcpy(worker->around_offset + at * dim, image, (size_t)dim * sizeof *image);
+        worker->around_count++;
     }
     return STATUS_OK;
 }

@@ -22,13 +22,13 @@ struct search {
 /* One thread's growing lists and scratch. */
 struct worker {
     struct index_list list;
-    int64_t around_count, around_capacity; /* neighbours seen around corners */
-    int64_t *around_pair;                  /* places in the list */
+    int64_t around_count, pair_room, offset_room; /* neighbours seen around corners */
+    int64_t *around_pair;                         /* places in the list */
     double *around_offset;
     struct reach_work *reach; /* for each body */
     struct mls_work work;
-    double *order;
-    int64_t capacity;
+    double *order, *gradient;
+    int64_t order_room, gradient_room;
 };
 
 /* Append the neighbours of point p to the worker's list. The radii are widened until the support serves, at
