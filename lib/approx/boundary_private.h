@@ -1,10 +1,8 @@
-/* What the parts of the boundary averages share; see boundary.h. */
+/* Parts of boundary.c, in boundary_sides.c; private to lib/approx. */
 #ifndef APPROX_BOUNDARY_PRIVATE_H
 #define APPROX_BOUNDARY_PRIVATE_H
 
 #include "approx/boundary.h"
-
-/* ---- boundary_facets.c: facets and the faces of the table that they are ---- */
 
 /* face_of[i]: the face of the table that facet i of the set is. STATUS_INPUT where it is none, or a node of
  * it is not there. */
@@ -13,15 +11,6 @@ MUST_CHECK enum status boundary_find_faces(const struct face_table *table, const
 
 /* Outward unit normal (three components, in 2D the last one 0) and size, m or m2, of a facet. */
 void boundary_unit_normal(const struct face_table *table, const int32_t *facet, double *normal, double *size);
-
-/* ---- boundary_split.c: boundary averages, split where the boundary turns ---- */
-
-/* Whether two facets, given by their dim nodes, have an edge (2D: a node) in common. */
-bool boundary_share_edge(int dim, const int32_t *a, const int32_t *b);
-
-/* Whether two facets that meet at a node, given by their nodes, are of one side: in 3D they must share an
- * edge, in 2D they meet anyway. */
-bool boundary_same_side(const struct face_table *table, const int32_t *a, const int32_t *b);
 
 /* One corner of a facet: which part it belongs to. */
 struct corner {

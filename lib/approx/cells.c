@@ -7,12 +7,12 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* Faces opposite each vertex's complement, outward from a positively oriented simplex. */
-static const int triangle_faces[3][2] = {{0, 1}, {1, 2}, {2, 0}};
-static const int tetrahedron_faces[4][3] = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}};
-/* The vertex that is not of the face. */
-static const int triangle_opposite[3] = {2, 0, 1};
-static const int tetrahedron_opposite[4] = {3, 2, 0, 1};
+/* The order of a cell's faces: the vertex that is not of each. */
+static int opposite(int dim, int64_t face)
+{
+    static const int of_triangle[3] = {2, 0, 1}, of_tetrahedron[4] = {3, 2, 0, 1};
+    return dim == 2 ? of_triangle[face] : of_tetrahedron[face];
+}
 
 double cell_volume(const struct cells *cells, int64_t cell)
 {
@@ -42,11 +42,11 @@ void cell_centroid(const struct cells *cells, int64_t cell, double *centroid)
     }
 }
 
-void cell_face(const struct cells *cells, int64_t cell, int opposite, int32_t *face)
+void cell_face(const struct cells *cells, int64_t cell, int vertex, int32_t *face)
 {
     static const int of_triangle[3][2] = {{1, 2}, {2, 0}, {0, 1}};
     static const int of_tetrahedron[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};
-    const int *corner = cells->dim == 2 ? of_triangle[opposite] : of_tetrahedron[opposite];
+    const int *corner = cells->dim == 2 ? of_triangle[vertex] : of_tetrahedron[vertex];
     for (int k = 0; k < cells->dim; k++) {
         face[k] = cells->node[cell * (cells->dim + 1) + corner[k]];
     }
@@ -152,11 +152,6 @@ struct filed_face {
     int64_t source; /* cell * (dim + 1) + local face */
 };
 
-static const int *local_face(int dim, int64_t k)
-{
-    return dim == 2 ? triangle_faces[k] : tetrahedron_faces[k];
-}
-
 void face_key(int dim, const int32_t *node, int32_t key[3])
 {
     key[2] = -1;
@@ -171,14 +166,10 @@ void face_key(int dim, const int32_t *node, int32_t key[3])
 
 static void key_of_source(const struct cells *cells, int64_t source, int32_t key[3])
 {
-    int dim = cells->dim;
-    const int32_t *v = cells->node + source / (dim + 1) * (dim + 1);
-    const int *local = local_face(dim, source % (dim + 1));
+    int corners = cells->dim + 1;
     int32_t node[3];
-    for (int i = 0; i < dim; i++) {
-        node[i] = v[local[i]];
-    }
-    face_key(dim, node, key);
+    cell_face(cells, source / corners, opposite(cells->dim, source % corners), node);
+    face_key(cells->dim, node, key);
 }
 
 static int same_face(const struct filed_face *a, const struct filed_face *b)
@@ -235,12 +226,9 @@ done:
 /* Append the face at slot s of the cells, beyond which is that cell or none. */
 static void add_face(const struct cells *cells, int64_t s, int64_t beyond, struct faces *faces)
 {
-    int dim = cells->dim;
-    const int *local = local_face(dim, s % (dim + 1));
-    for (int i = 0; i < dim; i++) {
-        faces->node[faces->count * dim + i] = cells->node[s / (dim + 1) * (dim + 1) + local[i]];
-    }
-    faces->cell[faces->count * 2] = (int32_t)(s / (dim + 1));
+    int corners = cells->dim + 1;
+    cell_face(cells, s / corners, opposite(cells->dim, s % corners), faces->node + faces->count * cells->dim);
+    faces->cell[faces->count * 2] = (int32_t)(s / corners);
     faces->cell[faces->count * 2 + 1] = (int32_t)beyond;
     faces->count++;
 }
@@ -289,8 +277,8 @@ enum status cells_across(const struct cells *cells, int32_t *across, struct erro
     TRY(NEW_ARRAY(&partner, cells->count * corners, error));
     TRY(match_faces(cells, partner, error));
     for (int64_t s = 0; s < cells->count * corners; s++) {
-        int opposite = cells->dim == 2 ? triangle_opposite[s % corners] : tetrahedron_opposite[s % corners];
-        across[s / corners * corners + opposite] = partner[s] < 0 ? -1 : (int32_t)(partner[s] / corners);
+        across[s / corners * corners + opposite(cells->dim, s % corners)] =
+            partner[s] < 0 ? -1 : (int32_t)(partner[s] / corners);
     }
 done:
     free(partner);

@@ -45,7 +45,7 @@ double simplex_distance2(int dim, int order, const double *const *corner, const 
 void cell_centroid(const struct cells *cells, int64_t cell, double *centroid);
 
 /* face[dim]: the nodes of the face opposite a vertex of a cell, oriented outward. */
-void cell_face(const struct cells *cells, int64_t cell, int opposite, int32_t *face);
+void cell_face(const struct cells *cells, int64_t cell, int vertex, int32_t *face);
 
 /* Outward normal times length or area of a face of node indices face[dim]. */
 void face_area_vector(int dim, const double *x, const int32_t *face, double *vector);

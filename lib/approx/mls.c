@@ -4,10 +4,10 @@
 #include "approx/mls_orthogonal.h"
 #include "base/memory.h"
 
-#include <math.h>
 #include <stdlib.h>
 
 const char *const basis_names[BASIS_COUNT] = {"mls1", "mls2", "mmls2"};
+const char *const weight_names[WEIGHT_COUNT] = {"quartic", "regularised"};
 
 struct mls mls_default(int dim)
 {
@@ -47,10 +47,8 @@ void mls_work_free(struct mls_work *work)
     *work = (struct mls_work){0};
 }
 
-/* Rows of scratch: those of mls_orthogonal, which are more than those of the kernels, then phi and its
- * gradients.
- */
-enum { ROW_OF_VALUES = MLS_ROWS, SCRATCH_ROWS = MLS_ROWS + 1 + 3 };
+/* Rows of scratch: those of mls_orthogonal, which are more than those of the kernels, then phi. */
+enum { ROW_OF_VALUES = MLS_ROWS, SCRATCH_ROWS = MLS_ROWS + 1 };
 _Static_assert((int)MLS_KERNEL_ROWS <= (int)MLS_ROWS, "scratch of the kernels");
 
 /* Scratch for `count` neighbours. */
@@ -72,8 +70,8 @@ static double *work_reserve(struct mls_work *work, int64_t count)
     return work->values;
 }
 
-static enum status evaluate(const struct mls *mls, const struct mls_support *support, struct mls_work *work,
-                            const struct mls_result *result, enum mls_verdict *verdict, struct error *error)
+enum status mls_evaluate(const struct mls *mls, const struct mls_support *support, struct mls_work *work,
+                         double *phi, double *dphi, enum mls_verdict *verdict, struct error *error)
 {
     int m = mls_basis_size(mls), space = mls->dim - 2;
     *verdict = MLS_TOO_FEW;
@@ -88,37 +86,9 @@ static enum status evaluate(const struct mls *mls, const struct mls_support *sup
     mls_kernel *kernel =
         mls->basis == BASIS_LINEAR ? work->kernels->linear[space] : work->kernels->quadratic[space];
     *verdict = MLS_GOOD;
-    if (kernel(mls, support, scratch, stride, result)) {
-        return STATUS_OK;
-    }
-    double *phi = result->phi != NULL ? result->phi : scratch + ROW_OF_VALUES * stride;
-    double *dphi = result->largest != NULL ? scratch + (ROW_OF_VALUES + 1) * stride : result->dphi;
-    *verdict = mls_orthogonal(mls, support, scratch, stride, phi, dphi);
-    if (result->largest != NULL) {
-        double most = 0.0;
-        for (int64_t j = 0; j < support->count; j++) {
-            double sum = 0.0;
-            for (int a = 0; a < mls->dim; a++) {
-                sum += dphi[j * mls->dim + a] * dphi[j * mls->dim + a];
-            }
-            most = fmax(most, sum);
-        }
-        *result->largest = sqrt(most);
+    if (!kernel(mls, support, scratch, stride, phi, dphi)) {
+        *verdict = mls_orthogonal(mls, support, scratch, stride,
+                                  phi != NULL ? phi : scratch + ROW_OF_VALUES * stride, dphi);
     }
     return STATUS_OK;
-}
-
-enum status mls_evaluate(const struct mls *mls, const struct mls_support *support, struct mls_work *work,
-                         double *phi, double *dphi, enum mls_verdict *verdict, struct error *error)
-{
-    struct mls_result result = {.phi = phi, .dphi = dphi};
-    return evaluate(mls, support, work, &result, verdict, error);
-}
-
-enum status mls_largest_gradient(const struct mls *mls, const struct mls_support *support,
-                                 struct mls_work *work, double *largest, enum mls_verdict *verdict,
-                                 struct error *error)
-{
-    struct mls_result result = {.largest = largest};
-    return evaluate(mls, support, work, &result, verdict, error);
 }

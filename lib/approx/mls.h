@@ -71,18 +71,12 @@ struct mls_support {
                             neighbours are visible */
 };
 
-/* Values phi[count] and, unless dphi is NULL, full gradients dphi[count * dim] (per unit of x) at a point.
- * Every result is checked: unity and linear reproduction hold to 1e-10 (relative to s) whenever the verdict
- * is MLS_GOOD. The same bits on every processor. Returns STATUS_OK with the verdict, or STATUS_SYSTEM
+/* Values phi[count] and full gradients dphi[count * dim] (per unit of x) at a point, of which one may be
+ * NULL. Every result is checked: unity and linear reproduction hold to 1e-10 (relative to s) whenever the
+ * verdict is MLS_GOOD. The same bits on every processor. Returns STATUS_OK with the verdict, or STATUS_SYSTEM
  * (memory). */
 MUST_CHECK enum status mls_evaluate(const struct mls *mls, const struct mls_support *support,
                                     struct mls_work *work, double *phi, double *dphi,
                                     enum mls_verdict *verdict, struct error *error);
-
-/* *largest: the largest |grad phi_j| (per unit of x) at a point, where the verdict is MLS_GOOD; the same
- * verdict as mls_evaluate with gradients. */
-MUST_CHECK enum status mls_largest_gradient(const struct mls *mls, const struct mls_support *support,
-                                            struct mls_work *work, double *largest, enum mls_verdict *verdict,
-                                            struct error *error);
 
 #endif

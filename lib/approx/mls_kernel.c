@@ -1,7 +1,6 @@
 #include "approx/mls_kernel.h"
 
 #include "approx/mls_vector.h"
-#include "approx/weight_formulas.h"
 #include "base/processor.h"
 
 /* One point's neighbours in local scaled coordinates. */
@@ -213,12 +212,12 @@ KERNEL_INLINE double values(int dim, int m, const double *c, bool gradients, boo
 }
 
 /* s d_a phi_j = w_j p_j.g_a - slope_j xi_a p_j.c (the image for xi_a) into ROW_GRADIENT + a. Returns the
- * largest defect of sum grad phi p = grad p(0), p linear; *largest2: the largest squared gradient. */
+ * largest defect of sum grad phi p = grad p(0), p linear. */
 KERNEL_INLINE double gradients(int dim, int m, const lanes *coefficient, bool images,
-                               const struct mls_point *point, double *largest2)
+                               const struct mls_point *point)
 {
     double g[3][MLS_MAX_BASIS], worst = 0.0;
-    lanes defect[3][4], most = {0.0, 0.0, 0.0, 0.0};
+    lanes defect[3][4];
     memset(defect, 0, sizeof defect);
     for (int k = 0; k < m; k++) {
         for (int a = 0; a < dim; a++) {
@@ -226,7 +225,7 @@ KERNEL_INLINE double gradients(int dim, int m, const lanes *coefficient, bool im
         }
     }
     for (int64_t j = 0; j < point->padded; j += LANES) {
-        lanes xi[3], image[3], weight, slope, square = {0.0, 0.0, 0.0, 0.0};
+        lanes xi[3], image[3], weight, slope;
         load_xi(dim, point, j, xi);
         load_vector(dim, point, images ? ROW_IMAGE : ROW_XI, j, image);
         load_row(point, ROW_WEIGHT, j, &weight);
@@ -236,15 +235,12 @@ KERNEL_INLINE double gradients(int dim, int m, const lanes *coefficient, bool im
             polynomial(dim, m, g[a], xi, &gradient);
             gradient = weight * gradient - slope * image[a];
             store_row(point, ROW_GRADIENT + a, j, &gradient);
-            square += gradient * gradient;
             defect[a][0] += gradient;
             for (int b = 0; b < dim; b++) {
                 defect[a][1 + b] += gradient * xi[b];
             }
         }
-        larger(&most, &square);
     }
-    *largest2 = fmax(fmax(most[0], most[1]), fmax(most[2], most[3]));
     for (int a = 0; a < dim; a++) {
         for (int k = 0; k <= dim; k++) {
             worst = larger_defect(worst, lane_sum(&defect[a][k]) - (k == 1 + a ? 1.0 : 0.0));
@@ -266,21 +262,19 @@ KERNEL_INLINE void put_gradients(int dim, const struct mls_point *point, double 
 }
 
 KERNEL_INLINE bool kernel_evaluate(const struct mls *mls, const struct mls_support *support, int dim, int m,
-                                   bool images, double *scratch, int64_t stride,
-                                   const struct mls_result *result)
+                                   bool images, double *scratch, int64_t stride, double *phi, double *dphi)
 {
     /* With pivots above this the condition is good, as the matrix is small: no estimate is needed. */
     static const double safe_pivot = 1e-5;
     /* With H a pivot may be smaller, but not too small for the normal equations. */
     static const double least_pivot = 1e-9;
     static const double most_defect = 1e-13;
-    bool with_gradients = result->dphi != NULL || result->largest != NULL;
     struct mls_point point = {.count = support->count,
                               .padded = (support->count + LANES - 1) / LANES * LANES,
                               .stride = stride,
                               .row = scratch};
     struct mls_system system;
-    double largest2 = 0.0, c[MLS_MAX_BASIS];
+    double c[MLS_MAX_BASIS];
     lanes right[MLS_MAX_BASIS];
     gather(support, dim, &point);
     if (images) {
@@ -293,23 +287,18 @@ KERNEL_INLINE bool kernel_evaluate(const struct mls *mls, const struct mls_suppo
         return false;
     }
     substitute_unit(m, &system, c);
-    if (!(values(dim, m, c, with_gradients, images, &point, right) <= most_defect)) {
+    if (!(values(dim, m, c, dphi != NULL, images, &point, right) <= most_defect)) {
         return false;
     }
-    if (with_gradients) {
+    if (dphi != NULL) {
         substitute(m, &system, right);
-        if (!(gradients(dim, m, right, images, &point, &largest2) <= most_defect)) {
+        if (!(gradients(dim, m, right, images, &point) <= most_defect)) {
             return false;
         }
+        put_gradients(dim, &point, dphi);
     }
-    if (result->phi != NULL) {
-        memcpy(result->phi, point.row + ROW_PHI * stride, (size_t)point.count * sizeof *result->phi);
-    }
-    if (result->dphi != NULL) {
-        put_gradients(dim, &point, result->dphi);
-    }
-    if (result->largest != NULL) {
-        *result->largest = sqrt(largest2) / point.scale;
+    if (phi != NULL) {
+        memcpy(phi, point.row + ROW_PHI * stride, (size_t)point.count * sizeof *phi);
     }
     return true;
 }
@@ -318,12 +307,11 @@ KERNEL_INLINE bool kernel_evaluate(const struct mls *mls, const struct mls_suppo
 
 #define KERNEL(set, shape, dim, m, attribute)                                                                \
     attribute static bool shape##_##dim##_##set(const struct mls *mls, const struct mls_support *support,    \
-                                                double *scratch, int64_t stride,                             \
-                                                const struct mls_result *result)                             \
+                                                double *scratch, int64_t stride, double *phi, double *dphi)  \
     {                                                                                                        \
         return support->image == NULL                                                                        \
-                   ? kernel_evaluate(mls, support, dim, m, false, scratch, stride, result)                   \
-                   : kernel_evaluate(mls, support, dim, m, true, scratch, stride, result);                   \
+                   ? kernel_evaluate(mls, support, dim, m, false, scratch, stride, phi, dphi)                \
+                   : kernel_evaluate(mls, support, dim, m, true, scratch, stride, phi, dphi);                \
     }
 
 #define KERNEL_SET(set, attribute)                                                                           \

@@ -22,16 +22,10 @@ enum mls_row {
     MLS_KERNEL_ROWS = ROW_IMAGE + 3
 };
 
-/* What is asked for, where not NULL. */
-struct mls_result {
-    double *phi;     /* count */
-    double *dphi;    /* count * dim, per unit of x */
-    double *largest; /* the largest |grad phi|, per unit of x */
-};
-
-/* Evaluate at one point; false when that is left to mls_orthogonal(). scratch[MLS_KERNEL_ROWS * stride]. */
+/* Evaluate at one point: phi[count] and dphi[count * dim], per unit of x, where not NULL; false when that is
+ * left to mls_orthogonal(). scratch[MLS_KERNEL_ROWS * stride]. */
 typedef bool mls_kernel(const struct mls *mls, const struct mls_support *support, double *scratch,
-                        int64_t stride, const struct mls_result *result);
+                        int64_t stride, double *phi, double *dphi);
 
 /* One set of compiled kernels. */
 struct mls_kernels {

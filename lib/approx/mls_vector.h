@@ -11,17 +11,9 @@
 
 #define LANES 4
 typedef double lanes __attribute__((vector_size(8 * LANES)));
-typedef int64_t lane_bits __attribute__((vector_size(8 * LANES)));
 
 /* Before the loops over monomials: in full, so that what they index stays in registers. */
 #define UNROLL _Pragma("GCC unroll 10")
-
-/* *most = the larger of each lane; a NaN of `other` is passed over. */
-KERNEL_INLINE void larger(lanes *most, const lanes *other)
-{
-    lane_bits mask = *other > *most;
-    *most = (lanes)(((lane_bits)*other & mask) | ((lane_bits)*most & ~mask));
-}
 
 /* Monomials of degree at most 4, of which the moment matrix of the quadratic basis is made. */
 #define MLS_MOMENTS 35

@@ -1,5 +1,6 @@
 #include "approx/parts.h"
 
+#include "base/lists.h"
 #include "base/memory.h"
 #include "base/sets.h"
 #include "base/vector.h"
@@ -88,40 +89,33 @@ done:
 
 /* ---- sides ---- */
 
-/* An edge of a facet (in 2D a node of it, the second is -1). */
-struct edge {
-    int32_t node[2];
-    int32_t facet;
-};
-
-static int compare_edges(const void *left, const void *right)
+static int compare_ridges(const void *left, const void *right)
 {
-    const struct edge *a = left;
-    const struct edge *b = right;
-    for (int k = 0; k < 2; k++) {
-        if (a->node[k] != b->node[k]) {
-            return a->node[k] < b->node[k] ? -1 : 1;
-        }
-    }
-    return (a->facet > b->facet) - (a->facet < b->facet);
+    const struct ridge *a = left, *b = right;
+    int order = compare_numbers(2, a->node, b->node);
+    return order != 0 ? order : (a->facet > b->facet) - (a->facet < b->facet);
 }
 
-static bool same_edge(const struct edge *a, const struct edge *b)
+void ridges_list(int dim, int64_t count, const int32_t *node, struct ridge *ridge)
 {
-    return a->node[0] == b->node[0] && a->node[1] == b->node[1];
+    for (int64_t i = 0; i < count * dim; i++) {
+        const int32_t *of = node + i / dim * dim;
+        int k = (int)(i % dim);
+        int32_t a = of[(k + 1) % dim], b = dim == 3 ? of[(k + 2) % dim] : -1;
+        bool turned = b >= 0 && b < a;
+        ridge[i] = (struct ridge){
+            .node = {turned ? b : a, turned ? a : b}, .facet = (int32_t)(i / dim), .opposite = of[k]};
+    }
+    qsort(ridge, (size_t)(count * dim), sizeof *ridge, compare_ridges);
 }
 
-static void list_edges(const struct faces *boundary, struct edge *edges)
+int64_t ridges_end(int64_t count, const struct ridge *ridge, int64_t first)
 {
-    int dim = boundary->dim;
-    for (int64_t i = 0; i < boundary->count * dim; i++) {
-        int64_t facet = i / dim;
-        int32_t a = boundary->node[i];
-        int32_t b = dim == 2 ? -1 : boundary->node[facet * dim + (i + 1) % dim];
-        bool swap = dim == 3 && a > b;
-        edges[i] = (struct edge){{swap ? b : a, swap ? a : b}, (int32_t)facet};
+    int64_t end = first + 1;
+    while (end < count && compare_numbers(2, ridge[end].node, ridge[first].node) == 0) {
+        end++;
     }
-    qsort(edges, (size_t)(boundary->count * dim), sizeof *edges, compare_edges);
+    return end;
 }
 
 enum status boundary_sides(const double *x, const struct faces *boundary, double degrees, int32_t *part,
@@ -129,25 +123,24 @@ enum status boundary_sides(const double *x, const struct faces *boundary, double
 {
     enum status status;
     int dim = boundary->dim;
-    int64_t edge_count = boundary->count * dim;
+    int64_t ridge_count = boundary->count * dim;
     double least = cos(degrees * acos(-1) / 180) - 1e-12;
-    struct edge *edges = NULL;
+    struct ridge *ridges = NULL;
     int32_t *parent = NULL;
     double *area = NULL;
     double *normal = NULL;
     TRY(parts_begin(boundary->count, &parent, &area, error));
     TRY(NEW_ARRAY(&normal, boundary->count * dim, error));
-    TRY(NEW_ARRAY(&edges, edge_count, error));
+    TRY(NEW_ARRAY(&ridges, ridge_count, error));
     for (int64_t f = 0; f < boundary->count; f++) {
         face_area_vector(dim, x, &boundary->node[f * dim], &normal[f * dim]);
         area[f] = vector_length(dim, normal + f * dim);
     }
-    list_edges(boundary, edges);
-    for (int64_t first = 0, end; first < edge_count; first = end) {
-        for (end = first + 1; end < edge_count && same_edge(&edges[end], &edges[first]); end++) {
-        }
-        int32_t a = edges[first].facet;
-        int32_t b = edges[end - 1].facet;
+    ridges_list(dim, boundary->count, boundary->node, ridges);
+    for (int64_t first = 0, end; first < ridge_count; first = end) {
+        end = ridges_end(ridge_count, ridges, first);
+        int32_t a = ridges[first].facet;
+        int32_t b = ridges[end - 1].facet;
         double product = vector_dot(dim, normal + (int64_t)a * dim, normal + (int64_t)b * dim);
         if (end - first == 2 && product / (area[a] * area[b]) >= least) {
             set_join(parent, a, b);
@@ -158,7 +151,7 @@ done:
     free(parent);
     free(area);
     free(normal);
-    free(edges);
+    free(ridges);
     return status;
 }
 

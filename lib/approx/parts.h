@@ -4,6 +4,18 @@
 
 #include "approx/cells.h"
 
+/* Where facets of a boundary meet: a node, in 3D an edge. */
+struct ridge {
+    int32_t node[2];         /* ascending; 2D: the second is -1 */
+    int32_t facet, opposite; /* the vertex of the facet that is not there */
+};
+
+/* ridge[count * dim]: those of the facets node[count * dim], sorted by nodes and then by facets. */
+void ridges_list(int dim, int64_t count, const int32_t *node, struct ridge *ridge);
+
+/* The first ridge behind number `first` that has other nodes, or `count`. */
+int64_t ridges_end(int64_t count, const struct ridge *ridge, int64_t first);
+
 /* part[cells->count]: the connected body of each cell; cells with a common face are of one body, cells that
  * share no more than an edge or a node are not. Bodies are numbered from 0 by falling volume. */
 MUST_CHECK enum status cells_parts(const struct cells *cells, int32_t *part, int32_t *count,

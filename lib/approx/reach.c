@@ -21,11 +21,11 @@ enum status reach_begin(const struct reach *reach, const struct reach_places *pl
     work->x = x;
     work->outside = false;
     memcpy(work->from, x, (size_t)reach->cells.dim * sizeof *x);
-    work->cell_count = -1;
+    work->cell_count = work->node = -1;
     if (places->nodes) {
-        int64_t node = places->node != NULL ? places->node[p] : p;
-        work->cell = reach->star + reach->star_ptr[node];
-        work->cell_count = reach->star_ptr[node + 1] - reach->star_ptr[node];
+        work->node = places->node != NULL ? places->node[p] : p;
+        work->cell = reach->star + reach->star_ptr[work->node];
+        work->cell_count = reach->star_ptr[work->node + 1] - reach->star_ptr[work->node];
     } else if (places->cell != NULL) {
         work->cell = reach_places_cells(places, p, &work->cell_count);
         work->cell_count = work->cell_count > 0 && work->cell[0] >= 0 ? work->cell_count : -1;
@@ -45,6 +45,13 @@ static enum status mark_hidden(const struct reach *reach, const struct reach_sha
         }
     }
     if (work->cell_count <= 0) {
+        return STATUS_OK;
+    }
+    if (widen <= 1.0 && work->node >= 0) {
+        *hidden = reach->hidden_ptr[work->node + 1] - reach->hidden_ptr[work->node];
+        for (int64_t i = 0; i < *hidden; i++) {
+            work->mark[reach->hidden[reach->hidden_ptr[work->node] + i]] = 2 * work->serial + 1;
+        }
         return STATUS_OK;
     }
     if (widen <= 1.0 && !work->outside) {
@@ -69,12 +76,7 @@ static enum status keep(const struct reach *reach, double widen, int32_t *index,
 {
     int dim = reach->cells.dim;
     int64_t kept = 0;
-    if (*count > work->capacity) {
-        free(work->image);
-        work->capacity = 0;
-        RETURN_IF_ERROR(NEW_ARRAY(&work->image, 2 * *count * dim, error));
-        work->capacity = 2 * *count;
-    }
+    RETURN_IF_ERROR(GROW_ARRAY(&work->image, *count * dim, &work->image_room, error));
     for (int64_t i = 0; i < *count; i++) {
         int32_t node = index[i];
         double *image = work->image + kept * dim, bend[3], length;
@@ -129,5 +131,7 @@ void reach_free(struct reach *reach)
     free(reach->seen_ptr);
     free(reach->seen);
     free(reach->seen_length);
+    free(reach->hidden_ptr);
+    free(reach->hidden);
     *reach = (struct reach){0};
 }

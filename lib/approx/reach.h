@@ -50,6 +50,9 @@ struct reach {
     int64_t *seen_ptr; /* node_count + 1: the corners that a node, within its radius, is in sight of (CSR) */
     int32_t *seen;
     double *seen_length; /* with `seen`: how far, m */
+    int64_t
+        *hidden_ptr; /* node_count + 1: what is hidden from each node, of nodes nearer than their radius */
+    int32_t *hidden;
 };
 
 /* Errors: STATUS_INPUT for cells that share a face with more than one other; STATUS_SYSTEM (memory). */
@@ -68,7 +71,6 @@ struct reach_places {
     const int64_t *ptr;     /* or, unless NULL, the cells of row r from ptr[r] to ptr[r + 1] */
     int64_t points_per_row; /* of rows of points, */
     int64_t long_rows;      /* of the first so many, others have one point; 0: of all */
-    const int64_t *row;     /* the number of each point in messages; NULL: p */
 };
 
 /* The row of point p; *first: its first point. */
@@ -96,20 +98,22 @@ static inline const int32_t *reach_places_cells(const struct reach_places *place
     return places->cell + first;
 }
 
-/* The shadows that hold each of some points, by their numbers in reach->shadow (CSR); some may pass close by.
- */
+/* The shadows that may hold each of some points (CSR): its number s in reach->shadow, or ~s for one that
+ * certainly does. */
 struct reach_shadows {
     int64_t *ptr;
     int32_t *shadow;
 };
-/* Of the points x[count * dim]. */
+/* Of the points x[count * dim]; with body_of[count] (else NULL) of those of that body alone. */
 MUST_CHECK enum status reach_shadows_build(const struct reach *reach, int64_t count, const double *x,
+                                           const int32_t *body_of, int32_t body,
                                            struct reach_shadows *shadows, struct error *error);
 void reach_shadows_free(struct reach_shadows *shadows);
 
 /* Scratch space for one thread, all zero at first; grows on demand. */
 struct reach_work {
     int64_t point;   /* the number of the point that is looked from, */
+    int64_t node;    /* the node that it is, or -1, */
     const double *x; /* and its place */
     double from[3];  /* itself; or for a point outside, its place in the nearest cell */
     bool outside;
@@ -122,10 +126,10 @@ struct reach_work {
     int32_t *before;           /* the node before on that path, -1: the point itself */
     struct index_list reached; /* nodes that the last search for paths may have put a length down for */
     struct index_list hidden, stack, visited;
-    int64_t changed;  /* candidates of the last filter that were out of sight */
-    int64_t around;   /* neighbours of the last filter that are seen around corners */
-    int64_t capacity; /* neighbours that `image` serves */
-    double *image;    /* those neighbours' offsets from the point to where they seem to be: see mls_support */
+    int64_t changed; /* candidates of the last filter that were out of sight */
+    int64_t around;  /* neighbours of the last filter that are seen around corners */
+    int64_t image_room;
+    double *image; /* those neighbours' offsets from the point to where they seem to be: see mls_support */
 };
 void reach_work_free(struct reach_work *work);
 
@@ -136,7 +140,7 @@ MUST_CHECK enum status reach_begin(const struct reach *reach, const struct reach
 /* Of the candidates index[*count], nodes that are nearer than `widen` times their radius, keep those whose
  * shortest path is as well. Where work->around > 0, work->image[*count * dim] holds the offset to each of
  * them: straight to a node in sight, and along the first leg of the path, as long as the path is, to others.
- */
+ * Where the points are nodes `shadows` may be empty. */
 MUST_CHECK enum status reach_filter(const struct reach *reach, const struct reach_shadows *shadows,
                                     double widen, int32_t *index, int64_t *count, struct reach_work *work,
                                     struct error *error);

@@ -1,6 +1,7 @@
 /* Preparation of a body for queries of reach: facets, re-entrant corners, and which nodes see which. */
 #include "approx/reach_private.h"
 
+#include "approx/parts.h"
 #include "base/box.h"
 #include "base/lists.h"
 #include "base/memory.h"
@@ -135,35 +136,6 @@ done:
     return status;
 }
 
-/* Where facets meet: a node, in 3D an edge; and the vertex of the facet that is not there. */
-struct ridge {
-    int32_t node[2]; /* ascending; 2D: the second is -1 */
-    int32_t facet, opposite;
-};
-
-static int compare_ridges(const void *left, const void *right)
-{
-    const struct ridge *a = left, *b = right;
-    if (a->node[0] != b->node[0]) {
-        return a->node[0] < b->node[0] ? -1 : 1;
-    }
-    return a->node[1] != b->node[1] ? (a->node[1] < b->node[1] ? -1 : 1) : a->facet - b->facet;
-}
-
-static void list_ridges(const struct reach *reach, struct ridge *ridges)
-{
-    int dim = reach->cells.dim;
-    for (int64_t i = 0; i < reach->facet_count * dim; i++) {
-        const int32_t *node = reach->facet[i / dim].node;
-        int k = (int)(i % dim);
-        int32_t a = node[(k + 1) % dim], b = dim == 3 ? node[(k + 2) % dim] : -1;
-        bool turned = b >= 0 && b < a;
-        ridges[i] = (struct ridge){
-            .node = {turned ? b : a, turned ? a : b}, .facet = (int32_t)(i / dim), .opposite = node[k]};
-    }
-    qsort(ridges, (size_t)(reach->facet_count * dim), sizeof *ridges, compare_ridges);
-}
-
 /* Whether the cells at a node hang together by faces at it. */
 static enum status hangs_together(const struct reach *reach, int32_t node, struct reach_work *work,
                                   bool *together, struct error *error)
@@ -213,21 +185,19 @@ static bool is_reentrant(const struct reach *reach, const struct ridge *first, c
 }
 
 /* Corners: nodes of re-entrant ridges. Where more than two facets meet the body only touches itself. */
-static enum status find_corners(struct reach *reach, struct reach_work *work, struct error *error)
+static enum status find_corners(const struct faces *faces, struct reach *reach, struct reach_work *work,
+                                struct error *error)
 {
     enum status status;
     struct pair_list edges = {0};
     struct ridge *ridges = NULL;
     int dim = reach->cells.dim;
-    int64_t count = reach->facet_count * dim;
+    int64_t count = faces->count * dim;
     TRY(NEW_ARRAY(&ridges, count, error));
     TRY(NEW_ARRAY(&reach->corner, reach->cells.node_count, error));
-    list_ridges(reach, ridges);
+    ridges_list(dim, faces->count, faces->node, ridges);
     for (int64_t i = 0, end; i < count; i = end) {
-        for (end = i + 1; end < count && ridges[end].node[0] == ridges[i].node[0] &&
-                          ridges[end].node[1] == ridges[i].node[1];
-             end++) {
-        }
+        end = ridges_end(count, ridges, i);
         int32_t a = ridges[i].node[0], b = ridges[i].node[1];
         if (end - i != 2 || !is_reentrant(reach, &ridges[i], &ridges[i + 1])) {
             continue;
@@ -251,33 +221,37 @@ done:
     return status;
 }
 
+/* What each node sees and does not see of the others. */
 static enum status file_views(struct reach *reach, struct reach_work *work, struct error *error)
 {
     enum status status = STATUS_OK;
-    struct pair_list pairs = {0};
+    struct pair_list seen = {0}, hidden = {0};
     struct reach_shadows shadows = {0};
     struct index_list near = {0};
     int dim = reach->cells.dim;
     const struct reach_places nodes = {.nodes = true};
-    TRY(reach_shadows_build(reach, reach->cells.node_count, reach->cells.x, &shadows, error));
+    TRY(reach_shadows_build(reach, reach->cells.node_count, reach->cells.x, NULL, 0, &shadows, error));
     for (int64_t n = 0; n < reach->cells.node_count; n++) {
         const double *x = reach->cells.x + n * dim;
-        int64_t hidden;
-        if (!reach->corner[n]) {
+        int64_t unused;
+        if (!reach->corner[n] && shadows.ptr[n] == shadows.ptr[n + 1]) {
             continue;
         }
         near.count = 0;
         TRY(point_grid_query(reach->grid, x, 1.0, &near, error));
         TRY(reach_begin(reach, &nodes, n, x, work, error));
-        TRY(reach_mark_shadows(reach, &shadows, n, work, &hidden, error));
+        TRY(reach_mark_shadows(reach, &shadows, n, work, &unused, error));
         for (int64_t i = 0; i < near.count; i++) {
-            if (!reach_is_hidden(work, near.index[i]) && near.index[i] != n) {
-                TRY(pair_list_add(&pairs, near.index[i], (int32_t)n, error));
+            if (reach_is_hidden(work, near.index[i])) {
+                TRY(pair_list_add(&hidden, (int32_t)n, near.index[i], error));
+            } else if (reach->corner[n] && near.index[i] != n) {
+                TRY(pair_list_add(&seen, near.index[i], (int32_t)n, error));
             }
         }
     }
-    TRY(pair_list_file(&pairs, reach->cells.node_count, &reach->seen_ptr, &reach->seen, error));
-    TRY(NEW_ARRAY(&reach->seen_length, pairs.count, error));
+    TRY(pair_list_file(&hidden, reach->cells.node_count, &reach->hidden_ptr, &reach->hidden, error));
+    TRY(pair_list_file(&seen, reach->cells.node_count, &reach->seen_ptr, &reach->seen, error));
+    TRY(NEW_ARRAY(&reach->seen_length, seen.count, error));
     for (int64_t n = 0; n < reach->cells.node_count; n++) {
         for (int64_t i = reach->seen_ptr[n]; i < reach->seen_ptr[n + 1]; i++) {
             reach->seen_length[i] = vector_distance(dim, reach->cells.x + (int64_t)reach->seen[i] * dim,
@@ -286,7 +260,8 @@ static enum status file_views(struct reach *reach, struct reach_work *work, stru
     }
 done:
     reach_shadows_free(&shadows);
-    pair_list_free(&pairs);
+    pair_list_free(&seen);
+    pair_list_free(&hidden);
     free(near.index);
     return status;
 }
@@ -317,7 +292,7 @@ enum status reach_build(const struct cells *cells, const struct point_grid *grid
     TRY(faces_build(cells, true, &faces, error));
     TRY(set_facets(&faces, reach, error));
     TRY(list_shadows(reach, error));
-    TRY(find_corners(reach, &work, error));
+    TRY(find_corners(&faces, reach, &work, error));
     TRY(file_views(reach, &work, error));
 done:
     faces_free(&faces);

@@ -85,8 +85,15 @@ static struct box box_of_shadow(const struct reach *reach, const struct reach_fa
     return box;
 }
 
+/* The points that shadows are looked for of. */
+struct shaded {
+    struct point_grid grid;
+    const int32_t *body_of; /* NULL: all points; else those with this number: */
+    int32_t body;
+};
+
 /* List the points that a shadow may hold; `near`: scratch. */
-static enum status list_points(const struct reach *reach, const struct point_grid *points, int32_t shadow,
+static enum status list_points(const struct reach *reach, const struct shaded *points, int32_t shadow,
                                struct index_list *near, struct pair_list *pairs, struct error *error)
 {
     int dim = reach->cells.dim;
@@ -97,20 +104,27 @@ static enum status list_points(const struct reach *reach, const struct point_gri
     double of_y = reach_height_above(dim, facet, y);
     struct box box = box_of_shadow(reach, facet, node, of_y > tolerance);
     near->count = 0;
-    RETURN_IF_ERROR(point_grid_list_box(points, box.low, box.high, 1e-6, near, error));
+    RETURN_IF_ERROR(point_grid_list_box(&points->grid, box.low, box.high, 1e-6, near, error));
     for (int64_t i = 0; i < near->count; i++) {
-        const double *x = points->x + (int64_t)near->index[i] * dim;
+        const double *x = points->grid.x + (int64_t)near->index[i] * dim;
         double of_x = reach_height_above(dim, facet, x);
-        if (of_x <= tolerance && vector_distance2(dim, y, x) < radius * radius &&
-            passage_of(dim, facet, tolerance, x, of_x, false, y, of_y) != PASSES_NOT) {
-            RETURN_IF_ERROR(pair_list_add(pairs, near->index[i], shadow, error));
+        if (points->body_of != NULL && points->body_of[near->index[i]] != points->body) {
+            continue;
+        }
+        if (of_x > tolerance || !(vector_distance2(dim, y, x) < radius * radius)) {
+            continue;
+        }
+        enum passage passage = passage_of(dim, facet, tolerance, x, of_x, false, y, of_y);
+        if (passage != PASSES_NOT) {
+            RETURN_IF_ERROR(
+                pair_list_add(pairs, near->index[i], passage == PASSES ? ~shadow : shadow, error));
         }
     }
     return STATUS_OK;
 }
 
 /* All threads' pairs go to `all`, in whatever order: it does not matter to a point. */
-static enum status list_all(const struct reach *reach, const struct point_grid *points, struct pair_list *all,
+static enum status list_all(const struct reach *reach, const struct shaded *points, struct pair_list *all,
                             struct error *error)
 {
     enum status failure = STATUS_OK;
@@ -140,10 +154,11 @@ static enum status list_all(const struct reach *reach, const struct point_grid *
 }
 
 enum status reach_shadows_build(const struct reach *reach, int64_t count, const double *x,
-                                struct reach_shadows *shadows, struct error *error)
+                                const int32_t *body_of, int32_t body, struct reach_shadows *shadows,
+                                struct error *error)
 {
     enum status status;
-    struct point_grid points = {0};
+    struct shaded points = {.body_of = body_of, .body = body};
     struct pair_list pairs = {0};
     double *size = NULL, least = INFINITY;
     *shadows = (struct reach_shadows){0};
@@ -156,13 +171,13 @@ enum status reach_shadows_build(const struct reach *reach, int64_t count, const 
         size[p] = 0.5 * least;
     }
     if (reach->shadow_count > 0) {
-        TRY(point_grid_build(&points, reach->cells.dim, count, x, size, error));
+        TRY(point_grid_build(&points.grid, reach->cells.dim, count, x, size, error));
         TRY(list_all(reach, &points, &pairs, error));
     }
     TRY(pair_list_file(&pairs, count, &shadows->ptr, &shadows->shadow, error));
 done:
     free(size);
-    point_grid_free(&points);
+    point_grid_free(&points.grid);
     pair_list_free(&pairs);
     if (status != STATUS_OK) {
         reach_shadows_free(shadows);
@@ -177,27 +192,34 @@ void reach_shadows_free(struct reach_shadows *shadows)
     *shadows = (struct reach_shadows){0};
 }
 
+static int32_t shadow_number(int32_t filed)
+{
+    return filed < 0 ? ~filed : filed;
+}
+
 enum status reach_mark_shadows(const struct reach *reach, const struct reach_shadows *shadows, int64_t p,
                                struct reach_work *work, int64_t *hidden, struct error *error)
 {
     int dim = reach->cells.dim;
     *hidden = 0;
     for (int64_t i = shadows->ptr[p]; i < shadows->ptr[p + 1]; i++) {
-        struct reach_shadow shadow = reach->shadow[shadows->shadow[i]];
-        const struct reach_facet *facet = &reach->facet[shadow.facet];
-        const double *y = reach->cells.x + (int64_t)shadow.node * dim;
-        bool own = work->cell_count == 1 && facet->cell == work->cell[0];
-        if (!reach_is_hidden(work, shadow.node) &&
-            passage_of(dim, facet, REACH_ON_PLANE * reach->grid->radius[shadow.node], work->x,
-                       reach_height_above(dim, facet, work->x), own, y,
-                       reach_height_above(dim, facet, y)) == PASSES) {
+        bool holds = shadows->shadow[i] < 0;
+        struct reach_shadow shadow = reach->shadow[shadow_number(shadows->shadow[i])];
+        if (!holds && work->cell_count == 1 && reach->facet[shadow.facet].cell == work->cell[0]) {
+            const struct reach_facet *facet = &reach->facet[shadow.facet];
+            const double *y = reach->cells.x + (int64_t)shadow.node * dim;
+            holds = passage_of(dim, facet, REACH_ON_PLANE * reach->grid->radius[shadow.node], work->x,
+                               reach_height_above(dim, facet, work->x), true, y,
+                               reach_height_above(dim, facet, y)) == PASSES;
+        }
+        if (holds && !reach_is_hidden(work, shadow.node)) {
             work->mark[shadow.node] = 2 * work->serial + 1;
             ++*hidden;
         }
     }
     /* The others pass close by. */
     for (int64_t i = shadows->ptr[p]; i < shadows->ptr[p + 1]; i++) {
-        int32_t node = reach->shadow[shadows->shadow[i]].node;
+        int32_t node = reach->shadow[shadow_number(shadows->shadow[i])].node;
         if (work->mark[node] / 2 != work->serial) {
             bool seen;
             RETURN_IF_ERROR(

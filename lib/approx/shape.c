@@ -22,7 +22,7 @@ struct neighbours support_view(const struct support_lists *lists)
 /* Images of the neighbours of points: see mls_support. */
 struct images {
     int64_t next; /* of struct around */
-    int64_t capacity;
+    int64_t room;
     double *offset;
 };
 
@@ -35,12 +35,7 @@ static enum status find_images(int dim, const struct neighbours *lists, int64_t 
     if (images->next == around->count || around->pair[images->next] >= last) {
         return STATUS_OK;
     }
-    if (last - first > images->capacity) {
-        free(images->offset);
-        images->capacity = 0;
-        RETURN_IF_ERROR(NEW_ARRAY(&images->offset, 2 * (last - first) * dim, error));
-        images->capacity = 2 * (last - first);
-    }
+    RETURN_IF_ERROR(GROW_ARRAY(&images->offset, (last - first) * dim, &images->room, error));
     for (int64_t i = 0; i < (last - first) * dim; i++) {
         images->offset[i] =
             support->nodes[(int64_t)lists->idx[first + i / dim] * dim + i % dim] - support->x[i % dim];

@@ -39,13 +39,10 @@ static enum status append(struct cutting *cutting, const int32_t *node, struct e
     struct stuffing *stuffing = cutting->stuffing;
     int32_t label = label_of(cutting, node);
     int corners = stuffing->dim + 1;
-    if (stuffing->cell_count == cutting->room) {
-        int64_t room = cutting->room + cutting->room / 2 + 1024;
-        RETURN_IF_ERROR(RESIZE_ARRAY(&stuffing->cell, room * corners, error));
-        RETURN_IF_ERROR(RESIZE_ARRAY(&stuffing->label, room, error));
-        RETURN_IF_ERROR(RESIZE_ARRAY(&cutting->between, room, error));
-        cutting->room = room;
-    }
+    RETURN_IF_ERROR(
+        GROW_ARRAY(&stuffing->cell, (stuffing->cell_count + 1) * corners, &cutting->cell_room, error));
+    RETURN_IF_ERROR(GROW_ARRAY(&stuffing->label, stuffing->cell_count + 1, &cutting->label_room, error));
+    RETURN_IF_ERROR(GROW_ARRAY(&cutting->between, stuffing->cell_count + 1, &cutting->between_room, error));
     memcpy(stuffing->cell + stuffing->cell_count * corners, node, (size_t)corners * sizeof *node);
     cutting->between[stuffing->cell_count] = true;
     for (int k = 0; k < corners; k++) {
@@ -200,35 +197,6 @@ static enum status set_nodes(struct cutting *cutting, struct error *error)
     return STATUS_OK;
 }
 
-/* Number the nodes of cells anew, without those of no cell; x is replaced. */
-static enum status compact(struct cutting *cutting, struct error *error)
-{
-    struct stuffing *stuffing = cutting->stuffing;
-    int dim = stuffing->dim;
-    int64_t count = cutting->node_count;
-    int32_t *number = NULL;
-    enum status status;
-    TRY(NEW_ARRAY(&number, count, error));
-    for (int64_t i = 0; i < stuffing->cell_count * (dim + 1); i++) {
-        number[stuffing->cell[i]] = 1;
-    }
-    for (int64_t n = 0; n < count; n++) {
-        if (number[n] != 0) {
-            memmove(cutting->x + stuffing->node_count * dim, cutting->x + n * dim,
-                    (size_t)dim * sizeof(double));
-            number[n] = (int32_t)stuffing->node_count++;
-        }
-    }
-    for (int64_t i = 0; i < stuffing->cell_count * (dim + 1); i++) {
-        stuffing->cell[i] = number[stuffing->cell[i]];
-    }
-    stuffing->x = cutting->x;
-    cutting->x = NULL;
-done:
-    free(number);
-    return status;
-}
-
 enum status lattice_cells(const struct lattice *lattice, struct stuffing *stuffing, bool **between,
                           struct error *error)
 {
@@ -240,7 +208,10 @@ enum status lattice_cells(const struct lattice *lattice, struct stuffing *stuffi
     for (int64_t c = 0; c < lattice->cell_count; c++) {
         TRY(cut_cell(&cutting, lattice->cell + c * (lattice->dim + 1), error));
     }
-    TRY(compact(&cutting, error));
+    stuffing->x = cutting.x;
+    stuffing->node_count = cutting.node_count;
+    cutting.x = NULL;
+    TRY(stuffing_compact(stuffing, NULL, error));
 done:
     free(cutting.x);
     free(cutting.cut_node);

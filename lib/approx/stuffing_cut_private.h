@@ -18,9 +18,9 @@ struct second_cut {
 struct cutting {
     const struct lattice *lattice;
     struct stuffing *stuffing;
-    int64_t room;       /* cells allocated */
-    bool *between;      /* room: all nodes of the cell lie on interfaces */
-    int64_t cuts;       /* nodes of cuts */
+    bool *between; /* of each cell: whether all of its nodes lie on interfaces */
+    int64_t cell_room, label_room, between_room; /* allocated */
+    int64_t cuts;                                /* nodes of cuts */
     int64_t node_count; /* of the lattice, of cuts and of second cuts, in this order */
     double *x;          /* node_count: coordinates, m */
     int32_t *cut_node;  /* lattice->edge_count */

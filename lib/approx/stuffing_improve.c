@@ -39,26 +39,26 @@ double stuffing_score(const struct stuffing *stuffing, int64_t cell)
     return volume < 0 ? volume / product : 0;
 }
 
-double star_score(const struct stuffing *stuffing, const struct stuffing_star *star, int64_t node)
+double star_score(const struct shaping *shaping, int64_t node)
 {
+    const struct stuffing_star *star = &shaping->star;
     double least = INFINITY;
     for (int64_t i = star->ptr[node]; i < star->ptr[node + 1]; i++) {
-        least = fmin(least, stuffing_score(stuffing, star->cell[i]));
+        least = fmin(least, stuffing_score(shaping->stuffing, star->cell[i]));
     }
     return least;
 }
 
-void star_move(struct stuffing *stuffing, const struct stuffing_star *star, int64_t node,
-               const double target[])
+void star_move(const struct shaping *shaping, int64_t node, const double target[])
 {
-    int dim = stuffing->dim;
-    double *x = stuffing->x + node * dim, before[3] = {0};
-    double score = fmin(star_score(stuffing, star, node), goal);
+    int dim = shaping->stuffing->dim;
+    double *x = shaping->stuffing->x + node * dim, before[3] = {0};
+    double score = fmin(star_score(shaping, node), goal);
     memcpy(before, x, (size_t)dim * sizeof *x);
     double share = 1;
     for (int halving = 0; halving < 4; halving++, share /= 2) {
         vector_between(dim, before, target, share, x);
-        if (star_score(stuffing, star, node) >= score) {
+        if (star_score(shaping, node) >= score) {
             return;
         }
     }
@@ -67,18 +67,12 @@ void star_move(struct stuffing *stuffing, const struct stuffing_star *star, int6
 
 /* ---- onto the interfaces ---- */
 
-/* The label of the largest share at a node. */
-static uint16_t label_at(const struct labels *labels, const struct stuffing *stuffing, int64_t node)
-{
-    return (uint16_t)labels_at(labels, stuffing->x + node * stuffing->dim);
-}
-
 /* Of the labels that meet at a node, how many are kept. */
-static int kept_labels(const struct stuffing_star *star, int64_t node, const bool *keep)
+static int kept_labels(const struct shaping *shaping, int64_t node)
 {
     int count = 0;
-    for (int i = 0; i < star->labels[node]; i++) {
-        count += keep[star->label[node][i]];
+    for (int i = 0; i < shaping->star.labels[node]; i++) {
+        count += shaping->keep[shaping->star.label[node][i]];
     }
     return count;
 }
@@ -93,49 +87,52 @@ static bool meets(const struct stuffing_star *star, int64_t node, uint16_t label
     return false;
 }
 
-static void move_there(double voxel, struct stuffing *stuffing, const struct stuffing_star *star,
-                       int64_t node, const double target[])
+static void move_there(const struct shaping *shaping, double voxel, int64_t node, const double target[])
 {
+    int dim = shaping->stuffing->dim;
     double distance = 0;
-    for (int d = 0; d < stuffing->dim; d++) {
-        distance = fmax(distance, fabs(target[d] - stuffing->x[node * stuffing->dim + d]));
+    for (int d = 0; d < dim; d++) {
+        distance = fmax(distance, fabs(target[d] - shaping->stuffing->x[node * dim + d]));
     }
     if (distance > 0.01 * voxel) {
-        star_move(stuffing, star, node, target);
+        star_move(shaping, node, target);
     }
 }
 
 /* Nodes on the rim of a part, where three labels meet, and others that are off their interface. In a gap
  * between labels that no cell fills, the label there counts as well. */
-static void fit(const struct labels *labels, const struct labels *parts, uint16_t (*rim)[3], const bool *keep,
-                struct stuffing *stuffing, const struct stuffing_star *star)
+static void fit(const struct shaping *shaping)
 {
+    const struct labels *labels = &shaping->labels;
+    const struct stuffing *stuffing = shaping->stuffing;
+    const struct stuffing_star *star = &shaping->star;
+    const bool *keep = shaping->keep;
     int dim = labels->dim;
     double voxel = labels_voxel(labels);
     for (int64_t n = 0; n < stuffing->node_count; n++) {
         double target[3] = {0};
         uint16_t label[STUFFING_MOST_LABELS + 1];
         int count = star->labels[n];
-        bool on_rim = rim[n][0] != 0;
+        const uint16_t *rim = shaping->rim[n];
         if (count < 2) {
             continue;
         }
         memcpy(target, stuffing->x + n * dim, (size_t)dim * sizeof *target);
         memcpy(label, star->label[n], sizeof star->label[n]);
-        if (!(on_rim && line_project(parts, keep, 3, rim[n], target)) &&
+        if (!(rim[0] != 0 && line_project(shaping->parts, keep, 3, rim, target)) &&
             !line_project(labels, keep, count, label, target)) {
-            label[count] = label_at(labels, stuffing, n);
+            label[count] = (uint16_t)labels_at(labels, stuffing->x + n * dim);
             if (meets(star, n, label[count]) || !interface_project(labels, count + 1, label, target)) {
                 memcpy(target, stuffing->x + n * dim, (size_t)dim * sizeof *target);
             }
         }
-        if (!(on_rim && star_make_room(labels, keep, goal, stuffing, star, n, target))) {
-            move_there(voxel, stuffing, star, n, target);
+        if (!(rim[0] != 0 && star_make_room(shaping, goal, n, target))) {
+            move_there(shaping, voxel, n, target);
         }
         /* Where the line on which labels meet cannot be reached, the surface counts, or the interface. */
         memcpy(target, stuffing->x + n * dim, (size_t)dim * sizeof *target);
-        if (node_project(labels, keep, star, n, target)) {
-            move_there(voxel, stuffing, star, n, target);
+        if (node_project(shaping, n, target)) {
+            move_there(shaping, voxel, n, target);
         }
     }
 }
@@ -143,11 +140,12 @@ static void fit(const struct labels *labels, const struct labels *parts, uint16_
 /* ---- apart ---- */
 
 /* Move nodes that have others at the same place towards the middle of their own cells. */
-static void separate(const struct labels *labels, struct stuffing *stuffing, const struct stuffing_star *star,
-                     const bool *apart)
+static void separate(const struct shaping *shaping, const bool *apart)
 {
+    const struct stuffing *stuffing = shaping->stuffing;
+    const struct stuffing_star *star = &shaping->star;
     int dim = stuffing->dim;
-    double most = most_separation * labels_voxel(labels);
+    double most = most_separation * labels_voxel(&shaping->labels);
     struct cells cells = stuffing_cells(stuffing);
     for (int64_t n = 0; n < stuffing->node_count; n++) {
         double target[3] = {0};
@@ -168,18 +166,20 @@ static void separate(const struct labels *labels, struct stuffing *stuffing, con
             target[d] = stuffing->x[n * dim + d] + target[d] * fmin(1, most / sqrt(square));
         }
         if (apart[n]) {
-            star_move(stuffing, star, n, target);
+            star_move(shaping, n, target);
         }
     }
 }
 
 /* How far a node of interfaces is off them, m: on the boundary from the surface of the body, elsewhere from
  * where the label there gives way to another one that meets at the node. */
-static double distance(const struct labels *labels, const bool *keep, const struct stuffing *stuffing,
-                       const struct stuffing_star *star, int64_t node)
+static double distance(const struct shaping *shaping, int64_t node)
 {
-    const double *x = stuffing->x + node * labels->dim;
-    if (kept_labels(star, node, keep) < star->labels[node]) {
+    const struct labels *labels = &shaping->labels;
+    const struct stuffing_star *star = &shaping->star;
+    const bool *keep = shaping->keep;
+    const double *x = shaping->stuffing->x + node * labels->dim;
+    if (kept_labels(shaping, node) < star->labels[node]) {
         const struct interface_beyond body = {-1, keep, true}, outside = {-1, keep, false};
         return fmax(interface_distance(labels, x, &body), interface_distance(labels, x, &outside));
     }
@@ -193,52 +193,52 @@ static double distance(const struct labels *labels, const bool *keep, const stru
 }
 
 /* Where a node that is still off its rim or interface belongs; false where it is near or there is none. */
-static bool find_astray(const struct labels *labels, const struct labels *parts, const uint16_t rim[3],
-                        const bool *keep, const struct stuffing *stuffing, const struct stuffing_star *star,
-                        int64_t node, double target[3])
+static bool find_astray(const struct shaping *shaping, int64_t node, double target[3])
 {
-    double most = last_slack * labels_voxel(labels);
-    const double *x = stuffing->x + node * labels->dim;
-    memcpy(target, x, (size_t)labels->dim * sizeof *target);
-    if (rim[0] != 0 && line_project(parts, keep, 3, rim, target)) {
-        if (vector_distance(labels->dim, target, x) > most) {
+    int dim = shaping->stuffing->dim;
+    double most = last_slack * labels_voxel(&shaping->labels);
+    const double *x = shaping->stuffing->x + node * dim;
+    const uint16_t *rim = shaping->rim[node];
+    memcpy(target, x, (size_t)dim * sizeof *target);
+    if (rim[0] != 0 && line_project(shaping->parts, shaping->keep, 3, rim, target)) {
+        if (vector_distance(dim, target, x) > most) {
             return true;
         }
-        memcpy(target, x, (size_t)labels->dim * sizeof *target);
+        memcpy(target, x, (size_t)dim * sizeof *target);
     }
-    return star->labels[node] >= 2 && distance(labels, keep, stuffing, star, node) > most &&
-           node_project(labels, keep, star, node, target);
+    return shaping->star.labels[node] >= 2 && distance(shaping, node) > most &&
+           node_project(shaping, node, target);
 }
 
 /* Bring nodes that are still off their rim or interface as near as cells within the bounds of the angles
  * allow. */
-static void settle(const struct labels *labels, const struct labels *parts, uint16_t (*rim)[3],
-                   const bool *keep, struct stuffing *stuffing, const struct stuffing_star *star)
+static void settle(const struct shaping *shaping)
 {
+    struct stuffing *stuffing = shaping->stuffing;
     int dim = stuffing->dim;
     for (int64_t n = 0; n < stuffing->node_count; n++) {
         double *x = stuffing->x + n * dim, from[3] = {0}, target[3] = {0};
-        if (!find_astray(labels, parts, rim[n], keep, stuffing, star, n, target) ||
-            (rim[n][0] != 0 && star_make_room(labels, keep, last_score, stuffing, star, n, target))) {
+        if (!find_astray(shaping, n, target) ||
+            (shaping->rim[n][0] != 0 && star_make_room(shaping, last_score, n, target))) {
             continue;
         }
-        double score = fmin(star_score(stuffing, star, n), last_score);
+        double score = fmin(star_score(shaping, n), last_score);
         memcpy(from, x, (size_t)dim * sizeof *x);
         for (int step = 8; step >= 0; step--) {
             vector_between(dim, from, target, step / 8.0, x);
-            if (star_score(stuffing, star, n) >= score) {
+            if (star_score(shaping, n) >= score) {
                 break;
             }
         }
     }
 }
 
-static void measure(const struct labels *labels, const bool *keep, struct stuffing *stuffing,
-                    const struct stuffing_star *star)
+static void measure(const struct shaping *shaping)
 {
+    struct stuffing *stuffing = shaping->stuffing;
     for (int64_t n = 0; n < stuffing->node_count; n++) {
-        double off = star->labels[n] > 1 ? distance(labels, keep, stuffing, star, n) : 0;
-        stuffing->astray += off > STUFFING_MOST_ASTRAY * labels_voxel(labels);
+        double off = shaping->star.labels[n] > 1 ? distance(shaping, n) : 0;
+        stuffing->astray += off > STUFFING_MOST_ASTRAY * labels_voxel(&shaping->labels);
         stuffing->farthest = off < INFINITY ? fmax(stuffing->farthest, off) : stuffing->farthest;
     }
 }
@@ -248,28 +248,26 @@ enum status stuffing_improve(const struct labels *parts, const struct stuffing_o
                              struct error *error)
 {
     enum status status;
-    struct stuffing_star star = {0};
-    struct labels labels = *parts;
-    uint16_t(*rim)[3] = NULL;
-    TRY(labels_without_parts(parts, options->whole, &labels, error));
-    TRY(stuffing_rims(parts, options, stuffing, &rim, error));
-    TRY(star_make(stuffing, options->whole, &star, error));
+    struct shaping shaping = {.parts = parts, .labels = *parts, .keep = options->keep, .stuffing = stuffing};
+    TRY(labels_without_parts(parts, options->whole, &shaping.labels, error));
+    TRY(stuffing_rims(parts, options, stuffing, &shaping.rim, error));
+    TRY(star_make(stuffing, options->whole, &shaping.star, error));
     for (int sweep = 0; sweep < FIT_SWEEPS; sweep++) {
-        fit(&labels, parts, rim, options->keep, stuffing, &star);
-        stuffing_repair(&labels, options->keep, least_score, 0, stuffing, &star);
+        fit(&shaping);
+        stuffing_repair(&shaping, least_score, 0);
     }
-    separate(&labels, stuffing, &star, apart);
-    TRY(stuffing_volumes(&labels, options, apart, dropped, &star, stuffing, error));
-    stuffing_repair(&labels, options->keep, last_score, last_slack * labels_voxel(&labels), stuffing, &star);
+    separate(&shaping, apart);
+    TRY(stuffing_volumes(&shaping, options, apart, dropped, error));
+    stuffing_repair(&shaping, last_score, last_slack * labels_voxel(parts));
     for (int sweep = 0; sweep < FIT_SWEEPS; sweep++) {
-        settle(&labels, parts, rim, options->keep, stuffing, &star);
+        settle(&shaping);
     }
-    measure(&labels, options->keep, stuffing, &star);
+    measure(&shaping);
 done:
-    if (labels.label != parts->label) {
-        free((void *)labels.label);
+    if (shaping.labels.label != parts->label) {
+        free((void *)shaping.labels.label);
     }
-    free(rim);
-    star_free(&star);
+    free(shaping.rim);
+    star_free(&shaping.star);
     return status;
 }

@@ -81,44 +81,50 @@ static int64_t find_facets(const struct stuffing_keeping *keeping, int32_t *face
     return count;
 }
 
-/* Drop the cells that are not wanted, and the nodes of none; all arrays are numbered anew. */
-static enum status drop(struct stuffing_keeping *keeping, struct error *error)
+enum status stuffing_compact(struct stuffing *stuffing, bool *flag, struct error *error)
 {
-    struct stuffing *stuffing = keeping->stuffing;
-    enum status status;
-    int corners = stuffing->dim + 1;
-    int64_t cells = 0, nodes = 0;
+    int dim = stuffing->dim, corners = dim + 1;
+    int64_t slots = stuffing->cell_count * corners, nodes = 0;
     int32_t *number = NULL;
-    TRY(NEW_ARRAY(&number, stuffing->node_count, error));
-    for (int64_t c = 0; c < stuffing->cell_count; c++) {
-        if (keeping->wanted[c]) {
-            memmove(stuffing->cell + cells * corners, stuffing->cell + c * corners,
-                    (size_t)corners * sizeof *number);
-            stuffing->label[cells++] = stuffing->label[c];
-        }
-    }
-    stuffing->cell_count = cells;
-    for (int64_t i = 0; i < cells * corners; i++) {
+    RETURN_IF_ERROR(NEW_ARRAY(&number, stuffing->node_count, error));
+    for (int64_t i = 0; i < slots; i++) {
         number[stuffing->cell[i]] = 1;
     }
     for (int64_t n = 0; n < stuffing->node_count; n++) {
         if (number[n] != 0) {
-            memmove(stuffing->x + nodes * stuffing->dim, stuffing->x + n * stuffing->dim,
-                    (size_t)stuffing->dim * sizeof *stuffing->x);
-            keeping->apart[nodes] = keeping->apart[n];
+            memmove(stuffing->x + nodes * dim, stuffing->x + n * dim, (size_t)dim * sizeof *stuffing->x);
+            if (flag != NULL) {
+                flag[nodes] = flag[n];
+            }
             number[n] = (int32_t)nodes++;
         }
     }
     stuffing->node_count = nodes;
-    for (int64_t i = 0; i < cells * corners; i++) {
+    for (int64_t i = 0; i < slots; i++) {
         stuffing->cell[i] = number[stuffing->cell[i]];
     }
-    for (int64_t i = 0; i < stuffing->facet_count * stuffing->dim; i++) {
+    for (int64_t i = 0; i < stuffing->facet_count * dim; i++) {
         stuffing->facet[i] = number[stuffing->facet[i]];
     }
-done:
     free(number);
-    return status;
+    return STATUS_OK;
+}
+
+/* Drop the cells that are not wanted, and the nodes of none. */
+static enum status drop(struct stuffing_keeping *keeping, struct error *error)
+{
+    struct stuffing *stuffing = keeping->stuffing;
+    int corners = stuffing->dim + 1;
+    int64_t cells = 0;
+    for (int64_t c = 0; c < stuffing->cell_count; c++) {
+        if (keeping->wanted[c]) {
+            memmove(stuffing->cell + cells * corners, stuffing->cell + c * corners,
+                    (size_t)corners * sizeof *stuffing->cell);
+            stuffing->label[cells++] = stuffing->label[c];
+        }
+    }
+    stuffing->cell_count = cells;
+    return stuffing_compact(stuffing, keeping->apart, error);
 }
 
 /* The connected body of wanted cells that holds a cell: its volume and how many cells it has. Gives these the

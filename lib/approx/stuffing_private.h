@@ -4,6 +4,7 @@
 
 #include "approx/cells.h"
 #include "approx/stuffing.h"
+#include "base/vector.h"
 
 static inline struct cells stuffing_cells(const struct stuffing *stuffing)
 {
@@ -92,6 +93,22 @@ MUST_CHECK enum status sizes_wish(const struct stuffing_options *options, int le
                                   const double low[3], double edge, const bool *inside, uint8_t *wish,
                                   double *unsized, struct error *error);
 
+/* Directions in which a place is searched for: along the axes and between them, and one of no length. Returns
+ * the length of direction[dim]. */
+static inline int stuffing_directions(int dim)
+{
+    return dim == 2 ? 9 : 27;
+}
+
+static inline double stuffing_direction(int dim, int number, double direction[3])
+{
+    static const int power[3] = {1, 3, 9};
+    for (int d = 0; d < 3; d++) {
+        direction[d] = d < dim ? number / power[d] % 3 - 1 : 0;
+    }
+    return vector_length(dim, direction);
+}
+
 /* Cells at each node and the labels that meet there. */
 enum { STUFFING_MOST_LABELS = 4 };
 struct stuffing_star {
@@ -124,6 +141,9 @@ MUST_CHECK enum status stuffing_keep(const struct stuffing_options *options, con
                                      struct stuffing *stuffing, bool **apart, double *dropped,
                                      struct error *error);
 
+/* Number the nodes anew, without those of no cell; flag[node_count], unless NULL, follows them. */
+MUST_CHECK enum status stuffing_compact(struct stuffing *stuffing, bool *flag, struct error *error);
+
 /* The cells that are kept, and scratch. */
 struct stuffing_keeping {
     struct stuffing *stuffing;
@@ -145,24 +165,32 @@ void stuffing_join(struct stuffing_keeping *keeping, const struct stuffing_star 
 MUST_CHECK enum status stuffing_cut_apart(struct stuffing_keeping *keeping, const struct stuffing_star *star,
                                           struct error *error);
 
+/* A body whose nodes are moved. */
+struct shaping {
+    const struct labels *parts; /* the labels, */
+    struct labels labels;       /* and with the whole in place of its parts */
+    const bool *keep;           /* labels.count: labels of the body */
+    struct stuffing *stuffing;
+    struct stuffing_star star;
+    uint16_t (*rim)[3]; /* stuffing_rims */
+};
+
 /* The poorest score of the cells at a node: the score of a cell is 1 where its angles just keep within the
  * bounds, and negative where it is inverted. */
-double star_score(const struct stuffing *stuffing, const struct stuffing_star *star, int64_t node);
+double star_score(const struct shaping *shaping, int64_t node);
 double stuffing_score(const struct stuffing *stuffing, int64_t cell);
 
 /* Move a node to a place where the cells at it would score less than before and than `least`, by moving the
  * nodes around it that are on no interface out of the way. False, and all as it was, where that does not
  * help. */
-bool star_make_room(const struct labels *labels, const bool *keep, double least, struct stuffing *stuffing,
-                    const struct stuffing_star *star, int64_t node, const double target[]);
+bool star_make_room(const struct shaping *shaping, double least, int64_t node, const double target[]);
 
 /* Move x onto the interface of the labels, at most four; false where there is none near. */
 bool interface_project(const struct labels *labels, int count, const uint16_t label[], double x[]);
 
 /* Move x onto what a node lies on: on the boundary the surface of the body, elsewhere where all labels of the
  * node meet. False where there is none near. */
-bool node_project(const struct labels *labels, const bool *keep, const struct stuffing_star *star,
-                  int64_t node, double x[]);
+bool node_project(const struct shaping *shaping, int64_t node, double x[]);
 
 /* Move x to where all the labels meet, also from several voxels off. False where there is no such place. */
 bool line_project(const struct labels *labels, const bool *keep, int count, const uint16_t label[],
@@ -185,8 +213,7 @@ void stuffing_gradient(const struct stuffing *stuffing, int64_t cell, int k, dou
 
 /* Move the nodes of cells that score less than `least`, those of interfaces within these or at most `slack`,
  * m, off, until they score more. */
-void stuffing_repair(const struct labels *labels, const bool *keep, double least, double slack,
-                     struct stuffing *stuffing, const struct stuffing_star *star);
+void stuffing_repair(const struct shaping *shaping, double least, double slack);
 
 /* Move nodes: where labels meet onto their interfaces, those apart[] away from the others at the same place,
  * poor cells into shape, and interfaces for the volumes of labels. */
@@ -196,13 +223,10 @@ MUST_CHECK enum status stuffing_improve(const struct labels *labels, const struc
 
 /* Correct the volumes of labels, those of their voxels less dropped[], by small moves of interfaces, without
  * the nodes apart[]. */
-MUST_CHECK enum status stuffing_volumes(const struct labels *labels, const struct stuffing_options *options,
-                                        const bool *apart, const double *dropped,
-                                        const struct stuffing_star *star, struct stuffing *stuffing,
-                                        struct error *error);
+MUST_CHECK enum status stuffing_volumes(const struct shaping *shaping, const struct stuffing_options *options,
+                                        const bool *apart, const double *dropped, struct error *error);
 
 /* Move a node towards `target` as far as its cells allow. */
-void star_move(struct stuffing *stuffing, const struct stuffing_star *star, int64_t node,
-               const double target[]);
+void star_move(const struct shaping *shaping, int64_t node, const double target[]);
 
 #endif

@@ -84,18 +84,13 @@ static bool is_beyond(const struct interface_beyond *beyond, int32_t label)
 static double search_beyond(const struct labels *labels, const double x[],
                             const struct interface_beyond *beyond, double place[3])
 {
-    int dim = labels->dim, directions = dim == 2 ? 9 : 27;
+    int dim = labels->dim;
     double voxel = labels_voxel(labels);
     for (int step = 1; step <= 60; step++) {
-        for (int direction = 0; direction < directions; direction++) {
-            static const int power[3] = {1, 3, 9};
-            double square = 0;
+        for (int direction = 0; direction < stuffing_directions(dim); direction++) {
+            double norm = stuffing_direction(dim, direction, place);
             for (int d = 0; d < dim; d++) {
-                place[d] = direction / power[d] % 3 - 1;
-                square += place[d] * place[d];
-            }
-            for (int d = 0; d < dim; d++) {
-                place[d] = x[d] + (square > 0 ? 0.1 * step * voxel * place[d] / sqrt(square) : 0);
+                place[d] = x[d] + (norm > 0 ? 0.1 * step * voxel * place[d] / norm : 0);
             }
             if (is_beyond(beyond, labels_at(labels, place))) {
                 return 0.1 * step * voxel;
@@ -135,12 +130,13 @@ static bool project_to_surface(const struct labels *labels, const bool *keep, do
     return (near && interface_project(labels, 2, pair, x)) || search_change(labels, &other, x);
 }
 
-bool node_project(const struct labels *labels, const bool *keep, const struct stuffing_star *star,
-                  int64_t node, double x[])
+bool node_project(const struct shaping *shaping, int64_t node, double x[])
 {
+    const struct labels *labels = &shaping->labels;
+    const struct stuffing_star *star = &shaping->star;
     for (int i = 0; i < star->labels[node]; i++) {
-        if (!keep[star->label[node][i]]) {
-            return project_to_surface(labels, keep, x);
+        if (!shaping->keep[star->label[node][i]]) {
+            return project_to_surface(labels, shaping->keep, x);
         }
     }
     if (interface_project(labels, star->labels[node], star->label[node], x)) {

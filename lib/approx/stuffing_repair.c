@@ -8,8 +8,10 @@
 enum { SWEEPS = 10, STEPS = 5 };
 
 /* Mean length of the edges of the cells at a node that end there. */
-static double edge_length(const struct stuffing *stuffing, const struct stuffing_star *star, int64_t node)
+static double edge_length(const struct shaping *shaping, int64_t node)
 {
+    const struct stuffing *stuffing = shaping->stuffing;
+    const struct stuffing_star *star = &shaping->star;
     int dim = stuffing->dim;
     double sum = 0;
     int64_t count = 0;
@@ -25,49 +27,43 @@ static double edge_length(const struct stuffing *stuffing, const struct stuffing
 
 /* Put a place onto the interface of a node, or leave it where it is no farther from there than the slack, m.
  * False where there is no interface near. */
-static bool keep_to_interface(const struct labels *labels, const bool *keep, const struct stuffing_star *star,
-                              int64_t node, double slack, double place[3])
+static bool keep_to_interface(const struct shaping *shaping, int64_t node, double slack, double place[3])
 {
+    int dim = shaping->stuffing->dim;
     double projected[3] = {place[0], place[1], place[2]};
-    if (star->labels[node] < 2) {
+    if (shaping->star.labels[node] < 2) {
         return true;
     }
-    if (!node_project(labels, keep, star, node, projected)) {
+    if (!node_project(shaping, node, projected)) {
         return false;
     }
-    if (!(vector_distance(labels->dim, projected, place) <= slack)) {
-        memcpy(place, projected, (size_t)labels->dim * sizeof *place);
+    if (!(vector_distance(dim, projected, place) <= slack)) {
+        memcpy(place, projected, (size_t)dim * sizeof *place);
     }
     return true;
 }
 
 /* Try steps in all directions, along the axes and between them, of falling length; nodes of interfaces stay
  * there, but for the slack. Takes the best of each length that improves the poorest cell at the node. */
-static bool search(const struct labels *labels, const bool *keep, double slack, struct stuffing *stuffing,
-                   const struct stuffing_star *star, int64_t node)
+static bool search(const struct shaping *shaping, double slack, int64_t node)
 {
-    int dim = stuffing->dim, directions = dim == 2 ? 9 : 27;
-    double *x = stuffing->x + node * dim, length = 0.25 * edge_length(stuffing, star, node);
-    double score = star_score(stuffing, star, node);
+    int dim = shaping->stuffing->dim;
+    double *x = shaping->stuffing->x + node * dim, length = 0.25 * edge_length(shaping, node);
+    double score = star_score(shaping, node);
     bool improved = false;
     for (int step = 0; step < STEPS; step++, length /= 2) {
         double here[3] = {0}, best[3] = {0}, best_score = score;
         memcpy(here, x, (size_t)dim * sizeof *x);
-        for (int direction = 0; direction < directions; direction++) {
-            static const int power[3] = {1, 3, 9};
-            double norm = 0, place[3] = {0};
+        for (int direction = 0; direction < stuffing_directions(dim); direction++) {
+            double place[3], norm = stuffing_direction(dim, direction, place);
             for (int d = 0; d < dim; d++) {
-                place[d] = direction / power[d] % 3 - 1;
-                norm += place[d] * place[d];
+                place[d] = here[d] + (norm > 0 ? length / norm * place[d] : 0);
             }
-            for (int d = 0; d < dim; d++) {
-                place[d] = here[d] + (norm > 0 ? length / sqrt(norm) * place[d] : 0);
-            }
-            if (!keep_to_interface(labels, keep, star, node, slack, place)) {
+            if (!keep_to_interface(shaping, node, slack, place)) {
                 continue;
             }
             memcpy(x, place, (size_t)dim * sizeof *x);
-            double fresh = star_score(stuffing, star, node);
+            double fresh = star_score(shaping, node);
             if (fresh > best_score) {
                 best_score = fresh;
                 memcpy(best, place, sizeof best);
@@ -80,16 +76,16 @@ static bool search(const struct labels *labels, const bool *keep, double slack, 
     return improved;
 }
 
-void stuffing_repair(const struct labels *labels, const bool *keep, double least, double slack,
-                     struct stuffing *stuffing, const struct stuffing_star *star)
+void stuffing_repair(const struct shaping *shaping, double least, double slack)
 {
+    const struct stuffing *stuffing = shaping->stuffing;
     bool improved = true;
     for (int sweep = 0; sweep < SWEEPS && improved; sweep++) {
         improved = false;
         for (int64_t c = 0; c < stuffing->cell_count; c++) {
             for (int k = 0; k <= stuffing->dim && stuffing_score(stuffing, c) < least; k++) {
                 int64_t node = stuffing->cell[c * (stuffing->dim + 1) + k];
-                improved = search(labels, keep, slack, stuffing, star, node) || improved;
+                improved = search(shaping, slack, node) || improved;
             }
         }
     }
@@ -106,9 +102,10 @@ struct room {
     double x[ROOM_MOST][3];
 };
 
-static void find_room(const struct stuffing *stuffing, const struct stuffing_star *star, int64_t node,
-                      struct room *room)
+static void find_room(const struct shaping *shaping, int64_t node, struct room *room)
 {
+    const struct stuffing *stuffing = shaping->stuffing;
+    const struct stuffing_star *star = &shaping->star;
     int dim = stuffing->dim;
     room->count = 0;
     for (int64_t i = star->ptr[node]; i < star->ptr[node + 1]; i++) {
@@ -127,33 +124,32 @@ static void find_room(const struct stuffing *stuffing, const struct stuffing_sta
 }
 
 /* The poorest cell at the node and at those around it. */
-static double room_score(const struct stuffing *stuffing, const struct stuffing_star *star, int64_t node,
-                         const struct room *room)
+static double room_score(const struct shaping *shaping, int64_t node, const struct room *room)
 {
-    double least = star_score(stuffing, star, node);
+    double least = star_score(shaping, node);
     for (int r = 0; r < room->count; r++) {
-        least = fmin(least, star_score(stuffing, star, room->node[r]));
+        least = fmin(least, star_score(shaping, room->node[r]));
     }
     return least;
 }
 
-bool star_make_room(const struct labels *labels, const bool *keep, double least, struct stuffing *stuffing,
-                    const struct stuffing_star *star, int64_t node, const double target[])
+bool star_make_room(const struct shaping *shaping, double least, int64_t node, const double target[])
 {
+    struct stuffing *stuffing = shaping->stuffing;
     int dim = stuffing->dim;
     double *x = stuffing->x + node * dim, before[3] = {0};
     struct room room;
-    find_room(stuffing, star, node, &room);
-    double wanted = fmin(least, room_score(stuffing, star, node, &room));
+    find_room(shaping, node, &room);
+    double wanted = fmin(least, room_score(shaping, node, &room));
     memcpy(before, x, (size_t)dim * sizeof *x);
     memcpy(x, target, (size_t)dim * sizeof *x);
     for (int sweep = 0; sweep < ROOM_SWEEPS; sweep++) {
         for (int r = 0; r < room.count; r++) {
-            if (star_score(stuffing, star, room.node[r]) < wanted) {
-                (void)search(labels, keep, 0, stuffing, star, room.node[r]);
+            if (star_score(shaping, room.node[r]) < wanted) {
+                (void)search(shaping, 0, room.node[r]);
             }
         }
-        if (room_score(stuffing, star, node, &room) >= wanted) {
+        if (room_score(shaping, node, &room) >= wanted) {
             return true;
         }
     }

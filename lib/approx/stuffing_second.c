@@ -31,15 +31,7 @@ static int compare_seconds(const void *left, const void *right)
 
 static enum status add_second(struct cutting *cutting, int32_t cut, int32_t point, struct error *error)
 {
-    if (cutting->seconds == cutting->second_room) {
-        int64_t room = cutting->second_room + cutting->second_room / 2 + 256;
-        struct second_cut *second = array_grow(cutting->second, room, sizeof *second);
-        if (second == NULL) {
-            return fail_memory(error, "cuts");
-        }
-        cutting->second = second;
-        cutting->second_room = room;
-    }
+    RETURN_IF_ERROR(GROW_ARRAY(&cutting->second, cutting->seconds + 1, &cutting->second_room, error));
     cutting->second[cutting->seconds++] = (struct second_cut){cut, point, -1};
     return STATUS_OK;
 }
@@ -101,11 +93,8 @@ enum status cutting_seconds(struct cutting *cutting, struct error *error)
         }
     }
     cutting->seconds = count;
-    double *x = array_grow(cutting->x, (cutting->node_count + count + 1) * dim, sizeof *x);
-    if (x == NULL) {
-        return fail_memory(error, "nodes");
-    }
-    cutting->x = x;
+    RETURN_IF_ERROR(RESIZE_ARRAY(&cutting->x, (cutting->node_count + count + 1) * dim, error));
+    double *x = cutting->x;
     for (int64_t s = 0; s < count; s++) {
         struct second_cut *second = &cutting->second[s];
         double share = second_change(cutting, second);

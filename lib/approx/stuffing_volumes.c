@@ -24,9 +24,7 @@ void stuffing_gradient(const struct stuffing *stuffing, int64_t cell, int k, dou
 }
 
 struct volumes {
-    const struct labels *labels;
-    struct stuffing *stuffing;
-    const struct stuffing_star *star;
+    const struct shaping *shaping;
     const int32_t *whole; /* labels->count: the label whose part each is, of which the arrays below are */
     const bool *apart;    /* nodes that stay */
     double *wanted;       /* labels->count: of the voxels, m3; 0: not to be kept */
@@ -38,21 +36,22 @@ struct volumes {
 /* Gradients of the volumes of the labels at a node: one row for each label of its star. */
 static void node_gradients(const struct volumes *volumes, int64_t node, double G[STUFFING_MOST_LABELS][3])
 {
-    const struct stuffing_star *star = volumes->star;
-    int corners = volumes->stuffing->dim + 1;
+    const struct stuffing_star *star = &volumes->shaping->star;
+    const struct stuffing *stuffing = volumes->shaping->stuffing;
+    int corners = stuffing->dim + 1;
     memset(G, 0, STUFFING_MOST_LABELS * sizeof *G);
     for (int64_t i = star->ptr[node]; i < star->ptr[node + 1]; i++) {
         double gradient[3];
         int64_t cell = star->cell[i];
-        int32_t label = volumes->whole[volumes->stuffing->label[cell]];
+        int32_t label = volumes->whole[stuffing->label[cell]];
         int k = 0, row = 0;
-        while (k < corners - 1 && volumes->stuffing->cell[cell * corners + k] != node) {
+        while (k < corners - 1 && stuffing->cell[cell * corners + k] != node) {
             k++;
         }
         while (row < star->labels[node] && star->label[node][row] != label) {
             row++;
         }
-        stuffing_gradient(volumes->stuffing, cell, k, gradient);
+        stuffing_gradient(stuffing, cell, k, gradient);
         for (int d = 0; d < corners - 1 && row < star->labels[node]; d++) {
             G[row][d] += gradient[d];
         }
@@ -74,8 +73,9 @@ static double node_weight(int dim, double G[STUFFING_MOST_LABELS][3])
  * correct. */
 static bool find_pressures(struct volumes *volumes)
 {
-    int32_t count = volumes->labels->count;
-    const struct stuffing *stuffing = volumes->stuffing;
+    int32_t count = volumes->shaping->labels.count;
+    const struct stuffing *stuffing = volumes->shaping->stuffing;
+    const struct stuffing_star *star = &volumes->shaping->star;
     int dim = stuffing->dim;
     struct cells cells = stuffing_cells(stuffing);
     double worst = 0, trace = 0;
@@ -90,14 +90,14 @@ static bool find_pressures(struct volumes *volumes)
     }
     for (int64_t n = 0; n < stuffing->node_count; n++) {
         double G[STUFFING_MOST_LABELS][3];
-        const uint16_t *label = volumes->star->label[n];
-        if (volumes->star->labels[n] < 2 || volumes->apart[n]) {
+        const uint16_t *label = star->label[n];
+        if (star->labels[n] < 2 || volumes->apart[n]) {
             continue;
         }
         node_gradients(volumes, n, G);
         double weight = node_weight(dim, G);
-        for (int i = 0; i < volumes->star->labels[n]; i++) {
-            for (int j = 0; j < volumes->star->labels[n]; j++) {
+        for (int i = 0; i < star->labels[n]; i++) {
+            for (int j = 0; j < star->labels[n]; j++) {
                 double *entry = &volumes->matrix[volumes->whole[label[i]] * count + volumes->whole[label[j]]];
                 for (int d = 0; d < dim; d++) {
                     *entry += weight * G[i][d] * G[j][d];
@@ -117,21 +117,22 @@ static bool find_pressures(struct volumes *volumes)
 
 static void correct_volumes(struct volumes *volumes)
 {
-    struct stuffing *stuffing = volumes->stuffing;
+    struct stuffing *stuffing = volumes->shaping->stuffing;
+    const struct stuffing_star *star = &volumes->shaping->star;
     int dim = stuffing->dim;
-    double most = most_offset * labels_voxel(volumes->labels);
+    double most = most_offset * labels_voxel(&volumes->shaping->labels);
     for (int64_t n = 0; n < stuffing->node_count; n++) {
         double G[STUFFING_MOST_LABELS][3], target[3] = {0}, length = 0;
         const double *place = volumes->place + n * dim;
-        if (volumes->star->labels[n] < 2 || volumes->apart[n]) {
+        if (star->labels[n] < 2 || volumes->apart[n]) {
             continue;
         }
         node_gradients(volumes, n, G);
         double weight = node_weight(dim, G);
         for (int d = 0; d < dim; d++) {
             target[d] = stuffing->x[n * dim + d];
-            for (int i = 0; i < volumes->star->labels[n]; i++) {
-                target[d] += weight * volumes->pressure[volumes->whole[volumes->star->label[n][i]]] * G[i][d];
+            for (int i = 0; i < star->labels[n]; i++) {
+                target[d] += weight * volumes->pressure[volumes->whole[star->label[n][i]]] * G[i][d];
             }
             length += (target[d] - place[d]) * (target[d] - place[d]);
         }
@@ -139,7 +140,7 @@ static void correct_volumes(struct volumes *volumes)
         for (int d = 0; d < dim && length > most; d++) {
             target[d] = place[d] + (target[d] - place[d]) * most / length;
         }
-        star_move(stuffing, volumes->star, n, target);
+        star_move(volumes->shaping, n, target);
     }
 }
 
@@ -162,14 +163,15 @@ static void voxel_volumes(const struct labels *labels, const bool *keep, double 
     }
 }
 
-enum status stuffing_volumes(const struct labels *labels, const struct stuffing_options *options,
-                             const bool *apart, const double *dropped, const struct stuffing_star *star,
-                             struct stuffing *stuffing, struct error *error)
+enum status stuffing_volumes(const struct shaping *shaping, const struct stuffing_options *options,
+                             const bool *apart, const double *dropped, struct error *error)
 {
     enum status status;
+    const struct labels *labels = &shaping->labels;
+    const struct stuffing *stuffing = shaping->stuffing;
     int32_t *whole = NULL;
     double *voxels = NULL;
-    struct volumes volumes = {.labels = labels, .stuffing = stuffing, .star = star, .apart = apart};
+    struct volumes volumes = {.shaping = shaping, .apart = apart};
     TRY(NEW_ARRAY(&whole, labels->count, error));
     TRY(NEW_ARRAY(&voxels, labels->count, error));
     TRY(NEW_ARRAY(&volumes.wanted, labels->count, error));

@@ -25,28 +25,26 @@ void point_text(int dim, const double *x, char text[96])
     }
 }
 
-static void worker_free(struct worker *worker)
+static void worker_free(int64_t body_count, struct worker *worker)
 {
     free(worker->list.index);
     free(worker->around_pair);
     free(worker->around_offset);
-    reach_work_free(&worker->reach);
+    for (int64_t b = 0; b < body_count && worker->reach != NULL; b++) {
+        reach_work_free(&worker->reach[b]);
+    }
+    free(worker->reach);
     free(worker->order);
+    free(worker->gradient);
     mls_work_free(&worker->work);
-}
-
-static long long row_of(const struct search *search, int64_t p)
-{
-    return search->places.row != NULL ? search->places.row[p] : p;
 }
 
 static enum status check_finite(const struct search *search, int64_t count, struct error *error)
 {
-    int dim = search->grid->dim;
-    for (int64_t i = 0; i < count * dim; i++) {
+    for (int64_t i = 0; i < count * search->dim; i++) {
         if (!isfinite(search->x[i])) {
             return fail(error, STATUS_INPUT, "%s: row %lld: not a finite coordinate", search->what,
-                        row_of(search, i / dim));
+                        (long long)(i / search->dim));
         }
     }
     return STATUS_OK;
@@ -57,21 +55,22 @@ static enum status fail_support(const struct search *search, int64_t row, const 
                                 struct error *error)
 {
     char place[96], stray[96] = "";
-    const struct point_grid *grid = search->grid;
-    int64_t widest = 0;
-    point_text(grid->dim, search->x + row * grid->dim, place);
-    for (int64_t i = 1; i < count; i++) {
-        widest = grid->radius[index[i]] > grid->radius[index[widest]] ? i : widest;
-    }
+    const struct support_body *body = &search->body[search_body(search, row)];
+    const double *radius = body->grid->radius;
+    point_text(search->dim, search->x + row * search->dim, place);
     if (count > 0) {
-        snprintf(stray, sizeof stray, ", the largest radius being %.3g m, of node %d",
-                 grid->radius[index[widest]], index[widest]);
+        int32_t widest = index[0];
+        for (int64_t i = 1; i < count; i++) {
+            widest = radius[index[i]] > radius[widest] ? index[i] : widest;
+        }
+        snprintf(stray, sizeof stray, ", the largest radius being %.3g m, of node %d", radius[widest],
+                 body->node != NULL ? body->node[widest] : widest);
     }
     return fail(error, STATUS_VERDICT,
                 "%s: row %lld at %s: no good support even at %g times the radius (%lld nodes within%s%s): "
                 "coplanar, stray or too few nodes there",
-                search->what, row_of(search, row), place, SUPPORT_WIDEN_LIMIT, (long long)count,
-                search->reach != NULL ? " reach through the cells" : "", stray);
+                search->what, (long long)row, place, SUPPORT_WIDEN_LIMIT, (long long)count,
+                body->reach != NULL ? " reach through the cells" : "", stray);
 }
 
 /* Fill the worker's list with the neighbours of the points [first, last); their numbers go to lists->ptr. */
@@ -83,10 +82,14 @@ static enum status build_chunk(const struct search *search, int64_t first, int64
         bool serves;
         int64_t before = worker->list.count;
         RETURN_IF_ERROR(support_find(search, p, worker, &lists->widen[p], &serves, error));
-        const int32_t *index = worker->list.index + before;
+        int32_t *index = worker->list.index + before;
+        const int32_t *node = search->body[search_body(search, p)].node;
         int64_t count = worker->list.count - before;
         if (!serves) {
             return fail_support(search, p, index, count, error);
+        }
+        for (int64_t i = 0; i < count && node != NULL; i++) {
+            index[i] = node[index[i]];
         }
         lists->ptr[p + 1] = count;
     }
@@ -149,18 +152,22 @@ static enum status build_chunks(const struct search *search, struct support_list
             struct error own;
             int64_t first = c * chunk_points;
             int64_t last = first + chunk_points < lists->count ? first + chunk_points : lists->count;
-            enum status outcome = build_chunk(search, first, last, lists, &worker, &own);
+            enum status outcome =
+                worker.reach != NULL ? STATUS_OK : NEW_ARRAY(&worker.reach, search->body_count, &own);
+            if (outcome == STATUS_OK) {
+                outcome = build_chunk(search, first, last, lists, &worker, &own);
+            }
 #pragma omp ordered
             if (failure == STATUS_OK) {
                 failure = outcome == STATUS_OK
-                              ? append_chunk(search->grid->dim, lists, first, last, &worker, all, &own)
+                              ? append_chunk(search->dim, lists, first, last, &worker, all, &own)
                               : outcome;
                 if (failure != STATUS_OK) {
                     *error = own;
                 }
             }
         }
-        worker_free(&worker);
+        worker_free(search->body_count, &worker);
     }
     return failure;
 }
@@ -176,18 +183,36 @@ enum status support_build_within(const struct support_options *options, const st
                                  const double *x, const char *what, struct support_lists *lists,
                                  struct error *error)
 {
+    const struct support_body body = {.grid = grid, .reach = reach};
+    return support_build_among(options, 1, &body, NULL, places, count, x, what, lists, error);
+}
+
+enum status support_build_among(const struct support_options *options, int64_t body_count,
+                                const struct support_body *body, const int32_t *body_of,
+                                const struct reach_places *places, int64_t count, const double *x,
+                                const char *what, struct support_lists *lists, struct error *error)
+{
     enum status status;
     struct index_list all = {0};
     *lists = (struct support_lists){.count = count, .widest = 1.0};
-    struct search search = {.options = options, .grid = grid, .reach = reach, .x = x, .what = what};
+    struct search search = {.options = options,
+                            .dim = options->mls.dim, /* some bodies may have no nodes */
+                            .body_count = body_count,
+                            .body = body,
+                            .body_of = body_of,
+                            .x = x,
+                            .what = what};
     TRY(NEW_ARRAY(&lists->ptr, count + 1, error));
     TRY(NEW_ARRAY(&lists->widen, count, error));
     if (places != NULL) {
         search.places = *places;
     }
     TRY(check_finite(&search, count, error));
-    if (reach != NULL) {
-        TRY(reach_shadows_build(reach, count, x, &search.shadows, error));
+    TRY(NEW_ARRAY(&search.shadows, body_count, error));
+    for (int32_t b = 0; b < body_count && !search.places.nodes; b++) {
+        if (body[b].reach != NULL) {
+            TRY(reach_shadows_build(body[b].reach, count, x, body_of, b, &search.shadows[b], error));
+        }
     }
     TRY(build_chunks(&search, lists, &all, error));
     lists->idx = array_grow(all.index, all.count, sizeof *all.index); /* no longer than it need be */
@@ -196,7 +221,10 @@ enum status support_build_within(const struct support_options *options, const st
     }
     all.index = NULL;
 done:
-    reach_shadows_free(&search.shadows);
+    for (int64_t b = 0; b < body_count && search.shadows != NULL; b++) {
+        reach_shadows_free(&search.shadows[b]);
+    }
+    free(search.shadows);
     free(all.index);
     if (status != STATUS_OK) {
         support_free(lists);

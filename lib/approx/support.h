@@ -63,6 +63,20 @@ MUST_CHECK enum status support_build_within(const struct support_options *option
                                             const struct reach_places *places, int64_t count, const double *x,
                                             const char *what, struct support_lists *lists,
                                             struct error *error);
+
+/* A body that neighbours are looked for in. */
+struct support_body {
+    const struct point_grid *grid;
+    const struct reach *reach; /* as above */
+    const int32_t *node;       /* the numbers of its nodes in the lists, ascending; NULL: their own */
+};
+/* The same with neighbours of each point in one of several bodies: number body_of[p], or the first where
+ * body_of is NULL. The places are nodes and cells of that body. */
+MUST_CHECK enum status support_build_among(const struct support_options *options, int64_t body_count,
+                                           const struct support_body *body, const int32_t *body_of,
+                                           const struct reach_places *places, int64_t count, const double *x,
+                                           const char *what, struct support_lists *lists,
+                                           struct error *error);
 void support_free(struct support_lists *lists);
 
 /* Print "(x, y[, z])" of a point into text[96], for messages. */

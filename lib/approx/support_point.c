@@ -28,13 +28,7 @@ static enum status keep_nearest(const struct point_grid *grid, const double *x, 
     if (most <= 0 || *count <= most) {
         return STATUS_OK;
     }
-    if (*count > worker->capacity) {
-        int64_t capacity = 2 * *count + 64;
-        free(worker->order);
-        worker->capacity = 0;
-        RETURN_IF_ERROR(NEW_ARRAY(&worker->order, capacity, error));
-        worker->capacity = capacity;
-    }
+    RETURN_IF_ERROR(GROW_ARRAY(&worker->order, *count, &worker->order_room, error));
     double *distance2 = worker->order;
     for (int64_t i = 0; i < *count; i++) {
         distance2[i] = neighbour_distance2(grid, x, index[i], image != NULL ? image + i * dim : NULL);
@@ -82,12 +76,10 @@ static double spacing_within(const struct support_options *options, const struct
 }
 
 /* Whether a support serves: enough nodes, a well-conditioned moment matrix, bounded gradients. */
-static enum status judge(const struct search *search, const double *x, double widen, const int32_t *index,
-                         const double *image, int64_t count, struct worker *worker, bool *serves,
-                         struct error *error)
+static enum status judge(const struct support_options *options, const struct point_grid *grid,
+                         const double *x, double widen, const int32_t *index, const double *image,
+                         int64_t count, struct worker *worker, bool *serves, struct error *error)
 {
-    const struct support_options *options = search->options;
-    const struct point_grid *grid = search->grid;
     enum mls_verdict verdict;
     struct mls_support support = {.x = x,
                                   .nodes = grid->x,
@@ -96,18 +88,22 @@ static enum status judge(const struct search *search, const double *x, double wi
                                   .neighbours = index,
                                   .count = count,
                                   .image = image};
-    double largest;
+    double largest2 = 0.0;
     *serves = false;
     if (count < options->least) {
         return STATUS_OK;
     }
     double spacing = spacing_within(options, grid, x, index, image, count, widen);
-    enum status status =
-        mls_largest_gradient(&options->mls, &support, &worker->work, &largest, &verdict, error);
-    if (status == STATUS_OK && verdict == MLS_GOOD) {
-        *serves = largest * spacing <= options->gradient_bound;
+    int dim = grid->dim;
+    RETURN_IF_ERROR(GROW_ARRAY(&worker->gradient, count * dim, &worker->gradient_room, error));
+    RETURN_IF_ERROR(
+        mls_evaluate(&options->mls, &support, &worker->work, NULL, worker->gradient, &verdict, error));
+    for (int64_t i = 0; i < count && verdict == MLS_GOOD; i++) {
+        double square = vector_dot(dim, worker->gradient + i * dim, worker->gradient + i * dim);
+        largest2 = square > largest2 ? square : largest2;
     }
-    return status;
+    *serves = verdict == MLS_GOOD && sqrt(largest2) * spacing <= options->gradient_bound;
+    return STATUS_OK;
 }
 
 /* Put down the neighbours of the list from `first` on that are seen around corners: those whose images are
@@ -125,14 +121,12 @@ static enum status note_around(const struct point_grid *grid, const double *x, c
         if (straight) {
             continue;
         }
-        if (worker->around_count == worker->around_capacity) {
-            int64_t capacity = 2 * worker->around_capacity + 64;
-            RETURN_IF_ERROR(RESIZE_ARRAY(&worker->around_pair, capacity, error));
-            RETURN_IF_ERROR(RESIZE_ARRAY(&worker->around_offset, capacity * dim, error));
-            worker->around_capacity = capacity;
-        }
-        worker->around_pair[worker->around_count] = i;
-        memcpy(worker->around_offset + worker->around_count++ * dim, image, (size_t)dim * sizeof *image);
+        int64_t at = worker->around_count;
+        RETURN_IF_ERROR(GROW_ARRAY(&worker->around_pair, at + 1, &worker->pair_room, error));
+        RETURN_IF_ERROR(GROW_ARRAY(&worker->around_offset, (at + 1) * dim, &worker->offset_room, error));
+        worker->around_pair[at] = i;
+        memcpy(worker->around_offset + at * dim, image, (size_t)dim * sizeof *image);
+        worker->around_count++;
     }
     return STATUS_OK;
 }
@@ -141,11 +135,14 @@ enum status support_find(const struct search *search, int64_t p, struct worker *
                          bool *serves, struct error *error)
 {
     const struct support_options *options = search->options;
-    const struct point_grid *grid = search->grid;
+    int32_t body = search_body(search, p);
+    const struct point_grid *grid = search->body[body].grid;
+    const struct reach *reach = search->body[body].reach;
+    struct reach_work *work = &worker->reach[body];
     const double *x = search->x + p * grid->dim;
     int64_t first = worker->list.count;
-    if (search->reach != NULL) {
-        RETURN_IF_ERROR(reach_begin(search->reach, &search->places, p, x, &worker->reach, error));
+    if (reach != NULL) {
+        RETURN_IF_ERROR(reach_begin(reach, &search->places, p, x, work, error));
     }
     for (*widen = 1.0; *widen <= SUPPORT_WIDEN_LIMIT; *widen *= widen_step) {
         worker->list.count = first;
@@ -153,16 +150,15 @@ enum status support_find(const struct search *search, int64_t p, struct worker *
         int64_t count = worker->list.count - first;
         int32_t *index = worker->list.index + first;
         double *image = NULL;
-        if (search->reach != NULL) {
-            RETURN_IF_ERROR(
-                reach_filter(search->reach, &search->shadows, *widen, index, &count, &worker->reach, error));
-            image = worker->reach.around > 0 ? worker->reach.image : NULL;
+        if (reach != NULL) {
+            RETURN_IF_ERROR(reach_filter(reach, &search->shadows[body], *widen, index, &count, work, error));
+            image = work->around > 0 ? work->image : NULL;
         }
         RETURN_IF_ERROR(keep_nearest(grid, x, options->most, index, image, &count, worker, error));
         worker->list.count = first + count;
         *serves = true;
         if (options->widen) {
-            RETURN_IF_ERROR(judge(search, x, *widen, index, image, count, worker, serves, error));
+            RETURN_IF_ERROR(judge(options, grid, x, *widen, index, image, count, worker, serves, error));
         }
         if (*serves) {
             return image != NULL ? note_around(grid, x, image, first, worker, error) : STATUS_OK;

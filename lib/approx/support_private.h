@@ -9,10 +9,12 @@
 /* What lists are made of. */
 struct search {
     const struct support_options *options;
-    const struct point_grid *grid;
-    const struct reach *reach; /* NULL: supports are as large as their radii */
+    int dim;
+    int64_t body_count;
+    const struct support_body *body;
+    const int32_t *body_of; /* of each point; NULL: the first */
     struct reach_places places;
-    struct reach_shadows shadows; /* of the points, within reach */
+    struct reach_shadows *shadows; /* body_count: of its points, within reach */
     const double *x;
     const char *what;
 };
@@ -20,18 +22,24 @@ struct search {
 /* One thread's growing lists and scratch. */
 struct worker {
     struct index_list list;
-    int64_t around_count, around_capacity; /* neighbours seen around corners */
-    int64_t *around_pair;                  /* places in the list */
+    int64_t around_count, pair_room, offset_room; /* neighbours seen around corners */
+    int64_t *around_pair;                         /* places in the list */
     double *around_offset;
-    struct reach_work reach;
+    struct reach_work *reach; /* for each body */
     struct mls_work work;
-    double *order;
-    int64_t capacity;
+    double *order, *gradient;
+    int64_t order_room, gradient_room;
 };
 
 /* Append the neighbours of point p to the worker's list. The radii are widened until the support serves, at
  * most by SUPPORT_WIDEN_LIMIT; *serves: whether it does. */
 MUST_CHECK enum status support_find(const struct search *search, int64_t p, struct worker *worker,
                                     double *widen, bool *serves, struct error *error);
+
+/* The number of the body that neighbours of point p are looked for in. */
+static inline int32_t search_body(const struct search *search, int64_t p)
+{
+    return search->body_of != NULL ? search->body_of[p] : 0;
+}
 
 #endif

@@ -207,145 +207,48 @@ done:
     return status;
 }
 
-/* The points of one side. */
-struct own_points {
-    int64_t count, *row; /* which of all */
-    double *x;
-    int32_t *item; /* the node of each on the side, or its cells there: */
-    int64_t *ptr;  /* those of point i from ptr[i] to ptr[i + 1] */
-    struct support_lists lists;
-};
-
-static void own_points_free(struct own_points *own)
+/* The places of points on their sides: the node that each is there, or its cells there. ptr, item: what they
+ * are kept in, the caller's to free. */
+static enum status places_on_sides(const struct support_space *space, const struct reach_places *places,
+                                   int64_t count, const int32_t *side, int64_t **ptr, int32_t **item,
+                                   struct reach_places *within, struct error *error)
 {
-    free(own->row);
-    free(own->x);
-    free(own->item);
-    free(own->ptr);
-    support_free(&own->lists);
-}
-
-/* Choose the points on side s. */
-static enum status own_points_build(const struct support_space *space, const struct reach_places *places,
-                                    int32_t s, int64_t count, const double *x, const int32_t *side,
-                                    struct own_points *own, struct error *error)
-{
-    int dim = space->cells.dim;
-    int64_t items = 0, cells, node = 0;
+    int64_t items = 0, cells;
     for (int64_t p = 0; p < count; p++) {
-        if (side[p] == s) {
-            (void)reach_places_cells(places, p, &cells);
-            items += places->nodes ? 1 : cells;
-            own->count++;
-        }
+        (void)reach_places_cells(places, p, &cells);
+        items += places->nodes ? 1 : cells;
     }
-    RETURN_IF_ERROR(NEW_ARRAY(&own->row, own->count, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&own->x, own->count * dim, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&own->ptr, own->count + 1, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&own->item, items, error));
+    RETURN_IF_ERROR(NEW_ARRAY(ptr, count + 1, error));
+    RETURN_IF_ERROR(NEW_ARRAY(item, items, error));
+    *within = (struct reach_places){.nodes = places->nodes};
+    if (places->nodes) {
+        within->node = *item;
+    } else if (places->cell != NULL) {
+        within->cell = *item;
+        within->ptr = *ptr;
+        within->points_per_row = 1;
+    }
     items = 0;
-    for (int64_t p = 0, i = 0; p < count; p++) {
-        if (side[p] != s) {
-            continue;
-        }
-        bool whole = s == space->side_count;
-        if (places->nodes) {
-            while (!whole && space->side[s].node[node] < p) {
-                node++;
-            }
-            own->item[items++] = (int32_t)(whole ? p : node);
-        }
+    for (int64_t p = 0; p < count; p++) {
+        bool whole = side[p] == space->side_count;
         const int32_t *cell = reach_places_cells(places, p, &cells);
         for (int64_t k = 0; k < cells; k++) {
-            if (cell[k] >= 0 && (whole || space->cell_side[cell[k]] == s)) {
-                own->item[items++] = whole ? cell[k] : space->place[cell[k]];
+            if (cell[k] >= 0 && (whole || space->cell_side[cell[k]] == side[p])) {
+                (*item)[items++] = whole ? cell[k] : space->place[cell[k]];
             }
         }
-        memcpy(own->x + i * dim, x + p * dim, (size_t)dim * sizeof *x);
-        own->row[i++] = p;
-        own->ptr[i] = items;
+        (*ptr)[p + 1] = items;
+    }
+    for (int64_t n = 0; n < count && places->nodes; n++) {
+        (*item)[n] = (int32_t)n;
+    }
+    for (int32_t s = 0; s < space->side_count && places->nodes; s++) {
+        for (int64_t n = 0; n < space->side[s].node_count; n++) {
+            int32_t node = space->side[s].node[n];
+            (*item)[node] = side[node] == s ? (int32_t)n : (*item)[node];
+        }
     }
     return STATUS_OK;
-}
-
-/* Their lists, by nodes of the side. */
-static enum status own_points_list(const struct support_options *options, const struct support_side *side,
-                                   const struct reach_places *places, const char *what,
-                                   struct own_points *own, struct error *error)
-{
-    struct reach_places within = {.row = own->row};
-    if (places->nodes) {
-        within.nodes = true;
-        within.node = own->item;
-    } else if (places->cell != NULL) {
-        within.cell = own->item;
-        within.ptr = own->ptr;
-        within.points_per_row = 1;
-    }
-    return support_build_within(options, &side->grid, &side->reach, &within, own->count, own->x, what,
-                                &own->lists, error);
-}
-
-/* Copy the list of point i of a side to that of all, with those around corners. *around: how many of the
- * side's there were before. */
-static void copy_list(const struct support_side *side, int dim, const struct own_points *own, int64_t i,
-                      int64_t *around, struct support_lists *lists)
-{
-    int64_t first = own->lists.ptr[i], end = own->lists.ptr[i + 1], to = lists->ptr[own->row[i]];
-    lists->widen[own->row[i]] = own->lists.widen[i];
-    for (int64_t k = first; k < end; k++) {
-        int32_t node = own->lists.idx[k];
-        lists->idx[to + k - first] = side->node != NULL ? side->node[node] : node;
-    }
-    for (; *around < own->lists.around_count && own->lists.around_pair[*around] < end; ++*around) {
-        lists->around_pair[lists->around_count] = own->lists.around_pair[*around] - first + to;
-        memcpy(lists->around_offset + lists->around_count++ * dim, own->lists.around_offset + *around * dim,
-               (size_t)dim * sizeof(double));
-    }
-}
-
-/* Put the lists of all sides together, in the order of the points. */
-static enum status join(const struct support_space *space, const struct own_points *own, const int32_t *side,
-                        int64_t count, struct support_lists *lists, struct error *error)
-{
-    enum status status;
-    int64_t *next = NULL, *around = NULL, around_count = 0;
-    *lists = (struct support_lists){.count = count, .widest = 1.0};
-    TRY(NEW_ARRAY(&next, sides_in(space), error));
-    TRY(NEW_ARRAY(&around, sides_in(space), error));
-    TRY(NEW_ARRAY(&lists->ptr, count + 1, error));
-    TRY(NEW_ARRAY(&lists->widen, count, error));
-    for (int64_t s = 0; s < sides_in(space); s++) {
-        const struct support_lists *of = &own[s].lists;
-        if (own[s].count == 0) {
-            continue;
-        }
-        for (int64_t i = 0; i < own[s].count; i++) {
-            lists->ptr[own[s].row[i] + 1] = of->ptr[i + 1] - of->ptr[i];
-        }
-        lists->fewest = lists->fewest == 0 || of->fewest < lists->fewest ? of->fewest : lists->fewest;
-        lists->most = of->most > lists->most ? of->most : lists->most;
-        lists->widest = of->widest > lists->widest ? of->widest : lists->widest;
-        lists->widened += of->widened;
-        around_count += of->around_count;
-    }
-    for (int64_t p = 0; p < count; p++) {
-        lists->ptr[p + 1] += lists->ptr[p];
-    }
-    TRY(NEW_ARRAY(&lists->idx, lists->ptr[count], error));
-    TRY(NEW_ARRAY(&lists->around_pair, around_count, error));
-    TRY(NEW_ARRAY(&lists->around_offset, around_count * space->cells.dim, error));
-    for (int64_t p = 0; p < count; p++) {
-        int32_t s = side[p];
-        copy_list(&space->side[s], space->cells.dim, &own[s], next[s]++, &around[s], lists);
-    }
-done:
-    free(next);
-    free(around);
-    if (status != STATUS_OK) {
-        support_free(lists);
-    }
-    return status;
 }
 
 static enum status lists_of_sides(const struct support_options *options, const struct support_space *space,
@@ -353,10 +256,12 @@ static enum status lists_of_sides(const struct support_options *options, const s
                                   const char *what, struct support_lists *lists, struct error *error)
 {
     enum status status;
-    int32_t *side = NULL;
-    struct own_points *own = NULL;
+    struct reach_places within;
+    struct support_body *body = NULL;
+    int64_t *ptr = NULL;
+    int32_t *side = NULL, *item = NULL;
     TRY(NEW_ARRAY(&side, count, error));
-    TRY(NEW_ARRAY(&own, sides_in(space), error));
+    TRY(NEW_ARRAY(&body, sides_in(space), error));
     if (places->nodes) {
         sides_of_nodes(space, count, side);
     } else {
@@ -364,19 +269,17 @@ static enum status lists_of_sides(const struct support_options *options, const s
     }
     TRY(locate_sides(space, count, x, side, error));
     sides_of_others(space, places, count, side);
-    for (int32_t s = 0; s < sides_in(space); s++) {
-        TRY(own_points_build(space, places, s, count, x, side, &own[s], error));
-        if (own[s].count > 0) {
-            TRY(own_points_list(options, &space->side[s], places, what, &own[s], error));
-        }
+    TRY(places_on_sides(space, places, count, side, &ptr, &item, &within, error));
+    for (int64_t s = 0; s < sides_in(space); s++) {
+        const struct support_side *of = &space->side[s];
+        body[s] = (struct support_body){&of->grid, &of->reach, of->node};
     }
-    TRY(join(space, own, side, count, lists, error));
+    TRY(support_build_among(options, sides_in(space), body, side, &within, count, x, what, lists, error));
 done:
-    for (int64_t s = 0; own != NULL && s < sides_in(space); s++) {
-        own_points_free(&own[s]);
-    }
-    free(own);
+    free(body);
     free(side);
+    free(ptr);
+    free(item);
     return status;
 }
 

@@ -30,27 +30,18 @@ static double leave_cell(const struct cells *cells, int64_t cell, int entered, c
                          const double *way, int *face, double *normal)
 {
     int dim = cells->dim, corners = dim + 1;
-    const int32_t *node = cells->node + cell * corners;
     double nearest = INFINITY;
     for (int k = 0; k < corners; k++) {
-        int32_t side[3] = {0, 0, 0};
-        double area[3] = {0.0, 0.0, 0.0}, to_face[3], to_vertex[3];
-        for (int i = 0; i < dim; i++) {
-            side[i] = node[(k + 1 + i) % corners];
-        }
+        int32_t side[3];
+        double area[3], to_face[3];
+        cell_face(cells, cell, k, side);
         face_area_vector(dim, cells->x, side, area);
-        const double *corner = cells->x + (int64_t)side[0] * dim;
-        vector_subtract(dim, corner, x, to_face);
-        vector_subtract(dim, cells->x + (int64_t)node[k] * dim, corner, to_vertex);
-        double sign = vector_dot(dim, area, to_vertex) > 0.0 ? -1.0 : 1.0,
-               slope = sign * vector_dot(dim, area, way);
-        double distance = sign * vector_dot(dim, area, to_face) / slope;
+        vector_subtract(dim, cells->x + (int64_t)side[0] * dim, x, to_face);
+        double slope = vector_dot(dim, area, way), distance = vector_dot(dim, area, to_face) / slope;
         if (k != entered && slope > 0.0 && distance < nearest) {
             nearest = distance;
             *face = k;
-            for (int a = 0; a < dim; a++) {
-                normal[a] = sign * area[a];
-            }
+            memcpy(normal, area, (size_t)dim * sizeof *area);
         }
     }
     return nearest;
@@ -96,22 +87,16 @@ enum status cells_find_thin(const struct cells *cells, double bound, struct thin
         if (across[i] >= 0) {
             continue;
         }
-        int32_t node[3] = {0, 0, 0};
-        double area[3] = {0.0, 0.0, 0.0}, middle[3] = {0.0, 0.0, 0.0}, inward[3] = {0.0, 0.0, 0.0};
-        for (int k = 0; k < dim; k++) {
-            node[k] = cells->node[cell * corners + (face + 1 + k) % corners];
-            for (int a = 0; a < dim; a++) {
+        int32_t node[3];
+        double area[3], middle[3] = {0.0, 0.0, 0.0}, inward[3];
+        cell_face(cells, cell, face, node);
+        face_area_vector(dim, cells->x, node, area);
+        double size = vector_length(dim, area);
+        for (int a = 0; a < dim; a++) {
+            inward[a] = -area[a] / size;
+            for (int k = 0; k < dim; k++) {
                 middle[a] += cells->x[(int64_t)node[k] * dim + a] / dim;
             }
-        }
-        face_area_vector(dim, cells->x, node, area);
-        double size = vector_length(dim, area), height = 0.0;
-        for (int a = 0; a < dim; a++) {
-            int64_t vertex = cells->node[cell * corners + face];
-            height += area[a] * (cells->x[vertex * dim + a] - middle[a]);
-        }
-        for (int a = 0; a < dim; a++) {
-            inward[a] = (height > 0.0 ? area[a] : -area[a]) / size;
         }
         double width = facet_width(dim, cells->x, node);
         double ratio = thickness(cells, across, cell, face, middle, inward, bound * width) / width;

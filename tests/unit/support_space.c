@@ -218,7 +218,7 @@ TEST(failures_name_the_row)
     options.least = 1000;
     static const double inside[] = {0.8, 0.8, 0.2, 0.2};
     FAILS(support_space_lists(&options, &space, NULL, 2, inside, "points.x", &lists, &error), STATUS_VERDICT,
-          "points.x: row 1 at (0.2, 0.2): no good support");
+          "points.x: row 0 at (0.8, 0.8): no good support");
     support_space_free(&space);
     halves_free(&halves);
 }

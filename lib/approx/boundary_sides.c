@@ -1,14 +1,79 @@
-/* The boundary averages of a set of facets, split where the boundary turns. */
+/* The facets of a set: which faces of the table they are, their normals, and the sides that they form. */
 #include "approx/boundary_private.h"
 
+#include "base/lists.h"
 #include "base/memory.h"
 #include "base/sets.h"
+#include "base/vector.h"
 
 #include <stdlib.h>
 
 /* Facets that turn by 45 degrees or more at a node belong to different sides; a little less than that, so
  * that round-off does not decide on chamfers. */
 static const double side_cosine = 0.7072;
+
+/* A face by its sorted nodes, for look-up. */
+struct keyed_face {
+    int32_t key[3];
+    int64_t face;
+};
+
+static int compare_faces(const void *left, const void *right)
+{
+    const struct keyed_face *a = left, *b = right;
+    for (int i = 0; i < 3; i++) {
+        if (a->key[i] != b->key[i]) {
+            return a->key[i] < b->key[i] ? -1 : 1;
+        }
+    }
+    return 0;
+}
+
+enum status boundary_find_faces(const struct face_table *table, const struct facet_set *set, int64_t *face_of,
+                                struct error *error)
+{
+    enum status status;
+    struct keyed_face *keyed = NULL;
+    int dim = table->dim;
+    int64_t count = 0;
+    for (int64_t i = 0; i < set->count * dim; i++) {
+        if (set->facet[i] < 0 || set->facet[i] >= table->node_count) {
+            return fail(error, STATUS_INPUT, "facets: no node %d", set->facet[i]);
+        }
+    }
+    TRY(NEW_ARRAY(&keyed, table->faces->count, error));
+    for (int64_t f = 0; f < table->faces->count; f++) {
+        if (table->faces->cell[2 * f + 1] < 0) {
+            face_key(dim, table->faces->node + f * dim, keyed[count].key);
+            keyed[count++].face = f;
+        }
+    }
+    qsort(keyed, (size_t)count, sizeof *keyed, compare_faces);
+    for (int64_t i = 0; i < set->count; i++) {
+        struct keyed_face wanted;
+        face_key(dim, set->facet + i * dim, wanted.key);
+        const struct keyed_face *found = bsearch(&wanted, keyed, (size_t)count, sizeof *keyed, compare_faces);
+        if (found == NULL) {
+            status = fail(error, STATUS_INPUT, "facets: row %lld of the set is no boundary face of the cells",
+                          (long long)i);
+            goto done;
+        }
+        face_of[i] = found->face;
+    }
+done:
+    free(keyed);
+    return status;
+}
+
+void boundary_unit_normal(const struct face_table *table, const int32_t *facet, double *normal, double *size)
+{
+    normal[2] = 0.0;
+    face_area_vector(table->dim, table->x, facet, normal);
+    *size = vector_length(table->dim, normal);
+    for (int a = 0; a < table->dim; a++) {
+        normal[a] /= *size;
+    }
+}
 
 static int compare_corners(const void *left, const void *right)
 {
@@ -22,7 +87,8 @@ static int compare_corners(const void *left, const void *right)
     return a->vertex - b->vertex;
 }
 
-bool boundary_share_edge(int dim, const int32_t *a, const int32_t *b)
+/* Whether two facets, given by their dim nodes, have an edge (2D: a node) in common. */
+static bool share_edge(int dim, const int32_t *a, const int32_t *b)
 {
     int shared = 0;
     for (int i = 0; i < dim; i++) {
@@ -33,10 +99,12 @@ bool boundary_share_edge(int dim, const int32_t *a, const int32_t *b)
     return shared >= dim - 1;
 }
 
-bool boundary_same_side(const struct face_table *table, const int32_t *a, const int32_t *b)
+/* Whether two facets that meet at a node, given by their nodes, are of one side: in 3D they must share an
+ * edge, in 2D they meet anyway. */
+static bool of_one_side(const struct face_table *table, const int32_t *a, const int32_t *b)
 {
     double na[3], nb[3], size;
-    if (!boundary_share_edge(table->dim, a, b)) {
+    if (!share_edge(table->dim, a, b)) {
         return false;
     }
     boundary_unit_normal(table, a, na, &size);
@@ -48,7 +116,7 @@ static bool same_side(const struct face_table *table, const struct facet_set *se
                       const struct corner *b)
 {
     return a->side == b->side &&
-           boundary_same_side(table, set->facet + a->facet * table->dim, set->facet + b->facet * table->dim);
+           of_one_side(table, set->facet + a->facet * table->dim, set->facet + b->facet * table->dim);
 }
 
 /* Number the parts of one node: corners first..last-1 joined through neighbours of one side. */
@@ -159,5 +227,37 @@ done:
     free(side);
     free(piece);
     free(part);
+    return status;
+}
+
+enum status boundary_find_ends(const struct face_table *table, enum boundary_end kind, const bool *held,
+                               const bool *touched, bool *end, struct error *error)
+{
+    enum status status;
+    int dim = table->dim;
+    const int32_t *node = table->faces->node;
+    int64_t count = table->faces->count, *ptr = NULL;
+    int32_t *row = NULL, *at = NULL; /* faces of the boundary at each node */
+    TRY(NEW_ARRAY(&row, count * dim, error));
+    for (int64_t i = 0; i < count * dim; i++) {
+        row[i] = table->faces->cell[2 * (i / dim) + 1] < 0 ? node[i] : -1;
+    }
+    TRY(lists_by_row(count, dim, row, table->node_count, &ptr, &at, error));
+    for (int64_t n = 0; n < table->node_count; n++) {
+        for (int64_t i = ptr[n]; i < ptr[n + 1]; i++) {
+            for (int64_t k = i + 1; k < ptr[n + 1]; k++) {
+                const int32_t *f = node + (int64_t)at[i] * dim, *g = node + (int64_t)at[k] * dim;
+                bool ends = (held[at[i]] && !touched[at[k]]) || (held[at[k]] && !touched[at[i]]);
+                if (ends && share_edge(dim, f, g) &&
+                    of_one_side(table, f, g) == (kind == BOUNDARY_END_SMOOTH)) {
+                    end[n] = true;
+                }
+            }
+        }
+    }
+done:
+    free(row);
+    free(ptr);
+    free(at);
     return status;
 }
