@@ -96,9 +96,7 @@ static enum status build_body(struct assembly *input, struct solid_system *syste
                               .ranks = input->ranks};
     TRY(body_build(&body, &system->body, error));
 done:
-    free(vertex);
-    free(coordinate);
-    free(at_edge);
+    FREE_ALL(vertex, coordinate, at_edge);
     return status;
 }
 
@@ -178,10 +176,7 @@ done:
 
 void material_list_free(struct material_list *list)
 {
-    free(list->items);
-    free(list->of_point);
-    free(list->of_cell);
-    free(list->section);
+    FREE_ALL(list->items, list->of_point, list->of_cell, list->section);
     *list = (struct material_list){0};
 }
 

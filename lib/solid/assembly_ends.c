@@ -75,13 +75,8 @@ enum status assembly_soften_ends(const struct assembly *input, struct material_l
     const int32_t *cell = input->point_cell;
     bool *softer = NULL;
     int64_t *softened = NULL; /* of each material: its softened one, 0 if there is none yet */
-    struct material *items = array_grow(list->items, 2 * list->count, sizeof *items);
-    list->items = items != NULL ? items : list->items;
-    int32_t *section = array_grow(list->section, 2 * list->count, sizeof *section);
-    list->section = section != NULL ? section : list->section;
-    if (items == NULL || section == NULL) {
-        return fail_memory(error, "materials");
-    }
+    TRY(RESIZE_ARRAY(&list->items, 2 * list->count, error));
+    TRY(RESIZE_ARRAY(&list->section, 2 * list->count, error));
     TRY(NEW_ARRAY(&softer, input->cells.count, error));
     TRY(NEW_ARRAY(&softened, list->count, error));
     TRY(mark_cells(input, softer, error));

@@ -8,19 +8,10 @@
 /* Append an empty dead load. */
 static enum status new_load(struct solid_system *system, int32_t curve, double **force, struct error *error)
 {
-    struct dead_load *grown = array_grow(system->loads, system->load_count + 1, sizeof *grown);
-    if (grown == NULL) {
-        return fail_memory(error, "loads");
-    }
-    system->loads = grown;
-    grown += system->load_count;
-    *grown = (struct dead_load){.curve = curve};
-    enum status status = NEW_ARRAY(&grown->force, system->node_count * system->dim, error);
-    if (status == STATUS_OK) {
-        system->load_count++;
-        *force = grown->force;
-    }
-    return status;
+    RETURN_IF_ERROR(RESIZE_ARRAY(&system->loads, system->load_count + 1, error));
+    RETURN_IF_ERROR(NEW_ARRAY(force, system->node_count * system->dim, error));
+    system->loads[system->load_count++] = (struct dead_load){*force, curve};
+    return STATUS_OK;
 }
 
 /* The mass that each row of the table over points or faces stands for: of a face, its cells' in equal parts,
@@ -155,12 +146,8 @@ static enum status add_pressure(const struct assembly *input, const struct load 
     enum status status;
     const struct facet_set *set = &load->facets;
     int64_t count = set->count * system->dim;
-    struct pressure_load *grown = array_grow(system->pressures, system->pressure_count + 1, sizeof *grown);
-    if (grown == NULL) {
-        return fail_memory(error, "loads");
-    }
-    system->pressures = grown;
-    struct pressure_load *pressure = &grown[system->pressure_count++];
+    TRY(RESIZE_ARRAY(&system->pressures, system->pressure_count + 1, error));
+    struct pressure_load *pressure = &system->pressures[system->pressure_count++];
     *pressure = (struct pressure_load){
         .pressure = load->pressure, .curve = load->curve, .facet_count = set->count, .facet = set->facet};
     for (int a = 0; a < 3 && load->is_fluid; a++) {

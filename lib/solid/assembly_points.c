@@ -3,6 +3,7 @@
 #include "solid/assembly.h"
 
 #include "base/memory.h"
+#include "base/vector.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -92,13 +93,10 @@ static int32_t nearest_node(const struct point_condition *p, int64_t i)
     double least = INFINITY;
     int32_t nearest = idx[ptr[i]];
     for (int64_t k = ptr[i]; k < ptr[i + 1]; k++) {
-        double sum = 0.0;
-        for (int a = 0; a < dim; a++) {
-            double way = p->input->cells.x[(int64_t)idx[k] * dim + a] - p->measured->x[i * dim + a];
-            sum += way * way;
-        }
-        if (sum < least) {
-            least = sum;
+        double distance2 =
+            vector_distance2(dim, p->input->cells.x + (int64_t)idx[k] * dim, p->measured->x + i * dim);
+        if (distance2 < least) {
+            least = distance2;
             nearest = idx[k];
         }
     }

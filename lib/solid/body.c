@@ -247,11 +247,7 @@ void body_free(struct body *body)
     row_operator_free(&body->rows);
     smoothed_cells_free(&body->cells);
     nodal_volumes_free(&body->volumes);
-    void *arrays[] = {body->order,  body->weight,     body->materials,  body->material,
-                      body->blocks, body->node_order, body->node_place, body->u,
-                      body->F,      body->J,          body->force,      body->derivative};
-    for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) {
-        free(arrays[i]);
-    }
+    FREE_ALL(body->order, body->weight, body->materials, body->material, body->blocks, body->node_order,
+             body->node_place, body->u, body->F, body->J, body->force, body->derivative);
     *body = (struct body){0};
 }

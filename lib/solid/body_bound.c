@@ -42,9 +42,7 @@ void body_free_bounds(struct body *body)
     for (int p = 0; p < MOST_PARTS && body->bound_work != NULL; p++) {
         cell_functions_free(&body->bound_work[p]);
     }
-    free(body->bound_work);
-    free(body->bound_first);
-    free(body->bound);
+    FREE_ALL(body->bound_work, body->bound_first, body->bound);
 }
 
 /* Along the gradient g of a shape function the energy of a point has the second derivative g A g, and that of

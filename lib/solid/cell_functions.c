@@ -35,9 +35,7 @@ done:
 
 void cell_functions_free(struct cell_functions *functions)
 {
-    free(functions->slot);
-    free(functions->node);
-    free(functions->gradient);
+    FREE_ALL(functions->slot, functions->node, functions->gradient);
     *functions = (struct cell_functions){0};
 }
 

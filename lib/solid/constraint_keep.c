@@ -35,8 +35,6 @@ done:
 
 void constraint_rows_free_kept(struct constraint_rows *kept)
 {
-    free(kept->ptr);
-    free(kept->idx);
-    free(kept->phi);
+    FREE_ALL(kept->ptr, kept->idx, kept->phi);
     *kept = (struct constraint_rows){0};
 }

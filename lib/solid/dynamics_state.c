@@ -29,18 +29,8 @@ done:
 
 void dynamics_release(struct dynamics *d)
 {
-    free(d->u);
-    free(d->next);
-    free(d->before);
-    free(d->after);
-    free(d->residual);
-    free(d->mode);
-    free(d->scratch);
-    free(d->loads);
-    free(d->factor_before);
-    free(d->factor_now);
-    free(d->factor_after);
-    free(d->factor_change);
+    FREE_ALL(d->u, d->next, d->before, d->after, d->residual, d->mode, d->scratch, d->loads, d->factor_before,
+             d->factor_now, d->factor_after, d->factor_change);
     constraint_free(&d->constraint);
 }
 

@@ -92,9 +92,7 @@ enum status field_averages_copy(const struct field_averages_input *input, const 
     copy_rows(&copies[0], matrix);
     copy_rows(&copies[1], matrix);
 done:
-    free(length);
-    free(copies[0].place);
-    free(copies[1].place);
+    FREE_ALL(length, copies[0].place, copies[1].place);
     return status;
 }
 
@@ -192,10 +190,8 @@ enum status field_averages_drop_copied(const struct sparse *matrix, struct field
         begin = end;
         fetched->ptr[f + 1] = at += length;
     }
-    int32_t *idx = array_grow(fetched->idx, at + 1, sizeof *idx);
-    fetched->idx = idx != NULL ? idx : fetched->idx;
-    double *value = array_grow(fetched->value, at + 1, sizeof *value);
-    fetched->value = value != NULL ? value : fetched->value;
+    TRY(RESIZE_ARRAY(&fetched->idx, at + 1, error));
+    TRY(RESIZE_ARRAY(&fetched->value, at + 1, error));
     faces->idx = fetched->idx;
     faces->phi = fetched->value;
 done:
@@ -206,12 +202,7 @@ done:
 void field_averages_free(struct field_averages *averages)
 {
     sparse_free(&averages->fetched);
-    free(averages->value);
-    free(averages->force);
-    free(averages->of_corner);
-    free(averages->corner_force);
-    free(averages->corner_ptr);
-    free(averages->corner);
-    free(averages->face_order);
+    FREE_ALL(averages->value, averages->force, averages->of_corner, averages->corner_force,
+             averages->corner_ptr, averages->corner, averages->face_order);
     *averages = (struct field_averages){0};
 }

@@ -1,6 +1,7 @@
 #include "solid/frequency.h"
 
 #include "base/memory.h"
+#include "base/vector.h"
 
 #include <math.h>
 #include <stdbool.h>
@@ -192,12 +193,9 @@ static int32_t most_moved(int dim, int64_t node_count, const double *vector)
     double most = -1.0;
     int32_t node = 0;
     for (int64_t n = 0; n < node_count; n++) {
-        double sum = 0.0;
-        for (int a = 0; a < dim; a++) {
-            sum += vector[n * dim + a] * vector[n * dim + a];
-        }
-        if (sum > most) {
-            most = sum;
+        double length2 = vector_dot(dim, vector + n * dim, vector + n * dim);
+        if (length2 > most) {
+            most = length2;
             node = (int32_t)n;
         }
     }
@@ -340,10 +338,6 @@ enum status system_unstable_mode(struct solid_system *system, struct preconditio
     stability->least = diagonal[0] < least_told * spectrum->largest ? diagonal[0] / spectrum->largest : 0.0;
     stability->node = most_moved(system->dim, system->node_count, mode);
 done:
-    free(diagonal);
-    free(off_diagonal);
-    free(share);
-    free(pivot);
-    free(mode);
+    FREE_ALL(diagonal, off_diagonal, share, pivot, mode);
     return status;
 }

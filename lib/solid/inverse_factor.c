@@ -1,7 +1,9 @@
 #include "solid/inverse_factor.h"
 
 #include "base/dense.h"
+#include "base/lists.h"
 #include "base/memory.h"
+#include "base/vector.h"
 #include "solid/lower_stiffness.h"
 #include "solid/scalar_stiffness.h"
 #include "solid/system.h"
@@ -17,49 +19,25 @@ enum { MOST_ENTRIES = 24 };
 static const int64_t worthwhile = 500;
 static const double ridge = 1e-9; /* on the diagonal of S_pp, by itself */
 
-struct near {
-    double distance2;
-    int32_t node;
-};
-
-static int compare_near(const void *left, const void *right)
-{
-    const struct near *a = left, *b = right;
-    if (a->distance2 != b->distance2) {
-        return a->distance2 < b->distance2 ? -1 : 1;
-    }
-    return (a->node > b->node) - (a->node < b->node);
-}
-
-static int compare_nodes(const void *left, const void *right)
-{
-    int32_t a = *(const int32_t *)left, b = *(const int32_t *)right;
-    return (a > b) - (a < b);
-}
-
 /* The list p of row i, ascending, so that i is the last; `near` is scratch. */
 static int64_t choose(const struct solid_system *system, const struct lower *lower, int32_t i,
-                      struct near *near, int32_t list[MOST_ENTRIES])
+                      struct placed *near, int32_t list[MOST_ENTRIES])
 {
     int dim = system->dim;
     int64_t count = 0, kept = 0;
     struct lower_row row = lower_row(lower, i);
     for (int64_t k = 0; k < row.count; k++) {
-        int32_t node = row.idx[k];
-        double distance2 = 0.0;
-        for (int a = 0; a < dim && node < i; a++) {
-            double step = system->X[(int64_t)node * dim + a] - system->X[(int64_t)i * dim + a];
-            distance2 += step * step;
-        }
+        int64_t node = row.idx[k];
         if (node < i && fpclassify(row.value[k]) != FP_ZERO) {
-            near[count++] = (struct near){distance2, node};
+            near[count++] = (struct placed){
+                vector_distance2(dim, system->X + node * dim, system->X + (int64_t)i * dim), node};
         }
     }
-    qsort(near, (size_t)count, sizeof *near, compare_near);
+    qsort(near, (size_t)count, sizeof *near, compare_placed);
     for (; kept < count && kept < MOST_ENTRIES - 1; kept++) {
-        list[kept] = near[kept].node;
+        list[kept] = (int32_t)near[kept].item;
     }
-    qsort(list, (size_t)kept, sizeof *list, compare_nodes);
+    qsort(list, (size_t)kept, sizeof *list, compare_int32);
     list[kept] = i;
     return kept + 1;
 }
@@ -86,7 +64,8 @@ static void solve_row(const struct lower *lower, int64_t count, const int32_t *l
     }
 }
 
-/* The other rows of S that a stretch of rows of L is made of; rows->idx has their lists. */
+/* The rows of S that a stretch of rows of L is made of, as far as they are not there; rows->idx has their
+ * numbers. */
 static enum status add_rows(const struct solid_system *system, int64_t first, int64_t last,
                             const struct sparse *rows, const int64_t *length, struct lower *lower,
                             struct error *error)
@@ -108,14 +87,14 @@ done:
 }
 
 /* Rows of the nodes from `first` to before `last` in the body's order, with room for MOST_ENTRIES in each,
- * the first at that of the process's first node; length[]: how long each is. `whole`: these are all nodes. */
-static enum status make_rows(const struct solid_system *system, int64_t first, int64_t last, bool whole,
+ * the first at that of the process's first node; length[]: how long each is. */
+static enum status make_rows(const struct solid_system *system, int64_t first, int64_t last,
                              struct lower *lower, struct sparse *rows, int64_t *length, struct error *error)
 {
     enum status status;
     const int64_t *node = system->body.node_order;
     const struct chunks chunks = chunks_of(last - first, worthwhile);
-    struct near *near = NULL;
+    struct placed *near = NULL;
     int64_t most = 0, own = system->body.share.begin_node;
     for (int64_t p = first; p < last; p++) {
         int64_t entries = lower_row(lower, node[p]).count;
@@ -129,9 +108,7 @@ static enum status make_rows(const struct solid_system *system, int64_t first, i
                                rows->idx + (p - own) * MOST_ENTRIES);
         }
     }
-    if (!whole) {
-        TRY(add_rows(system, first, last, rows, length, lower, error));
-    }
+    TRY(add_rows(system, first, last, rows, length, lower, error));
 #pragma omp parallel for schedule(static) num_threads(chunks.threads)
     for (int64_t p = first; p < last; p++) {
         int64_t at = (p - own) * MOST_ENTRIES;
@@ -154,14 +131,14 @@ static enum status make_own_rows(const struct solid_system *system, int64_t stre
     if (share->ranks != NULL || end - begin <= stretch) {
         TRY(lower_make(begin, end, lower, error));
         (void)lower_set_least(lower);
-        TRY(make_rows(system, begin, end, share->ranks == NULL, lower, rows, length, error));
+        TRY(make_rows(system, begin, end, lower, rows, length, error));
         goto done;
     }
     for (int time = 0; time < 2 && !good; time++) {
         for (int64_t p = begin; p < end; p += stretch) {
             int64_t last = end - p < stretch ? end : p + stretch;
             TRY(lower_make(p, last, lower, error));
-            TRY(make_rows(system, p, last, false, lower, rows, length, error));
+            TRY(make_rows(system, p, last, lower, rows, length, error));
         }
         good = lower_set_least(lower);
     }
@@ -369,9 +346,7 @@ enum status inverse_factor_transform_rows(const struct inverse_factor *factor,
         }
     }
 done:
-    free(at);
-    free(idx);
-    free(phi);
+    FREE_ALL(at, idx, phi);
     if (status != STATUS_OK) {
         constraint_rows_free(transformed);
     }

@@ -17,13 +17,8 @@ static enum status make_room(struct lower_piece *piece, int64_t more, struct err
 {
     if (piece->count + more > piece->capacity) {
         int64_t capacity = (piece->count + more) / 4 * 5 + 4096;
-        int32_t *idx = array_grow(piece->idx, capacity, sizeof *idx);
-        piece->idx = idx != NULL ? idx : piece->idx;
-        double *value = array_grow(piece->value, capacity, sizeof *value);
-        piece->value = value != NULL ? value : piece->value;
-        if (idx == NULL || value == NULL) {
-            return fail_memory(error, "preconditioner");
-        }
+        RETURN_IF_ERROR(RESIZE_ARRAY(&piece->idx, capacity, error));
+        RETURN_IF_ERROR(RESIZE_ARRAY(&piece->value, capacity, error));
         piece->capacity = capacity;
     }
     return STATUS_OK;
@@ -236,21 +231,14 @@ enum status lower_fetch(const bool *wanted, struct lower *lower, struct error *e
     fetched->count = receive_first[ranks->count];
 done:
     halo_free(&halo);
-    free(length);
-    free(send_first);
-    free(receive_first);
-    free(idx);
-    free(value);
+    FREE_ALL(length, send_first, receive_first, idx, value);
     return status;
 }
 
 void lower_free(struct lower *lower)
 {
     scalar_stiffness_free(&lower->stiffness);
-    free(lower->begin);
-    free(lower->end);
-    free(lower->piece_of);
-    free(lower->diagonal);
+    FREE_ALL(lower->begin, lower->end, lower->piece_of, lower->diagonal);
     drop_pieces(lower);
     *lower = (struct lower){0};
 }

@@ -249,12 +249,8 @@ double nodal_volume_energy(const struct body *body, int64_t point)
 
 void nodal_volumes_free(struct nodal_volumes *volumes)
 {
-    void *arrays[] = {volumes->of_point, volumes->share,   volumes->ptr,      volumes->slot,
-                      volumes->strain,   volumes->content, volumes->pressure, volumes->direct,
-                      volumes->modulus,  volumes->mean};
     nodal_pressures_free(&volumes->pressures);
-    for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) {
-        free(arrays[i]);
-    }
+    FREE_ALL(volumes->of_point, volumes->share, volumes->ptr, volumes->slot, volumes->strain,
+             volumes->content, volumes->pressure, volumes->direct, volumes->modulus, volumes->mean);
     *volumes = (struct nodal_volumes){0};
 }

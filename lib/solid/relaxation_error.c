@@ -3,6 +3,7 @@
 #include "solid/relaxation_private.h"
 
 #include "base/memory.h"
+#include "base/vector.h"
 
 #include <float.h>
 #include <math.h>
@@ -22,11 +23,8 @@ static double largest_of_nodes(const struct relaxation *r, const double *x)
     int dim = r->system->dim;
     double largest2 = 0.0;
     for (int64_t n = 0; n < r->system->node_count; n++) {
-        double sum = 0.0;
-        for (int a = 0; a < dim; a++) {
-            sum += x[n * dim + a] * x[n * dim + a];
-        }
-        largest2 = sum > largest2 ? sum : largest2;
+        double length2 = vector_dot(dim, x + n * dim, x + n * dim);
+        largest2 = length2 > largest2 ? length2 : largest2;
     }
     return sqrt(largest2);
 }

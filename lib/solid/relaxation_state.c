@@ -29,19 +29,9 @@ done:
 
 void relaxation_release(struct relaxation *r)
 {
-    free(r->velocity);
-    free(r->residual);
-    free(r->before);
-    free(r->factor_change);
-    free(r->mode);
-    free(r->scratch);
-    free(r->last_u);
-    free(r->last_acceleration);
-    free(r->acceleration);
-    free(r->newer.u);
-    free(r->older.u);
-    free(r->check_now.u);
-    free(r->check_before.u);
+    FREE_ALL(r->velocity, r->residual, r->before, r->factor_change, r->mode, r->scratch, r->last_u,
+             r->last_acceleration, r->acceleration, r->newer.u, r->older.u, r->check_now.u,
+             r->check_before.u);
     preconditioner_free(&r->preconditioner);
 }
 

@@ -186,11 +186,11 @@ static double corner_angle(const struct rigid_surface *surface, int64_t f, int k
     const double *x = surface->vertex + (int64_t)corner[k] * 3;
     const double *next = surface->vertex + (int64_t)corner[(k + 1) % 3] * 3;
     const double *previous = surface->vertex + (int64_t)corner[(k + 2) % 3] * 3;
-    double dot = 0.0, one = vector_distance2(3, x, next), other = vector_distance2(3, x, previous);
-    for (int a = 0; a < 3; a++) {
-        dot += (next[a] - x[a]) * (previous[a] - x[a]);
-    }
-    return acos(fmin(fmax(dot / sqrt(one * other), -1.0), 1.0));
+    double one[3], other[3];
+    vector_subtract(3, next, x, one);
+    vector_subtract(3, previous, x, other);
+    double lengths = sqrt(vector_dot(3, one, one) * vector_dot(3, other, other));
+    return acos(fmin(fmax(vector_dot(3, one, other) / lengths, -1.0), 1.0));
 }
 
 enum status rigid_join_facets(struct rigid_surface *surface, struct error *error)
@@ -215,7 +215,7 @@ enum status rigid_join_facets(struct rigid_surface *surface, struct error *error
         int64_t vertex = surface->facet[c];
         const double *mean = surface->vertex_normal + vertex * surface->dim;
         const double *normal = surface->normal + c / surface->dim * surface->dim;
-        double half = 0.5 * sqrt(vector_distance2(surface->dim, mean, normal));
+        double half = 0.5 * vector_distance(surface->dim, mean, normal);
         surface->turn[vertex] = fmax(surface->turn[vertex], 2.0 * asin(fmin(half, 1.0)));
     }
 done:

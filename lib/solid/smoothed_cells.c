@@ -329,10 +329,7 @@ static enum status build_averages(const struct smoothed_cells_input *input, stru
     TRY(body_share_rows(body, NULL, error));
     TRY(stretches_of(0, averages->row_count, NULL, &body->share.values, error));
 done:
-    free(node_of_corner);
-    free(row_of_corner);
-    free(order);
-    free(x);
+    FREE_ALL(node_of_corner, row_of_corner, order, x);
     return status;
 }
 
@@ -355,10 +352,7 @@ done:
 void smoothed_cells_free(struct smoothed_cells *smoothed)
 {
     field_averages_free(&smoothed->averages);
-    free(smoothed->interpolant);
-    free(smoothed->linear_gradient);
-    free(smoothed->group);
-    free(smoothed->group_end);
+    FREE_ALL(smoothed->interpolant, smoothed->linear_gradient, smoothed->group, smoothed->group_end);
     *smoothed = (struct smoothed_cells){0};
 }
 

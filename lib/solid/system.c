@@ -4,6 +4,7 @@
 #include "approx/support.h"
 #include "base/clock.h"
 #include "base/memory.h"
+#include "base/vector.h"
 #include "solid/condition.h"
 #include "solid/contact_between.h"
 
@@ -26,11 +27,7 @@ void system_free(struct solid_system *system)
     for (int64_t i = 0; i < system->curve_count; i++) {
         curve_free(&system->curves[i]);
     }
-    free(system->loads);
-    free(system->pressures);
-    free(system->curves);
-    free(system->lumped_mass);
-    free(system->factor);
+    FREE_ALL(system->loads, system->pressures, system->curves, system->lumped_mass, system->factor);
     constraint_rows_free(&system->rows);
     constraint_rows_free(&system->penalties);
     constraint_rows_free_kept(&system->penalties_here);
@@ -69,13 +66,9 @@ static int64_t nearest_of_others(const struct solid_system *system, int64_t r)
     int dim = system->dim;
     double least = INFINITY;
     for (int64_t s = 0; s < rows->count; s++) {
-        double cosine = 0.0, distance2 = 0.0;
-        for (int a = 0; a < dim; a++) {
-            double apart =
-                system->X[(int64_t)rows->node[s] * dim + a] - system->X[(int64_t)rows->node[r] * dim + a];
-            cosine += rows->direction[s * dim + a] * rows->direction[r * dim + a];
-            distance2 += apart * apart;
-        }
+        double cosine = vector_dot(dim, rows->direction + s * dim, rows->direction + r * dim);
+        double distance2 = vector_distance2(dim, system->X + (int64_t)rows->node[s] * dim,
+                                            system->X + (int64_t)rows->node[r] * dim);
         if (rows->section[s] != rows->section[r] && fabs(cosine) > 0.5 && distance2 < least) {
             least = distance2;
             nearest = s;
