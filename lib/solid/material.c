@@ -109,7 +109,7 @@ static void ogden_stretches(const struct material *material, const double F[9], 
 {
     double C[9], J = determinant(F);
     right_cauchy_green(F, C);
-    eigen_symmetric(C, lambda2, V);
+    eigen_symmetric(3, C, lambda2, V);
     for (int a = 0; a < 3; a++) {
         power[a] = pow(lambda2[a] / cbrt(J * J), 0.5 * material->ogden_alpha);
     }
