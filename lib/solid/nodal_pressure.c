@@ -7,6 +7,7 @@
  * whatever the number of iterations. It is scaled to be right at rho, where pressures are uniform. Saad
  * 2003, algorithm 12.1. */
 #include "base/memory.h"
+#include "base/processor.h"
 #include "solid/nodal_volume.h"
 
 #include <math.h>
@@ -221,9 +222,9 @@ double body_augment(struct body *body, bool steady, double strain)
 }
 
 /* residual -= A move; next = keep move + add S^-1 residual; value += scale next; of some slices. */
-__attribute__((target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default"))) static void
-iterate(const struct nodal_pressures *pressures, int64_t first, int64_t end, double keep, double add,
-        const double *restrict move, double *restrict residual, double *restrict next, double *restrict value)
+ALL_SETS static void iterate(const struct nodal_pressures *pressures, int64_t first, int64_t end, double keep,
+                             double add, const double *restrict move, double *restrict residual,
+                             double *restrict next, double *restrict value)
 {
     for (int64_t slice = first; slice < end; slice++) {
         const double *entry = pressures->value + pressures->ptr[slice] * ROWS;
@@ -278,11 +279,7 @@ void nodal_pressures_solve(struct body *body)
 
 void nodal_pressures_free(struct nodal_pressures *pressures)
 {
-    void *arrays[] = {pressures->ptr,     pressures->idx,   pressures->value,
-                      pressures->inverse, pressures->held,  pressures->change,
-                      pressures->weight,  pressures->entry, pressures->scratch};
-    for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) {
-        free(arrays[i]);
-    }
+    FREE_ALL(pressures->ptr, pressures->idx, pressures->value, pressures->inverse, pressures->held,
+             pressures->change, pressures->weight, pressures->entry, pressures->scratch);
     *pressures = (struct nodal_pressures){0};
 }
