@@ -103,13 +103,12 @@ done:
  * from a pressure that is uniform there. */
 enum status assembly_edge_nodes(const struct assembly *input, bool **at_edge, struct error *error)
 {
-    enum status status = STATUS_OK;
     bool found = false;
     *at_edge = NULL;
     if (input->cells.dim < 3) {
-        goto done;
+        return STATUS_OK;
     }
-    TRY(find_ends(input, BOUNDARY_END_SHARP, input->cells.dim, at_edge, error));
+    RETURN_IF_ERROR(find_ends(input, BOUNDARY_END_SHARP, input->cells.dim, at_edge, error));
     for (int64_t n = 0; n < input->cells.node_count; n++) {
         found = found || (*at_edge)[n];
     }
@@ -117,6 +116,5 @@ enum status assembly_edge_nodes(const struct assembly *input, bool **at_edge, st
         free(*at_edge);
         *at_edge = NULL;
     }
-done:
-    return status;
+    return STATUS_OK;
 }

@@ -18,12 +18,11 @@ static int owner_of_block(const struct body_share *share, int64_t block)
 
 enum status body_make_bounds(struct body *body, struct error *error)
 {
-    enum status status;
     int64_t least = body->block_count / MOST_PARTS;
     body->bound_parts = chunks_of(body->block_count, least > LEAST_BLOCKS ? least : LEAST_BLOCKS);
-    TRY(NEW_ARRAY(&body->bound, body->bound_parts.count * body->node_count, error));
-    TRY(NEW_ARRAY(&body->bound_work, MOST_PARTS, error));
-    TRY(NEW_ARRAY(&body->bound_first, ranks_count(body->share.ranks) + 1, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&body->bound, body->bound_parts.count * body->node_count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&body->bound_work, MOST_PARTS, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&body->bound_first, ranks_count(body->share.ranks) + 1, error));
     for (int64_t p = 0; p < body->bound_parts.count; p++) {
         int64_t last = chunks_begin(&body->bound_parts, p + 1) - 1;
         for (int r = owner_of_block(&body->share, last); r < ranks_count(body->share.ranks); r++) {
@@ -31,10 +30,9 @@ enum status body_make_bounds(struct body *body, struct error *error)
         }
     }
     for (int64_t p = 0; p < body->bound_parts.count; p++) {
-        TRY(cell_functions_make(body, &body->bound_work[p], error));
+        RETURN_IF_ERROR(cell_functions_make(body, &body->bound_work[p], error));
     }
-done:
-    return status;
+    return STATUS_OK;
 }
 
 void body_free_bounds(struct body *body)

@@ -59,8 +59,7 @@ static double weight_of(const struct coarse_space *coarse, int64_t c, int64_t no
 
 static enum status share_unity(struct coarse_space *coarse, struct error *error)
 {
-    enum status status;
-    TRY(NEW_ARRAY(&coarse->share, coarse->node_count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&coarse->share, coarse->node_count, error));
     for (int64_t n = 0; n < coarse->node_count; n++) {
         double sum = 0.0;
         for (int64_t c = 0; c < coarse->centre_count; c++) {
@@ -68,8 +67,7 @@ static enum status share_unity(struct coarse_space *coarse, struct error *error)
         }
         coarse->share[n] /= sum;
     }
-done:
-    return status;
+    return STATUS_OK;
 }
 
 enum status coarse_space_build(int dim, int64_t node_count, const double *X, int64_t centre_count,

@@ -27,29 +27,27 @@ void constraint_rows_free(struct constraint_rows *rows)
 
 static enum status reserve(struct constraint_rows *rows, int64_t length, struct error *error)
 {
-    enum status status = STATUS_OK;
     int64_t pairs = rows->list_count > 0 ? rows->ptr[rows->list_count] : 0;
     if (rows->count == rows->capacity) {
         int64_t capacity = rows->capacity * 2 + 64;
-        TRY(RESIZE_ARRAY(&rows->ptr, capacity + 1, error));
-        TRY(RESIZE_ARRAY(&rows->first, capacity + 1, error));
-        TRY(RESIZE_ARRAY(&rows->list, capacity, error));
-        TRY(RESIZE_ARRAY(&rows->direction, capacity * rows->dim, error));
-        TRY(RESIZE_ARRAY(&rows->target, capacity, error));
-        TRY(RESIZE_ARRAY(&rows->curve, capacity, error));
-        TRY(RESIZE_ARRAY(&rows->section, capacity, error));
-        TRY(RESIZE_ARRAY(&rows->node, capacity, error));
+        RETURN_IF_ERROR(RESIZE_ARRAY(&rows->ptr, capacity + 1, error));
+        RETURN_IF_ERROR(RESIZE_ARRAY(&rows->first, capacity + 1, error));
+        RETURN_IF_ERROR(RESIZE_ARRAY(&rows->list, capacity, error));
+        RETURN_IF_ERROR(RESIZE_ARRAY(&rows->direction, capacity * rows->dim, error));
+        RETURN_IF_ERROR(RESIZE_ARRAY(&rows->target, capacity, error));
+        RETURN_IF_ERROR(RESIZE_ARRAY(&rows->curve, capacity, error));
+        RETURN_IF_ERROR(RESIZE_ARRAY(&rows->section, capacity, error));
+        RETURN_IF_ERROR(RESIZE_ARRAY(&rows->node, capacity, error));
         rows->capacity = capacity;
         rows->ptr[0] = rows->first[0] = 0;
     }
     if (pairs + length > rows->pair_capacity) {
         int64_t capacity = (pairs + length) * 2 + 1024;
-        TRY(RESIZE_ARRAY(&rows->idx, capacity, error));
-        TRY(RESIZE_ARRAY(&rows->phi, capacity, error));
+        RETURN_IF_ERROR(RESIZE_ARRAY(&rows->idx, capacity, error));
+        RETURN_IF_ERROR(RESIZE_ARRAY(&rows->phi, capacity, error));
         rows->pair_capacity = capacity;
     }
-done:
-    return status;
+    return STATUS_OK;
 }
 
 /* Is that the list of the last row? */

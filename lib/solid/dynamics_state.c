@@ -7,24 +7,22 @@
 
 enum status dynamics_allocate(struct dynamics *d, struct error *error)
 {
-    enum status status;
     const struct solid_system *system = d->system;
-    TRY(NEW_ARRAY(&d->u, d->size, error));
-    TRY(NEW_ARRAY(&d->next, d->size, error));
-    TRY(NEW_ARRAY(&d->before, d->size, error));
-    TRY(NEW_ARRAY(&d->after, d->size, error));
-    TRY(NEW_ARRAY(&d->residual, d->size, error));
-    TRY(NEW_ARRAY(&d->mode, d->size, error));
-    TRY(NEW_ARRAY(&d->scratch, 2 * d->size, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&d->u, d->size, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&d->next, d->size, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&d->before, d->size, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&d->after, d->size, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&d->residual, d->size, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&d->mode, d->size, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&d->scratch, 2 * d->size, error));
     if (system->load_count + system->pressure_count > 0) {
-        TRY(NEW_ARRAY(&d->loads, d->size, error));
+        RETURN_IF_ERROR(NEW_ARRAY(&d->loads, d->size, error));
     }
-    TRY(NEW_ARRAY(&d->factor_before, system->curve_count, error));
-    TRY(NEW_ARRAY(&d->factor_now, system->curve_count, error));
-    TRY(NEW_ARRAY(&d->factor_after, system->curve_count, error));
-    TRY(NEW_ARRAY(&d->factor_change, system->curve_count, error));
-done:
-    return status;
+    RETURN_IF_ERROR(NEW_ARRAY(&d->factor_before, system->curve_count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&d->factor_now, system->curve_count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&d->factor_after, system->curve_count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&d->factor_change, system->curve_count, error));
+    return STATUS_OK;
 }
 
 void dynamics_release(struct dynamics *d)
@@ -36,7 +34,6 @@ void dynamics_release(struct dynamics *d)
 
 enum status dynamics_visit(void *run, const struct state *state, struct error *error)
 {
-    enum status status;
     struct dynamics *d = run;
     struct dynamics_report *report = d->report;
     int64_t curves = d->system->curve_count;
@@ -71,15 +68,13 @@ enum status dynamics_visit(void *run, const struct state *state, struct error *e
         {"last_drift", STATE_NUMBERS, &report->last_drift, 1},
         {"least_jacobian", STATE_NUMBERS, &report->least_jacobian, 1},
     };
-    TRY(state_visit(state, NULL, values, sizeof values / sizeof *values, error));
+    RETURN_IF_ERROR(state_visit(state, NULL, values, sizeof values / sizeof *values, error));
     if (d->sample_interval == 0) {
-        status = fail(error, STATUS_INPUT, "sample_interval: is 0");
-        goto done;
+        return fail(error, STATUS_INPUT, "sample_interval: is 0");
     }
     if (d->log != NULL) {
-        TRY(energy_log_state(d->log, state, error));
+        RETURN_IF_ERROR(energy_log_state(d->log, state, error));
     }
-    TRY(system_state(d->system, state, error));
-done:
-    return status;
+    RETURN_IF_ERROR(system_state(d->system, state, error));
+    return STATUS_OK;
 }

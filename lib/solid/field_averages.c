@@ -100,13 +100,12 @@ done:
 static enum status match_corners(const struct field_averages_input *input, struct field_averages *averages,
                                  struct error *error)
 {
-    enum status status = STATUS_OK;
     int64_t *index_of = NULL; /* the body's index of each of the caller's rows */
     int32_t *of_corner = averages->of_corner;
     for (int k = 0; k < 2; k++) {
         const struct average_table *table = &input->tables[k];
         int64_t first = k * input->tables[0].row_count;
-        TRY(NEW_ARRAY(&index_of, table->row_count, error));
+        RETURN_IF_ERROR(NEW_ARRAY(&index_of, table->row_count, error));
         for (int64_t r = 0; r < table->row_count; r++) {
             index_of[table->order[r]] = first + r;
         }
@@ -117,18 +116,16 @@ static enum status match_corners(const struct field_averages_input *input, struc
         free(index_of);
         index_of = NULL;
     }
-done:
-    return status;
+    return STATUS_OK;
 }
 
 /* The corners of each row. */
 static enum status list_corners(int dim, struct field_averages *averages, struct error *error)
 {
-    enum status status;
     int64_t rows = averages->row_count, of_faces = averages->corner_count * FACE_ROWS(dim);
     int64_t looks = of_faces + averages->corner_count;
-    TRY(NEW_ARRAY(&averages->corner_ptr, rows + 2, error));
-    TRY(NEW_ARRAY(&averages->corner, looks, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&averages->corner_ptr, rows + 2, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&averages->corner, looks, error));
     for (int64_t i = 0; i < looks; i++) {
         averages->corner_ptr[averages->of_corner[i] / VECTOR_STRIDE(dim) + 2]++;
     }
@@ -139,8 +136,7 @@ static enum status list_corners(int dim, struct field_averages *averages, struct
         averages->corner[averages->corner_ptr[averages->of_corner[i] / VECTOR_STRIDE(dim) + 1]++] =
             (int32_t)(i < of_faces ? i / FACE_ROWS(dim) : i - of_faces + averages->corner_count);
     }
-done:
-    return status;
+    return STATUS_OK;
 }
 
 enum status field_averages_build(const struct field_averages_input *input, struct field_averages *averages,

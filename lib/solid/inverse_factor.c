@@ -124,26 +124,24 @@ done:
 static enum status make_own_rows(const struct solid_system *system, int64_t stretch, struct lower *lower,
                                  struct sparse *rows, int64_t *length, struct error *error)
 {
-    enum status status = STATUS_OK;
     const struct body_share *share = &system->body.share;
     int64_t begin = share->begin_node, end = share->end_node;
     bool good = false;
     if (share->ranks != NULL || end - begin <= stretch) {
-        TRY(lower_make(begin, end, lower, error));
+        RETURN_IF_ERROR(lower_make(begin, end, lower, error));
         (void)lower_set_least(lower);
-        TRY(make_rows(system, begin, end, lower, rows, length, error));
-        goto done;
+        RETURN_IF_ERROR(make_rows(system, begin, end, lower, rows, length, error));
+        return STATUS_OK;
     }
     for (int time = 0; time < 2 && !good; time++) {
         for (int64_t p = begin; p < end; p += stretch) {
             int64_t last = end - p < stretch ? end : p + stretch;
-            TRY(lower_make(p, last, lower, error));
-            TRY(make_rows(system, p, last, lower, rows, length, error));
+            RETURN_IF_ERROR(lower_make(p, last, lower, error));
+            RETURN_IF_ERROR(make_rows(system, p, last, lower, rows, length, error));
         }
         good = lower_set_least(lower);
     }
-done:
-    return status;
+    return STATUS_OK;
 }
 
 /* Own rows one behind the other. */
@@ -187,9 +185,8 @@ done:
 static enum status sort_rows(const struct body *body, const struct sparse *by_place, struct sparse *rows,
                              struct error *error)
 {
-    enum status status;
     int64_t nodes = by_place->row_count;
-    TRY(sparse_new(nodes, nodes, by_place->ptr[nodes], rows, error));
+    RETURN_IF_ERROR(sparse_new(nodes, nodes, by_place->ptr[nodes], rows, error));
     for (int64_t i = 0; i < nodes; i++) {
         int64_t from = by_place->ptr[body->node_place[i]], to = rows->ptr[i];
         int64_t length = by_place->ptr[body->node_place[i] + 1] - from;
@@ -197,8 +194,7 @@ static enum status sort_rows(const struct body *body, const struct sparse *by_pl
         memcpy(rows->value + to, by_place->value + from, (size_t)length * sizeof *rows->value);
         rows->ptr[i + 1] = to + length;
     }
-done:
-    return status;
+    return STATUS_OK;
 }
 
 enum status inverse_factor_build(const struct solid_system *system, struct inverse_factor *factor,

@@ -79,11 +79,10 @@ static void add_points(const struct body *body, int64_t a, struct nodal_pressure
 static enum status lay_out(const struct body *body, struct nodal_pressures *pressures, int64_t *seen,
                            struct error *error)
 {
-    enum status status;
     const struct nodal_volumes *volumes = &body->volumes;
     int vertices = body->dim + 1;
     pressures->slices = (volumes->count + ROWS - 1) / ROWS;
-    TRY(NEW_ARRAY(&pressures->ptr, pressures->slices + 1, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&pressures->ptr, pressures->slices + 1, error));
     for (int64_t slice = 0; slice < pressures->slices; slice++) {
         int64_t widest = 0;
         for (int64_t a = slice * ROWS; a < (slice + 1) * ROWS && a < volumes->count; a++) {
@@ -92,10 +91,9 @@ static enum status lay_out(const struct body *body, struct nodal_pressures *pres
         }
         pressures->ptr[slice + 1] = pressures->ptr[slice] + widest;
     }
-    TRY(NEW_ARRAY(&pressures->idx, pressures->ptr[pressures->slices] * ROWS, error));
-    TRY(NEW_ARRAY(&pressures->value, pressures->ptr[pressures->slices] * ROWS, error));
-done:
-    return status;
+    RETURN_IF_ERROR(NEW_ARRAY(&pressures->idx, pressures->ptr[pressures->slices] * ROWS, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&pressures->value, pressures->ptr[pressures->slices] * ROWS, error));
+    return STATUS_OK;
 }
 
 /* The iterations for eigenvalues from rho to 1. */

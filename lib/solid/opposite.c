@@ -120,13 +120,12 @@ done:
 static enum status measure_rest(struct opposite *opposite, const struct facet_set *set, const int32_t *part,
                                 struct error *error)
 {
-    enum status status;
     const struct rigid_surface *surface = &opposite->surface;
     int dim = surface->dim;
-    TRY(NEW_ARRAY(&opposite->rest_normal, surface->facet_count * dim, error));
-    TRY(NEW_ARRAY(&opposite->middle, surface->facet_count * dim, error));
-    TRY(NEW_ARRAY(&opposite->width, surface->facet_count, error));
-    TRY(NEW_ARRAY(&opposite->part, surface->facet_count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&opposite->rest_normal, surface->facet_count * dim, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&opposite->middle, surface->facet_count * dim, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&opposite->width, surface->facet_count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&opposite->part, surface->facet_count, error));
     for (int64_t f = 0; f < surface->facet_count; f++) {
         const int32_t *facet = surface->facet + f * dim;
         double *normal = opposite->rest_normal + f * dim;
@@ -141,8 +140,7 @@ static enum status measure_rest(struct opposite *opposite, const struct facet_se
             opposite->part[f] = known >= 0 ? known : opposite->part[f];
         }
     }
-done:
-    return status;
+    return STATUS_OK;
 }
 
 /* The angle of a facet at its corner k; in 2D all weigh alike. */

@@ -46,15 +46,13 @@ done:
 
 static enum status build_inverse(struct solid_system *system, struct preconditioner *p, struct error *error)
 {
-    enum status status;
-    TRY(inverse_factor_build(system, &p->factor, error));
-    TRY(inverse_factor_transform_rows(&p->factor, &system->rows, &p->factor_rows, error));
-    TRY(NEW_ARRAY(&p->at_rest, system->node_count, error));
-    TRY(NEW_ARRAY(&p->on_inverse, 2 * system->node_count * system->dim, error));
+    RETURN_IF_ERROR(inverse_factor_build(system, &p->factor, error));
+    RETURN_IF_ERROR(inverse_factor_transform_rows(&p->factor, &system->rows, &p->factor_rows, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&p->at_rest, system->node_count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&p->on_inverse, 2 * system->node_count * system->dim, error));
     system_relaxation_mass(system, true, p->at_rest);
-    TRY(transform_fields(p, system->body.threads, error));
-done:
-    return status;
+    RETURN_IF_ERROR(transform_fields(p, system->body.threads, error));
+    return STATUS_OK;
 }
 
 enum status preconditioner_build(struct solid_system *system, bool coarse, struct preconditioner *p,

@@ -127,18 +127,16 @@ enum status preconditioner_set_mass(struct preconditioner *p, const struct solid
 enum status preconditioner_restore(struct preconditioner *p, const struct solid_system *system,
                                    struct error *error)
 {
-    enum status status;
     constraint_free(&p->constraint);
     bool within = p->factor.rows.row_count > 0;
-    TRY(system_constrain_within(system, p->mass, within ? &p->factor : NULL, within ? &p->factor_rows : NULL,
-                                &p->constraint, error));
+    RETURN_IF_ERROR(system_constrain_within(system, p->mass, within ? &p->factor : NULL,
+                                            within ? &p->factor_rows : NULL, &p->constraint, error));
     if (p->size > 0) {
         weigh_coarse_space(p);
-        TRY(weigh_conditions(p, error));
+        RETURN_IF_ERROR(weigh_conditions(p, error));
         preconditioner_invert(p, system);
     }
-done:
-    return status;
+    return STATUS_OK;
 }
 
 double preconditioner_sum_of_mass(const struct preconditioner *p)

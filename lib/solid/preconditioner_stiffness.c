@@ -45,18 +45,29 @@ static void add_square(int64_t size, double stiffness, const double *row, double
     }
 }
 
+/* The next part, from *i on, of what is opposite contact node a that has a weight; false: no more. */
+static bool next_opposite(const struct contact *contact, int64_t a, int64_t *i, struct average *average,
+                          double *weight)
+{
+    while (contact_between_part(contact, a, (*i)++, average, weight)) {
+        if (*weight != 0.0) {
+            return true;
+        }
+    }
+    return false;
+}
+
 /* row -= what is opposite contact node a along a direction. */
 static void subtract_opposite(const struct preconditioner *p, const struct contact *contact, int64_t a,
                               const double *direction, double *row)
 {
     struct average average;
-    double weight;
-    for (int64_t i = 0; contact_between_part(contact, a, i, &average, &weight); i++) {
-        const double less[3] = {-weight * direction[0], -weight * direction[1],
-                                contact->dim == 3 ? -weight * direction[2] : 0.0};
-        if (weight != 0.0) {
-            preconditioner_add_row(p, &average, less, row);
+    double weight, less[3];
+    for (int64_t i = 0; next_opposite(contact, a, &i, &average, &weight);) {
+        for (int c = 0; c < contact->dim; c++) {
+            less[c] = -weight * direction[c];
         }
+        preconditioner_add_row(p, &average, less, row);
     }
 }
 
@@ -87,36 +98,29 @@ static void add_contacts(const struct preconditioner *p, const struct solid_syst
     }
 }
 
-/* mean[dim] += factor times the field opposite contact node a. */
-static void add_opposite(const struct contact *contact, int64_t a, double factor, const double *field,
-                         double *mean)
+/* mean[dim] -= the field opposite contact node a. */
+static void take_opposite(const struct contact *contact, int64_t a, const double *field, double *mean)
 {
     struct average average;
     double weight, there[3];
-    for (int64_t i = 0; contact_between_part(contact, a, i, &average, &weight); i++) {
-        if (weight != 0.0) {
-            average_take(&average, contact->dim, field, there);
-        }
-        for (int c = 0; c < contact->dim && weight != 0.0; c++) {
-            mean[c] += factor * weight * there[c];
+    for (int64_t i = 0; next_opposite(contact, a, &i, &average, &weight);) {
+        average_take(&average, contact->dim, field, there);
+        for (int c = 0; c < contact->dim; c++) {
+            mean[c] -= weight * there[c];
         }
     }
 }
 
 /* The transpose. */
-static void spread_opposite(const struct contact *contact, int64_t a, double factor, const double *amount,
-                            double *field)
+static void spread_opposite(const struct contact *contact, int64_t a, const double *amount, double *field)
 {
     struct average average;
-    double weight;
-    for (int64_t i = 0; contact_between_part(contact, a, i, &average, &weight); i++) {
-        double there[3] = {0.0, 0.0, 0.0};
+    double weight, there[3];
+    for (int64_t i = 0; next_opposite(contact, a, &i, &average, &weight);) {
         for (int c = 0; c < contact->dim; c++) {
-            there[c] = factor * weight * amount[c];
+            there[c] = -weight * amount[c];
         }
-        if (weight != 0.0) {
-            average_spread(&average, contact->dim, there, NULL, field);
-        }
+        average_spread(&average, contact->dim, there, NULL, field);
     }
 }
 
@@ -139,14 +143,14 @@ void preconditioner_resist_open(const struct preconditioner *p, const struct sol
             const double *normal = p->normal + at * dim;
             double mean[3], on_node[3], stiffness = node.stiffness * averages->area[a];
             average_take(&average, (int)dim, move, mean);
-            add_opposite(contact, a, -1.0, move, mean);
+            take_opposite(contact, a, move, mean);
             double along = vector_dot((int)dim, mean, normal);
             for (int64_t i = 0; i < dim; i++) {
                 double aside = p->creased[at] && !node.turned ? mean[i] - along * normal[i] : 0.0;
                 on_node[i] = stiffness * ((1.0 - node.pressed) * along * normal[i] + aside);
             }
             average_spread(&average, (int)dim, on_node, NULL, force);
-            spread_opposite(contact, a, -1.0, on_node, force);
+            spread_opposite(contact, a, on_node, force);
         }
     }
 }

@@ -133,9 +133,6 @@ bool relaxation_update_preconditioner(struct relaxation *r, struct error *error)
  * known, and take the time step from it. */
 MUST_CHECK enum status relaxation_measure_preconditioner(struct relaxation *r, struct error *error);
 
-/* Go back to a state that was kept, at rest. */
-void relaxation_go_back(struct relaxation *r, const struct kept_state *kept);
-
 /* At a check: keep the state. */
 void relaxation_keep_check(struct relaxation *r);
 

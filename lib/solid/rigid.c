@@ -113,25 +113,22 @@ static void facet_normal(const struct rigid_surface *surface, int64_t f, double 
 
 static enum status make_normals(struct rigid_surface *surface, bool flip, struct error *error)
 {
-    enum status status;
     int dim = surface->dim;
-    TRY(NEW_ARRAY(&surface->normal, surface->facet_count * dim, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&surface->normal, surface->facet_count * dim, error));
     for (int64_t f = 0; f < surface->facet_count; f++) {
         double *normal = surface->normal + f * dim, size2;
         facet_normal(surface, f, normal, &size2);
         double least = dim == 2 ? 0.0 : least_slenderness * size2;
         if (!(vector_length(dim, normal) > least)) {
-            status = fail(error, STATUS_INPUT, "rigid surface: facet %lld has no size: remove it",
-                          (long long)(f + 1));
-            goto done;
+            return fail(error, STATUS_INPUT, "rigid surface: facet %lld has no size: remove it",
+                        (long long)(f + 1));
         }
         normalise(dim, normal);
         for (int a = 0; a < dim && flip; a++) {
             normal[a] = -normal[a];
         }
     }
-done:
-    return status;
+    return STATUS_OK;
 }
 
 enum status rigid_build(int dim, int64_t facet_count, const double *corners, bool flip,

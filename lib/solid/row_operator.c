@@ -31,9 +31,8 @@ done:
 static enum status cut_columns(struct row_operator *rows, const int32_t *count, int64_t begin, int64_t end,
                                int threads, struct error *error)
 {
-    enum status status;
     int64_t entries = transposed_table(rows)->ptr[transposed_table(rows)->row_count], sum = 0;
-    TRY(NEW_ARRAY(&rows->stripes, threads, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&rows->stripes, threads, error));
     rows->stripe_count = threads;
     for (int s = 0; s < threads; s++) {
         struct row_stripe *stripe = &rows->stripes[s];
@@ -43,8 +42,7 @@ static enum status cut_columns(struct row_operator *rows, const int32_t *count, 
         }
         stripe->end = begin;
     }
-done:
-    return status;
+    return STATUS_OK;
 }
 
 /* List row r, with columns from `low` to `high`, in a stripe that has some of these; without arrays only
@@ -94,16 +92,14 @@ static void list_rows(const struct sparse *table, const int32_t *range, struct r
 static enum status make_stripe(const struct sparse *table, const int32_t *range, struct row_stripe *stripe,
                                struct error *error)
 {
-    enum status status;
     list_rows(table, range, stripe);
-    TRY(sparse_new(stripe->cut.row_count, table->column_count, stripe->cut.column_count, &stripe->cut,
-                   error));
-    TRY(NEW_ARRAY(&stripe->row, stripe->row_count, error));
+    RETURN_IF_ERROR(sparse_new(stripe->cut.row_count, table->column_count, stripe->cut.column_count,
+                               &stripe->cut, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&stripe->row, stripe->row_count, error));
     stripe->row_count = stripe->cut.row_count = 0;
     list_rows(table, range, stripe);
     stripe->cut.column_count = table->column_count;
-done:
-    return status;
+    return STATUS_OK;
 }
 
 enum status row_operator_finish(struct row_operator *rows, int64_t begin, int64_t end, int threads,

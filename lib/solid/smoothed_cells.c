@@ -31,8 +31,8 @@ static enum status set_linear_gradients(const struct smoothed_cells_input *input
                                         const int64_t *order, struct smoothed_cells *smoothed,
                                         struct error *error)
 {
-    enum status status;
-    TRY(NEW_ARRAY(&smoothed->linear_gradient, cell_count * dim * dim + BODY_POINT_PADDING, error));
+    RETURN_IF_ERROR(
+        NEW_ARRAY(&smoothed->linear_gradient, cell_count * dim * dim + BODY_POINT_PADDING, error));
     for (int64_t q = 0; q < cell_count; q++) {
         double gradient[9];
         linear_gradients(dim, input->x, input->cell_node + order[q] * (dim + 1), gradient);
@@ -40,8 +40,7 @@ static enum status set_linear_gradients(const struct smoothed_cells_input *input
             smoothed->linear_gradient[k * cell_count + q] = gradient[k];
         }
     }
-done:
-    return status;
+    return STATUS_OK;
 }
 
 /* Corner of a cell that is opposite a face: the one whose vertex the face has not. */

@@ -39,19 +39,17 @@ void system_free(struct solid_system *system)
 
 enum status system_state(struct solid_system *system, const struct state *state, struct error *error)
 {
-    enum status status;
     const struct state_value factor = {"factor", STATE_NUMBERS, system->factor, system->curve_count};
     const struct state_value stability[] = {{"least", STATE_NUMBERS, &system->stability.least, 1},
                                             {"node", STATE_COUNTS, &system->stability.node, 1}};
-    TRY(state_visit(state, "loads", &factor, 1, error));
-    TRY(state_visit(state, "stability", stability, 2, error));
+    RETURN_IF_ERROR(state_visit(state, "loads", &factor, 1, error));
+    RETURN_IF_ERROR(state_visit(state, "stability", stability, 2, error));
     for (int64_t c = 0; c < system->contact_count; c++) {
         char prefix[32];
         snprintf(prefix, sizeof prefix, "contact.%lld", (long long)c);
-        TRY(contact_state(&system->contacts[c], prefix, state, error));
+        RETURN_IF_ERROR(contact_state(&system->contacts[c], prefix, state, error));
     }
-done:
-    return status;
+    return STATUS_OK;
 }
 
 /* Constraints found linearly dependent are dropped. The solution is accepted only if each of them holds to
