@@ -71,12 +71,11 @@ static enum status add_rows(const struct solid_system *system, int64_t first, in
                             struct error *error)
 {
     enum status status;
-    int64_t own = system->body.share.begin_node;
     bool *wanted = NULL;
     TRY(NEW_ARRAY(&wanted, system->node_count, error));
     for (int64_t p = first; p < last; p++) {
         for (int64_t k = 0; k < length[p]; k++) {
-            wanted[rows->idx[(p - own) * MOST_ENTRIES + k]] = true;
+            wanted[rows->idx[p * MOST_ENTRIES + k]] = true;
         }
     }
     TRY(system->body.share.ranks != NULL ? lower_fetch(wanted, lower, error)
@@ -86,8 +85,8 @@ done:
     return status;
 }
 
-/* Rows of the nodes from `first` to before `last` in the body's order, with room for MOST_ENTRIES in each,
- * the first at that of the process's first node; length[]: how long each is. */
+/* Rows of the nodes from `first` to before `last` in the body's order, the one at place p at
+ * p * MOST_ENTRIES; length[]: how long each is. */
 static enum status make_rows(const struct solid_system *system, int64_t first, int64_t last,
                              struct lower *lower, struct sparse *rows, int64_t *length, struct error *error)
 {
@@ -95,7 +94,7 @@ static enum status make_rows(const struct solid_system *system, int64_t first, i
     const int64_t *node = system->body.node_order;
     const struct chunks chunks = chunks_of(last - first, worthwhile);
     struct placed *near = NULL;
-    int64_t most = 0, own = system->body.share.begin_node;
+    int64_t most = 0;
     for (int64_t p = first; p < last; p++) {
         int64_t entries = lower_row(lower, node[p]).count;
         most = entries > most ? entries : most;
@@ -104,14 +103,14 @@ static enum status make_rows(const struct solid_system *system, int64_t first, i
 #pragma omp parallel for schedule(static, 1) num_threads(chunks.threads)
     for (int64_t c = 0; c < chunks.count; c++) {
         for (int64_t p = first + chunks_begin(&chunks, c); p < first + chunks_begin(&chunks, c + 1); p++) {
-            length[p] = choose(system, lower, (int32_t)node[p], near + c * most,
-                               rows->idx + (p - own) * MOST_ENTRIES);
+            length[p] =
+                choose(system, lower, (int32_t)node[p], near + c * most, rows->idx + p * MOST_ENTRIES);
         }
     }
     TRY(add_rows(system, first, last, rows, length, lower, error));
 #pragma omp parallel for schedule(static) num_threads(chunks.threads)
     for (int64_t p = first; p < last; p++) {
-        int64_t at = (p - own) * MOST_ENTRIES;
+        int64_t at = p * MOST_ENTRIES;
         solve_row(lower, length[p], rows->idx + at, rows->value + at);
     }
 done:
@@ -144,41 +143,29 @@ static enum status make_own_rows(const struct solid_system *system, int64_t stre
     return STATUS_OK;
 }
 
-/* Own rows one behind the other. */
-static void pack_rows(const struct body_share *share, const int64_t *length, struct sparse *rows)
-{
-    int64_t at = 0;
-    for (int64_t q = 0; q < share->end_node - share->begin_node; q++) {
-        int64_t count = length[share->begin_node + q];
-        memmove(rows->idx + at, rows->idx + q * MOST_ENTRIES, (size_t)count * sizeof *rows->idx);
-        memmove(rows->value + at, rows->value + q * MOST_ENTRIES, (size_t)count * sizeof *rows->value);
-        at += count;
-    }
-}
-
-/* All rows to all, by the processes' stretches of the body's order: rows->ptr[] is of that order. */
+/* Rows one behind the other, rows->ptr[] by places in the body's order; those of all processes to all. */
 static enum status gather_rows(const struct body_share *share, int64_t *length, struct sparse *rows,
                                struct error *error)
 {
-    enum status status;
-    int rank = ranks_rank(share->ranks), count = ranks_count(share->ranks);
+    int count = ranks_count(share->ranks);
     int64_t *first = NULL;
     ranks_gather(share->ranks, length, sizeof *length, share->node_first);
     for (int64_t p = 0; p < rows->row_count; p++) {
         rows->ptr[p + 1] = rows->ptr[p] + length[p];
     }
-    TRY(NEW_ARRAY(&first, count + 1, error));
+    for (int64_t p = share->begin_node; p < share->end_node; p++) {
+        int64_t from = p * MOST_ENTRIES, to = rows->ptr[p];
+        memmove(rows->idx + to, rows->idx + from, (size_t)length[p] * sizeof *rows->idx);
+        memmove(rows->value + to, rows->value + from, (size_t)length[p] * sizeof *rows->value);
+    }
+    RETURN_IF_ERROR(NEW_ARRAY(&first, count + 1, error));
     for (int r = 0; r <= count; r++) {
         first[r] = rows->ptr[share->node_first[r]];
     }
-    size_t own = (size_t)(first[rank + 1] - first[rank]);
-    memmove(rows->idx + first[rank], rows->idx, own * sizeof *rows->idx);
-    memmove(rows->value + first[rank], rows->value, own * sizeof *rows->value);
     ranks_gather(share->ranks, rows->idx, sizeof *rows->idx, first);
     ranks_gather(share->ranks, rows->value, sizeof *rows->value, first);
-done:
     free(first);
-    return status;
+    return STATUS_OK;
 }
 
 /* The rows by the nodes' numbers. */
@@ -218,7 +205,6 @@ enum status inverse_factor_build_by(const struct solid_system *system, int64_t s
     TRY(sparse_new(nodes, nodes, nodes * MOST_ENTRIES, &by_place, error));
     TRY(NEW_ARRAY(&length, nodes, error));
     TRY(make_own_rows(system, stretch, &lower, &by_place, length, error));
-    pack_rows(share, length, &by_place);
     TRY(gather_rows(share, length, &by_place, error));
     lower_free(&lower);
     TRY(sort_rows(&system->body, &by_place, &factor->rows, error));

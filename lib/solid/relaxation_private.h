@@ -30,7 +30,8 @@ struct relaxation {
     double *velocity, *residual, *before;
     const double *residual_at; /* where the residual is known, at a check: u or before */
     double *factor_change;     /* of the load curves in this step */
-    double *mode, *scratch;
+    double *mode;
+    double *scratch;                    /* 4 * size */
     double *last_u, *last_acceleration; /* at the last check */
     double *acceleration;
     double time_step, damping, frequency; /* current; frequency: largest */
